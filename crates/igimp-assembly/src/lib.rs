@@ -1,1 +1,5 @@
 //! igimp-assembly.
+
+mod matrix;
+
+pub use matrix::{NodeBlock, Pattern, TangentMatrix};
