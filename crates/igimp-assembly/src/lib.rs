@@ -1,5 +1,35 @@
-//! igimp-assembly.
+//! From particles to a system of equations: the assembly of the implicit generalised
+//! interpolation material point method with B-bar.
+//!
+//! A step reads like the paper. [`Stencils`] hold who touches what, frozen for the step;
+//! [`System`] evaluates stress and internal force at a trial displacement and sums the exact
+//! tangent; [`Particles::commit`] accepts a converged trial. Tension is positive.
+//!
+//! Nothing here iterates, cuts a step, reads a file or prints.
 
+mod commit;
+mod constraints;
+mod error;
+mod ghost;
+mod kinematics;
+mod linearised;
+mod loads;
 mod matrix;
+mod method;
+mod particles;
+mod small;
+mod stencils;
+mod strips;
+mod system;
+mod unknowns;
 
+pub use constraints::Constraints;
+pub use error::AssemblyError;
+pub use kinematics::ParticleTrial;
+pub use loads::{LoadPoint, StepLoads};
 pub use matrix::{NodeBlock, Pattern, TangentMatrix};
+pub use method::{DomainUpdate, Kinematics, Method, SmallCuts};
+pub use particles::{ParticleFields, ParticleSeed, Particles};
+pub use stencils::{Stencils, Transpose};
+pub use system::{OutOfBalance, SharedLaw, StepConditions, System, Trial};
+pub use unknowns::Unknowns;

@@ -1,1 +1,18 @@
-//! igimp-solver.
+//! From one equilibrium to the next: Newton–Raphson iteration, load marching with step cutting,
+//! and the sparse linear solvers behind one trait.
+//!
+//! [`step`] finds the equilibrium of one load step, [`march`] drives a body through many. A state
+//! is written only when a step is accepted, so nothing is ever rolled back, and why a march
+//! stopped is data ([`Outcome`]).
+
+pub mod linear;
+
+mod body;
+mod march;
+mod newton;
+
+pub use body::Body;
+pub use march::{Accepted, MarchReport, MarchSettings, Observer, Outcome, Program, march};
+pub use newton::{
+    NewtonSettings, NodalForces, PhaseTimes, StepError, StepFailure, StepReport, Workspace, step,
+};

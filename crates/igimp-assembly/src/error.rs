@@ -1,0 +1,101 @@
+//! What can go wrong between particles and the global system, with the particle's name.
+
+use igimp_material::MaterialError;
+use igimp_shape::ShapeError;
+use thiserror::Error;
+
+/// Errors of seeding, stencils, kinematics and constraints.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum AssemblyError {
+    /// There is nothing to compute.
+    #[error("the body is empty: it holds no particle")]
+    EmptyBody,
+    /// A particle was given a property outside its range.
+    #[error("particle {particle}: {field} is {value}, but must be {requirement}")]
+    InvalidParticle {
+        /// Number of the particle, from 0.
+        particle: usize,
+        /// Name of the property.
+        field: &'static str,
+        /// The value given.
+        value: f64,
+        /// What is accepted.
+        requirement: &'static str,
+    },
+    /// A particle names a law that is not in the list.
+    #[error("particle {particle} uses law {law}, but there are {laws} laws (numbered from 0)")]
+    UnknownLaw {
+        /// Number of the particle, from 0.
+        particle: usize,
+        /// The law it names.
+        law: usize,
+        /// How many laws there are.
+        laws: usize,
+    },
+    /// A particle's centre or domain has no place on the grid.
+    #[error("particle {particle} at {position:?} m has no place on the background grid")]
+    Shape {
+        /// Number of the particle, from 0.
+        particle: usize,
+        /// Position of the particle's centre \[length\], axes beyond the dimension 0.
+        position: [f64; 3],
+        /// What the basis said.
+        #[source]
+        source: ShapeError,
+    },
+    /// The grid of a step cannot be made.
+    #[error("the grid of the step cannot be made")]
+    Grid {
+        /// What the axis said.
+        #[source]
+        source: ShapeError,
+    },
+    /// A loaded point has no place on the grid.
+    #[error("load point {point} at {position:?} m has no place on the background grid")]
+    LoadPoint {
+        /// Number of the point, from 0.
+        point: usize,
+        /// Position \[length\], axes beyond the dimension 0.
+        position: [f64; 3],
+        /// What the basis said.
+        #[source]
+        source: ShapeError,
+    },
+    /// A law could not answer.
+    #[error("particle {particle}: the constitutive law failed")]
+    Material {
+        /// Number of the particle, from 0.
+        particle: usize,
+        /// What the law said.
+        #[source]
+        source: MaterialError,
+    },
+    /// A trial displacement turns a particle inside out.
+    #[error("particle {particle}: the determinant of the deformation increment is {determinant:e}, \
+             but must be positive")]
+    Inverted {
+        /// Number of the particle, from 0.
+        particle: usize,
+        /// det ΔF, or det of its cell-averaged part.
+        determinant: f64,
+    },
+    /// A constraint names a node that the grid does not have.
+    #[error("a constraint names node {node}, but the grid has {nodes} nodes (numbered from 0)")]
+    UnknownNode {
+        /// The node named.
+        node: usize,
+        /// How many nodes there are.
+        nodes: usize,
+    },
+    /// Every degree of freedom is prescribed or dropped.
+    #[error("no unknown is left: every active node is fixed")]
+    NoUnknowns,
+    /// A number that must be finite is not.
+    #[error("{what} is not finite at index {index}")]
+    NonFinite {
+        /// Name of the array.
+        what: &'static str,
+        /// Index within it.
+        index: usize,
+    },
+}

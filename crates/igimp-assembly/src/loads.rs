@@ -1,0 +1,110 @@
+//! External loads: gravity on every particle, and forces on points that the soil carries along.
+
+use igimp_shape::{Grid, Linear, Scratch, Support, supports};
+
+use crate::error::AssemblyError;
+use crate::stencils::{Stencils, padded};
+use crate::Particles;
+
+/// A force on a point that moves with the soil. Its direction stays (dead load).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LoadPoint<const D: usize> {
+    /// Position \[length\].
+    pub x: [f64; D],
+    /// Force at load factor 1 \[force; per unit thickness in plane strain\].
+    pub force: [f64; D],
+}
+
+impl<const D: usize> LoadPoint<D> {
+    /// A traction on a straight edge, as `count` equal points in the middle of equal parts.
+    ///
+    /// `traction` is force per unit area \[force/length²\] on the edge from `from` to `to`
+    /// (per unit thickness).
+    pub fn along_edge(
+        from: [f64; D],
+        to: [f64; D],
+        traction: [f64; D],
+        count: usize,
+    ) -> Vec<Self> {
+        let length =
+            from.iter().zip(&to).map(|(a, b)| (b - a) * (b - a)).sum::<f64>().sqrt();
+        (0..count)
+            .map(|k| {
+                let t = (k as f64 + 0.5) / count as f64;
+                Self {
+                    x: std::array::from_fn(|axis| from[axis] + t * (to[axis] - from[axis])),
+                    force: traction.map(|component| component * length / count as f64),
+                }
+            })
+            .collect()
+    }
+
+    /// The nodes that take the force: linear shares, so that resultant and moment are kept.
+    fn supports(&self, grid: &Grid<D>, point: usize) -> Result<Vec<Support<D>>, AssemblyError> {
+        let mut own = Vec::new();
+        supports(grid, &Linear, &self.x, &[0.0; D], &mut Scratch::default(), &mut own).map_err(
+            |source| AssemblyError::LoadPoint { point, position: padded(&self.x), source },
+        )?;
+        Ok(own)
+    }
+
+    /// The point carried along by nodal step displacements.
+    ///
+    /// # Errors
+    /// [`AssemblyError::LoadPoint`] when it is not on the grid.
+    pub fn carried(
+        &self,
+        grid: &Grid<D>,
+        point: usize,
+        u: &[[f64; D]],
+    ) -> Result<Self, AssemblyError> {
+        let mut carried = *self;
+        for support in self.supports(grid, point)? {
+            for axis in 0..D {
+                carried.x[axis] += support.value * u[support.node][axis];
+            }
+        }
+        Ok(carried)
+    }
+}
+
+/// The external force at the end of a step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StepLoads<const D: usize> {
+    /// Acceleration of gravity \[length/time²\].
+    pub gravity: [f64; D],
+    /// Factor on the point loads \[-\].
+    pub point_factor: f64,
+}
+
+/// Nodal external force f_ext, by node \[force\].
+pub(crate) fn external_force<const D: usize>(
+    grid: &Grid<D>,
+    particles: &Particles<D>,
+    stencils: &Stencils<D>,
+    points: &[LoadPoint<D>],
+    loads: &StepLoads<D>,
+) -> Result<Vec<[f64; D]>, AssemblyError> {
+    let mut f_ext = vec![[0.0; D]; grid.node_count()];
+    stencils.strips().sum(&mut f_ext, Clone::clone, |members, nodes, slice| {
+        for &particle in members {
+            let particle = particle as usize;
+            let mass = particles.mass[particle];
+            for support in stencils.of(particle) {
+                for axis in 0..D {
+                    slice[support.node - nodes.start][axis] +=
+                        support.value * mass * loads.gravity[axis];
+                }
+            }
+        }
+    });
+    for (index, point) in points.iter().enumerate() {
+        for support in point.supports(grid, index)? {
+            for axis in 0..D {
+                f_ext[support.node][axis] +=
+                    support.value * loads.point_factor * point.force[axis];
+            }
+        }
+    }
+    Ok(f_ext)
+}

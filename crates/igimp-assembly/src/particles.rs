@@ -1,0 +1,177 @@
+//! Particles as a structure of arrays. Their state is read everywhere and written in two places
+//! only: here when a body is seeded, and in `commit` when a step is accepted.
+
+use std::ops::Deref;
+
+use igimp_material::{History, Regime, Tensor};
+
+use crate::error::AssemblyError;
+use crate::small::{determinant, identity};
+
+/// What is known of a particle before the first step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ParticleSeed<const D: usize> {
+    /// Centre \[length\].
+    pub x: [f64; D],
+    /// Half-lengths l_p of the domain \[length\].
+    pub half_length: [f64; D],
+    /// Volume V_0 \[length^D; per unit thickness in plane strain\].
+    pub volume: f64,
+    /// Density ρ_0 \[mass/length³\].
+    pub density: f64,
+    /// Index of the constitutive law in the list of laws.
+    pub law: usize,
+}
+
+/// The arrays, one entry per particle.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ParticleFields<const D: usize> {
+    /// Centre x_p \[length\].
+    pub x: Vec<[f64; D]>,
+    /// Displacement since seeding or the last reset \[length\].
+    pub displacement: Vec<[f64; D]>,
+    /// Deformation gradient F; the out-of-plane stretch is 1 in plane strain \[-\].
+    pub def_grad: Vec<[[f64; D]; D]>,
+    /// Elastic left Cauchy–Green tensor b_e, 3 × 3 with zz in plane strain \[-\].
+    pub b_e: Vec<Tensor>,
+    /// Cauchy stress σ, 3 × 3, tension positive \[force/length²\].
+    pub sigma: Vec<Tensor>,
+    /// Current half-lengths l_p \[length\].
+    pub half_length: Vec<[f64; D]>,
+    /// Half-lengths as seeded \[length\].
+    pub half_length0: Vec<[f64; D]>,
+    /// Volume as seeded V_0 \[length^D\].
+    pub volume0: Vec<f64>,
+    /// Mass \[mass\].
+    pub mass: Vec<f64>,
+    /// Index of the constitutive law.
+    pub law: Vec<usize>,
+    /// History of the law.
+    pub history: Vec<History>,
+    /// Where the last return to the yield surface ended.
+    pub regime: Vec<Regime>,
+}
+
+/// The particles of a body: [`ParticleFields`] that can be read but not written.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Particles<const D: usize> {
+    fields: ParticleFields<D>,
+}
+
+impl<const D: usize> Deref for Particles<D> {
+    type Target = ParticleFields<D>;
+
+    fn deref(&self) -> &ParticleFields<D> {
+        &self.fields
+    }
+}
+
+impl<const D: usize> Particles<D> {
+    /// Seeds a body, stress-free and undeformed.
+    ///
+    /// # Errors
+    /// [`AssemblyError::EmptyBody`] without seeds; [`AssemblyError::InvalidParticle`] for a
+    /// position that is not finite, a volume or half-length that is not positive, or a negative
+    /// density.
+    pub fn new(seeds: &[ParticleSeed<D>]) -> Result<Self, AssemblyError> {
+        if seeds.is_empty() {
+            return Err(AssemblyError::EmptyBody);
+        }
+        for (particle, seed) in seeds.iter().enumerate() {
+            validate(particle, seed)?;
+        }
+        let n = seeds.len();
+        let identity3 = identity::<3>();
+        Ok(Self {
+            fields: ParticleFields {
+                x: seeds.iter().map(|seed| seed.x).collect(),
+                displacement: vec![[0.0; D]; n],
+                def_grad: vec![identity(); n],
+                b_e: vec![identity3; n],
+                sigma: vec![[[0.0; 3]; 3]; n],
+                half_length: seeds.iter().map(|seed| seed.half_length).collect(),
+                half_length0: seeds.iter().map(|seed| seed.half_length).collect(),
+                volume0: seeds.iter().map(|seed| seed.volume).collect(),
+                mass: seeds.iter().map(|seed| seed.volume * seed.density).collect(),
+                law: seeds.iter().map(|seed| seed.law).collect(),
+                history: vec![History::default(); n],
+                regime: vec![Regime::Elastic; n],
+            },
+        })
+    }
+
+    /// Particles with a state that was saved before.
+    ///
+    /// # Errors
+    /// [`AssemblyError::EmptyBody`] without particles.
+    ///
+    /// # Panics
+    /// If the arrays differ in length.
+    pub fn from_fields(fields: ParticleFields<D>) -> Result<Self, AssemblyError> {
+        let n = fields.x.len();
+        if n == 0 {
+            return Err(AssemblyError::EmptyBody);
+        }
+        let lengths = [
+            fields.displacement.len(),
+            fields.def_grad.len(),
+            fields.b_e.len(),
+            fields.sigma.len(),
+            fields.half_length.len(),
+            fields.half_length0.len(),
+            fields.volume0.len(),
+            fields.mass.len(),
+            fields.law.len(),
+            fields.history.len(),
+            fields.regime.len(),
+        ];
+        assert!(lengths.iter().all(|&length| length == n), "arrays of one body have one length");
+        Ok(Self { fields })
+    }
+
+    /// Number of particles.
+    pub fn len(&self) -> usize {
+        self.fields.x.len()
+    }
+
+    /// Whether there is no particle: never, by construction.
+    pub fn is_empty(&self) -> bool {
+        self.fields.x.is_empty()
+    }
+
+    /// Current volume V = det F · V_0 of a particle \[length^D\].
+    pub fn volume(&self, particle: usize) -> f64 {
+        determinant(&self.fields.def_grad[particle]) * self.fields.volume0[particle]
+    }
+
+    /// Counts displacements from the present positions on; nothing else changes.
+    pub fn reset_displacements(&mut self) {
+        self.fields.displacement.fill([0.0; D]);
+    }
+
+    /// The arrays for writing: for `commit` alone.
+    pub(crate) fn fields_mut(&mut self) -> &mut ParticleFields<D> {
+        &mut self.fields
+    }
+}
+
+fn validate<const D: usize>(particle: usize, seed: &ParticleSeed<D>) -> Result<(), AssemblyError> {
+    let invalid = |field, value, requirement| {
+        Err(AssemblyError::InvalidParticle { particle, field, value, requirement })
+    };
+    if let Some(&value) = seed.x.iter().find(|value| !value.is_finite()) {
+        return invalid("x", value, "finite");
+    }
+    if let Some(&value) =
+        seed.half_length.iter().find(|&&value| !(value > 0.0 && value.is_finite()))
+    {
+        return invalid("half_length", value, "positive and finite");
+    }
+    if !(seed.volume > 0.0 && seed.volume.is_finite()) {
+        return invalid("volume", seed.volume, "positive and finite");
+    }
+    if !(seed.density >= 0.0 && seed.density.is_finite()) {
+        return invalid("density", seed.density, "zero or positive, and finite");
+    }
+    Ok(())
+}

@@ -1,0 +1,179 @@
+//! GOAL: the tangent matrix is the derivative of the internal force, for every law, basis, B-bar
+//! switch and kinematics, in two and three dimensions.
+//! ORACLE: central differences of the internal force.
+
+mod common;
+
+use common::{Random, conditions, displacements, grid, laws, methods, particles};
+use igimp_assembly::{Kinematics, Method, Particles, SharedLaw, Stencils, System};
+use igimp_material::TangentKind;
+use igimp_shape::Grid;
+
+/// Largest difference between tangent and differences, relative to the largest entry, and the
+/// asymmetry of the tangent.
+fn tangent_error<const D: usize>(
+    grid: &Grid<D>,
+    body: &Particles<D>,
+    law: &SharedLaw,
+    method: &Method,
+    columns: usize,
+    random: &mut Random,
+) -> (f64, f64) {
+    let conditions = conditions(grid, law);
+    let stencils = Stencils::build(grid, body, method).unwrap();
+    let system = System::new(body, &stencils, &conditions, method, &[], None).unwrap();
+    let u = displacements(grid, 0.02, random);
+    let trial = system.evaluate(&u, TangentKind::Consistent).unwrap();
+    let matrix = system.tangent(&trial);
+    let unknowns = system.unknowns();
+    let dofs: Vec<(usize, usize)> = (0..grid.node_count())
+        .flat_map(|node| (0..D).map(move |axis| (node, axis)))
+        .filter(|&(node, axis)| unknowns.index(node, axis).is_some())
+        .collect();
+    let mut unit = vec![0.0; unknowns.len()];
+    let mut column_of_k = vec![0.0; unknowns.len()];
+    let (mut largest, mut error) = (0.0_f64, 0.0_f64);
+    for k in 0..columns {
+        let (node, axis) = dofs[k * dofs.len() / columns];
+        let column = unknowns.index(node, axis).unwrap();
+        unit[column] = 1.0;
+        matrix.multiply(&unit, &mut column_of_k);
+        unit[column] = 0.0;
+        let d = 1e-6;
+        let force = |sign: f64| {
+            let mut u = u.clone();
+            u[node][axis] += sign * d;
+            system.evaluate(&u, TangentKind::Consistent).unwrap().f_int
+        };
+        let (plus, minus) = (force(1.0), force(-1.0));
+        for &(row_node, row_axis) in &dofs {
+            let row = unknowns.index(row_node, row_axis).unwrap();
+            let difference =
+                (plus[row_node][row_axis] - minus[row_node][row_axis]) / (2.0 * d);
+            largest = largest.max(difference.abs());
+            error = error.max((difference - column_of_k[row]).abs());
+        }
+    }
+    let dense = nalgebra_sparse::CooMatrix::from(&matrix.to_csc());
+    let transposed = matrix.to_csc().transpose();
+    let asymmetry = dense
+        .triplet_iter()
+        .map(|(i, j, value)| {
+            let other = transposed.get_entry(i, j).map_or(0.0, nalgebra_sparse::SparseEntry::into_value);
+            (value - other).abs()
+        })
+        .fold(0.0, f64::max);
+    (error / largest, asymmetry / largest)
+}
+
+/// A body with a strained and yielded past.
+fn strained<const D: usize>(
+    grid: &Grid<D>,
+    law: &SharedLaw,
+    method: &Method,
+    random: &mut Random,
+) -> Particles<D> {
+    let mut body = particles(grid, 1.0, random);
+    let conditions = conditions(grid, law);
+    let stencils = Stencils::build(grid, &body, method).unwrap();
+    let system = System::new(&body, &stencils, &conditions, method, &[], None).unwrap();
+    let u = displacements(grid, 0.05, random);
+    let trial = system.evaluate(&u, TangentKind::Consistent).unwrap();
+    body.commit(&stencils, method, trial, &u);
+    body
+}
+
+#[test]
+fn tangent_is_the_derivative_of_the_internal_force() {
+    let grid = grid::<2>(6);
+    let mut random = Random(7);
+    for (name, law) in laws() {
+        for method in methods() {
+            let body = strained(&grid, &law, &method, &mut random);
+            let yielded =
+                body.regime.iter().filter(|regime| regime.is_plastic()).count();
+            if name != "elastic" {
+                assert!(yielded > body.len() / 4, "{name}: {yielded} yielded");
+            }
+            let (error, asymmetry) =
+                tangent_error(&grid, &body, &law, &method, 40, &mut random);
+            let label = format!("{name}, {}, {:?}", method.label(), method.kinematics);
+            assert!(error < 1e-7, "{label}: {error:e}");
+            if law.has_symmetric_tangent() {
+                assert!(asymmetry < 1e-12, "{label}: asymmetry {asymmetry:e}");
+            } else {
+                assert!(asymmetry > 1e-3, "{label}: asymmetry {asymmetry:e}");
+            }
+        }
+    }
+}
+
+#[test]
+fn tangent_in_three_dimensions() {
+    let grid = grid::<3>(4);
+    let mut random = Random(11);
+    for (name, law) in laws() {
+        for method in methods() {
+            let body = strained(&grid, &law, &method, &mut random);
+            let (error, _) = tangent_error(&grid, &body, &law, &method, 8, &mut random);
+            let label = format!("{name}, {}, {:?}", method.label(), method.kinematics);
+            assert!(error < 1e-7, "{label}: {error:e}");
+        }
+    }
+}
+
+/// The finite-strain tangent tends to the small-strain one as displacements and stresses vanish.
+#[test]
+fn small_strain_is_the_limit() {
+    let grid = grid::<2>(5);
+    let (_, law) = laws().remove(0);
+    let body = particles(&grid, 1.0, &mut Random(3));
+    let tangent = |kinematics| {
+        let method = Method { kinematics, ..Method::igimp_bbar() };
+        let conditions = conditions(&grid, &law);
+        let stencils = Stencils::build(&grid, &body, &method).unwrap();
+        let system = System::new(&body, &stencils, &conditions, &method, &[], None).unwrap();
+        system.tangent(&system.start(TangentKind::Consistent).unwrap()).values
+    };
+    let (finite, small) = (tangent(Kinematics::FiniteStrain), tangent(Kinematics::SmallStrain));
+    let scale = finite.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+    for (a, b) in finite.iter().zip(&small) {
+        assert!((a - b).abs() < 1e-13 * scale);
+    }
+}
+
+/// The known part of the first correction is K times the prescribed motion.
+#[test]
+fn force_of_prescribed_motion_is_the_derivative_along_it() {
+    let grid = grid::<2>(6);
+    let mut random = Random(23);
+    for (name, law) in laws() {
+        let method = Method::igimp_bbar();
+        let body = strained(&grid, &law, &method, &mut random);
+        let conditions = conditions(&grid, &law);
+        let stencils = Stencils::build(&grid, &body, &method).unwrap();
+        let system = System::new(&body, &stencils, &conditions, &method, &[], None).unwrap();
+        let u = displacements(&grid, 0.02, &mut random);
+        let trial = system.evaluate(&u, TangentKind::Consistent).unwrap();
+        let known = system.force_of_prescribed_motion(&trial);
+        let direction = system.prescribed_motion();
+        let d = 1e-4;
+        let force = |sign: f64| {
+            let moved: Vec<[f64; 2]> = std::iter::zip(&u, &direction)
+                .map(|(u, v)| [u[0] + sign * d * v[0], u[1] + sign * d * v[1]])
+                .collect();
+            system.evaluate(&moved, TangentKind::Consistent).unwrap().f_int
+        };
+        let (plus, minus) = (force(1.0), force(-1.0));
+        let scale = known.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+        assert!(scale > 0.0);
+        for node in 0..grid.node_count() {
+            for axis in 0..2 {
+                if let Some(unknown) = system.unknowns().index(node, axis) {
+                    let difference = (plus[node][axis] - minus[node][axis]) / (2.0 * d);
+                    assert!((difference - known[unknown]).abs() < 1e-6 * scale, "{name}");
+                }
+            }
+        }
+    }
+}

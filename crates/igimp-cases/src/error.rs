@@ -1,0 +1,76 @@
+//! What can be wrong with a case, and what can stop it from being written down.
+
+use std::path::PathBuf;
+
+use igimp_assembly::AssemblyError;
+use igimp_material::MaterialError;
+use igimp_shape::ShapeError;
+use igimp_solver::StepError;
+use thiserror::Error;
+
+use crate::figures::FigureError;
+
+/// Errors of stating or running a case.
+#[derive(Debug, Error)]
+pub enum CaseError {
+    /// A parameter is outside its range.
+    #[error("{field} is {value}, but must be {requirement}")]
+    InvalidParameter {
+        /// Name of the parameter.
+        field: &'static str,
+        /// The value given.
+        value: f64,
+        /// What is accepted.
+        requirement: &'static str,
+    },
+    /// A body reaches beyond the grid.
+    #[error("the body reaches ({}, {}) m, outside the grid domain", corner[0], corner[1])]
+    OutsideGrid {
+        /// The corner \[length\].
+        corner: [f64; 2],
+    },
+    /// A body has no volume.
+    #[error("the body is empty: its polygon has no area on the grid")]
+    EmptyBody,
+    /// The grid cannot be made.
+    #[error("the grid cannot be made")]
+    Shape(#[from] ShapeError),
+    /// A material cannot be made.
+    #[error("the material cannot be made")]
+    Material(#[from] MaterialError),
+    /// The body cannot be made.
+    #[error("the body cannot be made")]
+    Assembly(#[from] AssemblyError),
+    /// A run that had to reach its end did not; what was computed is kept.
+    #[error("{case} stopped at load factor {reached}")]
+    Stopped {
+        /// Case and variant.
+        case: String,
+        /// Load factor of the last equilibrium.
+        reached: f64,
+        /// Why.
+        #[source]
+        cause: Box<StepError>,
+    },
+    /// A file cannot be written or read.
+    #[error("cannot access {}", path.display())]
+    File {
+        /// The file or folder.
+        path: PathBuf,
+        /// What the system said.
+        #[source]
+        source: std::io::Error,
+    },
+    /// A table cannot be written.
+    #[error("cannot write the table {}", path.display())]
+    Table {
+        /// The file.
+        path: PathBuf,
+        /// What the writer said.
+        #[source]
+        source: csv::Error,
+    },
+    /// A picture cannot be drawn.
+    #[error("cannot draw a picture")]
+    Figure(#[from] FigureError),
+}

@@ -1,0 +1,19 @@
+//! What a step changes: the particles and the points that carry loads.
+
+use igimp_assembly::{LoadPoint, Particles};
+
+/// The state that marches from one equilibrium to the next.
+#[derive(Clone, Debug)]
+pub struct Body<const D: usize> {
+    /// The particles.
+    pub particles: Particles<D>,
+    /// Loaded points, carried along by the soil.
+    pub load_points: Vec<LoadPoint<D>>,
+}
+
+impl<const D: usize> Body<D> {
+    /// A body that only its weight and its supports act on.
+    pub fn new(particles: Particles<D>) -> Self {
+        Self { particles, load_points: Vec::new() }
+    }
+}

@@ -1,0 +1,134 @@
+//! Sparse linear solvers for the tangent system K du = r, behind one trait.
+//!
+//! | kind | matrix | method | role |
+//! |---|---|---|---|
+//! | [`SolverKind::Auto`] | any | chooses between the next two by the symmetry of K | default |
+//! | [`SolverKind::FaerCholesky`] | symmetric positive definite | supernodal LLᵀ of `faer` | fast |
+//! | [`SolverKind::Multifrontal`] | structurally symmetric | multifrontal LU, own | fast |
+//! | [`SolverKind::NalgebraCholesky`] | symmetric positive definite | `nalgebra-sparse` | independent second |
+//! | [`SolverKind::SprsBiCgStab`] | any | `sprs`' stabilised bi-conjugate gradients | independent second |
+//!
+//! The direct solvers eliminate the unknowns in the order of a geometric nested dissection
+//! ([`NestedDissection`]); every solution is checked against the matrix that was factorised, and
+//! refined where that helps. All of them work on one thread in a fixed order: the same input gives
+//! the same bits.
+
+mod auto;
+mod check;
+mod error;
+mod general_lu;
+mod multifrontal;
+mod nalgebra_cholesky;
+mod ordering;
+mod refine;
+mod sprs_bicgstab;
+mod symmetric;
+
+use std::sync::Arc;
+
+use igimp_assembly::{Pattern, TangentMatrix};
+
+pub use auto::AutoSolver;
+pub use error::LinearSolverError;
+pub use general_lu::GeneralLu;
+pub use multifrontal::MultifrontalLu;
+pub use nalgebra_cholesky::NalgebraCholesky;
+pub use ordering::NestedDissection;
+pub use refine::Accuracy;
+pub use sprs_bicgstab::SprsBiCgStab;
+pub use symmetric::FaerCholesky;
+
+/// A solver for K x = b that reuses its symbolic work while the pattern of K stays the same.
+pub trait LinearSolver: Send {
+    /// Name for reports, stable over versions.
+    fn name(&self) -> &'static str;
+
+    /// Prepares everything that depends on the pattern only; does nothing when the pattern is the
+    /// one analysed before (the same allocation, or equal).
+    ///
+    /// # Errors
+    /// [`LinearSolverError::Empty`], [`LinearSolverError::InvalidPattern`] or
+    /// [`LinearSolverError::OutOfMemory`].
+    fn analyse(&mut self, pattern: &Arc<Pattern>) -> Result<(), LinearSolverError>;
+
+    /// Factorises the matrix, after analysing its pattern if needed, and keeps a copy of it to
+    /// check solutions against. After an error there is no matrix to solve with.
+    ///
+    /// # Errors
+    /// Those of [`LinearSolver::analyse`], and [`LinearSolverError::WrongLength`],
+    /// [`LinearSolverError::NonFinite`], [`LinearSolverError::Singular`],
+    /// [`LinearSolverError::NotSymmetric`] or [`LinearSolverError::NotPositiveDefinite`].
+    fn factor(&mut self, matrix: &TangentMatrix) -> Result<(), LinearSolverError>;
+
+    /// Solves K x = `rhs` for the matrix factorised last; both slices have one entry per unknown.
+    /// The content of `solution` is meaningful only on success.
+    ///
+    /// # Errors
+    /// [`LinearSolverError::NotFactored`], [`LinearSolverError::WrongLength`],
+    /// [`LinearSolverError::NonFinite`], [`LinearSolverError::Singular`] or
+    /// [`LinearSolverError::Inaccurate`].
+    fn solve(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<SolveReport, LinearSolverError>;
+
+    /// How many patterns were analysed since construction: shows that symbolic work is reused.
+    fn analyses(&self) -> usize;
+}
+
+/// What one solve achieved.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SolveReport {
+    /// The method that produced the solution, after any fallback.
+    pub method: &'static str,
+    /// `` $`\max_i |b - K x|_i / \max_i |b|_i`$ ``, zero for a zero right-hand side.
+    pub relative_residual: f64,
+    /// Steps of iterative refinement, or iterations of an iterative solver.
+    pub refinements: usize,
+    /// Pivots that were too small to divide by and were replaced (zero for most methods).
+    pub perturbed_pivots: usize,
+    /// Largest entry met during the elimination over the largest of the scaled matrix; 1 for
+    /// methods that do not record it.
+    pub pivot_growth: f64,
+}
+
+impl SolveReport {
+    fn new(method: &'static str, relative_residual: f64, refinements: usize) -> Self {
+        Self { method, relative_residual, refinements, perturbed_pivots: 0, pivot_growth: 1.0 }
+    }
+}
+
+/// The solvers to choose from, see the table of the [module](self).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum SolverKind {
+    /// LLᵀ for symmetric matrices, multifrontal LU for the others and when LLᵀ fails.
+    #[default]
+    Auto,
+    /// Supernodal LLᵀ of `faer`.
+    FaerCholesky,
+    /// Multifrontal LU for structurally symmetric matrices.
+    Multifrontal,
+    /// LLᵀ of `nalgebra-sparse`.
+    NalgebraCholesky,
+    /// Stabilised bi-conjugate gradients of `sprs`.
+    SprsBiCgStab,
+}
+
+impl SolverKind {
+    /// All kinds, for tests and for listings.
+    pub const ALL: [Self; 5] = [
+        Self::Auto,
+        Self::FaerCholesky,
+        Self::Multifrontal,
+        Self::NalgebraCholesky,
+        Self::SprsBiCgStab,
+    ];
+
+    /// A fresh solver of this kind with its default accuracy.
+    pub fn build(self) -> Box<dyn LinearSolver> {
+        match self {
+            Self::Auto => Box::new(AutoSolver::default()),
+            Self::FaerCholesky => Box::new(FaerCholesky::default()),
+            Self::Multifrontal => Box::new(MultifrontalLu::default()),
+            Self::NalgebraCholesky => Box::new(NalgebraCholesky::default()),
+            Self::SprsBiCgStab => Box::new(SprsBiCgStab::default()),
+        }
+    }
+}

@@ -1,0 +1,190 @@
+//! Symmetric positive definite systems: the supernodal LLᵀ of `faer` on the nested dissection.
+//!
+//! T. A. Davis, *Direct Methods for Sparse Linear Systems*, SIAM 2006, ch. 4. A tangent with
+//! associated flow is symmetric and, before collapse, positive definite; a pivot that is not
+//! positive is an error here, and [`super::AutoSolver`] then turns to LU.
+
+use std::sync::Arc;
+
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::llt::factor::LltRegularization;
+use faer::perm::PermRef;
+use faer::sparse::linalg::cholesky::{
+    self, CholeskySymbolicParams, LltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
+};
+use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
+use faer::{Conj, MatMut, Par, Side, Spec};
+use igimp_assembly::{Pattern, TangentMatrix};
+
+use super::refine::{Accuracy, solve_refined};
+use super::{LinearSolver, LinearSolverError, NestedDissection, SolveReport, check};
+
+/// A pivot below this part of the diagonal entry that it started from has lost all its digits to
+/// cancellation: the matrix is then singular to working precision.
+const LEAST_PIVOT: f64 = 1e-13;
+
+/// Supernodal LLᵀ for symmetric positive definite matrices; reads the lower triangle only.
+#[derive(Default)]
+pub struct FaerCholesky {
+    accuracy: Accuracy,
+    analyses: usize,
+    analysis: Option<Analysis>,
+    factors: Vec<f64>,
+    matrix: Option<TangentMatrix>,
+    factored: bool,
+}
+
+struct Analysis {
+    pattern: Arc<Pattern>,
+    symbolic: SymbolicCholesky<usize>,
+    workspace: MemBuffer,
+}
+
+impl FaerCholesky {
+    /// A solver with other demands on the residual than the default.
+    pub fn with_accuracy(accuracy: Accuracy) -> Self {
+        Self { accuracy, ..Self::default() }
+    }
+
+    /// Number of entries of the factor L of the pattern analysed last, zero before.
+    pub fn factor_entries(&self) -> usize {
+        self.analysis.as_ref().map_or(0, |analysis| analysis.symbolic.len_val())
+    }
+}
+
+impl LinearSolver for FaerCholesky {
+    fn name(&self) -> &'static str {
+        "faer-llt"
+    }
+
+    fn analyse(&mut self, pattern: &Arc<Pattern>) -> Result<(), LinearSolverError> {
+        if check::same_pattern(self.analysis.as_ref().map(|analysis| &analysis.pattern), pattern) {
+            return Ok(());
+        }
+        self.factored = false;
+        self.analysis = None;
+        self.analysis = Some(Analysis::new(pattern)?);
+        self.analyses += 1;
+        Ok(())
+    }
+
+    fn factor(&mut self, matrix: &TangentMatrix) -> Result<(), LinearSolverError> {
+        self.analyse(&matrix.pattern)?;
+        self.factored = false;
+        if !matrix.symmetric {
+            return Err(LinearSolverError::NotSymmetric);
+        }
+        check::valid_values(matrix)?;
+        let analysis = self.analysis.as_mut().ok_or(LinearSolverError::NotFactored)?;
+        self.factors.resize(analysis.symbolic.len_val(), 0.0);
+        analysis.factor(matrix, &mut self.factors)?;
+        check::keep(&mut self.matrix, matrix);
+        self.factored = true;
+        Ok(())
+    }
+
+    fn solve(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<SolveReport, LinearSolverError> {
+        let (Some(analysis), Some(matrix), true) =
+            (self.analysis.as_mut(), self.matrix.as_ref(), self.factored)
+        else {
+            return Err(LinearSolverError::NotFactored);
+        };
+        let Analysis { symbolic, workspace, .. } = analysis;
+        let factors = LltRef::new(symbolic, &self.factors);
+        let refined = solve_refined(matrix, rhs, solution, &self.accuracy, |vector| {
+            let rows = vector.len();
+            factors.solve_in_place_with_conj(
+                Conj::No,
+                MatMut::from_column_major_slice_mut(vector, rows, 1),
+                Par::Seq,
+                MemStack::new(workspace),
+            );
+        })?;
+        Ok(SolveReport::new(self.name(), refined.relative_residual, refined.refinements))
+    }
+
+    fn analyses(&self) -> usize {
+        self.analyses
+    }
+}
+
+impl Analysis {
+    fn new(pattern: &Arc<Pattern>) -> Result<Self, LinearSolverError> {
+        check::valid_pattern(pattern)?;
+        let order = NestedDissection::new(pattern).unknowns(pattern);
+        let mut position = vec![0; order.len()];
+        for (new, &old) in order.iter().enumerate() {
+            position[old] = new;
+        }
+        let out_of_memory = LinearSolverError::OutOfMemory { what: "Cholesky factor" };
+        let symbolic = cholesky::factorize_symbolic_cholesky(
+            symbolic_view(pattern),
+            Side::Lower,
+            SymmetricOrdering::Custom(PermRef::new_checked(&order, &position, order.len())),
+            CholeskySymbolicParams::default(),
+        )
+        .map_err(|_| out_of_memory.clone())?;
+        let scratch = symbolic
+            .factorize_numeric_llt_scratch::<f64>(Par::Seq, Spec::default())
+            .or(symbolic.solve_in_place_scratch::<f64>(1, Par::Seq));
+        let workspace = MemBuffer::try_new(scratch).map_err(|_| out_of_memory)?;
+        Ok(Self { pattern: Arc::clone(pattern), symbolic, workspace })
+    }
+
+    fn factor(&mut self, matrix: &TangentMatrix, factors: &mut [f64]) -> Result<(), LinearSolverError> {
+        self.symbolic
+            .factorize_numeric_llt(
+                factors,
+                SparseColMatRef::new(symbolic_view(&self.pattern), &matrix.values),
+                Side::Lower,
+                LltRegularization::default(),
+                Par::Seq,
+                MemStack::new(&mut self.workspace),
+                Spec::default(),
+            )
+            .map_err(|_| LinearSolverError::NotPositiveDefinite { unknown: None })?;
+        self.check_pivots(matrix, factors)
+    }
+
+    /// Compares each pivot with the diagonal entry that it is left from.
+    fn check_pivots(&self, matrix: &TangentMatrix, factors: &[f64]) -> Result<(), LinearSolverError> {
+        let mut remaining = vec![0.0; self.symbolic.nrows()];
+        match self.symbolic.raw() {
+            SymbolicCholeskyRaw::Simplicial(simplicial) => {
+                for (pivot, &start) in remaining.iter_mut().zip(simplicial.col_ptr()) {
+                    *pivot = factors[start];
+                }
+            }
+            SymbolicCholeskyRaw::Supernodal(supernodal) => {
+                for node in 0..supernodal.n_supernodes() {
+                    let (begin, end) =
+                        (supernodal.supernode_begin()[node], supernodal.supernode_end()[node]);
+                    let rows = end - begin + supernodal.supernode(node).pattern().len();
+                    let first = supernodal.col_ptr_for_val()[node];
+                    for column in 0..end - begin {
+                        remaining[begin + column] = factors[first + column * (rows + 1)];
+                    }
+                }
+            }
+        }
+        for (k, &pivot) in remaining.iter().enumerate() {
+            let unknown = self.symbolic.perm().map_or(k, |order| order.arrays().0[k]);
+            let whole = diagonal(matrix, unknown);
+            if !(pivot * pivot > LEAST_PIVOT * whole) {
+                return Err(LinearSolverError::NotPositiveDefinite { unknown: Some(unknown) });
+            }
+        }
+        Ok(())
+    }
+}
+
+fn diagonal(matrix: &TangentMatrix, unknown: usize) -> f64 {
+    let start = matrix.pattern.col_ptr[unknown];
+    let rows = &matrix.pattern.row_idx[start..matrix.pattern.col_ptr[unknown + 1]];
+    rows.binary_search(&unknown).map_or(0.0, |offset| matrix.values[start + offset])
+}
+
+pub(super) fn symbolic_view(pattern: &Pattern) -> SymbolicSparseColMatRef<'_, usize> {
+    let unknowns = pattern.unknowns();
+    SymbolicSparseColMatRef::new_checked(unknowns, unknowns, &pattern.col_ptr, None, &pattern.row_idx)
+}

@@ -1,0 +1,216 @@
+//! Load marching: from load factor 0 to 1 in steps that are cut when no equilibrium is found and
+//! grow again after success. The only place that cuts a step.
+
+use std::ops::ControlFlow;
+
+use igimp_assembly::{AssemblyError, Method, StepConditions};
+
+use crate::body::Body;
+use crate::newton::{
+    NewtonSettings, NodalForces, PhaseTimes, StepError, StepFailure, StepReport, Workspace, step,
+};
+
+/// Successes in a row after which a cut step grows again.
+const SUCCESSES_TO_GROW: usize = 2;
+
+/// What holds between two load factors. Closures are programs.
+pub trait Program<const D: usize> {
+    /// Grid, constraints, loads and laws of the step from load factor `from` to `to`.
+    ///
+    /// # Errors
+    /// [`AssemblyError`] when the conditions cannot be stated.
+    fn conditions(&self, from: f64, to: f64) -> Result<StepConditions<D>, AssemblyError>;
+}
+
+impl<const D: usize, F> Program<D> for F
+where
+    F: Fn(f64, f64) -> Result<StepConditions<D>, AssemblyError>,
+{
+    fn conditions(&self, from: f64, to: f64) -> Result<StepConditions<D>, AssemblyError> {
+        self(from, to)
+    }
+}
+
+/// What an observer sees after each accepted step.
+#[derive(Clone, Copy, Debug)]
+pub struct Accepted<'a, const D: usize> {
+    /// The body in its new state.
+    pub body: &'a Body<D>,
+    /// The conditions of the step.
+    pub conditions: &'a StepConditions<D>,
+    /// How the step went.
+    pub report: &'a StepReport,
+    /// Reactions and step displacements.
+    pub forces: &'a NodalForces<D>,
+}
+
+/// Watches a march, and may end it. Closures are observers.
+pub trait Observer<const D: usize> {
+    /// Called after each accepted step; `Break` ends the march there.
+    fn on_step(&mut self, accepted: &Accepted<'_, D>) -> ControlFlow<()>;
+}
+
+impl<const D: usize, F> Observer<D> for F
+where
+    F: FnMut(&Accepted<'_, D>) -> ControlFlow<()>,
+{
+    fn on_step(&mut self, accepted: &Accepted<'_, D>) -> ControlFlow<()> {
+        self(accepted)
+    }
+}
+
+/// Sizes of steps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MarchSettings {
+    /// Number of steps from load factor 0 to 1 when none is cut.
+    pub steps: usize,
+    /// How often a step may be cut in succession.
+    pub cuts: u32,
+    /// Factor on the size of a cut step \[-\].
+    pub cut_factor: f64,
+    /// Factor on the step size after two successes, up to the size first asked for \[-\].
+    pub growth: f64,
+    /// The iteration of each step.
+    pub newton: NewtonSettings,
+}
+
+impl MarchSettings {
+    /// Equal steps with the default cutting: halved up to five times, grown by 1.5.
+    pub fn steps(steps: usize) -> Self {
+        Self { steps, cuts: 5, cut_factor: 0.5, growth: 1.5, newton: NewtonSettings::default() }
+    }
+}
+
+/// How a march ended.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Outcome {
+    /// Load factor 1 was reached.
+    Completed,
+    /// The observer ended the march.
+    Stopped {
+        /// Load factor reached.
+        at: f64,
+    },
+    /// No equilibrium was found, however small the step.
+    StepTooSmall {
+        /// Load factor of the last equilibrium.
+        last_converged: f64,
+        /// The smallest step that failed, and why.
+        cause: StepError,
+    },
+}
+
+/// A march from load factor 0.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MarchReport {
+    /// How it ended.
+    pub outcome: Outcome,
+    /// Accepted steps in order.
+    pub steps: Vec<StepReport>,
+    /// Steps that were tried and not accepted, in order.
+    pub failures: Vec<StepError>,
+}
+
+impl MarchReport {
+    /// Load factor of the last equilibrium.
+    pub fn reached(&self) -> f64 {
+        self.steps.last().map_or(0.0, |step| step.to)
+    }
+
+    /// Number of corrections in accepted steps.
+    pub fn iterations(&self) -> usize {
+        self.steps.iter().map(|step| step.iterations).sum()
+    }
+
+    /// Time spent in accepted steps.
+    pub fn times(&self) -> PhaseTimes {
+        let mut times = PhaseTimes::default();
+        for step in &self.steps {
+            times.add(&step.times);
+        }
+        times
+    }
+}
+
+/// Marches a body from load factor 0 to 1.
+///
+/// A failed step leaves the body at its last equilibrium; the reason why a march stopped is part
+/// of the report.
+pub fn march<const D: usize>(
+    body: &mut Body<D>,
+    method: &Method,
+    program: &dyn Program<D>,
+    settings: &MarchSettings,
+    workspace: &mut Workspace,
+    observer: &mut dyn Observer<D>,
+) -> MarchReport {
+    let mut report =
+        MarchReport { outcome: Outcome::Completed, steps: Vec::new(), failures: Vec::new() };
+    let nominal = 1.0 / settings.steps as f64;
+    let smallest = nominal * settings.cut_factor.powf(f64::from(settings.cuts) + 0.5);
+    let (mut at, mut size, mut successes) = (0.0, nominal, 0);
+    while at < 1.0 {
+        let to = next_factor(at, size, settings.steps);
+        let result = conditions_at(program, at, to).and_then(|conditions| {
+            step(body, method, &conditions, (at, to), &settings.newton, workspace)
+                .map(|(step, forces)| (conditions, step, forces))
+        });
+        match result {
+            Ok((conditions, step, forces)) => {
+                at = to;
+                successes += 1;
+                if successes >= SUCCESSES_TO_GROW && size < nominal {
+                    size = (size * settings.growth).min(nominal);
+                    successes = 0;
+                }
+                let accepted =
+                    Accepted { body, conditions: &conditions, report: &step, forces: &forces };
+                let flow = observer.on_step(&accepted);
+                report.steps.push(step);
+                if flow.is_break() {
+                    report.outcome = Outcome::Stopped { at };
+                    return report;
+                }
+            }
+            Err(error) => {
+                report.failures.push(error.clone());
+                size *= settings.cut_factor;
+                successes = 0;
+                if size < smallest || matches!(error.failure, StepFailure::LeavesGrid { .. }) {
+                    report.outcome = Outcome::StepTooSmall { last_converged: at, cause: error };
+                    return report;
+                }
+            }
+        }
+    }
+    report
+}
+
+/// The load factor after a step: uncut steps land on multiples of the nominal size, and no sliver
+/// is left before 1.
+fn next_factor(at: f64, size: f64, steps: usize) -> f64 {
+    let nominal = 1.0 / steps as f64;
+    let to = at + size;
+    let nearest = (to / nominal).round() * nominal;
+    if to > 1.0 - 1e-6 * nominal {
+        1.0
+    } else if (to - nearest).abs() < 1e-6 * nominal {
+        nearest
+    } else {
+        to
+    }
+}
+
+fn conditions_at<const D: usize>(
+    program: &dyn Program<D>,
+    from: f64,
+    to: f64,
+) -> Result<StepConditions<D>, StepError> {
+    program.conditions(from, to).map_err(|source| StepError {
+        from,
+        to,
+        residuals: Vec::new(),
+        worst: None,
+        failure: StepFailure::Assembly(source),
+    })
+}

@@ -1,0 +1,339 @@
+//! One load step: the Newton–Raphson iteration to equilibrium (Yuan et al. 2021, section 2).
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use igimp_assembly::{
+    AssemblyError, Method, OutOfBalance, Pattern, Stencils, StepConditions, System, TangentMatrix,
+};
+use igimp_material::TangentKind;
+use thiserror::Error;
+
+use crate::body::Body;
+use crate::linear::{LinearSolver, LinearSolverError};
+
+/// Iterations without a new smallest residual after which a step is given up.
+const STAGNATION: usize = 8;
+
+/// When a step counts as converged, and when it is given up.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NewtonSettings {
+    /// Accepted ‖f_ext − f_int‖ / (‖f_ext‖ + ‖f_react‖) \[-\].
+    pub tolerance: f64,
+    /// Largest number of corrections.
+    pub max_iterations: usize,
+    /// A residual this many times the smallest one so far counts as divergence \[-\].
+    pub divergence: f64,
+}
+
+impl Default for NewtonSettings {
+    fn default() -> Self {
+        Self { tolerance: 1e-9, max_iterations: 25, divergence: 1e4 }
+    }
+}
+
+/// Why a step found no equilibrium.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum StepFailure {
+    /// The corrections ran out.
+    #[error("not converged after {iterations} corrections")]
+    MaxIterations {
+        /// How many were made.
+        iterations: usize,
+    },
+    /// The residual grew far beyond its smallest value.
+    #[error("the residual diverges")]
+    Diverged,
+    /// The residual found no new smallest value for many corrections.
+    #[error("the residual stagnates")]
+    Stagnated,
+    /// Converged, but a particle would be carried off the background grid.
+    #[error("particle {particle} would leave the background grid at {position:?} m")]
+    LeavesGrid {
+        /// Number of the particle, from 0.
+        particle: usize,
+        /// Where it would go \[length\], axes beyond the dimension 0.
+        position: [f64; 3],
+    },
+    /// The equations could not be formed.
+    #[error("the equations could not be formed")]
+    Assembly(#[from] AssemblyError),
+    /// The linear system could not be solved.
+    #[error("the linear system could not be solved")]
+    Linear(#[from] LinearSolverError),
+}
+
+/// A step that was not accepted, with what is known of it.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[error("no equilibrium between load factors {from} and {to}")]
+pub struct StepError {
+    /// Load factor at the start.
+    pub from: f64,
+    /// Load factor tried.
+    pub to: f64,
+    /// Relative out-of-balance norm before each correction.
+    pub residuals: Vec<f64>,
+    /// Position \[length\] and axis of the largest out-of-balance force.
+    pub worst: Option<([f64; 3], usize)>,
+    /// Why.
+    #[source]
+    pub failure: StepFailure,
+}
+
+/// Time spent in the phases of a step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PhaseTimes {
+    /// Stencils, unknowns, external force, pattern.
+    pub set_up: Duration,
+    /// Stress, internal force, residual.
+    pub evaluate: Duration,
+    /// Tangent matrix.
+    pub tangent: Duration,
+    /// Analysis, factorisation and solution of the linear systems.
+    pub linear: Duration,
+    /// Writing the accepted state.
+    pub commit: Duration,
+}
+
+impl PhaseTimes {
+    /// Adds another step's times.
+    pub fn add(&mut self, other: &Self) {
+        self.set_up += other.set_up;
+        self.evaluate += other.evaluate;
+        self.tangent += other.tangent;
+        self.linear += other.linear;
+        self.commit += other.commit;
+    }
+}
+
+/// An accepted step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StepReport {
+    /// Load factor at the start.
+    pub from: f64,
+    /// Load factor reached.
+    pub to: f64,
+    /// Number of corrections.
+    pub iterations: usize,
+    /// Relative out-of-balance norm before each correction and at the end.
+    pub residuals: Vec<f64>,
+    /// Number of unknowns.
+    pub unknowns: usize,
+    /// Share of particles that returned to the yield surface \[-\].
+    pub plastic_share: f64,
+    /// Time spent.
+    pub times: PhaseTimes,
+}
+
+/// Forces of an accepted step, by node of its grid.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NodalForces<const D: usize> {
+    /// Reaction f_int − f_ext where displacement is prescribed, zero elsewhere \[force\].
+    pub reactions: Vec<[f64; D]>,
+    /// Step displacement \[length\].
+    pub u: Vec<[f64; D]>,
+}
+
+/// What lasts from step to step besides the body: solver and matrix, so that symbolic work is
+/// done once while the pattern holds.
+pub struct Workspace {
+    solver: Box<dyn LinearSolver>,
+    matrix: Option<TangentMatrix>,
+}
+
+impl std::fmt::Debug for Workspace {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Workspace").field("solver", &self.solver.name()).finish_non_exhaustive()
+    }
+}
+
+impl Workspace {
+    /// A workspace around a linear solver.
+    pub fn new(solver: Box<dyn LinearSolver>) -> Self {
+        Self { solver, matrix: None }
+    }
+
+    fn pattern(&self) -> Option<&Arc<Pattern>> {
+        self.matrix.as_ref().map(|matrix| &matrix.pattern)
+    }
+
+    /// Solves K du = force with the tangent of a trial.
+    fn correction<const D: usize>(
+        &mut self,
+        system: &System<'_, D>,
+        trial: &igimp_assembly::Trial<D>,
+        force: &[f64],
+        times: &mut PhaseTimes,
+    ) -> Result<Vec<f64>, LinearSolverError> {
+        let clock = Instant::now();
+        match &mut self.matrix {
+            Some(matrix) if Arc::ptr_eq(&matrix.pattern, system.pattern()) => {
+                system.tangent_into(trial, matrix);
+            }
+            matrix => *matrix = Some(system.tangent(trial)),
+        }
+        times.tangent += clock.elapsed();
+        let clock = Instant::now();
+        let mut du = vec![0.0; force.len()];
+        if let Some(matrix) = &self.matrix {
+            self.solver.factor(matrix)?;
+            self.solver.solve(force, &mut du)?;
+        }
+        times.linear += clock.elapsed();
+        Ok(du)
+    }
+}
+
+/// The course of the residual within one step.
+#[derive(Default)]
+struct Course {
+    residuals: Vec<f64>,
+    /// Node and axis of the largest out-of-balance force.
+    worst: Option<(usize, usize)>,
+    best: f64,
+    best_iteration: usize,
+}
+
+impl Course {
+    /// Records a residual; an error when the iteration should not go on.
+    fn record(
+        &mut self,
+        residual: &OutOfBalance,
+        settings: &NewtonSettings,
+    ) -> Result<(), StepFailure> {
+        let iteration = self.residuals.len();
+        let norm = residual.relative_norm;
+        self.residuals.push(norm);
+        self.worst = Some(residual.worst);
+        if iteration <= 1 || norm < self.best {
+            self.best = norm;
+            self.best_iteration = iteration;
+        }
+        if norm > settings.divergence * self.best {
+            Err(StepFailure::Diverged)
+        } else if iteration - self.best_iteration >= STAGNATION {
+            Err(StepFailure::Stagnated)
+        } else {
+            Ok(())
+        }
+    }
+}
+
+/// Advances a body by one load step, from load factor `from` to `to`: the step displacements
+/// that bring internal and external force into balance are found, and the particles are moved.
+/// The body is untouched unless the step is accepted.
+///
+/// # Errors
+/// [`StepError`] when no equilibrium was found, with the residuals so far.
+pub fn step<const D: usize>(
+    body: &mut Body<D>,
+    method: &Method,
+    conditions: &StepConditions<D>,
+    (from, to): (f64, f64),
+    settings: &NewtonSettings,
+    workspace: &mut Workspace,
+) -> Result<(StepReport, NodalForces<D>), StepError> {
+    let mut course = Course::default();
+    equilibrium(body, method, conditions, settings, workspace, &mut course)
+        .map(|(report, forces)| {
+            (StepReport { from, to, residuals: std::mem::take(&mut course.residuals), ..report }, forces)
+        })
+        .map_err(|failure| {
+            let worst = course.worst.map(|(node, axis)| {
+                (padded(&conditions.grid.node_position(node)), axis)
+            });
+            StepError { from, to, residuals: course.residuals, worst, failure }
+        })
+}
+
+/// The Newton–Raphson loop.
+///
+/// The first correction uses the elastic tangent and carries the prescribed motion; all others
+/// use the consistent tangent.
+fn equilibrium<const D: usize>(
+    body: &mut Body<D>,
+    method: &Method,
+    conditions: &StepConditions<D>,
+    settings: &NewtonSettings,
+    workspace: &mut Workspace,
+    course: &mut Course,
+) -> Result<(StepReport, NodalForces<D>), StepFailure> {
+    let mut times = PhaseTimes::default();
+    let clock = Instant::now();
+    let grid = &conditions.grid;
+    let stencils = Stencils::build(grid, &body.particles, method)?;
+    let system = System::new(
+        &body.particles,
+        &stencils,
+        conditions,
+        method,
+        &body.load_points,
+        workspace.pattern(),
+    )?;
+    times.set_up = clock.elapsed();
+
+    let mut trial = timed(&mut times.evaluate, || system.start(TangentKind::Elastic))?;
+    let mut residual = system.out_of_balance(&trial)?;
+    course.record(&residual, settings)?;
+    let mut u = vec![[0.0; D]; grid.node_count()];
+    let mut iterations = 0;
+    if conditions.constraints.prescribe_motion() {
+        let known = system.force_of_prescribed_motion(&trial);
+        for (force, known) in residual.force.iter_mut().zip(known) {
+            *force -= known;
+        }
+        residual.relative_norm = f64::INFINITY;
+        u = system.prescribed_motion();
+    }
+    // Written so that a residual that is not a number is never "converged".
+    while !(residual.relative_norm <= settings.tolerance) {
+        if iterations == settings.max_iterations {
+            return Err(StepFailure::MaxIterations { iterations });
+        }
+        let du = workspace.correction(&system, &trial, &residual.force, &mut times)?;
+        system.add_correction(&mut u, &du);
+        iterations += 1;
+        trial = timed(&mut times.evaluate, || system.evaluate(&u, TangentKind::Consistent))?;
+        residual = system.out_of_balance(&trial)?;
+        course.record(&residual, settings)?;
+    }
+    if let Some((particle, x)) = body.particles.leaving(grid, &stencils, &u) {
+        return Err(StepFailure::LeavesGrid { particle, position: padded(&x) });
+    }
+
+    let clock = Instant::now();
+    let reactions = system.reactions(&trial);
+    let plastic =
+        trial.particles.iter().filter(|own| own.lifted.regime.is_plastic()).count();
+    let report = StepReport {
+        from: 0.0,
+        to: 0.0,
+        iterations,
+        residuals: Vec::new(),
+        unknowns: system.unknowns().len(),
+        plastic_share: plastic as f64 / trial.particles.len() as f64,
+        times,
+    };
+    for (index, point) in body.load_points.iter_mut().enumerate() {
+        *point = point.carried(grid, index, &u)?;
+    }
+    body.particles.commit(&stencils, method, trial, &u);
+    let mut report = report;
+    report.times.commit = clock.elapsed();
+    Ok((report, NodalForces { reactions, u }))
+}
+
+/// Runs a phase and adds its time.
+fn timed<T>(total: &mut Duration, phase: impl FnOnce() -> T) -> T {
+    let clock = Instant::now();
+    let result = phase();
+    *total += clock.elapsed();
+    result
+}
+
+/// A position with zeros beyond the dimension, for messages.
+fn padded<const D: usize>(x: &[f64; D]) -> [f64; 3] {
+    let mut out = [0.0; 3];
+    out[..D].copy_from_slice(x);
+    out
+}

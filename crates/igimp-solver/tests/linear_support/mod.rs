@@ -1,0 +1,203 @@
+//! Matrices that look like a tangent: particles spread over the cells of a grid, each adding a
+//! small symmetric positive semi-definite block to the 3^D nodes of its support.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use igimp_assembly::{NodeBlock, Pattern, TangentMatrix};
+
+/// Random numbers (Vigna's splitmix64), the same in every run.
+pub struct Random(pub u64);
+
+impl Random {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut bits = self.0;
+        bits = (bits ^ (bits >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        bits = (bits ^ (bits >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        bits ^ (bits >> 31)
+    }
+
+    /// Uniform in [-1, 1).
+    pub fn signed(&mut self) -> f64 {
+        (self.next() >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+}
+
+/// A body on a grid of nodes.
+#[derive(Clone)]
+pub struct Body {
+    /// Nodes along each axis, 1 where there is no such axis.
+    pub nodes: [usize; 3],
+    /// Unknowns of a node before supports are taken away.
+    pub dofs: usize,
+    /// Particles per 3^D patch of nodes.
+    pub particles: usize,
+    /// Fraction of a particle's stiffness that is not symmetric.
+    pub unsymmetric: f64,
+    /// Whether only the part below the diagonal x + y of the box is filled.
+    pub slope: bool,
+    pub seed: u64,
+}
+
+impl Body {
+    pub fn plane(nodes_x: usize, nodes_y: usize) -> Self {
+        Self {
+            nodes: [nodes_x, nodes_y, 1],
+            dofs: 2,
+            particles: 3,
+            unsymmetric: 0.0,
+            slope: false,
+            seed: 7,
+        }
+    }
+
+    pub fn line(nodes: usize) -> Self {
+        Self { nodes: [nodes, 1, 1], dofs: 1, ..Self::plane(1, 1) }
+    }
+
+    pub fn solid(nodes: [usize; 3]) -> Self {
+        Self { nodes, dofs: 3, ..Self::plane(1, 1) }
+    }
+
+    pub fn unsymmetric(self, fraction: f64) -> Self {
+        Self { unsymmetric: fraction, ..self }
+    }
+
+    pub fn slope(self) -> Self {
+        Self { slope: true, ..self }
+    }
+
+    pub fn seed(self, seed: u64) -> Self {
+        Self { seed, ..self }
+    }
+
+    /// Assembles the tangent. The nodes of the first layer along x keep one unknown only, as on a
+    /// roller; the last layer along y rests on springs, so that the body is held.
+    pub fn tangent(&self) -> TangentMatrix {
+        let patches = self.patches();
+        let mut random = Random(self.seed);
+        let mut couplings: BTreeMap<(usize, usize), f64> = BTreeMap::new();
+        let mut first = BTreeMap::new();
+        let mut blocks = Vec::new();
+        for patch in &patches {
+            for &node in patch {
+                first.insert(node, (0, 0));
+            }
+        }
+        let mut unknowns = 0;
+        for (&node, slot) in &mut first {
+            let place = self.place(node);
+            let len = if place[0] == 0 { 1 } else { self.dofs };
+            blocks.push(NodeBlock { first: unknowns, len, place });
+            *slot = (unknowns, len);
+            unknowns += len;
+        }
+
+        for patch in &patches {
+            let touched: Vec<usize> =
+                patch.iter().flat_map(|node| first[node].0..first[node].0 + first[node].1).collect();
+            for _ in 0..self.particles {
+                // Three strain modes, and a rotated second set of them for the unsymmetric part.
+                for _ in 0..3 {
+                    let mode: Vec<f64> = touched.iter().map(|_| random.signed()).collect();
+                    let skew: Vec<f64> = touched.iter().map(|_| random.signed()).collect();
+                    for (column, &unknown) in touched.iter().enumerate() {
+                        for (row, &other) in touched.iter().enumerate() {
+                            *couplings.entry((unknown, other)).or_default() += mode[row]
+                                * mode[column]
+                                + self.unsymmetric * skew[row] * mode[column];
+                        }
+                    }
+                }
+            }
+            for &unknown in &touched {
+                *couplings.entry((unknown, unknown)).or_default() += 0.05;
+            }
+        }
+        assemble(&couplings, unknowns, blocks, self.unsymmetric == 0.0)
+    }
+
+    fn place(&self, node: usize) -> [usize; 3] {
+        let [x, y, _] = self.nodes;
+        [node % x, node / x % y, node / (x * y)]
+    }
+
+    /// The nodes of each particle position: up to three along each axis.
+    fn patches(&self) -> Vec<Vec<usize>> {
+        let corners = self.nodes.map(|count| count.saturating_sub(2).max(1));
+        let mut patches = Vec::new();
+        for z in 0..corners[2] {
+            for y in 0..corners[1] {
+                for x in 0..corners[0] {
+                    if self.slope && x * corners[1] + y * corners[0] > corners[0] * corners[1] {
+                        continue;
+                    }
+                    let mut patch = Vec::new();
+                    for dz in 0..3.min(self.nodes[2]) {
+                        for dy in 0..3.min(self.nodes[1]) {
+                            for dx in 0..3.min(self.nodes[0]) {
+                                let rows = (z + dz) * self.nodes[1] + y + dy;
+                                patch.push(rows * self.nodes[0] + x + dx);
+                            }
+                        }
+                    }
+                    patches.push(patch);
+                }
+            }
+        }
+        patches
+    }
+}
+
+/// A matrix from its entries by (column, row); the pattern is made structurally symmetric.
+pub fn assemble(
+    entries: &BTreeMap<(usize, usize), f64>,
+    unknowns: usize,
+    blocks: Vec<NodeBlock>,
+    symmetric: bool,
+) -> TangentMatrix {
+    let mut both = entries.clone();
+    for &(column, row) in entries.keys() {
+        both.entry((row, column)).or_default();
+    }
+    let mut col_ptr = vec![0; unknowns + 1];
+    for &(column, _) in both.keys() {
+        col_ptr[column + 1] += 1;
+    }
+    for column in 0..unknowns {
+        col_ptr[column + 1] += col_ptr[column];
+    }
+    let row_idx = both.keys().map(|&(_, row)| row).collect();
+    let pattern = Arc::new(Pattern { col_ptr, row_idx, blocks, reach: 2 });
+    TangentMatrix { pattern, values: both.into_values().collect(), symmetric }
+}
+
+/// A matrix from dense rows, each unknown a node of its own on a line.
+pub fn from_dense(rows: &[&[f64]], symmetric: bool) -> TangentMatrix {
+    let unknowns = rows.len();
+    let mut entries = BTreeMap::new();
+    for (row, values) in rows.iter().enumerate() {
+        for (column, &value) in values.iter().enumerate() {
+            if value != 0.0 || row == column {
+                entries.insert((column, row), value);
+            }
+        }
+    }
+    let blocks = (0..unknowns).map(|first| NodeBlock { first, len: 1, place: [first, 0, 0] });
+    assemble(&entries, unknowns, blocks.collect(), symmetric)
+}
+
+/// A solution to recover and the right-hand side that belongs to it.
+pub fn manufactured(matrix: &TangentMatrix, seed: u64) -> (Vec<f64>, Vec<f64>) {
+    let mut random = Random(seed);
+    let exact: Vec<f64> = (0..matrix.pattern.unknowns()).map(|_| random.signed()).collect();
+    let mut rhs = vec![0.0; exact.len()];
+    matrix.multiply(&exact, &mut rhs);
+    (exact, rhs)
+}
+
+/// Largest difference of the entries.
+pub fn distance(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).fold(0.0, |largest, (a, b)| (a - b).abs().max(largest))
+}
