@@ -61,6 +61,14 @@ pub enum AssemblyError {
         #[source]
         source: ShapeError,
     },
+    /// A loaded point stands where there is no soil.
+    #[error("load point {point} at {position:?} m acts on a part of the grid that holds no soil")]
+    UnsupportedLoad {
+        /// Number of the point, from 0.
+        point: usize,
+        /// Position \[length\], axes beyond the dimension 0.
+        position: [f64; 3],
+    },
     /// A law could not answer.
     #[error("particle {particle}: the constitutive law failed")]
     Material {

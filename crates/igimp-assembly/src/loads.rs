@@ -3,8 +3,8 @@
 use igimp_shape::{Grid, Linear, Scratch, Support, supports};
 
 use crate::error::AssemblyError;
+use crate::particles::Particles;
 use crate::stencils::{Stencils, padded};
-use crate::Particles;
 
 /// A force on a point that moves with the soil. Its direction stays (dead load).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -100,6 +100,10 @@ pub(crate) fn external_force<const D: usize>(
     });
     for (index, point) in points.iter().enumerate() {
         for support in point.supports(grid, index)? {
+            if support.value > 0.0 && stencils.node_volume()[support.node] == 0.0 {
+                let position = padded(&point.x);
+                return Err(AssemblyError::UnsupportedLoad { point: index, position });
+            }
             for axis in 0..D {
                 f_ext[support.node][axis] +=
                     support.value * loads.point_factor * point.force[axis];

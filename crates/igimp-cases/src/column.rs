@@ -42,7 +42,7 @@ pub struct Column {
 impl Default for Column {
     fn default() -> Self {
         Self {
-            method: Method::default(),
+            method: without_dropping(Method::default()),
             cells: 64,
             height: 50.0,
             young: 10e3,
@@ -52,6 +52,13 @@ impl Default for Column {
             steps: 40,
         }
     }
+}
+
+/// A method that keeps every node however little soil it carries: in one dimension no small cut
+/// is dangerous, and dropping nodes would cost accuracy (up to 15 % of the stress error).
+pub fn without_dropping(mut method: Method) -> Method {
+    method.small_cuts.drop_below = 0.0;
+    method
 }
 
 /// The column in equilibrium under its full weight.

@@ -1,1 +1,20 @@
-//! igimp-cases.
+//! The benchmark cases of the implicit generalised interpolation material point method, the exact
+//! solutions and measures that they are held against, and their tables and pictures.
+
+pub mod check;
+pub mod column;
+pub mod exact;
+pub mod figures;
+pub mod footing;
+pub mod measure;
+pub mod mohr_coulomb_slope;
+pub mod polygon;
+pub mod safety;
+pub mod seed;
+pub mod slope;
+pub mod table;
+pub mod von_mises_slope;
+
+mod error;
+
+pub use error::CaseError;

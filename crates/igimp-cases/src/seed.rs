@@ -1,15 +1,15 @@
 //! Particles from polygons: every cell is cut into equal parts, and a part that the polygon's edge
-//! crosses becomes a box of the clipped area around the clipped centroid. Volume and first moment
-//! of the body are exact, and a sloping surface is no staircase.
+//! crosses takes its clipped volume. The domains tile the cells, and the volume of the body is
+//! exact.
 
 use igimp_assembly::ParticleSeed;
 use igimp_shape::Grid;
 
 use crate::error::CaseError;
-use crate::polygon::{area_and_centroid, bounding_box, clip_to_box};
+use crate::polygon::{area_and_centroid, clip_to_box};
 
 /// Clipped parts smaller than this share of a whole part join the body's nearest particle \[-\].
-const SLIVER: f64 = 0.02;
+const SLIVER: f64 = 0.1;
 
 /// Fills a polygon with `per_direction`² particles per grid cell.
 ///
@@ -36,28 +36,27 @@ pub fn fill_polygon(
             let step = [part % per_direction, part / per_direction];
             let from: [f64; 2] =
                 std::array::from_fn(|axis| lower[axis] + step[axis] as f64 * size[axis]);
-            let to: [f64; 2] = std::array::from_fn(|axis| from[axis] + size[axis]);
-            let clipped = clip_to_box(polygon, from, to);
-            let (signed, centroid) = area_and_centroid(&clipped);
+            let centre: [f64; 2] = std::array::from_fn(|axis| from[axis] + 0.5 * size[axis]);
+            let to = std::array::from_fn(|axis| from[axis] + size[axis]);
+            let (signed, centroid) = area_and_centroid(&clip_to_box(polygon, from, to));
             let (area, whole) = (signed.abs(), size[0] * size[1]);
-            if area < SLIVER * whole {
+            if area >= SLIVER * whole {
+                seeds.push(ParticleSeed {
+                    x: centre,
+                    half_length: size.map(|size| 0.5 * size),
+                    volume: area,
+                    density,
+                    law,
+                });
+            } else if area > 0.0 {
                 slivers.push((area, centroid));
-            } else if area > (1.0 - 1e-9) * whole {
-                let centre = std::array::from_fn(|axis| 0.5 * (from[axis] + to[axis]));
-                seeds.push(seed(centre, size.map(|size| 0.5 * size), whole, density, law));
-            } else {
-                let (low, high) = bounding_box(&clipped);
-                let extent: [f64; 2] = std::array::from_fn(|axis| high[axis] - low[axis]);
-                let shrink = (area / (extent[0] * extent[1])).sqrt();
-                let half_length = extent.map(|extent| 0.5 * shrink * extent);
-                seeds.push(seed(centroid, half_length, area, density, law));
             }
         }
     }
     if seeds.is_empty() {
         return Err(CaseError::EmptyBody);
     }
-    for (area, centroid) in slivers.into_iter().filter(|(area, _)| *area > 0.0) {
+    for (area, centroid) in slivers {
         let distance = |seed: &ParticleSeed<2>| {
             (seed.x[0] - centroid[0]).hypot(seed.x[1] - centroid[1])
         };
@@ -70,16 +69,6 @@ pub fn fill_polygon(
     Ok(seeds)
 }
 
-fn seed(
-    x: [f64; 2],
-    half_length: [f64; 2],
-    volume: f64,
-    density: f64,
-    law: usize,
-) -> ParticleSeed<2> {
-    ParticleSeed { x, half_length, volume, density, law }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -90,7 +79,7 @@ mod tests {
     }
 
     #[test]
-    fn volume_and_first_moment_of_a_slope_are_exact() {
+    fn volume_of_a_slope_is_exact() {
         let polygon = [[0.0, 0.0], [11.3, 0.0], [9.7, 1.1], [4.2, 4.6], [0.0, 4.6]];
         let (area, centroid) = area_and_centroid(&polygon);
         let seeds = fill_polygon(&grid(), &polygon, 3, 1.0, 0).unwrap();
@@ -98,7 +87,7 @@ mod tests {
         assert!((volume - area).abs() < 1e-12 * area);
         for axis in 0..2 {
             let moment: f64 = seeds.iter().map(|seed| seed.volume * seed.x[axis]).sum();
-            assert!((moment / volume - centroid[axis]).abs() < 1e-3);
+            assert!((moment / volume - centroid[axis]).abs() < 5e-3);
         }
     }
 

@@ -1,4 +1,4 @@
-//! The default: LLᵀ for symmetric matrices, multifrontal LU for the others.
+//! The default: Cholesky for symmetric matrices, multifrontal LU for the others.
 //!
 //! Near collapse a symmetric tangent can lose positive definiteness; the matrix then goes to LU.
 

@@ -6,6 +6,10 @@ use igimp_assembly::{Pattern, TangentMatrix};
 
 use super::LinearSolverError;
 
+/// A pivot below this part of the diagonal entry that it is left from has lost all its digits to
+/// cancellation: the matrix is then singular to working precision.
+const LEAST_PIVOT: f64 = 1e-13;
+
 /// Whether a pattern analysed before still describes the matrix.
 pub(super) fn same_pattern(analysed: Option<&Arc<Pattern>>, pattern: &Arc<Pattern>) -> bool {
     analysed.is_some_and(|analysed| Arc::ptr_eq(analysed, pattern) || analysed == pattern)
@@ -99,4 +103,25 @@ pub(super) fn keep(kept: &mut Option<TangentMatrix>, matrix: &TangentMatrix) {
         }
         None => *kept = Some(matrix.clone()),
     }
+}
+
+/// The diagonal entry of an unknown, zero where none is stored.
+pub(super) fn diagonal(matrix: &TangentMatrix, unknown: usize) -> f64 {
+    let entries = matrix.pattern.col_ptr[unknown]..matrix.pattern.col_ptr[unknown + 1];
+    let rows = &matrix.pattern.row_idx[entries.clone()];
+    rows.binary_search(&unknown).map_or(0.0, |offset| matrix.values[entries.start + offset])
+}
+
+/// Checks the pivots of a Cholesky factorisation, given with their unknowns.
+pub(super) fn sound_pivots(
+    matrix: &TangentMatrix,
+    pivots: impl IntoIterator<Item = (usize, f64)>,
+) -> Result<(), LinearSolverError> {
+    for (unknown, pivot) in pivots {
+        let sound = pivot > LEAST_PIVOT * diagonal(matrix, unknown);
+        if !sound {
+            return Err(LinearSolverError::NotPositiveDefinite { unknown: Some(unknown) });
+        }
+    }
+    Ok(())
 }

@@ -3,7 +3,7 @@
 //! | kind | matrix | method | role |
 //! |---|---|---|---|
 //! | [`SolverKind::Auto`] | any | chooses between the next two by the symmetry of K | default |
-//! | [`SolverKind::FaerCholesky`] | symmetric positive definite | supernodal LLᵀ of `faer` | fast |
+//! | [`SolverKind::FaerCholesky`] | symmetric positive definite | supernodal Cholesky of `faer` | fast |
 //! | [`SolverKind::Multifrontal`] | structurally symmetric | multifrontal LU, own | fast |
 //! | [`SolverKind::NalgebraCholesky`] | symmetric positive definite | `nalgebra-sparse` | independent second |
 //! | [`SolverKind::SprsBiCgStab`] | any | `sprs`' stabilised bi-conjugate gradients | independent second |
@@ -98,14 +98,14 @@ impl SolveReport {
 /// The solvers to choose from, see the table of the [module](self).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum SolverKind {
-    /// LLᵀ for symmetric matrices, multifrontal LU for the others and when LLᵀ fails.
+    /// Cholesky for symmetric matrices, multifrontal LU for the others and when Cholesky fails.
     #[default]
     Auto,
-    /// Supernodal LLᵀ of `faer`.
+    /// Supernodal Cholesky factorisation of `faer`.
     FaerCholesky,
     /// Multifrontal LU for structurally symmetric matrices.
     Multifrontal,
-    /// LLᵀ of `nalgebra-sparse`.
+    /// Cholesky factorisation of `nalgebra-sparse`.
     NalgebraCholesky,
     /// Stabilised bi-conjugate gradients of `sprs`.
     SprsBiCgStab,

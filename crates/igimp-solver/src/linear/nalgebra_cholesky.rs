@@ -13,7 +13,7 @@ use nalgebra_sparse::pattern::SparsityPattern;
 use super::refine::{Accuracy, solve_refined};
 use super::{LinearSolver, LinearSolverError, NestedDissection, SolveReport, check};
 
-/// Simplicial LLᵀ for symmetric positive definite matrices.
+/// Column-by-column Cholesky factorisation for symmetric positive definite matrices.
 #[derive(Default)]
 pub struct NalgebraCholesky {
     accuracy: Accuracy,
@@ -66,6 +66,10 @@ impl LinearSolver for NalgebraCholesky {
         let values: Vec<f64> = analysis.sources.iter().map(|&entry| matrix.values[entry]).collect();
         let factors = CscCholesky::factor_numerical(analysis.symbolic.clone(), &values)
             .map_err(|_| LinearSolverError::NotPositiveDefinite { unknown: None })?;
+        let lower = factors.l();
+        let roots = lower.col_offsets().iter().map(|&start| lower.values().get(start));
+        let pivots = analysis.order.iter().zip(roots.flatten());
+        check::sound_pivots(matrix, pivots.map(|(&unknown, root)| (unknown, root * root)))?;
         self.factors = Some(factors);
         check::keep(&mut self.matrix, matrix);
         Ok(())

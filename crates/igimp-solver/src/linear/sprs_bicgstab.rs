@@ -13,7 +13,10 @@ use sprs::{CsMat, CsVec};
 use super::refine::{max_norm, relative_residual_of};
 use super::{Accuracy, LinearSolver, LinearSolverError, SolveReport, check};
 
-/// BiCGSTAB for any matrix; `solve` does all the work.
+/// Iterations without a smaller residual after which the method is stopped.
+const PATIENCE: usize = 500;
+
+/// Stabilised bi-conjugate gradients for any matrix; `solve` does all the work.
 pub struct SprsBiCgStab {
     accuracy: Accuracy,
     max_iterations: usize,
@@ -132,15 +135,9 @@ impl Scaled {
     fn new(matrix: &TangentMatrix) -> Self {
         let Pattern { col_ptr, row_idx, .. } = &*matrix.pattern;
         let unknowns = matrix.pattern.unknowns();
-        let mut scale = vec![1.0; unknowns];
-        for column in 0..unknowns {
-            let entries = col_ptr[column]..col_ptr[column + 1];
-            for (&row, &value) in row_idx[entries.clone()].iter().zip(&matrix.values[entries]) {
-                if row == column && value != 0.0 {
-                    scale[column] = 1.0 / value.abs().sqrt();
-                }
-            }
-        }
+        let unit = |diagonal: f64| if diagonal == 0.0 { 1.0 } else { 1.0 / diagonal.abs().sqrt() };
+        let scale: Vec<f64> =
+            (0..unknowns).map(|unknown| unit(check::diagonal(matrix, unknown))).collect();
         let mut values = matrix.values.clone();
         for column in 0..unknowns {
             for entry in col_ptr[column]..col_ptr[column + 1] {
@@ -161,11 +158,11 @@ fn iterate(matrix: &CsMat<f64>, rhs: &[f64], goal: f64, max_iterations: usize) -
     let start = dense(&vec![0.0; rhs.len()]);
     let mut solver = BiCGSTAB::<f64, usize, usize>::new(matrix.view(), start.view(), right.view());
     let mut best = start.clone();
-    let mut best_error = norm(rhs);
-    while solver.iteration_count() < max_iterations && best_error > goal {
+    let (mut best_error, mut best_at) = (norm(rhs), 0);
+    while solver.iteration_count() < max_iterations.min(best_at + PATIENCE) && best_error > goal {
         let (x, p, rho) = (solver.x().to_owned(), solver.p().to_owned(), solver.rho());
         let error = solver.step();
-        if !error.is_finite() {
+        if !solver.x().data().iter().all(|x| x.is_finite()) {
             // The first half of the step hit the solution and the second divided zero by zero.
             let alpha = rho / solver.rhat().dot(&(matrix * &p));
             if alpha.is_finite() {
@@ -174,7 +171,7 @@ fn iterate(matrix: &CsMat<f64>, rhs: &[f64], goal: f64, max_iterations: usize) -
             break;
         }
         if error < best_error {
-            best_error = error;
+            (best_error, best_at) = (error, solver.iteration_count());
             best = solver.x().to_owned();
         }
     }

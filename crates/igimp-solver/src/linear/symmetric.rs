@@ -1,4 +1,5 @@
-//! Symmetric positive definite systems: the supernodal LLᵀ of `faer` on the nested dissection.
+//! Symmetric positive definite systems: the supernodal Cholesky factorisation of
+//! `faer` on the nested dissection.
 //!
 //! T. A. Davis, *Direct Methods for Sparse Linear Systems*, SIAM 2006, ch. 4. A tangent with
 //! associated flow is symmetric and, before collapse, positive definite; a pivot that is not
@@ -19,11 +20,7 @@ use igimp_assembly::{Pattern, TangentMatrix};
 use super::refine::{Accuracy, solve_refined};
 use super::{LinearSolver, LinearSolverError, NestedDissection, SolveReport, check};
 
-/// A pivot below this part of the diagonal entry that it started from has lost all its digits to
-/// cancellation: the matrix is then singular to working precision.
-const LEAST_PIVOT: f64 = 1e-13;
-
-/// Supernodal LLᵀ for symmetric positive definite matrices; reads the lower triangle only.
+/// Supernodal Cholesky factorisation for symmetric positive definite matrices; reads the lower triangle only.
 #[derive(Default)]
 pub struct FaerCholesky {
     accuracy: Accuracy,
@@ -143,47 +140,35 @@ impl Analysis {
                 Spec::default(),
             )
             .map_err(|_| LinearSolverError::NotPositiveDefinite { unknown: None })?;
-        self.check_pivots(matrix, factors)
+        let order = self.symbolic.perm().map(|perm| perm.arrays().0);
+        let roots = self.pivot_roots(factors).into_iter().enumerate();
+        let unknown_of = |k| order.map_or(k, |order| order[k]);
+        check::sound_pivots(matrix, roots.map(|(k, root)| (unknown_of(k), root * root)))
     }
 
-    /// Compares each pivot with the diagonal entry that it is left from.
-    fn check_pivots(&self, matrix: &TangentMatrix, factors: &[f64]) -> Result<(), LinearSolverError> {
-        let mut remaining = vec![0.0; self.symbolic.nrows()];
+    /// The square roots of the pivots, the diagonal of L, in order of elimination.
+    fn pivot_roots(&self, factors: &[f64]) -> Vec<f64> {
         match self.symbolic.raw() {
             SymbolicCholeskyRaw::Simplicial(simplicial) => {
-                for (pivot, &start) in remaining.iter_mut().zip(simplicial.col_ptr()) {
-                    *pivot = factors[start];
-                }
+                let columns = &simplicial.col_ptr()[..simplicial.ncols()];
+                columns.iter().map(|&start| factors[start]).collect()
             }
             SymbolicCholeskyRaw::Supernodal(supernodal) => {
+                let mut roots = Vec::with_capacity(supernodal.ncols());
                 for node in 0..supernodal.n_supernodes() {
-                    let (begin, end) =
-                        (supernodal.supernode_begin()[node], supernodal.supernode_end()[node]);
-                    let rows = end - begin + supernodal.supernode(node).pattern().len();
                     let first = supernodal.col_ptr_for_val()[node];
-                    for column in 0..end - begin {
-                        remaining[begin + column] = factors[first + column * (rows + 1)];
-                    }
+                    let columns =
+                        supernodal.supernode_end()[node] - supernodal.supernode_begin()[node];
+                    let rows = columns + supernodal.supernode(node).pattern().len();
+                    roots.extend((0..columns).map(|k| factors[first + k * (rows + 1)]));
                 }
+                roots
             }
         }
-        for (k, &pivot) in remaining.iter().enumerate() {
-            let unknown = self.symbolic.perm().map_or(k, |order| order.arrays().0[k]);
-            let whole = diagonal(matrix, unknown);
-            if !(pivot * pivot > LEAST_PIVOT * whole) {
-                return Err(LinearSolverError::NotPositiveDefinite { unknown: Some(unknown) });
-            }
-        }
-        Ok(())
     }
 }
 
-fn diagonal(matrix: &TangentMatrix, unknown: usize) -> f64 {
-    let start = matrix.pattern.col_ptr[unknown];
-    let rows = &matrix.pattern.row_idx[start..matrix.pattern.col_ptr[unknown + 1]];
-    rows.binary_search(&unknown).map_or(0.0, |offset| matrix.values[start + offset])
-}
-
+/// The pattern as `faer` sees it.
 pub(super) fn symbolic_view(pattern: &Pattern) -> SymbolicSparseColMatRef<'_, usize> {
     let unknowns = pattern.unknowns();
     SymbolicSparseColMatRef::new_checked(unknowns, unknowns, &pattern.col_ptr, None, &pattern.row_idx)

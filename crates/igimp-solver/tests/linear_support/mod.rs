@@ -1,13 +1,15 @@
 //! Matrices that look like a tangent: particles spread over the cells of a grid, each adding a
 //! small symmetric positive semi-definite block to the 3^D nodes of its support.
 
+#![allow(dead_code, reason = "each test target uses its part")]
+
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use igimp_assembly::{NodeBlock, Pattern, TangentMatrix};
 
 /// Random numbers (Vigna's splitmix64), the same in every run.
-pub struct Random(pub u64);
+pub(crate) struct Random(pub(crate) u64);
 
 impl Random {
     fn next(&mut self) -> u64 {
@@ -19,29 +21,29 @@ impl Random {
     }
 
     /// Uniform in [-1, 1).
-    pub fn signed(&mut self) -> f64 {
+    pub(crate) fn signed(&mut self) -> f64 {
         (self.next() >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
     }
 }
 
 /// A body on a grid of nodes.
 #[derive(Clone)]
-pub struct Body {
+pub(crate) struct Body {
     /// Nodes along each axis, 1 where there is no such axis.
-    pub nodes: [usize; 3],
+    pub(crate) nodes: [usize; 3],
     /// Unknowns of a node before supports are taken away.
-    pub dofs: usize,
+    pub(crate) dofs: usize,
     /// Particles per 3^D patch of nodes.
-    pub particles: usize,
+    pub(crate) particles: usize,
     /// Fraction of a particle's stiffness that is not symmetric.
-    pub unsymmetric: f64,
+    pub(crate) unsymmetric: f64,
     /// Whether only the part below the diagonal x + y of the box is filled.
-    pub slope: bool,
-    pub seed: u64,
+    pub(crate) slope: bool,
+    pub(crate) seed: u64,
 }
 
 impl Body {
-    pub fn plane(nodes_x: usize, nodes_y: usize) -> Self {
+    pub(crate) fn plane(nodes_x: usize, nodes_y: usize) -> Self {
         Self {
             nodes: [nodes_x, nodes_y, 1],
             dofs: 2,
@@ -52,29 +54,29 @@ impl Body {
         }
     }
 
-    pub fn line(nodes: usize) -> Self {
+    pub(crate) fn line(nodes: usize) -> Self {
         Self { nodes: [nodes, 1, 1], dofs: 1, ..Self::plane(1, 1) }
     }
 
-    pub fn solid(nodes: [usize; 3]) -> Self {
+    pub(crate) fn solid(nodes: [usize; 3]) -> Self {
         Self { nodes, dofs: 3, ..Self::plane(1, 1) }
     }
 
-    pub fn unsymmetric(self, fraction: f64) -> Self {
+    pub(crate) fn unsymmetric(self, fraction: f64) -> Self {
         Self { unsymmetric: fraction, ..self }
     }
 
-    pub fn slope(self) -> Self {
+    pub(crate) fn slope(self) -> Self {
         Self { slope: true, ..self }
     }
 
-    pub fn seed(self, seed: u64) -> Self {
+    pub(crate) fn seed(self, seed: u64) -> Self {
         Self { seed, ..self }
     }
 
     /// Assembles the tangent. The nodes of the first layer along x keep one unknown only, as on a
     /// roller; the last layer along y rests on springs, so that the body is held.
-    pub fn tangent(&self) -> TangentMatrix {
+    pub(crate) fn tangent(&self) -> TangentMatrix {
         let patches = self.patches();
         let mut random = Random(self.seed);
         let mut couplings: BTreeMap<(usize, usize), f64> = BTreeMap::new();
@@ -151,7 +153,7 @@ impl Body {
 }
 
 /// A matrix from its entries by (column, row); the pattern is made structurally symmetric.
-pub fn assemble(
+pub(crate) fn assemble(
     entries: &BTreeMap<(usize, usize), f64>,
     unknowns: usize,
     blocks: Vec<NodeBlock>,
@@ -174,7 +176,7 @@ pub fn assemble(
 }
 
 /// A matrix from dense rows, each unknown a node of its own on a line.
-pub fn from_dense(rows: &[&[f64]], symmetric: bool) -> TangentMatrix {
+pub(crate) fn from_dense(rows: &[&[f64]], symmetric: bool) -> TangentMatrix {
     let unknowns = rows.len();
     let mut entries = BTreeMap::new();
     for (row, values) in rows.iter().enumerate() {
@@ -189,7 +191,7 @@ pub fn from_dense(rows: &[&[f64]], symmetric: bool) -> TangentMatrix {
 }
 
 /// A solution to recover and the right-hand side that belongs to it.
-pub fn manufactured(matrix: &TangentMatrix, seed: u64) -> (Vec<f64>, Vec<f64>) {
+pub(crate) fn manufactured(matrix: &TangentMatrix, seed: u64) -> (Vec<f64>, Vec<f64>) {
     let mut random = Random(seed);
     let exact: Vec<f64> = (0..matrix.pattern.unknowns()).map(|_| random.signed()).collect();
     let mut rhs = vec![0.0; exact.len()];
@@ -198,6 +200,6 @@ pub fn manufactured(matrix: &TangentMatrix, seed: u64) -> (Vec<f64>, Vec<f64>) {
 }
 
 /// Largest difference of the entries.
-pub fn distance(a: &[f64], b: &[f64]) -> f64 {
+pub(crate) fn distance(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).fold(0.0, |largest, (a, b)| (a - b).abs().max(largest))
 }

@@ -1,0 +1,194 @@
+//! The filled domains of a field and the lines over them.
+
+use super::axis;
+use super::colour::Colour;
+use super::colour_bar::{ColourScale, LEVELS};
+use super::drawing::{Contour, Drawing, Item, Shape, Stroke};
+use super::field::{FieldPlot, Outline, OutlineStyle, Polygon};
+use super::frame::Frame;
+use super::geometry::Point;
+use super::ticks::grouped;
+
+/// By how much \[pt\] domains are drawn larger to every side, to hide seams between neighbours.
+const OVERLAP: f64 = 0.3;
+
+/// How many domains have nothing to show.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Tally {
+    pub(super) domains: usize,
+    pub(super) without_value: usize,
+    pub(super) without_place: usize,
+}
+
+impl Tally {
+    pub(super) fn of(plot: &FieldPlot) -> Self {
+        let placed = |polygon: &&Polygon| has_place(polygon);
+        Self {
+            domains: plot.domains.len(),
+            without_value: plot
+                .values
+                .iter()
+                .filter(|&&value| !axis::drawable(value))
+                .count(),
+            without_place: plot.domains.len() - plot.domains.iter().filter(placed).count(),
+        }
+    }
+
+    pub(super) fn plus(self, other: Self) -> Self {
+        Self {
+            domains: self.domains + other.domains,
+            without_value: self.without_value + other.without_value,
+            without_place: self.without_place + other.without_place,
+        }
+    }
+
+    /// What the reader should know about missing domains.
+    pub(super) fn note(&self) -> Option<String> {
+        let part = |count: usize, what: &str| {
+            let (count, all) = (grouped(count), grouped(self.domains));
+            format!("{what}: {count} of {all} domains")
+        };
+        let value = (self.without_value > 0).then(|| part(self.without_value, "no value (grey)"));
+        let place =
+            (self.without_place > 0).then(|| part(self.without_place, "no place (not drawn)"));
+        let parts: Vec<String> = value.into_iter().chain(place).collect();
+        (!parts.is_empty()).then(|| parts.join("; "))
+    }
+}
+
+/// Whether a polygon has an inside and drawable corners.
+pub(super) fn has_place(polygon: &[[f64; 2]]) -> bool {
+    polygon.len() > 2 && polygon.iter().flatten().all(|&c| axis::drawable(c))
+}
+
+/// The contents of one plot area.
+pub(super) struct Layer<'a> {
+    pub(super) frame: &'a Frame,
+    pub(super) plot: &'a FieldPlot,
+}
+
+impl Layer<'_> {
+    pub(super) fn draw(&self, drawing: &mut Drawing, scale: &ColourScale) {
+        // One shape per colour keeps the files small; grey goes first.
+        let mut shapes: Vec<Vec<Contour>> = Vec::new();
+        shapes.resize_with(LEVELS + 1, Vec::new);
+        for (polygon, &value) in self.plot.domains.iter().zip(&self.plot.values) {
+            if has_place(polygon) {
+                let place = scale.level(value).map_or(0, |level| level + 1);
+                shapes[place].extend(self.contour(polygon));
+            }
+        }
+        for (place, contours) in shapes
+            .into_iter()
+            .enumerate()
+            .filter(|(_, c)| !c.is_empty())
+        {
+            let colour = place
+                .checked_sub(1)
+                .map_or(Colour::NO_VALUE, |level| scale.colour(level));
+            drawing.fill(contours, colour, 1.0);
+        }
+        for outline in &self.plot.outlines {
+            self.draw_outline(drawing, outline);
+        }
+    }
+
+    /// The visible part of a domain, a little enlarged.
+    fn contour(&self, polygon: &[[f64; 2]]) -> Option<Contour> {
+        let points = self.places(polygon);
+        let count = points.len() as f64;
+        let centre: Point =
+            std::array::from_fn(|k| points.iter().map(|p| p[k]).sum::<f64>() / count);
+        let mut points: Vec<Point> = points
+            .into_iter()
+            .map(|p| std::array::from_fn(|k| p[k] + OVERLAP * (p[k] - centre[k]).signum()))
+            .collect();
+        // All the same way round, or overlapping domains in one shape would cancel.
+        if signed_area(&points) < 0.0 {
+            points.reverse();
+        }
+        let visible = self.frame.area.clip_polygon(&points);
+        (visible.len() > 2).then_some(Contour::Closed(visible))
+    }
+
+    fn places(&self, points: &[[f64; 2]]) -> Vec<Point> {
+        let place = |&[x, y]: &[f64; 2]| Some([self.frame.x.place(x)?, self.frame.y.place(y)?]);
+        points.iter().filter_map(place).collect()
+    }
+
+    fn draw_outline(&self, drawing: &mut Drawing, outline: &Outline) {
+        let points = self.places(&outline.points);
+        let area = self.frame.area;
+        let lines = area.clip_polyline(&points);
+        match outline.style {
+            OutlineStyle::Edge => drawing.stroke(lines, Stroke::solid(Colour::INK, 1.2)),
+            OutlineStyle::Grid => drawing.stroke(lines, Stroke::solid(Colour::FAINT_INK, 0.3)),
+            OutlineStyle::Section => {
+                // White below black stays visible on every colour.
+                drawing.stroke(lines.clone(), Stroke::solid(Colour::WHITE, 2.4));
+                let dash: &[f64] = &[6.0, 3.5];
+                drawing.stroke(
+                    lines,
+                    Stroke {
+                        colour: Colour::INK,
+                        width: 1.3,
+                        dash,
+                    },
+                );
+            }
+            OutlineStyle::Block => drawing.items.push(Item::Shape(Shape {
+                contours: vec![Contour::Closed(area.clip_polygon(&points))],
+                fill: Some((Colour::BLOCK, 1.0)),
+                stroke: Some(Stroke::solid(Colour::INK, 1.0)),
+            })),
+        }
+    }
+}
+
+/// Area \[pt²\] of a polygon, positive for one way round and negative for the other.
+fn signed_area(points: &[Point]) -> f64 {
+    let following = points.iter().cycle().skip(1);
+    points
+        .iter()
+        .zip(following)
+        .map(|(a, b)| 0.5 * (a[0] * b[1] - b[0] * a[1]))
+        .sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn missing_values_and_places_are_counted() {
+        let square = |x: f64| vec![[x, 0.0], [x + 1.0, 0.0], [x + 1.0, 1.0], [x, 1.0]];
+        let plot = FieldPlot {
+            domains: vec![square(0.0), square(1.0), square(f64::NAN), Vec::new()],
+            values: vec![1.0, f64::NAN, 2.0, 3.0],
+            ..FieldPlot::default()
+        };
+        let tally = Tally::of(&plot);
+        assert_eq!(
+            tally,
+            Tally {
+                domains: 4,
+                without_value: 1,
+                without_place: 2
+            }
+        );
+        assert_eq!(
+            tally.note().unwrap(),
+            "no value (grey): 1 of 4 domains; no place (not drawn): 2 of 4 domains"
+        );
+        assert_eq!(Tally::default().note(), None);
+    }
+
+    #[test]
+    fn area_tells_the_way_round() {
+        let square = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]];
+        assert!((signed_area(&square) - 4.0).abs() < 1e-12);
+        let mut reversed = square;
+        reversed.reverse();
+        assert!((signed_area(&reversed) + 4.0).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,48 @@
+//! What can go wrong in a constitutive law, as data.
+
+/// Why a law could not be made or evaluated.
+#[derive(thiserror::Error, Debug, Clone, PartialEq)]
+pub enum MaterialError {
+    /// A parameter lies outside the range in which the law makes sense.
+    #[error("`{field}` = {value} must be {requirement}")]
+    InvalidParameter {
+        /// Name of the parameter, as in the constructor.
+        field: &'static str,
+        /// Value given, in the caller's units (angles in radians).
+        value: f64,
+        /// What the value has to be; reads on from "must be".
+        requirement: &'static str,
+    },
+    /// A strain or stretch is infinite or not a number, or so large that the stress is.
+    #[error("the {quantity} must be finite")]
+    NonFinite {
+        /// The quantity, in words.
+        quantity: &'static str,
+    },
+    /// An elastic left Cauchy–Green tensor has an eigenvalue that is not positive.
+    #[error(
+        "the elastic left Cauchy-Green tensor must be positive definite, got an eigenvalue of {eigenvalue}"
+    )]
+    NotPositiveDefinite {
+        /// Smallest eigenvalue found.
+        eigenvalue: f64,
+    },
+}
+
+/// `value` if it is finite and `holds`, else the error that names `field`.
+pub(crate) fn required(
+    field: &'static str,
+    value: f64,
+    holds: bool,
+    requirement: &'static str,
+) -> Result<f64, MaterialError> {
+    if holds && value.is_finite() {
+        Ok(value)
+    } else {
+        Err(MaterialError::InvalidParameter {
+            field,
+            value,
+            requirement,
+        })
+    }
+}

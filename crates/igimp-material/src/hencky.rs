@@ -1,0 +1,58 @@
+//! Hencky elasticity without a yield surface.
+
+use std::sync::Arc;
+
+use crate::law::{checked_srf, trial_stress};
+use crate::{ConstitutiveModel, Elasticity, History, MaterialError, Principal, ReturnMap};
+
+/// The elastic law: every stress is admissible.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HenckyElastic {
+    elasticity: Elasticity,
+}
+
+impl HenckyElastic {
+    /// From the elastic constants.
+    pub fn new(elasticity: Elasticity) -> Self {
+        Self { elasticity }
+    }
+}
+
+impl ConstitutiveModel for HenckyElastic {
+    fn name(&self) -> &'static str {
+        "Hencky elastic"
+    }
+
+    fn elasticity(&self) -> &Elasticity {
+        &self.elasticity
+    }
+
+    fn return_map(
+        &self,
+        eps_e_trial: &Principal,
+        history: &History,
+    ) -> Result<ReturnMap, MaterialError> {
+        let tau = trial_stress(&self.elasticity, eps_e_trial)?;
+        Ok(ReturnMap::elastic(&self.elasticity, tau, *history))
+    }
+
+    /// Always `-∞`.
+    fn yield_function(&self, _tau: &Principal, _history: &History) -> f64 {
+        f64::NEG_INFINITY
+    }
+
+    /// Young's modulus.
+    fn stress_scale(&self, _tau: &Principal) -> f64 {
+        self.elasticity.young()
+    }
+
+    fn has_symmetric_tangent(&self) -> bool {
+        true
+    }
+
+    /// The law itself: there is no strength to reduce.
+    fn reduced(&self, srf: f64) -> Result<Arc<dyn ConstitutiveModel>, MaterialError> {
+        checked_srf(srf)?;
+        Ok(Arc::new(*self))
+    }
+}

@@ -1,0 +1,158 @@
+//! The seam between laws and everything else: a pure function from trial strain to stress.
+//!
+//! A law lives in principal space, knows no rotation, no grid and no step, and changes nothing:
+//! the same input gives the same output. [`lift_finite`](crate::lift_finite) and
+//! [`lift_small`](crate::lift_small) carry it to tensors.
+
+use std::fmt::Debug;
+use std::sync::Arc;
+
+use crate::principal::{Principal, deviator, dot};
+use crate::{Elasticity, MaterialError};
+
+/// What a law remembers of the past.
+///
+/// The laws of this crate do not harden: the history is carried for the record and plays no part
+/// in the stress.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct History {
+    /// Accumulated plastic strain invariant `` $`\sum\sqrt{\tfrac23\,\Delta e_p:\Delta e_p}`$ ``,
+    /// with `` $`\Delta e_p`$ `` the deviatoric part of a step's plastic strain. Never negative.
+    pub eps_p_eq: f64,
+}
+
+impl History {
+    /// The history after a further plastic strain increment.
+    #[must_use]
+    pub fn after(&self, delta_eps_p: &Principal) -> Self {
+        let deviatoric = deviator(delta_eps_p);
+        Self {
+            eps_p_eq: self.eps_p_eq + (2.0 / 3.0 * dot(&deviatoric, &deviatoric)).sqrt(),
+        }
+    }
+}
+
+/// The part of the yield surface that a stress was returned to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Regime {
+    /// Inside the yield surface, or on it to within round-off: nothing was returned.
+    Elastic,
+    /// The smooth part: the von Mises cylinder, or the main plane of Tresca and Mohr–Coulomb.
+    Smooth,
+    /// The edge where the two larger principal stresses are equal.
+    RightEdge,
+    /// The edge where the two smaller principal stresses are equal.
+    LeftEdge,
+    /// The apex of the Mohr–Coulomb pyramid.
+    Apex,
+    /// The plane of the tension cut-off, largest principal stress = `` $`\sigma_t`$ ``.
+    Tension,
+    /// The edge between the Mohr–Coulomb plane and the plane of the tension cut-off.
+    TensionShear,
+    /// The edge where the two larger principal stresses are `` $`\sigma_t`$ ``.
+    TensionEdge,
+    /// An end of the edge between Mohr–Coulomb and cut-off, where two stresses are equal.
+    TensionCorner,
+    /// All three principal stresses are `` $`\sigma_t`$ ``.
+    TensionApex,
+}
+
+impl Regime {
+    /// Whether there was plastic flow.
+    pub fn is_plastic(self) -> bool {
+        self != Self::Elastic
+    }
+}
+
+/// The answer of a law to a trial strain, in the order of its principal values.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ReturnMap {
+    /// Principal Kirchhoff stress τ \[stress\], admissible.
+    pub tau: Principal,
+    /// Consistent tangent `` $`D_{ab} = \partial\tau_a/\partial\varepsilon_b^{tr}`$ `` \[stress\],
+    /// taken within the regime.
+    pub tangent: [[f64; 3]; 3],
+    /// Plastic strain increment `` $`\Delta\varepsilon_p = C^{-1}(\tau^{tr} - \tau)`$ ``.
+    pub delta_eps_p: Principal,
+    /// History at the end of the increment.
+    pub history: History,
+    /// Where on the yield surface the stress is.
+    pub regime: Regime,
+}
+
+impl ReturnMap {
+    /// A stress that needed no return.
+    pub(crate) fn elastic(elasticity: &Elasticity, tau: Principal, history: History) -> Self {
+        Self {
+            tau,
+            tangent: elasticity.tangent(),
+            delta_eps_p: [0.0; 3],
+            history,
+            regime: Regime::Elastic,
+        }
+    }
+}
+
+/// A constitutive law in principal space: isotropic, with linear Hencky elasticity.
+pub trait ConstitutiveModel: Send + Sync + Debug {
+    /// Name of the law, for messages and tables.
+    fn name(&self) -> &'static str;
+
+    /// The elastic part.
+    fn elasticity(&self) -> &Elasticity;
+
+    /// Returns the trial state with principal elastic strain `eps_e_trial` to the yield surface,
+    /// by one backward Euler step.
+    ///
+    /// Principal values come in any order and are answered in the same order.
+    ///
+    /// # Errors
+    /// [`MaterialError::NonFinite`] if the strain or its stress is not finite.
+    fn return_map(
+        &self,
+        eps_e_trial: &Principal,
+        history: &History,
+    ) -> Result<ReturnMap, MaterialError>;
+
+    /// The yield function f(τ) \[stress\]: at most zero where τ is admissible; `-∞` for a law
+    /// without a yield surface. Each law states how f is scaled.
+    fn yield_function(&self, tau: &Principal, history: &History) -> f64;
+
+    /// The stress that a relative tolerance on f refers to: the magnitudes that f is the
+    /// difference of. A state with f ≤ 1e-12 `stress_scale` counts as on the surface.
+    fn stress_scale(&self, tau: &Principal) -> f64;
+
+    /// Whether consistent tangents are symmetric, which is so when the flow is associated.
+    fn has_symmetric_tangent(&self) -> bool;
+
+    /// The law with its strength divided by the reduction factor `srf`: cohesion, undrained
+    /// strength, yield stress, tension cut-off and tan φ. Elasticity stays; the dilation angle
+    /// stays too but never exceeds the reduced friction angle.
+    ///
+    /// # Errors
+    /// [`MaterialError::InvalidParameter`] unless `srf` is positive and finite.
+    fn reduced(&self, srf: f64) -> Result<Arc<dyn ConstitutiveModel>, MaterialError>;
+}
+
+/// Share of [`ConstitutiveModel::stress_scale`] by which f may exceed zero on the surface.
+pub(crate) const ON_SURFACE: f64 = 1e-12;
+
+/// The elastic stress of a trial strain.
+pub(crate) fn trial_stress(
+    elasticity: &Elasticity,
+    eps_e_trial: &Principal,
+) -> Result<Principal, MaterialError> {
+    let tau = elasticity.stress(eps_e_trial);
+    if tau.iter().all(|component| component.is_finite()) {
+        Ok(tau)
+    } else {
+        Err(MaterialError::NonFinite {
+            quantity: "trial stress",
+        })
+    }
+}
+
+/// Checks a strength reduction factor.
+pub(crate) fn checked_srf(srf: f64) -> Result<f64, MaterialError> {
+    crate::error::required("srf", srf, srf > 0.0, "positive and finite")
+}

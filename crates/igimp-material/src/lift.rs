@@ -1,0 +1,218 @@
+//! The spectral lift: a law in principal space becomes a law for tensors, written once.
+//!
+//! For an isotropic law stress and trial strain share their principal axes, so the stress is the
+//! return map of the principal strains set into these axes, and the spatial tangent follows from
+//! the principal tangent D and the secants of shear (Ogden 1984; de Souza Neto, Perić & Owen
+//! 2008, appendix A): with the principal values b of the trial elastic left Cauchy–Green tensor
+//!
+//! ```math
+//! A_{aabb} = D_{ab},\qquad
+//! A_{abab} = \frac{(\tau_a-\tau_b)\,b_b}{b_a-b_b},\qquad
+//! A_{abba} = \frac{(\tau_a-\tau_b)\,b_a}{b_a-b_b}
+//! ```
+//!
+//! In terms of `` $`x = \ln b_a - \ln b_b = 2(\varepsilon_a - \varepsilon_b)`$ `` and the secant
+//! modulus `` $`k = (\tau_a-\tau_b)/x`$ `` the shear parts are `` $`k\,x/(e^x-1)`$ `` and
+//! `` $`k\,x/(1-e^{-x})`$ ``: all that is delicate for equal eigenvalues is k, and there
+//! `` $`k = (D_{aa}-D_{ab}-D_{ba}+D_{bb})/4`$ ``. With small strain both are k.
+
+use crate::eigen::{compose, principal_axes};
+use crate::principal::{Principal, Tensor};
+use crate::{ConstitutiveModel, Elasticity, History, MaterialError, Regime, SpatialTangent};
+
+/// Which tangent a lift answers; the stress is that of the return map either way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum TangentKind {
+    /// That of the elastic part of the law at the trial state: symmetric and regular.
+    Elastic,
+    /// That of the return map, for the quadratic convergence of Newton's method.
+    Consistent,
+}
+
+/// The answer of a law to a trial tensor, in spatial axes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Lifted<const D: usize> {
+    /// Kirchhoff stress τ (Cauchy stress with small strain) \[stress\].
+    pub tau: Tensor,
+    /// Its derivative by the velocity gradient.
+    pub tangent: SpatialTangent<D>,
+    /// Principal elastic Hencky strain after the return, C⁻¹ τ.
+    pub eps_e: Principal,
+    /// Principal axes: `frame[a]` is the unit vector of principal value `a`. In plane strain the
+    /// last one is z.
+    pub frame: [[f64; 3]; 3],
+    /// Principal plastic strain increment of the step, in the same axes.
+    pub delta_eps_p: Principal,
+    /// History at the end of the step.
+    pub history: History,
+    /// Where on the yield surface the stress is.
+    pub regime: Regime,
+}
+
+impl<const D: usize> Lifted<D> {
+    /// The elastic left Cauchy–Green tensor `` $`b_e = \exp(2\varepsilon_e)`$ `` to carry to the
+    /// next step.
+    pub fn b_e(&self) -> Tensor {
+        compose::<D>(&self.eps_e.map(|strain| (2.0 * strain).exp()), &self.frame)
+    }
+
+    /// The elastic Hencky strain tensor `` $`\varepsilon_e`$ ``.
+    pub fn eps_e_tensor(&self) -> Tensor {
+        compose::<D>(&self.eps_e, &self.frame)
+    }
+}
+
+/// Finite strain: the law at the trial elastic left Cauchy–Green tensor `b_e_trial`.
+///
+/// `D = 2` is plane strain and reads xx, yy, xy and zz; `D = 3` reads the upper triangle.
+/// Strains are `` $`\tfrac12\ln b`$ ``, accurate to the digits that b holds also near b = I.
+///
+/// # Errors
+/// [`MaterialError::NonFinite`] or [`MaterialError::NotPositiveDefinite`] for a tensor that is no
+/// stretch; whatever the law's return map reports.
+pub fn lift_finite<const D: usize>(
+    law: &dyn ConstitutiveModel,
+    b_e_trial: &Tensor,
+    history: &History,
+    kind: TangentKind,
+) -> Result<Lifted<D>, MaterialError> {
+    let (strain, frame) = logarithmic::<D>(b_e_trial)?;
+    lift(law, &strain, frame, *history, kind, |x| {
+        if x == 0.0 { 1.0 } else { x / x.exp_m1() }
+    })
+}
+
+/// Small strain: the law at the trial elastic strain tensor `eps_e_trial`.
+///
+/// The tangent has the minor symmetries, so that only the symmetric part of the velocity gradient
+/// counts. Components are read as in [`lift_finite`].
+///
+/// # Errors
+/// [`MaterialError::NonFinite`] for a strain that is not finite; whatever the law's return map
+/// reports.
+pub fn lift_small<const D: usize>(
+    law: &dyn ConstitutiveModel,
+    eps_e_trial: &Tensor,
+    history: &History,
+    kind: TangentKind,
+) -> Result<Lifted<D>, MaterialError> {
+    let (strain, frame) = principal_axes::<D>(eps_e_trial);
+    if !strain.iter().all(|value| value.is_finite()) {
+        return Err(MaterialError::NonFinite {
+            quantity: "trial elastic strain",
+        });
+    }
+    lift(law, &strain, frame, *history, kind, |_| 1.0)
+}
+
+/// The Hencky strain `` $`\tfrac12\ln b`$ `` of a left Cauchy–Green tensor `b` (upper triangle).
+///
+/// # Errors
+/// [`MaterialError::NonFinite`] or [`MaterialError::NotPositiveDefinite`].
+pub fn logarithmic_strain(b: &Tensor) -> Result<Tensor, MaterialError> {
+    let (strain, frame) = logarithmic::<3>(b)?;
+    Ok(compose::<3>(&strain, &frame))
+}
+
+/// Principal values and axes of `` $`\tfrac12\ln b`$ ``.
+#[inline]
+fn logarithmic<const D: usize>(b: &Tensor) -> Result<(Principal, Tensor), MaterialError> {
+    let mut stretch = *b;
+    for a in 0..3 {
+        stretch[a][a] -= 1.0;
+    }
+    // Close to I the difference is exact and holds more digits than b itself.
+    let close = stretch[..D]
+        .iter()
+        .all(|row| row[..D].iter().all(|entry| entry.abs() < 0.25))
+        && stretch[2][2].abs() < 0.25;
+    let (values, frame) = principal_axes::<D>(if close { &stretch } else { b });
+    let strain = if close {
+        values.map(f64::ln_1p)
+    } else {
+        values.map(f64::ln)
+    };
+    if strain.iter().all(|value| value.is_finite()) {
+        return Ok((strain.map(|value| 0.5 * value), frame));
+    }
+    let eigenvalue = values.iter().copied().fold(f64::INFINITY, f64::min);
+    if values.iter().all(|value| value.is_finite()) {
+        Err(MaterialError::NotPositiveDefinite { eigenvalue })
+    } else {
+        Err(MaterialError::NonFinite {
+            quantity: "trial elastic left Cauchy-Green tensor",
+        })
+    }
+}
+
+/// The law at the principal trial strains, set into their axes. `share(x)` is the part of the
+/// secant modulus that answers to `` $`l_{ab}`$ ``, with x the difference of ln b.
+#[inline]
+fn lift<const D: usize>(
+    law: &dyn ConstitutiveModel,
+    strain: &Principal,
+    frame: Tensor,
+    history: History,
+    kind: TangentKind,
+    share: impl Fn(f64) -> f64,
+) -> Result<Lifted<D>, MaterialError> {
+    let elasticity = law.elasticity();
+    let answer = law.return_map(strain, &history)?;
+    let normal = match kind {
+        TangentKind::Elastic => elasticity.tangent(),
+        TangentKind::Consistent => answer.tangent,
+    };
+    let noise = stress_noise(elasticity, strain);
+    let mut shear = [[0.0; 3]; 3];
+    for a in 0..D {
+        for b in 0..a {
+            let x = 2.0 * (strain[a] - strain[b]);
+            let secant = match kind {
+                TangentKind::Elastic => elasticity.shear(),
+                TangentKind::Consistent => {
+                    let [daa, dab, dba, dbb] =
+                        [normal[a][a], normal[a][b], normal[b][a], normal[b][b]];
+                    let limit = (daa - dab - dba + dbb) / 4.0;
+                    secant(answer.tau[a] - answer.tau[b], x, limit, noise)
+                }
+            };
+            shear[a][b] = secant * share(x);
+            shear[b][a] = shear[a][b] + secant * x;
+        }
+    }
+    let eps_e = if answer.regime.is_plastic() {
+        elasticity.strain(&answer.tau)
+    } else {
+        *strain
+    };
+    Ok(Lifted {
+        tau: compose::<D>(&answer.tau, &frame),
+        tangent: SpatialTangent::from_principal(&frame, &normal, &shear),
+        eps_e,
+        frame,
+        delta_eps_p: answer.delta_eps_p,
+        history: answer.history,
+        regime: answer.regime,
+    })
+}
+
+/// Secant modulus of shear, `delta_tau / x`, or its `limit` for x → 0.
+///
+/// Where the two cannot be told apart by stresses that carry round-off `noise`, the limit is the
+/// better one; where they can, however small x is, there is a kink of the yield surface between
+/// the two principal values and the secant is right.
+#[inline]
+fn secant(delta_tau: f64, x: f64, limit: f64, noise: f64) -> f64 {
+    if x == 0.0 || (delta_tau - limit * x).abs() <= noise {
+        limit
+    } else {
+        delta_tau / x
+    }
+}
+
+/// Round-off in a principal stress \[stress\].
+#[inline]
+fn stress_noise(elasticity: &Elasticity, strain: &Principal) -> f64 {
+    let size = strain[0].abs() + strain[1].abs() + strain[2].abs();
+    16.0 * f64::EPSILON * (elasticity.bulk() + 2.0 * elasticity.shear()) * size
+}

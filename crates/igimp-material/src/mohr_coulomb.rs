@@ -1,0 +1,215 @@
+//! Mohr–Coulomb plasticity with non-associated flow and an optional tension cut-off.
+//!
+//! Exact return in principal space after Clausen, Damkilde & Andersen (2006), *Efficient return
+//! algorithms for associated plasticity with multiple yield planes*, Int. J. Numer. Meth. Engng
+//! 66, 1036–1059.
+
+use std::f64::consts::FRAC_PI_2;
+use std::sync::Arc;
+
+use crate::error::required;
+use crate::law::checked_srf;
+use crate::pyramid::{Pyramid, Strength};
+use crate::{ConstitutiveModel, Elasticity, History, MaterialError, Principal, ReturnMap};
+
+/// Elastic and perfectly plastic with the yield function
+///
+/// ```math
+/// f = (1+\sin\varphi)\,\sigma_1 - (1-\sin\varphi)\,\sigma_3 - 2c\cos\varphi,\qquad
+/// \sigma_1 \ge \sigma_2 \ge \sigma_3
+/// ```
+///
+/// and the plastic potential of the same form in the dilation angle ψ ≤ φ. With a tension
+/// cut-off also `` $`\sigma_1 \le \sigma_t`$ ``, with associated flow.
+///
+/// Trial states beyond the end of an edge go to the apex σ1 = σ2 = σ3 = c cot φ with a tangent
+/// of zero. With ψ = 0 plastic flow keeps volume and cannot follow a mean stress above c cot φ
+/// down; such states go to the apex all the same, and the plastic volume strain this takes is
+/// counted.
+///
+/// ```
+/// use igimp_material::{ConstitutiveModel, Elasticity, History, MohrCoulomb, Regime};
+///
+/// let elasticity = Elasticity::new(1e5, 0.3)?;
+/// let law = MohrCoulomb::new(elasticity, 10.0, 20_f64.to_radians(), 0.0)?;
+/// let history = History::default();
+/// let answer = law.return_map(&[2e-4, 0.0, -4e-4], &history)?;
+/// assert_eq!(answer.regime, Regime::Smooth);
+/// assert!(law.yield_function(&answer.tau, &history).abs() < 1e-12);
+/// # Ok::<(), igimp_material::MaterialError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct MohrCoulomb {
+    cohesion: f64,
+    friction_angle: f64,
+    dilation_angle: f64,
+    tension_cutoff: Option<f64>,
+    pyramid: Pyramid,
+}
+
+impl MohrCoulomb {
+    /// From cohesion c \[stress\], friction angle φ and dilation angle ψ \[radians\].
+    ///
+    /// # Errors
+    /// [`MaterialError::InvalidParameter`] unless `cohesion` ≥ 0 (> 0 without friction),
+    /// 0 ≤ `friction_angle` < π/2 and 0 ≤ `dilation_angle` ≤ `friction_angle`.
+    pub fn new(
+        elasticity: Elasticity,
+        cohesion: f64,
+        friction_angle: f64,
+        dilation_angle: f64,
+    ) -> Result<Self, MaterialError> {
+        Self::build(elasticity, cohesion, friction_angle, dilation_angle, None)
+    }
+
+    /// The law with the largest principal stress bounded by `` $`\sigma_t`$ `` = `tension_cutoff`
+    /// \[stress\].
+    ///
+    /// A cut-off at or above the apex c cot φ never acts.
+    ///
+    /// # Errors
+    /// [`MaterialError::InvalidParameter`] if `tension_cutoff` is negative or not finite.
+    pub fn with_tension_cutoff(self, tension_cutoff: f64) -> Result<Self, MaterialError> {
+        Self::build(
+            *self.elasticity(),
+            self.cohesion,
+            self.friction_angle,
+            self.dilation_angle,
+            Some(tension_cutoff),
+        )
+    }
+
+    /// Cohesion c \[stress\].
+    pub fn cohesion(&self) -> f64 {
+        self.cohesion
+    }
+
+    /// Friction angle φ \[radians\].
+    pub fn friction_angle(&self) -> f64 {
+        self.friction_angle
+    }
+
+    /// Dilation angle ψ \[radians\].
+    pub fn dilation_angle(&self) -> f64 {
+        self.dilation_angle
+    }
+
+    /// Tension cut-off `` $`\sigma_t`$ `` \[stress\], if any.
+    pub fn tension_cutoff(&self) -> Option<f64> {
+        self.tension_cutoff
+    }
+
+    fn build(
+        elasticity: Elasticity,
+        cohesion: f64,
+        friction_angle: f64,
+        dilation_angle: f64,
+        tension_cutoff: Option<f64>,
+    ) -> Result<Self, MaterialError> {
+        let in_range = (0.0..FRAC_PI_2).contains(&friction_angle) && friction_angle.sin() < 1.0;
+        required(
+            "friction_angle",
+            friction_angle,
+            in_range,
+            "at least 0 and less than pi/2",
+        )?;
+        let in_range = (0.0..=friction_angle).contains(&dilation_angle);
+        required(
+            "dilation_angle",
+            dilation_angle,
+            in_range,
+            "at least 0 and at most `friction_angle`",
+        )?;
+        required(
+            "cohesion",
+            cohesion,
+            cohesion >= 0.0,
+            "finite and not negative",
+        )?;
+        let some = cohesion > 0.0 || friction_angle > 0.0;
+        required(
+            "cohesion",
+            cohesion,
+            some,
+            "positive when `friction_angle` is 0",
+        )?;
+        if let Some(cutoff) = tension_cutoff {
+            required(
+                "tension_cutoff",
+                cutoff,
+                cutoff >= 0.0,
+                "finite and not negative",
+            )?;
+        }
+        let apex = if friction_angle > 0.0 {
+            cohesion / friction_angle.tan()
+        } else {
+            f64::INFINITY
+        };
+        let strength = Strength {
+            sin_friction: friction_angle.sin(),
+            sin_dilation: dilation_angle.sin(),
+            shear: 2.0 * cohesion * friction_angle.cos(),
+            apex,
+            tension_cutoff: tension_cutoff.filter(|&cutoff| cutoff < apex),
+        };
+        let pyramid = Pyramid::new(elasticity, &strength);
+        Ok(Self {
+            cohesion,
+            friction_angle,
+            dilation_angle,
+            tension_cutoff,
+            pyramid,
+        })
+    }
+}
+
+impl ConstitutiveModel for MohrCoulomb {
+    fn name(&self) -> &'static str {
+        "Mohr-Coulomb"
+    }
+
+    fn elasticity(&self) -> &Elasticity {
+        self.pyramid.elasticity()
+    }
+
+    fn return_map(
+        &self,
+        eps_e_trial: &Principal,
+        history: &History,
+    ) -> Result<ReturnMap, MaterialError> {
+        self.pyramid.return_map(eps_e_trial, *history)
+    }
+
+    /// The larger of `` $`(1+\sin\varphi)\,\sigma_1 - (1-\sin\varphi)\,\sigma_3 - 2c\cos\varphi`$ ``,
+    /// twice a distance in shear stress, and `` $`\sigma_1 - \sigma_t`$ ``.
+    fn yield_function(&self, tau: &Principal, _history: &History) -> f64 {
+        self.pyramid.yield_function(tau)
+    }
+
+    /// Largest sum of the magnitudes that f is the difference of.
+    fn stress_scale(&self, tau: &Principal) -> f64 {
+        self.pyramid.stress_scale(tau)
+    }
+
+    #[expect(
+        clippy::float_cmp,
+        reason = "flow is associated only where the angles are the same"
+    )]
+    fn has_symmetric_tangent(&self) -> bool {
+        self.dilation_angle == self.friction_angle
+    }
+
+    /// Divides c, tan φ and the cut-off by `srf`; ψ stays but never exceeds the reduced φ.
+    fn reduced(&self, srf: f64) -> Result<Arc<dyn ConstitutiveModel>, MaterialError> {
+        let srf = checked_srf(srf)?;
+        let friction_angle = (self.friction_angle.tan() / srf).atan();
+        Ok(Arc::new(Self::build(
+            *self.elasticity(),
+            self.cohesion / srf,
+            friction_angle,
+            self.dilation_angle.min(friction_angle),
+            self.tension_cutoff.map(|cutoff| cutoff / srf),
+        )?))
+    }
+}

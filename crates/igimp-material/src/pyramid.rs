@@ -1,0 +1,257 @@
+//! The six-sided pyramid of Tresca and Mohr–Coulomb, with or without a cube that cuts its tip.
+//!
+//! With σ1 ≥ σ2 ≥ σ3 the shear planes are
+//! `` $`(1+\sin\varphi)\,\sigma_i - (1-\sin\varphi)\,\sigma_j \le 2c\cos\varphi`$ `` for
+//! (i, j) = (1,3), (1,2), (2,3), with the flow of the same form in the dilation angle ψ; the
+//! tension planes are `` $`\sigma_i \le \sigma_t`$ `` with associated flow.
+
+use crate::koiter::{PlanarSurface, Plane};
+use crate::law::{ON_SURFACE, trial_stress};
+use crate::principal::{Principal, descending, sorted, unsorted};
+use crate::{Elasticity, History, MaterialError, Regime, ReturnMap};
+
+const SHEAR_13: usize = 0;
+const SHEAR_12: usize = 1;
+const SHEAR_23: usize = 2;
+const TENSION_1: usize = 3;
+const TENSION_2: usize = 4;
+const TENSION_3: usize = 5;
+
+/// Strength in the terms of the planes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Strength {
+    /// sin φ, in \[0, 1).
+    pub(crate) sin_friction: f64,
+    /// sin ψ, in \[0, sin φ\].
+    pub(crate) sin_dilation: f64,
+    /// 2 c cos φ \[stress\].
+    pub(crate) shear: f64,
+    /// c cot φ \[stress\]; infinite without friction.
+    pub(crate) apex: f64,
+    /// Largest stress in tension \[stress\], less than `apex`.
+    pub(crate) tension_cutoff: Option<f64>,
+}
+
+/// An elastic, perfectly plastic body with a [`Strength`].
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Pyramid {
+    elasticity: Elasticity,
+    surface: PlanarSurface,
+}
+
+impl Pyramid {
+    pub(crate) fn new(elasticity: Elasticity, strength: &Strength) -> Self {
+        let shear = [[0, 2], [0, 1], [1, 2]].map(|[major, minor]| {
+            let direction = |sine: f64| {
+                let mut direction = [0.0; 3];
+                direction[major] = 1.0 + sine;
+                direction[minor] = sine - 1.0;
+                direction
+            };
+            Plane {
+                normal: direction(strength.sin_friction),
+                flow: direction(strength.sin_dilation),
+                strength: strength.shear,
+            }
+        });
+        let surface = match strength.tension_cutoff {
+            None => whole(&elasticity, shear, strength.apex),
+            Some(tension) => {
+                let sine = strength.sin_friction;
+                let minor = ((1.0 + sine) * tension - strength.shear) / (1.0 - sine);
+                truncated(&elasticity, shear, tension, minor)
+            }
+        };
+        Self {
+            elasticity,
+            surface,
+        }
+    }
+
+    pub(crate) fn elasticity(&self) -> &Elasticity {
+        &self.elasticity
+    }
+
+    pub(crate) fn yield_function(&self, tau: &Principal) -> f64 {
+        self.surface.yield_function(&sorted(tau, &descending(tau)))
+    }
+
+    pub(crate) fn stress_scale(&self, tau: &Principal) -> f64 {
+        self.surface.stress_scale(&sorted(tau, &descending(tau)))
+    }
+
+    /// Sorts, returns, and undoes the sorting.
+    pub(crate) fn return_map(
+        &self,
+        eps_e_trial: &Principal,
+        history: History,
+    ) -> Result<ReturnMap, MaterialError> {
+        let order = descending(eps_e_trial);
+        let trial = trial_stress(&self.elasticity, &sorted(eps_e_trial, &order))?;
+        if self.surface.yield_function(&trial) <= ON_SURFACE * self.surface.stress_scale(&trial) {
+            let tau = unsorted(&trial, &order);
+            return Ok(ReturnMap::elastic(&self.elasticity, tau, history));
+        }
+        let returned = self.surface.project(&trial);
+        let delta_eps_p = unsorted(&self.elasticity.strain(&returned.taken), &order);
+        let mut tangent = [[0.0; 3]; 3];
+        for a in 0..3 {
+            tangent[order[a]] = unsorted(&returned.tangent[a], &order);
+        }
+        Ok(ReturnMap {
+            tau: unsorted(&returned.tau, &order),
+            tangent,
+            delta_eps_p,
+            history: history.after(&delta_eps_p),
+            regime: returned.regime,
+        })
+    }
+}
+
+/// The pyramid with its apex, or the prism without one when there is no friction.
+fn whole(elasticity: &Elasticity, shear: [Plane; 3], apex: f64) -> PlanarSurface {
+    let surface = PlanarSurface::new(elasticity, shear.to_vec())
+        .face(Regime::Smooth, SHEAR_13)
+        .edge(Regime::RightEdge, [SHEAR_13, SHEAR_23])
+        .edge(Regime::LeftEdge, [SHEAR_13, SHEAR_12]);
+    if apex.is_finite() {
+        let edges = [
+            ([SHEAR_13, SHEAR_23], SHEAR_12),
+            ([SHEAR_13, SHEAR_12], SHEAR_23),
+        ];
+        surface.vertex(Regime::Apex, [apex; 3], &edges)
+    } else {
+        surface
+    }
+}
+
+/// The pyramid or prism cut at `tension`, where the shear plane has the least stress `minor`.
+fn truncated(
+    elasticity: &Elasticity,
+    shear: [Plane; 3],
+    tension: f64,
+    minor: f64,
+) -> PlanarSurface {
+    let mut planes = shear.to_vec();
+    for axis in 0..3 {
+        let mut normal = [0.0; 3];
+        normal[axis] = 1.0;
+        planes.push(Plane {
+            normal,
+            flow: normal,
+            strength: tension,
+        });
+    }
+    PlanarSurface::new(elasticity, planes)
+        .face(Regime::Smooth, SHEAR_13)
+        .face(Regime::Tension, TENSION_1)
+        .edge(Regime::TensionShear, [SHEAR_13, TENSION_1])
+        .edge(Regime::RightEdge, [SHEAR_13, SHEAR_23])
+        .edge(Regime::LeftEdge, [SHEAR_13, SHEAR_12])
+        .edge(Regime::TensionEdge, [TENSION_1, TENSION_2])
+        .vertex(
+            Regime::TensionCorner,
+            [tension, minor, minor],
+            &[
+                ([SHEAR_13, SHEAR_12], TENSION_1),
+                ([SHEAR_13, TENSION_1], SHEAR_12),
+            ],
+        )
+        .vertex(
+            Regime::TensionCorner,
+            [tension, tension, minor],
+            &[
+                ([SHEAR_13, TENSION_1], TENSION_2),
+                ([SHEAR_13, SHEAR_23], TENSION_1),
+                ([TENSION_1, TENSION_2], SHEAR_13),
+            ],
+        )
+        .vertex(
+            Regime::TensionApex,
+            [tension; 3],
+            &[([TENSION_1, TENSION_2], TENSION_3)],
+        )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// SplitMix64, uniform in (-1, 1).
+    fn symmetric(state: &mut u64) -> f64 {
+        *state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = *state;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+
+    /// Strengths with cohesion 1 for pairs of angles in degrees and cut-offs as shares of the
+    /// apex, or of the cohesion where there is none.
+    fn strengths() -> Vec<Strength> {
+        let mut strengths = Vec::new();
+        for (friction, dilation) in [
+            (0.0, 0.0),
+            (1e-6, 0.0),
+            (5.0, 2.0),
+            (20.0, 0.0),
+            (20.0, 20.0),
+            (45.0, 0.1),
+            (70.0, 5.0),
+        ] {
+            let friction = f64::to_radians(friction);
+            let apex = if friction > 0.0 {
+                1.0 / friction.tan()
+            } else {
+                f64::INFINITY
+            };
+            for cutoff in [None, Some(0.0), Some(0.3), Some(0.99)] {
+                strengths.push(Strength {
+                    sin_friction: friction.sin(),
+                    sin_dilation: f64::to_radians(dilation).sin(),
+                    shear: 2.0 * friction.cos(),
+                    apex,
+                    tension_cutoff: cutoff.map(|share| share * if apex < 1e3 { apex } else { 1.0 }),
+                });
+            }
+        }
+        strengths
+    }
+
+    /// GOAL: the regions tile the space of trial states, without gap and without overlap, also
+    /// where flow is not associated. With that the return is unique.
+    #[test]
+    fn every_trial_state_lies_in_exactly_one_region() {
+        let mut state = 7;
+        for poisson in [-0.5, 0.0, 0.3, 0.4999] {
+            let elasticity = Elasticity::new(100.0, poisson).unwrap();
+            for strength in strengths() {
+                let surface = Pyramid::new(elasticity, &strength).surface;
+                let mut seen = std::collections::BTreeSet::new();
+                for _ in 0..5_000 {
+                    let size = 10_f64.powf(2.5 * symmetric(&mut state));
+                    let middle = 2.0 * size * symmetric(&mut state);
+                    let tau = [0; 3].map(|_| middle + size * symmetric(&mut state));
+                    let trial = sorted(&tau, &descending(&tau));
+                    if surface.yield_function(&trial) > 1e-9 * surface.stress_scale(&trial) {
+                        let claims = surface.claims(&trial);
+                        assert_eq!(
+                            claims.len(),
+                            1,
+                            "{poisson} {strength:?} {trial:?} {claims:?}"
+                        );
+                        assert_eq!(claims[0], surface.project(&trial).regime);
+                        seen.insert(format!("{:?}", claims[0]));
+                    }
+                }
+                let regimes = match (strength.tension_cutoff, strength.apex.is_finite()) {
+                    (Some(_), _) => 8,
+                    (None, true) => 4,
+                    (None, false) => 3,
+                };
+                assert!(seen.len() <= regimes, "{strength:?} {seen:?}");
+                assert!(seen.len() >= 3, "{strength:?} {seen:?}");
+            }
+        }
+    }
+}

@@ -1,0 +1,87 @@
+//! Tresca plasticity: the largest shear stress is bounded by the undrained strength.
+
+use std::sync::Arc;
+
+use crate::error::required;
+use crate::law::checked_srf;
+use crate::pyramid::{Pyramid, Strength};
+use crate::{ConstitutiveModel, Elasticity, History, MaterialError, Principal, ReturnMap};
+
+/// Elastic and perfectly plastic with associated flow and the yield function
+/// `` $`f = \sigma_1 - \sigma_3 - 2 c_u`$ ``, `` $`\sigma_1 \ge \sigma_2 \ge \sigma_3`$ ``.
+///
+/// The same code as [`MohrCoulomb`](crate::MohrCoulomb) without friction: equal to the last bit.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tresca {
+    undrained_strength: f64,
+    pyramid: Pyramid,
+}
+
+impl Tresca {
+    /// From the undrained shear strength `` $`c_u`$ `` \[stress\].
+    ///
+    /// # Errors
+    /// [`MaterialError::InvalidParameter`] unless `undrained_strength` is positive and finite.
+    pub fn new(elasticity: Elasticity, undrained_strength: f64) -> Result<Self, MaterialError> {
+        let positive = undrained_strength > 0.0;
+        required(
+            "undrained_strength",
+            undrained_strength,
+            positive,
+            "positive and finite",
+        )?;
+        let strength = Strength {
+            sin_friction: 0.0,
+            sin_dilation: 0.0,
+            shear: 2.0 * undrained_strength,
+            apex: f64::INFINITY,
+            tension_cutoff: None,
+        };
+        Ok(Self {
+            undrained_strength,
+            pyramid: Pyramid::new(elasticity, &strength),
+        })
+    }
+
+    /// Undrained shear strength `` $`c_u`$ `` \[stress\].
+    pub fn undrained_strength(&self) -> f64 {
+        self.undrained_strength
+    }
+}
+
+impl ConstitutiveModel for Tresca {
+    fn name(&self) -> &'static str {
+        "Tresca"
+    }
+
+    fn elasticity(&self) -> &Elasticity {
+        self.pyramid.elasticity()
+    }
+
+    fn return_map(
+        &self,
+        eps_e_trial: &Principal,
+        history: &History,
+    ) -> Result<ReturnMap, MaterialError> {
+        self.pyramid.return_map(eps_e_trial, *history)
+    }
+
+    /// `` $`f = \sigma_1 - \sigma_3 - 2 c_u`$ ``: twice the distance in shear stress.
+    fn yield_function(&self, tau: &Principal, _history: &History) -> f64 {
+        self.pyramid.yield_function(tau)
+    }
+
+    /// The largest `` $`|\sigma_i| + |\sigma_j| + 2 c_u`$ ``.
+    fn stress_scale(&self, tau: &Principal) -> f64 {
+        self.pyramid.stress_scale(tau)
+    }
+
+    fn has_symmetric_tangent(&self) -> bool {
+        true
+    }
+
+    fn reduced(&self, srf: f64) -> Result<Arc<dyn ConstitutiveModel>, MaterialError> {
+        let undrained_strength = self.undrained_strength / checked_srf(srf)?;
+        Ok(Arc::new(Self::new(*self.elasticity(), undrained_strength)?))
+    }
+}

@@ -1,0 +1,132 @@
+//! Von Mises plasticity without hardening: a cylinder around the hydrostatic axis.
+//!
+//! Radial return and its consistent tangent, de Souza Neto, Perić & Owen (2008), section 7.3.
+
+use std::sync::Arc;
+
+use crate::error::required;
+use crate::law::{ON_SURFACE, checked_srf, trial_stress};
+use crate::principal::{deviator, largest, mean, von_mises_norm};
+use crate::{ConstitutiveModel, Elasticity, History, MaterialError, Principal, Regime, ReturnMap};
+
+/// Elastic and perfectly plastic with associated flow and the yield function
+/// `` $`f = q - q_y,\ q = \sqrt{3/2}\,\lVert s\rVert`$ ``.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct VonMises {
+    elasticity: Elasticity,
+    yield_stress: f64,
+}
+
+impl VonMises {
+    /// From the uniaxial yield stress `` $`q_y`$ `` \[stress\].
+    ///
+    /// # Errors
+    /// [`MaterialError::InvalidParameter`] unless `yield_stress` is positive and finite.
+    pub fn from_yield_stress(
+        elasticity: Elasticity,
+        yield_stress: f64,
+    ) -> Result<Self, MaterialError> {
+        required(
+            "yield_stress",
+            yield_stress,
+            yield_stress > 0.0,
+            "positive and finite",
+        )?;
+        Ok(Self {
+            elasticity,
+            yield_stress,
+        })
+    }
+
+    /// From the undrained shear strength `` $`c_u`$ `` \[stress\] in plane strain:
+    /// `` $`q_y = \sqrt3\,c_u`$ ``, so that plastic plane flow has the in-plane shear stress `` $`c_u`$ ``.
+    ///
+    /// # Errors
+    /// [`MaterialError::InvalidParameter`] unless `undrained_strength` is positive and finite.
+    pub fn from_undrained_strength(
+        elasticity: Elasticity,
+        undrained_strength: f64,
+    ) -> Result<Self, MaterialError> {
+        let positive = undrained_strength > 0.0;
+        required(
+            "undrained_strength",
+            undrained_strength,
+            positive,
+            "positive and finite",
+        )?;
+        Self::from_yield_stress(elasticity, 3.0_f64.sqrt() * undrained_strength)
+    }
+
+    /// Uniaxial yield stress `` $`q_y`$ `` \[stress\].
+    pub fn yield_stress(&self) -> f64 {
+        self.yield_stress
+    }
+}
+
+impl ConstitutiveModel for VonMises {
+    fn name(&self) -> &'static str {
+        "von Mises"
+    }
+
+    fn elasticity(&self) -> &Elasticity {
+        &self.elasticity
+    }
+
+    /// Shrinks the deviator of the trial stress by `` $`\beta = q_y/q`$ ``; the tangent is
+    /// `` $`K\,1\otimes1 + 2G\beta\,(I_{dev} - n\otimes n)`$ `` with n the direction of the
+    /// deviator.
+    fn return_map(
+        &self,
+        eps_e_trial: &Principal,
+        history: &History,
+    ) -> Result<ReturnMap, MaterialError> {
+        let trial = trial_stress(&self.elasticity, eps_e_trial)?;
+        let q = von_mises_norm(&trial);
+        if q - self.yield_stress <= ON_SURFACE * self.stress_scale(&trial) {
+            return Ok(ReturnMap::elastic(&self.elasticity, trial, *history));
+        }
+        let beta = self.yield_stress / q;
+        let mean_stress = mean(&trial);
+        let s = deviator(&trial);
+        let n = s.map(|component| component * (1.5_f64.sqrt() / q));
+        let softened = 2.0 * self.elasticity.shear() * beta;
+        let mut tangent = [[self.elasticity.bulk() - softened / 3.0; 3]; 3];
+        for a in 0..3 {
+            tangent[a][a] += softened;
+            for b in 0..3 {
+                tangent[a][b] -= softened * n[a] * n[b];
+            }
+        }
+        let delta_eps_p =
+            s.map(|component| (1.0 - beta) * component / (2.0 * self.elasticity.shear()));
+        Ok(ReturnMap {
+            tau: s.map(|component| mean_stress + beta * component),
+            tangent,
+            delta_eps_p,
+            history: history.after(&delta_eps_p),
+            regime: Regime::Smooth,
+        })
+    }
+
+    /// `` $`f = q - q_y`$ ``: the distance to yield in uniaxial stress.
+    fn yield_function(&self, tau: &Principal, _history: &History) -> f64 {
+        von_mises_norm(tau) - self.yield_stress
+    }
+
+    /// `` $`q_y`$ `` plus the largest principal stress in magnitude.
+    fn stress_scale(&self, tau: &Principal) -> f64 {
+        self.yield_stress + largest(tau)
+    }
+
+    fn has_symmetric_tangent(&self) -> bool {
+        true
+    }
+
+    fn reduced(&self, srf: f64) -> Result<Arc<dyn ConstitutiveModel>, MaterialError> {
+        let yield_stress = self.yield_stress / checked_srf(srf)?;
+        Ok(Arc::new(Self::from_yield_stress(
+            self.elasticity,
+            yield_stress,
+        )?))
+    }
+}

@@ -1,0 +1,22 @@
+//! The contract of a constitutive law, run on every law of the crate.
+//!
+//! | file | what is asked |
+//! |---|---|
+//! | `returns` | admissible, split of strain, dissipation, closest point, flow rule, isotropy |
+//! | `tangents` | consistent tangent against differences, symmetry |
+//! | `lifts` | spatial tangent against differences, rotation, plane strain against 3D |
+//! | `close_eigenvalues` | the same where principal values are equal or nearly so |
+//! | `reduction` | strength reduction and limits between laws |
+//! | `refusals` | what is not accepted, and the words for it |
+//!
+//! A new law joins by its lines in `catalogue`.
+
+mod catalogue;
+mod close_eigenvalues;
+mod lifts;
+mod random;
+mod reduction;
+mod refusals;
+mod returns;
+mod tangents;
+mod tensors;

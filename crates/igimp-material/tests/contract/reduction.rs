@@ -1,0 +1,157 @@
+//! Strength reduction, and laws that are limits of other laws.
+
+use igimp_material::{
+    ConstitutiveModel, Elasticity, History, MohrCoulomb, Principal, Regime, ReturnMap, Tresca,
+    VonMises,
+};
+
+use crate::catalogue::all;
+use crate::random::Random;
+
+fn elasticity() -> Elasticity {
+    Elasticity::new(100.0, 0.3).unwrap()
+}
+
+fn answer(law: &dyn ConstitutiveModel, strain: &Principal) -> ReturnMap {
+    law.return_map(strain, &History::default()).unwrap()
+}
+
+/// Largest difference of stress and tangent over random trial states, relative to 2G.
+fn distance(one: &dyn ConstitutiveModel, other: &dyn ConstitutiveModel) -> f64 {
+    let mut random = Random(30);
+    let mut most = 0.0_f64;
+    for _ in 0..5_000 {
+        let strain = random.values(0.1);
+        let (one, other) = (answer(one, &strain), answer(other, &strain));
+        if one.regime == other.regime {
+            for a in 0..3 {
+                most = most.max((one.tau[a] - other.tau[a]).abs());
+                for b in 0..3 {
+                    most = most.max((one.tangent[a][b] - other.tangent[a][b]).abs());
+                }
+            }
+        }
+    }
+    most / (2.0 * elasticity().shear())
+}
+
+#[test]
+fn mohr_coulomb_without_friction_is_tresca_to_the_last_bit() {
+    let tresca = Tresca::new(elasticity(), 1.5).unwrap();
+    let frictionless = MohrCoulomb::new(elasticity(), 1.5, 0.0, 0.0).unwrap();
+    let mut random = Random(31);
+    for _ in 0..20_000 {
+        let strain = random.values(0.1);
+        assert_eq!(answer(&tresca, &strain), answer(&frictionless, &strain));
+    }
+}
+
+#[test]
+fn mohr_coulomb_tends_to_tresca_as_friction_vanishes() {
+    let tresca = Tresca::new(elasticity(), 1.5).unwrap();
+    for friction in [1e-4, 1e-8, 1e-12] {
+        let law = MohrCoulomb::new(elasticity(), 1.5, friction, 0.0).unwrap();
+        let distance = distance(&law, &tresca);
+        assert!(distance < 10.0 * friction, "{friction:e}: {distance:e}");
+    }
+}
+
+#[test]
+fn a_cutoff_above_the_apex_never_acts() {
+    let law = MohrCoulomb::new(elasticity(), 1.0, 0.5, 0.1).unwrap();
+    let apex = 1.0 / 0.5_f64.tan();
+    let cut = law.clone().with_tension_cutoff(1.001 * apex).unwrap();
+    assert_eq!(cut.tension_cutoff(), Some(1.001 * apex));
+    let mut random = Random(32);
+    for _ in 0..5_000 {
+        let strain = random.values(0.1);
+        assert_eq!(answer(&law, &strain), answer(&cut, &strain));
+    }
+}
+
+#[test]
+fn reduction_divides_strength_and_keeps_elasticity() {
+    let srf = 1.3;
+    let (friction, dilation) = (0.6_f64, 0.1);
+    let reduced = (friction.tan() / srf).atan();
+    let cases: [(Box<dyn ConstitutiveModel>, Box<dyn ConstitutiveModel>); 5] = [
+        (
+            Box::new(VonMises::from_yield_stress(elasticity(), 2.0).unwrap()),
+            Box::new(VonMises::from_yield_stress(elasticity(), 2.0 / srf).unwrap()),
+        ),
+        (
+            Box::new(Tresca::new(elasticity(), 2.0).unwrap()),
+            Box::new(Tresca::new(elasticity(), 2.0 / srf).unwrap()),
+        ),
+        (
+            Box::new(MohrCoulomb::new(elasticity(), 2.0, friction, dilation).unwrap()),
+            Box::new(MohrCoulomb::new(elasticity(), 2.0 / srf, reduced, dilation).unwrap()),
+        ),
+        // Dilation would exceed the reduced friction: flow becomes associated.
+        (
+            Box::new(MohrCoulomb::new(elasticity(), 2.0, friction, friction).unwrap()),
+            Box::new(MohrCoulomb::new(elasticity(), 2.0 / srf, reduced, reduced).unwrap()),
+        ),
+        (
+            Box::new(
+                MohrCoulomb::new(elasticity(), 2.0, friction, dilation)
+                    .and_then(|law| law.with_tension_cutoff(0.5))
+                    .unwrap(),
+            ),
+            Box::new(
+                MohrCoulomb::new(elasticity(), 2.0 / srf, reduced, dilation)
+                    .and_then(|law| law.with_tension_cutoff(0.5 / srf))
+                    .unwrap(),
+            ),
+        ),
+    ];
+    for (law, expected) in cases {
+        let found = law.reduced(srf).unwrap();
+        assert_eq!(found.name(), law.name());
+        assert_eq!(found.elasticity(), law.elasticity());
+        assert_eq!(
+            found.has_symmetric_tangent(),
+            expected.has_symmetric_tangent()
+        );
+        assert!(distance(&*found, &*expected) < 1e-15, "{}", law.name());
+    }
+}
+
+#[test]
+fn a_cutoff_that_reduction_lifts_above_the_apex_stops_acting() {
+    // The apex c cot φ stays under reduction; the cut-off is divided.
+    let law = MohrCoulomb::new(elasticity(), 1.0, 0.5, 0.0)
+        .and_then(|law| law.with_tension_cutoff(1.5))
+        .unwrap();
+    let stronger = law.reduced(0.8).unwrap();
+    assert_eq!(answer(&law, &[0.1; 3]).regime, Regime::TensionApex);
+    assert_eq!(answer(&*stronger, &[0.1; 3]).regime, Regime::Apex);
+}
+
+/// GOAL: reduction by one changes nothing, by less than one strengthens, by more weakens.
+#[test]
+fn reduction_is_monotone() {
+    let history = History::default();
+    for entry in all() {
+        let mut random = Random(33);
+        let laws = [0.5, 1.0, 2.0].map(|srf| entry.law.reduced(srf).unwrap());
+        for _ in 0..500 {
+            let tau = answer(&*entry.law, &entry.general(&mut random)).tau;
+            let [strong, same, weak] = laws
+                .each_ref()
+                .map(|law| law.yield_function(&tau, &history));
+            let round_off = 1e-14 * entry.law.stress_scale(&tau);
+            let f = entry.law.yield_function(&tau, &history);
+            assert!(
+                strong <= f + round_off && f <= weak + round_off,
+                "{}",
+                entry.label
+            );
+            assert!(
+                f == same || (same - f).abs() <= round_off,
+                "{}",
+                entry.label
+            );
+        }
+    }
+}

@@ -1,0 +1,252 @@
+//! GOAL: what cannot be solved ends in a typed error, never in a panic or in a silent NaN, and
+//! what is merely awkward (zero diagonals, indefinite matrices) is solved.
+
+#[path = "linear_support/mod.rs"]
+mod support;
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use igimp_assembly::{NodeBlock, Pattern, TangentMatrix};
+use igimp_solver::linear::{GeneralLu, LinearSolver, LinearSolverError, SolverKind};
+use support::{Body, Random, assemble, distance, from_dense, manufactured};
+
+const CHOLESKY: [SolverKind; 2] = [SolverKind::FaerCholesky, SolverKind::NalgebraCholesky];
+const LU: [SolverKind; 2] = [SolverKind::Auto, SolverKind::Multifrontal];
+
+fn solve(kind: SolverKind, matrix: &TangentMatrix, rhs: &[f64]) -> Result<Vec<f64>, LinearSolverError> {
+    let mut solver = kind.build();
+    solver.factor(matrix)?;
+    let mut solution = vec![f64::NAN; rhs.len()];
+    solver.solve(rhs, &mut solution)?;
+    assert!(solution.iter().all(|x| x.is_finite()), "{kind:?} handed out {solution:?}");
+    Ok(solution)
+}
+
+#[test]
+fn values_that_are_not_finite_are_refused() {
+    for poison in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        for kind in SolverKind::ALL {
+            let mut matrix = Body::plane(4, 4).tangent();
+            let mut rhs = vec![1.0; matrix.pattern.unknowns()];
+            let mut solver = kind.build();
+            solver.factor(&matrix).unwrap();
+            rhs[5] = poison;
+            let refused = solver.solve(&rhs, &mut vec![0.0; rhs.len()]);
+            let what = "right-hand side";
+            assert_eq!(refused, Err(LinearSolverError::NonFinite { what, index: 5 }), "{kind:?}");
+
+            matrix.values[17] = poison;
+            let refused = solver.factor(&matrix);
+            let what = "matrix";
+            assert_eq!(refused, Err(LinearSolverError::NonFinite { what, index: 17 }), "{kind:?}");
+            rhs[5] = 1.0;
+            let refused = solver.solve(&rhs, &mut vec![0.0; rhs.len()]);
+            assert_eq!(refused, Err(LinearSolverError::NotFactored), "{kind:?}");
+        }
+    }
+}
+
+#[test]
+fn solutions_that_overflow_are_refused() {
+    let matrix = from_dense(&[&[1e-200, 0.0], &[0.0, 1.0]], true);
+    for kind in SolverKind::ALL {
+        let refused = solve(kind, &matrix, &[1e200, 1.0]);
+        assert!(refused.is_err(), "{kind:?}: {refused:?}");
+    }
+}
+
+#[test]
+fn zero_rows_and_columns_are_named() {
+    let row = from_dense(&[&[2.0, 1.0, 1.0], &[0.0, 0.0, 0.0], &[1.0, 1.0, 3.0]], true);
+    let column = from_dense(&[&[2.0, 0.0, 1.0], &[1.0, 0.0, 1.0], &[1.0, 0.0, 3.0]], true);
+    for kind in SolverKind::ALL {
+        for matrix in [&row, &column] {
+            let refused = solve(kind, matrix, &[1.0; 3]);
+            assert_eq!(refused, Err(LinearSolverError::Singular { unknown: Some(1) }), "{kind:?}");
+        }
+    }
+}
+
+/// Springs between the nodes of a grid and none to the ground: constant vectors are in the null
+/// space exactly.
+fn floating(nodes_x: usize, nodes_y: usize) -> TangentMatrix {
+    let mut entries: BTreeMap<(usize, usize), f64> = BTreeMap::new();
+    let mut spring = |a: usize, b: usize| {
+        for (row, column, sign) in [(a, a, 1.0), (b, b, 1.0), (a, b, -1.0), (b, a, -1.0)] {
+            *entries.entry((column, row)).or_default() += sign;
+        }
+    };
+    for node in 0..nodes_x * nodes_y {
+        if node % nodes_x + 1 < nodes_x {
+            spring(node, node + 1);
+        }
+        if node / nodes_x + 1 < nodes_y {
+            spring(node, node + nodes_x);
+        }
+    }
+    let block = |first| NodeBlock { first, len: 1, place: [first % nodes_x, first / nodes_x, 0] };
+    let blocks = (0..nodes_x * nodes_y).map(block).collect();
+    assemble(&entries, nodes_x * nodes_y, blocks, true)
+}
+
+#[test]
+fn singular_matrices_are_told_from_regular_ones() {
+    let twice = from_dense(&[&[1.0, 2.0], &[0.5, 1.0]], false);
+    let ones = from_dense(&[&[1.0, 1.0], &[1.0, 1.0]], true);
+    let rank_two = from_dense(&[&[1.0, 2.0, 3.0], &[4.0, 5.0, 6.0], &[7.0, 8.0, 9.0]], false);
+    for matrix in [twice, ones, rank_two, floating(7, 5), floating(40, 31)] {
+        // Reproducible by the matrix, and not.
+        let (_, compatible) = manufactured(&matrix, 2);
+        let mut incompatible = compatible.clone();
+        incompatible[0] += 1.0;
+        for rhs in [&compatible, &incompatible] {
+            for kind in LU {
+                let refused = solve(kind, &matrix, rhs);
+                let is_singular = matches!(refused, Err(LinearSolverError::Singular { .. }));
+                assert!(is_singular, "{kind:?}: {refused:?}");
+            }
+            for kind in CHOLESKY.into_iter().filter(|_| matrix.symmetric) {
+                let refused = solve(kind, &matrix, rhs);
+                assert!(
+                    matches!(refused, Err(LinearSolverError::NotPositiveDefinite { .. })),
+                    "{kind:?}: {refused:?}"
+                );
+            }
+        }
+        let refused = solve(SolverKind::SprsBiCgStab, &matrix, &incompatible);
+        assert!(matches!(refused, Err(LinearSolverError::Inaccurate { .. })), "{refused:?}");
+    }
+}
+
+#[test]
+fn indefinite_matrices_go_to_lu() {
+    let mut matrix = Body::plane(12, 8).tangent();
+    for column in 0..matrix.pattern.unknowns() {
+        let start = matrix.pattern.col_ptr[column];
+        let rows = &matrix.pattern.row_idx[start..matrix.pattern.col_ptr[column + 1]];
+        matrix.values[start + rows.binary_search(&column).unwrap()] -= 6.0;
+    }
+    let (exact, rhs) = manufactured(&matrix, 4);
+    for kind in CHOLESKY {
+        let refused = solve(kind, &matrix, &rhs);
+        assert!(matches!(refused, Err(LinearSolverError::NotPositiveDefinite { .. })), "{kind:?}");
+    }
+    for kind in LU {
+        assert!(distance(&exact, &solve(kind, &matrix, &rhs).unwrap()) < 1e-9, "{kind:?}");
+    }
+}
+
+#[test]
+fn zero_diagonals_are_no_obstacle_to_lu() {
+    let exchange = from_dense(&[&[0.0, 1.0], &[2.0, 0.0]], false);
+    let cycle = from_dense(&[&[0.0, 3.0, 0.0], &[0.0, 0.0, 2.0], &[1.0, 0.0, 0.0]], false);
+    let mut random = Random(8);
+    let mut grid = Body::plane(16, 11).unsymmetric(0.2).tangent();
+    for value in &mut grid.values {
+        *value = random.signed();
+    }
+    for column in 0..grid.pattern.unknowns() {
+        let start = grid.pattern.col_ptr[column];
+        let rows = &grid.pattern.row_idx[start..grid.pattern.col_ptr[column + 1]];
+        grid.values[start + rows.binary_search(&column).unwrap()] = 0.0;
+    }
+    for matrix in [exchange, cycle, grid] {
+        let (exact, rhs) = manufactured(&matrix, 6);
+        for kind in LU {
+            let error = distance(&exact, &solve(kind, &matrix, &rhs).unwrap());
+            assert!(error < 1e-8, "{kind:?} on {} unknowns: {error:e}", rhs.len());
+        }
+    }
+}
+
+/// An arrow whose head is eliminated last and holds all the pivots that its shaft needs.
+#[test]
+fn pivots_out_of_reach_are_replaced_or_left_to_general_lu() {
+    let unknowns = 80;
+    let mut entries = BTreeMap::new();
+    for k in 0..unknowns / 2 {
+        entries.insert((k, k), 0.0);
+        entries.insert((k, unknowns - 1 - k), 1.0 + k as f64);
+        entries.insert((unknowns - 1 - k, k), 2.0);
+        entries.insert((unknowns - 1 - k, unknowns - 1 - k), 0.5);
+    }
+    let block = |first| NodeBlock { first, len: 1, place: [first * 3, 0, 0] };
+    let matrix = assemble(&entries, unknowns, (0..unknowns).map(block).collect(), false);
+    let (exact, rhs) = manufactured(&matrix, 1);
+    let mut general = GeneralLu::default();
+    general.factor(&matrix).unwrap();
+    let mut solution = vec![0.0; unknowns];
+    let report = general.solve(&rhs, &mut solution).unwrap();
+    assert_eq!(report.method, "faer-lu");
+    assert!(distance(&exact, &solution) < 1e-9);
+    for kind in LU {
+        assert!(distance(&exact, &solve(kind, &matrix, &rhs).unwrap()) < 1e-9, "{kind:?}");
+    }
+}
+
+#[test]
+fn misuse_is_refused() {
+    let matrix = Body::plane(4, 3).tangent();
+    let unsymmetric = Body::plane(4, 3).unsymmetric(0.2).tangent();
+    let n = matrix.pattern.unknowns();
+    for kind in SolverKind::ALL {
+        let mut solver = kind.build();
+        let unprepared = solver.solve(&vec![1.0; n], &mut vec![0.0; n]);
+        assert_eq!(unprepared, Err(LinearSolverError::NotFactored), "{kind:?}");
+        solver.factor(&matrix).unwrap();
+        let long_rhs = solver.solve(&vec![1.0; n + 1], &mut vec![0.0; n]);
+        assert!(matches!(long_rhs, Err(LinearSolverError::WrongLength { found, .. }) if found == n + 1));
+        let short_solution = solver.solve(&vec![1.0; n], &mut vec![0.0; n - 1]);
+        assert!(
+            matches!(short_solution, Err(LinearSolverError::WrongLength { found, .. }) if found == n - 1)
+        );
+        let mut cut = matrix.clone();
+        cut.values.pop();
+        assert!(matches!(solver.factor(&cut), Err(LinearSolverError::WrongLength { .. })));
+    }
+    for kind in CHOLESKY {
+        assert_eq!(kind.build().factor(&unsymmetric), Err(LinearSolverError::NotSymmetric));
+    }
+}
+
+#[test]
+fn patterns_are_checked() {
+    let sound = (*Body::plane(4, 3).tangent().pattern).clone();
+    let empty = Pattern { col_ptr: vec![0], row_idx: vec![], blocks: vec![], reach: 2 };
+    let mut broken = Vec::new();
+    broken.push(Pattern { blocks: sound.blocks[1..].to_vec(), ..sound.clone() });
+    broken.push(Pattern { blocks: sound.blocks[..3].to_vec(), ..sound.clone() });
+    broken.push(Pattern { row_idx: sound.row_idx[1..].to_vec(), ..sound.clone() });
+    let mut swapped = sound.clone();
+    swapped.row_idx.swap(0, 1);
+    broken.push(swapped);
+    let mut outside = sound.clone();
+    let last = outside.col_ptr[1] - 1;
+    outside.row_idx[last] = 1_000_000;
+    broken.push(outside);
+    let mut backwards = sound.clone();
+    backwards.col_ptr[2] = 10_000;
+    broken.push(backwards);
+    for kind in SolverKind::ALL {
+        let refused = kind.build().analyse(&Arc::new(empty.clone()));
+        assert_eq!(refused, Err(LinearSolverError::Empty), "{kind:?}");
+        for pattern in &broken {
+            let refused = kind.build().analyse(&Arc::new(pattern.clone()));
+            assert!(
+                matches!(refused, Err(LinearSolverError::InvalidPattern { .. })),
+                "{kind:?}: {refused:?}"
+            );
+        }
+    }
+
+    // Unknown 0 is coupled to the last one, and the last one not to it.
+    let mut one_sided = sound;
+    let last = one_sided.unknowns() - 1;
+    let after = one_sided.col_ptr[1];
+    assert!(one_sided.row_idx[after - 1] < last);
+    one_sided.row_idx.insert(after, last);
+    one_sided.col_ptr[1..].iter_mut().for_each(|start| *start += 1);
+    let refused = SolverKind::Multifrontal.build().analyse(&Arc::new(one_sided));
+    assert!(matches!(refused, Err(LinearSolverError::InvalidPattern { .. })), "{refused:?}");
+}
