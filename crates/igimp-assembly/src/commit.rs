@@ -79,16 +79,22 @@ fn stress_state<const D: usize>(
     det_f: f64,
 ) -> (Tensor, Tensor) {
     match kinematics {
-        Kinematics::FiniteStrain => {
-            (own.lifted.b_e(), own.lifted.tau.map(|row| row.map(|component| component / det_f)))
-        }
+        Kinematics::FiniteStrain => (
+            own.lifted.b_e(),
+            own.lifted
+                .tau
+                .map(|row| row.map(|component| component / det_f)),
+        ),
         Kinematics::SmallStrain => {
             let in_plane = rotation(&own.delta_def_grad);
             let mut turn = identity::<3>();
             for a in 0..D {
                 turn[a][..D].copy_from_slice(&in_plane[a]);
             }
-            (congruence(&turn, &own.lifted.b_e()), congruence(&turn, &own.lifted.tau))
+            (
+                congruence(&turn, &own.lifted.b_e()),
+                congruence(&turn, &own.lifted.tau),
+            )
         }
     }
 }

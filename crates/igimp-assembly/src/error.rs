@@ -79,8 +79,10 @@ pub enum AssemblyError {
         source: MaterialError,
     },
     /// A trial displacement turns a particle inside out.
-    #[error("particle {particle}: the determinant of the deformation increment is {determinant:e}, \
-             but must be positive")]
+    #[error(
+        "particle {particle}: the determinant of the deformation increment is {determinant:e}, \
+             but must be positive"
+    )]
     Inverted {
         /// Number of the particle, from 0.
         particle: usize,

@@ -66,10 +66,7 @@ impl Cells {
             young_volume: vec![0.0; grid.cell_count()],
         };
         for particle in 0..particles.len() {
-            let own = stencils.of(particle);
-            let first = grid.node_place(own[0].node);
-            let last = grid.node_place(own[own.len() - 1].node);
-            let extent: [usize; D] = std::array::from_fn(|axis| last[axis] - first[axis]);
+            let (first, extent) = stencils.box_of(grid, particle);
             for offset in 0..extent.iter().product::<usize>() {
                 let mut rest = offset;
                 let place = std::array::from_fn(|axis| {
@@ -132,7 +129,11 @@ fn face<const D: usize>(
             let (mut corner_k, mut corner_l) = (k / 3, l / 3);
             let mut along_face = 1.0;
             for d in (0..D).filter(|&d| d != axis) {
-                let share = if corner_k % 2 == corner_l % 2 { 1.0 / 3.0 } else { 1.0 / 6.0 };
+                let share = if corner_k % 2 == corner_l % 2 {
+                    1.0 / 3.0
+                } else {
+                    1.0 / 6.0
+                };
                 along_face *= share * size[d];
                 corner_k /= 2;
                 corner_l /= 2;

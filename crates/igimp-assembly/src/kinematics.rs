@@ -113,7 +113,12 @@ fn pushed_forward<const D: usize>(
     let mut out = [[0.0; 3]; 3];
     for a in 0..3 {
         for c in 0..3 {
-            out[a][c] = lambda2 * if a < D && c < D { pushed[a][c] } else { b[a][c] };
+            out[a][c] = lambda2
+                * if a < D && c < D {
+                    pushed[a][c]
+                } else {
+                    b[a][c]
+                };
         }
     }
     out
@@ -123,6 +128,9 @@ fn positive(particle: usize, determinant: f64) -> Result<f64, AssemblyError> {
     if determinant > 0.0 && determinant.is_finite() {
         Ok(determinant)
     } else {
-        Err(AssemblyError::Inverted { particle, determinant })
+        Err(AssemblyError::Inverted {
+            particle,
+            determinant,
+        })
     }
 }

@@ -28,7 +28,7 @@ pub use error::AssemblyError;
 pub use kinematics::ParticleTrial;
 pub use loads::{LoadPoint, StepLoads};
 pub use matrix::{NodeBlock, Pattern, TangentMatrix};
-pub use method::{DomainUpdate, Kinematics, Method, SmallCuts};
+pub use method::{DomainUpdate, Kinematics, Method, Remedy, SmallCuts};
 pub use particles::{ParticleFields, ParticleSeed, Particles};
 pub use stencils::{Stencils, Transpose};
 pub use system::{OutOfBalance, SharedLaw, StepConditions, System, Trial};

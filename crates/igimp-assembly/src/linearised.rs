@@ -132,10 +132,7 @@ pub(crate) fn internal_force<const D: usize>(
 }
 
 #[inline]
-fn pushed<const D: usize>(
-    support: &Support<D>,
-    trial: &ParticleTrial<D>,
-) -> ([f64; D], [f64; D]) {
+fn pushed<const D: usize>(support: &Support<D>, trial: &ParticleTrial<D>) -> ([f64; D], [f64; D]) {
     (
         transpose_apply(&trial.push, &support.grad),
         transpose_apply(&trial.push_bar, &support.grad_bar),

@@ -20,14 +20,13 @@ impl<const D: usize> LoadPoint<D> {
     ///
     /// `traction` is force per unit area \[force/length²\] on the edge from `from` to `to`
     /// (per unit thickness).
-    pub fn along_edge(
-        from: [f64; D],
-        to: [f64; D],
-        traction: [f64; D],
-        count: usize,
-    ) -> Vec<Self> {
-        let length =
-            from.iter().zip(&to).map(|(a, b)| (b - a) * (b - a)).sum::<f64>().sqrt();
+    pub fn along_edge(from: [f64; D], to: [f64; D], traction: [f64; D], count: usize) -> Vec<Self> {
+        let length = from
+            .iter()
+            .zip(&to)
+            .map(|(a, b)| (b - a) * (b - a))
+            .sum::<f64>()
+            .sqrt();
         (0..count)
             .map(|k| {
                 let t = (k as f64 + 0.5) / count as f64;
@@ -42,9 +41,19 @@ impl<const D: usize> LoadPoint<D> {
     /// The nodes that take the force: linear shares, so that resultant and moment are kept.
     fn supports(&self, grid: &Grid<D>, point: usize) -> Result<Vec<Support<D>>, AssemblyError> {
         let mut own = Vec::new();
-        supports(grid, &Linear, &self.x, &[0.0; D], &mut Scratch::default(), &mut own).map_err(
-            |source| AssemblyError::LoadPoint { point, position: padded(&self.x), source },
-        )?;
+        supports(
+            grid,
+            &Linear,
+            &self.x,
+            &[0.0; D],
+            &mut Scratch::default(),
+            &mut own,
+        )
+        .map_err(|source| AssemblyError::LoadPoint {
+            point,
+            position: padded(&self.x),
+            source,
+        })?;
         Ok(own)
     }
 
@@ -86,27 +95,31 @@ pub(crate) fn external_force<const D: usize>(
     loads: &StepLoads<D>,
 ) -> Result<Vec<[f64; D]>, AssemblyError> {
     let mut f_ext = vec![[0.0; D]; grid.node_count()];
-    stencils.strips().sum(&mut f_ext, Clone::clone, |members, nodes, slice| {
-        for &particle in members {
-            let particle = particle as usize;
-            let mass = particles.mass[particle];
-            for support in stencils.of(particle) {
-                for axis in 0..D {
-                    slice[support.node - nodes.start][axis] +=
-                        support.value * mass * loads.gravity[axis];
+    stencils
+        .strips()
+        .sum(&mut f_ext, Clone::clone, |members, nodes, slice| {
+            for &particle in members {
+                let particle = particle as usize;
+                let mass = particles.mass[particle];
+                for support in stencils.of(particle) {
+                    for axis in 0..D {
+                        slice[support.node - nodes.start][axis] +=
+                            support.value * mass * loads.gravity[axis];
+                    }
                 }
             }
-        }
-    });
+        });
     for (index, point) in points.iter().enumerate() {
         for support in point.supports(grid, index)? {
             if support.value > 0.0 && stencils.node_volume()[support.node] == 0.0 {
                 let position = padded(&point.x);
-                return Err(AssemblyError::UnsupportedLoad { point: index, position });
+                return Err(AssemblyError::UnsupportedLoad {
+                    point: index,
+                    position,
+                });
             }
             for axis in 0..D {
-                f_ext[support.node][axis] +=
-                    support.value * loads.point_factor * point.force[axis];
+                f_ext[support.node][axis] += support.value * loads.point_factor * point.force[axis];
             }
         }
     }

@@ -61,7 +61,11 @@ impl TangentMatrix {
     /// A matrix of zeros on a pattern.
     pub fn zeros(pattern: Arc<Pattern>, symmetric: bool) -> Self {
         let values = vec![0.0; pattern.stored()];
-        Self { pattern, values, symmetric }
+        Self {
+            pattern,
+            values,
+            symmetric,
+        }
     }
 
     /// The product y = K x.
@@ -73,7 +77,10 @@ impl TangentMatrix {
         y.fill(0.0);
         for (column, &value) in x.iter().enumerate() {
             let range = self.pattern.col_ptr[column]..self.pattern.col_ptr[column + 1];
-            for (&row, &entry) in self.pattern.row_idx[range.clone()].iter().zip(&self.values[range]) {
+            for (&row, &entry) in self.pattern.row_idx[range.clone()]
+                .iter()
+                .zip(&self.values[range])
+            {
                 y[row] += entry * value;
             }
         }

@@ -27,17 +27,37 @@ pub enum DomainUpdate {
 }
 
 /// What is done about nodes that a body only touches at a corner (theory, "small cuts").
+///
+/// A node is a small cut when Σ S V is below a fraction of its cell's volume. Left alone, such
+/// nodes make the system singular to working precision.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SmallCuts {
-    /// A node with Σ S V below this fraction of its cell volume keeps zero displacement \[-\].
-    pub drop_below: f64,
+    /// Fraction of a cell's volume below which a node is a small cut \[-\]; 0 switches off.
+    pub below: f64,
+    /// What happens to a small cut.
+    pub remedy: Remedy,
     /// Ghost penalty γ on faces of boundary cells \[-\]; 0 switches it off.
     pub ghost_penalty: f64,
 }
 
+/// What happens to a node that is a small cut.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Remedy {
+    /// It moves with the nearest node that carries enough soil: a rigid translation causes no
+    /// strain, whatever its size (the default).
+    Tie,
+    /// Its displacement is zero. In stiff soil that moves far in a step, the sliver of soil
+    /// beyond resists.
+    Drop,
+}
+
 impl Default for SmallCuts {
     fn default() -> Self {
-        Self { drop_below: 1e-4, ghost_penalty: 0.0 }
+        Self {
+            below: 1e-4,
+            remedy: Remedy::Tie,
+            ghost_penalty: 0.0,
+        }
     }
 }
 
@@ -90,8 +110,16 @@ impl Method {
 
     /// The variant's name as the paper writes it, such as `iGIMP + B-bar`.
     pub fn label(&self) -> String {
-        let basis = if self.basis.name() == "linear" { "iMPM" } else { "iGIMP" };
-        if self.bbar { format!("{basis} + B-bar") } else { basis.to_owned() }
+        let basis = if self.basis.name() == "linear" {
+            "iMPM"
+        } else {
+            "iGIMP"
+        };
+        if self.bbar {
+            format!("{basis} + B-bar")
+        } else {
+            basis.to_owned()
+        }
     }
 }
 

@@ -92,7 +92,10 @@ impl<const D: usize> Particles<D> {
                 half_length: seeds.iter().map(|seed| seed.half_length).collect(),
                 half_length0: seeds.iter().map(|seed| seed.half_length).collect(),
                 volume0: seeds.iter().map(|seed| seed.volume).collect(),
-                mass: seeds.iter().map(|seed| seed.volume * seed.density).collect(),
+                mass: seeds
+                    .iter()
+                    .map(|seed| seed.volume * seed.density)
+                    .collect(),
                 law: seeds.iter().map(|seed| seed.law).collect(),
                 history: vec![History::default(); n],
                 regime: vec![Regime::Elastic; n],
@@ -125,7 +128,10 @@ impl<const D: usize> Particles<D> {
             fields.history.len(),
             fields.regime.len(),
         ];
-        assert!(lengths.iter().all(|&length| length == n), "arrays of one body have one length");
+        assert!(
+            lengths.iter().all(|&length| length == n),
+            "arrays of one body have one length"
+        );
         Ok(Self { fields })
     }
 
@@ -157,13 +163,20 @@ impl<const D: usize> Particles<D> {
 
 fn validate<const D: usize>(particle: usize, seed: &ParticleSeed<D>) -> Result<(), AssemblyError> {
     let invalid = |field, value, requirement| {
-        Err(AssemblyError::InvalidParticle { particle, field, value, requirement })
+        Err(AssemblyError::InvalidParticle {
+            particle,
+            field,
+            value,
+            requirement,
+        })
     };
     if let Some(&value) = seed.x.iter().find(|value| !value.is_finite()) {
         return invalid("x", value, "finite");
     }
-    if let Some(&value) =
-        seed.half_length.iter().find(|&&value| !(value > 0.0 && value.is_finite()))
+    if let Some(&value) = seed
+        .half_length
+        .iter()
+        .find(|&&value| !(value > 0.0 && value.is_finite()))
     {
         return invalid("half_length", value, "positive and finite");
     }

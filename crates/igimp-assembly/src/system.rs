@@ -87,14 +87,17 @@ impl<'a, const D: usize> System<'a, D> {
         let laws = conditions.laws.len();
         let mut used = vec![false; laws];
         for (particle, &law) in particles.law.iter().enumerate() {
-            *used.get_mut(law).ok_or(AssemblyError::UnknownLaw { particle, law, laws })? = true;
+            *used.get_mut(law).ok_or(AssemblyError::UnknownLaw {
+                particle,
+                law,
+                laws,
+            })? = true;
         }
         let symmetric = std::iter::zip(&conditions.laws, &used)
             .all(|(law, &used)| !used || law.has_symmetric_tangent());
         let grid = &conditions.grid;
         let cuts = method.small_cuts;
-        let unknowns =
-            Unknowns::number(grid, stencils, &conditions.constraints, cuts.drop_below)?;
+        let unknowns = Unknowns::number(grid, stencils, &conditions.constraints, cuts.below)?;
         let f_ext = external_force(grid, particles, stencils, points, &conditions.loads)?;
         let ghost = if cuts.ghost_penalty > 0.0 {
             let young = |p: usize| conditions.laws[particles.law[p]].elasticity().young();
@@ -102,7 +105,10 @@ impl<'a, const D: usize> System<'a, D> {
         } else {
             Vec::new()
         };
-        let pairs: Vec<_> = ghost.iter().map(|entry| (entry.column, entry.row)).collect();
+        let pairs: Vec<_> = ghost
+            .iter()
+            .map(|entry| (entry.column, entry.row))
+            .collect();
         let (table, pattern) = BlockTable::build(grid, stencils, &unknowns, &pairs, previous);
         Ok(Self {
             particles,
@@ -146,11 +152,7 @@ impl<'a, const D: usize> System<'a, D> {
     /// # Errors
     /// [`AssemblyError::Inverted`] or [`AssemblyError::Material`] of the first particle that
     /// fails.
-    pub fn evaluate(
-        &self,
-        u: &[[f64; D]],
-        kind: TangentKind,
-    ) -> Result<Trial<D>, AssemblyError> {
+    pub fn evaluate(&self, u: &[[f64; D]], kind: TangentKind) -> Result<Trial<D>, AssemblyError> {
         let results: Vec<Result<ParticleTrial<D>, AssemblyError>> = (0..self.particles.len())
             .into_par_iter()
             .map(|particle| {
@@ -158,7 +160,10 @@ impl<'a, const D: usize> System<'a, D> {
                     particle,
                     self.stencils.of(particle),
                     u,
-                    (&self.particles.b_e[particle], &self.particles.history[particle]),
+                    (
+                        &self.particles.b_e[particle],
+                        &self.particles.history[particle],
+                    ),
                     &*self.conditions.laws[self.particles.law[particle]],
                     self.method.kinematics,
                     kind,
@@ -168,18 +173,20 @@ impl<'a, const D: usize> System<'a, D> {
         let particles = results.into_iter().collect::<Result<Vec<_>, _>>()?;
 
         let mut f_int = vec![[0.0; D]; u.len()];
-        self.stencils.strips().sum(&mut f_int, Clone::clone, |members, nodes, slice| {
-            for &particle in members {
-                let particle = particle as usize;
-                let volume = self.reference_volume(particle);
-                for support in self.stencils.of(particle) {
-                    let force = internal_force(support, &particles[particle], volume);
-                    for axis in 0..D {
-                        slice[support.node - nodes.start][axis] += force[axis];
+        self.stencils
+            .strips()
+            .sum(&mut f_int, Clone::clone, |members, nodes, slice| {
+                for &particle in members {
+                    let particle = particle as usize;
+                    let volume = self.reference_volume(particle);
+                    for support in self.stencils.of(particle) {
+                        let force = internal_force(support, &particles[particle], volume);
+                        for axis in 0..D {
+                            slice[support.node - nodes.start][axis] += force[axis];
+                        }
                     }
                 }
-            }
-        });
+            });
         for entry in &self.ghost {
             for axis in 0..D {
                 f_int[entry.row][axis] += entry.stiffness * u[entry.column][axis];
@@ -200,7 +207,10 @@ impl<'a, const D: usize> System<'a, D> {
             for axis in 0..D {
                 let difference = self.f_ext[node][axis] - trial.f_int[node][axis];
                 if !difference.is_finite() {
-                    return Err(AssemblyError::NonFinite { what: "nodal force", index: node });
+                    return Err(AssemblyError::NonFinite {
+                        what: "nodal force",
+                        index: node,
+                    });
                 }
                 external += self.f_ext[node][axis] * self.f_ext[node][axis];
                 if let Some(unknown) = self.unknowns.index(node, axis) {
@@ -218,7 +228,11 @@ impl<'a, const D: usize> System<'a, D> {
         let reference: f64 = external.sqrt() + reaction.sqrt();
         let norm: f64 = free.sqrt();
         let relative_norm = if norm == 0.0 { 0.0 } else { norm / reference };
-        Ok(OutOfBalance { force, relative_norm, worst })
+        Ok(OutOfBalance {
+            force,
+            relative_norm,
+            worst,
+        })
     }
 
     /// The reaction f_int − f_ext by node, zero at unknowns \[force\].
@@ -246,7 +260,10 @@ impl<'a, const D: usize> System<'a, D> {
     /// # Panics
     /// If the matrix has another pattern.
     pub fn tangent_into(&self, trial: &Trial<D>, matrix: &mut TangentMatrix) {
-        assert!(Arc::ptr_eq(&matrix.pattern, &self.pattern), "the matrix belongs to this step");
+        assert!(
+            Arc::ptr_eq(&matrix.pattern, &self.pattern),
+            "the matrix belongs to this step"
+        );
         matrix.symmetric = self.symmetric;
         matrix.values.fill(0.0);
         self.assemble(trial, &mut matrix.values);
@@ -257,19 +274,29 @@ impl<'a, const D: usize> System<'a, D> {
             self.pattern.col_ptr[self.unknowns.before(nodes.start)]
                 ..self.pattern.col_ptr[self.unknowns.before(nodes.end)]
         };
-        self.stencils.strips().sum(values, range, |members, own, slice| {
-            let mut linearised = Linearised::default();
-            let mut codes = Vec::new();
-            for &particle in members {
-                let particle = particle as usize;
-                self.add_particle(particle, trial, &mut linearised, &mut codes, own.start, slice);
-            }
-        });
+        self.stencils
+            .strips()
+            .sum(values, range, |members, own, slice| {
+                let mut linearised = Linearised::default();
+                let mut codes = Vec::new();
+                for &particle in members {
+                    let particle = particle as usize;
+                    self.add_particle(
+                        particle,
+                        trial,
+                        &mut linearised,
+                        &mut codes,
+                        own.start,
+                        slice,
+                    );
+                }
+            });
         for entry in &self.ghost {
             for axis in 0..D {
-                if let (Some(row), Some(column)) =
-                    (self.unknowns.index(entry.row, axis), self.unknowns.index(entry.column, axis))
-                {
+                if let (Some(row), Some(column)) = (
+                    self.unknowns.index(entry.row, axis),
+                    self.unknowns.index(entry.column, axis),
+                ) {
                     let start = self.pattern.col_ptr[column]
                         + self.table.offset(
                             entry.column,

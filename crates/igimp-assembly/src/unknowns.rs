@@ -7,7 +7,7 @@ use igimp_shape::Grid;
 use crate::constraints::Constraints;
 use crate::error::AssemblyError;
 use crate::matrix::{NodeBlock, Pattern};
-use crate::stencils::Stencils;
+use crate::stencils::{Stencils, cell_volume};
 
 /// Marks a degree of freedom without an unknown, or a pair of nodes without a block.
 const NONE: u32 = u32::MAX;
@@ -26,7 +26,7 @@ pub struct Unknowns<const D: usize> {
 
 impl<const D: usize> Unknowns<D> {
     /// Numbers the unknowns. Nodes whose volume is below `drop_below` of their cells' volume are
-    /// dropped: their displacement is zero.
+    /// dropped: their displacement is zero. (Tied nodes carry no volume any more.)
     ///
     /// # Errors
     /// [`AssemblyError::NoUnknowns`].
@@ -61,7 +61,12 @@ impl<const D: usize> Unknowns<D> {
         if len == 0 {
             return Err(AssemblyError::NoUnknowns);
         }
-        Ok(Self { first, rank, active, len: len as usize })
+        Ok(Self {
+            first,
+            rank,
+            active,
+            len: len as usize,
+        })
     }
 
     /// Number of unknowns.
@@ -107,20 +112,6 @@ impl<const D: usize> Unknowns<D> {
     }
 }
 
-/// The mean volume of a cell around a node: the product of half the lengths to its neighbours,
-/// doubled at walls.
-fn cell_volume<const D: usize>(grid: &Grid<D>, node: usize) -> f64 {
-    let place = grid.node_place(node);
-    (0..D)
-        .map(|axis| {
-            let nodes = grid.axes[axis].nodes();
-            let lower = place[axis].saturating_sub(1);
-            let upper = (place[axis] + 1).min(nodes.len() - 1);
-            (nodes[upper] - nodes[lower]) / (upper - lower) as f64
-        })
-        .product()
-}
-
 /// Places of node blocks in the columns of the tangent matrix, found by the difference of the
 /// nodes' places on the grid.
 #[derive(Clone, Debug)]
@@ -143,7 +134,11 @@ impl<const D: usize> BlockTable<D> {
         extra: &[(usize, usize)],
         previous: Option<&Arc<Pattern>>,
     ) -> (Self, Arc<Pattern>) {
-        let reach = if extra.is_empty() { stencils.reach() } else { stencils.reach().max(2) };
+        let reach = if extra.is_empty() {
+            stencils.reach()
+        } else {
+            stencils.reach().max(2)
+        };
         let window = 2 * reach + 1;
         let mut compact = vec![NONE; grid.node_count()];
         let mut columns = Vec::new();
@@ -154,9 +149,15 @@ impl<const D: usize> BlockTable<D> {
             }
         }
         let size = window.pow(D as u32);
-        let mut table = Self { window, reach, offsets: vec![NONE; columns.len() * size], compact };
-        let codes: Vec<usize> =
-            (0..grid.node_count()).map(|node| table.code(&grid.node_place(node))).collect();
+        let mut table = Self {
+            window,
+            reach,
+            offsets: vec![NONE; columns.len() * size],
+            compact,
+        };
+        let codes: Vec<usize> = (0..grid.node_count())
+            .map(|node| table.code(&grid.node_place(node)))
+            .collect();
         for particle in 0..stencils.len() {
             let own = stencils.of(particle);
             for column in own {
@@ -217,13 +218,21 @@ impl<const D: usize> BlockTable<D> {
                 place: block_place,
             });
         }
-        Pattern { col_ptr, row_idx, blocks, reach: self.reach }
+        Pattern {
+            col_ptr,
+            row_idx,
+            blocks,
+            reach: self.reach,
+        }
     }
 
     /// A number for a node's place such that differences tell two nodes' distance apart.
     #[inline]
     pub(crate) fn code(&self, place: &[usize; D]) -> usize {
-        place.iter().rev().fold(0, |code, &position| code * self.window + position)
+        place
+            .iter()
+            .rev()
+            .fold(0, |code, &position| code * self.window + position)
     }
 
     /// Offset within the columns of node `column` of the first row of node `row`; both must carry

@@ -8,8 +8,13 @@ use igimp_assembly::{
 };
 use igimp_material::TangentKind;
 
-const SEED: ParticleSeed<2> =
-    ParticleSeed { x: [1.5, 1.5], half_length: [0.25; 2], volume: 0.25, density: 1.0, law: 0 };
+const SEED: ParticleSeed<2> = ParticleSeed {
+    x: [1.5, 1.5],
+    half_length: [0.25; 2],
+    volume: 0.25,
+    density: 1.0,
+    law: 0,
+};
 
 #[test]
 fn an_empty_body() {
@@ -19,14 +24,33 @@ fn an_empty_body() {
 
 #[test]
 fn a_particle_without_volume() {
-    let error = Particles::new(&[SEED, ParticleSeed { volume: -1.0, ..SEED }]).unwrap_err();
-    assert_eq!(error.to_string(), "particle 1: volume is -1, but must be positive and finite");
+    let error = Particles::new(&[
+        SEED,
+        ParticleSeed {
+            volume: -1.0,
+            ..SEED
+        },
+    ])
+    .unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "particle 1: volume is -1, but must be positive and finite"
+    );
 }
 
 #[test]
 fn a_particle_off_the_grid_is_named() {
-    let body = Particles::new(&[SEED, ParticleSeed { x: [1.5, 99.0], ..SEED }]).unwrap();
-    let error = Stencils::build(&grid::<2>(4), &body, &Method::default()).unwrap_err();
+    let grid = grid::<2>(4);
+    let body = Particles::new(&[
+        SEED,
+        ParticleSeed {
+            x: [1.5, 99.0],
+            ..SEED
+        },
+    ])
+    .unwrap();
+    let error =
+        Stencils::build(&grid, &body, &Method::default(), &Constraints::free(&grid)).unwrap_err();
     assert!(matches!(error, AssemblyError::Shape { particle: 1, .. }));
     assert_eq!(
         error.to_string(),
@@ -39,8 +63,8 @@ fn an_unknown_law() {
     let grid = grid::<2>(4);
     let body = Particles::new(&[ParticleSeed { law: 3, ..SEED }]).unwrap();
     let method = Method::default();
-    let stencils = Stencils::build(&grid, &body, &method).unwrap();
     let conditions = conditions(&grid, &laws()[0].1);
+    let stencils = Stencils::build(&grid, &body, &method, &conditions.constraints).unwrap();
     let error = System::new(&body, &stencils, &conditions, &method, &[], None).unwrap_err();
     assert_eq!(
         error.to_string(),
@@ -63,8 +87,8 @@ fn everything_fixed() {
     let grid = grid::<2>(4);
     let body = Particles::new(&[SEED]).unwrap();
     let method = Method::default();
-    let stencils = Stencils::build(&grid, &body, &method).unwrap();
     let mut conditions = conditions(&grid, &laws()[0].1);
+    let stencils = Stencils::build(&grid, &body, &method, &conditions.constraints).unwrap();
     for node in 0..grid.node_count() {
         for axis in 0..2 {
             conditions.constraints.prescribe(node, axis, 0.0).unwrap();
@@ -79,9 +103,12 @@ fn a_load_on_empty_cells() {
     let grid = grid::<2>(6);
     let body = Particles::new(&[SEED]).unwrap();
     let method = Method::default();
-    let stencils = Stencils::build(&grid, &body, &method).unwrap();
     let conditions = conditions(&grid, &laws()[0].1);
-    let point = LoadPoint { x: [5.5, 5.5], force: [1.0, 0.0] };
+    let stencils = Stencils::build(&grid, &body, &method, &conditions.constraints).unwrap();
+    let point = LoadPoint {
+        x: [5.5, 5.5],
+        force: [1.0, 0.0],
+    };
     let error = System::new(&body, &stencils, &conditions, &method, &[point], None).unwrap_err();
     assert_eq!(
         error.to_string(),
@@ -94,14 +121,20 @@ fn a_displacement_that_turns_a_particle_inside_out_or_is_not_a_number() {
     let grid = grid::<2>(5);
     let body = particles(&grid, 0.0, &mut Random(1));
     let method = Method::default();
-    let stencils = Stencils::build(&grid, &body, &method).unwrap();
     for (_, law) in laws() {
         let conditions = conditions(&grid, &law);
+        let stencils = Stencils::build(&grid, &body, &method, &conditions.constraints).unwrap();
         let system = System::new(&body, &stencils, &conditions, &method, &[], None).unwrap();
-        let folded: Vec<[f64; 2]> =
-            (0..grid.node_count()).map(|node| [-2.0 * grid.node_position(node)[0], 0.0]).collect();
-        let error = system.evaluate(&folded, TangentKind::Consistent).unwrap_err();
-        assert!(matches!(error, AssemblyError::Inverted { particle: 0, .. }), "{error}");
+        let folded: Vec<[f64; 2]> = (0..grid.node_count())
+            .map(|node| [-2.0 * grid.node_position(node)[0], 0.0])
+            .collect();
+        let error = system
+            .evaluate(&folded, TangentKind::Consistent)
+            .unwrap_err();
+        assert!(
+            matches!(error, AssemblyError::Inverted { particle: 0, .. }),
+            "{error}"
+        );
         let mut poisoned = vec![[0.0; 2]; grid.node_count()];
         poisoned[grid.node_index([2, 2])][1] = f64::NAN;
         assert!(system.evaluate(&poisoned, TangentKind::Consistent).is_err());
@@ -114,8 +147,8 @@ fn an_edge_load_keeps_resultant_and_moment() {
     let grid = grid::<2>(6);
     let body = particles(&grid, 0.0, &mut Random(1));
     let method = Method::default();
-    let stencils = Stencils::build(&grid, &body, &method).unwrap();
     let mut conditions = conditions(&grid, &laws()[0].1);
+    let stencils = Stencils::build(&grid, &body, &method, &conditions.constraints).unwrap();
     conditions.loads.gravity = [0.0; 2];
     conditions.loads.point_factor = 2.0;
     let points = LoadPoint::along_edge([1.3, 4.1], [4.4, 3.7], [3.0, -5.0], 11);

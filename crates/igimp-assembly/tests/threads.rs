@@ -7,7 +7,10 @@ use igimp_assembly::{Stencils, System};
 use igimp_material::TangentKind;
 
 fn bits(threads: usize) -> Vec<u64> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build()
+        .unwrap();
     pool.install(|| {
         let mut bits = Vec::new();
         let grid = grid::<2>(24);
@@ -17,12 +20,19 @@ fn bits(threads: usize) -> Vec<u64> {
         for (_, law) in laws() {
             for method in methods() {
                 let conditions = conditions(&grid, &law);
-                let stencils = Stencils::build(&grid, &body, &method).unwrap();
+                let stencils =
+                    Stencils::build(&grid, &body, &method, &conditions.constraints).unwrap();
                 let system =
                     System::new(&body, &stencils, &conditions, &method, &[], None).unwrap();
                 let trial = system.evaluate(&u, TangentKind::Consistent).unwrap();
                 bits.extend(trial.f_int.iter().flatten().map(|value| value.to_bits()));
-                bits.extend(system.tangent(&trial).values.iter().map(|value| value.to_bits()));
+                bits.extend(
+                    system
+                        .tangent(&trial)
+                        .values
+                        .iter()
+                        .map(|value| value.to_bits()),
+                );
                 bits.extend(system.f_ext().iter().flatten().map(|value| value.to_bits()));
             }
         }

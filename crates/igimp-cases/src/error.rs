@@ -8,6 +8,7 @@ use igimp_shape::ShapeError;
 use igimp_solver::StepError;
 use thiserror::Error;
 
+use crate::figures::FigureError;
 
 /// Errors of stating or running a case.
 #[derive(Debug, Error)]
@@ -69,4 +70,7 @@ pub enum CaseError {
         #[source]
         source: csv::Error,
     },
+    /// A picture cannot be drawn.
+    #[error("cannot draw a picture")]
+    Figure(#[from] FigureError),
 }

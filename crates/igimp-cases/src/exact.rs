@@ -74,7 +74,12 @@ mod tests {
             (4.0, 0.481_192_92),
         ];
         for (load, height) in table {
-            let column = Column { height: 1.0, density: load, gravity: 1.0, young: 1.0 };
+            let column = Column {
+                height: 1.0,
+                density: load,
+                gravity: 1.0,
+                young: 1.0,
+            };
             assert!((column.position(1.0) - height).abs() < 5e-9, "S = {load}");
         }
     }
@@ -82,7 +87,12 @@ mod tests {
     /// dy/dY = λ and the equilibrium of Kirchhoff stress, E ln λ = λ σ.
     #[test]
     fn stretch_and_stress_agree() {
-        let column = Column { height: 50.0, density: 80.0, gravity: 10.0, young: 1e4 };
+        let column = Column {
+            height: 50.0,
+            density: 80.0,
+            gravity: 10.0,
+            young: 1e4,
+        };
         for y0 in [0.5, 10.0, 25.0, 49.0] {
             let d = 1e-4;
             let stretch = (column.position(y0 + d) - column.position(y0 - d)) / (2.0 * d);

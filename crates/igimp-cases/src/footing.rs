@@ -113,7 +113,10 @@ impl Footing {
         let polygon = [[0.0, 0.0], [depth, 0.0], [depth, depth], [0.0, depth]];
         let seeds = fill_polygon(&grid, &polygon, self.per_direction, 0.0, 0)?;
         let mut body = Body::new(Particles::new(&seeds)?);
-        let law = Tresca::new(Elasticity::new(self.young, self.poisson)?, self.undrained_strength)?;
+        let law = Tresca::new(
+            Elasticity::new(self.young, self.poisson)?,
+            self.undrained_strength,
+        )?;
         let laws: Vec<SharedLaw> = vec![Arc::new(law)];
         let push = self.penetration * self.width;
         let scale = 0.5 * self.width * self.undrained_strength;
@@ -173,15 +176,22 @@ impl Footing {
         let h = self.cell();
         let depth = self.width * self.extent as f64;
         let columns = self.extent * self.cells_per_width;
-        let above = (self.room * self.cells_per_width as f64).ceil() as usize
-            + (w / h).ceil() as usize;
+        let above =
+            (self.room * self.cells_per_width as f64).ceil() as usize + (w / h).ceil() as usize;
         let rows = (0..=self.surface_row() + above)
             .map(|row| {
                 let y0 = row as f64 * h;
-                if row <= self.surface_row() { y0 * (depth - w) / depth } else { y0 - w }
+                if row <= self.surface_row() {
+                    y0 * (depth - w) / depth
+                } else {
+                    y0 - w
+                }
             })
             .collect();
-        Ok(Grid::new([Axis::uniform(0.0, h, columns)?, Axis::from_nodes(rows)?]))
+        Ok(Grid::new([
+            Axis::uniform(0.0, h, columns)?,
+            Axis::from_nodes(rows)?,
+        ]))
     }
 
     /// Whether a node belongs to the footing; `Some(true)` on its base.
@@ -196,13 +206,17 @@ impl Footing {
         from: f64,
         to: f64,
     ) -> Result<StepConditions<2>, AssemblyError> {
-        let grid = self.grid(from).map_err(|source| AssemblyError::Grid { source })?;
+        let grid = self
+            .grid(from)
+            .map_err(|source| AssemblyError::Grid { source })?;
         let mut constraints = Constraints::free(&grid);
         constraints.fix_wall(&grid, 0, false, 0);
         constraints.fix_wall(&grid, 0, true, 0);
         constraints.fix_wall(&grid, 1, false, 1);
         for node in 0..grid.node_count() {
-            let Some(base) = self.part_of_footing(grid.node_place(node)) else { continue };
+            let Some(base) = self.part_of_footing(grid.node_place(node)) else {
+                continue;
+            };
             if self.rough || base {
                 constraints.prescribe(node, 1, from - to)?;
             }
@@ -213,7 +227,10 @@ impl Footing {
         Ok(StepConditions {
             grid,
             constraints,
-            loads: StepLoads { gravity: [0.0; 2], point_factor: 0.0 },
+            loads: StepLoads {
+                gravity: [0.0; 2],
+                point_factor: 0.0,
+            },
             laws: laws.to_vec(),
         })
     }

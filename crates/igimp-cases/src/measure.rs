@@ -16,8 +16,13 @@ impl Buckets {
         let (lower, upper) = crate::polygon::bounding_box(x);
         let count = |axis: usize| ((upper[axis] - lower[axis]) / size) as usize + 1;
         let (columns, rows) = (count(0), count(1));
-        let mut buckets =
-            Self { size, lower, columns, rows, members: vec![Vec::new(); columns * rows] };
+        let mut buckets = Self {
+            size,
+            lower,
+            columns,
+            rows,
+            members: vec![Vec::new(); columns * rows],
+        };
         for (particle, position) in x.iter().enumerate() {
             let [i, j] = buckets.place(position);
             buckets.members[j as usize * columns + i as usize].push(particle);
@@ -35,11 +40,11 @@ impl Buckets {
         let (columns, rows) = (self.columns as i64, self.rows as i64);
         (j - 1..=j + 1)
             .flat_map(move |row| (i - 1..=i + 1).map(move |column| (column, row)))
-            .filter(move |(column, row)| {
-                (0..columns).contains(column) && (0..rows).contains(row)
-            })
+            .filter(move |(column, row)| (0..columns).contains(column) && (0..rows).contains(row))
             .flat_map(move |(column, row)| {
-                self.members[(row * columns + column) as usize].iter().copied()
+                self.members[(row * columns + column) as usize]
+                    .iter()
+                    .copied()
             })
     }
 }
@@ -72,19 +77,30 @@ pub fn oscillation(x: &[[f64; 2]], field: &[f64], radius: f64) -> f64 {
 fn plane_at(x: &[[f64; 2]], field: &[f64], particles: &[usize], at: &[f64; 2]) -> Option<f64> {
     let n = particles.len() as f64;
     let mean = |value: &dyn Fn(usize) -> f64| {
-        particles.iter().map(|&particle| value(particle)).sum::<f64>() / n
+        particles
+            .iter()
+            .map(|&particle| value(particle))
+            .sum::<f64>()
+            / n
     };
     let centre = [mean(&|p| x[p][0]), mean(&|p| x[p][1])];
     let level = mean(&|p| field[p]);
     let dx = |p: usize| x[p][0] - centre[0];
     let dy = |p: usize| x[p][1] - centre[1];
-    let (xx, xy, yy) = (mean(&|p| dx(p) * dx(p)), mean(&|p| dx(p) * dy(p)), mean(&|p| dy(p) * dy(p)));
+    let (xx, xy, yy) = (
+        mean(&|p| dx(p) * dx(p)),
+        mean(&|p| dx(p) * dy(p)),
+        mean(&|p| dy(p) * dy(p)),
+    );
     let (xf, yf) = (mean(&|p| dx(p) * field[p]), mean(&|p| dy(p) * field[p]));
     let determinant = xx * yy - xy * xy;
     if determinant <= 1e-9 * xx * yy {
         return None;
     }
-    let slope = [(xf * yy - yf * xy) / determinant, (yf * xx - xf * xy) / determinant];
+    let slope = [
+        (xf * yy - yf * xy) / determinant,
+        (yf * xx - xf * xy) / determinant,
+    ];
     Some(level + slope[0] * (at[0] - centre[0]) + slope[1] * (at[1] - centre[1]))
 }
 
@@ -113,25 +129,36 @@ pub fn along_line(
         .filter_map(|k| {
             let t = (k as f64 + 0.5) / points as f64;
             let position = std::array::from_fn(|axis| from[axis] + t * (to[axis] - from[axis]));
-            nearest(particles, &position, reach)
-                .map(|particle| [t * length, field[particle]])
+            nearest(particles, &position, reach).map(|particle| [t * length, field[particle]])
         })
         .collect()
 }
 
 /// Length of each particle's displacement \[length\].
 pub fn displacement_norm(particles: &Particles<2>) -> Vec<f64> {
-    particles.displacement.iter().map(|d| d[0].hypot(d[1])).collect()
+    particles
+        .displacement
+        .iter()
+        .map(|d| d[0].hypot(d[1]))
+        .collect()
 }
 
 /// One component of Cauchy stress by particle, tension positive \[force/length²\].
 pub fn sigma(particles: &Particles<2>, row: usize, column: usize) -> Vec<f64> {
-    particles.sigma.iter().map(|sigma| sigma[row][column]).collect()
+    particles
+        .sigma
+        .iter()
+        .map(|sigma| sigma[row][column])
+        .collect()
 }
 
 /// Accumulated plastic strain invariant by particle \[-\].
 pub fn eps_p_eq(particles: &Particles<2>) -> Vec<f64> {
-    particles.history.iter().map(|history| history.eps_p_eq).collect()
+    particles
+        .history
+        .iter()
+        .map(|history| history.eps_p_eq)
+        .collect()
 }
 
 /// The domains of the particles as rectangles, corners counter-clockwise \[length\].
@@ -158,7 +185,9 @@ mod tests {
     use super::*;
 
     fn lattice() -> Vec<[f64; 2]> {
-        (0..400).map(|k| [f64::from(k % 20) * 0.5, f64::from(k / 20) * 0.5]).collect()
+        (0..400)
+            .map(|k| [f64::from(k % 20) * 0.5, f64::from(k / 20) * 0.5])
+            .collect()
     }
 
     #[test]
@@ -171,8 +200,15 @@ mod tests {
     #[test]
     fn a_checkerboard_scores_about_its_amplitude() {
         let x = lattice();
-        let field: Vec<f64> =
-            (0..400).map(|k| if (k % 20 + k / 20) % 2 == 0 { 1.0 } else { -1.0 }).collect();
+        let field: Vec<f64> = (0..400)
+            .map(|k| {
+                if (k % 20 + k / 20) % 2 == 0 {
+                    1.0
+                } else {
+                    -1.0
+                }
+            })
+            .collect();
         let score = oscillation(&x, &field, 1.3);
         assert!((0.8..1.2).contains(&score), "{score}");
     }

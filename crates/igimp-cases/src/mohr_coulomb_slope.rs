@@ -2,7 +2,6 @@
 //! factor of safety (Yuan et al. 2021, third benchmark; Griffiths and Lane 1999, example 1).
 
 use std::ops::ControlFlow;
-use std::sync::Arc;
 
 use igimp_assembly::{Method, Particles, SharedLaw};
 use igimp_material::{ConstitutiveModel, Elasticity, MohrCoulomb};
@@ -88,16 +87,27 @@ impl ReducedSlope {
     /// E δ_max/(γ H²) exceeds [`FAILURE_DISPLACEMENT`].
     pub fn verdict(&self) -> Verdict {
         let (stable, reason) = match &self.report.outcome {
-            Outcome::StepTooSmall { last_converged, cause } => {
+            Outcome::StepTooSmall {
+                last_converged,
+                cause,
+            } => {
                 let at = crate::check::short(*last_converged);
-                (false, format!("no equilibrium beyond {at} of gravity: {}", cause.failure))
+                (
+                    false,
+                    format!("no equilibrium beyond {at} of gravity: {}", cause.failure),
+                )
             }
-            _ if self.displacement > FAILURE_DISPLACEMENT => {
-                (false, format!("E delta_max/(gamma H^2) exceeds {FAILURE_DISPLACEMENT}"))
-            }
+            _ if self.displacement > FAILURE_DISPLACEMENT => (
+                false,
+                format!("E delta_max/(gamma H^2) exceeds {FAILURE_DISPLACEMENT}"),
+            ),
             _ => (true, "in equilibrium".to_owned()),
         };
-        Verdict { stable, reason, measure: self.displacement }
+        Verdict {
+            stable,
+            reason,
+            measure: self.displacement,
+        }
     }
 }
 
@@ -128,7 +138,9 @@ impl MohrCoulombSlope {
             &mut Workspace::new(SolverKind::Auto.build()),
             &mut |_: &Accepted<'_, 2>| ControlFlow::Continue(()),
         );
-        let largest = displacement_norm(&body.particles).into_iter().fold(0.0, f64::max);
+        let largest = displacement_norm(&body.particles)
+            .into_iter()
+            .fold(0.0, f64::max);
         let scale = self.unit_weight * self.geometry.height.powi(2) / self.young;
         Ok(ReducedSlope {
             srf,

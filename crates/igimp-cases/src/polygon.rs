@@ -7,7 +7,9 @@ pub type Polygon = Vec<[f64; 2]>;
 ///
 /// The centroid of a polygon without area is its first corner.
 pub fn area_and_centroid(polygon: &[[f64; 2]]) -> (f64, [f64; 2]) {
-    let Some(&origin) = polygon.first() else { return (0.0, [0.0; 2]) };
+    let Some(&origin) = polygon.first() else {
+        return (0.0, [0.0; 2]);
+    };
     let (mut area, mut moment) = (0.0, [0.0; 2]);
     for (k, p) in polygon.iter().enumerate() {
         let q = polygon[(k + 1) % polygon.len()];
@@ -21,7 +23,10 @@ pub fn area_and_centroid(polygon: &[[f64; 2]]) -> (f64, [f64; 2]) {
     if area == 0.0 {
         return (0.0, origin);
     }
-    (area, [origin[0] + moment[0] / area, origin[1] + moment[1] / area])
+    (
+        area,
+        [origin[0] + moment[0] / area, origin[1] + moment[1] / area],
+    )
 }
 
 /// The part of a polygon within the box from `lower` to `upper` (Sutherland and Hodgman 1974).

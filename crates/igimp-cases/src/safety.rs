@@ -62,13 +62,21 @@ pub fn search(
             Ok(())
         } else {
             let requirement = "positive and finite";
-            Err(CaseError::InvalidParameter { field, value, requirement })
+            Err(CaseError::InvalidParameter {
+                field,
+                value,
+                requirement,
+            })
         }
     };
     positive("bracket[0]", low)?;
     positive("bracket[1] - bracket[0]", high - low)?;
     positive("tolerance", tolerance)?;
-    let mut found = FactorOfSafety { stable: None, failed: None, trials: Vec::new() };
+    let mut found = FactorOfSafety {
+        stable: None,
+        failed: None,
+        trials: Vec::new(),
+    };
     let (mut next, width) = (low, high - low);
     while found.trials.len() < MOST_TRIALS {
         let verdict = trial(next)?;
@@ -95,7 +103,11 @@ mod tests {
 
     fn threshold(limit: f64) -> impl FnMut(f64) -> Result<Verdict, CaseError> {
         move |srf| {
-            Ok(Verdict { stable: srf < limit, reason: String::new(), measure: srf / limit })
+            Ok(Verdict {
+                stable: srf < limit,
+                reason: String::new(),
+                measure: srf / limit,
+            })
         }
     }
 

@@ -31,7 +31,9 @@ pub fn fill_polygon(
     for cell in 0..grid.cell_count() {
         let place = grid.cell_place(cell);
         let lower = grid.node_position(grid.node_index(place));
-        let size = grid.cell_size(place).map(|size| size / per_direction as f64);
+        let size = grid
+            .cell_size(place)
+            .map(|size| size / per_direction as f64);
         for part in 0..per_direction * per_direction {
             let step = [part % per_direction, part / per_direction];
             let from: [f64; 2] =
@@ -57,11 +59,11 @@ pub fn fill_polygon(
         return Err(CaseError::EmptyBody);
     }
     for (area, centroid) in slivers {
-        let distance = |seed: &ParticleSeed<2>| {
-            (seed.x[0] - centroid[0]).hypot(seed.x[1] - centroid[1])
-        };
-        if let Some(nearest) =
-            seeds.iter_mut().min_by(|a, b| distance(a).total_cmp(&distance(b)))
+        let distance =
+            |seed: &ParticleSeed<2>| (seed.x[0] - centroid[0]).hypot(seed.x[1] - centroid[1]);
+        if let Some(nearest) = seeds
+            .iter_mut()
+            .min_by(|a, b| distance(a).total_cmp(&distance(b)))
         {
             nearest.volume += area;
         }
@@ -75,7 +77,10 @@ mod tests {
     use igimp_shape::Axis;
 
     fn grid() -> Grid<2> {
-        Grid::new([Axis::uniform(0.0, 1.0, 12).unwrap(), Axis::uniform(0.0, 0.5, 10).unwrap()])
+        Grid::new([
+            Axis::uniform(0.0, 1.0, 12).unwrap(),
+            Axis::uniform(0.0, 0.5, 10).unwrap(),
+        ])
     }
 
     #[test]
@@ -93,9 +98,14 @@ mod tests {
 
     #[test]
     fn whole_parts_tile_the_cells() {
-        let seeds =
-            fill_polygon(&grid(), &[[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]], 2, 1.0, 0)
-                .unwrap();
+        let seeds = fill_polygon(
+            &grid(),
+            &[[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]],
+            2,
+            1.0,
+            0,
+        )
+        .unwrap();
         assert_eq!(seeds.len(), 16);
         assert_eq!(seeds[0].x, [0.25, 0.125]);
         assert_eq!(seeds[0].half_length, [0.25, 0.125]);
@@ -104,7 +114,12 @@ mod tests {
     #[test]
     fn a_polygon_off_the_grid_or_without_area_is_refused() {
         let outside = fill_polygon(&grid(), &[[0.0, 0.0], [13.0, 0.0], [0.0, 1.0]], 2, 1.0, 0);
-        assert!(matches!(outside, Err(CaseError::OutsideGrid { corner: [13.0, 0.0] })));
+        assert!(matches!(
+            outside,
+            Err(CaseError::OutsideGrid {
+                corner: [13.0, 0.0]
+            })
+        ));
         let flat = fill_polygon(&grid(), &[[0.0, 0.0], [2.0, 0.0], [1.0, 0.0]], 2, 1.0, 0);
         assert!(matches!(flat, Err(CaseError::EmptyBody)));
     }

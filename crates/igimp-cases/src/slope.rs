@@ -77,7 +77,10 @@ pub(crate) fn under_gravity(
     Ok(StepConditions {
         grid: grid.clone(),
         constraints: constraints.clone(),
-        loads: StepLoads { gravity: [0.0, -factor * GRAVITY], point_factor: 0.0 },
+        loads: StepLoads {
+            gravity: [0.0, -factor * GRAVITY],
+            point_factor: 0.0,
+        },
         laws: laws.to_vec(),
     })
 }

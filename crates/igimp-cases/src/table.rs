@@ -20,7 +20,11 @@ impl Table {
     /// An empty table.
     pub fn new(name: impl Into<String>, header: &[&str]) -> Self {
         let header = header.iter().map(|&column| column.to_owned()).collect();
-        Self { name: name.into(), header, rows: Vec::new() }
+        Self {
+            name: name.into(),
+            header,
+            rows: Vec::new(),
+        }
     }
 
     /// Appends a row.
@@ -28,7 +32,12 @@ impl Table {
     /// # Panics
     /// If the row is not as long as the header.
     pub fn push(&mut self, row: Vec<f64>) {
-        assert_eq!(row.len(), self.header.len(), "a row of {} has one entry a column", self.name);
+        assert_eq!(
+            row.len(),
+            self.header.len(),
+            "a row of {} has one entry a column",
+            self.name
+        );
         self.rows.push(row);
     }
 
@@ -51,14 +60,20 @@ impl Table {
             }
             Ok(writer.flush()?)
         };
-        write().map_err(|source| CaseError::Table { path: path.clone(), source })
+        write().map_err(|source| CaseError::Table {
+            path: path.clone(),
+            source,
+        })
     }
 
     /// The table as aligned text with at most `most` rows, evenly picked, first and last included.
     pub fn to_text(&self, most: usize) -> String {
         let mut text = String::new();
-        let widths: Vec<usize> =
-            self.header.iter().map(|column| column.chars().count().max(13)).collect();
+        let widths: Vec<usize> = self
+            .header
+            .iter()
+            .map(|column| column.chars().count().max(13))
+            .collect();
         for (column, width) in self.header.iter().zip(&widths) {
             let _ = write!(text, "{column:>width$}  ");
         }
@@ -66,7 +81,11 @@ impl Table {
         for k in 0..picked {
             text.truncate(text.trim_end().len());
             text.push('\n');
-            let row = if picked < 2 { 0 } else { k * (self.rows.len() - 1) / (picked - 1) };
+            let row = if picked < 2 {
+                0
+            } else {
+                k * (self.rows.len() - 1) / (picked - 1)
+            };
             for (value, width) in self.rows[row].iter().zip(&widths) {
                 let _ = write!(text, "{value:>width$.6e}  ");
             }

@@ -39,6 +39,8 @@ pub struct VonMisesSlope {
     pub steps: usize,
     /// Gravity is raised to this multiple of the unit weight \[-\].
     pub load_factor: f64,
+    /// The march ends when the largest particle displacement exceeds this \[m\].
+    pub largest_displacement: f64,
 }
 
 impl Default for VonMisesSlope {
@@ -60,6 +62,7 @@ impl Default for VonMisesSlope {
             per_direction: 2,
             steps: 10,
             load_factor: 1.0,
+            largest_displacement: f64::INFINITY,
         }
     }
 }
@@ -92,8 +95,10 @@ impl VonMisesSlope {
         let law = VonMises::from_undrained_strength(elasticity, self.undrained_strength)?;
         let laws: Vec<SharedLaw> = vec![Arc::new(law)];
         let constraints = self.geometry.walls(&grid);
-        let mut displacement =
-            Table::new("displacement", &["load_factor_[-]", "largest_displacement_[m]"]);
+        let mut displacement = Table::new(
+            "displacement",
+            &["load_factor_[-]", "largest_displacement_[m]"],
+        );
         displacement.push(vec![0.0, 0.0]);
         let report = march(
             &mut body,
@@ -105,7 +110,11 @@ impl VonMisesSlope {
                 let norms = displacement_norm(&accepted.body.particles);
                 let largest = norms.into_iter().fold(0.0, f64::max);
                 displacement.push(vec![accepted.report.to * self.load_factor, largest]);
-                ControlFlow::Continue(())
+                if largest > self.largest_displacement {
+                    ControlFlow::Break(())
+                } else {
+                    ControlFlow::Continue(())
+                }
             },
         );
         Ok(SlopeResult {
@@ -129,8 +138,19 @@ impl VonMisesSlope {
 }
 
 impl SlopeResult {
-    /// Whether the march ended because no further equilibrium was found.
-    pub fn collapsed(&self) -> bool {
-        matches!(self.report.outcome, Outcome::StepTooSmall { .. })
+    /// Multiple of the unit weight at which the largest displacement reaches a value, linear
+    /// between steps \[-\]. Where the march ended before that for want of equilibrium it is the
+    /// last multiple reached; `None` when the slope was still standing at the end of the march.
+    pub fn load_factor_at(&self, displacement: f64) -> Option<f64> {
+        let rows = &self.displacement.rows;
+        let crossing = rows.windows(2).find(|pair| displacement <= pair[1][1]);
+        match (crossing, &self.report.outcome) {
+            (Some(pair), _) => {
+                let t = (displacement - pair[0][1]) / (pair[1][1] - pair[0][1]);
+                Some(pair[0][0] + t * (pair[1][0] - pair[0][0]))
+            }
+            (None, Outcome::StepTooSmall { .. }) => Some(self.load_factor),
+            (None, _) => None,
+        }
     }
 }

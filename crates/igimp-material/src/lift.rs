@@ -78,7 +78,8 @@ pub fn lift_finite<const D: usize>(
 ) -> Result<Lifted<D>, MaterialError> {
     let (strain, frame) = logarithmic::<D>(b_e_trial)?;
     lift(law, &strain, frame, *history, kind, |x| {
-        if x == 0.0 { 1.0 } else { x / x.exp_m1() }
+        let share = if x == 0.0 { 1.0 } else { x / x.exp_m1() };
+        [share, share + x]
     })
 }
 
@@ -102,7 +103,7 @@ pub fn lift_small<const D: usize>(
             quantity: "trial elastic strain",
         });
     }
-    lift(law, &strain, frame, *history, kind, |_| 1.0)
+    lift(law, &strain, frame, *history, kind, |_| [1.0; 2])
 }
 
 /// The Hencky strain `` $`\tfrac12\ln b`$ `` of a left Cauchy–Green tensor `b` (upper triangle).
@@ -145,8 +146,9 @@ fn logarithmic<const D: usize>(b: &Tensor) -> Result<(Principal, Tensor), Materi
     }
 }
 
-/// The law at the principal trial strains, set into their axes. `share(x)` is the part of the
-/// secant modulus that answers to `` $`l_{ab}`$ ``, with x the difference of ln b.
+/// The law at the principal trial strains, set into their axes. `shares(x)` are the parts of the
+/// secant modulus that answer to `` $`l_{ab}`$ `` and `` $`l_{ba}`$ ``, where
+/// `` $`x = 2(\varepsilon_a - \varepsilon_b)`$ ``.
 #[inline]
 fn lift<const D: usize>(
     law: &dyn ConstitutiveModel,
@@ -154,7 +156,7 @@ fn lift<const D: usize>(
     frame: Tensor,
     history: History,
     kind: TangentKind,
-    share: impl Fn(f64) -> f64,
+    shares: impl Fn(f64) -> [f64; 2],
 ) -> Result<Lifted<D>, MaterialError> {
     let elasticity = law.elasticity();
     let answer = law.return_map(strain, &history)?;
@@ -176,8 +178,9 @@ fn lift<const D: usize>(
                     secant(answer.tau[a] - answer.tau[b], x, limit, noise)
                 }
             };
-            shear[a][b] = secant * share(x);
-            shear[b][a] = shear[a][b] + secant * x;
+            let [ab, ba] = shares(x);
+            shear[a][b] = secant * ab;
+            shear[b][a] = secant * ba;
         }
     }
     let eps_e = if answer.regime.is_plastic() {

@@ -14,6 +14,15 @@ pub(crate) fn dot(a: &Principal, b: &Principal) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
+/// The vector product.
+pub(crate) fn cross(a: &Principal, b: &Principal) -> Principal {
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
+}
+
 /// The product of a matrix and a vector of principal values.
 #[inline]
 pub(crate) fn apply(matrix: &[[f64; 3]; 3], vector: &Principal) -> Principal {
@@ -33,11 +42,10 @@ pub(crate) fn deviator(values: &Principal) -> Principal {
     values.map(|value| value - mean)
 }
 
-/// The von Mises norm `` $`q = \sqrt{3/2}\,\lVert s\rVert`$ `` of the deviator `s` of a stress.
+/// The norm `` $`q = \sqrt{3/2}\,\lVert s\rVert`$ `` of a stress deviator s.
 #[inline]
-pub(crate) fn von_mises_norm(tau: &Principal) -> f64 {
-    let s = deviator(tau);
-    (1.5 * dot(&s, &s)).sqrt()
+pub(crate) fn deviator_norm(s: &Principal) -> f64 {
+    (1.5 * dot(s, s)).sqrt()
 }
 
 /// The largest magnitude.

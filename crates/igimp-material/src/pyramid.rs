@@ -55,11 +55,11 @@ impl Pyramid {
             }
         });
         let surface = match strength.tension_cutoff {
-            None => whole(&elasticity, shear, strength.apex),
+            None => whole(elasticity, shear, strength.apex),
             Some(tension) => {
                 let sine = strength.sin_friction;
                 let minor = ((1.0 + sine) * tension - strength.shear) / (1.0 - sine);
-                truncated(&elasticity, shear, tension, minor)
+                truncated(elasticity, shear, tension, minor)
             }
         };
         Self {
@@ -87,13 +87,14 @@ impl Pyramid {
         history: History,
     ) -> Result<ReturnMap, MaterialError> {
         let order = descending(eps_e_trial);
-        let trial = trial_stress(&self.elasticity, &sorted(eps_e_trial, &order))?;
+        let strain = sorted(eps_e_trial, &order);
+        let trial = trial_stress(&self.elasticity, &strain)?;
         if self.surface.yield_function(&trial) <= ON_SURFACE * self.surface.stress_scale(&trial) {
             let tau = unsorted(&trial, &order);
             return Ok(ReturnMap::elastic(&self.elasticity, tau, history));
         }
-        let returned = self.surface.project(&trial);
-        let delta_eps_p = unsorted(&self.elasticity.strain(&returned.taken), &order);
+        let returned = self.surface.project(&strain, &trial);
+        let delta_eps_p = unsorted(&returned.delta_eps_p, &order);
         let mut tangent = [[0.0; 3]; 3];
         for a in 0..3 {
             tangent[order[a]] = unsorted(&returned.tangent[a], &order);
@@ -109,7 +110,7 @@ impl Pyramid {
 }
 
 /// The pyramid with its apex, or the prism without one when there is no friction.
-fn whole(elasticity: &Elasticity, shear: [Plane; 3], apex: f64) -> PlanarSurface {
+fn whole(elasticity: Elasticity, shear: [Plane; 3], apex: f64) -> PlanarSurface {
     let surface = PlanarSurface::new(elasticity, shear.to_vec())
         .face(Regime::Smooth, SHEAR_13)
         .edge(Regime::RightEdge, [SHEAR_13, SHEAR_23])
@@ -126,12 +127,7 @@ fn whole(elasticity: &Elasticity, shear: [Plane; 3], apex: f64) -> PlanarSurface
 }
 
 /// The pyramid or prism cut at `tension`, where the shear plane has the least stress `minor`.
-fn truncated(
-    elasticity: &Elasticity,
-    shear: [Plane; 3],
-    tension: f64,
-    minor: f64,
-) -> PlanarSurface {
+fn truncated(elasticity: Elasticity, shear: [Plane; 3], tension: f64, minor: f64) -> PlanarSurface {
     let mut planes = shear.to_vec();
     for axis in 0..3 {
         let mut normal = [0.0; 3];
@@ -177,7 +173,7 @@ fn truncated(
 mod tests {
     use super::*;
 
-    /// SplitMix64, uniform in (-1, 1).
+    /// `SplitMix64`, uniform in (-1, 1).
     fn symmetric(state: &mut u64) -> f64 {
         *state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let mut z = *state;
@@ -240,7 +236,10 @@ mod tests {
                             1,
                             "{poisson} {strength:?} {trial:?} {claims:?}"
                         );
-                        assert_eq!(claims[0], surface.project(&trial).regime);
+                        assert_eq!(
+                            claims[0],
+                            surface.project(&elasticity.strain(&trial), &trial).regime
+                        );
                         seen.insert(format!("{:?}", claims[0]));
                     }
                 }

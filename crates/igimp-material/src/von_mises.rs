@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use crate::error::required;
 use crate::law::{ON_SURFACE, checked_srf, trial_stress};
-use crate::principal::{deviator, largest, mean, von_mises_norm};
+use crate::principal::{deviator, deviator_norm, largest, mean};
 use crate::{ConstitutiveModel, Elasticity, History, MaterialError, Principal, Regime, ReturnMap};
 
 /// Elastic and perfectly plastic with associated flow and the yield function
@@ -81,13 +81,14 @@ impl ConstitutiveModel for VonMises {
         history: &History,
     ) -> Result<ReturnMap, MaterialError> {
         let trial = trial_stress(&self.elasticity, eps_e_trial)?;
-        let q = von_mises_norm(&trial);
+        // From strain, where a large mean stress costs no digits.
+        let s = deviator(eps_e_trial).map(|component| 2.0 * self.elasticity.shear() * component);
+        let q = deviator_norm(&s);
         if q - self.yield_stress <= ON_SURFACE * self.stress_scale(&trial) {
             return Ok(ReturnMap::elastic(&self.elasticity, trial, *history));
         }
         let beta = self.yield_stress / q;
         let mean_stress = mean(&trial);
-        let s = deviator(&trial);
         let n = s.map(|component| component * (1.5_f64.sqrt() / q));
         let softened = 2.0 * self.elasticity.shear() * beta;
         let mut tangent = [[self.elasticity.bulk() - softened / 3.0; 3]; 3];
@@ -110,7 +111,7 @@ impl ConstitutiveModel for VonMises {
 
     /// `` $`f = q - q_y`$ ``: the distance to yield in uniaxial stress.
     fn yield_function(&self, tau: &Principal, _history: &History) -> f64 {
-        von_mises_norm(tau) - self.yield_stress
+        deviator_norm(&deviator(tau)) - self.yield_stress
     }
 
     /// `` $`q_y`$ `` plus the largest principal stress in magnitude.

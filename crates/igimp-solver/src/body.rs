@@ -14,6 +14,9 @@ pub struct Body<const D: usize> {
 impl<const D: usize> Body<D> {
     /// A body that only its weight and its supports act on.
     pub fn new(particles: Particles<D>) -> Self {
-        Self { particles, load_points: Vec::new() }
+        Self {
+            particles,
+            load_points: Vec::new(),
+        }
     }
 }

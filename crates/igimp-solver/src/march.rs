@@ -77,7 +77,13 @@ pub struct MarchSettings {
 impl MarchSettings {
     /// Equal steps with the default cutting: halved up to five times, grown by 1.5.
     pub fn steps(steps: usize) -> Self {
-        Self { steps, cuts: 5, cut_factor: 0.5, growth: 1.5, newton: NewtonSettings::default() }
+        Self {
+            steps,
+            cuts: 5,
+            cut_factor: 0.5,
+            growth: 1.5,
+            newton: NewtonSettings::default(),
+        }
     }
 }
 
@@ -144,16 +150,26 @@ pub fn march<const D: usize>(
     workspace: &mut Workspace,
     observer: &mut dyn Observer<D>,
 ) -> MarchReport {
-    let mut report =
-        MarchReport { outcome: Outcome::Completed, steps: Vec::new(), failures: Vec::new() };
+    let mut report = MarchReport {
+        outcome: Outcome::Completed,
+        steps: Vec::new(),
+        failures: Vec::new(),
+    };
     let nominal = 1.0 / settings.steps as f64;
     let smallest = nominal * settings.cut_factor.powf(f64::from(settings.cuts) + 0.5);
     let (mut at, mut size, mut successes) = (0.0, nominal, 0);
     while at < 1.0 {
         let to = next_factor(at, size, settings.steps);
         let result = conditions_at(program, at, to).and_then(|conditions| {
-            step(body, method, &conditions, (at, to), &settings.newton, workspace)
-                .map(|(step, forces)| (conditions, step, forces))
+            step(
+                body,
+                method,
+                &conditions,
+                (at, to),
+                &settings.newton,
+                workspace,
+            )
+            .map(|(step, forces)| (conditions, step, forces))
         });
         match result {
             Ok((conditions, step, forces)) => {
@@ -163,8 +179,12 @@ pub fn march<const D: usize>(
                     size = (size * settings.growth).min(nominal);
                     successes = 0;
                 }
-                let accepted =
-                    Accepted { body, conditions: &conditions, report: &step, forces: &forces };
+                let accepted = Accepted {
+                    body,
+                    conditions: &conditions,
+                    report: &step,
+                    forces: &forces,
+                };
                 let flow = observer.on_step(&accepted);
                 report.steps.push(step);
                 if flow.is_break() {
@@ -177,7 +197,10 @@ pub fn march<const D: usize>(
                 size *= settings.cut_factor;
                 successes = 0;
                 if size < smallest || matches!(error.failure, StepFailure::LeavesGrid { .. }) {
-                    report.outcome = Outcome::StepTooSmall { last_converged: at, cause: error };
+                    report.outcome = Outcome::StepTooSmall {
+                        last_converged: at,
+                        cause: error,
+                    };
                     return report;
                 }
             }

@@ -28,7 +28,11 @@ pub struct NewtonSettings {
 
 impl Default for NewtonSettings {
     fn default() -> Self {
-        Self { tolerance: 1e-9, max_iterations: 25, divergence: 1e4 }
+        Self {
+            tolerance: 1e-9,
+            max_iterations: 25,
+            divergence: 1e4,
+        }
     }
 }
 
@@ -143,14 +147,19 @@ pub struct Workspace {
 
 impl std::fmt::Debug for Workspace {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Workspace").field("solver", &self.solver.name()).finish_non_exhaustive()
+        f.debug_struct("Workspace")
+            .field("solver", &self.solver.name())
+            .finish_non_exhaustive()
     }
 }
 
 impl Workspace {
     /// A workspace around a linear solver.
     pub fn new(solver: Box<dyn LinearSolver>) -> Self {
-        Self { solver, matrix: None }
+        Self {
+            solver,
+            matrix: None,
+        }
     }
 
     fn pattern(&self) -> Option<&Arc<Pattern>> {
@@ -236,13 +245,27 @@ pub fn step<const D: usize>(
     let mut course = Course::default();
     equilibrium(body, method, conditions, settings, workspace, &mut course)
         .map(|(report, forces)| {
-            (StepReport { from, to, residuals: std::mem::take(&mut course.residuals), ..report }, forces)
+            (
+                StepReport {
+                    from,
+                    to,
+                    residuals: std::mem::take(&mut course.residuals),
+                    ..report
+                },
+                forces,
+            )
         })
         .map_err(|failure| {
-            let worst = course.worst.map(|(node, axis)| {
-                (padded(&conditions.grid.node_position(node)), axis)
-            });
-            StepError { from, to, residuals: course.residuals, worst, failure }
+            let worst = course
+                .worst
+                .map(|(node, axis)| (padded(&conditions.grid.node_position(node)), axis));
+            StepError {
+                from,
+                to,
+                residuals: course.residuals,
+                worst,
+                failure,
+            }
         })
 }
 
@@ -261,7 +284,7 @@ fn equilibrium<const D: usize>(
     let mut times = PhaseTimes::default();
     let clock = Instant::now();
     let grid = &conditions.grid;
-    let stencils = Stencils::build(grid, &body.particles, method)?;
+    let stencils = Stencils::build(grid, &body.particles, method, &conditions.constraints)?;
     let system = System::new(
         &body.particles,
         &stencils,
@@ -293,18 +316,26 @@ fn equilibrium<const D: usize>(
         let du = workspace.correction(&system, &trial, &residual.force, &mut times)?;
         system.add_correction(&mut u, &du);
         iterations += 1;
-        trial = timed(&mut times.evaluate, || system.evaluate(&u, TangentKind::Consistent))?;
+        trial = timed(&mut times.evaluate, || {
+            system.evaluate(&u, TangentKind::Consistent)
+        })?;
         residual = system.out_of_balance(&trial)?;
         course.record(&residual, settings)?;
     }
     if let Some((particle, x)) = body.particles.leaving(grid, &stencils, &u) {
-        return Err(StepFailure::LeavesGrid { particle, position: padded(&x) });
+        return Err(StepFailure::LeavesGrid {
+            particle,
+            position: padded(&x),
+        });
     }
 
     let clock = Instant::now();
     let reactions = system.reactions(&trial);
-    let plastic =
-        trial.particles.iter().filter(|own| own.lifted.regime.is_plastic()).count();
+    let plastic = trial
+        .particles
+        .iter()
+        .filter(|own| own.lifted.regime.is_plastic())
+        .count();
     let report = StepReport {
         from: 0.0,
         to: 0.0,

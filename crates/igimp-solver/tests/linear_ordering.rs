@@ -27,7 +27,12 @@ fn assert_is_an_order(pattern: &Pattern) {
     for &node in &order.nodes {
         let block = pattern.blocks[node];
         let together = &unknowns[start..start + block.len];
-        assert!(together.iter().copied().eq(block.first..block.first + block.len));
+        assert!(
+            together
+                .iter()
+                .copied()
+                .eq(block.first..block.first + block.len)
+        );
         start += block.len;
     }
     assert_eq!(start, unknowns.len());
@@ -46,7 +51,12 @@ fn bodies_are_ordered() {
     for body in bodies {
         assert_is_an_order(&body.tangent().pattern);
     }
-    let empty = Pattern { col_ptr: vec![0], row_idx: vec![], blocks: vec![], reach: 2 };
+    let empty = Pattern {
+        col_ptr: vec![0],
+        row_idx: vec![],
+        blocks: vec![],
+        reach: 2,
+    };
     assert!(NestedDissection::new(&empty).nodes.is_empty());
 }
 
@@ -85,10 +95,14 @@ fn fill(pattern: &Pattern, order: Option<&[usize]>) -> (usize, f64) {
         ..CholeskySymbolicParams::default()
     };
     let symbolic = factorize_symbolic_cholesky(view, Side::Lower, ordering, params).unwrap();
-    let faer::sparse::linalg::cholesky::SymbolicCholeskyRaw::Simplicial(factor) = symbolic.raw() else {
+    let faer::sparse::linalg::cholesky::SymbolicCholeskyRaw::Simplicial(factor) = symbolic.raw()
+    else {
         panic!("asked for the simplicial factor");
     };
-    let operations = factor.col_ptr().windows(2).map(|ends| ((ends[1] - ends[0]) as f64).powi(2));
+    let operations = factor
+        .col_ptr()
+        .windows(2)
+        .map(|ends| ((ends[1] - ends[0]) as f64).powi(2));
     (symbolic.len_val(), operations.sum())
 }
 
@@ -101,11 +115,21 @@ fn dissection_fills_less_than_minimum_degree() {
         ("cube", Body::solid([12, 12, 12])),
     ];
     for (name, body) in bodies {
-        let matrix = Body { particles: 1, ..body }.tangent();
+        let matrix = Body {
+            particles: 1,
+            ..body
+        }
+        .tangent();
         let order = NestedDissection::new(&matrix.pattern).unknowns(&matrix.pattern);
         let (entries, operations) = fill(&matrix.pattern, Some(&order));
         let (amd_entries, amd_operations) = fill(&matrix.pattern, None);
-        assert!(entries < amd_entries, "{name}: {entries} against {amd_entries}");
-        assert!(operations < amd_operations, "{name}: {operations:e} against {amd_operations:e}");
+        assert!(
+            entries < amd_entries,
+            "{name}: {entries} against {amd_entries}"
+        );
+        assert!(
+            operations < amd_operations,
+            "{name}: {operations:e} against {amd_operations:e}"
+        );
     }
 }

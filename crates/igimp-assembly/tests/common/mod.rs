@@ -4,8 +4,7 @@
 use std::sync::Arc;
 
 use igimp_assembly::{
-    Constraints, Kinematics, Method, ParticleSeed, Particles, SharedLaw, StepConditions,
-    StepLoads,
+    Constraints, Kinematics, Method, ParticleSeed, Particles, SharedLaw, StepConditions, StepLoads,
 };
 use igimp_material::{Elasticity, HenckyElastic, MohrCoulomb, Tresca, VonMises};
 use igimp_shape::{Axis, Grid};
@@ -28,7 +27,9 @@ impl Random {
 pub fn grid<const D: usize>(cells: usize) -> Grid<D> {
     Grid::new(std::array::from_fn(|axis| {
         let stretch = 0.02 * (axis + 1) as f64;
-        let nodes = (0..=cells).map(|k| k as f64 * (1.0 + stretch * k as f64)).collect();
+        let nodes = (0..=cells)
+            .map(|k| k as f64 * (1.0 + stretch * k as f64))
+            .collect();
         Axis::from_nodes(nodes).unwrap()
     }))
 }
@@ -48,10 +49,17 @@ pub fn particles<const D: usize>(grid: &Grid<D>, jitter: f64, random: &mut Rando
                 let middle = if part >> axis & 1 == 0 { 0.25 } else { 0.75 };
                 lower[axis] + size[axis] * (middle + 0.1 * jitter * random.symmetric())
             });
-            let half_length =
-                std::array::from_fn(|axis| size[axis] * (0.25 + 0.05 * jitter * random.symmetric()));
+            let half_length = std::array::from_fn(|axis| {
+                size[axis] * (0.25 + 0.05 * jitter * random.symmetric())
+            });
             let volume = size.iter().map(|size| 0.5 * size).product();
-            seeds.push(ParticleSeed { x, half_length, volume, density: 2.0, law: 0 });
+            seeds.push(ParticleSeed {
+                x,
+                half_length,
+                volume,
+                density: 2.0,
+                law: 0,
+            });
         }
     }
     Particles::new(&seeds).unwrap()
@@ -63,7 +71,9 @@ pub fn displacements<const D: usize>(
     size: f64,
     random: &mut Random,
 ) -> Vec<[f64; D]> {
-    (0..grid.node_count()).map(|_| std::array::from_fn(|_| size * random.symmetric())).collect()
+    (0..grid.node_count())
+        .map(|_| std::array::from_fn(|_| size * random.symmetric()))
+        .collect()
 }
 
 /// Every law, with strengths that strains of a few percent exceed.
@@ -72,7 +82,10 @@ pub fn laws() -> Vec<(&'static str, SharedLaw)> {
     let angle = f64::to_radians;
     vec![
         ("elastic", Arc::new(HenckyElastic::new(elasticity))),
-        ("von Mises", Arc::new(VonMises::from_undrained_strength(elasticity, 1.0).unwrap())),
+        (
+            "von Mises",
+            Arc::new(VonMises::from_undrained_strength(elasticity, 1.0).unwrap()),
+        ),
         ("Tresca", Arc::new(Tresca::new(elasticity, 1.0).unwrap())),
         (
             "Mohr-Coulomb",
@@ -88,9 +101,17 @@ pub fn laws() -> Vec<(&'static str, SharedLaw)> {
 /// The four variants in both kinematics, and one with the ghost penalty.
 pub fn methods() -> Vec<Method> {
     let mut methods = Vec::new();
-    for method in [Method::impm(), Method::impm_bbar(), Method::igimp(), Method::igimp_bbar()] {
+    for method in [
+        Method::impm(),
+        Method::impm_bbar(),
+        Method::igimp(),
+        Method::igimp_bbar(),
+    ] {
         for kinematics in [Kinematics::FiniteStrain, Kinematics::SmallStrain] {
-            methods.push(Method { kinematics, ..method.clone() });
+            methods.push(Method {
+                kinematics,
+                ..method.clone()
+            });
         }
     }
     let mut ghost = Method::igimp_bbar();
@@ -116,7 +137,10 @@ pub fn conditions<const D: usize>(grid: &Grid<D>, law: &SharedLaw) -> StepCondit
     StepConditions {
         grid: grid.clone(),
         constraints,
-        loads: StepLoads { gravity, point_factor: 0.0 },
+        loads: StepLoads {
+            gravity,
+            point_factor: 0.0,
+        },
         laws: vec![law.clone()],
     }
 }

@@ -4,7 +4,7 @@ use igimp_material::{
     Elasticity, History, Lifted, Principal, Regime, TangentKind, Tensor, Tresca, lift_small,
 };
 
-use crate::catalogue::soft;
+use crate::catalogue::{differentiable, soft};
 use crate::random::Random;
 use crate::tensors::{MEASURES, diagonal, plane_rotation, tangent_error, with_dilation};
 
@@ -13,6 +13,9 @@ const H: f64 = 2e-5;
 /// From well apart to equal, through the distances where quotients lose their digits.
 const GAPS: [f64; 9] = [1e-4, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-12, 1e-15, 0.0];
 
+/// Targets on which two close stresses lie only within a step of a kink: see the test of a kink.
+const ASYMMETRIC: [Regime; 2] = [Regime::Smooth, Regime::TensionShear];
+
 /// Strains of which two, or all three, are `gap` apart.
 fn close(general: Principal, gap: f64, random: &mut Random) -> Principal {
     let [e, _, other] = general;
@@ -20,12 +23,12 @@ fn close(general: Principal, gap: f64, random: &mut Random) -> Principal {
         0 => [e, e + gap, e - 0.3 * gap],
         _ => [e, e + gap, other],
     };
-    strain.rotate_left(random.below(3) as usize);
+    strain.rotate_left(random.below(3));
     strain
 }
 
 fn check<const D: usize>(axes: impl Fn(&mut Random) -> Tensor) {
-    for entry in soft() {
+    for entry in differentiable() {
         let shear = entry.law.elasticity().shear();
         for measure in MEASURES {
             let mut random = Random(20);
@@ -48,6 +51,9 @@ fn check<const D: usize>(axes: impl Fn(&mut Random) -> Tensor) {
                     };
                     let lifted: Lifted<D> =
                         measure.lift(&*entry.law, &state, TangentKind::Consistent);
+                    if entry.planes.is_some() && ASYMMETRIC.contains(&lifted.regime) {
+                        continue;
+                    }
                     let error = tangent_error(&lifted, &rate, &l_prime, r) / (2.0 * shear);
                     assert!(
                         error < 1e-7,

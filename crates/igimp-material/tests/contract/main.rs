@@ -2,7 +2,8 @@
 //!
 //! | file | what is asked |
 //! |---|---|
-//! | `returns` | admissible, split of strain, dissipation, closest point, flow rule, isotropy |
+//! | `returns` | admissible, split of strain, dissipation, closest point, isotropy |
+//! | `flow_rule` | plastic strain in the cone of the active planes |
 //! | `tangents` | consistent tangent against differences, symmetry |
 //! | `lifts` | spatial tangent against differences, rotation, plane strain against 3D |
 //! | `close_eigenvalues` | the same where principal values are equal or nearly so |
@@ -13,6 +14,7 @@
 
 mod catalogue;
 mod close_eigenvalues;
+mod flow_rule;
 mod lifts;
 mod random;
 mod reduction;

@@ -1,7 +1,7 @@
 //! A fixed stream of numbers, so that a failure can be met again.
 
-/// SplitMix64 (Steele, Lea & Flood 2014).
-pub struct Random(pub u64);
+/// `SplitMix64` (Steele, Lea & Flood 2014).
+pub(crate) struct Random(pub(crate) u64);
 
 impl Random {
     fn next(&mut self) -> u64 {
@@ -13,27 +13,27 @@ impl Random {
     }
 
     /// Uniform in (-1, 1).
-    pub fn symmetric(&mut self) -> f64 {
+    pub(crate) fn symmetric(&mut self) -> f64 {
         (self.next() >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
     }
 
     /// Uniform between `low` and `high`.
-    pub fn between(&mut self, low: f64, high: f64) -> f64 {
+    pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * 0.5 * (1.0 + self.symmetric())
     }
 
     /// Uniform in 0..n.
-    pub fn below(&mut self, n: u64) -> u64 {
-        self.next() % n
+    pub(crate) fn below(&mut self, n: usize) -> usize {
+        usize::try_from(self.next() >> 33).expect("31 bits") % n
     }
 
     /// Components uniform in (-size, size).
-    pub fn values<const N: usize>(&mut self, size: f64) -> [f64; N] {
+    pub(crate) fn values<const N: usize>(&mut self, size: f64) -> [f64; N] {
         [0; N].map(|_| size * self.symmetric())
     }
 
     /// A rotation, uniform over all rotations (unit quaternion by rejection).
-    pub fn rotation(&mut self) -> [[f64; 3]; 3] {
+    pub(crate) fn rotation(&mut self) -> [[f64; 3]; 3] {
         loop {
             let [w, x, y, z] = self.values(1.0);
             let square = w * w + x * x + y * y + z * z;

@@ -148,7 +148,7 @@ fn reduction_is_monotone() {
                 entry.label
             );
             assert!(
-                f == same || (same - f).abs() <= round_off,
+                f.is_infinite() || (same - f).abs() <= round_off,
                 "{}",
                 entry.label
             );

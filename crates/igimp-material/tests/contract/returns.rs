@@ -2,7 +2,7 @@
 
 use igimp_material::{History, Principal, Regime, ReturnMap};
 
-use crate::catalogue::{Entry, Planes, all, families};
+use crate::catalogue::{Entry, all, families};
 use crate::random::Random;
 
 const HISTORY: History = History { eps_p_eq: 0.25 };
@@ -11,11 +11,11 @@ fn answer(entry: &Entry, strain: &Principal) -> ReturnMap {
     entry.law.return_map(strain, &HISTORY).unwrap()
 }
 
-fn dot(a: &Principal, b: &Principal) -> f64 {
+pub(crate) fn dot(a: &Principal, b: &Principal) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-fn size(a: &Principal) -> f64 {
+pub(crate) fn size(a: &Principal) -> f64 {
     a[0].abs() + a[1].abs() + a[2].abs()
 }
 
@@ -82,7 +82,7 @@ fn a_returned_state_is_not_returned_again() {
     }
 }
 
-/// GOAL: Δε_p = C⁻¹(τ_tr − τ), and ε_p,eq grows by √(2/3 Δe_p:Δe_p).
+/// GOAL: `Δε_p = C⁻¹(τ_tr − τ)`, and `ε_p,eq` grows by `√(2/3 Δe_p:Δe_p)`.
 #[test]
 fn strain_splits_into_elastic_and_plastic() {
     for entry in all() {
@@ -137,7 +137,7 @@ fn plastic_work_is_not_negative() {
 }
 
 /// GOAL: with associated flow the returned stress is the point of the admissible set closest to
-/// the trial stress in the norm of C⁻¹: (τ_tr − τ) · C⁻¹(σ − τ) ≤ 0 for every admissible σ.
+/// the trial stress in the norm of C⁻¹: `(τ_tr − τ) · C⁻¹(σ − τ) ≤ 0` for every admissible σ.
 /// This characterises the return completely.
 #[test]
 fn associated_returns_are_closest_points() {
@@ -155,7 +155,9 @@ fn associated_returns_are_closest_points() {
                 .tau;
             let way: Principal = std::array::from_fn(|a| other[a] - answer.tau[a]);
             let product = dot(&answer.delta_eps_p, &way);
-            let round_off = 1e-12 * size(&answer.delta_eps_p) * (size(&other) + size(&answer.tau));
+            // Admissible states may lie 1e-12 of the stress scale outside the surface.
+            let scale = entry.law.stress_scale(&other) + entry.law.stress_scale(&answer.tau);
+            let round_off = 2e-12 * size(&answer.delta_eps_p) * scale;
             assert!(
                 product <= round_off,
                 "{}: {answer:?} {other:?} {product:e}",
@@ -165,146 +167,50 @@ fn associated_returns_are_closest_points() {
     }
 }
 
-/// GOAL: plastic strain is a sum of the flow directions of the active planes with multipliers
-/// that are not negative (Koiter), associated or not. Exempt by definition: the apex without
-/// dilation, which no flow reaches; there the trial mean stress is above the apex.
+/// GOAL: the order of principal values plays no part, in stress for states of all kinds, in the
+/// tangent for states of general position of which two values may be equal.
 #[test]
-fn plastic_strain_obeys_the_flow_rule() {
+fn permuted_strain_gives_permuted_answer() {
     for entry in all() {
-        let Some(planes) = entry.planes else { continue };
+        let mut random = Random(7);
         let elasticity = entry.law.elasticity();
-        let mut random = Random(6);
-        for _ in 0..5_000 {
-            let strain = entry.general(&mut random);
-            let answer = answer(&entry, &strain);
-            if !answer.regime.is_plastic() {
-                continue;
-            }
-            if answer.regime == Regime::Apex && planes.dilation == 0.0 {
-                let mean_stress = elasticity.stress(&strain).iter().sum::<f64>() / 3.0;
-                let apex = planes.cohesion / planes.friction.tan();
-                assert!(mean_stress >= apex, "{}: {strain:?}", entry.label);
-                continue;
-            }
-            let near = 1e-11 * entry.law.stress_scale(&answer.tau);
-            let flows = active_flows(&planes, &answer.tau, near);
-            let norm = size(&answer.delta_eps_p);
-            let noise = 1e-13 * size(&strain) / norm * elasticity.bulk() / elasticity.shear();
-            let direction = answer.delta_eps_p.map(|value| value / norm);
-            let miss = distance_to_cone(&direction, &flows);
+        let stiffness = elasticity.bulk() + elasticity.shear();
+        for _ in 0..2_000 {
+            let strain = entry.any(&mut random);
+            let scale = stiffness * size(&strain);
+            let admitted = 1e-12 * entry.law.stress_scale(&answer(&entry, &strain).tau);
             assert!(
-                miss <= 1e-10 + noise,
-                "{}: {strain:?} {answer:?} {miss:e}",
+                permutation_error(&entry, &strain).0 <= 1e-14 * scale + admitted,
+                "{}: {strain:?}",
+                entry.label
+            );
+
+            let mut strain = entry.general(&mut random);
+            let [i, j] = [random.below(3), random.below(3)];
+            strain[i] = strain[j];
+            assert!(
+                permutation_error(&entry, &strain).1 <= 1e-11 * stiffness,
+                "{}: {strain:?}",
                 entry.label
             );
         }
     }
 }
 
-/// Flow directions of all planes, of any order of stresses, that a stress lies on.
-fn active_flows(planes: &Planes, tau: &Principal, near: f64) -> Vec<Principal> {
-    let (friction, dilation) = (planes.friction.sin(), planes.dilation.sin());
-    let mut flows = Vec::new();
-    for i in 0..3 {
-        for j in 0..3 {
-            let mut flow = [0.0; 3];
-            if i != j {
-                let f = (1.0 + friction) * tau[i]
-                    - (1.0 - friction) * tau[j]
-                    - 2.0 * planes.cohesion * planes.friction.cos();
-                flow[i] = 1.0 + dilation;
-                flow[j] = dilation - 1.0;
-                if f.abs() <= near {
-                    flows.push(flow);
-                }
-            } else if planes
-                .cutoff
-                .is_some_and(|cutoff| (tau[i] - cutoff).abs() <= near)
-            {
-                flow[i] = 1.0;
-                flows.push(flow);
+/// Largest difference of stress and of tangent under all permutations of the strain.
+fn permutation_error(entry: &Entry, strain: &Principal) -> (f64, f64) {
+    let plain = answer(entry, strain);
+    let mut most = (0.0_f64, 0.0_f64);
+    for order in [[0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]] {
+        let permuted = answer(entry, &order.map(|a| strain[a]));
+        assert_eq!(permuted.regime, plain.regime, "{}: {strain:?}", entry.label);
+        for a in 0..3 {
+            most.0 = most.0.max((permuted.tau[a] - plain.tau[order[a]]).abs());
+            for b in 0..3 {
+                let error = permuted.tangent[a][b] - plain.tangent[order[a]][order[b]];
+                most.1 = most.1.max(error.abs());
             }
         }
     }
-    flows
-}
-
-/// Distance of a direction from the cone of some rays in space: the least over all simplices of
-/// at most three rays (Carathéodory) that hold the projection.
-fn distance_to_cone(direction: &Principal, rays: &[Principal]) -> f64 {
-    let mut least = f64::INFINITY;
-    for (i, p) in rays.iter().enumerate() {
-        let share = (dot(p, direction) / dot(p, p)).max(0.0);
-        let rest: Principal = std::array::from_fn(|a| direction[a] - share * p[a]);
-        least = least.min(size(&rest));
-        for (j, q) in rays.iter().enumerate().skip(i + 1) {
-            let normal = cross(p, q);
-            let square = dot(&normal, &normal);
-            if square < 1e-12 {
-                continue;
-            }
-            let shares = [
-                dot(&cross(direction, q), &normal),
-                dot(&cross(p, direction), &normal),
-            ];
-            if shares.iter().all(|share| *share >= -1e-9 * square) {
-                least = least.min(dot(&normal, direction).abs() / square.sqrt());
-            }
-            for r in rays.iter().skip(j + 1) {
-                let volume = dot(&normal, r);
-                let inside = |x: f64| x / volume >= -1e-9;
-                if volume.abs() > 1e-9
-                    && inside(dot(&cross(q, r), direction))
-                    && inside(dot(&cross(r, p), direction))
-                    && inside(dot(&normal, direction))
-                {
-                    return 0.0;
-                }
-            }
-        }
-    }
-    least
-}
-
-fn cross(a: &Principal, b: &Principal) -> Principal {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
-}
-
-/// GOAL: the order of principal values plays no part.
-#[test]
-fn permuted_strain_gives_permuted_answer() {
-    const ORDERS: [[usize; 3]; 5] = [[0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]];
-    for entry in all() {
-        let mut random = Random(7);
-        let stiffness = entry.law.elasticity().bulk() + entry.law.elasticity().shear();
-        for _ in 0..2_000 {
-            let strain = entry.any(&mut random);
-            let plain = answer(&entry, &strain);
-            for order in ORDERS {
-                let permuted = answer(&entry, &order.map(|a| strain[a]));
-                assert_eq!(permuted.regime, plain.regime, "{}: {strain:?}", entry.label);
-                for a in 0..3 {
-                    let error = permuted.tau[a] - plain.tau[order[a]];
-                    let round_off = 1e-14 * stiffness * size(&strain);
-                    assert!(
-                        error.abs() <= round_off,
-                        "{}: {strain:?} {error:e}",
-                        entry.label
-                    );
-                    for b in 0..3 {
-                        let error = permuted.tangent[a][b] - plain.tangent[order[a]][order[b]];
-                        assert!(
-                            error.abs() <= 1e-12 * stiffness,
-                            "{}: {strain:?}",
-                            entry.label
-                        );
-                    }
-                }
-            }
-        }
-    }
+    most
 }

@@ -7,27 +7,27 @@ use igimp_material::{
 
 /// Which of the two lifts.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Measure {
+pub(crate) enum Measure {
     Finite,
     Small,
 }
 
-pub const MEASURES: [Measure; 2] = [Measure::Finite, Measure::Small];
+pub(crate) const MEASURES: [Measure; 2] = [Measure::Finite, Measure::Small];
 
-pub fn multiply(a: &Tensor, b: &Tensor) -> Tensor {
+pub(crate) fn multiply(a: &Tensor, b: &Tensor) -> Tensor {
     std::array::from_fn(|i| std::array::from_fn(|j| (0..3).map(|k| a[i][k] * b[k][j]).sum()))
 }
 
-pub fn transpose(a: &Tensor) -> Tensor {
+pub(crate) fn transpose(a: &Tensor) -> Tensor {
     std::array::from_fn(|i| std::array::from_fn(|j| a[j][i]))
 }
 
 /// F a Fᵀ.
-pub fn congruence(f: &Tensor, a: &Tensor) -> Tensor {
+pub(crate) fn congruence(f: &Tensor, a: &Tensor) -> Tensor {
     multiply(&multiply(f, a), &transpose(f))
 }
 
-pub fn diagonal(values: Principal) -> Tensor {
+pub(crate) fn diagonal(values: Principal) -> Tensor {
     [
         [values[0], 0.0, 0.0],
         [0.0, values[1], 0.0],
@@ -35,21 +35,21 @@ pub fn diagonal(values: Principal) -> Tensor {
     ]
 }
 
-pub fn largest(a: &Tensor) -> f64 {
+pub(crate) fn largest(a: &Tensor) -> f64 {
     a.iter()
         .flatten()
         .fold(0.0, |most: f64, value| most.max(value.abs()))
 }
 
 /// In-plane rotation by an angle \[radians\].
-pub fn plane_rotation(angle: f64) -> Tensor {
+pub(crate) fn plane_rotation(angle: f64) -> Tensor {
     let (sine, cosine) = angle.sin_cos();
     [[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]]
 }
 
 impl Measure {
     /// The state with the given principal strains and axes (columns of `axes`): b = exp 2ε, or ε.
-    pub fn state(self, strain: &Principal, axes: &Tensor) -> Tensor {
+    pub(crate) fn state(self, strain: &Principal, axes: &Tensor) -> Tensor {
         let values = match self {
             Self::Finite => strain.map(|value| (2.0 * value).exp()),
             Self::Small => *strain,
@@ -57,7 +57,7 @@ impl Measure {
         congruence(axes, &diagonal(values))
     }
 
-    pub fn lift<const D: usize>(
+    pub(crate) fn lift<const D: usize>(
         self,
         law: &dyn ConstitutiveModel,
         state: &Tensor,
@@ -95,7 +95,7 @@ impl Measure {
 
     /// Rate of stress under the velocity gradient `l`, by fourth-order differences of step `h`;
     /// none if the regime changes on the way.
-    pub fn rate<const D: usize>(
+    pub(crate) fn rate<const D: usize>(
         self,
         law: &dyn ConstitutiveModel,
         state: &Tensor,
@@ -124,8 +124,8 @@ impl Measure {
 /// Largest difference between `rate` and what the spatial tangent answers to `l`, all nine
 /// components in 3D, the in-plane ones and the trace in plane strain.
 ///
-/// `l` may have l_zz in plane strain only as part of an isotropic tensor: `l = l' + r I`.
-pub fn tangent_error<const D: usize>(
+/// `l` may have `l_zz` in plane strain only as part of an isotropic tensor: `l = l' + r I`.
+pub(crate) fn tangent_error<const D: usize>(
     lifted: &Lifted<D>,
     rate: &Tensor,
     l_prime: &Tensor,
@@ -150,7 +150,7 @@ pub fn tangent_error<const D: usize>(
 }
 
 /// A velocity gradient l' + r I: l' has D×D components.
-pub fn with_dilation<const D: usize>(l_prime: &mut Tensor, r: f64) -> Tensor {
+pub(crate) fn with_dilation<const D: usize>(l_prime: &mut Tensor, r: f64) -> Tensor {
     for a in 0..3 {
         for b in 0..3 {
             if a >= D || b >= D {

@@ -72,7 +72,11 @@ impl LinearSolver for AutoSolver {
         Ok(())
     }
 
-    fn solve(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<SolveReport, LinearSolverError> {
+    fn solve(
+        &mut self,
+        rhs: &[f64],
+        solution: &mut [f64],
+    ) -> Result<SolveReport, LinearSolverError> {
         match self.chosen {
             Some(Method::Cholesky) => self.cholesky.solve(rhs, solution),
             Some(Method::Lu) => self.lu.solve(rhs, solution),

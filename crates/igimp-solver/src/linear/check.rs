@@ -18,7 +18,11 @@ pub(super) fn same_pattern(analysed: Option<&Arc<Pattern>>, pattern: &Arc<Patter
 /// Checks that a pattern is not empty, sorted, in range and covered by its node blocks.
 pub(super) fn valid_pattern(pattern: &Pattern) -> Result<(), LinearSolverError> {
     let invalid = |reason, column| Err(LinearSolverError::InvalidPattern { reason, column });
-    let Some(unknowns) = pattern.col_ptr.len().checked_sub(1).filter(|&unknowns| unknowns > 0)
+    let Some(unknowns) = pattern
+        .col_ptr
+        .len()
+        .checked_sub(1)
+        .filter(|&unknowns| unknowns > 0)
     else {
         return Err(LinearSolverError::Empty);
     };
@@ -50,7 +54,9 @@ pub(super) fn valid_pattern(pattern: &Pattern) -> Result<(), LinearSolverError> 
 /// Checks that a matrix has finite values, as many as its pattern stores, and no zero row or
 /// column.
 pub(super) fn valid_values(matrix: &TangentMatrix) -> Result<(), LinearSolverError> {
-    let Pattern { col_ptr, row_idx, .. } = &*matrix.pattern;
+    let Pattern {
+        col_ptr, row_idx, ..
+    } = &*matrix.pattern;
     let unknowns = matrix.pattern.unknowns();
     length("the matrix", matrix.values.len(), row_idx.len())?;
     finite("matrix", &matrix.values)?;
@@ -63,7 +69,9 @@ pub(super) fn valid_values(matrix: &TangentMatrix) -> Result<(), LinearSolverErr
             column_filled |= filled;
         }
         if !column_filled {
-            return Err(LinearSolverError::Singular { unknown: Some(column) });
+            return Err(LinearSolverError::Singular {
+                unknown: Some(column),
+            });
         }
     }
     match row_filled.iter().position(|&filled| !filled) {
@@ -89,7 +97,11 @@ pub(super) fn length(
     if found == expected {
         Ok(())
     } else {
-        Err(LinearSolverError::WrongLength { what, expected, found })
+        Err(LinearSolverError::WrongLength {
+            what,
+            expected,
+            found,
+        })
     }
 }
 
@@ -109,7 +121,8 @@ pub(super) fn keep(kept: &mut Option<TangentMatrix>, matrix: &TangentMatrix) {
 pub(super) fn diagonal(matrix: &TangentMatrix, unknown: usize) -> f64 {
     let entries = matrix.pattern.col_ptr[unknown]..matrix.pattern.col_ptr[unknown + 1];
     let rows = &matrix.pattern.row_idx[entries.clone()];
-    rows.binary_search(&unknown).map_or(0.0, |offset| matrix.values[entries.start + offset])
+    rows.binary_search(&unknown)
+        .map_or(0.0, |offset| matrix.values[entries.start + offset])
 }
 
 /// Checks the pivots of a Cholesky factorisation, given with their unknowns.
@@ -120,7 +133,9 @@ pub(super) fn sound_pivots(
     for (unknown, pivot) in pivots {
         let sound = pivot > LEAST_PIVOT * diagonal(matrix, unknown);
         if !sound {
-            return Err(LinearSolverError::NotPositiveDefinite { unknown: Some(unknown) });
+            return Err(LinearSolverError::NotPositiveDefinite {
+                unknown: Some(unknown),
+            });
         }
     }
     Ok(())

@@ -37,7 +37,10 @@ struct Analysis {
 impl GeneralLu {
     /// A solver with other demands on the residual than the default.
     pub fn with_accuracy(accuracy: Accuracy) -> Self {
-        Self { accuracy, ..Self::default() }
+        Self {
+            accuracy,
+            ..Self::default()
+        }
     }
 
     fn solve_factored(
@@ -48,7 +51,11 @@ impl GeneralLu {
         let (Some(analysis), Some(matrix)) = (self.analysis.as_mut(), self.matrix.as_ref()) else {
             return Err(LinearSolverError::NotFactored);
         };
-        let Analysis { symbolic, workspace, .. } = analysis;
+        let Analysis {
+            symbolic,
+            workspace,
+            ..
+        } = analysis;
         let factors = LuRef::new_unchecked(symbolic, &self.numeric);
         let refined = solve_refined(matrix, rhs, solution, &self.accuracy, |vector| {
             let rows = vector.len();
@@ -59,7 +66,11 @@ impl GeneralLu {
                 MemStack::new(workspace),
             );
         })?;
-        Ok(SolveReport::new("faer-lu", refined.relative_residual, refined.refinements))
+        Ok(SolveReport::new(
+            "faer-lu",
+            refined.relative_residual,
+            refined.refinements,
+        ))
     }
 }
 
@@ -69,7 +80,10 @@ impl LinearSolver for GeneralLu {
     }
 
     fn analyse(&mut self, pattern: &Arc<Pattern>) -> Result<(), LinearSolverError> {
-        if check::same_pattern(self.analysis.as_ref().map(|analysis| &analysis.pattern), pattern) {
+        if check::same_pattern(
+            self.analysis.as_ref().map(|analysis| &analysis.pattern),
+            pattern,
+        ) {
             return Ok(());
         }
         self.factored = false;
@@ -83,7 +97,11 @@ impl LinearSolver for GeneralLu {
             .factorize_numeric_lu_scratch::<f64>(Par::Seq, Spec::default())
             .or(symbolic.solve_in_place_scratch::<f64>(1, Par::Seq));
         let workspace = MemBuffer::try_new(scratch).map_err(|_| out_of_memory)?;
-        self.analysis = Some(Analysis { pattern: Arc::clone(pattern), symbolic, workspace });
+        self.analysis = Some(Analysis {
+            pattern: Arc::clone(pattern),
+            symbolic,
+            workspace,
+        });
         self.analyses += 1;
         Ok(())
     }
@@ -94,7 +112,10 @@ impl LinearSolver for GeneralLu {
         self.analyse(&matrix.pattern)?;
         self.factored = false;
         check::valid_values(matrix)?;
-        let analysis = self.analysis.as_mut().ok_or(LinearSolverError::NotFactored)?;
+        let analysis = self
+            .analysis
+            .as_mut()
+            .ok_or(LinearSolverError::NotFactored)?;
         analysis
             .symbolic
             .factorize_numeric_lu(
@@ -109,12 +130,18 @@ impl LinearSolver for GeneralLu {
                 LuError::Generic(_) => LinearSolverError::OutOfMemory { what: "LU factors" },
             })?;
         check::keep(&mut self.matrix, matrix);
-        probe(matrix.pattern.unknowns(), None, |rhs, solution| self.solve_factored(rhs, solution))?;
+        probe(matrix.pattern.unknowns(), None, |rhs, solution| {
+            self.solve_factored(rhs, solution)
+        })?;
         self.factored = true;
         Ok(())
     }
 
-    fn solve(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<SolveReport, LinearSolverError> {
+    fn solve(
+        &mut self,
+        rhs: &[f64],
+        solution: &mut [f64],
+    ) -> Result<SolveReport, LinearSolverError> {
         if !self.factored {
             return Err(LinearSolverError::NotFactored);
         }

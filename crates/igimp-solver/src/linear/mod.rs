@@ -67,7 +67,11 @@ pub trait LinearSolver: Send {
     /// [`LinearSolverError::NotFactored`], [`LinearSolverError::WrongLength`],
     /// [`LinearSolverError::NonFinite`], [`LinearSolverError::Singular`] or
     /// [`LinearSolverError::Inaccurate`].
-    fn solve(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<SolveReport, LinearSolverError>;
+    fn solve(
+        &mut self,
+        rhs: &[f64],
+        solution: &mut [f64],
+    ) -> Result<SolveReport, LinearSolverError>;
 
     /// How many patterns were analysed since construction: shows that symbolic work is reused.
     fn analyses(&self) -> usize;
@@ -84,14 +88,20 @@ pub struct SolveReport {
     pub refinements: usize,
     /// Pivots that were too small to divide by and were replaced (zero for most methods).
     pub perturbed_pivots: usize,
-    /// Largest entry met during the elimination over the largest of the scaled matrix; 1 for
-    /// methods that do not record it.
+    /// Largest entry met among the pivots of the elimination, the matrix being scaled to entries
+    /// of about 1; 1 for methods that do not record it.
     pub pivot_growth: f64,
 }
 
 impl SolveReport {
     fn new(method: &'static str, relative_residual: f64, refinements: usize) -> Self {
-        Self { method, relative_residual, refinements, perturbed_pivots: 0, pivot_growth: 1.0 }
+        Self {
+            method,
+            relative_residual,
+            refinements,
+            perturbed_pivots: 0,
+            pivot_growth: 1.0,
+        }
     }
 }
 

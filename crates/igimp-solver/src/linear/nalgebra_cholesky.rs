@@ -35,7 +35,10 @@ struct Analysis {
 impl NalgebraCholesky {
     /// A solver with other demands on the residual than the default.
     pub fn with_accuracy(accuracy: Accuracy) -> Self {
-        Self { accuracy, ..Self::default() }
+        Self {
+            accuracy,
+            ..Self::default()
+        }
     }
 }
 
@@ -45,7 +48,10 @@ impl LinearSolver for NalgebraCholesky {
     }
 
     fn analyse(&mut self, pattern: &Arc<Pattern>) -> Result<(), LinearSolverError> {
-        if check::same_pattern(self.analysis.as_ref().map(|analysis| &analysis.pattern), pattern) {
+        if check::same_pattern(
+            self.analysis.as_ref().map(|analysis| &analysis.pattern),
+            pattern,
+        ) {
             return Ok(());
         }
         self.factors = None;
@@ -62,20 +68,37 @@ impl LinearSolver for NalgebraCholesky {
             return Err(LinearSolverError::NotSymmetric);
         }
         check::valid_values(matrix)?;
-        let analysis = self.analysis.as_ref().ok_or(LinearSolverError::NotFactored)?;
-        let values: Vec<f64> = analysis.sources.iter().map(|&entry| matrix.values[entry]).collect();
+        let analysis = self
+            .analysis
+            .as_ref()
+            .ok_or(LinearSolverError::NotFactored)?;
+        let values: Vec<f64> = analysis
+            .sources
+            .iter()
+            .map(|&entry| matrix.values[entry])
+            .collect();
         let factors = CscCholesky::factor_numerical(analysis.symbolic.clone(), &values)
             .map_err(|_| LinearSolverError::NotPositiveDefinite { unknown: None })?;
         let lower = factors.l();
-        let roots = lower.col_offsets().iter().map(|&start| lower.values().get(start));
+        let roots = lower
+            .col_offsets()
+            .iter()
+            .map(|&start| lower.values().get(start));
         let pivots = analysis.order.iter().zip(roots.flatten());
-        check::sound_pivots(matrix, pivots.map(|(&unknown, root)| (unknown, root * root)))?;
+        check::sound_pivots(
+            matrix,
+            pivots.map(|(&unknown, root)| (unknown, root * root)),
+        )?;
         self.factors = Some(factors);
         check::keep(&mut self.matrix, matrix);
         Ok(())
     }
 
-    fn solve(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<SolveReport, LinearSolverError> {
+    fn solve(
+        &mut self,
+        rhs: &[f64],
+        solution: &mut [f64],
+    ) -> Result<SolveReport, LinearSolverError> {
         let (Some(Analysis { order, .. }), Some(factors), Some(matrix)) =
             (&self.analysis, &self.factors, &self.matrix)
         else {
@@ -91,7 +114,11 @@ impl LinearSolver for NalgebraCholesky {
                 vector[unknown] = permuted;
             }
         })?;
-        Ok(SolveReport::new(self.name(), refined.relative_residual, refined.refinements))
+        Ok(SolveReport::new(
+            self.name(),
+            refined.relative_residual,
+            refined.refinements,
+        ))
     }
 
     fn analyses(&self) -> usize {
@@ -121,9 +148,18 @@ impl Analysis {
             sources.extend(column.iter().map(|&(_, entry)| entry));
             offsets.push(rows.len());
         }
-        let permuted = SparsityPattern::try_from_offsets_and_indices(unknowns, unknowns, offsets, rows)
-            .map_err(|_| LinearSolverError::InvalidPattern { reason: "not square", column: 0 })?;
+        let permuted =
+            SparsityPattern::try_from_offsets_and_indices(unknowns, unknowns, offsets, rows)
+                .map_err(|_| LinearSolverError::InvalidPattern {
+                    reason: "not square",
+                    column: 0,
+                })?;
         let symbolic = CscSymbolicCholesky::factor(permuted);
-        Ok(Self { pattern: Arc::clone(pattern), symbolic, order, sources })
+        Ok(Self {
+            pattern: Arc::clone(pattern),
+            symbolic,
+            order,
+            sources,
+        })
     }
 }

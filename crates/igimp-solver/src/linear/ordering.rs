@@ -36,7 +36,9 @@ impl NestedDissection {
     /// The unknowns in order of elimination, those of a node together.
     pub fn unknowns(&self, pattern: &Pattern) -> Vec<usize> {
         let blocks = self.nodes.iter().map(|&node| pattern.blocks[node]);
-        blocks.flat_map(|block| block.first..block.first + block.len).collect()
+        blocks
+            .flat_map(|block| block.first..block.first + block.len)
+            .collect()
     }
 }
 
@@ -59,7 +61,8 @@ struct Dissector<'a> {
 impl Dissector<'_> {
     /// Sorts a part into order of elimination: first half, second half, separator.
     ///
-    /// Each half holds at most half of the nodes, so the recursion is as deep as log2 n.
+    /// Each half holds at most half of the nodes, or a single layer where that alone holds more, so
+    /// the recursion is little deeper than log2 n.
     fn dissect(&mut self, part: &mut [usize]) {
         let separator = match part.len() {
             0..=LEAF_NODES => None,
@@ -102,7 +105,11 @@ impl Dissector<'_> {
             best = best.min((before.max(after), start));
         }
         let start = low[axis] + best.1;
-        Some(Separator { axis, start, end: start + self.reach })
+        Some(Separator {
+            axis,
+            start,
+            end: start + self.reach,
+        })
     }
 
     /// Smallest and largest place of the nodes along each axis.
@@ -135,7 +142,11 @@ impl Dissector<'_> {
         }
         let is_after = |node: &&usize| place(**node) >= separator.end;
         let is_between = |node: &&usize| place(**node) < separator.end;
-        let last = self.buffer.iter().filter(is_after).chain(self.buffer.iter().filter(is_between));
+        let last = self
+            .buffer
+            .iter()
+            .filter(is_after)
+            .chain(self.buffer.iter().filter(is_between));
         let mut after = 0;
         for (slot, &node) in part[before..].iter_mut().zip(last) {
             *slot = node;

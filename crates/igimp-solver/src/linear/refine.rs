@@ -25,7 +25,11 @@ pub struct Accuracy {
 
 impl Default for Accuracy {
     fn default() -> Self {
-        Self { target: 1e-12, tolerance: 1e-6, max_refinements: 10 }
+        Self {
+            target: 1e-12,
+            tolerance: 1e-6,
+            max_refinements: 10,
+        }
     }
 }
 
@@ -51,7 +55,10 @@ pub(super) fn solve_refined(
     let scale = max_norm(rhs);
     solution.fill(0.0);
     if scale == 0.0 {
-        return Ok(Refined { relative_residual: 0.0, refinements: 0 });
+        return Ok(Refined {
+            relative_residual: 0.0,
+            refinements: 0,
+        });
     }
 
     let mut correction = rhs.to_vec();
@@ -81,10 +88,16 @@ pub(super) fn solve_refined(
         }
     }
     if relative_residual <= accuracy.tolerance {
-        Ok(Refined { relative_residual, refinements })
+        Ok(Refined {
+            relative_residual,
+            refinements,
+        })
     } else {
         let tolerance = accuracy.tolerance;
-        Err(LinearSolverError::Inaccurate { relative_residual, tolerance })
+        Err(LinearSolverError::Inaccurate {
+            relative_residual,
+            tolerance,
+        })
     }
 }
 
@@ -109,7 +122,9 @@ pub(super) fn relative_residual_of(
 
 /// Largest magnitude of the entries; NaN entries are ignored.
 pub(super) fn max_norm(values: &[f64]) -> f64 {
-    values.iter().fold(0.0, |largest, value| value.abs().max(largest))
+    values
+        .iter()
+        .fold(0.0, |largest, value| value.abs().max(largest))
 }
 
 /// Tells a singular matrix from a regular one after a suspicious factorisation: solves with a

@@ -77,8 +77,18 @@ impl LinearSolver for SprsBiCgStab {
     }
 
     /// As for every solver; a matrix that is singular shows as [`LinearSolverError::Inaccurate`].
-    fn solve(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<SolveReport, LinearSolverError> {
-        let (Some(Scaled { matrix: scaled, scale }), Some(matrix)) = (&self.system, &self.matrix)
+    fn solve(
+        &mut self,
+        rhs: &[f64],
+        solution: &mut [f64],
+    ) -> Result<SolveReport, LinearSolverError> {
+        let (
+            Some(Scaled {
+                matrix: scaled,
+                scale,
+            }),
+            Some(matrix),
+        ) = (&self.system, &self.matrix)
         else {
             return Err(LinearSolverError::NotFactored);
         };
@@ -102,8 +112,12 @@ impl LinearSolver for SprsBiCgStab {
         {
             let right: Vec<f64> = residual.iter().zip(scale).map(|(r, s)| r * s).collect();
             let goal = 0.1 * self.accuracy.target * size / max_norm(&residual) * norm(&right);
-            let (step, iterations) =
-                iterate(scaled, &right, goal, self.max_iterations - report.refinements);
+            let (step, iterations) = iterate(
+                scaled,
+                &right,
+                goal,
+                self.max_iterations - report.refinements,
+            );
             report.refinements += iterations;
             for (index, candidate) in candidate.iter_mut().enumerate() {
                 *candidate = solution[index] + step[index] * scale[index];
@@ -122,7 +136,10 @@ impl LinearSolver for SprsBiCgStab {
         if relative_residual <= tolerance {
             Ok(report)
         } else {
-            Err(LinearSolverError::Inaccurate { relative_residual, tolerance })
+            Err(LinearSolverError::Inaccurate {
+                relative_residual,
+                tolerance,
+            })
         }
     }
 
@@ -133,11 +150,20 @@ impl LinearSolver for SprsBiCgStab {
 
 impl Scaled {
     fn new(matrix: &TangentMatrix) -> Self {
-        let Pattern { col_ptr, row_idx, .. } = &*matrix.pattern;
+        let Pattern {
+            col_ptr, row_idx, ..
+        } = &*matrix.pattern;
         let unknowns = matrix.pattern.unknowns();
-        let unit = |diagonal: f64| if diagonal == 0.0 { 1.0 } else { 1.0 / diagonal.abs().sqrt() };
-        let scale: Vec<f64> =
-            (0..unknowns).map(|unknown| unit(check::diagonal(matrix, unknown))).collect();
+        let unit = |diagonal: f64| {
+            if diagonal == 0.0 {
+                1.0
+            } else {
+                1.0 / diagonal.abs().sqrt()
+            }
+        };
+        let scale: Vec<f64> = (0..unknowns)
+            .map(|unknown| unit(check::diagonal(matrix, unknown)))
+            .collect();
         let mut values = matrix.values.clone();
         for column in 0..unknowns {
             for entry in col_ptr[column]..col_ptr[column + 1] {
@@ -146,14 +172,23 @@ impl Scaled {
         }
         let shape = (unknowns, unknowns);
         let matrix = CsMat::new_csc(shape, col_ptr.clone(), row_idx.clone(), values);
-        Self { matrix: matrix.to_csr(), scale }
+        Self {
+            matrix: matrix.to_csr(),
+            scale,
+        }
     }
 }
 
 /// Iterates from zero until the residual norm is below `goal` or nothing moves any more; returns
 /// the solution and the number of iterations.
-fn iterate(matrix: &CsMat<f64>, rhs: &[f64], goal: f64, max_iterations: usize) -> (Vec<f64>, usize) {
-    let dense = |values: &[f64]| CsVec::new(values.len(), (0..values.len()).collect(), values.to_vec());
+fn iterate(
+    matrix: &CsMat<f64>,
+    rhs: &[f64],
+    goal: f64,
+    max_iterations: usize,
+) -> (Vec<f64>, usize) {
+    let dense =
+        |values: &[f64]| CsVec::new(values.len(), (0..values.len()).collect(), values.to_vec());
     let right = dense(rhs);
     let start = dense(&vec![0.0; rhs.len()]);
     let mut solver = BiCGSTAB::<f64, usize, usize>::new(matrix.view(), start.view(), right.view());
@@ -186,5 +221,10 @@ fn norm(values: &[f64]) -> f64 {
     if largest == 0.0 {
         return 0.0;
     }
-    values.iter().map(|value| (value / largest).powi(2)).sum::<f64>().sqrt() * largest
+    values
+        .iter()
+        .map(|value| (value / largest).powi(2))
+        .sum::<f64>()
+        .sqrt()
+        * largest
 }

@@ -40,12 +40,17 @@ struct Analysis {
 impl FaerCholesky {
     /// A solver with other demands on the residual than the default.
     pub fn with_accuracy(accuracy: Accuracy) -> Self {
-        Self { accuracy, ..Self::default() }
+        Self {
+            accuracy,
+            ..Self::default()
+        }
     }
 
     /// Number of entries of the factor L of the pattern analysed last, zero before.
     pub fn factor_entries(&self) -> usize {
-        self.analysis.as_ref().map_or(0, |analysis| analysis.symbolic.len_val())
+        self.analysis
+            .as_ref()
+            .map_or(0, |analysis| analysis.symbolic.len_val())
     }
 }
 
@@ -55,7 +60,10 @@ impl LinearSolver for FaerCholesky {
     }
 
     fn analyse(&mut self, pattern: &Arc<Pattern>) -> Result<(), LinearSolverError> {
-        if check::same_pattern(self.analysis.as_ref().map(|analysis| &analysis.pattern), pattern) {
+        if check::same_pattern(
+            self.analysis.as_ref().map(|analysis| &analysis.pattern),
+            pattern,
+        ) {
             return Ok(());
         }
         self.factored = false;
@@ -72,7 +80,10 @@ impl LinearSolver for FaerCholesky {
             return Err(LinearSolverError::NotSymmetric);
         }
         check::valid_values(matrix)?;
-        let analysis = self.analysis.as_mut().ok_or(LinearSolverError::NotFactored)?;
+        let analysis = self
+            .analysis
+            .as_mut()
+            .ok_or(LinearSolverError::NotFactored)?;
         self.factors.resize(analysis.symbolic.len_val(), 0.0);
         analysis.factor(matrix, &mut self.factors)?;
         check::keep(&mut self.matrix, matrix);
@@ -80,13 +91,21 @@ impl LinearSolver for FaerCholesky {
         Ok(())
     }
 
-    fn solve(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<SolveReport, LinearSolverError> {
+    fn solve(
+        &mut self,
+        rhs: &[f64],
+        solution: &mut [f64],
+    ) -> Result<SolveReport, LinearSolverError> {
         let (Some(analysis), Some(matrix), true) =
             (self.analysis.as_mut(), self.matrix.as_ref(), self.factored)
         else {
             return Err(LinearSolverError::NotFactored);
         };
-        let Analysis { symbolic, workspace, .. } = analysis;
+        let Analysis {
+            symbolic,
+            workspace,
+            ..
+        } = analysis;
         let factors = LltRef::new(symbolic, &self.factors);
         let refined = solve_refined(matrix, rhs, solution, &self.accuracy, |vector| {
             let rows = vector.len();
@@ -97,7 +116,11 @@ impl LinearSolver for FaerCholesky {
                 MemStack::new(workspace),
             );
         })?;
-        Ok(SolveReport::new(self.name(), refined.relative_residual, refined.refinements))
+        Ok(SolveReport::new(
+            self.name(),
+            refined.relative_residual,
+            refined.refinements,
+        ))
     }
 
     fn analyses(&self) -> usize {
@@ -113,7 +136,9 @@ impl Analysis {
         for (new, &old) in order.iter().enumerate() {
             position[old] = new;
         }
-        let out_of_memory = LinearSolverError::OutOfMemory { what: "Cholesky factor" };
+        let out_of_memory = LinearSolverError::OutOfMemory {
+            what: "Cholesky factor",
+        };
         let symbolic = cholesky::factorize_symbolic_cholesky(
             symbolic_view(pattern),
             Side::Lower,
@@ -125,10 +150,18 @@ impl Analysis {
             .factorize_numeric_llt_scratch::<f64>(Par::Seq, Spec::default())
             .or(symbolic.solve_in_place_scratch::<f64>(1, Par::Seq));
         let workspace = MemBuffer::try_new(scratch).map_err(|_| out_of_memory)?;
-        Ok(Self { pattern: Arc::clone(pattern), symbolic, workspace })
+        Ok(Self {
+            pattern: Arc::clone(pattern),
+            symbolic,
+            workspace,
+        })
     }
 
-    fn factor(&mut self, matrix: &TangentMatrix, factors: &mut [f64]) -> Result<(), LinearSolverError> {
+    fn factor(
+        &mut self,
+        matrix: &TangentMatrix,
+        factors: &mut [f64],
+    ) -> Result<(), LinearSolverError> {
         self.symbolic
             .factorize_numeric_llt(
                 factors,
@@ -171,5 +204,11 @@ impl Analysis {
 /// The pattern as `faer` sees it.
 pub(super) fn symbolic_view(pattern: &Pattern) -> SymbolicSparseColMatRef<'_, usize> {
     let unknowns = pattern.unknowns();
-    SymbolicSparseColMatRef::new_checked(unknowns, unknowns, &pattern.col_ptr, None, &pattern.row_idx)
+    SymbolicSparseColMatRef::new_checked(
+        unknowns,
+        unknowns,
+        &pattern.col_ptr,
+        None,
+        &pattern.row_idx,
+    )
 }

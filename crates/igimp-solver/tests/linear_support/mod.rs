@@ -55,19 +55,33 @@ impl Body {
     }
 
     pub(crate) fn line(nodes: usize) -> Self {
-        Self { nodes: [nodes, 1, 1], dofs: 1, ..Self::plane(1, 1) }
+        Self {
+            nodes: [nodes, 1, 1],
+            dofs: 1,
+            ..Self::plane(1, 1)
+        }
     }
 
     pub(crate) fn solid(nodes: [usize; 3]) -> Self {
-        Self { nodes, dofs: 3, ..Self::plane(1, 1) }
+        Self {
+            nodes,
+            dofs: 3,
+            ..Self::plane(1, 1)
+        }
     }
 
     pub(crate) fn unsymmetric(self, fraction: f64) -> Self {
-        Self { unsymmetric: fraction, ..self }
+        Self {
+            unsymmetric: fraction,
+            ..self
+        }
     }
 
     pub(crate) fn slope(self) -> Self {
-        Self { slope: true, ..self }
+        Self {
+            slope: true,
+            ..self
+        }
     }
 
     pub(crate) fn seed(self, seed: u64) -> Self {
@@ -75,7 +89,7 @@ impl Body {
     }
 
     /// Assembles the tangent. The nodes of the first layer along x keep one unknown only, as on a
-    /// roller; the last layer along y rests on springs, so that the body is held.
+    /// roller; weak springs hold the body.
     pub(crate) fn tangent(&self) -> TangentMatrix {
         let patches = self.patches();
         let mut random = Random(self.seed);
@@ -91,26 +105,34 @@ impl Body {
         for (&node, slot) in &mut first {
             let place = self.place(node);
             let len = if place[0] == 0 { 1 } else { self.dofs };
-            blocks.push(NodeBlock { first: unknowns, len, place });
+            blocks.push(NodeBlock {
+                first: unknowns,
+                len,
+                place,
+            });
             *slot = (unknowns, len);
             unknowns += len;
         }
 
         for patch in &patches {
-            let touched: Vec<usize> =
-                patch.iter().flat_map(|node| first[node].0..first[node].0 + first[node].1).collect();
-            for _ in 0..self.particles {
-                // Three strain modes, and a rotated second set of them for the unsymmetric part.
-                for _ in 0..3 {
-                    let mode: Vec<f64> = touched.iter().map(|_| random.signed()).collect();
-                    let skew: Vec<f64> = touched.iter().map(|_| random.signed()).collect();
-                    for (column, &unknown) in touched.iter().enumerate() {
-                        for (row, &other) in touched.iter().enumerate() {
-                            *couplings.entry((unknown, other)).or_default() += mode[row]
-                                * mode[column]
-                                + self.unsymmetric * skew[row] * mode[column];
-                        }
+            let touched: Vec<usize> = patch
+                .iter()
+                .flat_map(|node| first[node].0..first[node].0 + first[node].1)
+                .collect();
+            // Three strain modes per particle, and a second set of them for the unsymmetric part.
+            let mut stiffness = vec![0.0; touched.len() * touched.len()];
+            for _ in 0..3 * self.particles {
+                let mode: Vec<f64> = touched.iter().map(|_| random.signed()).collect();
+                let skew: Vec<f64> = touched.iter().map(|_| random.signed()).collect();
+                for (column, values) in stiffness.chunks_exact_mut(touched.len()).enumerate() {
+                    for (row, value) in values.iter_mut().enumerate() {
+                        *value += (mode[row] + self.unsymmetric * skew[row]) * mode[column];
                     }
+                }
+            }
+            for (&column, values) in touched.iter().zip(stiffness.chunks_exact(touched.len())) {
+                for (&row, value) in touched.iter().zip(values) {
+                    *couplings.entry((column, row)).or_default() += value;
                 }
             }
             for &unknown in &touched {
@@ -171,8 +193,17 @@ pub(crate) fn assemble(
         col_ptr[column + 1] += col_ptr[column];
     }
     let row_idx = both.keys().map(|&(_, row)| row).collect();
-    let pattern = Arc::new(Pattern { col_ptr, row_idx, blocks, reach: 2 });
-    TangentMatrix { pattern, values: both.into_values().collect(), symmetric }
+    let pattern = Arc::new(Pattern {
+        col_ptr,
+        row_idx,
+        blocks,
+        reach: 2,
+    });
+    TangentMatrix {
+        pattern,
+        values: both.into_values().collect(),
+        symmetric,
+    }
 }
 
 /// A matrix from dense rows, each unknown a node of its own on a line.
@@ -186,14 +217,20 @@ pub(crate) fn from_dense(rows: &[&[f64]], symmetric: bool) -> TangentMatrix {
             }
         }
     }
-    let blocks = (0..unknowns).map(|first| NodeBlock { first, len: 1, place: [first, 0, 0] });
+    let blocks = (0..unknowns).map(|first| NodeBlock {
+        first,
+        len: 1,
+        place: [first, 0, 0],
+    });
     assemble(&entries, unknowns, blocks.collect(), symmetric)
 }
 
 /// A solution to recover and the right-hand side that belongs to it.
 pub(crate) fn manufactured(matrix: &TangentMatrix, seed: u64) -> (Vec<f64>, Vec<f64>) {
     let mut random = Random(seed);
-    let exact: Vec<f64> = (0..matrix.pattern.unknowns()).map(|_| random.signed()).collect();
+    let exact: Vec<f64> = (0..matrix.pattern.unknowns())
+        .map(|_| random.signed())
+        .collect();
     let mut rhs = vec![0.0; exact.len()];
     matrix.multiply(&exact, &mut rhs);
     (exact, rhs)
@@ -201,5 +238,7 @@ pub(crate) fn manufactured(matrix: &TangentMatrix, seed: u64) -> (Vec<f64>, Vec<
 
 /// Largest difference of the entries.
 pub(crate) fn distance(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).fold(0.0, |largest, (a, b)| (a - b).abs().max(largest))
+    a.iter()
+        .zip(b)
+        .fold(0.0, |largest, (a, b)| (a - b).abs().max(largest))
 }

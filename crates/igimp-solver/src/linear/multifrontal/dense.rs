@@ -39,7 +39,9 @@ pub(super) fn factor_block(
     record: &mut PivotRecord,
 ) {
     factor_columns(block, exchanges.len(), 0, exchanges, first, record);
-    record.largest = block.iter().fold(record.largest, |largest, value| largest.max(value.abs()));
+    record.largest = block
+        .iter()
+        .fold(record.largest, |largest, value| largest.max(value.abs()));
 }
 
 /// Factorises the columns of `panel`, each `rows` long, whose first pivot is in row `top`.
@@ -64,10 +66,14 @@ fn factor_columns(
     exchange_rows(right, rows, top, left_exchanges);
 
     let factored = MatRef::from_column_major_slice(left, rows, half);
-    let (pivots, below) =
-        (factored.subrows(top, half), factored.subrows(middle, rows - middle));
+    let (pivots, below) = (
+        factored.subrows(top, half),
+        factored.subrows(middle, rows - middle),
+    );
     let remaining = MatMut::from_column_major_slice_mut(right, rows, columns - half);
-    let (mut upper, lower) = remaining.subrows_mut(top, rows - top).split_at_row_mut(half);
+    let (mut upper, lower) = remaining
+        .subrows_mut(top, rows - top)
+        .split_at_row_mut(half);
     solve_unit_lower_triangular_in_place(pivots, upper.as_mut(), Par::Seq);
     matmul(lower, Accum::Add, below, upper.as_ref(), -1.0, Par::Seq);
 

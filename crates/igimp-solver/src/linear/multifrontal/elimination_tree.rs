@@ -24,7 +24,10 @@ impl NodeGraph {
             node_of.resize(block.first + block.len, node);
         }
         let mut seen_by = vec![NONE; pattern.blocks.len()];
-        let mut graph = Self { starts: vec![0], neighbours: Vec::new() };
+        let mut graph = Self {
+            starts: vec![0],
+            neighbours: Vec::new(),
+        };
         for (node, block) in pattern.blocks.iter().enumerate() {
             seen_by[node] = node;
             let entries = pattern.col_ptr[block.first]..pattern.col_ptr[block.first + block.len];
@@ -46,10 +49,14 @@ impl NodeGraph {
         for (new, &old) in order.iter().enumerate() {
             number[old] = new;
         }
-        let mut graph =
-            Self { starts: vec![0], neighbours: Vec::with_capacity(self.neighbours.len()) };
+        let mut graph = Self {
+            starts: vec![0],
+            neighbours: Vec::with_capacity(self.neighbours.len()),
+        };
         for &old in order {
-            graph.neighbours.extend(self.neighbours(old).iter().map(|&other| number[other]));
+            graph
+                .neighbours
+                .extend(self.neighbours(old).iter().map(|&other| number[other]));
             graph.starts.push(graph.neighbours.len());
         }
         graph
@@ -228,8 +235,10 @@ mod tests {
             let mut pairs = Vec::new();
             for a in 0..nodes {
                 for b in a + 1..nodes {
-                    state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-                    if (state >> 33) % 9 == 0 {
+                    state = state
+                        .wrapping_mul(6_364_136_223_846_793_005)
+                        .wrapping_add(1);
+                    if (state >> 33).is_multiple_of(9) {
                         pairs.push((a, b));
                     }
                 }
@@ -240,7 +249,10 @@ mod tests {
             let graph = graph.renumbered(&order);
             let parent = parents(&graph);
             assert_eq!(postorder(&parent), (0..nodes).collect::<Vec<_>>());
-            assert_eq!(column_counts(&graph, &parent), counts_by_elimination(&graph));
+            assert_eq!(
+                column_counts(&graph, &parent),
+                counts_by_elimination(&graph)
+            );
         }
     }
 }

@@ -52,11 +52,18 @@ impl Factors {
             let (own_exchanges, later_exchanges) = exchanges.split_at_mut(front.pivots);
             (values, exchanges) = (later_values, later_exchanges);
             let [even, odd] = &mut self.stacks;
-            let (own, below) = if front.stack == 0 { (even, &*odd) } else { (odd, &*even) };
+            let (own, below) = if front.stack == 0 {
+                (even, &*odd)
+            } else {
+                (odd, &*even)
+            };
             let contribution = &mut own[front.contribution.clone()];
             let children = front.children.iter().map(|&child| {
                 let child = &symbolic.fronts[child];
-                (&symbolic.borders[child.border.clone()], &below[child.contribution.clone()])
+                (
+                    &symbolic.borders[child.border.clone()],
+                    &below[child.contribution.clone()],
+                )
             });
 
             for (row, &position) in symbolic.borders[front.border.clone()].iter().enumerate() {
@@ -82,8 +89,9 @@ impl Factors {
         let unknowns = symbolic.order.len();
         let largest_border = symbolic.fronts.iter().map(|front| front.border.len()).max();
         make_room(&mut self.values, symbolic.factor_len, "LU factors")?;
-        make_room(&mut self.stacks[0], symbolic.stack_len[0], "LU contributions")?;
-        make_room(&mut self.stacks[1], symbolic.stack_len[1], "LU contributions")?;
+        for (stack, &len) in self.stacks.iter_mut().zip(&symbolic.stack_len) {
+            make_room(stack, len, "LU contributions")?;
+        }
         make_room(&mut self.vector, unknowns, "vector")?;
         make_room(&mut self.border, largest_border.unwrap_or(0), "vector")?;
         self.exchanges.resize(unknowns, 0);
@@ -119,7 +127,8 @@ impl Factors {
                 let product = MatMut::from_column_major_slice_mut(border, r, 1);
                 let pivots = MatRef::from_column_major_slice(&*pivots, w, 1);
                 matmul(product, Accum::Replace, lower, pivots, 1.0, Par::Seq);
-                for (&position, &value) in symbolic.borders[front.border.clone()].iter().zip(&*border)
+                for (&position, &value) in
+                    symbolic.borders[front.border.clone()].iter().zip(&*border)
                 {
                     tail[position - front.first - w] -= value;
                 }
@@ -138,15 +147,23 @@ impl Factors {
             let pivots = &mut head[front.first..];
             if r > 0 {
                 let border = &mut self.border[..r];
-                for (value, &position) in
-                    border.iter_mut().zip(&symbolic.borders[front.border.clone()])
+                for (value, &position) in border
+                    .iter_mut()
+                    .zip(&symbolic.borders[front.border.clone()])
                 {
                     *value = tail[position - front.first - w];
                 }
                 let upper = MatRef::from_column_major_slice(&own[w * (w + r)..], r, w);
                 let border = MatRef::from_column_major_slice(&*border, r, 1);
                 let target = MatMut::from_column_major_slice_mut(&mut *pivots, w, 1);
-                matmul(target, Accum::Add, upper.transpose(), border, -1.0, Par::Seq);
+                matmul(
+                    target,
+                    Accum::Add,
+                    upper.transpose(),
+                    border,
+                    -1.0,
+                    Par::Seq,
+                );
             }
             solve_upper(&own[..w * w], pivots);
         }
@@ -158,11 +175,17 @@ impl Factors {
 /// Memory is kept while it suffices, and some is added to spare when it does not: a body that
 /// spreads over the grid asks for a little more in every step. Fresh memory comes zeroed from the
 /// system and is not touched before it is used.
-fn make_room(values: &mut Vec<f64>, len: usize, what: &'static str) -> Result<(), LinearSolverError> {
+fn make_room(
+    values: &mut Vec<f64>,
+    len: usize,
+    what: &'static str,
+) -> Result<(), LinearSolverError> {
     if values.len() < len {
         *values = Vec::new();
         let roomy = len + len / 16;
-        values.try_reserve_exact(roomy).map_err(|_| LinearSolverError::OutOfMemory { what })?;
+        values
+            .try_reserve_exact(roomy)
+            .map_err(|_| LinearSolverError::OutOfMemory { what })?;
         *values = Vec::new();
         *values = vec![0.0; roomy];
     }

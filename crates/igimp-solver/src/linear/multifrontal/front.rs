@@ -37,7 +37,11 @@ impl<'a> Panels<'a> {
     pub(super) fn new(front: &Front, factors: &'a mut [f64]) -> Self {
         let (pivots, borders) = factors.split_at_mut(front.pivots * front.pivots);
         let (lower, upper) = borders.split_at_mut(front.border.len() * front.pivots);
-        Self { pivots, lower, upper }
+        Self {
+            pivots,
+            lower,
+            upper,
+        }
     }
 
     /// Sets the panels to the entries of the scaled matrix. `local` gives the row in the border of
@@ -138,7 +142,11 @@ pub(super) fn pass_on(front: &Front, child: &[f64], map: &BorderMap, contributio
     for columns in into_border {
         for k in 0..columns.len {
             let source = &child[(columns.source + k) * map.rows..][..map.rows];
-            add_runs(&mut contribution[(columns.target + k) * r..][..r], source, into_border);
+            add_runs(
+                &mut contribution[(columns.target + k) * r..][..r],
+                source,
+                into_border,
+            );
         }
     }
 }
@@ -169,11 +177,19 @@ impl BorderMap {
         self.pivot_runs = 0;
         for (source, &position) in child.iter().enumerate() {
             let among_pivots = position < end;
-            let target = if among_pivots { position - parent.first } else { local[position] };
+            let target = if among_pivots {
+                position - parent.first
+            } else {
+                local[position]
+            };
             let begins = among_pivots || self.runs.len() > self.pivot_runs;
             match self.runs.last_mut() {
                 Some(run) if begins && run.target + run.len == target => run.len += 1,
-                _ => self.runs.push(Run { source, target, len: 1 }),
+                _ => self.runs.push(Run {
+                    source,
+                    target,
+                    len: 1,
+                }),
             }
             if among_pivots {
                 self.pivot_runs = self.runs.len();
@@ -186,7 +202,10 @@ impl BorderMap {
 fn add_runs(target: &mut [f64], source: &[f64], runs: &[Run]) {
     for run in runs {
         let into = &mut target[run.target..run.target + run.len];
-        for (into, &value) in into.iter_mut().zip(&source[run.source..run.source + run.len]) {
+        for (into, &value) in into
+            .iter_mut()
+            .zip(&source[run.source..run.source + run.len])
+        {
             *into += value;
         }
     }

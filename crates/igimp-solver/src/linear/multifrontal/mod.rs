@@ -39,28 +39,23 @@ pub struct MultifrontalLu {
     symbolic: Option<Symbolic>,
     factors: Factors,
     matrix: Option<TangentMatrix>,
-    state: State,
+    factored: bool,
+    /// Takes over from the own factors where there is one.
     fallback: Option<Box<GeneralLu>>,
-}
-
-/// What there is to solve with.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-enum State {
-    #[default]
-    Empty,
-    Factored,
-    FellBack,
 }
 
 impl MultifrontalLu {
     /// A solver with other demands on the residual than the default.
     pub fn with_accuracy(accuracy: Accuracy) -> Self {
-        Self { accuracy, ..Self::default() }
+        Self {
+            accuracy,
+            ..Self::default()
+        }
     }
 
     /// Number of entries of the factors L and U of the pattern analysed last, zero before.
     pub fn factor_entries(&self) -> usize {
-        self.symbolic.as_ref().map_or(0, |symbolic| symbolic.factor_len)
+        self.symbolic.as_ref().map_or(0, |plan| plan.factor_len)
     }
 
     /// Number of floating-point operations of a factorisation of the pattern analysed last.
@@ -83,33 +78,43 @@ impl MultifrontalLu {
         Ok(SolveReport {
             perturbed_pivots: factors.record.replaced,
             pivot_growth: factors.record.largest.max(1.0),
-            ..SolveReport::new("multifrontal-lu", refined.relative_residual, refined.refinements)
+            ..SolveReport::new(
+                "multifrontal-lu",
+                refined.relative_residual,
+                refined.refinements,
+            )
         })
     }
 
-    fn pivots_are_to_blame(&self) -> bool {
+    /// Whether another choice of pivots may help against an error.
+    fn blames_pivots(&self, error: &LinearSolverError) -> bool {
         let record = &self.factors.record;
-        record.replaced > 0 || record.largest > SUSPICIOUS_GROWTH
+        let what_is_wrong = match error {
+            LinearSolverError::Inaccurate { .. } => true,
+            LinearSolverError::NonFinite { what, .. } => *what == "solution",
+            _ => false,
+        };
+        what_is_wrong && (record.replaced > 0 || record.largest > SUSPICIOUS_GROWTH)
     }
 
-    /// Factorises the kept matrix with free pivoting.
+    /// Factorises the kept matrix with free pivoting, unless it is too large for that.
     fn fall_back(&mut self, cause: LinearSolverError) -> Result<(), LinearSolverError> {
-        self.state = State::Empty;
-        let Some(matrix) = &self.matrix else {
-            return Err(LinearSolverError::NotFactored);
-        };
-        if matrix.pattern.unknowns() > FALLBACK_UNKNOWNS {
+        let small = |matrix: &&TangentMatrix| matrix.pattern.unknowns() <= FALLBACK_UNKNOWNS;
+        let Some(matrix) = self.matrix.as_ref().filter(small) else {
             return Err(cause);
+        };
+        let mut general = GeneralLu::with_accuracy(self.accuracy);
+        match (general.factor(matrix), cause) {
+            (Ok(()), _) => {
+                self.fallback = Some(Box::new(general));
+                Ok(())
+            }
+            (
+                Err(LinearSolverError::Singular { .. }),
+                named @ LinearSolverError::Singular { .. },
+            ) => Err(named),
+            (Err(error), _) => Err(error),
         }
-        let accuracy = self.accuracy;
-        let general =
-            self.fallback.get_or_insert_with(|| Box::new(GeneralLu::with_accuracy(accuracy)));
-        general.factor(matrix).map_err(|error| match (error, cause) {
-            (LinearSolverError::Singular { unknown: None }, named) => named,
-            (error, _) => error,
-        })?;
-        self.state = State::FellBack;
-        Ok(())
     }
 }
 
@@ -122,7 +127,8 @@ impl LinearSolver for MultifrontalLu {
         if check::same_pattern(self.symbolic.as_ref().map(|plan| &plan.pattern), pattern) {
             return Ok(());
         }
-        self.state = State::Empty;
+        self.factored = false;
+        self.fallback = None;
         self.symbolic = None;
         self.symbolic = Some(Symbolic::new(pattern)?);
         self.analyses += 1;
@@ -133,36 +139,42 @@ impl LinearSolver for MultifrontalLu {
     /// shows here and not later whether the matrix is singular.
     fn factor(&mut self, matrix: &TangentMatrix) -> Result<(), LinearSolverError> {
         self.analyse(&matrix.pattern)?;
-        self.state = State::Empty;
+        self.factored = false;
+        self.fallback = None;
         check::valid_values(matrix)?;
-        let symbolic = self.symbolic.as_ref().ok_or(LinearSolverError::NotFactored)?;
+        let symbolic = self
+            .symbolic
+            .as_ref()
+            .ok_or(LinearSolverError::NotFactored)?;
         self.factors.compute(symbolic, matrix)?;
         check::keep(&mut self.matrix, matrix);
-        self.state = State::Factored;
         if let Some(position) = self.factors.record.first_replaced {
             let suspect = Some(symbolic.order[position]);
             let unknowns = matrix.pattern.unknowns();
             let probed = probe(unknowns, suspect, |rhs, x| self.solve_factored(rhs, x));
-            if let Err(cause) = probed {
-                self.fall_back(cause)?;
-            }
+            probed.or_else(|cause| self.fall_back(cause))?;
         }
+        self.factored = true;
         Ok(())
     }
 
-    fn solve(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<SolveReport, LinearSolverError> {
-        if self.state == State::Factored {
+    fn solve(
+        &mut self,
+        rhs: &[f64],
+        solution: &mut [f64],
+    ) -> Result<SolveReport, LinearSolverError> {
+        if !self.factored {
+            return Err(LinearSolverError::NotFactored);
+        }
+        if self.fallback.is_none() {
             match self.solve_factored(rhs, solution) {
-                Err(
-                    cause @ (LinearSolverError::Inaccurate { .. }
-                    | LinearSolverError::NonFinite { what: "solution", .. }),
-                ) if self.pivots_are_to_blame() => self.fall_back(cause)?,
+                Err(cause) if self.blames_pivots(&cause) => self.fall_back(cause)?,
                 other => return other,
             }
         }
-        match (self.state, &mut self.fallback) {
-            (State::FellBack, Some(general)) => general.solve(rhs, solution),
-            _ => Err(LinearSolverError::NotFactored),
+        match &mut self.fallback {
+            Some(general) => general.solve(rhs, solution),
+            None => Err(LinearSolverError::NotFactored),
         }
     }
 

@@ -13,7 +13,9 @@ use super::super::check::diagonal;
 /// The diagonal of S. The matrix must have finite values and no zero row or column.
 pub(super) fn symmetric_scale(matrix: &TangentMatrix) -> Vec<f64> {
     let unknowns = matrix.pattern.unknowns();
-    let diagonal: Vec<f64> = (0..unknowns).map(|unknown| diagonal(matrix, unknown).abs()).collect();
+    let diagonal: Vec<f64> = (0..unknowns)
+        .map(|unknown| diagonal(matrix, unknown).abs())
+        .collect();
     let mut scale = vec![1.0; unknowns];
     if diagonal.contains(&0.0) {
         scale = largest_scaled(matrix, &scale);
@@ -30,7 +32,9 @@ pub(super) fn symmetric_scale(matrix: &TangentMatrix) -> Vec<f64> {
 
 /// Largest magnitude in each row and column together of S K S.
 fn largest_scaled(matrix: &TangentMatrix, scale: &[f64]) -> Vec<f64> {
-    let Pattern { col_ptr, row_idx, .. } = &*matrix.pattern;
+    let Pattern {
+        col_ptr, row_idx, ..
+    } = &*matrix.pattern;
     let mut largest = vec![0.0_f64; scale.len()];
     for column in 0..scale.len() {
         for entry in col_ptr[column]..col_ptr[column + 1] {

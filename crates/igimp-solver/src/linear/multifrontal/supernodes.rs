@@ -31,7 +31,7 @@ pub(super) fn supernodes(graph: &NodeGraph, parent: &[usize], dofs: &[usize]) ->
 fn fundamental(graph: &NodeGraph, parent: &[usize], dofs: &[usize]) -> Vec<Supernode> {
     let counts = column_counts(graph, parent);
     let unknowns = |nodes: &[usize]| nodes.iter().map(|&node| dofs[node]).sum();
-    // Supernodes hanging below each node, and which supernode each node belongs to.
+    // The supernodes whose parent in the elimination tree is each node.
     let mut below: Vec<Vec<usize>> = vec![Vec::new(); graph.len()];
     let mut seen_by = vec![NONE; graph.len()];
     let mut found: Vec<Supernode> = Vec::new();
@@ -64,7 +64,13 @@ fn fundamental(graph: &NodeGraph, parent: &[usize], dofs: &[usize]) -> Vec<Super
         }
         let columns: Vec<usize> = (start..end).collect();
         let (pivots, border) = (unknowns(&columns), unknowns(&rows));
-        found.push(Supernode { columns, rows, parent: NONE, pivots, border });
+        found.push(Supernode {
+            columns,
+            rows,
+            parent: NONE,
+            pivots,
+            border,
+        });
         start = end;
     }
     found
@@ -94,25 +100,21 @@ fn merged(mut supernodes: Vec<Supernode>) -> Vec<Supernode> {
     for this in (0..supernodes.len()).rev() {
         into[this] = into[into[this]];
     }
+    let is_kept = |this: &usize| into[*this] == *this;
     let mut number = vec![NONE; supernodes.len()];
-    let mut kept = 0;
-    for this in 0..supernodes.len() {
-        if into[this] == this {
-            number[this] = kept;
-            kept += 1;
-        }
+    for (new, old) in (0..supernodes.len()).filter(is_kept).enumerate() {
+        number[old] = new;
     }
     for supernode in &mut supernodes {
         if supernode.parent != NONE {
             supernode.parent = number[into[supernode.parent]];
         }
     }
-    let mut this = 0;
-    supernodes.retain(|_| {
-        this += 1;
-        into[this - 1] == this - 1
-    });
-    supernodes
+    let kept = supernodes
+        .into_iter()
+        .enumerate()
+        .filter(|(this, _)| is_kept(this));
+    kept.map(|(_, supernode)| supernode).collect()
 }
 
 /// Estimated time of a front, in floating-point operations of the dense kernels.

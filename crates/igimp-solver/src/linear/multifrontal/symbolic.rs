@@ -118,7 +118,8 @@ impl Symbolic {
             for &row in &supernodes[this].rows {
                 let block = self.pattern.blocks[nodes[row]];
                 let unknowns = block.first..block.first + block.len;
-                self.borders.extend(unknowns.map(|unknown| self.position[unknown]));
+                self.borders
+                    .extend(unknowns.map(|unknown| self.position[unknown]));
             }
             self.borders[start..].sort_unstable();
             self.fronts.push(Front {
@@ -187,7 +188,9 @@ fn depth_first(supernodes: &[Supernode]) -> Vec<usize> {
 
 /// For each stored entry (i, j) the place of (j, i).
 fn transposed(pattern: &Pattern) -> Result<Vec<u32>, LinearSolverError> {
-    let too_large = LinearSolverError::OutOfMemory { what: "more than 2^32 stored entries" };
+    let too_large = LinearSolverError::OutOfMemory {
+        what: "more than 2^32 stored entries",
+    };
     let mut next = pattern.col_ptr.clone();
     let mut transposed = Vec::with_capacity(pattern.stored());
     for column in 0..pattern.unknowns() {
