@@ -1,2 +1,240 @@
-//! validation.
-fn main() {}
+//! Runs the four benchmark cases of the paper, holds every result against outside values, and
+//! compares curves and effort with snapshots. `cargo xtask validate` calls this program.
+
+mod column;
+mod footing;
+mod mohr_coulomb_slope;
+mod pictures;
+mod reference;
+mod snapshot;
+mod study;
+mod table;
+mod von_mises_slope;
+
+use std::error::Error;
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitCode};
+use std::time::Instant;
+
+use clap::{Parser, ValueEnum};
+use igimp_cases::CaseError;
+use rayon::prelude::*;
+
+use crate::study::{Level, Study};
+
+/// Exit codes; part of the contract with callers.
+const REFERENCE_MISSED: u8 = 1;
+const BAD_INPUT: u8 = 2;
+const NOT_CONVERGED: u8 = 3;
+const INPUT_OUTPUT: u8 = 4;
+
+/// Where the matrix stands in the book, and its marks.
+const MATRIX_PAGE: &str = "docs/src/verification.md";
+const MATRIX_BEGIN: &str = "<!-- matrix:begin -->";
+const MATRIX_END: &str = "<!-- matrix:end -->";
+
+/// Runs the benchmark cases and holds them against outside values and snapshots.
+///
+/// Exit codes: 0 all met; 1 a reference or a snapshot missed; 2 bad input; 3 a run that had to
+/// reach its end did not; 4 a file could not be written.
+// Each switch is its own flag on the command line.
+#[allow(clippy::struct_excessive_bools)]
+#[derive(Debug, Parser)]
+#[command(name = "validate", version)]
+struct Arguments {
+    /// Run only these cases (may be repeated).
+    #[arg(long, value_enum, value_name = "CASE")]
+    case: Vec<Case>,
+    /// Coarse meshes and short runs: under a minute.
+    #[arg(long, conflicts_with = "full")]
+    quick: bool,
+    /// Finer meshes and further variants too.
+    #[arg(long)]
+    full: bool,
+    /// Rewrite the snapshots with today's results.
+    #[arg(long)]
+    accept: bool,
+    /// Rewrite the verification matrix in the book with today's results.
+    #[arg(long)]
+    matrix: bool,
+    /// Folder for tables, pictures and the summary.
+    #[arg(long, value_name = "DIR", default_value = "target/validation")]
+    out: PathBuf,
+    /// Threads to use; all cores when not given.
+    #[arg(long, value_name = "N")]
+    threads: Option<usize>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Case {
+    Footing,
+    Column,
+    VonMisesSlope,
+    MohrCoulombSlope,
+}
+
+impl Case {
+    fn study(self, level: Level, out: &Path) -> Result<Study, CaseError> {
+        match self {
+            Self::Column => column::study(level, out),
+            Self::VonMisesSlope => von_mises_slope::study(level, out),
+            Self::MohrCoulombSlope => mohr_coulomb_slope::study(level, out),
+            Self::Footing => footing::study(level, out),
+        }
+    }
+}
+
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    if arguments.accept && std::env::var_os("INSTA_UPDATE").is_none_or(|value| value != "always") {
+        return again_with_update();
+    }
+    match validate(&arguments) {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::from(REFERENCE_MISSED),
+        Err(error) => {
+            eprintln!("error: {error}");
+            let mut source = error.source();
+            while let Some(cause) = source {
+                eprintln!("  because: {cause}");
+                source = cause.source();
+            }
+            ExitCode::from(match error {
+                CaseError::Stopped { .. } => NOT_CONVERGED,
+                CaseError::File { .. } | CaseError::Table { .. } | CaseError::Figure(_) => {
+                    INPUT_OUTPUT
+                }
+                _ => BAD_INPUT,
+            })
+        }
+    }
+}
+
+/// Snapshots are rewritten by a child with the variable that insta reads at its start.
+fn again_with_update() -> ExitCode {
+    let run = std::env::current_exe().and_then(|program| {
+        Command::new(program)
+            .args(std::env::args_os().skip(1))
+            .env("INSTA_UPDATE", "always")
+            .status()
+    });
+    match run {
+        Ok(status) => ExitCode::from(
+            status
+                .code()
+                .and_then(|code| u8::try_from(code).ok())
+                .unwrap_or(INPUT_OUTPUT),
+        ),
+        Err(error) => {
+            eprintln!("error: cannot start again to rewrite the snapshots: {error}");
+            ExitCode::from(INPUT_OUTPUT)
+        }
+    }
+}
+
+/// Runs everything asked for; whether all checks and snapshots are met.
+fn validate(arguments: &Arguments) -> Result<bool, CaseError> {
+    let clock = Instant::now();
+    if let Some(threads) = arguments.threads {
+        // Fails only if the pool exists already, which it does not at the start.
+        let _ = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build_global();
+    }
+    let level = match (arguments.quick, arguments.full) {
+        (true, _) => Level::Quick,
+        (_, true) => Level::Full,
+        _ => Level::Default,
+    };
+    let cases: Vec<Case> = Case::value_variants()
+        .iter()
+        .copied()
+        .filter(|case| arguments.case.is_empty() || arguments.case.contains(case))
+        .collect();
+    let mut studies = cases
+        .par_iter()
+        .map(|case| {
+            let study = case.study(level, &arguments.out);
+            let end = if study.is_ok() { "done" } else { "stopped" };
+            let name = case
+                .to_possible_value()
+                .map_or_else(String::new, |v| v.get_name().into());
+            eprintln!("{name}: {end} after {:.0} s", clock.elapsed().as_secs_f64());
+            study
+        })
+        .collect::<Result<Vec<_>, _>>()?;
+    studies.sort_by_key(|study| {
+        ["column", "von-mises-slope", "mohr-coulomb-slope", "footing"]
+            .iter()
+            .position(|&case| case == study.case)
+    });
+
+    let missed = snapshot::compare(&studies);
+    table::write_summary(&studies, &missed, &arguments.out)?;
+    if arguments.matrix {
+        write_matrix(&studies)?;
+    }
+    Ok(print_report(
+        &studies,
+        &missed,
+        arguments,
+        clock.elapsed().as_secs_f64(),
+    ))
+}
+
+fn print_report(studies: &[Study], missed: &[String], arguments: &Arguments, seconds: f64) -> bool {
+    for note in studies.iter().flat_map(|study| &study.notes) {
+        println!("{note}\n");
+    }
+    println!("{}", table::checks(studies));
+    let rows = || studies.iter().flat_map(|study| &study.rows);
+    let failed = rows().filter(|row| !row.pass).count();
+    println!(
+        "{} checks: {} ok, {failed} missed; snapshots: {} differ; {seconds:.0} s; files in {}",
+        rows().count(),
+        rows().count() - failed,
+        missed.len(),
+        arguments.out.display(),
+    );
+    for row in rows().filter(|row| !row.pass) {
+        let check = &row.check;
+        println!(
+            "missed: {}, {}: {} is {}, expected {} ({}), band {}",
+            check.case,
+            check.variant,
+            check.quantity,
+            igimp_cases::check::short(check.measured),
+            igimp_cases::check::short(check.expected),
+            check.source,
+            check.band,
+        );
+    }
+    for name in missed {
+        println!("snapshot differs: {name} (accept today's results with --accept)");
+    }
+    failed == 0 && missed.is_empty()
+}
+
+/// Writes the matrix between its marks in the book.
+fn write_matrix(studies: &[Study]) -> Result<(), CaseError> {
+    let path = PathBuf::from(MATRIX_PAGE);
+    let file = |source| CaseError::File {
+        path: path.clone(),
+        source,
+    };
+    let page = std::fs::read_to_string(&path).map_err(file)?;
+    let (Some(begin), Some(end)) = (page.find(MATRIX_BEGIN), page.find(MATRIX_END)) else {
+        let missing = format!("no marks {MATRIX_BEGIN} and {MATRIX_END}");
+        return Err(file(std::io::Error::new(
+            std::io::ErrorKind::InvalidData,
+            missing,
+        )));
+    };
+    let page = format!(
+        "{}\n\n{}\n{}",
+        &page[..begin + MATRIX_BEGIN.len()],
+        table::matrix(studies),
+        &page[end..]
+    );
+    std::fs::write(&path, page).map_err(file)
+}

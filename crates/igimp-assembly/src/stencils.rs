@@ -263,12 +263,12 @@ fn masters<const D: usize>(
     constraints: &Constraints<D>,
     small_cuts: SmallCuts,
 ) -> BTreeMap<usize, usize> {
-    let cuts: Vec<bool> = (0..grid.node_count())
-        .map(|node| {
-            let volume = node_volume[node];
-            volume > 0.0 && volume < small_cuts.below * cell_volume(grid, node)
-        })
-        .collect();
+    // Touched, not of positive volume: a point on a face sees the cell beyond by its gradient only.
+    let mut cuts = vec![false; grid.node_count()];
+    for support in &supports.all {
+        let node = support.node;
+        cuts[node] = node_volume[node] < small_cuts.below * cell_volume(grid, node);
+    }
     let is_cut = |node: usize| cuts[node];
     if !cuts.contains(&true) {
         return BTreeMap::new();

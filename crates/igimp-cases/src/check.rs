@@ -73,7 +73,7 @@ pub fn short(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return format!("{value}");
     }
-    let digits = if (0.01..10_000.0).contains(&magnitude) {
+    if (0.01..10_000.0).contains(&magnitude) {
         let decimals = (3.0 - magnitude.log10().floor()).max(0.0);
         let text = format!("{value:.*}", decimals as usize);
         if text.contains('.') {
@@ -83,8 +83,7 @@ pub fn short(value: f64) -> String {
         }
     } else {
         format!("{value:.3e}")
-    };
-    digits
+    }
 }
 
 #[cfg(test)]

@@ -133,7 +133,7 @@ impl MohrCoulombSlope {
         let report = march(
             &mut body,
             &self.method,
-            &|_: f64, to: f64| under_gravity(&grid, &constraints, &laws, to),
+            &|_: f64, to: f64| Ok(under_gravity(&grid, &constraints, &laws, to)),
             &MarchSettings::steps(self.steps),
             &mut Workspace::new(SolverKind::Auto.build()),
             &mut |_: &Accepted<'_, 2>| ControlFlow::Continue(()),

@@ -107,8 +107,11 @@ mod tests {
         )
         .unwrap();
         assert_eq!(seeds.len(), 16);
-        assert_eq!(seeds[0].x, [0.25, 0.125]);
-        assert_eq!(seeds[0].half_length, [0.25, 0.125]);
+        for axis in 0..2 {
+            let quarter = [0.25, 0.125][axis];
+            assert!((seeds[0].x[axis] - quarter).abs() < 1e-15);
+            assert!((seeds[0].half_length[axis] - quarter).abs() < 1e-15);
+        }
     }
 
     #[test]

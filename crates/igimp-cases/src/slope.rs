@@ -1,6 +1,6 @@
 //! What the two slopes share: geometry, grid, walls and the gravity program.
 
-use igimp_assembly::{AssemblyError, Constraints, SharedLaw, StepConditions, StepLoads};
+use igimp_assembly::{Constraints, SharedLaw, StepConditions, StepLoads};
 use igimp_shape::{Axis, Grid};
 
 use crate::error::CaseError;
@@ -73,8 +73,8 @@ pub(crate) fn under_gravity(
     constraints: &Constraints<2>,
     laws: &[SharedLaw],
     factor: f64,
-) -> Result<StepConditions<2>, AssemblyError> {
-    Ok(StepConditions {
+) -> StepConditions<2> {
+    StepConditions {
         grid: grid.clone(),
         constraints: constraints.clone(),
         loads: StepLoads {
@@ -82,5 +82,5 @@ pub(crate) fn under_gravity(
             point_factor: 0.0,
         },
         laws: laws.to_vec(),
-    })
+    }
 }

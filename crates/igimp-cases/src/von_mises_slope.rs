@@ -103,7 +103,14 @@ impl VonMisesSlope {
         let report = march(
             &mut body,
             &self.method,
-            &|_: f64, to: f64| under_gravity(&grid, &constraints, &laws, to * self.load_factor),
+            &|_: f64, to: f64| {
+                Ok(under_gravity(
+                    &grid,
+                    &constraints,
+                    &laws,
+                    to * self.load_factor,
+                ))
+            },
             &MarchSettings::steps(self.steps),
             &mut Workspace::new(SolverKind::Auto.build()),
             &mut |accepted: &Accepted<'_, 2>| {

@@ -61,7 +61,7 @@ fn rotate(a: &mut Tensor, frame: &mut Tensor, [p, q, r]: [usize; 3]) {
     }
 }
 
-/// The tensor with the given principal values: `` $`\sum_a v_a\, n_a \otimes n_a`$ ``.
+/// The tensor with the given principal values: $`\sum_a v_a\, n_a \otimes n_a`$.
 #[inline]
 pub(crate) fn compose<const D: usize>(values: &Principal, frame: &Tensor) -> Tensor {
     let mut tensor = [[0.0; 3]; 3];

@@ -1,7 +1,7 @@
 //! Isotropic Hencky elasticity: Kirchhoff stress linear in the logarithmic strain.
 
 use crate::MaterialError;
-use crate::error::required;
+use crate::error::{positive, required};
 use crate::principal::{Principal, deviator, mean};
 
 /// Isotropic linear relation between elastic Hencky strain and Kirchhoff stress,
@@ -12,7 +12,7 @@ use crate::principal::{Principal, deviator, mean};
 /// ```
 ///
 /// With small strains read Cauchy stress and linear strain. The stored energy is quadratic in
-/// the logarithmic strain; see Hencky (1928) and de Souza Neto, Perić & Owen (2008), section 13.3.
+/// the logarithmic strain; see Hencky (1928) and de Souza Neto, Perić & Owen (2008), chapter 13.
 ///
 /// ```
 /// use igimp_material::Elasticity;
@@ -37,7 +37,7 @@ impl Elasticity {
     /// # Errors
     /// [`MaterialError::InvalidParameter`] unless `young` is positive and `-1 < poisson < 0.5`.
     pub fn new(young: f64, poisson: f64) -> Result<Self, MaterialError> {
-        required("young", young, young > 0.0, "positive and finite")?;
+        positive("young", young)?;
         let in_range = -1.0 < poisson && poisson < 0.5;
         required(
             "poisson",

@@ -29,15 +29,15 @@ pub enum MaterialError {
     },
 }
 
-/// `value` if it is finite and `holds`, else the error that names `field`.
+/// The error that names `field`, unless its value is finite and the requirement `holds`.
 pub(crate) fn required(
     field: &'static str,
     value: f64,
     holds: bool,
     requirement: &'static str,
-) -> Result<f64, MaterialError> {
+) -> Result<(), MaterialError> {
     if holds && value.is_finite() {
-        Ok(value)
+        Ok(())
     } else {
         Err(MaterialError::InvalidParameter {
             field,
@@ -45,4 +45,9 @@ pub(crate) fn required(
             requirement,
         })
     }
+}
+
+/// The error that names `field`, unless its value is positive and finite.
+pub(crate) fn positive(field: &'static str, value: f64) -> Result<(), MaterialError> {
+    required(field, value, value > 0.0, "positive and finite")
 }

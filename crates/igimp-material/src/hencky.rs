@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use crate::law::{checked_srf, trial_stress};
+use crate::error::positive;
+use crate::law::trial_stress;
 use crate::{ConstitutiveModel, Elasticity, History, MaterialError, Principal, ReturnMap};
 
 /// The elastic law: every stress is admissible.
@@ -52,7 +53,7 @@ impl ConstitutiveModel for HenckyElastic {
 
     /// The law itself: there is no strength to reduce.
     fn reduced(&self, srf: f64) -> Result<Arc<dyn ConstitutiveModel>, MaterialError> {
-        checked_srf(srf)?;
+        positive("srf", srf)?;
         Ok(Arc::new(*self))
     }
 }

@@ -16,8 +16,8 @@ use crate::{Elasticity, MaterialError};
 /// in the stress.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct History {
-    /// Accumulated plastic strain invariant `` $`\sum\sqrt{\tfrac23\,\Delta e_p:\Delta e_p}`$ ``,
-    /// with `` $`\Delta e_p`$ `` the deviatoric part of a step's plastic strain. Never negative.
+    /// Accumulated plastic strain invariant $`\sum\sqrt{\tfrac23\,\Delta e_p:\Delta e_p}`$,
+    /// with $`\Delta e_p`$ the deviatoric part of a step's plastic strain. Never negative.
     pub eps_p_eq: f64,
 }
 
@@ -45,15 +45,15 @@ pub enum Regime {
     LeftEdge,
     /// The apex of the Mohr–Coulomb pyramid.
     Apex,
-    /// The plane of the tension cut-off, largest principal stress = `` $`\sigma_t`$ ``.
+    /// The plane of the tension cut-off, largest principal stress = $`\sigma_t`$.
     Tension,
     /// The edge between the Mohr–Coulomb plane and the plane of the tension cut-off.
     TensionShear,
-    /// The edge where the two larger principal stresses are `` $`\sigma_t`$ ``.
+    /// The edge where the two larger principal stresses are $`\sigma_t`$.
     TensionEdge,
     /// An end of the edge between Mohr–Coulomb and cut-off, where two stresses are equal.
     TensionCorner,
-    /// All three principal stresses are `` $`\sigma_t`$ ``.
+    /// All three principal stresses are $`\sigma_t`$.
     TensionApex,
 }
 
@@ -69,10 +69,10 @@ impl Regime {
 pub struct ReturnMap {
     /// Principal Kirchhoff stress τ \[stress\], admissible.
     pub tau: Principal,
-    /// Consistent tangent `` $`D_{ab} = \partial\tau_a/\partial\varepsilon_b^{tr}`$ `` \[stress\],
+    /// Consistent tangent $`D_{ab} = \partial\tau_a/\partial\varepsilon_b^{tr}`$ \[stress\],
     /// taken within the regime.
     pub tangent: [[f64; 3]; 3],
-    /// Plastic strain increment `` $`\Delta\varepsilon_p = C^{-1}(\tau^{tr} - \tau)`$ ``.
+    /// Plastic strain increment $`\Delta\varepsilon_p = C^{-1}(\tau^{tr} - \tau)`$.
     pub delta_eps_p: Principal,
     /// History at the end of the increment.
     pub history: History,
@@ -150,9 +150,4 @@ pub(crate) fn trial_stress(
             quantity: "trial stress",
         })
     }
-}
-
-/// Checks a strength reduction factor.
-pub(crate) fn checked_srf(srf: f64) -> Result<f64, MaterialError> {
-    crate::error::required("srf", srf, srf > 0.0, "positive and finite")
 }

@@ -13,7 +13,44 @@
 //! | what can go wrong | [`MaterialError`] |
 //!
 //! Tension and extension are positive. Stress is Kirchhoff stress τ and strain the elastic Hencky
-//! strain; with small strain read Cauchy stress and linear strain.
+//! strain; with small strain read Cauchy stress and linear strain. Angles are in radians.
+//!
+//! # Example
+//!
+//! Simple shear in plane strain, far beyond yield: von Mises flows at the shear stress $`c_u`$.
+//!
+//! ```
+//! use igimp_material::{Elasticity, History, TangentKind, VonMises, lift_finite};
+//!
+//! let law = VonMises::from_undrained_strength(Elasticity::new(100.0, 0.3)?, 1.0)?;
+//! let gamma = 0.2;
+//! let b_e_trial = [[1.0 + gamma * gamma, gamma, 0.0], [gamma, 1.0, 0.0], [0.0, 0.0, 1.0]];
+//! let lifted =
+//!     lift_finite::<2>(&law, &b_e_trial, &History::default(), TangentKind::Consistent)?;
+//!
+//! let [[xx, xy, _], [_, yy, _], _] = lifted.tau;
+//! let largest_shear = (0.25 * (xx - yy).powi(2) + xy * xy).sqrt();
+//! assert!((largest_shear - 1.0).abs() < 1e-12);
+//! assert!(lifted.regime.is_plastic() && lifted.history.eps_p_eq > 0.0);
+//! let b_e = lifted.b_e(); // what the next step starts from
+//! assert!((b_e[2][2] - 1.0).abs() < 1e-12);
+//! # Ok::<(), igimp_material::MaterialError>(())
+//! ```
+//!
+//! # A new law
+//!
+//! One file with an implementation of [`ConstitutiveModel`], and its lines in the catalogue of
+//! `tests/contract`, which tries every law on a million trial states.
+//!
+//! # Sources
+//!
+//! - E. A. de Souza Neto, D. Perić, D. R. J. Owen (2008), *Computational Methods for Plasticity*,
+//!   Wiley: return maps, Hencky elasticity, isotropic tensor functions.
+//! - J. Clausen, L. Damkilde, L. Andersen (2006), *Efficient return algorithms for associated
+//!   plasticity with multiple yield planes*, Int. J. Numer. Meth. Engng 66, 1036–1059: planes,
+//!   edges and vertices in principal space.
+//! - W. T. Koiter (1953), *Stress–strain relations, uniqueness and variational theorems for
+//!   elastic-plastic materials with a singular yield surface*, Q. Appl. Math. 11, 350–354.
 
 mod eigen;
 mod elasticity;
@@ -26,6 +63,7 @@ mod mohr_coulomb;
 mod principal;
 mod pyramid;
 mod spatial;
+mod surface;
 mod tresca;
 mod von_mises;
 

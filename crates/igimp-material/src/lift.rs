@@ -11,19 +11,22 @@
 //! A_{abba} = \frac{(\tau_a-\tau_b)\,b_a}{b_a-b_b}
 //! ```
 //!
-//! In terms of `` $`x = \ln b_a - \ln b_b = 2(\varepsilon_a - \varepsilon_b)`$ `` and the secant
-//! modulus `` $`k = (\tau_a-\tau_b)/x`$ `` the shear parts are `` $`k\,x/(e^x-1)`$ `` and
-//! `` $`k\,x/(1-e^{-x})`$ ``: all that is delicate for equal eigenvalues is k, and there
-//! `` $`k = (D_{aa}-D_{ab}-D_{ba}+D_{bb})/4`$ ``. With small strain both are k.
+//! In terms of $`x = \ln b_a - \ln b_b = 2(\varepsilon_a - \varepsilon_b)`$ and the secant
+//! modulus $`k = (\tau_a-\tau_b)/x`$ the shear parts are $`k\,x/(e^x-1)`$ and
+//! $`k\,x/(1-e^{-x})`$: all that is delicate for equal eigenvalues is k, and there
+//! $`k = (D_{aa}-D_{ab}-D_{ba}+D_{bb})/4`$. With small strain both are k.
 
 use crate::eigen::{compose, principal_axes};
 use crate::principal::{Principal, Tensor};
-use crate::{ConstitutiveModel, Elasticity, History, MaterialError, Regime, SpatialTangent};
+use crate::{
+    ConstitutiveModel, Elasticity, History, MaterialError, Regime, ReturnMap, SpatialTangent,
+};
 
 /// Which tangent a lift answers; the stress is that of the return map either way.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum TangentKind {
-    /// That of the elastic part of the law at the trial state: symmetric and regular.
+    /// That of the elastic part of the law at the trial state: symmetric and regular, also at the
+    /// apex. For the first correction of a load step.
     Elastic,
     /// That of the return map, for the quadratic convergence of Newton's method.
     Consistent,
@@ -50,13 +53,13 @@ pub struct Lifted<const D: usize> {
 }
 
 impl<const D: usize> Lifted<D> {
-    /// The elastic left Cauchy–Green tensor `` $`b_e = \exp(2\varepsilon_e)`$ `` to carry to the
+    /// The elastic left Cauchy–Green tensor $`b_e = \exp(2\varepsilon_e)`$ to carry to the
     /// next step.
     pub fn b_e(&self) -> Tensor {
         compose::<D>(&self.eps_e.map(|strain| (2.0 * strain).exp()), &self.frame)
     }
 
-    /// The elastic Hencky strain tensor `` $`\varepsilon_e`$ ``.
+    /// The elastic Hencky strain tensor $`\varepsilon_e`$.
     pub fn eps_e_tensor(&self) -> Tensor {
         compose::<D>(&self.eps_e, &self.frame)
     }
@@ -65,7 +68,7 @@ impl<const D: usize> Lifted<D> {
 /// Finite strain: the law at the trial elastic left Cauchy–Green tensor `b_e_trial`.
 ///
 /// `D = 2` is plane strain and reads xx, yy, xy and zz; `D = 3` reads the upper triangle.
-/// Strains are `` $`\tfrac12\ln b`$ ``, accurate to the digits that b holds also near b = I.
+/// Strains are $`\tfrac12\ln b`$, accurate to the digits that b holds also near b = I.
 ///
 /// # Errors
 /// [`MaterialError::NonFinite`] or [`MaterialError::NotPositiveDefinite`] for a tensor that is no
@@ -106,7 +109,7 @@ pub fn lift_small<const D: usize>(
     lift(law, &strain, frame, *history, kind, |_| [1.0; 2])
 }
 
-/// The Hencky strain `` $`\tfrac12\ln b`$ `` of a left Cauchy–Green tensor `b` (upper triangle).
+/// The Hencky strain $`\tfrac12\ln b`$ of a left Cauchy–Green tensor `b` (upper triangle).
 ///
 /// # Errors
 /// [`MaterialError::NonFinite`] or [`MaterialError::NotPositiveDefinite`].
@@ -115,7 +118,7 @@ pub fn logarithmic_strain(b: &Tensor) -> Result<Tensor, MaterialError> {
     Ok(compose::<3>(&strain, &frame))
 }
 
-/// Principal values and axes of `` $`\tfrac12\ln b`$ ``.
+/// Principal values and axes of $`\tfrac12\ln b`$.
 #[inline]
 fn logarithmic<const D: usize>(b: &Tensor) -> Result<(Principal, Tensor), MaterialError> {
     let mut stretch = *b;
@@ -147,8 +150,8 @@ fn logarithmic<const D: usize>(b: &Tensor) -> Result<(Principal, Tensor), Materi
 }
 
 /// The law at the principal trial strains, set into their axes. `shares(x)` are the parts of the
-/// secant modulus that answer to `` $`l_{ab}`$ `` and `` $`l_{ba}`$ ``, where
-/// `` $`x = 2(\varepsilon_a - \varepsilon_b)`$ ``.
+/// secant modulus that answer to $`l_{ab}`$ and $`l_{ba}`$, where
+/// $`x = 2(\varepsilon_a - \varepsilon_b)`$.
 #[inline]
 fn lift<const D: usize>(
     law: &dyn ConstitutiveModel,
@@ -171,12 +174,7 @@ fn lift<const D: usize>(
             let x = 2.0 * (strain[a] - strain[b]);
             let secant = match kind {
                 TangentKind::Elastic => elasticity.shear(),
-                TangentKind::Consistent => {
-                    let [daa, dab, dba, dbb] =
-                        [normal[a][a], normal[a][b], normal[b][a], normal[b][b]];
-                    let limit = (daa - dab - dba + dbb) / 4.0;
-                    secant(answer.tau[a] - answer.tau[b], x, limit, noise)
-                }
+                TangentKind::Consistent => secant(&answer, [a, b], x, noise),
             };
             let [ab, ba] = shares(x);
             shear[a][b] = secant * ab;
@@ -199,13 +197,16 @@ fn lift<const D: usize>(
     })
 }
 
-/// Secant modulus of shear, `delta_tau / x`, or its `limit` for x → 0.
+/// Secant modulus of shear $`(\tau_a - \tau_b)/x`$, or its limit for x → 0.
 ///
 /// Where the two cannot be told apart by stresses that carry round-off `noise`, the limit is the
 /// better one; where they can, however small x is, there is a kink of the yield surface between
 /// the two principal values and the secant is right.
 #[inline]
-fn secant(delta_tau: f64, x: f64, limit: f64, noise: f64) -> f64 {
+fn secant(answer: &ReturnMap, [a, b]: [usize; 2], x: f64, noise: f64) -> f64 {
+    let (tau, d) = (&answer.tau, &answer.tangent);
+    let delta_tau = tau[a] - tau[b];
+    let limit = (d[a][a] - d[a][b] - d[b][a] + d[b][b]) / 4.0;
     if x == 0.0 || (delta_tau - limit * x).abs() <= noise {
         limit
     } else {

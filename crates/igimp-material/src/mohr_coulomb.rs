@@ -7,8 +7,7 @@
 use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 
-use crate::error::required;
-use crate::law::checked_srf;
+use crate::error::{positive, required};
 use crate::pyramid::{Pyramid, Strength};
 use crate::{ConstitutiveModel, Elasticity, History, MaterialError, Principal, ReturnMap};
 
@@ -20,7 +19,7 @@ use crate::{ConstitutiveModel, Elasticity, History, MaterialError, Principal, Re
 /// ```
 ///
 /// and the plastic potential of the same form in the dilation angle ψ ≤ φ. With a tension
-/// cut-off also `` $`\sigma_1 \le \sigma_t`$ ``, with associated flow.
+/// cut-off also $`\sigma_1 \le \sigma_t`$, with associated flow.
 ///
 /// Trial states beyond the end of an edge go to the apex σ1 = σ2 = σ3 = c cot φ with a tangent
 /// of zero. With ψ = 0 plastic flow keeps volume and cannot follow a mean stress above c cot φ
@@ -62,7 +61,7 @@ impl MohrCoulomb {
         Self::build(elasticity, cohesion, friction_angle, dilation_angle, None)
     }
 
-    /// The law with the largest principal stress bounded by `` $`\sigma_t`$ `` = `tension_cutoff`
+    /// The law with the largest principal stress bounded by $`\sigma_t`$ = `tension_cutoff`
     /// \[stress\].
     ///
     /// A cut-off at or above the apex c cot φ never acts.
@@ -94,7 +93,7 @@ impl MohrCoulomb {
         self.dilation_angle
     }
 
-    /// Tension cut-off `` $`\sigma_t`$ `` \[stress\], if any.
+    /// Tension cut-off $`\sigma_t`$ \[stress\], if any.
     pub fn tension_cutoff(&self) -> Option<f64> {
         self.tension_cutoff
     }
@@ -181,13 +180,14 @@ impl ConstitutiveModel for MohrCoulomb {
         self.pyramid.return_map(eps_e_trial, *history)
     }
 
-    /// The larger of `` $`(1+\sin\varphi)\,\sigma_1 - (1-\sin\varphi)\,\sigma_3 - 2c\cos\varphi`$ ``,
-    /// twice a distance in shear stress, and `` $`\sigma_1 - \sigma_t`$ ``.
+    /// The larger of $`(1+\sin\varphi)\,\sigma_1 - (1-\sin\varphi)\,\sigma_3 - 2c\cos\varphi`$,
+    /// twice a distance in shear stress, and $`\sigma_1 - \sigma_t`$.
     fn yield_function(&self, tau: &Principal, _history: &History) -> f64 {
         self.pyramid.yield_function(tau)
     }
 
-    /// Largest sum of the magnitudes that f is the difference of.
+    /// The larger of 2 c cos φ and the cut-off, plus twice the largest principal stress in
+    /// magnitude.
     fn stress_scale(&self, tau: &Principal) -> f64 {
         self.pyramid.stress_scale(tau)
     }
@@ -202,7 +202,7 @@ impl ConstitutiveModel for MohrCoulomb {
 
     /// Divides c, tan φ and the cut-off by `srf`; ψ stays but never exceeds the reduced φ.
     fn reduced(&self, srf: f64) -> Result<Arc<dyn ConstitutiveModel>, MaterialError> {
-        let srf = checked_srf(srf)?;
+        positive("srf", srf)?;
         let friction_angle = (self.friction_angle.tan() / srf).atan();
         Ok(Arc::new(Self::build(
             *self.elasticity(),

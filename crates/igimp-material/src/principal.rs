@@ -42,7 +42,7 @@ pub(crate) fn deviator(values: &Principal) -> Principal {
     values.map(|value| value - mean)
 }
 
-/// The norm `` $`q = \sqrt{3/2}\,\lVert s\rVert`$ `` of a stress deviator s.
+/// The norm $`q = \sqrt{3/2}\,\lVert s\rVert`$ of a stress deviator s.
 #[inline]
 pub(crate) fn deviator_norm(s: &Principal) -> f64 {
     (1.5 * dot(s, s)).sqrt()

@@ -3,27 +3,27 @@
 use crate::principal::Tensor;
 
 /// The derivative A of Kirchhoff stress by the velocity gradient,
-/// `` $`d\tau_{ab} = A_{abcd}\,\bar l_{cd}`$ `` \[stress\].
+/// $`d\tau_{ab} = A_{abcd}\,\bar l_{cd}`$ \[stress\].
 ///
-/// `` $`\bar l`$ `` is the whole velocity gradient with respect to the current configuration,
+/// $`\bar l`$ is the whole velocity gradient with respect to the current configuration,
 /// spin included. In plane strain (`D = 2`) the components with zz appear in the traces only,
 /// which is all that B-bar asks for.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SpatialTangent<const D: usize> {
-    /// The in-plane components `` $`A_{abcd}`$ ``.
+    /// The in-plane components $`A_{abcd}`$.
     pub modulus: [[[[f64; D]; D]; D]; D],
-    /// `` $`\sum_a A_{aacd}`$ `` over all three a.
+    /// $`\sum_a A_{aacd}`$ over all three a.
     pub trace_left: [[f64; D]; D],
-    /// `` $`\sum_c A_{abcc}`$ `` over all three c.
+    /// $`\sum_c A_{abcc}`$ over all three c.
     pub trace_right: [[f64; D]; D],
-    /// `` $`\sum_{ac} A_{aacc}`$ `` over all three a and c.
+    /// $`\sum_{ac} A_{aacc}`$ over all three a and c.
     pub trace: f64,
 }
 
 impl<const D: usize> SpatialTangent<D> {
-    /// From the principal axes `frame`, the normal part `` $`A_{aabb}`$ `` in `normal` and
-    /// the shear part `` $`A_{abab}`$ `` off the diagonal of `shear`: in principal axes
-    /// `` $`d\tau_{ab} = A_{abab}\,l_{ab} + A_{baba}\,l_{ba}`$ ``.
+    /// From the principal axes `frame`, the normal part $`A_{aabb}`$ in `normal` and
+    /// the shear part $`A_{abab}`$ off the diagonal of `shear`: in principal axes
+    /// $`d\tau_{ab} = A_{abab}\,l_{ab} + A_{baba}\,l_{ba}`$.
     #[inline]
     pub(crate) fn from_principal(
         frame: &Tensor,

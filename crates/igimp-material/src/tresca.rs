@@ -2,13 +2,12 @@
 
 use std::sync::Arc;
 
-use crate::error::required;
-use crate::law::checked_srf;
+use crate::error::positive;
 use crate::pyramid::{Pyramid, Strength};
 use crate::{ConstitutiveModel, Elasticity, History, MaterialError, Principal, ReturnMap};
 
 /// Elastic and perfectly plastic with associated flow and the yield function
-/// `` $`f = \sigma_1 - \sigma_3 - 2 c_u`$ ``, `` $`\sigma_1 \ge \sigma_2 \ge \sigma_3`$ ``.
+/// $`f = \sigma_1 - \sigma_3 - 2 c_u`$, $`\sigma_1 \ge \sigma_2 \ge \sigma_3`$.
 ///
 /// The same code as [`MohrCoulomb`](crate::MohrCoulomb) without friction: equal to the last bit.
 #[derive(Debug, Clone, PartialEq)]
@@ -18,18 +17,12 @@ pub struct Tresca {
 }
 
 impl Tresca {
-    /// From the undrained shear strength `` $`c_u`$ `` \[stress\].
+    /// From the undrained shear strength $`c_u`$ \[stress\].
     ///
     /// # Errors
     /// [`MaterialError::InvalidParameter`] unless `undrained_strength` is positive and finite.
     pub fn new(elasticity: Elasticity, undrained_strength: f64) -> Result<Self, MaterialError> {
-        let positive = undrained_strength > 0.0;
-        required(
-            "undrained_strength",
-            undrained_strength,
-            positive,
-            "positive and finite",
-        )?;
+        positive("undrained_strength", undrained_strength)?;
         let strength = Strength {
             sin_friction: 0.0,
             sin_dilation: 0.0,
@@ -43,7 +36,7 @@ impl Tresca {
         })
     }
 
-    /// Undrained shear strength `` $`c_u`$ `` \[stress\].
+    /// Undrained shear strength $`c_u`$ \[stress\].
     pub fn undrained_strength(&self) -> f64 {
         self.undrained_strength
     }
@@ -66,12 +59,12 @@ impl ConstitutiveModel for Tresca {
         self.pyramid.return_map(eps_e_trial, *history)
     }
 
-    /// `` $`f = \sigma_1 - \sigma_3 - 2 c_u`$ ``: twice the distance in shear stress.
+    /// $`f = \sigma_1 - \sigma_3 - 2 c_u`$: twice the distance in shear stress.
     fn yield_function(&self, tau: &Principal, _history: &History) -> f64 {
         self.pyramid.yield_function(tau)
     }
 
-    /// The largest `` $`|\sigma_i| + |\sigma_j| + 2 c_u`$ ``.
+    /// $`2 c_u`$ plus twice the largest principal stress in magnitude.
     fn stress_scale(&self, tau: &Principal) -> f64 {
         self.pyramid.stress_scale(tau)
     }
@@ -81,7 +74,8 @@ impl ConstitutiveModel for Tresca {
     }
 
     fn reduced(&self, srf: f64) -> Result<Arc<dyn ConstitutiveModel>, MaterialError> {
-        let undrained_strength = self.undrained_strength / checked_srf(srf)?;
+        positive("srf", srf)?;
+        let undrained_strength = self.undrained_strength / srf;
         Ok(Arc::new(Self::new(*self.elasticity(), undrained_strength)?))
     }
 }

@@ -4,13 +4,13 @@
 
 use std::sync::Arc;
 
-use crate::error::required;
-use crate::law::{ON_SURFACE, checked_srf, trial_stress};
+use crate::error::positive;
+use crate::law::{ON_SURFACE, trial_stress};
 use crate::principal::{deviator, deviator_norm, largest, mean};
 use crate::{ConstitutiveModel, Elasticity, History, MaterialError, Principal, Regime, ReturnMap};
 
 /// Elastic and perfectly plastic with associated flow and the yield function
-/// `` $`f = q - q_y,\ q = \sqrt{3/2}\,\lVert s\rVert`$ ``.
+/// $`f = q - q_y,\ q = \sqrt{3/2}\,\lVert s\rVert`$.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct VonMises {
     elasticity: Elasticity,
@@ -18,7 +18,7 @@ pub struct VonMises {
 }
 
 impl VonMises {
-    /// From the uniaxial yield stress `` $`q_y`$ `` \[stress\].
+    /// From the uniaxial yield stress $`q_y`$ \[stress\].
     ///
     /// # Errors
     /// [`MaterialError::InvalidParameter`] unless `yield_stress` is positive and finite.
@@ -26,20 +26,16 @@ impl VonMises {
         elasticity: Elasticity,
         yield_stress: f64,
     ) -> Result<Self, MaterialError> {
-        required(
-            "yield_stress",
-            yield_stress,
-            yield_stress > 0.0,
-            "positive and finite",
-        )?;
+        positive("yield_stress", yield_stress)?;
         Ok(Self {
             elasticity,
             yield_stress,
         })
     }
 
-    /// From the undrained shear strength `` $`c_u`$ `` \[stress\] in plane strain:
-    /// `` $`q_y = \sqrt3\,c_u`$ ``, so that plastic plane flow has the in-plane shear stress `` $`c_u`$ ``.
+    /// From the undrained shear strength $`c_u`$ \[stress\] in plane strain:
+    /// $`q_y = \sqrt3\,c_u`$, so that plastic plane flow has the in-plane shear stress
+    /// $`c_u`$.
     ///
     /// # Errors
     /// [`MaterialError::InvalidParameter`] unless `undrained_strength` is positive and finite.
@@ -47,17 +43,11 @@ impl VonMises {
         elasticity: Elasticity,
         undrained_strength: f64,
     ) -> Result<Self, MaterialError> {
-        let positive = undrained_strength > 0.0;
-        required(
-            "undrained_strength",
-            undrained_strength,
-            positive,
-            "positive and finite",
-        )?;
+        positive("undrained_strength", undrained_strength)?;
         Self::from_yield_stress(elasticity, 3.0_f64.sqrt() * undrained_strength)
     }
 
-    /// Uniaxial yield stress `` $`q_y`$ `` \[stress\].
+    /// Uniaxial yield stress $`q_y`$ \[stress\].
     pub fn yield_stress(&self) -> f64 {
         self.yield_stress
     }
@@ -72,8 +62,8 @@ impl ConstitutiveModel for VonMises {
         &self.elasticity
     }
 
-    /// Shrinks the deviator of the trial stress by `` $`\beta = q_y/q`$ ``; the tangent is
-    /// `` $`K\,1\otimes1 + 2G\beta\,(I_{dev} - n\otimes n)`$ `` with n the direction of the
+    /// Shrinks the deviator of the trial stress by $`\beta = q_y/q`$; the tangent is
+    /// $`K\,1\otimes1 + 2G\beta\,(I_{dev} - n\otimes n)`$ with n the direction of the
     /// deviator.
     fn return_map(
         &self,
@@ -109,12 +99,12 @@ impl ConstitutiveModel for VonMises {
         })
     }
 
-    /// `` $`f = q - q_y`$ ``: the distance to yield in uniaxial stress.
+    /// $`f = q - q_y`$: the distance to yield in uniaxial stress.
     fn yield_function(&self, tau: &Principal, _history: &History) -> f64 {
         deviator_norm(&deviator(tau)) - self.yield_stress
     }
 
-    /// `` $`q_y`$ `` plus the largest principal stress in magnitude.
+    /// $`q_y`$ plus the largest principal stress in magnitude.
     fn stress_scale(&self, tau: &Principal) -> f64 {
         self.yield_stress + largest(tau)
     }
@@ -124,7 +114,8 @@ impl ConstitutiveModel for VonMises {
     }
 
     fn reduced(&self, srf: f64) -> Result<Arc<dyn ConstitutiveModel>, MaterialError> {
-        let yield_stress = self.yield_stress / checked_srf(srf)?;
+        positive("srf", srf)?;
+        let yield_stress = self.yield_stress / srf;
         Ok(Arc::new(Self::from_yield_stress(
             self.elasticity,
             yield_stress,

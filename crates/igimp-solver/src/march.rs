@@ -196,7 +196,7 @@ pub fn march<const D: usize>(
                 report.failures.push(error.clone());
                 size *= settings.cut_factor;
                 successes = 0;
-                if size < smallest || matches!(error.failure, StepFailure::LeavesGrid { .. }) {
+                if size < smallest || matches!(*error.failure, StepFailure::LeavesGrid { .. }) {
                     report.outcome = Outcome::StepTooSmall {
                         last_converged: at,
                         cause: error,
@@ -234,6 +234,6 @@ fn conditions_at<const D: usize>(
         to,
         residuals: Vec::new(),
         worst: None,
-        failure: StepFailure::Assembly(source),
+        failure: Box::new(StepFailure::Assembly(source)),
     })
 }

@@ -81,7 +81,7 @@ pub struct StepError {
     pub worst: Option<([f64; 3], usize)>,
     /// Why.
     #[source]
-    pub failure: StepFailure,
+    pub failure: Box<StepFailure>,
 }
 
 /// Time spent in the phases of a step.
@@ -264,7 +264,7 @@ pub fn step<const D: usize>(
                 to,
                 residuals: course.residuals,
                 worst,
-                failure,
+                failure: Box::new(failure),
             }
         })
 }
@@ -308,8 +308,7 @@ fn equilibrium<const D: usize>(
         residual.relative_norm = f64::INFINITY;
         u = system.prescribed_motion();
     }
-    // Written so that a residual that is not a number is never "converged".
-    while !(residual.relative_norm <= settings.tolerance) {
+    while !converged(residual.relative_norm, settings.tolerance) {
         if iterations == settings.max_iterations {
             return Err(StepFailure::MaxIterations { iterations });
         }
@@ -352,6 +351,11 @@ fn equilibrium<const D: usize>(
     let mut report = report;
     report.times.commit = clock.elapsed();
     Ok((report, NodalForces { reactions, u }))
+}
+
+/// Whether a residual meets the tolerance: one that is not a number never does.
+fn converged(relative_norm: f64, tolerance: f64) -> bool {
+    relative_norm <= tolerance
 }
 
 /// Runs a phase and adds its time.

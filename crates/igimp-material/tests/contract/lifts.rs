@@ -257,6 +257,23 @@ fn logarithm_keeps_its_digits() {
     assert!((lifted.eps_e[1] + 1e4_f64.ln()).abs() < 1e-14);
 }
 
+/// GOAL: strains whose squares vanish in floating point keep their axes.
+#[test]
+fn vanishing_strains_keep_their_axes() {
+    let elastic = HenckyElastic::new(Elasticity::new(1.0, 0.0).unwrap());
+    for size in [1e-160, 1e-200, 1e-300] {
+        let mut strain = diagonal([0.0; 3]);
+        strain[0][1] = size;
+        strain[1][0] = size;
+        let flat: Lifted<2> = Measure::Small.lift(&elastic, &strain, TangentKind::Consistent);
+        let full: Lifted<3> = Measure::Small.lift(&elastic, &strain, TangentKind::Consistent);
+        assert_eq!(flat.frame, full.frame);
+        assert!((flat.eps_e[0] / size - 1.0).abs() < 1e-15);
+        assert!((flat.frame[0][0] - 0.5_f64.sqrt()).abs() < 1e-15);
+        assert!((flat.tau[0][1] / size - 1.0).abs() < 1e-14);
+    }
+}
+
 /// GOAL: the undrained strength is the shear stress at failure in plane strain, for both laws.
 /// PARAMETERS: pure shear in the plane, 100 times the yield strain.
 #[test]

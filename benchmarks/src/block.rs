@@ -1,0 +1,210 @@
+//! A square block of soil at a trial displacement: the input of the assembly and factorisation
+//! benches.
+//!
+//! The block fills its grid, is held at its base and rolls at its sides. Four particles per cell
+//! lie a little off their regular places, so that their domains overlap one or two cells along each
+//! axis, as in the midst of a march. The trial displacement is a smooth flow without change of
+//! volume plus a compression that grows with depth; it scales with the strain at yield, and
+//! about half of the particles are plastic at every size.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+use std::sync::Arc;
+
+use igimp_assembly::{
+    AssemblyError, Constraints, Method, ParticleSeed, Particles, SharedLaw, Stencils,
+    StepConditions, StepLoads, System,
+};
+use igimp_material::{Elasticity, MohrCoulomb, VonMises};
+use igimp_shape::{Axis, Grid};
+
+use crate::BenchResult;
+use crate::random::Random;
+
+/// Cells along a side of the three blocks: 2500, 10 000 and 40 000 particles.
+pub const SIZES: [usize; 3] = [25, 50, 100];
+
+/// Side of the block \[m\].
+const SIDE: f64 = 10.0;
+/// Cohesion and undrained strength \[Pa\].
+const STRENGTH: f64 = 10e3;
+/// Size of the trial strains, in strains at yield.
+const FLOW: f64 = 1.6;
+/// Particles are moved at random by up to this share of a cell along each axis.
+const JITTER: f64 = 0.1;
+
+/// A block of soil and a trial displacement.
+#[derive(Debug)]
+pub struct Block {
+    particles: Particles<2>,
+    conditions: StepConditions<2>,
+    method: Method,
+    /// Nodal trial displacement \[m\].
+    pub u: Vec<[f64; 2]>,
+}
+
+impl Block {
+    /// Von Mises soil, nearly incompressible: a symmetric tangent.
+    ///
+    /// # Errors
+    /// Only for a block without cells.
+    pub fn von_mises(cells: usize) -> BenchResult<Self> {
+        let elasticity = Elasticity::new(1e7, 0.49)?;
+        let law = VonMises::from_undrained_strength(elasticity, STRENGTH)?;
+        Self::new(cells, Arc::new(law))
+    }
+
+    /// Mohr–Coulomb soil with ψ = 0: an unsymmetric tangent.
+    ///
+    /// # Errors
+    /// Only for a block without cells.
+    pub fn mohr_coulomb(cells: usize) -> BenchResult<Self> {
+        let elasticity = Elasticity::new(1e7, 0.3)?;
+        let law = MohrCoulomb::new(elasticity, STRENGTH, 20_f64.to_radians(), 0.0)?;
+        Self::new(cells, Arc::new(law))
+    }
+
+    fn new(cells: usize, law: SharedLaw) -> BenchResult<Self> {
+        let h = SIDE / cells as f64;
+        let axis = Axis::uniform(0.0, h, cells)?;
+        let grid = Grid::new([axis.clone(), axis]);
+        let mut constraints = Constraints::free(&grid);
+        constraints.fix_wall(&grid, 0, false, 0);
+        constraints.fix_wall(&grid, 0, true, 0);
+        constraints.fix_wall(&grid, 1, false, 0);
+        constraints.fix_wall(&grid, 1, false, 1);
+        let strain_at_yield = STRENGTH / (2.0 * law.elasticity().shear());
+        let u = (0..grid.node_count())
+            .map(|node| flow(grid.node_position(node), FLOW * strain_at_yield))
+            .collect();
+        Ok(Self {
+            particles: Particles::new(&seeds(cells, h))?,
+            conditions: StepConditions {
+                grid,
+                constraints,
+                loads: StepLoads {
+                    gravity: [0.0, -9.81],
+                    point_factor: 0.0,
+                },
+                laws: vec![law],
+            },
+            method: Method::default(),
+            u,
+        })
+    }
+
+    /// Number of particles.
+    pub fn len(&self) -> usize {
+        self.particles.len()
+    }
+
+    /// Whether there is no particle: never, by construction.
+    pub fn is_empty(&self) -> bool {
+        self.particles.is_empty()
+    }
+
+    /// Who touches what.
+    ///
+    /// # Errors
+    /// Never: all particles are on the grid.
+    pub fn stencils(&self) -> Result<Stencils<2>, AssemblyError> {
+        Stencils::build(
+            &self.conditions.grid,
+            &self.particles,
+            &self.method,
+            &self.conditions.constraints,
+        )
+    }
+
+    /// The system of equations, with a pattern of its own.
+    ///
+    /// # Errors
+    /// Never: the block has one law, and nodes that are free.
+    pub fn system<'a>(&'a self, stencils: &'a Stencils<2>) -> Result<System<'a, 2>, AssemblyError> {
+        System::new(
+            &self.particles,
+            stencils,
+            &self.conditions,
+            &self.method,
+            &[],
+            None,
+        )
+    }
+}
+
+/// Two particles per cell and direction, off their regular places at random.
+fn seeds(cells: usize, h: f64) -> Vec<ParticleSeed<2>> {
+    let mut random = Random::new(3);
+    let per_side = 2 * cells;
+    (0..per_side * per_side)
+        .map(|part| {
+            let place = [part % per_side, part / per_side];
+            ParticleSeed {
+                x: place
+                    .map(|k| 0.5 * h * (k as f64 + 0.5) + random.between(-JITTER * h, JITTER * h)),
+                half_length: [0.25 * h; 2],
+                volume: 0.25 * h * h,
+                density: 2000.0,
+                law: 0,
+            }
+        })
+        .collect()
+}
+
+/// The trial displacement at a point for strains of about `strain`; zero where the block is held.
+fn flow([x, y]: [f64; 2], strain: f64) -> [f64; 2] {
+    let (sin_x, cos_x) = (PI * x / SIDE).sin_cos();
+    let (sin_y, cos_y) = (FRAC_PI_2 * y / SIDE).sin_cos();
+    let settlement = 0.5 * y * (1.0 - 0.5 * y / SIDE);
+    [
+        strain * SIDE / PI * sin_x * sin_y,
+        strain * (SIDE / FRAC_PI_2 * cos_x * (cos_y - 1.0) - settlement),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use igimp_material::TangentKind;
+    use igimp_solver::linear::SolverKind;
+
+    #[test]
+    fn about_half_of_the_particles_are_plastic_and_the_tangent_is_regular() {
+        let blocks = [
+            (Block::von_mises(20).unwrap(), SolverKind::FaerCholesky),
+            (Block::mohr_coulomb(20).unwrap(), SolverKind::Multifrontal),
+        ];
+        for (block, solver) in blocks {
+            let stencils = block.stencils().unwrap();
+            let system = block.system(&stencils).unwrap();
+            let trial = system.evaluate(&block.u, TangentKind::Consistent).unwrap();
+            let plastic = trial
+                .particles
+                .iter()
+                .filter(|particle| particle.lifted.regime.is_plastic())
+                .count();
+            let share = plastic as f64 / block.len() as f64;
+            assert!((0.4..0.6).contains(&share), "{solver:?}: {share}");
+            solver.build().factor(&system.tangent(&trial)).unwrap();
+        }
+    }
+
+    #[test]
+    fn the_flow_respects_the_supports() {
+        let block = Block::von_mises(4).unwrap();
+        for (node, u) in block.u.iter().enumerate() {
+            for axis in 0..2 {
+                let held = block.conditions.constraints.of(node, axis).is_some();
+                assert!(!held || u[axis].abs() < 1e-12, "node {node}: {u:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn domains_touch_about_six_nodes() {
+        let block = Block::von_mises(20).unwrap();
+        let stencils = block.stencils().unwrap();
+        let touched: usize = (0..block.len()).map(|p| stencils.of(p).len()).sum();
+        let mean = touched as f64 / block.len() as f64;
+        assert!((5.5..6.5).contains(&mean), "{mean}");
+    }
+}

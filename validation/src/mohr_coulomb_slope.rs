@@ -1,0 +1,333 @@
+//! The slope in Mohr–Coulomb soil: displacement against strength reduction factor, and the factor
+//! of safety.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use igimp_assembly::Method;
+use igimp_cases::CaseError;
+use igimp_cases::check::Band;
+use igimp_cases::figures::{
+    ColourMap, CurvePlot, FieldPanel, LineStyle, ReferenceLine, ReferenceValue, Series, SeriesStyle,
+};
+use igimp_cases::measure::{displacement_norm, eps_p_eq};
+use igimp_cases::mohr_coulomb_slope::{FAILURE_DISPLACEMENT, MohrCoulombSlope, ReducedSlope};
+use igimp_cases::safety::{FactorOfSafety, search};
+use igimp_cases::table::Table;
+use igimp_solver::Outcome;
+use rayon::prelude::*;
+
+use crate::pictures::contours;
+use crate::reference::griffiths_lane;
+use crate::study::{Level, Run, Study, timed};
+
+/// Source of the displacements and of the factor of safety.
+const GRIFFITHS_LANE: &str = "Griffiths and Lane 1999, table 2";
+
+/// Runs the study.
+pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
+    let mut study = Study::new("mohr-coulomb-slope", out)?;
+    let mut meshes = vec![
+        Mesh::new(1.0, true),
+        Mesh::new(0.5, true),
+        Mesh::new(0.5, false),
+    ];
+    if level == Level::Full {
+        meshes.extend([Mesh::new(2.0, true), Mesh::new(0.25, true)]);
+    }
+    let found = meshes
+        .par_iter()
+        .map(Mesh::run)
+        .collect::<Result<Vec<_>, _>>()?;
+    for (mesh, found) in meshes.iter().zip(&found) {
+        report(&mut study, mesh, found)?;
+    }
+    figures(&study, &meshes, &found)?;
+    Ok(study)
+}
+
+/// One mesh and method.
+struct Mesh {
+    case: MohrCoulombSlope,
+    label: String,
+    slug: String,
+}
+
+/// What was found on one mesh.
+struct Found {
+    sweep: Vec<(ReducedSlope, Run)>,
+    safety: FactorOfSafety,
+    search: Run,
+}
+
+impl Mesh {
+    fn new(cell: f64, bbar: bool) -> Self {
+        let method = if bbar {
+            Method::igimp_bbar()
+        } else {
+            Method::igimp()
+        };
+        let label = format!("{}, h = {cell} m", method.label());
+        let slug = format!("{}_h{cell}", if bbar { "igimp_bbar" } else { "igimp" });
+        Self {
+            case: MohrCoulombSlope {
+                method,
+                cell,
+                ..MohrCoulombSlope::default()
+            },
+            label,
+            slug,
+        }
+    }
+
+    /// The sweep over strength reduction factors 0.8 to 1.6, and the search for the factor of
+    /// safety.
+    fn run(&self) -> Result<Found, CaseError> {
+        let sweep = (16..=32)
+            .into_par_iter()
+            .map(|k| {
+                let srf = f64::from(k) / 20.0;
+                let (slope, elapsed) = timed(|| self.case.run(srf))?;
+                let run = Run::new(
+                    format!("{}, SRF {srf:.2}", self.label),
+                    &slope.report,
+                    elapsed,
+                );
+                Ok((slope, run))
+            })
+            .collect::<Result<Vec<_>, CaseError>>()?;
+        let mut runs = Vec::new();
+        let safety = search((1.0, 1.6), 0.01, |srf| {
+            let (slope, elapsed) = timed(|| self.case.run(srf))?;
+            runs.push(Run::new(format!("SRF {srf}"), &slope.report, elapsed));
+            Ok(slope.verdict())
+        })?;
+        let search = Run::sum(
+            format!("{}, search", self.label),
+            &runs.iter().collect::<Vec<_>>(),
+        );
+        Ok(Found {
+            sweep,
+            safety,
+            search,
+        })
+    }
+}
+
+/// Displacement against strength reduction factor.
+fn report(study: &mut Study, mesh: &Mesh, found: &Found) -> Result<(), CaseError> {
+    let reference = griffiths_lane().points("srf", "E_delta_over_gamma_H2");
+    let checked = mesh.slug == "igimp_bbar_h0.5";
+    let mut table = Table::new(
+        format!("displacement_{}", mesh.slug),
+        &[
+            "SRF_[-]",
+            "E_delta_max/(gamma_H^2)_[-]",
+            "stands_(1)_or_failed_(0)",
+        ],
+    );
+    for (slope, run) in &found.sweep {
+        let run = study.run(run.clone());
+        let stands = slope.verdict().stable;
+        table.push(vec![
+            slope.srf,
+            slope.displacement,
+            f64::from(u8::from(stands)),
+        ]);
+        for (srf, share) in [(0.8, 0.015), (1.0, 0.015), (1.2, 0.03), (1.3, 0.06)] {
+            if checked && (slope.srf - srf).abs() < 1e-9 {
+                let expected = reference
+                    .iter()
+                    .find(|p| (p[0] - srf).abs() < 1e-9)
+                    .map_or(f64::NAN, |p| p[1]);
+                study.check(
+                    run,
+                    "E δ_max/(γH²) [-]",
+                    (expected, GRIFFITHS_LANE),
+                    Band::Relative(share),
+                    slope.displacement,
+                );
+            }
+        }
+        if (slope.srf - 1.2).abs() < 1e-9 {
+            study.newton(&mesh.slug, run)?;
+        }
+    }
+    // Past failure the values hang on round-off: only the standing part is held in a snapshot.
+    table.write_csv(&study.folder)?;
+    table.rows.retain(|row| row[2] > 0.5);
+    study.tables.push(table);
+
+    factor_of_safety(study, mesh, found)
+}
+
+/// The interval, its criterion and the table of trials.
+fn factor_of_safety(study: &mut Study, mesh: &Mesh, found: &Found) -> Result<(), CaseError> {
+    let run = study.run(found.search.clone());
+    let middle = found.safety.middle();
+    let source = "Griffiths and Lane 1999 (1.35, 1.40]; Bishop and Morgenstern 1.380";
+    let band = match (mesh.case.cell, mesh.case.method.bbar) {
+        (cell, true) if cell >= 1.0 => Band::Between(1.35, 1.42),
+        (_, true) => Band::Between(1.34, 1.40),
+        (_, false) => Band::AtLeast(1.40),
+    };
+    let (source, quantity) = if mesh.case.method.bbar {
+        (source, "factor of safety, middle of the interval [-]")
+    } else {
+        (
+            "above that with B-bar: it locks",
+            "factor of safety, middle of the interval [-]",
+        )
+    };
+    study.check(run, quantity, (1.380, source), band, middle);
+    let mut trials = Table::new(
+        format!("factor_of_safety_{}", mesh.slug),
+        &[
+            "trial",
+            "SRF_[-]",
+            "E_delta_max/(gamma_H^2)_[-]",
+            "stands_(1)_or_failed_(0)",
+        ],
+    );
+    let mut note = format!("factor of safety, {}:\n", mesh.label);
+    for (k, trial) in found.safety.trials.iter().enumerate() {
+        let verdict = &trial.verdict;
+        let stands = if verdict.stable { "stands" } else { "failed" };
+        let _ = writeln!(
+            note,
+            "  trial {:>2}  SRF {:.4}  E δ/(γH²) {:>7.3}  {stands}: {}",
+            k + 1,
+            trial.srf,
+            verdict.measure,
+            verdict.reason
+        );
+        let stands = f64::from(u8::from(verdict.stable));
+        trials.push(vec![k as f64 + 1.0, trial.srf, verdict.measure, stands]);
+    }
+    let _ = write!(
+        note,
+        "  {} ≤ factor of safety < {}, failed when there is no equilibrium or E δ/(γH²) > {}",
+        found
+            .safety
+            .stable
+            .map_or("?".into(), |srf| format!("{srf:.4}")),
+        found
+            .safety
+            .failed
+            .map_or("?".into(), |srf| format!("{srf:.4}")),
+        FAILURE_DISPLACEMENT,
+    );
+    study.notes.push(note);
+    trials.write_csv(&study.folder)?;
+    trials
+        .rows
+        .iter_mut()
+        .filter(|row| row[3] < 0.5)
+        .for_each(|row| row[2] = FAILURE_DISPLACEMENT);
+    study.tables.push(trials);
+    Ok(())
+}
+
+fn figures(study: &Study, meshes: &[Mesh], found: &[Found]) -> Result<(), CaseError> {
+    let mut series: Vec<Series> = meshes
+        .iter()
+        .zip(found)
+        .map(|(mesh, found)| {
+            let points = found
+                .sweep
+                .iter()
+                .filter(|(slope, _)| slope.report.outcome == Outcome::Completed)
+                .map(|(slope, _)| [slope.srf, slope.displacement])
+                .collect();
+            let style = SeriesStyle::LineAndMarkers(LineStyle::Solid);
+            Series::new(mesh.label.clone(), points, style)
+        })
+        .collect();
+    let reference = griffiths_lane().points("srf", "E_delta_over_gamma_H2");
+    series.push(Series::new(
+        "Griffiths & Lane 1999",
+        reference,
+        SeriesStyle::LineAndMarkers(LineStyle::Dashed),
+    ));
+    CurvePlot {
+        title: "Slope in Mohr–Coulomb soil".into(),
+        x_label: "strength reduction factor".into(),
+        y_label: "E δ_{max} / (γH^{2})".into(),
+        y_range: Some((0.0, 3.0)),
+        lines: vec![ReferenceLine {
+            label: "Bishop & Morgenstern 1.380".into(),
+            at: ReferenceValue::X(1.380),
+        }],
+        series,
+        ..CurvePlot::default()
+    }
+    .write(&study.folder.join("displacement_srf"))?;
+
+    let fine = meshes
+        .iter()
+        .position(|mesh| mesh.slug == "igimp_bbar_h0.5")
+        .unwrap_or(0);
+    let at = |srf: f64| {
+        found[fine]
+            .sweep
+            .iter()
+            .find(|(slope, _)| (slope.srf - srf).abs() < 1e-9)
+    };
+    let states: Vec<&ReducedSlope> = [1.0, 1.3, 1.35, 1.4]
+        .into_iter()
+        .filter_map(at)
+        .map(|(slope, _)| slope)
+        .collect();
+    for (name, label, values) in [
+        (
+            "displacement",
+            "displacement [m]",
+            displacement_norm as fn(&_) -> Vec<f64>,
+        ),
+        (
+            "plastic_strain",
+            "accumulated plastic strain invariant [-]",
+            eps_p_eq,
+        ),
+    ] {
+        // Each state has its own range: they differ by orders of magnitude across failure.
+        for slope in &states {
+            let stands = if slope.verdict().stable {
+                "stands"
+            } else {
+                "failed"
+            };
+            let title = format!("Mohr–Coulomb slope, SRF {:.2}: {stands}", slope.srf);
+            contours(
+                title,
+                &slope.particles,
+                values(&slope.particles),
+                label,
+                ColourMap::Sequential,
+                None,
+            )
+            .write(&study.folder.join(format!("{name}_srf_{:.2}", slope.srf)))?;
+        }
+    }
+    let plots = states
+        .iter()
+        .filter(|slope| slope.verdict().stable)
+        .map(|slope| {
+            contours(
+                format!("SRF {:.2}", slope.srf),
+                &slope.particles,
+                eps_p_eq(&slope.particles),
+                "accumulated plastic strain invariant [-]",
+                ColourMap::Sequential,
+                None,
+            )
+        })
+        .collect();
+    FieldPanel {
+        title: "Towards failure".into(),
+        columns: 1,
+        plots,
+    }
+    .write(&study.folder.join("plastic_strain_before_failure"))?;
+    Ok(())
+}

@@ -1,0 +1,259 @@
+//! What a study of one case hands back: runs, checks and tables.
+
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use igimp_cases::CaseError;
+use igimp_cases::check::{Band, Check};
+use igimp_cases::table::Table;
+use igimp_solver::{MarchReport, Outcome};
+use serde::Serialize;
+
+/// Relative residuals below this are round-off and say nothing about the rate of convergence \[-\].
+const ROUND_OFF: f64 = 1e-12;
+
+/// How much is run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Level {
+    /// Coarse: under a minute.
+    Quick,
+    /// Everything that the checks need: within five minutes.
+    Default,
+    /// Finer meshes and further variants.
+    Full,
+}
+
+/// How one run went.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct Run {
+    /// Method, mesh and parameters.
+    pub(crate) variant: String,
+    /// How it ended.
+    pub(crate) outcome: String,
+    /// Accepted steps.
+    pub(crate) steps: usize,
+    /// Newton corrections in accepted steps.
+    pub(crate) iterations: usize,
+    /// Steps that were tried and cut.
+    pub(crate) cuts: usize,
+    /// Wall-clock time \[s\].
+    pub(crate) seconds: f64,
+    /// Relative out-of-balance norms of each accepted step.
+    #[serde(skip)]
+    pub(crate) residuals: Vec<Vec<f64>>,
+}
+
+impl Run {
+    /// Describes a march that took `elapsed`.
+    pub(crate) fn new(variant: impl Into<String>, report: &MarchReport, elapsed: Duration) -> Self {
+        let outcome = match &report.outcome {
+            Outcome::Completed => "completed".to_owned(),
+            Outcome::Stopped { at } => format!("stopped at {at:.4} by the case"),
+            Outcome::StepTooSmall {
+                last_converged,
+                cause,
+            } => {
+                format!(
+                    "no equilibrium beyond {last_converged:.4}: {}",
+                    cause.failure
+                )
+            }
+        };
+        Self {
+            variant: variant.into(),
+            outcome,
+            steps: report.steps.len(),
+            iterations: report.iterations(),
+            cuts: report.failures.len(),
+            seconds: elapsed.as_secs_f64(),
+            residuals: report
+                .steps
+                .iter()
+                .map(|step| step.residuals.clone())
+                .collect(),
+        }
+    }
+
+    /// The sum of several runs under one name.
+    pub(crate) fn sum(variant: impl Into<String>, runs: &[&Self]) -> Self {
+        Self {
+            variant: variant.into(),
+            outcome: format!("{} runs", runs.len()),
+            steps: runs.iter().map(|run| run.steps).sum(),
+            iterations: runs.iter().map(|run| run.iterations).sum(),
+            cuts: runs.iter().map(|run| run.cuts).sum(),
+            seconds: runs.iter().map(|run| run.seconds).sum(),
+            residuals: runs.iter().flat_map(|run| run.residuals.clone()).collect(),
+        }
+    }
+
+    /// Effort counters as text, for exact snapshots.
+    pub(crate) fn effort(&self) -> String {
+        format!(
+            "steps: {}\niterations: {}\ncuts: {}\noutcome: {}\n",
+            self.steps, self.iterations, self.cuts, self.outcome
+        )
+    }
+}
+
+/// A check with the run that it looks at.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct Row {
+    /// The check.
+    #[serde(flatten)]
+    pub(crate) check: Check,
+    /// Whether the band is met.
+    pub(crate) pass: bool,
+    /// Index of its run.
+    #[serde(skip)]
+    pub(crate) run: usize,
+}
+
+/// Everything that the study of one case found.
+#[derive(Debug)]
+pub(crate) struct Study {
+    /// Name of the case; also of its folder.
+    pub(crate) case: &'static str,
+    /// Where its files go.
+    pub(crate) folder: PathBuf,
+    /// The runs, and sums of runs.
+    pub(crate) runs: Vec<Run>,
+    /// The checks.
+    pub(crate) rows: Vec<Row>,
+    /// Tables that are held against snapshots.
+    pub(crate) tables: Vec<Table>,
+    /// Paragraphs for the reader of the printed report.
+    pub(crate) notes: Vec<String>,
+}
+
+impl Study {
+    /// A study that writes into a folder of its own, which is made.
+    pub(crate) fn new(case: &'static str, out: &Path) -> Result<Self, CaseError> {
+        let folder = out.join(case);
+        std::fs::create_dir_all(&folder).map_err(|source| CaseError::File {
+            path: folder.clone(),
+            source,
+        })?;
+        Ok(Self {
+            case,
+            folder,
+            runs: Vec::new(),
+            rows: Vec::new(),
+            tables: Vec::new(),
+            notes: Vec::new(),
+        })
+    }
+
+    /// Records a run and returns its index.
+    pub(crate) fn run(&mut self, run: Run) -> usize {
+        self.runs.push(run);
+        self.runs.len() - 1
+    }
+
+    /// Records a check on a run.
+    pub(crate) fn check(
+        &mut self,
+        run: usize,
+        quantity: impl Into<String>,
+        (expected, source): (f64, &str),
+        band: Band,
+        measured: f64,
+    ) {
+        let check = Check {
+            case: self.case.to_owned(),
+            variant: self.runs[run].variant.clone(),
+            quantity: quantity.into(),
+            expected,
+            source: source.to_owned(),
+            band,
+            measured,
+        };
+        self.rows.push(Row {
+            pass: check.passes(),
+            check,
+            run,
+        });
+    }
+
+    /// Writes a table as CSV and keeps it for its snapshot.
+    pub(crate) fn table(&mut self, table: Table) -> Result<(), CaseError> {
+        table.write_csv(&self.folder)?;
+        self.tables.push(table);
+        Ok(())
+    }
+
+    /// The residual history of a run as a table: step, iteration, residual; and the check that its
+    /// tail is quadratic.
+    pub(crate) fn newton(&mut self, name: &str, run: usize) -> Result<(), CaseError> {
+        let mut table = Table::new(
+            format!("newton_{name}"),
+            &["step", "iteration", "relative_out_of_balance_[-]"],
+        );
+        for (step, residuals) in self.runs[run].residuals.iter().enumerate() {
+            for (iteration, &residual) in residuals.iter().enumerate() {
+                table.push(vec![step as f64 + 1.0, iteration as f64, residual]);
+            }
+        }
+        table.write_csv(&self.folder)?;
+        let constant = quadratic_constant(&self.runs[run].residuals);
+        self.check(
+            run,
+            "Newton's tail r₊/r², median over steps [-]",
+            (
+                1.0,
+                "of order 1 when quadratic; > 10⁴ for a linear tail of rate 0.1",
+            ),
+            Band::AtMost(100.0),
+            constant,
+        );
+        Ok(())
+    }
+}
+
+/// Runs a case and keeps the time.
+pub(crate) fn timed<T>(
+    run: impl FnOnce() -> Result<T, CaseError>,
+) -> Result<(T, Duration), CaseError> {
+    let clock = Instant::now();
+    let result = run()?;
+    Ok((result, clock.elapsed()))
+}
+
+/// The constant C in r₊ = C r² at the end of each step, from the last relative residual r whose
+/// square is above round-off; the median over the steps that have one \[-\].
+///
+/// The first correction of a step uses the elastic tangent and does not count.
+pub(crate) fn quadratic_constant(residuals: &[Vec<f64>]) -> f64 {
+    let mut constants: Vec<f64> = residuals
+        .iter()
+        .filter_map(|step| last_constant(step))
+        .collect();
+    constants.sort_by(f64::total_cmp);
+    if constants.is_empty() {
+        f64::NAN
+    } else {
+        constants[constants.len() / 2]
+    }
+}
+
+fn last_constant(residuals: &[f64]) -> Option<f64> {
+    let corrected = residuals.get(1..)?;
+    let last = corrected
+        .windows(2)
+        .rfind(|pair| pair[0] * pair[0] > ROUND_OFF)?;
+    Some(last[1] / (last[0] * last[0]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_quadratic_tail_scores_one_and_a_linear_one_does_not() {
+        let quadratic = vec![vec![0.3, 1e-1, 1e-2, 1e-4, 1e-8, 1e-15]; 3];
+        assert!((quadratic_constant(&quadratic) - 1.0).abs() < 1e-12);
+        let linear = vec![(0..10).map(|k| 0.1_f64.powi(k)).collect()];
+        assert!(quadratic_constant(&linear) > 1e4);
+        assert!(quadratic_constant(&[vec![1e-1, 1e-9]]).is_nan());
+    }
+}

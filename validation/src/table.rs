@@ -1,0 +1,134 @@
+//! The printed table of checks, and the summary as JSON.
+
+use std::path::Path;
+
+use igimp_cases::CaseError;
+use igimp_cases::check::short;
+
+use crate::study::Study;
+
+/// The checks of all studies as aligned text, one line each.
+pub(crate) fn checks(studies: &[Study]) -> String {
+    let header = [
+        "case", "variant", "quantity", "expected", "band", "measured", "verdict", "steps", "iter.",
+        "time [s]", "source",
+    ];
+    let mut rows: Vec<Vec<String>> = vec![header.iter().map(|&text| text.to_owned()).collect()];
+    for study in studies {
+        for row in &study.rows {
+            let (check, run) = (&row.check, &study.runs[row.run]);
+            rows.push(vec![
+                check.case.clone(),
+                check.variant.clone(),
+                check.quantity.clone(),
+                short(check.expected),
+                check.band.to_string(),
+                short(check.measured),
+                if row.pass { "ok" } else { "MISSED" }.to_owned(),
+                run.steps.to_string(),
+                run.iterations.to_string(),
+                format!("{:.1}", run.seconds),
+                check.source.clone(),
+            ]);
+        }
+    }
+    aligned(&rows)
+}
+
+/// Columns of equal width; numbers are not told apart from words.
+fn aligned(rows: &[Vec<String>]) -> String {
+    let columns = rows.first().map_or(0, Vec::len);
+    let widths: Vec<usize> = (0..columns)
+        .map(|k| {
+            rows.iter()
+                .map(|row| row[k].chars().count())
+                .max()
+                .unwrap_or(0)
+        })
+        .collect();
+    let mut text = String::new();
+    for (index, row) in rows.iter().enumerate() {
+        let line: Vec<String> = row
+            .iter()
+            .zip(&widths)
+            .map(|(entry, &width)| format!("{entry:<width$}"))
+            .collect();
+        text.push_str(line.join("  ").trim_end());
+        text.push('\n');
+        if index == 0 {
+            text.push_str(&"-".repeat(widths.iter().sum::<usize>() + 2 * (columns - 1)));
+            text.push('\n');
+        }
+    }
+    text
+}
+
+/// The checks as a Markdown table: the verification matrix of the book.
+pub(crate) fn matrix(studies: &[Study]) -> String {
+    let mut text = String::from(
+        "| case | variant | quantity | expected | band | measured | source |\n\
+         |---|---|---|---|---|---|---|\n",
+    );
+    for row in studies.iter().flat_map(|study| &study.rows) {
+        let check = &row.check;
+        let cells = [
+            check.case.clone(),
+            check.variant.clone(),
+            check.quantity.clone(),
+            short(check.expected),
+            check.band.to_string(),
+            short(check.measured),
+            check.source.clone(),
+        ];
+        let cells: Vec<String> = cells.iter().map(|cell| cell.replace('|', "\\|")).collect();
+        text.push_str("| ");
+        text.push_str(&cells.join(" | "));
+        text.push_str(" |\n");
+    }
+    text
+}
+
+/// Writes `summary.json`: every check and run.
+pub(crate) fn write_summary(
+    studies: &[Study],
+    missed_snapshots: &[String],
+    out: &Path,
+) -> Result<(), CaseError> {
+    let cases: Vec<serde_json::Value> = studies
+        .iter()
+        .map(|study| {
+            serde_json::json!({
+                "case": study.case,
+                "checks": study.rows,
+                "runs": study.runs,
+            })
+        })
+        .collect();
+    let summary = serde_json::json!({
+        "program": "igimp-validation",
+        "version": env!("CARGO_PKG_VERSION"),
+        "cases": cases,
+        "missed_snapshots": missed_snapshots,
+    });
+    let path = out.join("summary.json");
+    let text = format!("{summary:#}\n");
+    std::fs::write(&path, text).map_err(|source| CaseError::File { path, source })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_line_up() {
+        let rows = [["a", "γH/c_u", "1"], ["bcd", "x", "23"]].map(|row| {
+            row.iter()
+                .map(|&entry| entry.to_owned())
+                .collect::<Vec<_>>()
+        });
+        assert_eq!(
+            aligned(&rows),
+            "a    γH/c_u  1\n---------------\nbcd  x       23\n"
+        );
+    }
+}
