@@ -76,7 +76,7 @@ enum Case {
 impl Case {
     fn study(self, level: Level, out: &Path) -> Result<Study, CaseError> {
         match self {
-            Self::Column => column::study(level, out),
+            Self::Column => column::study(out),
             Self::VonMisesSlope => von_mises_slope::study(level, out),
             Self::MohrCoulombSlope => mohr_coulomb_slope::study(level, out),
             Self::Footing => footing::study(level, out),
@@ -90,23 +90,27 @@ fn main() -> ExitCode {
         return again_with_update();
     }
     match validate(&arguments) {
-        Ok(true) => ExitCode::SUCCESS,
-        Ok(false) => ExitCode::from(REFERENCE_MISSED),
+        Ok(code) => ExitCode::from(code),
         Err(error) => {
-            eprintln!("error: {error}");
-            let mut source = error.source();
-            while let Some(cause) = source {
-                eprintln!("  because: {cause}");
-                source = cause.source();
-            }
-            ExitCode::from(match error {
-                CaseError::Stopped { .. } => NOT_CONVERGED,
-                CaseError::File { .. } | CaseError::Table { .. } | CaseError::Figure(_) => {
-                    INPUT_OUTPUT
-                }
-                _ => BAD_INPUT,
-            })
+            report_error(&error);
+            ExitCode::from(exit_code(&error))
         }
+    }
+}
+
+fn report_error(error: &CaseError) {
+    eprintln!("error: {error}");
+    let mut source = error.source();
+    while let Some(cause) = source {
+        eprintln!("  because: {cause}");
+        source = cause.source();
+    }
+}
+
+fn exit_code(error: &CaseError) -> u8 {
+    match error {
+        CaseError::File { .. } | CaseError::Table { .. } | CaseError::Figure(_) => INPUT_OUTPUT,
+        _ => BAD_INPUT,
     }
 }
 
@@ -132,8 +136,9 @@ fn again_with_update() -> ExitCode {
     }
 }
 
-/// Runs everything asked for; whether all checks and snapshots are met.
-fn validate(arguments: &Arguments) -> Result<bool, CaseError> {
+/// Runs everything asked for and returns the exit code. A case that fails takes nothing from the
+/// others: their results are written and printed first.
+fn validate(arguments: &Arguments) -> Result<u8, CaseError> {
     let clock = Instant::now();
     if let Some(threads) = arguments.threads {
         // Fails only if the pool exists already, which it does not at the start.
@@ -151,23 +156,27 @@ fn validate(arguments: &Arguments) -> Result<bool, CaseError> {
         .copied()
         .filter(|case| arguments.case.is_empty() || arguments.case.contains(case))
         .collect();
-    let mut studies = cases
+    let results: Vec<Result<Study, CaseError>> = cases
         .par_iter()
         .map(|case| {
             let study = case.study(level, &arguments.out);
-            let end = if study.is_ok() { "done" } else { "stopped" };
+            let end = if study.is_ok() { "done" } else { "failed" };
             let name = case
                 .to_possible_value()
                 .map_or_else(String::new, |v| v.get_name().into());
             eprintln!("{name}: {end} after {:.0} s", clock.elapsed().as_secs_f64());
             study
         })
-        .collect::<Result<Vec<_>, _>>()?;
-    studies.sort_by_key(|study| {
-        ["column", "von-mises-slope", "mohr-coulomb-slope", "footing"]
-            .iter()
-            .position(|&case| case == study.case)
-    });
+        .collect();
+    let (mut studies, mut errors) = (Vec::new(), Vec::new());
+    for result in results {
+        match result {
+            Ok(study) => studies.push(study),
+            Err(error) => errors.push(error),
+        }
+    }
+    let order = ["column", "von-mises-slope", "mohr-coulomb-slope", "footing"];
+    studies.sort_by_key(|study| order.iter().position(|&case| case == study.case));
 
     let missed = snapshot::compare(&studies);
     table::write_summary(&studies, &missed, &arguments.out)?;
@@ -182,7 +191,8 @@ fn validate(arguments: &Arguments) -> Result<bool, CaseError> {
     ))
 }
 
-fn print_report(studies: &[Study], missed: &[String], arguments: &Arguments, seconds: f64) -> bool {
+/// Prints notes, table and what was missed; returns the exit code.
+fn print_report(studies: &[Study], missed: &[String], arguments: &Arguments, seconds: f64) -> u8 {
     for note in studies.iter().flat_map(|study| &study.notes) {
         println!("{note}\n");
     }
@@ -190,9 +200,11 @@ fn print_report(studies: &[Study], missed: &[String], arguments: &Arguments, sec
     let rows = || studies.iter().flat_map(|study| &study.rows);
     let failed = rows().filter(|row| !row.pass).count();
     println!(
-        "{} checks: {} ok, {failed} missed; snapshots: {} differ; {seconds:.0} s; files in {}",
-        rows().count(),
-        rows().count() - failed,
+        "checks: {} passed, {failed} failed",
+        rows().count() - failed
+    );
+    println!(
+        "snapshots: {} differ; {seconds:.0} s; tables, pictures and summary.json in {}",
         missed.len(),
         arguments.out.display(),
     );
@@ -212,7 +224,17 @@ fn print_report(studies: &[Study], missed: &[String], arguments: &Arguments, sec
     for name in missed {
         println!("snapshot differs: {name} (accept today's results with --accept)");
     }
-    failed == 0 && missed.is_empty()
+    let unfinished: Vec<&String> = studies.iter().flat_map(|study| &study.unfinished).collect();
+    for text in &unfinished {
+        println!("{text}");
+    }
+    if !unfinished.is_empty() {
+        NOT_CONVERGED
+    } else if failed > 0 || !missed.is_empty() {
+        REFERENCE_MISSED
+    } else {
+        0
+    }
 }
 
 /// Writes the matrix between its marks in the book.

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use igimp_cases::CaseError;
 use igimp_cases::check::{Band, Check};
 use igimp_cases::table::Table;
-use igimp_solver::{MarchReport, Outcome};
+use igimp_solver::{MarchReport, Outcome, StepError};
 use serde::Serialize;
 
 /// Relative residuals below this are round-off and say nothing about the rate of convergence \[-\].
@@ -38,6 +38,9 @@ pub(crate) struct Run {
     pub(crate) cuts: usize,
     /// Wall-clock time \[s\].
     pub(crate) seconds: f64,
+    /// The last step that found no equilibrium, if that ended the run.
+    #[serde(skip)]
+    pub(crate) stopped_by: Option<StepError>,
     /// Relative out-of-balance norms of each accepted step.
     #[serde(skip)]
     pub(crate) residuals: Vec<Vec<f64>>,
@@ -66,6 +69,10 @@ impl Run {
             iterations: report.iterations(),
             cuts: report.failures.len(),
             seconds: elapsed.as_secs_f64(),
+            stopped_by: match &report.outcome {
+                Outcome::StepTooSmall { cause, .. } => Some(cause.clone()),
+                _ => None,
+            },
             residuals: report
                 .steps
                 .iter()
@@ -83,6 +90,7 @@ impl Run {
             iterations: runs.iter().map(|run| run.iterations).sum(),
             cuts: runs.iter().map(|run| run.cuts).sum(),
             seconds: runs.iter().map(|run| run.seconds).sum(),
+            stopped_by: None,
             residuals: runs.iter().flat_map(|run| run.residuals.clone()).collect(),
         }
     }
@@ -124,6 +132,8 @@ pub(crate) struct Study {
     pub(crate) tables: Vec<Table>,
     /// Paragraphs for the reader of the printed report.
     pub(crate) notes: Vec<String>,
+    /// Runs that had to reach their end and did not: where and why.
+    pub(crate) unfinished: Vec<String>,
 }
 
 impl Study {
@@ -141,6 +151,7 @@ impl Study {
             rows: Vec::new(),
             tables: Vec::new(),
             notes: Vec::new(),
+            unfinished: Vec::new(),
         })
     }
 
@@ -148,6 +159,15 @@ impl Study {
     pub(crate) fn run(&mut self, run: Run) -> usize {
         self.runs.push(run);
         self.runs.len() - 1
+    }
+
+    /// Records a run that has to reach its end, and returns its index. When it did not, the report
+    /// says where and why.
+    pub(crate) fn run_to_end(&mut self, run: Run) -> usize {
+        if let Some(error) = &run.stopped_by {
+            self.unfinished.push(not_converged(self.case, &run, error));
+        }
+        self.run(run)
     }
 
     /// Records a check on a run.
@@ -208,6 +228,28 @@ impl Study {
         );
         Ok(())
     }
+}
+
+/// What is known of a run that found no equilibrium.
+fn not_converged(case: &str, run: &Run, error: &StepError) -> String {
+    let residuals: Vec<String> = error.residuals.iter().map(|r| format!("{r:.1e}")).collect();
+    let worst = error.worst.map_or_else(String::new, |([x, y, _], axis)| {
+        let axis = ["x", "y", "z"][axis];
+        format!("\n  worst node   ({x:.4}, {y:.4}) m, {axis}")
+    });
+    format!(
+        "not converged: {case}, {}: step from {:.5} to {:.5} after {} cuts\n  \
+           cause        {}\n  residual     {}{worst}\n  \
+           kept         {} steps to load factor {:.5}, with their tables and pictures",
+        run.variant,
+        error.from,
+        error.to,
+        run.cuts,
+        error.failure,
+        residuals.join(" "),
+        run.steps,
+        error.from,
+    )
 }
 
 /// Runs a case and keeps the time.

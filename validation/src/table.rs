@@ -1,5 +1,6 @@
 //! The printed table of checks, and the summary as JSON.
 
+use std::fmt::Write as _;
 use std::path::Path;
 
 use igimp_cases::CaseError;
@@ -7,32 +8,43 @@ use igimp_cases::check::short;
 
 use crate::study::Study;
 
-/// The checks of all studies as aligned text, one line each.
+/// The checks of all studies as aligned text, one line each, and the sources that their numbers in
+/// brackets stand for.
 pub(crate) fn checks(studies: &[Study]) -> String {
     let header = [
         "case", "variant", "quantity", "expected", "band", "measured", "verdict", "steps", "iter.",
-        "time [s]", "source",
+        "time [s]",
     ];
     let mut rows: Vec<Vec<String>> = vec![header.iter().map(|&text| text.to_owned()).collect()];
+    let mut sources: Vec<&str> = Vec::new();
     for study in studies {
         for row in &study.rows {
             let (check, run) = (&row.check, &study.runs[row.run]);
+            let known = sources.iter().position(|&source| source == check.source);
+            let number = known.unwrap_or_else(|| {
+                sources.push(&check.source);
+                sources.len() - 1
+            }) + 1;
             rows.push(vec![
                 check.case.clone(),
                 check.variant.clone(),
                 check.quantity.clone(),
-                short(check.expected),
+                format!("{} [{number}]", short(check.expected)),
                 check.band.to_string(),
                 short(check.measured),
                 if row.pass { "ok" } else { "MISSED" }.to_owned(),
                 run.steps.to_string(),
                 run.iterations.to_string(),
                 format!("{:.1}", run.seconds),
-                check.source.clone(),
             ]);
         }
     }
-    aligned(&rows)
+    let mut text = aligned(&rows);
+    text.push_str("\nsources\n");
+    for (index, source) in sources.iter().enumerate() {
+        let _ = writeln!(text, "  [{}] {source}", index + 1);
+    }
+    text
 }
 
 /// Columns of equal width; numbers are not told apart from words.

@@ -56,7 +56,7 @@ fn smoothness(study: &mut Study) -> Result<(), CaseError> {
     let mut scores = Vec::new();
     for (case, (result, elapsed)) in cases.iter().zip(&results) {
         let variant = format!("{}, h = 0.5 m, E = 1 MPa", case.method.label());
-        runs.push(study.run(Run::new(variant, &result.report, *elapsed)));
+        runs.push(study.run_to_end(Run::new(variant, &result.report, *elapsed)));
         scores.push(case.oscillation(&result.particles));
     }
     let quantity = "oscillation of σ_yy / (γH) [-]";

@@ -1,2 +1,83 @@
-//! xtask.
-fn main() {}
+//! Developer commands, run as `cargo xtask COMMAND`. Depends on no crate of the project, so that it
+//! builds in seconds and works when they do not.
+
+mod bench;
+mod book;
+mod failure;
+mod process;
+mod tidy;
+mod validate;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+/// Developer commands of the igimp workspace.
+#[derive(Debug, Parser)]
+#[command(name = "cargo xtask", bin_name = "cargo xtask")]
+struct Arguments {
+    #[command(subcommand)]
+    task: Task,
+}
+
+#[derive(Debug, Subcommand)]
+enum Task {
+    /// Run the cases and hold them against references and snapshots.
+    ///
+    /// All arguments go to the validation program, and its exit code is passed on: 0 references
+    /// met, 1 reference or snapshot missed, 2 bad input, 3 not converged, 4 input or output.
+    #[command(disable_help_flag = true)]
+    Validate {
+        /// Arguments of the validation program; `--help` lists them.
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        arguments: Vec<String>,
+    },
+    /// Run the benches and print one table of times and costs per particle.
+    ///
+    /// The table is also written to `target/bench/bench.md` and `target/bench/bench.csv`.
+    Bench(bench::Arguments),
+    /// Check what the compiler does not: layers, printing, leftovers, licences.
+    Tidy,
+    /// Build the book in `docs/` with mdbook.
+    Book {
+        /// Show it in the browser.
+        #[arg(long)]
+        open: bool,
+    },
+}
+
+fn main() -> ExitCode {
+    let result = match Arguments::parse().task {
+        Task::Validate { arguments } => validate::run(&arguments),
+        Task::Bench(arguments) => bench::run(&arguments),
+        Task::Tidy => tidy::run(),
+        Task::Book { open } => book::run(open),
+    };
+    match result {
+        Ok(code) => ExitCode::from(code),
+        Err(failure) => {
+            eprintln!("error: {failure}");
+            ExitCode::from(failure.code)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn validate_takes_any_argument() {
+        let given = ["cargo xtask", "validate", "--case", "footing", "--help"];
+        let Task::Validate { arguments } = Arguments::try_parse_from(given).unwrap().task else {
+            panic!("another task");
+        };
+        assert_eq!(arguments, given[2..]);
+    }
+}

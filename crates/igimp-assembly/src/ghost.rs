@@ -1,6 +1,7 @@
 //! Ghost penalty on the faces of boundary cells: a small stiffness against jumps of the normal
 //! gradient, γ E h ∫ ⟦∂u/∂n⟧ · ⟦∂v/∂n⟧ (Burman 2010), which keeps nodes with little soil tied to
-//! their neighbours. It acts on step displacements, so it leaves no stress behind.
+//! their neighbours. It acts on step displacements, so it leaves no stress behind. What falls to a
+//! tied node acts on its master.
 
 use igimp_shape::Grid;
 
@@ -42,6 +43,10 @@ pub(crate) fn ghost_entries<const D: usize>(
                 face(grid, place, axis, gamma * mean_young, &mut entries);
             }
         }
+    }
+    for entry in &mut entries {
+        entry.row = stencils.master(entry.row);
+        entry.column = stencils.master(entry.column);
     }
     entries
 }

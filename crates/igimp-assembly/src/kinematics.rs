@@ -14,8 +14,8 @@
 //! the symmetric gradient plus a third of the difference of the two divergences on xx, yy and zz.
 
 use igimp_material::{
-    ConstitutiveModel, History, Lifted, TangentKind, Tensor, lift_finite, lift_small,
-    logarithmic_strain,
+    ConstitutiveModel, History, Lifted, MaterialError, TangentKind, Tensor, lift_finite,
+    lift_small, logarithmic_strain,
 };
 use igimp_shape::Support;
 
@@ -70,10 +70,12 @@ pub(crate) fn evaluate<const D: usize>(
             let det_bar = positive(particle, determinant(&delta_bar))?;
             let lambda2 = (det_bar / det).cbrt().powi(2);
             let trial = pushed_forward(b_e, &delta_def_grad, lambda2);
+            let lifted = lift_finite(law, &trial, history, kind).map_err(material)?;
+            finite(&lifted).map_err(material)?;
             Ok(ParticleTrial {
                 push: inverse(&delta_def_grad, det),
                 push_bar: inverse(&delta_bar, det_bar),
-                lifted: lift_finite(law, &trial, history, kind).map_err(material)?,
+                lifted,
                 delta_def_grad,
             })
         }
@@ -89,10 +91,12 @@ pub(crate) fn evaluate<const D: usize>(
             for a in 0..3 {
                 trial[a][a] += difference / 3.0;
             }
+            let lifted = lift_small(law, &trial, history, kind).map_err(material)?;
+            finite(&lifted).map_err(material)?;
             Ok(ParticleTrial {
                 push: identity(),
                 push_bar: identity(),
-                lifted: lift_small(law, &trial, history, kind).map_err(material)?,
+                lifted,
                 delta_def_grad,
             })
         }
@@ -122,6 +126,15 @@ fn pushed_forward<const D: usize>(
         }
     }
     out
+}
+
+/// What a law answers is checked here, whatever law it is, so that the particle can be named.
+fn finite<const D: usize>(lifted: &Lifted<D>) -> Result<(), MaterialError> {
+    if lifted.tau.iter().flatten().all(|tau| tau.is_finite()) {
+        Ok(())
+    } else {
+        Err(MaterialError::NonFinite { quantity: "stress" })
+    }
 }
 
 fn positive(particle: usize, determinant: f64) -> Result<f64, AssemblyError> {

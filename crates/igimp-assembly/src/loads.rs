@@ -111,7 +111,8 @@ pub(crate) fn external_force<const D: usize>(
         });
     for (index, point) in points.iter().enumerate() {
         for support in point.supports(grid, index)? {
-            if support.value > 0.0 && stencils.node_volume()[support.node] == 0.0 {
+            let node = stencils.master(support.node);
+            if support.value > 0.0 && stencils.node_volume()[node] == 0.0 {
                 let position = padded(&point.x);
                 return Err(AssemblyError::UnsupportedLoad {
                     point: index,
@@ -119,7 +120,7 @@ pub(crate) fn external_force<const D: usize>(
                 });
             }
             for axis in 0..D {
-                f_ext[support.node][axis] += support.value * loads.point_factor * point.force[axis];
+                f_ext[node][axis] += support.value * loads.point_factor * point.force[axis];
             }
         }
     }

@@ -26,6 +26,7 @@ pub struct Stencils<const D: usize> {
     supports: Supports<D>,
     reach: usize,
     node_volume: Vec<f64>,
+    masters: BTreeMap<usize, usize>,
     strips: Strips,
 }
 
@@ -65,8 +66,9 @@ impl<const D: usize> Stencils<D> {
 
         let mut supports = Supports { offsets, all };
         let mut node_volume = supports.node_volume(grid, particles);
+        let mut masters = BTreeMap::new();
         if method.small_cuts.remedy == Remedy::Tie {
-            let masters = masters(
+            masters = masters_of_cuts(
                 grid,
                 &supports,
                 &node_volume,
@@ -97,6 +99,7 @@ impl<const D: usize> Stencils<D> {
             supports,
             reach,
             node_volume,
+            masters,
             strips,
         })
     }
@@ -129,6 +132,16 @@ impl<const D: usize> Stencils<D> {
     /// Volume that each grid node represents, Σ_p S_i V_p \[length^D\], by node.
     pub fn node_volume(&self) -> &[f64] {
         &self.node_volume
+    }
+
+    /// Tied nodes with the nodes that they move with.
+    pub(crate) fn masters(&self) -> &BTreeMap<usize, usize> {
+        &self.masters
+    }
+
+    /// The node that a node moves with: itself unless it is tied.
+    pub(crate) fn master(&self, node: usize) -> usize {
+        self.masters.get(&node).copied().unwrap_or(node)
     }
 
     /// Particles grouped by strips of node rows, for sums that are the same for any thread count.
@@ -256,7 +269,7 @@ fn merge_equal_nodes<const D: usize>(all: &mut Vec<Support<D>>, start: usize) {
 
 /// The master of every node that is a small cut: the nearest node that shares a particle with it,
 /// carries enough soil and has the same constraints; of equally near ones that with most soil.
-fn masters<const D: usize>(
+fn masters_of_cuts<const D: usize>(
     grid: &Grid<D>,
     supports: &Supports<D>,
     node_volume: &[f64],

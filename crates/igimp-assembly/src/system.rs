@@ -19,6 +19,9 @@ use crate::particles::Particles;
 use crate::stencils::Stencils;
 use crate::unknowns::{BlockTable, Unknowns};
 
+/// Size of the round-off in the strain of a particle \[-\].
+const STRAIN_ROUND_OFF: f64 = 8.0 * f64::EPSILON;
+
 /// A constitutive law that several bodies and threads share.
 pub type SharedLaw = Arc<dyn ConstitutiveModel>;
 
@@ -51,6 +54,9 @@ pub struct OutOfBalance {
     pub force: Vec<f64>,
     /// ‖f_ext − f_int‖ over the unknowns, divided by ‖f_ext‖ + ‖f_react‖ \[-\].
     pub relative_norm: f64,
+    /// Whether the norm cannot be told from the round-off of the internal force: no smaller one
+    /// can be reached.
+    pub is_round_off: bool,
     /// Node and axis of the largest component.
     pub worst: (usize, usize),
 }
@@ -64,6 +70,8 @@ pub struct System<'a, const D: usize> {
     method: &'a Method,
     unknowns: Unknowns<D>,
     f_ext: Vec<[f64; D]>,
+    /// ‖f_int‖ of strains that are round-off \[force\].
+    round_off: f64,
     ghost: Vec<GhostEntry>,
     table: BlockTable<D>,
     pattern: Arc<Pattern>,
@@ -117,6 +125,7 @@ impl<'a, const D: usize> System<'a, D> {
             method,
             unknowns,
             f_ext,
+            round_off: force_of_round_off(particles, stencils, conditions),
             ghost,
             table,
             pattern,
@@ -231,6 +240,7 @@ impl<'a, const D: usize> System<'a, D> {
         Ok(OutOfBalance {
             force,
             relative_norm,
+            is_round_off: norm <= self.round_off,
             worst,
         })
     }
@@ -400,7 +410,7 @@ impl<'a, const D: usize> System<'a, D> {
             .collect()
     }
 
-    /// Adds a correction by unknown to nodal displacements.
+    /// Adds a correction by unknown to nodal displacements; tied nodes follow their masters.
     pub fn add_correction(&self, u: &mut [[f64; D]], du: &[f64]) {
         for (node, displacement) in u.iter_mut().enumerate() {
             for axis in 0..D {
@@ -408,6 +418,9 @@ impl<'a, const D: usize> System<'a, D> {
                     displacement[axis] += du[unknown];
                 }
             }
+        }
+        for (&node, &master) in self.stencils.masters() {
+            u[node] = u[master];
         }
     }
 
@@ -423,4 +436,25 @@ impl<'a, const D: usize> System<'a, D> {
     fn code(&self, node: usize) -> usize {
         self.table.code(&self.conditions.grid.node_place(node))
     }
+}
+
+/// The norm of the internal force of strains that are round-off: where a body is all but free of
+/// force, as after unloading or in rigid motion, no smaller residual can be reached \[force\].
+fn force_of_round_off<const D: usize>(
+    particles: &Particles<D>,
+    stencils: &Stencils<D>,
+    conditions: &StepConditions<D>,
+) -> f64 {
+    let mut force = vec![0.0; conditions.grid.node_count()];
+    for particle in 0..particles.len() {
+        let elasticity = conditions.laws[particles.law[particle]].elasticity();
+        let modulus = elasticity.bulk() + 4.0 / 3.0 * elasticity.shear();
+        let stress = STRAIN_ROUND_OFF * modulus * particles.volume(particle);
+        for support in stencils.of(particle) {
+            let squares: f64 = support.grad.iter().map(|slope| slope * slope).sum();
+            force[support.node] += stress * squares.sqrt();
+        }
+    }
+    let squares: f64 = force.iter().map(|force| force * force).sum();
+    squares.sqrt()
 }

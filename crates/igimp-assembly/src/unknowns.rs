@@ -134,11 +134,11 @@ impl<const D: usize> BlockTable<D> {
         extra: &[(usize, usize)],
         previous: Option<&Arc<Pattern>>,
     ) -> (Self, Arc<Pattern>) {
-        let reach = if extra.is_empty() {
-            stencils.reach()
-        } else {
-            stencils.reach().max(2)
+        let apart = |&(a, b): &(usize, usize)| {
+            let places = std::iter::zip(grid.node_place(a), grid.node_place(b));
+            places.map(|(a, b)| a.abs_diff(b)).max().unwrap_or(0)
         };
+        let reach = extra.iter().map(apart).fold(stencils.reach(), usize::max);
         let window = 2 * reach + 1;
         let mut compact = vec![NONE; grid.node_count()];
         let mut columns = Vec::new();

@@ -113,11 +113,13 @@ fn uniform_gradient_is_exact_in_three_dimensions() {
     uniform_gradient_is_exact::<3>(7);
 }
 
-/// A rotation by 90° in one step turns the stress and changes nothing else.
+/// A rotation by 90° in one step turns the stress and changes nothing else. Small cuts are left
+/// alone here: a tied node follows its neighbour's translation, not a rotation about it.
 fn rotation_rotates_stress<const D: usize>(cells: usize) {
     let mut random = Random(5);
     for (name, law) in laws() {
-        for method in methods() {
+        for mut method in methods() {
+            method.small_cuts.below = 0.0;
             if method.kinematics == igimp_assembly::Kinematics::SmallStrain {
                 continue;
             }

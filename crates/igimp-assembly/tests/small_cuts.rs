@@ -6,8 +6,6 @@
 
 mod common;
 
-use std::collections::BTreeMap;
-
 use common::{Random, displacements, laws, methods};
 use igimp_assembly::{
     Constraints, Kinematics, LoadPoint, Method, ParticleSeed, Particles, Remedy, SharedLaw,
@@ -31,7 +29,7 @@ fn body(cells: &[[usize; 2]], shift: [f64; 2]) -> Particles<2> {
         .flat_map(|cell| (0..4).map(move |part| (cell, [part % 2, part / 2])))
         .map(|(cell, place)| ParticleSeed {
             x: std::array::from_fn(|axis| {
-                cell[axis] as f64 + 0.25 + 0.5 * place[axis] as f64 + shift[axis]
+                cell[axis] as f64 + 0.25 + 0.5 * f64::from(place[axis]) + shift[axis]
             }),
             half_length: [0.25; 2],
             volume: 0.25,
@@ -86,35 +84,6 @@ fn outlines() -> Vec<Vec<[usize; 2]>> {
     let mut staircase = cells([1, 1], [4, 3]);
     staircase.extend(cells([1, 3], [3, 4]));
     vec![cells([1, 1], [4, 4]), staircase, vec![[2, 2]]]
-}
-
-/// The master of every node of the dropped variant that the tied one does without, found by where
-/// its share went; `None` where it kept its share.
-fn masters(
-    grid: &Grid<2>,
-    raw: &Stencils<2>,
-    tied: &Stencils<2>,
-) -> BTreeMap<usize, Option<usize>> {
-    let mut masters = BTreeMap::new();
-    for particle in 0..raw.len() {
-        let value = |stencils: &Stencils<2>, node: usize| {
-            let own = stencils.of(particle);
-            own.iter()
-                .find(|support| support.node == node)
-                .map(|support| support.grad)
-        };
-        let lost: Vec<_> = raw
-            .of(particle)
-            .iter()
-            .filter(|support| value(tied, support.node).is_none())
-            .collect();
-        if let [only] = lost[..] {
-            let gained = (0..grid.node_count())
-                .find(|&node| value(tied, node).is_some_and(|grad| value(raw, node) != Some(grad)));
-            masters.insert(only.node, gained);
-        }
-    }
-    masters
 }
 
 /// A rigid translation of any size, given to the unknowns alone, strains no particle and meets no
@@ -301,7 +270,9 @@ fn settle(method: &Method) -> (Vec<f64>, f64) {
 
     let mut u = system.prescribed_motion();
     let mut force: Vec<f64> = system.force_of_prescribed_motion(&start);
-    force.iter_mut().for_each(|force| *force = -*force);
+    for force in &mut force {
+        *force = -*force;
+    }
     let mut matrix = matrix;
     let mut trial = start;
     for _ in 0..8 {
@@ -357,5 +328,226 @@ fn dropped_nodes_resist_a_settlement_and_tied_ones_do_not() {
             assert!(condition_dropped < 1e3, "{label}: {condition_dropped:e}");
             assert!(condition_alone > 1e5, "{label}: {condition_alone:e}");
         }
+    }
+}
+
+/// What tying costs: a uniform gradient G of the unknowns' displacements is felt in full by
+/// particles that touch no tied node, and off by no more than |G| times the share of the domain
+/// beyond the face by the others, because Σ X_i ⊗ ∇S_i = I lacks what the tied nodes stand apart
+/// from their masters.
+#[test]
+fn tied_nodes_miss_no_more_of_a_gradient_than_their_share() {
+    let grid = unit_grid([6, 6]);
+    let conditions = free(&grid, &elastic());
+    let gradient = [[0.01, -0.03], [0.02, -0.015]];
+    let body = body(&cells([1, 1], [4, 4]), [0.0, SLIVER]);
+    for method in [Method::igimp(), Method::igimp_bbar()] {
+        let stencils = Stencils::build(&grid, &body, &method, &conditions.constraints).unwrap();
+        let system = System::new(&body, &stencils, &conditions, &method, &[], None).unwrap();
+        let mut du = vec![0.0; system.unknowns().len()];
+        for (unknown, node, axis) in unknowns(&grid, &system) {
+            let x = grid.node_position(node);
+            du[unknown] = gradient[axis][0] * x[0] + gradient[axis][1] * x[1];
+        }
+        let mut u = system.prescribed_motion();
+        system.add_correction(&mut u, &du);
+        let trial = system.evaluate(&u, TangentKind::Consistent).unwrap();
+        for (particle, own) in trial.particles.iter().enumerate() {
+            let reaches = body.x[particle][1] + 0.25 > 4.0;
+            let share = if reaches { SLIVER / 0.5 } else { 0.0 };
+            for a in 0..2 {
+                for b in 0..2 {
+                    let exact = f64::from(u8::from(a == b)) + gradient[a][b];
+                    let missed = (own.delta_def_grad[a][b] - exact).abs();
+                    let allowed = gradient[a][b].abs() * share + 1e-15;
+                    assert!(missed <= 1.000_001 * allowed, "{missed:e} {allowed:e}");
+                    assert!(!reaches || b == 0 || missed > 0.99 * allowed);
+                }
+            }
+        }
+    }
+}
+
+/// The node that each node of a grid moves with in direction y, read from a correction that gives
+/// every unknown the number of its node; `None` where a node does not move.
+fn moves_with(system: &System<'_, 2>, nodes: usize) -> Vec<Option<usize>> {
+    let mut du = vec![0.0; system.unknowns().len()];
+    for node in 0..nodes {
+        if let Some(unknown) = system.unknowns().index(node, 1) {
+            du[unknown] = 1.0 + node as f64;
+        }
+    }
+    let mut u = vec![[0.0; 2]; nodes];
+    system.add_correction(&mut u, &du);
+    u.iter()
+        .map(|u| (u[1] > 0.0).then(|| u[1] as usize - 1))
+        .collect()
+}
+
+/// A small cut moves with the nearest node of the same constraints: at a wall with a node on the
+/// wall; not at all where there is none alike; and as prescribed where it is held itself.
+#[test]
+fn a_node_is_tied_to_one_with_the_same_constraints() {
+    let grid = unit_grid([4, 5]);
+    let body = body(&cells([0, 0], [2, 3]), [0.0, SLIVER]);
+    let method = Method::igimp_bbar();
+    let node = |column: usize, row: usize| grid.node_index([column, row]);
+    let mut conditions = free(&grid, &elastic());
+    conditions.constraints.fix_wall(&grid, 0, false, 0);
+    conditions.constraints.fix_wall(&grid, 1, false, 1);
+    let master_of = |conditions: &StepConditions<2>, cut: usize| {
+        let stencils = Stencils::build(&grid, &body, &method, &conditions.constraints).unwrap();
+        let system = System::new(&body, &stencils, conditions, &method, &[], None).unwrap();
+        assert!(!system.unknowns().is_active(cut));
+        moves_with(&system, grid.node_count())[cut]
+    };
+    for column in 0..3 {
+        assert_eq!(
+            master_of(&conditions, node(column, 4)),
+            Some(node(column, 3))
+        );
+    }
+
+    conditions
+        .constraints
+        .prescribe(node(0, 3), 1, 0.1)
+        .unwrap();
+    assert_eq!(master_of(&conditions, node(0, 4)), Some(node(0, 2)));
+    assert_eq!(master_of(&conditions, node(1, 4)), Some(node(1, 3)));
+
+    let mut held = conditions.clone();
+    held.constraints.prescribe(node(0, 2), 1, 0.1).unwrap();
+    assert_eq!(master_of(&held, node(0, 4)), None);
+
+    conditions
+        .constraints
+        .prescribe(node(0, 4), 1, 0.3)
+        .unwrap();
+    let stencils = Stencils::build(&grid, &body, &method, &conditions.constraints).unwrap();
+    let transpose = stencils.transpose(grid.node_count());
+    assert!(!transpose.of(node(0, 4)).is_empty());
+    let system = System::new(&body, &stencils, &conditions, &method, &[], None).unwrap();
+    let motion = system.prescribed_motion()[node(0, 4)];
+    assert_eq!(motion.map(f64::to_bits), [0.0_f64, 0.3].map(f64::to_bits));
+}
+
+/// Loads on soil that stands a sliver high in a cell keep their resultant, and move with the soil.
+#[test]
+fn loads_on_a_sliver_keep_their_resultant_and_move_along() {
+    let grid = unit_grid([6, 6]);
+    let body = body(&cells([1, 1], [4, 4]), [0.0, SLIVER]);
+    let conditions = free(&grid, &elastic());
+    let points = LoadPoint::along_edge([1.5, 4.002], [3.5, 4.002], [3.0, -5.0], 7);
+    for method in [Method::igimp(), Method::igimp_bbar()] {
+        let stencils = Stencils::build(&grid, &body, &method, &conditions.constraints).unwrap();
+        let system = System::new(&body, &stencils, &conditions, &method, &points, None).unwrap();
+        let mut resultant = [0.0; 2];
+        for (node, force) in system.f_ext().iter().enumerate() {
+            for axis in 0..2 {
+                resultant[axis] += force[axis];
+                assert!(force[axis] == 0.0 || system.unknowns().index(node, axis).is_some());
+            }
+        }
+        assert!((resultant[0] - 6.0).abs() < 1e-14 && (resultant[1] + 10.0).abs() < 1e-14);
+
+        let u = translated(&system, [0.25, -0.5]);
+        for (index, point) in points.iter().enumerate() {
+            let carried = point.carried(&grid, index, &u).unwrap();
+            assert!((carried.x[0] - point.x[0] - 0.25).abs() < 1e-15);
+            assert!((carried.x[1] - point.x[1] + 0.5).abs() < 1e-15);
+        }
+    }
+}
+
+/// The ghost stiffness between all nodes, one component, as what it adds to the internal force.
+fn ghost_stiffness(body: &Particles<2>, gamma: f64) -> (Grid<2>, DMatrix<f64>) {
+    let grid = unit_grid([6, 6]);
+    let conditions = free(&grid, &elastic());
+    let nodes = grid.node_count();
+    let mut stiffness = DMatrix::zeros(nodes, nodes);
+    let force = |gamma: f64, column: usize, axis: usize| {
+        let mut method = Method::igimp_bbar();
+        method.small_cuts.ghost_penalty = gamma;
+        let stencils = Stencils::build(&grid, body, &method, &conditions.constraints).unwrap();
+        let system = System::new(body, &stencils, &conditions, &method, &[], None).unwrap();
+        let mut u = vec![[0.0; 2]; nodes];
+        u[column][axis] = 1e-3;
+        system.evaluate(&u, TangentKind::Consistent).unwrap().f_int
+    };
+    for column in 0..nodes {
+        for axis in 0..2 {
+            let (with, without) = (force(gamma, column, axis), force(0.0, column, axis));
+            for row in 0..nodes {
+                let own = 1e3 * (with[row][axis] - without[row][axis]);
+                let other = 1e3 * (with[row][1 - axis] - without[row][1 - axis]);
+                assert!(other == 0.0, "components are coupled: {other}");
+                if axis == 0 {
+                    stiffness[(row, column)] = own;
+                } else {
+                    let difference: f64 = stiffness[(row, column)] - own;
+                    assert!(
+                        difference.abs() < 1e-11,
+                        "components differ by {difference:e}"
+                    );
+                }
+            }
+        }
+    }
+    (grid, stiffness)
+}
+
+/// The ghost penalty is symmetric and positive semi-definite; it vanishes for displacements that
+/// are linear over the whole grid, and with tied nodes for translations.
+#[test]
+fn the_ghost_penalty_is_symmetric_semi_definite_and_blind_to_linear_motion() {
+    let gamma = 1.0;
+    for (shift, linear) in [([0.0; 2], true), ([SLIVER; 2], false)] {
+        for cells in outlines() {
+            let (grid, stiffness) = ghost_stiffness(&body(&cells, shift), gamma);
+            let asymmetry = (&stiffness - stiffness.transpose()).amax();
+            let size = stiffness.amax();
+            assert!(size > 10.0 || cells.len() == 1, "no penalty: {size}");
+            assert!(asymmetry < 1e-12 * (1.0 + size), "{asymmetry:e}");
+            let fields: [fn([f64; 2]) -> f64; 3] = [|_| 1.0, |x| x[0], |x| x[1]];
+            for field in fields.iter().take(if linear { 3 } else { 1 }) {
+                let motion = (0..grid.node_count()).map(|node| field(grid.node_position(node)));
+                let motion = DVector::from_iterator(grid.node_count(), motion);
+                let force = (&stiffness * motion).amax();
+                assert!(force < 1e-11 * (1.0 + size), "{force:e}");
+            }
+            let symmetric = 0.5 * (&stiffness + stiffness.transpose());
+            let least = symmetric.symmetric_eigenvalues().min();
+            assert!(least > -1e-12 * (1.0 + size), "{least:e}");
+        }
+    }
+}
+
+/// A single domain that reaches further into an empty cell makes nodes with too much soil for a
+/// small cut, which its three strains alone cannot hold without B-bar: the ghost penalty does.
+#[test]
+fn the_ghost_penalty_holds_nodes_that_a_single_domain_reaches() {
+    let grid = unit_grid([6, 6]);
+    let mut conditions = free(&grid, &elastic());
+    for column in 0..=6 {
+        for axis in 0..2 {
+            let node = grid.node_index([column, 1]);
+            conditions.constraints.prescribe(node, axis, 0.0).unwrap();
+        }
+    }
+    let block = body(&cells([1, 1], [4, 4]), [0.0; 2]);
+    let mut fields = (*block).clone();
+    let top = (0..block.len())
+        .max_by(|&a, &b| fields.x[a][1].total_cmp(&fields.x[b][1]))
+        .unwrap();
+    fields.x[top][1] += 0.08;
+    let body = Particles::from_fields(fields).unwrap();
+    for mut method in [Method::igimp(), Method::igimp_bbar()] {
+        method.small_cuts.ghost_penalty = 1e-3;
+        let stencils = Stencils::build(&grid, &body, &method, &conditions.constraints).unwrap();
+        let system = System::new(&body, &stencils, &conditions, &method, &[], None).unwrap();
+        let matrix = dense(&system.tangent(&system.start(TangentKind::Elastic).unwrap()));
+        let eigenvalues = matrix.symmetric_eigenvalues();
+        let condition = eigenvalues.max() / eigenvalues.min();
+        assert!(condition > 0.0 && condition < 1e6, "{condition:e}");
     }
 }

@@ -5,7 +5,6 @@ use std::path::PathBuf;
 use igimp_assembly::AssemblyError;
 use igimp_material::MaterialError;
 use igimp_shape::ShapeError;
-use igimp_solver::StepError;
 use thiserror::Error;
 
 use crate::figures::FigureError;
@@ -41,17 +40,6 @@ pub enum CaseError {
     /// The body cannot be made.
     #[error("the body cannot be made")]
     Assembly(#[from] AssemblyError),
-    /// A run that had to reach its end did not; what was computed is kept.
-    #[error("{case} stopped at load factor {reached}")]
-    Stopped {
-        /// Case and variant.
-        case: String,
-        /// Load factor of the last equilibrium.
-        reached: f64,
-        /// Why.
-        #[source]
-        cause: Box<StepError>,
-    },
     /// A file cannot be written or read.
     #[error("cannot access {}", path.display())]
     File {

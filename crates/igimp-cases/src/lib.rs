@@ -18,3 +18,8 @@ pub mod von_mises_slope;
 mod error;
 
 pub use error::CaseError;
+
+/// The examples of the book, run as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../../docs/src/tour.md")]
+struct Tour;

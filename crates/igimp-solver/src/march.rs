@@ -194,7 +194,8 @@ pub fn march<const D: usize>(
             }
             Err(error) => {
                 report.failures.push(error.clone());
-                size *= settings.cut_factor;
+                // The last step may have been shorter than its size, so as to end on 1.
+                size = settings.cut_factor * size.min(1.0 - at);
                 successes = 0;
                 if size < smallest || matches!(*error.failure, StepFailure::LeavesGrid { .. }) {
                     report.outcome = Outcome::StepTooSmall {

@@ -218,7 +218,9 @@ impl Course {
             self.best = norm;
             self.best_iteration = iteration;
         }
-        if norm > settings.divergence * self.best {
+        if residual.is_round_off {
+            Ok(())
+        } else if norm > settings.divergence * self.best {
             Err(StepFailure::Diverged)
         } else if iteration - self.best_iteration >= STAGNATION {
             Err(StepFailure::Stagnated)
@@ -306,9 +308,10 @@ fn equilibrium<const D: usize>(
             *force -= known;
         }
         residual.relative_norm = f64::INFINITY;
+        residual.is_round_off = false;
         u = system.prescribed_motion();
     }
-    while !converged(residual.relative_norm, settings.tolerance) {
+    while !converged(&residual, settings.tolerance) {
         if iterations == settings.max_iterations {
             return Err(StepFailure::MaxIterations { iterations });
         }
@@ -353,9 +356,10 @@ fn equilibrium<const D: usize>(
     Ok((report, NodalForces { reactions, u }))
 }
 
-/// Whether a residual meets the tolerance: one that is not a number never does.
-fn converged(relative_norm: f64, tolerance: f64) -> bool {
-    relative_norm <= tolerance
+/// Whether a residual meets the tolerance, or is nothing but round-off; one that is not a number
+/// does neither.
+fn converged(residual: &OutOfBalance, tolerance: f64) -> bool {
+    residual.relative_norm <= tolerance || residual.is_round_off
 }
 
 /// Runs a phase and adds its time.

@@ -1,32 +1,442 @@
-//! explore
+//! GOAL: one load step finds the equilibrium, as fast as Newton's method can, or says why not.
+//! BODY: small blocks of 2 × 2 particles per unit cell, standing, confined or floating.
+//! ORACLE: Newton's quadratic convergence, closed forms of uniaxial strain, balance of forces, and
+//! the agreement of independent linear solvers.
+
 mod body_support;
-use body_support::*;
-use igimp_solver::*;
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use body_support::{
+    STRENGTH, block, conditions, confined, distance, elastic, elasticity, largest, laws, loaded,
+    methods, pressed, shifted_block, solve, standing, unit_grid, von_mises,
+};
+use igimp_assembly::{Constraints, Kinematics, LoadPoint, Method, Pattern, Remedy, TangentMatrix};
+use igimp_solver::linear::{LinearSolver, LinearSolverError, SolveReport, SolverKind};
+use igimp_solver::{Body, NewtonSettings, NodalForces, StepFailure, Workspace, step};
+
+/// Iterates to round-off.
+const TIGHT: NewtonSettings = NewtonSettings {
+    tolerance: 1e-12,
+    max_iterations: 25,
+    divergence: 1e4,
+};
+
+/// The weight at which a fair part of the loaded block yields, but does not collapse.
+fn weight(law: &str) -> f64 {
+    match law {
+        "elastic" => 1.5,
+        "von Mises" => 1.0,
+        "Tresca" => 1.3,
+        _ => 1.9,
+    }
+}
+
+/// Newton's tail is quadratic: the last three residuals above round-off have an order of at least
+/// 1.8 (it tends to 2 as the constant settles), and each of the last is at most C times the square
+/// of the one before. A linear problem takes one correction.
 #[test]
-fn explore() {
-    let grid = unit_grid([7, 5]);
-    for g in [1.1, 1.3, 1.5, 1.8] {
-        for (name, law) in laws() {
-            for (label, method) in methods() {
-                let mut body = shifted_block(&grid, [0, 0], [4, 3], [0.15, 0.1]);
-                let c = conditions(&grid, &standing(&grid), &law, g);
-                let s = NewtonSettings {
-                    tolerance: 1e-12,
-                    ..NewtonSettings::default()
-                };
-                match step(&mut body, &method, &c, (0.0, 1.0), &s, &mut workspace()) {
-                    Ok((r, _)) => {
-                        let o: Vec<String> =
-                            r.residuals.iter().map(|r| format!("{r:.1e}")).collect();
-                        println!(
-                            "{g} {name:25} {label:30} {:.2} {}",
-                            r.plastic_share,
-                            o.join(" ")
-                        );
-                    }
-                    Err(e) => println!("{g} {name} {label} {:?} {:?}", e.failure, e.residuals),
+fn the_tail_is_quadratic() {
+    const ROUND_OFF: f64 = 1e-13;
+    const C: f64 = 50.0;
+    for (name, law) in laws() {
+        for (label, method) in methods() {
+            let label = format!("{name}, {label}");
+            let (mut body, conditions) = loaded(&law, weight(name));
+            let (report, _) = solve(&mut body, &method, &conditions, &TIGHT).unwrap();
+            let residuals = &report.residuals;
+            assert_eq!(residuals.len(), report.iterations + 1, "{label}");
+            if name == "elastic" && method.kinematics == Kinematics::SmallStrain {
+                assert_eq!(report.iterations, 1, "{label}: {residuals:?}");
+                assert!(residuals[1] < 1e-14, "{label}: {residuals:?}");
+                continue;
+            }
+            if name != "elastic" {
+                assert!(
+                    report.plastic_share > 0.08,
+                    "{label}: {}",
+                    report.plastic_share
+                );
+            }
+            let tail: Vec<f64> = residuals
+                .iter()
+                .copied()
+                .filter(|&r| r > ROUND_OFF)
+                .collect();
+            let [.., before, last_but_one, last] = tail[..] else {
+                panic!("{label}: {residuals:?}");
+            };
+            let order = (last / last_but_one).ln() / (last_but_one / before).ln();
+            assert!(order > 1.8, "{label}: order {order}, {residuals:?}");
+            assert!(
+                last <= C * last_but_one * last_but_one,
+                "{label}: {residuals:?}"
+            );
+            assert!(
+                last_but_one <= C * before * before,
+                "{label}: {residuals:?}"
+            );
+        }
+    }
+}
+
+/// All linear solvers lead to the same equilibrium; those for symmetric matrices refuse others.
+#[test]
+fn the_solution_does_not_depend_on_the_linear_solver() {
+    let method = Method::igimp_bbar();
+    for (name, law) in laws() {
+        let mut reference: Option<(Body<2>, Vec<[f64; 2]>)> = None;
+        for kind in SolverKind::ALL {
+            let label = format!("{name}, {kind:?}");
+            let (mut body, conditions) = loaded(&law, weight(name));
+            let mut workspace = Workspace::new(kind.build());
+            let result = step(
+                &mut body,
+                &method,
+                &conditions,
+                (0.0, 1.0),
+                &TIGHT,
+                &mut workspace,
+            );
+            let for_symmetric = matches!(
+                kind,
+                SolverKind::FaerCholesky | SolverKind::NalgebraCholesky
+            );
+            if for_symmetric && !law.has_symmetric_tangent() {
+                let failure = *result.unwrap_err().failure;
+                assert_eq!(
+                    failure,
+                    StepFailure::Linear(LinearSolverError::NotSymmetric)
+                );
+                continue;
+            }
+            let (report, forces) = result.unwrap();
+            assert!(report.residuals[report.iterations] <= 1e-12, "{label}");
+            let Some((first, u)) = &reference else {
+                reference = Some((body, forces.u));
+                continue;
+            };
+            let difference = distance(&forces.u, u) / largest(u);
+            assert!(difference < 1e-8, "{label}: {difference:e}");
+            for (a, b) in std::iter::zip(&body.particles.sigma, &first.particles.sigma) {
+                for (a, b) in std::iter::zip(a.as_flattened(), b.as_flattened()) {
+                    assert!((a - b).abs() < 1e-8 * STRENGTH, "{label}: {a} {b}");
                 }
             }
         }
+    }
+}
+
+/// The force on the upper side of the confined block.
+fn force_on_top(forces: &NodalForces<2>) -> f64 {
+    forces.reactions[4 * 4..5 * 4]
+        .iter()
+        .map(|force| force[1])
+        .sum()
+}
+
+/// Uniaxial compression by 30 % in one step: τ_yy = M ln(1 − δ/H) and τ_xx = τ_zz = (K − 2G/3)
+/// ln(1 − δ/H) in finite strain, the same with −δ/H in small strain.
+#[test]
+fn uniaxial_compression_agrees_with_the_closed_form() {
+    let elasticity = elasticity();
+    let modulus = elasticity.bulk() + 4.0 / 3.0 * elasticity.shear();
+    let aside = elasticity.bulk() - 2.0 / 3.0 * elasticity.shear();
+    for (label, method) in methods() {
+        let (mut body, conditions) = confined(&elastic(), 1.2);
+        let seeded = body.clone();
+        let (report, forces) = solve(&mut body, &method, &conditions, &TIGHT).unwrap();
+        assert_eq!(report.iterations, 1, "{label}: {:?}", report.residuals);
+        let stretch = 0.7_f64;
+        let (strain, volume_ratio) = match method.kinematics {
+            Kinematics::FiniteStrain => (stretch.ln(), stretch),
+            Kinematics::SmallStrain => (stretch - 1.0, 1.0),
+        };
+        let expected = [aside, modulus, aside].map(|modulus| modulus * strain / volume_ratio);
+        for (particle, sigma) in body.particles.sigma.iter().enumerate() {
+            for a in 0..3 {
+                for b in 0..3 {
+                    let expected = if a == b { expected[a] } else { 0.0 };
+                    let difference = (sigma[a][b] - expected).abs();
+                    assert!(difference < 1e-12 * modulus, "{label}: {difference:e}");
+                }
+            }
+            let height = stretch * seeded.particles.x[particle][1];
+            assert!(
+                (body.particles.x[particle][1] - height).abs() < 1e-14,
+                "{label}"
+            );
+            let half_length = body.particles.half_length[particle];
+            assert!((half_length[1] - stretch * 0.25).abs() < 1e-15, "{label}");
+        }
+        let force = force_on_top(&forces);
+        assert!(
+            (force - 3.0 * expected[1]).abs() < 1e-12 * modulus,
+            "{label}: {force}"
+        );
+    }
+}
+
+/// A confined von Mises block yields when 2G |ε| = q_y, at the stress M ε; beyond, pressure goes
+/// on with K: τ_yy = K ε − 2/3 q_y.
+#[test]
+fn a_confined_block_yields_at_the_right_load() {
+    let elasticity = elasticity();
+    let yield_stress = 3.0_f64.sqrt() * STRENGTH;
+    let yield_strain = yield_stress / (2.0 * elasticity.shear());
+    let modulus = elasticity.bulk() + 4.0 / 3.0 * elasticity.shear();
+    for (label, method) in methods() {
+        for multiple in [0.999, 1.001, 4.0] {
+            let strain = multiple * yield_strain;
+            let (travel, volume_ratio) = match method.kinematics {
+                Kinematics::FiniteStrain => (4.0 * (1.0 - (-strain).exp()), (-strain).exp()),
+                Kinematics::SmallStrain => (4.0 * strain, 1.0),
+            };
+            let (mut body, conditions) = confined(&von_mises(), travel);
+            let (report, forces) = solve(&mut body, &method, &conditions, &TIGHT).unwrap();
+            let label = format!("{label}, {multiple}: {:?}", report.residuals);
+            let (plastic, tau) = if multiple < 1.0 {
+                (0.0, modulus * strain)
+            } else {
+                (1.0, elasticity.bulk() * strain + 2.0 / 3.0 * yield_stress)
+            };
+            assert!((report.plastic_share - plastic).abs() < 1e-15, "{label}");
+            let force = -force_on_top(&forces);
+            let expected = 3.0 * tau / volume_ratio;
+            assert!(
+                (force - expected).abs() < 1e-10 * expected,
+                "{label}: {force} {expected}"
+            );
+        }
+    }
+}
+
+/// Without weight or stress there is no residual at the start of a step, yet prescribed motion is
+/// applied: the first correction carries it. A base that moves takes a free block along, rigidly
+/// and without strain.
+#[test]
+fn motion_alone_is_applied() {
+    let grid = unit_grid([9, 9]);
+    let motion = [3.3, -2.2];
+    for (name, law) in laws() {
+        for (label, method) in methods() {
+            let label = format!("{name}, {label}");
+            let mut constraints = Constraints::free(&grid);
+            for column in 0..=9 {
+                for axis in 0..2 {
+                    let node = grid.node_index([column, 4]);
+                    constraints.prescribe(node, axis, motion[axis]).unwrap();
+                }
+            }
+            let conditions = conditions(&grid, &constraints, &law, 0.0);
+            let mut body = block(&grid, [1, 4], [4, 7]);
+            let seeded = body.clone();
+            let (report, forces) = solve(&mut body, &method, &conditions, &TIGHT)
+                .unwrap_or_else(|error| panic!("{label}: {error:?}"));
+            assert_eq!(report.iterations, 1, "{label}");
+            assert!(report.residuals[0] == 0.0, "{label}");
+            for column in 1..=4 {
+                for row in 4..=7 {
+                    let u = forces.u[grid.node_index([column, row])];
+                    let miss = (u[0] - motion[0]).abs() + (u[1] - motion[1]).abs();
+                    assert!(miss < 1e-13, "{label}: {miss:e}");
+                }
+            }
+            for (particle, x) in body.particles.x.iter().enumerate() {
+                for axis in 0..2 {
+                    let moved = x[axis] - seeded.particles.x[particle][axis];
+                    assert!((moved - motion[axis]).abs() < 1e-13, "{label}: {moved}");
+                }
+                let sigma = body.particles.sigma[particle];
+                assert!(
+                    sigma.as_flattened().iter().all(|s| s.abs() < 1e-11),
+                    "{label}"
+                );
+            }
+        }
+    }
+}
+
+/// A step without any load or motion is accepted as it is, and leaves a body free of stress.
+#[test]
+fn a_body_at_rest_needs_no_correction() {
+    let (mut body, conditions) = loaded(&von_mises(), 0.0);
+    let (report, _) = solve(&mut body, &Method::default(), &conditions, &TIGHT).unwrap();
+    assert_eq!((report.iterations, report.residuals), (0, vec![0.0]));
+}
+
+/// A load that is taken away leaves an elastic body free of stress: the step converges although
+/// there is no force left to compare the residual with.
+#[test]
+fn unloading_to_nothing_converges() {
+    for (label, method) in methods() {
+        let (mut body, conditions) = confined(&elastic(), 0.4);
+        solve(&mut body, &method, &conditions, &TIGHT).unwrap();
+        let conditions = pressed(&elastic(), 3.6, -0.4);
+        let (report, _) = solve(&mut body, &method, &conditions, &TIGHT)
+            .unwrap_or_else(|error| panic!("{label}: {error:?}"));
+        let left = body
+            .particles
+            .sigma
+            .iter()
+            .flatten()
+            .flatten()
+            .fold(0.0_f64, |left, sigma| left.max(sigma.abs()));
+        let expected = match method.kinematics {
+            Kinematics::FiniteStrain => 0.0,
+            // +0.4 on 3.6 is more strain than −0.4 on 4: the price of small strain.
+            Kinematics::SmallStrain => {
+                let modulus = elasticity().bulk() + 4.0 / 3.0 * elasticity().shear();
+                modulus * (0.4 / 3.6 - 0.1)
+            }
+        };
+        assert!(
+            (left - expected).abs() < 1e-11,
+            "{label}: {left} {:?}",
+            report.residuals
+        );
+    }
+}
+
+/// Reactions and external force are in balance, whatever the law and the method: gravity, loads on
+/// points of the surface, a surface that ends a sliver beyond a face, dropped or tied.
+#[test]
+fn reactions_balance_the_external_force() {
+    for (name, law) in laws() {
+        for (label, method) in methods() {
+            for (remedy, shift) in [
+                (Remedy::Tie, 0.1),
+                (Remedy::Tie, 0.002),
+                (Remedy::Drop, 0.002),
+            ] {
+                let label = format!("{name}, {label}, {remedy:?}, {shift}");
+                let mut method = method.clone();
+                method.small_cuts.remedy = remedy;
+                let grid = unit_grid([7, 5]);
+                let mut body = shifted_block(&grid, [0, 0], [4, 3], [0.15, shift]);
+                // The points of the linear basis reach no further than the cell of their centres.
+                let surface = match method.basis.name() {
+                    "gimp" => 3.0 + shift,
+                    _ => 2.75,
+                };
+                body.load_points =
+                    LoadPoint::along_edge([1.3, surface], [2.9, surface], [0.05, -0.3], 6);
+                let points = body.load_points.clone();
+                let mut conditions = conditions(&grid, &standing(&grid), &law, 0.3);
+                conditions.loads.point_factor = 1.0;
+                let settings = NewtonSettings::default();
+                let (_, forces) = solve(&mut body, &method, &conditions, &settings)
+                    .unwrap_or_else(|error| panic!("{label}: {error:?}"));
+                let weight: f64 = body.particles.mass.iter().sum();
+                let applied = [0.05 * 1.6, -0.3 * 1.6 - 0.3 * weight];
+                for axis in 0..2 {
+                    let reaction: f64 = forces.reactions.iter().map(|force| force[axis]).sum();
+                    let sum = reaction + applied[axis];
+                    assert!(
+                        sum.abs() < 1e-8 * weight,
+                        "{label}: {reaction} {}",
+                        applied[axis]
+                    );
+                }
+                for (before, after) in std::iter::zip(&points, &body.load_points) {
+                    assert!(after.x[1] < before.x[1], "{label}: the surface settles");
+                }
+            }
+        }
+    }
+}
+
+/// Counts what a solver is asked to do.
+struct Counting {
+    inner: Box<dyn LinearSolver>,
+    analyses: Arc<AtomicUsize>,
+    factors: Arc<AtomicUsize>,
+}
+
+impl LinearSolver for Counting {
+    fn name(&self) -> &'static str {
+        self.inner.name()
+    }
+
+    fn analyse(&mut self, pattern: &Arc<Pattern>) -> Result<(), LinearSolverError> {
+        self.inner.analyse(pattern)
+    }
+
+    fn factor(&mut self, matrix: &TangentMatrix) -> Result<(), LinearSolverError> {
+        self.factors.fetch_add(1, Ordering::Relaxed);
+        let result = self.inner.factor(matrix);
+        self.analyses
+            .store(self.inner.analyses(), Ordering::Relaxed);
+        result
+    }
+
+    fn solve(
+        &mut self,
+        rhs: &[f64],
+        solution: &mut [f64],
+    ) -> Result<SolveReport, LinearSolverError> {
+        self.inner.solve(rhs, solution)
+    }
+
+    fn analyses(&self) -> usize {
+        self.inner.analyses()
+    }
+}
+
+/// While particles keep to the nodes they touch, the pattern of the first step serves all others,
+/// its symbolic work done once; when they reach new nodes it is done again.
+#[test]
+fn symbolic_work_is_reused_while_the_pattern_holds() {
+    for kind in SolverKind::ALL {
+        let (analyses, factors) = (Arc::new(AtomicUsize::new(0)), Arc::new(AtomicUsize::new(0)));
+        let mut workspace = Workspace::new(Box::new(Counting {
+            inner: kind.build(),
+            analyses: Arc::clone(&analyses),
+            factors: Arc::clone(&factors),
+        }));
+        let (mut body, light) = loaded(&elastic(), 0.1);
+        let (_, heavy) = loaded(&elastic(), 4.0);
+        let method = Method::igimp_bbar();
+        let settings = NewtonSettings::default();
+        let mut corrections = 0;
+        for k in 1..=5 {
+            let mut conditions = light.clone();
+            conditions.loads.gravity[1] *= f64::from(k) / 5.0;
+            let (from, to) = (f64::from(k - 1), f64::from(k));
+            let result = step(
+                &mut body,
+                &method,
+                &conditions,
+                (from, to),
+                &settings,
+                &mut workspace,
+            );
+            corrections += result.unwrap().0.iterations;
+        }
+        assert!(corrections >= 10, "{kind:?}: {corrections}");
+        assert_eq!(factors.load(Ordering::Relaxed), corrections, "{kind:?}");
+        assert_eq!(analyses.load(Ordering::Relaxed), 1, "{kind:?}");
+
+        step(
+            &mut body,
+            &method,
+            &heavy,
+            (5.0, 6.0),
+            &settings,
+            &mut workspace,
+        )
+        .unwrap();
+        assert_eq!(analyses.load(Ordering::Relaxed), 1, "{kind:?}");
+        step(
+            &mut body,
+            &method,
+            &light,
+            (6.0, 7.0),
+            &settings,
+            &mut workspace,
+        )
+        .unwrap();
+        assert_eq!(analyses.load(Ordering::Relaxed), 2, "{kind:?}");
     }
 }

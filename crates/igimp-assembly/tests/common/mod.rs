@@ -95,6 +95,14 @@ pub fn laws() -> Vec<(&'static str, SharedLaw)> {
             "Mohr-Coulomb, associated",
             Arc::new(MohrCoulomb::new(elasticity, 1.0, angle(25.0), angle(25.0)).unwrap()),
         ),
+        (
+            "Mohr-Coulomb, tension cut-off",
+            Arc::new(
+                MohrCoulomb::new(elasticity, 1.0, angle(25.0), angle(5.0))
+                    .and_then(|law| law.with_tension_cutoff(0.5))
+                    .unwrap(),
+            ),
+        ),
     ]
 }
 

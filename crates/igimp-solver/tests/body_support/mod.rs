@@ -2,15 +2,18 @@
 
 #![allow(dead_code, reason = "each test target uses its part")]
 
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 
 use igimp_assembly::{
     Constraints, Kinematics, Method, ParticleSeed, Particles, SharedLaw, StepConditions, StepLoads,
 };
-use igimp_material::{Elasticity, HenckyElastic, MohrCoulomb, Tresca, VonMises};
+use igimp_material::{
+    ConstitutiveModel, Elasticity, HenckyElastic, History, MaterialError, MohrCoulomb, Principal,
+    ReturnMap, Tresca, VonMises,
+};
 use igimp_shape::{Axis, Grid};
 use igimp_solver::linear::SolverKind;
-use igimp_solver::{Body, Workspace};
+use igimp_solver::{Body, NewtonSettings, NodalForces, StepError, StepReport, Workspace, step};
 
 /// Random numbers (Vigna's splitmix64), the same in every run.
 pub(crate) struct Random(pub(crate) u64);
@@ -121,7 +124,7 @@ pub(crate) fn shifted_block(
                 let place = [part % 2, part / 2];
                 seeds.push(ParticleSeed {
                     x: std::array::from_fn(|axis| {
-                        let middle = 0.25 + 0.5 * place[axis] as f64;
+                        let middle = 0.25 + 0.5 * f64::from(place[axis]);
                         lower[axis] + size[axis] * middle + shift[axis]
                     }),
                     half_length: size.map(|size| 0.25 * size),
@@ -162,9 +165,58 @@ pub(crate) fn conditions(
     }
 }
 
+/// A block that stands off the lines of the grid, under a weight that makes part of it yield.
+pub(crate) fn loaded(law: &SharedLaw, gravity: f64) -> (Body<2>, StepConditions<2>) {
+    let grid = unit_grid([7, 5]);
+    let body = shifted_block(&grid, [0, 0], [4, 3], [0.15, 0.1]);
+    let conditions = conditions(&grid, &standing(&grid), law, gravity);
+    (body, conditions)
+}
+
+/// A block of 3 × 4 unit cells that fills its walls, of the given law.
+pub(crate) fn confined(law: &SharedLaw, travel: f64) -> (Body<2>, StepConditions<2>) {
+    let body = block(&unit_grid([3, 5]), [0, 0], [3, 4]);
+    (body, pressed(law, 4.0, travel))
+}
+
+/// Conditions that move the upper side of the confined block down by `travel`, from `height` on.
+/// The grid follows the block: four rows of cells below its upper side, and room above.
+pub(crate) fn pressed(law: &SharedLaw, height: f64, travel: f64) -> StepConditions<2> {
+    let grid = Grid::new([
+        Axis::uniform(0.0, 1.0, 3).unwrap(),
+        Axis::uniform(0.0, 0.25 * height, 5).unwrap(),
+    ]);
+    let mut constraints = Constraints::free(&grid);
+    constraints.fix_wall(&grid, 0, false, 0);
+    constraints.fix_wall(&grid, 0, true, 0);
+    constraints.fix_wall(&grid, 1, false, 1);
+    for column in 0..=3 {
+        let node = grid.node_index([column, 4]);
+        constraints.prescribe(node, 1, -travel).unwrap();
+    }
+    conditions(&grid, &constraints, law, 0.0)
+}
+
 /// A workspace around the default solver.
 pub(crate) fn workspace() -> Workspace {
     Workspace::new(SolverKind::Auto.build())
+}
+
+/// One step from load factor 0 to 1 with the default solver.
+pub(crate) fn solve(
+    body: &mut Body<2>,
+    method: &Method,
+    conditions: &StepConditions<2>,
+    settings: &NewtonSettings,
+) -> Result<(StepReport, NodalForces<2>), StepError> {
+    step(
+        body,
+        method,
+        conditions,
+        (0.0, 1.0),
+        settings,
+        &mut workspace(),
+    )
 }
 
 /// The exact bits of a body, as text: shortest decimal numbers tell all floating-point values
@@ -187,3 +239,55 @@ pub(crate) fn largest(values: &[[f64; 2]]) -> f64 {
         .iter()
         .fold(0.0, |largest, value| f64::max(largest, value.abs()))
 }
+
+/// An elastic law whose answer is not a number where a principal strain is larger than `above` in
+/// magnitude: its stress, or its tangent alone.
+#[derive(Debug)]
+pub(crate) struct Poisoned {
+    pub(crate) above: f64,
+    pub(crate) tangent_alone: bool,
+}
+
+impl ConstitutiveModel for Poisoned {
+    fn name(&self) -> &'static str {
+        "poisoned"
+    }
+
+    fn elasticity(&self) -> &Elasticity {
+        &ELASTICITY
+    }
+
+    fn return_map(
+        &self,
+        eps_e_trial: &Principal,
+        history: &History,
+    ) -> Result<ReturnMap, MaterialError> {
+        let mut answer = HenckyElastic::new(elasticity()).return_map(eps_e_trial, history)?;
+        if eps_e_trial.iter().any(|strain| strain.abs() > self.above) {
+            answer.tangent[1][1] = f64::NAN;
+            if !self.tangent_alone {
+                answer.tau[1] = f64::NAN;
+            }
+        }
+        Ok(answer)
+    }
+
+    fn yield_function(&self, _tau: &Principal, _history: &History) -> f64 {
+        f64::NEG_INFINITY
+    }
+
+    fn stress_scale(&self, _tau: &Principal) -> f64 {
+        YOUNG
+    }
+
+    fn has_symmetric_tangent(&self) -> bool {
+        true
+    }
+
+    fn reduced(&self, _srf: f64) -> Result<Arc<dyn ConstitutiveModel>, MaterialError> {
+        Ok(Arc::new(Self { ..*self }))
+    }
+}
+
+/// The elastic part, for those who lend it.
+static ELASTICITY: LazyLock<Elasticity> = LazyLock::new(elasticity);

@@ -1,0 +1,90 @@
+//! Running other programs in the workspace's root.
+
+use std::env;
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use crate::failure::Failure;
+
+/// The root of the workspace: the folder above this crate's.
+pub(crate) fn root() -> PathBuf {
+    let own = env::var_os("CARGO_MANIFEST_DIR")
+        .map_or_else(|| PathBuf::from(env!("CARGO_MANIFEST_DIR")), PathBuf::from);
+    own.parent().map_or(own.clone(), Path::to_path_buf)
+}
+
+/// A program to be run in the root.
+pub(crate) fn program(name: impl Into<OsString>) -> Command {
+    let mut command = Command::new(name.into());
+    command.current_dir(root());
+    command
+}
+
+/// The cargo that runs this program.
+pub(crate) fn cargo() -> Command {
+    program(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
+}
+
+/// Runs a program with the terminal as its own, and returns its exit code.
+pub(crate) fn status(command: &mut Command) -> Result<u8, Failure> {
+    let status = command
+        .status()
+        .map_err(|error| Failure::input_output(format!("cannot run {}", name(command)), error))?;
+    match status.code() {
+        Some(code) => Ok(u8::try_from(code).unwrap_or(u8::MAX)),
+        None => Err(Failure::input_output(name(command), status)),
+    }
+}
+
+/// Runs a program and returns what it printed; a failure unless it ends well.
+pub(crate) fn output(command: &mut Command) -> Result<String, Failure> {
+    let output = command
+        .output()
+        .map_err(|error| Failure::input_output(format!("cannot run {}", name(command)), error))?;
+    if !output.status.success() {
+        let said = String::from_utf8_lossy(&output.stderr);
+        return Err(Failure::input_output(name(command), said.trim()));
+    }
+    String::from_utf8(output.stdout).map_err(|error| Failure::input_output(name(command), error))
+}
+
+/// The program's name without its folder.
+fn name(command: &Command) -> String {
+    let program = Path::new(command.get_program());
+    let name = program.file_name().unwrap_or(command.get_program());
+    name.to_string_lossy().into_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::failure::INPUT_OUTPUT;
+    use std::process::Stdio;
+
+    #[test]
+    fn the_root_holds_the_workspace() {
+        assert!(root().join("Cargo.lock").is_file());
+    }
+
+    #[test]
+    fn exit_codes_are_passed_through() {
+        let code = |argument: &str| {
+            status(
+                cargo()
+                    .arg(argument)
+                    .stdout(Stdio::null())
+                    .stderr(Stdio::null()),
+            )
+        };
+        assert_eq!(code("--version"), Ok(0));
+        assert_ne!(code("no-such-command"), Ok(0));
+    }
+
+    #[test]
+    fn a_missing_program_is_named() {
+        let failure = output(&mut program("no-such-program")).unwrap_err();
+        assert_eq!(failure.code, INPUT_OUTPUT);
+        assert!(failure.to_string().contains("no-such-program"), "{failure}");
+    }
+}

@@ -1,0 +1,41 @@
+//! `cargo xtask tidy`: invariants of the workspace that the compiler does not check.
+
+mod deny;
+mod layers;
+mod licences;
+mod metadata;
+mod sources;
+
+use crate::failure::{FOUND, Failure};
+use crate::process::root;
+use metadata::Metadata;
+
+/// Runs all checks; prints what is wrong, one line each.
+pub(crate) fn run() -> Result<u8, Failure> {
+    let root = root();
+    let metadata = Metadata::of_workspace()?;
+    let allowed = deny::allowed_licences(&root.join("deny.toml"))?;
+    let checks = [
+        ("layers", layers::check(&metadata)),
+        ("sources", sources::check(&metadata, &root)?),
+        ("licences", licences::check(&metadata, &allowed)),
+    ];
+    let mut count = 0;
+    for (name, problems) in &checks {
+        let verdict = if problems.is_empty() {
+            "ok"
+        } else {
+            "problems"
+        };
+        println!("tidy: {name}: {verdict}");
+        for problem in problems {
+            println!("  {problem}");
+        }
+        count += problems.len();
+    }
+    if count == 0 {
+        Ok(0)
+    } else {
+        Err(Failure::new(FOUND, format!("tidy found problems: {count}")))
+    }
+}

@@ -1,0 +1,107 @@
+//! A scan of the source text: no leftovers anywhere, no printing and no files in the method.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use super::layers::BELOW_CASES;
+use super::metadata::Metadata;
+use crate::failure::Failure;
+
+/// Marks of unfinished work, as whole words; in two parts so that this file passes.
+const LEFTOVERS: [&str; 2] = [concat!("TO", "DO"), concat!("FIX", "ME")];
+
+/// The mark of a test that is not run.
+const IGNORED_TEST: &str = concat!("#[", "ignore");
+
+/// What the crates below the cases leave to the cases.
+const OUTPUT: [&str; 7] = [
+    "println!", "print!", "dbg!", "std::fs", "std::io", "fs::", "io::",
+];
+
+/// What is wrong with the sources.
+pub(super) fn check(metadata: &Metadata, root: &Path) -> Result<Vec<String>, Failure> {
+    let mut problems = Vec::new();
+    for member in metadata.members() {
+        let mut files = Vec::new();
+        rust_files(&member.folder, &mut files)?;
+        files.sort();
+        let is_method = BELOW_CASES.contains(&member.name.as_str());
+        for file in files {
+            let text = fs::read_to_string(&file).map_err(|error| {
+                Failure::input_output(format!("cannot read {}", file.display()), error)
+            })?;
+            let silent = is_method && file.starts_with(member.folder.join("src"));
+            let shown = file.strip_prefix(root).unwrap_or(&file).display();
+            for (line, problem) in scan(&text, silent) {
+                problems.push(format!("{shown}:{line}: {problem}"));
+            }
+        }
+    }
+    Ok(problems)
+}
+
+/// Collects the `.rs` files below a folder, build output excepted.
+fn rust_files(folder: &Path, files: &mut Vec<PathBuf>) -> Result<(), Failure> {
+    let failure = |error| Failure::input_output(format!("cannot read {}", folder.display()), error);
+    for entry in fs::read_dir(folder).map_err(failure)? {
+        let path = entry.map_err(failure)?.path();
+        if path.is_dir() && !path.ends_with("target") {
+            rust_files(&path, files)?;
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            files.push(path);
+        }
+    }
+    Ok(())
+}
+
+/// Line numbers and problems of a source text; a `silent` one neither prints nor touches files,
+/// except in comments.
+fn scan(text: &str, silent: bool) -> Vec<(usize, String)> {
+    let mut problems = Vec::new();
+    for (index, line) in text.lines().enumerate() {
+        let mut words = line.split(|c: char| !c.is_alphanumeric() && c != '_');
+        if let Some(word) = words.find(|word| LEFTOVERS.contains(word)) {
+            problems.push((index + 1, format!("`{word}`: finish it or file an issue")));
+        }
+        if line.contains(IGNORED_TEST) {
+            problems.push((index + 1, "a test that is not run".to_owned()));
+        }
+        let is_comment = line.trim_start().starts_with("//");
+        let output = OUTPUT.iter().find(|output| line.contains(**output));
+        if let Some(output) = output.filter(|_| silent && !is_comment) {
+            problems.push((
+                index + 1,
+                format!("`{output}` has no place below igimp-cases"),
+            ));
+        }
+    }
+    problems
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn leftovers_are_found_as_whole_words() {
+        for leftover in LEFTOVERS {
+            assert_eq!(
+                scan(&format!("let a = 1; // {leftover}: more"), false).len(),
+                1
+            );
+            assert!(scan(&format!("let {leftover}_LIST = 1;"), false).is_empty());
+        }
+        for rest in ["]", " = \"slow\"]"] {
+            assert_eq!(scan(&format!("\n    {IGNORED_TEST}{rest}"), false)[0].0, 2);
+        }
+    }
+
+    #[test]
+    fn output_is_found_outside_comments() {
+        assert_eq!(scan("    println!(\"x\");", true).len(), 1);
+        assert_eq!(scan("use std::fs;", true).len(), 1);
+        assert_eq!(scan("eprint!(\"x\");", true).len(), 1);
+        assert!(scan("    println!(\"x\");", false).is_empty());
+        assert!(scan("/// println!(\"x\");", true).is_empty());
+    }
+}
