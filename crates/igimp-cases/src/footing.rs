@@ -18,6 +18,7 @@ use igimp_solver::{
 };
 
 use crate::error::CaseError;
+use crate::parameter::{at_least_one, not_negative, positive};
 use crate::seed::fill_polygon;
 use crate::table::Table;
 
@@ -150,6 +151,11 @@ impl Footing {
     }
 
     fn validate(&self) -> Result<(), CaseError> {
+        at_least_one("extent", self.extent)?;
+        at_least_one("per_direction", self.per_direction)?;
+        at_least_one("steps", self.steps)?;
+        positive("width", self.width)?;
+        not_negative("room", self.room)?;
         if self.cells_per_width.is_multiple_of(2) {
             return Err(CaseError::InvalidParameter {
                 field: "cells_per_width",

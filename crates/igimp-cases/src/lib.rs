@@ -16,6 +16,7 @@ pub mod table;
 pub mod von_mises_slope;
 
 mod error;
+mod parameter;
 
 pub use error::CaseError;
 
@@ -23,3 +24,8 @@ pub use error::CaseError;
 #[cfg(doctest)]
 #[doc = include_str!("../../../docs/src/tour.md")]
 struct Tour;
+
+/// The examples of the developer notes, run as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../../docs/src/developer.md")]
+struct DeveloperNotes;

@@ -11,6 +11,7 @@ use igimp_solver::{
 
 use crate::error::CaseError;
 use crate::measure::displacement_norm;
+use crate::parameter::{at_least_one, not_negative};
 use crate::safety::Verdict;
 use crate::seed::fill_polygon;
 use crate::slope::{GRAVITY, SlopeGeometry, under_gravity};
@@ -117,6 +118,10 @@ impl MohrCoulombSlope {
     /// # Errors
     /// [`CaseError`] for parameters that make no sense. Collapse is a result.
     pub fn run(&self, srf: f64) -> Result<ReducedSlope, CaseError> {
+        self.geometry.validate()?;
+        at_least_one("per_direction", self.per_direction)?;
+        at_least_one("steps", self.steps)?;
+        not_negative("unit_weight", self.unit_weight)?;
         let grid = self.geometry.grid(self.cell, 4.0)?;
         let density = self.unit_weight / GRAVITY;
         let polygon = self.geometry.polygon();

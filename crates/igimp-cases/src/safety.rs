@@ -1,6 +1,7 @@
 //! The factor of safety by strength reduction: an interval found by a search that always ends.
 
 use crate::error::CaseError;
+use crate::parameter::positive;
 
 /// Most trials that a search makes before it reports the interval that it has.
 const MOST_TRIALS: usize = 40;
@@ -57,18 +58,6 @@ pub fn search(
     tolerance: f64,
     mut trial: impl FnMut(f64) -> Result<Verdict, CaseError>,
 ) -> Result<FactorOfSafety, CaseError> {
-    let positive = |field, value: f64| {
-        if value > 0.0 && value.is_finite() {
-            Ok(())
-        } else {
-            let requirement = "positive and finite";
-            Err(CaseError::InvalidParameter {
-                field,
-                value,
-                requirement,
-            })
-        }
-    };
     positive("bracket[0]", low)?;
     positive("bracket[1] - bracket[0]", high - low)?;
     positive("tolerance", tolerance)?;

@@ -4,6 +4,7 @@ use igimp_assembly::{Constraints, SharedLaw, StepConditions, StepLoads};
 use igimp_shape::{Axis, Grid};
 
 use crate::error::CaseError;
+use crate::parameter::{not_negative, positive};
 use crate::polygon::Polygon;
 
 /// Acceleration of gravity that a unit weight refers to \[m/s²\].
@@ -25,6 +26,15 @@ pub struct SlopeGeometry {
 }
 
 impl SlopeGeometry {
+    /// Checks the lengths.
+    pub(crate) fn validate(&self) -> Result<(), CaseError> {
+        positive("geometry.height", self.height)?;
+        not_negative("geometry.run", self.run)?;
+        not_negative("geometry.crest", self.crest)?;
+        not_negative("geometry.toe", self.toe)?;
+        not_negative("geometry.foundation", self.foundation)
+    }
+
     /// Outline, counter-clockwise from the origin at the lower left.
     pub fn polygon(&self) -> Polygon {
         let width = self.crest + self.run + self.toe;

@@ -12,6 +12,7 @@ use igimp_solver::{
 
 use crate::error::CaseError;
 use crate::measure::{displacement_norm, oscillation, sigma};
+use crate::parameter::{at_least_one, not_negative, positive};
 use crate::seed::fill_polygon;
 use crate::slope::{GRAVITY, SlopeGeometry, under_gravity};
 use crate::table::Table;
@@ -86,6 +87,11 @@ impl VonMisesSlope {
     /// # Errors
     /// [`CaseError`] for parameters that make no sense. Collapse is a result.
     pub fn run(&self) -> Result<SlopeResult, CaseError> {
+        self.geometry.validate()?;
+        at_least_one("per_direction", self.per_direction)?;
+        at_least_one("steps", self.steps)?;
+        not_negative("unit_weight", self.unit_weight)?;
+        positive("load_factor", self.load_factor)?;
         let grid = self.geometry.grid(self.cell, 4.0 * self.cell)?;
         let density = self.unit_weight / GRAVITY;
         let polygon = self.geometry.polygon();
