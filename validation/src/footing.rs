@@ -28,6 +28,13 @@ struct Push {
     role: Role,
 }
 
+impl Push {
+    /// The label with its subscript set.
+    fn legend(&self) -> String {
+        self.label.replace("s_u", "s_{u}")
+    }
+}
+
 #[derive(Clone, Copy, PartialEq)]
 enum Role {
     /// Stiff soil, hardly any penetration.
@@ -248,7 +255,7 @@ fn figures(study: &Study, pushes: &[Push], results: &[&FootingResult]) -> Result
         .iter()
         .zip(results)
         .filter(|(push, _)| push.role != Role::SmallStrain)
-        .map(|(push, result)| Series::line(push.label.clone(), result.resistance.points(0, 1)))
+        .map(|(push, result)| Series::line(push.legend(), result.resistance.points(0, 1)))
         .collect();
     series.push(
         Series::new(
@@ -276,7 +283,7 @@ fn figures(study: &Study, pushes: &[Push], results: &[&FootingResult]) -> Result
         .iter()
         .zip(results)
         .filter(|(push, _)| push.role == Role::SmallStrain)
-        .map(|(push, result)| Series::line(push.label.clone(), result.resistance.points(0, 1)))
+        .map(|(push, result)| Series::line(push.legend(), result.resistance.points(0, 1)))
         .collect();
     CurvePlot {
         title: "Rigid footing in stiff Tresca soil".into(),

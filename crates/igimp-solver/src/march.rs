@@ -155,11 +155,12 @@ pub fn march<const D: usize>(
         steps: Vec::new(),
         failures: Vec::new(),
     };
-    let nominal = 1.0 / settings.steps as f64;
+    let nominal = 1.0 / settings.steps.max(1) as f64;
     let smallest = nominal * settings.cut_factor.powf(f64::from(settings.cuts) + 0.5);
-    let (mut at, mut size, mut successes) = (0.0, nominal, 0);
+    let (mut at, mut size) = (0.0, nominal);
+    let (mut successes, mut cuts) = (0, 0);
     while at < 1.0 {
-        let to = next_factor(at, size, settings.steps);
+        let to = next_factor(at, size, nominal);
         let result = conditions_at(program, at, to).and_then(|conditions| {
             step(
                 body,
@@ -175,6 +176,7 @@ pub fn march<const D: usize>(
             Ok((conditions, step, forces)) => {
                 at = to;
                 successes += 1;
+                cuts = 0;
                 if successes >= SUCCESSES_TO_GROW && size < nominal {
                     size = (size * settings.growth).min(nominal);
                     successes = 0;
@@ -197,7 +199,11 @@ pub fn march<const D: usize>(
                 // The last step may have been shorter than its size, so as to end on 1.
                 size = settings.cut_factor * size.min(1.0 - at);
                 successes = 0;
-                if size < smallest || matches!(*error.failure, StepFailure::LeavesGrid { .. }) {
+                cuts += 1;
+                if cuts > settings.cuts
+                    || size < smallest
+                    || matches!(*error.failure, StepFailure::LeavesGrid { .. })
+                {
                     report.outcome = Outcome::StepTooSmall {
                         last_converged: at,
                         cause: error,
@@ -212,8 +218,7 @@ pub fn march<const D: usize>(
 
 /// The load factor after a step: uncut steps land on multiples of the nominal size, and no sliver
 /// is left before 1.
-fn next_factor(at: f64, size: f64, steps: usize) -> f64 {
-    let nominal = 1.0 / steps as f64;
+fn next_factor(at: f64, size: f64, nominal: f64) -> f64 {
     let to = at + size;
     let nearest = (to / nominal).round() * nominal;
     if to > 1.0 - 1e-6 * nominal {

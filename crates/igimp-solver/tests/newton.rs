@@ -5,14 +5,17 @@
 
 mod body_support;
 
-use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex};
 
 use body_support::{
-    STRENGTH, block, conditions, confined, distance, elastic, elasticity, largest, laws, loaded,
-    methods, pressed, shifted_block, solve, standing, unit_grid, von_mises,
+    STRENGTH, YOUNG, block, conditions, confined, distance, elastic, elasticity, largest, laws,
+    loaded, methods, pressed, shifted_block, solve, standing, unit_grid, von_mises,
 };
-use igimp_assembly::{Constraints, Kinematics, LoadPoint, Method, Pattern, Remedy, TangentMatrix};
+use igimp_assembly::{
+    Constraints, Kinematics, LoadPoint, Method, Pattern, Remedy, Stencils, System, TangentMatrix,
+};
+use igimp_material::TangentKind;
 use igimp_solver::linear::{LinearSolver, LinearSolverError, SolveReport, SolverKind};
 use igimp_solver::{Body, NewtonSettings, NodalForces, StepFailure, Workspace, step};
 
@@ -347,14 +350,24 @@ fn reactions_balance_the_external_force() {
     }
 }
 
-/// Counts what a solver is asked to do.
-struct Counting {
+/// A solver whose work is watched: its analyses, and the matrices that it is asked to factorise.
+struct Watched {
     inner: Box<dyn LinearSolver>,
     analyses: Arc<AtomicUsize>,
-    factors: Arc<AtomicUsize>,
+    matrices: Arc<Mutex<Vec<TangentMatrix>>>,
 }
 
-impl LinearSolver for Counting {
+impl Watched {
+    fn new(kind: SolverKind) -> Self {
+        Self {
+            inner: kind.build(),
+            analyses: Arc::default(),
+            matrices: Arc::default(),
+        }
+    }
+}
+
+impl LinearSolver for Watched {
     fn name(&self) -> &'static str {
         self.inner.name()
     }
@@ -364,7 +377,7 @@ impl LinearSolver for Counting {
     }
 
     fn factor(&mut self, matrix: &TangentMatrix) -> Result<(), LinearSolverError> {
-        self.factors.fetch_add(1, Ordering::Relaxed);
+        self.matrices.lock().unwrap().push(matrix.clone());
         let result = self.inner.factor(matrix);
         self.analyses
             .store(self.inner.analyses(), Ordering::Relaxed);
@@ -389,12 +402,9 @@ impl LinearSolver for Counting {
 #[test]
 fn symbolic_work_is_reused_while_the_pattern_holds() {
     for kind in SolverKind::ALL {
-        let (analyses, factors) = (Arc::new(AtomicUsize::new(0)), Arc::new(AtomicUsize::new(0)));
-        let mut workspace = Workspace::new(Box::new(Counting {
-            inner: kind.build(),
-            analyses: Arc::clone(&analyses),
-            factors: Arc::clone(&factors),
-        }));
+        let solver = Watched::new(kind);
+        let (analyses, matrices) = (Arc::clone(&solver.analyses), Arc::clone(&solver.matrices));
+        let mut workspace = Workspace::new(Box::new(solver));
         let (mut body, light) = loaded(&elastic(), 0.1);
         let (_, heavy) = loaded(&elastic(), 4.0);
         let method = Method::igimp_bbar();
@@ -415,7 +425,13 @@ fn symbolic_work_is_reused_while_the_pattern_holds() {
             corrections += result.unwrap().0.iterations;
         }
         assert!(corrections >= 10, "{kind:?}: {corrections}");
-        assert_eq!(factors.load(Ordering::Relaxed), corrections, "{kind:?}");
+        let used = matrices.lock().unwrap().clone();
+        assert_eq!(used.len(), corrections, "{kind:?}");
+        let first = &used[0].pattern;
+        assert!(
+            used.iter()
+                .all(|matrix| Arc::ptr_eq(&matrix.pattern, first))
+        );
         assert_eq!(analyses.load(Ordering::Relaxed), 1, "{kind:?}");
 
         step(
@@ -439,4 +455,50 @@ fn symbolic_work_is_reused_while_the_pattern_holds() {
         .unwrap();
         assert_eq!(analyses.load(Ordering::Relaxed), 2, "{kind:?}");
     }
+}
+
+/// The first correction of a step uses the elastic tangent of the state at its start, also where a
+/// law that lost strength returns that state to its yield surface; all others use the consistent
+/// one.
+#[test]
+fn the_first_correction_uses_the_elastic_tangent() {
+    let solver = Watched::new(SolverKind::Auto);
+    let matrices = Arc::clone(&solver.matrices);
+    let mut workspace = Workspace::new(Box::new(solver));
+    let method = Method::igimp_bbar();
+    let (mut body, full) = loaded(&von_mises(), 1.0);
+    let (_, weaker) = loaded(&von_mises().reduced(1.1).unwrap(), 1.0);
+    let settings = NewtonSettings::default();
+    step(
+        &mut body,
+        &method,
+        &full,
+        (0.0, 1.0),
+        &settings,
+        &mut workspace,
+    )
+    .unwrap();
+    let particles = body.particles.clone();
+    matrices.lock().unwrap().clear();
+    step(
+        &mut body,
+        &method,
+        &weaker,
+        (1.0, 2.0),
+        &settings,
+        &mut workspace,
+    )
+    .unwrap();
+
+    let stencils = Stencils::build(&weaker.grid, &particles, &method, &weaker.constraints).unwrap();
+    let system = System::new(&particles, &stencils, &weaker, &method, &[], None).unwrap();
+    let tangent = |kind| system.tangent(&system.start(kind).unwrap()).values;
+    let used = matrices.lock().unwrap().clone();
+    assert!(used.len() > 1);
+    let off = |kind| {
+        let pairs = std::iter::zip(&used[0].values, tangent(kind));
+        pairs.fold(0.0, |off, (a, b)| f64::max(off, (a - b).abs()))
+    };
+    assert!(off(TangentKind::Elastic) < 1e-12 * YOUNG);
+    assert!(off(TangentKind::Consistent) > 1e-2 * YOUNG);
 }
