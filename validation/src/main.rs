@@ -146,6 +146,10 @@ fn validate(arguments: &Arguments) -> Result<u8, CaseError> {
             .num_threads(threads)
             .build_global();
     }
+    std::fs::create_dir_all(&arguments.out).map_err(|source| CaseError::File {
+        path: arguments.out.clone(),
+        source,
+    })?;
     let level = match (arguments.quick, arguments.full) {
         (true, _) => Level::Quick,
         (_, true) => Level::Full,
