@@ -16,11 +16,9 @@ use crate::loads::{LoadPoint, StepLoads, external_force};
 use crate::matrix::{Pattern, TangentMatrix};
 use crate::method::{Kinematics, Method};
 use crate::particles::Particles;
+use crate::residual::{OutOfBalance, force_of_round_off};
 use crate::stencils::Stencils;
 use crate::unknowns::{BlockTable, Unknowns};
-
-/// Size of the round-off in the strain of a particle \[-\].
-const STRAIN_ROUND_OFF: f64 = 8.0 * f64::EPSILON;
 
 /// A constitutive law that several bodies and threads share.
 pub type SharedLaw = Arc<dyn ConstitutiveModel>;
@@ -45,20 +43,6 @@ pub struct Trial<const D: usize> {
     pub particles: Vec<ParticleTrial<D>>,
     /// Internal force by node, ghost penalty included \[force\].
     pub f_int: Vec<[f64; D]>,
-}
-
-/// The out-of-balance force of a trial.
-#[derive(Clone, Debug)]
-pub struct OutOfBalance {
-    /// f_ext − f_int by unknown \[force\].
-    pub force: Vec<f64>,
-    /// ‖f_ext − f_int‖ over the unknowns, divided by ‖f_ext‖ + ‖f_react‖ \[-\].
-    pub relative_norm: f64,
-    /// Whether the norm cannot be told from the round-off of the internal force: no smaller one
-    /// can be reached.
-    pub is_round_off: bool,
-    /// Node and axis of the largest component.
-    pub worst: (usize, usize),
 }
 
 /// One step's system of equations. Borrows the state at the step's start and never changes it.
@@ -209,40 +193,7 @@ impl<'a, const D: usize> System<'a, D> {
     /// # Errors
     /// [`AssemblyError::NonFinite`] when a nodal force is not finite.
     pub fn out_of_balance(&self, trial: &Trial<D>) -> Result<OutOfBalance, AssemblyError> {
-        let mut force = vec![0.0; self.unknowns.len()];
-        let (mut free, mut external, mut reaction, mut largest) = (0.0, 0.0, 0.0, 0.0);
-        let mut worst = (0, 0);
-        for node in 0..trial.f_int.len() {
-            for axis in 0..D {
-                let difference = self.f_ext[node][axis] - trial.f_int[node][axis];
-                if !difference.is_finite() {
-                    return Err(AssemblyError::NonFinite {
-                        what: "nodal force",
-                        index: node,
-                    });
-                }
-                external += self.f_ext[node][axis] * self.f_ext[node][axis];
-                if let Some(unknown) = self.unknowns.index(node, axis) {
-                    force[unknown] = difference;
-                    free += difference * difference;
-                    if difference.abs() > largest {
-                        largest = difference.abs();
-                        worst = (node, axis);
-                    }
-                } else {
-                    reaction += difference * difference;
-                }
-            }
-        }
-        let reference: f64 = external.sqrt() + reaction.sqrt();
-        let norm: f64 = free.sqrt();
-        let relative_norm = if norm == 0.0 { 0.0 } else { norm / reference };
-        Ok(OutOfBalance {
-            force,
-            relative_norm,
-            is_round_off: norm <= self.round_off,
-            worst,
-        })
+        OutOfBalance::measure(&self.unknowns, &self.f_ext, &trial.f_int, self.round_off)
     }
 
     /// The reaction f_int − f_ext by node, zero at unknowns \[force\].
@@ -436,25 +387,4 @@ impl<'a, const D: usize> System<'a, D> {
     fn code(&self, node: usize) -> usize {
         self.table.code(&self.conditions.grid.node_place(node))
     }
-}
-
-/// The norm of the internal force of strains that are round-off: where a body is all but free of
-/// force, as after unloading or in rigid motion, no smaller residual can be reached \[force\].
-fn force_of_round_off<const D: usize>(
-    particles: &Particles<D>,
-    stencils: &Stencils<D>,
-    conditions: &StepConditions<D>,
-) -> f64 {
-    let mut force = vec![0.0; conditions.grid.node_count()];
-    for particle in 0..particles.len() {
-        let elasticity = conditions.laws[particles.law[particle]].elasticity();
-        let modulus = elasticity.bulk() + 4.0 / 3.0 * elasticity.shear();
-        let stress = STRAIN_ROUND_OFF * modulus * particles.volume(particle);
-        for support in stencils.of(particle) {
-            let squares: f64 = support.grad.iter().map(|slope| slope * slope).sum();
-            force[support.node] += stress * squares.sqrt();
-        }
-    }
-    let squares: f64 = force.iter().map(|force| force * force).sum();
-    squares.sqrt()
 }

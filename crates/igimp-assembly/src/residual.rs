@@ -1,0 +1,90 @@
+//! How far a trial is from equilibrium, and when that cannot be told from round-off.
+
+use crate::error::AssemblyError;
+use crate::particles::Particles;
+use crate::stencils::Stencils;
+use crate::system::StepConditions;
+use crate::unknowns::Unknowns;
+
+/// Size of the round-off in the strain of a particle \[-\].
+const STRAIN_ROUND_OFF: f64 = 8.0 * f64::EPSILON;
+
+/// The out-of-balance force of a trial.
+#[derive(Clone, Debug)]
+pub struct OutOfBalance {
+    /// f_ext − f_int by unknown \[force\].
+    pub force: Vec<f64>,
+    /// ‖f_ext − f_int‖ over the unknowns, divided by ‖f_ext‖ + ‖f_react‖ \[-\].
+    pub relative_norm: f64,
+    /// Whether the norm cannot be told from the round-off of the internal force: no smaller one
+    /// can be reached.
+    pub is_round_off: bool,
+    /// Node and axis of the largest component.
+    pub worst: (usize, usize),
+}
+
+impl OutOfBalance {
+    /// The difference of nodal external and internal force; at most `round_off` counts as none.
+    pub(crate) fn measure<const D: usize>(
+        unknowns: &Unknowns<D>,
+        f_ext: &[[f64; D]],
+        f_int: &[[f64; D]],
+        round_off: f64,
+    ) -> Result<Self, AssemblyError> {
+        let mut force = vec![0.0; unknowns.len()];
+        let (mut free, mut external, mut reaction, mut largest) = (0.0, 0.0, 0.0, 0.0);
+        let mut worst = (0, 0);
+        for node in 0..f_int.len() {
+            for axis in 0..D {
+                let difference = f_ext[node][axis] - f_int[node][axis];
+                if !difference.is_finite() {
+                    return Err(AssemblyError::NonFinite {
+                        what: "nodal force",
+                        index: node,
+                    });
+                }
+                external += f_ext[node][axis] * f_ext[node][axis];
+                if let Some(unknown) = unknowns.index(node, axis) {
+                    force[unknown] = difference;
+                    free += difference * difference;
+                    if difference.abs() > largest {
+                        largest = difference.abs();
+                        worst = (node, axis);
+                    }
+                } else {
+                    reaction += difference * difference;
+                }
+            }
+        }
+        let reference: f64 = external.sqrt() + reaction.sqrt();
+        let norm: f64 = free.sqrt();
+        let relative_norm = if norm == 0.0 { 0.0 } else { norm / reference };
+        Ok(OutOfBalance {
+            force,
+            relative_norm,
+            is_round_off: norm <= round_off,
+            worst,
+        })
+    }
+}
+
+/// The norm of the internal force of strains that are round-off: where a body is all but free of
+/// force, as after unloading or in rigid motion, no smaller residual can be reached \[force\].
+pub(crate) fn force_of_round_off<const D: usize>(
+    particles: &Particles<D>,
+    stencils: &Stencils<D>,
+    conditions: &StepConditions<D>,
+) -> f64 {
+    let mut force = vec![0.0; conditions.grid.node_count()];
+    for particle in 0..particles.len() {
+        let elasticity = conditions.laws[particles.law[particle]].elasticity();
+        let modulus = elasticity.bulk() + 4.0 / 3.0 * elasticity.shear();
+        let stress = STRAIN_ROUND_OFF * modulus * particles.volume(particle);
+        for support in stencils.of(particle) {
+            let squares: f64 = support.grad.iter().map(|slope| slope * slope).sum();
+            force[support.node] += stress * squares.sqrt();
+        }
+    }
+    let squares: f64 = force.iter().map(|force| force * force).sum();
+    squares.sqrt()
+}
