@@ -225,6 +225,14 @@ fn print_report(studies: &[Study], missed: &[String], arguments: &Arguments, sec
             check.band,
         );
     }
+    for study in studies {
+        for run in study.runs.iter().filter(|run| run.at_round_off > 0) {
+            println!(
+                "round-off: {}, {}: {} steps were accepted above the tolerance, at round-off",
+                study.case, run.variant, run.at_round_off,
+            );
+        }
+    }
     for name in missed {
         println!("snapshot differs: {name} (accept today's results with --accept)");
     }

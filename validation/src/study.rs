@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use igimp_cases::CaseError;
 use igimp_cases::check::{Band, Check};
 use igimp_cases::table::Table;
-use igimp_solver::{MarchReport, Outcome, StepError};
+use igimp_solver::{MarchReport, Outcome, PhaseTimes, StepError};
 use serde::Serialize;
 
 /// Relative residuals below this are round-off and say nothing about the rate of convergence \[-\].
@@ -38,6 +38,10 @@ pub(crate) struct Run {
     pub(crate) cuts: usize,
     /// Wall-clock time \[s\].
     pub(crate) seconds: f64,
+    /// Steps accepted above the tolerance, at round-off.
+    pub(crate) at_round_off: usize,
+    /// Share of the time in accepted steps: set-up, evaluation, tangent, linear solver, commit \[-\].
+    pub(crate) phases: [f64; 5],
     /// The last step that found no equilibrium, if that ended the run.
     #[serde(skip)]
     pub(crate) stopped_by: Option<StepError>,
@@ -69,6 +73,8 @@ impl Run {
             iterations: report.iterations(),
             cuts: report.failures.len(),
             seconds: elapsed.as_secs_f64(),
+            at_round_off: report.steps.iter().filter(|step| step.at_round_off).count(),
+            phases: phase_shares(&report.times()),
             stopped_by: match &report.outcome {
                 Outcome::StepTooSmall { cause, .. } => Some(cause.clone()),
                 _ => None,
@@ -90,6 +96,10 @@ impl Run {
             iterations: runs.iter().map(|run| run.iterations).sum(),
             cuts: runs.iter().map(|run| run.cuts).sum(),
             seconds: runs.iter().map(|run| run.seconds).sum(),
+            at_round_off: runs.iter().map(|run| run.at_round_off).sum(),
+            phases: std::array::from_fn(|k| {
+                runs.iter().map(|run| run.phases[k]).sum::<f64>() / runs.len() as f64
+            }),
             stopped_by: None,
             residuals: runs.iter().flat_map(|run| run.residuals.clone()).collect(),
         }
@@ -102,6 +112,20 @@ impl Run {
             self.steps, self.iterations, self.cuts, self.outcome
         )
     }
+}
+
+/// The phases of a march as shares of their sum \[-\].
+fn phase_shares(times: &PhaseTimes) -> [f64; 5] {
+    let seconds = [
+        times.set_up,
+        times.evaluate,
+        times.tangent,
+        times.linear,
+        times.commit,
+    ]
+    .map(|time| time.as_secs_f64());
+    let total: f64 = seconds.iter().sum();
+    seconds.map(|time| if total > 0.0 { time / total } else { 0.0 })
 }
 
 /// A check with the run that it looks at.

@@ -121,6 +121,9 @@ pub struct StepReport {
     pub iterations: usize,
     /// Relative out-of-balance norm before each correction and at the end.
     pub residuals: Vec<f64>,
+    /// Whether the step was accepted above the tolerance because its residual is nothing but
+    /// round-off of the internal force.
+    pub at_round_off: bool,
     /// Number of unknowns.
     pub unknowns: usize,
     /// Share of particles that returned to the yield surface \[-\].
@@ -343,6 +346,7 @@ fn equilibrium<const D: usize>(
         to: 0.0,
         iterations,
         residuals: Vec::new(),
+        at_round_off: residual.relative_norm > settings.tolerance,
         unknowns: system.unknowns().len(),
         plastic_share: plastic as f64 / trial.particles.len() as f64,
         times,
