@@ -7,7 +7,7 @@ use crate::system::StepConditions;
 use crate::unknowns::Unknowns;
 
 /// Size of the round-off in the strain of a particle \[-\].
-const STRAIN_ROUND_OFF: f64 = 4.0 * f64::EPSILON;
+const STRAIN_ROUND_OFF: f64 = 8.0 * f64::EPSILON;
 
 /// The out-of-balance force of a trial.
 #[derive(Clone, Debug)]
