@@ -1,6 +1,7 @@
 //! The benchmark cases of the implicit generalised interpolation material point method, the exact
 //! solutions and measures that they are held against, and their tables and pictures.
 
+pub mod case;
 pub mod check;
 pub mod column;
 pub mod exact;
@@ -9,9 +10,11 @@ pub mod footing;
 pub mod measure;
 pub mod mohr_coulomb_slope;
 pub mod polygon;
+pub mod run;
 pub mod safety;
 pub mod seed;
 pub mod slope;
+pub mod summary;
 pub mod table;
 pub mod von_mises_slope;
 

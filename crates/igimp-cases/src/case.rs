@@ -1,0 +1,554 @@
+//! A problem as data: what a case file says, with names resolved and numbers in SI units.
+//!
+//! Lengths are in m, stresses in Pa, unit weights in N/m³, angles in rad, forces in N/m (plane
+//! strain, per metre run). The second axis points up; gravity acts along its negative direction.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use igimp_assembly::{Method, SharedLaw};
+use igimp_material::{Elasticity, HenckyElastic, MaterialError, MohrCoulomb, Tresca, VonMises};
+use igimp_solver::linear::SolverKind;
+
+use crate::check::Band;
+
+/// A problem in plane strain and how it is solved.
+#[derive(Clone, Debug)]
+pub struct Case {
+    /// Title for reports and figures.
+    pub title: String,
+    /// Acceleration of gravity \[m/s²\], positive; it acts downwards.
+    pub gravity: f64,
+    /// Background grid.
+    pub grid: GridSpec,
+    /// Variant of the method.
+    pub method: Method,
+    /// Materials; bodies name them by index.
+    pub materials: Vec<Material>,
+    /// Bodies.
+    pub bodies: Vec<BodyPart>,
+    /// Supports.
+    pub boundaries: Boundaries,
+    /// Loads; stages name them by index.
+    pub loads: Vec<Load>,
+    /// What happens, in order.
+    pub stages: Vec<Stage>,
+    /// Newton, step cutting, linear solver.
+    pub solver: SolverSettings,
+    /// Points whose history is recorded in every step.
+    pub monitors: Vec<Monitor>,
+    /// Lines along which results are written at the end of every stage.
+    pub sections: Vec<Section>,
+    /// One recorded quantity against another.
+    pub curves: Vec<Curve>,
+    /// Results that are held against outside values.
+    pub checks: Vec<CaseCheck>,
+    /// What is written, and where.
+    pub output: Output,
+}
+
+/// A fixed background grid of equal cells.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GridSpec {
+    /// Cell size by direction \[m\].
+    pub cell: [f64; 2],
+    /// Lower left corner \[m\].
+    pub lower: [f64; 2],
+    /// Number of cells by direction.
+    pub cells: [usize; 2],
+}
+
+impl GridSpec {
+    /// Upper right corner \[m\].
+    pub fn upper(&self) -> [f64; 2] {
+        std::array::from_fn(|axis| self.lower[axis] + self.cells[axis] as f64 * self.cell[axis])
+    }
+}
+
+/// A material.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Material {
+    /// Name.
+    pub name: String,
+    /// Unit weight γ \[N/m³\].
+    pub unit_weight: f64,
+    /// Young's modulus \[Pa\].
+    pub young: f64,
+    /// Poisson's ratio \[-\].
+    pub poisson: f64,
+    /// Strength.
+    pub strength: Strength,
+    /// Coefficient of earth pressure at rest K₀ \[-\], if the material states one.
+    pub k0: Option<f64>,
+}
+
+/// The strength of a material.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Strength {
+    /// No limit.
+    Elastic,
+    /// von Mises with undrained strength c_u in plane strain \[Pa\].
+    VonMises {
+        /// c_u \[Pa\].
+        undrained_strength: f64,
+    },
+    /// Tresca.
+    Tresca {
+        /// c_u \[Pa\].
+        undrained_strength: f64,
+    },
+    /// Mohr–Coulomb.
+    MohrCoulomb {
+        /// c \[Pa\].
+        cohesion: f64,
+        /// φ \[rad\].
+        friction_angle: f64,
+        /// ψ \[rad\].
+        dilation_angle: f64,
+        /// Largest tensile stress \[Pa\]; none: the apex of the cone.
+        tension_cutoff: Option<f64>,
+    },
+}
+
+impl Material {
+    /// The constitutive law.
+    ///
+    /// # Errors
+    /// [`MaterialError::InvalidParameter`].
+    pub fn law(&self) -> Result<SharedLaw, MaterialError> {
+        let elasticity = Elasticity::new(self.young, self.poisson)?;
+        Ok(match self.strength {
+            Strength::Elastic => Arc::new(HenckyElastic::new(elasticity)),
+            Strength::VonMises { undrained_strength } => Arc::new(
+                VonMises::from_undrained_strength(elasticity, undrained_strength)?,
+            ),
+            Strength::Tresca { undrained_strength } => {
+                Arc::new(Tresca::new(elasticity, undrained_strength)?)
+            }
+            Strength::MohrCoulomb {
+                cohesion,
+                friction_angle,
+                dilation_angle,
+                tension_cutoff,
+            } => {
+                let law = MohrCoulomb::new(elasticity, cohesion, friction_angle, dilation_angle)?;
+                match tension_cutoff {
+                    Some(limit) => Arc::new(law.with_tension_cutoff(limit)?),
+                    None => Arc::new(law),
+                }
+            }
+        })
+    }
+}
+
+/// A polygon of one material, filled with particles.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BodyPart {
+    /// Name.
+    pub name: String,
+    /// Index of the material.
+    pub material: usize,
+    /// Particles per cell in each direction.
+    pub per_direction: usize,
+    /// Corners in order, either way round \[m\].
+    pub polygon: Vec<[f64; 2]>,
+}
+
+/// What a side of the grid does to the soil that reaches it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Side {
+    /// Nothing.
+    #[default]
+    Free,
+    /// Holds the displacement across the side.
+    Roller,
+    /// Holds both displacements.
+    Fixed,
+}
+
+/// Supports: the sides of the grid, and boxes of fixed nodes.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Boundaries {
+    /// Side of the lowest x.
+    pub left: Side,
+    /// Side of the highest x.
+    pub right: Side,
+    /// Side of the lowest y.
+    pub bottom: Side,
+    /// Side of the highest y.
+    pub top: Side,
+    /// Boxes of nodes.
+    pub boxes: Vec<FixedBox>,
+}
+
+/// Nodes in a box (edges included) that are held.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FixedBox {
+    /// Name.
+    pub name: String,
+    /// Lower left corner \[m\].
+    pub lower: [f64; 2],
+    /// Upper right corner \[m\].
+    pub upper: [f64; 2],
+    /// Which components are held.
+    pub fix: [bool; 2],
+}
+
+/// A load that stages apply.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Load {
+    /// Name.
+    pub name: String,
+    /// Kind.
+    pub kind: LoadKind,
+}
+
+/// Kinds of loads.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LoadKind {
+    /// A level rigid footing on the surface, pushed down by displacement stages. The grid follows.
+    RigidFooting {
+        /// Left end of the base \[m\].
+        from: [f64; 2],
+        /// Right end of the base, at the same level \[m\].
+        to: [f64; 2],
+        /// Whether the soil sticks to base and shaft.
+        rough: bool,
+        /// Factor on the reported reaction, 2 for half a footing \[-\].
+        reaction_factor: f64,
+    },
+    /// A dead pressure on a segment of the surface, raised by load stages.
+    Pressure {
+        /// One end \[m\].
+        from: [f64; 2],
+        /// Other end \[m\].
+        to: [f64; 2],
+        /// Traction at factor 1 \[Pa\], its two components.
+        traction: [f64; 2],
+    },
+    /// A dead force at a point, raised by load stages.
+    Point {
+        /// Where \[m\].
+        at: [f64; 2],
+        /// Force at factor 1 \[N/m\].
+        force: [f64; 2],
+    },
+}
+
+/// One thing that happens.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stage {
+    /// Name.
+    pub name: String,
+    /// Kind.
+    pub kind: StageKind,
+    /// Load steps when none is cut; of each trial in a strength reduction.
+    pub steps: usize,
+    /// Stage whose end this one starts from; `None`: the undeformed, stress-free bodies for the
+    /// first stage.
+    pub start_from: Option<usize>,
+    /// Whether displacements count from the end of this stage on.
+    pub reset_displacements: bool,
+    /// Conditions that end the stage early.
+    pub stop_when: StopWhen,
+}
+
+/// Kinds of stages.
+#[derive(Clone, Debug, PartialEq)]
+pub enum StageKind {
+    /// Raises gravity from where it is to a multiple of its value.
+    Gravity {
+        /// The multiple \[-\].
+        factor: f64,
+    },
+    /// Stresses of level ground: the weight above, and K₀ times that sideways; then equilibrium.
+    K0,
+    /// Changes the factor of loads from where it is.
+    Load {
+        /// Indices of the loads.
+        loads: Vec<usize>,
+        /// Factor at the end \[-\].
+        factor: f64,
+    },
+    /// Pushes a rigid footing down.
+    Displacement {
+        /// Index of the footing.
+        load: usize,
+        /// Further settlement \[m\].
+        settlement: f64,
+    },
+    /// Searches for the factor of safety. The body is left as it was found.
+    StrengthReduction(StrengthReduction),
+    /// Lets the slope of reduced strength move until it rests.
+    RunOut(RunOut),
+}
+
+/// How the factor of safety is searched for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StrengthReduction {
+    /// Indices of the materials whose strength is reduced.
+    pub materials: Vec<usize>,
+    /// Factors tried first, for the curve of displacement against factor; may be empty.
+    pub factors: Vec<f64>,
+    /// Where the search begins: a factor thought stable and one thought unstable \[-\].
+    pub bracket: [f64; 2],
+    /// Width of the interval at which the search ends \[-\].
+    pub tolerance: f64,
+    /// How the reduced strength is reached.
+    pub path: ReductionPath,
+    /// A displacement at which the slope counts as failed \[m\]; lack of equilibrium always does.
+    pub failure_displacement: Option<f64>,
+    /// Monitor whose displacement counts; none: the largest of all particles.
+    pub monitor: Option<usize>,
+}
+
+/// How a trial reaches its reduced strength.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ReductionPath {
+    /// The strength of the loaded body is reduced step by step.
+    Reduce,
+    /// Gravity is raised on undeformed bodies of reduced strength.
+    Gravity,
+}
+
+/// A run-out of a slope with reduced strength: overdamped motion until it rests.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RunOut {
+    /// Indices of the materials whose strength is reduced.
+    pub materials: Vec<usize>,
+    /// The reduction.
+    pub reduction: Reduction,
+    /// Largest displacement aimed at in a step, as a share of the cell \[-\].
+    pub move_per_step: f64,
+    /// The slope rests when the drag carries less than this share of the external force \[-\].
+    pub at_rest: f64,
+}
+
+/// By how much strength is reduced.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Reduction {
+    /// A multiple of the factor of safety found before (middle of its interval).
+    TimesFos(f64),
+    /// A factor.
+    Factor(f64),
+}
+
+/// Conditions that end a stage early, and count as a planned end.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StopWhen {
+    /// A displacement is reached \[m\].
+    pub displacement: Option<f64>,
+    /// Monitor whose displacement counts; none: the largest of all particles.
+    pub monitor: Option<usize>,
+    /// The reaction of the pushed footing grows by less than this share in a step \[-\].
+    pub load_grows_less_than: Option<f64>,
+}
+
+/// Newton's method, step cutting and the linear solver.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SolverSettings {
+    /// Accepted out-of-balance force over external force and reactions \[-\].
+    pub tolerance: f64,
+    /// Most corrections per step.
+    pub max_iterations: usize,
+    /// How often a step is cut in succession.
+    pub cuts: u32,
+    /// Factor on a cut step \[-\].
+    pub cut_factor: f64,
+    /// Linear solver.
+    pub linear: SolverKind,
+}
+
+impl Default for SolverSettings {
+    fn default() -> Self {
+        Self {
+            tolerance: 1e-9,
+            max_iterations: 25,
+            cuts: 5,
+            cut_factor: 0.5,
+            linear: SolverKind::Auto,
+        }
+    }
+}
+
+/// A particle that is watched: the one nearest to a point in the undeformed bodies.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Monitor {
+    /// Name.
+    pub name: String,
+    /// Point \[m\].
+    pub point: [f64; 2],
+    /// What is recorded.
+    pub record: Vec<Field>,
+}
+
+/// A line along which fields are read at the end of every stage.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Section {
+    /// Name.
+    pub name: String,
+    /// One end \[m\].
+    pub from: [f64; 2],
+    /// Other end \[m\].
+    pub to: [f64; 2],
+    /// Number of equally spaced places.
+    pub points: usize,
+    /// What is read.
+    pub record: Vec<Field>,
+}
+
+/// A field on particles, as it is printed: stress compression positive.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Field {
+    /// Length of the displacement \[m\].
+    Displacement,
+    /// Displacement in x \[m\].
+    DisplacementX,
+    /// Displacement in y \[m\].
+    DisplacementY,
+    /// Position x \[m\].
+    X,
+    /// Position y \[m\].
+    Y,
+    /// −σ_xx \[Pa\].
+    SigmaXx,
+    /// −σ_yy \[Pa\].
+    SigmaYy,
+    /// −σ_zz \[Pa\].
+    SigmaZz,
+    /// −τ_xy \[Pa\].
+    TauXy,
+    /// Mean pressure p = −tr σ/3 \[Pa\].
+    P,
+    /// Deviatoric stress q = √(3/2)‖s‖ \[Pa\].
+    Q,
+    /// Accumulated plastic strain invariant \[-\].
+    PlasticStrain,
+    /// Share of the strength that is mobilised \[-\].
+    Utilisation,
+}
+
+/// A number that every step has.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Quantity {
+    /// Settlement of a rigid footing \[m\].
+    Settlement(usize),
+    /// Resistance of a rigid footing times its reaction factor, compression positive \[N/m\].
+    Reaction(usize),
+    /// Factor on a load \[-\].
+    LoadFactor(usize),
+    /// A field at a monitor.
+    Monitor(usize, Field),
+    /// Largest particle displacement \[m\].
+    LargestDisplacement,
+    /// Multiple of gravity \[-\].
+    GravityFactor,
+    /// Strength reduction factor \[-\].
+    ReductionFactor,
+    /// Number of the step in its stage.
+    Step,
+    /// Share of particles that yield \[-\].
+    PlasticShare,
+    /// Middle of the interval of the factor of safety; known at the end of its stage \[-\].
+    FactorOfSafety,
+    /// Height of the highest particle's upper edge \[m\].
+    Top,
+}
+
+/// One recorded quantity against another, one point per accepted step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Curve {
+    /// Name, also of its file.
+    pub name: String,
+    /// Abscissa.
+    pub x: CurveAxis,
+    /// Ordinate.
+    pub y: CurveAxis,
+    /// The stage that is recorded; none: all.
+    pub stage: Option<usize>,
+    /// What it is held against.
+    pub reference: Option<Reference>,
+}
+
+/// A quantity as plotted.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CurveAxis {
+    /// The quantity.
+    pub of: Quantity,
+    /// It is divided by this, in SI units.
+    pub divide_by: f64,
+    /// Label with unit, as in `d / B [-]`.
+    pub label: String,
+}
+
+/// A reference for a curve.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reference {
+    /// Label, with the source.
+    pub label: String,
+    /// Values.
+    pub values: ReferenceValues,
+    /// Accepted relative deviation; none: drawn only \[-\].
+    pub tolerance: Option<f64>,
+}
+
+/// Values of a reference, in the units of the plot.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ReferenceValues {
+    /// The ordinate at the end of the curve, or at an abscissa.
+    Level {
+        /// Ordinate.
+        y: f64,
+        /// Abscissa at which the curve is read; none: its end.
+        at: Option<f64>,
+    },
+    /// Points; the curve is held against each that it spans.
+    Points(Vec<[f64; 2]>),
+}
+
+/// A result held against an outside value.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CaseCheck {
+    /// Name.
+    pub name: String,
+    /// What is measured, at the end of a stage.
+    pub of: Quantity,
+    /// It is divided by this.
+    pub divide_by: f64,
+    /// The stage; none: the last.
+    pub stage: Option<usize>,
+    /// Outside value, in the unit after division.
+    pub expected: f64,
+    /// What is accepted.
+    pub band: Band,
+    /// Where the value comes from.
+    pub source: String,
+}
+
+/// What is written, and where.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Output {
+    /// Results folder.
+    pub folder: PathBuf,
+    /// When particles are written for ParaView.
+    pub paraview: Every,
+    /// Fields drawn at the end of every stage.
+    pub figures: Vec<Field>,
+    /// Whether `report.html` is written.
+    pub report: bool,
+    /// Steps between checkpoints; 0: only at the end of stages.
+    pub checkpoint_every: usize,
+    /// Checkpoints kept within a stage.
+    pub checkpoint_keep: usize,
+}
+
+/// How often.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Every {
+    /// Never.
+    Never,
+    /// At the end of every stage.
+    Stage,
+    /// Every so many steps, and at the end of every stage.
+    Steps(usize),
+}

@@ -1,0 +1,169 @@
+//! Runs a case: stage by stage, step by step, with its records and checks.
+
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
+
+use igimp_solver::{Body, StepError, StepReport};
+
+use crate::case::Case;
+use crate::error::CaseError;
+use crate::summary::{ModelSize, StageSummary, Summary, TrialSummary};
+use crate::table::Table;
+
+/// What happens during a run, as it happens.
+#[derive(Clone, Copy, Debug)]
+pub enum Event<'a> {
+    /// The model is made; the first step follows.
+    Prepared {
+        /// Its size.
+        size: &'a ModelSize,
+    },
+    /// A stage begins.
+    StageStarted {
+        /// Its number, from 0.
+        stage: usize,
+        /// How many stages there are.
+        of: usize,
+        /// Its name.
+        name: &'a str,
+        /// Its kind, such as `gravity`.
+        kind: &'static str,
+        /// Load steps when none is cut; of each trial in a strength reduction.
+        steps: usize,
+    },
+    /// A step was accepted.
+    Step {
+        /// Number of the step in its stage, from 1.
+        number: usize,
+        /// Share of the stage (of the trial, in a strength reduction) that is done \[-\].
+        progress: f64,
+        /// How it went.
+        report: &'a StepReport,
+    },
+    /// A step was not accepted and is tried again with a smaller one.
+    Cut {
+        /// What failed.
+        error: &'a StepError,
+    },
+    /// A trial of a strength reduction ended.
+    Trial {
+        /// What it found.
+        trial: &'a TrialSummary,
+    },
+    /// A stage ended.
+    StageEnded {
+        /// How it went.
+        summary: &'a StageSummary,
+    },
+    /// Something that the user should know.
+    Warning {
+        /// In a sentence.
+        text: &'a str,
+    },
+}
+
+/// Listens to a run: a progress bar, a log. Closures are listeners.
+pub trait Listener {
+    /// Called as it happens.
+    fn on_event(&mut self, event: &Event<'_>);
+}
+
+impl<F: FnMut(&Event<'_>)> Listener for F {
+    fn on_event(&mut self, event: &Event<'_>) {
+        self(event);
+    }
+}
+
+/// Where a run begins.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Start {
+    /// At the beginning; earlier results in the folder are replaced.
+    #[default]
+    Afresh,
+    /// At the newest checkpoint of the results folder.
+    Resume,
+    /// At a stage, from the saved end of the one that it starts from.
+    FromStage(usize),
+}
+
+/// A results folder to write into, with the texts that are kept beside the results.
+#[derive(Clone, Debug)]
+pub struct Target {
+    /// The folder; it is made.
+    pub folder: PathBuf,
+    /// The case file as given, kept as `case.toml`.
+    pub source: String,
+    /// The case with every default, kept as `case.completed.toml`.
+    pub completed: String,
+}
+
+/// What a run hands back.
+#[derive(Debug)]
+pub struct Run {
+    /// What `summary.json` says.
+    pub summary: Summary,
+    /// Curves, named as in the case.
+    pub curves: Vec<Table>,
+    /// Histories at monitors.
+    pub monitors: Vec<Table>,
+    /// Fields along sections, named `SECTION__STAGE`.
+    pub sections: Vec<Table>,
+    /// The state at the end.
+    pub body: Body<2>,
+    /// The step that ended the run for want of equilibrium, if one did.
+    pub failure: Option<Failure>,
+}
+
+/// A step that found no equilibrium where the case wanted one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Failure {
+    /// Name of the stage.
+    pub stage: String,
+    /// Number of the step that failed, from 1.
+    pub step: usize,
+    /// Steps of the stage when none is cut.
+    pub steps: usize,
+    /// How often it was cut.
+    pub cuts: u32,
+    /// The smallest step tried, as a share of a full one \[-\].
+    pub smallest: f64,
+    /// Most corrections allowed.
+    pub max_iterations: usize,
+    /// What failed.
+    pub error: StepError,
+    /// Particles within a cell of the worst node, how many of them yield, and how many of those
+    /// returned to an apex or to a corner in tension.
+    pub near_worst: Option<[usize; 3]>,
+    /// Material of most particles there.
+    pub material: Option<String>,
+    /// What may help, most promising first; in the words of the case file.
+    pub suggestions: Vec<String>,
+    /// Files and folders with what was computed.
+    pub saved: Vec<PathBuf>,
+}
+
+/// Runs a case. With a target everything is written as it is computed.
+///
+/// Want of equilibrium is a result ([`Run::failure`]), and so is an interruption: when `interrupt`
+/// becomes true the run ends after its step, with everything saved.
+///
+/// # Errors
+/// [`CaseError`] for a case that cannot be set up, and for files that cannot be written or read.
+pub fn run(
+    case: &Case,
+    target: Option<&Target>,
+    start: Start,
+    listener: &mut dyn Listener,
+    interrupt: &AtomicBool,
+) -> Result<Run, CaseError> {
+    let _ = (case, target, start, listener, interrupt);
+    Err(CaseError::EmptyBody)
+}
+
+/// Makes a report of a results folder.
+///
+/// # Errors
+/// [`CaseError::File`].
+pub fn report(_folder: &Path) -> Result<PathBuf, CaseError> {
+    Err(CaseError::EmptyBody)
+}

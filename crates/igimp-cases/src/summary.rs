@@ -1,0 +1,155 @@
+//! What a run found, as written to `summary.json`.
+
+use serde::{Deserialize, Serialize};
+
+use crate::check::Check;
+
+/// The outcome of a run.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Summary {
+    /// `igimp` and its version.
+    pub program: String,
+    /// Title of the case.
+    pub title: String,
+    /// Variant of the method.
+    pub method: String,
+    /// Size of the model.
+    pub size: ModelSize,
+    /// Stages in the order they ran.
+    pub stages: Vec<StageSummary>,
+    /// Checks of curves and results.
+    pub checks: Vec<CheckRow>,
+    /// Warnings, for the reader.
+    pub warnings: Vec<String>,
+    /// Pictures in the order in which a report shows them.
+    pub figures: Vec<FigureNote>,
+    /// Wall-clock time \[s\].
+    pub seconds: f64,
+    /// Of that, time spent writing results \[s\].
+    pub output_seconds: f64,
+    /// Largest resident memory \[MiB\], where the system tells.
+    pub peak_memory_mib: Option<f64>,
+    /// Whether the run was interrupted and can be resumed.
+    pub interrupted: bool,
+}
+
+/// A picture of a results folder.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct FigureNote {
+    /// Path within the results folder without extension, such as `figures/curve-load-settlement`;
+    /// it exists as `.svg` and `.png`.
+    pub file: String,
+    /// Caption.
+    pub caption: String,
+}
+
+/// Numbers that tell the size of a model.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ModelSize {
+    /// Particles.
+    pub particles: usize,
+    /// Cells of the grid.
+    pub cells: usize,
+    /// Most unknowns of a step.
+    pub unknowns: usize,
+    /// Total mass times gravity \[N/m\].
+    pub weight: f64,
+    /// Total volume \[m³/m\].
+    pub volume: f64,
+}
+
+/// How a stage went.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct StageSummary {
+    /// Name.
+    pub name: String,
+    /// Kind, such as `gravity`.
+    pub kind: String,
+    /// How it ended.
+    pub outcome: StageOutcome,
+    /// Why, in words.
+    pub reason: String,
+    /// Share of the stage that was reached \[-\].
+    pub reached: f64,
+    /// Accepted steps.
+    pub steps: usize,
+    /// Newton corrections in accepted steps.
+    pub iterations: usize,
+    /// Steps that were tried and cut.
+    pub cuts: usize,
+    /// Steps accepted above the tolerance, at round-off.
+    pub at_round_off: usize,
+    /// Wall-clock time \[s\].
+    pub seconds: f64,
+    /// Time by phase \[s\]: set-up, evaluation, tangent, linear solver, commit.
+    pub phases: [f64; 5],
+    /// Largest particle displacement at the end \[m\].
+    pub largest_displacement: f64,
+    /// Share of particles that yielded in the last step \[-\].
+    pub plastic_share: f64,
+    /// What a strength reduction found.
+    pub safety: Option<SafetySummary>,
+}
+
+/// How a stage ended.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum StageOutcome {
+    /// It reached its end.
+    #[default]
+    Completed,
+    /// A condition of the case ended it.
+    Stopped,
+    /// No equilibrium was found.
+    NotConverged,
+    /// The user interrupted it.
+    Interrupted,
+}
+
+/// A factor of safety as an interval, and how it was found.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct SafetySummary {
+    /// Largest factor found stable.
+    pub stable: Option<f64>,
+    /// Smallest factor found failed.
+    pub failed: Option<f64>,
+    /// What counts as failure.
+    pub criterion: String,
+    /// Materials that were reduced.
+    pub materials: Vec<String>,
+    /// Materials that kept their strength.
+    pub excluded: Vec<String>,
+    /// Share of the mass that moves by more than a tenth of the largest displacement in the first
+    /// unstable state \[-\].
+    pub moving_mass: Option<f64>,
+    /// The trials in the order they were made.
+    pub trials: Vec<TrialSummary>,
+}
+
+/// One trial of a search.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct TrialSummary {
+    /// Strength reduction factor \[-\].
+    pub srf: f64,
+    /// Whether the body stands.
+    pub stable: bool,
+    /// Why.
+    pub reason: String,
+    /// Displacement that the criterion looks at \[m\].
+    pub displacement: f64,
+    /// Accepted steps.
+    pub steps: usize,
+    /// Newton corrections.
+    pub iterations: usize,
+    /// Steps that were cut.
+    pub cuts: usize,
+}
+
+/// A check and whether it passed.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CheckRow {
+    /// The check.
+    pub check: Check,
+    /// Whether the band is met.
+    pub pass: bool,
+}
