@@ -83,7 +83,8 @@ impl Block {
                 constraints,
                 loads: StepLoads {
                     gravity: [0.0, -9.81],
-                    point_factor: 0.0,
+                    factors: Vec::new(),
+                    drag: 0.0,
                 },
                 laws: vec![law],
             },

@@ -136,7 +136,8 @@ impl Slope {
             constraints: self.constraints.clone(),
             loads: StepLoads {
                 gravity: [0.0, -factor * GRAVITY],
-                point_factor: 0.0,
+                factors: Vec::new(),
+                drag: 0.0,
             },
             laws: vec![Arc::clone(&self.law)],
         }

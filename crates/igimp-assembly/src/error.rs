@@ -50,6 +50,13 @@ pub enum AssemblyError {
         #[source]
         source: ShapeError,
     },
+    /// The law of a step cannot be made.
+    #[error("the law of the step cannot be made")]
+    Law {
+        /// What the law said.
+        #[source]
+        source: MaterialError,
+    },
     /// A loaded point has no place on the grid.
     #[error("load point {point} at {position:?} m has no place on the background grid")]
     LoadPoint {

@@ -8,9 +8,10 @@ use igimp_shape::Grid;
 use crate::particles::Particles;
 use crate::stencils::Stencils;
 
-/// A coupling of two nodes that acts on each displacement component alike.
+/// A coupling of two nodes, or of a node to its place, that acts on each displacement component
+/// alike.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct GhostEntry {
+pub(crate) struct Coupling {
     pub(crate) row: usize,
     pub(crate) column: usize,
     /// Stiffness \[force/length\].
@@ -24,7 +25,7 @@ pub(crate) fn ghost_entries<const D: usize>(
     stencils: &Stencils<D>,
     young: impl Fn(usize) -> f64,
     gamma: f64,
-) -> Vec<GhostEntry> {
+) -> Vec<Coupling> {
     let cells = Cells::gather(grid, particles, stencils, young);
     let mut entries = Vec::new();
     for cell in 0..grid.cell_count() {
@@ -108,7 +109,7 @@ fn face<const D: usize>(
     place: [usize; D],
     axis: usize,
     modulus: f64,
-    entries: &mut Vec<GhostEntry>,
+    entries: &mut Vec<Coupling>,
 ) {
     let size = grid.cell_size(place);
     let mut beyond = place;
@@ -143,7 +144,7 @@ fn face<const D: usize>(
                 corner_k /= 2;
                 corner_l /= 2;
             }
-            entries.push(GhostEntry {
+            entries.push(Coupling {
                 row: node(k),
                 column: node(l),
                 stiffness: modulus * h * jump[k % 3] * jump[l % 3] * along_face,

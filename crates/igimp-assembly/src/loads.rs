@@ -1,4 +1,5 @@
-//! External loads: gravity on every particle, and forces on points that the soil carries along.
+//! What acts on a body in a step: gravity on every particle, forces on points that the soil carries
+//! along, and drag against motion.
 
 use igimp_shape::{Grid, Linear, Scratch, Support, supports};
 
@@ -13,14 +14,23 @@ pub struct LoadPoint<const D: usize> {
     pub x: [f64; D],
     /// Force at load factor 1 \[force; per unit thickness in plane strain\].
     pub force: [f64; D],
+    /// Index of its factor in [`StepLoads::factors`]; points of one load share it.
+    pub load: usize,
 }
 
 impl<const D: usize> LoadPoint<D> {
-    /// A traction on a straight edge, as `count` equal points in the middle of equal parts.
+    /// A traction on a straight edge, as `count` equal points in the middle of equal parts; they
+    /// follow factor `load`.
     ///
     /// `traction` is force per unit area \[force/length²\] on the edge from `from` to `to`
     /// (per unit thickness).
-    pub fn along_edge(from: [f64; D], to: [f64; D], traction: [f64; D], count: usize) -> Vec<Self> {
+    pub fn along_edge(
+        from: [f64; D],
+        to: [f64; D],
+        traction: [f64; D],
+        count: usize,
+        load: usize,
+    ) -> Vec<Self> {
         let length = from
             .iter()
             .zip(&to)
@@ -33,6 +43,7 @@ impl<const D: usize> LoadPoint<D> {
                 Self {
                     x: std::array::from_fn(|axis| from[axis] + t * (to[axis] - from[axis])),
                     force: traction.map(|component| component * length / count as f64),
+                    load,
                 }
             })
             .collect()
@@ -77,13 +88,27 @@ impl<const D: usize> LoadPoint<D> {
     }
 }
 
-/// The external force at the end of a step.
+/// What acts on the body at the end of a step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StepLoads<const D: usize> {
     /// Acceleration of gravity \[length/time²\].
     pub gravity: [f64; D],
-    /// Factor on the point loads \[-\].
-    pub point_factor: f64,
+    /// Factors on the loaded points, by load; a load without a factor does not act \[-\].
+    pub factors: Vec<f64>,
+    /// Drag against motion: a force −drag · m · u on every node, with m its share of the mass and
+    /// u its step displacement \[1/time²\]. Zero in a step that has to be in equilibrium.
+    pub drag: f64,
+}
+
+impl<const D: usize> StepLoads<D> {
+    /// Gravity alone.
+    pub fn gravity(gravity: [f64; D]) -> Self {
+        Self {
+            gravity,
+            factors: Vec::new(),
+            drag: 0.0,
+        }
+    }
 }
 
 /// Nodal external force f_ext, by node \[force\].
@@ -110,6 +135,10 @@ pub(crate) fn external_force<const D: usize>(
             }
         });
     for (index, point) in points.iter().enumerate() {
+        let factor = loads.factors.get(point.load).copied().unwrap_or(0.0);
+        if factor == 0.0 {
+            continue;
+        }
         for support in point.supports(grid, index)? {
             let node = stencils.master(support.node);
             if support.value > 0.0 && stencils.node_volume()[node] == 0.0 {
@@ -120,9 +149,29 @@ pub(crate) fn external_force<const D: usize>(
                 });
             }
             for axis in 0..D {
-                f_ext[node][axis] += support.value * loads.point_factor * point.force[axis];
+                f_ext[node][axis] += support.value * factor * point.force[axis];
             }
         }
     }
     Ok(f_ext)
+}
+
+/// Drag by node: force per step displacement \[force/length\]. Nodes without mass have none.
+pub(crate) fn nodal_drag<const D: usize>(
+    grid: &Grid<D>,
+    particles: &Particles<D>,
+    stencils: &Stencils<D>,
+    drag: f64,
+) -> Vec<(usize, f64)> {
+    let mut mass = vec![0.0; grid.node_count()];
+    for particle in 0..particles.len() {
+        for support in stencils.of(particle) {
+            mass[support.node] += support.value * particles.mass[particle];
+        }
+    }
+    mass.into_iter()
+        .map(|mass| drag * mass)
+        .enumerate()
+        .filter(|&(_, drag)| drag > 0.0)
+        .collect()
 }

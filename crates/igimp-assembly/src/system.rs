@@ -9,10 +9,10 @@ use rayon::prelude::*;
 
 use crate::constraints::Constraints;
 use crate::error::AssemblyError;
-use crate::ghost::{GhostEntry, ghost_entries};
+use crate::ghost::{Coupling, ghost_entries};
 use crate::kinematics::{ParticleTrial, evaluate};
 use crate::linearised::{Linearised, internal_force};
-use crate::loads::{LoadPoint, StepLoads, external_force};
+use crate::loads::{LoadPoint, StepLoads, external_force, nodal_drag};
 use crate::matrix::{Pattern, TangentMatrix};
 use crate::method::{Kinematics, Method};
 use crate::particles::Particles;
@@ -41,7 +41,7 @@ pub struct StepConditions<const D: usize> {
 pub struct Trial<const D: usize> {
     /// Particle by particle.
     pub particles: Vec<ParticleTrial<D>>,
-    /// Internal force by node, ghost penalty included \[force\].
+    /// Internal force by node, ghost penalty and drag included \[force\].
     pub f_int: Vec<[f64; D]>,
 }
 
@@ -56,7 +56,10 @@ pub struct System<'a, const D: usize> {
     f_ext: Vec<[f64; D]>,
     /// ‖f_int‖ of strains that are round-off \[force\].
     round_off: f64,
-    ghost: Vec<GhostEntry>,
+    /// Ghost penalty and drag: forces proportional to step displacements.
+    couplings: Vec<Coupling>,
+    /// Where the drag begins among the couplings.
+    first_drag: usize,
     table: BlockTable<D>,
     pattern: Arc<Pattern>,
     symmetric: bool,
@@ -91,13 +94,22 @@ impl<'a, const D: usize> System<'a, D> {
         let cuts = method.small_cuts;
         let unknowns = Unknowns::number(grid, stencils, &conditions.constraints, cuts.below)?;
         let f_ext = external_force(grid, particles, stencils, points, &conditions.loads)?;
-        let ghost = if cuts.ghost_penalty > 0.0 {
+        let mut couplings = if cuts.ghost_penalty > 0.0 {
             let young = |p: usize| conditions.laws[particles.law[p]].elasticity().young();
             ghost_entries(grid, particles, stencils, young, cuts.ghost_penalty)
         } else {
             Vec::new()
         };
-        let pairs: Vec<_> = ghost
+        let first_drag = couplings.len();
+        if conditions.loads.drag > 0.0 {
+            let drag = nodal_drag(grid, particles, stencils, conditions.loads.drag);
+            couplings.extend(drag.into_iter().map(|(node, stiffness)| Coupling {
+                row: node,
+                column: node,
+                stiffness,
+            }));
+        }
+        let pairs: Vec<_> = couplings
             .iter()
             .map(|entry| (entry.column, entry.row))
             .collect();
@@ -110,7 +122,8 @@ impl<'a, const D: usize> System<'a, D> {
             unknowns,
             f_ext,
             round_off: force_of_round_off(particles, stencils, conditions),
-            ghost,
+            couplings,
+            first_drag,
             table,
             pattern,
             symmetric,
@@ -180,7 +193,7 @@ impl<'a, const D: usize> System<'a, D> {
                     }
                 }
             });
-        for entry in &self.ghost {
+        for entry in &self.couplings {
             for axis in 0..D {
                 f_int[entry.row][axis] += entry.stiffness * u[entry.column][axis];
             }
@@ -207,6 +220,23 @@ impl<'a, const D: usize> System<'a, D> {
             }
         }
         reactions
+    }
+
+    /// The norm of the drag at nodal step displacements over that of the external force: the share
+    /// of the load that motion carries \[-\].
+    pub fn drag_share(&self, u: &[[f64; D]]) -> f64 {
+        let mut drag = 0.0;
+        for coupling in &self.couplings[self.first_drag..] {
+            for component in u[coupling.row] {
+                drag += (coupling.stiffness * component).powi(2);
+            }
+        }
+        let external: f64 = self.f_ext.iter().flatten().map(|force| force * force).sum();
+        if drag == 0.0 {
+            0.0
+        } else {
+            (drag / external).sqrt()
+        }
     }
 
     /// The tangent matrix K = ∂f_int/∂u of a trial, summed straight into its pattern.
@@ -252,7 +282,7 @@ impl<'a, const D: usize> System<'a, D> {
                     );
                 }
             });
-        for entry in &self.ghost {
+        for entry in &self.couplings {
             for axis in 0..D {
                 if let (Some(row), Some(column)) = (
                     self.unknowns.index(entry.row, axis),
@@ -341,7 +371,7 @@ impl<'a, const D: usize> System<'a, D> {
                 }
             }
         }
-        for entry in &self.ghost {
+        for entry in &self.couplings {
             for (axis, unknown) in self.unknowns.of(entry.row) {
                 let value = constraints.of(entry.column, axis).unwrap_or(0.0);
                 force[unknown] += entry.stiffness * value;

@@ -103,11 +103,13 @@ fn a_load_on_empty_cells() {
     let grid = grid::<2>(6);
     let body = Particles::new(&[SEED]).unwrap();
     let method = Method::default();
-    let conditions = conditions(&grid, &laws()[0].1);
+    let mut conditions = conditions(&grid, &laws()[0].1);
+    conditions.loads.factors = vec![1.0];
     let stencils = Stencils::build(&grid, &body, &method, &conditions.constraints).unwrap();
     let point = LoadPoint {
         x: [5.5, 5.5],
         force: [1.0, 0.0],
+        load: 0,
     };
     let error = System::new(&body, &stencils, &conditions, &method, &[point], None).unwrap_err();
     assert_eq!(
@@ -150,8 +152,8 @@ fn an_edge_load_keeps_resultant_and_moment() {
     let mut conditions = conditions(&grid, &laws()[0].1);
     let stencils = Stencils::build(&grid, &body, &method, &conditions.constraints).unwrap();
     conditions.loads.gravity = [0.0; 2];
-    conditions.loads.point_factor = 2.0;
-    let points = LoadPoint::along_edge([1.3, 4.1], [4.4, 3.7], [3.0, -5.0], 11);
+    conditions.loads.factors = vec![2.0];
+    let points = LoadPoint::along_edge([1.3, 4.1], [4.4, 3.7], [3.0, -5.0], 11, 0);
     let system = System::new(&body, &stencils, &conditions, &method, &points, None).unwrap();
     let length = 3.1_f64.hypot(0.4);
     let (mut force, mut moment) = ([0.0; 2], 0.0);

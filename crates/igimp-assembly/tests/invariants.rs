@@ -107,7 +107,8 @@ impl<const D: usize> State<D> {
             constraints: Constraints::free(&grid),
             loads: StepLoads {
                 gravity: std::array::from_fn(|axis| 1.0 + axis as f64),
-                point_factor: 0.0,
+                factors: Vec::new(),
+                drag: 0.0,
             },
             laws: laws().into_iter().map(|(_, law)| law).collect(),
         };

@@ -63,7 +63,8 @@ fn free(grid: &Grid<2>, law: &SharedLaw) -> StepConditions<2> {
         constraints: Constraints::free(grid),
         loads: StepLoads {
             gravity: [0.0; 2],
-            point_factor: 1.0,
+            factors: vec![1.0],
+            drag: 0.0,
         },
         laws: vec![law.clone()],
     }
@@ -446,7 +447,7 @@ fn loads_on_a_sliver_keep_their_resultant_and_move_along() {
     let grid = unit_grid([6, 6]);
     let body = body(&cells([1, 1], [4, 4]), [0.0, SLIVER]);
     let conditions = free(&grid, &elastic());
-    let points = LoadPoint::along_edge([1.5, 4.002], [3.5, 4.002], [3.0, -5.0], 7);
+    let points = LoadPoint::along_edge([1.5, 4.002], [3.5, 4.002], [3.0, -5.0], 7, 0);
     for method in [Method::igimp(), Method::igimp_bbar()] {
         let stencils = Stencils::build(&grid, &body, &method, &conditions.constraints).unwrap();
         let system = System::new(&body, &stencils, &conditions, &method, &points, None).unwrap();

@@ -340,6 +340,8 @@ pub struct StopWhen {
     pub displacement: Option<f64>,
     /// Monitor whose displacement counts; none: the largest of all particles.
     pub monitor: Option<usize>,
+    /// Want of equilibrium is the planned end: the load reached is the collapse load.
+    pub no_equilibrium: bool,
     /// The reaction of the pushed footing grows by less than this share in a step \[-\].
     pub load_grows_less_than: Option<f64>,
 }

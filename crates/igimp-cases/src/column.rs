@@ -113,7 +113,8 @@ impl Column {
                 constraints: constraints.clone(),
                 loads: StepLoads {
                     gravity: [0.0, -to * self.gravity],
-                    point_factor: 0.0,
+                    factors: Vec::new(),
+                    drag: 0.0,
                 },
                 laws: vec![law.clone()],
             })

@@ -31,6 +31,39 @@ pub enum CaseError {
     /// A body has no volume.
     #[error("the body is empty: its polygon has no area on the grid")]
     EmptyBody,
+    /// The case has more than one rigid footing.
+    #[error("the case has more than one rigid footing, but the grid can follow only one")]
+    SeveralFootings,
+    /// The base of a rigid footing is not a row of nodes.
+    #[error("the base of the rigid footing at y = {level} m is not on a line of the grid")]
+    FootingOffGrid {
+        /// Its level \[length\].
+        level: f64,
+    },
+    /// The initial stress of level ground is beyond the strength.
+    #[error(
+        "the initial stress at ({}, {}) m with K0 = {k0} is beyond the strength of `{material}`",
+        position[0], position[1]
+    )]
+    InitialStress {
+        /// The material.
+        material: String,
+        /// The place \[length\].
+        position: [f64; 2],
+        /// Its coefficient of earth pressure at rest \[-\].
+        k0: f64,
+    },
+    /// A stage begins at the end of one that has none.
+    #[error("stage `{stage}` starts from `{from}`, whose end is not known")]
+    NoStart {
+        /// The stage.
+        stage: String,
+        /// The one it starts from.
+        from: String,
+    },
+    /// Every stage is done already, or there is none.
+    #[error("there is no stage to run: all are done")]
+    NothingToRun,
     /// The grid cannot be made.
     #[error("the grid cannot be made")]
     Shape(#[from] ShapeError),

@@ -235,7 +235,8 @@ impl Footing {
             constraints,
             loads: StepLoads {
                 gravity: [0.0; 2],
-                point_factor: 0.0,
+                factors: Vec::new(),
+                drag: 0.0,
             },
             laws: laws.to_vec(),
         })

@@ -6,7 +6,7 @@ use igimp_assembly::ParticleSeed;
 use igimp_shape::Grid;
 
 use crate::error::CaseError;
-use crate::polygon::{area_and_centroid, clip_to_box};
+use crate::polygon::{area_and_centroid, bounding_box, clip_to_box};
 
 /// Clipped parts smaller than this share of a whole part join the body's nearest particle \[-\].
 const SLIVER: f64 = 0.1;
@@ -28,8 +28,10 @@ pub fn fill_polygon(
     }
     let mut seeds: Vec<ParticleSeed<2>> = Vec::new();
     let mut slivers = Vec::new();
-    for cell in 0..grid.cell_count() {
-        let place = grid.cell_place(cell);
+    let (first, last) = cells_around(grid, polygon);
+    let columns = last[0] + 1 - first[0];
+    for cell in 0..columns * (last[1] + 1 - first[1]) {
+        let place = [first[0] + cell % columns, first[1] + cell / columns];
         let lower = grid.node_position(grid.node_index(place));
         let size = grid
             .cell_size(place)
@@ -69,6 +71,16 @@ pub fn fill_polygon(
         }
     }
     Ok(seeds)
+}
+
+/// The lowest and the highest cell that a polygon on the grid reaches into.
+fn cells_around(grid: &Grid<2>, polygon: &[[f64; 2]]) -> ([usize; 2], [usize; 2]) {
+    let (lower, upper) = bounding_box(polygon);
+    let last = [0, 1].map(|axis| grid.axes[axis].cell_count() - 1);
+    (
+        grid.cell_at(&lower).unwrap_or([0; 2]),
+        grid.cell_at(&upper).unwrap_or(last),
+    )
 }
 
 #[cfg(test)]

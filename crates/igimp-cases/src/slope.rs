@@ -89,7 +89,8 @@ pub(crate) fn under_gravity(
         constraints: constraints.clone(),
         loads: StepLoads {
             gravity: [0.0, -factor * GRAVITY],
-            point_factor: 0.0,
+            factors: Vec::new(),
+            drag: 0.0,
         },
         laws: laws.to_vec(),
     }

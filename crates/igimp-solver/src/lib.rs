@@ -12,7 +12,9 @@ mod march;
 mod newton;
 
 pub use body::Body;
-pub use march::{Accepted, MarchReport, MarchSettings, Observer, Outcome, Program, march};
+pub use march::{
+    Accepted, MarchReport, MarchSettings, Observer, Outcome, Program, Standing, march, march_from,
+};
 pub use newton::{
     NewtonSettings, NodalForces, PhaseTimes, StepError, StepFailure, StepReport, Workspace, step,
 };

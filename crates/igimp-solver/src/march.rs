@@ -42,12 +42,39 @@ pub struct Accepted<'a, const D: usize> {
     pub report: &'a StepReport,
     /// Reactions and step displacements.
     pub forces: &'a NodalForces<D>,
+    /// Where the march stands: with the body, all that [`march_from`] needs to go on.
+    pub standing: &'a Standing,
+}
+
+/// Where a march stands between two steps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Standing {
+    /// Load factor reached.
+    pub at: f64,
+    /// Size of the next step.
+    pub size: f64,
+    /// Accepted steps in a row since the last cut or growth.
+    pub successes: usize,
+}
+
+impl Standing {
+    /// The beginning of a march.
+    pub fn start(settings: &MarchSettings) -> Self {
+        Self {
+            at: 0.0,
+            size: settings.nominal(),
+            successes: 0,
+        }
+    }
 }
 
 /// Watches a march, and may end it. Closures are observers.
 pub trait Observer<const D: usize> {
     /// Called after each accepted step; `Break` ends the march there.
     fn on_step(&mut self, accepted: &Accepted<'_, D>) -> ControlFlow<()>;
+
+    /// Called when a step was not accepted, before it is cut or given up.
+    fn on_cut(&mut self, _error: &StepError) {}
 }
 
 impl<const D: usize, F> Observer<D> for F
@@ -84,6 +111,11 @@ impl MarchSettings {
             growth: 1.5,
             newton: NewtonSettings::default(),
         }
+    }
+
+    /// Size of a step that is not cut.
+    fn nominal(&self) -> f64 {
+        1.0 / self.steps.max(1) as f64
     }
 }
 
@@ -150,17 +182,32 @@ pub fn march<const D: usize>(
     workspace: &mut Workspace,
     observer: &mut dyn Observer<D>,
 ) -> MarchReport {
+    let start = Standing::start(settings);
+    march_from(start, body, method, program, settings, workspace, observer)
+}
+
+/// Goes on with a march that was left at `standing`, with the body as it was then: the steps that
+/// follow are the same to the bit. The report tells of these steps only.
+pub fn march_from<const D: usize>(
+    mut standing: Standing,
+    body: &mut Body<D>,
+    method: &Method,
+    program: &dyn Program<D>,
+    settings: &MarchSettings,
+    workspace: &mut Workspace,
+    observer: &mut dyn Observer<D>,
+) -> MarchReport {
     let mut report = MarchReport {
         outcome: Outcome::Completed,
         steps: Vec::new(),
         failures: Vec::new(),
     };
-    let nominal = 1.0 / settings.steps.max(1) as f64;
+    let nominal = settings.nominal();
     let smallest = nominal * settings.cut_factor.powf(f64::from(settings.cuts) + 0.5);
-    let (mut at, mut size) = (0.0, nominal);
-    let (mut successes, mut cuts) = (0, 0);
-    while at < 1.0 {
-        let to = next_factor(at, size, nominal);
+    let mut cuts = 0;
+    while standing.at < 1.0 {
+        let at = standing.at;
+        let to = next_factor(at, standing.size, nominal);
         let result = conditions_at(program, at, to).and_then(|conditions| {
             step(
                 body,
@@ -174,34 +221,36 @@ pub fn march<const D: usize>(
         });
         match result {
             Ok((conditions, step, forces)) => {
-                at = to;
-                successes += 1;
+                standing.at = to;
+                standing.successes += 1;
                 cuts = 0;
-                if successes >= SUCCESSES_TO_GROW && size < nominal {
-                    size = (size * settings.growth).min(nominal);
-                    successes = 0;
+                if standing.successes >= SUCCESSES_TO_GROW && standing.size < nominal {
+                    standing.size = (standing.size * settings.growth).min(nominal);
+                    standing.successes = 0;
                 }
                 let accepted = Accepted {
                     body,
                     conditions: &conditions,
                     report: &step,
                     forces: &forces,
+                    standing: &standing,
                 };
                 let flow = observer.on_step(&accepted);
                 report.steps.push(step);
                 if flow.is_break() {
-                    report.outcome = Outcome::Stopped { at };
+                    report.outcome = Outcome::Stopped { at: to };
                     return report;
                 }
             }
             Err(error) => {
+                observer.on_cut(&error);
                 report.failures.push(error.clone());
                 // The last step may have been shorter than its size, so as to end on 1.
-                size = settings.cut_factor * size.min(1.0 - at);
-                successes = 0;
+                standing.size = settings.cut_factor * standing.size.min(1.0 - at);
+                standing.successes = 0;
                 cuts += 1;
                 if cuts > settings.cuts
-                    || size < smallest
+                    || standing.size < smallest
                     || matches!(*error.failure, StepFailure::LeavesGrid { .. })
                 {
                     report.outcome = Outcome::StepTooSmall {

@@ -128,6 +128,8 @@ pub struct StepReport {
     pub unknowns: usize,
     /// Share of particles that returned to the yield surface \[-\].
     pub plastic_share: f64,
+    /// Share of the external force that drag against motion carries; zero in equilibrium \[-\].
+    pub drag_share: f64,
     /// Time spent.
     pub times: PhaseTimes,
 }
@@ -349,6 +351,7 @@ fn equilibrium<const D: usize>(
         at_round_off: residual.relative_norm > settings.tolerance,
         unknowns: system.unknowns().len(),
         plastic_share: plastic as f64 / trial.particles.len() as f64,
+        drag_share: system.drag_share(&u),
         times,
     };
     for (index, point) in body.load_points.iter_mut().enumerate() {

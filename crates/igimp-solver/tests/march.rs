@@ -18,7 +18,9 @@ use body_support::{
 };
 use igimp_assembly::{AssemblyError, Constraints, Kinematics, Method, SharedLaw, StepConditions};
 use igimp_material::MaterialError;
-use igimp_solver::{Accepted, Body, MarchReport, MarchSettings, Outcome, StepFailure, march};
+use igimp_solver::{
+    Accepted, Body, MarchReport, MarchSettings, Outcome, Standing, StepFailure, march, march_from,
+};
 
 /// A standing block and the program that raises its weight to `gravity`.
 fn standing_block(
@@ -492,5 +494,42 @@ fn finite_strain_does_not_depend_on_the_path() {
                 "{label}, {steps}: {difference:e}"
             );
         }
+    }
+}
+
+/// A march that was left after any step and taken up again ends with the same bits.
+#[test]
+fn a_march_taken_up_again_is_the_same_march() {
+    let law = von_mises();
+    let settings = MarchSettings::steps(6);
+    let (start, program) = standing_block(&law, 1.2 * STRENGTH);
+    let mut left: Vec<(Standing, Body<2>)> = Vec::new();
+    let mut whole = start.clone();
+    let report = march(
+        &mut whole,
+        &Method::default(),
+        &program,
+        &settings,
+        &mut workspace(),
+        &mut |accepted: &Accepted<'_, 2>| {
+            left.push((*accepted.standing, accepted.body.clone()));
+            ControlFlow::Continue(())
+        },
+    );
+    assert!(left.len() > 2);
+    for (taken, (standing, body)) in left.iter().enumerate() {
+        let mut body = body.clone();
+        let rest = march_from(
+            *standing,
+            &mut body,
+            &Method::default(),
+            &program,
+            &settings,
+            &mut workspace(),
+            &mut |_: &Accepted<'_, 2>| ControlFlow::Continue(()),
+        );
+        assert_eq!(rest.steps.len(), report.steps.len() - taken - 1);
+        assert_eq!(rest.outcome, report.outcome);
+        assert_eq!(bits(&body), bits(&whole));
     }
 }

@@ -324,10 +324,10 @@ fn reactions_balance_the_external_force() {
                     _ => 2.75,
                 };
                 body.load_points =
-                    LoadPoint::along_edge([1.3, surface], [2.9, surface], [0.05, -0.3], 6);
+                    LoadPoint::along_edge([1.3, surface], [2.9, surface], [0.05, -0.3], 6, 0);
                 let points = body.load_points.clone();
                 let mut conditions = conditions(&grid, &standing(&grid), &law, 0.3);
-                conditions.loads.point_factor = 1.0;
+                conditions.loads.factors = vec![1.0];
                 let settings = NewtonSettings::default();
                 let (_, forces) = solve(&mut body, &method, &conditions, &settings)
                     .unwrap_or_else(|error| panic!("{label}: {error:?}"));

@@ -240,7 +240,7 @@ fn equations_that_make_no_sense_are_refused() {
     });
 
     let (mut body, conditions) = loaded(&elastic(), 0.3);
-    body.load_points = LoadPoint::along_edge([5.5, 1.0], [6.5, 1.0], [0.0, -1.0], 2);
+    body.load_points = LoadPoint::along_edge([5.5, 1.0], [6.5, 1.0], [0.0, -1.0], 2, 0);
     fails(&body, &conditions, &settings(), |failure| {
         matches!(
             failure,

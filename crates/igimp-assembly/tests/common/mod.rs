@@ -147,7 +147,8 @@ pub fn conditions<const D: usize>(grid: &Grid<D>, law: &SharedLaw) -> StepCondit
         constraints,
         loads: StepLoads {
             gravity,
-            point_factor: 0.0,
+            factors: Vec::new(),
+            drag: 0.0,
         },
         laws: vec![law.clone()],
     }

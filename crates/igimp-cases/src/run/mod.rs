@@ -1,14 +1,31 @@
 //! Runs a case: stage by stage, step by step, with its records and checks.
 
-use std::path::{Path, PathBuf};
-use std::sync::atomic::AtomicBool;
+mod checks;
+mod engine;
+mod failure;
+mod fingerprint;
+mod footing;
+mod initial;
+mod loading;
+mod model;
+mod output;
+mod records;
+mod run_out;
+mod safety;
+mod sections;
+mod session;
+mod state;
+
+use std::path::PathBuf;
 
 use igimp_solver::{Body, StepError, StepReport};
 
-use crate::case::Case;
-use crate::error::CaseError;
 use crate::summary::{ModelSize, StageSummary, Summary, TrialSummary};
 use crate::table::Table;
+
+pub use engine::run;
+pub use model::Model;
+pub use state::{Controls, State};
 
 /// What happens during a run, as it happens.
 #[derive(Clone, Copy, Debug)]
@@ -142,28 +159,3 @@ pub struct Failure {
     pub saved: Vec<PathBuf>,
 }
 
-/// Runs a case. With a target everything is written as it is computed.
-///
-/// Want of equilibrium is a result ([`Run::failure`]), and so is an interruption: when `interrupt`
-/// becomes true the run ends after its step, with everything saved.
-///
-/// # Errors
-/// [`CaseError`] for a case that cannot be set up, and for files that cannot be written or read.
-pub fn run(
-    case: &Case,
-    target: Option<&Target>,
-    start: Start,
-    listener: &mut dyn Listener,
-    interrupt: &AtomicBool,
-) -> Result<Run, CaseError> {
-    let _ = (case, target, start, listener, interrupt);
-    Err(CaseError::EmptyBody)
-}
-
-/// Makes a report of a results folder.
-///
-/// # Errors
-/// [`CaseError::File`].
-pub fn report(_folder: &Path) -> Result<PathBuf, CaseError> {
-    Err(CaseError::EmptyBody)
-}

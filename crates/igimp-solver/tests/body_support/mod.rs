@@ -159,7 +159,8 @@ pub(crate) fn conditions(
         constraints: constraints.clone(),
         loads: StepLoads {
             gravity: [0.0, -gravity],
-            point_factor: 0.0,
+            factors: Vec::new(),
+            drag: 0.0,
         },
         laws: vec![Arc::clone(law)],
     }

@@ -1,0 +1,118 @@
+//! Holds what a run found against the references of its case.
+
+use super::records::{Moment, Records};
+use crate::case::{Case, Curve, Reference, ReferenceValues};
+use crate::check::{Band, Check};
+use crate::summary::CheckRow;
+use crate::table::Table;
+
+/// The checks that the case asks for at the end of a stage.
+pub(crate) fn at_end_of_stage(
+    case: &Case,
+    records: &Records,
+    moment: &Moment<'_>,
+) -> Vec<CheckRow> {
+    let last = case.stages.len() - 1;
+    case.checks
+        .iter()
+        .filter(|check| check.stage.unwrap_or(last) == moment.stage)
+        .map(|check| {
+            row(Check {
+                case: case.title.clone(),
+                variant: case.method.label(),
+                quantity: check.name.clone(),
+                expected: check.expected,
+                source: check.source.clone(),
+                band: check.band,
+                measured: records.quantity(check.of, moment) / check.divide_by,
+            })
+        })
+        .collect()
+}
+
+/// The checks of curves against their references. A curve that was not recorded misses its own.
+pub(crate) fn of_curves(case: &Case, tables: &[Table]) -> Vec<CheckRow> {
+    let mut rows = Vec::new();
+    for (curve, table) in case.curves.iter().zip(tables) {
+        let Some(reference) = &curve.reference else {
+            continue;
+        };
+        let Some(tolerance) = reference.tolerance else {
+            continue;
+        };
+        rows.extend(against(case, curve, table, reference, tolerance));
+    }
+    rows
+}
+
+fn against(
+    case: &Case,
+    curve: &Curve,
+    table: &Table,
+    reference: &Reference,
+    tolerance: f64,
+) -> Vec<CheckRow> {
+    let points = table.points(0, 1);
+    let check = |quantity: String, expected: f64, measured: f64| {
+        row(Check {
+            case: case.title.clone(),
+            variant: case.method.label(),
+            quantity,
+            expected,
+            source: reference.label.clone(),
+            band: Band::Relative(tolerance),
+            measured,
+        })
+    };
+    let name = &curve.name;
+    match &reference.values {
+        ReferenceValues::Level { y, at: None } => {
+            let last = points.last().map_or(f64::NAN, |point| point[1]);
+            vec![check(format!("{name}, end"), *y, last)]
+        }
+        ReferenceValues::Level { y, at: Some(x) } => {
+            let measured = at(&points, *x).unwrap_or(f64::NAN);
+            vec![check(format!("{name} at {x}"), *y, measured)]
+        }
+        ReferenceValues::Points(expected) => expected
+            .iter()
+            .filter_map(|&[x, y]| Some(check(format!("{name} at {x}"), y, at(&points, x)?)))
+            .collect(),
+    }
+}
+
+fn row(check: Check) -> CheckRow {
+    CheckRow {
+        pass: check.passes(),
+        check,
+    }
+}
+
+/// The ordinate of a curve where it first passes an abscissa, linear between points.
+pub fn at(points: &[[f64; 2]], x: f64) -> Option<f64> {
+    let near = 1e-9 * x.abs().max(1e-12);
+    if let Some(point) = points.iter().find(|point| (point[0] - x).abs() <= near) {
+        return Some(point[1]);
+    }
+    points
+        .windows(2)
+        .find(|pair| (pair[0][0] - x) * (pair[1][0] - x) < 0.0)
+        .map(|pair| {
+            let t = (x - pair[0][0]) / (pair[1][0] - pair[0][0]);
+            pair[0][1] + t * (pair[1][1] - pair[0][1])
+        })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::at;
+
+    #[test]
+    fn a_curve_is_read_where_it_first_passes() {
+        let curve = [[0.0, 1.0], [2.0, 3.0], [1.0, 10.0]];
+        assert_eq!(at(&curve, 1.0), Some(10.0));
+        assert_eq!(at(&curve, 0.5), Some(1.5));
+        assert_eq!(at(&curve, 2.0), Some(3.0));
+        assert_eq!(at(&curve, 2.1), None);
+    }
+}

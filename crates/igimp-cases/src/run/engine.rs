@@ -1,0 +1,374 @@
+//! The stages of a case, one after the other.
+
+use std::collections::HashMap;
+use std::sync::atomic::AtomicBool;
+use std::time::Instant;
+
+use super::model::Model;
+use super::output::{Left, Output, Resumption, Search};
+use super::records::{Moment, Records, largest_displacement};
+use super::session::{Ended, Session};
+use super::state::State;
+use super::{Event, Failure, Listener, Run, Start, Target};
+use super::{checks, failure, initial, loading, run_out, safety, sections};
+use crate::case::{Case, StageKind};
+use crate::error::CaseError;
+use crate::summary::{StageOutcome, StageSummary, Summary};
+use crate::table::Table;
+use igimp_solver::StepError;
+
+/// Runs a case. With a target everything is written as it is computed.
+///
+/// Want of equilibrium is a result ([`Run::failure`]), and so is an interruption: when `interrupt`
+/// becomes true the run ends after its step, with everything saved.
+///
+/// # Errors
+/// [`CaseError`] for a case that cannot be set up, and for files that cannot be written or read.
+pub fn run(
+    case: &Case,
+    target: Option<&Target>,
+    start: Start,
+    listener: &mut dyn Listener,
+    interrupt: &AtomicBool,
+) -> Result<Run, CaseError> {
+    let clock = Instant::now();
+    let (model, initial) = Model::new(case)?;
+    let records = Records::new(case, &model.laws, &initial.body.particles)?;
+    let mut session = Session {
+        model: &model,
+        listener,
+        interrupt,
+        records,
+        output: None,
+        summary: Summary {
+            program: format!("igimp {}", env!("CARGO_PKG_VERSION")),
+            title: case.title.clone(),
+            method: case.method.label(),
+            size: model.size(&initial.body),
+            ..Summary::default()
+        },
+        last_resistance: 0.0,
+        ends: HashMap::new(),
+    };
+    let mut course = Course::begin(&mut session, target, start)?;
+    let size = session.summary.size;
+    session.tell(&Event::Prepared { size: &size });
+    course.stages(&mut session, &initial)?;
+    course.finish(session, initial, clock)
+}
+
+/// The course of a run through its stages.
+struct Course {
+    first: usize,
+    left: Option<Left>,
+    state: Option<State>,
+    sections: Vec<Table>,
+    failure: Option<Failure>,
+}
+
+impl Course {
+    /// Opens the results folder and finds where the run begins.
+    fn begin(
+        session: &mut Session<'_>,
+        target: Option<&Target>,
+        start: Start,
+    ) -> Result<Self, CaseError> {
+        let mut course = Self {
+            first: 0,
+            left: None,
+            state: None,
+            sections: Vec::new(),
+            failure: None,
+        };
+        let Some(target) = target else {
+            return Ok(course);
+        };
+        let case = session.model.case;
+        let (mut output, left) = match start {
+            Start::Afresh => (Output::create(target, case, &session.records)?, None),
+            Start::Resume => Output::resume(target, case, &mut session.records)?,
+            Start::FromStage(stage) => {
+                Output::from_stage(target, case, &mut session.records, stage)?
+            }
+        };
+        if let Some(left) = left {
+            session.summary.stages.clone_from(&left.stages);
+            session.summary.checks.clone_from(&left.checks);
+            session.summary.warnings.clone_from(&left.warnings);
+            session.summary.size.unknowns = left.unknowns;
+            session.ends = output.ends(case, left.stages.len())?;
+            course.first = left.stages.len();
+            course.left = Some(left);
+        } else {
+            output.model_picture(case)?;
+        }
+        session.output = Some(output);
+        Ok(course)
+    }
+
+    /// Runs the stages from the first that is not done.
+    fn stages(&mut self, session: &mut Session<'_>, initial: &State) -> Result<(), CaseError> {
+        let case = session.model.case;
+        if self.first >= case.stages.len() {
+            return Err(CaseError::NothingToRun);
+        }
+        for number in self.first..case.stages.len() {
+            if session.interrupted() {
+                session.summary.interrupted = true;
+                break;
+            }
+            let stage = &case.stages[number];
+            let left = self.left.take().filter(|left| left.stage.is_some());
+            let mut state = match (&left, stage.start_from) {
+                (Some(left), _) => left.state.clone(),
+                (None, None) => initial.clone(),
+                (None, Some(from)) => session
+                    .ends
+                    .get(&from)
+                    .cloned()
+                    .ok_or_else(|| CaseError::NoStart {
+                        stage: stage.name.clone(),
+                        from: case.stages[from].name.clone(),
+                    })?,
+            };
+            let ended = self.stage(session, number, &mut state, left)?;
+            self.state = Some(state);
+            if !ended {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// Runs one stage to its end; whether the next may follow.
+    fn stage(
+        &mut self,
+        session: &mut Session<'_>,
+        number: usize,
+        state: &mut State,
+        left: Option<Left>,
+    ) -> Result<bool, CaseError> {
+        let clock = Instant::now();
+        let stage = &session.model.case.stages[number];
+        session.tell(&Event::StageStarted {
+            stage: number,
+            of: session.model.case.stages.len(),
+            name: &stage.name,
+            kind: kind(&stage.kind),
+            steps: stage.steps,
+        });
+        let (mut summary, resumption, search) = match left {
+            Some(left) => (left.stage.unwrap_or_default(), left.resumption, left.search),
+            None => (new_summary(&stage.name, kind(&stage.kind)), None, None),
+        };
+        let seconds_before = summary.seconds;
+        let ended = dispatch(session, number, state, &mut summary, resumption, search)?;
+        summary.seconds = seconds_before + clock.elapsed().as_secs_f64();
+        summary.largest_displacement = largest_displacement(&state.body.particles);
+        let step_error = match ended {
+            Ended::Completed(reason) => {
+                (summary.outcome, summary.reason) = (StageOutcome::Completed, reason);
+                None
+            }
+            Ended::Stopped(reason) => {
+                (summary.outcome, summary.reason) = (StageOutcome::Stopped, reason);
+                None
+            }
+            Ended::Interrupted => {
+                summary.outcome = StageOutcome::Interrupted;
+                summary.reason = "interrupted by the user".to_owned();
+                None
+            }
+            Ended::NotConverged(error) if stage.stop_when.no_equilibrium => {
+                let failure = &error.failure;
+                summary.outcome = StageOutcome::Stopped;
+                summary.reason = format!(
+                    "no equilibrium beyond {} of the stage: {failure}",
+                    crate::check::short(summary.reached)
+                );
+                None
+            }
+            Ended::NotConverged(error) => {
+                let failure = &error.failure;
+                summary.outcome = StageOutcome::NotConverged;
+                summary.reason = format!("no equilibrium: {failure}");
+                Some(error)
+            }
+        };
+        self.close(session, number, state, summary, step_error)
+    }
+
+    /// Writes down how a stage ended; whether the next may follow.
+    fn close(
+        &mut self,
+        session: &mut Session<'_>,
+        number: usize,
+        state: &mut State,
+        summary: StageSummary,
+        step_error: Option<StepError>,
+    ) -> Result<bool, CaseError> {
+        let case = session.model.case;
+        let stage = &case.stages[number];
+        if let Some(error) = step_error {
+            self.failure = Some(failure::describe(session, number, state, &summary, error));
+        }
+        let goes_on = matches!(
+            summary.outcome,
+            StageOutcome::Completed | StageOutcome::Stopped
+        );
+        if summary.outcome == StageOutcome::Interrupted {
+            session.summary.interrupted = true;
+        } else {
+            self.read(session, number, state, &summary)?;
+        }
+        session.tell(&Event::StageEnded { summary: &summary });
+        session.summary.stages.push(summary);
+        if goes_on && stage.reset_displacements {
+            state.body.particles.reset_displacements();
+        }
+        if goes_on {
+            session.ends.insert(number, state.clone());
+            if let Some(output) = &mut session.output {
+                output.after_stage(number, case, state, &session.summary)?;
+            }
+        } else if let (Some(output), Some(failure)) = (&mut session.output, &mut self.failure) {
+            failure.saved =
+                output.keep_last_converged(case, number, state, &session.summary)?;
+        }
+        Ok(goes_on)
+    }
+
+    /// Sections, checks, pictures and frames of the state at the end of a stage.
+    fn read(
+        &mut self,
+        session: &mut Session<'_>,
+        number: usize,
+        state: &State,
+        summary: &StageSummary,
+    ) -> Result<(), CaseError> {
+        let case = session.model.case;
+        let tables = sections::read(session.model, &state.body.particles, number);
+        let resistance = session.last_resistance;
+        let moment = Moment {
+            stage: number,
+            number: summary.steps,
+            progress: summary.reached,
+            particles: &state.body.particles,
+            controls: &state.controls,
+            resistance,
+            plastic_share: summary.plastic_share,
+        };
+        let rows = checks::at_end_of_stage(case, &session.records, &moment);
+        session.summary.checks.extend(rows);
+        if let Some(output) = &mut session.output {
+            output.end_of_stage(session.model, number, state, summary, &tables)?;
+        }
+        self.sections.extend(tables);
+        Ok(())
+    }
+
+    /// Checks of curves, summary, pictures of curves, report.
+    fn finish(
+        self,
+        mut session: Session<'_>,
+        initial: State,
+        clock: Instant,
+    ) -> Result<Run, CaseError> {
+        let case = session.model.case;
+        if !session.summary.interrupted {
+            let rows = checks::of_curves(case, &session.records.curves);
+            session.summary.checks.extend(rows);
+        }
+        session.summary.peak_memory_mib = peak_memory_mib();
+        if let Some(output) = &mut session.output {
+            output.finish(case, &session.records, &mut session.summary, clock)?;
+        } else {
+            session.summary.seconds = clock.elapsed().as_secs_f64();
+        }
+        Ok(Run {
+            summary: session.summary,
+            curves: session.records.curves,
+            monitors: session.records.monitors,
+            sections: self.sections,
+            body: self.state.map_or_else(|| initial.body, |state| state.body),
+            failure: self.failure,
+        })
+    }
+}
+
+/// Runs a stage by its kind.
+fn dispatch(
+    session: &mut Session<'_>,
+    number: usize,
+    state: &mut State,
+    summary: &mut StageSummary,
+    resumption: Option<Resumption>,
+    search: Option<Search>,
+) -> Result<Ended, CaseError> {
+    let stage = &session.model.case.stages[number];
+    let resumption = resumption.as_ref();
+    match &stage.kind {
+        StageKind::K0 if resumption.is_none() => {
+            initial::level_ground(session.model, state)?;
+            loading::load(session, state, number, summary, None)
+        }
+        StageKind::Gravity { .. }
+        | StageKind::K0
+        | StageKind::Load { .. }
+        | StageKind::Displacement { .. } => {
+            loading::load(session, state, number, summary, resumption)
+        }
+        StageKind::StrengthReduction(reduction) => {
+            safety::reduce_strength(session, state, number, reduction, summary, search)
+        }
+        StageKind::RunOut(spec) => {
+            run_out::run_out(session, state, number, spec, summary, resumption)
+        }
+    }
+}
+
+fn new_summary(name: &str, kind: &str) -> StageSummary {
+    StageSummary {
+        name: name.to_owned(),
+        kind: kind.to_owned(),
+        ..StageSummary::default()
+    }
+}
+
+/// The kind of a stage as case files call it.
+fn kind(kind: &StageKind) -> &'static str {
+    match kind {
+        StageKind::Gravity { .. } => "gravity",
+        StageKind::K0 => "k0",
+        StageKind::Load { .. } => "load",
+        StageKind::Displacement { .. } => "displacement",
+        StageKind::StrengthReduction(_) => "strength-reduction",
+        StageKind::RunOut(_) => "run-out",
+    }
+}
+
+/// Largest resident memory of this process so far \[MiB\], where the system tells.
+fn peak_memory_mib() -> Option<f64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;
+    let kib: f64 = line.split_whitespace().nth(1)?.parse().ok()?;
+    Some(kib / 1024.0)
+}
+
+/// The titles of a case and its stages are all that an engine needs to name a place.
+pub(crate) fn slug(text: &str) -> String {
+    let mut slug = String::new();
+    for c in text.to_lowercase().chars() {
+        if c.is_alphanumeric() {
+            slug.push(c);
+        } else if !slug.ends_with('-') && !slug.is_empty() {
+            slug.push('-');
+        }
+    }
+    slug.trim_end_matches('-').to_owned()
+}
+
+/// Folder and file names of a stage: its number and name.
+pub(crate) fn stage_slug(case: &Case, number: usize) -> String {
+    format!("{:02}-{}", number + 1, slug(&case.stages[number].name))
+}

@@ -1,0 +1,73 @@
+//! What is known of a step that found no equilibrium, and what may help.
+
+use igimp_assembly::Particles;
+use igimp_material::Regime;
+use igimp_solver::StepError;
+
+use super::session::Session;
+use super::state::State;
+use super::{Failure, advice};
+use crate::case::{Case, StageKind};
+use crate::summary::StageSummary;
+
+/// Describes the step that ended a stage.
+pub(crate) fn describe(
+    session: &Session<'_>,
+    number: usize,
+    state: &State,
+    summary: &StageSummary,
+    error: StepError,
+) -> Failure {
+    let case = session.model.case;
+    let stage = &case.stages[number];
+    let particles = &state.body.particles;
+    let around = error
+        .worst
+        .map(|(x, _)| around(case, particles, [x[0], x[1]]));
+    let near_worst = around.as_ref().map(|(counts, _)| *counts);
+    Failure {
+        stage: stage.name.clone(),
+        step: match stage.kind {
+            StageKind::StrengthReduction(_) => summary.steps + 1,
+            _ => (error.from * stage.steps as f64).floor() as usize + 1,
+        },
+        steps: stage.steps,
+        cuts: case.solver.cuts,
+        smallest: (error.to - error.from) * stage.steps as f64,
+        max_iterations: case.solver.max_iterations,
+        near_worst,
+        material: around.and_then(|(_, material)| material),
+        suggestions: advice::advice(case, number, &error, near_worst),
+        saved: Vec::new(),
+        error,
+    }
+}
+
+/// Particles within a cell of a place: how many, how many yield, how many of them at an apex or a
+/// corner in tension; and the material of most of them.
+fn around(case: &Case, particles: &Particles<2>, place: [f64; 2]) -> ([usize; 3], Option<String>) {
+    let mut counts = [0; 3];
+    let mut by_material = vec![0_usize; case.materials.len()];
+    for (particle, x) in particles.x.iter().enumerate() {
+        let near = (0..2).all(|axis| (x[axis] - place[axis]).abs() <= case.grid.cell[axis]);
+        if !near {
+            continue;
+        }
+        let regime = particles.regime[particle];
+        let at_tip = matches!(
+            regime,
+            Regime::Apex | Regime::TensionApex | Regime::TensionEdge | Regime::TensionCorner
+        );
+        counts[0] += 1;
+        counts[1] += usize::from(regime.is_plastic());
+        counts[2] += usize::from(at_tip);
+        by_material[particles.law[particle]] += 1;
+    }
+    let most = by_material
+        .iter()
+        .enumerate()
+        .max_by_key(|(_, count)| **count)
+        .filter(|(_, count)| **count > 0)
+        .map(|(material, _)| case.materials[material].name.clone());
+    (counts, most)
+}

@@ -1,0 +1,112 @@
+//! A rigid footing and the grid that follows it (theory, "moving grid").
+//!
+//! At the start of each step the rows at or below the initial surface are compressed to
+//! `y₀ (D − w)/D` above the bottom of the grid, with D the depth of the base and w its settlement,
+//! and the rows above are shifted by −w, so that the base is always a row of nodes.
+
+use igimp_assembly::{AssemblyError, Constraints};
+use igimp_shape::{Axis, Grid, ShapeError};
+
+use crate::case::{Case, GridSpec, LoadKind};
+use crate::error::CaseError;
+
+/// The footing of a case, as columns and rows of its grid.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Footing {
+    /// First and last column of nodes under the base.
+    columns: [usize; 2],
+    /// Row of nodes of the base.
+    row: usize,
+    rough: bool,
+    reaction_factor: f64,
+}
+
+impl Footing {
+    /// The footing of a case, if it has one.
+    pub(crate) fn of(case: &Case) -> Result<Option<Self>, CaseError> {
+        let mut footings = case.loads.iter().filter_map(|load| match load.kind {
+            LoadKind::RigidFooting {
+                from,
+                to,
+                rough,
+                reaction_factor,
+            } => Some((from, to, rough, reaction_factor)),
+            _ => None,
+        });
+        let Some((from, to, rough, reaction_factor)) = footings.next() else {
+            return Ok(None);
+        };
+        if footings.next().is_some() {
+            return Err(CaseError::SeveralFootings);
+        }
+        let spec = &case.grid;
+        let place = |x: f64, axis: usize| (x - spec.lower[axis]) / spec.cell[axis];
+        let row = place(from[1], 1).round();
+        if (place(from[1], 1) - row).abs() > 1e-6 || row < 1.0 {
+            return Err(CaseError::FootingOffGrid { level: from[1] });
+        }
+        let first = (place(from[0].min(to[0]), 0) - 1e-6).ceil().max(0.0) as usize;
+        let last = (place(from[0].max(to[0]), 0) + 1e-6).floor().max(0.0) as usize;
+        Ok(Some(Self {
+            columns: [first, last],
+            row: row as usize,
+            rough,
+            reaction_factor,
+        }))
+    }
+
+    /// The rows of the grid at a settlement w \[m\], with rows added on top for those that sank.
+    pub(crate) fn rows(&self, spec: &GridSpec, w: f64) -> Result<Axis, ShapeError> {
+        let (lower, h) = (spec.lower[1], spec.cell[1]);
+        let depth = self.row as f64 * h;
+        let rows = spec.cells[1] + (w / h).ceil() as usize;
+        let nodes = (0..=rows)
+            .map(|row| {
+                let y0 = row as f64 * h;
+                lower
+                    + if row <= self.row {
+                        y0 * (depth - w) / depth
+                    } else {
+                        y0 - w
+                    }
+            })
+            .collect();
+        Axis::from_nodes(nodes)
+    }
+
+    /// Whether a node belongs to the footing; `Some(true)` on its base.
+    fn part(&self, [column, row]: [usize; 2]) -> Option<bool> {
+        let inside = (self.columns[0]..=self.columns[1]).contains(&column) && row >= self.row;
+        inside.then_some(row == self.row)
+    }
+
+    /// Moves the footing by `step` upwards over the step (negative: down).
+    pub(crate) fn push(
+        &self,
+        grid: &Grid<2>,
+        constraints: &mut Constraints<2>,
+        step: f64,
+    ) -> Result<(), AssemblyError> {
+        for node in 0..grid.node_count() {
+            let Some(base) = self.part(grid.node_place(node)) else {
+                continue;
+            };
+            if self.rough || base {
+                constraints.prescribe(node, 1, step)?;
+            }
+            if self.rough || !base {
+                constraints.prescribe(node, 0, 0.0)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Resistance, compression positive, times the reaction factor \[N/m\].
+    pub(crate) fn resistance(&self, grid: &Grid<2>, reactions: &[[f64; 2]]) -> f64 {
+        let force: f64 = (0..grid.node_count())
+            .filter(|&node| self.part(grid.node_place(node)).is_some())
+            .map(|node| reactions[node][1])
+            .sum();
+        -force * self.reaction_factor
+    }
+}

@@ -1,0 +1,84 @@
+//! The stresses of level ground: the weight above, and K₀ times that sideways.
+
+use igimp_assembly::Particles;
+
+use super::model::Model;
+use super::state::State;
+use crate::error::CaseError;
+
+/// Sets the stresses of level ground under full gravity in an undeformed body.
+///
+/// The vertical stress is the weight of the ground above a particle, layer by layer; the
+/// horizontal ones are K₀ times that. The elastic strain follows from the stress, so that the
+/// state is what the law would have returned; deformation counts from here.
+pub(crate) fn level_ground(model: &Model<'_>, state: &mut State) -> Result<(), CaseError> {
+    let case = model.case;
+    let mut fields = (*state.body.particles).clone();
+    for particle in 0..fields.x.len() {
+        let x = fields.x[particle];
+        let vertical = -weight_above(model, &x);
+        let material = &case.materials[fields.law[particle]];
+        let k0 = material
+            .k0
+            .unwrap_or(material.poisson / (1.0 - material.poisson));
+        let sigma = [k0 * vertical, vertical, k0 * vertical];
+        let law = &model.laws[fields.law[particle]];
+        let excess = law.yield_function(&sigma, &fields.history[particle]);
+        if excess > 1e-9 * law.stress_scale(&sigma) {
+            return Err(CaseError::InitialStress {
+                material: material.name.clone(),
+                position: x,
+                k0,
+            });
+        }
+        let strain = law.elasticity().strain(&sigma);
+        for axis in 0..3 {
+            fields.sigma[particle][axis][axis] = sigma[axis];
+            fields.b_e[particle][axis][axis] = (2.0 * strain[axis]).exp();
+        }
+    }
+    state.body.particles = Particles::from_fields(fields)?;
+    state.controls.gravity = 1.0;
+    Ok(())
+}
+
+/// The weight of the bodies above a point \[Pa\].
+fn weight_above(model: &Model<'_>, x: &[f64; 2]) -> f64 {
+    let case = model.case;
+    case.bodies
+        .iter()
+        .map(|part| {
+            length_above(&part.polygon, x) * case.materials[part.material].unit_weight
+        })
+        .sum()
+}
+
+/// Length of the vertical ray upwards from a point that lies within a polygon \[m\].
+fn length_above(polygon: &[[f64; 2]], x: &[f64; 2]) -> f64 {
+    let mut length = 0.0;
+    for (k, p) in polygon.iter().enumerate() {
+        let q = polygon[(k + 1) % polygon.len()];
+        if (p[0] <= x[0]) == (q[0] <= x[0]) {
+            continue;
+        }
+        let t = (x[0] - p[0]) / (q[0] - p[0]);
+        let crossing = (p[1] + t * (q[1] - p[1])).max(x[1]);
+        length += if q[0] < p[0] { crossing } else { -crossing };
+    }
+    length.abs()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::length_above;
+
+    #[test]
+    fn the_ray_counts_what_lies_above() {
+        let ring = [[0.0, 0.0], [4.0, 0.0], [4.0, 5.0], [0.0, 5.0]];
+        assert!((length_above(&ring, &[1.0, 2.0]) - 3.0).abs() < 1e-15);
+        assert!((length_above(&ring, &[1.0, -2.0]) - 5.0).abs() < 1e-15);
+        assert!(length_above(&ring, &[1.0, 6.0]).abs() < 1e-15);
+        let clockwise: Vec<[f64; 2]> = ring.iter().rev().copied().collect();
+        assert!((length_above(&clockwise, &[1.0, 2.0]) - 3.0).abs() < 1e-15);
+    }
+}

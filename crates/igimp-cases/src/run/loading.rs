@@ -1,0 +1,116 @@
+//! Stages that move the controls from where they are to where the case wants them: gravity, loads,
+//! settlement, level ground.
+
+use igimp_solver::Standing;
+
+use super::output::Resumption;
+use super::records::Moment;
+use super::session::{Ended, Path, Session, Taken, march_path};
+use super::state::{Controls, State};
+use crate::case::{Stage, StageKind};
+use crate::check::short;
+use crate::error::CaseError;
+use crate::summary::StageSummary;
+
+/// The controls at the end of a stage that begins with `start`.
+pub(crate) fn target(stage: &Stage, start: &Controls) -> Controls {
+    let mut end = start.clone();
+    match &stage.kind {
+        StageKind::Gravity { factor } => end.gravity = *factor,
+        StageKind::Load { loads, factor } => {
+            for &load in loads {
+                end.factors[load] = *factor;
+            }
+        }
+        StageKind::Displacement { settlement, .. } => end.settlement += settlement,
+        StageKind::K0 | StageKind::StrengthReduction(_) | StageKind::RunOut(_) => {}
+    }
+    end
+}
+
+/// Marches a state to the end of a loading stage, or on from where an earlier run left it.
+pub(crate) fn load(
+    session: &mut Session<'_>,
+    state: &mut State,
+    number: usize,
+    summary: &mut StageSummary,
+    resumption: Option<&Resumption>,
+) -> Result<Ended, CaseError> {
+    let model = session.model;
+    let stage = &model.case.stages[number];
+    let from = resumption.map_or_else(|| state.controls.clone(), |left| left.from.clone());
+    let to = target(stage, &from);
+    let settings = model.march_settings(stage.steps);
+    let mut resistance = resumption.map_or(0.0, |left| left.resistance);
+    if resumption.is_none() {
+        begin(session, state, number)?;
+    }
+    let path = Path {
+        from: &from,
+        to: &to,
+        drag: &|_, _| 0.0,
+        standing: resumption.map_or_else(|| Standing::start(&settings), |left| left.standing),
+        settings,
+    };
+    march_path(session, state, &path, summary, &mut |session, summary, taken| {
+        session.record(&taken.moment(number, summary.steps))?;
+        let stop = reason_to_stop(session, stage, resistance, taken);
+        resistance = taken.resistance;
+        let resumption = Resumption {
+            from: from.clone(),
+            standing: *taken.accepted.standing,
+            resistance,
+            drag: 0.0,
+        };
+        let interrupted = session.interrupted();
+        if let Some(output) = &mut session.output {
+            let run = &session.summary;
+            output.after_step(number, model, summary, taken, &resumption, run, interrupted)?;
+        }
+        Ok(stop)
+    })
+}
+
+/// Records the state before a stage.
+pub(crate) fn begin(
+    session: &mut Session<'_>,
+    state: &State,
+    number: usize,
+) -> Result<(), CaseError> {
+    session.record(&Moment {
+        stage: number,
+        number: 0,
+        progress: 0.0,
+        particles: &state.body.particles,
+        controls: &state.controls,
+        resistance: 0.0,
+        plastic_share: 0.0,
+    })
+}
+
+/// The condition of the case that ends the stage after a step, if one does.
+fn reason_to_stop(
+    session: &Session<'_>,
+    stage: &Stage,
+    resistance_before: f64,
+    taken: &Taken<'_>,
+) -> Option<String> {
+    let stop = &stage.stop_when;
+    let particles = &taken.accepted.body.particles;
+    if let Some(limit) = stop.displacement
+        && session.displacement(stop.monitor, particles) > limit
+    {
+        let whose = session.whose_displacement(stop.monitor);
+        return Some(format!("{whose} exceeds {} m", short(limit)));
+    }
+    if let Some(limit) = stop.load_grows_less_than {
+        let growth = taken.resistance - resistance_before;
+        if resistance_before > 0.0 && growth < limit * resistance_before {
+            return Some(format!(
+                "the resistance grows by less than {} % in a step",
+                short(100.0 * limit)
+            ));
+        }
+    }
+    None
+}

@@ -1,0 +1,221 @@
+//! From a case to what the solver marches: grid, particles, laws, supports, loads.
+
+use std::sync::Arc;
+
+use igimp_assembly::{
+    AssemblyError, Constraints, LoadPoint, Particles, SharedLaw, StepConditions, StepLoads,
+};
+use igimp_shape::{Axis, Grid, ShapeError};
+use igimp_solver::{Body, MarchSettings, NewtonSettings, Workspace};
+
+use super::footing::Footing;
+use super::state::{Controls, State};
+use crate::case::{Case, LoadKind, Side};
+use crate::error::CaseError;
+use crate::seed::fill_polygon;
+use crate::summary::ModelSize;
+
+/// Acceleration of gravity that turns a unit weight into a density where the case has none.
+const STANDARD_GRAVITY: f64 = 9.81;
+
+/// Load points per cell along a loaded segment.
+const POINTS_PER_CELL: f64 = 4.0;
+
+/// Everything about a case that stays during a run.
+#[derive(Debug)]
+pub struct Model<'c> {
+    /// The case.
+    pub case: &'c Case,
+    /// Laws of full strength, by material.
+    pub laws: Vec<SharedLaw>,
+    footing: Option<Footing>,
+}
+
+impl<'c> Model<'c> {
+    /// The model of a case, and its undeformed, stress-free state.
+    ///
+    /// # Errors
+    /// [`CaseError`] for what cannot be made.
+    pub fn new(case: &'c Case) -> Result<(Self, State), CaseError> {
+        let laws = case
+            .materials
+            .iter()
+            .map(crate::case::Material::law)
+            .collect::<Result<Vec<_>, _>>()?;
+        let model = Self {
+            case,
+            laws,
+            footing: Footing::of(case)?,
+        };
+        let grid = model.grid(0.0)?;
+        let gravity = if case.gravity > 0.0 {
+            case.gravity
+        } else {
+            STANDARD_GRAVITY
+        };
+        let mut seeds = Vec::new();
+        for part in &case.bodies {
+            let density = case.materials[part.material].unit_weight / gravity;
+            let parts = part.per_direction;
+            seeds.extend(fill_polygon(&grid, &part.polygon, parts, density, part.material)?);
+        }
+        let mut body = Body::new(Particles::new(&seeds)?);
+        body.load_points = load_points(case);
+        let controls = Controls::none(case.loads.len(), case.materials.len());
+        Ok((model, State { body, controls }))
+    }
+
+    /// The size of the model.
+    pub fn size(&self, body: &Body<2>) -> ModelSize {
+        let particles = &body.particles;
+        ModelSize {
+            particles: particles.len(),
+            cells: self.case.grid.cells.iter().product(),
+            unknowns: 0,
+            weight: particles.mass.iter().sum::<f64>() * self.case.gravity,
+            volume: particles.volume0.iter().sum(),
+        }
+    }
+
+    /// The background grid when the footing has settled so far \[m\].
+    ///
+    /// # Errors
+    /// [`ShapeError`] for cells that make no grid.
+    pub fn grid(&self, settlement: f64) -> Result<Grid<2>, ShapeError> {
+        let spec = &self.case.grid;
+        let [x, y] = [0, 1].map(|axis| {
+            Axis::uniform(spec.lower[axis], spec.cell[axis], spec.cells[axis])
+        });
+        match &self.footing {
+            Some(footing) if settlement > 0.0 => {
+                Ok(Grid::new([x?, footing.rows(spec, settlement)?]))
+            }
+            _ => Ok(Grid::new([x?, y?])),
+        }
+    }
+
+    /// What holds during a step between two controls.
+    ///
+    /// # Errors
+    /// [`AssemblyError`] when the grid or the reduced laws cannot be made.
+    pub fn conditions(
+        &self,
+        from: &Controls,
+        to: &Controls,
+        drag: f64,
+    ) -> Result<StepConditions<2>, AssemblyError> {
+        let grid = self
+            .grid(from.settlement)
+            .map_err(|source| AssemblyError::Grid { source })?;
+        let mut constraints = self.supports(&grid)?;
+        if let Some(footing) = self.footing.as_ref().filter(|_| to.settlement > 0.0) {
+            footing.push(&grid, &mut constraints, from.settlement - to.settlement)?;
+        }
+        Ok(StepConditions {
+            grid,
+            constraints,
+            loads: StepLoads {
+                gravity: [0.0, -to.gravity * self.case.gravity],
+                factors: to.factors.clone(),
+                drag,
+            },
+            laws: self.laws_reduced_by(&to.srf)?,
+        })
+    }
+
+    /// The laws at reduced strength.
+    ///
+    /// # Errors
+    /// [`AssemblyError::Material`] for a factor that makes no law.
+    pub fn laws_reduced_by(&self, srf: &[f64]) -> Result<Vec<SharedLaw>, AssemblyError> {
+        self.laws
+            .iter()
+            .zip(srf)
+            .map(|(law, &srf)| {
+                if srf == 1.0 {
+                    Ok(Arc::clone(law))
+                } else {
+                    law.reduced(srf)
+                        .map_err(|source| AssemblyError::Law { source })
+                }
+            })
+            .collect()
+    }
+
+    /// Resistance of the footing, compression positive, times its reaction factor \[N/m\].
+    pub fn footing_resistance(&self, grid: &Grid<2>, reactions: &[[f64; 2]]) -> f64 {
+        self.footing
+            .as_ref()
+            .map_or(0.0, |footing| footing.resistance(grid, reactions))
+    }
+
+    fn supports(&self, grid: &Grid<2>) -> Result<Constraints<2>, AssemblyError> {
+        let mut constraints = Constraints::free(grid);
+        let boundaries = &self.case.boundaries;
+        for (side, normal, upper) in [
+            (boundaries.left, 0, false),
+            (boundaries.right, 0, true),
+            (boundaries.bottom, 1, false),
+            (boundaries.top, 1, true),
+        ] {
+            for axis in 0..2 {
+                if side == Side::Fixed || (side == Side::Roller && axis == normal) {
+                    constraints.fix_wall(grid, normal, upper, axis);
+                }
+            }
+        }
+        let reach = self.case.grid.cell.map(|cell| 1e-6 * cell);
+        for held in &boundaries.boxes {
+            for node in 0..grid.node_count() {
+                let x = grid.node_position(node);
+                let inside = (0..2).all(|axis| {
+                    held.lower[axis] - reach[axis] <= x[axis]
+                        && x[axis] <= held.upper[axis] + reach[axis]
+                });
+                for axis in (0..2).filter(|&axis| inside && held.fix[axis]) {
+                    constraints.prescribe(node, axis, 0.0)?;
+                }
+            }
+        }
+        Ok(constraints)
+    }
+
+    /// Sizes and tolerances of a march of so many steps.
+    pub fn march_settings(&self, steps: usize) -> MarchSettings {
+        let solver = &self.case.solver;
+        MarchSettings {
+            steps,
+            cuts: solver.cuts,
+            cut_factor: solver.cut_factor,
+            newton: NewtonSettings {
+                tolerance: solver.tolerance,
+                max_iterations: solver.max_iterations,
+                ..NewtonSettings::default()
+            },
+            ..MarchSettings::steps(steps)
+        }
+    }
+
+    /// A workspace with the case's linear solver.
+    pub fn workspace(&self) -> Workspace {
+        Workspace::new(self.case.solver.linear.build())
+    }
+}
+
+/// The points that carry pressures and forces, each under the number of its load.
+fn load_points(case: &Case) -> Vec<LoadPoint<2>> {
+    let cell = case.grid.cell[0].min(case.grid.cell[1]);
+    let mut points = Vec::new();
+    for (load, kind) in case.loads.iter().map(|load| load.kind).enumerate() {
+        match kind {
+            LoadKind::RigidFooting { .. } => {}
+            LoadKind::Pressure { from, to, traction } => {
+                let length = (to[0] - from[0]).hypot(to[1] - from[1]);
+                let count = (POINTS_PER_CELL * length / cell).ceil().max(1.0) as usize;
+                points.extend(LoadPoint::along_edge(from, to, traction, count, load));
+            }
+            LoadKind::Point { at, force } => points.push(LoadPoint { x: at, force, load }),
+        }
+    }
+    points
+}

@@ -1,0 +1,646 @@
+//! The results folder of a run: what is written, when, and how a run is taken up again from it.
+
+use std::collections::HashMap;
+use std::path::PathBuf;
+use std::time::Instant;
+
+use igimp_solver::{Body, Standing};
+use serde::{Deserialize, Serialize};
+
+use super::Target;
+use super::engine::stage_slug;
+use super::fingerprint;
+use super::model::Model;
+use super::records::{Records, Rows};
+use super::session::Taken;
+use super::state::{Controls, State};
+use crate::case::{Case, Every};
+use crate::error::CaseError;
+use crate::results::atomic::write_atomically;
+use crate::results::checkpoint::{self, CheckpointError, Meta};
+use crate::results::folder::Folder;
+use crate::results::frames::Frames;
+use crate::results::rows::{self, RowWriter};
+use crate::results::{pictures, report};
+use crate::summary::{CheckRow, FigureNote, StageSummary, Summary, TrialSummary};
+use crate::table::Table;
+
+/// Where a march was left: with the body, all that it needs to go on.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(crate) struct Resumption {
+    /// Controls at the beginning of the stage.
+    pub(crate) from: Controls,
+    /// Load factor reached, size of the next step, successes in a row.
+    #[serde(with = "standing")]
+    pub(crate) standing: Standing,
+    /// Resistance of the footing in the last step \[N/m\].
+    pub(crate) resistance: f64,
+    /// Drag of the next step \[1/s²\].
+    pub(crate) drag: f64,
+}
+
+/// Where a search for the factor of safety was left.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Search {
+    /// Trials made.
+    pub(crate) trials: Vec<TrialSummary>,
+    /// Largest stable factor and its state.
+    pub(crate) stable: Option<(f64, State)>,
+    /// Smallest failed factor and its last equilibrium.
+    pub(crate) failed: Option<(f64, State)>,
+}
+
+/// Where a run was left.
+#[derive(Clone, Debug)]
+pub(crate) struct Left {
+    /// Stages that are done.
+    pub(crate) stages: Vec<StageSummary>,
+    /// Checks made.
+    pub(crate) checks: Vec<CheckRow>,
+    /// Warnings given.
+    pub(crate) warnings: Vec<String>,
+    /// Most unknowns of a step.
+    pub(crate) unknowns: usize,
+    /// The stage that was not done, so far.
+    pub(crate) stage: Option<StageSummary>,
+    /// The state.
+    pub(crate) state: State,
+    /// Where its march was left.
+    pub(crate) resumption: Option<Resumption>,
+    /// Where its search was left.
+    pub(crate) search: Option<Search>,
+}
+
+/// A checkpoint's own words, beside its bodies.
+#[derive(Debug, Serialize, Deserialize)]
+struct Notes {
+    /// Fingerprint of all that the stages so far depend on.
+    history: String,
+    stages: Vec<StageSummary>,
+    checks: Vec<CheckRow>,
+    warnings: Vec<String>,
+    unknowns: usize,
+    figures: Vec<FigureNote>,
+    factor_of_safety: Option<f64>,
+    curve_rows: Vec<usize>,
+    monitor_rows: Vec<usize>,
+    convergence_rows: usize,
+    frames: usize,
+    steps: usize,
+    stage: Option<StageSummary>,
+    controls: Controls,
+    resumption: Option<Resumption>,
+    trials: Option<Vec<TrialSummary>>,
+    stable: Option<(f64, Controls)>,
+    failed: Option<(f64, Controls)>,
+}
+
+/// The files of a run, open.
+#[derive(Debug)]
+pub(crate) struct Output {
+    folder: Folder,
+    fingerprint: String,
+    every: Every,
+    report: bool,
+    checkpoint_every: usize,
+    checkpoint_keep: usize,
+    curves: Vec<RowWriter>,
+    monitors: Vec<RowWriter>,
+    convergence: RowWriter,
+    frames: Frames,
+    figures: Vec<FigureNote>,
+    /// Steps and trials of the whole run so far: the pseudo-time of frames and checkpoints.
+    steps: usize,
+    /// Factor of safety found last, if any.
+    factor_of_safety: Option<f64>,
+    /// States of a search that are kept beside the stages: name, factor, state.
+    kept: Vec<(String, f64, State)>,
+    seconds: f64,
+}
+
+/// Header of `convergence.csv`.
+const CONVERGENCE: [&str; 7] = [
+    "stage",
+    "step",
+    "from",
+    "to",
+    "iteration",
+    "relative_out_of_balance",
+    "accepted",
+];
+
+impl Output {
+    /// A results folder for a run from the beginning.
+    pub(crate) fn create(
+        target: &Target,
+        case: &Case,
+        records: &Records,
+    ) -> Result<Self, CaseError> {
+        let folder = Folder::create(&target.folder)?;
+        write_atomically(&folder.case(), &target.source)?;
+        write_atomically(&folder.completed_case(), &target.completed)?;
+        Self::open(folder, case, records, None)
+    }
+
+    /// Opens the files anew, or after the rows that a checkpoint tells of.
+    fn open(
+        folder: Folder,
+        case: &Case,
+        records: &Records,
+        notes: Option<&Notes>,
+    ) -> Result<Self, CaseError> {
+        let open = |path: PathBuf, header: &[String], rows: usize| match rows {
+            0 => RowWriter::create(&path, header),
+            rows => RowWriter::resume(&path, header, rows),
+        };
+        let rows = |of: fn(&Notes) -> &Vec<usize>, k: usize| {
+            notes.and_then(|notes| of(notes).get(k).copied()).unwrap_or(0)
+        };
+        let curves = std::iter::zip(&records.curves, 0..)
+            .map(|(table, k)| {
+                let path = folder.curve(&table.name);
+                open(path, &table.header, rows(|notes| &notes.curve_rows, k))
+            })
+            .collect::<Result<_, _>>()?;
+        let monitors = std::iter::zip(&records.monitors, 0..)
+            .map(|(table, k)| {
+                let path = folder.monitor(&table.name);
+                open(path, &table.header, rows(|notes| &notes.monitor_rows, k))
+            })
+            .collect::<Result<_, _>>()?;
+        let convergence = open(
+            folder.convergence(),
+            &CONVERGENCE.map(str::to_owned),
+            notes.map_or(0, |notes| notes.convergence_rows),
+        )?;
+        let frames = Frames::open(&folder.paraview(), notes.map_or(0, |notes| notes.frames))?;
+        Ok(Self {
+            folder,
+            fingerprint: fingerprint::of_case(case),
+            every: case.output.paraview,
+            report: case.output.report,
+            checkpoint_every: case.output.checkpoint_every,
+            checkpoint_keep: case.output.checkpoint_keep,
+            curves,
+            monitors,
+            convergence,
+            frames,
+            figures: notes.map_or_else(Vec::new, |notes| notes.figures.clone()),
+            steps: notes.map_or(0, |notes| notes.steps),
+            factor_of_safety: notes.and_then(|notes| notes.factor_of_safety),
+            kept: Vec::new(),
+            seconds: 0.0,
+        })
+    }
+
+    /// A results folder taken up at its newest checkpoint; without one the run begins afresh.
+    pub(crate) fn resume(
+        target: &Target,
+        case: &Case,
+        records: &mut Records,
+    ) -> Result<(Self, Option<Left>), CaseError> {
+        let folder = Folder::create_or_keep(&target.folder)?;
+        let Some(path) = checkpoint::newest(&folder.checkpoint())? else {
+            return Ok((Self::create(target, case, records)?, None));
+        };
+        let found = checkpoint::read(&path, Some(&fingerprint::of_case(case)))?;
+        checkpoint::discard_after(&path)?;
+        Self::take_up(folder, case, records, found)
+    }
+
+    /// A results folder taken up at the beginning of a stage.
+    pub(crate) fn from_stage(
+        target: &Target,
+        case: &Case,
+        records: &mut Records,
+        stage: usize,
+    ) -> Result<(Self, Option<Left>), CaseError> {
+        let Some(before) = stage.checked_sub(1) else {
+            return Ok((Self::create(target, case, records)?, None));
+        };
+        let folder = Folder::create_or_keep(&target.folder)?;
+        let Some(path) = checkpoint::named(&folder.checkpoint(), &end_of_stage(before))? else {
+            return Err(CaseError::NoStart {
+                stage: case.stages[stage].name.clone(),
+                from: case.stages[before].name.clone(),
+            });
+        };
+        let found = checkpoint::read(&path, None)?;
+        let notes: Notes = notes_of(&path, &found.meta)?;
+        if notes.history != fingerprint::of_history(case, stage) {
+            return Err(CheckpointError::OtherCase { path }.into());
+        }
+        checkpoint::discard_after(&path)?;
+        write_atomically(&folder.case(), &target.source)?;
+        write_atomically(&folder.completed_case(), &target.completed)?;
+        Self::take_up(folder, case, records, found)
+    }
+
+    fn take_up(
+        folder: Folder,
+        case: &Case,
+        records: &mut Records,
+        found: checkpoint::Checkpoint,
+    ) -> Result<(Self, Option<Left>), CaseError> {
+        let path = folder.checkpoint();
+        let notes: Notes = notes_of(&path, &found.meta)?;
+        let body = |name: &str| {
+            found
+                .states
+                .iter()
+                .find(|(state, _)| state == name)
+                .map(|(_, body)| body.clone())
+                .ok_or_else(|| CheckpointError::Damaged {
+                    path: path.clone(),
+                    file: name.to_owned(),
+                    why: "the state is missing".to_owned(),
+                })
+        };
+        let with_body = |name: &str, of: &Option<(f64, Controls)>| match of {
+            Some((srf, controls)) => {
+                let controls = controls.clone();
+                body(name).map(|body| Some((*srf, State { body, controls })))
+            }
+            None => Ok(None),
+        };
+        let search = match &notes.trials {
+            Some(trials) => Some(Search {
+                trials: trials.clone(),
+                stable: with_body("stable", &notes.stable)?,
+                failed: with_body("failed", &notes.failed)?,
+            }),
+            None => None,
+        };
+        let left = Left {
+            stages: notes.stages.clone(),
+            checks: notes.checks.clone(),
+            warnings: notes.warnings.clone(),
+            unknowns: notes.unknowns,
+            stage: notes.stage.clone(),
+            state: State {
+                body: body("current")?,
+                controls: notes.controls.clone(),
+            },
+            resumption: notes.resumption.clone(),
+            search,
+        };
+        let output = Self::open(folder, case, records, Some(&notes))?;
+        records.factor_of_safety = notes.factor_of_safety.unwrap_or(f64::NAN);
+        for table in &mut records.curves {
+            table.rows = rows::read(&output.folder.curve(&table.name))?.rows;
+        }
+        for table in &mut records.monitors {
+            table.rows = rows::read(&output.folder.monitor(&table.name))?.rows;
+        }
+        Ok((output, Some(left)))
+    }
+
+    /// The saved ends of the first `stages` stages.
+    pub(crate) fn ends(
+        &self,
+        case: &Case,
+        stages: usize,
+    ) -> Result<HashMap<usize, State>, CaseError> {
+        let mut ends = HashMap::new();
+        for number in 0..stages {
+            let wanted = case.stages[stages.min(case.stages.len() - 1)..]
+                .iter()
+                .any(|stage| stage.start_from == Some(number));
+            if !wanted {
+                continue;
+            }
+            let Some(path) = checkpoint::named(&self.folder.checkpoint(), &end_of_stage(number))?
+            else {
+                continue;
+            };
+            let found = checkpoint::read(&path, None)?;
+            let notes = notes_of(&path, &found.meta)?;
+            if let Some((_, body)) = found.states.into_iter().next() {
+                let controls = notes.controls;
+                ends.insert(number, State { body, controls });
+            }
+        }
+        Ok(ends)
+    }
+
+    /// Appends the rows of a moment.
+    pub(crate) fn write_rows(&mut self, rows: &Rows) -> Result<(), CaseError> {
+        let clock = Instant::now();
+        for (writer, row) in self.curves.iter_mut().zip(&rows.curves) {
+            if let Some(row) = row {
+                writer.push(row)?;
+            }
+        }
+        for (writer, row) in self.monitors.iter_mut().zip(&rows.monitors) {
+            writer.push(row)?;
+        }
+        self.seconds += clock.elapsed().as_secs_f64();
+        Ok(())
+    }
+
+    /// Appends the residuals of a step.
+    pub(crate) fn write_convergence(
+        &mut self,
+        (stage, step): (usize, usize),
+        (from, to, residuals): (f64, f64, &[f64]),
+        accepted: bool,
+    ) -> Result<(), CaseError> {
+        let clock = Instant::now();
+        let accepted = f64::from(u8::from(accepted));
+        for (iteration, &residual) in residuals.iter().enumerate() {
+            let (stage, step, iteration) = (stage as f64, step as f64, iteration as f64);
+            self.convergence
+                .push(&[stage, step, from, to, iteration, residual, accepted])?;
+        }
+        self.seconds += clock.elapsed().as_secs_f64();
+        Ok(())
+    }
+
+    /// After a step of a march: a frame and a checkpoint, when they are due; the checkpoint also
+    /// when the user interrupts the run.
+    pub(crate) fn after_step(
+        &mut self,
+        stage: usize,
+        model: &Model<'_>,
+        summary: &StageSummary,
+        taken: &Taken<'_>,
+        resumption: &Resumption,
+        run: &Summary,
+        interrupted: bool,
+    ) -> Result<(), CaseError> {
+        let clock = Instant::now();
+        self.steps += 1;
+        let body = taken.accepted.body;
+        if let Every::Steps(every) = self.every
+            && summary.steps.is_multiple_of(every.max(1))
+        {
+            let time = self.steps as f64;
+            self.frames.add(model, &body.particles, time)?;
+        }
+        let due =
+            self.checkpoint_every > 0 && summary.steps.is_multiple_of(self.checkpoint_every);
+        if due || interrupted {
+            let notes = Notes {
+                stage: Some(summary.clone()),
+                resumption: Some(resumption.clone()),
+                ..self.notes(model.case, stage, run, taken.controls)
+            };
+            self.save(&self.name(), &[("current", body)], &notes, self.checkpoint_keep)?;
+        }
+        self.seconds += clock.elapsed().as_secs_f64();
+        Ok(())
+    }
+
+    /// After a trial of a search that began with `found`: a checkpoint.
+    pub(crate) fn after_trial(
+        &mut self,
+        stage: usize,
+        case: &Case,
+        summary: &StageSummary,
+        found: &State,
+        search: &Search,
+        run: &Summary,
+    ) -> Result<(), CaseError> {
+        let clock = Instant::now();
+        self.steps += 1;
+        let controls_of = |end: &Option<(f64, State)>| {
+            end.as_ref()
+                .map(|(srf, state)| (*srf, state.controls.clone()))
+        };
+        let notes = Notes {
+            stage: Some(summary.clone()),
+            trials: Some(search.trials.clone()),
+            stable: controls_of(&search.stable),
+            failed: controls_of(&search.failed),
+            ..self.notes(case, stage, run, &found.controls)
+        };
+        let mut states: Vec<(&str, &Body<2>)> = vec![("current", &found.body)];
+        for (name, end) in [("stable", &search.stable), ("failed", &search.failed)] {
+            if let Some((_, state)) = end {
+                states.push((name, &state.body));
+            }
+        }
+        self.save(&self.name(), &states, &notes, self.checkpoint_keep)?;
+        self.seconds += clock.elapsed().as_secs_f64();
+        Ok(())
+    }
+
+    /// Keeps a state of a search, to be written at the end of its stage.
+    pub(crate) fn keep_end(&mut self, stage: usize, what: &str, srf: f64, state: State) {
+        self.kept
+            .push((format!("stage-{:02}-{what}", stage + 1), srf, state));
+    }
+
+    /// Sections, pictures and a frame of the state at the end of a stage.
+    pub(crate) fn end_of_stage(
+        &mut self,
+        model: &Model<'_>,
+        number: usize,
+        state: &State,
+        summary: &StageSummary,
+        sections: &[Table],
+    ) -> Result<(), CaseError> {
+        let clock = Instant::now();
+        let case = model.case;
+        let particles = &state.body.particles;
+        for table in sections {
+            table.write_csv(&self.folder.sections())?;
+        }
+        if self.every != Every::Never {
+            self.frames.add(model, particles, self.steps as f64)?;
+        }
+        let slug = stage_slug(case, number);
+        if let Some(safety) = &summary.safety {
+            self.factor_of_safety = match (safety.stable, safety.failed) {
+                (Some(stable), Some(failed)) => Some(0.5 * (stable + failed)),
+                _ => None,
+            };
+            self.figures
+                .push(pictures::safety(&self.folder, case, &slug, safety)?);
+        }
+        for (name, srf, kept) in std::mem::take(&mut self.kept) {
+            let particles = &kept.body.particles;
+            if self.every != Every::Never {
+                self.frames.beside(&name, model, particles)?;
+            }
+            let title = format!("{}, SRF {srf:.4}", summary.name);
+            self.figures.extend(pictures::fields(
+                &self.folder, model.case, &model.laws, &name, &title, particles,
+            )?);
+        }
+        if summary.safety.is_none() {
+            self.figures.extend(pictures::fields(
+                &self.folder, case, &model.laws, &slug, &summary.name, particles,
+            )?);
+        }
+        self.figures
+            .extend(pictures::sections(&self.folder, case, &slug, &summary.name, sections)?);
+        self.seconds += clock.elapsed().as_secs_f64();
+        Ok(())
+    }
+
+    /// The checkpoint at the end of a stage, which stays.
+    pub(crate) fn after_stage(
+        &mut self,
+        number: usize,
+        case: &Case,
+        state: &State,
+        run: &Summary,
+    ) -> Result<(), CaseError> {
+        let clock = Instant::now();
+        let notes = self.notes(case, number, run, &state.controls);
+        self.save(&end_of_stage(number), &[("current", &state.body)], &notes, 1)?;
+        self.write_summary(run)?;
+        self.seconds += clock.elapsed().as_secs_f64();
+        Ok(())
+    }
+
+    /// The last equilibrium of a stage that found no further one, for whoever wants to look.
+    pub(crate) fn keep_last_converged(
+        &mut self,
+        case: &Case,
+        number: usize,
+        state: &State,
+        run: &Summary,
+    ) -> Result<Vec<PathBuf>, CaseError> {
+        let clock = Instant::now();
+        let notes = self.notes(case, number, run, &state.controls);
+        let folder = self.folder.root().to_path_buf();
+        let meta = self.meta(&notes)?;
+        let states = [("current", &state.body)];
+        let saved = checkpoint::write(&folder, "last-converged", &states, &meta, 1)?;
+        self.seconds += clock.elapsed().as_secs_f64();
+        let mut saved = vec![saved, self.folder.convergence()];
+        if self.report {
+            saved.push(self.folder.report());
+        }
+        Ok(saved)
+    }
+
+    /// The picture of the set-up.
+    pub(crate) fn model_picture(&mut self, case: &Case) -> Result<(), CaseError> {
+        let clock = Instant::now();
+        self.figures.push(pictures::model(&self.folder, case)?);
+        self.seconds += clock.elapsed().as_secs_f64();
+        Ok(())
+    }
+
+    /// Pictures of curves, summary and report.
+    pub(crate) fn finish(
+        &mut self,
+        case: &Case,
+        records: &Records,
+        summary: &mut Summary,
+        begun: Instant,
+    ) -> Result<(), CaseError> {
+        let clock = Instant::now();
+        let mut figures = std::mem::take(&mut self.figures);
+        let at = figures.len().min(1);
+        let curves = pictures::curves(&self.folder, case, &records.curves)?;
+        figures.splice(at..at, curves);
+        figures.extend(pictures::convergence(&self.folder)?);
+        summary.figures = figures;
+        self.seconds += clock.elapsed().as_secs_f64();
+        summary.seconds = begun.elapsed().as_secs_f64();
+        summary.output_seconds = self.seconds;
+        self.write_summary(summary)?;
+        if self.report {
+            report::write_report(self.folder.root())?;
+        }
+        Ok(())
+    }
+
+    fn write_summary(&self, summary: &Summary) -> Result<(), CaseError> {
+        let path = self.folder.summary();
+        let text = serde_json::to_string_pretty(summary).map_err(|source| CaseError::File {
+            path: path.clone(),
+            source: source.into(),
+        })?;
+        write_atomically(&path, text + "\n")
+    }
+
+    /// Name of the checkpoint after this step.
+    fn name(&self) -> String {
+        format!("step-{:06}", self.steps)
+    }
+
+    fn notes(&self, case: &Case, stage: usize, run: &Summary, controls: &Controls) -> Notes {
+        Notes {
+            history: fingerprint::of_history(case, stage + 1),
+            stages: run.stages.clone(),
+            checks: run.checks.clone(),
+            warnings: run.warnings.clone(),
+            unknowns: run.size.unknowns,
+            figures: self.figures.clone(),
+            factor_of_safety: self.factor_of_safety,
+            curve_rows: self.curves.iter().map(RowWriter::len).collect(),
+            monitor_rows: self.monitors.iter().map(RowWriter::len).collect(),
+            convergence_rows: self.convergence.len(),
+            frames: self.frames.len(),
+            steps: self.steps,
+            stage: None,
+            controls: controls.clone(),
+            resumption: None,
+            trials: None,
+            stable: None,
+            failed: None,
+        }
+    }
+
+    fn meta(&self, notes: &Notes) -> Result<Meta, CaseError> {
+        let data = serde_json::to_value(notes).map_err(|source| CaseError::File {
+            path: self.folder.checkpoint(),
+            source: source.into(),
+        })?;
+        Ok(Meta::new(&self.fingerprint, data))
+    }
+
+    /// Writes a checkpoint, after the rows that it counts on.
+    fn save(
+        &self,
+        name: &str,
+        states: &[(&str, &Body<2>)],
+        notes: &Notes,
+        keep: usize,
+    ) -> Result<(), CaseError> {
+        for writer in self.curves.iter().chain(&self.monitors) {
+            writer.sync()?;
+        }
+        self.convergence.sync()?;
+        let meta = self.meta(notes)?;
+        checkpoint::write(&self.folder.checkpoint(), name, states, &meta, keep)?;
+        Ok(())
+    }
+}
+
+/// Name of the checkpoint at the end of a stage.
+fn end_of_stage(number: usize) -> String {
+    format!("stage-{:02}-end", number + 1)
+}
+
+fn notes_of(path: &std::path::Path, meta: &Meta) -> Result<Notes, CheckpointError> {
+    serde_json::from_value(meta.data.clone()).map_err(|error| CheckpointError::Damaged {
+        path: path.to_path_buf(),
+        file: "meta.json".to_owned(),
+        why: error.to_string(),
+    })
+}
+
+/// A standing as three numbers.
+mod standing {
+    use igimp_solver::Standing;
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    pub(super) fn serialize<S: Serializer>(of: &Standing, to: S) -> Result<S::Ok, S::Error> {
+        (of.at, of.size, of.successes).serialize(to)
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Standing, D::Error> {
+        let (at, size, successes) = Deserialize::deserialize(from)?;
+        Ok(Standing {
+            at,
+            size,
+            successes,
+        })
+    }
+}

@@ -1,0 +1,174 @@
+//! What a run records: curves and the histories at monitors, one row per recorded moment.
+
+use igimp_assembly::{Particles, SharedLaw};
+
+use super::state::Controls;
+use crate::case::{Case, Quantity};
+use crate::error::CaseError;
+use crate::measure::nearest;
+use crate::results::fields;
+use crate::table::Table;
+
+/// A state that is recorded: the end of a step, or of a trial in a strength reduction.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Moment<'a> {
+    /// Number of the stage, from 0.
+    pub(crate) stage: usize,
+    /// Number of the step (or trial) in its stage, from 1; 0 before the first.
+    pub(crate) number: usize,
+    /// Share of the stage that is done \[-\].
+    pub(crate) progress: f64,
+    /// The particles.
+    pub(crate) particles: &'a Particles<2>,
+    /// What acts on them.
+    pub(crate) controls: &'a Controls,
+    /// Resistance of the footing \[N/m\].
+    pub(crate) resistance: f64,
+    /// Share of particles that yield \[-\].
+    pub(crate) plastic_share: f64,
+}
+
+impl Moment<'_> {
+    /// Length of the largest particle displacement \[m\].
+    pub(crate) fn largest_displacement(&self) -> f64 {
+        largest_displacement(self.particles)
+    }
+}
+
+/// Length of the largest particle displacement \[m\].
+pub(crate) fn largest_displacement(particles: &Particles<2>) -> f64 {
+    particles
+        .displacement
+        .iter()
+        .map(|d| d[0].hypot(d[1]))
+        .fold(0.0, f64::max)
+}
+
+/// The tables of a run, and the particles that its monitors watch.
+#[derive(Debug)]
+pub(crate) struct Records {
+    /// By curve of the case.
+    pub(crate) curves: Vec<Table>,
+    /// By monitor of the case.
+    pub(crate) monitors: Vec<Table>,
+    /// The particle that each monitor follows.
+    pub(crate) watched: Vec<usize>,
+    /// Middle of the interval of the factor of safety found last \[-\].
+    pub(crate) factor_of_safety: f64,
+    laws: Vec<SharedLaw>,
+}
+
+impl Records {
+    /// Empty tables; monitors take the nearest particle of the undeformed bodies.
+    pub(crate) fn new(
+        case: &Case,
+        laws: &[SharedLaw],
+        particles: &Particles<2>,
+    ) -> Result<Self, CaseError> {
+        let curves = case
+            .curves
+            .iter()
+            .map(|curve| Table::new(&*curve.name, &[&curve.x.label, &curve.y.label]))
+            .collect();
+        let monitors = case
+            .monitors
+            .iter()
+            .map(|monitor| {
+                let mut header = vec!["stage".into(), "step".into(), "progress_[-]".into()];
+                header.extend(monitor.record.iter().map(|&field| fields::header(field)));
+                Table {
+                    name: monitor.name.clone(),
+                    header,
+                    rows: Vec::new(),
+                }
+            })
+            .collect();
+        let watched = case
+            .monitors
+            .iter()
+            .map(|monitor| {
+                nearest(particles, &monitor.point, f64::INFINITY).ok_or(CaseError::EmptyBody)
+            })
+            .collect::<Result<_, _>>()?;
+        Ok(Self {
+            curves,
+            monitors,
+            watched,
+            factor_of_safety: f64::NAN,
+            laws: laws.to_vec(),
+        })
+    }
+
+    /// A quantity of a moment, in SI units.
+    pub(crate) fn quantity(&self, of: Quantity, moment: &Moment<'_>) -> f64 {
+        let controls = moment.controls;
+        match of {
+            Quantity::Settlement(_) => controls.settlement,
+            Quantity::Reaction(_) => moment.resistance,
+            Quantity::LoadFactor(load) => controls.factors[load],
+            Quantity::Monitor(monitor, field) => {
+                let particle = self.watched[monitor];
+                fields::value(field, moment.particles, particle, &self.laws)
+            }
+            Quantity::LargestDisplacement => moment.largest_displacement(),
+            Quantity::GravityFactor => controls.gravity,
+            Quantity::ReductionFactor => controls.reduction(),
+            Quantity::Step => moment.number as f64,
+            Quantity::PlasticShare => moment.plastic_share,
+            Quantity::FactorOfSafety => self.factor_of_safety,
+            Quantity::Top => std::iter::zip(&moment.particles.x, &moment.particles.half_length)
+                .map(|(x, l)| x[1] + l[1])
+                .fold(f64::NEG_INFINITY, f64::max),
+        }
+    }
+
+    /// Records a moment: the rows for the curves and the monitors that it belongs to, which are
+    /// also kept. The moment before a later stage belongs to the curves of that stage alone.
+    pub(crate) fn record(&mut self, case: &Case, moment: &Moment<'_>) -> Rows {
+        let reopens = moment.number == 0 && moment.stage > 0;
+        let mut rows = Rows {
+            curves: vec![None; case.curves.len()],
+            monitors: Vec::new(),
+        };
+        for (k, curve) in case.curves.iter().enumerate() {
+            let belongs = match curve.stage {
+                Some(stage) => stage == moment.stage,
+                None => !reopens,
+            };
+            if !belongs {
+                continue;
+            }
+            let row = [&curve.x, &curve.y]
+                .map(|axis| self.quantity(axis.of, moment) / axis.divide_by)
+                .to_vec();
+            self.curves[k].push(row.clone());
+            rows.curves[k] = Some(row);
+        }
+        for (k, monitor) in case.monitors.iter().enumerate().filter(|_| !reopens) {
+            let (particles, particle) = (moment.particles, self.watched[k]);
+            let mut row = vec![
+                moment.stage as f64 + 1.0,
+                moment.number as f64,
+                moment.progress,
+            ];
+            row.extend(
+                monitor
+                    .record
+                    .iter()
+                    .map(|&field| fields::value(field, particles, particle, &self.laws)),
+            );
+            self.monitors[k].push(row.clone());
+            rows.monitors.push(row);
+        }
+        rows
+    }
+}
+
+/// The rows of one moment.
+#[derive(Debug)]
+pub(crate) struct Rows {
+    /// By curve; none where the curve does not record the stage.
+    pub(crate) curves: Vec<Option<Vec<f64>>>,
+    /// By monitor.
+    pub(crate) monitors: Vec<Vec<f64>>,
+}

@@ -1,0 +1,133 @@
+//! Run-out: a slope whose strength is reduced beyond its factor of safety moves until it rests.
+//!
+//! Beyond collapse there is no equilibrium nearby to step to. Here every step balances the weight
+//! with a drag proportional to the step's displacement, so that the slope creeps down the way that
+//! its strength allows and gains no speed. The drag is adapted so that the largest displacement of a
+//! step stays about the same. The share of the external force that the drag carries tells how far
+//! from equilibrium the slope is; when it has all but vanished, a last step without any drag has to
+//! find equilibrium. This is a mode for run-out alone, never for a factor of safety.
+
+use std::cell::Cell;
+
+use igimp_solver::Standing;
+
+use super::loading::begin;
+use super::output::Resumption;
+use super::session::{Ended, Path, Session, march_path};
+use super::state::State;
+use crate::case::{Reduction, RunOut};
+use crate::check::short;
+use crate::error::CaseError;
+use crate::summary::StageSummary;
+
+/// Bounds of the change of drag from step to step \[-\].
+const CHANGE: [f64; 2] = [0.25, 4.0];
+
+/// Moves a state to rest, or as far as the steps of its stage allow.
+pub(crate) fn run_out(
+    session: &mut Session<'_>,
+    state: &mut State,
+    number: usize,
+    run_out: &RunOut,
+    summary: &mut StageSummary,
+    resumption: Option<&Resumption>,
+) -> Result<Ended, CaseError> {
+    let model = session.model;
+    let case = model.case;
+    let mut to = state.controls.clone();
+    let factor = match run_out.reduction {
+        Reduction::Factor(factor) => factor,
+        Reduction::TimesFos(times) => {
+            let found = session.records.factor_of_safety;
+            if !found.is_finite() {
+                return Ok(Ended::Stopped(
+                    "the factor of safety that the reduction refers to was not found".to_owned(),
+                ));
+            }
+            times * found
+        }
+    };
+    for &material in &run_out.materials {
+        to.srf[material] = factor;
+    }
+    if resumption.is_none() {
+        begin(session, state, number)?;
+    }
+    let steps = case.stages[number].steps;
+    let settings = model.march_settings(steps);
+    let target = run_out.move_per_step * case.grid.cell[0].min(case.grid.cell[1]);
+    // The whole weight would move the body by the target.
+    let largest = case.gravity / target;
+    let drag = Cell::new(resumption.map_or(largest, |left| left.drag));
+    let path = Path {
+        from: &to,
+        to: &to,
+        drag: &|from, to| drag.get() / ((to - from) * steps as f64),
+        standing: resumption.map_or_else(|| Standing::start(&settings), |left| left.standing),
+        settings,
+    };
+    let ended = march_path(session, state, &path, summary, &mut |session, summary, taken| {
+        session.record(&taken.moment(number, summary.steps))?;
+        let moved = taken
+            .accepted
+            .forces
+            .u
+            .iter()
+            .map(|u| u[0].hypot(u[1]))
+            .fold(0.0, f64::max);
+        let change = (moved / target).clamp(CHANGE[0], CHANGE[1]);
+        drag.set((drag.get() * change).clamp(1e-9 * largest, largest));
+        let resumption = Resumption {
+            from: to.clone(),
+            standing: *taken.accepted.standing,
+            resistance: taken.resistance,
+            drag: drag.get(),
+        };
+        let interrupted = session.interrupted();
+        if let Some(output) = &mut session.output {
+            let run = &session.summary;
+            output.after_step(number, model, summary, taken, &resumption, run, interrupted)?;
+        }
+        let share = taken.accepted.report.drag_share;
+        Ok((share < run_out.at_rest).then(|| at_rest(summary.steps, share)))
+    })?;
+    match ended {
+        Ended::Stopped(rest) => stand(session, state, &path, summary, rest),
+        Ended::Completed(_) => {
+            session.warn(format!("the slope still moves after {steps} steps of run-out"));
+            Ok(Ended::Stopped(format!("still moving after {steps} steps")))
+        }
+        other => Ok(other),
+    }
+}
+
+/// In words, when the slope came to rest.
+fn at_rest(steps: usize, share: f64) -> String {
+    let share = short(100.0 * share);
+    format!("at rest after {steps} steps, when drag carried {share} % of the load")
+}
+
+/// The last step, without drag: the slope has to be in equilibrium where it rests.
+fn stand(
+    session: &mut Session<'_>,
+    state: &mut State,
+    path: &Path<'_>,
+    summary: &mut StageSummary,
+    rest: String,
+) -> Result<Ended, CaseError> {
+    let settings = session.model.march_settings(1);
+    let last = Path {
+        drag: &|_, _| 0.0,
+        standing: Standing::start(&settings),
+        settings,
+        ..*path
+    };
+    Ok(match march_path(session, state, &last, summary, &mut |_, _, _| Ok(None))? {
+        Ended::NotConverged(_) => {
+            session.warn("the slope all but rests, but no equilibrium without drag was found".into());
+            Ended::Stopped(format!("{rest}; not in equilibrium without drag"))
+        }
+        Ended::Completed(_) => Ended::Completed(format!("{rest}; then in equilibrium without drag")),
+        other => other,
+    })
+}

@@ -1,0 +1,469 @@
+//! The factor of safety by strength reduction: an interval, found by a search that always ends.
+
+use igimp_solver::Standing;
+
+use super::loading::begin;
+use super::model::Model;
+use super::output::Search;
+use super::records::{Moment, largest_displacement};
+use super::session::{Ended, Path, Session, march_path};
+use super::state::{Controls, State};
+use super::Event;
+use crate::case::{ReductionPath, Stage, StrengthReduction};
+use crate::check::short;
+use crate::error::CaseError;
+use crate::summary::{SafetySummary, StageSummary, TrialSummary};
+
+/// Most trials that a search makes before it reports the interval that it has.
+const MOST_TRIALS: usize = 40;
+
+/// A particle moves when its displacement exceeds this share of the largest \[-\].
+const MOVING: f64 = 0.1;
+
+/// A moving share of the mass below this is called local \[-\].
+const LOCAL: f64 = 0.02;
+
+/// Searches for the factor of safety of a state, which is left as it was found.
+pub(crate) fn reduce_strength(
+    session: &mut Session<'_>,
+    state: &State,
+    number: usize,
+    reduction: &StrengthReduction,
+    summary: &mut StageSummary,
+    left: Option<Search>,
+) -> Result<Ended, CaseError> {
+    let stage = &session.model.case.stages[number];
+    let mut trials = Trials::new(session, state, number, stage, reduction, left)?;
+    if trials.made.is_empty() {
+        begin(session, state, number)?;
+    }
+    let ended = trials.search(session, summary);
+    summary.safety = Some(trials.finish(session));
+    ended
+}
+
+/// The trials of one search.
+struct Trials<'a> {
+    number: usize,
+    stage: &'a Stage,
+    reduction: &'a StrengthReduction,
+    /// The state that the search was asked for.
+    found: &'a State,
+    /// What every trial begins with: that state, or undeformed bodies where gravity is raised anew.
+    base: State,
+    made: Vec<TrialSummary>,
+    /// The equilibrium at the largest stable factor, and that factor.
+    stable: Option<(f64, State)>,
+    /// The last equilibrium on the way to the smallest failed factor, and that factor.
+    failed: Option<(f64, State)>,
+}
+
+impl<'a> Trials<'a> {
+    fn new(
+        session: &Session<'a>,
+        found: &'a State,
+        number: usize,
+        stage: &'a Stage,
+        reduction: &'a StrengthReduction,
+        left: Option<Search>,
+    ) -> Result<Self, CaseError> {
+        let mut base = match reduction.path {
+            ReductionPath::Reduce => found.clone(),
+            ReductionPath::Gravity => Model::new(session.model.case)?.1,
+        };
+        base.body.particles.reset_displacements();
+        let left = left.unwrap_or_default();
+        Ok(Self {
+            number,
+            stage,
+            reduction,
+            found,
+            base,
+            made: left.trials,
+            stable: left.stable,
+            failed: left.failed,
+        })
+    }
+
+    /// Makes trials until the interval is narrow enough.
+    fn search(
+        &mut self,
+        session: &mut Session<'_>,
+        summary: &mut StageSummary,
+    ) -> Result<Ended, CaseError> {
+        while let Some(srf) = self.next() {
+            if session.interrupted() {
+                return Ok(Ended::Interrupted);
+            }
+            if let Some(ended) = self.trial(session, summary, srf)? {
+                return Ok(ended);
+            }
+            if let Some(output) = &mut session.output {
+                let search = Search {
+                    trials: self.made.clone(),
+                    stable: self.stable.clone(),
+                    failed: self.failed.clone(),
+                };
+                output.after_trial(
+                    self.number,
+                    session.model.case,
+                    summary,
+                    self.found,
+                    &search,
+                    &session.summary,
+                )?;
+            }
+        }
+        summary.reached = 1.0;
+        Ok(Ended::Completed("the interval is narrow enough".to_owned()))
+    }
+
+    /// The factor to try next: those that the case lists, then F = 1, then the search.
+    fn next(&self) -> Option<f64> {
+        let made = self.made.len();
+        if let Some(&listed) = self.reduction.factors.get(made) {
+            return Some(listed);
+        }
+        let tried = |srf: f64| self.made.iter().any(|trial| trial.srf == srf);
+        if !tried(1.0) {
+            return Some(1.0);
+        }
+        if made >= MOST_TRIALS + self.reduction.factors.len() {
+            return None;
+        }
+        let [low, high] = self.reduction.bracket;
+        let stable = self.stable.as_ref().map(|(srf, _)| *srf);
+        let failed = self.failed.as_ref().map(|(srf, _)| *srf);
+        // A march of the reduction ends at the last equilibrium, most likely just below the factor
+        // of safety: the search goes on in small strides from there.
+        let stride = match self.reduction.path {
+            ReductionPath::Gravity => f64::INFINITY,
+            ReductionPath::Reduce => {
+                let since_failure = self.made.iter().rev().take_while(|trial| trial.stable);
+                self.reduction.tolerance * 2.0_f64.powi(since_failure.count() as i32)
+            }
+        };
+        next_factor((stable, failed), (low, high), self.reduction.tolerance, stride)
+    }
+
+    /// Tries a factor; `Some` when the user interrupted.
+    fn trial(
+        &mut self,
+        session: &mut Session<'_>,
+        summary: &mut StageSummary,
+        srf: f64,
+    ) -> Result<Option<Ended>, CaseError> {
+        let listed = self.made.len() < self.reduction.factors.len();
+        let (mut state, from) = self.start(srf);
+        let mut to = self.found.controls.clone();
+        for &material in &self.reduction.materials {
+            to.srf[material] = srf;
+        }
+        let settings = session.model.march_settings(self.steps(&from, srf));
+        let path = Path {
+            from: &from,
+            to: &to,
+            drag: &|_, _| 0.0,
+            standing: Standing::start(&settings),
+            settings,
+        };
+        let before = [summary.steps, summary.iterations, summary.cuts];
+        let reduction = self.reduction;
+        let limit = reduction.failure_displacement;
+        // The last equilibrium within the criterion: its factor and state.
+        let mut within: Option<(f64, State)> = None;
+        let ended = march_path(session, &mut state, &path, summary, &mut |session, _, taken| {
+            let particles = &taken.accepted.body.particles;
+            let displacement = session.displacement(reduction.monitor, particles);
+            let failed = limit.is_some_and(|limit| displacement > limit);
+            if !failed && reduction.path == ReductionPath::Reduce {
+                let state = State {
+                    body: taken.accepted.body.clone(),
+                    controls: taken.controls.clone(),
+                };
+                within = Some((taken.controls.srf[reduction.materials[0]], state));
+            }
+            Ok((failed && !listed).then(|| self.exceeded(session)))
+        })?;
+        if matches!(ended, Ended::Interrupted) {
+            return Ok(Some(ended));
+        }
+        let displacement = session.displacement(reduction.monitor, &state.body.particles);
+        let exceeded = limit.is_some_and(|limit| displacement > limit);
+        let (stable, reason) = match &ended {
+            Ended::NotConverged(cause) => (false, self.no_equilibrium(&from, srf, cause)),
+            _ if exceeded => (false, self.exceeded(session)),
+            _ => (true, "in equilibrium".to_owned()),
+        };
+        let trial = TrialSummary {
+            srf,
+            stable,
+            reason,
+            displacement,
+            steps: summary.steps - before[0],
+            iterations: summary.iterations - before[1],
+            cuts: summary.cuts - before[2],
+        };
+        session.tell(&Event::Trial { trial: &trial });
+        self.made.push(trial);
+        if listed && !matches!(ended, Ended::NotConverged(_)) {
+            self.record(session, &state, summary.plastic_share)?;
+        }
+        self.narrow(session, (srf, stable), state, within);
+        Ok(None)
+    }
+
+    /// Where a trial begins: the stable state of the largest smaller factor, or the base.
+    fn start(&self, srf: f64) -> (State, Controls) {
+        match (self.reduction.path, &self.stable) {
+            (ReductionPath::Reduce, Some((stable, state))) if *stable <= srf => {
+                (state.clone(), state.controls.clone())
+            }
+            (ReductionPath::Reduce, _) => (self.base.clone(), self.found.controls.clone()),
+            (ReductionPath::Gravity, _) => {
+                let mut from = self.base.controls.clone();
+                for &material in &self.reduction.materials {
+                    from.srf[material] = srf;
+                }
+                (self.base.clone(), from)
+            }
+        }
+    }
+
+    /// Steps of a trial: those of the stage for a reduction as wide as the bracket.
+    fn steps(&self, from: &Controls, srf: f64) -> usize {
+        match self.reduction.path {
+            ReductionPath::Gravity => self.stage.steps,
+            ReductionPath::Reduce => {
+                let [low, high] = self.reduction.bracket;
+                let way = (srf - from.srf[self.reduction.materials[0]]).abs();
+                let steps = (self.stage.steps as f64 * way / (high - low)).ceil();
+                (steps as usize).max(1)
+            }
+        }
+    }
+
+    fn exceeded(&self, session: &Session<'_>) -> String {
+        let limit = self.reduction.failure_displacement.unwrap_or(f64::INFINITY);
+        let whose = session.whose_displacement(self.reduction.monitor);
+        format!("{whose} exceeds {} m", short(limit))
+    }
+
+    fn no_equilibrium(&self, from: &Controls, srf: f64, cause: &igimp_solver::StepError) -> String {
+        let failure = &cause.failure;
+        match self.reduction.path {
+            ReductionPath::Gravity => {
+                let reached = short(cause.from);
+                format!("no equilibrium beyond {reached} of the load: {failure}")
+            }
+            ReductionPath::Reduce => {
+                let begun = from.srf[self.reduction.materials[0]];
+                let reached = begun + cause.from * (srf - begun);
+                format!("no equilibrium beyond SRF {reached:.4}: {failure}")
+            }
+        }
+    }
+
+    /// Adds the row of a listed factor to the curves.
+    fn record(
+        &self,
+        session: &mut Session<'_>,
+        state: &State,
+        plastic_share: f64,
+    ) -> Result<(), CaseError> {
+        session.record(&Moment {
+            stage: self.number,
+            number: self.made.len(),
+            progress: 1.0,
+            particles: &state.body.particles,
+            controls: &state.controls,
+            resistance: 0.0,
+            plastic_share,
+        })
+    }
+
+    /// Takes a trial into the interval.
+    fn narrow(
+        &mut self,
+        session: &mut Session<'_>,
+        (srf, stable): (f64, bool),
+        state: State,
+        within: Option<(f64, State)>,
+    ) {
+        let below_failed =
+            |srf: f64, failed: &Option<(f64, State)>| failed.as_ref().is_none_or(|f| srf < f.0);
+        let mut candidates: Vec<(f64, State)> = within.into_iter().collect();
+        if stable {
+            if !below_failed(srf, &self.failed) {
+                session.warn(format!(
+                    "the slope stands at SRF {srf:.4} though it failed at a smaller factor; \
+                     the factor of safety is that of the smallest factor that failed"
+                ));
+            }
+            candidates.push((srf, state));
+        } else if below_failed(srf, &self.failed) {
+            self.failed = Some((srf, state));
+        }
+        for (srf, state) in candidates {
+            let larger = self.stable.as_ref().is_none_or(|s| srf >= s.0);
+            if larger && below_failed(srf, &self.failed) {
+                self.stable = Some((srf, state));
+            }
+        }
+        if let (Some((stable, _)), Some((failed, _))) = (&self.stable, &self.failed)
+            && stable >= failed
+        {
+            self.stable = None;
+        }
+    }
+
+    /// The interval with its criterion; warns of what a reader has to know.
+    fn finish(self, session: &mut Session<'_>) -> SafetySummary {
+        let case = session.model.case;
+        let names = |reduced: bool| -> Vec<String> {
+            case.materials
+                .iter()
+                .enumerate()
+                .filter(|(k, _)| self.reduction.materials.contains(k) == reduced)
+                .map(|(_, material)| material.name.clone())
+                .collect()
+        };
+        let mut criterion = "no equilibrium is found".to_owned();
+        if self.reduction.failure_displacement.is_some() {
+            criterion = format!("{criterion}, or {}", self.exceeded(session));
+        }
+        let moving_mass = self.failed.as_ref().map(|(_, state)| moving_mass(state));
+        let stable = self.stable.as_ref().map(|(srf, _)| *srf);
+        let failed = self.failed.as_ref().map(|(srf, _)| *srf);
+        let safety = SafetySummary {
+            stable,
+            failed,
+            criterion,
+            materials: names(true),
+            excluded: names(false),
+            moving_mass,
+            trials: self.made,
+        };
+        for text in remarks(&safety, self.reduction) {
+            session.warn(text);
+        }
+        session.records.factor_of_safety = match (stable, failed) {
+            (Some(stable), Some(failed)) => 0.5 * (stable + failed),
+            _ => f64::NAN,
+        };
+        if let Some(output) = &mut session.output {
+            for (what, end) in [("last-stable", self.stable), ("first-unstable", self.failed)] {
+                if let Some((srf, state)) = end {
+                    output.keep_end(self.number, what, srf, state);
+                }
+            }
+        }
+        safety
+    }
+}
+
+/// What a reader has to know about an interval.
+fn remarks(safety: &SafetySummary, reduction: &StrengthReduction) -> Vec<String> {
+    let mut remarks = Vec::new();
+    let [low, high] = reduction.bracket;
+    if safety.trials.iter().any(|trial| trial.srf == 1.0 && !trial.stable) {
+        remarks.push(
+            "the body does not stand at full strength (SRF 1): the factor of safety is below 1, or \
+             the start of the search is not in equilibrium"
+                .to_owned(),
+        );
+    }
+    match (safety.stable, safety.failed) {
+        (Some(stable), None) => remarks.push(format!(
+            "the slope still stands at SRF {stable:.4}, the largest factor tried"
+        )),
+        (None, Some(failed)) => remarks.push(format!(
+            "the slope fails even at SRF {failed:.4}, the smallest factor tried"
+        )),
+        (Some(stable), Some(failed)) if failed <= low || stable >= high => remarks.push(format!(
+            "the factor of safety lies outside the bracket [{low}, {high}], which was widened"
+        )),
+        _ => {}
+    }
+    if let Some(share) = safety.moving_mass.filter(|&share| share < LOCAL) {
+        remarks.push(format!(
+            "only {} % of the mass moves at failure: this is a local failure; leave its material \
+             out with `materials`, or give it a little cohesion, to find that of the whole slope",
+            short(100.0 * share)
+        ));
+    }
+    remarks
+}
+
+/// The share of the mass that moves by more than a tenth of the largest displacement \[-\].
+fn moving_mass(state: &State) -> f64 {
+    let particles = &state.body.particles;
+    let limit = MOVING * largest_displacement(particles);
+    let moving: f64 = particles
+        .displacement
+        .iter()
+        .zip(&particles.mass)
+        .filter(|(d, _)| d[0].hypot(d[1]) > limit)
+        .map(|(_, mass)| mass)
+        .sum();
+    let mass = particles.mass.iter().sum::<f64>();
+    if mass > 0.0 { moving / mass } else { 0.0 }
+}
+
+/// The factor to try next between the largest stable and the smallest failed one, at most a stride
+/// above the stable one, or beyond; none when the interval is narrow enough.
+fn next_factor(
+    (stable, failed): (Option<f64>, Option<f64>),
+    (low, high): (f64, f64),
+    tolerance: f64,
+    stride: f64,
+) -> Option<f64> {
+    match (stable, failed) {
+        (Some(stable), Some(failed)) if failed - stable <= tolerance * (1.0 + 1e-9) => None,
+        (Some(stable), Some(failed)) => Some((stable + stride).min(0.5 * (stable + failed))),
+        (Some(stable), None) if stable < low => Some(low),
+        (Some(stable), None) => Some(high.max(stable + (high - low))),
+        (None, Some(failed)) => Some(0.5 * failed),
+        (None, None) => Some(1.0),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The interval and the number of trials for a body that stands below `limit`.
+    fn search(limit: f64, bracket: (f64, f64)) -> (Option<f64>, Option<f64>, usize) {
+        let (mut stable, mut failed, mut made) = (None, None, 0);
+        while let Some(srf) = next_factor((stable, failed), bracket, 0.01, f64::INFINITY) {
+            if srf < limit {
+                stable = Some(srf);
+            } else {
+                failed = Some(srf);
+            }
+            made += 1;
+            if made == MOST_TRIALS {
+                break;
+            }
+        }
+        (stable, failed, made)
+    }
+
+    #[test]
+    fn the_interval_holds_the_factor() {
+        for limit in [0.2, 0.99, 1.0001, 1.38, 1.99, 5.0] {
+            for bracket in [(1.0, 2.0), (1.3, 1.5)] {
+                let (stable, failed, made) = search(limit, bracket);
+                let (stable, failed) = (stable.unwrap(), failed.unwrap());
+                assert!(stable < limit && limit <= failed && failed - stable <= 0.0101);
+                assert!(made < 30, "{limit}: {made}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_search_without_an_end_ends() {
+        let (_, failed, made) = search(f64::INFINITY, (1.0, 2.0));
+        assert_eq!((failed, made), (None, MOST_TRIALS));
+    }
+}

@@ -1,0 +1,47 @@
+//! Fields along the sections of a case at the end of a stage.
+
+use igimp_assembly::Particles;
+
+use super::engine::stage_slug;
+use super::model::Model;
+use crate::measure::nearest;
+use crate::results::fields;
+use crate::table::Table;
+
+/// One table per section, named `SECTION__STAGE`: at equally spaced places along the line the
+/// fields of the nearest particle. Places without a particle within a cell are left out.
+pub(crate) fn read(model: &Model<'_>, particles: &Particles<2>, stage: usize) -> Vec<Table> {
+    let case = model.case;
+    let reach = case.grid.cell[0].max(case.grid.cell[1]);
+    case.sections
+        .iter()
+        .map(|section| {
+            let mut header: Vec<String> = ["distance_[m]", "x_[m]", "y_[m]"]
+                .map(str::to_owned)
+                .to_vec();
+            header.extend(section.record.iter().map(|&field| fields::header(field)));
+            let mut table = Table {
+                name: format!("{}__{}", section.name, stage_slug(case, stage)),
+                header,
+                rows: Vec::new(),
+            };
+            let way = [0, 1].map(|axis| section.to[axis] - section.from[axis]);
+            for k in 0..section.points {
+                let t = (k as f64 + 0.5) / section.points as f64;
+                let place = [0, 1].map(|axis| section.from[axis] + t * way[axis]);
+                let Some(particle) = nearest(particles, &place, reach) else {
+                    continue;
+                };
+                let mut row = vec![t * way[0].hypot(way[1]), place[0], place[1]];
+                row.extend(
+                    section
+                        .record
+                        .iter()
+                        .map(|&field| fields::value(field, particles, particle, &model.laws)),
+                );
+                table.push(row);
+            }
+            table
+        })
+        .collect()
+}

@@ -1,0 +1,287 @@
+//! What passes from stage to stage of a run: model, listener, records and results folder.
+
+use std::collections::HashMap;
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use igimp_assembly::Particles;
+use igimp_solver::{
+    Accepted, MarchSettings, Observer, Outcome, Standing, StepError, StepReport, march_from,
+};
+
+use super::model::Model;
+use super::output::Output;
+use super::records::{Moment, Records, largest_displacement};
+use super::state::{Controls, State};
+use super::{Event, Listener};
+use crate::error::CaseError;
+use crate::summary::{StageSummary, Summary};
+
+/// A run between its stages.
+pub(crate) struct Session<'a> {
+    pub(crate) model: &'a Model<'a>,
+    pub(crate) listener: &'a mut dyn Listener,
+    pub(crate) interrupt: &'a AtomicBool,
+    pub(crate) records: Records,
+    pub(crate) output: Option<Output>,
+    pub(crate) summary: Summary,
+    /// Resistance of the footing after the last step \[N/m\].
+    pub(crate) last_resistance: f64,
+    /// Ends of stages that ran, by number.
+    pub(crate) ends: HashMap<usize, State>,
+}
+
+impl Session<'_> {
+    /// Tells the listener.
+    pub(crate) fn tell(&mut self, event: &Event<'_>) {
+        self.listener.on_event(event);
+    }
+
+    /// Tells the listener of something that the user should know, and keeps it for the summary.
+    pub(crate) fn warn(&mut self, text: String) {
+        self.tell(&Event::Warning { text: &text });
+        self.summary.warnings.push(text);
+    }
+
+    /// Whether the user wants the run to end.
+    pub(crate) fn interrupted(&self) -> bool {
+        self.interrupt.load(Ordering::Relaxed)
+    }
+
+    /// Records a moment in tables and files.
+    pub(crate) fn record(&mut self, moment: &Moment<'_>) -> Result<(), CaseError> {
+        let rows = self.records.record(self.model.case, moment);
+        match &mut self.output {
+            Some(output) => output.write_rows(&rows),
+            None => Ok(()),
+        }
+    }
+
+    /// The displacement that a condition looks at: of a monitor, or the largest of all \[m\].
+    pub(crate) fn displacement(&self, monitor: Option<usize>, particles: &Particles<2>) -> f64 {
+        monitor.map_or_else(
+            || largest_displacement(particles),
+            |monitor| {
+                let [x, y] = particles.displacement[self.records.watched[monitor]];
+                x.hypot(y)
+            },
+        )
+    }
+
+    /// That displacement in words.
+    pub(crate) fn whose_displacement(&self, monitor: Option<usize>) -> String {
+        monitor.map_or_else(
+            || "the largest displacement".to_owned(),
+            |monitor| {
+                let name = &self.model.case.monitors[monitor].name;
+                format!("the displacement of `{name}`")
+            },
+        )
+    }
+
+    /// Adds an accepted step to the tally of its stage.
+    fn tally(&mut self, stage: &mut StageSummary, report: &StepReport) -> Result<(), CaseError> {
+        stage.steps += 1;
+        stage.iterations += report.iterations;
+        stage.at_round_off += usize::from(report.at_round_off);
+        stage.plastic_share = report.plastic_share;
+        let times = &report.times;
+        let phases = [
+            times.set_up,
+            times.evaluate,
+            times.tangent,
+            times.linear,
+            times.commit,
+        ];
+        for (sum, time) in stage.phases.iter_mut().zip(phases) {
+            *sum += time.as_secs_f64();
+        }
+        let unknowns = &mut self.summary.size.unknowns;
+        *unknowns = report.unknowns.max(*unknowns);
+        let course = (report.from, report.to, &report.residuals[..]);
+        self.write_convergence(stage, course, true)
+    }
+
+    /// Adds a step that was not accepted.
+    fn tally_cut(&mut self, stage: &mut StageSummary, error: &StepError) -> Result<(), CaseError> {
+        stage.cuts += 1;
+        self.tell(&Event::Cut { error });
+        let course = (error.from, error.to, &error.residuals[..]);
+        self.write_convergence(stage, course, false)
+    }
+
+    fn write_convergence(
+        &mut self,
+        stage: &StageSummary,
+        course: (f64, f64, &[f64]),
+        accepted: bool,
+    ) -> Result<(), CaseError> {
+        let number = self.summary.stages.len() + 1;
+        let step = stage.steps + usize::from(!accepted);
+        match &mut self.output {
+            Some(output) => output.write_convergence((number, step), course, accepted),
+            None => Ok(()),
+        }
+    }
+}
+
+/// A march of the body between two controls.
+pub(crate) struct Path<'a> {
+    /// Controls at load factor 0.
+    pub(crate) from: &'a Controls,
+    /// Controls at load factor 1.
+    pub(crate) to: &'a Controls,
+    /// Drag of a step between two load factors, for overdamped motion \[1/s²\].
+    pub(crate) drag: &'a dyn Fn(f64, f64) -> f64,
+    /// Sizes of steps.
+    pub(crate) settings: MarchSettings,
+    /// Where the march begins.
+    pub(crate) standing: Standing,
+}
+
+/// An accepted step as a stage sees it.
+pub(crate) struct Taken<'a> {
+    /// The step in the solver's terms.
+    pub(crate) accepted: &'a Accepted<'a, 2>,
+    /// What acts on the body now.
+    pub(crate) controls: &'a Controls,
+    /// Resistance of the footing \[N/m\].
+    pub(crate) resistance: f64,
+}
+
+impl<'a> Taken<'a> {
+    /// The step as a moment to be recorded.
+    pub(crate) fn moment(&self, stage: usize, number: usize) -> Moment<'a> {
+        Moment {
+            stage,
+            number,
+            progress: self.accepted.report.to,
+            particles: &self.accepted.body.particles,
+            controls: self.controls,
+            resistance: self.resistance,
+            plastic_share: self.accepted.report.plastic_share,
+        }
+    }
+}
+
+/// How a march ended.
+#[derive(Debug)]
+pub(crate) enum Ended {
+    /// At its end, in these words.
+    Completed(String),
+    /// By its stage, for this reason.
+    Stopped(String),
+    /// By the user.
+    Interrupted,
+    /// For want of equilibrium.
+    NotConverged(StepError),
+}
+
+/// What a stage says after a step: a reason to stop, if it has one.
+pub(crate) type Word = Result<Option<String>, CaseError>;
+
+/// Marches a state along a path. `each` is called after every accepted step. The state ends with
+/// the controls of its last equilibrium; the summary is kept up.
+pub(crate) fn march_path(
+    session: &mut Session<'_>,
+    state: &mut State,
+    path: &Path<'_>,
+    stage: &mut StageSummary,
+    each: &mut dyn FnMut(&mut Session<'_>, &StageSummary, &Taken<'_>) -> Word,
+) -> Result<Ended, CaseError> {
+    let model = session.model;
+    let program = |from: f64, to: f64| {
+        model.conditions(
+            &path.from.towards(path.to, from),
+            &path.from.towards(path.to, to),
+            (path.drag)(from, to),
+        )
+    };
+    let mut workspace = model.workspace();
+    let mut watch = Watch {
+        session,
+        stage,
+        path,
+        each,
+        reached: path.standing.at,
+        stopped: Ok(None),
+    };
+    let report = march_from(
+        path.standing,
+        &mut state.body,
+        &model.case.method,
+        &program,
+        &path.settings,
+        &mut workspace,
+        &mut watch,
+    );
+    let (reached, stopped) = (watch.reached, watch.stopped);
+    state.controls = path.from.towards(path.to, reached);
+    stage.reached = reached;
+    let reason = stopped?;
+    Ok(match (report.outcome, reason) {
+        (Outcome::StepTooSmall { cause, .. }, _) => Ended::NotConverged(cause),
+        (_, Some(Stop::Stage(reason))) => Ended::Stopped(reason),
+        (Outcome::Stopped { .. }, Some(Stop::User) | None) => Ended::Interrupted,
+        (Outcome::Completed, _) => Ended::Completed("reached its end".to_owned()),
+    })
+}
+
+enum Stop {
+    Stage(String),
+    User,
+}
+
+/// Follows a march for its stage.
+struct Watch<'w, 's> {
+    session: &'w mut Session<'s>,
+    stage: &'w mut StageSummary,
+    path: &'w Path<'w>,
+    each: &'w mut dyn FnMut(&mut Session<'_>, &StageSummary, &Taken<'_>) -> Word,
+    reached: f64,
+    stopped: Result<Option<Stop>, CaseError>,
+}
+
+impl Watch<'_, '_> {
+    fn step(&mut self, accepted: &Accepted<'_, 2>) -> Result<Option<Stop>, CaseError> {
+        let report = accepted.report;
+        self.reached = report.to;
+        self.session.tally(self.stage, report)?;
+        let controls = self.path.from.towards(self.path.to, report.to);
+        let grid = &accepted.conditions.grid;
+        let model = self.session.model;
+        let taken = Taken {
+            accepted,
+            controls: &controls,
+            resistance: model.footing_resistance(grid, &accepted.forces.reactions),
+        };
+        self.session.last_resistance = taken.resistance;
+        let reason = (self.each)(self.session, self.stage, &taken)?;
+        self.session.tell(&Event::Step {
+            number: self.stage.steps,
+            progress: report.to,
+            report,
+        });
+        Ok(match reason {
+            Some(reason) => Some(Stop::Stage(reason)),
+            None if self.session.interrupted() && report.to < 1.0 => Some(Stop::User),
+            None => None,
+        })
+    }
+}
+
+impl Observer<2> for Watch<'_, '_> {
+    fn on_step(&mut self, accepted: &Accepted<'_, 2>) -> ControlFlow<()> {
+        self.stopped = self.step(accepted);
+        match self.stopped {
+            Ok(None) => ControlFlow::Continue(()),
+            _ => ControlFlow::Break(()),
+        }
+    }
+
+    fn on_cut(&mut self, error: &StepError) {
+        if let Err(error) = self.session.tally_cut(self.stage, error) {
+            self.stopped = Err(error);
+        }
+    }
+}
