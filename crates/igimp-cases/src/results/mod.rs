@@ -1,0 +1,14 @@
+//! The results folder: its layout, and the files in it for people, ParaView, numpy and the next
+//! run.
+
+pub mod atomic;
+pub mod checkpoint;
+pub mod folder;
+pub mod npy;
+
+pub mod pvd;
+pub mod regime;
+pub mod rows;
+
+#[cfg(test)]
+mod scratch;
