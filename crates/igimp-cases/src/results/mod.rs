@@ -5,10 +5,11 @@ pub mod atomic;
 pub mod checkpoint;
 pub mod folder;
 pub mod npy;
-
+pub mod particles;
 pub mod pvd;
 pub mod regime;
 pub mod rows;
+pub mod vtu;
 
 #[cfg(test)]
 mod scratch;
