@@ -8,6 +8,8 @@ use igimp_shape::ShapeError;
 use thiserror::Error;
 
 use crate::figures::FigureError;
+use crate::results::checkpoint::CheckpointError;
+use crate::results::npy::NpyError;
 
 /// Errors of stating or running a case.
 #[derive(Debug, Error)]
@@ -94,4 +96,39 @@ pub enum CaseError {
     /// A picture cannot be drawn.
     #[error("cannot draw a picture")]
     Figure(#[from] FigureError),
+    /// The folder for results holds something else.
+    #[error(
+        "{} is not empty and was not written by igimp; choose another folder for the results",
+        path.display()
+    )]
+    ForeignFolder {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// A folder that should hold results of an earlier run does not.
+    #[error("{} holds no results of igimp", path.display())]
+    NoResults {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// A file of an earlier run cannot be continued or read.
+    #[error("cannot go on with {}: {why}", path.display())]
+    Unusable {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        why: String,
+    },
+    /// An array file cannot be read.
+    #[error("cannot read the array {}", path.display())]
+    Npy {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        #[source]
+        source: NpyError,
+    },
+    /// The state of a run cannot be saved or taken up again.
+    #[error(transparent)]
+    Checkpoint(#[from] CheckpointError),
 }

@@ -1,0 +1,88 @@
+//! Files that are there whole or not at all, also when the program is killed while it writes.
+
+use std::ffi::OsString;
+use std::fs::{self, File};
+use std::io::{self, Write as _};
+use std::path::{Path, PathBuf};
+
+use crate::error::CaseError;
+
+/// Writes a file under a temporary name beside its place, hands it to the disk, and renames it.
+///
+/// Whoever reads `path` finds the old content or the new. The temporary name is `.NAME.tmp`; a
+/// stale one is overwritten.
+///
+/// # Errors
+/// [`CaseError::File`].
+pub fn write_atomically(path: &Path, bytes: impl AsRef<[u8]>) -> Result<(), CaseError> {
+    let temporary = temporary_name(path);
+    write_synced(&temporary, bytes.as_ref()).map_err(at(&temporary))?;
+    fs::rename(&temporary, path).map_err(at(path))?;
+    if let Some(folder) = path.parent() {
+        sync_folder(folder).map_err(at(folder))?;
+    }
+    Ok(())
+}
+
+/// `.NAME.tmp` beside the file.
+pub(super) fn temporary_name(path: &Path) -> PathBuf {
+    let mut name = OsString::from(".");
+    name.push(path.file_name().unwrap_or_default());
+    name.push(".tmp");
+    path.with_file_name(name)
+}
+
+/// Writes a file and waits until the disk has it.
+pub(super) fn write_synced(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let mut file = File::create(path)?;
+    file.write_all(bytes)?;
+    file.sync_all()
+}
+
+/// Waits until the disk knows the names in a folder, where the system can be asked to.
+pub(super) fn sync_folder(folder: &Path) -> io::Result<()> {
+    #[cfg(unix)]
+    {
+        let folder = if folder.as_os_str().is_empty() {
+            Path::new(".")
+        } else {
+            folder
+        };
+        File::open(folder)?.sync_all()
+    }
+    #[cfg(not(unix))]
+    {
+        let _ = folder;
+        Ok(())
+    }
+}
+
+/// Adds a path to what the system said.
+pub(super) fn at(path: &Path) -> impl FnOnce(io::Error) -> CaseError {
+    let path = path.to_path_buf();
+    move |source| CaseError::File { path, source }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::results::scratch::Scratch;
+
+    #[test]
+    fn content_is_replaced_and_no_temporary_stays() {
+        let scratch = Scratch::new();
+        let path = scratch.path().join("summary.json");
+        fs::write(temporary_name(&path), "left by a killed run, and longer").unwrap();
+        write_atomically(&path, "old").unwrap();
+        write_atomically(&path, "new").unwrap();
+        assert_eq!(fs::read_to_string(&path).unwrap(), "new");
+        assert_eq!(fs::read_dir(scratch.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn a_missing_folder_is_named() {
+        let scratch = Scratch::new();
+        let error = write_atomically(&scratch.path().join("no/such.txt"), "").unwrap_err();
+        insta::assert_snapshot!(scratch.hide(&error), @"cannot access DIR/no/.such.txt.tmp");
+    }
+}

@@ -1,0 +1,150 @@
+//! A body as named arrays of numbers, and back.
+
+use igimp_assembly::{LoadPoint, ParticleFields, Particles};
+use igimp_material::History;
+use igimp_solver::Body;
+
+use crate::results::npy::{Array, Values};
+use crate::results::regime;
+
+/// The arrays of a body by name.
+pub(super) fn of_body(body: &Body<2>) -> Vec<(&'static str, Array)> {
+    let ParticleFields {
+        x,
+        displacement,
+        def_grad,
+        b_e,
+        sigma,
+        half_length,
+        half_length0,
+        volume0,
+        mass,
+        law,
+        history,
+        regime,
+    } = &*body.particles;
+    let n = x.len();
+    let law = law.iter().map(|&law| law as u64).collect();
+    let eps_p_eq: Vec<f64> = history
+        .iter()
+        .map(|History { eps_p_eq }| *eps_p_eq)
+        .collect();
+    let regime = regime.iter().map(|&regime| regime::code(regime)).collect();
+    let (points, forces): (Vec<_>, Vec<_>) = body
+        .load_points
+        .iter()
+        .map(|LoadPoint { x, force }| (*x, *force))
+        .unzip();
+    vec![
+        ("x", vectors(x)),
+        ("displacement", vectors(displacement)),
+        ("def_grad", tensors(def_grad)),
+        ("b_e", tensors(b_e)),
+        ("sigma", tensors(sigma)),
+        ("half_length", vectors(half_length)),
+        ("half_length0", vectors(half_length0)),
+        ("volume0", scalars(volume0)),
+        ("mass", scalars(mass)),
+        ("law", Array::new(&[n], Values::U64(law))),
+        ("eps_p_eq", scalars(&eps_p_eq)),
+        ("regime", Array::new(&[n], Values::U8(regime))),
+        ("load_point_x", vectors(&points)),
+        ("load_point_force", vectors(&forces)),
+    ]
+}
+
+/// The body of numbers of particles and load points, from the bytes of its array files.
+///
+/// An error is the name of an array and why it does not serve.
+pub(super) fn to_body(
+    [n, m]: [usize; 2],
+    bytes: impl Fn(&'static str) -> Result<Vec<u8>, String>,
+) -> Result<Body<2>, (&'static str, String)> {
+    let array = |name: &'static str, shape: &[usize]| {
+        bytes(name)
+            .and_then(|bytes| Array::from_bytes(&bytes).map_err(|error| error.to_string()))
+            .and_then(|array| {
+                if array.shape() == shape {
+                    Ok(array)
+                } else {
+                    let found = array.shape();
+                    Err(format!("its shape is {found:?} instead of {shape:?}"))
+                }
+            })
+            .map_err(|why| (name, why))
+    };
+    let reals = |name: &'static str, shape: &[usize]| match array(name, shape)?.values() {
+        Values::F64(values) => Ok(values.clone()),
+        _ => Err((name, "its numbers are not of type <f8".to_owned())),
+    };
+    let vectors = |name, count| Ok(rows::<2>(&reals(name, &[count, 2])?));
+    let planar = |name| Ok(squares::<2>(&reals(name, &[n, 2, 2])?));
+    let spatial = |name| Ok(squares::<3>(&reals(name, &[n, 3, 3])?));
+    let law = match array("law", &[n])?.values() {
+        Values::U64(values) => values.iter().map(|&law| law as usize).collect(),
+        _ => return Err(("law", "its numbers are not of type <u8".to_owned())),
+    };
+    let regime = match array("regime", &[n])?.values() {
+        Values::U8(codes) => codes
+            .iter()
+            .map(|&code| {
+                let unknown = || ("regime", format!("{code} is the code of no regime"));
+                regime::from_code(code).ok_or_else(unknown)
+            })
+            .collect::<Result<_, _>>()?,
+        _ => return Err(("regime", "its numbers are not of type |u1".to_owned())),
+    };
+    let fields = ParticleFields {
+        x: vectors("x", n)?,
+        displacement: vectors("displacement", n)?,
+        def_grad: planar("def_grad")?,
+        b_e: spatial("b_e")?,
+        sigma: spatial("sigma")?,
+        half_length: vectors("half_length", n)?,
+        half_length0: vectors("half_length0", n)?,
+        volume0: reals("volume0", &[n])?,
+        mass: reals("mass", &[n])?,
+        law,
+        history: reals("eps_p_eq", &[n])?
+            .into_iter()
+            .map(|eps_p_eq| History { eps_p_eq })
+            .collect(),
+        regime,
+    };
+    let particles = Particles::from_fields(fields).map_err(|error| ("x", error.to_string()))?;
+    let load_points = vectors("load_point_x", m)?
+        .into_iter()
+        .zip(vectors("load_point_force", m)?)
+        .map(|(x, force)| LoadPoint { x, force })
+        .collect();
+    Ok(Body {
+        particles,
+        load_points,
+    })
+}
+
+fn scalars(values: &[f64]) -> Array {
+    Array::new(&[values.len()], Values::F64(values.to_vec()))
+}
+
+fn vectors(values: &[[f64; 2]]) -> Array {
+    Array::new(
+        &[values.len(), 2],
+        Values::F64(values.as_flattened().to_vec()),
+    )
+}
+
+fn tensors<const N: usize>(values: &[[[f64; N]; N]]) -> Array {
+    let flat = values.as_flattened().as_flattened().to_vec();
+    Array::new(&[values.len(), N, N], Values::F64(flat))
+}
+
+/// Numbers of an array of rows of N.
+fn rows<const N: usize>(values: &[f64]) -> Vec<[f64; N]> {
+    values.as_chunks::<N>().0.to_vec()
+}
+
+/// Numbers of an array of N × N tensors.
+fn squares<const N: usize>(values: &[f64]) -> Vec<[[f64; N]; N]> {
+    rows::<N>(values).as_chunks::<N>().0.to_vec()
+}

@@ -1,0 +1,87 @@
+//! Why a checkpoint cannot be written or taken up again.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use thiserror::Error;
+
+use super::manifest::{FORMAT_VERSION, PROGRAM};
+
+/// Errors of saving and loading the state of a run.
+#[derive(Debug, Error)]
+pub enum CheckpointError {
+    /// The folder is something else.
+    #[error("{} is not a checkpoint of igimp: {why}", path.display())]
+    NotACheckpoint {
+        /// The folder.
+        path: PathBuf,
+        /// What is missing.
+        why: &'static str,
+    },
+    /// The checkpoint is laid out in another way.
+    #[error(
+        "the checkpoint in {} has format version {found}; this program reads version {}",
+        path.display(), FORMAT_VERSION
+    )]
+    OtherFormat {
+        /// The folder.
+        path: PathBuf,
+        /// Its format version.
+        found: u64,
+    },
+    /// The checkpoint has another fingerprint.
+    #[error(
+        "the checkpoint in {} belongs to another case or to other input; run without --resume to \
+         begin afresh",
+        path.display()
+    )]
+    OtherCase {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// The checkpoint comes from another version of the program.
+    #[error(
+        "the checkpoint in {} was written by {found}, and this is {}; resume with that version, \
+         or run without --resume to begin afresh",
+        path.display(), PROGRAM
+    )]
+    OtherProgram {
+        /// The folder.
+        path: PathBuf,
+        /// The program that wrote it.
+        found: String,
+    },
+    /// The checkpoint is not what was written.
+    #[error("the checkpoint in {} is damaged: {file}: {why}", path.display())]
+    Damaged {
+        /// The folder.
+        path: PathBuf,
+        /// The file within it.
+        file: String,
+        /// What is wrong.
+        why: String,
+    },
+    /// A name that cannot be a folder everywhere.
+    #[error(
+        "`{name}` cannot name a checkpoint or a state: only letters a to z, digits, `-` and `_`"
+    )]
+    Name {
+        /// The name.
+        name: String,
+    },
+    /// A file cannot be written or read.
+    #[error("cannot access {}", path.display())]
+    File {
+        /// The file or folder.
+        path: PathBuf,
+        /// What the system said.
+        #[source]
+        source: io::Error,
+    },
+}
+
+/// Adds a path to what the system said.
+pub(super) fn at(path: &Path) -> impl FnOnce(io::Error) -> CheckpointError {
+    let path = path.to_path_buf();
+    move |source| CheckpointError::File { path, source }
+}

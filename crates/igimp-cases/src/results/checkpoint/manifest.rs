@@ -1,0 +1,194 @@
+//! `meta.json`: what a checkpoint is, whose it is, and what its arrays must look like.
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::fs;
+use std::io;
+use std::path::Path;
+
+use igimp_solver::Body;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use sha2::{Digest as _, Sha256};
+
+use super::error::{CheckpointError, at};
+use crate::results::atomic::write_synced;
+
+/// Version of the layout; another one is not read.
+pub const FORMAT_VERSION: u64 = 1;
+
+/// The program and its version, as written into checkpoints.
+pub const PROGRAM: &str = concat!("igimp ", env!("CARGO_PKG_VERSION"));
+
+const FORMAT: &str = "igimp checkpoint";
+const FILE: &str = "meta.json";
+
+/// What the program says about a checkpoint.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Meta {
+    /// The program that writes it.
+    pub program: String,
+    /// SHA-256 of all input, in hexadecimal ([`sha256`]): a state is taken up for the same input
+    /// only.
+    pub fingerprint: String,
+    /// Where the run stands, in the form of the run. Numbers come back to the bit, save NaN.
+    pub data: Value,
+}
+
+impl Meta {
+    /// Of this program.
+    pub fn new(fingerprint: impl Into<String>, data: Value) -> Self {
+        Self {
+            program: PROGRAM.into(),
+            fingerprint: fingerprint.into(),
+            data,
+        }
+    }
+}
+
+/// SHA-256 in hexadecimal.
+pub fn sha256(bytes: &[u8]) -> String {
+    Sha256::digest(bytes)
+        .iter()
+        .fold(String::with_capacity(64), |mut text, byte| {
+            let _ = write!(text, "{byte:02x}");
+            text
+        })
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+pub(super) struct Manifest {
+    format: String,
+    format_version: u64,
+    pub(super) program: String,
+    pub(super) fingerprint: String,
+    name: String,
+    /// Later checkpoints of a folder have larger numbers.
+    pub(super) sequence: u64,
+    data: Value,
+    pub(super) states: Vec<StateEntry>,
+}
+
+/// One state of a checkpoint.
+#[derive(Debug, Serialize, Deserialize)]
+pub(super) struct StateEntry {
+    pub(super) name: String,
+    pub(super) particles: usize,
+    pub(super) load_points: usize,
+    files: BTreeMap<String, FileEntry>,
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+struct FileEntry {
+    bytes: u64,
+    sha256: String,
+}
+
+impl Manifest {
+    pub(super) fn new(name: &str, sequence: u64, meta: &Meta, states: Vec<StateEntry>) -> Self {
+        let Meta {
+            program,
+            fingerprint,
+            data,
+        } = meta.clone();
+        Self {
+            format: FORMAT.into(),
+            format_version: FORMAT_VERSION,
+            program,
+            fingerprint,
+            name: name.into(),
+            sequence,
+            data,
+            states,
+        }
+    }
+
+    pub(super) fn into_meta(self) -> Meta {
+        Meta {
+            program: self.program,
+            fingerprint: self.fingerprint,
+            data: self.data,
+        }
+    }
+
+    pub(super) fn write(&self, checkpoint: &Path) -> Result<(), CheckpointError> {
+        let path = checkpoint.join(FILE);
+        let write = || {
+            let mut text = serde_json::to_vec_pretty(self).map_err(io::Error::from)?;
+            text.push(b'\n');
+            write_synced(&path, &text)
+        };
+        write().map_err(at(&path))
+    }
+
+    pub(super) fn read(checkpoint: &Path) -> Result<Self, CheckpointError> {
+        let path = checkpoint.join(FILE);
+        let bytes = match fs::read(&path) {
+            Ok(bytes) => bytes,
+            Err(error) if error.kind() == io::ErrorKind::NotFound => {
+                let why = "it has no meta.json";
+                let path = checkpoint.into();
+                return Err(CheckpointError::NotACheckpoint { path, why });
+            }
+            Err(error) => return Err(at(&path)(error)),
+        };
+        let damaged = |error: serde_json::Error| CheckpointError::Damaged {
+            path: checkpoint.into(),
+            file: FILE.into(),
+            why: error.to_string(),
+        };
+        let value: Value = serde_json::from_slice(&bytes).map_err(damaged)?;
+        if value["format"] != FORMAT {
+            return Err(CheckpointError::NotACheckpoint {
+                path: checkpoint.into(),
+                why: "its meta.json says nothing of igimp",
+            });
+        }
+        match value["format_version"].as_u64() {
+            None | Some(FORMAT_VERSION) => {}
+            Some(found) => {
+                let path = checkpoint.into();
+                return Err(CheckpointError::OtherFormat { path, found });
+            }
+        }
+        serde_json::from_value(value).map_err(damaged)
+    }
+}
+
+impl StateEntry {
+    pub(super) fn new(name: &str, body: &Body<2>) -> Self {
+        Self {
+            name: name.into(),
+            particles: body.particles.len(),
+            load_points: body.load_points.len(),
+            files: BTreeMap::new(),
+        }
+    }
+
+    /// Remembers what an array looks like.
+    pub(super) fn note(&mut self, array: &str, bytes: &[u8]) {
+        let entry = FileEntry {
+            bytes: bytes.len() as u64,
+            sha256: sha256(bytes),
+        };
+        self.files.insert(array.into(), entry);
+    }
+
+    /// Says why bytes are not those that were written.
+    pub(super) fn compare(&self, array: &str, bytes: &[u8]) -> Result<(), String> {
+        let Some(entry) = self.files.get(array) else {
+            return Err("meta.json does not list it".into());
+        };
+        if bytes.len() as u64 != entry.bytes {
+            return Err(format!(
+                "it has {} bytes instead of {}",
+                bytes.len(),
+                entry.bytes
+            ));
+        }
+        if sha256(bytes) != entry.sha256 {
+            return Err("its bytes are not those that were written (SHA-256)".into());
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,351 @@
+//! The state of a run on disk, so that a killed run goes on where it was.
+//!
+//! A checkpoint is a folder: `meta.json`, and for each named state (a [`Body`]) a folder of `.npy`
+//! arrays. `meta.json` holds the format version, the program, the fingerprint of the case, a value
+//! of the caller, and for each array its length in bytes and its SHA-256; whoever changes an array
+//! in numpy writes both anew.
+//!
+//! | array | shape | |
+//! |---|---|---|
+//! | `x`, `displacement` | n × 2 | position, displacement \[m\] |
+//! | `def_grad` | n × 2 × 2 | deformation gradient F \[-\] |
+//! | `b_e` | n × 3 × 3 | elastic left Cauchy–Green tensor \[-\] |
+//! | `sigma` | n × 3 × 3 | Cauchy stress, tension positive \[Pa\] |
+//! | `half_length`, `half_length0` | n × 2 | half-lengths of the domain, now and as seeded \[m\] |
+//! | `volume0`, `mass` | n | volume as seeded \[m³/m\], mass \[kg/m\] |
+//! | `law`, `regime` | n | index of the law; code of the regime ([`regime`](super::regime)) |
+//! | `eps_p_eq` | n | accumulated plastic strain \[-\] |
+//! | `load_point_x`, `load_point_force` | m × 2 | loaded points \[m\], forces at factor 1 \[N/m\] |
+//!
+//! A checkpoint is written under a temporary name, handed to the disk, and renamed. One that it
+//! replaces is called `NAME.previous` in between. Whenever the program is killed, [`newest`] finds
+//! a whole checkpoint, the new one or the one before.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use igimp_solver::Body;
+
+use super::atomic::{sync_folder, write_synced};
+use crate::error::CaseError;
+
+mod arrays;
+mod error;
+mod manifest;
+
+pub use error::CheckpointError;
+use error::at;
+pub use manifest::{FORMAT_VERSION, Meta, PROGRAM, sha256};
+use manifest::{Manifest, StateEntry};
+
+const TEMPORARY: &str = ".tmp-";
+const REPLACED: &str = ".previous";
+
+/// A state of a run, read from disk.
+#[derive(Clone, Debug)]
+pub struct Checkpoint {
+    /// What is known about it.
+    pub meta: Meta,
+    /// Bodies by name, in the order in which they were written.
+    pub states: Vec<(String, Body<2>)>,
+}
+
+/// Writes a checkpoint into a folder of checkpoints, which is made if need be.
+///
+/// A checkpoint of the same name is replaced. Names that differ only in the number at their end
+/// are a family, such as `load-0010` and `load-0020`; of the family of `name` the last `keep` that
+/// were written stay, this one always. Temporaries of a killed run are removed.
+///
+/// # Errors
+/// [`CheckpointError::Name`] for names other than letters, digits, `-` and `_`;
+/// [`CheckpointError::File`].
+pub fn write(
+    folder: &Path,
+    name: &str,
+    states: &[(&str, &Body<2>)],
+    meta: &Meta,
+    keep: usize,
+) -> Result<PathBuf, CaseError> {
+    for name in states.iter().map(|state| state.0).chain([name]) {
+        check_name(name)?;
+    }
+    fs::create_dir_all(folder).map_err(at(folder))?;
+    remove_temporaries(folder)?;
+    let sequence = list(folder)?
+        .iter()
+        .map(Found::sequence)
+        .max()
+        .map_or(1, |last| last + 1);
+    let temporary = folder.join(format!("{TEMPORARY}{name}"));
+    fs::create_dir(&temporary).map_err(at(&temporary))?;
+    let entries = states
+        .iter()
+        .map(|(state, body)| write_state(&temporary, state, body))
+        .collect::<Result<_, _>>()?;
+    Manifest::new(name, sequence, meta, entries).write(&temporary)?;
+    sync_folder(&temporary).map_err(at(&temporary))?;
+    let path = folder.join(name);
+    put_in_place(&temporary, &path)?;
+    sync_folder(folder).map_err(at(folder))?;
+    prune(folder, name, keep)?;
+    Ok(path)
+}
+
+/// The checkpoint that was written last and is whole; none in a folder without checkpoints.
+///
+/// # Errors
+/// If there are checkpoints and none can be read, what is wrong with the one written last;
+/// [`CheckpointError::File`].
+pub fn newest(folder: &Path) -> Result<Option<PathBuf>, CheckpointError> {
+    let mut found = list(folder)?;
+    found.sort_by_key(|found| std::cmp::Reverse(found.sequence()));
+    first_whole(found)
+}
+
+/// The checkpoint of a name, or the one that was being replaced under that name when the program
+/// was killed; none if there is neither.
+///
+/// # Errors
+/// If there is one and it cannot be read, what is wrong with it; [`CheckpointError::File`].
+pub fn named(folder: &Path, name: &str) -> Result<Option<PathBuf>, CheckpointError> {
+    check_name(name)?;
+    let mut found = list(folder)?;
+    found.retain(|found| found.name() == name);
+    found.sort_by_key(|found| std::cmp::Reverse(found.sequence()));
+    first_whole(found)
+}
+
+/// Reads a checkpoint.
+///
+/// # Errors
+/// [`CheckpointError`]: no checkpoint, another format or program, another fingerprint than the one
+/// expected, or damaged.
+pub fn read(
+    path: &Path,
+    expected_fingerprint: Option<&str>,
+) -> Result<Checkpoint, CheckpointError> {
+    let manifest = Manifest::read(path)?;
+    if expected_fingerprint.is_some_and(|expected| expected != manifest.fingerprint) {
+        return Err(CheckpointError::OtherCase { path: path.into() });
+    }
+    if manifest.program != PROGRAM {
+        return Err(CheckpointError::OtherProgram {
+            path: path.into(),
+            found: manifest.program,
+        });
+    }
+    load(path, manifest)
+}
+
+/// Removes every checkpoint that was written after the given one: a run that goes on from here
+/// must not find them later.
+///
+/// # Errors
+/// [`CheckpointError`] when the given one cannot be read or another cannot be removed.
+pub fn discard_after(path: &Path) -> Result<(), CheckpointError> {
+    let sequence = Manifest::read(path)?.sequence;
+    let folder = path.parent().unwrap_or(Path::new("."));
+    for found in list(folder)? {
+        if found.sequence() > sequence {
+            remove(&found.path)?;
+        }
+    }
+    Ok(())
+}
+
+/// Removes every checkpoint and temporary; nothing else.
+pub(super) fn remove_all(folder: &Path) -> Result<(), CheckpointError> {
+    if folder.is_dir() {
+        remove_temporaries(folder)?;
+    }
+    for found in list(folder)? {
+        remove(&found.path)?;
+    }
+    Ok(())
+}
+
+/// Whether a folder holds a checkpoint of igimp, whole or damaged.
+pub(super) fn is_checkpoint(path: &Path) -> bool {
+    !matches!(
+        Manifest::read(path),
+        Err(CheckpointError::NotACheckpoint { .. } | CheckpointError::File { .. })
+    )
+}
+
+/// Whether a folder of checkpoints holds any.
+pub(super) fn any(folder: &Path) -> bool {
+    list(folder).is_ok_and(|found| !found.is_empty())
+}
+
+/// A folder that holds a checkpoint, whole or not.
+struct Found {
+    path: PathBuf,
+    manifest: Result<Manifest, CheckpointError>,
+}
+
+impl Found {
+    /// Running number; 0 if it cannot be read.
+    fn sequence(&self) -> u64 {
+        self.manifest
+            .as_ref()
+            .map_or(0, |manifest| manifest.sequence)
+    }
+
+    fn name(&self) -> &str {
+        let name = self.path.file_name().and_then(|name| name.to_str());
+        let name = name.unwrap_or_default();
+        name.strip_suffix(REPLACED).unwrap_or(name)
+    }
+}
+
+/// The checkpoints of a folder, also damaged ones, without temporaries.
+fn list(folder: &Path) -> Result<Vec<Found>, CheckpointError> {
+    if !folder.is_dir() {
+        return Ok(Vec::new());
+    }
+    let mut found = Vec::new();
+    for entry in fs::read_dir(folder).map_err(at(folder))? {
+        let entry = entry.map_err(at(folder))?;
+        let path = entry.path();
+        let is_folder = entry.file_type().map_err(at(&path))?.is_dir();
+        if !is_folder || entry.file_name().to_string_lossy().starts_with('.') {
+            continue;
+        }
+        match Manifest::read(&path) {
+            Err(CheckpointError::NotACheckpoint { .. }) => {}
+            manifest => found.push(Found { path, manifest }),
+        }
+    }
+    found.sort_by(|a, b| a.path.cmp(&b.path));
+    Ok(found)
+}
+
+/// The first that can be read; or what is wrong with the first.
+fn first_whole(found: Vec<Found>) -> Result<Option<PathBuf>, CheckpointError> {
+    let mut first_error = None;
+    for Found { path, manifest } in found {
+        match manifest.and_then(|manifest| load(&path, manifest)) {
+            Ok(_) => return Ok(Some(path)),
+            Err(error) => first_error = first_error.or(Some(error)),
+        }
+    }
+    first_error.map_or(Ok(None), Err)
+}
+
+fn load(path: &Path, manifest: Manifest) -> Result<Checkpoint, CheckpointError> {
+    let states = manifest
+        .states
+        .iter()
+        .map(|entry| Ok((entry.name.clone(), read_state(path, entry)?)))
+        .collect::<Result<_, CheckpointError>>()?;
+    let meta = manifest.into_meta();
+    Ok(Checkpoint { meta, states })
+}
+
+fn write_state(
+    checkpoint: &Path,
+    name: &str,
+    body: &Body<2>,
+) -> Result<StateEntry, CheckpointError> {
+    let folder = checkpoint.join(name);
+    fs::create_dir(&folder).map_err(at(&folder))?;
+    let mut entry = StateEntry::new(name, body);
+    for (array, values) in arrays::of_body(body) {
+        let path = folder.join(array).with_extension("npy");
+        let bytes = values.to_bytes();
+        write_synced(&path, &bytes).map_err(at(&path))?;
+        entry.note(array, &bytes);
+    }
+    sync_folder(&folder).map_err(at(&folder))?;
+    Ok(entry)
+}
+
+fn read_state(checkpoint: &Path, entry: &StateEntry) -> Result<Body<2>, CheckpointError> {
+    let name = &entry.name;
+    let damaged = |(array, why): (&str, String)| CheckpointError::Damaged {
+        path: checkpoint.into(),
+        file: format!("{name}/{array}.npy"),
+        why,
+    };
+    if check_name(name).is_err() {
+        return Err(damaged(("*", "the state has no proper name".into())));
+    }
+    arrays::to_body([entry.particles, entry.load_points], |array| {
+        let path = checkpoint.join(name).join(array).with_extension("npy");
+        let bytes = fs::read(&path).map_err(|error| error.to_string())?;
+        entry.compare(array, &bytes)?;
+        Ok(bytes)
+    })
+    .map_err(damaged)
+}
+
+/// Gives a finished checkpoint its name; at any moment it or the one before is there.
+fn put_in_place(temporary: &Path, path: &Path) -> Result<(), CheckpointError> {
+    let mut previous = path.as_os_str().to_owned();
+    previous.push(REPLACED);
+    let previous = PathBuf::from(previous);
+    if path.exists() {
+        if previous.exists() {
+            remove(&previous)?;
+        }
+        fs::rename(path, &previous).map_err(at(path))?;
+    }
+    fs::rename(temporary, path).map_err(at(path))?;
+    if previous.exists() {
+        if let Some(folder) = path.parent() {
+            sync_folder(folder).map_err(at(folder))?;
+        }
+        remove(&previous)?;
+    }
+    Ok(())
+}
+
+/// Removes the oldest of a family beyond `keep`.
+fn prune(folder: &Path, name: &str, keep: usize) -> Result<(), CheckpointError> {
+    let mut relatives = list(folder)?;
+    relatives.retain(|found| family(found.name()) == family(name) && found.name() != name);
+    relatives.sort_by_key(|found| std::cmp::Reverse(found.sequence()));
+    for found in relatives.iter().skip(keep.saturating_sub(1)) {
+        remove(&found.path)?;
+    }
+    Ok(())
+}
+
+/// What names before the number at their end; a name without a number is alone.
+fn family(name: &str) -> (&str, bool) {
+    let stem = name.trim_end_matches(|symbol: char| symbol.is_ascii_digit());
+    (stem, stem.len() < name.len())
+}
+
+/// Removes a checkpoint so that it is never there in part.
+fn remove(path: &Path) -> Result<(), CheckpointError> {
+    let mut name = std::ffi::OsString::from(TEMPORARY);
+    name.push(path.file_name().unwrap_or_default());
+    name.push("-removed");
+    let temporary = path.with_file_name(name);
+    fs::rename(path, &temporary).map_err(at(path))?;
+    fs::remove_dir_all(&temporary).map_err(at(&temporary))
+}
+
+fn remove_temporaries(folder: &Path) -> Result<(), CheckpointError> {
+    for entry in fs::read_dir(folder).map_err(at(folder))? {
+        let entry = entry.map_err(at(folder))?;
+        let path = entry.path();
+        let is_folder = entry.file_type().map_err(at(&path))?.is_dir();
+        if is_folder && entry.file_name().to_string_lossy().starts_with(TEMPORARY) {
+            fs::remove_dir_all(&path).map_err(at(&path))?;
+        }
+    }
+    Ok(())
+}
+
+fn check_name(name: &str) -> Result<(), CheckpointError> {
+    let is_plain = |symbol: char| symbol.is_ascii_alphanumeric() || "-_".contains(symbol);
+    if name.is_empty() || name.len() > 100 || !name.chars().all(is_plain) {
+        return Err(CheckpointError::Name { name: name.into() });
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+pub(super) mod tests;

@@ -1,0 +1,394 @@
+//! The results folder: its layout, and clearing what an earlier run left without touching anything
+//! else.
+//!
+//! | | |
+//! |---|---|
+//! | `summary.json`, `report.html` | outcome, for programs and for people |
+//! | `case.toml`, `case.completed.toml` | the case as given, and with every default |
+//! | `convergence.csv` | residuals of steps that found no equilibrium |
+//! | `curves/`, `monitors/`, `sections/` | tables (`.csv`) |
+//! | `figures/` | pictures (`.svg`, `.png`) |
+//! | `paraview/` | particles and grid (`.pvd`, `.vtu`) |
+//! | `checkpoint/`, `last-converged/` | states ([`checkpoint`](super::checkpoint)) |
+//! | `.igimp` | says that igimp made the folder |
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use super::atomic::at;
+use super::{checkpoint, pvd};
+use crate::error::CaseError;
+
+pub use super::atomic::write_atomically;
+
+const MARKER: &str = ".igimp";
+const MARKER_TEXT: &str = "igimp writes its results here; a further run replaces them.\n";
+
+const SUMMARY: &str = "summary.json";
+const FILES: [&str; 4] = [
+    SUMMARY,
+    "report.html",
+    "case.completed.toml",
+    "convergence.csv",
+];
+const TABLES: [&str; 3] = ["curves", "monitors", "sections"];
+const FIGURES: &str = "figures";
+const PARAVIEW: &str = "paraview";
+const CHECKPOINT: &str = "checkpoint";
+const LAST_CONVERGED: &str = "last-converged";
+
+/// A folder laid out for the results of one run.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Folder {
+    root: PathBuf,
+}
+
+impl Folder {
+    /// Makes the folder, or clears what an earlier run of igimp left in it.
+    ///
+    /// Only files of our names go; `case.toml` stays until it is written anew, for it may be the
+    /// user's own.
+    ///
+    /// # Errors
+    /// [`CaseError::ForeignFolder`] for a folder that is not empty and was not written by igimp;
+    /// [`CaseError::File`], [`CaseError::Checkpoint`].
+    pub fn afresh(root: &Path) -> Result<Self, CaseError> {
+        if root.exists() && !is_empty(root)? {
+            if !is_ours(root) {
+                return Err(CaseError::ForeignFolder { path: root.into() });
+            }
+            clear(root)?;
+        }
+        Self::lay_out(root)
+    }
+
+    /// The folder of an earlier run, with all its results.
+    ///
+    /// # Errors
+    /// [`CaseError::NoResults`] if igimp wrote nothing there; [`CaseError::File`].
+    pub fn open(root: &Path) -> Result<Self, CaseError> {
+        if !is_ours(root) {
+            return Err(CaseError::NoResults { path: root.into() });
+        }
+        Self::lay_out(root)
+    }
+
+    fn lay_out(root: &Path) -> Result<Self, CaseError> {
+        let folder = Self {
+            root: root.to_path_buf(),
+        };
+        fs::create_dir_all(root).map_err(at(root))?;
+        write_atomically(&root.join(MARKER), MARKER_TEXT)?;
+        for name in TABLES.into_iter().chain([FIGURES, PARAVIEW, CHECKPOINT]) {
+            let path = root.join(name);
+            fs::create_dir_all(&path).map_err(at(&path))?;
+        }
+        Ok(folder)
+    }
+
+    /// The folder itself.
+    pub fn root(&self) -> &Path {
+        &self.root
+    }
+
+    /// `summary.json`.
+    pub fn summary(&self) -> PathBuf {
+        self.root.join(SUMMARY)
+    }
+
+    /// `report.html`.
+    pub fn report(&self) -> PathBuf {
+        self.root.join("report.html")
+    }
+
+    /// `case.toml`, the case as given.
+    pub fn case(&self) -> PathBuf {
+        self.root.join("case.toml")
+    }
+
+    /// `case.completed.toml`, the case with every default.
+    pub fn completed_case(&self) -> PathBuf {
+        self.root.join("case.completed.toml")
+    }
+
+    /// `convergence.csv`.
+    pub fn convergence(&self) -> PathBuf {
+        self.root.join("convergence.csv")
+    }
+
+    /// `curves/`.
+    pub fn curves(&self) -> PathBuf {
+        self.root.join("curves")
+    }
+
+    /// `monitors/`.
+    pub fn monitors(&self) -> PathBuf {
+        self.root.join("monitors")
+    }
+
+    /// `sections/`.
+    pub fn sections(&self) -> PathBuf {
+        self.root.join("sections")
+    }
+
+    /// `figures/`.
+    pub fn figures(&self) -> PathBuf {
+        self.root.join(FIGURES)
+    }
+
+    /// `paraview/`.
+    pub fn paraview(&self) -> PathBuf {
+        self.root.join(PARAVIEW)
+    }
+
+    /// `checkpoint/`, the folder of checkpoints.
+    pub fn checkpoint(&self) -> PathBuf {
+        self.root.join(CHECKPOINT)
+    }
+}
+
+/// A name for a file, from the name of a stage, curve or monitor: letters and digits as they are,
+/// anything else as single hyphens.
+///
+/// ```
+/// assert_eq!(igimp_cases::results::folder::file_name("Run-out, φ = 20°"), "Run-out-φ-20");
+/// ```
+pub fn file_name(name: &str) -> String {
+    let words: Vec<&str> = name
+        .split(|symbol: char| !(symbol.is_alphanumeric() || symbol == '_'))
+        .filter(|word| !word.is_empty())
+        .collect();
+    if words.is_empty() {
+        "unnamed".into()
+    } else {
+        words.join("-")
+    }
+}
+
+fn is_empty(folder: &Path) -> Result<bool, CaseError> {
+    Ok(fs::read_dir(folder).map_err(at(folder))?.next().is_none())
+}
+
+/// Whether igimp wrote here: by the marker, by a summary that names igimp, by a checkpoint.
+///
+/// A `case.toml` alone is no proof: it may be the input of a run that was told to write here.
+fn is_ours(root: &Path) -> bool {
+    let names_igimp = |summary: serde_json::Value| {
+        let program = summary["program"].as_str();
+        program.is_some_and(|program| program.starts_with("igimp"))
+    };
+    let summary = fs::read(root.join(SUMMARY)).ok();
+    root.join(MARKER).is_file()
+        || summary
+            .and_then(|bytes| serde_json::from_slice(&bytes).ok())
+            .is_some_and(names_igimp)
+        || checkpoint::any(&root.join(CHECKPOINT))
+}
+
+fn clear(root: &Path) -> Result<(), CaseError> {
+    remove_files(root, |name| FILES.contains(&name))?;
+    for folder in TABLES {
+        remove_files(&root.join(folder), |name| has_extension(name, &["csv"]))?;
+    }
+    remove_files(&root.join(FIGURES), |name| {
+        has_extension(name, &["svg", "png"])
+    })?;
+    remove_files(&root.join(PARAVIEW), pvd::is_our_name)?;
+    checkpoint::remove_all(&root.join(CHECKPOINT))?;
+    let last = root.join(LAST_CONVERGED);
+    if checkpoint::is_checkpoint(&last) {
+        fs::remove_dir_all(&last).map_err(at(&last))?;
+    }
+    Ok(())
+}
+
+fn has_extension(name: &str, extensions: &[&str]) -> bool {
+    let extension = Path::new(name).extension().and_then(|end| end.to_str());
+    extension.is_some_and(|extension| extensions.contains(&extension))
+}
+
+/// Removes the files of a folder whose name, or whose temporary's name, is ours.
+fn remove_files(folder: &Path, is_our_name: impl Fn(&str) -> bool) -> Result<(), CaseError> {
+    let entries = match fs::read_dir(folder) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
+        entries => entries.map_err(at(folder))?,
+    };
+    for entry in entries {
+        let entry = entry.map_err(at(folder))?;
+        let path = entry.path();
+        let is_file = entry.file_type().map_err(at(&path))?.is_file();
+        let name = entry.file_name();
+        let name = name.to_str().unwrap_or_default();
+        let of_temporary = name
+            .strip_prefix('.')
+            .and_then(|name| name.strip_suffix(".tmp"));
+        if is_file && is_our_name(of_temporary.unwrap_or(name)) {
+            fs::remove_file(&path).map_err(at(&path))?;
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::results::checkpoint::tests::{body, meta};
+    use crate::results::scratch::Scratch;
+
+    fn everything(folder: &Folder) {
+        for path in [
+            folder.summary(),
+            folder.report(),
+            folder.case(),
+            folder.completed_case(),
+            folder.convergence(),
+            folder.curves().join("a.csv"),
+            folder.monitors().join("b.csv"),
+            folder.monitors().join(".b.csv.tmp"),
+            folder.sections().join("c.csv"),
+            folder.figures().join("d.svg"),
+            folder.figures().join("d.png"),
+            folder.paraview().join("particles.pvd"),
+            folder.paraview().join("particles_0001.vtu"),
+            folder.paraview().join(".particles_0002.vtu.tmp"),
+            folder.paraview().join("grid.pvd"),
+            folder.paraview().join("grid_12345.vtu"),
+        ] {
+            fs::write(path, "x").unwrap();
+        }
+        let states = [("current", &body(3))];
+        checkpoint::write(&folder.checkpoint(), "load-1", &states, &meta(), 1).unwrap();
+        checkpoint::write(folder.root(), LAST_CONVERGED, &states, &meta(), 1).unwrap();
+    }
+
+    fn files(folder: &Path) -> Vec<PathBuf> {
+        let mut found = Vec::new();
+        for entry in fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                found.extend(files(&path));
+            } else {
+                found.push(path);
+            }
+        }
+        found.sort();
+        found
+    }
+
+    #[test]
+    fn a_new_folder_is_laid_out() {
+        let scratch = Scratch::new();
+        let root = scratch.path().join("deep/results");
+        let folder = Folder::afresh(&root).unwrap();
+        assert_eq!(
+            scratch.names("deep/results"),
+            [
+                ".igimp",
+                "checkpoint",
+                "curves",
+                "figures",
+                "monitors",
+                "paraview",
+                "sections"
+            ]
+        );
+        assert_eq!(folder.root(), root);
+        assert!(Folder::open(&root).is_ok());
+    }
+
+    /// GOAL: a further run removes what the one before wrote and nothing of the user's.
+    #[test]
+    fn only_our_files_are_cleared() {
+        let scratch = Scratch::new();
+        let root = scratch.path().join("results");
+        let folder = Folder::afresh(&root).unwrap();
+        everything(&folder);
+        let notes = [
+            folder.root().join("notes.txt"),
+            folder.root().join("data/a.csv"),
+            folder.curves().join("plot.py"),
+            folder.figures().join("paper.pdf"),
+            folder.paraview().join("view.pvsm"),
+            folder.paraview().join("particles_mine.vtu"),
+            folder.paraview().join("other.pvd"),
+            folder.checkpoint().join("mine/x.npy"),
+        ];
+        for path in &notes {
+            fs::create_dir_all(path.parent().unwrap()).unwrap();
+            fs::write(path, "the user's").unwrap();
+        }
+        assert_eq!(Folder::afresh(&root).unwrap(), folder);
+        let mut expected = notes.to_vec();
+        expected.extend([folder.root().join(MARKER), folder.case()]);
+        expected.sort();
+        assert_eq!(files(&root), expected);
+    }
+
+    #[test]
+    fn a_resumed_run_finds_everything() {
+        let scratch = Scratch::new();
+        let folder = Folder::afresh(scratch.path()).unwrap();
+        everything(&folder);
+        let before = files(scratch.path());
+        assert_eq!(Folder::open(scratch.path()).unwrap(), folder);
+        assert_eq!(files(scratch.path()), before);
+    }
+
+    #[test]
+    fn the_folder_of_somebody_else_is_refused() {
+        let scratch = Scratch::new();
+        fs::write(scratch.path().join("case.toml"), "the user's").unwrap();
+        fs::write(scratch.path().join("summary.json"), r#"{"program": "x"}"#).unwrap();
+        let error = Folder::afresh(scratch.path()).unwrap_err();
+        insta::assert_snapshot!(
+            scratch.hide(&error),
+            @"DIR is not empty and was not written by igimp; choose another folder for the results"
+        );
+        let error = Folder::open(scratch.path()).unwrap_err();
+        insta::assert_snapshot!(scratch.hide(&error), @"DIR holds no results of igimp");
+        assert_eq!(scratch.names(""), ["case.toml", "summary.json"]);
+        let file = scratch.path().join("case.toml");
+        let error = Folder::afresh(&file).unwrap_err();
+        insta::assert_snapshot!(scratch.hide(&error), @"cannot access DIR/case.toml");
+    }
+
+    #[test]
+    fn results_without_a_marker_are_known_by_summary_or_checkpoint() {
+        let scratch = Scratch::new();
+        let states = [("current", &body(2))];
+        checkpoint::write(
+            &scratch.path().join("a/checkpoint"),
+            "k0",
+            &states,
+            &meta(),
+            1,
+        )
+        .unwrap();
+        fs::create_dir(scratch.path().join("b")).unwrap();
+        fs::write(
+            scratch.path().join("b/summary.json"),
+            r#"{"program": "igimp 0.1.0"}"#,
+        )
+        .unwrap();
+        for name in ["a", "b"] {
+            Folder::afresh(&scratch.path().join(name)).unwrap();
+            assert!(scratch.names(&format!("{name}/checkpoint")).is_empty());
+        }
+    }
+
+    #[test]
+    fn names_become_file_names() {
+        for (name, expected) in [
+            ("load", "load"),
+            ("run out", "run-out"),
+            ("../x/", "x"),
+            ("a--b", "a-b"),
+            ("c_u (kPa)", "c_u-kPa"),
+            ("", "unnamed"),
+            ("..", "unnamed"),
+        ] {
+            assert_eq!(file_name(name), expected);
+        }
+    }
+}

@@ -1,0 +1,15 @@
+//! The results folder: its layout, and the files in it for people, ParaView, numpy and the next
+//! run.
+
+pub mod atomic;
+pub mod checkpoint;
+pub mod folder;
+pub mod npy;
+pub mod particles;
+pub mod pvd;
+pub mod regime;
+pub mod rows;
+pub mod vtu;
+
+#[cfg(test)]
+mod scratch;
