@@ -10,6 +10,7 @@ pub mod footing;
 pub mod measure;
 pub mod mohr_coulomb_slope;
 pub mod polygon;
+pub mod results;
 pub mod run;
 pub mod safety;
 pub mod seed;

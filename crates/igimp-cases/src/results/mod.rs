@@ -1,0 +1,3 @@
+//! What a run leaves behind: fields, pictures and the report.
+
+pub mod fields;
