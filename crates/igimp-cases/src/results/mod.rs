@@ -1,3 +1,4 @@
 //! What a run leaves behind: fields, pictures and the report.
 
 pub mod fields;
+pub mod pictures;
