@@ -9,6 +9,13 @@ use crate::principal::{Principal, Tensor};
 /// More sweeps than any symmetric 3×3 tensor needs.
 const SWEEPS: usize = 12;
 
+/// Principal values of a symmetric tensor, in no particular order.
+///
+/// `D = 2` is plane strain and reads xx, yy, xy and zz; `D = 3` reads the upper triangle.
+pub fn principal_values<const D: usize>(tensor: &Tensor) -> Principal {
+    principal_axes::<D>(tensor).0
+}
+
 /// Principal values and the axes: `frame[a]` is the unit vector of value `a`.
 ///
 /// `D = 2` reads the components xx, yy, xy and zz, and the last axis is z; `D = 3` reads the

@@ -47,6 +47,11 @@ impl ConstitutiveModel for HenckyElastic {
         self.elasticity.young()
     }
 
+    /// Always 0.
+    fn utilisation(&self, _tau: &Principal, _history: &History) -> f64 {
+        0.0
+    }
+
     fn has_symmetric_tangent(&self) -> bool {
         true
     }

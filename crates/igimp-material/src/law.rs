@@ -122,6 +122,11 @@ pub trait ConstitutiveModel: Send + Sync + Debug {
     /// difference of. A state with f ≤ 1e-12 `stress_scale` counts as on the surface.
     fn stress_scale(&self, tau: &Principal) -> f64;
 
+    /// The share of the shear strength that τ mobilises \[-\]: 0 without shear stress and for a law
+    /// without a yield surface, 1 on the surface of shear and at an apex, above 1 beyond it. A
+    /// limit on tension plays no part. Each law states the ratio.
+    fn utilisation(&self, tau: &Principal, history: &History) -> f64;
+
     /// Whether consistent tangents are symmetric, which is so when the flow is associated.
     fn has_symmetric_tangent(&self) -> bool;
 
@@ -136,6 +141,17 @@ pub trait ConstitutiveModel: Send + Sync + Debug {
 
 /// Share of [`ConstitutiveModel::stress_scale`] by which f may exceed zero on the surface.
 pub(crate) const ON_SURFACE: f64 = 1e-12;
+
+/// The ratio of an acting shear stress to its strength, 1 where they differ by no more than a state
+/// on the surface may, and where there is no strength left.
+pub(crate) fn mobilised(acting: f64, strength: f64, stress_scale: f64) -> f64 {
+    let round_off = 2.0 * ON_SURFACE * stress_scale;
+    if (acting - strength).abs() <= round_off || strength <= 0.0 {
+        1.0
+    } else {
+        acting / strength
+    }
+}
 
 /// The elastic stress of a trial strain.
 pub(crate) fn trial_stress(

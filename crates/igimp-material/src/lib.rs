@@ -67,6 +67,7 @@ mod surface;
 mod tresca;
 mod von_mises;
 
+pub use eigen::principal_values;
 pub use elasticity::Elasticity;
 pub use error::MaterialError;
 pub use hencky::HenckyElastic;

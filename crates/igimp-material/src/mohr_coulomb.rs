@@ -192,6 +192,13 @@ impl ConstitutiveModel for MohrCoulomb {
         self.pyramid.stress_scale(tau)
     }
 
+    /// $`(\sigma_1 - \sigma_3) / (2c\cos\varphi - (\sigma_1 + \sigma_3)\sin\varphi)`$, the ratio of
+    /// the radii of two Mohr circles with one centre; 1 at the apex and beyond, where the
+    /// denominator is not positive.
+    fn utilisation(&self, tau: &Principal, _history: &History) -> f64 {
+        self.pyramid.utilisation(tau)
+    }
+
     #[expect(
         clippy::float_cmp,
         reason = "flow is associated only where the angles are the same"

@@ -6,7 +6,7 @@
 //! tension planes are $`\sigma_i \le \sigma_t`$ with associated flow.
 
 use crate::koiter::Plane;
-use crate::law::{ON_SURFACE, trial_stress};
+use crate::law::{ON_SURFACE, mobilised, trial_stress};
 use crate::principal::{Principal, descending, sorted, unsorted};
 use crate::surface::PlanarSurface;
 use crate::{Elasticity, History, MaterialError, Regime, ReturnMap};
@@ -38,6 +38,9 @@ pub(crate) struct Strength {
 pub(crate) struct Pyramid {
     elasticity: Elasticity,
     surface: PlanarSurface,
+    /// 2 c cos φ \[stress\].
+    shear: f64,
+    sin_friction: f64,
 }
 
 impl Pyramid {
@@ -66,6 +69,8 @@ impl Pyramid {
         Self {
             elasticity,
             surface,
+            shear: strength.shear,
+            sin_friction: strength.sin_friction,
         }
     }
 
@@ -79,6 +84,13 @@ impl Pyramid {
 
     pub(crate) fn stress_scale(&self, tau: &Principal) -> f64 {
         self.surface.stress_scale(tau)
+    }
+
+    /// Share of the shear strength that is mobilised \[-\].
+    pub(crate) fn utilisation(&self, tau: &Principal) -> f64 {
+        let [major, _, minor] = sorted(tau, &descending(tau));
+        let strength = self.shear - (major + minor) * self.sin_friction;
+        mobilised(major - minor, strength, self.stress_scale(tau))
     }
 
     /// Sorts, returns, and undoes the sorting.

@@ -69,6 +69,11 @@ impl ConstitutiveModel for Tresca {
         self.pyramid.stress_scale(tau)
     }
 
+    /// $`(\sigma_1 - \sigma_3) / (2 c_u)`$.
+    fn utilisation(&self, tau: &Principal, _history: &History) -> f64 {
+        self.pyramid.utilisation(tau)
+    }
+
     fn has_symmetric_tangent(&self) -> bool {
         true
     }

@@ -5,7 +5,7 @@
 use std::sync::Arc;
 
 use crate::error::positive;
-use crate::law::{ON_SURFACE, trial_stress};
+use crate::law::{ON_SURFACE, mobilised, trial_stress};
 use crate::principal::{deviator, deviator_norm, largest, mean};
 use crate::{ConstitutiveModel, Elasticity, History, MaterialError, Principal, Regime, ReturnMap};
 
@@ -107,6 +107,12 @@ impl ConstitutiveModel for VonMises {
     /// $`q_y`$ plus the largest principal stress in magnitude.
     fn stress_scale(&self, tau: &Principal) -> f64 {
         self.yield_stress + largest(tau)
+    }
+
+    /// $`q / q_y`$.
+    fn utilisation(&self, tau: &Principal, _history: &History) -> f64 {
+        let q = deviator_norm(&deviator(tau));
+        mobilised(q, self.yield_stress, self.stress_scale(tau))
     }
 
     fn has_symmetric_tangent(&self) -> bool {

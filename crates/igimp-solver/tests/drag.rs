@@ -37,7 +37,7 @@ fn a_supported_block_comes_to_rest_as_without_drag() {
     let mut creeping = still;
     conditions.loads.drag = 1.0;
     let mut shares = Vec::new();
-    for _ in 0..40 {
+    for _ in 0..6 {
         let (report, _) = solve(&mut creeping, &method, &conditions, &settings).unwrap();
         shares.push(report.drag_share);
     }
@@ -45,7 +45,7 @@ fn a_supported_block_comes_to_rest_as_without_drag() {
         shares.windows(2).all(|pair| pair[1] < pair[0]),
         "{shares:?}"
     );
-    assert!(shares[39] < 1e-3 * shares[0], "{shares:?}");
+    assert!(shares[5] < 1e-5 * shares[0], "{shares:?}");
     let stress =
         |body: &igimp_solver::Body<2>, particle: usize| body.particles.sigma[particle][1][1];
     for particle in 0..at_once.particles.len() {

@@ -14,6 +14,10 @@ impl Colour {
     pub const BLACK: Self = Self([0, 0, 0]);
     /// White.
     pub const WHITE: Self = Self([255, 255, 255]);
+    /// The colour of a computed curve.
+    pub const CURVE: Self = Self([0, 114, 178]);
+    /// The colour of what failed.
+    pub const FAILURE: Self = Self([213, 94, 0]);
     /// The grey of domains without a value.
     pub const NO_VALUE: Self = Self([168, 168, 168]);
 
@@ -46,6 +50,21 @@ impl Colour {
             Colour([130, 150, 170]),
             Colour([225, 170, 90]),
             Colour([110, 180, 150]),
+        ];
+        CYCLE[index % CYCLE.len()]
+    }
+
+    /// The `index`-th colour of the cycle for kinds of things: pale, so that lines over it are seen.
+    pub(super) fn of_kind(index: usize) -> Self {
+        const CYCLE: [Colour; 8] = [
+            Colour([229, 206, 160]),
+            Colour([176, 199, 220]),
+            Colour([193, 213, 167]),
+            Colour([224, 184, 178]),
+            Colour([204, 190, 222]),
+            Colour([236, 224, 143]),
+            Colour([170, 212, 205]),
+            Colour([198, 198, 198]),
         ];
         CYCLE[index % CYCLE.len()]
     }

@@ -3,10 +3,12 @@
 use super::axis;
 use super::colour::Colour;
 use super::colour_bar::{ColourScale, LEVELS};
-use super::drawing::{Contour, Drawing, Item, Shape, Stroke};
-use super::field::{FieldPlot, Outline, OutlineStyle, Polygon};
-use super::frame::Frame;
-use super::geometry::Point;
+use super::drawing::{Anchor, Contour, Drawing};
+use super::field::{FieldPlot, Polygon};
+use super::font;
+use super::frame::{Frame, TICK};
+use super::geometry::{Point, Rect};
+use super::outline;
 use super::ticks::grouped;
 
 /// By how much \[pt\] domains are drawn larger to every side, to hide seams between neighbours.
@@ -72,9 +74,15 @@ impl Layer<'_> {
         // One shape per colour keeps the files small; grey goes first.
         let mut shapes: Vec<Vec<Contour>> = Vec::new();
         shapes.resize_with(LEVELS + 1, Vec::new);
+        let kinds = !self.plot.key.is_empty();
         for (polygon, &value) in self.plot.domains.iter().zip(&self.plot.values) {
             if has_place(polygon) {
-                let place = scale.level(value).map_or(0, |level| level + 1);
+                let level = if kinds {
+                    (value >= 0.0).then_some(value as usize % LEVELS)
+                } else {
+                    scale.level(value)
+                };
+                let place = level.map_or(0, |level| level + 1);
                 shapes[place].extend(self.contour(polygon));
             }
         }
@@ -83,13 +91,19 @@ impl Layer<'_> {
             .enumerate()
             .filter(|(_, c)| !c.is_empty())
         {
-            let colour = place
-                .checked_sub(1)
-                .map_or(Colour::NO_VALUE, |level| scale.colour(level));
+            let colour = match place.checked_sub(1) {
+                None => Colour::NO_VALUE,
+                Some(level) if kinds => Colour::of_kind(level),
+                Some(level) => scale.colour(level),
+            };
             drawing.fill(contours, colour, 1.0);
         }
         for outline in &self.plot.outlines {
-            self.draw_outline(drawing, outline);
+            let points = self.places(&outline.points);
+            outline::draw(drawing, &self.frame.area, outline.style, &points);
+        }
+        for (at, label) in &self.plot.labels {
+            self.draw_label(drawing, *at, label);
         }
     }
 
@@ -116,32 +130,24 @@ impl Layer<'_> {
         points.iter().filter_map(place).collect()
     }
 
-    fn draw_outline(&self, drawing: &mut Drawing, outline: &Outline) {
-        let points = self.places(&outline.points);
+    /// A label beside its point, on a pale ground.
+    fn draw_label(&self, drawing: &mut Drawing, at: [f64; 2], label: &str) {
         let area = self.frame.area;
-        let lines = area.clip_polyline(&points);
-        match outline.style {
-            OutlineStyle::Edge => drawing.stroke(lines, Stroke::solid(Colour::INK, 1.2)),
-            OutlineStyle::Grid => drawing.stroke(lines, Stroke::solid(Colour::FAINT_INK, 0.3)),
-            OutlineStyle::Section => {
-                // White below black stays visible on every colour.
-                drawing.stroke(lines.clone(), Stroke::solid(Colour::WHITE, 2.4));
-                let dash: &[f64] = &[6.0, 3.5];
-                drawing.stroke(
-                    lines,
-                    Stroke {
-                        colour: Colour::INK,
-                        width: 1.3,
-                        dash,
-                    },
-                );
-            }
-            OutlineStyle::Block => drawing.items.push(Item::Shape(Shape {
-                contours: vec![Contour::Closed(area.clip_polygon(&points))],
-                fill: Some((Colour::BLOCK, 1.0)),
-                stroke: Some(Stroke::solid(Colour::INK, 1.0)),
-            })),
-        }
+        let Some(&[x, y]) = self.places(&[at]).first().filter(|&&at| area.contains(at)) else {
+            return;
+        };
+        let (width, away) = (font::width(label, TICK), 6.0);
+        let left = if x + away + width <= area.right {
+            x + away
+        } else {
+            x - away - width
+        };
+        let above = y - away - TICK;
+        let top = if above >= area.top { above } else { y + away };
+        let ground = Rect::new(left - 2.0, top, width + 4.0, TICK + 2.0);
+        drawing.fill(vec![Contour::Closed(ground.corners())], Colour::WHITE, 0.7);
+        let baseline = [left, top + TICK - 0.5];
+        drawing.text(baseline, Anchor::Start, TICK, Colour::INK, label);
     }
 }
 

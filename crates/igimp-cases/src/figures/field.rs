@@ -21,6 +21,14 @@ pub enum OutlineStyle {
     Section,
     /// A closed shape filled with grey: a rigid footing.
     Block,
+    /// A firm line with a hatch to its right, seen along it: a side that is held in both directions.
+    Fixed,
+    /// A line with rollers to its right, seen along it: a side that is held across it.
+    Roller,
+    /// An arrow from the last point but one to the last: a load.
+    Arrow,
+    /// A dot at every point: a place that is watched.
+    Point,
 }
 
 /// A line over the field.
@@ -30,6 +38,24 @@ pub struct Outline {
     pub points: Vec<[f64; 2]>,
     /// What the line stands for.
     pub style: OutlineStyle,
+}
+
+/// What an entry of a key shows before its name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum KeySample {
+    /// The colour of a value.
+    Value(usize),
+    /// A line or symbol.
+    Outline(OutlineStyle),
+}
+
+/// An entry of a key.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct KeyEntry {
+    /// Colour or symbol.
+    pub sample: KeySample,
+    /// Name.
+    pub label: String,
 }
 
 /// A field of values on particle domains, with equal scales in x and y and a colour bar.
@@ -68,6 +94,11 @@ pub struct FieldPlot {
     pub map: ColourMap,
     /// Lines over the field.
     pub outlines: Vec<Outline>,
+    /// Words beside points (x, y) of the field.
+    pub labels: Vec<([f64; 2], String)>,
+    /// Names of colours and symbols. With a key the values 0, 1, 2 … stand for kinds of things, and
+    /// the key below the plot takes the place of the colour bar.
+    pub key: Vec<KeyEntry>,
     /// Name and unit of the x axis.
     pub x_label: String,
     /// Name and unit of the y axis.
@@ -89,6 +120,8 @@ impl Default for FieldPlot {
             range: None,
             map: ColourMap::default(),
             outlines: Vec::new(),
+            labels: Vec::new(),
+            key: Vec::new(),
             x_label: "x [m]".to_owned(),
             y_label: "y [m]".to_owned(),
             x_range: None,

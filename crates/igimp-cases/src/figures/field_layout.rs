@@ -125,6 +125,11 @@ impl<'a> Layout<'a> {
         });
     }
 
+    /// The plot whose labels, bar or key hold for all.
+    pub(super) fn first(&self) -> &'a FieldPlot {
+        &self.sheet.plots[0]
+    }
+
     fn rows(&self) -> usize {
         self.sheet.plots.len().div_ceil(self.sheet.columns)
     }

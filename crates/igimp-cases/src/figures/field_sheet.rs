@@ -10,6 +10,7 @@ use super::field::FieldPlot;
 use super::field_layout::Layout;
 use super::font::{self, CAP_HEIGHT, LINE_HEIGHT};
 use super::frame::{self, GAP, LABEL, MARGIN, NOTE, TITLE};
+use super::key::Key;
 
 /// Plots lower than this \[pt\] have their colour bar below.
 const LEAST_BAR: f64 = 150.0;
@@ -39,10 +40,8 @@ pub(super) fn draw(sheet: &Sheet<'_>) -> Result<Drawing, FigureError> {
         .collect();
     let given = union(sheet.plots.iter().map(|plot| plot.range));
     let scale = ColourScale::new(first.map, given, &values);
-    let bar = values
-        .iter()
-        .any(|&value| axis::drawable(value))
-        .then_some(scale);
+    let drawable = values.iter().any(|&value| axis::drawable(value));
+    let bar = (drawable && first.key.is_empty()).then_some(scale);
     let tally = sheet
         .plots
         .iter()
@@ -51,7 +50,7 @@ pub(super) fn draw(sheet: &Sheet<'_>) -> Result<Drawing, FigureError> {
 
     let window = [window(sheet.plots, 0), window(sheet.plots, 1)];
     let mut layout = Layout::fit(sheet, window, bar, true);
-    if layout.rows_height() < LEAST_BAR {
+    if bar.is_some() && layout.rows_height() < LEAST_BAR {
         layout = Layout::fit(sheet, window, bar, false);
     }
     let mut drawing = Drawing::new(sheet.title);
@@ -144,6 +143,11 @@ fn draw_texts(layout: &Layout<'_>, drawing: &mut Drawing, tally: &Tally) {
     let mut bottom = below + frame::lines_height(&label, LABEL);
     if let Some(bar) = layout.bar.as_ref().filter(|bar| !bar.upright) {
         bottom = layout.bar_top() + bar.depth();
+    }
+    let key = Key::new(&layout.first().key, areas.width());
+    if key.height() > 0.0 {
+        key.draw(drawing, [areas.left, bottom + 0.5 * GAP]);
+        bottom += 0.5 * GAP + key.height();
     }
     drawing.height = bottom + MARGIN - 2.0;
     if let Some(note) = tally.note() {

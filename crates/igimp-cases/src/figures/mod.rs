@@ -34,8 +34,10 @@ mod field_sheet;
 mod font;
 mod frame;
 mod geometry;
+mod key;
 mod legend;
 mod marker;
+mod outline;
 mod raster;
 mod svg;
 #[cfg(test)]
@@ -47,4 +49,4 @@ pub use colour::{Colour, ColourMap};
 pub use curve::{Band, CurvePlot, LineStyle, ReferenceLine, ReferenceValue, Series, SeriesStyle};
 pub use drawing::{Drawing, PIXELS_PER_POINT};
 pub use error::FigureError;
-pub use field::{FieldPanel, FieldPlot, Outline, OutlineStyle, Polygon};
+pub use field::{FieldPanel, FieldPlot, KeyEntry, KeySample, Outline, OutlineStyle, Polygon};

@@ -3,9 +3,11 @@
 
 pub mod atomic;
 pub mod checkpoint;
+pub mod fields;
 pub mod folder;
+pub mod frames;
 pub mod npy;
-pub mod particles;
+pub mod pictures;
 pub mod pvd;
 pub mod regime;
 pub mod rows;

@@ -8,6 +8,7 @@
 //! | `lifts` | spatial tangent against differences, rotation, plane strain against 3D |
 //! | `close_eigenvalues` | the same where principal values are equal or nearly so |
 //! | `reduction` | strength reduction and limits between laws |
+//! | `utilisation` | the share of the strength that a stress mobilises |
 //! | `refusals` | what is not accepted, and the words for it |
 //!
 //! A new law joins by its lines in `catalogue`.
@@ -22,3 +23,4 @@ mod refusals;
 mod returns;
 mod tangents;
 mod tensors;
+mod utilisation;

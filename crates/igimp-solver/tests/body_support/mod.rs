@@ -281,6 +281,10 @@ impl ConstitutiveModel for Poisoned {
         YOUNG
     }
 
+    fn utilisation(&self, _tau: &Principal, _history: &History) -> f64 {
+        0.0
+    }
+
     fn has_symmetric_tangent(&self) -> bool {
         true
     }

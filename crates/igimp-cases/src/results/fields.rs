@@ -1,0 +1,341 @@
+//! The fields of a case on the particles of a body, in the printed sign: compression positive.
+
+use igimp_assembly::{Particles, SharedLaw};
+use igimp_material::{Tensor, principal_values};
+
+use crate::case::Field;
+use crate::measure::{displacement_norm, eps_p_eq, sigma};
+
+/// One value per particle, in SI units; stresses compression positive.
+///
+/// `laws` are those that the particles refer to by index; the share of mobilised strength refers to
+/// their strength. It is not a number for a particle without a law or without a stretch.
+pub fn values(field: Field, particles: &Particles<2>, laws: &[SharedLaw]) -> Vec<f64> {
+    let printed = |row, column| {
+        sigma(particles, row, column)
+            .iter()
+            // Not `-value`: zero stays without a sign.
+            .map(|value| 0.0 - value)
+            .collect()
+    };
+    let component = |of: &[[f64; 2]], axis: usize| of.iter().map(|vector| vector[axis]).collect();
+    match field {
+        Field::Displacement => displacement_norm(particles),
+        Field::DisplacementX => component(&particles.displacement, 0),
+        Field::DisplacementY => component(&particles.displacement, 1),
+        Field::X => component(&particles.x, 0),
+        Field::Y => component(&particles.x, 1),
+        Field::SigmaXx => printed(0, 0),
+        Field::SigmaYy => printed(1, 1),
+        Field::SigmaZz => printed(2, 2),
+        Field::TauXy => printed(0, 1),
+        Field::P => particles.sigma.iter().map(mean_pressure).collect(),
+        Field::Q => particles.sigma.iter().map(deviatoric_stress).collect(),
+        Field::PlasticStrain => eps_p_eq(particles),
+        Field::Utilisation => (0..particles.len())
+            .map(|particle| utilisation(particles, particle, laws).unwrap_or(f64::NAN))
+            .collect(),
+    }
+}
+
+/// p = −tr σ/3.
+fn mean_pressure(sigma: &Tensor) -> f64 {
+    0.0 - (sigma[0][0] + sigma[1][1] + sigma[2][2]) / 3.0
+}
+
+/// q = √(3/2)‖s‖.
+fn deviatoric_stress(sigma: &Tensor) -> f64 {
+    let mean = -mean_pressure(sigma);
+    let normal: f64 = (0..3).map(|a| (sigma[a][a] - mean).powi(2)).sum();
+    let shear = sigma[0][1].powi(2) + sigma[0][2].powi(2) + sigma[1][2].powi(2);
+    (1.5 * (normal + 2.0 * shear)).sqrt()
+}
+
+/// Share of the shear strength of a particle's law that its stress mobilises.
+///
+/// The stress is that of the law, C ½ ln b_e: Kirchhoff stress with finite strain, Cauchy stress
+/// with small strain.
+fn utilisation(particles: &Particles<2>, particle: usize, laws: &[SharedLaw]) -> Option<f64> {
+    let law = laws.get(particles.law[particle])?;
+    let eps_e = principal_values::<2>(&particles.b_e[particle]).map(|b| 0.5 * b.ln());
+    let tau = law.elasticity().stress(&eps_e);
+    Some(law.utilisation(&tau, &particles.history[particle]))
+}
+
+/// What kind of number a field is: fields of a kind share an axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Dimension {
+    /// A displacement \[m\].
+    Displacement,
+    /// A position \[m\].
+    Position,
+    /// A stress \[Pa\].
+    Stress,
+    /// A strain \[-\].
+    Strain,
+    /// A share \[-\].
+    Share,
+}
+
+/// The dimension of a field.
+pub fn dimension(field: Field) -> Dimension {
+    match field {
+        Field::Displacement | Field::DisplacementX | Field::DisplacementY => {
+            Dimension::Displacement
+        }
+        Field::X | Field::Y => Dimension::Position,
+        Field::SigmaXx | Field::SigmaYy | Field::SigmaZz | Field::TauXy | Field::P | Field::Q => {
+            Dimension::Stress
+        }
+        Field::PlasticStrain => Dimension::Strain,
+        Field::Utilisation => Dimension::Share,
+    }
+}
+
+/// The name of a field in case files.
+pub fn name(field: Field) -> &'static str {
+    match field {
+        Field::Displacement => "displacement",
+        Field::DisplacementX => "displacement_x",
+        Field::DisplacementY => "displacement_y",
+        Field::X => "x",
+        Field::Y => "y",
+        Field::SigmaXx => "sigma_xx",
+        Field::SigmaYy => "sigma_yy",
+        Field::SigmaZz => "sigma_zz",
+        Field::TauXy => "tau_xy",
+        Field::P => "p",
+        Field::Q => "q",
+        Field::PlasticStrain => "plastic_strain",
+        Field::Utilisation => "utilisation",
+    }
+}
+
+/// The header of a column of a table, such as `sigma_yy_[Pa]_compression_+`.
+pub fn header(field: Field) -> String {
+    let name = name(field);
+    match dimension(field) {
+        Dimension::Displacement | Dimension::Position => format!("{name}_[m]"),
+        Dimension::Stress if field == Field::Q => format!("{name}_[Pa]"),
+        Dimension::Stress => format!("{name}_[Pa]_compression_+"),
+        Dimension::Strain | Dimension::Share => format!("{name}_[-]"),
+    }
+}
+
+/// The unit of a figure: SI values are divided by `divide_by`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scale {
+    /// What SI values are divided by.
+    pub divide_by: f64,
+    /// The unit after division.
+    pub unit: &'static str,
+}
+
+impl Scale {
+    /// The unit that keeps the largest of the values (not counting those that are not finite)
+    /// within about 1 and 1000: Pa, kPa or MPa for stresses, mm or m for displacements.
+    pub fn of(dimension: Dimension, values: impl IntoIterator<Item = f64>) -> Self {
+        let largest = values
+            .into_iter()
+            .filter(|value| value.is_finite())
+            .fold(0.0_f64, |most, value| most.max(value.abs()));
+        let (divide_by, unit) = match dimension {
+            Dimension::Displacement if largest > 0.0 && largest < 0.1 => (1e-3, "mm"),
+            Dimension::Displacement | Dimension::Position => (1.0, "m"),
+            Dimension::Stress if largest >= 2e6 => (1e6, "MPa"),
+            Dimension::Stress if largest >= 500.0 || largest == 0.0 => (1e3, "kPa"),
+            Dimension::Stress => (1.0, "Pa"),
+            Dimension::Strain | Dimension::Share => (1.0, "−"),
+        };
+        Self { divide_by, unit }
+    }
+
+    /// The values in this unit.
+    pub fn apply(&self, values: &[f64]) -> Vec<f64> {
+        values.iter().map(|value| value / self.divide_by).collect()
+    }
+}
+
+/// What a field is, in words and signs, with the index marks of [`figures`](crate::figures).
+pub fn title(field: Field) -> &'static str {
+    match field {
+        Field::Displacement => "displacement |u|",
+        Field::DisplacementX => "horizontal displacement u_{x}",
+        Field::DisplacementY => "vertical displacement u_{y}",
+        Field::X => "position x",
+        Field::Y => "position y",
+        Field::SigmaXx => "horizontal stress −σ_{xx}",
+        Field::SigmaYy => "vertical stress −σ_{yy}",
+        Field::SigmaZz => "out-of-plane stress −σ_{zz}",
+        Field::TauXy => "shear stress −τ_{xy}",
+        Field::P => "mean pressure p",
+        Field::Q => "deviatoric stress q",
+        Field::PlasticStrain => "plastic strain invariant ε_{p}",
+        Field::Utilisation => "share of the shear strength",
+    }
+}
+
+/// The label of an axis or a colour bar, such as
+/// "vertical stress −σ_{yy} \[kPa\], compression positive".
+pub fn label(field: Field, scale: Scale) -> String {
+    let sign = match field {
+        Field::SigmaXx | Field::SigmaYy | Field::SigmaZz | Field::P => ", compression positive",
+        _ => "",
+    };
+    format!("{} [{}]{sign}", title(field), scale.unit)
+}
+
+/// A text of figures without its marks for indices and powers, for prose.
+pub fn plain(text: &str) -> String {
+    text.replace("_{", "").replace("^{", "").replace('}', "")
+}
+
+/// Every field.
+pub const ALL: [Field; 13] = [
+    Field::Displacement,
+    Field::DisplacementX,
+    Field::DisplacementY,
+    Field::X,
+    Field::Y,
+    Field::SigmaXx,
+    Field::SigmaYy,
+    Field::SigmaZz,
+    Field::TauXy,
+    Field::P,
+    Field::Q,
+    Field::PlasticStrain,
+    Field::Utilisation,
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::case::{Material, Strength};
+    use igimp_assembly::{ParticleFields, ParticleSeed};
+    use igimp_material::History;
+
+    fn law(strength: Strength) -> SharedLaw {
+        let material = Material {
+            name: "soil".into(),
+            unit_weight: 20e3,
+            young: 1e7,
+            poisson: 0.3,
+            strength,
+            k0: None,
+        };
+        material.law().unwrap()
+    }
+
+    /// Two particles: one in compression and shear, one beyond the list of laws.
+    fn particles(laws: &[SharedLaw]) -> Particles<2> {
+        let seed = ParticleSeed {
+            x: [1.0, 2.0],
+            half_length: [0.5; 2],
+            volume: 1.0,
+            density: 2000.0,
+            law: 0,
+        };
+        let other = ParticleSeed {
+            x: [2.0, 2.0],
+            law: 7,
+            ..seed
+        };
+        let start = Particles::new(&[seed, other]).unwrap();
+        let mut fields: ParticleFields<2> = (*start).clone();
+        let tau = [-60e3, -100e3, -40e3];
+        let eps_e = laws[0].elasticity().strain(&tau);
+        for a in 0..3 {
+            fields.b_e[0][a][a] = (2.0 * eps_e[a]).exp();
+            fields.sigma[0][a][a] = tau[a];
+        }
+        fields.sigma[0][0][1] = 15e3;
+        fields.sigma[0][1][0] = 15e3;
+        fields.displacement[0] = [3.0, -4.0];
+        fields.history[0] = History { eps_p_eq: 0.2 };
+        Particles::from_fields(fields).unwrap()
+    }
+
+    #[test]
+    fn stress_is_printed_with_compression_positive() {
+        let laws = [law(Strength::Tresca {
+            undrained_strength: 40e3,
+        })];
+        let particles = particles(&laws);
+        let first = |field| values(field, &particles, &laws)[0];
+        let cases = [
+            (Field::Displacement, 5.0),
+            (Field::DisplacementX, 3.0),
+            (Field::DisplacementY, -4.0),
+            (Field::X, 1.0),
+            (Field::Y, 2.0),
+            (Field::SigmaXx, 60e3),
+            (Field::SigmaYy, 100e3),
+            (Field::SigmaZz, 40e3),
+            (Field::TauXy, -15e3),
+            (Field::P, 200e3 / 3.0),
+            (Field::Q, (2800e6_f64 + 3.0 * 225e6).sqrt()),
+            (Field::PlasticStrain, 0.2),
+            (Field::Utilisation, 0.75),
+        ];
+        for (field, expected) in cases {
+            let found = first(field);
+            assert!(
+                (found - expected).abs() <= 1e-9 * expected.abs(),
+                "{field:?}: {found} for {expected}"
+            );
+        }
+        assert!(values(Field::SigmaYy, &particles, &laws)[1].is_sign_positive());
+    }
+
+    #[test]
+    fn utilisation_follows_the_law_of_the_particle() {
+        let expected = |strength| {
+            let laws = [law(strength)];
+            values(Field::Utilisation, &particles(&laws), &laws)
+        };
+        assert!(expected(Strength::Elastic)[0].abs() < 1e-15);
+        let share = expected(Strength::VonMises {
+            undrained_strength: 60e3,
+        });
+        assert!((share[0] - (2800e6_f64 / 3.0).sqrt() / 60e3).abs() < 1e-9);
+        assert!(share[1].is_nan(), "the second particle has no law");
+        let friction = 0.5_f64;
+        let share = expected(Strength::MohrCoulomb {
+            cohesion: 5e3,
+            friction_angle: friction,
+            dilation_angle: 0.0,
+            tension_cutoff: None,
+        });
+        let strength = 5e3 * friction.cos() + 70e3 * friction.sin();
+        assert!((share[0] - 30e3 / strength).abs() < 1e-9);
+    }
+
+    #[test]
+    fn every_field_has_its_own_name_and_header() {
+        for (k, &field) in ALL.iter().enumerate() {
+            let other = |other: &&Field| name(**other) == name(field);
+            assert_eq!(ALL.iter().position(|f| other(&f)), Some(k));
+            assert!(header(field).starts_with(name(field)));
+        }
+        assert_eq!(header(Field::SigmaYy), "sigma_yy_[Pa]_compression_+");
+        assert_eq!(header(Field::Displacement), "displacement_[m]");
+        assert_eq!(header(Field::Utilisation), "utilisation_[-]");
+    }
+
+    #[test]
+    fn units_suit_the_largest_value() {
+        let unit = |dimension, value: f64| Scale::of(dimension, [f64::NAN, -value]).unit;
+        let stress = [3.0, 499.0, 2e3, 1.9e6, 3e6, 0.0].map(|v| unit(Dimension::Stress, v));
+        assert_eq!(stress, ["Pa", "Pa", "kPa", "kPa", "MPa", "kPa"]);
+        assert_eq!(unit(Dimension::Displacement, 0.02), "mm");
+        assert_eq!(unit(Dimension::Displacement, 0.2), "m");
+        assert_eq!(unit(Dimension::Displacement, 0.0), "m");
+        let scale = Scale::of(Dimension::Stress, [25e3]);
+        assert_eq!(scale.apply(&[25e3]), [25.0]);
+        assert_eq!(
+            label(Field::SigmaYy, scale),
+            "vertical stress −σ_{yy} [kPa], compression positive"
+        );
+        assert_eq!(plain("−σ_{yy} m^{2}"), "−σyy m2");
+    }
+}

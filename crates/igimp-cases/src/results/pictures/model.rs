@@ -1,0 +1,242 @@
+//! The set-up of a model: materials, grid, supports, loads, sections and monitors.
+
+use std::path::Path;
+
+use super::field::body_outlines;
+use super::write;
+use crate::case::{Case, GridSpec, LoadKind, Side};
+use crate::check::short;
+use crate::error::CaseError;
+use crate::figures::{FieldPlot, KeyEntry, KeySample, Outline, OutlineStyle};
+use crate::polygon::bounding_box;
+use crate::summary::FigureNote;
+
+/// More cells than this in a direction make grey of the grid lines.
+const MOST_LINES: usize = 160;
+/// Share of the larger side of the model that the longest arrows take.
+const ARROW: f64 = 0.075;
+/// Share of the larger side that is left free around the model.
+const AIR: f64 = 0.035;
+
+/// The picture of the model as it is set up.
+///
+/// # Errors
+/// [`CaseError::File`] and [`CaseError::Figure`].
+pub fn model_picture(folder: &Path, case: &Case) -> Result<FigureNote, CaseError> {
+    let plot = plot(case);
+    let grid = &case.grid;
+    let lines = if has_lines(grid) { "" } else { " (not drawn)" };
+    let caption = format!(
+        "The model: {} × {} cells of {} m × {} m{lines}, bodies by material, supports and loads.",
+        grid.cells[0],
+        grid.cells[1],
+        short(grid.cell[0]),
+        short(grid.cell[1]),
+    );
+    write(folder, "model", &plot.draw()?, caption)
+}
+
+fn plot(case: &Case) -> FieldPlot {
+    let mut plot = FieldPlot {
+        title: case.title.clone(),
+        domains: case
+            .bodies
+            .iter()
+            .map(|body| body.polygon.clone())
+            .collect(),
+        values: case
+            .bodies
+            .iter()
+            .map(|body| body.material as f64)
+            .collect(),
+        ..FieldPlot::default()
+    };
+    for (index, material) in case.materials.iter().enumerate() {
+        plot.key.push(KeyEntry {
+            sample: KeySample::Value(index),
+            label: material.name.clone(),
+        });
+    }
+    let size = model_size(case);
+    if has_lines(&case.grid) {
+        plot.outlines.extend(grid_lines(&case.grid));
+    }
+    plot.outlines.extend(body_outlines(case));
+    add_supports(&mut plot, case);
+    let reach = add_loads(&mut plot, case, ARROW * size);
+    for section in &case.sections {
+        plot.outlines.push(Outline {
+            points: vec![section.from, section.to],
+            style: OutlineStyle::Section,
+        });
+        plot.labels.push((section.to, section.name.clone()));
+    }
+    for monitor in &case.monitors {
+        plot.outlines.push(Outline {
+            points: vec![monitor.point],
+            style: OutlineStyle::Point,
+        });
+        plot.labels.push((monitor.point, monitor.name.clone()));
+    }
+    let (lower, upper) = (case.grid.lower, case.grid.upper());
+    let range = |axis: usize| {
+        let low = reach.iter().map(|p| p[axis]).fold(lower[axis], f64::min);
+        let high = reach.iter().map(|p| p[axis]).fold(upper[axis], f64::max);
+        Some((low - AIR * size, high + AIR * size))
+    };
+    (plot.x_range, plot.y_range) = (range(0), range(1));
+    add_symbols_to_key(&mut plot);
+    plot
+}
+
+/// The larger side of grid and bodies.
+fn model_size(case: &Case) -> f64 {
+    let corners: Vec<[f64; 2]> = case.bodies.iter().flat_map(|b| b.polygon.clone()).collect();
+    let (lower, upper) = bounding_box(&corners);
+    let (from, to) = (case.grid.lower, case.grid.upper());
+    let side = |axis: usize| upper[axis].max(to[axis]) - lower[axis].min(from[axis]);
+    side(0).max(side(1))
+}
+
+fn has_lines(grid: &GridSpec) -> bool {
+    grid.cells.iter().all(|&cells| cells <= MOST_LINES)
+}
+
+fn grid_lines(grid: &GridSpec) -> impl Iterator<Item = Outline> {
+    let (grid, upper) = (*grid, grid.upper());
+    let line = move |axis: usize, k: usize| {
+        let at = grid.lower[axis] + k as f64 * grid.cell[axis];
+        let (mut from, mut to) = (grid.lower, upper);
+        (from[axis], to[axis]) = (at, at);
+        Outline {
+            points: vec![from, to],
+            style: OutlineStyle::Grid,
+        }
+    };
+    (0..2).flat_map(move |axis| (0..=grid.cells[axis]).map(move |k| line(axis, k)))
+}
+
+/// Sides counter-clockwise, so that their symbols stand outside; boxes clockwise, symbols within.
+fn add_supports(plot: &mut FieldPlot, case: &Case) {
+    let ([left, bottom], [right, top]) = (case.grid.lower, case.grid.upper());
+    let sides = &case.boundaries;
+    let lines = [
+        (sides.bottom, [left, bottom], [right, bottom]),
+        (sides.right, [right, bottom], [right, top]),
+        (sides.top, [right, top], [left, top]),
+        (sides.left, [left, top], [left, bottom]),
+    ];
+    for (side, from, to) in lines {
+        let style = match side {
+            Side::Free => continue,
+            Side::Roller => OutlineStyle::Roller,
+            Side::Fixed => OutlineStyle::Fixed,
+        };
+        plot.outlines.push(Outline {
+            points: vec![from, to],
+            style,
+        });
+    }
+    for held in &sides.boxes {
+        let style = match held.fix {
+            [true, true] => OutlineStyle::Fixed,
+            [false, false] => continue,
+            _ => OutlineStyle::Roller,
+        };
+        let ([x0, y0], [x1, y1]) = (held.lower, held.upper);
+        plot.outlines.push(Outline {
+            points: vec![[x0, y0], [x0, y1], [x1, y1], [x1, y0], [x0, y0]],
+            style,
+        });
+        plot.labels.push((held.upper, held.name.clone()));
+    }
+}
+
+/// Arrows and blocks of the loads; returns the points that they reach. Traction and forces are
+/// drawn to the scale of the largest of their kind.
+fn add_loads(plot: &mut FieldPlot, case: &Case, length: f64) -> Vec<[f64; 2]> {
+    let norm = |v: [f64; 2]| v[0].hypot(v[1]);
+    let largest = |size: &dyn Fn(&LoadKind) -> f64| {
+        case.loads
+            .iter()
+            .map(|load| size(&load.kind))
+            .fold(0.0, f64::max)
+    };
+    let traction = largest(&|kind| match kind {
+        LoadKind::Pressure { traction, .. } => norm(*traction),
+        _ => 0.0,
+    });
+    let force = largest(&|kind| match kind {
+        LoadKind::Point { force, .. } => norm(*force),
+        _ => 0.0,
+    });
+    let mut reach = Vec::new();
+    let mut arrow = |plot: &mut FieldPlot, to: [f64; 2], along: [f64; 2]| {
+        let from = [to[0] - along[0], to[1] - along[1]];
+        reach.push(from);
+        plot.outlines.push(Outline {
+            points: vec![from, to],
+            style: OutlineStyle::Arrow,
+        });
+        from
+    };
+    for load in &case.loads {
+        let at = match load.kind {
+            LoadKind::RigidFooting { from, to, .. } => {
+                let height = 0.35 * length;
+                let middle = 0.5 * (from[0] + to[0]);
+                plot.outlines.push(Outline {
+                    points: vec![
+                        from,
+                        to,
+                        [to[0], to[1] + height],
+                        [from[0], from[1] + height],
+                    ],
+                    style: OutlineStyle::Block,
+                });
+                arrow(plot, [middle, from[1] + height], [0.0, -length])
+            }
+            LoadKind::Pressure {
+                from,
+                to,
+                traction: vector,
+            } => {
+                let along = vector.map(|part| part / traction.max(f64::MIN_POSITIVE) * length);
+                let span = norm([to[0] - from[0], to[1] - from[1]]);
+                let count = (3.0 * span / length).clamp(2.0, 15.0).round() as usize;
+                let mut tail = from;
+                for k in 0..count {
+                    let t = (k as f64 + 0.5) / count as f64;
+                    let to = std::array::from_fn(|axis| from[axis] + t * (to[axis] - from[axis]));
+                    tail = arrow(plot, to, along);
+                }
+                tail
+            }
+            LoadKind::Point { at, force: vector } => {
+                let along = vector.map(|part| part / force.max(f64::MIN_POSITIVE) * length);
+                arrow(plot, at, along)
+            }
+        };
+        plot.labels.push((at, load.name.clone()));
+    }
+    reach
+}
+
+/// Names for the symbols that are in the picture.
+fn add_symbols_to_key(plot: &mut FieldPlot) {
+    for (style, label) in [
+        (OutlineStyle::Fixed, "held in both directions"),
+        (OutlineStyle::Roller, "held across"),
+        (OutlineStyle::Block, "rigid footing"),
+        (OutlineStyle::Arrow, "load"),
+        (OutlineStyle::Section, "section"),
+        (OutlineStyle::Point, "monitor"),
+    ] {
+        if plot.outlines.iter().any(|outline| outline.style == style) {
+            plot.key.push(KeyEntry {
+                sample: KeySample::Outline(style),
+                label: label.to_owned(),
+            });
+        }
+    }
+}

@@ -1,0 +1,83 @@
+//! Displacement against strength reduction factor, with the interval of the factor of safety.
+
+use std::path::Path;
+
+use super::{file_name, write};
+use crate::check::short;
+use crate::error::CaseError;
+use crate::figures::{Band, Colour, CurvePlot, LineStyle, Scale, Series, SeriesStyle};
+use crate::results::fields::{Dimension, Scale as Unit};
+use crate::summary::{FigureNote, SafetySummary};
+
+/// Displacements that differ by more than this factor are drawn over a logarithmic axis.
+const WIDE: f64 = 50.0;
+
+/// The picture of a search for the factor of safety: the displacement of every trial over its
+/// strength reduction factor, the interval of the factor of safety shaded.
+///
+/// # Errors
+/// [`CaseError::File`] and [`CaseError::Figure`].
+pub fn safety_picture(
+    folder: &Path,
+    case_title: &str,
+    stage: &str,
+    safety: &SafetySummary,
+) -> Result<FigureNote, CaseError> {
+    let unit = Unit::of(
+        Dimension::Displacement,
+        safety.trials.iter().map(|trial| trial.displacement),
+    );
+    let of = |stable: bool| {
+        let mut points: Vec<[f64; 2]> = safety
+            .trials
+            .iter()
+            .filter(|trial| trial.stable == stable)
+            .map(|trial| [trial.srf, trial.displacement / unit.divide_by])
+            .filter(|point| point.iter().all(|value| value.is_finite()))
+            .collect();
+        points.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        points
+    };
+    let (stable, failed) = (of(true), of(false));
+    let heights = || stable.iter().chain(&failed).map(|point| point[1]);
+    let highest = heights().fold(0.0, f64::max);
+    let lowest = heights().filter(|&d| d > 0.0).fold(f64::INFINITY, f64::min);
+    let (y_scale, y_range) = if highest > WIDE * lowest {
+        (Scale::Log, Some((0.6 * lowest, 1.8 * highest)))
+    } else if highest > 0.0 {
+        (Scale::Linear, Some((0.0, 1.08 * highest)))
+    } else {
+        (Scale::Linear, None)
+    };
+    let interval = safety.stable.zip(safety.failed).zip(y_range);
+    let bands = interval.map(|((from, to), (bottom, top))| Band {
+        label: format!("{} ≤ FoS < {}", short(from), short(to)),
+        lower: vec![[from, bottom], [to, bottom]],
+        upper: vec![[from, top], [to, top]],
+    });
+    let plot = CurvePlot {
+        title: format!("{case_title} – {stage}"),
+        x_label: "strength reduction factor F [−]".into(),
+        y_label: format!("displacement [{}]", unit.unit),
+        y_scale,
+        y_range,
+        bands: bands.into_iter().collect(),
+        series: vec![
+            Series::new(
+                "stands",
+                stable,
+                SeriesStyle::LineAndMarkers(LineStyle::Solid),
+            )
+            .in_colour(Colour::CURVE),
+            Series::markers("fails", failed).in_colour(Colour::FAILURE),
+        ],
+        ..CurvePlot::default()
+    };
+    let caption = format!(
+        "Displacement at the end of every trial of “{stage}” over its strength reduction factor; \
+         shaded: the interval of the factor of safety. For a trial that fails it is that of its \
+         last equilibrium."
+    );
+    let name = format!("safety-{}", file_name(stage));
+    write(folder, &name, &plot.draw()?, caption)
+}
