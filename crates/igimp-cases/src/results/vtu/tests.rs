@@ -78,7 +78,39 @@ fn outline(grid: &UnstructuredGrid) -> String {
 
 #[test]
 fn the_outline_is_that_of_vtk() {
-    insta::assert_snapshot!(outline(&one_quad()), @r#""#);
+    insta::assert_snapshot!(outline(&one_quad()), @r#"
+    <?xml version="1.0"?>
+    <VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64" compressor="vtkZLibDataCompressor">
+    <UnstructuredGrid>
+    <FieldData>
+    <DataArray type="Float64" Name="TimeValue" NumberOfTuples="1" format="binary">
+    </DataArray>
+    </FieldData>
+    <Piece NumberOfPoints="4" NumberOfCells="1">
+    <PointData>
+    </PointData>
+    <CellData>
+    <DataArray type="Float64" Name="a &lt; b &amp; &quot;c&quot; [-]" format="binary">
+    </DataArray>
+    <DataArray type="Float64" Name="sigma" NumberOfComponents="6" ComponentName0="XX" ComponentName1="YY" ComponentName2="ZZ" ComponentName3="XY" ComponentName4="YZ" ComponentName5="XZ" format="binary">
+    </DataArray>
+    </CellData>
+    <Points>
+    <DataArray type="Float64" Name="Points" NumberOfComponents="3" ComponentName0="X" ComponentName1="Y" ComponentName2="Z" format="binary">
+    </DataArray>
+    </Points>
+    <Cells>
+    <DataArray type="Int64" Name="connectivity" format="binary">
+    </DataArray>
+    <DataArray type="Int64" Name="offsets" format="binary">
+    </DataArray>
+    <DataArray type="UInt8" Name="types" format="binary">
+    </DataArray>
+    </Cells>
+    </Piece>
+    </UnstructuredGrid>
+    </VTKFile>
+    "#);
 }
 
 #[test]

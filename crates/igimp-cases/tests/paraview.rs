@@ -1,0 +1,249 @@
+//! GOAL: what is written for ParaView and numpy opens there, with the numbers that were meant.
+//! ORACLE: VTK, PyVista, meshio and numpy, where they are installed; else these tests say that
+//! they were skipped.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use igimp_assembly::{ParticleFields, Particles};
+use igimp_cases::results::checkpoint::{self, Meta};
+use igimp_cases::results::npy::{Array, Values};
+use igimp_cases::results::particles::{Extras, of_grid, of_particles};
+use igimp_cases::results::pvd::{Collection, GRID, PARTICLES};
+use igimp_cases::results::vtu::{CellKind, DataArray, UnstructuredGrid};
+use igimp_material::{History, Regime};
+use igimp_shape::{Axis, Grid};
+use igimp_solver::Body;
+use serde_json::{Value, json};
+
+/// An empty folder of the build.
+fn folder(name: &str) -> PathBuf {
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let _ = fs::remove_dir_all(&path);
+    fs::create_dir_all(&path).unwrap();
+    path
+}
+
+/// Runs a script of `tests/vtk` on a folder; false when its packages are not installed.
+fn run_script(script: &str, packages: &str, folder: &Path) -> bool {
+    let import = format!("import {packages}");
+    let found = Command::new("python3").args(["-c", &import]).output();
+    if !found.is_ok_and(|output| output.status.success()) {
+        println!("skipped: python3 cannot import {packages}");
+        return false;
+    }
+    let script = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("tests/vtk")
+        .join(script);
+    let output = Command::new("python3")
+        .arg(&script)
+        .arg(folder)
+        .output()
+        .unwrap();
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    assert!(
+        output.status.success(),
+        "{}{}",
+        text(&output.stdout),
+        text(&output.stderr)
+    );
+    println!("{}", text(&output.stdout));
+    true
+}
+
+/// A block of `side`^D particles that nearly fill cells of size 1, with a state made of sines.
+fn particles<const D: usize>(side: usize) -> Particles<D> {
+    let n = side.pow(D as u32);
+    let number = |k: usize, entry: usize| ((k * 31 + entry) as f64).sin();
+    let tensor = |k: usize| {
+        let t: [[f64; 3]; 3] =
+            std::array::from_fn(|row| std::array::from_fn(|column| number(k, 3 * row + column)));
+        std::array::from_fn(|row| {
+            std::array::from_fn(|column| 1e5 * (t[row][column] + t[column][row]))
+        })
+    };
+    let position = |k: usize| {
+        std::array::from_fn(|axis| {
+            (k / side.pow(axis as u32) % side) as f64 + 0.1 * number(k, axis)
+        })
+    };
+    Particles::from_fields(ParticleFields {
+        x: (0..n).map(position).collect(),
+        displacement: (0..n)
+            .map(|k| std::array::from_fn(|axis| number(k, 20 + axis)))
+            .collect(),
+        def_grad: (0..n)
+            .map(|k| {
+                std::array::from_fn(|row| {
+                    std::array::from_fn(|column| {
+                        f64::from(u8::from(row == column)) + 0.1 * number(k, 30 + 3 * row + column)
+                    })
+                })
+            })
+            .collect(),
+        b_e: (0..n).map(tensor).collect(),
+        sigma: (0..n).map(tensor).collect(),
+        half_length: vec![[0.25; D]; n],
+        half_length0: vec![[0.5; D]; n],
+        volume0: vec![1.0; n],
+        mass: vec![2.0; n],
+        law: (0..n).map(|k| k % 4).collect(),
+        history: (0..n)
+            .map(|k| History {
+                eps_p_eq: number(k, 50).abs(),
+            })
+            .collect(),
+        regime: (0..n)
+            .map(|k| [Regime::Elastic, Regime::Smooth, Regime::Apex][k % 3])
+            .collect(),
+    })
+    .unwrap()
+}
+
+/// What the readers must find, and the total area or volume of the cells.
+fn expected(grid: &UnstructuredGrid, time: f64, size: f64) -> Value {
+    let array = |array: &DataArray| {
+        let (kind, values) = match array.values() {
+            Values::F64(values) => ("double", json!(values)),
+            Values::I32(values) => ("int", json!(values)),
+            other => panic!("not written here: {other:?}"),
+        };
+        json!({
+            "name": array.name(),
+            "components": array.components(),
+            "component_names": array.component_names(),
+            "type": kind,
+            "values": values,
+        })
+    };
+    let arrays = |arrays: &[DataArray]| arrays.iter().map(array).collect::<Vec<_>>();
+    let cell_type = match grid.kind {
+        CellKind::Line => 3,
+        CellKind::Quad => 9,
+        CellKind::Hexahedron => 12,
+    };
+    json!({
+        "points": grid.points,
+        "cells": grid.cell_count(),
+        "cell_type": cell_type,
+        "connectivity": grid.connectivity,
+        "point_data": arrays(&grid.point_data),
+        "cell_data": arrays(&grid.cell_data),
+        "time": time,
+        "size": size,
+    })
+}
+
+fn axis(cells: usize) -> Axis {
+    Axis::uniform(-1.0, 0.5, cells).unwrap()
+}
+
+#[test]
+fn vtk_pyvista_and_meshio_read_what_is_written() {
+    let folder = folder("paraview");
+    // Tensors of 50² particles take 15 blocks; 64² particles make blocks that are exactly full.
+    let (small, plane, full, space) = (
+        particles::<2>(2),
+        particles::<2>(50),
+        particles::<2>(64),
+        particles::<3>(4),
+    );
+    let utilisation: Vec<f64> = (0..plane.len()).map(|k| k as f64 / 2500.0).collect();
+    let everything = Extras {
+        utilisation: Some(&utilisation),
+        def_grad: true,
+    };
+    let none = Extras::default();
+    let mut of_plane = Collection::create(&folder, PARTICLES).unwrap();
+    let mut of_background = Collection::create(&folder, GRID).unwrap();
+    let mut grids = serde_json::Map::new();
+    let mut add = |collection: &mut Collection, time: f64, grid: &UnstructuredGrid, size: f64| {
+        let path = collection.add(time, grid).unwrap();
+        let name = path.file_name().unwrap().to_str().unwrap().to_owned();
+        grids.insert(name, expected(grid, time, size));
+    };
+    for (time, particles, extras) in [
+        (0.0, &small, &none),
+        (1.0 / 3.0, &plane, &everything),
+        (0.7, &full, &none),
+    ] {
+        let area = 0.25 * particles.len() as f64;
+        add(&mut of_plane, time, &of_particles(particles, extras), area);
+    }
+    let volume = 0.125 * space.len() as f64;
+    add(&mut of_plane, 2.0, &of_particles(&space, &none), volume);
+    let background = Grid::new([axis(60), axis(40)]);
+    let u: Vec<[f64; 2]> = (0..background.node_count())
+        .map(|node| [(node as f64).cos(), 1e-3])
+        .collect();
+    let cells = of_grid(&background, Some(&u));
+    add(&mut of_background, 0.1, &cells, 30.0 * 20.0);
+    let cells = of_grid(&Grid::new([axis(3), axis(2), axis(4)]), None);
+    add(&mut of_background, 1e-12, &cells, 3.0);
+    let nothing = UnstructuredGrid {
+        points: Vec::new(),
+        kind: CellKind::Quad,
+        connectivity: Vec::new(),
+        point_data: Vec::new(),
+        cell_data: Vec::new(),
+        field_data: Vec::new(),
+    };
+    nothing
+        .clone()
+        .at_time(5.0)
+        .write(&folder.join("nothing.vtu"))
+        .unwrap();
+    grids.insert("nothing.vtu".into(), expected(&nothing, 5.0, 0.0));
+    let expected = json!({
+        "grids": grids,
+        "collections": {
+            "particles.pvd": {
+                "times": [0.0, 1.0 / 3.0, 0.7, 2.0],
+                "cells": [4, 2500, 4096, 64],
+            },
+        },
+    });
+    fs::write(folder.join("expected.json"), expected.to_string()).unwrap();
+    run_script("read_vtu.py", "vtk, pyvista, meshio", &folder);
+}
+
+#[test]
+fn numpy_reads_and_writes_checkpoints() {
+    let folder = folder("numpy");
+    let body = Body::new(particles::<2>(6));
+    let path = checkpoint::write(
+        &folder.join("checkpoint"),
+        "end",
+        &[("current", &body)],
+        &Meta::new("case", json!({ "factor": 0.1 + 0.2 })),
+        1,
+    )
+    .unwrap();
+    if !run_script("numpy_arrays.py", "numpy", &folder) {
+        return;
+    }
+    let changed = checkpoint::read(&path, Some("case")).unwrap();
+    assert_eq!(changed.meta.data["factor"], json!(0.1 + 0.2));
+    let particles = &changed.states[0].1.particles;
+    assert_eq!(particles.x, body.particles.x);
+    for (changed, sigma) in particles.sigma.iter().zip(&body.particles.sigma) {
+        assert_eq!(*changed, sigma.map(|row| row.map(|entry| 2.0 * entry)));
+    }
+    let read = |name: &str| Array::read(&folder.join(name));
+    assert_eq!(
+        read("i32.npy").unwrap(),
+        Array::new(&[2, 3], Values::I32((-3..3).collect()))
+    );
+    assert_eq!(
+        read("nothing.npy").unwrap(),
+        Array::new(&[0, 2], Values::F64(Vec::new()))
+    );
+    assert_eq!(
+        read("number.npy").unwrap(),
+        Array::new(&[], Values::F64(vec![2.5]))
+    );
+    for refused in ["f32.npy", "fortran.npy"] {
+        assert!(read(refused).is_err(), "{refused}");
+    }
+}
