@@ -4,47 +4,49 @@ use igimp_assembly::{Particles, SharedLaw};
 use igimp_material::{Tensor, principal_values};
 
 use crate::case::Field;
-use crate::measure::{displacement_norm, eps_p_eq, sigma};
 
 /// One value per particle, in SI units; stresses compression positive.
 ///
 /// `laws` are those that the particles refer to by index; the share of mobilised strength refers to
 /// their strength. It is not a number for a particle without a law or without a stretch.
 pub fn values(field: Field, particles: &Particles<2>, laws: &[SharedLaw]) -> Vec<f64> {
-    let printed = |row, column| {
-        sigma(particles, row, column)
-            .iter()
-            // Not `-value`: zero stays without a sign.
-            .map(|value| 0.0 - value)
-            .collect()
-    };
-    let component = |of: &[[f64; 2]], axis: usize| of.iter().map(|vector| vector[axis]).collect();
+    (0..particles.len())
+        .map(|particle| value(field, particles, particle, laws))
+        .collect()
+}
+
+/// The value of one particle, as [`values`] gives it.
+///
+/// # Panics
+/// If there is no such particle.
+pub fn value(field: Field, particles: &Particles<2>, particle: usize, laws: &[SharedLaw]) -> f64 {
+    let sigma = &particles.sigma[particle];
+    let displacement = &particles.displacement[particle];
+    // Not `-sigma`: zero stays without a sign.
     match field {
-        Field::Displacement => displacement_norm(particles),
-        Field::DisplacementX => component(&particles.displacement, 0),
-        Field::DisplacementY => component(&particles.displacement, 1),
-        Field::X => component(&particles.x, 0),
-        Field::Y => component(&particles.x, 1),
-        Field::SigmaXx => printed(0, 0),
-        Field::SigmaYy => printed(1, 1),
-        Field::SigmaZz => printed(2, 2),
-        Field::TauXy => printed(0, 1),
-        Field::P => particles.sigma.iter().map(mean_pressure).collect(),
-        Field::Q => particles.sigma.iter().map(deviatoric_stress).collect(),
-        Field::PlasticStrain => eps_p_eq(particles),
-        Field::Utilisation => (0..particles.len())
-            .map(|particle| utilisation(particles, particle, laws).unwrap_or(f64::NAN))
-            .collect(),
+        Field::Displacement => displacement[0].hypot(displacement[1]),
+        Field::DisplacementX => displacement[0],
+        Field::DisplacementY => displacement[1],
+        Field::X => particles.x[particle][0],
+        Field::Y => particles.x[particle][1],
+        Field::SigmaXx => 0.0 - sigma[0][0],
+        Field::SigmaYy => 0.0 - sigma[1][1],
+        Field::SigmaZz => 0.0 - sigma[2][2],
+        Field::TauXy => 0.0 - sigma[0][1],
+        Field::P => mean_pressure(sigma),
+        Field::Q => deviatoric_stress(sigma),
+        Field::PlasticStrain => particles.history[particle].eps_p_eq,
+        Field::Utilisation => utilisation(particles, particle, laws).unwrap_or(f64::NAN),
     }
 }
 
 /// p = −tr σ/3.
-fn mean_pressure(sigma: &Tensor) -> f64 {
+pub(super) fn mean_pressure(sigma: &Tensor) -> f64 {
     0.0 - (sigma[0][0] + sigma[1][1] + sigma[2][2]) / 3.0
 }
 
 /// q = √(3/2)‖s‖.
-fn deviatoric_stress(sigma: &Tensor) -> f64 {
+pub(super) fn deviatoric_stress(sigma: &Tensor) -> f64 {
     let mean = -mean_pressure(sigma);
     let normal: f64 = (0..3).map(|a| (sigma[a][a] - mean).powi(2)).sum();
     let shear = sigma[0][1].powi(2) + sigma[0][2].powi(2) + sigma[1][2].powi(2);

@@ -7,6 +7,7 @@ pub mod fields;
 pub mod folder;
 pub mod frames;
 pub mod npy;
+pub mod particles;
 pub mod pictures;
 pub mod pvd;
 pub mod regime;

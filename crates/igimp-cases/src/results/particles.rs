@@ -2,9 +2,9 @@
 //! each cell of the grid.
 
 use igimp_assembly::Particles;
-use igimp_material::Tensor;
 use igimp_shape::Grid;
 
+use super::fields::{deviatoric_stress, mean_pressure};
 use super::regime;
 use super::vtu::{CellKind, DataArray, UnstructuredGrid, padded};
 
@@ -54,8 +54,8 @@ pub fn of_particles<const D: usize>(
     let mut cell_data = vec![
         DataArray::vectors("displacement [m]", &particles.displacement),
         DataArray::symmetric("sigma [Pa], tension +", sigma),
-        DataArray::scalars("p [Pa], compression +", by_particle(&|k| p(&sigma[k]))),
-        DataArray::scalars("q [Pa]", by_particle(&|k| q(&sigma[k]))),
+        DataArray::scalars("p [Pa], compression +", by_particle(&|k| mean_pressure(&sigma[k]))),
+        DataArray::scalars("q [Pa]", by_particle(&|k| deviatoric_stress(&sigma[k]))),
         DataArray::scalars("plastic strain [-]", by_particle(&|k| history[k].eps_p_eq)),
         DataArray::integers("material", integers(&|k| particles.law[k])),
         DataArray::integers("regime", integers(&regime)),
@@ -117,22 +117,6 @@ pub fn of_grid<const D: usize>(grid: &Grid<D>, u: Option<&[[f64; D]]>) -> Unstru
         cell_data: Vec::new(),
         field_data: Vec::new(),
     }
-}
-
-/// Mean pressure p = −tr σ / 3, compression positive \[Pa\].
-fn p(sigma: &Tensor) -> f64 {
-    -(sigma[0][0] + sigma[1][1] + sigma[2][2]) / 3.0
-}
-
-/// Deviator norm q = √(3/2) ‖s‖ \[Pa\].
-fn q(sigma: &Tensor) -> f64 {
-    let p = p(sigma);
-    let square = |row: usize, column: usize| {
-        let s = sigma[row][column] + if row == column { p } else { 0.0 };
-        s * s
-    };
-    let sum: f64 = (0..9).map(|k| square(k / 3, k % 3)).sum();
-    (1.5 * sum).sqrt()
 }
 
 #[cfg(test)]

@@ -25,7 +25,7 @@ impl RowWriter {
     /// [`CaseError::File`].
     pub fn create(path: &Path, header: &[String]) -> Result<Self, CaseError> {
         let mut file = File::create(path).map_err(at(path))?;
-        file.write_all(&header_line(path, header)?)
+        file.write_all(&text_line(path, header)?)
             .map_err(at(path))?;
         Ok(Self {
             path: path.to_path_buf(),
@@ -56,7 +56,7 @@ impl RowWriter {
             .open(path)
             .map_err(at(path))?;
         let mut lines = Lines::new(&file);
-        if lines.next_line().map_err(at(path))? != Some(&header_line(path, header)?[..]) {
+        if lines.next_line().map_err(at(path))? != Some(&text_line(path, header)?[..]) {
             return Err(unusable("its header is not the one of this case".into()));
         }
         for kept in 0..rows {
@@ -84,12 +84,23 @@ impl RowWriter {
     /// # Panics
     /// If the row is not as long as the header.
     pub fn push(&mut self, row: &[f64]) -> Result<(), CaseError> {
-        assert_eq!(row.len(), self.columns, "a row has one entry a column");
         let entries: Vec<String> = row.iter().map(|value| format!("{value:.9e}")).collect();
-        let line = entries.join(",") + "\n";
+        self.push_text(&entries)
+    }
+
+    /// Appends a row of texts, which are quoted where need be.
+    ///
+    /// # Errors
+    /// [`CaseError::File`].
+    ///
+    /// # Panics
+    /// If the row is not as long as the header.
+    pub fn push_text(&mut self, row: &[String]) -> Result<(), CaseError> {
+        assert_eq!(row.len(), self.columns, "a row has one entry a column");
+        let line = text_line(&self.path, row)?;
         // One write without a buffer: a reader sees the row as soon as it is pushed.
         self.file
-            .write_all(line.as_bytes())
+            .write_all(&line)
             .map_err(at(&self.path))?;
         self.rows += 1;
         Ok(())
@@ -161,7 +172,7 @@ pub fn read(path: &Path) -> Result<Table, CaseError> {
     })
 }
 
-fn header_line(path: &Path, header: &[String]) -> Result<Vec<u8>, CaseError> {
+fn text_line(path: &Path, header: &[String]) -> Result<Vec<u8>, CaseError> {
     let mut line = csv::Writer::from_writer(Vec::new());
     line.write_record(header)
         .map_err(|source| CaseError::Table {

@@ -354,21 +354,3 @@ fn peak_memory_mib() -> Option<f64> {
     let kib: f64 = line.split_whitespace().nth(1)?.parse().ok()?;
     Some(kib / 1024.0)
 }
-
-/// The titles of a case and its stages are all that an engine needs to name a place.
-pub(crate) fn slug(text: &str) -> String {
-    let mut slug = String::new();
-    for c in text.to_lowercase().chars() {
-        if c.is_alphanumeric() {
-            slug.push(c);
-        } else if !slug.ends_with('-') && !slug.is_empty() {
-            slug.push('-');
-        }
-    }
-    slug.trim_end_matches('-').to_owned()
-}
-
-/// Folder and file names of a stage: its number and name.
-pub(crate) fn stage_slug(case: &Case, number: usize) -> String {
-    format!("{:02}-{}", number + 1, slug(&case.stages[number].name))
-}

@@ -4,11 +4,12 @@ use std::collections::HashMap;
 use std::path::PathBuf;
 use std::time::Instant;
 
+use igimp_assembly::Particles;
+use igimp_shape::Grid;
 use igimp_solver::{Body, Standing};
 use serde::{Deserialize, Serialize};
 
 use super::Target;
-use super::engine::stage_slug;
 use super::fingerprint;
 use super::model::Model;
 use super::records::{Records, Rows};
@@ -21,7 +22,8 @@ use crate::results::checkpoint::{self, CheckpointError, Meta};
 use crate::results::folder::Folder;
 use crate::results::frames::Frames;
 use crate::results::rows::{self, RowWriter};
-use crate::results::{pictures, report};
+use crate::results::pictures::{self, Shown};
+use crate::results::report;
 use crate::summary::{CheckRow, FigureNote, StageSummary, Summary, TrialSummary};
 use crate::table::Table;
 
@@ -136,7 +138,7 @@ impl Output {
         case: &Case,
         records: &Records,
     ) -> Result<Self, CaseError> {
-        let folder = Folder::create(&target.folder)?;
+        let folder = Folder::afresh(&target.folder)?;
         write_atomically(&folder.case(), &target.source)?;
         write_atomically(&folder.completed_case(), &target.completed)?;
         Self::open(folder, case, records, None)
@@ -158,13 +160,13 @@ impl Output {
         };
         let curves = std::iter::zip(&records.curves, 0..)
             .map(|(table, k)| {
-                let path = folder.curve(&table.name);
+                let path = folder.curves().join(csv(&table.name));
                 open(path, &table.header, rows(|notes| &notes.curve_rows, k))
             })
             .collect::<Result<_, _>>()?;
         let monitors = std::iter::zip(&records.monitors, 0..)
             .map(|(table, k)| {
-                let path = folder.monitor(&table.name);
+                let path = folder.monitors().join(csv(&table.name));
                 open(path, &table.header, rows(|notes| &notes.monitor_rows, k))
             })
             .collect::<Result<_, _>>()?;
@@ -199,7 +201,13 @@ impl Output {
         case: &Case,
         records: &mut Records,
     ) -> Result<(Self, Option<Left>), CaseError> {
-        let folder = Folder::create_or_keep(&target.folder)?;
+        let folder = match Folder::open(&target.folder) {
+            Ok(folder) => folder,
+            Err(CaseError::NoResults { .. }) => {
+                return Ok((Self::create(target, case, records)?, None));
+            }
+            Err(error) => return Err(error),
+        };
         let Some(path) = checkpoint::newest(&folder.checkpoint())? else {
             return Ok((Self::create(target, case, records)?, None));
         };
@@ -218,7 +226,7 @@ impl Output {
         let Some(before) = stage.checked_sub(1) else {
             return Ok((Self::create(target, case, records)?, None));
         };
-        let folder = Folder::create_or_keep(&target.folder)?;
+        let folder = Folder::open(&target.folder)?;
         let Some(path) = checkpoint::named(&folder.checkpoint(), &end_of_stage(before))? else {
             return Err(CaseError::NoStart {
                 stage: case.stages[stage].name.clone(),
@@ -287,10 +295,10 @@ impl Output {
         let output = Self::open(folder, case, records, Some(&notes))?;
         records.factor_of_safety = notes.factor_of_safety.unwrap_or(f64::NAN);
         for table in &mut records.curves {
-            table.rows = rows::read(&output.folder.curve(&table.name))?.rows;
+            table.rows = rows::read(&output.folder.curves().join(csv(&table.name)))?.rows;
         }
         for table in &mut records.monitors {
-            table.rows = rows::read(&output.folder.monitor(&table.name))?.rows;
+            table.rows = rows::read(&output.folder.monitors().join(csv(&table.name)))?.rows;
         }
         Ok((output, Some(left)))
     }
@@ -341,16 +349,21 @@ impl Output {
     /// Appends the residuals of a step.
     pub(crate) fn write_convergence(
         &mut self,
-        (stage, step): (usize, usize),
+        (stage, step): (&str, usize),
         (from, to, residuals): (f64, f64, &[f64]),
         accepted: bool,
     ) -> Result<(), CaseError> {
         let clock = Instant::now();
-        let accepted = f64::from(u8::from(accepted));
-        for (iteration, &residual) in residuals.iter().enumerate() {
-            let (stage, step, iteration) = (stage as f64, step as f64, iteration as f64);
-            self.convergence
-                .push(&[stage, step, from, to, iteration, residual, accepted])?;
+        for (iteration, residual) in residuals.iter().enumerate() {
+            self.convergence.push_text(&[
+                stage.to_owned(),
+                step.to_string(),
+                format!("{from:.9e}"),
+                format!("{to:.9e}"),
+                iteration.to_string(),
+                format!("{residual:.9e}"),
+                u8::from(accepted).to_string(),
+            ])?;
         }
         self.seconds += clock.elapsed().as_secs_f64();
         Ok(())
@@ -374,8 +387,7 @@ impl Output {
         if let Every::Steps(every) = self.every
             && summary.steps.is_multiple_of(every.max(1))
         {
-            let time = self.steps as f64;
-            self.frames.add(model, &body.particles, time)?;
+            self.add_frame(model, &body.particles, &taken.accepted.conditions.grid)?;
         }
         let due =
             self.checkpoint_every > 0 && summary.steps.is_multiple_of(self.checkpoint_every);
@@ -447,34 +459,38 @@ impl Output {
             table.write_csv(&self.folder.sections())?;
         }
         if self.every != Every::Never {
-            self.frames.add(model, particles, self.steps as f64)?;
+            let grid = model.grid(state.controls.settlement)?;
+            self.add_frame(model, particles, &grid)?;
         }
-        let slug = stage_slug(case, number);
         if let Some(safety) = &summary.safety {
             self.factor_of_safety = match (safety.stable, safety.failed) {
                 (Some(stable), Some(failed)) => Some(0.5 * (stable + failed)),
                 _ => None,
             };
-            self.figures
-                .push(pictures::safety(&self.folder, case, &slug, safety)?);
+            let (root, title) = (self.folder.root(), &case.title);
+            let picture = pictures::safety_picture(root, title, &summary.name, safety)?;
+            self.figures.push(picture);
         }
         for (name, srf, kept) in std::mem::take(&mut self.kept) {
             let particles = &kept.body.particles;
             if self.every != Every::Never {
-                self.frames.beside(&name, model, particles)?;
+                self.frames.beside(&name, (particles, &model.laws))?;
             }
-            let title = format!("{}, SRF {srf:.4}", summary.name);
-            self.figures.extend(pictures::fields(
-                &self.folder, model.case, &model.laws, &name, &title, particles,
-            )?);
+            let shown = Shown {
+                title: format!("{}, SRF {srf:.4}", summary.name),
+                when: format!("in the {} state, SRF {srf:.4}", words(&name)),
+                name,
+            };
+            self.field_pictures(model, &shown, particles)?;
         }
         if summary.safety.is_none() {
-            self.figures.extend(pictures::fields(
-                &self.folder, case, &model.laws, &slug, &summary.name, particles,
-            )?);
+            self.field_pictures(model, &Shown::end_of_stage(case, number), particles)?;
         }
-        self.figures
-            .extend(pictures::sections(&self.folder, case, &slug, &summary.name, sections)?);
+        for (section, table) in case.sections.iter().zip(sections) {
+            let (root, title) = (self.folder.root(), &case.title);
+            let own = pictures::section_pictures(root, title, section, &summary.name, table)?;
+            self.figures.extend(own);
+        }
         self.seconds += clock.elapsed().as_secs_f64();
         Ok(())
     }
@@ -517,10 +533,38 @@ impl Output {
         Ok(saved)
     }
 
+    /// A frame for ParaView; its time is the number of steps and trials so far.
+    fn add_frame(
+        &mut self,
+        model: &Model<'_>,
+        particles: &Particles<2>,
+        grid: &Grid<2>,
+    ) -> Result<(), CaseError> {
+        let time = self.steps as f64;
+        self.frames.add(time, (particles, &model.laws), grid)
+    }
+
+    /// The pictures of the fields that the case wants to see.
+    fn field_pictures(
+        &mut self,
+        model: &Model<'_>,
+        shown: &Shown,
+        particles: &Particles<2>,
+    ) -> Result<(), CaseError> {
+        for &field in &model.case.output.figures {
+            let root = self.folder.root();
+            let own = (particles, &model.laws[..]);
+            let picture = pictures::field_picture(root, model.case, shown, field, own, &[])?;
+            self.figures.push(picture);
+        }
+        Ok(())
+    }
+
     /// The picture of the set-up.
     pub(crate) fn model_picture(&mut self, case: &Case) -> Result<(), CaseError> {
         let clock = Instant::now();
-        self.figures.push(pictures::model(&self.folder, case)?);
+        let picture = pictures::model_picture(self.folder.root(), case)?;
+        self.figures.push(picture);
         self.seconds += clock.elapsed().as_secs_f64();
         Ok(())
     }
@@ -536,9 +580,17 @@ impl Output {
         let clock = Instant::now();
         let mut figures = std::mem::take(&mut self.figures);
         let at = figures.len().min(1);
-        let curves = pictures::curves(&self.folder, case, &records.curves)?;
-        figures.splice(at..at, curves);
-        figures.extend(pictures::convergence(&self.folder)?);
+        let (root, title) = (self.folder.root(), &case.title);
+        let mut histories = Vec::new();
+        for (curve, table) in case.curves.iter().zip(&records.curves) {
+            histories.push(pictures::curve_picture(root, title, curve, table)?);
+        }
+        for (monitor, table) in case.monitors.iter().zip(&records.monitors) {
+            histories.extend(pictures::monitor_pictures(root, title, monitor, table)?);
+        }
+        figures.splice(at..at, histories);
+        let tolerance = Some(case.solver.tolerance);
+        figures.extend(pictures::convergence_pictures(root, title, tolerance)?);
         summary.figures = figures;
         self.seconds += clock.elapsed().as_secs_f64();
         summary.seconds = begun.elapsed().as_secs_f64();
@@ -610,6 +662,20 @@ impl Output {
         let meta = self.meta(notes)?;
         checkpoint::write(&self.folder.checkpoint(), name, states, &meta, keep)?;
         Ok(())
+    }
+}
+
+/// File of a table.
+fn csv(name: &str) -> String {
+    format!("{name}.csv")
+}
+
+/// `last-stable` or `first-unstable` in words, from the name of a kept state.
+fn words(name: &str) -> &'static str {
+    if name.ends_with("unstable") {
+        "first unstable"
+    } else {
+        "last stable"
     }
 }
 

@@ -2,11 +2,17 @@
 
 use igimp_assembly::Particles;
 
-use super::engine::stage_slug;
 use super::model::Model;
 use crate::measure::nearest;
+use crate::case::Case;
 use crate::results::fields;
+use crate::results::pictures::file_name;
 use crate::table::Table;
+
+/// Number and name of a stage as part of a file name.
+fn stage_name(case: &Case, stage: usize) -> String {
+    format!("{}-{}", stage + 1, file_name(&case.stages[stage].name))
+}
 
 /// One table per section, named `SECTION__STAGE`: at equally spaced places along the line the
 /// fields of the nearest particle. Places without a particle within a cell are left out.
@@ -21,7 +27,7 @@ pub(crate) fn read(model: &Model<'_>, particles: &Particles<2>, stage: usize) ->
                 .to_vec();
             header.extend(section.record.iter().map(|&field| fields::header(field)));
             let mut table = Table {
-                name: format!("{}__{}", section.name, stage_slug(case, stage)),
+                name: format!("{}__{}", section.name, stage_name(case, stage)),
                 header,
                 rows: Vec::new(),
             };

@@ -116,10 +116,9 @@ impl Session<'_> {
         course: (f64, f64, &[f64]),
         accepted: bool,
     ) -> Result<(), CaseError> {
-        let number = self.summary.stages.len() + 1;
         let step = stage.steps + usize::from(!accepted);
         match &mut self.output {
-            Some(output) => output.write_convergence((number, step), course, accepted),
+            Some(output) => output.write_convergence((&stage.name, step), course, accepted),
             None => Ok(()),
         }
     }

@@ -30,11 +30,10 @@ pub(super) fn of_body(body: &Body<2>) -> Vec<(&'static str, Array)> {
         .map(|History { eps_p_eq }| *eps_p_eq)
         .collect();
     let regime = regime.iter().map(|&regime| regime::code(regime)).collect();
-    let (points, forces): (Vec<_>, Vec<_>) = body
-        .load_points
-        .iter()
-        .map(|LoadPoint { x, force }| (*x, *force))
-        .unzip();
+    let points: Vec<_> = body.load_points.iter().map(|point| point.x).collect();
+    let forces: Vec<_> = body.load_points.iter().map(|point| point.force).collect();
+    let loads = body.load_points.iter().map(|point| point.load as u64);
+    let loads = Values::U64(loads.collect());
     vec![
         ("x", vectors(x)),
         ("displacement", vectors(displacement)),
@@ -50,6 +49,7 @@ pub(super) fn of_body(body: &Body<2>) -> Vec<(&'static str, Array)> {
         ("regime", Array::new(&[n], Values::U8(regime))),
         ("load_point_x", vectors(&points)),
         ("load_point_force", vectors(&forces)),
+        ("load_point_load", Array::new(&[points.len()], loads)),
     ]
 }
 
@@ -80,9 +80,9 @@ pub(super) fn to_body(
     let vectors = |name, count| Ok(rows::<2>(&reals(name, &[count, 2])?));
     let planar = |name| Ok(squares::<2>(&reals(name, &[n, 2, 2])?));
     let spatial = |name| Ok(squares::<3>(&reals(name, &[n, 3, 3])?));
-    let law = match array("law", &[n])?.values() {
-        Values::U64(values) => values.iter().map(|&law| law as usize).collect(),
-        _ => return Err(("law", "its numbers are not of type <u8".to_owned())),
+    let indices = |name: &'static str, count: usize| match array(name, &[count])?.values() {
+        Values::U64(values) => Ok(values.iter().map(|&k| k as usize).collect::<Vec<_>>()),
+        _ => Err((name, "its numbers are not of type <u8".to_owned())),
     };
     let regime = match array("regime", &[n])?.values() {
         Values::U8(codes) => codes
@@ -104,7 +104,7 @@ pub(super) fn to_body(
         half_length0: vectors("half_length0", n)?,
         volume0: reals("volume0", &[n])?,
         mass: reals("mass", &[n])?,
-        law,
+        law: indices("law", n)?,
         history: reals("eps_p_eq", &[n])?
             .into_iter()
             .map(|eps_p_eq| History { eps_p_eq })
@@ -115,7 +115,8 @@ pub(super) fn to_body(
     let load_points = vectors("load_point_x", m)?
         .into_iter()
         .zip(vectors("load_point_force", m)?)
-        .map(|(x, force)| LoadPoint { x, force })
+        .zip(indices("load_point_load", m)?)
+        .map(|((x, force), load)| LoadPoint { x, force, load })
         .collect();
     Ok(Body {
         particles,

@@ -16,6 +16,7 @@
 //! | `law`, `regime` | n | index of the law; code of the regime ([`regime`](super::regime)) |
 //! | `eps_p_eq` | n | accumulated plastic strain \[-\] |
 //! | `load_point_x`, `load_point_force` | m × 2 | loaded points \[m\], forces at factor 1 \[N/m\] |
+//! | `load_point_load` | m | index of the load |
 //!
 //! A checkpoint is written under a temporary name, handed to the disk, and renamed. One that it
 //! replaces is called `NAME.previous` in between. Whenever the program is killed, [`newest`] finds

@@ -17,15 +17,38 @@ const OUTLYING: f64 = 2.5;
 /// Share of values at either end that may lie beyond the colour bar.
 const FEW: f64 = 0.005;
 
-/// The picture of a field at the end of stage number `stage`: filled particle domains, the outlines
-/// of the undeformed bodies, and further `outlines`, such as a footing where it stands.
+/// The state that a picture shows.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Shown {
+    /// Part of the names of its files.
+    pub name: String,
+    /// Part of the title.
+    pub title: String,
+    /// When that was; reads on from "Displacement".
+    pub when: String,
+}
+
+impl Shown {
+    /// The end of stage number `stage` of a case.
+    pub fn end_of_stage(case: &Case, stage: usize) -> Self {
+        let name = case.stages.get(stage).map_or("", |stage| &stage.name);
+        Self {
+            name: format!("{}-{}", stage + 1, file_name(name)),
+            title: name.to_owned(),
+            when: format!("at the end of stage “{name}”"),
+        }
+    }
+}
+
+/// The picture of a field in a state: filled particle domains, the outlines of the undeformed
+/// bodies, and further `outlines`, such as a footing where it stands.
 ///
 /// # Errors
 /// [`CaseError::File`] and [`CaseError::Figure`].
 pub fn field_picture(
     folder: &Path,
     case: &Case,
-    stage: usize,
+    shown: &Shown,
     field: Field,
     (particles, laws): (&Particles<2>, &[SharedLaw]),
     outlines: &[Outline],
@@ -34,9 +57,8 @@ pub fn field_picture(
     let scale = Scale::of(fields::dimension(field), values.iter().copied());
     let values = scale.apply(&values);
     let (map, range) = colours(field, &values);
-    let stage_name = case.stages.get(stage).map_or("", |stage| &stage.name);
     let plot = FieldPlot {
-        title: format!("{} – {stage_name}", case.title),
+        title: format!("{} – {}", case.title, shown.title),
         domains: domains(particles),
         values,
         label: fields::label(field, scale),
@@ -53,15 +75,11 @@ pub fn field_picture(
         ""
     };
     let caption = format!(
-        "{} at the end of stage “{stage_name}”{cut}. Lines: the bodies before they moved.",
+        "{} {}{cut}. Lines: the bodies before they moved.",
         sentence(&fields::plain(fields::title(field))),
+        shown.when,
     );
-    let name = format!(
-        "field-{}-{}-{}",
-        stage + 1,
-        file_name(stage_name),
-        fields::name(field)
-    );
+    let name = format!("field-{}-{}", shown.name, fields::name(field));
     write(folder, &name, &plot.draw()?, caption)
 }
 

@@ -24,7 +24,7 @@ use std::path::Path;
 
 pub use convergence::{History, convergence_pictures, convergence_plot, histories};
 pub use curve::curve_picture;
-pub use field::field_picture;
+pub use field::{Shown, field_picture};
 pub use histories::{monitor_pictures, section_pictures};
 pub use model::model_picture;
 pub use safety::safety_picture;

@@ -1,0 +1,85 @@
+//! What a run writes for ParaView: the particles and the grid, frame by frame.
+
+use std::path::{Path, PathBuf};
+
+use igimp_assembly::{Particles, SharedLaw};
+use igimp_shape::Grid;
+
+use super::fields;
+use super::particles::{Extras, of_grid, of_particles};
+use super::pvd::{self, Collection};
+use crate::case::Field;
+use crate::error::CaseError;
+
+/// The frames of a run.
+#[derive(Debug)]
+pub struct Frames {
+    folder: PathBuf,
+    particles: Collection,
+    grid: Collection,
+}
+
+impl Frames {
+    /// Goes on after the first `frames` frames of a folder that exists; 0 begins anew.
+    ///
+    /// # Errors
+    /// [`CaseError::Unusable`], [`CaseError::File`].
+    pub fn open(folder: &Path, frames: usize) -> Result<Self, CaseError> {
+        Ok(Self {
+            folder: folder.to_path_buf(),
+            particles: Collection::resume(folder, pvd::PARTICLES, frames)?,
+            grid: Collection::resume(folder, pvd::GRID, frames)?,
+        })
+    }
+
+    /// Adds a frame at a pseudo-time.
+    ///
+    /// # Errors
+    /// [`CaseError::File`].
+    pub fn add(
+        &mut self,
+        time: f64,
+        (particles, laws): (&Particles<2>, &[SharedLaw]),
+        grid: &Grid<2>,
+    ) -> Result<(), CaseError> {
+        with_extras(particles, laws, |cells| self.particles.add(time, &cells))?;
+        self.grid.add(time, &of_grid(grid, None))?;
+        Ok(())
+    }
+
+    /// Writes particles beside the frames, as `NAME.vtu`.
+    ///
+    /// # Errors
+    /// [`CaseError::File`].
+    pub fn beside(
+        &self,
+        name: &str,
+        (particles, laws): (&Particles<2>, &[SharedLaw]),
+    ) -> Result<(), CaseError> {
+        let path = self.folder.join(name).with_extension("vtu");
+        with_extras(particles, laws, |cells| cells.write(&path))
+    }
+
+    /// Number of frames.
+    pub fn len(&self) -> usize {
+        self.particles.frames().len()
+    }
+
+    /// Whether there is no frame yet.
+    pub fn is_empty(&self) -> bool {
+        self.particles.frames().is_empty()
+    }
+}
+
+fn with_extras<T>(
+    particles: &Particles<2>,
+    laws: &[SharedLaw],
+    write: impl FnOnce(super::vtu::UnstructuredGrid) -> T,
+) -> T {
+    let utilisation = fields::values(Field::Utilisation, particles, laws);
+    let extras = Extras {
+        utilisation: Some(&utilisation),
+        def_grad: true,
+    };
+    write(of_particles(particles, &extras))
+}
