@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 
 /// What a computed value must satisfy.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -56,7 +56,8 @@ pub struct Check {
     pub source: String,
     /// What is accepted.
     pub band: Band,
-    /// What was computed.
+    /// What was computed; JSON has `null` for what is not a number.
+    #[serde(deserialize_with = "or_not_a_number")]
     pub measured: f64,
 }
 
@@ -65,6 +66,11 @@ impl Check {
     pub fn passes(&self) -> bool {
         self.band.holds(self.expected, self.measured)
     }
+}
+
+/// A number, or NaN where JSON has `null` for want of a better word.
+pub(crate) fn or_not_a_number<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+    Ok(Option::deserialize(deserializer)?.unwrap_or(f64::NAN))
 }
 
 /// A number with four significant digits, plain where that is readable.

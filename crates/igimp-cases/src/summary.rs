@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::check::Check;
+use crate::check::{Check, or_not_a_number};
 
 /// The outcome of a run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -84,8 +84,10 @@ pub struct StageSummary {
     /// Time by phase \[s\]: set-up, evaluation, tangent, linear solver, commit.
     pub phases: [f64; 5],
     /// Largest particle displacement at the end \[m\].
+    #[serde(deserialize_with = "or_not_a_number")]
     pub largest_displacement: f64,
     /// Share of particles that yielded in the last step \[-\].
+    #[serde(deserialize_with = "or_not_a_number")]
     pub plastic_share: f64,
     /// What a strength reduction found.
     pub safety: Option<SafetySummary>,
@@ -136,6 +138,7 @@ pub struct TrialSummary {
     /// Why.
     pub reason: String,
     /// Displacement that the criterion looks at \[m\].
+    #[serde(deserialize_with = "or_not_a_number")]
     pub displacement: f64,
     /// Accepted steps.
     pub steps: usize,

@@ -11,6 +11,7 @@ pub mod particles;
 pub mod pictures;
 pub mod pvd;
 pub mod regime;
+pub mod report;
 pub mod rows;
 pub mod vtu;
 

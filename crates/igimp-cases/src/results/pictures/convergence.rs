@@ -152,7 +152,7 @@ fn line(label: &str, history: &History, style: SeriesStyle) -> Series {
 }
 
 /// The stages that histories belong to, in order.
-pub(in crate::results) fn stages(histories: &[History]) -> Vec<(&str, Vec<&History>)> {
+pub(in crate::results) fn stages_of(histories: &[History]) -> Vec<(&str, Vec<&History>)> {
     let mut stages: Vec<(&str, Vec<&History>)> = Vec::new();
     for history in histories {
         match stages.iter_mut().find(|(stage, _)| *stage == history.stage) {
@@ -164,7 +164,7 @@ pub(in crate::results) fn stages(histories: &[History]) -> Vec<(&str, Vec<&Histo
 }
 
 /// The words below a plot of convergence.
-pub(in crate::results) fn caption(stage: &str, histories: &[&History]) -> String {
+pub(in crate::results) fn convergence_caption(stage: &str, histories: &[&History]) -> String {
     let count = |accepted| histories.iter().filter(|h| h.accepted == accepted).count();
     let (accepted, cut) = (count(true), count(false));
     let picked = if accepted.max(cut) > MOST {
@@ -195,11 +195,16 @@ pub fn convergence_pictures(
 ) -> Result<Vec<FigureNote>, CaseError> {
     let histories = histories(&folder.join("convergence.csv"))?;
     let mut notes = Vec::new();
-    for (number, (stage, members)) in stages(&histories).into_iter().enumerate() {
+    for (number, (stage, members)) in stages_of(&histories).into_iter().enumerate() {
         let title = format!("{case_title} – {stage}");
         let drawing = convergence_plot(&title, &members, tolerance).draw()?;
         let name = format!("convergence-{}-{}", number + 1, file_name(stage));
-        notes.push(write(folder, &name, &drawing, caption(stage, &members))?);
+        notes.push(write(
+            folder,
+            &name,
+            &drawing,
+            convergence_caption(stage, &members),
+        )?);
     }
     Ok(notes)
 }

@@ -23,6 +23,7 @@ mod safety;
 use std::path::Path;
 
 pub use convergence::{History, convergence_pictures, convergence_plot, histories};
+pub(super) use convergence::{convergence_caption, stages_of};
 pub use curve::curve_picture;
 pub use field::{Shown, field_picture};
 pub use histories::{monitor_pictures, section_pictures};
@@ -90,7 +91,7 @@ fn style(points: usize) -> SeriesStyle {
 }
 
 /// A text with its first letter in upper case.
-fn sentence(text: &str) -> String {
+pub(super) fn sentence(text: &str) -> String {
     let mut signs = text.chars();
     signs.next().map_or_else(String::new, |first| {
         first.to_uppercase().chain(signs).collect()

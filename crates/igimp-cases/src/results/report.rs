@@ -1,0 +1,129 @@
+//! `report.html`: one page without outside parts that tells what a run found.
+
+mod files;
+mod rows;
+mod verdict;
+
+use std::path::{Path, PathBuf};
+
+use minijinja::value::Serde;
+use minijinja::{Environment, Value};
+use serde::Serialize;
+
+use crate::error::CaseError;
+use crate::summary::Summary;
+
+/// The page; values are escaped as they are filled in.
+const TEMPLATE: &str = include_str!("report.html");
+
+/// Makes `report.html` of what lies in a results folder, and returns its path.
+///
+/// `summary.json` must be there; pictures, tables, `convergence.csv` and the two texts of the case
+/// take part as far as they exist. Pictures are embedded, tables are linked by relative paths.
+///
+/// # Errors
+/// [`CaseError::File`] if the summary cannot be read or the report cannot be written.
+pub fn write_report(folder: &Path) -> Result<PathBuf, CaseError> {
+    let path = folder.join("summary.json");
+    let summary = std::fs::read(&path)
+        .and_then(|bytes| Ok(serde_json::from_slice::<Summary>(&bytes)?))
+        .map_err(|source| CaseError::File { path, source })?;
+    let path = folder.join("report.html");
+    let page = render(folder, &summary).map_err(|source| CaseError::File {
+        path: path.clone(),
+        source: std::io::Error::other(source),
+    })?;
+    std::fs::write(&path, page).map_err(|source| CaseError::File {
+        path: path.clone(),
+        source,
+    })?;
+    Ok(path)
+}
+
+fn render(folder: &Path, summary: &Summary) -> Result<String, minijinja::Error> {
+    let pictures = files::pictures(folder, summary);
+    let tables = files::tables(folder);
+    let inputs = files::inputs(folder);
+    let safety = rows::safety(summary);
+    let entries = contents(
+        [
+            (true, "numbers", "Key numbers"),
+            (!summary.checks.is_empty(), "checks", "Checks"),
+            (!summary.warnings.is_empty(), "warnings", "Warnings"),
+            (true, "stages", "Stages"),
+            (!safety.is_empty(), "safety", "Factor of safety"),
+        ],
+        &pictures,
+        [
+            (!tables.is_empty(), "tables", "Tables and files"),
+            (!inputs.is_empty(), "input", "Input"),
+        ],
+    );
+    let title = if summary.title.is_empty() {
+        "Results"
+    } else {
+        &summary.title
+    };
+    let page = Page {
+        title,
+        program: &summary.program,
+        method: &summary.method,
+        verdict: verdict::verdict(summary),
+        contents: entries,
+        numbers: rows::numbers(summary),
+        checks: rows::checks(summary),
+        warnings: &summary.warnings,
+        stages: rows::stages(summary),
+        phase_names: rows::PHASES,
+        safety,
+        pictures,
+        tables,
+        inputs,
+    };
+    let mut environment = Environment::new();
+    environment.add_template("report.html", TEMPLATE)?;
+    environment
+        .get_template("report.html")?
+        .render(Value::from(Serde(page)))
+}
+
+/// What the template fills in.
+#[derive(Serialize)]
+struct Page<'a> {
+    title: &'a str,
+    program: &'a str,
+    method: &'a str,
+    verdict: verdict::Verdict,
+    contents: Vec<Entry>,
+    numbers: Vec<rows::Number>,
+    checks: Vec<rows::CheckView>,
+    warnings: &'a [String],
+    stages: Vec<rows::StageView>,
+    phase_names: [&'static str; 5],
+    safety: Vec<rows::SafetyView>,
+    pictures: Vec<files::Group>,
+    tables: Vec<files::FileView>,
+    inputs: Vec<files::InputView>,
+}
+
+/// A line of the table of contents.
+#[derive(Serialize)]
+struct Entry {
+    id: &'static str,
+    title: &'static str,
+}
+
+fn contents<const N: usize, const M: usize>(
+    before: [(bool, &'static str, &'static str); N],
+    pictures: &[files::Group],
+    after: [(bool, &'static str, &'static str); M],
+) -> Vec<Entry> {
+    let groups = pictures.iter().map(|group| (true, group.id, group.title));
+    before
+        .into_iter()
+        .chain(groups)
+        .chain(after)
+        .filter(|(shown, ..)| *shown)
+        .map(|(_, id, title)| Entry { id, title })
+        .collect()
+}

@@ -1,0 +1,292 @@
+//! The rows of the tables of a report, as text.
+
+use serde::Serialize;
+
+use super::verdict::on_safety;
+use crate::check::{Band, short};
+use crate::results::fields::{Dimension, Scale};
+use crate::summary::{SafetySummary, StageOutcome, StageSummary, Summary};
+
+/// The phases of a stage, in the order of [`StageSummary::phases`].
+pub(super) const PHASES: [&str; 5] = ["set-up", "evaluation", "tangent", "linear solver", "commit"];
+
+/// A number with its name.
+#[derive(Serialize)]
+pub(super) struct Number {
+    name: &'static str,
+    value: String,
+}
+
+/// The numbers that are looked for first.
+pub(super) fn numbers(summary: &Summary) -> Vec<Number> {
+    let mut numbers = Vec::new();
+    let mut add = |name, value: String| numbers.push(Number { name, value });
+    let stages = &summary.stages;
+    for safety in stages.iter().filter_map(|stage| stage.safety.as_ref()) {
+        let bound = |factor: Option<f64>| factor.map_or("?".to_owned(), short);
+        let (from, to) = (bound(safety.stable), bound(safety.failed));
+        add("Factor of safety", format!("{from} … {to}"));
+    }
+    let size = &summary.size;
+    if let Some(last) = stages.last() {
+        let displacement = length(last.largest_displacement);
+        add("Largest displacement, last stage", displacement);
+    }
+    let sum = |of: fn(&StageSummary) -> usize| grouped(stages.iter().map(of).sum());
+    add("Steps", sum(|stage| stage.steps));
+    add("Newton iterations", sum(|stage| stage.iterations));
+    add("Particles", grouped(size.particles));
+    add("Grid cells", grouped(size.cells));
+    add("Most unknowns", grouped(size.unknowns));
+    add("Weight", quantity(size.weight, "N/m"));
+    add("Volume", format!("{} m³/m", short(size.volume)));
+    add("Time", time(summary.seconds));
+    if summary.output_seconds > 0.0 {
+        add("Of that, writing", time(summary.output_seconds));
+    }
+    if let Some(memory) = summary.peak_memory_mib {
+        add("Most memory", format!("{memory:.0} MiB"));
+    }
+    numbers
+}
+
+/// A check.
+#[derive(Serialize)]
+pub(super) struct CheckView {
+    pass: bool,
+    quantity: String,
+    about: String,
+    measured: String,
+    expected: String,
+    band: String,
+    deviation: String,
+    source: String,
+}
+
+pub(super) fn checks(summary: &Summary) -> Vec<CheckView> {
+    let view = |row: &crate::summary::CheckRow| {
+        let check = &row.check;
+        let share = (check.measured - check.expected) / check.expected.abs();
+        let deviation = match check.band {
+            Band::Relative(_) if share.is_finite() => format!("{:+.2} %", 100.0 * share),
+            _ => String::new(),
+        };
+        let about = [&check.case, &check.variant].map(|part| part.trim());
+        CheckView {
+            pass: row.pass,
+            quantity: check.quantity.clone(),
+            about: about
+                .into_iter()
+                .filter(|part| !part.is_empty())
+                .collect::<Vec<_>>()
+                .join(", "),
+            measured: short(check.measured),
+            expected: short(check.expected),
+            band: check.band.to_string(),
+            deviation: deviation.replace('-', "−"),
+            source: check.source.clone(),
+        }
+    };
+    summary.checks.iter().map(view).collect()
+}
+
+/// A stage.
+#[derive(Serialize)]
+pub(super) struct StageView {
+    name: String,
+    kind: String,
+    class: &'static str,
+    outcome: &'static str,
+    reason: String,
+    reached: String,
+    steps: String,
+    at_round_off: usize,
+    cuts: String,
+    iterations: String,
+    displacement: String,
+    plastic: String,
+    time: String,
+    /// Shares in percent; empty where no time was measured.
+    phases: Vec<f64>,
+    phases_text: String,
+}
+
+pub(super) fn stages(summary: &Summary) -> Vec<StageView> {
+    summary.stages.iter().map(stage).collect()
+}
+
+fn stage(stage: &StageSummary) -> StageView {
+    let (class, outcome) = match stage.outcome {
+        StageOutcome::Completed => ("good", "completed"),
+        StageOutcome::Stopped => ("good", "stopped as asked"),
+        StageOutcome::NotConverged => ("bad", "not converged"),
+        StageOutcome::Interrupted => ("fair", "interrupted"),
+    };
+    let all: f64 = stage.phases.iter().sum();
+    let phases: Vec<f64> = if all > 0.0 && all.is_finite() {
+        let share = |seconds: &f64| (1000.0 * seconds / all).round() / 10.0;
+        stage.phases.iter().map(share).collect()
+    } else {
+        Vec::new()
+    };
+    let text: Vec<String> = std::iter::zip(PHASES, &phases)
+        .map(|(name, share)| format!("{name} {share:.0} %"))
+        .collect();
+    StageView {
+        name: stage.name.clone(),
+        kind: stage.kind.clone(),
+        class,
+        outcome,
+        reason: stage.reason.clone(),
+        reached: percent(stage.reached),
+        steps: grouped(stage.steps),
+        at_round_off: stage.at_round_off,
+        cuts: grouped(stage.cuts),
+        iterations: grouped(stage.iterations),
+        displacement: length(stage.largest_displacement),
+        plastic: percent(stage.plastic_share),
+        time: time(stage.seconds),
+        phases,
+        phases_text: text.join(", "),
+    }
+}
+
+/// A search for a factor of safety.
+#[derive(Serialize)]
+pub(super) struct SafetyView {
+    stage: String,
+    interval: String,
+    lines: Vec<String>,
+    trials: Vec<TrialView>,
+}
+
+/// A trial of a search.
+#[derive(Serialize)]
+struct TrialView {
+    srf: String,
+    stable: bool,
+    reason: String,
+    displacement: String,
+    steps: String,
+    iterations: String,
+    cuts: String,
+}
+
+pub(super) fn safety(summary: &Summary) -> Vec<SafetyView> {
+    let view = |stage: &StageSummary| {
+        let safety = stage.safety.as_ref()?;
+        let trials = safety.trials.iter().map(|trial| TrialView {
+            srf: format!("{:.4}", trial.srf),
+            stable: trial.stable,
+            reason: trial.reason.clone(),
+            displacement: length(trial.displacement),
+            steps: grouped(trial.steps),
+            iterations: grouped(trial.iterations),
+            cuts: grouped(trial.cuts),
+        });
+        Some(SafetyView {
+            stage: stage.name.clone(),
+            interval: interval(safety),
+            lines: on_safety(safety).into_iter().skip(1).collect(),
+            trials: trials.collect(),
+        })
+    };
+    summary.stages.iter().filter_map(view).collect()
+}
+
+/// The factor of safety in words.
+pub(super) fn interval(safety: &SafetySummary) -> String {
+    match (safety.stable, safety.failed) {
+        (Some(stable), Some(failed)) => format!(
+            "the factor of safety lies between {} and {}",
+            short(stable),
+            short(failed)
+        ),
+        (Some(stable), None) => format!(
+            "the factor of safety is at least {}; no factor was found that fails",
+            short(stable)
+        ),
+        (None, Some(failed)) => format!(
+            "the factor of safety is below {}; no factor was found that stands",
+            short(failed)
+        ),
+        (None, None) => "no factor of safety was found".to_owned(),
+    }
+}
+
+/// A share as a percentage.
+pub(super) fn percent(share: f64) -> String {
+    let percent = 100.0 * share;
+    if percent.abs() < 9.95 && percent.round().to_string() != format!("{percent}") {
+        format!("{percent:.1} %")
+    } else {
+        format!("{percent:.0} %")
+    }
+}
+
+/// A length in mm or m.
+fn length(metres: f64) -> String {
+    let scale = Scale::of(Dimension::Displacement, [metres]);
+    format!("{} {}", short(metres / scale.divide_by), scale.unit)
+}
+
+/// A number with a prefix of its unit.
+fn quantity(value: f64, unit: &str) -> String {
+    let magnitude = value.abs();
+    let (divide_by, prefix) = if magnitude >= 1e6 {
+        (1e6, "M")
+    } else if magnitude >= 1e3 {
+        (1e3, "k")
+    } else {
+        (1.0, "")
+    };
+    format!("{} {prefix}{unit}", short(value / divide_by))
+}
+
+/// A wall-clock time.
+fn time(seconds: f64) -> String {
+    if !seconds.is_finite() || seconds < 0.0 {
+        return "?".to_owned();
+    }
+    let whole = seconds.round() as u64;
+    match whole {
+        0..60 => format!("{} s", short((10.0 * seconds).round() / 10.0)),
+        60..3600 => format!("{} min {} s", whole / 60, whole % 60),
+        _ => format!("{} h {} min", whole / 3600, whole % 3600 / 60),
+    }
+}
+
+/// A count with thin spaces between thousands.
+pub(super) fn grouped(count: usize) -> String {
+    let digits = count.to_string();
+    let mut text = String::with_capacity(digits.len() + 4);
+    for (place, digit) in digits.chars().enumerate() {
+        if place > 0 && (digits.len() - place) % 3 == 0 {
+            text.push('\u{202f}');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_read_well() {
+        assert_eq!(
+            [0.0, 0.034, 0.5, 1.0].map(percent),
+            ["0 %", "3.4 %", "50 %", "100 %"]
+        );
+        assert_eq!(grouped(1_234_567), "1\u{202f}234\u{202f}567");
+        assert_eq!(grouped(123), "123");
+        assert_eq!(
+            [0.04, 12.34, 61.0, 7325.0].map(time),
+            ["0 s", "12.3 s", "1 min 1 s", "2 h 2 min"]
+        );
+        assert_eq!(length(0.0123), "12.3 mm");
+        assert_eq!(quantity(2.5e7, "N/m"), "25 MN/m");
+        assert_eq!(time(f64::NAN), "?");
+    }
+}
