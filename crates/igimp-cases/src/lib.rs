@@ -4,6 +4,7 @@
 pub mod case;
 pub mod check;
 pub mod column;
+pub mod estimate;
 pub mod exact;
 pub mod figures;
 pub mod footing;
@@ -13,10 +14,19 @@ pub mod polygon;
 pub mod run;
 pub mod safety;
 pub mod seed;
+pub mod shipped;
 pub mod slope;
 pub mod summary;
+pub mod sweep;
 pub mod table;
 pub mod von_mises_slope;
+
+#[path = "run/advice.rs"]
+pub mod advice;
+#[path = "input_stub.rs"]
+pub mod input;
+#[path = "results_stub.rs"]
+pub mod results;
 
 mod error;
 mod parameter;
