@@ -30,7 +30,7 @@ use crate::error::CaseError;
 use crate::input::{CaseFile, InputError};
 use crate::run::{self, Listener, Run, Start, Target};
 
-pub use collect::{Collected, collect};
+pub use collect::{Collected, aligned, collect};
 pub use record::{Ending, Record};
 
 /// A parameter study that was read, with every task's case checked.
