@@ -5,7 +5,7 @@ use igimp_assembly::AssemblyError;
 use igimp_solver::linear::LinearSolverError;
 use igimp_solver::{StepError, StepFailure};
 
-use crate::case::{Case, Material, Stage, StageKind, Strength};
+use crate::case::{Case, Material, Side, Stage, StageKind, Strength};
 use crate::check::short;
 use crate::polygon::{area_and_centroid, clip_to_box};
 
@@ -120,20 +120,17 @@ fn unformed(case: &Case, stage: &Stage, error: &AssemblyError) -> Vec<String> {
 }
 
 fn unsolved(case: &Case, error: &LinearSolverError) -> Vec<String> {
-    match error {
-        LinearSolverError::OutOfMemory { .. } => {
-            vec!["a coarser cell in [grid], or a computer with more memory".to_owned()]
-        }
-        _ => {
-            let sides = &case.boundaries;
-            let mut out = vec![ghost_penalty()];
-            if sides.bottom == crate::case::Side::Free && sides.boxes.is_empty() {
-                out.insert(0, "bottom = \"fixed\" in [boundaries]".to_owned());
-            }
-            out.push("supports in [boundaries] that hold every body".to_owned());
-            out
-        }
+    if matches!(error, LinearSolverError::OutOfMemory { .. }) {
+        return vec!["a coarser cell in [grid], or a computer with more memory".to_owned()];
     }
+    let sides = &case.boundaries;
+    let mut out = Vec::new();
+    if sides.bottom == Side::Free && sides.boxes.is_empty() {
+        out.push("bottom = \"fixed\" in [boundaries]".to_owned());
+    }
+    out.push(ghost_penalty());
+    out.push("supports in [boundaries] that hold every body".to_owned());
+    out
 }
 
 /// The smallest residual is small, but above the tolerance.
@@ -254,7 +251,7 @@ fn finer_cell(case: &Case) -> String {
     if (x - y).abs() < 1e-9 * x {
         format!("cell = \"{}\"", metres(x))
     } else {
-        format!("cell = [\"{}\", \"{}\"]", metres(x), metres(y))
+        format!("cell = {{ x = \"{}\", y = \"{}\" }}", metres(x), metres(y))
     }
 }
 

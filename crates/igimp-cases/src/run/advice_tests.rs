@@ -4,8 +4,7 @@ use igimp_assembly::Method;
 
 use super::*;
 use crate::case::{
-    BodyPart, Boundaries, Every, GridSpec, Output, Reduction, RunOut, Side, SolverSettings,
-    StopWhen,
+    BodyPart, Boundaries, Every, GridSpec, Output, Reduction, RunOut, SolverSettings, StopWhen,
 };
 
 /// A slope of Mohr–Coulomb soil on elastic rock.

@@ -1,5 +1,6 @@
 //! One table of all tasks: their settings, their ends and what was asked for.
 
+use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use super::{Record, Sweep, SweepError, Task};
@@ -113,7 +114,7 @@ pub fn aligned(lines: &[Vec<String>]) -> String {
     let mut text = String::new();
     for line in lines {
         for (cell, width) in line.iter().zip(&widths) {
-            text += &format!("{cell:<width$}  ");
+            let _ = write!(text, "{cell:<width$}  ");
         }
         text.truncate(text.trim_end().len());
         text.push('\n');
@@ -206,7 +207,10 @@ fn curve_end(path: &Path) -> Option<(String, f64)> {
 /// Whether a column belongs to a name asked for: the name itself, or its part before a colon or a
 /// bracket.
 fn is(column: &str, wanted: &str) -> bool {
-    column
-        .strip_prefix(wanted)
-        .is_some_and(|rest| rest.is_empty() || rest.starts_with(": ") || rest.starts_with(" ("))
+    column.strip_prefix(wanted).is_some_and(|rest| {
+        rest.is_empty()
+            || [": ", " (", " ["]
+                .iter()
+                .any(|start| rest.starts_with(start))
+    })
 }

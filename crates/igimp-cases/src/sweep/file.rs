@@ -50,7 +50,7 @@ impl Problem {
             " ".repeat(column)
         );
         if !self.help.is_empty() {
-            out += &format!("\n{gutter} = help: {}", self.help);
+            out.extend(["\n", &gutter, " = help: ", &self.help]);
         }
         out
     }
@@ -220,9 +220,10 @@ fn flatten(
         DeValue::Table(table) => {
             for (key, inner) in table {
                 let key = if prefix.is_empty() {
+                    // A path in quotes, "grid.cell", is as good as grid.cell.
                     key.get_ref().to_string()
                 } else {
-                    format!("{prefix}.{}", key.get_ref())
+                    format!("{prefix}.{}", part(key.get_ref()))
                 };
                 flatten(&key, inner, out)?;
             }
@@ -246,6 +247,16 @@ fn flatten(
             format!("`{prefix}` is not a list of values"),
             help,
         )),
+    }
+}
+
+/// A part of a key, in quotes where it needs them.
+fn part(name: &str) -> String {
+    let bare = |letter: char| letter.is_ascii_alphanumeric() || letter == '_' || letter == '-';
+    if !name.is_empty() && name.chars().all(bare) {
+        name.to_owned()
+    } else {
+        toml::Value::from(name).to_string()
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::error::Error;
-use std::fmt;
+use std::fmt::{self, Write as _};
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
@@ -119,10 +119,11 @@ impl Record {
 
 /// SHA-256 of a case with every default and its settings.
 pub(super) fn fingerprint(file: &CaseFile) -> String {
-    Sha256::digest(file.explain())
-        .iter()
-        .map(|byte| format!("{byte:02x}"))
-        .collect()
+    let mut text = String::new();
+    for byte in Sha256::digest(file.explain()) {
+        let _ = write!(text, "{byte:02x}");
+    }
+    text
 }
 
 /// An error and its causes on one line.

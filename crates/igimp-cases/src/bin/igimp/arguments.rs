@@ -101,7 +101,8 @@ pub(crate) struct Report {
 #[derive(Debug, Args)]
 pub(crate) struct Sweep {
     /// Sweep file.
-    pub(crate) sweep: PathBuf,
+    #[arg(value_name = "SWEEP")]
+    pub(crate) file: PathBuf,
     /// Tasks that run at the same time.
     #[arg(long, value_name = "N", default_value = "1", value_parser = at_least_one)]
     pub(crate) jobs: usize,
@@ -116,7 +117,8 @@ pub(crate) struct Sweep {
 #[derive(Debug, Args)]
 pub(crate) struct Collect {
     /// Sweep file.
-    pub(crate) sweep: PathBuf,
+    #[arg(value_name = "SWEEP")]
+    pub(crate) file: PathBuf,
 }
 
 #[derive(Debug, Args)]

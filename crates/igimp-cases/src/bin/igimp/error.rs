@@ -1,6 +1,7 @@
 //! What ends the program early, and its exit codes.
 
 use std::error::Error;
+use std::fmt::Write as _;
 use std::io::ErrorKind;
 use std::path::PathBuf;
 
@@ -109,7 +110,7 @@ pub(crate) fn chain(error: &dyn Error) -> String {
     let mut text = format!("error: {error}");
     let mut cause = error.source();
     while let Some(next) = cause {
-        text += &format!("\n  because: {next}");
+        let _ = write!(text, "\n  because: {next}");
         cause = next.source();
     }
     text

@@ -1,5 +1,6 @@
 //! The message of a step that found no equilibrium: where, how, what is kept, what to try.
 
+use std::fmt::Write as _;
 use std::path::Path;
 
 use igimp_cases::check::short;
@@ -25,7 +26,9 @@ pub(crate) fn render(failure: &Failure) -> String {
         failure.steps,
         cuts(failure)
     );
-    let mut row = |name: &str, value: &str| text += &format!("  {name:<17}  {value}\n");
+    let mut row = |name: &str, value: &str| {
+        let _ = writeln!(text, "  {name:<17}  {value}");
+    };
     let reason = match &*error.failure {
         StepFailure::MaxIterations { .. } => Some("runs out"),
         StepFailure::Diverged => Some("diverges"),
@@ -98,7 +101,7 @@ fn history(residuals: &[f64], reason: Option<&str>) -> String {
         }
     };
     if let Some(reason) = reason {
-        text += &format!("  ({reason})");
+        let _ = write!(text, "  ({reason})");
     }
     text
 }
@@ -118,7 +121,7 @@ fn near(failure: &Failure) -> String {
         count(all)
     );
     if apex > 0 {
-        text += &format!(", {} returned to the apex", count(apex));
+        let _ = write!(text, ", {} returned to the apex", count(apex));
     }
     text
 }
@@ -219,10 +222,10 @@ mod tests {
         failure.near_worst = None;
         failure.saved.clear();
         failure.error.residuals = vec![1.0, f64::NAN];
-        failure.error.failure = Box::new(StepFailure::LeavesGrid {
+        *failure.error.failure = StepFailure::LeavesGrid {
             particle: 12,
             position: [60.1, 2.0, 0.0],
-        });
+        };
         failure.suggestions =
             vec!["a larger domain in [grid], so that the soil can run out there".into(); 2];
         insta::assert_snapshot!(render(&failure), @r#"

@@ -1,5 +1,6 @@
 //! Writing to the terminal. A reader that goes away never makes the program panic.
 
+use std::fmt::Write as _;
 use std::io::{ErrorKind, Write};
 
 use igimp_cases::CaseError;
@@ -44,10 +45,11 @@ pub(crate) fn warn(warnings: &str) {
 
 /// Rows as aligned columns, indented by two.
 pub(crate) fn table(rows: &[Vec<String>]) -> String {
-    igimp_cases::sweep::aligned(rows)
-        .lines()
-        .map(|line| format!("  {line}\n"))
-        .collect()
+    let mut text = String::new();
+    for line in igimp_cases::sweep::aligned(rows).lines() {
+        let _ = writeln!(text, "  {line}");
+    }
+    text
 }
 
 /// The kind of a stage, as in the case file.

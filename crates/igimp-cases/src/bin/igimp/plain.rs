@@ -1,5 +1,7 @@
 //! A run as lines of text. They hold no times, so that two runs of a case give equal logs.
 
+use std::fmt::Write as _;
+
 use igimp_cases::check::short;
 use igimp_cases::run::Event;
 use igimp_cases::summary::{SafetySummary, StageOutcome, StageSummary, TrialSummary};
@@ -29,7 +31,7 @@ impl Lines {
                     count(size.cells)
                 );
                 if size.unknowns > 0 {
-                    line += &format!(", {} unknowns", count(size.unknowns));
+                    let _ = write!(line, ", {} unknowns", count(size.unknowns));
                 }
                 Some(line)
             }
@@ -87,10 +89,10 @@ fn cut(error: &StepError) -> String {
         error.from, error.to, error.failure
     );
     if let Some(last) = error.residuals.last() {
-        line += &format!(", residual {}", residual(Some(*last)));
+        let _ = write!(line, ", residual {}", residual(Some(*last)));
     }
     if let Some(worst) = worst_node(error) {
-        line += &format!(", worst node {worst}");
+        let _ = write!(line, ", worst node {worst}");
     }
     line
 }
@@ -112,7 +114,7 @@ fn trial(trial: &TrialSummary) -> String {
         trial.steps
     );
     if !trial.stable && !trial.reason.is_empty() {
-        line += &format!("  ({})", trial.reason);
+        let _ = write!(line, "  ({})", trial.reason);
     }
     line
 }
@@ -120,7 +122,8 @@ fn trial(trial: &TrialSummary) -> String {
 /// The end of a stage.
 fn end(summary: &StageSummary) -> String {
     let mut line = outcome(summary);
-    line += &format!(
+    let _ = write!(
+        line,
         "; {} steps, {} iterations, {} cuts, largest displacement {} m",
         summary.steps,
         summary.iterations,
@@ -145,10 +148,10 @@ pub(crate) fn outcome(summary: &StageSummary) -> String {
     };
     let mut text = word.to_owned();
     if summary.outcome != StageOutcome::Stopped {
-        text += &format!(" at {} %", short(100.0 * summary.reached));
+        let _ = write!(text, " at {} %", short(100.0 * summary.reached));
     }
     if !summary.reason.is_empty() {
-        text += &format!(": {}", summary.reason);
+        let _ = write!(text, ": {}", summary.reason);
     }
     text
 }

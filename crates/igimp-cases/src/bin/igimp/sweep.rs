@@ -11,7 +11,7 @@ use crate::error::{Exit, ProgramError};
 use crate::{interrupt, output, plain};
 
 pub(crate) fn sweep(arguments: &Sweep) -> Result<Exit, ProgramError> {
-    let sweep = sweep::Sweep::read(&arguments.sweep)?;
+    let sweep = sweep::Sweep::read(&arguments.file)?;
     let width = sweep.tasks.len().to_string().len();
     let label = |task: &Task| format!("task {:>width$}/{}", task.number, sweep.tasks.len());
     if arguments.list {
@@ -133,7 +133,7 @@ fn run_one(
 }
 
 pub(crate) fn collect(arguments: &Collect) -> Result<Exit, ProgramError> {
-    let sweep = sweep::Sweep::read_unchecked(&arguments.sweep)?;
+    let sweep = sweep::Sweep::read_unchecked(&arguments.file)?;
     let table = sweep::collect(&sweep);
     let path = table.write(&sweep.folder)?;
     output::print(&format!("{}table in {}", table.to_text(), path.display()))?;
@@ -151,7 +151,7 @@ pub(crate) fn collect(arguments: &Collect) -> Result<Exit, ProgramError> {
         table.missing.len(),
         sweep.tasks.len(),
         numbers.join(", "),
-        arguments.sweep.display()
+        arguments.file.display()
     ));
     Ok(Exit::InputOutput)
 }

@@ -1,5 +1,6 @@
 //! What is said at the end of a run.
 
+use std::fmt::Write as _;
 use std::path::Path;
 
 use igimp_cases::check::short;
@@ -26,11 +27,13 @@ pub(crate) fn stages_and_checks(summary: &Summary) -> String {
     let mut text = format!("stages\n{}", output::table(&rows));
     let at_round_off: usize = summary.stages.iter().map(|stage| stage.at_round_off).sum();
     if at_round_off > 0 {
-        text +=
-            &format!("  {at_round_off} steps were accepted above the tolerance, at round-off\n");
+        let _ = writeln!(
+            text,
+            "  {at_round_off} steps were accepted above the tolerance, at round-off"
+        );
     }
     if !summary.checks.is_empty() {
-        text += &format!("checks\n{}", checks(&summary.checks));
+        let _ = write!(text, "checks\n{}", checks(&summary.checks));
     }
     text
 }
@@ -125,7 +128,7 @@ mod tests {
                     expected: 1.38,
                     source: "Griffiths and Lane 1999".into(),
                     band: Band::Relative(0.02),
-                    measured: 1.3705,
+                    measured: 1.371,
                 },
                 pass: true,
             }],
@@ -139,7 +142,7 @@ mod tests {
           factor of safety  strength-reduction  10 steps  1.366 <= F < 1.375 (fails when no equilibrium is found; materials clay; without rock; 34 % of the mass moves)
           load              load                10 steps  stopped as planned: displacement reached 0.5 m
         checks
-          met  F [-]  1.37  expected 1.38  ± 2 %  (Griffiths and Lane 1999)
+          met  F [-]  1.371  expected 1.38  ± 2 %  (Griffiths and Lane 1999)
         results in results/slope (12.3 s)
         "#);
     }
