@@ -4,6 +4,7 @@
 pub mod case;
 pub mod check;
 pub mod column;
+pub mod estimate;
 pub mod exact;
 pub mod figures;
 pub mod footing;
@@ -14,11 +15,15 @@ pub mod results;
 pub mod run;
 pub mod safety;
 pub mod seed;
+pub mod shipped;
 pub mod slope;
 pub mod summary;
+pub mod sweep;
 pub mod table;
 pub mod von_mises_slope;
 
+#[path = "input_stub.rs"]
+pub mod input;
 mod error;
 mod parameter;
 

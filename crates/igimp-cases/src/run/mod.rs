@@ -1,5 +1,6 @@
 //! Runs a case: stage by stage, step by step, with its records and checks.
 
+pub mod advice;
 mod checks;
 mod engine;
 mod failure;

@@ -60,7 +60,7 @@ struct Trials<'a> {
 
 impl<'a> Trials<'a> {
     fn new(
-        session: &Session<'a>,
+        session: &Session<'_>,
         found: &'a State,
         number: usize,
         stage: &'a Stage,

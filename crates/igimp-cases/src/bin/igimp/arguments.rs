@@ -1,0 +1,170 @@
+//! The command line.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand};
+use clap_complete::Shell;
+
+const EXIT_CODES: &str = "Exit codes: 0 done, references met; 1 a reference missed; 2 bad input; \
+                          3 not converged or interrupted; 4 input or output failed.";
+
+/// Large deformation of soil by the implicit generalised interpolation material point method.
+///
+/// A problem is one case file: start with `igimp new slope > slope.toml`, look at it with
+/// `igimp check slope.toml`, and run it with `igimp run slope.toml`.
+#[derive(Debug, Parser)]
+#[command(name = "igimp", version, after_help = EXIT_CODES)]
+pub(crate) struct Program {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Write a commented case file to standard output.
+    New(New),
+    /// Check a case file and tell its size.
+    Check(CaseArguments),
+    /// Print a case file completed with every default.
+    Explain(CaseArguments),
+    /// Run a case, or one task of a sweep.
+    Run(Run),
+    /// Make the report of a results folder again.
+    Report(Report),
+    /// Run a parameter study.
+    Sweep(Sweep),
+    /// Gather the results of a parameter study in one table.
+    Collect(Collect),
+    /// Run the built-in cases and hold them against their references.
+    Validate(Validate),
+    /// Print the JSON Schema of case files, for editors.
+    Schema,
+    /// Print completions for a shell.
+    Completions(Completions),
+    /// Print the manual page, or write one page a command.
+    Man(Man),
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct New {
+    /// Name of a template; without one they are listed.
+    pub(crate) template: Option<String>,
+    /// List the templates.
+    #[arg(long, conflicts_with = "template")]
+    pub(crate) list: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct CaseArguments {
+    /// Case file.
+    pub(crate) case: PathBuf,
+    /// Replace a value of the file, as in materials.clay.cohesion="12 kPa" (may be repeated).
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub(crate) set: Vec<String>,
+}
+
+// Each switch is its own flag on the command line.
+#[allow(clippy::struct_excessive_bools)]
+#[derive(Debug, Args)]
+pub(crate) struct Run {
+    /// Case file; with --task a sweep file.
+    pub(crate) case: PathBuf,
+    /// Results folder; the one named in the case when not given.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Replace a value of the file, as in materials.clay.cohesion="12 kPa" (may be repeated).
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub(crate) set: Vec<String>,
+    /// Threads to use; all cores when not given.
+    #[arg(long, value_name = "N", value_parser = at_least_one)]
+    pub(crate) threads: Option<usize>,
+    /// Go on from the newest checkpoint in the results folder.
+    #[arg(long)]
+    pub(crate) resume: bool,
+    /// Begin with a stage, from the saved end of the one before it.
+    #[arg(long, value_name = "NAME", conflicts_with = "resume")]
+    pub(crate) from_stage: Option<String>,
+    /// Run this task of a sweep, numbered from 1.
+    #[arg(long, value_name = "N", conflicts_with_all = ["out", "set", "from_stage"])]
+    pub(crate) task: Option<usize>,
+    /// Print the verdict only.
+    #[arg(long, short)]
+    pub(crate) quiet: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Report {
+    /// Results folder.
+    pub(crate) folder: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Sweep {
+    /// Sweep file.
+    #[arg(value_name = "SWEEP")]
+    pub(crate) file: PathBuf,
+    /// Tasks that run at the same time.
+    #[arg(long, value_name = "N", default_value = "1", value_parser = at_least_one)]
+    pub(crate) jobs: usize,
+    /// Threads to use in all; all cores when not given.
+    #[arg(long, value_name = "N", value_parser = at_least_one)]
+    pub(crate) threads: Option<usize>,
+    /// List the tasks and their settings, and run none.
+    #[arg(long)]
+    pub(crate) list: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Collect {
+    /// Sweep file.
+    #[arg(value_name = "SWEEP")]
+    pub(crate) file: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Validate {
+    /// Cases to run; all that declare references when none is named.
+    pub(crate) names: Vec<String>,
+    /// Only cases of little work.
+    #[arg(long)]
+    pub(crate) quick: bool,
+    /// Folder for results; none are written when not given.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Threads to use; all cores when not given.
+    #[arg(long, value_name = "N", value_parser = at_least_one)]
+    pub(crate) threads: Option<usize>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Completions {
+    /// Shell.
+    pub(crate) shell: Shell,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Man {
+    /// Write one page a command into this folder.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+}
+
+fn at_least_one(text: &str) -> Result<usize, String> {
+    match text.parse() {
+        Ok(0) => Err("must be at least 1".to_owned()),
+        Ok(number) => Ok(number),
+        Err(_) => Err("expected a whole number".to_owned()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    use super::*;
+
+    #[test]
+    fn the_command_line_makes_sense() {
+        Program::command().debug_assert();
+    }
+}

@@ -1,0 +1,165 @@
+//! What ends the program early, and its exit codes.
+
+use std::error::Error;
+use std::fmt::Write as _;
+use std::io::ErrorKind;
+use std::path::PathBuf;
+
+use igimp_cases::CaseError;
+use igimp_cases::input::InputError;
+use igimp_cases::sweep::{Ending, SweepError};
+use thiserror::Error;
+
+/// Exit codes; part of the contract with callers. Ordered by how bad they are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[repr(u8)]
+pub(crate) enum Exit {
+    Done = 0,
+    ReferenceMissed = 1,
+    BadInput = 2,
+    NotConverged = 3,
+    InputOutput = 4,
+}
+
+impl From<Ending> for Exit {
+    fn from(ending: Ending) -> Self {
+        match ending {
+            Ending::Done => Self::Done,
+            Ending::Missed => Self::ReferenceMissed,
+            Ending::NotConverged | Ending::Interrupted | Ending::Running => Self::NotConverged,
+            Ending::Failed => Self::BadInput,
+        }
+    }
+}
+
+/// Why a command could not do its work.
+#[derive(Debug, Error)]
+pub(crate) enum ProgramError {
+    /// Arguments that make no sense together with what is in the files.
+    #[error("{what}")]
+    Usage {
+        /// What is wrong.
+        what: String,
+        /// What helps.
+        help: String,
+    },
+    #[error(transparent)]
+    Input(#[from] InputError),
+    #[error(transparent)]
+    Case(#[from] CaseError),
+    #[error(transparent)]
+    Sweep(#[from] SweepError),
+    #[error("cannot access {}", path.display())]
+    File {
+        path: PathBuf,
+        #[source]
+        source: std::io::Error,
+    },
+    #[error("cannot write to standard output")]
+    Output(#[source] std::io::Error),
+}
+
+impl ProgramError {
+    pub(crate) fn usage(what: impl Into<String>, help: impl Into<String>) -> Self {
+        Self::Usage {
+            what: what.into(),
+            help: help.into(),
+        }
+    }
+
+    /// Whether the reader of standard output went away, as `head` does.
+    pub(crate) fn is_closed_pipe(&self) -> bool {
+        matches!(self, Self::Output(source) if source.kind() == ErrorKind::BrokenPipe)
+    }
+
+    /// The exit code: anything that comes from a file is input or output, the rest is bad input.
+    pub(crate) fn exit(&self) -> Exit {
+        if self.is_closed_pipe() {
+            return Exit::Done;
+        }
+        let mut link: Option<&(dyn Error + 'static)> = Some(self);
+        while let Some(error) = link {
+            if error.is::<std::io::Error>() || error.is::<csv::Error>() {
+                return Exit::InputOutput;
+            }
+            link = error.source();
+        }
+        Exit::BadInput
+    }
+
+    /// The complete message.
+    pub(crate) fn render(&self) -> String {
+        match self {
+            Self::Input(InputError::Invalid { .. }) | Self::Sweep(SweepError::Invalid { .. }) => {
+                self.to_string()
+            }
+            // Both messages in one: the task's, then the case's with its place.
+            Self::Sweep(SweepError::Task {
+                source: InputError::Invalid { .. },
+                ..
+            }) => format!("error: {self}"),
+            Self::Usage { what, help } if help.is_empty() => format!("error: {what}"),
+            Self::Usage { what, help } => format!("error: {what}\n  help: {help}"),
+            _ => chain(self),
+        }
+    }
+}
+
+/// An error and its causes, a line each.
+pub(crate) fn chain(error: &dyn Error) -> String {
+    let mut text = format!("error: {error}");
+    let mut cause = error.source();
+    while let Some(next) = cause {
+        let _ = write!(text, "\n  because: {next}");
+        cause = next.source();
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn denied() -> std::io::Error {
+        ErrorKind::PermissionDenied.into()
+    }
+
+    #[test]
+    fn files_and_input_have_their_codes() {
+        let path = PathBuf::from("a.toml");
+        let file = InputError::File {
+            path: path.clone(),
+            source: denied(),
+        };
+        assert_eq!(ProgramError::from(file).exit(), Exit::InputOutput);
+        let invalid = InputError::Invalid {
+            text: "error: no".into(),
+            errors: 1,
+        };
+        let invalid = ProgramError::from(invalid);
+        assert_eq!(invalid.exit(), Exit::BadInput);
+        assert_eq!(invalid.render(), "error: no");
+        let case = CaseError::File {
+            path,
+            source: denied(),
+        };
+        let case = ProgramError::from(SweepError::from(case));
+        assert_eq!(case.exit(), Exit::InputOutput);
+        assert_eq!(
+            case.render(),
+            "error: the task cannot be run\n  because: cannot access a.toml\n  \
+             because: permission denied"
+        );
+        assert_eq!(
+            ProgramError::from(CaseError::EmptyBody).exit(),
+            Exit::BadInput
+        );
+    }
+
+    #[test]
+    fn a_closed_pipe_is_no_failure() {
+        let error = ProgramError::Output(ErrorKind::BrokenPipe.into());
+        assert_eq!(error.exit(), Exit::Done);
+        assert_eq!(ProgramError::Output(denied()).exit(), Exit::InputOutput);
+    }
+}

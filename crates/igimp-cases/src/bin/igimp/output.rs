@@ -1,0 +1,133 @@
+//! Writing to the terminal. A reader that goes away never makes the program panic.
+
+use std::fmt::Write as _;
+use std::io::{ErrorKind, Write};
+
+use igimp_cases::CaseError;
+use igimp_cases::case::Case;
+
+use crate::error::ProgramError;
+
+/// Prints the result of a command; a text without line break at its end gets one.
+pub(crate) fn print(text: &str) -> Result<(), ProgramError> {
+    let mut out = std::io::stdout().lock();
+    let end = if text.is_empty() || text.ends_with('\n') {
+        ""
+    } else {
+        "\n"
+    };
+    write!(out, "{text}{end}")
+        .and_then(|()| out.flush())
+        .map_err(ProgramError::Output)
+}
+
+/// Prints a line of progress or of the end of a run. A reader that went away is not missed: the
+/// run goes on.
+pub(crate) fn say(text: &str) -> Result<(), ProgramError> {
+    match print(text) {
+        Err(ProgramError::Output(error)) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
+        other => other,
+    }
+}
+
+/// Prints an error, a warning or a note.
+pub(crate) fn complain(text: &str) {
+    // There is nowhere left to tell that standard error is closed.
+    let _ = writeln!(std::io::stderr().lock(), "{}", text.trim_end());
+}
+
+/// Prints the warnings of a case file, if there are any.
+pub(crate) fn warn(warnings: &str) {
+    if !warnings.trim().is_empty() {
+        complain(warnings);
+    }
+}
+
+/// Rows as aligned columns, indented by two.
+pub(crate) fn table(rows: &[Vec<String>]) -> String {
+    let mut text = String::new();
+    for line in igimp_cases::sweep::aligned(rows).lines() {
+        let _ = writeln!(text, "  {line}");
+    }
+    text
+}
+
+/// The kind of a stage, as in the case file.
+pub(crate) fn kind(stage: &igimp_cases::case::Stage) -> &'static str {
+    use igimp_cases::case::StageKind;
+    match stage.kind {
+        StageKind::Gravity { .. } => "gravity",
+        StageKind::K0 => "k0",
+        StageKind::Load { .. } => "load",
+        StageKind::Displacement { .. } => "displacement",
+        StageKind::StrengthReduction(_) => "strength-reduction",
+        StageKind::RunOut(_) => "run-out",
+    }
+}
+
+/// A count with thin gaps between thousands, as in `1 310`.
+pub(crate) fn count(number: usize) -> String {
+    let digits = number.to_string();
+    let mut text = String::new();
+    for (place, digit) in digits.chars().enumerate() {
+        if place > 0 && (digits.len() - place).is_multiple_of(3) {
+            text.push(' ');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+/// Number of the stage with a name.
+pub(crate) fn stage_named(case: &Case, name: &str) -> Result<usize, ProgramError> {
+    let names = || case.stages.iter().map(|stage| stage.name.as_str());
+    names().position(|own| own == name).ok_or_else(|| {
+        let help = igimp_cases::shipped::closest(name, names()).map_or_else(
+            || {
+                let quoted: Vec<String> = names().map(|name| format!("\"{name}\"")).collect();
+                format!("stages: {}", quoted.join(", "))
+            },
+            |near| format!("did you mean \"{near}\"?"),
+        );
+        ProgramError::usage(format!("there is no stage \"{name}\""), help)
+    })
+}
+
+/// Makes the pool of threads of the size asked for.
+pub(crate) fn use_threads(threads: Option<usize>) {
+    if let Some(threads) = threads {
+        // Fails only if the pool exists already, which it does not at the start.
+        let _ = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build_global();
+    }
+}
+
+/// A folder that can be written into, made now rather than after an hour of computing.
+pub(crate) fn writable(folder: &std::path::Path) -> Result<(), ProgramError> {
+    std::fs::create_dir_all(folder).map_err(|source| {
+        CaseError::File {
+            path: folder.to_owned(),
+            source,
+        }
+        .into()
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn thousands_are_set_apart() {
+        assert_eq!(count(7), "7");
+        assert_eq!(count(1310), "1 310");
+        assert_eq!(count(1_234_567), "1 234 567");
+    }
+
+    #[test]
+    fn columns_are_aligned() {
+        let rows = [["a", "bb"], ["ccc", "d"]].map(|row| row.map(str::to_owned).to_vec());
+        assert_eq!(table(&rows), "  a    bb\n  ccc  d\n");
+    }
+}

@@ -1,0 +1,94 @@
+//! Shows a run as it goes: a bar on a terminal, lines elsewhere, nothing when quiet.
+
+use std::io::IsTerminal;
+use std::time::Duration;
+
+use igimp_cases::run::{Event, Listener};
+use indicatif::{ProgressBar, ProgressStyle};
+
+use crate::output;
+use crate::plain::{self, Lines};
+
+/// Positions of the bar in a stage or trial.
+const LENGTH: u64 = 1000;
+const TEMPLATE: &str = "{prefix}  [{bar:24}] {percent:>3} %  {wide_msg} eta {eta}";
+
+/// Shows a run.
+#[derive(Debug)]
+pub(crate) enum Progress {
+    /// Nothing is shown.
+    Quiet,
+    /// One line a step on standard output.
+    Plain(Lines),
+    /// A bar on standard error; the lines of stages and trials above it.
+    Bar(ProgressBar, Lines),
+}
+
+impl Progress {
+    /// The way that suits where the output goes.
+    pub(crate) fn new(quiet: bool) -> Self {
+        if quiet {
+            Self::Quiet
+        } else if std::io::stdout().is_terminal() && std::io::stderr().is_terminal() {
+            let bar = ProgressBar::new(LENGTH);
+            if let Ok(style) = ProgressStyle::with_template(TEMPLATE) {
+                bar.set_style(style.progress_chars("=> "));
+            }
+            bar.enable_steady_tick(Duration::from_secs(1));
+            Self::Bar(bar, Lines::default())
+        } else {
+            Self::Plain(Lines::default())
+        }
+    }
+
+    /// Takes the bar away, so that the verdict stands alone.
+    pub(crate) fn finish(&self) {
+        if let Self::Bar(bar, _) = self {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+impl Listener for Progress {
+    fn on_event(&mut self, event: &Event<'_>) {
+        match self {
+            Self::Quiet => {}
+            Self::Plain(lines) => {
+                if let Some(line) = lines.line(event) {
+                    // A log that cannot be written any more does not end the run.
+                    let _ = output::say(&line);
+                }
+            }
+            Self::Bar(bar, lines) => show(bar, lines, event),
+        }
+    }
+}
+
+fn show(bar: &ProgressBar, lines: &mut Lines, event: &Event<'_>) {
+    let line = lines.line(event);
+    match event {
+        Event::Step {
+            number,
+            progress,
+            report,
+        } => {
+            bar.set_position((progress * LENGTH as f64) as u64);
+            bar.set_message(plain::step(*number, lines.steps, *progress, report));
+        }
+        Event::Cut { error } => bar.set_message(format!("smaller step: {}", error.failure)),
+        _ => {
+            if let Some(line) = line {
+                bar.println(line);
+            }
+        }
+    }
+    match event {
+        Event::StageStarted { name, .. } => {
+            bar.set_prefix((*name).to_owned());
+            bar.set_message("");
+            bar.reset();
+        }
+        Event::Trial { .. } => bar.reset(),
+        _ => {}
+    }
+}

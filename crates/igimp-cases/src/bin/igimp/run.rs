@@ -1,0 +1,143 @@
+//! `igimp run`.
+
+use std::path::Path;
+
+use igimp_cases::run::{self as engine, Start, Target};
+use igimp_cases::sweep::{Ending, Sweep};
+
+use crate::arguments::Run;
+use crate::error::{Exit, ProgramError};
+use crate::progress::Progress;
+use crate::{cases, failure, interrupt, output, verdict};
+
+pub(crate) fn run(arguments: &Run) -> Result<Exit, ProgramError> {
+    output::use_threads(arguments.threads);
+    if let Some(number) = arguments.task {
+        return task(arguments, number);
+    }
+    let file = cases::read(&arguments.case, &arguments.set)?;
+    output::warn(&file.warnings());
+    let mut case = file.case().clone();
+    if let Some(out) = &arguments.out {
+        case.output.folder.clone_from(out);
+    }
+    let start = match &arguments.from_stage {
+        Some(name) => Start::FromStage(output::stage_named(&case, name)?),
+        None => afresh_or_resume(arguments),
+    };
+    let folder = case.output.folder.clone();
+    output::writable(&folder)?;
+    let target = Target {
+        folder: folder.clone(),
+        source: file.source().to_owned(),
+        completed: file.explain(),
+    };
+    let flag = interrupt::watch();
+    let mut progress = Progress::new(arguments.quiet);
+    let run = engine::run(&case, Some(&target), start, &mut progress, &flag);
+    progress.finish();
+    tell(&run?, &folder, arguments)
+}
+
+/// One task of a sweep.
+fn task(arguments: &Run, number: usize) -> Result<Exit, ProgramError> {
+    let sweep = Sweep::read_unchecked(&arguments.case)?;
+    let task = sweep.task(number)?;
+    if !arguments.quiet {
+        output::say(&format!("task {number}: {}", task.label()))?;
+    }
+    let flag = interrupt::watch();
+    let mut progress = Progress::new(arguments.quiet);
+    let start = afresh_or_resume(arguments);
+    let run = sweep.run_task(task, start, &mut progress, &flag);
+    progress.finish();
+    let (run, _) = run?;
+    tell(&run, &task.folder, arguments)
+}
+
+fn afresh_or_resume(arguments: &Run) -> Start {
+    if arguments.resume {
+        Start::Resume
+    } else {
+        Start::Afresh
+    }
+}
+
+/// Says how a run ended.
+fn tell(run: &engine::Run, folder: &Path, arguments: &Run) -> Result<Exit, ProgramError> {
+    let summary = &run.summary;
+    let ending = Ending::of(summary);
+    output::say(&verdict::stages_and_checks(summary))?;
+    if let Some(failure) = &run.failure {
+        output::complain(&failure::render(failure));
+    }
+    if ending == Ending::Interrupted {
+        output::complain(&format!("interrupted; to go on: {}", again(arguments)));
+    }
+    output::say(&verdict::results(summary, folder))?;
+    Ok(if run.failure.is_some() {
+        Exit::NotConverged
+    } else {
+        ending.into()
+    })
+}
+
+/// The command that goes on with an interrupted run.
+fn again(arguments: &Run) -> String {
+    let mut words = vec!["igimp".to_owned(), "run".to_owned()];
+    words.push(quoted(&arguments.case.display().to_string()));
+    if let Some(task) = arguments.task {
+        words.push(format!("--task {task}"));
+    }
+    if let Some(out) = &arguments.out {
+        words.push(format!("--out {}", quoted(&out.display().to_string())));
+    }
+    for set in &arguments.set {
+        words.push(format!("--set {}", quoted(set)));
+    }
+    if let Some(threads) = arguments.threads {
+        words.push(format!("--threads {threads}"));
+    }
+    words.push("--resume".to_owned());
+    words.join(" ")
+}
+
+/// A word as a shell reads it back.
+fn quoted(word: &str) -> String {
+    let plain = |letter: char| letter.is_alphanumeric() || "_-./=:,+@%".contains(letter);
+    if !word.is_empty() && word.chars().all(plain) {
+        word.to_owned()
+    } else {
+        format!("'{}'", word.replace('\'', r"'\''"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::Parser;
+
+    use super::*;
+    use crate::arguments::{Command, Program};
+
+    #[test]
+    fn the_way_on_can_be_pasted() {
+        let words = [
+            "igimp",
+            "run",
+            "my slope.toml",
+            "--set",
+            "materials.clay.cohesion=12 kPa",
+            "--out",
+            "out/a",
+            "--quiet",
+        ];
+        let Command::Run(arguments) = Program::parse_from(words).command else {
+            panic!("a run");
+        };
+        assert_eq!(
+            again(&arguments),
+            "igimp run 'my slope.toml' --out out/a --set 'materials.clay.cohesion=12 kPa' --resume"
+        );
+        assert_eq!(quoted("it's"), r"'it'\''s'");
+    }
+}

@@ -1,0 +1,149 @@
+//! What is said at the end of a run.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use igimp_cases::check::short;
+use igimp_cases::summary::{CheckRow, SafetySummary, Summary};
+
+use crate::output;
+use crate::plain;
+
+/// Stages and checks of a run; no times, so that two runs give equal texts.
+pub(crate) fn stages_and_checks(summary: &Summary) -> String {
+    let rows: Vec<Vec<String>> = summary
+        .stages
+        .iter()
+        .map(|stage| {
+            let found = stage.safety.as_ref().map(explain).unwrap_or_default();
+            vec![
+                stage.name.clone(),
+                stage.kind.clone(),
+                format!("{} steps", stage.steps),
+                plain::outcome(stage) + &found,
+            ]
+        })
+        .collect();
+    let mut text = format!("stages\n{}", output::table(&rows));
+    let at_round_off: usize = summary.stages.iter().map(|stage| stage.at_round_off).sum();
+    if at_round_off > 0 {
+        let _ = writeln!(
+            text,
+            "  {at_round_off} steps were accepted above the tolerance, at round-off"
+        );
+    }
+    if !summary.checks.is_empty() {
+        let _ = write!(text, "checks\n{}", checks(&summary.checks));
+    }
+    text
+}
+
+/// The last line: where the results are, and the time taken.
+pub(crate) fn results(summary: &Summary, folder: &Path) -> String {
+    format!("results in {} ({:.1} s)", folder.display(), summary.seconds)
+}
+
+/// Checks as a table, with the source of each expected value.
+pub(crate) fn checks(rows: &[CheckRow]) -> String {
+    let rows: Vec<Vec<String>> = rows
+        .iter()
+        .map(|row| {
+            let check = &row.check;
+            vec![
+                if row.pass { "met" } else { "MISSED" }.to_owned(),
+                check.quantity.clone(),
+                short(check.measured),
+                format!("expected {}", short(check.expected)),
+                check.band.to_string(),
+                format!("({})", check.source),
+            ]
+        })
+        .collect();
+    output::table(&rows)
+}
+
+/// What stands behind a factor of safety: the criterion, the materials, how much moves.
+fn explain(safety: &SafetySummary) -> String {
+    let mut parts = Vec::new();
+    if !safety.criterion.is_empty() {
+        parts.push(format!("fails when {}", safety.criterion));
+    }
+    if !safety.materials.is_empty() {
+        parts.push(format!("materials {}", safety.materials.join(", ")));
+    }
+    if !safety.excluded.is_empty() {
+        parts.push(format!("without {}", safety.excluded.join(", ")));
+    }
+    if let Some(share) = safety.moving_mass {
+        parts.push(format!("{:.0} % of the mass moves", 100.0 * share));
+    }
+    if parts.is_empty() {
+        String::new()
+    } else {
+        format!(" ({})", parts.join("; "))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use igimp_cases::check::{Band, Check};
+    use igimp_cases::summary::{StageOutcome, StageSummary};
+
+    use super::*;
+
+    #[test]
+    fn the_verdict_is_short() {
+        let stage = |name: &str, kind: &str| StageSummary {
+            name: name.into(),
+            kind: kind.into(),
+            steps: 10,
+            ..StageSummary::default()
+        };
+        let summary = Summary {
+            stages: vec![
+                stage("initial stresses", "gravity"),
+                StageSummary {
+                    safety: Some(SafetySummary {
+                        stable: Some(1.366),
+                        failed: Some(1.375),
+                        criterion: "no equilibrium is found".into(),
+                        materials: vec!["clay".into()],
+                        excluded: vec!["rock".into()],
+                        moving_mass: Some(0.342),
+                        ..SafetySummary::default()
+                    }),
+                    ..stage("factor of safety", "strength-reduction")
+                },
+                StageSummary {
+                    outcome: StageOutcome::Stopped,
+                    reason: "displacement reached 0.5 m".into(),
+                    ..stage("load", "load")
+                },
+            ],
+            checks: vec![CheckRow {
+                check: Check {
+                    case: "slope".into(),
+                    variant: "iGIMP".into(),
+                    quantity: "F [-]".into(),
+                    expected: 1.38,
+                    source: "Griffiths and Lane 1999".into(),
+                    band: Band::Relative(0.02),
+                    measured: 1.371,
+                },
+                pass: true,
+            }],
+            seconds: 12.34,
+            ..Summary::default()
+        };
+        let text = stages_and_checks(&summary) + &results(&summary, Path::new("results/slope"));
+        insta::assert_snapshot!(text, @r#"
+        stages
+          initial stresses  gravity             10 steps  completed
+          factor of safety  strength-reduction  10 steps  1.366 <= F < 1.375 (fails when no equilibrium is found; materials clay; without rock; 34 % of the mass moves)
+          load              load                10 steps  stopped as planned: displacement reached 0.5 m
+        checks
+          met  F [-]  1.371  expected 1.38  ± 2 %  (Griffiths and Lane 1999)
+        results in results/slope (12.3 s)
+        "#);
+    }
+}

@@ -1,0 +1,292 @@
+//! What may help after a step without equilibrium, in the words of the case file, most promising
+//! first. Every rule looks at the failure and at the case, and says nothing when it is of no use.
+
+use igimp_assembly::AssemblyError;
+use igimp_solver::linear::LinearSolverError;
+use igimp_solver::{StepError, StepFailure};
+
+use crate::case::{Case, Material, Side, Stage, StageKind, Strength};
+use crate::check::short;
+use crate::polygon::{area_and_centroid, clip_to_box};
+
+/// Most suggestions that a reader will try.
+const MOST: usize = 4;
+/// Share of particles at the worst node that yield, from which on collapse is likely \[-\].
+const COLLAPSE: f64 = 0.5;
+/// Share of particles at the worst node that return to an apex, from which on tension is the
+/// likely cause \[-\].
+const APEX_RICH: f64 = 0.02;
+/// A worst node with fewer particles within a cell of it is hardly covered by soil.
+const HARDLY_COVERED: usize = 4;
+/// Poisson's ratio from which on the bulk modulus dwarfs the shear modulus \[-\].
+const NEARLY_INCOMPRESSIBLE: f64 = 0.49;
+
+/// What may help, most promising first. `near_worst` counts the particles within a cell of the
+/// worst node, those that yield, and those that returned to an apex or a corner in tension.
+pub fn advice(
+    case: &Case,
+    stage: usize,
+    error: &StepError,
+    near_worst: Option<[usize; 3]>,
+) -> Vec<String> {
+    let Some(stage) = case.stages.get(stage) else {
+        return Vec::new();
+    };
+    let mut try_this = match &*error.failure {
+        StepFailure::LeavesGrid { position, .. } => off_grid(case, stage, *position),
+        StepFailure::Assembly(assembly) => unformed(case, stage, assembly),
+        StepFailure::Linear(linear) => unsolved(case, linear),
+        StepFailure::MaxIterations { .. } | StepFailure::Diverged | StepFailure::Stagnated => {
+            no_equilibrium(case, stage, error, near_worst)
+        }
+    };
+    try_this.truncate(MOST);
+    try_this
+}
+
+/// The iteration ended without equilibrium.
+fn no_equilibrium(
+    case: &Case,
+    stage: &Stage,
+    error: &StepError,
+    near_worst: Option<[usize; 3]>,
+) -> Vec<String> {
+    let share = |count: usize, of: usize| count as f64 / of.max(1) as f64;
+    let yielding = near_worst.map_or(0.0, |[all, yielding, _]| share(yielding, all));
+    let apex = near_worst.map_or(0.0, |[all, _, apex]| share(apex, all));
+    let [x, y, _] = error.worst.map_or([f64::NAN; 3], |(x, _)| x);
+    let material = material_at(case, [x, y]);
+    let mut out = Vec::new();
+
+    out.extend(round_off(case, error));
+    out.extend(still_falling(case, error));
+    if yielding >= COLLAPSE && apex < APEX_RICH {
+        out.extend(collapse(case, stage));
+    }
+    out.push(more_steps(stage));
+    if apex >= APEX_RICH {
+        out.extend(material.and_then(tension));
+    }
+    if near_worst.is_some_and(|[all, ..]| all < HARDLY_COVERED) {
+        out.push(ghost_penalty());
+    }
+    out.extend(material.and_then(|material| incompressible(case, material)));
+    out.push(finer_cell(case));
+    out
+}
+
+fn off_grid(case: &Case, stage: &Stage, position: [f64; 3]) -> Vec<String> {
+    let (lower, upper) = (case.grid.lower, case.grid.upper());
+    let mut out = Vec::new();
+    for (axis, name) in ["x", "y"].into_iter().enumerate() {
+        let at = position[axis];
+        if !(lower[axis] + case.grid.cell[axis]..=upper[axis] - case.grid.cell[axis]).contains(&at)
+        {
+            let side = if at > 0.5 * (lower[axis] + upper[axis]) {
+                format!("above {name} = {}", metres(upper[axis]))
+            } else {
+                format!("below {name} = {}", metres(lower[axis]))
+            };
+            out.push(format!("a larger domain in [grid]: extend it {side}"));
+        }
+    }
+    if out.is_empty() {
+        out.push("a larger domain in [grid]".to_owned());
+    }
+    out.push(format!(
+        "stop_when = {{ displacement = \"…\" }} in stage \"{}\", to end it before the soil gets there",
+        stage.name
+    ));
+    out
+}
+
+fn unformed(case: &Case, stage: &Stage, error: &AssemblyError) -> Vec<String> {
+    match error {
+        AssemblyError::Shape { position, .. } => off_grid(case, stage, *position),
+        AssemblyError::LoadPoint { .. } => vec!["a larger domain in [grid]".to_owned()],
+        AssemblyError::UnsupportedLoad { position, .. } => vec![format!(
+            "moving the load that acts at ({}, {}) m onto soil",
+            short(position[0]),
+            short(position[1])
+        )],
+        AssemblyError::NoUnknowns => {
+            vec!["a free or roller side in [boundaries]: every node is held".to_owned()]
+        }
+        AssemblyError::Inverted { .. } | AssemblyError::Material { .. } => {
+            vec![more_steps(stage), finer_cell(case)]
+        }
+        _ => vec![more_steps(stage)],
+    }
+}
+
+fn unsolved(case: &Case, error: &LinearSolverError) -> Vec<String> {
+    if matches!(error, LinearSolverError::OutOfMemory { .. }) {
+        return vec!["a coarser cell in [grid], or a computer with more memory".to_owned()];
+    }
+    let sides = &case.boundaries;
+    let mut out = Vec::new();
+    if sides.bottom == Side::Free && sides.boxes.is_empty() {
+        out.push("bottom = \"fixed\" in [boundaries]".to_owned());
+    }
+    out.push(ghost_penalty());
+    out.push("supports in [boundaries] that hold every body".to_owned());
+    out
+}
+
+/// The smallest residual is small, but above the tolerance.
+fn round_off(case: &Case, error: &StepError) -> Option<String> {
+    let best = error.residuals.iter().copied().fold(f64::NAN, f64::min);
+    let stagnated = matches!(*error.failure, StepFailure::Stagnated);
+    let (tolerance, limit) = (case.solver.tolerance, 1e-6);
+    (stagnated && best > tolerance && best < limit).then(|| {
+        let enough = 10_f64.powf(best.log10().ceil());
+        format!("--set solver.tolerance={enough:e}, as the residual reaches {best:.0e}")
+    })
+}
+
+/// The residual was still falling when the corrections ran out.
+fn still_falling(case: &Case, error: &StepError) -> Option<String> {
+    let falling = error.residuals.last_chunk::<4>().is_some_and(|last| {
+        last.windows(2).all(|pair| pair[1] < pair[0]) && last[3] < 0.5 * last[0]
+    });
+    let ran_out = matches!(*error.failure, StepFailure::MaxIterations { .. });
+    (ran_out && falling).then(|| {
+        let more = 2 * case.solver.max_iterations;
+        format!("--set solver.max_iterations={more}, as the residual still falls")
+    })
+}
+
+/// Most soil at the worst node yields: there may be no equilibrium to find.
+fn collapse(case: &Case, stage: &Stage) -> Vec<String> {
+    match &stage.kind {
+        StageKind::Gravity { factor } => vec![
+            format!(
+                "factor = {} in stage \"{}\": this is probably collapse under gravity itself",
+                short(0.5 * factor),
+                stage.name
+            ),
+            "a strength-reduction stage with path = \"gravity\", to find the factor of safety"
+                .to_owned(),
+        ],
+        StageKind::Load { loads, factor } => {
+            let name = loads
+                .first()
+                .and_then(|&load| case.loads.get(load))
+                .map_or("the load", |load| load.name.as_str());
+            vec![format!(
+                "factor below {} in stage \"{}\": this is probably collapse under \"{name}\"",
+                short(*factor),
+                stage.name
+            )]
+        }
+        StageKind::K0 => {
+            vec!["a k0 closer to 1: this is probably collapse of the initial state".to_owned()]
+        }
+        StageKind::Displacement { .. } => vec![format!(
+            "stop_when = {{ load_grows_less_than = 0.001 }} in stage \"{}\": this is probably \
+             collapse, with the limit load reached",
+            stage.name
+        )],
+        StageKind::StrengthReduction(_) => {
+            vec!["a lower bracket: this is probably collapse at the first factor".to_owned()]
+        }
+        StageKind::RunOut(_) => Vec::new(),
+    }
+}
+
+fn more_steps(stage: &Stage) -> String {
+    match &stage.kind {
+        StageKind::RunOut(run_out) => format!(
+            "move_per_step = {} in stage \"{}\" (now {})",
+            short(0.5 * run_out.move_per_step),
+            stage.name,
+            short(run_out.move_per_step)
+        ),
+        _ => format!("steps = {} for this stage", 2 * stage.steps.max(1)),
+    }
+}
+
+/// A tension cut-off where soil comes apart.
+fn tension(material: &Material) -> Option<String> {
+    let Strength::MohrCoulomb {
+        cohesion,
+        friction_angle,
+        tension_cutoff,
+        ..
+    } = material.strength
+    else {
+        return None;
+    };
+    let name = &material.name;
+    let apex = cohesion / friction_angle.tan();
+    match tension_cutoff {
+        Some(0.0) => Some(format!("tension_cutoff > 0 in \"{name}\"")),
+        Some(_) => Some(format!(
+            "more cohesion in \"{name}\", which comes apart there"
+        )),
+        None if apex.is_finite() && apex > 0.0 => Some(format!(
+            "tension_cutoff in \"{name}\", below its apex at {} kPa",
+            short(1e-3 * apex)
+        )),
+        None => Some(format!(
+            "a little cohesion in \"{name}\", which comes apart there"
+        )),
+    }
+}
+
+fn incompressible(case: &Case, material: &Material) -> Option<String> {
+    if !case.method.bbar && material.poisson >= 0.4 {
+        return Some("bbar = true in [grid], against volumetric locking".to_owned());
+    }
+    (material.poisson > NEARLY_INCOMPRESSIBLE)
+        .then(|| format!("poisson = {NEARLY_INCOMPRESSIBLE} in \"{}\"", material.name))
+}
+
+fn ghost_penalty() -> String {
+    "small_cuts = { ghost_penalty = 1e-3 } in [grid], for nodes that hardly touch soil".to_owned()
+}
+
+fn finer_cell(case: &Case) -> String {
+    let [x, y] = case.grid.cell.map(|cell| 0.5 * cell);
+    if (x - y).abs() < 1e-9 * x {
+        format!("cell = \"{}\"", metres(x))
+    } else {
+        format!("cell = {{ x = \"{}\", y = \"{}\" }}", metres(x), metres(y))
+    }
+}
+
+fn metres(length: f64) -> String {
+    format!("{} m", short(length))
+}
+
+/// The material at a place in the undeformed bodies; beside all bodies, that of the nearest body.
+fn material_at(case: &Case, x: [f64; 2]) -> Option<&Material> {
+    let share = |polygon: &[[f64; 2]]| {
+        let half = case.grid.cell.map(|cell| 0.5 * cell);
+        let lower = [x[0] - half[0], x[1] - half[1]];
+        let upper = [x[0] + half[0], x[1] + half[1]];
+        area_and_centroid(&clip_to_box(polygon, lower, upper))
+            .0
+            .abs()
+    };
+    let distance = |polygon: &[[f64; 2]]| {
+        polygon
+            .iter()
+            .map(|corner| (corner[0] - x[0]).hypot(corner[1] - x[1]))
+            .fold(f64::INFINITY, f64::min)
+    };
+    let (a, b) = (
+        case.bodies
+            .iter()
+            .max_by(|a, b| share(&a.polygon).total_cmp(&share(&b.polygon))),
+        case.bodies
+            .iter()
+            .min_by(|a, b| distance(&a.polygon).total_cmp(&distance(&b.polygon))),
+    );
+    let body = a.filter(|body| share(&body.polygon) > 0.0).or(b)?;
+    case.materials.get(body.material)
+}
+
+#[cfg(test)]
+#[path = "advice_tests.rs"]
+mod tests;

@@ -1,0 +1,223 @@
+//! GOAL: the first suggestion is the one a colleague would give who knows the case.
+
+use igimp_assembly::Method;
+
+use super::*;
+use crate::case::{
+    BodyPart, Boundaries, Every, GridSpec, Output, Reduction, RunOut, SolverSettings, StopWhen,
+};
+
+/// A slope of Mohr–Coulomb soil on elastic rock.
+fn case(kind: StageKind) -> Case {
+    let material = |name: &str, strength| Material {
+        name: name.into(),
+        unit_weight: 20e3,
+        young: 20e6,
+        poisson: 0.3,
+        strength,
+        k0: None,
+    };
+    let body = |name: &str, material, lower, upper| BodyPart {
+        name: name.into(),
+        material,
+        per_direction: 2,
+        polygon: vec![[0.0, lower], [20.0, lower], [20.0, upper], [0.0, upper]],
+    };
+    Case {
+        title: String::new(),
+        gravity: 9.81,
+        grid: GridSpec {
+            cell: [0.5, 0.5],
+            lower: [0.0, 0.0],
+            cells: [40, 40],
+        },
+        method: Method::default(),
+        materials: vec![
+            material(
+                "clay",
+                Strength::MohrCoulomb {
+                    cohesion: 10e3,
+                    friction_angle: 20_f64.to_radians(),
+                    dilation_angle: 0.0,
+                    tension_cutoff: Some(0.0),
+                },
+            ),
+            material("rock", Strength::Elastic),
+        ],
+        bodies: vec![body("rock", 1, 0.0, 2.0), body("soil", 0, 2.0, 10.0)],
+        boundaries: Boundaries {
+            bottom: Side::Fixed,
+            ..Boundaries::default()
+        },
+        loads: Vec::new(),
+        stages: vec![Stage {
+            name: "first".into(),
+            kind,
+            steps: 200,
+            start_from: None,
+            reset_displacements: false,
+            stop_when: StopWhen::default(),
+        }],
+        solver: SolverSettings::default(),
+        monitors: Vec::new(),
+        sections: Vec::new(),
+        curves: Vec::new(),
+        checks: Vec::new(),
+        output: Output {
+            folder: "results".into(),
+            paraview: Every::Never,
+            figures: Vec::new(),
+            report: false,
+            checkpoint_every: 0,
+            checkpoint_keep: 1,
+        },
+    }
+}
+
+fn gravity() -> Case {
+    case(StageKind::Gravity { factor: 1.0 })
+}
+
+fn failed(failure: StepFailure, residuals: &[f64]) -> StepError {
+    StepError {
+        from: 0.5,
+        to: 0.6,
+        residuals: residuals.to_vec(),
+        worst: Some(([10.0, 6.0, 0.0], 0)),
+        failure: Box::new(failure),
+    }
+}
+
+fn stagnated() -> StepError {
+    failed(StepFailure::Stagnated, &[1.0, 0.4, 0.2, 0.09, 0.08, 0.08])
+}
+
+#[test]
+fn soil_that_comes_apart_wants_tension() {
+    let try_this = advice(&gravity(), 0, &stagnated(), Some([1310, 200, 42]));
+    assert_eq!(
+        try_this,
+        [
+            "steps = 400 for this stage",
+            "tension_cutoff > 0 in \"clay\"",
+            "cell = \"0.25 m\""
+        ]
+    );
+}
+
+#[test]
+fn without_a_cutoff_the_apex_is_named() {
+    let mut case = gravity();
+    if let Strength::MohrCoulomb { tension_cutoff, .. } = &mut case.materials[0].strength {
+        *tension_cutoff = None;
+    }
+    let try_this = advice(&case, 0, &stagnated(), Some([100, 20, 10]));
+    assert_eq!(
+        try_this[1],
+        "tension_cutoff in \"clay\", below its apex at 27.47 kPa"
+    );
+}
+
+#[test]
+fn plastic_soil_under_gravity_is_collapse() {
+    let try_this = advice(&gravity(), 0, &stagnated(), Some([16, 14, 0]));
+    assert_eq!(
+        try_this[0],
+        "factor = 0.5 in stage \"first\": this is probably collapse under gravity itself"
+    );
+    assert!(try_this[1].contains("strength-reduction"), "{try_this:?}");
+}
+
+#[test]
+fn a_falling_residual_wants_iterations() {
+    let error = failed(
+        StepFailure::MaxIterations { iterations: 25 },
+        &[1.0, 0.5, 0.2, 0.05, 0.01, 0.001],
+    );
+    let try_this = advice(&gravity(), 0, &error, None);
+    assert!(
+        try_this[0].starts_with("--set solver.max_iterations=50"),
+        "{try_this:?}"
+    );
+}
+
+#[test]
+fn a_residual_near_round_off_wants_a_tolerance() {
+    let error = failed(StepFailure::Stagnated, &[1.0, 1e-3, 3.2e-9, 3.1e-9]);
+    let try_this = advice(&gravity(), 0, &error, None);
+    assert_eq!(
+        try_this[0],
+        "--set solver.tolerance=1e-8, as the residual reaches 3e-9"
+    );
+}
+
+#[test]
+fn a_particle_off_the_grid_wants_a_domain() {
+    let error = failed(
+        StepFailure::LeavesGrid {
+            particle: 7,
+            position: [20.1, 5.0, 0.0],
+        },
+        &[],
+    );
+    let try_this = advice(&gravity(), 0, &error, None);
+    assert_eq!(
+        try_this[0],
+        "a larger domain in [grid]: extend it above x = 20 m"
+    );
+    assert_eq!(try_this.len(), 2);
+}
+
+#[test]
+fn a_singular_matrix_wants_a_ghost_penalty_and_supports() {
+    let error = failed(
+        LinearSolverError::Singular { unknown: Some(3) }.into(),
+        &[1.0],
+    );
+    assert!(advice(&gravity(), 0, &error, None)[0].starts_with("small_cuts = { ghost_penalty"));
+    let mut floating = gravity();
+    floating.boundaries = Boundaries::default();
+    assert!(advice(&floating, 0, &error, None)[0].starts_with("bottom = \"fixed\""));
+}
+
+#[test]
+fn undrained_soil_wants_a_lower_poisson() {
+    let mut case = gravity();
+    case.materials[0].poisson = 0.499;
+    let try_this = advice(&case, 0, &stagnated(), Some([16, 2, 0]));
+    assert!(
+        try_this.contains(&"poisson = 0.49 in \"clay\"".to_owned()),
+        "{try_this:?}"
+    );
+    case.method.bbar = false;
+    let try_this = advice(&case, 0, &stagnated(), Some([16, 2, 0]));
+    assert!(
+        try_this.iter().any(|text| text.contains("bbar = true")),
+        "{try_this:?}"
+    );
+}
+
+#[test]
+fn a_run_out_wants_smaller_moves() {
+    let case = case(StageKind::RunOut(RunOut {
+        materials: vec![0],
+        reduction: Reduction::Factor(1.5),
+        move_per_step: 0.2,
+        at_rest: 0.01,
+    }));
+    let try_this = advice(&case, 0, &stagnated(), Some([3, 0, 0]));
+    assert_eq!(
+        try_this[0],
+        "move_per_step = 0.1 in stage \"first\" (now 0.2)"
+    );
+    assert!(try_this[1].contains("ghost_penalty"), "{try_this:?}");
+}
+
+#[test]
+fn the_rock_is_found_where_it_is() {
+    let case = gravity();
+    let name = |x| material_at(&case, x).map(|material| material.name.as_str());
+    assert_eq!(name([5.0, 1.0]), Some("rock"));
+    assert_eq!(name([5.0, 6.0]), Some("clay"));
+    assert_eq!(name([5.0, 14.0]), Some("clay"));
+}

@@ -1,0 +1,90 @@
+//! The case files that come with the program: templates for `igimp new`, and the cases that
+//! `igimp validate` holds against their references.
+
+/// A case file that comes with the program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shipped {
+    /// Name, the file's without extension.
+    pub name: &'static str,
+    /// What it shows, in a line.
+    pub summary: &'static str,
+    /// The file.
+    pub text: &'static str,
+}
+
+/// One entry a file of `cases/`.
+macro_rules! shipped {
+    ($($name:literal: $summary:literal,)*) => {
+        /// All case files that come with the program.
+        pub const SHIPPED: &[Shipped] = &[$(Shipped {
+            name: $name,
+            summary: $summary,
+            text: include_str!(concat!("../cases/", $name, ".toml")),
+        }),*];
+    };
+}
+
+shipped! {
+    "slope": "cut slope on rock: factor of safety, then run-out",
+    "footing": "rough strip footing on undrained clay, held against Prandtl's solution",
+}
+
+/// The case file of a name; hyphens, underscores and the extension make no difference.
+pub fn find(name: &str) -> Option<&'static Shipped> {
+    let name = name.trim_end_matches(".toml").replace('-', "_");
+    SHIPPED.iter().find(|case| case.name == name)
+}
+
+/// The name that comes nearest to one that does not exist.
+pub fn nearest(name: &str) -> Option<&'static str> {
+    closest(name, SHIPPED.iter().map(|case| case.name))
+}
+
+/// The candidate most like a name, if any is alike.
+pub fn closest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    candidates
+        .into_iter()
+        .map(|candidate| (strsim::jaro_winkler(name, candidate), candidate))
+        .filter(|&(likeness, _)| likeness > 0.75)
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .map(|(_, candidate)| candidate)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+    use crate::input::CaseFile;
+
+    #[test]
+    fn every_file_is_listed_once() {
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/cases");
+        let files: BTreeSet<String> = std::fs::read_dir(folder)
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .collect();
+        let listed: BTreeSet<String> = SHIPPED
+            .iter()
+            .map(|case| format!("{}.toml", case.name))
+            .collect();
+        assert_eq!(files, listed);
+        assert_eq!(listed.len(), SHIPPED.len());
+    }
+
+    #[test]
+    fn every_file_is_valid() {
+        for case in SHIPPED {
+            if let Err(error) = CaseFile::parse(case.name, case.text, &[]) {
+                panic!("{}: {error}", case.name);
+            }
+        }
+    }
+
+    #[test]
+    fn names_are_found_and_suggested() {
+        assert_eq!(find("slope.toml").map(|case| case.name), Some("slope"));
+        assert_eq!(nearest("slop"), Some("slope"));
+        assert_eq!(nearest("xyz"), None);
+    }
+}

@@ -1,0 +1,224 @@
+//! Parameter studies: one case, many settings, one results folder a task.
+//!
+//! ```toml
+//! igimp_sweep = 1
+//! case = "slope.toml"            # relative to this file
+//! combine = "grid"               # grid: every combination | zip: first with first, …
+//! collect = ["factor_of_safety"] # factor of safety, names of checks, names of curves
+//! [parameters]                   # keys and values as for --set
+//! materials.clay.cohesion = ["8 kPa", "10 kPa", "12 kPa"]
+//! materials.clay.friction = ["20 deg", "25 deg"]
+//! [output]
+//! folder = "results/sweep"       # relative to where the program runs, as in a case
+//! ```
+//!
+//! Tasks are numbered from 1; task 1 writes into `results/sweep/task-0001/`, with its settings and
+//! its end in `task.json`. A task is done when it ran to a verdict with the case and settings that
+//! it has now.
+
+mod collect;
+mod file;
+mod record;
+
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
+
+use thiserror::Error;
+
+use crate::case::Case;
+use crate::error::CaseError;
+use crate::input::{CaseFile, InputError};
+use crate::run::{self, Listener, Run, Start, Target};
+
+pub use collect::{Collected, aligned, collect};
+pub use record::{Ending, Record};
+
+/// A parameter study that was read, with every task's case checked.
+#[derive(Clone, Debug)]
+pub struct Sweep {
+    /// The case file.
+    pub case: PathBuf,
+    /// Folder of all tasks.
+    pub folder: PathBuf,
+    /// What is collected; empty: everything.
+    pub collect: Vec<String>,
+    /// Keys of the parameters, in the order of the file.
+    pub keys: Vec<String>,
+    /// Tasks in order; the first parameter changes slowest.
+    pub tasks: Vec<Task>,
+}
+
+/// One run of a study.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Task {
+    /// Number, from 1.
+    pub number: usize,
+    /// Values of the parameters, as TOML, in the order of the keys.
+    pub values: Vec<String>,
+    /// Settings `KEY=VALUE`, as for `--set`.
+    pub settings: Vec<String>,
+    /// Results folder.
+    pub folder: PathBuf,
+}
+
+impl Task {
+    /// The settings in a line.
+    pub fn label(&self) -> String {
+        self.settings.join(", ")
+    }
+}
+
+/// Why a study cannot be run.
+#[derive(Debug, Error)]
+pub enum SweepError {
+    /// A file cannot be read or written.
+    #[error("cannot access {}", path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        #[source]
+        source: std::io::Error,
+    },
+    /// The sweep file says something that makes no sense.
+    #[error("{text}")]
+    Invalid {
+        /// The complete message.
+        text: String,
+    },
+    /// The settings of a task do not fit the case.
+    #[error("task {task} ({settings}) of the sweep makes no valid case\n{source}")]
+    Task {
+        /// Number of the task.
+        task: usize,
+        /// Its settings.
+        settings: String,
+        /// What is wrong; its message is part of this one.
+        source: InputError,
+    },
+    /// There is no such task.
+    #[error("there is no task {task}; tasks are numbered 1 to {tasks}")]
+    NoTask {
+        /// The number given.
+        task: usize,
+        /// How many there are.
+        tasks: usize,
+    },
+    /// A task's case cannot be set up, or its results cannot be written.
+    #[error("the task cannot be run")]
+    Case(#[from] CaseError),
+    /// A table cannot be written.
+    #[error("cannot write the table {}", path.display())]
+    Table {
+        /// The file.
+        path: PathBuf,
+        /// What the writer said.
+        #[source]
+        source: csv::Error,
+    },
+}
+
+impl Sweep {
+    /// Reads a sweep file, and the case once for every task.
+    ///
+    /// # Errors
+    /// [`SweepError`].
+    pub fn read(path: &Path) -> Result<Self, SweepError> {
+        let sweep = Self::read_unchecked(path)?;
+        for task in &sweep.tasks {
+            sweep.case_of(task)?;
+        }
+        Ok(sweep)
+    }
+
+    /// Reads a sweep file alone.
+    ///
+    /// # Errors
+    /// [`SweepError::File`] and [`SweepError::Invalid`].
+    pub fn read_unchecked(path: &Path) -> Result<Self, SweepError> {
+        let text = std::fs::read_to_string(path).map_err(|source| SweepError::File {
+            path: path.to_owned(),
+            source,
+        })?;
+        let base = path.parent().unwrap_or(Path::new(""));
+        file::parse(&path.display().to_string(), &text, base)
+    }
+
+    /// A task by its number, from 1.
+    ///
+    /// # Errors
+    /// [`SweepError::NoTask`].
+    pub fn task(&self, number: usize) -> Result<&Task, SweepError> {
+        number
+            .checked_sub(1)
+            .and_then(|index| self.tasks.get(index))
+            .ok_or(SweepError::NoTask {
+                task: number,
+                tasks: self.tasks.len(),
+            })
+    }
+
+    /// The case of a task.
+    ///
+    /// # Errors
+    /// [`SweepError::Task`].
+    pub fn case_of(&self, task: &Task) -> Result<CaseFile, SweepError> {
+        CaseFile::read(&self.case, &task.settings).map_err(|source| SweepError::Task {
+            task: task.number,
+            settings: task.label(),
+            source,
+        })
+    }
+
+    /// How a task ended, if it ran to a verdict with the case and settings that it has now.
+    ///
+    /// # Errors
+    /// [`SweepError::Task`].
+    pub fn done(&self, task: &Task) -> Result<Option<Ending>, SweepError> {
+        let file = self.case_of(task)?;
+        Ok(Record::read(&task.folder)
+            .filter(|record| record.fingerprint == record::fingerprint(&file))
+            .map(|record| record.ending)
+            .filter(|ending| ending.is_verdict()))
+    }
+
+    /// Runs a task and records its settings and its end in `task.json`.
+    ///
+    /// # Errors
+    /// [`SweepError`]; the record says why, where it can be written.
+    pub fn run_task(
+        &self,
+        task: &Task,
+        start: Start,
+        listener: &mut dyn Listener,
+        interrupt: &AtomicBool,
+    ) -> Result<(Run, Ending), SweepError> {
+        let file = self.case_of(task)?;
+        let mut record = Record::new(self, task, &file);
+        record.write(&task.folder)?;
+        let mut case: Case = file.case().clone();
+        case.output.folder.clone_from(&task.folder);
+        let target = Target {
+            folder: task.folder.clone(),
+            source: file.source().to_owned(),
+            completed: file.explain(),
+        };
+        match run::run(&case, Some(&target), start, listener, interrupt) {
+            Ok(run) => {
+                record.ending = Ending::of(&run.summary);
+                record.write(&task.folder)?;
+                Ok((run, record.ending))
+            }
+            Err(error) => {
+                record.ending = Ending::Failed;
+                record.message = record::chain(&error);
+                // The error of the run matters more than one of its record.
+                let _ = record.write(&task.folder);
+                Err(error.into())
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

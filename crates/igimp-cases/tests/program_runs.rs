@@ -1,0 +1,238 @@
+//! GOAL: runs through the program end with the right code, the right files and the right words.
+
+use std::path::PathBuf;
+use std::process::{Command, Output};
+
+/// Elastic soil under its own weight: the settlement is known.
+fn block(checks: &str) -> String {
+    format!(
+        "igimp = 1\n[case]\ntitle = \"block\"\ngravity = \"9.81 m/s2\"\n\
+        [grid]\ncell = \"0.5 m\"\ndomain = {{ x = [\"0 m\", \"2 m\"], y = [\"0 m\", \"4 m\"] }}\n\
+        [materials.clay]\nmodel = \"elastic\"\nunit_weight = \"18 kN/m3\"\n\
+        young = \"10 MPa\"\npoisson = 0.0\n\
+        [[bodies]]\nname = \"block\"\nmaterial = \"clay\"\npoints_per_cell = 4\n\
+        polygon = [[\"0 m\", \"0 m\"], [\"2 m\", \"0 m\"], [\"2 m\", \"2 m\"], \
+        [\"0 m\", \"2 m\"]]\n\
+        [boundaries]\nleft = \"roller\"\nright = \"roller\"\nbottom = \"fixed\"\n\
+        [[stages]]\nname = \"own weight\"\ntype = \"gravity\"\nsteps = 3\n\
+        [[monitors]]\nname = \"top\"\npoint = [\"1 m\", \"2 m\"]\nrecord = [\"displacement\"]\n\
+        {checks}\
+        [output]\nfolder = \"results\"\n"
+    )
+}
+
+/// u = γ H² / (2 E) at the top, 3.6 mm; the particle nearest to it stands a little lower.
+fn check(expected: &str) -> String {
+    format!(
+        "[[checks]]\nname = \"settlement\"\nof = \"top.displacement\"\n\
+        divide_by = [\"1 mm\"]\nexpected = {expected}\ntolerance = 0.05\n\
+        source = \"own weight of an elastic column\"\n"
+    )
+}
+
+/// A vertical face of soil without strength: no equilibrium under gravity.
+fn collapse() -> String {
+    "igimp = 1\n[case]\ntitle = \"cut\"\ngravity = \"9.81 m/s2\"\n\
+    [grid]\ncell = \"0.5 m\"\ndomain = { x = [\"0 m\", \"8 m\"], y = [\"0 m\", \"5 m\"] }\n\
+    [materials.mud]\nmodel = \"von-mises\"\nunit_weight = \"18 kN/m3\"\n\
+    young = \"10 MPa\"\npoisson = 0.3\ncu = \"1 kPa\"\n\
+    [[bodies]]\nname = \"face\"\nmaterial = \"mud\"\npoints_per_cell = 4\n\
+    polygon = [[\"0 m\", \"0 m\"], [\"4 m\", \"0 m\"], [\"4 m\", \"4 m\"], [\"0 m\", \"4 m\"]]\n\
+    [boundaries]\nleft = \"roller\"\nbottom = \"fixed\"\n\
+    [[stages]]\nname = \"own weight\"\ntype = \"gravity\"\nsteps = 2\n\
+    [solver]\nmax_iterations = 8\nstep_cutting = { times = 1, factor = 0.5 }\n\
+    [output]\nfolder = \"results\"\n"
+        .to_owned()
+}
+
+/// A folder of its own for a test, gone when dropped.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str, case: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("igimp-runs-{name}-{}", std::process::id()));
+        let _ = std::fs::remove_dir_all(&path);
+        std::fs::create_dir_all(&path).unwrap();
+        std::fs::write(path.join("case.toml"), case).unwrap();
+        Self(path)
+    }
+
+    fn igimp(&self, words: &[&str]) -> Output {
+        Command::new(env!("CARGO_BIN_EXE_igimp"))
+            .args(words)
+            .current_dir(&self.0)
+            .output()
+            .unwrap()
+    }
+
+    fn has(&self, path: &str) -> bool {
+        self.0.join(path).exists()
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+/// Code, standard output and standard error.
+fn parts(output: &Output) -> (i32, String, String) {
+    let text = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).unwrap();
+    (
+        output.status.code().unwrap(),
+        text(&output.stdout),
+        text(&output.stderr),
+    )
+}
+
+#[test]
+fn a_run_that_meets_its_reference_is_done() {
+    let folder = Folder::new("done", &block(&check("3.6")));
+    let (code, out, err) = parts(&folder.igimp(&["run", "case.toml", "--threads", "1"]));
+    assert_eq!(code, 0, "{out}{err}");
+    assert!(
+        out.contains("stage 1/1 \"own weight\" (gravity, 3 steps)"),
+        "{out}"
+    );
+    assert!(out.contains("  step 3/3  load factor 1.0000"), "{out}");
+    assert!(out.contains("checks\n  met"), "{out}");
+    let last = out.lines().last().unwrap();
+    assert!(last.starts_with("results in results ("), "{out}");
+    assert!(folder.has("results/summary.json"));
+}
+
+#[test]
+fn logs_of_two_runs_are_equal_but_for_the_last_line() {
+    let folder = Folder::new("equal", &block(""));
+    let log = |out: &str| {
+        let (code, text, err) = parts(&folder.igimp(&["run", "case.toml", "--out", out]));
+        assert_eq!(code, 0, "{err}");
+        let lines: Vec<&str> = text.lines().collect();
+        lines[..lines.len() - 1].join("\n")
+    };
+    assert_eq!(log("a"), log("b"));
+}
+
+#[test]
+fn quiet_prints_the_verdict_only() {
+    let folder = Folder::new("quiet", &block(""));
+    let (code, out, err) = parts(&folder.igimp(&["run", "case.toml", "--quiet"]));
+    assert_eq!(code, 0, "{err}");
+    assert!(out.starts_with("stages\n"), "{out}");
+    assert!(!out.contains("load factor"), "{out}");
+}
+
+#[test]
+fn a_missed_reference_has_its_code() {
+    let folder = Folder::new("missed", &block(&check("5.0")));
+    let (code, out, _) = parts(&folder.igimp(&["run", "case.toml"]));
+    assert_eq!(code, 1, "{out}");
+    assert!(out.contains("MISSED"), "{out}");
+}
+
+#[test]
+fn want_of_equilibrium_is_told_and_kept() {
+    let folder = Folder::new("collapse", &collapse());
+    let (code, out, err) = parts(&folder.igimp(&["run", "case.toml"]));
+    assert_eq!(code, 3, "{out}{err}");
+    for part in [
+        "error: stage \"own weight\", step ",
+        "did not converge (",
+        "  residual |r|/|f|   it 1..",
+        "  worst node         (",
+        "  try                1. ",
+    ] {
+        assert!(err.contains(part), "{part} in {err}");
+    }
+    assert!(folder.has("results/summary.json"));
+}
+
+#[test]
+fn a_setting_replaces_a_value() {
+    let folder = Folder::new("set", &block(&check("7.2")));
+    let soft = ["run", "case.toml", "--set", "materials.clay.young=5 MPa"];
+    let (code, out, err) = parts(&folder.igimp(&soft));
+    assert_eq!(code, 0, "{out}{err}");
+}
+
+#[test]
+fn a_run_goes_on_from_its_checkpoint() {
+    let folder = Folder::new("resume", &block(""));
+    assert_eq!(parts(&folder.igimp(&["run", "case.toml"])).0, 0);
+    let (code, out, err) = parts(&folder.igimp(&["run", "case.toml", "--resume"]));
+    assert_eq!(code, 0, "{out}{err}");
+    assert!(folder.has("results/summary.json"));
+}
+
+const SWEEP: &str = "igimp_sweep = 1\ncase = \"case.toml\"\ncollect = [\"settlement\"]\n\
+    [parameters]\nmaterials.clay.young = [\"10 MPa\", \"20 MPa\"]\n\
+    [output]\nfolder = \"sweep\"\n";
+
+#[test]
+fn a_sweep_runs_what_is_not_done_and_collects() {
+    let folder = Folder::new("sweep", &block(&check("3.6")));
+    std::fs::write(folder.0.join("study.toml"), SWEEP).unwrap();
+    let (code, out, err) = parts(&folder.igimp(&["run", "study.toml", "--task", "1", "--quiet"]));
+    assert_eq!(code, 0, "{out}{err}");
+    assert!(folder.has("sweep/task-0001/task.json"));
+
+    // The second task's soil is twice as stiff, so its reference is missed.
+    let (code, out, err) = parts(&folder.igimp(&["sweep", "study.toml"]));
+    assert_eq!(code, 1, "{out}{err}");
+    assert!(out.contains("1 of 2 tasks are done"), "{out}");
+    assert!(out.contains("reference missed"), "{out}");
+    let (code, out, err) = parts(&folder.igimp(&["sweep", "study.toml", "--jobs", "2"]));
+    assert_eq!(code, 1, "{out}{err}");
+    assert!(out.contains("2 of 2 tasks are done"), "{out}");
+
+    let (code, _, err) = parts(&folder.igimp(&["collect", "study.toml"]));
+    assert_eq!(code, 0, "{err}");
+    let table = std::fs::read_to_string(folder.0.join("sweep/results.csv")).unwrap();
+    let lines: Vec<&str> = table.lines().collect();
+    assert!(
+        lines[0].starts_with("task,materials.clay.young,end,settlement"),
+        "{table}"
+    );
+    assert!(
+        lines[2].starts_with("2,20 MPa,reference missed,"),
+        "{table}"
+    );
+}
+
+#[test]
+fn an_interrupted_run_says_how_to_go_on() {
+    let long = block("").replace("steps = 3", "steps = 100000");
+    let folder = Folder::new("interrupt", &long);
+    let child = Command::new(env!("CARGO_BIN_EXE_igimp"))
+        .args(["run", "case.toml", "--quiet"])
+        .current_dir(&folder.0)
+        .stdout(std::process::Stdio::piped())
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    std::thread::sleep(std::time::Duration::from_secs(2));
+    let sent = Command::new("kill")
+        .args(["-INT", &child.id().to_string()])
+        .status();
+    assert!(sent.unwrap().success());
+    let (code, out, err) = parts(&child.wait_with_output().unwrap());
+    assert_eq!(code, 3, "{out}{err}");
+    assert!(
+        err.contains("finishing the step; press again to stop at once"),
+        "{err}"
+    );
+    assert!(
+        err.contains("to go on: igimp run case.toml --resume"),
+        "{err}"
+    );
+}
+
+#[test]
+fn the_column_meets_its_references() {
+    let folder = Folder::new("validate", "");
+    let (code, out, err) = parts(&folder.igimp(&["validate", "column"]));
+    assert_eq!(code, 0, "{out}{err}");
+    assert!(out.contains("1 cases; references: "), "{out}");
+    assert!(out.contains(" 0 missed"), "{out}");
+}
