@@ -7,6 +7,7 @@ pub mod column;
 pub mod exact;
 pub mod figures;
 pub mod footing;
+pub mod input;
 pub mod measure;
 pub mod mohr_coulomb_slope;
 pub mod polygon;
