@@ -8,6 +8,7 @@ pub mod estimate;
 pub mod exact;
 pub mod figures;
 pub mod footing;
+pub mod input;
 pub mod measure;
 pub mod mohr_coulomb_slope;
 pub mod polygon;

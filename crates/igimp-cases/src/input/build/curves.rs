@@ -1,0 +1,172 @@
+//! Curves and their references.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use super::AllNames;
+use super::quantities::{divisor, quantity};
+use crate::case::{Curve, CurveAxis, Load, Quantity, Reference, ReferenceValues};
+use crate::input::diagnostic::Problems;
+use crate::input::text::clip;
+use crate::input::tree::Node;
+
+/// Most bytes of a reference file.
+const LARGEST: u64 = 4 << 20;
+
+/// The curves; files of references are beside the case file.
+pub(super) fn curves(
+    tree: &Node,
+    names: &AllNames,
+    loads: &[Option<Load>],
+    file: &Path,
+    problems: &mut Problems,
+) -> Vec<Option<Curve>> {
+    let items = tree.items_at("curves").iter();
+    items
+        .map(|node| {
+            let name = node.text_at("name");
+            let x = axis(node.get("x")?, names, loads, problems);
+            let y = axis(node.get("y")?, names, loads, problems);
+            let stage = match node.get("stage") {
+                None => Some(None),
+                Some(stage) => {
+                    let who = format!("curve `{}` records", clip(name.unwrap_or("?"), 40));
+                    names.stages.find(stage, &who, problems).map(Some)
+                }
+            };
+            let reference = match node.get("reference") {
+                None => Some(None),
+                Some(reference) => self::reference(reference, file, problems).map(Some),
+            };
+            Some(Curve {
+                name: name?.to_owned(),
+                x: x?,
+                y: y?,
+                stage: stage?,
+                reference: reference?,
+            })
+        })
+        .collect()
+}
+
+fn axis(
+    node: &Node,
+    names: &AllNames,
+    loads: &[Option<Load>],
+    problems: &mut Problems,
+) -> Option<CurveAxis> {
+    let of = node.get("of")?;
+    let found = quantity(of, names, loads, problems);
+    if found == Some(Quantity::FactorOfSafety) {
+        problems
+            .error(of.place, "a factor of safety is one number, not a curve")
+            .help("hold it against a value in [[checks]]");
+    }
+    let divide_by = divisor(node, problems);
+    Some(CurveAxis {
+        of: found?,
+        divide_by: divide_by?,
+        label: node.text_at("label")?.to_owned(),
+    })
+}
+
+fn reference(node: &Node, file: &Path, problems: &mut Problems) -> Option<Reference> {
+    let forms: Vec<&str> = ["y", "points", "file"]
+        .into_iter()
+        .filter(|form| node.get(form).is_some())
+        .collect();
+    let &[form] = forms.as_slice() else {
+        let message = if forms.is_empty() {
+            "the reference has no values".to_owned()
+        } else {
+            format!("the reference has several forms: {}", forms.join(", "))
+        };
+        problems
+            .error(node.place, message)
+            .help("write one of y = 5.14, points = [[0, 0], [1, 2]] and file = \"measured.csv\"");
+        return None;
+    };
+    if form != "y" && node.get("at").is_some() {
+        problems
+            .error(node.place_at("at"), "`at` goes with `y` only")
+            .help("points and files have abscissae of their own");
+        return None;
+    }
+    let value = node.get(form)?;
+    let values = match form {
+        "y" => ReferenceValues::Level {
+            y: value.number()?,
+            at: match node.get("at") {
+                None => None,
+                Some(at) => Some(at.number()?),
+            },
+        },
+        "points" => {
+            let points: Option<Vec<_>> = value.items().iter().map(Node::pair).collect();
+            ReferenceValues::Points(points?)
+        }
+        _ => {
+            let path = file.parent().unwrap_or(Path::new("")).join(value.text()?);
+            match read_points(&path) {
+                Ok(points) => ReferenceValues::Points(points),
+                Err(reason) => {
+                    problems
+                        .error(
+                            value.place,
+                            format!(
+                                "cannot use {}: {reason}",
+                                clip(&path.display().to_string(), 80)
+                            ),
+                        )
+                        .help(
+                            "a CSV file with a header and two columns, its path from the case file",
+                        );
+                    return None;
+                }
+            }
+        }
+    };
+    let tolerance = match node.get("tolerance") {
+        None => None,
+        Some(tolerance) => Some(tolerance.number()?),
+    };
+    Some(Reference {
+        label: node.text_at("label")?.to_owned(),
+        values,
+        tolerance,
+    })
+}
+
+/// The points of a CSV file: a header and two columns.
+fn read_points(path: &Path) -> Result<Vec<[f64; 2]>, String> {
+    let file = File::open(path).map_err(|error| error.to_string())?;
+    let mut text = String::new();
+    file.take(LARGEST + 1)
+        .read_to_string(&mut text)
+        .map_err(|error| error.to_string())?;
+    if text.len() as u64 > LARGEST {
+        return Err(format!("it has more than {} MB", LARGEST >> 20));
+    }
+    let mut reader = csv::ReaderBuilder::new()
+        .comment(Some(b'#'))
+        .trim(csv::Trim::All)
+        .flexible(true)
+        .from_reader(text.as_bytes());
+    let mut points = Vec::new();
+    for (row, record) in reader.records().enumerate() {
+        let record = record.map_err(|error| error.to_string())?;
+        let number = |column: usize| {
+            let value: f64 = record.get(column)?.parse().ok()?;
+            value.is_finite().then_some(value)
+        };
+        match (record.len(), number(0), number(1)) {
+            (2, Some(x), Some(y)) => points.push([x, y]),
+            _ => return Err(format!("row {} does not hold two numbers", row + 2)),
+        }
+    }
+    if points.is_empty() {
+        return Err("it has no rows below its header".to_owned());
+    }
+    Ok(points)
+}

@@ -1,0 +1,96 @@
+//! Values that follow from the rest of the file: the stage before, the materials with strength,
+//! the results folder, labels.
+
+use std::path::Path;
+
+use super::quantities::unit_of;
+use crate::input::tree::{Node, Value};
+
+/// Puts them into the tree.
+pub(super) fn derive(tree: &mut Node, file: &Path) {
+    let strong = strong_materials(tree);
+    let place = tree.place;
+    if let Some(stages) = tree.get_mut("stages") {
+        let names: Vec<_> = stages
+            .items()
+            .iter()
+            .map(|stage| stage.text_at("name").map(str::to_owned))
+            .collect();
+        for (number, stage) in stages.items_mut().iter_mut().enumerate() {
+            if stage.get("start_from").is_none()
+                && number > 0
+                && let Some(name) = &names[number - 1]
+            {
+                stage.add_derived("start_from", Value::Text(name.clone()));
+            }
+            let reduces = matches!(
+                stage.text_at("type"),
+                Some("strength-reduction" | "run-out")
+            );
+            if reduces && stage.get("materials").is_none() && !strong.is_empty() {
+                let names = strong.iter().map(|name| {
+                    let mut node = Node::written(Value::Text(name.clone()), place);
+                    node.written = false;
+                    node
+                });
+                let names = names.collect();
+                stage.add_derived("materials", Value::List(names));
+            }
+        }
+    }
+    if let Some(output) = tree.get_mut("output")
+        && output.get("folder").is_none()
+    {
+        let stem = file.file_stem().map(|stem| stem.to_string_lossy());
+        let stem = stem.filter(|stem| !stem.is_empty());
+        let folder = format!("results/{}", stem.as_deref().unwrap_or("case"));
+        output.add_derived("folder", Value::Text(folder));
+    }
+    if let Some(curves) = tree.get_mut("curves") {
+        for curve in curves.items_mut() {
+            for axis in ["x", "y"] {
+                if let Some(axis) = curve.get_mut(axis)
+                    && axis.get("label").is_none()
+                    && let Some(label) = label(axis)
+                {
+                    axis.add_derived("label", Value::Text(label));
+                }
+            }
+        }
+    }
+}
+
+/// Names of the materials of bodies that have a strength.
+fn strong_materials(tree: &Node) -> Vec<String> {
+    let used: Vec<_> = tree
+        .items_at("bodies")
+        .iter()
+        .filter_map(|body| body.text_at("material"))
+        .collect();
+    let materials = tree.get("materials").map_or(&[][..], Node::entries);
+    materials
+        .iter()
+        .filter(|material| used.contains(&material.key.as_str()))
+        .filter(|material| material.node.text_at("model") != Some("elastic"))
+        .map(|material| material.key.clone())
+        .collect()
+}
+
+/// The quantity and its unit, as in `footing.settlement [m]`.
+fn label(axis: &Node) -> Option<String> {
+    let of = axis.text_at("of")?;
+    let divisors = axis.items_at("divide_by");
+    if divisors.is_empty() {
+        return Some(format!("{of} [{}]", unit_of(of)));
+    }
+    let mut label = of.to_owned();
+    for divisor in divisors {
+        let text = match &divisor.value {
+            Value::Quantity(_, text) => text.clone(),
+            _ => crate::input::text::number(divisor.number()?),
+        };
+        label.push_str(" / ");
+        label.push_str(&text);
+    }
+    Some(label)
+}

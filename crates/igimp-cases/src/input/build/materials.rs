@@ -1,0 +1,147 @@
+//! Materials and the limits of their parameters.
+
+use crate::case::{Material, Strength};
+use crate::input::diagnostic::Problems;
+use crate::input::text::{clip, number};
+use crate::input::tree::{Entry, Node};
+
+/// The materials in the order of the file.
+pub(super) fn materials(tree: &Node, problems: &mut Problems) -> Vec<Option<Material>> {
+    let entries = tree.get("materials").map_or(&[][..], Node::entries);
+    entries
+        .iter()
+        .map(|entry| material(entry, problems))
+        .collect()
+}
+
+fn material(entry: &Entry, problems: &mut Problems) -> Option<Material> {
+    let (name, node) = (&entry.key, &entry.node);
+    let before = problems.errors();
+    let poisson = node.number_at("poisson");
+    if let Some(poisson) = poisson {
+        let place = node.place_at("poisson");
+        if poisson >= 0.5 {
+            problems
+                .error(place, "Poisson's ratio must be below 0.5")
+                .help("nearly incompressible, as undrained soil is: poisson = 0.49");
+        } else if poisson > 0.499 {
+            problems
+                .warning(place, "Poisson's ratio is very close to 0.5")
+                .help("the tangent is badly conditioned; 0.49 to 0.495 is close enough");
+        }
+    }
+    let strength = match node.text_at("model") {
+        Some("elastic") => Some(Strength::Elastic),
+        Some("von-mises") => node
+            .number_at("cu")
+            .map(|undrained_strength| Strength::VonMises { undrained_strength }),
+        Some("tresca") => node
+            .number_at("cu")
+            .map(|undrained_strength| Strength::Tresca { undrained_strength }),
+        Some("mohr-coulomb") => mohr_coulomb(name, node, problems),
+        _ => None,
+    };
+    let k0 = k0(node, strength, problems);
+    let material = Material {
+        name: name.clone(),
+        unit_weight: node.number_at("unit_weight")?,
+        young: node.number_at("young")?,
+        poisson: poisson?,
+        strength: strength?,
+        k0: k0?,
+    };
+    if problems.errors() == before
+        && let Err(error) = material.law()
+    {
+        let message = format!("the material `{}` is not possible: {error}", clip(name, 40));
+        problems.error(node.place, message);
+    }
+    Some(material)
+}
+
+fn mohr_coulomb(name: &str, node: &Node, problems: &mut Problems) -> Option<Strength> {
+    let cohesion = node.number_at("cohesion");
+    let friction = node.number_at("friction");
+    let dilation = node.number_at("dilation");
+    if let Some(friction) = friction
+        && friction.to_degrees() > 89.999_999
+    {
+        problems
+            .error(
+                node.place_at("friction"),
+                "the friction angle must be below 90 deg",
+            )
+            .help("soils have 15 deg to 45 deg");
+        return None;
+    }
+    if let (Some(friction), Some(dilation)) = (friction, dilation)
+        && dilation > friction
+    {
+        problems
+            .error(
+                node.place_at("dilation"),
+                "dilation angle is larger than the friction angle",
+            )
+            .help("dilation <= friction");
+    }
+    if let (Some(cohesion), Some(friction)) = (cohesion, friction)
+        && cohesion == 0.0
+    {
+        let (place, name) = (node.place_at("cohesion"), clip(name, 40));
+        if friction == 0.0 {
+            problems
+                .error(place, format!("`{name}` has neither cohesion nor friction"))
+                .help("give it one of them, or model = \"elastic\"");
+        } else {
+            problems
+                .warning(
+                    place,
+                    format!("`{name}` has no cohesion: without confinement it has no strength"),
+                )
+                .help("a small one helps steps converge, like cohesion = \"0.1 kPa\"");
+        }
+    }
+    let tension_cutoff = match node.get("tension_cutoff") {
+        Some(cutoff) => Some(cutoff.number()?),
+        None => None,
+    };
+    if let (Some(cohesion), Some(friction), Some(cutoff)) = (cohesion, friction, tension_cutoff) {
+        let apex = cohesion / friction.tan();
+        if friction > 0.0 && cutoff > apex * (1.0 + 1e-12) {
+            problems
+                .warning(
+                    node.place_at("tension_cutoff"),
+                    "this tension cut-off never acts: it lies above the apex of the cone",
+                )
+                .help(format!(
+                    "apex: cohesion / tan(friction) = {} kPa",
+                    number(apex / 1e3)
+                ));
+        }
+    }
+    Some(Strength::MohrCoulomb {
+        cohesion: cohesion?,
+        friction_angle: friction?,
+        dilation_angle: dilation?,
+        tension_cutoff,
+    })
+}
+
+/// K₀ of a material; the outer `None` when it is wrong.
+fn k0(node: &Node, strength: Option<Strength>, problems: &mut Problems) -> Option<Option<f64>> {
+    let Some(k0) = node.get("k0") else {
+        return Some(None);
+    };
+    if k0.text().is_none() {
+        return k0.number().map(Some);
+    }
+    match strength? {
+        Strength::MohrCoulomb { friction_angle, .. } => Some(Some(1.0 - friction_angle.sin())),
+        _ => {
+            problems
+                .error(k0.place, "k0 = \"jaky\" needs a friction angle")
+                .help("write a number, like k0 = 0.5");
+            None
+        }
+    }
+}

@@ -1,0 +1,158 @@
+//! Builds a [`Case`] from a completed tree, with the checks that need more than one value.
+//!
+//! Every part is built as far as it can be, so that all problems are found at once.
+
+mod bodies;
+mod boundaries;
+mod checks;
+mod curves;
+mod derive;
+mod grid;
+mod level;
+mod loads;
+mod materials;
+mod outputs;
+mod quantities;
+mod safety;
+mod site;
+mod stages;
+
+use std::path::Path;
+
+use super::diagnostic::Problems;
+use super::names::Names;
+use super::schema::FORMAT;
+use super::tree::Node;
+use crate::case::Case;
+
+use site::Site;
+
+/// The names in a file, by what they name.
+struct AllNames {
+    materials: Names,
+    bodies: Names,
+    loads: Names,
+    stages: Names,
+    monitors: Names,
+}
+
+impl AllNames {
+    fn new(tree: &Node, problems: &mut Problems) -> Self {
+        let materials = tree.get("materials").map_or(&[][..], Node::entries);
+        let materials = materials
+            .iter()
+            .map(|entry| (Some(entry.key.as_str()), entry.key_place));
+        let boxes = tree.get("boundaries").and_then(|part| part.get("boxes"));
+        Names::of_list("box", boxes, problems);
+        for (of, key) in [
+            ("section", "sections"),
+            ("curve", "curves"),
+            ("check", "checks"),
+        ] {
+            Names::of_list(of, tree.get(key), problems);
+        }
+        Self {
+            materials: Names::new("material", materials, problems),
+            bodies: Names::of_list("body", tree.get("bodies"), problems),
+            loads: Names::of_list("load", tree.get("loads"), problems),
+            stages: Names::of_list("stage", tree.get("stages"), problems),
+            monitors: Names::of_list("monitor", tree.get("monitors"), problems),
+        }
+    }
+}
+
+/// The case that a completed tree states; values that follow from others are put into the tree.
+///
+/// `None` only when a problem was reported, here or before.
+pub(super) fn build(tree: &mut Node, file: &Path, problems: &mut Problems) -> Option<Case> {
+    derive::derive(tree, file);
+    let tree = &*tree;
+    let names = AllNames::new(tree, problems);
+    header(tree, problems);
+
+    let frame = grid::frame(tree, problems);
+    let grid = grid::grid(tree, frame, problems);
+    let method = grid::method(tree);
+    let materials = materials::materials(tree, problems);
+    let bodies = bodies::bodies(tree, &names, problems);
+    let site = Site::new(frame, &bodies);
+    bodies::check(tree, &names, &bodies, &site, problems);
+    let boundaries = boundaries::boundaries(tree, &site, problems);
+    bodies::check_support(tree, &bodies, boundaries.as_ref(), &site, problems);
+    let loads = loads::loads(tree, &site, problems);
+    let context = stages::Context {
+        tree,
+        names: &names,
+        materials: &materials,
+        bodies: &bodies,
+        loads: &loads,
+        site: &site,
+    };
+    let stages = stages::stages(&context, problems);
+    stages::check_use(&context, problems);
+    let solver = outputs::solver(tree, &materials, problems);
+    let monitors = outputs::monitors(tree, &site, problems);
+    let sections = outputs::sections(tree, &site, problems);
+    let curves = curves::curves(tree, &names, &loads, file, problems);
+    let checks = checks::checks(tree, &names, &loads, &stages, problems);
+    let output = outputs::output(tree, problems);
+
+    let case = tree.get("case")?;
+    Some(Case {
+        title: case.text_at("title")?.to_owned(),
+        gravity: case.number_at("gravity")?,
+        grid: grid?,
+        method: method?,
+        materials: all(materials)?,
+        bodies: all(bodies)?,
+        boundaries: boundaries?,
+        loads: all(loads)?,
+        stages: all(stages)?,
+        solver: solver?,
+        monitors: all(monitors)?,
+        sections: all(sections)?,
+        curves: all(curves)?,
+        checks: all(checks)?,
+        output: output?,
+    })
+}
+
+fn all<T>(parts: Vec<Option<T>>) -> Option<Vec<T>> {
+    parts.into_iter().collect()
+}
+
+/// Checks the version of the format and the kind of analysis.
+fn header(tree: &Node, problems: &mut Problems) {
+    if let Some(version) = tree.number_at("igimp")
+        && version > FORMAT as f64
+    {
+        problems
+            .error(
+                tree.place_at("igimp"),
+                format!("this file has input format {version}, newer than this program's"),
+            )
+            .help(format!("this program reads igimp = {FORMAT}"));
+    }
+    let Some(case) = tree.get("case") else { return };
+    if case.text_at("analysis") == Some("3d") {
+        problems
+            .error(
+                case.place_at("analysis"),
+                "3D case files are not available yet; the library's crates are",
+            )
+            .help("write analysis = \"plane-strain\", or use the crates in a program");
+    }
+    if case.number_at("gravity") == Some(0.0) {
+        let stages = tree.get("stages").map_or(&[][..], Node::items);
+        for stage in stages {
+            if let Some(kind @ ("gravity" | "k0")) = stage.text_at("type") {
+                problems
+                    .warning(
+                        stage.place_at("type"),
+                        format!("this stage of type {kind} does nothing: gravity is 0"),
+                    )
+                    .help("set gravity in [case], or remove the stage");
+            }
+        }
+    }
+}

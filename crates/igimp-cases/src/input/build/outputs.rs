@@ -1,0 +1,140 @@
+//! Solver, monitors, sections and output.
+
+use std::path::PathBuf;
+
+use igimp_solver::linear::SolverKind;
+
+use super::quantities::fields;
+use super::site::Site;
+use crate::case::{Every, Material, Monitor, Output, Section, SolverSettings, Strength};
+use crate::input::diagnostic::Problems;
+use crate::input::text::{clip, point};
+use crate::input::tree::Node;
+
+/// Newton's method, step cutting, linear solver.
+pub(super) fn solver(
+    tree: &Node,
+    materials: &[Option<Material>],
+    problems: &mut Problems,
+) -> Option<SolverSettings> {
+    let node = tree.get("solver")?;
+    let cutting = node.get("step_cutting")?;
+    let linear = match node.text_at("linear")? {
+        "cholesky" => SolverKind::FaerCholesky,
+        "lu" => SolverKind::Multifrontal,
+        "nalgebra-cholesky" => SolverKind::NalgebraCholesky,
+        "bicgstab" => SolverKind::SprsBiCgStab,
+        _ => SolverKind::Auto,
+    };
+    let needs_symmetry = matches!(
+        linear,
+        SolverKind::FaerCholesky | SolverKind::NalgebraCholesky
+    );
+    let unsymmetric = materials.iter().flatten().find(|material| {
+        matches!(
+            material.strength,
+            Strength::MohrCoulomb { friction_angle, dilation_angle, .. }
+                if friction_angle != dilation_angle
+        )
+    });
+    if needs_symmetry && let Some(material) = unsymmetric {
+        problems
+            .warning(
+                node.place_at("linear"),
+                "Cholesky needs a symmetric matrix, but flow is not associated",
+            )
+            .help(format!(
+                "`{}` has dilation below friction: linear = \"auto\" or \"lu\"",
+                clip(&material.name, 40)
+            ));
+    }
+    Some(SolverSettings {
+        tolerance: node.number_at("tolerance")?,
+        max_iterations: node.count_at("max_iterations")?,
+        cuts: u32::try_from(cutting.count_at("times")?).ok()?,
+        cut_factor: cutting.number_at("factor")?,
+        linear,
+    })
+}
+
+/// The monitors.
+pub(super) fn monitors(tree: &Node, site: &Site, problems: &mut Problems) -> Vec<Option<Monitor>> {
+    let items = tree.items_at("monitors").iter();
+    items
+        .map(|node| {
+            let place = node.pair_at("point")?;
+            if site.is_complete && !site.holds(place, site.round_off) {
+                problems
+                    .warning(
+                        node.place_at("point"),
+                        format!("the monitor at {} lies outside every body", point(place)),
+                    )
+                    .help("the nearest material point is watched");
+            }
+            Some(Monitor {
+                name: node.text_at("name")?.to_owned(),
+                point: place,
+                record: fields(node.items_at("record"))?,
+            })
+        })
+        .collect()
+}
+
+/// The sections.
+pub(super) fn sections(tree: &Node, site: &Site, problems: &mut Problems) -> Vec<Option<Section>> {
+    let items = tree.items_at("sections").iter();
+    items
+        .map(|node| {
+            let (from, to) = (node.pair_at("from")?, node.pair_at("to")?);
+            if from == to {
+                problems.error(node.place_at("to"), "this section has no length");
+            }
+            let along = |t: f64| {
+                [
+                    from[0] + t * (to[0] - from[0]),
+                    from[1] + t * (to[1] - from[1]),
+                ]
+            };
+            let meets = (0..=50).any(|k| site.holds(along(f64::from(k) / 50.0), site.round_off));
+            if site.is_complete && !meets {
+                problems
+                    .warning(node.place_at("from"), "this section meets no body")
+                    .help("it will hold no values");
+            }
+            Some(Section {
+                name: node.text_at("name")?.to_owned(),
+                from,
+                to,
+                points: node.count_at("points")?,
+                record: fields(node.items_at("record"))?,
+            })
+        })
+        .collect()
+}
+
+/// What is written, and where.
+pub(super) fn output(tree: &Node, problems: &mut Problems) -> Option<Output> {
+    let node = tree.get("output")?;
+    let checkpoint = node.get("checkpoint")?;
+    let every = node.get("paraview")?.get("every")?;
+    let folder = node.get("folder")?;
+    let path = folder.text()?;
+    if path.trim().is_empty() || path.chars().any(char::is_control) {
+        problems
+            .error(folder.place, "this is not the name of a folder")
+            .help("write folder = \"results/slope\", or leave it out");
+        return None;
+    }
+    Some(Output {
+        folder: PathBuf::from(path),
+        paraview: match every.text() {
+            Some("never") => Every::Never,
+            Some(_) => Every::Stage,
+            None => Every::Steps(every.count()?),
+        },
+        figures: fields(node.items_at("figures"))?,
+        report: node.flag_at("report")?,
+        checkpoint_every: checkpoint.count_at("every")?,
+        checkpoint_keep: checkpoint.count_at("keep")?,
+    })
+}

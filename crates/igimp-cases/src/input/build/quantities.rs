@@ -1,0 +1,160 @@
+//! The quantities that curves and checks name, such as `footing.reaction`.
+
+use super::AllNames;
+use crate::case::{Field, Load, LoadKind, Quantity};
+use crate::input::diagnostic::Problems;
+use crate::input::suggest::nearest;
+use crate::input::text::{clip, row};
+use crate::input::tree::Node;
+
+/// Fields by their names.
+const FIELDS: [(&str, Field, &str); 13] = [
+    ("displacement", Field::Displacement, "m"),
+    ("displacement_x", Field::DisplacementX, "m"),
+    ("displacement_y", Field::DisplacementY, "m"),
+    ("x", Field::X, "m"),
+    ("y", Field::Y, "m"),
+    ("sigma_xx", Field::SigmaXx, "Pa"),
+    ("sigma_yy", Field::SigmaYy, "Pa"),
+    ("sigma_zz", Field::SigmaZz, "Pa"),
+    ("tau_xy", Field::TauXy, "Pa"),
+    ("p", Field::P, "Pa"),
+    ("q", Field::Q, "Pa"),
+    ("plastic_strain", Field::PlasticStrain, "-"),
+    ("utilisation", Field::Utilisation, "-"),
+];
+
+/// Quantities of the whole model.
+const GLOBAL: [(&str, Quantity, &str); 7] = [
+    ("largest_displacement", Quantity::LargestDisplacement, "m"),
+    ("gravity_factor", Quantity::GravityFactor, "-"),
+    ("reduction_factor", Quantity::ReductionFactor, "-"),
+    ("step", Quantity::Step, "-"),
+    ("plastic_share", Quantity::PlasticShare, "-"),
+    ("top", Quantity::Top, "m"),
+    ("factor_of_safety", Quantity::FactorOfSafety, "-"),
+];
+
+/// The field of a name.
+pub(super) fn field(name: &str) -> Option<Field> {
+    let found = FIELDS.iter().find(|(known, ..)| *known == name)?;
+    Some(found.1)
+}
+
+/// The fields of a list of names.
+pub(super) fn fields(names: &[Node]) -> Option<Vec<Field>> {
+    let mut fields = Vec::with_capacity(names.len());
+    for name in names {
+        let field = field(name.text()?)?;
+        if !fields.contains(&field) {
+            fields.push(field);
+        }
+    }
+    Some(fields)
+}
+
+/// SI unit of a quantity by its name.
+pub(super) fn unit_of(name: &str) -> &'static str {
+    if let Some((_, _, unit)) = GLOBAL.iter().find(|(known, ..)| *known == name) {
+        return unit;
+    }
+    match name.rsplit_once('.').map_or("", |(_, last)| last) {
+        "settlement" => "m",
+        "reaction" => "N/m",
+        last => FIELDS
+            .iter()
+            .find(|(known, ..)| *known == last)
+            .map_or("-", |(_, _, unit)| unit),
+    }
+}
+
+/// The quantity that a value names; reports when there is none.
+pub(super) fn quantity(
+    value: &Node,
+    names: &AllNames,
+    loads: &[Option<Load>],
+    problems: &mut Problems,
+) -> Option<Quantity> {
+    let name = value.text()?;
+    if let Some((_, quantity, _)) = GLOBAL.iter().find(|(known, ..)| *known == name) {
+        return Some(*quantity);
+    }
+    if let Some((owner, what)) = name.rsplit_once('.') {
+        let monitor = names.monitors.position(owner);
+        if let (Some(monitor), Some(field)) = (monitor, field(what)) {
+            return Some(Quantity::Monitor(monitor, field));
+        }
+        if let Some(load) = names.loads.position(owner) {
+            let is_footing = loads
+                .get(load)
+                .and_then(Option::as_ref)
+                .map(|load| matches!(load.kind, LoadKind::RigidFooting { .. }));
+            match (what, is_footing) {
+                ("factor", Some(false)) => return Some(Quantity::LoadFactor(load)),
+                ("settlement", Some(true)) => return Some(Quantity::Settlement(load)),
+                ("reaction", Some(true)) => return Some(Quantity::Reaction(load)),
+                // The load itself was found wrong.
+                (_, None) => return None,
+                _ => {}
+            }
+        }
+    }
+    let known = known(names, loads);
+    let problem = problems.error(
+        value.place,
+        format!("there is no quantity `{}`", clip(name, 60)),
+    );
+    if let Some(near) = nearest(name, known.iter().map(String::as_str)) {
+        problem.help(format!("did you mean `{near}`?"));
+    }
+    problem.help(format!(
+        "quantities here: {}",
+        row(known.iter().map(String::as_str))
+    ));
+    None
+}
+
+/// The quantities that a file has.
+fn known(names: &AllNames, loads: &[Option<Load>]) -> Vec<String> {
+    let mut known = Vec::new();
+    for load in loads.iter().flatten() {
+        match load.kind {
+            LoadKind::RigidFooting { .. } => {
+                known.push(format!("{}.settlement", load.name));
+                known.push(format!("{}.reaction", load.name));
+            }
+            _ => known.push(format!("{}.factor", load.name)),
+        }
+    }
+    known.extend(GLOBAL.iter().map(|(name, ..)| (*name).to_owned()));
+    for monitor in names.monitors.known() {
+        known.extend(
+            FIELDS
+                .iter()
+                .map(|(field, ..)| format!("{monitor}.{field}")),
+        );
+    }
+    known
+}
+
+/// The product of the divisors; reports one that is zero.
+pub(super) fn divisor(table: &Node, problems: &mut Problems) -> Option<f64> {
+    let mut product = 1.0;
+    for divisor in table.items_at("divide_by") {
+        let value = divisor.number()?;
+        if value == 0.0 {
+            problems.error(divisor.place, "a divisor is zero");
+            return None;
+        }
+        product *= value;
+    }
+    if f64::is_normal(product) {
+        Some(product)
+    } else {
+        problems.error(
+            table.place_at("divide_by"),
+            "the product of the divisors is not a finite number",
+        );
+        None
+    }
+}

@@ -1,0 +1,316 @@
+//! Stages: what each needs from loads, materials and the stages before it.
+
+use super::AllNames;
+use super::level::uneven;
+use super::safety::{run_out, strength_reduction};
+use super::site::Site;
+use crate::case::{BodyPart, Load, LoadKind, Material, Stage, StageKind, StopWhen, Strength};
+use crate::input::diagnostic::Problems;
+use crate::input::text::{clip, number, row};
+use crate::input::tree::Node;
+
+/// What stages refer to.
+pub(super) struct Context<'a> {
+    pub(super) tree: &'a Node,
+    pub(super) names: &'a AllNames,
+    pub(super) materials: &'a [Option<Material>],
+    pub(super) bodies: &'a [Option<BodyPart>],
+    pub(super) loads: &'a [Option<Load>],
+    pub(super) site: &'a Site,
+}
+
+impl Context<'_> {
+    pub(super) fn stage_nodes(&self) -> &[Node] {
+        self.tree.items_at("stages")
+    }
+
+    /// Type of a stage.
+    pub(super) fn type_of(&self, index: usize) -> Option<&str> {
+        self.stage_nodes().get(index)?.text_at("type")
+    }
+
+    /// Index of the monitor that a table names, if it names one; the outer `None` when it is not
+    /// defined.
+    pub(super) fn monitor(
+        &self,
+        table: &Node,
+        who: &str,
+        problems: &mut Problems,
+    ) -> Option<Option<usize>> {
+        match table.get("monitor") {
+            None => Some(None),
+            Some(name) => {
+                let who = format!("stage `{who}` watches");
+                self.names.monitors.find(name, &who, problems).map(Some)
+            }
+        }
+    }
+
+    /// Whether a material is that of a body.
+    pub(super) fn is_used(&self, material: usize) -> bool {
+        self.bodies
+            .iter()
+            .any(|body| body.as_ref().is_none_or(|body| body.material == material))
+    }
+}
+
+/// The stages.
+pub(super) fn stages(context: &Context<'_>, problems: &mut Problems) -> Vec<Option<Stage>> {
+    (context.stage_nodes().iter().enumerate())
+        .map(|(index, node)| stage(context, index, node, problems))
+        .collect()
+}
+
+fn stage(
+    context: &Context<'_>,
+    index: usize,
+    node: &Node,
+    problems: &mut Problems,
+) -> Option<Stage> {
+    let name = clip(node.text_at("name").unwrap_or("?"), 40);
+    let kind = match node.text_at("type")? {
+        "gravity" => node
+            .number_at("factor")
+            .map(|factor| StageKind::Gravity { factor }),
+        "k0" => {
+            k0(context, index, node, problems);
+            Some(StageKind::K0)
+        }
+        "load" => load(context, node, &name, problems),
+        "displacement" => displacement(context, node, &name, problems),
+        "strength-reduction" => strength_reduction(context, index, node, &name, problems)
+            .map(StageKind::StrengthReduction),
+        _ => run_out(context, index, node, &name, problems).map(StageKind::RunOut),
+    };
+    let start_from = start_from(context, index, node, &name, problems);
+    let stop_when = stop_when(context, node, &name, problems);
+    Some(Stage {
+        name: node.text_at("name")?.to_owned(),
+        kind: kind?,
+        steps: node.count_at("steps")?,
+        start_from: start_from?,
+        reset_displacements: node.flag_at("reset_displacements")?,
+        stop_when: stop_when?,
+    })
+}
+
+fn start_from(
+    context: &Context<'_>,
+    index: usize,
+    node: &Node,
+    name: &str,
+    problems: &mut Problems,
+) -> Option<Option<usize>> {
+    let Some(start) = node.get("start_from") else {
+        return Some(None);
+    };
+    if index == 0 {
+        problems
+            .error(
+                start.place,
+                "the first stage starts from undeformed bodies, not from a stage",
+            )
+            .help("remove start_from");
+        return None;
+    }
+    let who = format!("stage `{name}` starts from");
+    let from = context.names.stages.find(start, &who, problems)?;
+    if from >= index {
+        let earlier = context.names.stages.known().take(index);
+        problems
+            .error(start.place, "start_from has to name an earlier stage")
+            .help(format!("earlier stages: {}", row(earlier)));
+        return None;
+    }
+    Some(Some(from))
+}
+
+fn stop_when(
+    context: &Context<'_>,
+    node: &Node,
+    name: &str,
+    problems: &mut Problems,
+) -> Option<StopWhen> {
+    let table = node.get("stop_when")?;
+    let kind = node.text_at("type")?;
+    let monitor = context.monitor(table, name, problems)?;
+    let number = |key: &str| match table.get(key) {
+        None => Some(None),
+        Some(value) => value.number().map(Some),
+    };
+    let displacement = number("displacement")?;
+    let load_grows_less_than = number("load_grows_less_than")?;
+    if monitor.is_some() && displacement.is_none() {
+        problems
+            .error(
+                table.place_at("monitor"),
+                "there is no displacement for this monitor",
+            )
+            .help("add displacement = \"0.5 m\"");
+    }
+    if load_grows_less_than.is_some() && kind != "displacement" {
+        problems
+            .error(
+                table.place_at("load_grows_less_than"),
+                format!("a stage of type {kind} has no footing whose load grows"),
+            )
+            .help("it is for stages of type displacement");
+    }
+    if kind == "strength-reduction" && displacement.is_some() {
+        problems
+            .error(
+                table.place_at("displacement"),
+                "a strength reduction ends by its failure criterion",
+            )
+            .help("write failure = { also = { displacement = \"0.5 m\" } }");
+    }
+    Some(StopWhen {
+        displacement,
+        monitor,
+        load_grows_less_than,
+    })
+}
+
+fn k0(context: &Context<'_>, index: usize, node: &Node, problems: &mut Problems) {
+    let place = node.place_at("type");
+    if index > 0 {
+        problems
+            .error(place, "a k0 stage sets the stresses of undeformed ground")
+            .help("make it the first stage");
+    }
+    if context.site.is_complete
+        && let Some(reason) = uneven(context.site)
+    {
+        problems
+            .error(place, "a k0 stage needs level ground")
+            .help(reason)
+            .help("for a slope use a stage of type gravity");
+    }
+    for (index, material) in context.materials.iter().enumerate() {
+        let Some(material) = material else { continue };
+        let needs = material.strength != Strength::Elastic && material.k0.is_none();
+        if needs && context.is_used(index) {
+            let entries = context.tree.get("materials").map_or(&[][..], Node::entries);
+            let at = entries.get(index).map_or(place, |entry| entry.node.place);
+            problems
+                .error(
+                    at,
+                    format!(
+                        "the k0 stage needs k0 of the material `{}`",
+                        clip(&material.name, 40)
+                    ),
+                )
+                .help(match material.strength {
+                    Strength::MohrCoulomb { .. } => "add k0 = \"jaky\", or a number",
+                    _ => "add k0 = 0.5, or what it is",
+                });
+        }
+    }
+}
+
+fn load(
+    context: &Context<'_>,
+    node: &Node,
+    name: &str,
+    problems: &mut Problems,
+) -> Option<StageKind> {
+    let names: Vec<&Node> = match (node.get("load"), node.get("loads")) {
+        (Some(one), None) => vec![one],
+        (None, Some(several)) => several.items().iter().collect(),
+        (None, None) => {
+            problems
+                .error(node.place, format!("stage `{name}` names no load"))
+                .help("add load = \"NAME\", or loads = [\"NAME\", \"NAME\"]");
+            return None;
+        }
+        (Some(_), Some(several)) => {
+            problems
+                .error(several.place, "both `load` and `loads` are given")
+                .help("keep one of them");
+            return None;
+        }
+    };
+    let mut loads = Vec::new();
+    let mut is_right = true;
+    for value in names {
+        let who = format!("stage `{name}` applies");
+        let Some(load) = context.names.loads.find(value, &who, problems) else {
+            is_right = false;
+            continue;
+        };
+        if loads.contains(&load) {
+            problems.error(value.place, "this load is named twice");
+        }
+        loads.push(load);
+        let kind = context.loads.get(load).and_then(Option::as_ref);
+        if let Some(LoadKind::RigidFooting { .. }) = kind.map(|load| load.kind) {
+            problems
+                .error(value.place, "a rigid footing is pushed, not loaded")
+                .help("use a stage of type displacement");
+        }
+    }
+    let factor = node.number_at("factor")?;
+    is_right.then_some(StageKind::Load { loads, factor })
+}
+
+fn displacement(
+    context: &Context<'_>,
+    node: &Node,
+    name: &str,
+    problems: &mut Problems,
+) -> Option<StageKind> {
+    let who = format!("stage `{name}` pushes");
+    let value = node.get("load")?;
+    let load = context.names.loads.find(value, &who, problems)?;
+    let settlement = node.number_at("settlement")?;
+    match context.loads.get(load)?.as_ref()?.kind {
+        LoadKind::RigidFooting { from, .. } => {
+            if let Some(frame) = context.site.frame
+                && settlement >= from[1] - frame.lower[1]
+            {
+                problems
+                    .error(
+                        node.place_at("settlement"),
+                        "the footing would reach the bottom of the grid",
+                    )
+                    .help(format!(
+                        "its base is {} m above it",
+                        number(from[1] - frame.lower[1])
+                    ));
+            }
+        }
+        _ => {
+            let footings = context.loads.iter().flatten();
+            let footings = footings
+                .filter(|load| matches!(load.kind, LoadKind::RigidFooting { .. }))
+                .map(|load| load.name.as_str());
+            problems
+                .error(value.place, "only a rigid footing can be pushed")
+                .help(format!("rigid footings: {}", row(footings)))
+                .help("pressures and point loads are for stages of type load");
+            return None;
+        }
+    }
+    Some(StageKind::Displacement { load, settlement })
+}
+
+/// Warns of materials and loads that nothing uses.
+pub(super) fn check_use(context: &Context<'_>, problems: &mut Problems) {
+    let materials = context.tree.get("materials").map_or(&[][..], Node::entries);
+    for (index, entry) in materials.iter().enumerate() {
+        if !context.is_used(index) && !context.bodies.is_empty() {
+            let message = format!("no body uses the material `{}`", clip(&entry.key, 40));
+            problems.warning(entry.key_place, message);
+        }
+    }
+    let used: Vec<&str> = (context.stage_nodes().iter())
+        .flat_map(|stage| stage.get("load").into_iter().chain(stage.items_at("loads")))
+        .filter_map(Node::text)
+        .collect();
+    for load in context.tree.items_at("loads") {
+        if let Some(name) = load.text_at("name").filter(|name| !used.contains(name)) {
+            let message = format!("no stage applies the load `{}`", clip(name, 40));
+            problems.warning(load.place_at("name"), message);
+        }
+    }
+}

@@ -1,0 +1,154 @@
+//! Reads a case file.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use thiserror::Error;
+
+use super::build::build;
+use super::complete::complete;
+use super::diagnostic::Problems;
+use super::explain::explain;
+use super::overrides::apply;
+use super::source::{Place, Source};
+use super::syntax::parse;
+use super::tree::Node;
+use crate::case::Case;
+
+/// Most bytes of a case file.
+const LARGEST: usize = 8 << 20;
+
+/// A case file that was found right.
+#[derive(Clone, Debug)]
+pub struct CaseFile {
+    case: Case,
+    completed: Node,
+    text: String,
+    warnings: String,
+}
+
+/// Why a case file cannot be used.
+#[derive(Debug, Error)]
+pub enum InputError {
+    /// The file cannot be read.
+    #[error("cannot read {}", path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        #[source]
+        source: std::io::Error,
+    },
+    /// The file does not state a case.
+    #[error("{text}")]
+    Invalid {
+        /// Every problem with its place, ready to print.
+        text: String,
+        /// Number of errors, without warnings.
+        errors: usize,
+    },
+}
+
+impl CaseFile {
+    /// Reads a file, changed by overrides such as `materials.clay.cohesion=12 kPa`.
+    ///
+    /// # Errors
+    /// [`InputError`].
+    pub fn read(path: &Path, overrides: &[String]) -> Result<Self, InputError> {
+        let file_error = |source| InputError::File {
+            path: path.to_owned(),
+            source,
+        };
+        let name = path.display().to_string();
+        let mut bytes = Vec::new();
+        let file = File::open(path).map_err(file_error)?;
+        file.take(LARGEST as u64 + 1)
+            .read_to_end(&mut bytes)
+            .map_err(file_error)?;
+        match String::from_utf8(bytes) {
+            Ok(text) => Self::parse(&name, &text, overrides),
+            Err(error) => {
+                let at = error.utf8_error().valid_up_to();
+                let text = String::from_utf8_lossy(error.as_bytes()).into_owned();
+                let mut problems = Problems::default();
+                problems
+                    .error(Place::new(0, &(at..at + 1)), "this is not UTF-8 text")
+                    .help("save the file as UTF-8");
+                Err(invalid(&problems, &[Source::new(&name, &text, false)]))
+            }
+        }
+    }
+
+    /// Parses the text of a file of this name.
+    ///
+    /// # Errors
+    /// [`InputError::Invalid`].
+    pub fn parse(name: &str, text: &str, overrides: &[String]) -> Result<Self, InputError> {
+        let mut problems = Problems::default();
+        if text.len() > LARGEST {
+            let message = format!("this file has more than {} MB", LARGEST >> 20);
+            problems.error(None, message).help("is it a case file?");
+            return Err(invalid(&problems, &[Source::new(name, "", false)]));
+        }
+        let mut sources = vec![Source::new(name, text, false)];
+        let mut tree = parse(&sources[0], &mut problems);
+        if problems.errors() > 0 {
+            return Err(invalid(&problems, &sources));
+        }
+        for text in overrides {
+            sources.push(Source::new("command line", text, true));
+        }
+        for index in 1..sources.len() {
+            apply(&mut tree, &sources, index, &mut problems);
+        }
+        let mut completed = complete(&tree, &sources, &mut problems);
+        let case = build(&mut completed, Path::new(name), &mut problems);
+        match case {
+            Some(case) if problems.errors() == 0 => Ok(Self {
+                case,
+                completed,
+                text: text.to_owned(),
+                warnings: problems.render(&sources),
+            }),
+            _ => {
+                if problems.errors() == 0 {
+                    problems.error(None, "this file does not state a case");
+                }
+                Err(invalid(&problems, &sources))
+            }
+        }
+    }
+
+    /// The case.
+    pub fn case(&self) -> &Case {
+        &self.case
+    }
+
+    /// The case.
+    pub fn into_case(self) -> Case {
+        self.case
+    }
+
+    /// Warnings, ready to print; empty when there are none.
+    pub fn warnings(&self) -> String {
+        self.warnings.clone()
+    }
+
+    /// The file with overrides and every default written out, commented; it states the same case.
+    pub fn explain(&self) -> String {
+        explain(&self.completed)
+    }
+
+    /// The text of the file.
+    pub fn source(&self) -> &str {
+        &self.text
+    }
+}
+
+fn invalid(problems: &Problems, sources: &[Source]) -> InputError {
+    InputError::Invalid {
+        text: problems.render(sources),
+        errors: problems.errors(),
+    }
+}

@@ -1,0 +1,86 @@
+//! Loads.
+
+use super::POINT;
+use crate::input::quantity::Dimension::{ForcePerLength, Stress};
+use crate::input::spec::{Choice, Kind, Range, Variant, Variants, choice, default, required};
+
+static FORCE: Kind = Kind::Quantity(ForcePerLength, Range::Any);
+
+static INTERFACES: [Choice; 2] = [
+    choice("rough", "soil sticks to base and shaft"),
+    choice("smooth", "soil slides along base and shaft"),
+];
+
+static DIRECTIONS: [Choice; 2] = [
+    choice("normal", "across the segment, into the soil"),
+    choice("down", "along gravity"),
+];
+
+/// A load, by type.
+pub(in crate::input) static LOAD: Kind = Kind::Variants(&Variants {
+    doc: "A load that stages apply.",
+    tag: "type",
+    tag_doc: "kind of load",
+    before: &[required("name", Kind::Name, "\"footing\"", "name")],
+    cases: &[
+        Variant {
+            name: "rigid-footing",
+            doc: "A level rigid footing, pushed down by displacement stages. The grid follows.",
+            fields: &[
+                required("from", POINT, "[\"0 m\", \"5 m\"]", "one end of the base"),
+                required(
+                    "to",
+                    POINT,
+                    "[\"1 m\", \"5 m\"]",
+                    "the other end, at the same level",
+                ),
+                default(
+                    "interface",
+                    Kind::Choice(&INTERFACES),
+                    "\"rough\"",
+                    "between soil and footing",
+                ),
+                default(
+                    "reaction_factor",
+                    Kind::Number(Range::Positive),
+                    "1",
+                    "factor on the reported reaction, 2 for half a footing",
+                ),
+            ],
+        },
+        Variant {
+            name: "pressure",
+            doc: "A dead pressure on a segment of the surface, raised by load stages.",
+            fields: &[
+                required("from", POINT, "[\"0 m\", \"5 m\"]", "one end"),
+                required("to", POINT, "[\"2 m\", \"5 m\"]", "the other end"),
+                required(
+                    "pressure",
+                    Kind::Quantity(Stress, Range::Any),
+                    "\"100 kPa\"",
+                    "pressure at factor 1, positive into the soil",
+                ),
+                default(
+                    "direction",
+                    Kind::Choice(&DIRECTIONS),
+                    "\"normal\"",
+                    "which way it acts",
+                ),
+            ],
+        },
+        Variant {
+            name: "point",
+            doc: "A dead force at a point, raised by load stages.",
+            fields: &[
+                required("at", POINT, "[\"2 m\", \"5 m\"]", "where"),
+                required(
+                    "force",
+                    Kind::List(&FORCE, 2, 2),
+                    "[\"0 kN/m\", \"-10 kN/m\"]",
+                    "force at factor 1, x and y, per metre run",
+                ),
+            ],
+        },
+    ],
+    after: &[],
+});

@@ -1,0 +1,359 @@
+//! The schema of a case file, declared once.
+
+mod loads;
+mod materials;
+mod outputs;
+mod stages;
+
+use super::quantity::Dimension::{Acceleration, Length};
+use super::spec::{Choice, Kind, Range, Struct, choice, default, derived, optional, required};
+
+/// Version of the input format that this program reads.
+pub(super) const FORMAT: i64 = 1;
+
+/// Most items in a list of things, and most numbers in a list of numbers.
+const MANY: usize = 100_000;
+
+/// A point: two lengths.
+static LENGTH: Kind = Kind::Quantity(Length, Range::Any);
+const POINT: Kind = Kind::List(&LENGTH, 2, 2);
+static CORNER: Kind = POINT;
+
+/// The whole file.
+pub(super) static ROOT: Struct = Struct {
+    doc: "A case: a problem in plane strain and how it is solved.",
+    fields: &[
+        required(
+            "igimp",
+            Kind::Integer(FORMAT, FORMAT),
+            "1",
+            "version of the input format",
+        ),
+        required(
+            "case",
+            Kind::Table(&CASE),
+            "{ title = \"My slope\" }",
+            "what the case is",
+        ),
+        required(
+            "grid",
+            Kind::Table(&GRID),
+            "{ cell = \"1 m\", domain = { x = [\"0 m\", \"60 m\"], y = [\"0 m\", \"22 m\"] } }",
+            "background grid and variant of the method",
+        ),
+        required(
+            "materials",
+            Kind::Map("material", &materials::MATERIAL),
+            "{ clay = { model = \"tresca\" } }",
+            "materials by name",
+        ),
+        required(
+            "bodies",
+            Kind::List(&BODY, 1, MANY),
+            "[{ name = \"soil\" }]",
+            "polygons of one material each",
+        ),
+        default(
+            "boundaries",
+            Kind::Table(&BOUNDARIES),
+            "{}",
+            "supports at the sides of the grid, and in boxes",
+        ),
+        default(
+            "loads",
+            Kind::List(&loads::LOAD, 0, MANY),
+            "[]",
+            "loads that stages apply",
+        ),
+        required(
+            "stages",
+            Kind::List(&stages::STAGE, 1, MANY),
+            "[{ name = \"weight\", type = \"gravity\" }]",
+            "what happens, in order",
+        ),
+        default(
+            "solver",
+            Kind::Table(&outputs::SOLVER),
+            "{}",
+            "Newton's method, step cutting, linear solver",
+        ),
+        default(
+            "monitors",
+            Kind::List(&outputs::MONITOR, 0, MANY),
+            "[]",
+            "material points that are watched in every step",
+        ),
+        default(
+            "sections",
+            Kind::List(&outputs::SECTION, 0, MANY),
+            "[]",
+            "lines along which results are written at the end of every stage",
+        ),
+        default(
+            "curves",
+            Kind::List(&outputs::CURVE, 0, MANY),
+            "[]",
+            "one recorded quantity against another",
+        ),
+        default(
+            "checks",
+            Kind::List(&outputs::CHECK, 0, MANY),
+            "[]",
+            "results that are held against outside values",
+        ),
+        default(
+            "output",
+            Kind::Table(&outputs::OUTPUT),
+            "{}",
+            "what is written, and where",
+        ),
+    ],
+};
+
+static CASE: Struct = Struct {
+    doc: "What the case is.",
+    fields: &[
+        required(
+            "title",
+            Kind::Text,
+            "\"My slope\"",
+            "for reports and figures",
+        ),
+        default(
+            "analysis",
+            Kind::Choice(&ANALYSES),
+            "\"plane-strain\"",
+            "kind of analysis",
+        ),
+        default(
+            "gravity",
+            Kind::Quantity(Acceleration, Range::NotNegative),
+            "\"9.81 m/s2\"",
+            "acceleration of gravity, along -y",
+        ),
+    ],
+};
+
+static ANALYSES: [Choice; 2] = [
+    choice("plane-strain", "per metre run"),
+    choice("3d", "not available in case files yet"),
+];
+
+static GRID: Struct = Struct {
+    doc: "Fixed background grid of equal cells, and the variant of the method.",
+    fields: &[
+        required(
+            "cell",
+            Kind::Either(&[Kind::Quantity(Length, Range::Positive), Kind::Table(&CELL)]),
+            "\"0.5 m\"",
+            "size of a cell, one length or x and y",
+        ),
+        required(
+            "domain",
+            Kind::Table(&DOMAIN),
+            "{ x = [\"0 m\", \"60 m\"], y = [\"0 m\", \"22 m\"] }",
+            "extent of the grid; leave room for the motion",
+        ),
+        default(
+            "basis",
+            Kind::Choice(&BASES),
+            "\"gimp\"",
+            "how a particle sees the grid",
+        ),
+        default("bbar", Kind::Flag, "true", "volumetric-locking control"),
+        default(
+            "kinematics",
+            Kind::Choice(&KINEMATICS),
+            "\"finite\"",
+            "measure of strain",
+        ),
+        default(
+            "domain_update",
+            Kind::Choice(&DOMAIN_UPDATES),
+            "\"stretch\"",
+            "how particle domains follow the deformation",
+        ),
+        default(
+            "small_cuts",
+            Kind::Table(&SMALL_CUTS),
+            "{}",
+            "nodes that a body only touches at a corner",
+        ),
+    ],
+};
+
+static CELL: Struct = Struct {
+    doc: "Size of a cell by direction.",
+    fields: &[
+        required(
+            "x",
+            Kind::Quantity(Length, Range::Positive),
+            "\"0.5 m\"",
+            "width",
+        ),
+        required(
+            "y",
+            Kind::Quantity(Length, Range::Positive),
+            "\"0.5 m\"",
+            "height",
+        ),
+    ],
+};
+
+static DOMAIN: Struct = Struct {
+    doc: "Extent of the grid, a whole number of cells in each direction.",
+    fields: &[
+        required("x", POINT, "[\"0 m\", \"60 m\"]", "from left to right"),
+        required("y", POINT, "[\"0 m\", \"22 m\"]", "from bottom to top"),
+    ],
+};
+
+static BASES: [Choice; 2] = [
+    choice("gimp", "generalised interpolation (iGIMP)"),
+    choice("linear", "plain material point method (iMPM)"),
+];
+
+static KINEMATICS: [Choice; 2] = [
+    choice("finite", "Hencky strain, exact under rotation"),
+    choice("small", "small strain over a step"),
+];
+
+static DOMAIN_UPDATES: [Choice; 4] = [
+    choice("fixed", "half-lengths stay as seeded"),
+    choice("diagonal-f", "diagonal of the deformation gradient F"),
+    choice("stretch", "diagonal of the stretch U, free of rotation"),
+    choice("root-j", "square root of det F"),
+];
+
+static SMALL_CUTS: Struct = Struct {
+    doc: "Treatment of nodes that carry next to no soil.",
+    fields: &[
+        default(
+            "below",
+            Kind::Number(Range::NotNegative),
+            "1e-4",
+            "share of a cell's volume below which a node is a small cut; 0 switches off",
+        ),
+        default(
+            "remedy",
+            Kind::Choice(&REMEDIES),
+            "\"tie\"",
+            "what happens to such a node",
+        ),
+        default(
+            "ghost_penalty",
+            Kind::Number(Range::NotNegative),
+            "0",
+            "penalty on jumps of the gradient across faces of boundary cells; 0 switches off",
+        ),
+    ],
+};
+
+static REMEDIES: [Choice; 2] = [
+    choice("tie", "it moves with the nearest node that carries soil"),
+    choice("drop", "its displacement is zero"),
+];
+
+static BODY: Kind = Kind::Table(&Struct {
+    doc: "A polygon of one material, filled with particles.",
+    fields: &[
+        required("name", Kind::Name, "\"soil\"", "name"),
+        required(
+            "material",
+            Kind::Reference("material"),
+            "\"clay\"",
+            "name of the material",
+        ),
+        default(
+            "points_per_cell",
+            Kind::IntegerOf(&[1, 4, 9, 16, 25]),
+            "4",
+            "particles per cell, a square number",
+        ),
+        required(
+            "polygon",
+            Kind::List(&CORNER, 3, MANY),
+            "[[\"0 m\", \"0 m\"], [\"8 m\", \"0 m\"], [\"8 m\", \"5 m\"], [\"0 m\", \"5 m\"]]",
+            "corners in order, either way round",
+        ),
+    ],
+});
+
+static SIDES: [Choice; 3] = [
+    choice("roller", "no displacement across the side"),
+    choice("fixed", "no displacement"),
+    choice("free", "no support"),
+];
+
+static BOUNDARIES: Struct = Struct {
+    doc: "Supports at the sides of the grid, and in boxes.",
+    fields: &[
+        default(
+            "left",
+            Kind::Choice(&SIDES),
+            "\"roller\"",
+            "side of the lowest x",
+        ),
+        default(
+            "right",
+            Kind::Choice(&SIDES),
+            "\"roller\"",
+            "side of the highest x",
+        ),
+        default(
+            "bottom",
+            Kind::Choice(&SIDES),
+            "\"fixed\"",
+            "side of the lowest y",
+        ),
+        default(
+            "top",
+            Kind::Choice(&SIDES),
+            "\"free\"",
+            "side of the highest y",
+        ),
+        default(
+            "boxes",
+            Kind::List(&BOX, 0, MANY),
+            "[]",
+            "boxes in which nodes are held",
+        ),
+    ],
+};
+
+static AXES: [Choice; 2] = [
+    choice("x", "displacement in x"),
+    choice("y", "displacement in y"),
+];
+static AXIS: Kind = Kind::Choice(&AXES);
+
+static BOX: Kind = Kind::Table(&Struct {
+    doc: "A box whose nodes, edges included, are held.",
+    fields: &[
+        required("name", Kind::Name, "\"wall\"", "name"),
+        required("from", POINT, "[\"0 m\", \"0 m\"]", "one corner"),
+        required("to", POINT, "[\"1 m\", \"5 m\"]", "the opposite corner"),
+        default(
+            "fix",
+            Kind::List(&AXIS, 1, 2),
+            "[\"x\", \"y\"]",
+            "what is held",
+        ),
+    ],
+});
+
+/// A stage that a curve, a check or another stage names.
+const fn stage(meaning: &'static str, doc: &'static str) -> super::spec::Field {
+    optional("stage", Kind::Reference("stage"), meaning, doc)
+}
+
+/// Names of materials whose strength is reduced.
+static MATERIAL_NAME: Kind = Kind::Reference("material");
+const fn reduced_materials() -> super::spec::Field {
+    derived(
+        "materials",
+        Kind::List(&MATERIAL_NAME, 1, MANY),
+        "all materials of bodies that have a strength",
+        "materials whose strength is reduced; the others keep theirs",
+    )
+}

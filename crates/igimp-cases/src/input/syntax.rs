@@ -1,0 +1,70 @@
+//! Parses TOML; says in our words what is wrong with it.
+
+use toml::de::{DeTable, Error};
+
+use super::diagnostic::Problems;
+use super::quantity::Quantity;
+use super::source::{Place, Source};
+use super::text::clip;
+use super::tree::{Node, from_document};
+
+/// The tree of a file; reports what is not TOML.
+pub(super) fn parse(source: &Source, problems: &mut Problems) -> Node {
+    let (document, errors) = DeTable::parse_recoverable(&source.text);
+    let mut errors: Vec<&Error> = errors.iter().collect();
+    errors.sort_by_key(|error| error.span().map_or(usize::MAX, |span| span.start));
+    for (number, error) in errors.iter().enumerate() {
+        // Only these two do not upset what follows.
+        if number == 0 || is_unquoted(error) || error.message().starts_with(DUPLICATE) {
+            report(source, error, problems);
+        }
+    }
+    from_document(&document, 0)
+}
+
+const UNQUOTED: &str = "string values must be quoted";
+const DUPLICATE: &str = "duplicate key";
+
+fn is_unquoted(error: &Error) -> bool {
+    error.message().starts_with(UNQUOTED)
+}
+
+fn report(source: &Source, error: &Error, problems: &mut Problems) {
+    let place = error.span().map(|span| Place::new(0, &span));
+    let written = place.map_or("", |place| source.slice(place)).trim();
+    let shown = clip(written, 40);
+    if is_unquoted(error) {
+        let problem = problems.error(place, format!("`{shown}` needs quotes"));
+        match written {
+            "True" | "False" => problem.help(format!("write {}", written.to_lowercase())),
+            _ => problem.help(format!("write \"{shown}\"")),
+        };
+        if Quantity::parse(written).is_err() && written.contains(',') {
+            problem.help("numbers have a decimal point, not a comma");
+        }
+    } else if error.message().starts_with(DUPLICATE) {
+        let is_header = place.is_some_and(|place| {
+            let line = source.text[..place.start.min(source.text.len())]
+                .rsplit('\n')
+                .next();
+            line.is_some_and(|before| before.trim_start().starts_with('['))
+        });
+        let problem = problems.error(place, format!("`{shown}` is given twice"));
+        if is_header {
+            problem.help(format!(
+                "join the tables; a list item is written [[{shown}]]"
+            ));
+        } else {
+            problem.help("keep one of them");
+        }
+    } else {
+        let (what, expected) = match error.message().split_once(", expected ") {
+            Some((what, expected)) => (what, Some(expected)),
+            None => (error.message(), None),
+        };
+        let problem = problems.error(place, format!("this is not TOML: {what}"));
+        if let Some(expected) = expected.filter(|expected| *expected != "nothing") {
+            problem.help(format!("expected {expected}"));
+        }
+    }
+}

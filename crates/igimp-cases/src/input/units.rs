@@ -1,0 +1,202 @@
+//! Units that a case file may use, and what they measure.
+
+/// What a quantity measures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Dimension {
+    /// Length \[m\].
+    Length,
+    /// Stress \[Pa\].
+    Stress,
+    /// Weight per volume \[N/m³\].
+    UnitWeight,
+    /// Angle \[rad\].
+    Angle,
+    /// Acceleration \[m/s²\].
+    Acceleration,
+    /// Force per metre run, in plane strain \[N/m\].
+    ForcePerLength,
+    /// Mass per volume \[kg/m³\]; no key takes one, it is known to say so.
+    MassDensity,
+    /// Force \[N\]; no key takes one, it is known to say so.
+    Force,
+    /// Area \[m²\], a divisor only.
+    Area,
+}
+
+impl Dimension {
+    /// With an article, as in "expected a stress".
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Length => "a length",
+            Self::Stress => "a stress",
+            Self::UnitWeight => "a unit weight",
+            Self::Angle => "an angle",
+            Self::Acceleration => "an acceleration",
+            Self::ForcePerLength => "a force per length",
+            Self::MassDensity => "a mass density",
+            Self::Force => "a force",
+            Self::Area => "an area",
+        }
+    }
+
+    /// The unit that messages name.
+    pub fn usual_unit(self) -> &'static str {
+        match self {
+            Self::Length => "m",
+            Self::Stress => "kPa",
+            Self::UnitWeight => "kN/m3",
+            Self::Angle => "deg",
+            Self::Acceleration => "m/s2",
+            Self::ForcePerLength => "kN/m",
+            Self::MassDensity => "kg/m3",
+            Self::Force => "kN",
+            Self::Area => "m2",
+        }
+    }
+
+    /// A quantity for messages.
+    pub fn example(self) -> &'static str {
+        match self {
+            Self::Length => "2 m",
+            Self::Stress => "25 kPa",
+            Self::UnitWeight => "18 kN/m3",
+            Self::Angle => "30 deg",
+            Self::Acceleration => "9.81 m/s2",
+            Self::ForcePerLength => "100 kN/m",
+            Self::MassDensity => "2000 kg/m3",
+            Self::Force => "100 kN",
+            Self::Area => "2 m2",
+        }
+    }
+
+    /// The units that are understood, the usual spellings only.
+    pub fn units(self) -> impl Iterator<Item = &'static str> {
+        UNITS
+            .iter()
+            .filter(move |unit| unit.dimension == self)
+            .map(|unit| unit.symbol)
+    }
+}
+
+/// How a unit turns into its SI unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Scale {
+    /// Ten to this power; exact where the result is.
+    Ten(i32),
+    /// Degrees.
+    Degrees,
+}
+
+/// A unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Unit {
+    /// As it is written, with plain digits for powers.
+    pub(super) symbol: &'static str,
+    /// What it measures.
+    pub(super) dimension: Dimension,
+    scale: Scale,
+}
+
+impl Unit {
+    /// A number of this unit in SI units.
+    pub(super) fn to_si(self, number: f64) -> f64 {
+        match self.scale {
+            Scale::Ten(power) if power < 0 => number / 10_f64.powi(-power),
+            Scale::Ten(power) => number * 10_f64.powi(power),
+            Scale::Degrees => number.to_radians(),
+        }
+    }
+
+    /// The unit of this spelling: `²`, `³`, `^2`, `^3` and `**2` are powers, spaces do not count.
+    pub(super) fn find(spelling: &str) -> Option<Self> {
+        let plain = plain(spelling);
+        UNITS.iter().find(|unit| unit.symbol == plain).copied()
+    }
+
+    /// The unit that a spelling may have meant.
+    pub(super) fn nearest(spelling: &str, dimension: Dimension) -> Option<&'static str> {
+        let plain = plain(spelling);
+        let folded = plain.to_lowercase();
+        let same = |unit: &&Self| unit.symbol.to_lowercase() == folded;
+        let of_kind = |unit: &&Self| unit.dimension == dimension;
+        let mut known = UNITS.iter().filter(of_kind).filter(same);
+        known
+            .next()
+            .or_else(|| UNITS.iter().find(same))
+            .map(|unit| unit.symbol)
+            .or_else(|| super::suggest::nearest(&plain, dimension.units()))
+    }
+}
+
+/// A spelling with plain digits for powers and without spaces.
+fn plain(spelling: &str) -> String {
+    spelling
+        .chars()
+        .filter_map(|c| match c {
+            '²' => Some('2'),
+            '³' => Some('3'),
+            '^' | '*' | ' ' | '\u{a0}' => None,
+            other => Some(other),
+        })
+        .collect()
+}
+
+const fn ten(symbol: &'static str, dimension: Dimension, power: i32) -> Unit {
+    Unit {
+        symbol,
+        dimension,
+        scale: Scale::Ten(power),
+    }
+}
+
+const fn degrees(symbol: &'static str) -> Unit {
+    Unit {
+        symbol,
+        dimension: Dimension::Angle,
+        scale: Scale::Degrees,
+    }
+}
+
+static UNITS: [Unit; 41] = [
+    ten("m", Dimension::Length, 0),
+    ten("mm", Dimension::Length, -3),
+    ten("cm", Dimension::Length, -2),
+    ten("km", Dimension::Length, 3),
+    ten("kPa", Dimension::Stress, 3),
+    ten("Pa", Dimension::Stress, 0),
+    ten("MPa", Dimension::Stress, 6),
+    ten("GPa", Dimension::Stress, 9),
+    ten("N/m2", Dimension::Stress, 0),
+    ten("kN/m2", Dimension::Stress, 3),
+    ten("MN/m2", Dimension::Stress, 6),
+    ten("GN/m2", Dimension::Stress, 9),
+    ten("N/mm2", Dimension::Stress, 6),
+    ten("bar", Dimension::Stress, 5),
+    ten("kN/m3", Dimension::UnitWeight, 3),
+    ten("N/m3", Dimension::UnitWeight, 0),
+    ten("MN/m3", Dimension::UnitWeight, 6),
+    degrees("deg"),
+    degrees("°"),
+    degrees("degree"),
+    degrees("degrees"),
+    ten("rad", Dimension::Angle, 0),
+    ten("m/s2", Dimension::Acceleration, 0),
+    ten("cm/s2", Dimension::Acceleration, -2),
+    ten("mm/s2", Dimension::Acceleration, -3),
+    ten("kN/m", Dimension::ForcePerLength, 3),
+    ten("N/m", Dimension::ForcePerLength, 0),
+    ten("MN/m", Dimension::ForcePerLength, 6),
+    ten("kg/m3", Dimension::MassDensity, 0),
+    ten("t/m3", Dimension::MassDensity, 3),
+    ten("Mg/m3", Dimension::MassDensity, 3),
+    ten("g/cm3", Dimension::MassDensity, 3),
+    ten("kg/dm3", Dimension::MassDensity, 3),
+    ten("kg/l", Dimension::MassDensity, 3),
+    ten("N", Dimension::Force, 0),
+    ten("kN", Dimension::Force, 3),
+    ten("MN", Dimension::Force, 6),
+    ten("m2", Dimension::Area, 0),
+    ten("mm2", Dimension::Area, -6),
+    ten("cm2", Dimension::Area, -4),
+    ten("km2", Dimension::Area, 6),
+];
