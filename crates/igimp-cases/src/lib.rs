@@ -23,8 +23,6 @@ pub mod sweep;
 pub mod table;
 pub mod von_mises_slope;
 
-#[path = "input_stub.rs"]
-pub mod input;
 mod error;
 mod parameter;
 

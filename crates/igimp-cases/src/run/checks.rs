@@ -89,7 +89,7 @@ fn row(check: Check) -> CheckRow {
 }
 
 /// The ordinate of a curve where it first passes an abscissa, linear between points.
-pub fn at(points: &[[f64; 2]], x: f64) -> Option<f64> {
+pub(super) fn at(points: &[[f64; 2]], x: f64) -> Option<f64> {
     let near = 1e-9 * x.abs().max(1e-12);
     if let Some(point) = points.iter().find(|point| (point[0] - x).abs() <= near) {
         return Some(point[1]);

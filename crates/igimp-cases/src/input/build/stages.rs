@@ -167,6 +167,7 @@ fn stop_when(
     Some(StopWhen {
         displacement,
         monitor,
+        no_equilibrium: table.flag_at("no_equilibrium")?,
         load_grows_less_than,
     })
 }

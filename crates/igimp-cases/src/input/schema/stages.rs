@@ -253,5 +253,11 @@ static STOP_WHEN: Struct = Struct {
             "no limit",
             "the footing's reaction grows by less than this share in a step",
         ),
+        default(
+            "no_equilibrium",
+            Kind::Flag,
+            "false",
+            "want of equilibrium is the planned end: what was reached is the collapse load",
+        ),
     ],
 };
