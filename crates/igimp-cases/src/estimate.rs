@@ -1,9 +1,10 @@
 //! The size of a case before it runs: particles, cells, unknowns, and about how much memory.
 //!
-//! The memory model has three parts, each a count times bytes measured on slopes and footings of
-//! 1 000 to 70 000 unknowns: particles (state, trial and supports), stored entries of the tangent
-//! matrix (proportional to the unknowns $`n`$), and fill of its factors ($`n \log_2 n`$, the law
-//! of nested dissection in the plane). It is meant to tell a laptop from a workstation, not more.
+//! The memory model has three parts, each a count times bytes: particles (state, trial and
+//! supports), stored entries of the tangent matrix (proportional to the unknowns $`n`$), and fill of
+//! its factors ($`n \log_2 n`$, the law of nested dissection in the plane). The bytes were fitted
+//! to the peak memory of slopes with 500 to 110 000 unknowns and 4 to 9 particles per cell, and
+//! reproduce it within a tenth from 7 000 unknowns on; small cases are estimated too high.
 
 use igimp_shape::{Axis, Grid, Scratch, supports};
 
@@ -14,11 +15,11 @@ use crate::seed::fill_polygon;
 /// Program, tables and buffers \[bytes\].
 const BASE: f64 = 2e7;
 /// State, trial and supports of a particle \[bytes\].
-const PER_PARTICLE: f64 = 3e3;
+const PER_PARTICLE: f64 = 2e3;
 /// Matrix, its copies and its pattern \[bytes per unknown\].
 const PER_UNKNOWN: f64 = 3e3;
 /// Factors, for each unknown and each doubling of the unknowns \[bytes\].
-const PER_FILL: f64 = 3e2;
+const PER_FILL: f64 = 1.5e2;
 /// Trials that a strength reduction is taken to make.
 const TRIALS: f64 = 9.0;
 

@@ -12,11 +12,11 @@ pub(crate) fn new(arguments: &New) -> Result<Exit, ProgramError> {
         return Ok(Exit::Done);
     };
     let Some(shipped) = find(name) else {
-        let help =
-            nearest(name).map_or_else(String::new, |near| format!("did you mean `{near}`? "));
+        let near =
+            nearest(name).map_or_else(String::new, |near| format!("did you mean `{near}`?\n"));
         return Err(ProgramError::usage(
             format!("there is no template `{name}`"),
-            format!("{help}{}", list().trim_end()),
+            near + list().trim_end(),
         ));
     };
     output::print(shipped.text)?;
