@@ -54,19 +54,30 @@ fn written(folder: &Path) -> Option<usize> {
 #[test]
 fn whenever_it_is_killed_a_checkpoint_is_whole() {
     if let Some(folder) = std::env::var_os(FOLDER) {
-        write_many(Path::new(&folder));
+        let folder = Path::new(&folder);
+        fs::write(folder.with_extension("started"), "").unwrap();
+        write_many(folder);
         return;
     }
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("killed");
+    let started = folder.with_extension("started");
     let _ = fs::remove_dir_all(&folder);
     let mut last = 0;
     for round in 0..30 {
+        let _ = fs::remove_file(&started);
         let mut child = Command::new(std::env::current_exe().unwrap())
             .arg("whenever_it_is_killed_a_checkpoint_is_whole")
             .env(FOLDER, &folder)
             .stdout(Stdio::null())
             .spawn()
             .unwrap();
+        // A busy machine takes its time to start a process.
+        for _ in 0..10_000 {
+            if started.exists() {
+                break;
+            }
+            std::thread::sleep(Duration::from_millis(1));
+        }
         std::thread::sleep(Duration::from_micros(20_000 + 1_700 * round));
         child.kill().unwrap();
         child.wait().unwrap();
