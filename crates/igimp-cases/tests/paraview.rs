@@ -178,9 +178,9 @@ fn vtk_pyvista_and_meshio_read_what_is_written() {
         .map(|node| [(node as f64).cos(), 1e-3])
         .collect();
     let cells = of_grid(&background, Some(&u));
-    add(&mut of_background, 0.1, &cells, 30.0 * 20.0);
+    add(&mut of_background, 1e-12, &cells, 30.0 * 20.0);
     let cells = of_grid(&Grid::new([axis(3), axis(2), axis(4)]), None);
-    add(&mut of_background, 1e-12, &cells, 3.0);
+    add(&mut of_background, 0.1, &cells, 3.0);
     let nothing = UnstructuredGrid {
         points: Vec::new(),
         kind: CellKind::Quad,
@@ -202,6 +202,7 @@ fn vtk_pyvista_and_meshio_read_what_is_written() {
                 "times": [0.0, 1.0 / 3.0, 0.7, 2.0],
                 "cells": [4, 2500, 4096, 64],
             },
+            "grid.pvd": { "times": [1e-12, 0.1], "cells": [2400, 24] },
         },
     });
     fs::write(folder.join("expected.json"), expected.to_string()).unwrap();

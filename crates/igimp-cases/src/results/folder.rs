@@ -9,7 +9,7 @@
 //! | `curves/`, `monitors/`, `sections/` | tables (`.csv`) |
 //! | `figures/` | pictures (`.svg`, `.png`) |
 //! | `paraview/` | particles and grid (`.pvd`, `.vtu`) |
-//! | `checkpoint/`, `last-converged/` | states ([`checkpoint`](super::checkpoint)) |
+//! | `checkpoint/`, `last-converged/` | states ([`checkpoint`]) |
 //! | `.igimp` | says that igimp made the folder |
 
 use std::fs;
@@ -36,7 +36,9 @@ const TABLES: [&str; 3] = ["curves", "monitors", "sections"];
 const FIGURES: &str = "figures";
 const PARAVIEW: &str = "paraview";
 const CHECKPOINT: &str = "checkpoint";
-const LAST_CONVERGED: &str = "last-converged";
+
+/// Name of the checkpoint beside the other results that a run without equilibrium leaves.
+pub const LAST_CONVERGED: &str = "last-converged";
 
 /// A folder laid out for the results of one run.
 #[derive(Clone, Debug, PartialEq, Eq)]

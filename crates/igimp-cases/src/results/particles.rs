@@ -21,7 +21,7 @@ pub struct Extras<'a> {
 /// hexahedra in space.
 ///
 /// Cells carry displacement, Cauchy stress σ, p, q, plastic strain, number of the material (from 0,
-/// in the order of the case), code of the [`regime`](super::regime), number of the particle, volume
+/// in the order of the case), code of the [`regime`], number of the particle, volume
 /// and mass.
 ///
 /// # Panics

@@ -86,7 +86,7 @@ def check_with_pyvista(path, expected):
 
 def check_with_meshio(path, expected):
     if not expected["cells"]:
-        return  # meshio opens no file without cells, whoever wrote it
+        return "skipped: meshio opens no file without cells"
     mesh = meshio.read(path)
     compare("points", len(mesh.points), len(expected["points"]))
     compare("cells", sum(len(block.data) for block in mesh.cells), expected["cells"])
@@ -112,11 +112,11 @@ def main():
     expected = json.loads((folder / "expected.json").read_text())
     for name, grid in expected["grids"].items():
         for check in (check_with_vtk, check_with_pyvista, check_with_meshio):
-            check(folder / name, grid)
-            print(f"ok {check.__name__} {name}")
+            outcome = check(folder / name, grid) or "ok"
+            print(f"{check.__name__} {name}: {outcome}")
     for name, collection in expected["collections"].items():
         check_collection(folder / name, collection)
-        print(f"ok check_collection {name}")
+        print(f"check_collection {name}: ok")
 
 
 main()

@@ -1,0 +1,90 @@
+//! GOAL: a program that is killed at any moment while it writes checkpoints leaves a whole one.
+//! ORACLE: the checkpoint says how many particles it has, and every write has one more than the
+//! one before.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::Duration;
+
+use igimp_assembly::{ParticleSeed, Particles};
+use igimp_cases::results::checkpoint::{self, Meta};
+use igimp_solver::Body;
+use serde_json::json;
+
+/// Tells the process that is to be killed where to write.
+const FOLDER: &str = "IGIMP_TEST_KILLED_FOLDER";
+
+fn body(particles: usize) -> Body<2> {
+    let seed = ParticleSeed {
+        x: [0.1, 0.2],
+        half_length: [0.5, 0.5],
+        volume: 1.0,
+        density: 1.0,
+        law: 0,
+    };
+    Body::new(Particles::new(&vec![seed; particles]).unwrap())
+}
+
+/// Writes one checkpoint after the other, under a name that stays and one that counts.
+fn write_many(folder: &Path) {
+    let first = written(folder).unwrap_or(0) + 1;
+    for particles in first..first + 1000 {
+        let meta = Meta::new("case", json!(particles));
+        let body = body(particles);
+        let states = [("current", &body), ("stable", &body)];
+        let name = match particles % 2 {
+            0 => "end".into(),
+            _ => format!("load-{particles:05}"),
+        };
+        checkpoint::write(folder, &name, &states, &meta, 2).unwrap();
+    }
+}
+
+/// Particles of the newest checkpoint, which must be whole and agree with itself.
+fn written(folder: &Path) -> Option<usize> {
+    let path = checkpoint::newest(folder).unwrap()?;
+    let checkpoint = checkpoint::read(&path, Some("case")).unwrap();
+    let particles = checkpoint.states[0].1.particles.len();
+    assert_eq!(checkpoint.meta.data, json!(particles));
+    assert_eq!(checkpoint.states[1].1.particles.len(), particles);
+    Some(particles)
+}
+
+#[test]
+fn whenever_it_is_killed_a_checkpoint_is_whole() {
+    if let Some(folder) = std::env::var_os(FOLDER) {
+        let folder = Path::new(&folder);
+        fs::write(folder.with_extension("started"), "").unwrap();
+        write_many(folder);
+        return;
+    }
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("killed");
+    let started = folder.with_extension("started");
+    let _ = fs::remove_dir_all(&folder);
+    let mut last = 0;
+    for round in 0..30 {
+        let _ = fs::remove_file(&started);
+        let mut child = Command::new(std::env::current_exe().unwrap())
+            .arg("whenever_it_is_killed_a_checkpoint_is_whole")
+            .env(FOLDER, &folder)
+            .stdout(Stdio::null())
+            .spawn()
+            .unwrap();
+        // A busy machine takes its time to start a process.
+        for _ in 0..10_000 {
+            if started.exists() {
+                break;
+            }
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        std::thread::sleep(Duration::from_micros(20_000 + 1_700 * round));
+        child.kill().unwrap();
+        child.wait().unwrap();
+        let now = written(&folder).unwrap_or(0);
+        assert!(now >= last, "{now} after {last}");
+        last = now;
+    }
+    assert!(last > 0, "something was written");
+    println!("{last} checkpoints in 30 lives");
+}
