@@ -170,7 +170,7 @@ pub fn title(field: Field) -> &'static str {
         Field::TauXy => "shear stress −τ_{xy}",
         Field::P => "mean pressure p",
         Field::Q => "deviatoric stress q",
-        Field::PlasticStrain => "plastic strain invariant ε_{p}",
+        Field::PlasticStrain => "plastic strain ε_{p}",
         Field::Utilisation => "share of the shear strength",
     }
 }

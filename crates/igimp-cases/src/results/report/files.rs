@@ -10,8 +10,8 @@ use super::rows::grouped;
 use crate::results::pictures::{convergence_plot, histories, stages_of};
 use crate::summary::{FigureNote, Summary};
 
-/// An SVG larger than this gives way to its PNG \[byte\].
-const MOST_SVG: usize = 700_000;
+/// An SVG larger than this gives way to its PNG if that is smaller \[byte\].
+const MOST_SVG: usize = 150_000;
 
 /// Pictures under a heading.
 #[derive(Serialize)]
@@ -98,7 +98,7 @@ fn picture(folder: &Path, note: &FigureNote) -> Picture {
         png.map(|bytes| ("png", bytes)),
     );
     let chosen = match (svg, png) {
-        (Some(svg), Some(png)) if svg.1.len() > MOST_SVG => Some(png),
+        (Some(svg), Some(png)) if svg.1.len() > MOST_SVG.max(png.1.len()) => Some(png),
         (svg, png) => svg.or(png),
     };
     Picture {

@@ -25,7 +25,7 @@ pub(super) fn numbers(summary: &Summary) -> Vec<Number> {
     for safety in stages.iter().filter_map(|stage| stage.safety.as_ref()) {
         let bound = |factor: Option<f64>| factor.map_or("?".to_owned(), short);
         let (from, to) = (bound(safety.stable), bound(safety.failed));
-        add("Factor of safety", format!("{from} … {to}"));
+        add("Factor of safety", format!("{from}\u{a0}…\u{a0}{to}"));
     }
     let size = &summary.size;
     if let Some(last) = stages.last() {
@@ -155,8 +155,7 @@ fn stage(stage: &StageSummary) -> StageView {
 #[derive(Serialize)]
 pub(super) struct SafetyView {
     stage: String,
-    interval: String,
-    lines: Vec<String>,
+    text: String,
     trials: Vec<TrialView>,
 }
 
@@ -186,8 +185,7 @@ pub(super) fn safety(summary: &Summary) -> Vec<SafetyView> {
         });
         Some(SafetyView {
             stage: stage.name.clone(),
-            interval: interval(safety),
-            lines: on_safety(safety).into_iter().skip(1).collect(),
+            text: on_safety(safety).join(" "),
             trials: trials.collect(),
         })
     };
@@ -198,19 +196,19 @@ pub(super) fn safety(summary: &Summary) -> Vec<SafetyView> {
 pub(super) fn interval(safety: &SafetySummary) -> String {
     match (safety.stable, safety.failed) {
         (Some(stable), Some(failed)) => format!(
-            "the factor of safety lies between {} and {}",
+            "The factor of safety lies between {} and {}",
             short(stable),
             short(failed)
         ),
         (Some(stable), None) => format!(
-            "the factor of safety is at least {}; no factor was found that fails",
+            "The factor of safety is at least {}; no factor was found that fails",
             short(stable)
         ),
         (None, Some(failed)) => format!(
-            "the factor of safety is below {}; no factor was found that stands",
+            "The factor of safety is below {}; no factor was found that stands",
             short(failed)
         ),
-        (None, None) => "no factor of safety was found".to_owned(),
+        (None, None) => "No factor of safety was found".to_owned(),
     }
 }
 

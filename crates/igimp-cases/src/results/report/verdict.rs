@@ -4,7 +4,6 @@ use serde::Serialize;
 
 use super::rows::{interval, percent};
 use crate::check::short;
-use crate::results::pictures::sentence;
 use crate::summary::{CheckRow, SafetySummary, StageOutcome, StageSummary, Summary};
 
 /// A share of moving mass below this may be a failure of a small part only \[-\].
@@ -127,7 +126,7 @@ fn on_checks(summary: &Summary, missed: &[&CheckRow]) -> Option<String> {
 
 /// The factor of safety with what belongs to it.
 pub(super) fn on_safety(safety: &SafetySummary) -> Vec<String> {
-    let mut sentences = vec![format!("{}.", sentence(&interval(safety)))];
+    let mut sentences = vec![format!("{}.", interval(safety))];
     let criterion = safety.criterion.trim().trim_end_matches('.');
     if !criterion.is_empty() {
         sentences.push(format!("Counted as failure: {criterion}."));
