@@ -201,7 +201,7 @@ fn table(folder: &Path, name: String) -> Option<FileView> {
         .headers()
         .map(|headers| headers.iter().map(str::to_owned).collect())
         .unwrap_or_default();
-    let rows = reader.byte_records().filter(Result::is_ok).count();
+    let rows = reader.byte_records().take_while(Result::is_ok).count();
     Some(FileView {
         href: href(&name),
         name,
@@ -243,7 +243,8 @@ fn href(path: &str) -> String {
         if byte.is_ascii_alphanumeric() || b"-_.~/".contains(&byte) {
             text.push(char::from(byte));
         } else {
-            text.push_str(&format!("%{byte:02X}"));
+            let digit = |value: u8| char::from(b"0123456789ABCDEF"[usize::from(value)]);
+            text.extend(['%', digit(byte >> 4), digit(byte & 15)]);
         }
     }
     text

@@ -10,6 +10,9 @@ use crate::summary::{SafetySummary, StageOutcome, StageSummary, Summary};
 /// The phases of a stage, in the order of [`StageSummary::phases`].
 pub(super) const PHASES: [&str; 5] = ["set-up", "evaluation", "tangent", "linear solver", "commit"];
 
+/// Stands for what is not a number.
+const UNKNOWN: &str = "–";
+
 /// A number with its name.
 #[derive(Serialize)]
 pub(super) struct Number {
@@ -23,7 +26,7 @@ pub(super) fn numbers(summary: &Summary) -> Vec<Number> {
     let mut add = |name, value: String| numbers.push(Number { name, value });
     let stages = &summary.stages;
     for safety in stages.iter().filter_map(|stage| stage.safety.as_ref()) {
-        let bound = |factor: Option<f64>| factor.map_or("?".to_owned(), short);
+        let bound = |factor: Option<f64>| factor.map_or_else(|| "?".to_owned(), short);
         let (from, to) = (bound(safety.stable), bound(safety.failed));
         add("Factor of safety", format!("{from}\u{a0}…\u{a0}{to}"));
     }
@@ -215,6 +218,9 @@ pub(super) fn interval(safety: &SafetySummary) -> String {
 /// A share as a percentage.
 pub(super) fn percent(share: f64) -> String {
     let percent = 100.0 * share;
+    if !percent.is_finite() {
+        return UNKNOWN.to_owned();
+    }
     if percent.abs() < 9.95 && percent.round().to_string() != format!("{percent}") {
         format!("{percent:.1} %")
     } else {
@@ -224,6 +230,9 @@ pub(super) fn percent(share: f64) -> String {
 
 /// A length in mm or m.
 fn length(metres: f64) -> String {
+    if !metres.is_finite() {
+        return UNKNOWN.to_owned();
+    }
     let scale = Scale::of(Dimension::Displacement, [metres]);
     format!("{} {}", short(metres / scale.divide_by), scale.unit)
 }
@@ -244,7 +253,7 @@ fn quantity(value: f64, unit: &str) -> String {
 /// A wall-clock time.
 fn time(seconds: f64) -> String {
     if !seconds.is_finite() || seconds < 0.0 {
-        return "?".to_owned();
+        return UNKNOWN.to_owned();
     }
     let whole = seconds.round() as u64;
     match whole {
@@ -254,12 +263,12 @@ fn time(seconds: f64) -> String {
     }
 }
 
-/// A count with thin spaces between thousands.
+/// A count with narrow no-break spaces between thousands.
 pub(super) fn grouped(count: usize) -> String {
     let digits = count.to_string();
     let mut text = String::with_capacity(digits.len() + 4);
     for (place, digit) in digits.chars().enumerate() {
-        if place > 0 && (digits.len() - place) % 3 == 0 {
+        if place > 0 && (digits.len() - place).is_multiple_of(3) {
             text.push('\u{202f}');
         }
         text.push(digit);
@@ -285,6 +294,9 @@ mod tests {
         );
         assert_eq!(length(0.0123), "12.3 mm");
         assert_eq!(quantity(2.5e7, "N/m"), "25 MN/m");
-        assert_eq!(time(f64::NAN), "?");
+        assert_eq!(
+            [time, length, percent].map(|text| text(f64::NAN)),
+            [UNKNOWN; 3]
+        );
     }
 }

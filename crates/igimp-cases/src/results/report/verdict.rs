@@ -112,9 +112,9 @@ fn on_checks(summary: &Summary, missed: &[&CheckRow]) -> Option<String> {
                 more => format!(", and {more} others"),
             };
             Some(format!(
-                "{} of {count} checks {} missed: {} is {} where {} ({}) was expected{others}.",
+                "{} of {count} checks {}: {} is {}, expected {} ({}){others}.",
                 missed.len(),
-                if missed.len() == 1 { "is" } else { "are" },
+                if missed.len() == 1 { "fails" } else { "fail" },
                 check.quantity,
                 short(check.measured),
                 short(check.expected),
@@ -132,12 +132,13 @@ pub(super) fn on_safety(safety: &SafetySummary) -> Vec<String> {
         sentences.push(format!("Counted as failure: {criterion}."));
     }
     if !safety.materials.is_empty() {
-        let reduced = format!("Strength was reduced in {}", list(&safety.materials));
-        sentences.push(if safety.excluded.is_empty() {
-            format!("{reduced}.")
+        let not = if safety.excluded.is_empty() {
+            String::new()
         } else {
-            format!("{reduced}; {} kept theirs.", list(&safety.excluded))
-        });
+            format!(", not in {}", list(&safety.excluded))
+        };
+        let materials = list(&safety.materials);
+        sentences.push(format!("Strength was reduced in {materials}{not}."));
     }
     if let Some(share) = safety.moving_mass {
         let local = if share < LOCAL {
