@@ -103,7 +103,9 @@ impl ColourBar<'_> {
     }
 
     fn label_lines(&self) -> Vec<String> {
-        font::wrap(self.label, LABEL, self.length.max(140.0))
+        // Beside the plots there is room above and below the bar: a title, and labels of an axis.
+        let spare = if self.upright { 40.0 } else { 0.0 };
+        font::wrap(self.label, LABEL, (self.length + spare).max(140.0))
     }
 
     /// Space \[pt\] across the bar for the bar, its ticks and its label.

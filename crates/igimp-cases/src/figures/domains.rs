@@ -4,10 +4,11 @@ use super::axis;
 use super::colour::Colour;
 use super::colour_bar::{ColourScale, LEVELS};
 use super::drawing::{Anchor, Contour, Drawing};
-use super::field::{FieldPlot, Polygon};
+use super::field::{FieldPlot, OutlineStyle, Polygon};
 use super::font;
 use super::frame::{Frame, TICK};
 use super::geometry::{Point, Rect};
+use super::legend::Occupancy;
 use super::outline;
 use super::ticks::grouped;
 
@@ -102,9 +103,7 @@ impl Layer<'_> {
             let points = self.places(&outline.points);
             outline::draw(drawing, &self.frame.area, outline.style, &points);
         }
-        for (at, label) in &self.plot.labels {
-            self.draw_label(drawing, *at, label);
-        }
+        self.draw_labels(drawing);
     }
 
     /// The visible part of a domain, a little enlarged.
@@ -130,24 +129,37 @@ impl Layer<'_> {
         points.iter().filter_map(place).collect()
     }
 
-    /// A label beside its point, on a pale ground.
-    fn draw_label(&self, drawing: &mut Drawing, at: [f64; 2], label: &str) {
+    /// Labels beside their points, on pale grounds, where they cover fewest lines.
+    fn draw_labels(&self, drawing: &mut Drawing) {
         let area = self.frame.area;
-        let Some(&[x, y]) = self.places(&[at]).first().filter(|&&at| area.contains(at)) else {
-            return;
-        };
-        let (width, away) = (font::width(label, TICK), 6.0);
-        let left = if x + away + width <= area.right {
-            x + away
-        } else {
-            x - away - width
-        };
-        let above = y - away - TICK;
-        let top = if above >= area.top { above } else { y + away };
-        let ground = Rect::new(left - 2.0, top, width + 4.0, TICK + 2.0);
-        drawing.fill(vec![Contour::Closed(ground.corners())], Colour::WHITE, 0.7);
-        let baseline = [left, top + TICK - 0.5];
-        drawing.text(baseline, Anchor::Start, TICK, Colour::INK, label);
+        let mut occupancy = Occupancy::default();
+        let lines = self.plot.outlines.iter();
+        for outline in lines.filter(|outline| outline.style != OutlineStyle::Grid) {
+            occupancy.take_line(&self.places(&outline.points));
+        }
+        for (at, label) in &self.plot.labels {
+            let Some(&[x, y]) = self.places(&[*at]).first() else {
+                continue;
+            };
+            let (width, height) = (font::width(label, TICK) + 4.0, TICK + 2.0);
+            let candidates = [[1.0, -1.0], [-1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|side| {
+                let [left, top] = [
+                    x + 4.0 * side[0] + 0.5 * width * (side[0] - 1.0),
+                    y + 4.0 * side[1] + 0.5 * height * (side[1] - 1.0),
+                ];
+                Rect::new(left, top, width, height)
+            });
+            let inside = candidates.into_iter().filter(|place| {
+                area.contains([place.left, place.top]) && area.contains([place.right, place.bottom])
+            });
+            let Some(place) = occupancy.freest(inside) else {
+                continue;
+            };
+            occupancy.take_rect(place);
+            drawing.fill(vec![Contour::Closed(place.corners())], Colour::WHITE, 0.7);
+            let baseline = [place.left + 2.0, place.bottom - 0.25 * TICK];
+            drawing.text(baseline, Anchor::Start, TICK, Colour::INK, label);
+        }
     }
 }
 

@@ -283,6 +283,45 @@ fn wrong_input_is_refused_by_name() {
 }
 
 #[test]
+fn a_key_takes_the_place_of_the_colour_bar() {
+    let mut plot = squares(2);
+    plot.values = vec![0.0, 1.0, 1.0, f64::NAN];
+    plot.labels = vec![([1.0, 1.0], "here".into()), ([50.0, 1.0], "outside".into())];
+    let entry = |sample, label: &str| KeyEntry {
+        sample,
+        label: label.into(),
+    };
+    plot.key = vec![
+        entry(KeySample::Value(0), "clay"),
+        entry(KeySample::Value(1), "sand"),
+    ];
+    for style in [
+        OutlineStyle::Edge,
+        OutlineStyle::Grid,
+        OutlineStyle::Section,
+        OutlineStyle::Block,
+        OutlineStyle::Fixed,
+        OutlineStyle::Roller,
+        OutlineStyle::Arrow,
+        OutlineStyle::Point,
+    ] {
+        plot.key
+            .push(entry(KeySample::Outline(style), &format!("{style:?}")));
+        for points in [vec![[0.0, 0.0], [1.5, 1.0]], vec![[1.0, 1.0]], Vec::new()] {
+            plot.outlines.push(Outline { points, style });
+        }
+    }
+    let drawing = plot.draw().unwrap();
+    drawing.to_png().unwrap();
+    let svg = drawing.to_svg();
+    assert_well_formed(&svg);
+    for text in ["clay", "sand", "Roller", "here"] {
+        assert!(svg.contains(&format!(">{text}<")), "{text} is missing");
+    }
+    assert!(!svg.contains("sum x + y") && !svg.contains("outside"));
+}
+
+#[test]
 fn a_panel_shares_range_and_bar() {
     let large = FieldPlot {
         values: vec![10.0; 4],

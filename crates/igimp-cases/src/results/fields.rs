@@ -172,7 +172,7 @@ pub fn title(field: Field) -> &'static str {
         Field::TauXy => "shear stress −τ_{xy}",
         Field::P => "mean pressure p",
         Field::Q => "deviatoric stress q",
-        Field::PlasticStrain => "plastic strain invariant ε_{p}",
+        Field::PlasticStrain => "plastic strain ε_{p}",
         Field::Utilisation => "share of the shear strength",
     }
 }
@@ -189,7 +189,21 @@ pub fn label(field: Field, scale: Scale) -> String {
 
 /// A text of figures without its marks for indices and powers, for prose.
 pub fn plain(text: &str) -> String {
-    text.replace("_{", "").replace("^{", "").replace('}', "")
+    let mut plain = String::with_capacity(text.len());
+    let mut rest = text;
+    while let Some(start) = [rest.find("_{"), rest.find("^{")]
+        .into_iter()
+        .flatten()
+        .min()
+    {
+        let Some(length) = rest[start..].find('}') else {
+            break;
+        };
+        plain.push_str(&rest[..start]);
+        plain.push_str(&rest[start + 2..start + length]);
+        rest = &rest[start + length + 1..];
+    }
+    plain + rest
 }
 
 /// Every field.
@@ -338,6 +352,6 @@ mod tests {
             label(Field::SigmaYy, scale),
             "vertical stress −σ_{yy} [kPa], compression positive"
         );
-        assert_eq!(plain("−σ_{yy} m^{2}"), "−σyy m2");
+        assert_eq!(plain("−σ_{yy} m^{2} {a} _{b"), "−σyy m2 {a} _{b");
     }
 }

@@ -19,6 +19,14 @@ fn utilisation(law: &dyn ConstitutiveModel, tau: &Principal) -> f64 {
     law.utilisation(tau, &HISTORY)
 }
 
+fn assert_share(law: &dyn ConstitutiveModel, tau: &Principal, expected: f64) {
+    let share = utilisation(law, tau);
+    assert!(
+        (share - expected).abs() < 1e-14,
+        "{tau:?}: {share} for {expected}"
+    );
+}
+
 /// GOAL: between 0 and 1 after every return, 1 wherever the return was to a surface of shear, and
 /// the same for every order of the principal values.
 #[test]
@@ -59,15 +67,13 @@ fn a_returned_stress_mobilises_no_more_than_the_strength() {
 #[test]
 fn shares_are_the_stated_ratios() {
     let elastic = named("Hencky elastic");
-    assert_eq!(utilisation(&*elastic.law, &[3.0, 0.0, -40.0]), 0.0);
+    assert_share(&*elastic.law, &[3.0, 0.0, -40.0], 0.0);
     // q = 0.5 under uniaxial stress, q_y = √3 · 1.
     let von_mises = named("von Mises #0");
-    let share = utilisation(&*von_mises.law, &[0.5, 0.0, 0.0]);
-    assert!((share - 0.5 / 3.0_f64.sqrt()).abs() < 1e-14);
+    assert_share(&*von_mises.law, &[0.5, 0.0, 0.0], 0.5 / 3.0_f64.sqrt());
     // (3 − 2) / (2 · 1), whatever lies between.
     let tresca = named("Tresca #0");
-    let share = utilisation(&*tresca.law, &[2.0, 2.7, 3.0]);
-    assert!((share - 0.5).abs() < 1e-14);
+    assert_share(&*tresca.law, &[2.0, 2.7, 3.0], 0.5);
     // c = 10, φ = 20°: circle of radius 10 about −50 in a strength of c cos φ + 50 sin φ.
     let mohr_coulomb = named("Mohr-Coulomb (10.0, 20.0");
     let share = utilisation(&*mohr_coulomb.law, &[-60.0, -50.0, -40.0]);
@@ -81,12 +87,12 @@ fn shares_are_the_stated_ratios() {
 fn shares_are_defined_beyond_the_surface() {
     let law = named("Mohr-Coulomb (10.0, 20.0").law;
     let apex = 10.0 / 20_f64.to_radians().tan();
-    assert_eq!(utilisation(&*law, &[apex; 3]), 1.0);
-    assert_eq!(utilisation(&*law, &[2.0 * apex, apex, apex]), 1.0);
+    assert_share(&*law, &[apex; 3], 1.0);
+    assert_share(&*law, &[2.0 * apex, apex, apex], 1.0);
     assert!(utilisation(&*law, &[-100.0, -50.0, 0.0]) > 1.0);
     let cohesionless = named("Mohr-Coulomb (0.0, 35.0").law;
-    assert_eq!(utilisation(&*cohesionless, &[0.0; 3]), 1.0);
-    assert_eq!(utilisation(&*cohesionless, &[-5.0; 3]), 0.0);
+    assert_share(&*cohesionless, &[0.0; 3], 1.0);
+    assert_share(&*cohesionless, &[-5.0; 3], 0.0);
 }
 
 /// GOAL: dividing the strength by a factor multiplies the share, for laws without friction.

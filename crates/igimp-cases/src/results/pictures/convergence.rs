@@ -119,11 +119,7 @@ pub fn convergence_plot(title: &str, histories: &[&History], tolerance: Option<f
         } else {
             String::new()
         };
-        let style = if accepted.len() > 12 {
-            SeriesStyle::Line(LineStyle::Solid)
-        } else {
-            SeriesStyle::LineAndMarkers(LineStyle::Solid)
-        };
+        let style = SeriesStyle::Line(LineStyle::Solid);
         let colour = ColourMap::Sequential.at(0.85 * k as f64 / last.max(1) as f64);
         series.push(line(&label, history, style).in_colour(colour));
     }
@@ -176,11 +172,17 @@ pub(in crate::results) fn convergence_caption(stage: &str, histories: &[&History
         1 => format!("1 {one}"),
         _ => format!("{count} {one}s"),
     };
+    let given_up = if cut > 0 {
+        format!(
+            ", {} that were not accepted (dashed)",
+            plural(cut, "attempt")
+        )
+    } else {
+        String::new()
+    };
     format!(
-        "Convergence in stage “{stage}”: {} from the first (dark) to the last (pale), {} that \
-         were not accepted (dashed){picked}.",
+        "Convergence in stage “{stage}”: {} from the first (dark) to the last (pale){given_up}{picked}.",
         plural(accepted, "accepted step"),
-        plural(cut, "attempt"),
     )
 }
 

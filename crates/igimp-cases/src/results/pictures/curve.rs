@@ -9,6 +9,7 @@ use crate::error::CaseError;
 use crate::figures::{
     Band, Colour, CurvePlot, LineStyle, ReferenceLine, ReferenceValue, Series, SeriesStyle,
 };
+use crate::results::fields::plain;
 use crate::summary::FigureNote;
 use crate::table::Table;
 
@@ -32,14 +33,16 @@ pub fn curve_picture(
     };
     let mut caption = format!(
         "Curve “{}”: {} over {}.",
-        curve.name, curve.y.label, curve.x.label
+        curve.name,
+        plain(&curve.y.label),
+        plain(&curve.x.label)
     );
     if let Some(reference) = &curve.reference {
         add_reference(&mut plot, reference, &computed);
         let band = reference.tolerance.map_or_else(String::new, |share| {
             format!(", ± {} %", short(100.0 * share))
         });
-        caption = format!("{caption} Reference: {}{band}.", reference.label);
+        caption = format!("{caption} Reference: {}{band}.", plain(&reference.label));
     }
     let style = style(computed.len());
     plot.series.push(Series {

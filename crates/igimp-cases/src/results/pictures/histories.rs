@@ -25,6 +25,12 @@ pub fn monitor_pictures(
     table: &Table,
 ) -> Result<Vec<FigureNote>, CaseError> {
     let along: Vec<f64> = (1..=table.rows.len()).map(|row| row as f64).collect();
+    let marks = stage_marks(table);
+    let marked = if marks.is_empty() {
+        ""
+    } else {
+        "; upright lines: a new stage begins"
+    };
     let mut notes = Vec::new();
     for group in groups(&monitor.record, table) {
         let (label, series) = group.series(table, &along, false);
@@ -32,12 +38,12 @@ pub fn monitor_pictures(
             title: format!("{case_title} – monitor {}", monitor.name),
             x_label: "accepted step".into(),
             y_label: label,
-            lines: stage_marks(table),
+            lines: marks.clone(),
             series,
             ..CurvePlot::default()
         };
         let caption = format!(
-            "{} at monitor “{}” over the accepted steps.",
+            "{} at monitor “{}” over the accepted steps{marked}.",
             group.words(),
             monitor.name
         );

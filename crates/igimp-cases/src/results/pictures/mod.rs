@@ -83,7 +83,7 @@ fn points(table: &Table, x: usize, y: usize) -> Vec<[f64; 2]> {
 
 /// A line, with markers while they can be told apart.
 fn style(points: usize) -> SeriesStyle {
-    if points > 40 {
+    if points > 25 {
         SeriesStyle::Line(LineStyle::Solid)
     } else {
         SeriesStyle::LineAndMarkers(LineStyle::Solid)
@@ -91,7 +91,7 @@ fn style(points: usize) -> SeriesStyle {
 }
 
 /// A text with its first letter in upper case.
-pub(super) fn sentence(text: &str) -> String {
+fn sentence(text: &str) -> String {
     let mut signs = text.chars();
     signs.next().map_or_else(String::new, |first| {
         first.to_uppercase().chain(signs).collect()

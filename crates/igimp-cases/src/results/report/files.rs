@@ -10,8 +10,8 @@ use super::rows::grouped;
 use crate::results::pictures::{convergence_plot, histories, stages_of};
 use crate::summary::{FigureNote, Summary};
 
-/// An SVG larger than this gives way to its PNG \[byte\].
-const MOST_SVG: usize = 700_000;
+/// An SVG larger than this gives way to its PNG if that is smaller \[byte\].
+const MOST_SVG: usize = 150_000;
 
 /// Pictures under a heading.
 #[derive(Serialize)]
@@ -98,7 +98,7 @@ fn picture(folder: &Path, note: &FigureNote) -> Picture {
         png.map(|bytes| ("png", bytes)),
     );
     let chosen = match (svg, png) {
-        (Some(svg), Some(png)) if svg.1.len() > MOST_SVG => Some(png),
+        (Some(svg), Some(png)) if svg.1.len() > MOST_SVG.max(png.1.len()) => Some(png),
         (svg, png) => svg.or(png),
     };
     Picture {
@@ -201,7 +201,7 @@ fn table(folder: &Path, name: String) -> Option<FileView> {
         .headers()
         .map(|headers| headers.iter().map(str::to_owned).collect())
         .unwrap_or_default();
-    let rows = reader.byte_records().filter(Result::is_ok).count();
+    let rows = reader.byte_records().take_while(Result::is_ok).count();
     Some(FileView {
         href: href(&name),
         name,
@@ -243,7 +243,8 @@ fn href(path: &str) -> String {
         if byte.is_ascii_alphanumeric() || b"-_.~/".contains(&byte) {
             text.push(char::from(byte));
         } else {
-            text.push_str(&format!("%{byte:02X}"));
+            let digit = |value: u8| char::from(b"0123456789ABCDEF"[usize::from(value)]);
+            text.extend(['%', digit(byte >> 4), digit(byte & 15)]);
         }
     }
     text

@@ -10,6 +10,9 @@ use crate::summary::{SafetySummary, StageOutcome, StageSummary, Summary};
 /// The phases of a stage, in the order of [`StageSummary::phases`].
 pub(super) const PHASES: [&str; 5] = ["set-up", "evaluation", "tangent", "linear solver", "commit"];
 
+/// Stands for what is not a number.
+const UNKNOWN: &str = "–";
+
 /// A number with its name.
 #[derive(Serialize)]
 pub(super) struct Number {
@@ -23,9 +26,9 @@ pub(super) fn numbers(summary: &Summary) -> Vec<Number> {
     let mut add = |name, value: String| numbers.push(Number { name, value });
     let stages = &summary.stages;
     for safety in stages.iter().filter_map(|stage| stage.safety.as_ref()) {
-        let bound = |factor: Option<f64>| factor.map_or("?".to_owned(), short);
+        let bound = |factor: Option<f64>| factor.map_or_else(|| "?".to_owned(), short);
         let (from, to) = (bound(safety.stable), bound(safety.failed));
-        add("Factor of safety", format!("{from} … {to}"));
+        add("Factor of safety", format!("{from}\u{a0}…\u{a0}{to}"));
     }
     let size = &summary.size;
     if let Some(last) = stages.last() {
@@ -155,8 +158,7 @@ fn stage(stage: &StageSummary) -> StageView {
 #[derive(Serialize)]
 pub(super) struct SafetyView {
     stage: String,
-    interval: String,
-    lines: Vec<String>,
+    text: String,
     trials: Vec<TrialView>,
 }
 
@@ -186,8 +188,7 @@ pub(super) fn safety(summary: &Summary) -> Vec<SafetyView> {
         });
         Some(SafetyView {
             stage: stage.name.clone(),
-            interval: interval(safety),
-            lines: on_safety(safety).into_iter().skip(1).collect(),
+            text: on_safety(safety).join(" "),
             trials: trials.collect(),
         })
     };
@@ -198,25 +199,28 @@ pub(super) fn safety(summary: &Summary) -> Vec<SafetyView> {
 pub(super) fn interval(safety: &SafetySummary) -> String {
     match (safety.stable, safety.failed) {
         (Some(stable), Some(failed)) => format!(
-            "the factor of safety lies between {} and {}",
+            "The factor of safety lies between {} and {}",
             short(stable),
             short(failed)
         ),
         (Some(stable), None) => format!(
-            "the factor of safety is at least {}; no factor was found that fails",
+            "The factor of safety is at least {}; no factor was found that fails",
             short(stable)
         ),
         (None, Some(failed)) => format!(
-            "the factor of safety is below {}; no factor was found that stands",
+            "The factor of safety is below {}; no factor was found that stands",
             short(failed)
         ),
-        (None, None) => "no factor of safety was found".to_owned(),
+        (None, None) => "No factor of safety was found".to_owned(),
     }
 }
 
 /// A share as a percentage.
 pub(super) fn percent(share: f64) -> String {
     let percent = 100.0 * share;
+    if !percent.is_finite() {
+        return UNKNOWN.to_owned();
+    }
     if percent.abs() < 9.95 && percent.round().to_string() != format!("{percent}") {
         format!("{percent:.1} %")
     } else {
@@ -226,6 +230,9 @@ pub(super) fn percent(share: f64) -> String {
 
 /// A length in mm or m.
 fn length(metres: f64) -> String {
+    if !metres.is_finite() {
+        return UNKNOWN.to_owned();
+    }
     let scale = Scale::of(Dimension::Displacement, [metres]);
     format!("{} {}", short(metres / scale.divide_by), scale.unit)
 }
@@ -246,7 +253,7 @@ fn quantity(value: f64, unit: &str) -> String {
 /// A wall-clock time.
 fn time(seconds: f64) -> String {
     if !seconds.is_finite() || seconds < 0.0 {
-        return "?".to_owned();
+        return UNKNOWN.to_owned();
     }
     let whole = seconds.round() as u64;
     match whole {
@@ -256,12 +263,12 @@ fn time(seconds: f64) -> String {
     }
 }
 
-/// A count with thin spaces between thousands.
+/// A count with narrow no-break spaces between thousands.
 pub(super) fn grouped(count: usize) -> String {
     let digits = count.to_string();
     let mut text = String::with_capacity(digits.len() + 4);
     for (place, digit) in digits.chars().enumerate() {
-        if place > 0 && (digits.len() - place) % 3 == 0 {
+        if place > 0 && (digits.len() - place).is_multiple_of(3) {
             text.push('\u{202f}');
         }
         text.push(digit);
@@ -287,6 +294,9 @@ mod tests {
         );
         assert_eq!(length(0.0123), "12.3 mm");
         assert_eq!(quantity(2.5e7, "N/m"), "25 MN/m");
-        assert_eq!(time(f64::NAN), "?");
+        assert_eq!(
+            [time, length, percent].map(|text| text(f64::NAN)),
+            [UNKNOWN; 3]
+        );
     }
 }

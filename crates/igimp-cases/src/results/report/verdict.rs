@@ -4,7 +4,6 @@ use serde::Serialize;
 
 use super::rows::{interval, percent};
 use crate::check::short;
-use crate::results::pictures::sentence;
 use crate::summary::{CheckRow, SafetySummary, StageOutcome, StageSummary, Summary};
 
 /// A share of moving mass below this may be a failure of a small part only \[-\].
@@ -113,9 +112,9 @@ fn on_checks(summary: &Summary, missed: &[&CheckRow]) -> Option<String> {
                 more => format!(", and {more} others"),
             };
             Some(format!(
-                "{} of {count} checks {} missed: {} is {} where {} ({}) was expected{others}.",
+                "{} of {count} checks {}: {} is {}, expected {} ({}){others}.",
                 missed.len(),
-                if missed.len() == 1 { "is" } else { "are" },
+                if missed.len() == 1 { "fails" } else { "fail" },
                 check.quantity,
                 short(check.measured),
                 short(check.expected),
@@ -127,18 +126,19 @@ fn on_checks(summary: &Summary, missed: &[&CheckRow]) -> Option<String> {
 
 /// The factor of safety with what belongs to it.
 pub(super) fn on_safety(safety: &SafetySummary) -> Vec<String> {
-    let mut sentences = vec![format!("{}.", sentence(&interval(safety)))];
+    let mut sentences = vec![format!("{}.", interval(safety))];
     let criterion = safety.criterion.trim().trim_end_matches('.');
     if !criterion.is_empty() {
         sentences.push(format!("Counted as failure: {criterion}."));
     }
     if !safety.materials.is_empty() {
-        let reduced = format!("Strength was reduced in {}", list(&safety.materials));
-        sentences.push(if safety.excluded.is_empty() {
-            format!("{reduced}.")
+        let not = if safety.excluded.is_empty() {
+            String::new()
         } else {
-            format!("{reduced}; {} kept theirs.", list(&safety.excluded))
-        });
+            format!(", not in {}", list(&safety.excluded))
+        };
+        let materials = list(&safety.materials);
+        sentences.push(format!("Strength was reduced in {materials}{not}."));
     }
     if let Some(share) = safety.moving_mass {
         let local = if share < LOCAL {

@@ -1,0 +1,312 @@
+//! A made-up run of a slope with everything that a results folder can hold.
+
+use std::path::{Path, PathBuf};
+
+use igimp_assembly::{Method, ParticleFields, Particles, SharedLaw};
+use igimp_cases::case::{
+    BodyPart, Boundaries, Case, Curve, CurveAxis, Every, Field, FixedBox, GridSpec, Load, LoadKind,
+    Material, Monitor, Output, Quantity, Reference, ReferenceValues, Section, Side, SolverSettings,
+    Stage, StageKind, StopWhen, Strength,
+};
+use igimp_cases::results::pictures;
+use igimp_cases::seed::fill_polygon;
+use igimp_cases::summary::{FigureNote, Summary};
+use igimp_shape::{Axis, Grid};
+
+use crate::findings;
+
+/// An empty folder that stays after the test, to be looked at.
+pub(crate) fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"))
+        .join("report")
+        .join(name);
+    let _ = std::fs::remove_dir_all(&folder);
+    std::fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+pub(crate) fn case() -> Case {
+    let stage = |name: &str, kind| Stage {
+        name: name.into(),
+        kind,
+        steps: 10,
+        start_from: None,
+        reset_displacements: false,
+        stop_when: StopWhen::default(),
+    };
+    let body = |name: &str, material, polygon: &[[f64; 2]]| BodyPart {
+        name: name.into(),
+        material,
+        per_direction: 2,
+        polygon: polygon.to_vec(),
+    };
+    let slope = [
+        [0.0, 2.0],
+        [60.0, 2.0],
+        [60.0, 10.0],
+        [25.0, 10.0],
+        [15.0, 20.0],
+        [0.0, 20.0],
+    ];
+    Case {
+        title: "10 m cut slope, 1:1, c-φ soil on rock".into(),
+        gravity: 9.81,
+        grid: GridSpec {
+            cell: [0.5, 0.5],
+            lower: [0.0, 0.0],
+            cells: [120, 44],
+        },
+        method: Method::default(),
+        materials: materials(),
+        bodies: vec![
+            body("slope", 0, &slope),
+            body(
+                "bedrock",
+                1,
+                &[[0.0, 0.0], [60.0, 0.0], [60.0, 2.0], [0.0, 2.0]],
+            ),
+        ],
+        boundaries: Boundaries {
+            left: Side::Roller,
+            right: Side::Roller,
+            bottom: Side::Fixed,
+            top: Side::Free,
+            boxes: vec![FixedBox {
+                name: "anchor".into(),
+                lower: [52.0, 6.0],
+                upper: [54.0, 8.0],
+                fix: [true, true],
+            }],
+        },
+        loads: loads(),
+        stages: vec![
+            stage("initial stresses", StageKind::Gravity { factor: 1.0 }),
+            stage(
+                "surcharge",
+                StageKind::Load {
+                    loads: vec![0],
+                    factor: 1.0,
+                },
+            ),
+        ],
+        solver: SolverSettings::default(),
+        monitors: vec![Monitor {
+            name: "crest".into(),
+            point: [15.0, 20.0],
+            record: vec![
+                Field::Displacement,
+                Field::DisplacementY,
+                Field::PlasticStrain,
+            ],
+        }],
+        sections: vec![
+            section("A-A", [20.0, 2.0], [20.0, 15.0]),
+            section("B-B", [0.0, 4.0], [60.0, 4.0]),
+        ],
+        curves: vec![curve()],
+        checks: Vec::new(),
+        output: Output {
+            folder: "results/slope".into(),
+            paraview: Every::Stage,
+            figures: Vec::new(),
+            report: true,
+            checkpoint_every: 10,
+            checkpoint_keep: 2,
+        },
+    }
+}
+
+fn materials() -> Vec<Material> {
+    let clay = Material {
+        name: "clay".into(),
+        unit_weight: 20e3,
+        young: 20e6,
+        poisson: 0.3,
+        strength: Strength::MohrCoulomb {
+            cohesion: 10e3,
+            friction_angle: 20_f64.to_radians(),
+            dilation_angle: 0.0,
+            tension_cutoff: None,
+        },
+        k0: None,
+    };
+    let rock = Material {
+        name: "rock".into(),
+        strength: Strength::Elastic,
+        ..clay.clone()
+    };
+    vec![clay, rock]
+}
+
+fn loads() -> Vec<Load> {
+    let load = |name: &str, kind| Load {
+        name: name.into(),
+        kind,
+    };
+    vec![
+        load(
+            "traffic",
+            LoadKind::Pressure {
+                from: [6.0, 20.0],
+                to: [14.0, 20.0],
+                traction: [0.0, -20e3],
+            },
+        ),
+        load(
+            "footing",
+            LoadKind::RigidFooting {
+                from: [32.0, 10.0],
+                to: [36.0, 10.0],
+                rough: true,
+                reaction_factor: 1.0,
+            },
+        ),
+        load(
+            "pull",
+            LoadKind::Point {
+                at: [45.0, 10.0],
+                force: [20e3, 20e3],
+            },
+        ),
+    ]
+}
+
+fn section(name: &str, from: [f64; 2], to: [f64; 2]) -> Section {
+    Section {
+        name: name.into(),
+        from,
+        to,
+        points: 30,
+        record: vec![Field::SigmaXx, Field::SigmaYy, Field::Q, Field::Utilisation],
+    }
+}
+
+pub(crate) fn curve() -> Curve {
+    let axis = |of, label: &str| CurveAxis {
+        of,
+        divide_by: 1.0,
+        label: label.into(),
+    };
+    Curve {
+        name: "load-settlement".into(),
+        x: axis(Quantity::Settlement(0), "d / B [−]"),
+        y: axis(Quantity::Reaction(0), "q / c_{u} [−]"),
+        stage: None,
+        reference: Some(Reference {
+            label: "Prandtl, 2 + π".into(),
+            values: ReferenceValues::Level {
+                y: 5.1416,
+                at: None,
+            },
+            tolerance: Some(0.05),
+        }),
+    }
+}
+
+/// The slope with stresses that grow with depth and a slide along a circle.
+pub(crate) fn particles(case: &Case) -> (Particles<2>, Vec<SharedLaw>) {
+    let laws: Vec<SharedLaw> = case.materials.iter().map(|m| m.law().unwrap()).collect();
+    let axis = |k: usize| Axis::uniform(case.grid.lower[k], case.grid.cell[k], case.grid.cells[k]);
+    let grid = Grid::new([axis(0).unwrap(), axis(1).unwrap()]);
+    let seeds: Vec<_> = case
+        .bodies
+        .iter()
+        .flat_map(|body| {
+            let density = case.materials[body.material].unit_weight / case.gravity;
+            fill_polygon(
+                &grid,
+                &body.polygon,
+                body.per_direction,
+                density,
+                body.material,
+            )
+            .unwrap()
+        })
+        .collect();
+    let mut fields: ParticleFields<2> = (*Particles::new(&seeds).unwrap()).clone();
+    for p in 0..fields.x.len() {
+        let [x, y] = fields.x[p];
+        let surface = (20.0 - (x - 15.0).max(0.0)).max(10.0);
+        let depth = (surface - y).max(0.0);
+        let radius = (x - 27.0).hypot(y - 24.0);
+        let slide = 1.0 / (1.0 + ((radius - 14.0) / 0.4).exp());
+        let sigma = [-9e3 * depth, -20e3 * depth, -8.7e3 * depth];
+        let eps_e = laws[fields.law[p]].elasticity().strain(&sigma);
+        for a in 0..3 {
+            fields.sigma[p][a][a] = sigma[a];
+            fields.b_e[p][a][a] = (2.0 * eps_e[a]).exp();
+        }
+        let shear = 4e3 * ((x - 27.0) / 8.0).tanh() * depth.min(4.0);
+        (fields.sigma[p][0][1], fields.sigma[p][1][0]) = (shear, shear);
+        let turn = 0.05 * slide;
+        fields.displacement[p] = [turn * (24.0 - y), turn * (x - 27.0)];
+        for axis in 0..2 {
+            fields.x[p][axis] += fields.displacement[p][axis];
+        }
+        fields.history[p].eps_p_eq = 0.2 * (-((radius - 14.0) / 0.6).powi(2)).exp();
+    }
+    (Particles::from_fields(fields).unwrap(), laws)
+}
+
+/// Every picture of the run, written into its folder.
+pub(crate) fn draw(folder: &Path, case: &Case) -> Vec<FigureNote> {
+    let title = case.title.as_str();
+    let mut notes = vec![pictures::model_picture(folder, case).unwrap()];
+    notes.push(pictures::curve_picture(folder, title, &curve(), &findings::curve_table()).unwrap());
+    notes.push(
+        pictures::safety_picture(folder, title, "factor of safety", &findings::safety()).unwrap(),
+    );
+    for monitor in &case.monitors {
+        let table = findings::monitor_table(monitor);
+        notes.extend(pictures::monitor_pictures(folder, title, monitor, &table).unwrap());
+    }
+    for section in &case.sections {
+        let table = findings::section_table(section);
+        let stage = "surcharge";
+        notes.extend(pictures::section_pictures(folder, title, section, stage, &table).unwrap());
+    }
+    let (particles, laws) = particles(case);
+    for field in [
+        Field::Displacement,
+        Field::SigmaYy,
+        Field::TauXy,
+        Field::PlasticStrain,
+        Field::Utilisation,
+    ] {
+        let state = (&particles, laws.as_slice());
+        notes.push(pictures::field_picture(folder, case, 1, field, state, &[]).unwrap());
+    }
+    notes
+}
+
+/// A results folder with a summary and whatever else belongs to it.
+pub(crate) fn write(folder: &Path, summary: &Summary) {
+    let case = case();
+    for name in ["curves", "monitors", "sections"] {
+        std::fs::create_dir_all(folder.join(name)).unwrap();
+    }
+    findings::curve_table()
+        .write_csv(&folder.join("curves"))
+        .unwrap();
+    findings::monitor_table(&case.monitors[0])
+        .write_csv(&folder.join("monitors"))
+        .unwrap();
+    for section in &case.sections {
+        findings::section_table(section)
+            .write_csv(&folder.join("sections"))
+            .unwrap();
+    }
+    std::fs::write(folder.join("convergence.csv"), findings::convergence()).unwrap();
+    std::fs::write(
+        folder.join("case.toml"),
+        "[case]\ntitle = \"a < b & c\"\n".repeat(30),
+    )
+    .unwrap();
+    std::fs::write(
+        folder.join("case.completed.toml"),
+        "[solver]\ntolerance = 1e-9\n",
+    )
+    .unwrap();
+    let json = serde_json::to_string_pretty(summary).unwrap();
+    std::fs::write(folder.join("summary.json"), json).unwrap();
+}
