@@ -1,8 +1,139 @@
 //! The completed case file as commented TOML.
 
+use std::fmt::Write;
+
+use super::schema::ROOT;
+use super::spec::{Field, Kind, Presence, Struct, Variants};
+use super::toml_text::{inline, key};
 use super::tree::Node;
 
-/// The file with every default.
-pub(super) fn explain(_completed: &Node) -> String {
-    String::new()
+/// Column of comments.
+const COMMENT: usize = 44;
+/// Most characters of a list on one line.
+const WIDTH: usize = 80;
+
+/// The file with every default; it states the same case.
+pub(super) fn explain(completed: &Node) -> String {
+    let mut out = String::new();
+    for field in ROOT.fields {
+        let Some(node) = completed.get(field.key) else {
+            continue;
+        };
+        match field.kind {
+            Kind::Table(of) => {
+                let _ = writeln!(out, "\n# {}\n[{}]", of.doc, field.key);
+                table(&mut out, node, of);
+            }
+            Kind::Map(_, of) => {
+                for entry in node.entries() {
+                    let name = key(&entry.key);
+                    let _ = writeln!(
+                        out,
+                        "\n# {}\n[{}.{name}]",
+                        doc_of(&entry.node, of),
+                        field.key
+                    );
+                    variants(&mut out, &entry.node, of);
+                }
+            }
+            Kind::List(Kind::Table(of), ..) => {
+                for item in node.items() {
+                    let _ = writeln!(out, "\n# {}\n[[{}]]", of.doc, field.key);
+                    table(&mut out, item, of);
+                }
+            }
+            Kind::List(Kind::Variants(of), ..) => {
+                for item in node.items() {
+                    let _ = writeln!(out, "\n# {}\n[[{}]]", doc_of(item, of), field.key);
+                    variants(&mut out, item, of);
+                }
+            }
+            _ => line(&mut out, field, Some(node)),
+        }
+        if node.items().is_empty() && matches!(field.kind, Kind::List(..)) {
+            let _ = writeln!(out, "\n# no [[{}]]: {}", field.key, field.doc);
+        }
+    }
+    out
+}
+
+/// What a table of this form is about.
+fn doc_of(node: &Node, of: &Variants) -> &'static str {
+    let case = node.text_at(of.tag).and_then(|name| of.find(name));
+    case.map_or(of.doc, |case| case.doc)
+}
+
+fn table(out: &mut String, node: &Node, of: &Struct) {
+    for field in of.fields {
+        line(out, field, node.get(field.key));
+    }
+}
+
+fn variants(out: &mut String, node: &Node, of: &'static Variants) {
+    for field in of.before {
+        line(out, field, node.get(field.key));
+    }
+    let names: Vec<_> = of.cases.iter().map(|case| case.name).collect();
+    if let Some(tag) = node.get(of.tag) {
+        let value = inline(tag, &Kind::Text);
+        let comment = format!("{}: {}", of.tag_doc, names.join(" | "));
+        commented(out, &format!("{} = {value}", of.tag), &comment);
+    }
+    let case = node.text_at(of.tag).and_then(|name| of.find(name));
+    let own = case.map_or(&[][..], |case| case.fields);
+    for field in own.iter().chain(of.after) {
+        line(out, field, node.get(field.key));
+    }
+}
+
+/// A key with its value and what it means.
+fn line(out: &mut String, field: &Field, node: Option<&Node>) {
+    let mut comment = field.doc.to_owned();
+    if let Some(choices) = short_choices(&field.kind) {
+        comment = format!("{comment}: {choices}");
+    }
+    let Some(node) = node else {
+        if let Presence::Optional(meaning) = field.presence {
+            let text = format!("# {} is not set", field.key);
+            commented(out, &text, &format!("{comment}; now {meaning}"));
+        }
+        return;
+    };
+    if !node.written {
+        comment = format!("default; {comment}");
+    }
+    let value = inline(node, &field.kind);
+    if value.len() > WIDTH && !node.items().is_empty() {
+        let _ = writeln!(out, "# {comment}\n{} = [", field.key);
+        let of = match &field.kind {
+            Kind::List(of, ..) => of,
+            kind => kind,
+        };
+        for item in node.items() {
+            let _ = writeln!(out, "    {},", inline(item, of));
+        }
+        out.push_str("]\n");
+        return;
+    }
+    commented(out, &format!("{} = {value}", field.key), &comment);
+}
+
+/// A line with a comment behind it, or above it when it is long.
+fn commented(out: &mut String, text: &str, comment: &str) {
+    let _ = if text.chars().count() > COMMENT {
+        writeln!(out, "# {comment}\n{text}")
+    } else {
+        writeln!(out, "{text:COMMENT$} # {comment}")
+    };
+}
+
+/// The choices of a key, when they fit on a line.
+fn short_choices(kind: &Kind) -> Option<String> {
+    match kind {
+        Kind::Choice(choices) if choices.len() <= 6 => {
+            let names: Vec<_> = choices.iter().map(|choice| choice.name).collect();
+            Some(names.join(" | "))
+        }
+        _ => None,
+    }
 }

@@ -21,12 +21,10 @@ mod spec;
 mod suggest;
 mod syntax;
 mod text;
+mod toml_text;
 mod tree;
 mod units;
 mod value;
-
-#[cfg(test)]
-mod tests;
 
 pub use json_schema::json_schema;
 pub use quantity::{Dimension, Quantity, QuantityError};

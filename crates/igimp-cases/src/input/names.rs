@@ -9,7 +9,7 @@ use super::text::{clip, row};
 use super::tree::Node;
 
 /// Most characters of a name.
-const LONGEST: usize = 60;
+pub(super) const LONGEST: usize = 60;
 
 /// Whether a text can be a name; reports why not.
 pub(super) fn check_name(name: &str, place: Place, problems: &mut Problems) -> bool {
@@ -102,11 +102,6 @@ impl Names {
             .get(index)
             .and_then(Option::as_deref)
             .unwrap_or("")
-    }
-
-    /// How many things there are.
-    pub(super) fn len(&self) -> usize {
-        self.names.len()
     }
 
     /// The index that a value names; reports, in the name of `who`, when there is none.

@@ -25,6 +25,7 @@ use super::schema::FORMAT;
 use super::tree::Node;
 use crate::case::Case;
 
+pub(super) use quantities::QUANTITY_DOCS;
 use site::Site;
 
 /// The names in a file, by what they name.

@@ -158,3 +158,30 @@ pub(super) fn divisor(table: &Node, problems: &mut Problems) -> Option<f64> {
         None
     }
 }
+
+/// Quantities and what they mean, for the reference.
+pub(in crate::input) const QUANTITY_DOCS: [(&str, &str); 11] = [
+    ("FOOTING.settlement", "settlement of a rigid footing [m]"),
+    (
+        "FOOTING.reaction",
+        "resistance of a rigid footing times its reaction_factor [N/m]",
+    ),
+    ("LOAD.factor", "factor on a pressure or point load [-]"),
+    (
+        "MONITOR.FIELD",
+        "a field at a monitor, as in crest.displacement",
+    ),
+    (
+        "largest_displacement",
+        "largest displacement of all particles [m]",
+    ),
+    ("gravity_factor", "multiple of gravity [-]"),
+    ("reduction_factor", "strength reduction factor [-]"),
+    ("step", "number of the step in its stage [-]"),
+    ("plastic_share", "share of particles that yield [-]"),
+    ("top", "height of the highest particle's upper edge [m]"),
+    (
+        "factor_of_safety",
+        "middle of the interval a strength reduction found, in checks only [-]",
+    ),
+];

@@ -25,7 +25,7 @@ pub(super) static ROOT: Struct = Struct {
     fields: &[
         required(
             "igimp",
-            Kind::Integer(FORMAT, FORMAT),
+            Kind::Integer(FORMAT, i64::MAX),
             "1",
             "version of the input format",
         ),

@@ -1,0 +1,695 @@
+//! Case files as users write them: the messages, the overrides, the completed file, the schema.
+//!
+//! The two files in `tests/data` are models of the format; every message is what one or more
+//! edits of them lead to.
+
+use std::fmt::Write;
+
+use igimp_cases::input::{CaseFile, InputError, json_schema, reference_markdown};
+
+const SLOPE: (&str, &str) = ("slope.toml", include_str!("data/slope.toml"));
+const FOOTING: (&str, &str) = ("footing.toml", include_str!("data/footing.toml"));
+const SHIPPED: [(&str, &str); 2] = [
+    ("slope.toml", include_str!("../cases/slope.toml")),
+    ("footing.toml", include_str!("../cases/footing.toml")),
+];
+
+type Edits<'a> = &'a [(&'a str, &'a str)];
+
+fn edited(text: &str, edits: Edits<'_>) -> String {
+    edits.iter().fold(text.to_owned(), |text, (from, to)| {
+        assert!(text.contains(from), "`{from}` is not in the file");
+        text.replacen(from, to, 1)
+    })
+}
+
+fn said(result: &Result<CaseFile, InputError>) -> String {
+    match result {
+        Ok(file) if file.warnings().is_empty() => "(nothing)\n".to_owned(),
+        Ok(file) => file.warnings(),
+        Err(error) => error.to_string(),
+    }
+}
+
+/// What is said of a file after each set of edits.
+fn messages(file: (&str, &str), cases: &[Edits<'_>]) -> String {
+    let mut out = String::new();
+    for edits in cases {
+        for (from, to) in *edits {
+            let _ = writeln!(out, "## {:?} -> {:?}", from, to);
+        }
+        let result = CaseFile::parse(file.0, &edited(file.1, edits), &[]);
+        let _ = writeln!(out, "{}", said(&result));
+    }
+    out
+}
+
+fn overridden(file: (&str, &str), overrides: &[&str]) -> Result<CaseFile, InputError> {
+    let overrides: Vec<_> = overrides.iter().map(ToString::to_string).collect();
+    CaseFile::parse(file.0, file.1, &overrides)
+}
+
+const CREST: (&str, &str) = (
+    "stop_when = { load_grows_less_than = 0.001 }",
+    "stop_when = { load_grows_less_than = 0.001 }\n[[monitors]]\nname = \"edge\"\npoint = [\"1 m\", \"5 m\"]",
+);
+
+#[test]
+fn the_models_state_their_cases() {
+    insta::assert_snapshot!(messages(SLOPE, &[&[]]));
+    insta::assert_snapshot!(messages(FOOTING, &[&[]]));
+    for file in [SLOPE, FOOTING] {
+        insta::assert_debug_snapshot!(CaseFile::parse(file.0, file.1, &[]).unwrap().case());
+    }
+}
+
+#[test]
+fn the_shipped_files_are_right_and_without_warning() {
+    for (name, text) in SHIPPED {
+        let file = CaseFile::parse(name, text, &[]).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(file.warnings(), "");
+        assert_eq!(file.source(), text);
+    }
+}
+
+#[test]
+fn the_six_messages_of_the_contract() {
+    insta::assert_snapshot!(messages(
+        SLOPE,
+        &[
+            &[("unit_weight = \"20 kN/m3\"", "unit_weight = \"2000 kg/m3\"")],
+            &[("cohesion = ", "cohesoin = ")],
+            &[("\"10 kPa\"", "10")],
+            &[("material = \"clay\"", "material = \"caly\"")],
+            &[("dilation = \"0 deg\"", "dilation = \"25 deg\"")],
+            &[("[\"0 m\",\"20 m\"]]", "[\"0 m\",\"24 m\"]]")],
+        ]
+    ));
+}
+
+#[test]
+fn several_problems_are_shown_together_in_the_order_of_the_file() {
+    insta::assert_snapshot!(messages(
+        SLOPE,
+        &[&[
+            ("[\"0 m\",\"20 m\"]]", "[\"0 m\",\"24 m\"]]"),
+            ("unit_weight = \"20 kN/m3\"", "unit_weight = \"2000 kg/m3\""),
+            ("poisson = 0.25", "poisson = 0.4999"),
+            ("material = \"rock\"", "material = \"rok\""),
+            ("steps = 200", "steps = 0"),
+            ("max_iterations", "max_iteration"),
+        ]]
+    ));
+}
+
+#[test]
+fn slips_of_syntax() {
+    insta::assert_snapshot!(messages(
+        SLOPE,
+        &[
+            &[("\"10 kPa\"", "10 kPa")],
+            &[("bbar = true", "bbar = True")],
+            &[(
+                "young = \"20 MPa\"",
+                "young = \"20 MPa\"\nyoung = \"30 MPa\""
+            )],
+            &[("[[monitors]]", "[solver]")],
+            &[("title = \"10 m", "title = 10 m")],
+            &[("\"60 m\"], y", "\"60 m\", y")],
+            &[("[boundaries]", "[boundaries")],
+            &[("bbar", "\u{0} bbar")],
+        ]
+    ));
+}
+
+#[test]
+fn slips_of_keys() {
+    insta::assert_snapshot!(messages(
+        SLOPE,
+        &[
+            &[("igimp = 1 ", "# igimp = 1 ")],
+            &[("igimp = 1 ", "igimp = 2 ")],
+            &[("[grid]", "[gird]")],
+            &[("bbar = true", "gravity = \"9.81 m/s2\"")],
+            &[("bbar = true", "colour = \"red\"")],
+            &[("friction = \"20 deg\"\n", "")],
+            &[("model = \"mohr-coulomb\"\n", "")],
+            &[("model = \"mohr-coulomb\"", "model = \"mohr coulomb\"")],
+            &[(
+                "model = \"elastic\"",
+                "model = \"elastic\"\ncohesion = \"1 kPa\""
+            )],
+            &[("[[monitors]]", "[monitors]")],
+            &[("[grid]", "[[grid]]")],
+            &[("[materials.clay]", "[materials.\"soft/clay\"]")],
+            &[("name = \"bedrock\"", "name = \"Slope\"")],
+            &[("name = \"crest\"", "name = \"slope.crest\"")],
+        ]
+    ));
+}
+
+#[test]
+fn slips_of_values() {
+    insta::assert_snapshot!(messages(
+        SLOPE,
+        &[
+            &[("young = \"20 MPa\"", "young = \"20 Mpa\"")],
+            &[("young = \"20 MPa\"", "young = \"-20 MPa\"")],
+            &[("young = \"20 MPa\"", "young = \"inf MPa\"")],
+            &[("poisson = 0.3", "poisson = \"0.3\"")],
+            &[("poisson = 0.3", "poisson = nan")],
+            &[("bbar = true", "bbar = \"true\"")],
+            &[("steps = 10\n", "steps = 10.5\n")],
+            &[("points_per_cell = 4", "points_per_cell = 6")],
+            &[("tolerance = 1e-6", "tolerance = 0")],
+            &[("bracket = [1.0, 2.0]", "bracket = [1.0]")],
+            &[("left = \"roller\"", "left = \"rollers\"")],
+            &[("every = \"stage\"", "every = [1]")],
+            &[("point = [\"15 m\", \"20 m\"]", "point = [15, 20]")],
+            &[("friction = \"20 deg\"", "friction = \"20 m\"")],
+            &[("cohesion = \"10 kPa\"", "cohesion = 1979-05-27")],
+        ]
+    ));
+}
+
+#[test]
+fn materials_and_grid_that_make_no_sense() {
+    insta::assert_snapshot!(messages(
+        SLOPE,
+        &[
+            &[("plane-strain", "3d")],
+            &[("poisson = 0.3", "poisson = 0.5")],
+            &[("friction = \"20 deg\"", "friction = \"90 deg\"")],
+            &[("cohesion = \"10 kPa\"", "cohesion = \"0 kPa\"")],
+            &[
+                ("cohesion = \"10 kPa\"", "cohesion = \"0 kPa\""),
+                ("friction = \"20 deg\"", "friction = \"0 deg\""),
+            ],
+            &[("tension_cutoff = \"0 kPa\"", "tension_cutoff = \"40 kPa\"")],
+            &[("poisson = 0.25", "poisson = 0.25\nk0 = \"jaky\"")],
+            &[("\"60 m\"], y", "\"60.3 m\"], y")],
+            &[("\"0 m\", \"22 m\"", "\"22 m\", \"0 m\"")],
+            &[("cell = \"0.5 m\"", "cell = \"1 mm\"")],
+            &[("cell = \"0.5 m\"", "cell = \"1e-300 m\"")],
+            &[("linear = \"auto\"", "linear = \"cholesky\"")],
+            &[("linear = \"auto\"", "linear = \"gmres\"")],
+        ]
+    ));
+}
+
+#[test]
+fn bodies_that_make_no_sense() {
+    let rock = "[[\"0 m\",\"0 m\"], [\"60 m\",\"0 m\"], [\"60 m\",\"2 m\"], [\"0 m\",\"2 m\"]]";
+    insta::assert_snapshot!(messages(
+        SLOPE,
+        &[
+            &[(rock, "[[\"0 m\",\"0 m\"], [\"60 m\",\"0 m\"]]")],
+            &[(
+                rock,
+                "[[\"0 m\",\"0 m\"], [\"9 m\",\"1 m\"], [\"18 m\",\"2 m\"]]"
+            )],
+            &[(
+                rock,
+                "[[\"0 m\",\"0 m\"], [\"60 m\",\"2 m\"], [\"60 m\",\"0 m\"], [\"0 m\",\"2 m\"]]"
+            )],
+            &[(
+                rock,
+                "[[\"0 m\",\"0 m\"], [\"60 m\",\"0 m\"], [\"60 m\",\"2 m\"], [\"9 m\",\"3 m\"]]"
+            )],
+            &[(
+                rock,
+                "[[\"0 m\",\"0 m\"], [\"60 m\",\"0 m\"], [\"0 m\",\"0 m\"], [\"0 m\",\"0 m\"]]"
+            )],
+            &[(
+                rock,
+                "[[\"40 m\",\"12 m\"], [\"60 m\",\"12 m\"], [\"60 m\",\"20 m\"]]"
+            )],
+            &[("material = \"rock\"", "material = \"clay\"")],
+            &[
+                ("points_per_cell = 4", "points_per_cell = 25"),
+                ("cell = \"0.5 m\"", "cell = \"1 cm\"")
+            ],
+            &[(
+                "bottom = \"fixed\"",
+                "bottom = \"fixed\"\nboxes = [{ name = \"wall\", from = [\"9.1 m\", \"3 m\"], to = [\"9.2 m\", \"0 m\"] }]"
+            )],
+        ]
+    ));
+}
+
+#[test]
+fn loads_that_make_no_sense() {
+    let footing = "type = \"rigid-footing\"                           # rigid-footing | pressure | point\nfrom = [\"0 m\", \"5 m\"]\nto = [\"1 m\", \"5 m\"]\ninterface = \"rough\"                              # rough | smooth\nreaction_factor = 2 ";
+    let pressure = |from: &str, to: &str| {
+        format!("type = \"pressure\"\npressure = \"10 kPa\"\nfrom = {from}\nto = {to}\n")
+    };
+    let inside = pressure("[\"1 m\", \"3 m\"]", "[\"2 m\", \"3 m\"]");
+    let beside = pressure("[\"1 m\", \"5.5 m\"]", "[\"2 m\", \"5.5 m\"]");
+    let part = pressure("[\"7 m\", \"5 m\"]", "[\"9 m\", \"5 m\"]");
+    let point = "type = \"point\"\nat = [\"2 m\", \"6 m\"]\nforce = [\"0 kN/m\", \"-1 kN\"]\n";
+    insta::assert_snapshot!(messages(
+        FOOTING,
+        &[
+            &[("to = [\"1 m\", \"5 m\"]", "to = [\"1 m\", \"5.5 m\"]")],
+            &[("to = [\"1 m\", \"5 m\"]", "to = [\"0 m\", \"5 m\"]")],
+            &[
+                ("from = [\"0 m\", \"5 m\"]", "from = [\"0 m\", \"5.1 m\"]"),
+                ("to = [\"1 m\", \"5 m\"]", "to = [\"1 m\", \"5.1 m\"]"),
+            ],
+            &[("to = [\"1 m\", \"5 m\"]", "to = [\"9 m\", \"5 m\"]")],
+            &[(
+                "cell = \"0.125 m\"",
+                "cell = { x = \"2/17 m\", y = \"0.125 m\" }"
+            )],
+            &[(footing, &inside)],
+            &[(footing, &beside)],
+            &[(footing, &part)],
+            &[(footing, point)],
+            &[("load = \"footing\"", "load = \"foting\"")],
+            &[("settlement = \"0.2 m\"", "settlement = \"6 m\"")],
+            &[(
+                "[[stages]]",
+                "[[loads]]\nname = \"idle\"\ntype = \"point\"\nat = [\"2 m\", \"5 m\"]\nforce = [\"0 N/m\", \"-1 N/m\"]\n[[stages]]"
+            )],
+        ]
+    ));
+}
+
+#[test]
+fn stages_that_make_no_sense() {
+    let search = "type = \"strength-reduction\"                      # c, tan(phi), tension cut-off divided by F";
+    insta::assert_snapshot!(messages(
+        SLOPE,
+        &[
+            &[(
+                "materials = [\"clay\"] ",
+                "materials = [\"clay\", \"rock\"] "
+            )],
+            &[
+                ("model = \"mohr-coulomb\"", "model = \"elastic\""),
+                (
+                    "cohesion = \"10 kPa\"\nfriction = \"20 deg\"\ndilation = \"0 deg\"\ntension_cutoff = \"0 kPa\"\n",
+                    ""
+                ),
+                ("k0 = \"jaky\" ", "k0 = 0.5 "),
+                ("materials = [\"clay\"] ", "")
+            ],
+            &[("bracket = [1.0, 2.0]", "bracket = [2.0, 1.0]")],
+            &[("monitor = \"crest\"", "monitor = \"toe\"")],
+            &[(
+                "start_from = \"initial stresses\"",
+                "start_from = \"run-out\""
+            )],
+            &[(
+                "start_from = \"initial stresses\"",
+                "start_from = \"initial stress\""
+            )],
+            &[("reset_displacements = true", "start_from = \"run-out\"")],
+            &[
+                (search, "type = \"gravity\""),
+                ("materials = [\"clay\"] ", ""),
+                ("bracket = [1.0, 2.0] ", ""),
+                ("tolerance = 0.01\n", ""),
+                (
+                    "failure = { when = \"no-equilibrium\", also = { monitor = \"crest\", displacement = \"0.5 m\" } }\n",
+                    ""
+                )
+            ],
+            &[("{ times_fos = 1.05 }", "{ times_fos = 1.05, factor = 1.5 }")],
+            &[("{ times_fos = 1.05 }", "{}")],
+            &[("type = \"gravity\" ", "type = \"k0\" ")],
+            &[(
+                "steps = 10\n",
+                "stop_when = { monitor = \"crest\", load_grows_less_than = 0.1 }\n"
+            )],
+            &[("9.81 m/s2", "0 m/s2")],
+            &[("steps = 200", "steps = 200\nfactor = 2")],
+        ]
+    ));
+}
+
+#[test]
+fn records_that_make_no_sense() {
+    let reference = "reference = { y = 5.1416, label = \"Prandtl, 2 + pi\", tolerance = 0.05 }";
+    let check = |rest: &str| {
+        format!("{reference}\n[[checks]]\nname = \"Nc\"\nsource = \"Prandtl\"\n{rest}")
+    };
+    let [none, both, safety, zero] = [
+        "of = \"footing.reaction\"",
+        "of = \"top\"\nat_most = \"5 m\"\nbetween = [2, 1]",
+        "of = \"factor_of_safety\"\nexpected = 1.4\ntolerance = 0.1",
+        "of = \"top\"\nexpected = 0\ntolerance = 0.1",
+    ]
+    .map(check);
+    insta::assert_snapshot!(messages(
+        FOOTING,
+        &[
+            &[("footing.settlement", "footing.setlement")],
+            &[("footing.settlement", "factor_of_safety")],
+            &[("divide_by = [\"2 m\"]", "divide_by = [\"0 m\"]")],
+            &[("divide_by = [\"2 m\"]", "divide_by = [\"2\"]")],
+            &[("y = 5.1416", "y = 5.1416, points = [[1, 2]]")],
+            &[("y = 5.1416", "file = \"no-such-file.csv\"")],
+            &[(reference, &none)],
+            &[(reference, &both)],
+            &[(reference, &safety)],
+            &[(reference, &zero)],
+            &[CREST, ("footing.reaction", "edge.sigma_zy")],
+            &[
+                CREST,
+                ("[\"1 m\", \"5 m\"]\n\n", "[\"1 m\", \"5 m\"]\n"),
+                ("point = [\"1 m\", \"5 m\"]", "point = [\"1 m\", \"5.4 m\"]")
+            ],
+            &[("folder = \"results/footing\"", "folder = \"\"")],
+            &[(
+                "folder = \"results/footing\"",
+                "figures = [\"plastic-strain\"]"
+            )],
+        ]
+    ));
+}
+
+#[test]
+fn overrides_change_values_of_any_type() {
+    let file = overridden(
+        SLOPE,
+        &[
+            "materials.clay.cohesion=12 kPa",
+            "materials.clay.young = \"30 MPa\"",
+            "materials.rock.poisson=0.2",
+            "bodies.slope.points_per_cell=9",
+            "stages.0.steps=5",
+            "stages.run-out.steps=7",
+            "stages.\"factor of safety\".bracket=[1.2, 1.6]",
+            "grid.bbar=false",
+            "grid.small_cuts.remedy=drop",
+            "solver.linear=lu",
+            "output.folder=elsewhere",
+        ],
+    );
+    let case = file.unwrap_or_else(|error| panic!("{error}")).into_case();
+    assert_eq!(case.materials[0].young, 30e6);
+    assert_eq!(case.materials[1].poisson, 0.2);
+    assert_eq!(case.bodies[0].per_direction, 3);
+    assert_eq!((case.stages[0].steps, case.stages[2].steps), (5, 7));
+    assert!(!case.method.bbar);
+    let debug = format!("{case:?}");
+    for part in [
+        "cohesion: 12000.0",
+        "remedy: Drop",
+        "bracket: [1.2, 1.6]",
+        "Multifrontal",
+        "elsewhere",
+    ] {
+        assert!(debug.contains(part), "{part}");
+    }
+}
+
+#[test]
+fn wrong_overrides_are_named() {
+    let mut out = String::new();
+    for text in [
+        "materials.clay.cohesoin=12 kPa",
+        "materials.clay.cohesion=12",
+        "materials.clay.cohesion=12 kN/m3",
+        "materials.caly.cohesion=12 kPa",
+        "bodies.slop.points_per_cell=9",
+        "stages.7.steps=5",
+        "loads.footing.reaction_factor=2",
+        "grid.cell.x=1 m",
+        "solver.tolerance=\"1e-6",
+        "solver.tolerance=",
+        "solver..tolerance=1",
+        "tolerance",
+        "grid.domain.x=[\"0 m\", \"50 m\"]",
+    ] {
+        let _ = writeln!(
+            out,
+            "## --set {text}\n{}",
+            said(&overridden(SLOPE, &[text]))
+        );
+    }
+    insta::assert_snapshot!(out);
+}
+
+#[test]
+fn tabs_carriage_returns_and_accents_keep_their_columns() {
+    let text = SLOPE.1.replace('\n', "\r\n");
+    let text = edited(
+        &text,
+        &[
+            ("title = \"10 m cut slope", "title = \"Böschung, 10 m"),
+            ("name = \"crest\"", "\tname = \"Böschungskante\" ; # é"),
+            ("monitor = \"crest\"", "monitor = \"Böschungskante\""),
+        ],
+    );
+    let first = said(&CaseFile::parse("slope.toml", &text, &[]));
+    let text = text
+        .replace(" ; # é", "")
+        .replace("point = [", "\tpunkt = [");
+    let second = said(&CaseFile::parse("slope.toml", &text, &[]));
+    insta::assert_snapshot!(format!("{first}\n{second}"));
+}
+
+#[test]
+fn an_explained_file_states_the_same_case() {
+    let pressure = "[[loads]]\nname = \"strip\"\ntype = \"pressure\"\nfrom = [\"2 m\", \"5 m\"]\nto = [\"3 m\", \"5 m\"]\npressure = \"10 kPa\"\n[[stages]]\nname = \"press\"\ntype = \"load\"\nload = \"strip\"\n[[stages]]\nname = \"push";
+    let more = edited(
+        FOOTING.1,
+        &[
+            (
+                "cell = \"0.125 m\"",
+                "cell = { x = \"2/17 m\", y = \"0.125 m\" }",
+            ),
+            ("[[stages]]\nname = \"push", pressure),
+            ("materials.clay", "materials.\"stiff clay\""),
+            ("\"clay\"", "\"stiff clay\""),
+            (", label = \"d / B [-]\"", ""),
+            (
+                "right = \"roller\"",
+                "right = \"roller\"\nboxes = [{ name = \"wall\", to = [\"8 m\", \"0 m\"], from = [\"7 m\", \"5 m\"] }]",
+            ),
+            (
+                "[output]",
+                "[[checks]]\nname = \"Nc\"\nof = \"footing.reaction\"\ndivide_by = [\"2 m\", 50e3]\nbetween = [5, 5.5]\nsource = \"Prandtl \\\"1920\\\"\"\n[output]",
+            ),
+        ],
+    );
+    let files = [SLOPE, FOOTING, ("more.toml", more.as_str())];
+    for (name, text) in files.into_iter().chain(SHIPPED) {
+        let file = CaseFile::parse(name, text, &[]).unwrap_or_else(|error| panic!("{error}"));
+        let explained = file.explain();
+        let again = CaseFile::parse("other.toml", &explained, &[])
+            .unwrap_or_else(|error| panic!("{error}\n{explained}"));
+        assert_eq!(format!("{:?}", file.case()), format!("{:?}", again.case()));
+        assert_eq!(
+            again.explain().replace("default; ", ""),
+            explained.replace("default; ", "")
+        );
+    }
+    let file = overridden(SLOPE, &["materials.clay.cohesion=12 kPa"]).unwrap();
+    insta::assert_snapshot!(file.explain());
+    let file = CaseFile::parse("more.toml", &more, &[]).unwrap();
+    insta::assert_snapshot!(file.explain());
+}
+
+#[test]
+fn pressure_acts_into_the_soil_whichever_way_its_segment_runs() {
+    let load = |from: &str, to: &str, more: &str| {
+        let text = edited(
+            FOOTING.1,
+            &[
+                (
+                    "[[stages]]",
+                    &format!(
+                        "[[loads]]\nname = \"p\"\ntype = \"pressure\"\nfrom = {from}\nto = {to}\npressure = \"10 kPa\"\n{more}\n[[stages]]\nname = \"press\"\ntype = \"load\"\nload = \"p\"\n[[stages]]"
+                    ),
+                ),
+                ("[\"8 m\",\"5 m\"], [\"0 m\"", "[\"7 m\",\"5 m\"], [\"0 m\""),
+            ],
+        );
+        let file =
+            CaseFile::parse("footing.toml", &text, &[]).unwrap_or_else(|error| panic!("{error}"));
+        match file.case().loads[1].kind {
+            igimp_cases::case::LoadKind::Pressure { traction, .. } => traction,
+            ref kind => panic!("{kind:?}"),
+        }
+    };
+    let [left, right] = ["[\"2 m\", \"5 m\"]", "[\"4 m\", \"5 m\"]"];
+    assert_eq!(load(left, right, ""), [0.0, -10e3]);
+    assert_eq!(load(right, left, ""), [0.0, -10e3]);
+    let [foot, crest] = ["[\"8 m\", \"0 m\"]", "[\"7 m\", \"5 m\"]"];
+    let across = load(foot, crest, "");
+    assert!((across[0] + 10e3 * 5.0 / 26_f64.sqrt()).abs() < 1e-6);
+    assert!((across[1] + 10e3 / 26_f64.sqrt()).abs() < 1e-6);
+    assert_eq!(load(foot, crest, "direction = \"down\""), [0.0, -10e3]);
+}
+
+#[test]
+fn files_are_read_with_their_references() {
+    let folder = std::env::temp_dir().join(format!("igimp-input-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let path = folder.join("my case.toml");
+    let text = edited(
+        FOOTING.1,
+        &[
+            ("y = 5.1416", "file = \"measured.csv\""),
+            ("folder = \"results/footing\"\n", ""),
+        ],
+    );
+    std::fs::write(&path, &text).unwrap();
+    std::fs::write(
+        folder.join("measured.csv"),
+        "# source\nd/B, N\n0, 0\n0.1, 5.2\n",
+    )
+    .unwrap();
+    let case = CaseFile::read(&path, &[])
+        .unwrap_or_else(|error| panic!("{error}"))
+        .into_case();
+    let debug = format!("{:?}", case.curves[0].reference);
+    assert!(
+        debug.contains("Points([[0.0, 0.0], [0.1, 5.2]])"),
+        "{debug}"
+    );
+    assert_eq!(case.output.folder, std::path::Path::new("results/my case"));
+
+    std::fs::write(folder.join("measured.csv"), "d/B, N\n0, zero\n").unwrap();
+    let error = CaseFile::read(&path, &[]).unwrap_err().to_string();
+    assert!(error.contains("row 2 does not hold two numbers"), "{error}");
+    std::fs::write(&path, b"igimp = 1\n\xff\xfe = 2\n").unwrap();
+    let error = CaseFile::read(&path, &[]).unwrap_err();
+    assert!(matches!(error, InputError::Invalid { errors: 1, .. }));
+    assert!(error.to_string().contains("my case.toml:2:1"), "{error}");
+    assert!(matches!(
+        CaseFile::read(&folder, &[]),
+        Err(InputError::File { .. })
+    ));
+    std::fs::remove_dir_all(&folder).unwrap();
+    assert!(matches!(
+        CaseFile::read(&path, &[]),
+        Err(InputError::File { .. })
+    ));
+}
+
+#[test]
+fn absurd_files_are_refused_quickly() {
+    let corner = "[\"1 m\", \"2 m\"], ".repeat(20_000);
+    let stages = "[[stages]]\nname = \"x\"\ntype = \"gravity\"\n".repeat(5_000);
+    let deep = format!("{}1{}", "[".repeat(10_000), "]".repeat(10_000));
+    let table = format!("[{}]\n", ["a"; 10_000].join("."));
+    for text in [
+        edited(SLOPE.1, &[("polygon = [", &format!("polygon = [{corner}"))]),
+        format!("{}{stages}", SLOPE.1),
+        format!("x = {deep}"),
+        table,
+        "a".repeat(9 << 20),
+        String::new(),
+        "\n".repeat(100_000),
+    ] {
+        let error = CaseFile::parse("absurd.toml", &text, &[])
+            .unwrap_err()
+            .to_string();
+        assert!(error.contains("absurd.toml"), "{error}");
+        assert!(error.len() < 200_000, "{} bytes", error.len());
+    }
+    let key = ["a"; 10_000].join(".");
+    assert!(overridden(SLOPE, &[&format!("{key}=1")]).is_err());
+}
+
+#[test]
+fn the_json_schema_describes_every_table() {
+    let schema = json_schema();
+    assert_eq!(
+        schema["$schema"],
+        "https://json-schema.org/draft/2020-12/schema"
+    );
+    for (name, text) in [SLOPE, FOOTING].into_iter().chain(SHIPPED) {
+        let file: toml::Table = text.parse().unwrap();
+        let value = serde_json::to_value(file).unwrap();
+        validate(&schema, &schema, &value, name);
+    }
+    insta::assert_snapshot!(serde_json::to_string_pretty(&schema).unwrap());
+}
+
+/// Holds a value against the part of JSON Schema that ours uses.
+fn validate(
+    root: &serde_json::Value,
+    schema: &serde_json::Value,
+    value: &serde_json::Value,
+    at: &str,
+) {
+    assert!(
+        matches(root, schema, value),
+        "{at}: {value} is not {schema}"
+    );
+}
+
+fn matches(
+    root: &serde_json::Value,
+    schema: &serde_json::Value,
+    value: &serde_json::Value,
+) -> bool {
+    if let Some(name) = schema["$ref"].as_str() {
+        let name = name.strip_prefix("#/$defs/").unwrap();
+        assert!(!root["$defs"][name].is_null(), "{name}");
+        return matches(root, &root["$defs"][name], value);
+    }
+    if let Some(forms) = schema["oneOf"].as_array() {
+        return forms
+            .iter()
+            .filter(|form| matches(root, form, value))
+            .count()
+            == 1;
+    }
+    if let Some(forms) = schema["anyOf"].as_array() {
+        return forms.iter().any(|form| matches(root, form, value));
+    }
+    if let Some(expected) = schema.get("const") {
+        return expected == value;
+    }
+    let one_of = schema["enum"].as_array();
+    if one_of.is_some_and(|choices| !choices.contains(value)) {
+        return false;
+    }
+    let is_type = |name: &str| match name {
+        "string" => value.is_string(),
+        "number" => value.is_number(),
+        "integer" => value.is_i64(),
+        "boolean" => value.is_boolean(),
+        "array" => value.is_array(),
+        "object" => value.is_object(),
+        other => panic!("unknown type {other}"),
+    };
+    let right_type = match &schema["type"] {
+        serde_json::Value::Array(names) => names.iter().any(|name| is_type(name.as_str().unwrap())),
+        name => is_type(name.as_str().unwrap_or_else(|| panic!("no type: {schema}"))),
+    };
+    let items = value.as_array().is_none_or(|items| {
+        items
+            .iter()
+            .all(|item| matches(root, &schema["items"], item))
+            && items.len() as u64 >= schema["minItems"].as_u64().unwrap()
+    });
+    let entries = value.as_object().is_none_or(|entries| {
+        let required = schema["required"].as_array();
+        entries
+            .iter()
+            .all(|(key, value)| match &schema["properties"][key] {
+                serde_json::Value::Null if schema["additionalProperties"].is_object() => {
+                    matches(root, &schema["additionalProperties"], value)
+                }
+                serde_json::Value::Null => false,
+                property => matches(root, property, value),
+            })
+            && required.is_none_or(|keys| {
+                keys.iter()
+                    .all(|key| entries.contains_key(key.as_str().unwrap()))
+            })
+    });
+    right_type && items && entries
+}
+
+#[test]
+fn the_reference_has_every_table() {
+    insta::assert_snapshot!(reference_markdown());
+}
