@@ -4,7 +4,7 @@ use std::path::Path;
 
 use igimp_assembly::{Particles, SharedLaw};
 
-use super::{file_name, sentence, write};
+use super::{file_name, sentence, titled, write};
 use crate::case::{Case, Field};
 use crate::error::CaseError;
 use crate::figures::{ColourMap, FieldPlot, Outline, OutlineStyle};
@@ -36,7 +36,7 @@ pub fn field_picture(
     let (map, range) = colours(field, &values);
     let stage_name = case.stages.get(stage).map_or("", |stage| &stage.name);
     let plot = FieldPlot {
-        title: format!("{} – {stage_name}", case.title),
+        title: titled(&case.title, stage_name),
         domains: domains(particles),
         values,
         label: fields::label(field, scale),
