@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::{file_name, write};
+use super::{file_name, titled, write};
 use crate::error::CaseError;
 use crate::figures::{
     Colour, ColourMap, CurvePlot, LineStyle, ReferenceLine, ReferenceValue, Scale, Series,
@@ -198,7 +198,7 @@ pub fn convergence_pictures(
     let histories = histories(&folder.join("convergence.csv"))?;
     let mut notes = Vec::new();
     for (number, (stage, members)) in stages_of(&histories).into_iter().enumerate() {
-        let title = format!("{case_title} – {stage}");
+        let title = titled(case_title, stage);
         let drawing = convergence_plot(&title, &members, tolerance).draw()?;
         let name = format!("convergence-{}-{}", number + 1, file_name(stage));
         notes.push(write(

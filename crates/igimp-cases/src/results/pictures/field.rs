@@ -4,7 +4,7 @@ use std::path::Path;
 
 use igimp_assembly::{Particles, SharedLaw};
 
-use super::{file_name, sentence, write};
+use super::{file_name, sentence, titled, write};
 use crate::case::{Case, Field};
 use crate::error::CaseError;
 use crate::figures::{ColourMap, FieldPlot, Outline, OutlineStyle};
@@ -58,7 +58,7 @@ pub fn field_picture(
     let values = scale.apply(&values);
     let (map, range) = colours(field, &values);
     let plot = FieldPlot {
-        title: format!("{} – {}", case.title, shown.title),
+        title: titled(&case.title, &shown.title),
         domains: domains(particles),
         values,
         label: fields::label(field, scale),

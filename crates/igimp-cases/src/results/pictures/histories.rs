@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::{file_name, points, style, write};
+use super::{file_name, points, style, titled, write};
 use crate::case::{Field, Monitor, Section};
 use crate::error::CaseError;
 use crate::figures::{CurvePlot, ReferenceLine, ReferenceValue, Series};
@@ -35,7 +35,7 @@ pub fn monitor_pictures(
     for group in groups(&monitor.record, table) {
         let (label, series) = group.series(table, &along, false);
         let plot = CurvePlot {
-            title: format!("{case_title} – monitor {}", monitor.name),
+            title: titled(case_title, &format!("monitor {}", monitor.name)),
             x_label: "accepted step".into(),
             y_label: label,
             lines: marks.clone(),
@@ -116,7 +116,7 @@ pub fn section_pictures(
             (format!("distance along {} [m]", section.name), label)
         };
         let plot = CurvePlot {
-            title: format!("{case_title} – section {}, {stage}", section.name),
+            title: titled(case_title, &format!("section {}, {stage}", section.name)),
             x_label,
             y_label,
             series,

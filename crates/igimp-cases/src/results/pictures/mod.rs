@@ -90,6 +90,15 @@ fn style(points: usize) -> SeriesStyle {
     }
 }
 
+/// The title of a picture: the case, and what is seen of it.
+pub(super) fn titled(case_title: &str, seen: &str) -> String {
+    if case_title.is_empty() || seen.is_empty() {
+        format!("{case_title}{seen}")
+    } else {
+        format!("{case_title} – {seen}")
+    }
+}
+
 /// A text with its first letter in upper case.
 fn sentence(text: &str) -> String {
     let mut signs = text.chars();

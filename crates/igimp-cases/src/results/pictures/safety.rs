@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::{file_name, write};
+use super::{file_name, titled, write};
 use crate::check::short;
 use crate::error::CaseError;
 use crate::figures::{Band, Colour, CurvePlot, LineStyle, Scale, Series, SeriesStyle};
@@ -56,7 +56,7 @@ pub fn safety_picture(
         upper: vec![[from, top], [to, top]],
     });
     let plot = CurvePlot {
-        title: format!("{case_title} – {stage}"),
+        title: titled(case_title, stage),
         x_label: "strength reduction factor F [−]".into(),
         y_label: format!("displacement [{}]", unit.unit),
         y_scale,

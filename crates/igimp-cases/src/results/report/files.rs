@@ -7,7 +7,9 @@ use base64::engine::general_purpose::STANDARD;
 use serde::Serialize;
 
 use super::rows::grouped;
-use crate::results::pictures::{convergence_plot, histories, stages_of};
+use crate::results::pictures::{
+    convergence_caption, convergence_plot, histories, stages_of, titled,
+};
 use crate::summary::{FigureNote, Summary};
 
 /// An SVG larger than this gives way to its PNG if that is smaller \[byte\].
@@ -122,12 +124,12 @@ fn convergence(folder: &Path, summary: &Summary) -> Vec<Picture> {
     stages_of(&histories)
         .into_iter()
         .filter_map(|(stage, members)| {
-            let title = format!("{} – {stage}", summary.title);
+            let title = titled(&summary.title, stage);
             let plot = convergence_plot(&title, &members, tolerance);
             let drawing = plot.draw().ok()?;
             Some(Picture {
                 file: "convergence.csv".to_owned(),
-                caption: crate::results::pictures::convergence_caption(stage, &members),
+                caption: convergence_caption(stage, &members),
                 source: data_uri("svg+xml", drawing.to_svg().as_bytes()),
                 links: Vec::new(),
             })
