@@ -57,6 +57,8 @@ fn encode(pixmap: &Pixmap) -> Result<Vec<u8>, FigureError> {
     let mut encoder = png::Encoder::new(&mut bytes, pixmap.width(), pixmap.height());
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
+    // Pictures of flat colours: little larger, and written in a tenth of the time.
+    encoder.set_compression(png::Compression::Fast);
     // 96 points per inch, 39.37 inches per metre.
     let per_metre = PIXELS_PER_POINT * 3780;
     encoder.set_pixel_dims(Some(png::PixelDimensions {

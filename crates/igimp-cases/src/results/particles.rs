@@ -54,7 +54,10 @@ pub fn of_particles<const D: usize>(
     let mut cell_data = vec![
         DataArray::vectors("displacement [m]", &particles.displacement),
         DataArray::symmetric("sigma [Pa], tension +", sigma),
-        DataArray::scalars("p [Pa], compression +", by_particle(&|k| mean_pressure(&sigma[k]))),
+        DataArray::scalars(
+            "p [Pa], compression +",
+            by_particle(&|k| mean_pressure(&sigma[k])),
+        ),
         DataArray::scalars("q [Pa]", by_particle(&|k| deviatoric_stress(&sigma[k]))),
         DataArray::scalars("plastic strain [-]", by_particle(&|k| history[k].eps_p_eq)),
         DataArray::integers("material", integers(&|k| particles.law[k])),
@@ -179,9 +182,9 @@ mod tests {
     #[test]
     fn invariants_are_those_of_the_books() {
         let sigma = [[-3.0, 1.0, 0.0], [1.0, -6.0, 0.0], [0.0, 0.0, -9.0]];
-        assert_eq!(p(&sigma), 6.0);
+        assert_eq!(mean_pressure(&sigma), 6.0);
         let square: f64 = 0.5 * (9.0 + 9.0 + 36.0) + 3.0;
-        assert!((q(&sigma) - square.sqrt()).abs() < 1e-14);
+        assert!((deviatoric_stress(&sigma) - square.sqrt()).abs() < 1e-14);
     }
 
     #[test]

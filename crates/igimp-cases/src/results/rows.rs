@@ -99,9 +99,7 @@ impl RowWriter {
         assert_eq!(row.len(), self.columns, "a row has one entry a column");
         let line = text_line(&self.path, row)?;
         // One write without a buffer: a reader sees the row as soon as it is pushed.
-        self.file
-            .write_all(&line)
-            .map_err(at(&self.path))?;
+        self.file.write_all(&line).map_err(at(&self.path))?;
         self.rows += 1;
         Ok(())
     }

@@ -122,14 +122,16 @@ impl Course {
             let mut state = match (&left, stage.start_from) {
                 (Some(left), _) => left.state.clone(),
                 (None, None) => initial.clone(),
-                (None, Some(from)) => session
-                    .ends
-                    .get(&from)
-                    .cloned()
-                    .ok_or_else(|| CaseError::NoStart {
-                        stage: stage.name.clone(),
-                        from: case.stages[from].name.clone(),
-                    })?,
+                (None, Some(from)) => {
+                    session
+                        .ends
+                        .get(&from)
+                        .cloned()
+                        .ok_or_else(|| CaseError::NoStart {
+                            stage: stage.name.clone(),
+                            from: case.stages[from].name.clone(),
+                        })?
+                }
             };
             let ended = self.stage(session, number, &mut state, left)?;
             self.state = Some(state);
@@ -232,8 +234,7 @@ impl Course {
                 output.after_stage(number, case, state, &session.summary)?;
             }
         } else if let (Some(output), Some(failure)) = (&mut session.output, &mut self.failure) {
-            failure.saved =
-                output.keep_last_converged(case, number, state, &session.summary)?;
+            failure.saved = output.keep_last_converged(case, number, state, &session.summary)?;
         }
         Ok(goes_on)
     }

@@ -47,9 +47,7 @@ fn weight_above(model: &Model<'_>, x: &[f64; 2]) -> f64 {
     let case = model.case;
     case.bodies
         .iter()
-        .map(|part| {
-            length_above(&part.polygon, x) * case.materials[part.material].unit_weight
-        })
+        .map(|part| length_above(&part.polygon, x) * case.materials[part.material].unit_weight)
         .sum()
 }
 

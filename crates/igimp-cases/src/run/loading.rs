@@ -52,23 +52,29 @@ pub(crate) fn load(
         standing: resumption.map_or_else(|| Standing::start(&settings), |left| left.standing),
         settings,
     };
-    march_path(session, state, &path, summary, &mut |session, summary, taken| {
-        session.record(&taken.moment(number, summary.steps))?;
-        let stop = reason_to_stop(session, stage, resistance, taken);
-        resistance = taken.resistance;
-        let resumption = Resumption {
-            from: from.clone(),
-            standing: *taken.accepted.standing,
-            resistance,
-            drag: 0.0,
-        };
-        let interrupted = session.interrupted();
-        if let Some(output) = &mut session.output {
-            let run = &session.summary;
-            output.after_step(number, model, summary, taken, &resumption, run, interrupted)?;
-        }
-        Ok(stop)
-    })
+    march_path(
+        session,
+        state,
+        &path,
+        summary,
+        &mut |session, summary, taken| {
+            session.record(&taken.moment(number, summary.steps))?;
+            let stop = reason_to_stop(session, stage, resistance, taken);
+            resistance = taken.resistance;
+            let resumption = Resumption {
+                from: from.clone(),
+                standing: *taken.accepted.standing,
+                resistance,
+                drag: 0.0,
+            };
+            let interrupted = session.interrupted();
+            if let Some(output) = &mut session.output {
+                let run = &session.summary;
+                output.after_step(number, model, summary, taken, &resumption, run, interrupted)?;
+            }
+            Ok(stop)
+        },
+    )
 }
 
 /// Records the state before a stage.

@@ -159,4 +159,3 @@ pub struct Failure {
     /// Files and folders with what was computed.
     pub saved: Vec<PathBuf>,
 }
-

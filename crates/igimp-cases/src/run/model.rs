@@ -57,7 +57,13 @@ impl<'c> Model<'c> {
         for part in &case.bodies {
             let density = case.materials[part.material].unit_weight / gravity;
             let parts = part.per_direction;
-            seeds.extend(fill_polygon(&grid, &part.polygon, parts, density, part.material)?);
+            seeds.extend(fill_polygon(
+                &grid,
+                &part.polygon,
+                parts,
+                density,
+                part.material,
+            )?);
         }
         let mut body = Body::new(Particles::new(&seeds)?);
         body.load_points = load_points(case);
@@ -83,9 +89,8 @@ impl<'c> Model<'c> {
     /// [`ShapeError`] for cells that make no grid.
     pub fn grid(&self, settlement: f64) -> Result<Grid<2>, ShapeError> {
         let spec = &self.case.grid;
-        let [x, y] = [0, 1].map(|axis| {
-            Axis::uniform(spec.lower[axis], spec.cell[axis], spec.cells[axis])
-        });
+        let [x, y] =
+            [0, 1].map(|axis| Axis::uniform(spec.lower[axis], spec.cell[axis], spec.cells[axis]));
         match &self.footing {
             Some(footing) if settlement > 0.0 => {
                 Ok(Grid::new([x?, footing.rows(spec, settlement)?]))

@@ -7,6 +7,7 @@ use std::time::Instant;
 use igimp_assembly::Particles;
 use igimp_shape::Grid;
 use igimp_solver::{Body, Standing};
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::Target;
@@ -21,9 +22,9 @@ use crate::results::atomic::write_atomically;
 use crate::results::checkpoint::{self, CheckpointError, Meta};
 use crate::results::folder::Folder;
 use crate::results::frames::Frames;
-use crate::results::rows::{self, RowWriter};
 use crate::results::pictures::{self, Shown};
 use crate::results::report;
+use crate::results::rows::{self, RowWriter};
 use crate::summary::{CheckRow, FigureNote, StageSummary, Summary, TrialSummary};
 use crate::table::Table;
 
@@ -156,7 +157,9 @@ impl Output {
             rows => RowWriter::resume(&path, header, rows),
         };
         let rows = |of: fn(&Notes) -> &Vec<usize>, k: usize| {
-            notes.and_then(|notes| of(notes).get(k).copied()).unwrap_or(0)
+            notes
+                .and_then(|notes| of(notes).get(k).copied())
+                .unwrap_or(0)
         };
         let curves = std::iter::zip(&records.curves, 0..)
             .map(|(table, k)| {
@@ -389,15 +392,19 @@ impl Output {
         {
             self.add_frame(model, &body.particles, &taken.accepted.conditions.grid)?;
         }
-        let due =
-            self.checkpoint_every > 0 && summary.steps.is_multiple_of(self.checkpoint_every);
+        let due = self.checkpoint_every > 0 && summary.steps.is_multiple_of(self.checkpoint_every);
         if due || interrupted {
             let notes = Notes {
                 stage: Some(summary.clone()),
                 resumption: Some(resumption.clone()),
                 ..self.notes(model.case, stage, run, taken.controls)
             };
-            self.save(&self.name(), &[("current", body)], &notes, self.checkpoint_keep)?;
+            self.save(
+                &self.name(),
+                &[("current", body)],
+                &notes,
+                self.checkpoint_keep,
+            )?;
         }
         self.seconds += clock.elapsed().as_secs_f64();
         Ok(())
@@ -505,7 +512,12 @@ impl Output {
     ) -> Result<(), CaseError> {
         let clock = Instant::now();
         let notes = self.notes(case, number, run, &state.controls);
-        self.save(&end_of_stage(number), &[("current", &state.body)], &notes, 1)?;
+        self.save(
+            &end_of_stage(number),
+            &[("current", &state.body)],
+            &notes,
+            1,
+        )?;
         self.write_summary(run)?;
         self.seconds += clock.elapsed().as_secs_f64();
         Ok(())
@@ -551,12 +563,16 @@ impl Output {
         shown: &Shown,
         particles: &Particles<2>,
     ) -> Result<(), CaseError> {
-        for &field in &model.case.output.figures {
-            let root = self.folder.root();
-            let own = (particles, &model.laws[..]);
-            let picture = pictures::field_picture(root, model.case, shown, field, own, &[])?;
-            self.figures.push(picture);
-        }
+        let root = self.folder.root();
+        let own = (particles, &model.laws[..]);
+        let drawn = model
+            .case
+            .output
+            .figures
+            .par_iter()
+            .map(|&field| pictures::field_picture(root, model.case, shown, field, own, &[]))
+            .collect::<Result<Vec<_>, _>>()?;
+        self.figures.extend(drawn);
         Ok(())
     }
 

@@ -66,35 +66,43 @@ pub(crate) fn run_out(
         standing: resumption.map_or_else(|| Standing::start(&settings), |left| left.standing),
         settings,
     };
-    let ended = march_path(session, state, &path, summary, &mut |session, summary, taken| {
-        session.record(&taken.moment(number, summary.steps))?;
-        let moved = taken
-            .accepted
-            .forces
-            .u
-            .iter()
-            .map(|u| u[0].hypot(u[1]))
-            .fold(0.0, f64::max);
-        let change = (moved / target).clamp(CHANGE[0], CHANGE[1]);
-        drag.set((drag.get() * change).clamp(1e-9 * largest, largest));
-        let resumption = Resumption {
-            from: to.clone(),
-            standing: *taken.accepted.standing,
-            resistance: taken.resistance,
-            drag: drag.get(),
-        };
-        let interrupted = session.interrupted();
-        if let Some(output) = &mut session.output {
-            let run = &session.summary;
-            output.after_step(number, model, summary, taken, &resumption, run, interrupted)?;
-        }
-        let share = taken.accepted.report.drag_share;
-        Ok((share < run_out.at_rest).then(|| at_rest(summary.steps, share)))
-    })?;
+    let ended = march_path(
+        session,
+        state,
+        &path,
+        summary,
+        &mut |session, summary, taken| {
+            session.record(&taken.moment(number, summary.steps))?;
+            let moved = taken
+                .accepted
+                .forces
+                .u
+                .iter()
+                .map(|u| u[0].hypot(u[1]))
+                .fold(0.0, f64::max);
+            let change = (moved / target).clamp(CHANGE[0], CHANGE[1]);
+            drag.set((drag.get() * change).clamp(1e-9 * largest, largest));
+            let resumption = Resumption {
+                from: to.clone(),
+                standing: *taken.accepted.standing,
+                resistance: taken.resistance,
+                drag: drag.get(),
+            };
+            let interrupted = session.interrupted();
+            if let Some(output) = &mut session.output {
+                let run = &session.summary;
+                output.after_step(number, model, summary, taken, &resumption, run, interrupted)?;
+            }
+            let share = taken.accepted.report.drag_share;
+            Ok((share < run_out.at_rest).then(|| at_rest(summary.steps, share)))
+        },
+    )?;
     match ended {
         Ended::Stopped(rest) => stand(session, state, &path, summary, rest),
         Ended::Completed(_) => {
-            session.warn(format!("the slope still moves after {steps} steps of run-out"));
+            session.warn(format!(
+                "the slope still moves after {steps} steps of run-out"
+            ));
             Ok(Ended::Stopped(format!("still moving after {steps} steps")))
         }
         other => Ok(other),
@@ -122,12 +130,18 @@ fn stand(
         settings,
         ..*path
     };
-    Ok(match march_path(session, state, &last, summary, &mut |_, _, _| Ok(None))? {
-        Ended::NotConverged(_) => {
-            session.warn("the slope all but rests, but no equilibrium without drag was found".into());
-            Ended::Stopped(format!("{rest}; not in equilibrium without drag"))
-        }
-        Ended::Completed(_) => Ended::Completed(format!("{rest}; then in equilibrium without drag")),
-        other => other,
-    })
+    Ok(
+        match march_path(session, state, &last, summary, &mut |_, _, _| Ok(None))? {
+            Ended::NotConverged(_) => {
+                session.warn(
+                    "the slope all but rests, but no equilibrium without drag was found".into(),
+                );
+                Ended::Stopped(format!("{rest}; not in equilibrium without drag"))
+            }
+            Ended::Completed(_) => {
+                Ended::Completed(format!("{rest}; then in equilibrium without drag"))
+            }
+            other => other,
+        },
+    )
 }

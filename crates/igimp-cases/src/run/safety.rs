@@ -2,13 +2,13 @@
 
 use igimp_solver::Standing;
 
+use super::Event;
 use super::loading::begin;
 use super::model::Model;
 use super::output::Search;
 use super::records::{Moment, largest_displacement};
 use super::session::{Ended, Path, Session, march_path};
 use super::state::{Controls, State};
-use super::Event;
 use crate::case::{ReductionPath, Stage, StrengthReduction};
 use crate::check::short;
 use crate::error::CaseError;
@@ -143,7 +143,12 @@ impl<'a> Trials<'a> {
                 self.reduction.tolerance * 2.0_f64.powi(since_failure.count() as i32)
             }
         };
-        next_factor((stable, failed), (low, high), self.reduction.tolerance, stride)
+        next_factor(
+            (stable, failed),
+            (low, high),
+            self.reduction.tolerance,
+            stride,
+        )
     }
 
     /// Tries a factor; `Some` when the user interrupted.
@@ -172,19 +177,25 @@ impl<'a> Trials<'a> {
         let limit = reduction.failure_displacement;
         // The last equilibrium within the criterion: its factor and state.
         let mut within: Option<(f64, State)> = None;
-        let ended = march_path(session, &mut state, &path, summary, &mut |session, _, taken| {
-            let particles = &taken.accepted.body.particles;
-            let displacement = session.displacement(reduction.monitor, particles);
-            let failed = limit.is_some_and(|limit| displacement > limit);
-            if !failed && reduction.path == ReductionPath::Reduce {
-                let state = State {
-                    body: taken.accepted.body.clone(),
-                    controls: taken.controls.clone(),
-                };
-                within = Some((taken.controls.srf[reduction.materials[0]], state));
-            }
-            Ok((failed && !listed).then(|| self.exceeded(session)))
-        })?;
+        let ended = march_path(
+            session,
+            &mut state,
+            &path,
+            summary,
+            &mut |session, _, taken| {
+                let particles = &taken.accepted.body.particles;
+                let displacement = session.displacement(reduction.monitor, particles);
+                let failed = limit.is_some_and(|limit| displacement > limit);
+                if !failed && reduction.path == ReductionPath::Reduce {
+                    let state = State {
+                        body: taken.accepted.body.clone(),
+                        controls: taken.controls.clone(),
+                    };
+                    within = Some((taken.controls.srf[reduction.materials[0]], state));
+                }
+                Ok((failed && !listed).then(|| self.exceeded(session)))
+            },
+        )?;
         if matches!(ended, Ended::Interrupted) {
             return Ok(Some(ended));
         }
@@ -352,7 +363,10 @@ impl<'a> Trials<'a> {
             _ => f64::NAN,
         };
         if let Some(output) = &mut session.output {
-            for (what, end) in [("last-stable", self.stable), ("first-unstable", self.failed)] {
+            for (what, end) in [
+                ("last-stable", self.stable),
+                ("first-unstable", self.failed),
+            ] {
                 if let Some((srf, state)) = end {
                     output.keep_end(self.number, what, srf, state);
                 }
@@ -366,7 +380,11 @@ impl<'a> Trials<'a> {
 fn remarks(safety: &SafetySummary, reduction: &StrengthReduction) -> Vec<String> {
     let mut remarks = Vec::new();
     let [low, high] = reduction.bracket;
-    if safety.trials.iter().any(|trial| trial.srf == 1.0 && !trial.stable) {
+    if safety
+        .trials
+        .iter()
+        .any(|trial| trial.srf == 1.0 && !trial.stable)
+    {
         remarks.push(
             "the body does not stand at full strength (SRF 1): the factor of safety is below 1, or \
              the start of the search is not in equilibrium"

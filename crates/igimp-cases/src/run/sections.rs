@@ -3,8 +3,8 @@
 use igimp_assembly::Particles;
 
 use super::model::Model;
-use crate::measure::nearest;
 use crate::case::Case;
+use crate::measure::nearest;
 use crate::results::fields;
 use crate::results::pictures::file_name;
 use crate::table::Table;
@@ -14,8 +14,10 @@ fn stage_name(case: &Case, stage: usize) -> String {
     format!("{}-{}", stage + 1, file_name(&case.stages[stage].name))
 }
 
-/// One table per section, named `SECTION__STAGE`: at equally spaced places along the line the
-/// fields of the nearest particle. Places without a particle within a cell are left out.
+/// One table per section, named `SECTION__STAGE`: the particles nearest to equally spaced places
+/// along the line, each once, with the foot of the particle on the line. Places without a particle
+/// within a cell are left out. Values are as the particles hold them, neither averaged nor
+/// interpolated.
 pub(crate) fn read(model: &Model<'_>, particles: &Particles<2>, stage: usize) -> Vec<Table> {
     let case = model.case;
     let reach = case.grid.cell[0].max(case.grid.cell[1]);
@@ -32,13 +34,20 @@ pub(crate) fn read(model: &Model<'_>, particles: &Particles<2>, stage: usize) ->
                 rows: Vec::new(),
             };
             let way = [0, 1].map(|axis| section.to[axis] - section.from[axis]);
+            let length = way[0].hypot(way[1]);
+            let mut last = None;
             for k in 0..section.points {
                 let t = (k as f64 + 0.5) / section.points as f64;
                 let place = [0, 1].map(|axis| section.from[axis] + t * way[axis]);
                 let Some(particle) = nearest(particles, &place, reach) else {
                     continue;
                 };
-                let mut row = vec![t * way[0].hypot(way[1]), place[0], place[1]];
+                if last.replace(particle) == Some(particle) {
+                    continue;
+                }
+                let x = particles.x[particle];
+                let along = [0, 1].map(|axis| (x[axis] - section.from[axis]) * way[axis]);
+                let mut row = vec![(along[0] + along[1]) / length, x[0], x[1]];
                 row.extend(
                     section
                         .record

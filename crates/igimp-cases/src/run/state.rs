@@ -42,7 +42,11 @@ impl Controls {
     /// The largest strength reduction factor of any material \[-\].
     pub(crate) fn reduction(&self) -> f64 {
         self.srf.iter().copied().fold(1.0, |a: f64, b| {
-            if (b - 1.0).abs() > (a - 1.0).abs() { b } else { a }
+            if (b - 1.0).abs() > (a - 1.0).abs() {
+                b
+            } else {
+                a
+            }
         })
     }
 }

@@ -41,6 +41,7 @@ pub(in crate::results) fn body(n: usize) -> Body<2> {
         .map(|k| LoadPoint {
             x: vector(k, 40),
             force: vector(k, 42),
+            load: k,
         })
         .collect();
     body
