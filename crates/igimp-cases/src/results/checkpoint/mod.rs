@@ -22,12 +22,13 @@
 //! replaces is called `NAME.previous` in between. Whenever the program is killed, [`newest`] finds
 //! a whole checkpoint, the new one or the one before.
 
-use std::fs;
+use std::fs::{self, File};
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use igimp_solver::Body;
 
-use super::atomic::{sync_folder, write_synced};
+use super::atomic::sync_folder;
 use crate::error::CaseError;
 
 mod arrays;
@@ -79,10 +80,19 @@ pub fn write(
         .map_or(1, |last| last + 1);
     let temporary = folder.join(format!("{TEMPORARY}{name}"));
     fs::create_dir(&temporary).map_err(at(&temporary))?;
+    // Handed to the disk together, so that the system can merge the writes.
+    let mut unsynced = Vec::new();
     let entries = states
         .iter()
-        .map(|(state, body)| write_state(&temporary, state, body))
+        .map(|(state, body)| write_state(&temporary, state, body, &mut unsynced))
         .collect::<Result<_, _>>()?;
+    for (path, file) in unsynced {
+        file.sync_all().map_err(at(&path))?;
+    }
+    for (state, _) in states {
+        let folder = temporary.join(state);
+        sync_folder(&folder).map_err(at(&folder))?;
+    }
     Manifest::new(name, sequence, meta, entries).write(&temporary)?;
     sync_folder(&temporary).map_err(at(&temporary))?;
     let path = folder.join(name);
@@ -247,6 +257,7 @@ fn write_state(
     checkpoint: &Path,
     name: &str,
     body: &Body<2>,
+    unsynced: &mut Vec<(PathBuf, File)>,
 ) -> Result<StateEntry, CheckpointError> {
     let folder = checkpoint.join(name);
     fs::create_dir(&folder).map_err(at(&folder))?;
@@ -254,10 +265,11 @@ fn write_state(
     for (array, values) in arrays::of_body(body) {
         let path = folder.join(array).with_extension("npy");
         let bytes = values.to_bytes();
-        write_synced(&path, &bytes).map_err(at(&path))?;
+        let mut file = File::create(&path).map_err(at(&path))?;
+        file.write_all(&bytes).map_err(at(&path))?;
         entry.note(array, &bytes);
+        unsynced.push((path, file));
     }
-    sync_folder(&folder).map_err(at(&folder))?;
     Ok(entry)
 }
 
