@@ -200,6 +200,7 @@ mod tests {
             at_round_off: false,
             unknowns: 100,
             plastic_share: 0.031,
+            drag_share: 0.0,
             times: PhaseTimes::default(),
         }
     }
