@@ -25,8 +25,12 @@ macro_rules! shipped {
 }
 
 shipped! {
+    "column": "elastic column under its own weight, held against the exact solution",
+    "von_mises_slope": "soft slope in undrained clay: smooth stress at large displacement",
+    "mohr_coulomb_slope": "slope in c-phi soil: displacement against strength reduction, factor of safety",
+    "footing": "rigid strip footing pushed one width deep into undrained clay",
     "slope": "cut slope on rock: factor of safety, then run-out",
-    "footing": "rough strip footing on undrained clay, held against Prandtl's solution",
+    "bearing_capacity": "rough strip footing on undrained clay, held against Prandtl's solution",
 }
 
 /// The case file of a name; hyphens, underscores and the extension make no difference.

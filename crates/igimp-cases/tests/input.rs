@@ -11,7 +11,10 @@ const SLOPE: (&str, &str) = ("slope.toml", include_str!("data/slope.toml"));
 const FOOTING: (&str, &str) = ("footing.toml", include_str!("data/footing.toml"));
 const SHIPPED: [(&str, &str); 2] = [
     ("slope.toml", include_str!("../cases/slope.toml")),
-    ("footing.toml", include_str!("../cases/footing.toml")),
+    (
+        "bearing_capacity.toml",
+        include_str!("../cases/bearing_capacity.toml"),
+    ),
 ];
 
 type Edits<'a> = &'a [(&'a str, &'a str)];
