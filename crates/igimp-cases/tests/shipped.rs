@@ -183,6 +183,12 @@ fn slope_stands_fails_and_rests() {
     let run_out = &ran.run.summary.stages[2];
     assert_eq!(run_out.outcome, Completed, "{}", run_out.reason);
     between(run_out.largest_displacement, 0.2, 6.0);
+    // The share of mobilised strength is that of the strength that acts, reduced in the run-out.
+    let sections = &ran.run.sections;
+    let section = sections.iter().find(|t| t.name.ends_with("3-run-out"));
+    let utilisation = section.unwrap().points(0, 8);
+    let most = utilisation.iter().map(|p| p[1]).fold(0.0, f64::max);
+    between(most, 0.99, 1.001);
     between(ran.virtual_work(1.0), 0.98, 1.02);
 }
 

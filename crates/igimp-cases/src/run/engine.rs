@@ -248,7 +248,7 @@ impl Course {
         summary: &StageSummary,
     ) -> Result<(), CaseError> {
         let case = session.model.case;
-        let tables = sections::read(session.model, &state.body.particles, number);
+        let tables = sections::read(session.model, state, number)?;
         let resistance = session.last_resistance;
         let moment = Moment {
             stage: number,

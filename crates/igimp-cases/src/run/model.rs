@@ -133,18 +133,7 @@ impl<'c> Model<'c> {
     /// # Errors
     /// [`AssemblyError::Material`] for a factor that makes no law.
     pub fn laws_reduced_by(&self, srf: &[f64]) -> Result<Vec<SharedLaw>, AssemblyError> {
-        self.laws
-            .iter()
-            .zip(srf)
-            .map(|(law, &srf)| {
-                if srf == 1.0 {
-                    Ok(Arc::clone(law))
-                } else {
-                    law.reduced(srf)
-                        .map_err(|source| AssemblyError::Law { source })
-                }
-            })
-            .collect()
+        reduced(&self.laws, srf)
     }
 
     /// Resistance of the footing, compression positive, times its reaction factor \[N/m\].
@@ -205,6 +194,21 @@ impl<'c> Model<'c> {
     pub fn workspace(&self) -> Workspace {
         Workspace::new(self.case.solver.linear.build())
     }
+}
+
+/// Laws at strengths divided by these factors, by material.
+pub(crate) fn reduced(laws: &[SharedLaw], srf: &[f64]) -> Result<Vec<SharedLaw>, AssemblyError> {
+    laws.iter()
+        .zip(srf)
+        .map(|(law, &srf)| {
+            if srf == 1.0 {
+                Ok(Arc::clone(law))
+            } else {
+                law.reduced(srf)
+                    .map_err(|source| AssemblyError::Law { source })
+            }
+        })
+        .collect()
 }
 
 /// The points that carry pressures and forces, each under the number of its load.

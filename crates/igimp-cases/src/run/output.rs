@@ -4,8 +4,6 @@ use std::collections::HashMap;
 use std::path::PathBuf;
 use std::time::Instant;
 
-use igimp_assembly::Particles;
-use igimp_shape::Grid;
 use igimp_solver::{Body, Standing};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -390,7 +388,9 @@ impl Output {
         if let Every::Steps(every) = self.every
             && summary.steps.is_multiple_of(every.max(1))
         {
-            self.add_frame(model, &body.particles, &taken.accepted.conditions.grid)?;
+            let conditions = &taken.accepted.conditions;
+            let own = (&body.particles, &conditions.laws[..]);
+            self.frames.add(self.steps as f64, own, &conditions.grid)?;
         }
         let due = self.checkpoint_every > 0 && summary.steps.is_multiple_of(self.checkpoint_every);
         if due || interrupted {
@@ -461,13 +461,15 @@ impl Output {
     ) -> Result<(), CaseError> {
         let clock = Instant::now();
         let case = model.case;
-        let particles = &state.body.particles;
         for table in sections {
             table.write_csv(&self.folder.sections())?;
         }
         if self.every != Every::Never {
             let grid = model.grid(state.controls.settlement)?;
-            self.add_frame(model, particles, &grid)?;
+            let laws = model.laws_reduced_by(&state.controls.srf)?;
+            // The time of a frame is the number of steps and trials so far.
+            self.frames
+                .add(self.steps as f64, (&state.body.particles, &laws), &grid)?;
         }
         if let Some(safety) = &summary.safety {
             self.factor_of_safety = match (safety.stable, safety.failed) {
@@ -479,19 +481,19 @@ impl Output {
             self.figures.push(picture);
         }
         for (name, srf, kept) in std::mem::take(&mut self.kept) {
-            let particles = &kept.body.particles;
             if self.every != Every::Never {
-                self.frames.beside(&name, (particles, &model.laws))?;
+                let laws = model.laws_reduced_by(&kept.controls.srf)?;
+                self.frames.beside(&name, (&kept.body.particles, &laws))?;
             }
             let shown = Shown {
                 title: format!("{}, SRF {srf:.4}", summary.name),
                 when: format!("in the {} state, SRF {srf:.4}", words(&name)),
                 name,
             };
-            self.field_pictures(model, &shown, particles)?;
+            self.field_pictures(model, &shown, &kept)?;
         }
         if summary.safety.is_none() {
-            self.field_pictures(model, &Shown::end_of_stage(case, number), particles)?;
+            self.field_pictures(model, &Shown::end_of_stage(case, number), state)?;
         }
         for (section, table) in case.sections.iter().zip(sections) {
             let (root, title) = (self.folder.root(), &case.title);
@@ -545,26 +547,16 @@ impl Output {
         Ok(saved)
     }
 
-    /// A frame for ParaView; its time is the number of steps and trials so far.
-    fn add_frame(
-        &mut self,
-        model: &Model<'_>,
-        particles: &Particles<2>,
-        grid: &Grid<2>,
-    ) -> Result<(), CaseError> {
-        let time = self.steps as f64;
-        self.frames.add(time, (particles, &model.laws), grid)
-    }
-
     /// The pictures of the fields that the case wants to see.
     fn field_pictures(
         &mut self,
         model: &Model<'_>,
         shown: &Shown,
-        particles: &Particles<2>,
+        state: &State,
     ) -> Result<(), CaseError> {
         let root = self.folder.root();
-        let own = (particles, &model.laws[..]);
+        let laws = model.laws_reduced_by(&state.controls.srf)?;
+        let own = (&state.body.particles, &laws[..]);
         let drawn = model
             .case
             .output
