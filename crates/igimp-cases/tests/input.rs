@@ -357,7 +357,6 @@ fn records_that_make_no_sense() {
             &[CREST, ("footing.reaction", "edge.sigma_zy")],
             &[
                 CREST,
-                ("[\"1 m\", \"5 m\"]\n\n", "[\"1 m\", \"5 m\"]\n"),
                 ("point = [\"1 m\", \"5 m\"]", "point = [\"1 m\", \"5.4 m\"]")
             ],
             &[("folder = \"results/footing\"", "folder = \"\"")],

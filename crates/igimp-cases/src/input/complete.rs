@@ -87,9 +87,9 @@ impl Completer<'_> {
         let message = if least == most {
             format!("`{key}` takes a list of {least} values, found {found}")
         } else if found < least {
-            format!("`{key}` needs at least {least} of them, found {found}")
+            format!("`{key}` needs at least {least} items, found {found}")
         } else {
-            format!("`{key}` takes at most {most} of them, found {found}")
+            format!("`{key}` takes at most {most} items, found {found}")
         };
         self.problems.error(node.place, message);
     }

@@ -39,6 +39,8 @@ pub(super) struct Names {
     of: &'static str,
     names: Vec<Option<String>>,
     index: HashMap<String, usize>,
+    /// Whether all names are known; otherwise one that is missing may be among those found wrong.
+    is_complete: bool,
 }
 
 impl Names {
@@ -68,6 +70,7 @@ impl Names {
         }
         Self {
             of,
+            is_complete: all.iter().all(Option::is_some),
             names: all,
             index,
         }
@@ -83,7 +86,9 @@ impl Names {
                 name.map_or(item.place, |name| name.place),
             )
         });
-        Self::new(of, named, problems)
+        let mut names = Self::new(of, named, problems);
+        names.is_complete &= !list.is_some_and(Node::is_invalid);
+        names
     }
 
     /// The index of a name, without a word when there is none.
@@ -110,8 +115,7 @@ impl Names {
         if let Some(index) = self.position(name) {
             return Some(index);
         }
-        // A name that was found wrong itself may be the one that is meant.
-        if self.names.iter().any(Option::is_none) {
+        if !self.is_complete {
             return None;
         }
         let (of, shown) = (self.of, clip(name, 40));

@@ -121,10 +121,10 @@ fn set(tree: &mut Node, parts: &[Part], value: Node, problems: &mut Problems) {
     let mut path = String::new();
     for (depth, part) in parts.iter().enumerate() {
         let is_last = depth + 1 == parts.len();
+        let parent = path.clone();
         if !path.is_empty() {
             path.push('.');
         }
-        let parent = path.clone();
         path.push_str(&part.text);
         let kind = node.kind();
         let next = match &mut node.value {

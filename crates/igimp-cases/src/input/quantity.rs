@@ -101,10 +101,7 @@ impl QuantityError {
                 ..
             } => format!("plane strain is one metre thick: forces are per metre run, \"{text}/m\""),
             Self::WrongKind { unit, found, .. } => {
-                format!(
-                    "`{unit}` is the unit of {}; write \"{example}\"",
-                    found.name()
-                )
+                format!("`{unit}` measures {}; write \"{example}\"", found.name())
             }
             Self::NotFinite { .. } => format!("write a number, like \"{example}\""),
         }
@@ -322,7 +319,7 @@ mod tests {
         assert_eq!(
             explain("2 m", Dimension::Stress),
             "wrong kind of unit: expected a stress such as kPa\n\
-             `m` is the unit of a length; write \"25 kPa\""
+             `m` measures a length; write \"25 kPa\""
         );
         assert_eq!(
             explain("20 kn/m3", Dimension::UnitWeight),

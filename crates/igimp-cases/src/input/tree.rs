@@ -65,6 +65,11 @@ impl Node {
         Self::written(Value::Invalid, place)
     }
 
+    /// Whether the value was found wrong.
+    pub(super) fn is_invalid(&self) -> bool {
+        matches!(self.value, Value::Invalid)
+    }
+
     /// The value of a key, for a table that has it.
     pub(super) fn get(&self, key: &str) -> Option<&Self> {
         self.entry(key).map(|entry| &entry.node)

@@ -47,6 +47,7 @@ fn part(node: &Node, names: &AllNames, problems: &mut Problems) -> Option<BodyPa
     });
     let polygon = node
         .get("polygon")
+        .filter(|polygon| !polygon.is_invalid())
         .and_then(|polygon| corners(polygon, name, problems));
     let points = node.count_at("points_per_cell")?;
     Some(BodyPart {
@@ -134,7 +135,11 @@ pub(super) fn check(
             let points = (body.per_direction * body.per_direction) as f64;
             particles += cells * points;
         }
-        if particles > MOST {
+        let cells = (0..2)
+            .map(|axis| (frame.upper[axis] - frame.lower[axis]) / frame.cell[axis])
+            .product::<f64>();
+        // Too many cells are reported as such.
+        if particles > MOST && cells <= MOST {
             let message = format!("the bodies would have {} particles", count(particles));
             problems
                 .error(tree.get("grid").map(|grid| grid.place_at("cell")), message)

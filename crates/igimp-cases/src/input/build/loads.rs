@@ -68,6 +68,20 @@ fn footing(node: &Node, name: &str, site: &Site, problems: &mut Problems) -> Opt
         return None;
     }
     if let Some(frame) = site.frame {
+        let is_outside = [from, to].iter().any(|end| {
+            (0..2).any(|k| {
+                end[k] < frame.lower[k] - site.round_off || end[k] > frame.upper[k] + site.round_off
+            })
+        });
+        if is_outside {
+            problems
+                .error(
+                    node.place_at("from"),
+                    format!("the footing `{shown}` lies outside the grid domain"),
+                )
+                .help("extend [grid] domain");
+            return None;
+        }
         on_grid(node, &shown, from, to, frame, site, problems);
     }
     if site.is_complete {
@@ -124,18 +138,6 @@ fn on_grid(
 ) {
     let Frame { lower, upper, cell } = frame;
     let place = node.place_at("from");
-    let is_outside = |x: [f64; 2]| {
-        (0..2).any(|k| x[k] < lower[k] - site.round_off || x[k] > upper[k] + site.round_off)
-    };
-    if is_outside(from) || is_outside(to) {
-        problems
-            .error(
-                place,
-                format!("the footing `{name}` lies outside the grid domain"),
-            )
-            .help("extend [grid] domain");
-        return;
-    }
     let row = (from[1] - lower[1]) / cell[1];
     if (row - row.round()).abs() > 1e-6 {
         let depth = from[1] - lower[1];

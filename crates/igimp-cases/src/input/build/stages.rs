@@ -307,6 +307,13 @@ pub(super) fn check_use(context: &Context<'_>, problems: &mut Problems) {
         .flat_map(|stage| stage.get("load").into_iter().chain(stage.items_at("loads")))
         .filter_map(Node::text)
         .collect();
+    // A name that is not defined may be a slip for one that is not used.
+    if used
+        .iter()
+        .any(|name| context.names.loads.position(name).is_none())
+    {
+        return;
+    }
     for load in context.tree.items_at("loads") {
         if let Some(name) = load.text_at("name").filter(|name| !used.contains(name)) {
             let message = format!("no stage applies the load `{}`", clip(name, 40));
