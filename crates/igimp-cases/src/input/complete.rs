@@ -6,7 +6,7 @@ use toml::de::DeValue;
 
 use super::diagnostic::Problems;
 use super::names::check_name;
-use super::schema::ROOT;
+use super::schema::{MOST_THINGS, ROOT};
 use super::source::{Place, Source};
 use super::spec::{Field, Kind, Presence, Struct, Variants};
 use super::suggest::nearest;
@@ -172,6 +172,13 @@ impl Completer<'_> {
             self.problems
                 .error(node.place, format!("there is no {of}"))
                 .help(format!("add a table [{of}s.NAME]"));
+            return Node::invalid(node.place);
+        }
+        if node.entries().len() > MOST_THINGS {
+            self.problems.error(
+                node.place,
+                format!("there are more than {MOST_THINGS} {of}s"),
+            );
             return Node::invalid(node.place);
         }
         let mut entries = Vec::new();

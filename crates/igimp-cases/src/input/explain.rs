@@ -95,7 +95,7 @@ fn line(out: &mut String, field: &Field, node: Option<&Node>) {
     let Some(node) = node else {
         if let Presence::Optional(meaning) = field.presence {
             let text = format!("# {} is not set", field.key);
-            commented(out, &text, &format!("{comment}; now {meaning}"));
+            commented(out, &text, &format!("{comment}; without it: {meaning}"));
         }
         return;
     };

@@ -119,10 +119,12 @@ impl Names {
             return None;
         }
         let (of, shown) = (self.of, clip(name, 40));
-        let problem = problems.error(
-            value.place,
-            format!("{who} the {of} `{shown}`, which is not defined"),
-        );
+        let message = format!("{who} the {of} `{shown}`, which is not defined");
+        if problems.are_many() {
+            problems.error(value.place, message);
+            return None;
+        }
+        let problem = problems.error(value.place, message);
         problem.help(format!("defined {}: {}", plural_of(of), row(self.known())));
         if let Some(near) = nearest(name, self.known()) {
             problem.help(format!("did you mean `{near}`?"));

@@ -12,7 +12,7 @@ use crate::input::text::clip;
 use crate::input::tree::Node;
 
 /// Most bytes of a reference file.
-const LARGEST: u64 = 4 << 20;
+const LARGEST: u64 = 1 << 20;
 
 /// The curves; files of references are beside the case file.
 pub(super) fn curves(
@@ -141,6 +141,9 @@ fn reference(node: &Node, file: &Path, problems: &mut Problems) -> Option<Refere
 /// The points of a CSV file: a header and two columns.
 fn read_points(path: &Path) -> Result<Vec<[f64; 2]>, String> {
     let file = File::open(path).map_err(|error| error.to_string())?;
+    if !file.metadata().is_ok_and(|about| about.is_file()) {
+        return Err("it is not a file".to_owned());
+    }
     let mut text = String::new();
     file.take(LARGEST + 1)
         .read_to_string(&mut text)

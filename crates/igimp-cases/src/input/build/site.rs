@@ -14,6 +14,7 @@ pub(super) struct Site {
     pub(super) is_complete: bool,
     /// Lengths below this are round-off \[m\].
     pub(super) round_off: f64,
+    surface: Vec<[[f64; 2]; 2]>,
 }
 
 impl Site {
@@ -34,12 +35,15 @@ impl Site {
                     .flat_map(|frame| frame.lower.into_iter().chain(frame.upper)),
             )
             .fold(0.0, |largest: f64, x| largest.max(x.abs()));
-        Self {
+        let mut site = Self {
             frame,
             is_complete: polygons.len() == bodies.len() && !bodies.is_empty(),
             polygons,
             round_off: 1e-9 * largest,
-        }
+            surface: Vec::new(),
+        };
+        site.surface = site.uncovered();
+        site
     }
 
     /// Smallest side of a cell \[m\].
@@ -62,7 +66,11 @@ impl Site {
 
     /// Edges with soil below and none above: left end, right end. Edges that another body covers
     /// are left out.
-    pub(super) fn surface(&self) -> Vec<[[f64; 2]; 2]> {
+    pub(super) fn surface(&self) -> &[[[f64; 2]; 2]] {
+        &self.surface
+    }
+
+    fn uncovered(&self) -> Vec<[[f64; 2]; 2]> {
         let lift = 1e-3 * self.cell();
         let mut edges = Vec::new();
         for edge in self.polygons.iter().flat_map(|polygon| top_edges(polygon)) {

@@ -177,6 +177,7 @@ fn k0(context: &Context<'_>, index: usize, node: &Node, problems: &mut Problems)
         problems
             .error(place, "a k0 stage sets the stresses of undeformed ground")
             .help("make it the first stage");
+        return;
     }
     if context.site.is_complete
         && let Some(reason) = uneven(context.site)
