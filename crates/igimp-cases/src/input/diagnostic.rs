@@ -137,32 +137,30 @@ impl Problem {
         };
         let _ = writeln!(out, "{severity}: {}", self.message);
         let mut gutter = String::new();
-        match self
+        let place = self
             .place
-            .and_then(|place| Some((place, sources.get(place.source)?)))
-        {
-            Some((place, source)) => {
-                let snippet = source.snippet(place);
-                let (head, number, prefix) = if source.is_override {
-                    ("command line".to_owned(), String::new(), "--set ")
-                } else {
-                    let head = format!("{}:{}:{}", source.name, snippet.line, snippet.column);
-                    (head, snippet.line.to_string(), "")
-                };
-                gutter = " ".repeat(number.len().max(1));
-                let width = gutter.len();
-                let marks = "^".repeat(snippet.marks);
-                let indent = " ".repeat(snippet.indent + prefix.len());
-                let _ = writeln!(out, "{gutter}--> {head}");
-                let _ = writeln!(out, "{gutter} |");
-                let _ = writeln!(out, "{number:width$} | {prefix}{}", snippet.text.trim_end());
-                let _ = writeln!(out, "{gutter} | {indent}{marks}");
-            }
-            None => {
-                let file = sources.first().map_or("", |source| &source.name);
-                gutter.push(' ');
-                let _ = writeln!(out, "{gutter}--> {file}");
-            }
+            .and_then(|place| Some((place, sources.get(place.source)?)));
+        if let Some((place, source)) = place {
+            let snippet = source.snippet(place);
+            let (head, number, prefix) = if source.is_override {
+                ("command line".to_owned(), String::new(), "--set ")
+            } else {
+                let head = format!("{}:{}:{}", source.name, snippet.line, snippet.column);
+                (head, snippet.line.to_string(), "")
+            };
+            gutter = " ".repeat(number.len().max(1));
+            let width = gutter.len();
+            let marks = "^".repeat(snippet.marks);
+            let indent = " ".repeat(snippet.indent + prefix.len());
+            let text = snippet.text.trim_end();
+            let _ = writeln!(out, "{gutter}--> {head}");
+            let _ = writeln!(out, "{gutter} |");
+            let _ = writeln!(out, "{number:width$} | {prefix}{text}");
+            let _ = writeln!(out, "{gutter} | {indent}{marks}");
+        } else {
+            let file = sources.first().map_or("", |source| &source.name);
+            gutter.push(' ');
+            let _ = writeln!(out, "{gutter}--> {file}");
         }
         for line in &self.help {
             let _ = writeln!(out, "{gutter} = help: {line}");

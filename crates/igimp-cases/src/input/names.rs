@@ -6,7 +6,7 @@ use super::diagnostic::Problems;
 use super::source::Place;
 use super::suggest::nearest;
 use super::text::{clip, row};
-use super::tree::Node;
+use super::tree::{Node, Wrong};
 
 /// Most characters of a name.
 pub(super) const LONGEST: usize = 60;
@@ -37,7 +37,7 @@ pub(super) fn check_name(name: &str, place: Place, problems: &mut Problems) -> b
 pub(super) struct Names {
     /// What is named, such as `material`.
     of: &'static str,
-    names: Vec<Option<String>>,
+    list: Vec<Option<String>>,
     index: HashMap<String, usize>,
     /// Whether all names are known; otherwise one that is missing may be among those found wrong.
     is_complete: bool,
@@ -71,7 +71,7 @@ impl Names {
         Self {
             of,
             is_complete: all.iter().all(Option::is_some),
-            names: all,
+            list: all,
             index,
         }
     }
@@ -98,15 +98,30 @@ impl Names {
 
     /// The names that are known.
     pub(super) fn known(&self) -> impl Iterator<Item = &str> {
-        self.names.iter().flatten().map(String::as_str)
+        self.list.iter().flatten().map(String::as_str)
     }
 
     /// The name at an index.
     pub(super) fn name(&self, index: usize) -> &str {
-        self.names
+        self.list
             .get(index)
             .and_then(Option::as_deref)
             .unwrap_or("")
+    }
+
+    /// The index that the value of a key names, when the table has the key; reports, in the name
+    /// of `who`, when there is none.
+    pub(super) fn find_optional(
+        &self,
+        table: &Node,
+        key: &str,
+        who: &str,
+        problems: &mut Problems,
+    ) -> Result<Option<usize>, Wrong> {
+        match table.get(key) {
+            None => Ok(None),
+            Some(value) => self.find(value, who, problems).map(Some).ok_or(Wrong),
+        }
     }
 
     /// The index that a value names; reports, in the name of `who`, when there is none.

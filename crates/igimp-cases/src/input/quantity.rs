@@ -76,13 +76,11 @@ impl QuantityError {
             }
             Self::UnknownUnit { unit, .. } => {
                 let expected = expected.unwrap_or(Dimension::Stress);
-                match Unit::nearest(unit, expected) {
-                    Some(near) => format!("did you mean `{near}`?"),
-                    None => {
-                        let units: Vec<_> = expected.units().collect();
-                        format!("units of {}: {}", expected.name(), units.join(", "))
-                    }
+                if let Some(near) = Unit::nearest(unit, expected) {
+                    return format!("did you mean `{near}`?");
                 }
+                let units: Vec<_> = expected.units().collect();
+                format!("units of {}: {}", expected.name(), units.join(", "))
             }
             Self::WrongKind {
                 expected: Dimension::UnitWeight,

@@ -200,11 +200,23 @@ pub(super) fn shift(node: &mut Node, by: usize) {
     }
 }
 
+/// Something that was found wrong, and reported.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Wrong;
+
 /// Values of keys, when the table has them and they were found right.
 impl Node {
     /// The number of a key in SI units.
     pub(super) fn number_at(&self, key: &str) -> Option<f64> {
         self.get(key)?.number()
+    }
+
+    /// The number of a key that may be missing.
+    pub(super) fn optional_number(&self, key: &str) -> Result<Option<f64>, Wrong> {
+        match self.get(key) {
+            None => Ok(None),
+            Some(value) => value.number().map(Some).ok_or(Wrong),
+        }
     }
 
     /// The count of a key.

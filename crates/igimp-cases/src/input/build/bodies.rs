@@ -89,7 +89,7 @@ fn corners(node: &Node, name: &str, problems: &mut Problems) -> Option<Vec<[f64;
     let (lower, upper) = bounding_box(&corners);
     let area = area_and_centroid(&corners).0.abs();
     let size = (upper[0] - lower[0]).max(upper[1] - lower[1]);
-    if !(area > 1e-9 * size * size) {
+    if area.is_nan() || area <= 1e-9 * size * size {
         problems
             .error(node.place, format!("the polygon of `{name}` has no area"))
             .help("its corners lie on one line");

@@ -28,23 +28,17 @@ pub(super) fn curves(
             let name = node.text_at("name");
             let x = axis(node.get("x")?, names, loads, problems);
             let y = axis(node.get("y")?, names, loads, problems);
-            let stage = match node.get("stage") {
-                None => Some(None),
-                Some(stage) => {
-                    let who = format!("curve `{}` records", clip(name.unwrap_or("?"), 40));
-                    names.stages.find(stage, &who, problems).map(Some)
-                }
-            };
-            let reference = match node.get("reference") {
-                None => Some(None),
-                Some(reference) => self::reference(reference, file, problems).map(Some),
-            };
+            let who = format!("curve `{}` records", clip(name.unwrap_or("?"), 40));
+            let stage = names.stages.find_optional(node, "stage", &who, problems);
+            let reference = node
+                .get("reference")
+                .map(|reference| self::reference(reference, file, problems));
             Some(Curve {
                 name: name?.to_owned(),
                 x: x?,
                 y: y?,
-                stage: stage?,
-                reference: reference?,
+                stage: stage.ok()?,
+                reference: reference.map_or(Some(None), |found| found.map(Some))?,
             })
         })
         .collect()
@@ -97,10 +91,7 @@ fn reference(node: &Node, file: &Path, problems: &mut Problems) -> Option<Refere
     let values = match form {
         "y" => ReferenceValues::Level {
             y: value.number()?,
-            at: match node.get("at") {
-                None => None,
-                Some(at) => Some(at.number()?),
-            },
+            at: node.optional_number("at").ok()?,
         },
         "points" => {
             let points: Option<Vec<_>> = value.items().iter().map(Node::pair).collect();
@@ -127,14 +118,10 @@ fn reference(node: &Node, file: &Path, problems: &mut Problems) -> Option<Refere
             }
         }
     };
-    let tolerance = match node.get("tolerance") {
-        None => None,
-        Some(tolerance) => Some(tolerance.number()?),
-    };
     Some(Reference {
         label: node.text_at("label")?.to_owned(),
         values,
-        tolerance,
+        tolerance: node.optional_number("tolerance").ok()?,
     })
 }
 

@@ -62,7 +62,7 @@ pub(super) fn grid(tree: &Node, frame: Option<Frame>, problems: &mut Problems) -
     let extent = [upper[0] - lower[0], upper[1] - lower[1]];
     let cells = [extent[0] / cell[0], extent[1] / cell[1]];
     let total = cells[0].max(1.0) * cells[1].max(1.0);
-    if !(total <= MOST) {
+    if total.is_nan() || total > MOST {
         problems
             .error(
                 node.place_at("cell"),

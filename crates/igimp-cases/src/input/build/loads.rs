@@ -155,19 +155,17 @@ fn on_grid(
                 number(depth / row.round().max(1.0))
             ));
     }
-    for x in [from[0], to[0]] {
+    for key in ["from", "to"] {
+        let Some([x, _]) = node.pair_at(key) else {
+            continue;
+        };
         if x - lower[0] <= site.round_off || upper[0] - x <= site.round_off {
             continue;
         }
         let column = (x - lower[0]) / cell[0];
         if (column - column.floor() - 0.5).abs() > 1e-6 {
-            let place = if x == node.pair_at("from").map_or(x, |from| from[0]) {
-                place
-            } else {
-                node.place_at("to")
-            };
             let problem = problems.warning(
-                place,
+                node.place_at(key),
                 format!(
                     "the edge of the footing `{name}` at x = {} m is not in the middle of a cell",
                     number(x)
