@@ -393,16 +393,16 @@ fn ground_at_rest_and_loads_in_stages() {
 
 #[test]
 fn large_files_are_judged_quickly() {
-    let bodies: String = (0..1200)
-        .map(|k| {
-            let (x, y) = (k % 60, k / 60);
-            let [right, top] = [x + 1, y + 1];
-            format!(
-                "[[bodies]]\nname = \"b{k}\"\nmaterial = \"rock\"\npolygon = [[\"{x} m\",\"{y} m\"], \
-                 [\"{right} m\",\"{y} m\"], [\"{right} m\",\"{top} m\"], [\"{x} m\",\"{top} m\"]]\n"
-            )
-        })
-        .collect();
+    let mut bodies = String::new();
+    for k in 0..1200 {
+        let (x, y) = (k % 60, k / 60);
+        let [right, top] = [x + 1, y + 1];
+        let _ = write!(
+            bodies,
+            "[[bodies]]\nname = \"b{k}\"\nmaterial = \"rock\"\npolygon = [[\"{x} m\",\"{y} m\"], \
+             [\"{right} m\",\"{y} m\"], [\"{right} m\",\"{top} m\"], [\"{x} m\",\"{top} m\"]]\n"
+        );
+    }
     let mut more = String::new();
     for k in 0..1000 {
         let _ = write!(
@@ -421,7 +421,6 @@ fn large_files_are_judged_quickly() {
     let file = CaseFile::parse("large.toml", &text, &[]).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(file.case().bodies.len(), 1200);
     assert!(begin.elapsed().as_secs() < 20, "{:?}", begin.elapsed());
-    println!("{:?}", begin.elapsed());
 }
 
 #[test]
