@@ -488,10 +488,10 @@ impl Output {
                 when: format!("in the {} state, SRF {srf:.4}", words(&name)),
                 name,
             };
-            self.field_pictures(model, &shown, particles)?;
+            self.field_pictures(model, &shown, &kept)?;
         }
         if summary.safety.is_none() {
-            self.field_pictures(model, &Shown::end_of_stage(case, number), particles)?;
+            self.field_pictures(model, &Shown::end_of_stage(case, number), state)?;
         }
         for (section, table) in case.sections.iter().zip(sections) {
             let (root, title) = (self.folder.root(), &case.title);
@@ -561,16 +561,18 @@ impl Output {
         &mut self,
         model: &Model<'_>,
         shown: &Shown,
-        particles: &Particles<2>,
+        state: &State,
     ) -> Result<(), CaseError> {
         let root = self.folder.root();
-        let own = (particles, &model.laws[..]);
+        let own = (&state.body.particles, &model.laws[..]);
+        let footing = model.footing_outline(state.controls.settlement);
+        let footing = footing.as_slice();
         let drawn = model
             .case
             .output
             .figures
             .par_iter()
-            .map(|&field| pictures::field_picture(root, model.case, shown, field, own, &[]))
+            .map(|&field| pictures::field_picture(root, model.case, shown, field, own, footing))
             .collect::<Result<Vec<_>, _>>()?;
         self.figures.extend(drawn);
         Ok(())

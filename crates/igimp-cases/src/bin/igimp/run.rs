@@ -8,7 +8,7 @@ use igimp_cases::sweep::{Ending, Sweep};
 use crate::arguments::Run;
 use crate::error::{Exit, ProgramError};
 use crate::progress::Progress;
-use crate::{cases, failure, interrupt, output, verdict};
+use crate::{cases, interrupt, output, verdict};
 
 pub(crate) fn run(arguments: &Run) -> Result<Exit, ProgramError> {
     output::use_threads(arguments.threads);
@@ -69,7 +69,7 @@ fn tell(run: &engine::Run, folder: &Path, arguments: &Run) -> Result<Exit, Progr
     let ending = Ending::of(summary);
     output::say(&verdict::stages_and_checks(summary))?;
     if let Some(failure) = &run.failure {
-        output::complain(&failure::render(failure));
+        output::complain(&failure.to_string());
     }
     if ending == Ending::Interrupted {
         output::complain(&format!("interrupted; to go on: {}", again(arguments)));
