@@ -246,7 +246,11 @@ impl Course {
         summary: &StageSummary,
     ) -> Result<(), CaseError> {
         let case = session.model.case;
-        let tables = sections::read(session.model, &state.body.particles, number);
+        // A search leaves the body as it was found: there is nothing new to see along sections.
+        let tables = match case.stages[number].kind {
+            StageKind::StrengthReduction(_) => Vec::new(),
+            _ => sections::read(session.model, &state.body.particles, number),
+        };
         let resistance = session.last_resistance;
         let moment = Moment {
             stage: number,

@@ -1,7 +1,7 @@
 //! The results folder of a run: what is written, when, and how a run is taken up again from it.
 
 use std::collections::HashMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use igimp_assembly::Particles;
@@ -493,11 +493,16 @@ impl Output {
         if summary.safety.is_none() {
             self.field_pictures(model, &Shown::end_of_stage(case, number), state)?;
         }
-        for (section, table) in case.sections.iter().zip(sections) {
-            let (root, title) = (self.folder.root(), &case.title);
-            let own = pictures::section_pictures(root, title, section, &summary.name, table)?;
-            self.figures.extend(own);
-        }
+        let (root, title) = (self.folder.root(), &case.title);
+        let drawn = case
+            .sections
+            .par_iter()
+            .zip(sections)
+            .map(|(section, table)| {
+                pictures::section_pictures(root, title, section, &summary.name, table)
+            })
+            .collect::<Result<Vec<_>, _>>()?;
+        self.figures.extend(drawn.concat());
         self.seconds += clock.elapsed().as_secs_f64();
         Ok(())
     }
@@ -599,16 +604,13 @@ impl Output {
         let mut figures = std::mem::take(&mut self.figures);
         let at = figures.len().min(1);
         let (root, title) = (self.folder.root(), &case.title);
-        let mut histories = Vec::new();
-        for (curve, table) in case.curves.iter().zip(&records.curves) {
-            histories.push(pictures::curve_picture(root, title, curve, table)?);
-        }
-        for (monitor, table) in case.monitors.iter().zip(&records.monitors) {
-            histories.extend(pictures::monitor_pictures(root, title, monitor, table)?);
-        }
-        figures.splice(at..at, histories);
         let tolerance = Some(case.solver.tolerance);
-        figures.extend(pictures::convergence_pictures(root, title, tolerance)?);
+        let (histories, convergence) = rayon::join(
+            || histories(root, case, records),
+            || pictures::convergence_pictures(root, title, tolerance),
+        );
+        figures.splice(at..at, histories?);
+        figures.extend(convergence?);
         summary.figures = figures;
         self.seconds += clock.elapsed().as_secs_f64();
         summary.seconds = begun.elapsed().as_secs_f64();
@@ -683,6 +685,19 @@ impl Output {
     }
 }
 
+/// The pictures of curves and monitors.
+fn histories(root: &Path, case: &Case, records: &Records) -> Result<Vec<FigureNote>, CaseError> {
+    let title = &case.title;
+    let curves = (&case.curves, &records.curves)
+        .into_par_iter()
+        .map(|(curve, table)| Ok(vec![pictures::curve_picture(root, title, curve, table)?]));
+    let monitors = (&case.monitors, &records.monitors)
+        .into_par_iter()
+        .map(|(monitor, table)| pictures::monitor_pictures(root, title, monitor, table));
+    let drawn = curves.chain(monitors).collect::<Result<Vec<_>, _>>()?;
+    Ok(drawn.concat())
+}
+
 /// File of a table.
 fn csv(name: &str) -> String {
     format!("{name}.csv")
@@ -702,7 +717,7 @@ fn end_of_stage(number: usize) -> String {
     format!("stage-{:02}-end", number + 1)
 }
 
-fn notes_of(path: &std::path::Path, meta: &Meta) -> Result<Notes, CheckpointError> {
+fn notes_of(path: &Path, meta: &Meta) -> Result<Notes, CheckpointError> {
     serde_json::from_value(meta.data.clone()).map_err(|error| CheckpointError::Damaged {
         path: path.to_path_buf(),
         file: "meta.json".to_owned(),
