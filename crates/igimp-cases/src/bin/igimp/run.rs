@@ -36,7 +36,24 @@ pub(crate) fn run(arguments: &Run) -> Result<Exit, ProgramError> {
     let mut progress = Progress::new(arguments.quiet);
     let run = engine::run(&case, Some(&target), start, &mut progress, &flag);
     progress.finish();
-    tell(&run?, &folder, arguments)
+    match run {
+        Ok(run) => tell(&run, &folder, arguments),
+        Err(error) => Ok(give_up(&error.into(), &folder, arguments)),
+    }
+}
+
+/// Tells of a run that cannot go on, and how it can later if there is something to go on from.
+fn give_up(error: &ProgramError, folder: &Path, arguments: &Run) -> Exit {
+    output::complain(&error.render());
+    let kept =
+        std::fs::read_dir(folder.join("checkpoint")).is_ok_and(|mut saved| saved.next().is_some());
+    if error.exit() == Exit::InputOutput && kept {
+        output::complain(&format!(
+            "what was computed is kept; to go on later: {}",
+            again(arguments)
+        ));
+    }
+    error.exit()
 }
 
 /// One task of a sweep.
