@@ -13,6 +13,7 @@
 //! | `gives` | what the commands before print; a line `...` stands for any lines |
 //! | `NAME.toml: FROM => TO` | the message for a shipped case with this change |
 //! | `NAME.toml: --set SETTING` | the message for a shipped case with this setting |
+//! | `of: FILE` | the lines stand in this file of the workspace |
 //! | `generated: WHAT` to `generated: end` | made by the program |
 //!
 //! Messages and what is generated are written anew with `INSTA_UPDATE=always`, like snapshots.
@@ -28,7 +29,7 @@ use igimp_cases::results::checkpoint;
 use igimp_cases::shipped::{SHIPPED, find};
 
 /// The slope on cells so large that it runs in a second or two.
-const COARSE: &str = "--set 'grid.cell={x=\"5 m\", y=\"2 m\"}' --set stages.2.steps=20";
+const COARSE: &str = "--set 'grid.cell={x=\"5 m\", y=\"2 m\"}' --set checks.0.between=[1,2]";
 
 /// A block of code on a page.
 #[derive(Debug)]
@@ -87,7 +88,9 @@ fn blocks(text: &str) -> Vec<Block> {
             blocks.push(Block {
                 marks: std::mem::take(&mut marks),
                 language: language.to_owned(),
-                text: inner.iter().fold(String::new(), |text, line| text + line + "\n"),
+                text: inner
+                    .iter()
+                    .fold(String::new(), |text, line| text + line + "\n"),
                 line: number + 2,
             });
         } else if !line.trim().is_empty() {
@@ -99,7 +102,9 @@ fn blocks(text: &str) -> Vec<Block> {
 
 /// A new folder of the build.
 fn folder(name: &str) -> PathBuf {
-    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("book").join(name);
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR"))
+        .join("book")
+        .join(name);
     let _ = fs::remove_dir_all(&path);
     fs::create_dir_all(&path).unwrap();
     path
@@ -236,7 +241,10 @@ fn message(marks: &[String]) -> Option<String> {
         };
         let text = match &case {
             Some((_, text)) => text.clone(),
-            None => find(name).unwrap_or_else(|| panic!("no case {name}")).text.to_owned(),
+            None => find(name)
+                .unwrap_or_else(|| panic!("no case {name}"))
+                .text
+                .to_owned(),
         };
         let text = if let Some(setting) = change.strip_prefix("--set ") {
             settings.push(setting.to_owned());
@@ -249,10 +257,12 @@ fn message(marks: &[String]) -> Option<String> {
         case = Some((name, text));
     }
     let (name, text) = case?;
-    Some(match CaseFile::parse(&format!("{name}.toml"), &text, &settings) {
-        Ok(file) => file.warnings(),
-        Err(error) => error.to_string(),
-    })
+    Some(
+        match CaseFile::parse(&format!("{name}.toml"), &text, &settings) {
+            Ok(file) => file.warnings(),
+            Err(error) => error.to_string(),
+        },
+    )
 }
 
 #[test]
@@ -266,9 +276,20 @@ fn messages_on_the_pages_are_those_of_the_program() {
                 let marks = block.marks.last().unwrap();
                 let old = format!("<!-- {marks} -->\n```text\n{}```\n", block.text);
                 let new = format!("<!-- {marks} -->\n```text\n{}\n```\n", message.trim_end());
-                assert!(should_be.contains(&old), "{}: no blank lines after {marks}", page.display());
+                assert!(
+                    should_be.contains(&old),
+                    "{}: no blank lines after {marks}",
+                    page.display()
+                );
                 should_be = should_be.replacen(&old, &new, 1);
                 count += 1;
+            }
+            if let Some(file) = block.mark("of:") {
+                let source = fs::read_to_string(root().join(file)).unwrap();
+                let lines: Vec<&str> = source.lines().map(str::trim).collect();
+                for line in block.text.lines() {
+                    assert!(lines.contains(&line.trim()), "`{line}` is not in {file}");
+                }
             }
         }
         hold(&page, &text, &should_be);
@@ -280,7 +301,10 @@ fn templates() -> String {
     let rows = SHIPPED
         .iter()
         .map(|case| format!("| `{}` | {} |\n", case.name, case.summary));
-    format!("| name | what it is |\n|---|---|\n{}", rows.collect::<String>())
+    format!(
+        "| name | what it is |\n|---|---|\n{}",
+        rows.collect::<String>()
+    )
 }
 
 #[test]
@@ -291,7 +315,9 @@ fn generated_parts_are_those_of_the_program() {
         let mut inside = false;
         for line in text.lines() {
             let mark = comment(line);
-            let what = mark.as_deref().and_then(|mark| mark.strip_prefix("generated: "));
+            let what = mark
+                .as_deref()
+                .and_then(|mark| mark.strip_prefix("generated: "));
             inside &= what != Some("end");
             if !inside {
                 should_be += line;
@@ -352,14 +378,20 @@ fn the_page_on_results_names_every_file_and_field() {
     for entry in fs::read_dir(&results).unwrap() {
         names.push(entry.unwrap().file_name().into_string().unwrap());
     }
-    let newest = checkpoint::newest(&results.join("checkpoint")).unwrap().unwrap();
+    let newest = checkpoint::newest(&results.join("checkpoint"))
+        .unwrap()
+        .unwrap();
     for entry in fs::read_dir(newest.join("current")).unwrap() {
         let name = entry.unwrap().file_name().into_string().unwrap();
         names.push(name.trim_end_matches(".npy").to_owned());
     }
     let missing: Vec<&String> = names
         .iter()
-        .filter(|name| !["`", "/`"].iter().any(|end| page.contains(&format!("`{name}{end}"))))
+        .filter(|name| {
+            !["`", "/`"]
+                .iter()
+                .any(|end| page.contains(&format!("`{name}{end}")))
+        })
         .collect();
     assert!(missing.is_empty(), "not on the page: {missing:?}");
 }
@@ -378,7 +410,10 @@ fn the_python_recipe_works() {
     }
     let recipe = root().join("docs/src/guide/python_recipe.py");
     let folder = slope_results();
-    let output = shell(folder, &format!("python3 '{}' results/slope", recipe.display()));
+    let output = shell(
+        folder,
+        &format!("python3 '{}' results/slope", recipe.display()),
+    );
     assert!(output.status.success(), "{}", said(&output));
     println!("{}", said(&output));
 }

@@ -41,7 +41,10 @@ pub(super) fn check(root: &Path) -> Result<Vec<String>, Failure> {
         }
     }
     let summary = read(&root.join(SUMMARY))?;
-    let listed: Vec<String> = links(&summary).into_iter().map(|link| link.target).collect();
+    let listed: Vec<String> = links(&summary)
+        .into_iter()
+        .map(|link| link.target)
+        .collect();
     for page in &pages {
         let name = shown(page, &root.join(BOOK));
         if name != "SUMMARY.md" && !listed.contains(&name) {
@@ -225,7 +228,10 @@ mod tests {
             .map(|link| (link.line, link.target))
             .collect();
         let expected = [(1, "b.md#c"), (9, "q.png"), (11, "r.py")];
-        assert_eq!(found, expected.map(|(line, target)| (line, target.to_owned())));
+        assert_eq!(
+            found,
+            expected.map(|(line, target)| (line, target.to_owned()))
+        );
     }
 
     #[test]
