@@ -9,6 +9,7 @@
 //! | `tried with: OPTIONS` | options put behind every `igimp run` of the block, to be quick |
 //! | `exit: CODE` | exit code of the block's last command, 0 when not said |
 //! | `not tried: REASON` | the block is not run |
+//! | `tried as: FROM => TO` | a change of a file, to be quick |
 //! | `file: NAME` | the block is written to this file before the next commands run |
 //! | `gives` | what the commands before print; a line `...` stands for any lines |
 //! | `NAME.toml: FROM => TO` | the message for a shipped case with this change |
@@ -138,13 +139,17 @@ fn said(output: &Output) -> String {
     text(&output.stdout) + &text(&output.stderr)
 }
 
-/// The commands of a block that run the program, continued lines joined.
+/// The commands of a block that run the program or make a folder for it, continued lines joined.
 fn commands(block: &Block) -> Vec<String> {
     let joined = block.text.replace("\\\n", " ");
     let extra = block.mark("tried with:");
     joined
         .lines()
-        .filter(|line| line.starts_with("igimp "))
+        .filter(|line| {
+            ["igimp ", "mkdir "]
+                .iter()
+                .any(|start| line.starts_with(start))
+        })
         .map(|line| match extra {
             Some(extra) => line.replace("igimp run ", &format!("igimp run {extra} ")),
             None => line.to_owned(),
@@ -163,49 +168,76 @@ fn is_shown(expected: &[&str], found: &[&str]) -> bool {
     }
 }
 
+/// The text of a block that is to be a file, with its change to be quick.
+fn file_text(block: &Block) -> String {
+    match block
+        .mark("tried as:")
+        .and_then(|mark| mark.split_once(" => "))
+    {
+        Some((from, to)) => {
+            assert!(block.text.contains(from), "`{from}` is not in the block");
+            block.text.replacen(from, to, 1)
+        }
+        None => block.text.clone(),
+    }
+}
+
+/// Runs the commands of a page, one after the other in one folder; how many there are, and what is
+/// wrong.
+fn try_page(page: &Path) -> (usize, String) {
+    let name = page.file_stem().unwrap().to_string_lossy().into_owned();
+    let folder = folder(&name);
+    let (mut tried, mut problems, mut last) = (0, String::new(), String::new());
+    for block in blocks(&fs::read_to_string(page).unwrap()) {
+        if let Some(file) = block.mark("file:") {
+            fs::write(folder.join(file), file_text(&block)).unwrap();
+        }
+        if block.mark("gives").is_some() {
+            let expected: Vec<&str> = block.text.lines().collect();
+            let found: Vec<&str> = last.lines().collect();
+            if !is_shown(&expected, &found) {
+                let _ = writeln!(problems, "{name}:{}: prints\n{last}", block.line);
+            }
+        }
+        if block.language != "sh" || block.mark("not tried:").is_some() {
+            continue;
+        }
+        let lines = commands(&block);
+        for (number, line) in lines.iter().enumerate() {
+            let output = shell(&folder, line);
+            tried += 1;
+            last = said(&output);
+            let is_last = number + 1 == lines.len();
+            let wanted = block.mark("exit:").filter(|_| is_last).unwrap_or("0");
+            let code = output.status.code().map(|code| code.to_string());
+            if code.as_deref() != Some(wanted) {
+                let _ = writeln!(
+                    problems,
+                    "{name}:{}: `{line}` ends with {code:?} and not {wanted}\n{last}",
+                    block.line
+                );
+            }
+        }
+    }
+    (tried, problems)
+}
+
 #[test]
 fn commands_on_the_pages_run() {
     if !has_shell() {
         return;
     }
-    let mut problems = String::new();
-    let mut tried = 0;
-    for page in pages() {
-        let name = page.file_stem().unwrap().to_string_lossy().into_owned();
-        let folder = folder(&name);
-        let mut last = String::new();
-        for block in blocks(&fs::read_to_string(&page).unwrap()) {
-            if let Some(file) = block.mark("file:") {
-                fs::write(folder.join(file), &block.text).unwrap();
-            }
-            if block.mark("gives").is_some() {
-                let (expected, found): (Vec<_>, Vec<_>) =
-                    (block.text.lines().collect(), last.lines().collect());
-                if !is_shown(&expected, &found) {
-                    let _ = writeln!(problems, "{name}:{}: prints\n{last}", block.line);
-                }
-            }
-            if block.language != "sh" || block.mark("not tried:").is_some() {
-                continue;
-            }
-            let lines = commands(&block);
-            for (number, line) in lines.iter().enumerate() {
-                let output = shell(&folder, line);
-                tried += 1;
-                last = said(&output);
-                let is_last = number + 1 == lines.len();
-                let wanted = block.mark("exit:").filter(|_| is_last).unwrap_or("0");
-                let code = output.status.code().map(|code| code.to_string());
-                if code.as_deref() != Some(wanted) {
-                    let _ = writeln!(
-                        problems,
-                        "{name}:{}: `{line}` ends with {code:?} and not {wanted}\n{last}",
-                        block.line
-                    );
-                }
-            }
-        }
-    }
+    let pages = pages();
+    let ends: Vec<(usize, String)> = std::thread::scope(|scope| {
+        let running: Vec<_> = pages
+            .iter()
+            .map(|page| scope.spawn(|| try_page(page)))
+            .collect();
+        let ended = running.into_iter().map(|page| page.join().unwrap());
+        ended.collect()
+    });
+    let problems: String = ends.iter().map(|(_, problems)| problems.as_str()).collect();
+    let tried: usize = ends.iter().map(|(tried, _)| tried).sum();
     assert!(problems.is_empty(), "{problems}");
     assert!(tried > 20, "only {tried} commands were found");
 }
@@ -225,7 +257,7 @@ fn hold(page: &Path, text: &str, should_be: &str) {
     panic!(
         "{}:{}: this is no longer what the program says, which is\n  {}\n\
          Write it anew with `INSTA_UPDATE=always cargo test -p igimp-cases --test book`.",
-        page.display(),
+        page.strip_prefix(root()).unwrap_or(page).display(),
         line + 1,
         should_be.lines().nth(line).unwrap_or_default()
     );
