@@ -37,3 +37,8 @@ struct Tour;
 #[cfg(doctest)]
 #[doc = include_str!("../../../docs/src/developer.md")]
 struct DeveloperNotes;
+
+/// The example of the user guide, run as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../../../docs/src/guide/library.md")]
+struct UserGuide;

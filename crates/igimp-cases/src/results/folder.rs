@@ -5,7 +5,7 @@
 //! |---|---|
 //! | `summary.json`, `report.html` | outcome, for programs and for people |
 //! | `case.toml`, `case.completed.toml` | the case as given, and with every default |
-//! | `convergence.csv` | residuals of steps that found no equilibrium |
+//! | `convergence.csv` | residuals of all steps, accepted or cut |
 //! | `curves/`, `monitors/`, `sections/` | tables (`.csv`) |
 //! | `figures/` | pictures (`.svg`, `.png`) |
 //! | `paraview/` | particles and grid (`.pvd`, `.vtu`) |
@@ -148,6 +148,19 @@ impl Folder {
     pub fn checkpoint(&self) -> PathBuf {
         self.root.join(CHECKPOINT)
     }
+}
+
+/// Marks a folder as one of igimp, so that a file may be put there before its run begins; it is made.
+///
+/// # Errors
+/// [`CaseError::ForeignFolder`] for a folder that is not empty and was not written by igimp;
+/// [`CaseError::File`].
+pub fn claim(root: &Path) -> Result<(), CaseError> {
+    if root.exists() && !is_empty(root)? && !is_ours(root) {
+        return Err(CaseError::ForeignFolder { path: root.into() });
+    }
+    fs::create_dir_all(root).map_err(at(root))?;
+    write_atomically(&root.join(MARKER), MARKER_TEXT)
 }
 
 /// A name for a file, from the name of a stage, curve or monitor: letters and digits as they are,

@@ -1,4 +1,5 @@
-//! The factor of safety by strength reduction: an interval, found by a search that always ends.
+//! The factor of safety by strength reduction: an interval, found by a search that always ends
+//! (theory, eqs. 31 to 34).
 
 use igimp_solver::Standing;
 
