@@ -8,12 +8,16 @@ use igimp_shape::ShapeError;
 use thiserror::Error;
 
 use crate::figures::FigureError;
+use crate::input::InputError;
 use crate::results::checkpoint::CheckpointError;
 use crate::results::npy::NpyError;
 
 /// Errors of stating or running a case.
 #[derive(Debug, Error)]
 pub enum CaseError {
+    /// A case file states no case.
+    #[error(transparent)]
+    Input(#[from] InputError),
     /// A parameter is outside its range.
     #[error("{field} is {value}, but must be {requirement}")]
     InvalidParameter {

@@ -67,6 +67,8 @@ pub enum Event<'a> {
     Trial {
         /// What it found.
         trial: &'a TrialSummary,
+        /// Its last equilibrium.
+        state: &'a State,
     },
     /// A stage ended.
     StageEnded {
