@@ -18,16 +18,6 @@ pub enum CaseError {
     /// A case file states no case.
     #[error(transparent)]
     Input(#[from] InputError),
-    /// A parameter is outside its range.
-    #[error("{field} is {value}, but must be {requirement}")]
-    InvalidParameter {
-        /// Name of the parameter.
-        field: &'static str,
-        /// The value given.
-        value: f64,
-        /// What is accepted.
-        requirement: &'static str,
-    },
     /// A body reaches beyond the grid.
     #[error("the body reaches ({}, {}) m, outside the grid domain", corner[0], corner[1])]
     OutsideGrid {

@@ -24,7 +24,7 @@ use igimp_solver::{Body, StepError, StepReport};
 use crate::summary::{ModelSize, StageSummary, Summary, TrialSummary};
 use crate::table::Table;
 
-pub use engine::run;
+pub use engine::{in_memory, run};
 pub use model::Model;
 pub use state::{Controls, State};
 

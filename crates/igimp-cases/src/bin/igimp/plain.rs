@@ -177,7 +177,9 @@ pub(crate) fn residual(value: Option<f64>) -> String {
 
 #[cfg(test)]
 mod tests {
-    use igimp_solver::{PhaseTimes, StepFailure};
+    use igimp_assembly::Particles;
+    use igimp_cases::run::{Controls, State};
+    use igimp_solver::{Body, PhaseTimes, StepFailure};
 
     use super::*;
 
