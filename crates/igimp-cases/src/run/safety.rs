@@ -454,7 +454,8 @@ fn next_factor(
         (Some(stable), Some(failed)) if failed - stable <= tolerance * (1.0 + 1e-9) => None,
         (Some(stable), Some(failed)) => Some((stable + stride).min(0.5 * (stable + failed))),
         (Some(stable), None) if stable < low => Some(low),
-        (Some(stable), None) => Some(high.max(stable + (high - low))),
+        (Some(stable), None) if stable < high => Some(high),
+        (Some(stable), None) => Some(stable + (high - low)),
         (None, Some(failed)) => Some(0.5 * failed),
         (None, None) => Some(1.0),
     }
@@ -491,6 +492,14 @@ mod tests {
                 assert!(made < 30, "{limit}: {made}");
             }
         }
+    }
+
+    #[test]
+    fn a_factor_within_the_bracket_is_sought_within_it() {
+        let next = |stable| next_factor((stable, None), (1.0, 1.6), 0.01, f64::INFINITY);
+        assert_eq!(next(Some(0.8)), Some(1.0));
+        assert_eq!(next(Some(1.4)), Some(1.6));
+        assert_eq!(next(Some(1.6)), Some(1.6 + (1.6 - 1.0)));
     }
 
     #[test]
