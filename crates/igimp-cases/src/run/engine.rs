@@ -57,6 +57,15 @@ pub fn run(
     course.finish(session, initial, clock)
 }
 
+/// Runs a case from its beginning and keeps what it finds in memory.
+///
+/// # Errors
+/// [`CaseError`] for a case that cannot be set up.
+pub fn in_memory(case: &Case) -> Result<Run, CaseError> {
+    let never = AtomicBool::new(false);
+    run(case, None, Start::Afresh, &mut |_: &Event<'_>| {}, &never)
+}
+
 /// The course of a run through its stages.
 struct Course {
     first: usize,

@@ -214,7 +214,10 @@ impl<'a> Trials<'a> {
             iterations: summary.iterations - before[1],
             cuts: summary.cuts - before[2],
         };
-        session.tell(&Event::Trial { trial: &trial });
+        session.tell(&Event::Trial {
+            trial: &trial,
+            state: &state,
+        });
         self.made.push(trial);
         if listed && !matches!(ended, Ended::NotConverged(_)) {
             self.record(session, &state, summary.plastic_share)?;
