@@ -26,7 +26,7 @@ pub mod von_mises_slope;
 mod error;
 mod parameter;
 
-pub use error::CaseError;
+pub use error::{CaseError, chain};
 
 /// The examples of the book, run as tests.
 #[cfg(doctest)]

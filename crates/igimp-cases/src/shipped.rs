@@ -25,8 +25,21 @@ macro_rules! shipped {
 }
 
 shipped! {
+    "column": "elastic column under its own weight, held against the exact solution",
+    "von_mises_slope": "soft slope in undrained clay: smooth stress at large displacement",
+    "mohr_coulomb_slope": "slope in c-phi soil: displacement against strength reduction, factor of safety",
+    "footing": "rigid strip footing pushed one width deep into undrained clay",
     "slope": "cut slope on rock: factor of safety, then run-out",
-    "footing": "rough strip footing on undrained clay, held against Prandtl's solution",
+    "layered_slope": "clay slope on a soft layer: factors of safety of all layers and of one",
+    "undrained_slope": "undrained slope under rising weight, held against limit analysis",
+    "vertical_cut": "vertical cut in undrained clay under rising weight, held against limit analysis",
+    "bearing_capacity": "rough strip footing on undrained clay, held against Prandtl's solution",
+    "two_layer_footing": "strip footing on stiff over soft clay, held against limit analysis",
+    "strip_load": "uniform strip pressure on undrained clay, held against Prandtl's solution",
+    "embankment": "embankment in three lifts on layered ground that was at rest",
+    "k0_ground": "level ground at rest, held against the exact stresses",
+    "cantilever": "elastic cantilever bent far, held against beam theory",
+    "block": "block of clay that loses its strength and spreads until it rests",
 }
 
 /// The case file of a name; hyphens, underscores and the extension make no difference.

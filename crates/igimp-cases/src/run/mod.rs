@@ -8,6 +8,7 @@ mod fingerprint;
 mod footing;
 mod initial;
 mod loading;
+mod message;
 mod model;
 mod output;
 mod records;
@@ -25,6 +26,7 @@ use crate::summary::{ModelSize, StageSummary, Summary, TrialSummary};
 use crate::table::Table;
 
 pub use engine::run;
+pub use message::worst_node;
 pub use model::Model;
 pub use state::{Controls, State};
 

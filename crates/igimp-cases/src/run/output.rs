@@ -1,7 +1,7 @@
 //! The results folder of a run: what is written, when, and how a run is taken up again from it.
 
 use std::collections::HashMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use igimp_assembly::Particles;
@@ -488,16 +488,21 @@ impl Output {
                 when: format!("in the {} state, SRF {srf:.4}", words(&name)),
                 name,
             };
-            self.field_pictures(model, &shown, particles)?;
+            self.field_pictures(model, &shown, &kept)?;
         }
         if summary.safety.is_none() {
-            self.field_pictures(model, &Shown::end_of_stage(case, number), particles)?;
+            self.field_pictures(model, &Shown::end_of_stage(case, number), state)?;
         }
-        for (section, table) in case.sections.iter().zip(sections) {
-            let (root, title) = (self.folder.root(), &case.title);
-            let own = pictures::section_pictures(root, title, section, &summary.name, table)?;
-            self.figures.extend(own);
-        }
+        let (root, title) = (self.folder.root(), &case.title);
+        let drawn = case
+            .sections
+            .par_iter()
+            .zip(sections)
+            .map(|(section, table)| {
+                pictures::section_pictures(root, title, section, &summary.name, table)
+            })
+            .collect::<Result<Vec<_>, _>>()?;
+        self.figures.extend(drawn.concat());
         self.seconds += clock.elapsed().as_secs_f64();
         Ok(())
     }
@@ -561,16 +566,18 @@ impl Output {
         &mut self,
         model: &Model<'_>,
         shown: &Shown,
-        particles: &Particles<2>,
+        state: &State,
     ) -> Result<(), CaseError> {
         let root = self.folder.root();
-        let own = (particles, &model.laws[..]);
+        let own = (&state.body.particles, &model.laws[..]);
+        let footing = model.footing_outline(state.controls.settlement);
+        let footing = footing.as_slice();
         let drawn = model
             .case
             .output
             .figures
             .par_iter()
-            .map(|&field| pictures::field_picture(root, model.case, shown, field, own, &[]))
+            .map(|&field| pictures::field_picture(root, model.case, shown, field, own, footing))
             .collect::<Result<Vec<_>, _>>()?;
         self.figures.extend(drawn);
         Ok(())
@@ -597,16 +604,13 @@ impl Output {
         let mut figures = std::mem::take(&mut self.figures);
         let at = figures.len().min(1);
         let (root, title) = (self.folder.root(), &case.title);
-        let mut histories = Vec::new();
-        for (curve, table) in case.curves.iter().zip(&records.curves) {
-            histories.push(pictures::curve_picture(root, title, curve, table)?);
-        }
-        for (monitor, table) in case.monitors.iter().zip(&records.monitors) {
-            histories.extend(pictures::monitor_pictures(root, title, monitor, table)?);
-        }
-        figures.splice(at..at, histories);
         let tolerance = Some(case.solver.tolerance);
-        figures.extend(pictures::convergence_pictures(root, title, tolerance)?);
+        let (histories, convergence) = rayon::join(
+            || histories(root, case, records),
+            || pictures::convergence_pictures(root, title, tolerance),
+        );
+        figures.splice(at..at, histories?);
+        figures.extend(convergence?);
         summary.figures = figures;
         self.seconds += clock.elapsed().as_secs_f64();
         summary.seconds = begun.elapsed().as_secs_f64();
@@ -681,6 +685,19 @@ impl Output {
     }
 }
 
+/// The pictures of curves and monitors.
+fn histories(root: &Path, case: &Case, records: &Records) -> Result<Vec<FigureNote>, CaseError> {
+    let title = &case.title;
+    let curves = (&case.curves, &records.curves)
+        .into_par_iter()
+        .map(|(curve, table)| Ok(vec![pictures::curve_picture(root, title, curve, table)?]));
+    let monitors = (&case.monitors, &records.monitors)
+        .into_par_iter()
+        .map(|(monitor, table)| pictures::monitor_pictures(root, title, monitor, table));
+    let drawn = curves.chain(monitors).collect::<Result<Vec<_>, _>>()?;
+    Ok(drawn.concat())
+}
+
 /// File of a table.
 fn csv(name: &str) -> String {
     format!("{name}.csv")
@@ -700,7 +717,7 @@ fn end_of_stage(number: usize) -> String {
     format!("stage-{:02}-end", number + 1)
 }
 
-fn notes_of(path: &std::path::Path, meta: &Meta) -> Result<Notes, CheckpointError> {
+fn notes_of(path: &Path, meta: &Meta) -> Result<Notes, CheckpointError> {
     serde_json::from_value(meta.data.clone()).map_err(|error| CheckpointError::Damaged {
         path: path.to_path_buf(),
         file: "meta.json".to_owned(),

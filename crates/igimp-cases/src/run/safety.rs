@@ -35,7 +35,8 @@ pub(crate) fn reduce_strength(
 ) -> Result<Ended, CaseError> {
     let stage = &session.model.case.stages[number];
     let mut trials = Trials::new(session, state, number, stage, reduction, left)?;
-    if trials.made.is_empty() {
+    // Where gravity is raised anew the state found is none that a trial begins with.
+    if trials.made.is_empty() && reduction.path == ReductionPath::Reduce {
         begin(session, state, number)?;
     }
     let ended = trials.search(session, summary);
@@ -161,10 +162,7 @@ impl<'a> Trials<'a> {
     ) -> Result<Option<Ended>, CaseError> {
         let listed = self.made.len() < self.reduction.factors.len();
         let (mut state, from) = self.start(srf);
-        let mut to = self.found.controls.clone();
-        for &material in &self.reduction.materials {
-            to.srf[material] = srf;
-        }
+        let to = self.end(srf);
         let settings = session.model.march_settings(self.steps(&from, srf));
         let path = Path {
             from: &from,
@@ -240,6 +238,19 @@ impl<'a> Trials<'a> {
                 (self.base.clone(), from)
             }
         }
+    }
+
+    /// What acts at the end of a trial: what was found with strength reduced, and gravity in full
+    /// where none acted yet.
+    fn end(&self, srf: f64) -> Controls {
+        let mut end = self.found.controls.clone();
+        if self.reduction.path == ReductionPath::Gravity && end.gravity == 0.0 {
+            end.gravity = 1.0;
+        }
+        for &material in &self.reduction.materials {
+            end.srf[material] = srf;
+        }
+        end
     }
 
     /// Steps of a trial: those of the stage for a reduction as wide as the bracket.
@@ -441,7 +452,8 @@ fn next_factor(
         (Some(stable), Some(failed)) if failed - stable <= tolerance * (1.0 + 1e-9) => None,
         (Some(stable), Some(failed)) => Some((stable + stride).min(0.5 * (stable + failed))),
         (Some(stable), None) if stable < low => Some(low),
-        (Some(stable), None) => Some(high.max(stable + (high - low))),
+        (Some(stable), None) if stable < high => Some(high),
+        (Some(stable), None) => Some(stable + (high - low)),
         (None, Some(failed)) => Some(0.5 * failed),
         (None, None) => Some(1.0),
     }
@@ -478,6 +490,14 @@ mod tests {
                 assert!(made < 30, "{limit}: {made}");
             }
         }
+    }
+
+    #[test]
+    fn a_factor_within_the_bracket_is_sought_within_it() {
+        let next = |stable| next_factor((stable, None), (1.0, 1.6), 0.01, f64::INFINITY);
+        assert_eq!(next(Some(0.8)), Some(1.0));
+        assert_eq!(next(Some(1.4)), Some(1.6));
+        assert_eq!(next(Some(1.6)), Some(1.6 + (1.6 - 1.0)));
     }
 
     #[test]

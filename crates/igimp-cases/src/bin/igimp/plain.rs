@@ -2,12 +2,10 @@
 
 use std::fmt::Write as _;
 
-use igimp_cases::check::short;
-use igimp_cases::run::Event;
+use igimp_cases::check::{count, short};
+use igimp_cases::run::{Event, worst_node};
 use igimp_cases::summary::{SafetySummary, StageOutcome, StageSummary, TrialSummary};
 use igimp_solver::{StepError, StepReport};
-
-use crate::output::count;
 
 const SEARCH: &str = "strength-reduction";
 
@@ -95,13 +93,6 @@ fn cut(error: &StepError) -> String {
         let _ = write!(line, ", worst node {worst}");
     }
     line
-}
-
-/// Position and axis of the largest out-of-balance force.
-pub(crate) fn worst_node(error: &StepError) -> Option<String> {
-    let (x, axis) = error.worst?;
-    let name = ["x", "y", "z"].get(axis)?;
-    Some(format!("({}, {}) m, {name}", short(x[0]), short(x[1])))
 }
 
 /// A trial of a strength reduction.
