@@ -11,6 +11,8 @@
 //! | `not tried: REASON` | the block is not run |
 //! | `tried as: FROM => TO` | a change of a file, to be quick |
 //! | `file: NAME` | the block is written to this file before the next commands run |
+//! | `from: NAME.toml` | its lines are those of a shipped case, comments aside |
+//! | `added to: NAME.toml` | behind a shipped case it makes a valid one |
 //! | `gives` | what the commands before print; a line `...` stands for any lines |
 //! | `NAME.toml: FROM => TO` | the message for a shipped case with this change |
 //! | `NAME.toml: --set SETTING` | the message for a shipped case with this setting |
@@ -327,6 +329,43 @@ fn messages_on_the_pages_are_those_of_the_program() {
         hold(&page, &text, &should_be);
     }
     assert!(count >= 10, "only {count} messages were found");
+}
+
+/// A line without its comment and without the spaces that align it.
+fn bare(line: &str) -> &str {
+    line.split_once(" #").map_or(line, |(code, _)| code).trim()
+}
+
+#[test]
+fn parts_of_case_files_are_right() {
+    let shipped = |name: &str| {
+        let found = find(name);
+        found.unwrap_or_else(|| panic!("no case {name}")).text
+    };
+    let mut count = 0;
+    for page in pages() {
+        for block in blocks(&fs::read_to_string(&page).unwrap()) {
+            let place = format!("{}:{}", page.display(), block.line);
+            if let Some(name) = block.mark("from:") {
+                let known: Vec<&str> = shipped(name).lines().map(bare).collect();
+                for line in block.text.lines() {
+                    assert!(
+                        known.contains(&bare(line)),
+                        "{place}: `{line}` is not in {name}"
+                    );
+                }
+                count += 1;
+            }
+            if let Some(name) = block.mark("added to:") {
+                let text = format!("{}\n{}", shipped(name), block.text);
+                if let Err(error) = CaseFile::parse(name, &text, &[]) {
+                    panic!("{place}: {error}");
+                }
+                count += 1;
+            }
+        }
+    }
+    assert!(count >= 10, "only {count} parts of case files were found");
 }
 
 fn templates() -> String {
