@@ -126,7 +126,7 @@ fn smoothness_figures(study: &mut Study, results: &[Computed]) -> Result<(), Cas
     .write(&study.folder.join("displacement"))?;
 
     for section in sections {
-        let level = section.from[1] == section.to[1];
+        let level = (section.from[1] - section.to[1]).abs() < 1e-9;
         let label = if level {
             "x along A–A (y = 6 m) [m]"
         } else {

@@ -209,7 +209,10 @@ fn a_planned_collapse_is_an_end_and_another_one_a_failure() {
     let stage = |more: &str| {
         format!("[[stages]]\nname = \"weight\"\ntype = \"gravity\"\nsteps = 5\n{more}")
     };
-    let planned = ran(&wall("8 kPa", "200 MPa", &stage("stop_when = { no_equilibrium = true }\n"),
+    let planned = ran(&wall(
+        "8 kPa",
+        "200 MPa",
+        &stage("stop_when = { no_equilibrium = true }\n"),
     ));
     let end = &planned.summary.stages[0];
     assert!(planned.failure.is_none());
