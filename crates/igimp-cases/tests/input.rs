@@ -276,7 +276,10 @@ fn loads_that_make_no_sense() {
 fn a_second_footing_is_refused() {
     let second = "[[loads]]\nname = \"second\"\ntype = \"rigid-footing\"\nfrom = [\"3 m\", \"5 m\"]\nto = [\"4 m\", \"5 m\"]\n[[stages]]";
     let text = messages(FOOTING, &[&[("[[stages]]", second)]]);
-    assert!(text.contains("error: this is a second rigid footing"), "{text}");
+    assert!(
+        text.contains("error: this is a second rigid footing"),
+        "{text}"
+    );
 }
 
 #[test]

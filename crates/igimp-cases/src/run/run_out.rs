@@ -98,7 +98,7 @@ pub(crate) fn run_out(
         },
     )?;
     match ended {
-        Ended::Stopped(rest) => stand(session, state, &path, summary, rest),
+        Ended::Stopped(rest) => stand(session, state, &path, summary, &rest),
         Ended::Completed(_) => {
             session.warn(format!(
                 "the slope still moves after {steps} steps of run-out"
@@ -121,7 +121,7 @@ fn stand(
     state: &mut State,
     path: &Path<'_>,
     summary: &mut StageSummary,
-    rest: String,
+    rest: &str,
 ) -> Result<Ended, CaseError> {
     let settings = session.model.march_settings(1);
     let last = Path {

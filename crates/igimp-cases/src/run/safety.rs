@@ -125,6 +125,8 @@ impl<'a> Trials<'a> {
         if let Some(&listed) = self.reduction.factors.get(made) {
             return Some(listed);
         }
+        // The factor 1 is tried as it is written.
+        #[allow(clippy::float_cmp)]
         let tried = |srf: f64| self.made.iter().any(|trial| trial.srf == srf);
         if !tried(1.0) {
             return Some(1.0);
@@ -391,6 +393,8 @@ impl<'a> Trials<'a> {
 }
 
 /// What a reader has to know about an interval.
+// The factor 1 is tried as it is written.
+#[allow(clippy::float_cmp)]
 fn remarks(safety: &SafetySummary, reduction: &StrengthReduction) -> Vec<String> {
     let mut remarks = Vec::new();
     let [low, high] = reduction.bracket;
