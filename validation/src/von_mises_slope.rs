@@ -126,11 +126,9 @@ fn smoothness_figures(study: &mut Study, results: &[Computed]) -> Result<(), Cas
     .write(&study.folder.join("displacement"))?;
 
     for section in sections {
-        let level = (section.from[1] - section.to[1]).abs() < 1e-9;
-        let label = if level {
-            "x along A–A (y = 6 m) [m]"
-        } else {
-            "y along B–B (x = 18 m) [m]"
+        let label = match &*section.name {
+            "A-A" => "x along A–A (y = 6 m) [m]",
+            _ => "y along B–B (x = 18 m) [m]",
         };
         let name = format!("section_{}", section.name);
         let mut series = Vec::new();
