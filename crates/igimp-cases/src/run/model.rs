@@ -133,8 +133,6 @@ impl<'c> Model<'c> {
     ///
     /// # Errors
     /// [`AssemblyError::Material`] for a factor that makes no law.
-    // A factor of exactly 1 leaves a law as it is.
-    #[allow(clippy::float_cmp)]
     pub fn laws_reduced_by(&self, srf: &[f64]) -> Result<Vec<SharedLaw>, AssemblyError> {
         self.laws
             .iter()
