@@ -369,6 +369,24 @@ mod tests {
     }
 
     #[test]
+    fn a_claimed_folder_may_hold_a_file_before_its_run() {
+        let scratch = Scratch::new();
+        let root = scratch.path().join("task-0001");
+        claim(&root).unwrap();
+        fs::write(root.join("task.json"), "{}").unwrap();
+        claim(&root).unwrap();
+        Folder::afresh(&root).unwrap();
+        assert!(root.join("task.json").exists());
+        let foreign = scratch.path().join("mine");
+        fs::create_dir(&foreign).unwrap();
+        fs::write(foreign.join("notes.txt"), "the user's").unwrap();
+        assert!(matches!(
+            claim(&foreign),
+            Err(CaseError::ForeignFolder { .. })
+        ));
+    }
+
+    #[test]
     fn results_without_a_marker_are_known_by_summary_or_checkpoint() {
         let scratch = Scratch::new();
         let states = [("current", &body(2))];
