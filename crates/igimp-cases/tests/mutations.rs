@@ -118,7 +118,7 @@ fn mutate(text: &str, kind: usize, random: &mut Random) -> Vec<u8> {
         }
         6 | 7 => {
             let all = atoms(text);
-            replaced(*random.pick(&all), random.pick(&VALUES))
+            replaced(*random.pick(&all), random.pick::<&str>(&VALUES))
         }
         // A slip of the pen.
         8 => {

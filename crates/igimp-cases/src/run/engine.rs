@@ -57,6 +57,15 @@ pub fn run(
     course.finish(session, initial, clock)
 }
 
+/// Runs a case from its beginning and keeps what it finds in memory.
+///
+/// # Errors
+/// [`CaseError`] for a case that cannot be set up.
+pub fn in_memory(case: &Case) -> Result<Run, CaseError> {
+    let never = AtomicBool::new(false);
+    run(case, None, Start::Afresh, &mut |_: &Event<'_>| {}, &never)
+}
+
 /// The course of a run through its stages.
 struct Course {
     first: usize,
@@ -98,6 +107,7 @@ impl Course {
             session.summary.size.unknowns = left.unknowns;
             session.ends = output.ends(case, left.stages.len())?;
             course.first = left.stages.len();
+            course.state = Some(left.state.clone());
             course.left = Some(left);
         } else {
             output.model_picture(case)?;
@@ -109,9 +119,6 @@ impl Course {
     /// Runs the stages from the first that is not done.
     fn stages(&mut self, session: &mut Session<'_>, initial: &State) -> Result<(), CaseError> {
         let case = session.model.case;
-        if self.first >= case.stages.len() {
-            return Err(CaseError::NothingToRun);
-        }
         for number in self.first..case.stages.len() {
             if session.interrupted() {
                 session.summary.interrupted = true;
@@ -164,7 +171,14 @@ impl Course {
             None => (new_summary(&stage.name, kind(&stage.kind)), None, None),
         };
         let seconds_before = summary.seconds;
-        let ended = dispatch(session, number, state, &mut summary, resumption, search)?;
+        let ended = dispatch(
+            session,
+            number,
+            state,
+            &mut summary,
+            resumption.as_ref(),
+            search,
+        )?;
         summary.seconds = seconds_before + clock.elapsed().as_secs_f64();
         summary.largest_displacement = largest_displacement(&state.body.particles);
         let step_error = match ended {
@@ -178,7 +192,7 @@ impl Course {
             }
             Ended::Interrupted => {
                 summary.outcome = StageOutcome::Interrupted;
-                summary.reason = "interrupted by the user".to_owned();
+                "interrupted by the user".clone_into(&mut summary.reason);
                 None
             }
             Ended::NotConverged(error) if stage.stop_when.no_equilibrium => {
@@ -248,7 +262,11 @@ impl Course {
         summary: &StageSummary,
     ) -> Result<(), CaseError> {
         let case = session.model.case;
-        let tables = sections::read(session.model, state, number)?;
+        // A search leaves the body as it was found: there is nothing new to see along sections.
+        let tables = match case.stages[number].kind {
+            StageKind::StrengthReduction(_) => Vec::new(),
+            _ => sections::read(session.model, state, number)?,
+        };
         let resistance = session.last_resistance;
         let moment = Moment {
             stage: number,
@@ -281,6 +299,7 @@ impl Course {
             session.summary.checks.extend(rows);
         }
         session.summary.peak_memory_mib = peak_memory_mib();
+        session.summary.failure = self.failure.as_ref().map(ToString::to_string);
         if let Some(output) = &mut session.output {
             output.finish(case, &session.records, &mut session.summary, clock)?;
         } else {
@@ -303,11 +322,10 @@ fn dispatch(
     number: usize,
     state: &mut State,
     summary: &mut StageSummary,
-    resumption: Option<Resumption>,
+    resumption: Option<&Resumption>,
     search: Option<Search>,
 ) -> Result<Ended, CaseError> {
     let stage = &session.model.case.stages[number];
-    let resumption = resumption.as_ref();
     match &stage.kind {
         StageKind::K0 if resumption.is_none() => {
             initial::level_ground(session.model, state)?;

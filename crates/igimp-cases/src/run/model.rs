@@ -12,6 +12,7 @@ use super::footing::Footing;
 use super::state::{Controls, State};
 use crate::case::{Case, LoadKind, Side};
 use crate::error::CaseError;
+use crate::figures::{Outline, OutlineStyle};
 use crate::seed::fill_polygon;
 use crate::summary::ModelSize;
 
@@ -143,6 +144,22 @@ impl<'c> Model<'c> {
             .map_or(0.0, |footing| footing.resistance(grid, reactions))
     }
 
+    /// The footing where it stands, as a block two cells high, for pictures.
+    pub(crate) fn footing_outline(&self, settlement: f64) -> Option<Outline> {
+        self.case.loads.iter().find_map(|load| match load.kind {
+            LoadKind::RigidFooting { from, to, .. } if settlement > 0.0 => {
+                let base = from[1] - settlement;
+                let top = from[1].max(base + 2.0 * self.case.grid.cell[1]);
+                let corners = [[from[0], base], [to[0], base], [to[0], top], [from[0], top]];
+                Some(Outline {
+                    points: corners.to_vec(),
+                    style: OutlineStyle::Block,
+                })
+            }
+            _ => None,
+        })
+    }
+
     fn supports(&self, grid: &Grid<2>) -> Result<Constraints<2>, AssemblyError> {
         let mut constraints = Constraints::free(grid);
         let boundaries = &self.case.boundaries;
@@ -201,7 +218,7 @@ pub(crate) fn reduced(laws: &[SharedLaw], srf: &[f64]) -> Result<Vec<SharedLaw>,
     laws.iter()
         .zip(srf)
         .map(|(law, &srf)| {
-            if srf == 1.0 {
+            if srf.total_cmp(&1.0).is_eq() {
                 Ok(Arc::clone(law))
             } else {
                 law.reduced(srf)

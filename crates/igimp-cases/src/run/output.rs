@@ -1,7 +1,7 @@
 //! The results folder of a run: what is written, when, and how a run is taken up again from it.
 
 use std::collections::HashMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use igimp_solver::{Body, Standing};
@@ -214,7 +214,7 @@ impl Output {
         };
         let found = checkpoint::read(&path, Some(&fingerprint::of_case(case)))?;
         checkpoint::discard_after(&path)?;
-        Self::take_up(folder, case, records, found)
+        Self::take_up(folder, case, records, &found)
     }
 
     /// A results folder taken up at the beginning of a stage.
@@ -242,14 +242,14 @@ impl Output {
         checkpoint::discard_after(&path)?;
         write_atomically(&folder.case(), &target.source)?;
         write_atomically(&folder.completed_case(), &target.completed)?;
-        Self::take_up(folder, case, records, found)
+        Self::take_up(folder, case, records, &found)
     }
 
     fn take_up(
         folder: Folder,
         case: &Case,
         records: &mut Records,
-        found: checkpoint::Checkpoint,
+        found: &checkpoint::Checkpoint,
     ) -> Result<(Self, Option<Left>), CaseError> {
         let path = folder.checkpoint();
         let notes: Notes = notes_of(&path, &found.meta)?;
@@ -380,7 +380,6 @@ impl Output {
         taken: &Taken<'_>,
         resumption: &Resumption,
         run: &Summary,
-        interrupted: bool,
     ) -> Result<(), CaseError> {
         let clock = Instant::now();
         self.steps += 1;
@@ -393,7 +392,7 @@ impl Output {
             self.frames.add(self.steps as f64, own, &conditions.grid)?;
         }
         let due = self.checkpoint_every > 0 && summary.steps.is_multiple_of(self.checkpoint_every);
-        if due || interrupted {
+        if due || taken.interrupted {
             let notes = Notes {
                 stage: Some(summary.clone()),
                 resumption: Some(resumption.clone()),
@@ -495,11 +494,16 @@ impl Output {
         if summary.safety.is_none() {
             self.field_pictures(model, &Shown::end_of_stage(case, number), state)?;
         }
-        for (section, table) in case.sections.iter().zip(sections) {
-            let (root, title) = (self.folder.root(), &case.title);
-            let own = pictures::section_pictures(root, title, section, &summary.name, table)?;
-            self.figures.extend(own);
-        }
+        let (root, title) = (self.folder.root(), &case.title);
+        let drawn = case
+            .sections
+            .par_iter()
+            .zip(sections)
+            .map(|(section, table)| {
+                pictures::section_pictures(root, title, section, &summary.name, table)
+            })
+            .collect::<Result<Vec<_>, _>>()?;
+        self.figures.extend(drawn.concat());
         self.seconds += clock.elapsed().as_secs_f64();
         Ok(())
     }
@@ -557,12 +561,14 @@ impl Output {
         let root = self.folder.root();
         let laws = model.laws_reduced_by(&state.controls.srf)?;
         let own = (&state.body.particles, &laws[..]);
+        let footing = model.footing_outline(state.controls.settlement);
+        let footing = footing.as_slice();
         let drawn = model
             .case
             .output
             .figures
             .par_iter()
-            .map(|&field| pictures::field_picture(root, model.case, shown, field, own, &[]))
+            .map(|&field| pictures::field_picture(root, model.case, shown, field, own, footing))
             .collect::<Result<Vec<_>, _>>()?;
         self.figures.extend(drawn);
         Ok(())
@@ -589,16 +595,13 @@ impl Output {
         let mut figures = std::mem::take(&mut self.figures);
         let at = figures.len().min(1);
         let (root, title) = (self.folder.root(), &case.title);
-        let mut histories = Vec::new();
-        for (curve, table) in case.curves.iter().zip(&records.curves) {
-            histories.push(pictures::curve_picture(root, title, curve, table)?);
-        }
-        for (monitor, table) in case.monitors.iter().zip(&records.monitors) {
-            histories.extend(pictures::monitor_pictures(root, title, monitor, table)?);
-        }
-        figures.splice(at..at, histories);
         let tolerance = Some(case.solver.tolerance);
-        figures.extend(pictures::convergence_pictures(root, title, tolerance)?);
+        let (histories, convergence) = rayon::join(
+            || histories(root, case, records),
+            || pictures::convergence_pictures(root, title, tolerance),
+        );
+        figures.splice(at..at, histories?);
+        figures.extend(convergence?);
         summary.figures = figures;
         self.seconds += clock.elapsed().as_secs_f64();
         summary.seconds = begun.elapsed().as_secs_f64();
@@ -673,6 +676,19 @@ impl Output {
     }
 }
 
+/// The pictures of curves and monitors.
+fn histories(root: &Path, case: &Case, records: &Records) -> Result<Vec<FigureNote>, CaseError> {
+    let title = &case.title;
+    let curves = (&case.curves, &records.curves)
+        .into_par_iter()
+        .map(|(curve, table)| Ok(vec![pictures::curve_picture(root, title, curve, table)?]));
+    let monitors = (&case.monitors, &records.monitors)
+        .into_par_iter()
+        .map(|(monitor, table)| pictures::monitor_pictures(root, title, monitor, table));
+    let drawn = curves.chain(monitors).collect::<Result<Vec<_>, _>>()?;
+    Ok(drawn.concat())
+}
+
 /// File of a table.
 fn csv(name: &str) -> String {
     format!("{name}.csv")
@@ -692,7 +708,7 @@ fn end_of_stage(number: usize) -> String {
     format!("stage-{:02}-end", number + 1)
 }
 
-fn notes_of(path: &std::path::Path, meta: &Meta) -> Result<Notes, CheckpointError> {
+fn notes_of(path: &Path, meta: &Meta) -> Result<Notes, CheckpointError> {
     serde_json::from_value(meta.data.clone()).map_err(|error| CheckpointError::Damaged {
         path: path.to_path_buf(),
         file: "meta.json".to_owned(),

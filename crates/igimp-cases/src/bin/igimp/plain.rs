@@ -2,12 +2,10 @@
 
 use std::fmt::Write as _;
 
-use igimp_cases::check::short;
-use igimp_cases::run::Event;
+use igimp_cases::check::{count, short};
+use igimp_cases::run::{Event, worst_node};
 use igimp_cases::summary::{SafetySummary, StageOutcome, StageSummary, TrialSummary};
 use igimp_solver::{StepError, StepReport};
-
-use crate::output::count;
 
 const SEARCH: &str = "strength-reduction";
 
@@ -60,7 +58,7 @@ impl Lines {
                 step(*number, self.steps, *progress, report)
             )),
             Event::Cut { error } => Some(format!("  {}", cut(error))),
-            Event::Trial { trial } => Some(format!("  {}", self::trial(trial))),
+            Event::Trial { trial, .. } => Some(format!("  {}", self::trial(trial))),
             Event::StageEnded { summary } => Some(format!("  {}", end(summary))),
             Event::Warning { text } => Some(format!("warning: {text}")),
         }
@@ -95,13 +93,6 @@ fn cut(error: &StepError) -> String {
         let _ = write!(line, ", worst node {worst}");
     }
     line
-}
-
-/// Position and axis of the largest out-of-balance force.
-pub(crate) fn worst_node(error: &StepError) -> Option<String> {
-    let (x, axis) = error.worst?;
-    let name = ["x", "y", "z"].get(axis)?;
-    Some(format!("({}, {}) m, {name}", short(x[0]), short(x[1])))
 }
 
 /// A trial of a strength reduction.
@@ -177,7 +168,9 @@ pub(crate) fn residual(value: Option<f64>) -> String {
 
 #[cfg(test)]
 mod tests {
-    use igimp_solver::{PhaseTimes, StepFailure};
+    use igimp_assembly::Particles;
+    use igimp_cases::run::{Controls, State};
+    use igimp_solver::{Body, PhaseTimes, StepFailure};
 
     use super::*;
 
@@ -279,6 +272,15 @@ mod tests {
             }),
             ..StageSummary::default()
         };
+        let state = State {
+            body: Body::new(Particles::new(&[]).unwrap()),
+            controls: Controls {
+                gravity: 1.0,
+                factors: Vec::new(),
+                settlement: 0.0,
+                srf: Vec::new(),
+            },
+        };
         let events = [
             start(SEARCH),
             Event::Step {
@@ -287,8 +289,14 @@ mod tests {
                 report: &report,
             },
             Event::Cut { error: &error },
-            Event::Trial { trial: &stands },
-            Event::Trial { trial: &fails },
+            Event::Trial {
+                trial: &stands,
+                state: &state,
+            },
+            Event::Trial {
+                trial: &fails,
+                state: &state,
+            },
             Event::StageEnded { summary: &ended },
         ];
         let text: Vec<String> = events
