@@ -2,15 +2,10 @@
 //! bench.
 
 use std::ops::ControlFlow;
-use std::sync::Arc;
 
-use igimp_assembly::{Constraints, Method, Particles, SharedLaw, StepConditions, StepLoads};
-use igimp_cases::mohr_coulomb_slope::MohrCoulombSlope;
-use igimp_cases::seed::fill_polygon;
-use igimp_cases::slope::{GRAVITY, SlopeGeometry};
-use igimp_cases::von_mises_slope::VonMisesSlope;
-use igimp_material::{ConstitutiveModel, Elasticity, MohrCoulomb, VonMises};
-use igimp_shape::Grid;
+use igimp_assembly::{Method, StepConditions};
+use igimp_cases::run::{Controls, Model};
+use igimp_cases::shipped::find;
 use igimp_solver::linear::SolverKind;
 use igimp_solver::{
     Accepted, Body, MarchSettings, NewtonSettings, Outcome, StepReport, Workspace, march, step,
@@ -51,97 +46,58 @@ impl PreparedStep {
 }
 
 /// The von Mises slope at a cell size \[m\] and a strength reduced by 1.2; its other
-/// parameters are those of the case.
+/// parameters are those of the shipped case.
 ///
 /// # Errors
 /// A cell size that makes no grid, or a march that finds no equilibrium.
 pub fn von_mises(cell: f64) -> BenchResult<PreparedStep> {
-    let case = VonMisesSlope::default();
-    let elasticity = Elasticity::new(case.young, case.poisson)?;
-    let law = VonMises::from_undrained_strength(elasticity, case.undrained_strength)?;
-    let grid = case.geometry.grid(cell, 4.0 * cell)?;
-    let slope = Slope {
-        constraints: case.geometry.walls(&grid),
-        grid,
-        law: law.reduced(REDUCTION)?,
-    };
-    slope.prepare(&case.geometry, case.unit_weight, case.method, case.steps)
+    prepare("von_mises_slope", cell, [40.0, 15.0 + cell])
 }
 
 /// The Mohr–Coulomb slope at a cell size \[m\] and a strength reduced by 1.2; its other
-/// parameters are those of the case.
+/// parameters are those of the shipped case.
 ///
 /// # Errors
 /// A cell size that makes no grid, or a march that finds no equilibrium.
 pub fn mohr_coulomb(cell: f64) -> BenchResult<PreparedStep> {
-    let case = MohrCoulombSlope::default();
-    let law = MohrCoulomb::new(
-        Elasticity::new(case.young, case.poisson)?,
-        case.cohesion,
-        case.friction_angle,
-        case.dilation_angle,
-    )?;
-    let grid = case.geometry.grid(cell, 4.0)?;
-    let slope = Slope {
-        constraints: case.geometry.walls(&grid),
-        grid,
-        law: law.reduced(REDUCTION)?,
+    prepare("mohr_coulomb_slope", cell, [36.0, 10.0 + cell])
+}
+
+/// Marches a shipped slope to the last but one of the equal steps to full gravity.
+fn prepare(name: &str, cell: f64, [x, y]: [f64; 2]) -> BenchResult<PreparedStep> {
+    let overrides = [
+        format!("grid.cell={cell} m"),
+        format!("grid.domain={{ x = ['0 m', '{x} m'], y = ['0 m', '{y} m'] }}"),
+    ];
+    let shipped = find(name).ok_or("the case is not shipped")?;
+    let case = shipped.case_file(overrides)?.into_case();
+    let (model, initial) = Model::new(&case)?;
+    let under = |gravity: f64| Controls {
+        gravity,
+        srf: vec![REDUCTION; case.materials.len()],
+        ..initial.controls.clone()
     };
-    slope.prepare(&case.geometry, case.unit_weight, case.method, case.steps)
-}
-
-/// What does not change over the march.
-struct Slope {
-    grid: Grid<2>,
-    constraints: Constraints<2>,
-    law: SharedLaw,
-}
-
-impl Slope {
-    /// Marches to the last but one of `steps` equal steps to full gravity.
-    fn prepare(
-        &self,
-        geometry: &SlopeGeometry,
-        unit_weight: f64,
-        method: Method,
-        steps: usize,
-    ) -> BenchResult<PreparedStep> {
-        let seeds = fill_polygon(&self.grid, &geometry.polygon(), 2, unit_weight / GRAVITY, 0)?;
-        let mut body = Body::new(Particles::new(&seeds)?);
-        let before = steps.max(2) - 1;
-        let start = before as f64 / (before + 1) as f64;
-        let report = march(
-            &mut body,
-            &method,
-            &|_: f64, to: f64| Ok(self.conditions(start * to)),
-            &MarchSettings::steps(before),
-            &mut PreparedStep::workspace(),
-            &mut |_: &Accepted<'_, 2>| ControlFlow::Continue(()),
-        );
-        if let Outcome::StepTooSmall { cause, .. } = report.outcome {
-            return Err(cause.into());
-        }
-        Ok(PreparedStep {
-            body,
-            method,
-            conditions: self.conditions(1.0),
-            factors: (start, 1.0),
-        })
+    let stage = &case.stages[0];
+    let before = stage.steps.max(2) - 1;
+    let start = before as f64 / (before + 1) as f64;
+    let mut body = initial.body.clone();
+    let report = march(
+        &mut body,
+        &case.method,
+        &|from: f64, to: f64| model.conditions(&under(start * from), &under(start * to), 0.0),
+        &MarchSettings::steps(before),
+        &mut PreparedStep::workspace(),
+        &mut |_: &Accepted<'_, 2>| ControlFlow::Continue(()),
+    );
+    if let Outcome::StepTooSmall { cause, .. } = report.outcome {
+        return Err(cause.into());
     }
-
-    /// The conditions under a factor on gravity.
-    fn conditions(&self, factor: f64) -> StepConditions<2> {
-        StepConditions {
-            grid: self.grid.clone(),
-            constraints: self.constraints.clone(),
-            loads: StepLoads {
-                gravity: [0.0, -factor * GRAVITY],
-                factors: Vec::new(),
-                drag: 0.0,
-            },
-            laws: vec![Arc::clone(&self.law)],
-        }
-    }
+    Ok(PreparedStep {
+        body,
+        conditions: model.conditions(&under(start), &under(1.0), 0.0)?,
+        method: case.method,
+        factors: (start, 1.0),
+    })
 }
 
 #[cfg(test)]

@@ -2,17 +2,20 @@
 
 use std::path::Path;
 
-use igimp_assembly::Method;
 use igimp_cases::CaseError;
+use igimp_cases::case::Case;
 use igimp_cases::check::Band;
-use igimp_cases::column::{Column, ColumnResult, without_dropping};
+use igimp_cases::exact;
 use igimp_cases::figures::{Colour, CurvePlot, LineStyle, Scale, Series, SeriesStyle};
 use igimp_cases::table::Table;
 use rayon::prelude::*;
 
 use crate::reference::column_stress_error;
-use crate::study::{Run, Study, timed};
+use crate::runs::{Computed, corners, mesh, method, shipped_case, unwatched};
+use crate::study::{Run, Study};
 
+/// Initial height of the column \[m\].
+const HEIGHT: f64 = 50.0;
 /// Source of the table of stress errors.
 const TABLE: &str = "independent program, after Charlton et al. 2017";
 
@@ -20,8 +23,8 @@ const TABLE: &str = "independent program, after Charlton et al. 2017";
 pub(crate) fn study(out: &Path) -> Result<Study, CaseError> {
     let mut study = Study::new("column", out)?;
     let meshes = [4, 8, 16, 32, 64, 128, 256];
-    let soft = Series1D::run(&mut study, 10e3, "10 kPa", &meshes)?;
-    let stiff = Series1D::run(&mut study, 1e6, "1 MPa", &meshes[2..])?;
+    let soft = Series1D::run(&mut study, "10 kPa", &meshes)?;
+    let stiff = Series1D::run(&mut study, "1 MPa", &meshes[2..])?;
     let reference = column_stress_error();
 
     for (series, name) in [(&soft, "gimp_10kPa"), (&stiff, "gimp_1MPa")] {
@@ -83,6 +86,69 @@ pub(crate) fn study(out: &Path) -> Result<Study, CaseError> {
     Ok(study)
 }
 
+/// The column in equilibrium under its full weight, or as far as it came.
+struct ColumnResult {
+    /// Σ|σ_yy − σ_exact| V_0 / (ρ₀ g l₀ ΣV_0) \[-\].
+    stress_error: f64,
+    /// Height of the column, to the top edge of the highest particle \[m\].
+    top: f64,
+    /// Exact height \[m\].
+    exact_top: f64,
+    /// Initial height, position, σ_yy and its exact value by particle, bottom to top.
+    stress: Table,
+}
+
+impl ColumnResult {
+    fn new(computed: &Computed) -> Self {
+        let exact = exact_solution(&computed.case);
+        let particles = computed.particles();
+        let header = [
+            "initial_height_[m]",
+            "height_[m]",
+            "sigma_yy_[Pa]_tension_+",
+            "exact_[Pa]_tension_+",
+        ];
+        let mut stress = Table::new("stress", &header);
+        let mut top = 0.0_f64;
+        // Particles are seeded row by row, from the bottom to the top.
+        for particle in 0..particles.len() {
+            let y = particles.x[particle][1];
+            let y0 = y - particles.displacement[particle][1];
+            let sigma = particles.sigma[particle][1][1];
+            top = top.max(y + particles.half_length[particle][1]);
+            stress.push(vec![y0, y, sigma, exact.sigma_yy(y0)]);
+        }
+        Self {
+            stress_error: exact.stress_error(particles),
+            top,
+            exact_top: exact.position(HEIGHT),
+            stress,
+        }
+    }
+}
+
+fn exact_solution(case: &Case) -> exact::Column {
+    let material = &case.materials[0];
+    exact::Column {
+        height: HEIGHT,
+        density: material.unit_weight / case.gravity,
+        gravity: case.gravity,
+        young: material.young,
+    }
+}
+
+/// The shipped column of so many cells, in a variant of the method.
+fn case(cells: usize, young: &str, (basis, bbar): (&str, bool)) -> Result<Case, CaseError> {
+    let h = HEIGHT / cells as f64;
+    let mut overrides = mesh(h, [h, HEIGHT + h]);
+    overrides.extend(method(basis, bbar));
+    overrides.push(format!("materials.soft.young=\"{young}\""));
+    let polygon = [[0.0, 0.0], [h, 0.0], [h, HEIGHT], [0.0, HEIGHT]];
+    overrides.push(format!("bodies.column.polygon={}", corners(&polygon)));
+    overrides.extend(unwatched());
+    shipped_case("column", overrides)
+}
+
 /// Results of one stiffness: by method, then by mesh, with the index of the run.
 struct Series1D {
     label: &'static str,
@@ -91,33 +157,24 @@ struct Series1D {
 }
 
 impl Series1D {
-    fn run(
-        study: &mut Study,
-        young: f64,
-        label: &'static str,
-        meshes: &[usize],
-    ) -> Result<Self, CaseError> {
-        let methods = [Method::impm(), Method::igimp(), Method::igimp_bbar()].map(without_dropping);
-        let jobs: Vec<(Method, usize)> = methods
+    fn run(study: &mut Study, label: &'static str, meshes: &[usize]) -> Result<Self, CaseError> {
+        let methods = [("linear", false), ("gimp", false), ("gimp", true)];
+        let jobs: Vec<_> = methods
             .iter()
-            .flat_map(|method| meshes.iter().map(move |&cells| (method.clone(), cells)))
+            .flat_map(|&method| meshes.iter().map(move |&cells| (method, cells)))
             .collect();
         let results = jobs
             .par_iter()
-            .map(|(method, cells)| {
-                let case = Column {
-                    method: method.clone(),
-                    cells: *cells,
-                    young,
-                    ..Column::default()
-                };
-                timed(|| case.run())
+            .map(|&(method, cells)| {
+                let computed = Computed::new(case(cells, label, method)?)?;
+                let variant = format!("{}, {cells} cells, E = {label}", computed.method());
+                let run = Run::new(variant, &computed.report, computed.elapsed);
+                Ok((ColumnResult::new(&computed), run))
             })
-            .collect::<Result<Vec<_>, _>>()?;
+            .collect::<Result<Vec<_>, CaseError>>()?;
         let mut by_method = vec![Vec::new(), Vec::new(), Vec::new()];
-        for (k, ((method, cells), (result, elapsed))) in jobs.into_iter().zip(results).enumerate() {
-            let variant = format!("{}, {cells} cells, E = {label}", method.label());
-            let run = study.run_to_end(Run::new(variant, &result.report, elapsed));
+        for (k, ((_, cells), (result, run))) in jobs.into_iter().zip(results).enumerate() {
+            let run = study.run_to_end(run);
             by_method[k / meshes.len()].push((cells, result, run));
         }
         Ok(Self {

@@ -2,20 +2,21 @@
 
 use std::path::Path;
 
-use igimp_assembly::Method;
 use igimp_cases::CaseError;
+use igimp_cases::case::Case;
 use igimp_cases::check::Band;
 use igimp_cases::figures::{
     Band as ShadedBand, Colour, ColourMap, CurvePlot, LineStyle, ReferenceLine, ReferenceValue,
     Series, SeriesStyle,
 };
-use igimp_cases::footing::{Footing, FootingResult};
 use igimp_cases::measure::{displacement_norm, eps_p_eq, sigma};
+use igimp_cases::table::Table;
 use rayon::prelude::*;
 
 use crate::pictures::{contours, scaled};
 use crate::reference::{footing_sequential_limit_analysis, interpolate};
-use crate::study::{Level, Run, Study, timed};
+use crate::runs::{Computed, mesh, method, shipped_case};
+use crate::study::{Level, Run, Study};
 
 /// Source of the large-deformation curve.
 const SEQUENTIAL: &str = "sequential limit analysis";
@@ -24,14 +25,23 @@ const SEQUENTIAL: &str = "sequential limit analysis";
 struct Push {
     name: &'static str,
     label: String,
-    footing: Footing,
     role: Role,
+    /// Cells per width B/h, odd so that the edge lies mid-cell.
+    cells_per_width: u32,
+    /// What differs from the shipped footing besides the mesh.
+    overrides: Vec<String>,
 }
 
 impl Push {
     /// The label with its subscript set.
     fn legend(&self) -> String {
         self.label.replace("s_u", "s_{u}")
+    }
+
+    fn case(&self) -> Result<Case, CaseError> {
+        let mut overrides = mesh(1.0 / f64::from(self.cells_per_width), [5.0, 6.0]);
+        overrides.extend(self.overrides.clone());
+        shipped_case("footing", overrides)
     }
 }
 
@@ -47,42 +57,45 @@ enum Role {
     Shown,
 }
 
+/// Overrides for a push to a penetration in so many steps \[m\].
+fn to(penetration: f64, steps: usize) -> Vec<String> {
+    vec![
+        format!("stages.push to one width.settlement=\"{penetration} m\""),
+        format!("stages.push to one width.steps={steps}"),
+    ]
+}
+
 fn pushes(level: Level) -> Vec<Push> {
-    let of = |name, label: &str, role, footing| Push {
+    let of = |name, label: &str, role, cells_per_width, overrides: &[Vec<String>]| Push {
         name,
         label: label.into(),
-        footing,
         role,
+        cells_per_width,
+        overrides: overrides.concat(),
     };
-    let base = Footing::default;
+    let stiff = || vec!["materials.clay.young=\"10 MPa\"".to_owned()];
+    let smooth = || vec!["loads.footing.interface=\"smooth\"".to_owned()];
     let mut pushes = vec![
         of(
             "small_strain_9",
             "iGIMP + B-bar, rough, B/h = 9, E/s_u = 1e4",
             Role::SmallStrain,
-            Footing {
-                young: 1e7,
-                penetration: 0.005,
-                steps: 20,
-                ..base()
-            },
+            9,
+            &[stiff(), to(0.005, 20)],
         ),
         of(
             "locked_9",
             "iGIMP, rough, B/h = 9",
             Role::Locked,
-            Footing {
-                method: Method::igimp(),
-                penetration: 0.2,
-                steps: 15,
-                ..base()
-            },
+            9,
+            &[method("gimp", false), to(0.2, 15)],
         ),
         of(
             "rough_9",
             "iGIMP + B-bar, rough, B/h = 9",
             Role::Deep,
-            base(),
+            9,
+            &[],
         ),
     ];
     if level >= Level::Default {
@@ -91,32 +104,22 @@ fn pushes(level: Level) -> Vec<Push> {
                 "smooth_9",
                 "iGIMP + B-bar, smooth, B/h = 9",
                 Role::Shown,
-                Footing {
-                    rough: false,
-                    ..base()
-                },
+                9,
+                &[smooth()],
             ),
             of(
                 "rough_13",
                 "iGIMP + B-bar, rough, B/h = 13",
                 Role::Deep,
-                Footing {
-                    cells_per_width: 13,
-                    steps: 130,
-                    ..base()
-                },
+                13,
+                &[to(1.0, 130)],
             ),
             of(
                 "small_strain_13",
                 "iGIMP + B-bar, rough, B/h = 13, E/s_u = 1e4",
                 Role::SmallStrain,
-                Footing {
-                    cells_per_width: 13,
-                    young: 1e7,
-                    penetration: 0.005,
-                    steps: 20,
-                    ..base()
-                },
+                13,
+                &[stiff(), to(0.005, 20)],
             ),
         ]);
     }
@@ -126,24 +129,29 @@ fn pushes(level: Level) -> Vec<Push> {
                 "impm_bbar_9",
                 "iMPM + B-bar, rough, B/h = 9",
                 Role::Shown,
-                Footing {
-                    method: Method::impm_bbar(),
-                    ..base()
-                },
+                9,
+                &[method("linear", true)],
             ),
             of(
                 "rough_17",
                 "iGIMP + B-bar, rough, B/h = 17",
                 Role::Deep,
-                Footing {
-                    cells_per_width: 17,
-                    steps: 170,
-                    ..base()
-                },
+                17,
+                &[to(1.0, 170)],
             ),
         ]);
     }
     pushes
+}
+
+/// w/B against N = resistance / (B s_u), compression positive.
+fn resistance(result: &Computed) -> Vec<[f64; 2]> {
+    result.curve("resistance").points(0, 1)
+}
+
+/// Penetration reached over B \[-\].
+fn reached(result: &Computed) -> f64 {
+    resistance(result).last().map_or(0.0, |point| point[0])
 }
 
 /// Runs the study.
@@ -152,38 +160,34 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
     let pushes = pushes(level);
     let results = pushes
         .par_iter()
-        .map(|push| timed(|| push.footing.run()))
+        .map(|push| Computed::new(push.case()?))
         .collect::<Result<Vec<_>, _>>()?;
     let sequential = footing_sequential_limit_analysis().points("w_over_B", "N");
-    for (push, (result, elapsed)) in pushes.iter().zip(&results) {
-        let run = study.run_to_end(Run::new(push.label.clone(), &result.report, *elapsed));
+    for (push, result) in pushes.iter().zip(&results) {
+        let run = study.run_to_end(Run::new(push.label.clone(), &result.report, result.elapsed));
         check(&mut study, push, run, result, &sequential);
         if push.role != Role::SmallStrain {
             study.newton(push.name, run)?;
         }
-        let mut table = result.resistance.clone();
-        table.name = format!("resistance_{}", push.name);
+        let mut table = Table::new(
+            format!("resistance_{}", push.name),
+            &["penetration_w/B_[-]", "resistance_N_[-]_compression_+"],
+        );
+        for point in resistance(result) {
+            table.push(point.to_vec());
+        }
         study.table(table)?;
     }
-    figures(
-        &study,
-        &pushes,
-        &results.iter().map(|(result, _)| result).collect::<Vec<_>>(),
-    )?;
+    figures(&study, &pushes, &results)?;
     Ok(study)
 }
 
-fn check(
-    study: &mut Study,
-    push: &Push,
-    run: usize,
-    result: &FootingResult,
-    sequential: &[[f64; 2]],
-) {
+fn check(study: &mut Study, push: &Push, run: usize, result: &Computed, sequential: &[[f64; 2]]) {
+    let resistance_at = |penetration| interpolate(&resistance(result), penetration);
     let prandtl = 2.0 + std::f64::consts::PI;
     match push.role {
         Role::SmallStrain => {
-            let plateau = result.resistance_at(push.footing.penetration);
+            let plateau = resistance_at(0.005);
             let expected = (prandtl, "Prandtl 1920, 2 + π");
             study.check(
                 run,
@@ -200,10 +204,10 @@ fn check(
                 "w/B reached [-]",
                 expected,
                 Band::AtLeast(1.0),
-                result.reached,
+                reached(result),
             );
             let expected = (interpolate(sequential, 0.2), SEQUENTIAL);
-            let measured = result.resistance_at(0.2);
+            let measured = resistance_at(0.2);
             study.check(
                 run,
                 "N at 0.2 B [-]",
@@ -212,7 +216,7 @@ fn check(
                 measured,
             );
             let source = "independent program 6.54; sequential limit analysis 5.95: open question";
-            let measured = result.resistance_at(0.5);
+            let measured = resistance_at(0.5);
             study.check(
                 run,
                 "N at 0.5 B [-]",
@@ -220,12 +224,12 @@ fn check(
                 Band::Between(6.3, 6.7),
                 measured,
             );
-            let expected = match push.footing.cells_per_width {
+            let expected = match push.cells_per_width {
                 9 => 7.44,
                 _ => 7.33,
             };
             let source = "independent program; sequential limit analysis 6.40: open question";
-            let measured = result.resistance_at(1.0);
+            let measured = resistance_at(1.0);
             study.check(
                 run,
                 "N at 1.0 B [-]",
@@ -242,20 +246,20 @@ fn check(
                 "N at 0.2 B [-]",
                 (1.3 * with_bbar, source),
                 Band::AtLeast(1.3 * with_bbar),
-                result.resistance_at(0.2),
+                resistance_at(0.2),
             );
         }
         Role::Shown => {}
     }
 }
 
-fn figures(study: &Study, pushes: &[Push], results: &[&FootingResult]) -> Result<(), CaseError> {
+fn figures(study: &Study, pushes: &[Push], results: &[Computed]) -> Result<(), CaseError> {
     let sequential = footing_sequential_limit_analysis().points("w_over_B", "N");
     let mut series: Vec<Series> = pushes
         .iter()
         .zip(results)
         .filter(|(push, _)| push.role != Role::SmallStrain)
-        .map(|(push, result)| Series::line(push.legend(), result.resistance.points(0, 1)))
+        .map(|(push, result)| Series::line(push.legend(), resistance(result)))
         .collect();
     series.push(
         Series::new(
@@ -283,7 +287,7 @@ fn figures(study: &Study, pushes: &[Push], results: &[&FootingResult]) -> Result
         .iter()
         .zip(results)
         .filter(|(push, _)| push.role == Role::SmallStrain)
-        .map(|(push, result)| Series::line(push.legend(), result.resistance.points(0, 1)))
+        .map(|(push, result)| Series::line(push.legend(), resistance(result)))
         .collect();
     CurvePlot {
         title: "Rigid footing in stiff Tresca soil".into(),
@@ -302,7 +306,7 @@ fn figures(study: &Study, pushes: &[Push], results: &[&FootingResult]) -> Result
         if push.role != Role::Deep {
             continue;
         }
-        let particles = &result.particles;
+        let particles = result.particles();
         let scale = 1e-3;
         let fields = [
             (
@@ -333,7 +337,7 @@ fn figures(study: &Study, pushes: &[Push], results: &[&FootingResult]) -> Result
             let title = format!(
                 "{}, w = {} B",
                 push.label,
-                igimp_cases::check::short(result.reached)
+                igimp_cases::check::short(reached(result))
             );
             contours(title, particles, values, label, map, range)
                 .write(&study.folder.join(format!("{name}_{}", push.name)))?;

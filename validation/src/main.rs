@@ -6,6 +6,7 @@ mod footing;
 mod mohr_coulomb_slope;
 mod pictures;
 mod reference;
+mod runs;
 mod snapshot;
 mod study;
 mod table;

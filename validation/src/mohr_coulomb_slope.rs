@@ -4,25 +4,28 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use igimp_assembly::Method;
 use igimp_cases::CaseError;
 use igimp_cases::check::Band;
 use igimp_cases::figures::{
     ColourMap, CurvePlot, FieldPanel, LineStyle, ReferenceLine, ReferenceValue, Series, SeriesStyle,
 };
 use igimp_cases::measure::{displacement_norm, eps_p_eq};
-use igimp_cases::mohr_coulomb_slope::{FAILURE_DISPLACEMENT, MohrCoulombSlope, ReducedSlope};
-use igimp_cases::safety::{FactorOfSafety, search};
+use igimp_cases::summary::TrialSummary;
 use igimp_cases::table::Table;
 use igimp_solver::Outcome;
 use rayon::prelude::*;
 
 use crate::pictures::contours;
 use crate::reference::griffiths_lane;
-use crate::study::{Level, Run, Study, timed};
+use crate::runs::{Computed, Trial, mesh, method, shipped_case};
+use crate::study::{Level, Run, Study};
 
 /// Source of the displacements and of the factor of safety.
 const GRIFFITHS_LANE: &str = "Griffiths and Lane 1999, table 2";
+/// Height H of the slope \[m\].
+const HEIGHT: f64 = 10.0;
+/// E δ_max / (γ H²) above which the slope counts as failed \[-\], as the case file says in metres.
+const FAILURE_DISPLACEMENT: f64 = 1.0;
 
 /// Runs the study.
 pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
@@ -48,69 +51,109 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
 
 /// One mesh and method.
 struct Mesh {
-    case: MohrCoulombSlope,
+    cell: f64,
+    bbar: bool,
     label: String,
     slug: String,
 }
 
 /// What was found on one mesh.
 struct Found {
-    sweep: Vec<(ReducedSlope, Run)>,
-    safety: FactorOfSafety,
+    /// The factors listed: 0.8 to 1.6.
+    sweep: Vec<State>,
+    /// Every trial, those of the sweep first.
+    trials: Vec<(TrialSummary, f64)>,
+    /// Largest factor found stable, smallest found failed.
+    interval: [Option<f64>; 2],
+    /// The trials that the search added.
     search: Run,
+}
+
+/// The slope under full gravity at a reduced strength, or as far as it came.
+struct State {
+    trial: Trial,
+    /// E δ_max / (γ H²), δ_max over particles \[-\].
+    displacement: f64,
+    run: Run,
 }
 
 impl Mesh {
     fn new(cell: f64, bbar: bool) -> Self {
-        let method = if bbar {
-            Method::igimp_bbar()
-        } else {
-            Method::igimp()
-        };
-        let label = format!("{}, h = {cell} m", method.label());
+        let name = if bbar { "iGIMP + B-bar" } else { "iGIMP" };
         let slug = format!("{}_h{cell}", if bbar { "igimp_bbar" } else { "igimp" });
         Self {
-            case: MohrCoulombSlope {
-                method,
-                cell,
-                ..MohrCoulombSlope::default()
-            },
-            label,
+            cell,
+            bbar,
+            label: format!("{name}, h = {cell} m"),
             slug,
         }
     }
 
-    /// The sweep over strength reduction factors 0.8 to 1.6, and the search for the factor of
-    /// safety.
+    /// The shipped slope: a sweep over strength reduction factors 0.8 to 1.6, then the search for
+    /// the factor of safety.
     fn run(&self) -> Result<Found, CaseError> {
-        let sweep = (16..=32)
-            .into_par_iter()
-            .map(|k| {
-                let srf = f64::from(k) / 20.0;
-                let (slope, elapsed) = timed(|| self.case.run(srf))?;
-                let run = Run::new(
-                    format!("{}, SRF {srf:.2}", self.label),
-                    &slope.report,
-                    elapsed,
-                );
-                Ok((slope, run))
+        let factors: Vec<String> = (16..=32)
+            .map(|k| (f64::from(k) / 20.0).to_string())
+            .collect();
+        let mut overrides = mesh(self.cell, [36.0, HEIGHT + self.cell]);
+        overrides.extend(method("gimp", self.bbar));
+        overrides.push(format!(
+            "stages.strength reduction.factors=[{}]",
+            factors.join(", ")
+        ));
+        let computed = Computed::new(shipped_case("mohr_coulomb_slope", overrides)?)?;
+        let material = &computed.case.materials[0];
+        let scale = material.unit_weight * HEIGHT.powi(2) / material.young;
+        let interval = computed
+            .safety()
+            .map(|safety| [safety.stable, safety.failed]);
+        let mut made: Vec<State> = computed
+            .trials
+            .into_iter()
+            .map(|trial| {
+                let variant = format!("{}, SRF {:.2}", self.label, trial.summary.srf);
+                State {
+                    displacement: trial.summary.displacement / scale,
+                    run: Run::new(variant, &trial.report, trial.elapsed),
+                    trial,
+                }
             })
-            .collect::<Result<Vec<_>, CaseError>>()?;
-        let mut runs = Vec::new();
-        let safety = search((1.0, 1.6), 0.01, |srf| {
-            let (slope, elapsed) = timed(|| self.case.run(srf))?;
-            runs.push(Run::new(format!("SRF {srf}"), &slope.report, elapsed));
-            Ok(slope.verdict())
-        })?;
+            .collect();
+        let trials = made
+            .iter()
+            .map(|state| (state.trial.summary.clone(), state.displacement))
+            .collect();
+        let added: Vec<State> = made.drain(factors.len().min(made.len())..).collect();
         let search = Run::sum(
             format!("{}, search", self.label),
-            &runs.iter().collect::<Vec<_>>(),
+            &added.iter().map(|state| &state.run).collect::<Vec<_>>(),
         );
         Ok(Found {
-            sweep,
-            safety,
+            sweep: made,
+            trials,
+            interval: interval.unwrap_or_default(),
             search,
         })
+    }
+}
+
+impl Found {
+    /// The middle of the interval \[-\]; not a number when one end is open.
+    fn factor_of_safety(&self) -> f64 {
+        match self.interval {
+            [Some(stable), Some(failed)] => 0.5 * (stable + failed),
+            _ => f64::NAN,
+        }
+    }
+}
+
+impl State {
+    fn srf(&self) -> f64 {
+        self.trial.summary.srf
+    }
+
+    fn stands(&self) -> bool {
+        self.trial.summary.stable
     }
 }
 
@@ -126,16 +169,15 @@ fn report(study: &mut Study, mesh: &Mesh, found: &Found) -> Result<(), CaseError
             "stands_(1)_or_failed_(0)",
         ],
     );
-    for (slope, run) in &found.sweep {
-        let run = study.run(run.clone());
-        let stands = slope.verdict().stable;
+    for slope in &found.sweep {
+        let run = study.run(slope.run.clone());
         table.push(vec![
-            slope.srf,
+            slope.srf(),
             slope.displacement,
-            f64::from(u8::from(stands)),
+            f64::from(u8::from(slope.stands())),
         ]);
         for (srf, share) in [(0.8, 0.015), (1.0, 0.015), (1.2, 0.03), (1.3, 0.06)] {
-            if checked && (slope.srf - srf).abs() < 1e-9 {
+            if checked && (slope.srf() - srf).abs() < 1e-9 {
                 let expected = reference
                     .iter()
                     .find(|p| (p[0] - srf).abs() < 1e-9)
@@ -149,7 +191,7 @@ fn report(study: &mut Study, mesh: &Mesh, found: &Found) -> Result<(), CaseError
                 );
             }
         }
-        if (slope.srf - 1.2).abs() < 1e-9 {
+        if (slope.srf() - 1.2).abs() < 1e-9 {
             study.newton(&mesh.slug, run)?;
         }
     }
@@ -165,7 +207,7 @@ fn report(study: &mut Study, mesh: &Mesh, found: &Found) -> Result<(), CaseError
 fn factor_of_safety(study: &mut Study, mesh: &Mesh, found: &Found) -> Result<(), CaseError> {
     let run = study.run(found.search.clone());
     let published = "Griffiths and Lane 1999 (1.35, 1.40]; Bishop and Morgenstern 1.380";
-    let (expected, source, band) = match (mesh.case.cell, mesh.case.method.bbar) {
+    let (expected, source, band) = match (mesh.cell, mesh.bbar) {
         (_, false) => (
             1.380,
             "above that with B-bar: it locks",
@@ -185,7 +227,7 @@ fn factor_of_safety(study: &mut Study, mesh: &Mesh, found: &Found) -> Result<(),
         quantity,
         (expected, source),
         band,
-        found.safety.middle(),
+        found.factor_of_safety(),
     );
     let mut trials = Table::new(
         format!("factor_of_safety_{}", mesh.slug),
@@ -196,32 +238,26 @@ fn factor_of_safety(study: &mut Study, mesh: &Mesh, found: &Found) -> Result<(),
             "stands_(1)_or_failed_(0)",
         ],
     );
+    let end = |srf: Option<f64>| srf.map_or("?".into(), |srf| format!("{srf:.4}"));
     let mut note = format!("factor of safety, {}:\n", mesh.label);
-    for (k, trial) in found.safety.trials.iter().enumerate() {
-        let verdict = &trial.verdict;
-        let stands = if verdict.stable { "stands" } else { "failed" };
+    for (k, (trial, displacement)) in found.trials.iter().enumerate() {
+        let stands = if trial.stable { "stands" } else { "failed" };
         let _ = writeln!(
             note,
             "  trial {:>2}  SRF {:.4}  E δ/(γH²) {:>7.3}  {stands}: {}",
             k + 1,
             trial.srf,
-            verdict.measure,
-            verdict.reason
+            displacement,
+            trial.reason
         );
-        let stands = f64::from(u8::from(verdict.stable));
-        trials.push(vec![k as f64 + 1.0, trial.srf, verdict.measure, stands]);
+        let stands = f64::from(u8::from(trial.stable));
+        trials.push(vec![k as f64 + 1.0, trial.srf, *displacement, stands]);
     }
     let _ = write!(
         note,
         "  {} ≤ factor of safety < {}, failed when there is no equilibrium or E δ/(γH²) > {}",
-        found
-            .safety
-            .stable
-            .map_or("?".into(), |srf| format!("{srf:.4}")),
-        found
-            .safety
-            .failed
-            .map_or("?".into(), |srf| format!("{srf:.4}")),
+        end(found.interval[0]),
+        end(found.interval[1]),
         FAILURE_DISPLACEMENT,
     );
     study.notes.push(note);
@@ -243,8 +279,8 @@ fn figures(study: &Study, meshes: &[Mesh], found: &[Found]) -> Result<(), CaseEr
             let points = found
                 .sweep
                 .iter()
-                .filter(|(slope, _)| slope.report.outcome == Outcome::Completed)
-                .map(|(slope, _)| [slope.srf, slope.displacement])
+                .filter(|slope| slope.trial.report.outcome == Outcome::Completed)
+                .map(|slope| [slope.srf(), slope.displacement])
                 .collect();
             let style = SeriesStyle::LineAndMarkers(LineStyle::Solid);
             Series::new(mesh.label.clone(), points, style)
@@ -278,13 +314,9 @@ fn figures(study: &Study, meshes: &[Mesh], found: &[Found]) -> Result<(), CaseEr
         found[fine]
             .sweep
             .iter()
-            .find(|(slope, _)| (slope.srf - srf).abs() < 1e-9)
+            .find(|slope| (slope.srf() - srf).abs() < 1e-9)
     };
-    let states: Vec<&ReducedSlope> = [1.0, 1.3, 1.35, 1.4]
-        .into_iter()
-        .filter_map(at)
-        .map(|(slope, _)| slope)
-        .collect();
+    let states: Vec<&State> = [1.0, 1.3, 1.35, 1.4].into_iter().filter_map(at).collect();
     for (name, label, values) in [
         (
             "displacement",
@@ -299,31 +331,27 @@ fn figures(study: &Study, meshes: &[Mesh], found: &[Found]) -> Result<(), CaseEr
     ] {
         // Each state has its own range: they differ by orders of magnitude across failure.
         for slope in &states {
-            let stands = if slope.verdict().stable {
-                "stands"
-            } else {
-                "failed"
-            };
-            let title = format!("Mohr–Coulomb slope, SRF {:.2}: {stands}", slope.srf);
+            let stands = if slope.stands() { "stands" } else { "failed" };
+            let title = format!("Mohr–Coulomb slope, SRF {:.2}: {stands}", slope.srf());
             contours(
                 title,
-                &slope.particles,
-                values(&slope.particles),
+                &slope.trial.particles,
+                values(&slope.trial.particles),
                 label,
                 ColourMap::Sequential,
                 None,
             )
-            .write(&study.folder.join(format!("{name}_srf_{:.2}", slope.srf)))?;
+            .write(&study.folder.join(format!("{name}_srf_{:.2}", slope.srf())))?;
         }
     }
     let plots = states
         .iter()
-        .filter(|slope| slope.verdict().stable)
+        .filter(|slope| slope.stands())
         .map(|slope| {
             contours(
-                format!("SRF {:.2}", slope.srf),
-                &slope.particles,
-                eps_p_eq(&slope.particles),
+                format!("SRF {:.2}", slope.srf()),
+                &slope.trial.particles,
+                eps_p_eq(&slope.trial.particles),
                 "accumulated plastic strain invariant [-]",
                 ColourMap::Sequential,
                 None,

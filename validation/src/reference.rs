@@ -50,11 +50,11 @@ impl Reference {
     }
 }
 
-/// The value of a curve at `x`, linear between its points.
+/// The value of a curve at `x`, linear between its points; not a number beyond its ends.
 pub(crate) fn interpolate(points: &[[f64; 2]], x: f64) -> f64 {
     points
         .windows(2)
-        .find(|pair| pair[0][0] <= x && x <= pair[1][0])
+        .find(|pair| pair[0][0] <= x && x <= pair[1][0] + 1e-12)
         .map_or(f64::NAN, |pair| {
             let t = (x - pair[0][0]) / (pair[1][0] - pair[0][0]);
             pair[0][1] + t * (pair[1][1] - pair[0][1])

@@ -1,7 +1,7 @@
 //! What a study of one case hands back: runs, checks and tables.
 
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use igimp_cases::CaseError;
 use igimp_cases::check::{Band, Check};
@@ -274,15 +274,6 @@ fn not_converged(case: &str, run: &Run, error: &StepError) -> String {
         run.steps,
         error.from,
     )
-}
-
-/// Runs a case and keeps the time.
-pub(crate) fn timed<T>(
-    run: impl FnOnce() -> Result<T, CaseError>,
-) -> Result<(T, Duration), CaseError> {
-    let clock = Instant::now();
-    let result = run()?;
-    Ok((result, clock.elapsed()))
 }
 
 /// The constant C in r₊ = C r² at the end of each step, from the last relative residual r whose

@@ -2,26 +2,24 @@
 
 use std::path::Path;
 
-use igimp_assembly::Method;
 use igimp_cases::CaseError;
+use igimp_cases::case::{Case, Strength};
 use igimp_cases::check::Band;
 use igimp_cases::figures::{
     ColourMap, CurvePlot, FieldPanel, Outline, OutlineStyle, ReferenceLine, ReferenceValue, Series,
 };
-use igimp_cases::measure::{along_line, displacement_norm, sigma};
-use igimp_cases::slope::SlopeGeometry;
+use igimp_cases::measure::{along_line, displacement_norm, oscillation, sigma};
 use igimp_cases::table::Table;
-use igimp_cases::von_mises_slope::{SlopeResult, VonMisesSlope};
+use igimp_solver::Outcome;
 use rayon::prelude::*;
 
 use crate::pictures::{contours, scaled, with_outlines};
 use crate::reference::slope_limit_load_bounds;
-use crate::study::{Level, Run, Study, timed};
+use crate::runs::{Computed, corners, mesh, method, shipped_case, unwatched};
+use crate::study::{Level, Run, Study};
 
-/// Section A–A: a level line through the body of the slope \[m\].
-const SECTION_LEVEL: ([f64; 2], [f64; 2]) = ([0.0, 6.0], [24.0, 6.0]);
-/// Section B–B: an upright line below the middle of the slope \[m\].
-const SECTION_UPRIGHT: ([f64; 2], [f64; 2]) = ([18.0, 0.0], [18.0, 12.0]);
+/// Height H of the slope \[m\].
+const HEIGHT: f64 = 10.0;
 /// Largest displacement at which the load of a stiff slope is read as its limit \[m\].
 const LIMIT_DISPLACEMENT: f64 = 0.05;
 
@@ -33,31 +31,32 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
     Ok(study)
 }
 
-fn methods() -> [Method; 4] {
-    [
-        Method::impm(),
-        Method::impm_bbar(),
-        Method::igimp(),
-        Method::igimp_bbar(),
-    ]
+/// γ and c_u of the soil.
+fn soil(case: &Case) -> (f64, f64) {
+    let material = &case.materials[0];
+    match material.strength {
+        Strength::VonMises { undrained_strength } => (material.unit_weight, undrained_strength),
+        _ => (material.unit_weight, f64::NAN),
+    }
 }
 
 /// Soft soil that moves by more than a cell: locking and cell crossing both show.
 fn smoothness(study: &mut Study) -> Result<(), CaseError> {
-    let cases = methods().map(|method| VonMisesSlope {
-        method,
-        ..VonMisesSlope::default()
-    });
-    let results = cases
-        .par_iter()
-        .map(|case| timed(|| case.run()))
-        .collect::<Result<Vec<_>, _>>()?;
+    let results = [
+        ("linear", false),
+        ("linear", true),
+        ("gimp", false),
+        ("gimp", true),
+    ]
+    .par_iter()
+    .map(|&(basis, bbar)| Computed::new(shipped_case("von_mises_slope", method(basis, bbar))?))
+    .collect::<Result<Vec<_>, _>>()?;
     let mut runs = Vec::new();
     let mut scores = Vec::new();
-    for (case, (result, elapsed)) in cases.iter().zip(&results) {
-        let variant = format!("{}, h = 0.5 m, E = 1 MPa", case.method.label());
-        runs.push(study.run_to_end(Run::new(variant, &result.report, *elapsed)));
-        scores.push(case.oscillation(&result.particles));
+    for result in &results {
+        let variant = format!("{}, h = 0.5 m, E = 1 MPa", result.method());
+        runs.push(study.run_to_end(Run::new(variant, &result.report, result.elapsed)));
+        scores.push(roughness(result));
     }
     let quantity = "oscillation of σ_yy / (γH) [-]";
     let source = "independent program (0.013)";
@@ -80,39 +79,40 @@ fn smoothness(study: &mut Study) -> Result<(), CaseError> {
     {
         study.newton(name, run)?;
     }
-    smoothness_figures(
-        study,
-        &cases,
-        &results.iter().map(|(result, _)| result).collect::<Vec<_>>(),
-    )
+    smoothness_figures(study, &results)
 }
 
-fn smoothness_figures(
-    study: &mut Study,
-    cases: &[VonMisesSlope],
-    results: &[&SlopeResult],
-) -> Result<(), CaseError> {
-    let compression = |result: &SlopeResult| scaled(&sigma(&result.particles, 1, 1), -1e-3);
-    let section = |line: ([f64; 2], [f64; 2])| Outline {
-        points: vec![line.0, line.1],
-        style: OutlineStyle::Section,
-    };
-    let panel = |label: &str, map: ColourMap, range, values: &dyn Fn(&SlopeResult) -> Vec<f64>| {
-        FieldPanel {
+/// Root mean square of the deviation of σ_yy from local planes of radius 1.3 h, over γH \[-\].
+fn roughness(result: &Computed) -> f64 {
+    let particles = result.particles();
+    let radius = 1.3 * result.case.grid.cell[0];
+    let scale = soil(&result.case).0 * HEIGHT;
+    oscillation(&particles.x, &sigma(particles, 1, 1), radius) / scale
+}
+
+fn smoothness_figures(study: &mut Study, results: &[Computed]) -> Result<(), CaseError> {
+    let compression = |result: &Computed| scaled(&sigma(result.particles(), 1, 1), -1e-3);
+    let sections = &results[0].case.sections;
+    let outlines: Vec<Outline> = sections
+        .iter()
+        .map(|section| Outline {
+            points: vec![section.from, section.to],
+            style: OutlineStyle::Section,
+        })
+        .collect();
+    let panel =
+        |label: &str, map: ColourMap, range, values: &dyn Fn(&Computed) -> Vec<f64>| FieldPanel {
             title: "Slope in von Mises soil, c_{u} = 45 kPa, E = 1 MPa".into(),
             columns: 2,
-            plots: cases
+            plots: results
                 .iter()
-                .zip(results)
-                .map(|(case, result)| {
-                    let title = case.method.label();
-                    let values = values(result);
-                    let plot = contours(title, &result.particles, values, label, map, range);
-                    with_outlines(plot, vec![section(SECTION_LEVEL), section(SECTION_UPRIGHT)])
+                .map(|result| {
+                    let (title, values) = (result.method(), values(result));
+                    let plot = contours(title, result.particles(), values, label, map, range);
+                    with_outlines(plot, outlines.clone())
                 })
                 .collect(),
-        }
-    };
+        };
     panel(
         "vertical stress −σ_{yy} [kPa], compression positive",
         ColourMap::Sequential,
@@ -121,32 +121,34 @@ fn smoothness_figures(
     )
     .write(&study.folder.join("sigma_yy"))?;
     panel("displacement [m]", ColourMap::Sequential, None, &|result| {
-        displacement_norm(&result.particles)
+        displacement_norm(result.particles())
     })
     .write(&study.folder.join("displacement"))?;
 
-    for (name, line, label) in [
-        ("section_A-A", SECTION_LEVEL, "x along A–A (y = 6 m) [m]"),
-        ("section_B-B", SECTION_UPRIGHT, "y along B–B (x = 18 m) [m]"),
-    ] {
+    for section in sections {
+        let label = match &*section.name {
+            "A-A" => "x along A–A (y = 6 m) [m]",
+            _ => "y along B–B (x = 18 m) [m]",
+        };
+        let name = format!("section_{}", section.name);
         let mut series = Vec::new();
-        for (case, result) in cases.iter().zip(results) {
+        for result in results {
             let points = along_line(
-                &result.particles,
+                result.particles(),
                 &compression(result),
-                line,
-                120,
-                case.cell,
+                (section.from, section.to),
+                section.points,
+                result.case.grid.cell[0],
             );
             let mut table = Table::new(
-                format!("{name}_{}", slug(&case.method.label())),
+                format!("{name}_{}", slug(&result.method())),
                 &["distance_[m]", "-sigma_yy_[kPa]_compression_+"],
             );
             for point in &points {
                 table.push(point.to_vec());
             }
             study.table(table)?;
-            series.push(Series::line(case.method.label(), points));
+            series.push(Series::line(result.method(), points));
         }
         CurvePlot {
             title: "Slope in von Mises soil".into(),
@@ -155,7 +157,7 @@ fn smoothness_figures(
             series,
             ..CurvePlot::default()
         }
-        .write(&study.folder.join(name))?;
+        .write(&study.folder.join(&name))?;
     }
     Ok(())
 }
@@ -187,10 +189,7 @@ fn limit_load(study: &mut Study, level: Level) -> Result<(), CaseError> {
     }
     let marches = list
         .par_iter()
-        .map(|collapse| {
-            let case = slope_to_collapse(collapse);
-            timed(|| case.run()).map(|(result, elapsed)| (case, result, elapsed))
-        })
+        .map(|collapse| Computed::new(slope_to_collapse(collapse)?))
         .collect::<Result<Vec<_>, _>>()?;
 
     let bounds = slope_limit_load_bounds();
@@ -205,17 +204,13 @@ fn limit_load(study: &mut Study, level: Level) -> Result<(), CaseError> {
             .map_or(f64::NAN, |p| p[1])
     };
     let mut series = Vec::new();
-    for (collapse, (case, result, elapsed)) in list.iter().zip(&marches) {
+    for (collapse, result) in list.iter().zip(&marches) {
         let (depth, h) = (collapse.depth_factor, collapse.cell);
-        let variant = format!(
-            "{}, D = {depth}, h = {h} m, E/c_u = 2222",
-            case.method.label()
-        );
-        let run = study.run(Run::new(variant, &result.report, *elapsed));
+        let label = result.method();
+        let variant = format!("{label}, D = {depth}, h = {h} m, E/c_u = 2222");
+        let run = study.run(Run::new(variant, &result.report, result.elapsed));
         let (lower, upper) = (bound(&lower, depth), bound(&upper, depth));
-        let measured = result
-            .load_factor_at(LIMIT_DISPLACEMENT)
-            .map_or(f64::INFINITY, |factor| case.stability_number(factor));
+        let measured = limit(result).unwrap_or(f64::INFINITY);
         let middle = 0.5 * (lower + upper);
         if collapse.bbar {
             let source = "limit analysis bounds, widened by 2 %";
@@ -239,16 +234,15 @@ fn limit_load(study: &mut Study, level: Level) -> Result<(), CaseError> {
             );
         }
         let mut table = Table::new(
-            format!("limit_{}_D{depth}_h{h}", slug(&case.method.label())),
+            format!("limit_{}_D{depth}_h{h}", slug(&label)),
             &["gamma_H/c_u_[-]", "largest_displacement_[m]"],
         );
-        for row in &result.displacement.rows {
-            table.push(vec![case.stability_number(row[0]), row[1]]);
+        for row in stability_numbers(result) {
+            table.push(vec![row[1], row[0]]);
         }
-        let points = table.rows.iter().map(|row| [row[1], row[0]]).collect();
         series.push(Series::line(
-            format!("{}, D = {depth}, h = {h} m", case.method.label()),
-            points,
+            format!("{label}, D = {depth}, h = {h} m"),
+            stability_numbers(result),
         ));
         study.table(table)?;
     }
@@ -271,28 +265,61 @@ fn limit_load(study: &mut Study, level: Level) -> Result<(), CaseError> {
     Ok(())
 }
 
-fn slope_to_collapse(collapse: &Collapse) -> VonMisesSlope {
-    let foundation = 10.0 * (collapse.depth_factor - 1.0);
+/// The shipped slope of stiff soil on another foundation, with gravity raised until it flows.
+fn slope_to_collapse(collapse: &Collapse) -> Result<Case, CaseError> {
+    let foundation = HEIGHT * (collapse.depth_factor - 1.0);
     let beyond = if foundation > 0.0 { 20.0 } else { 15.0 };
-    VonMisesSlope {
-        method: if collapse.bbar {
-            Method::igimp_bbar()
-        } else {
-            Method::igimp()
-        },
-        geometry: SlopeGeometry {
-            height: 10.0,
-            run: 10.0,
-            crest: beyond,
-            toe: beyond,
-            foundation,
-        },
-        cell: collapse.cell,
-        young: 1e8,
-        load_factor: 1.6,
-        steps: 64,
-        largest_displacement: 2.0 * LIMIT_DISPLACEMENT,
-        ..VonMisesSlope::default()
+    let (crest, toe, width) = (beyond, beyond + HEIGHT, HEIGHT + 2.0 * beyond);
+    let top = foundation + HEIGHT;
+    let mut polygon = vec![[0.0, 0.0], [toe, foundation], [crest, top], [0.0, top]];
+    if foundation > 0.0 {
+        polygon.splice(1..1, [[width, 0.0], [width, foundation]]);
+    }
+    let mut overrides = mesh(collapse.cell, [width, top + collapse.cell]);
+    overrides.extend(method("gimp", collapse.bbar));
+    overrides.extend(unwatched());
+    overrides.push(format!("bodies.slope.polygon={}", corners(&polygon)));
+    overrides.push("materials.clay.young=\"100 MPa\"".to_owned());
+    overrides.push("stages.own weight.factor=1.6".to_owned());
+    overrides.push("stages.own weight.steps=64".to_owned());
+    let stop = 2.0 * LIMIT_DISPLACEMENT;
+    overrides.push(format!(
+        "stages.own weight.stop_when={{ displacement = \"{stop} m\", no_equilibrium = true }}"
+    ));
+    shipped_case("von_mises_slope", overrides)
+}
+
+/// Largest displacement \[m\] and γH/c_u \[-\], step by step.
+fn stability_numbers(result: &Computed) -> Vec<[f64; 2]> {
+    let (unit_weight, undrained_strength) = soil(&result.case);
+    let curve = result.curve("load-displacement").points(0, 1);
+    curve
+        .into_iter()
+        .map(|[displacement, factor]| {
+            [
+                displacement,
+                factor * unit_weight * HEIGHT / undrained_strength,
+            ]
+        })
+        .collect()
+}
+
+/// γH/c_u at which the largest displacement reaches [`LIMIT_DISPLACEMENT`], linear between steps
+/// \[-\]. Where the march ended before that for want of equilibrium it is the last one reached;
+/// `None` when the slope was still standing at the end of the march.
+fn limit(result: &Computed) -> Option<f64> {
+    let points = stability_numbers(result);
+    let mut pairs = points.windows(2);
+    match (
+        pairs.find(|pair| LIMIT_DISPLACEMENT <= pair[1][0]),
+        &result.report.outcome,
+    ) {
+        (Some(pair), _) => {
+            let t = (LIMIT_DISPLACEMENT - pair[0][0]) / (pair[1][0] - pair[0][0]);
+            Some(pair[0][1] + t * (pair[1][1] - pair[0][1]))
+        }
+        (None, Outcome::StepTooSmall { .. }) => points.last().map(|point| point[1]),
+        (None, _) => None,
     }
 }
 

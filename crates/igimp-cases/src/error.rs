@@ -9,22 +9,16 @@ use igimp_material::MaterialError;
 use igimp_shape::ShapeError;
 
 use crate::figures::FigureError;
+use crate::input::InputError;
 use crate::results::checkpoint::CheckpointError;
 use crate::results::npy::NpyError;
 
 /// Errors of stating or running a case.
 #[derive(Debug, thiserror::Error)]
 pub enum CaseError {
-    /// A parameter is outside its range.
-    #[error("{field} is {value}, but must be {requirement}")]
-    InvalidParameter {
-        /// Name of the parameter.
-        field: &'static str,
-        /// The value given.
-        value: f64,
-        /// What is accepted.
-        requirement: &'static str,
-    },
+    /// A case file states no case.
+    #[error(transparent)]
+    Input(#[from] InputError),
     /// A body reaches beyond the grid.
     #[error("the body reaches ({}, {}) m, outside the grid domain", corner[0], corner[1])]
     OutsideGrid {

@@ -1,5 +1,7 @@
 //! Exact solutions that the cases are held against.
 
+use igimp_assembly::Particles;
+
 /// A column of Hencky material τ = E ln λ (Poisson's ratio 0) under its own weight, at any strain.
 ///
 /// With s = S (1 − Y/l₀) and S = ρ₀ g l₀ / E, equilibrium of the Kirchhoff stress of the stretch λ
@@ -33,6 +35,20 @@ impl Column {
         let primitive = |w: f64| w + 0.5 * w * w;
         let at = |s: f64| primitive(lambert_w(s));
         self.height * (at(load) - at(load * (1.0 - y0 / self.height))) / load
+    }
+
+    /// Mean error of the vertical stress, `Σ|σ_yy − σ_exact| V₀ / (ρ₀ g l₀ ΣV₀)` \[-\], of particles
+    /// whose displacements count from the unloaded column.
+    pub fn stress_error(&self, particles: &Particles<2>) -> f64 {
+        let base = self.density * self.gravity * self.height;
+        let (mut sum, mut volume) = (0.0, 0.0);
+        for particle in 0..particles.len() {
+            let y0 = particles.x[particle][1] - particles.displacement[particle][1];
+            let sigma = particles.sigma[particle][1][1];
+            sum += (sigma - self.sigma_yy(y0)).abs() * particles.volume0[particle];
+            volume += particles.volume0[particle];
+        }
+        sum / (base * volume)
     }
 }
 

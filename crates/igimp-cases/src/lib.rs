@@ -1,30 +1,45 @@
-//! The benchmark cases of the implicit generalised interpolation material point method, the exact
-//! solutions and measures that they are held against, and their tables and pictures.
+//! Problems of geotechnics, from a case file to results that can be relied on.
+//!
+//! A [`case file`](input) states a problem in plane strain: grid, materials, bodies, supports, loads,
+//! stages, and what it is held against. It is read into a [`Case`](case::Case), and a
+//! [`run`](mod@run) takes that case through its stages. The program `igimp` is a shell around these
+//! three; what it can do, a Rust program can.
+//!
+//! | module | what to find |
+//! |---|---|
+//! | [`input`], [`case`], [`shipped`] | case files, the problem as data, the files that come with the program |
+//! | [`run`](mod@run), [`summary`] | the engine: stages, strength reduction, run-out, events as they happen; what a run says of itself |
+//! | [`results`], [`figures`], [`table`] | the results folder: ParaView, checkpoints, report; pictures; CSV |
+//! | [`check`], [`exact`], [`measure`] | bands, exact solutions, what is read off particles |
+//! | [`seed`], [`polygon`], [`estimate`] | particles from polygons; the size of a case before it runs |
+//! | [`sweep`] | many cases that differ in a few values |
+//!
+//! # The factor of safety of a slope
+//!
+//! A shipped case is changed by overrides and run; tables, pictures and `report.html` are written as
+//! they are computed. `cargo run --release --example slope` runs this program.
+//!
+//! ```
+#![doc = include_str!("../examples/slope.rs")]
+//! ```
 
 pub mod case;
 pub mod check;
-pub mod column;
 pub mod estimate;
 pub mod exact;
 pub mod figures;
-pub mod footing;
 pub mod input;
 pub mod measure;
-pub mod mohr_coulomb_slope;
 pub mod polygon;
 pub mod results;
 pub mod run;
-pub mod safety;
 pub mod seed;
 pub mod shipped;
-pub mod slope;
 pub mod summary;
 pub mod sweep;
 pub mod table;
-pub mod von_mises_slope;
 
 mod error;
-mod parameter;
 
 pub use error::{CaseError, chain};
 

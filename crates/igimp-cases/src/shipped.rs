@@ -1,6 +1,8 @@
 //! The case files that come with the program: templates for `igimp new`, and the cases that
 //! `igimp validate` holds against their references.
 
+use crate::input::{CaseFile, InputError};
+
 /// A case file that comes with the program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shipped {
@@ -10,6 +12,20 @@ pub struct Shipped {
     pub summary: &'static str,
     /// The file.
     pub text: &'static str,
+}
+
+impl Shipped {
+    /// The file, changed by overrides such as `grid.bbar=false`.
+    ///
+    /// # Errors
+    /// [`InputError::Invalid`] for overrides that make no sense.
+    pub fn case_file<S: Into<String>>(
+        &self,
+        overrides: impl IntoIterator<Item = S>,
+    ) -> Result<CaseFile, InputError> {
+        let overrides: Vec<String> = overrides.into_iter().map(Into::into).collect();
+        CaseFile::parse(&format!("{}.toml", self.name), self.text, &overrides)
+    }
 }
 
 /// One entry a file of `cases/`.
@@ -68,7 +84,6 @@ mod tests {
     use std::collections::BTreeSet;
 
     use super::*;
-    use crate::input::CaseFile;
 
     #[test]
     fn every_file_is_listed_once() {
@@ -88,7 +103,7 @@ mod tests {
     #[test]
     fn every_file_is_valid() {
         for case in SHIPPED {
-            if let Err(error) = CaseFile::parse(case.name, case.text, &[]) {
+            if let Err(error) = case.case_file(["igimp=1"]) {
                 panic!("{}: {error}", case.name);
             }
         }

@@ -1,15 +1,14 @@
-//! GOAL: what makes no sense is refused with the name of the field, and a march that finds no
-//! equilibrium is a result with its reason, not an error.
+//! GOAL: the shipped column in memory. What makes no sense is refused with its reason, a run that
+//! finds no equilibrium is a result and not an error, and the exact solution is met.
 
 use std::error::Error;
 
-use igimp_assembly::{Method, Remedy};
-use igimp_cases::column::Column;
-use igimp_cases::footing::Footing;
-use igimp_cases::mohr_coulomb_slope::MohrCoulombSlope;
-use igimp_cases::slope::SlopeGeometry;
-use igimp_cases::von_mises_slope::VonMisesSlope;
-use igimp_solver::Outcome;
+use igimp_assembly::Remedy;
+use igimp_cases::case::{Case, LoadKind, Strength};
+use igimp_cases::exact;
+use igimp_cases::run::in_memory;
+use igimp_cases::shipped::find;
+use igimp_cases::summary::StageOutcome;
 
 /// The error and all its causes on one line.
 fn chain(error: &dyn Error) -> String {
@@ -22,113 +21,95 @@ fn chain(error: &dyn Error) -> String {
     text
 }
 
+/// A shipped case with overrides.
+fn shipped(name: &str, overrides: &[&str]) -> Case {
+    let file = find(name).unwrap().case_file(overrides.iter().copied());
+    file.unwrap().into_case()
+}
+
+/// The shipped column with so many cells over its height.
+fn column(cells: u32, overrides: &[&str]) -> Case {
+    let cell = format!("grid.cell={{ x = '50/64 m', y = '50/{cells} m' }}");
+    let top = format!("grid.domain.y=['0 m', '{}/{cells} m']", 50 * (cells + 1));
+    shipped("column", &[&[&*cell, &*top], overrides].concat())
+}
+
+fn exact_solution(case: &Case) -> exact::Column {
+    exact::Column {
+        height: 50.0,
+        density: 80.0,
+        gravity: 10.0,
+        young: case.materials[0].young,
+    }
+}
+
+/// A case may be made without a file, and then nothing has looked at it before.
 #[test]
-fn nonsense_is_refused_by_name() {
-    let column = |change: &dyn Fn(&mut Column)| {
-        let mut column = Column::default();
-        change(&mut column);
-        chain(&column.run().unwrap_err())
+fn nonsense_is_refused_with_its_reason() {
+    let refused = |name: &str, change: &dyn Fn(&mut Case)| {
+        let mut case = shipped(name, &[]);
+        change(&mut case);
+        chain(&in_memory(&case).unwrap_err())
     };
-    assert_eq!(
-        column(&|c| c.cells = 0),
-        "cells is 0, but must be at least 1"
-    );
-    assert_eq!(
-        column(&|c| c.steps = 0),
-        "steps is 0, but must be at least 1"
-    );
-    assert_eq!(
-        column(&|c| c.height = -1.0),
-        "height is -1, but must be positive and finite"
-    );
-    let young = column(&|c| c.young = -5.0);
+    let young = refused("column", &|case| case.materials[0].young = -5.0);
     assert!(
         young.starts_with("the material cannot be made: ") && young.contains("young"),
         "{young}"
     );
-
-    let soft = VonMisesSlope {
-        poisson: 0.5,
-        ..VonMisesSlope::default()
-    };
-    let text = chain(&soft.run().unwrap_err());
-    assert!(text.contains("poisson") && text.contains("0.5"), "{text}");
-    let cell = VonMisesSlope {
-        cell: 0.0,
-        ..VonMisesSlope::default()
-    };
-    assert!(chain(&cell.run().unwrap_err()).starts_with("the grid cannot be made: "));
-    let geometry = SlopeGeometry {
-        crest: f64::NAN,
-        ..VonMisesSlope::default().geometry
-    };
-    let slope = VonMisesSlope {
-        geometry,
-        ..VonMisesSlope::default()
-    };
-    assert_eq!(
-        chain(&slope.run().unwrap_err()),
-        "geometry.crest is NaN, but must be zero or positive, and finite"
+    let poisson = refused("von_mises_slope", &|case| case.materials[0].poisson = 0.5);
+    assert!(
+        poisson.contains("poisson") && poisson.contains("0.5"),
+        "{poisson}"
     );
-
-    let dilation = MohrCoulombSlope {
-        dilation_angle: 0.6,
-        ..MohrCoulombSlope::default()
-    };
-    let text = chain(&dilation.run(1.0).unwrap_err());
-    assert!(text.contains("dilation_angle"), "{text}");
-    let text = chain(&MohrCoulombSlope::default().run(0.0).unwrap_err());
-    assert!(text.contains("srf"), "{text}");
-
-    let even = Footing {
-        cells_per_width: 8,
-        ..Footing::default()
-    };
-    assert_eq!(
-        chain(&even.run().unwrap_err()),
-        "cells_per_width is 8, but must be odd, so that the footing's edge lies in the middle of \
-         a cell"
-    );
+    let cell = refused("column", &|case| case.grid.cell[1] = 0.0);
+    assert!(cell.starts_with("the grid cannot be made: "), "{cell}");
+    let outside = refused("column", &|case| case.grid.cells[1] = 3);
+    assert!(outside.ends_with("outside the grid domain"), "{outside}");
+    let dilation = refused("mohr_coulomb_slope", &|case| {
+        if let Strength::MohrCoulomb { dilation_angle, .. } = &mut case.materials[0].strength {
+            *dilation_angle = 0.6;
+        }
+    });
+    assert!(dilation.contains("dilation_angle"), "{dilation}");
+    let off = refused("footing", &|case| {
+        if let LoadKind::RigidFooting { from, .. } = &mut case.loads[0].kind {
+            from[1] = 4.95;
+        }
+    });
+    assert!(off.contains("not on a line of the grid"), "{off}");
+    let stages = refused("column", &|case| case.stages.clear());
+    assert_eq!(stages, "there is no stage to run: all are done");
 }
 
 /// A column a million times too soft for one step: no equilibrium, and the reason is kept.
 #[test]
-fn a_march_that_stops_is_a_result() {
-    let column = Column {
-        young: 1e-2,
-        steps: 1,
-        cells: 8,
-        ..Column::default()
-    };
-    let result = column.run().unwrap();
-    let Outcome::StepTooSmall {
-        last_converged,
-        cause,
-    } = &result.report.outcome
-    else {
-        panic!("{:?}", result.report.outcome)
-    };
-    assert!(*last_converged < 1.0);
-    assert!(!cause.failure.to_string().is_empty());
-    assert!(
-        result.report.failures.len() >= 6,
-        "one attempt and five cuts"
-    );
-    assert_eq!(result.stress.rows.len(), 32, "what was computed is kept");
+fn a_run_that_stops_is_a_result() {
+    let soft = [
+        "materials.soft.young = 0.01 Pa",
+        "stages.own weight.steps = 1",
+    ];
+    let result = in_memory(&column(8, &soft)).unwrap();
+    let stage = &result.summary.stages[0];
+    assert_eq!(stage.outcome, StageOutcome::NotConverged);
+    assert!(stage.reached < 1.0);
+    assert!(stage.cuts >= 6, "one attempt and five cuts");
+    let failure = result.failure.unwrap();
+    assert!(!failure.error.failure.to_string().is_empty());
+    assert!(!failure.suggestions.is_empty());
+    assert_eq!(result.body.particles.len(), 32, "what was computed is kept");
 }
 
 /// The coarse column of the benchmark, against the exact solution.
 #[test]
 fn a_coarse_column_is_close_to_the_exact_solution() {
-    let result = Column {
-        cells: 16,
-        ..Column::default()
-    }
-    .run()
-    .unwrap();
-    assert!(result.stress_error < 4e-3, "{}", result.stress_error);
-    assert!((result.top / result.exact_top - 1.0).abs() < 5e-3);
-    assert_eq!(result.report.outcome, Outcome::Completed);
+    let case = column(16, &[]);
+    let result = in_memory(&case).unwrap();
+    let exact = exact_solution(&case);
+    let error = exact.stress_error(&result.body.particles);
+    assert!(error < 4e-3, "{error}");
+    let top = 50.0 * result.curves[0].rows.last().unwrap()[1];
+    assert!((top / exact.position(50.0) - 1.0).abs() < 5e-3, "{top}");
+    assert_eq!(result.summary.stages[0].outcome, StageOutcome::Completed);
 }
 
 /// What is done about small cuts shows in the column at E = 1 MPa with 128 cells: tying a node to
@@ -136,16 +117,11 @@ fn a_coarse_column_is_close_to_the_exact_solution() {
 #[test]
 fn tying_small_cuts_costs_no_accuracy_and_dropping_them_does() {
     let error = |below, remedy| {
-        let mut method = Method::igimp_bbar();
-        method.small_cuts.below = below;
-        method.small_cuts.remedy = remedy;
-        let column = Column {
-            method,
-            cells: 128,
-            young: 1e6,
-            ..Column::default()
-        };
-        column.run().unwrap().stress_error
+        let mut case = column(128, &["materials.soft.young = 1 MPa"]);
+        case.method.small_cuts.below = below;
+        case.method.small_cuts.remedy = remedy;
+        let result = in_memory(&case).unwrap();
+        exact_solution(&case).stress_error(&result.body.particles)
     };
     let (nothing, tied, dropped) = (
         error(0.0, Remedy::Tie),
@@ -158,4 +134,22 @@ fn tying_small_cuts_costs_no_accuracy_and_dropping_them_does() {
             "{measured:e}, stated {stated:e}"
         );
     }
+}
+
+/// Every step tells of its iterations, and what a curve recorded is what the checks looked at.
+#[test]
+fn a_factor_listed_is_tried_and_recorded() {
+    let coarse = [
+        "grid.cell = 2 m",
+        "grid.domain.y = ['0 m', '12 m']",
+        "stages.strength reduction.factors = [0.8, 1.0]",
+        "stages.strength reduction.tolerance = 0.3",
+    ];
+    let result = in_memory(&shipped("mohr_coulomb_slope", &coarse)).unwrap();
+    let safety = result.summary.stages[0].safety.as_ref().unwrap();
+    let tried: Vec<f64> = safety.trials.iter().map(|trial| trial.srf).collect();
+    assert_eq!(tried, [0.8, 1.0, 1.6, 1.3]);
+    let curve = result.curves[0].points(0, 1);
+    assert_eq!(curve.len(), 2, "{curve:?}");
+    assert!((curve[0][1] - 0.379).abs() < 0.01, "{curve:?}");
 }

@@ -211,6 +211,7 @@ fn a_planned_collapse_is_an_end_and_another_one_a_failure() {
     };
     let planned = ran(&wall(
         "8 kPa",
+        "200 MPa",
         &stage("stop_when = { no_equilibrium = true }\n"),
     ));
     let end = &planned.summary.stages[0];
@@ -231,7 +232,8 @@ fn a_planned_collapse_is_an_end_and_another_one_a_failure() {
         unplanned.summary.stages[0].outcome,
         StageOutcome::NotConverged
     );
-    assert_eq!(unplanned.summary.stages[0].reached, end.reached);
+    let reached = unplanned.summary.stages[0].reached;
+    assert!(reached.total_cmp(&end.reached).is_eq());
     assert_eq!(unplanned.summary.failure, Some(failure.to_string()));
     assert!(!failure.suggestions.is_empty());
     assert!(failure.near_worst.is_some());
@@ -280,8 +282,9 @@ steps = 300
     assert!((volume / 32.0 - 1.0).abs() < 0.02, "{volume}");
     // τ is on the yield surface, and σ = τ/det F.
     let strength = 20e3 / 1.6;
-    for sigma in &particles.sigma {
-        let radius = (0.5 * (sigma[0][0] - sigma[1][1])).hypot(sigma[0][1]);
-        assert!(radius < strength * 1.05, "{sigma:?}");
+    for (sigma, f) in particles.sigma.iter().zip(&particles.def_grad) {
+        let det_f = f[0][0] * f[1][1] - f[0][1] * f[1][0];
+        let radius = det_f * (0.5 * (sigma[0][0] - sigma[1][1])).hypot(sigma[0][1]);
+        assert!(radius < strength * (1.0 + 1e-9), "{radius}");
     }
 }

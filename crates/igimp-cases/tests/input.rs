@@ -9,6 +9,7 @@
 use std::fmt::Write;
 
 use igimp_cases::input::{CaseFile, InputError, json_schema, reference_markdown};
+use igimp_cases::shipped::SHIPPED;
 
 const SLOPE: (&str, &str) = ("slope.toml", include_str!("data/slope.toml"));
 const FOOTING: (&str, &str) = ("footing.toml", include_str!("data/footing.toml"));
@@ -277,6 +278,17 @@ fn loads_that_make_no_sense() {
             )],
         ]
     ));
+}
+
+/// The grid can follow one footing only.
+#[test]
+fn a_second_footing_is_refused() {
+    let second = "[[loads]]\nname = \"second\"\ntype = \"rigid-footing\"\nfrom = [\"3 m\", \"5 m\"]\nto = [\"4 m\", \"5 m\"]\n[[stages]]";
+    let text = messages(FOOTING, &[&[("[[stages]]", second)]]);
+    assert!(
+        text.contains("error: this is a second rigid footing"),
+        "{text}"
+    );
 }
 
 #[test]
@@ -695,7 +707,8 @@ fn the_json_schema_describes_every_table() {
         schema["$schema"],
         "https://json-schema.org/draft/2020-12/schema"
     );
-    for (name, text) in [SLOPE, FOOTING].into_iter().chain(SHIPPED) {
+    let shipped = SHIPPED.iter().map(|case| (case.name, case.text));
+    for (name, text) in [SLOPE, FOOTING].into_iter().chain(shipped) {
         let file: toml::Table = text.parse().unwrap();
         let value = serde_json::to_value(file).unwrap();
         validate(&schema, &schema, &value, name);

@@ -57,6 +57,15 @@ pub fn run(
     course.finish(session, initial, clock)
 }
 
+/// Runs a case from its beginning and keeps what it finds in memory.
+///
+/// # Errors
+/// [`CaseError`] for a case that cannot be set up.
+pub fn in_memory(case: &Case) -> Result<Run, CaseError> {
+    let never = AtomicBool::new(false);
+    run(case, None, Start::Afresh, &mut |_: &Event<'_>| {}, &never)
+}
+
 /// The course of a run through its stages.
 struct Course {
     first: usize,
@@ -162,7 +171,14 @@ impl Course {
             None => (new_summary(&stage.name, kind(&stage.kind)), None, None),
         };
         let seconds_before = summary.seconds;
-        let ended = dispatch(session, number, state, &mut summary, resumption, search)?;
+        let ended = dispatch(
+            session,
+            number,
+            state,
+            &mut summary,
+            resumption.as_ref(),
+            search,
+        )?;
         summary.seconds = seconds_before + clock.elapsed().as_secs_f64();
         summary.largest_displacement = largest_displacement(&state.body.particles);
         let step_error = match ended {
@@ -176,7 +192,7 @@ impl Course {
             }
             Ended::Interrupted => {
                 summary.outcome = StageOutcome::Interrupted;
-                summary.reason = "interrupted by the user".to_owned();
+                "interrupted by the user".clone_into(&mut summary.reason);
                 None
             }
             Ended::NotConverged(error) if stage.stop_when.no_equilibrium => {
@@ -306,11 +322,10 @@ fn dispatch(
     number: usize,
     state: &mut State,
     summary: &mut StageSummary,
-    resumption: Option<Resumption>,
+    resumption: Option<&Resumption>,
     search: Option<Search>,
 ) -> Result<Ended, CaseError> {
     let stage = &session.model.case.stages[number];
-    let resumption = resumption.as_ref();
     match &stage.kind {
         StageKind::K0 if resumption.is_none() => {
             initial::level_ground(session.model, state)?;

@@ -67,10 +67,9 @@ pub(crate) fn load(
                 resistance,
                 drag: 0.0,
             };
-            let interrupted = session.interrupted();
             if let Some(output) = &mut session.output {
                 let run = &session.summary;
-                output.after_step(number, model, summary, taken, &resumption, run, interrupted)?;
+                output.after_step(number, model, summary, taken, &resumption, run)?;
             }
             Ok(stop)
         },
@@ -110,8 +109,11 @@ fn reason_to_stop(
         return Some(format!("{whose} exceeds {} m", short(limit)));
     }
     if let Some(limit) = stop.load_grows_less_than {
+        // A step that was cut may grow by its share of the limit.
+        let report = taken.accepted.report;
+        let share = (report.to - report.from) * stage.steps as f64;
         let growth = taken.resistance - resistance_before;
-        if resistance_before > 0.0 && growth < limit * resistance_before {
+        if resistance_before > 0.0 && growth < limit * share * resistance_before {
             return Some(format!(
                 "the resistance grows by less than {} % in a step",
                 short(100.0 * limit)

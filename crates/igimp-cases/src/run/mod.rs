@@ -25,7 +25,7 @@ use igimp_solver::{Body, StepError, StepReport};
 use crate::summary::{ModelSize, StageSummary, Summary, TrialSummary};
 use crate::table::Table;
 
-pub use engine::run;
+pub use engine::{in_memory, run};
 pub use message::worst_node;
 pub use model::Model;
 pub use state::{Controls, State};
@@ -69,6 +69,8 @@ pub enum Event<'a> {
     Trial {
         /// What it found.
         trial: &'a TrialSummary,
+        /// Its last equilibrium.
+        state: &'a State,
     },
     /// A stage ended.
     StageEnded {

@@ -138,7 +138,7 @@ impl<'c> Model<'c> {
             .iter()
             .zip(srf)
             .map(|(law, &srf)| {
-                if srf == 1.0 {
+                if srf.total_cmp(&1.0).is_eq() {
                     Ok(Arc::clone(law))
                 } else {
                     law.reduced(srf)

@@ -216,7 +216,7 @@ impl Output {
         };
         let found = checkpoint::read(&path, Some(&fingerprint::of_case(case)))?;
         checkpoint::discard_after(&path)?;
-        Self::take_up(folder, case, records, found)
+        Self::take_up(folder, case, records, &found)
     }
 
     /// A results folder taken up at the beginning of a stage.
@@ -244,14 +244,14 @@ impl Output {
         checkpoint::discard_after(&path)?;
         write_atomically(&folder.case(), &target.source)?;
         write_atomically(&folder.completed_case(), &target.completed)?;
-        Self::take_up(folder, case, records, found)
+        Self::take_up(folder, case, records, &found)
     }
 
     fn take_up(
         folder: Folder,
         case: &Case,
         records: &mut Records,
-        found: checkpoint::Checkpoint,
+        found: &checkpoint::Checkpoint,
     ) -> Result<(Self, Option<Left>), CaseError> {
         let path = folder.checkpoint();
         let notes: Notes = notes_of(&path, &found.meta)?;
@@ -382,7 +382,6 @@ impl Output {
         taken: &Taken<'_>,
         resumption: &Resumption,
         run: &Summary,
-        interrupted: bool,
     ) -> Result<(), CaseError> {
         let clock = Instant::now();
         self.steps += 1;
@@ -393,7 +392,7 @@ impl Output {
             self.add_frame(model, &body.particles, &taken.accepted.conditions.grid)?;
         }
         let due = self.checkpoint_every > 0 && summary.steps.is_multiple_of(self.checkpoint_every);
-        if due || interrupted {
+        if due || taken.interrupted {
             let notes = Notes {
                 stage: Some(summary.clone()),
                 resumption: Some(resumption.clone()),

@@ -89,17 +89,16 @@ pub(crate) fn run_out(
                 resistance: taken.resistance,
                 drag: drag.get(),
             };
-            let interrupted = session.interrupted();
             if let Some(output) = &mut session.output {
                 let run = &session.summary;
-                output.after_step(number, model, summary, taken, &resumption, run, interrupted)?;
+                output.after_step(number, model, summary, taken, &resumption, run)?;
             }
             let share = taken.accepted.report.drag_share;
             Ok((share < run_out.at_rest).then(|| at_rest(summary.steps, share)))
         },
     )?;
     match ended {
-        Ended::Stopped(rest) => stand(session, state, &path, summary, rest),
+        Ended::Stopped(rest) => stand(session, state, &path, summary, &rest),
         Ended::Completed(_) => {
             session.warn(format!(
                 "the slope still moves after {steps} steps of run-out"
@@ -122,7 +121,7 @@ fn stand(
     state: &mut State,
     path: &Path<'_>,
     summary: &mut StageSummary,
-    rest: String,
+    rest: &str,
 ) -> Result<Ended, CaseError> {
     let settings = session.model.march_settings(1);
     let last = Path {

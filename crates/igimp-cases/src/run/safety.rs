@@ -126,8 +126,7 @@ impl<'a> Trials<'a> {
         if let Some(&listed) = self.reduction.factors.get(made) {
             return Some(listed);
         }
-        let tried = |srf: f64| self.made.iter().any(|trial| trial.srf == srf);
-        if !tried(1.0) {
+        if !self.made.iter().any(at_full_strength) {
             return Some(1.0);
         }
         if made >= MOST_TRIALS + self.reduction.factors.len() {
@@ -214,7 +213,10 @@ impl<'a> Trials<'a> {
             iterations: summary.iterations - before[1],
             cuts: summary.cuts - before[2],
         };
-        session.tell(&Event::Trial { trial: &trial });
+        session.tell(&Event::Trial {
+            trial: &trial,
+            state: &state,
+        });
         self.made.push(trial);
         if listed && !matches!(ended, Ended::NotConverged(_)) {
             self.record(session, &state, summary.plastic_share)?;
@@ -388,6 +390,11 @@ impl<'a> Trials<'a> {
     }
 }
 
+/// Whether a trial is the one at F = 1.
+fn at_full_strength(trial: &TrialSummary) -> bool {
+    (trial.srf - 1.0).abs() < 1e-9
+}
+
 /// What a reader has to know about an interval.
 fn remarks(safety: &SafetySummary, reduction: &StrengthReduction) -> Vec<String> {
     let mut remarks = Vec::new();
@@ -395,7 +402,7 @@ fn remarks(safety: &SafetySummary, reduction: &StrengthReduction) -> Vec<String>
     if safety
         .trials
         .iter()
-        .any(|trial| trial.srf == 1.0 && !trial.stable)
+        .any(|trial| at_full_strength(trial) && !trial.stable)
     {
         remarks.push(
             "the body does not stand at full strength (SRF 1): the factor of safety is below 1, or \

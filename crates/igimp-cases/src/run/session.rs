@@ -146,6 +146,8 @@ pub(crate) struct Taken<'a> {
     pub(crate) controls: &'a Controls,
     /// Resistance of the footing \[N/m\].
     pub(crate) resistance: f64,
+    /// Whether the user wants the run to end here.
+    pub(crate) interrupted: bool,
 }
 
 impl<'a> Taken<'a> {
@@ -253,6 +255,7 @@ impl Watch<'_, '_> {
             accepted,
             controls: &controls,
             resistance: model.footing_resistance(grid, &accepted.forces.reactions),
+            interrupted: self.session.interrupted(),
         };
         self.session.last_resistance = taken.resistance;
         let reason = (self.each)(self.session, self.stage, &taken)?;

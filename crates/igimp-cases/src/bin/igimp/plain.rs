@@ -58,7 +58,7 @@ impl Lines {
                 step(*number, self.steps, *progress, report)
             )),
             Event::Cut { error } => Some(format!("  {}", cut(error))),
-            Event::Trial { trial } => Some(format!("  {}", self::trial(trial))),
+            Event::Trial { trial, .. } => Some(format!("  {}", self::trial(trial))),
             Event::StageEnded { summary } => Some(format!("  {}", end(summary))),
             Event::Warning { text } => Some(format!("warning: {text}")),
         }
@@ -168,7 +168,9 @@ pub(crate) fn residual(value: Option<f64>) -> String {
 
 #[cfg(test)]
 mod tests {
-    use igimp_solver::{PhaseTimes, StepFailure};
+    use igimp_assembly::Particles;
+    use igimp_cases::run::{Controls, State};
+    use igimp_solver::{Body, PhaseTimes, StepFailure};
 
     use super::*;
 
@@ -270,6 +272,15 @@ mod tests {
             }),
             ..StageSummary::default()
         };
+        let state = State {
+            body: Body::new(Particles::new(&[]).unwrap()),
+            controls: Controls {
+                gravity: 1.0,
+                factors: Vec::new(),
+                settlement: 0.0,
+                srf: Vec::new(),
+            },
+        };
         let events = [
             start(SEARCH),
             Event::Step {
@@ -278,8 +289,14 @@ mod tests {
                 report: &report,
             },
             Event::Cut { error: &error },
-            Event::Trial { trial: &stands },
-            Event::Trial { trial: &fails },
+            Event::Trial {
+                trial: &stands,
+                state: &state,
+            },
+            Event::Trial {
+                trial: &fails,
+                state: &state,
+            },
             Event::StageEnded { summary: &ended },
         ];
         let text: Vec<String> = events

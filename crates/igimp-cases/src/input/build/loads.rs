@@ -10,7 +10,7 @@ use crate::input::tree::Node;
 
 /// The loads.
 pub(super) fn loads(tree: &Node, site: &Site, problems: &mut Problems) -> Vec<Option<Load>> {
-    let mut level: Option<f64> = None;
+    let mut has_footing = false;
     let items = tree.items_at("loads");
     items
         .iter()
@@ -21,16 +21,12 @@ pub(super) fn loads(tree: &Node, site: &Site, problems: &mut Problems) -> Vec<Op
                 "pressure" => pressure(node, name, site, problems),
                 _ => at_point(node, name, site, problems),
             }?;
-            if let LoadKind::RigidFooting { from, .. } = kind {
-                let first = *level.get_or_insert(from[1]);
-                if (from[1] - first).abs() > site.round_off {
-                    problems
-                        .error(
-                            node.place_at("from"),
-                            "the footings stand at different levels",
-                        )
-                        .help("the grid follows the footing: all of them share one level");
-                }
+            if let LoadKind::RigidFooting { .. } = kind
+                && std::mem::replace(&mut has_footing, true)
+            {
+                problems
+                    .error(node.place_at("type"), "this is a second rigid footing")
+                    .help("the grid follows the footing, and it can follow only one");
             }
             Some(Load {
                 name: name.to_owned(),

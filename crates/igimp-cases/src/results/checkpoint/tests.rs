@@ -214,7 +214,7 @@ fn every_damage_is_noticed() {
         .unwrap()
         .map(|entry| entry.unwrap().path())
         .collect();
-    assert_eq!(arrays.len(), 14);
+    assert_eq!(arrays.len(), 15);
     for array in arrays {
         let whole = fs::read(&array).unwrap();
         let mut flipped = whole.clone();
