@@ -58,6 +58,9 @@ pub enum CaseError {
         /// The one it starts from.
         from: String,
     },
+    /// The case has no stage.
+    #[error("the case has no stage: there is nothing to run")]
+    NoStages,
     /// The grid cannot be made.
     #[error("the grid cannot be made")]
     Shape(#[from] ShapeError),

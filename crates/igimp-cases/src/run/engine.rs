@@ -32,6 +32,9 @@ pub fn run(
     interrupt: &AtomicBool,
 ) -> Result<Run, CaseError> {
     let clock = Instant::now();
+    if case.stages.is_empty() {
+        return Err(CaseError::NoStages);
+    }
     let (model, initial) = Model::new(case)?;
     let records = Records::new(case, &model.laws, &initial.body.particles)?;
     let mut session = Session {

@@ -3,7 +3,7 @@
 use std::fmt::{self, Write as _};
 use std::path::Path;
 
-use igimp_solver::{StepError, StepFailure};
+use igimp_solver::StepFailure;
 
 use super::Failure;
 use crate::check::{count, short};
@@ -22,8 +22,8 @@ impl fmt::Display for Failure {
 }
 
 /// Position and axis of the largest out-of-balance force, in words.
-pub fn worst_node(error: &StepError) -> Option<String> {
-    let (x, axis) = error.worst?;
+pub fn worst_node(worst: Option<([f64; 3], usize)>) -> Option<String> {
+    let (x, axis) = worst?;
     let name = ["x", "y", "z"].get(axis)?;
     Some(format!("({}, {}) m, {name}", short(x[0]), short(x[1])))
 }
@@ -54,7 +54,7 @@ fn render(failure: &Failure) -> String {
     if !error.residuals.is_empty() {
         row("residual |r|/|f|", &history(&error.residuals, reason));
     }
-    if let Some(worst) = worst_node(error) {
+    if let Some(worst) = worst_node(error.worst) {
         row("worst node", &(worst + &near(failure)));
     }
     if !failure.saved.is_empty() {
@@ -179,6 +179,8 @@ fn suggestions(texts: &[String]) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
+    use igimp_solver::StepError;
+
     use super::*;
 
     fn failure() -> Failure {

@@ -30,6 +30,9 @@ pub use message::worst_node;
 pub use model::Model;
 pub use state::{Controls, State};
 
+/// Why a stage ended that reached its end.
+pub const REACHED_ITS_END: &str = "reached its end";
+
 /// What happens during a run, as it happens.
 #[derive(Clone, Copy, Debug)]
 pub enum Event<'a> {

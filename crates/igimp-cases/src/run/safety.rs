@@ -197,6 +197,13 @@ impl<'a> Trials<'a> {
         if matches!(ended, Ended::Interrupted) {
             return Ok(Some(ended));
         }
+        // A reduction that was ended by the criterion has failed at the factor that it reached.
+        let srf = match (&ended, reduction.path) {
+            (Ended::Stopped(_), ReductionPath::Reduce) => {
+                state.controls.srf[reduction.materials[0]]
+            }
+            _ => srf,
+        };
         let displacement = session.displacement(reduction.monitor, &state.body.particles);
         let exceeded = limit.is_some_and(|limit| displacement > limit);
         let (stable, reason) = match &ended {

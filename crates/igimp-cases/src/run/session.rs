@@ -13,7 +13,7 @@ use super::model::Model;
 use super::output::Output;
 use super::records::{Moment, Records, largest_displacement};
 use super::state::{Controls, State};
-use super::{Event, Listener};
+use super::{Event, Listener, REACHED_ITS_END};
 use crate::error::CaseError;
 use crate::summary::{StageSummary, Summary};
 
@@ -224,7 +224,7 @@ pub(crate) fn march_path(
         (Outcome::StepTooSmall { cause, .. }, _) => Ended::NotConverged(cause),
         (_, Some(Stop::Stage(reason))) => Ended::Stopped(reason),
         (Outcome::Stopped { .. }, Some(Stop::User) | None) => Ended::Interrupted,
-        (Outcome::Completed, _) => Ended::Completed("reached its end".to_owned()),
+        (Outcome::Completed, _) => Ended::Completed(REACHED_ITS_END.to_owned()),
     })
 }
 

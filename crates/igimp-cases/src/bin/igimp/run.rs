@@ -84,6 +84,11 @@ fn afresh_or_resume(arguments: &Run) -> Start {
 fn tell(run: &engine::Run, folder: &Path, arguments: &Run) -> Result<Exit, ProgramError> {
     let summary = &run.summary;
     let ending = Ending::of(summary);
+    if arguments.quiet {
+        for warning in &summary.warnings {
+            output::complain(&format!("warning: {warning}"));
+        }
+    }
     output::say(&verdict::stages_and_checks(summary))?;
     if let Some(failure) = &run.failure {
         output::complain(&failure.to_string());
