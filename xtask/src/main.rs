@@ -36,7 +36,7 @@ enum Task {
     ///
     /// The table is also written to `target/bench/bench.md` and `target/bench/bench.csv`.
     Bench(bench::Arguments),
-    /// Check what the compiler does not: layers, printing, leftovers, licences.
+    /// Check what the compiler does not: layers, printing, leftovers, licences, links.
     Tidy,
     /// Build the book in `docs/` with mdbook.
     Book {

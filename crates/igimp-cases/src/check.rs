@@ -92,6 +92,19 @@ pub fn short(value: f64) -> String {
     }
 }
 
+/// A count with thin gaps between thousands, as in `1 310`.
+pub fn count(number: usize) -> String {
+    let digits = number.to_string();
+    let mut text = String::new();
+    for (place, digit) in digits.chars().enumerate() {
+        if place > 0 && (digits.len() - place).is_multiple_of(3) {
+            text.push(' ');
+        }
+        text.push(digit);
+    }
+    text
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -115,5 +128,12 @@ mod tests {
         assert_eq!(short(1.4), "1.4");
         assert_eq!(short(1234.6), "1235");
         assert_eq!(short(0.0), "0");
+    }
+
+    #[test]
+    fn thousands_are_set_apart() {
+        assert_eq!(count(7), "7");
+        assert_eq!(count(1310), "1 310");
+        assert_eq!(count(1_234_567), "1 234 567");
     }
 }

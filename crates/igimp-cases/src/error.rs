@@ -1,11 +1,12 @@
 //! What can be wrong with a case, and what can stop it from being written down.
 
+use std::error::Error;
+use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use igimp_assembly::AssemblyError;
 use igimp_material::MaterialError;
 use igimp_shape::ShapeError;
-use thiserror::Error;
 
 use crate::figures::FigureError;
 use crate::input::InputError;
@@ -13,7 +14,7 @@ use crate::results::checkpoint::CheckpointError;
 use crate::results::npy::NpyError;
 
 /// Errors of stating or running a case.
-#[derive(Debug, Error)]
+#[derive(Debug, thiserror::Error)]
 pub enum CaseError {
     /// A case file states no case.
     #[error(transparent)]
@@ -57,9 +58,9 @@ pub enum CaseError {
         /// The one it starts from.
         from: String,
     },
-    /// Every stage is done already, or there is none.
-    #[error("there is no stage to run: all are done")]
-    NothingToRun,
+    /// The case has no stage.
+    #[error("the case has no stage: there is nothing to run")]
+    NoStages,
     /// The grid cannot be made.
     #[error("the grid cannot be made")]
     Shape(#[from] ShapeError),
@@ -125,4 +126,15 @@ pub enum CaseError {
     /// The state of a run cannot be saved or taken up again.
     #[error(transparent)]
     Checkpoint(#[from] CheckpointError),
+}
+
+/// An error and its causes, a line each.
+pub fn chain(error: &dyn Error) -> String {
+    let mut text = format!("error: {error}");
+    let mut cause = error.source();
+    while let Some(next) = cause {
+        let _ = write!(text, "\n  because: {next}");
+        cause = next.source();
+    }
+    text
 }

@@ -41,7 +41,7 @@ pub mod table;
 
 mod error;
 
-pub use error::CaseError;
+pub use error::{CaseError, chain};
 
 /// The examples of the book, run as tests.
 #[cfg(doctest)]
@@ -52,3 +52,8 @@ struct Tour;
 #[cfg(doctest)]
 #[doc = include_str!("../../../docs/src/developer.md")]
 struct DeveloperNotes;
+
+/// The example of the user guide, run as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../../../docs/src/guide/library.md")]
+struct UserGuide;

@@ -21,6 +21,8 @@ pub struct Summary {
     pub checks: Vec<CheckRow>,
     /// Warnings, for the reader.
     pub warnings: Vec<String>,
+    /// The message of the step that ended the run for want of equilibrium, if one did.
+    pub failure: Option<String>,
     /// Pictures in the order in which a report shows them.
     pub figures: Vec<FigureNote>,
     /// Wall-clock time \[s\].

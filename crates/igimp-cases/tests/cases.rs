@@ -78,7 +78,7 @@ fn nonsense_is_refused_with_its_reason() {
     });
     assert!(off.contains("not on a line of the grid"), "{off}");
     let stages = refused("column", &|case| case.stages.clear());
-    assert_eq!(stages, "there is no stage to run: all are done");
+    assert_eq!(stages, "the case has no stage: there is nothing to run");
 }
 
 /// A column a million times too soft for one step: no equilibrium, and the reason is kept.

@@ -3,9 +3,13 @@
 //! The two files in `tests/data` are models of the format; every message is what one or more
 //! edits of them lead to.
 
+// Values are read to the last digit.
+#![allow(clippy::float_cmp)]
+
 use std::fmt::Write;
 
 use igimp_cases::input::{CaseFile, InputError, json_schema, reference_markdown};
+use igimp_cases::shipped::SHIPPED;
 
 const SLOPE: (&str, &str) = ("slope.toml", include_str!("data/slope.toml"));
 const FOOTING: (&str, &str) = ("footing.toml", include_str!("data/footing.toml"));
@@ -31,7 +35,7 @@ fn messages(file: (&str, &str), cases: &[Edits<'_>]) -> String {
     let mut out = String::new();
     for edits in cases {
         for (from, to) in *edits {
-            let _ = writeln!(out, "## {:?} -> {:?}", from, to);
+            let _ = writeln!(out, "## {from:?} -> {to:?}");
         }
         let result = CaseFile::parse(file.0, &edited(file.1, edits), &[]);
         let _ = writeln!(out, "{}", said(&result));
@@ -44,6 +48,11 @@ fn overridden(file: (&str, &str), overrides: &[&str]) -> Result<CaseFile, InputE
     CaseFile::parse(file.0, file.1, &overrides)
 }
 
+/// The footing of the model ends mid-cell, and nothing is warned about.
+const MID_CELL: (&str, &str) = (
+    "cell = \"0.125 m\"",
+    "cell = { x = \"2/17 m\", y = \"0.125 m\" }",
+);
 const CREST: (&str, &str) = (
     "stop_when = { load_grows_less_than = 0.001 }",
     "stop_when = { load_grows_less_than = 0.001 }\n[[monitors]]\nname = \"edge\"\npoint = [\"1 m\", \"5 m\"]",
@@ -336,6 +345,93 @@ fn stages_that_make_no_sense() {
 }
 
 #[test]
+fn ground_at_rest_and_loads_in_stages() {
+    let text = edited(
+        FOOTING.1,
+        &[
+            MID_CELL,
+            ("gravity = \"0 m/s2\"", "gravity = \"9.81 m/s2\""),
+            (
+                "[[stages]]",
+                "[[loads]]\nname = \"strip\"\ntype = \"pressure\"\nfrom = [\"3 m\", \"5 m\"]\n\
+                 to = [\"4 m\", \"5 m\"]\npressure = \"9 kPa\"\n[[stages]]\nname = \"rest\"\n\
+                 type = \"k0\"\n[[stages]]\nname = \"press\"\ntype = \"load\"\nload = \"strip\"\n[[stages]]",
+            ),
+        ],
+    );
+    insta::assert_snapshot!(messages(
+        ("footing.toml", &text),
+        &[
+            &[],
+            &[("cu = \"50 kPa\"", "cu = \"50 kPa\"\nk0 = 0.7")],
+            &[
+                ("cu = \"50 kPa\"", "cu = \"50 kPa\"\nk0 = 0.7"),
+                (
+                    "[\"0 m\",\"5 m\"]]",
+                    "[\"5 m\",\"5 m\"], [\"5 m\", \"4 m\"], [\"0 m\", \"4 m\"]]"
+                )
+            ],
+            &[
+                ("model = \"tresca\"", "model = \"elastic\""),
+                ("cu = \"50 kPa\"\n", "")
+            ],
+            &[("cu = ", "k0 = 0.7\ncu = "), ("load = \"strip\"", "")],
+            &[
+                ("cu = ", "k0 = 0.7\ncu = "),
+                ("load = \"strip\"", "load = \"strip\"\nloads = [\"strip\"]")
+            ],
+            &[
+                ("cu = ", "k0 = 0.7\ncu = "),
+                (
+                    "load = \"strip\"",
+                    "loads = [\"strip\", \"footing\", \"strip\"]"
+                )
+            ],
+            &[
+                ("cu = ", "k0 = 0.7\ncu = "),
+                ("load = \"footing\"", "load = \"strip\"")
+            ],
+            &[
+                ("cu = ", "k0 = 0.7\ncu = "),
+                ("type = \"load\"\nload = \"strip\"", "type = \"k0\"")
+            ],
+        ]
+    ));
+}
+
+#[test]
+fn large_files_are_judged_quickly() {
+    let mut bodies = String::new();
+    for k in 0..1200 {
+        let (x, y) = (k % 60, k / 60);
+        let [right, top] = [x + 1, y + 1];
+        let _ = write!(
+            bodies,
+            "[[bodies]]\nname = \"b{k}\"\nmaterial = \"rock\"\npolygon = [[\"{x} m\",\"{y} m\"], \
+             [\"{right} m\",\"{y} m\"], [\"{right} m\",\"{top} m\"], [\"{x} m\",\"{top} m\"]]\n"
+        );
+    }
+    let mut more = String::new();
+    for k in 0..1000 {
+        let _ = write!(
+            more,
+            "[[sections]]\nname = \"s{k}\"\nfrom = [\"1 m\",\"21 m\"]\nto = [\"2 m\",\"21 m\"]\n\
+             [[monitors]]\nname = \"m{k}\"\npoint = [\"1 m\",\"21 m\"]\n\
+             [[loads]]\nname = \"l{k}\"\ntype = \"pressure\"\nfrom = [\"1 m\",\"20 m\"]\nto = [\"9 m\",\"20 m\"]\npressure = \"1 kPa\"\n"
+        );
+    }
+    let (head, tail) = SLOPE.1.split_once("[[bodies]]").unwrap();
+    let (_, tail) = tail.split_once("[boundaries]").unwrap();
+    let tail = tail.split_once("[[stages]]").unwrap().0;
+    let stage = "[[stages]]\nname = \"weight\"\ntype = \"gravity\"\n";
+    let text = format!("{head}{bodies}[boundaries]{tail}{stage}{more}");
+    let begin = std::time::Instant::now();
+    let file = CaseFile::parse("large.toml", &text, &[]).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(file.case().bodies.len(), 1200);
+    assert!(begin.elapsed().as_secs() < 20, "{:?}", begin.elapsed());
+}
+
+#[test]
 fn records_that_make_no_sense() {
     let reference = "reference = { y = 5.1416, label = \"Prandtl, 2 + pi\", tolerance = 0.05 }";
     let check = |rest: &str| {
@@ -348,8 +444,9 @@ fn records_that_make_no_sense() {
         "of = \"top\"\nexpected = 0\ntolerance = 0.1",
     ]
     .map(check);
+    let text = edited(FOOTING.1, &[MID_CELL]);
     insta::assert_snapshot!(messages(
-        FOOTING,
+        ("footing.toml", &text),
         &[
             &[("footing.settlement", "footing.setlement")],
             &[("footing.settlement", "factor_of_safety")],
@@ -364,7 +461,6 @@ fn records_that_make_no_sense() {
             &[CREST, ("footing.reaction", "edge.sigma_zy")],
             &[
                 CREST,
-                ("[\"1 m\", \"5 m\"]\n\n", "[\"1 m\", \"5 m\"]\n"),
                 ("point = [\"1 m\", \"5 m\"]", "point = [\"1 m\", \"5.4 m\"]")
             ],
             &[("folder = \"results/footing\"", "folder = \"\"")],
@@ -584,7 +680,7 @@ fn absurd_files_are_refused_quickly() {
     let corner = "[\"1 m\", \"2 m\"], ".repeat(20_000);
     let stages = "[[stages]]\nname = \"x\"\ntype = \"gravity\"\n".repeat(5_000);
     let deep = format!("{}1{}", "[".repeat(10_000), "]".repeat(10_000));
-    let table = format!("[{}]\n", ["a"; 10_000].join("."));
+    let table = format!("[{}]\n", vec!["a"; 10_000].join("."));
     for text in [
         edited(SLOPE.1, &[("polygon = [", &format!("polygon = [{corner}"))]),
         format!("{}{stages}", SLOPE.1),
@@ -600,7 +696,7 @@ fn absurd_files_are_refused_quickly() {
         assert!(error.contains("absurd.toml"), "{error}");
         assert!(error.len() < 200_000, "{} bytes", error.len());
     }
-    let key = ["a"; 10_000].join(".");
+    let key = vec!["a"; 10_000].join(".");
     assert!(overridden(SLOPE, &[&format!("{key}=1")]).is_err());
 }
 
@@ -611,7 +707,8 @@ fn the_json_schema_describes_every_table() {
         schema["$schema"],
         "https://json-schema.org/draft/2020-12/schema"
     );
-    for (name, text) in [SLOPE, FOOTING].into_iter().chain(SHIPPED) {
+    let shipped = SHIPPED.iter().map(|case| (case.name, case.text));
+    for (name, text) in [SLOPE, FOOTING].into_iter().chain(shipped) {
         let file: toml::Table = text.parse().unwrap();
         let value = serde_json::to_value(file).unwrap();
         validate(&schema, &schema, &value, name);

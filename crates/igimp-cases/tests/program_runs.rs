@@ -236,3 +236,20 @@ fn the_column_meets_its_references() {
     assert!(out.contains("1 cases; references: "), "{out}");
     assert!(out.contains(" 0 missed"), "{out}");
 }
+
+/// A limit on the size of files stands for a full disk: the system refuses to write on.
+#[cfg(unix)]
+#[test]
+fn a_full_disk_is_named_with_the_file() {
+    let folder = Folder::new("full", &block(""));
+    let output = Command::new("sh")
+        .args(["-c", "trap '' XFSZ; ulimit -f 4; exec \"$0\" run case.toml"])
+        .arg(env!("CARGO_BIN_EXE_igimp"))
+        .current_dir(&folder.0)
+        .output()
+        .unwrap();
+    let (code, out, err) = parts(&output);
+    assert_eq!(code, 4, "{out}{err}");
+    assert!(err.contains("cannot access results/"), "{err}");
+    assert!(err.contains("because: "), "{err}");
+}

@@ -128,6 +128,8 @@ pub struct StepReport {
     pub unknowns: usize,
     /// Share of particles that returned to the yield surface \[-\].
     pub plastic_share: f64,
+    /// Position \[length\] and axis of the largest out-of-balance force that was left.
+    pub worst: Option<([f64; 3], usize)>,
     /// Share of the external force that drag against motion carries; zero in equilibrium \[-\].
     pub drag_share: f64,
     /// Time spent.
@@ -250,30 +252,30 @@ pub fn step<const D: usize>(
     workspace: &mut Workspace,
 ) -> Result<(StepReport, NodalForces<D>), StepError> {
     let mut course = Course::default();
-    equilibrium(body, method, conditions, settings, workspace, &mut course)
-        .map(|(report, forces)| {
-            (
-                StepReport {
-                    from,
-                    to,
-                    residuals: std::mem::take(&mut course.residuals),
-                    ..report
-                },
-                forces,
-            )
-        })
-        .map_err(|failure| {
-            let worst = course
-                .worst
-                .map(|(node, axis)| (padded(&conditions.grid.node_position(node)), axis));
-            StepError {
+    let result = equilibrium(body, method, conditions, settings, workspace, &mut course);
+    let worst = course
+        .worst
+        .map(|(node, axis)| (padded(&conditions.grid.node_position(node)), axis));
+    let residuals = course.residuals;
+    match result {
+        Ok((report, forces)) => {
+            let report = StepReport {
                 from,
                 to,
-                residuals: course.residuals,
+                residuals,
                 worst,
-                failure: Box::new(failure),
-            }
-        })
+                ..report
+            };
+            Ok((report, forces))
+        }
+        Err(failure) => Err(StepError {
+            from,
+            to,
+            residuals,
+            worst,
+            failure: Box::new(failure),
+        }),
+    }
 }
 
 /// The Newton–Raphson loop.
@@ -351,6 +353,7 @@ fn equilibrium<const D: usize>(
         at_round_off: residual.relative_norm > settings.tolerance,
         unknowns: system.unknowns().len(),
         plastic_share: plastic as f64 / trial.particles.len() as f64,
+        worst: None,
         drag_share: system.drag_share(&u),
         times,
     };

@@ -3,6 +3,7 @@
 mod deny;
 mod layers;
 mod licences;
+mod links;
 mod metadata;
 mod sources;
 
@@ -19,6 +20,7 @@ pub(crate) fn run() -> Result<u8, Failure> {
         ("layers", layers::check(&metadata)),
         ("sources", sources::check(&metadata, &root)?),
         ("licences", licences::check(&metadata, &allowed)),
+        ("links", links::check(&root)?),
     ];
     let mut count = 0;
     for (name, problems) in &checks {

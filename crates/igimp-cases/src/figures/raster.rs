@@ -47,12 +47,10 @@ pub(super) fn png(drawing: &Drawing) -> Result<Vec<u8>, FigureError> {
 
 fn encode(pixmap: &Pixmap) -> Result<Vec<u8>, FigureError> {
     // The white ground makes every pixel opaque, so three channels hold all of it.
-    let rgb: Vec<u8> = pixmap
-        .data()
-        .chunks_exact(4)
-        .flat_map(|rgba| &rgba[..3])
-        .copied()
-        .collect();
+    let mut rgb = Vec::with_capacity(3 * pixmap.pixels().len());
+    for rgba in pixmap.data().as_chunks::<4>().0 {
+        rgb.extend_from_slice(&rgba[..3]);
+    }
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, pixmap.width(), pixmap.height());
     encoder.set_color(png::ColorType::Rgb);

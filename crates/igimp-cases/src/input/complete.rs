@@ -6,7 +6,7 @@ use toml::de::DeValue;
 
 use super::diagnostic::Problems;
 use super::names::check_name;
-use super::schema::ROOT;
+use super::schema::{MOST_THINGS, ROOT};
 use super::source::{Place, Source};
 use super::spec::{Field, Kind, Presence, Struct, Variants};
 use super::suggest::nearest;
@@ -87,9 +87,9 @@ impl Completer<'_> {
         let message = if least == most {
             format!("`{key}` takes a list of {least} values, found {found}")
         } else if found < least {
-            format!("`{key}` needs at least {least} of them, found {found}")
+            format!("`{key}` needs at least {least} items, found {found}")
         } else {
-            format!("`{key}` takes at most {most} of them, found {found}")
+            format!("`{key}` takes at most {most} items, found {found}")
         };
         self.problems.error(node.place, message);
     }
@@ -172,6 +172,13 @@ impl Completer<'_> {
             self.problems
                 .error(node.place, format!("there is no {of}"))
                 .help(format!("add a table [{of}s.NAME]"));
+            return Node::invalid(node.place);
+        }
+        if node.entries().len() > MOST_THINGS {
+            self.problems.error(
+                node.place,
+                format!("there are more than {MOST_THINGS} {of}s"),
+            );
             return Node::invalid(node.place);
         }
         let mut entries = Vec::new();

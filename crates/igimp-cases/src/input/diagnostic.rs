@@ -35,10 +35,16 @@ impl Problem {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Problems {
     list: Vec<Problem>,
+    errors: usize,
+    warnings: usize,
+    /// Takes the help of a problem that is not kept.
+    spare: Option<Problem>,
 }
 
 /// Problems that are printed.
 const MOST: usize = 50;
+/// Problems that are kept.
+const KEPT: usize = 1000;
 
 impl Problems {
     /// Reports an error.
@@ -60,40 +66,46 @@ impl Problems {
     }
 
     fn add(&mut self, severity: Severity, place: Option<Place>, message: String) -> &mut Problem {
-        let at = self.list.len();
-        self.list.push(Problem {
+        let problem = Problem {
             severity,
             message,
             place,
             help: Vec::new(),
-        });
+        };
+        let is_same = |other: &Problem| other.place == place && other.message == problem.message;
+        if self.list.iter().take(KEPT).any(is_same) {
+            return self.spare.insert(problem);
+        }
+        match severity {
+            Severity::Error => self.errors += 1,
+            Severity::Warning => self.warnings += 1,
+        }
+        if self.list.len() >= KEPT {
+            return self.spare.insert(problem);
+        }
+        let at = self.list.len();
+        self.list.push(problem);
         &mut self.list[at]
     }
 
     /// Number of errors.
     pub(super) fn errors(&self) -> usize {
-        self.list
-            .iter()
-            .filter(|problem| problem.severity == Severity::Error)
-            .count()
+        self.errors
+    }
+
+    /// Whether there are so many that help with another one is not worth its while.
+    pub(super) fn are_many(&self) -> bool {
+        self.list.len() >= 2 * MOST
     }
 
     /// All problems and a line that counts them; empty when there are none.
     pub(super) fn render(&self, sources: &[Source]) -> String {
-        let mut list: Vec<&Problem> = Vec::with_capacity(self.list.len());
-        for problem in &self.list {
-            if !list.contains(&problem) {
-                list.push(problem);
-            }
-            if list.len() > 20 * MOST {
-                break;
-            }
-        }
-        // Problems of the whole file come last, like those of a missing table.
-        list.sort_by_key(|problem| (problem.place.is_none(), problem.place, problem.severity));
-        if list.is_empty() {
+        if self.list.is_empty() {
             return String::new();
         }
+        let mut list: Vec<&Problem> = self.list.iter().collect();
+        // Problems of the whole file come last, like those of a missing table.
+        list.sort_by_key(|problem| (problem.place.is_none(), problem.place, problem.severity));
         let mut out = String::new();
         for problem in list.iter().take(MOST) {
             problem.render(sources, &mut out);
@@ -102,9 +114,7 @@ impl Problems {
         if list.len() > MOST {
             out.push_str("further problems are not shown\n");
         }
-        let errors = self.errors();
-        let warnings = self.list.len() - errors;
-        let count = match (errors, warnings) {
+        let count = match (self.errors, self.warnings) {
             (0, warnings) => plural(warnings, "warning"),
             (errors, 0) => plural(errors, "error"),
             (errors, warnings) => format!(
@@ -127,32 +137,30 @@ impl Problem {
         };
         let _ = writeln!(out, "{severity}: {}", self.message);
         let mut gutter = String::new();
-        match self
+        let place = self
             .place
-            .and_then(|place| Some((place, sources.get(place.source)?)))
-        {
-            Some((place, source)) => {
-                let snippet = source.snippet(place);
-                let (head, number, prefix) = if source.is_override {
-                    ("command line".to_owned(), String::new(), "--set ")
-                } else {
-                    let head = format!("{}:{}:{}", source.name, snippet.line, snippet.column);
-                    (head, snippet.line.to_string(), "")
-                };
-                gutter = " ".repeat(number.len().max(1));
-                let width = gutter.len();
-                let marks = "^".repeat(snippet.marks);
-                let indent = " ".repeat(snippet.indent + prefix.len());
-                let _ = writeln!(out, "{gutter}--> {head}");
-                let _ = writeln!(out, "{gutter} |");
-                let _ = writeln!(out, "{number:width$} | {prefix}{}", snippet.text.trim_end());
-                let _ = writeln!(out, "{gutter} | {indent}{marks}");
-            }
-            None => {
-                let file = sources.first().map_or("", |source| &source.name);
-                gutter.push(' ');
-                let _ = writeln!(out, "{gutter}--> {file}");
-            }
+            .and_then(|place| Some((place, sources.get(place.source)?)));
+        if let Some((place, source)) = place {
+            let snippet = source.snippet(place);
+            let (head, number, prefix) = if source.is_override {
+                ("command line".to_owned(), String::new(), "--set ")
+            } else {
+                let head = format!("{}:{}:{}", source.name, snippet.line, snippet.column);
+                (head, snippet.line.to_string(), "")
+            };
+            gutter = " ".repeat(number.len().max(1));
+            let width = gutter.len();
+            let marks = "^".repeat(snippet.marks);
+            let indent = " ".repeat(snippet.indent + prefix.len());
+            let text = snippet.text.trim_end();
+            let _ = writeln!(out, "{gutter}--> {head}");
+            let _ = writeln!(out, "{gutter} |");
+            let _ = writeln!(out, "{number:width$} | {prefix}{text}");
+            let _ = writeln!(out, "{gutter} | {indent}{marks}");
+        } else {
+            let file = sources.first().map_or("", |source| &source.name);
+            gutter.push(' ');
+            let _ = writeln!(out, "{gutter}--> {file}");
         }
         for line in &self.help {
             let _ = writeln!(out, "{gutter} = help: {line}");

@@ -95,12 +95,16 @@ fn line(out: &mut String, field: &Field, node: Option<&Node>) {
     let Some(node) = node else {
         if let Presence::Optional(meaning) = field.presence {
             let text = format!("# {} is not set", field.key);
-            commented(out, &text, &format!("{comment}; now {meaning}"));
+            commented(out, &text, &format!("{comment}; without it: {meaning}"));
         }
         return;
     };
+    if comment == field.key.replace('_', " ") {
+        comment.clear();
+    }
     if !node.written {
         comment = format!("default; {comment}");
+        comment.truncate(comment.trim_end_matches("; ").len());
     }
     let value = inline(node, &field.kind);
     if value.len() > WIDTH && !node.items().is_empty() {
@@ -120,7 +124,9 @@ fn line(out: &mut String, field: &Field, node: Option<&Node>) {
 
 /// A line with a comment behind it, or above it when it is long.
 fn commented(out: &mut String, text: &str, comment: &str) {
-    let _ = if text.chars().count() > COMMENT {
+    let _ = if comment.is_empty() {
+        writeln!(out, "{text}")
+    } else if text.chars().count() > COMMENT {
         writeln!(out, "# {comment}\n{text}")
     } else {
         writeln!(out, "{text:COMMENT$} # {comment}")

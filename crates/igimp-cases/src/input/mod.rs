@@ -1,8 +1,20 @@
-//! Case files: from TOML to a [`Case`], with messages that name place, text and remedy.
+//! Case files: from TOML to a [`Case`](crate::case::Case), with messages that name place, text and remedy.
 //!
-//! A file is parsed ([`tree`]), changed by overrides, checked against the schema and completed with
-//! its defaults ([`complete`]), and built into a [`Case`] with the checks that need more than one
-//! value ([`build`]). Every problem is collected on the way and shown in the order of the file.
+//! A file is parsed into a tree whose values know their places (`tree`), changed by overrides,
+//! checked against the schema and completed with its defaults (`complete`), and built into a
+//! [`Case`](crate::case::Case) with the checks that need more than one value (`build`). The schema
+//! is declared once (`schema`) and also drives [`CaseFile::explain`], [`json_schema`] and
+//! [`reference_markdown`]. Every problem is collected on the way and shown in the order of the
+//! file.
+//!
+//! ```
+//! use igimp_cases::input::CaseFile;
+//!
+//! let text = include_str!("../../cases/slope.toml");
+//! let overrides = ["materials.clay.cohesoin=12 kPa".to_owned()];
+//! let error = CaseFile::parse("slope.toml", text, &overrides).unwrap_err();
+//! assert!(error.to_string().contains("did you mean `cohesion`?"));
+//! ```
 
 mod build;
 mod complete;

@@ -6,7 +6,7 @@ use super::diagnostic::Problems;
 use super::source::Place;
 use super::suggest::nearest;
 use super::text::{clip, row};
-use super::tree::Node;
+use super::tree::{Node, Wrong};
 
 /// Most characters of a name.
 pub(super) const LONGEST: usize = 60;
@@ -37,8 +37,10 @@ pub(super) fn check_name(name: &str, place: Place, problems: &mut Problems) -> b
 pub(super) struct Names {
     /// What is named, such as `material`.
     of: &'static str,
-    names: Vec<Option<String>>,
+    list: Vec<Option<String>>,
     index: HashMap<String, usize>,
+    /// Whether all names are known; otherwise one that is missing may be among those found wrong.
+    is_complete: bool,
 }
 
 impl Names {
@@ -68,7 +70,8 @@ impl Names {
         }
         Self {
             of,
-            names: all,
+            is_complete: all.iter().all(Option::is_some),
+            list: all,
             index,
         }
     }
@@ -83,7 +86,9 @@ impl Names {
                 name.map_or(item.place, |name| name.place),
             )
         });
-        Self::new(of, named, problems)
+        let mut names = Self::new(of, named, problems);
+        names.is_complete &= !list.is_some_and(Node::is_invalid);
+        names
     }
 
     /// The index of a name, without a word when there is none.
@@ -93,15 +98,30 @@ impl Names {
 
     /// The names that are known.
     pub(super) fn known(&self) -> impl Iterator<Item = &str> {
-        self.names.iter().flatten().map(String::as_str)
+        self.list.iter().flatten().map(String::as_str)
     }
 
     /// The name at an index.
     pub(super) fn name(&self, index: usize) -> &str {
-        self.names
+        self.list
             .get(index)
             .and_then(Option::as_deref)
             .unwrap_or("")
+    }
+
+    /// The index that the value of a key names, when the table has the key; reports, in the name
+    /// of `who`, when there is none.
+    pub(super) fn find_optional(
+        &self,
+        table: &Node,
+        key: &str,
+        who: &str,
+        problems: &mut Problems,
+    ) -> Result<Option<usize>, Wrong> {
+        match table.get(key) {
+            None => Ok(None),
+            Some(value) => self.find(value, who, problems).map(Some).ok_or(Wrong),
+        }
     }
 
     /// The index that a value names; reports, in the name of `who`, when there is none.
@@ -110,15 +130,16 @@ impl Names {
         if let Some(index) = self.position(name) {
             return Some(index);
         }
-        // A name that was found wrong itself may be the one that is meant.
-        if self.names.iter().any(Option::is_none) {
+        if !self.is_complete {
             return None;
         }
         let (of, shown) = (self.of, clip(name, 40));
-        let problem = problems.error(
-            value.place,
-            format!("{who} the {of} `{shown}`, which is not defined"),
-        );
+        let message = format!("{who} the {of} `{shown}`, which is not defined");
+        if problems.are_many() {
+            problems.error(value.place, message);
+            return None;
+        }
+        let problem = problems.error(value.place, message);
         problem.help(format!("defined {}: {}", plural_of(of), row(self.known())));
         if let Some(near) = nearest(name, self.known()) {
             problem.help(format!("did you mean `{near}`?"));

@@ -50,10 +50,9 @@ fn outside_quotes(text: &str, wanted: char) -> Option<usize> {
     for (at, c) in text.char_indices() {
         match quote {
             Some(open) if c == open => quote = None,
-            Some(_) => {}
             None if c == wanted => return Some(at),
             None if c == '"' || c == '\'' => quote = Some(c),
-            None => {}
+            _ => {}
         }
     }
     None
@@ -121,10 +120,10 @@ fn set(tree: &mut Node, parts: &[Part], value: Node, problems: &mut Problems) {
     let mut path = String::new();
     for (depth, part) in parts.iter().enumerate() {
         let is_last = depth + 1 == parts.len();
+        let parent = path.clone();
         if !path.is_empty() {
             path.push('.');
         }
-        let parent = path.clone();
         path.push_str(&part.text);
         let kind = node.kind();
         let next = match &mut node.value {

@@ -76,13 +76,11 @@ impl QuantityError {
             }
             Self::UnknownUnit { unit, .. } => {
                 let expected = expected.unwrap_or(Dimension::Stress);
-                match Unit::nearest(unit, expected) {
-                    Some(near) => format!("did you mean `{near}`?"),
-                    None => {
-                        let units: Vec<_> = expected.units().collect();
-                        format!("units of {}: {}", expected.name(), units.join(", "))
-                    }
+                if let Some(near) = Unit::nearest(unit, expected) {
+                    return format!("did you mean `{near}`?");
                 }
+                let units: Vec<_> = expected.units().collect();
+                format!("units of {}: {}", expected.name(), units.join(", "))
             }
             Self::WrongKind {
                 expected: Dimension::UnitWeight,
@@ -101,10 +99,7 @@ impl QuantityError {
                 ..
             } => format!("plane strain is one metre thick: forces are per metre run, \"{text}/m\""),
             Self::WrongKind { unit, found, .. } => {
-                format!(
-                    "`{unit}` is the unit of {}; write \"{example}\"",
-                    found.name()
-                )
+                format!("`{unit}` measures {}; write \"{example}\"", found.name())
             }
             Self::NotFinite { .. } => format!("write a number, like \"{example}\""),
         }
@@ -322,7 +317,7 @@ mod tests {
         assert_eq!(
             explain("2 m", Dimension::Stress),
             "wrong kind of unit: expected a stress such as kPa\n\
-             `m` is the unit of a length; write \"25 kPa\""
+             `m` measures a length; write \"25 kPa\""
         );
         assert_eq!(
             explain("20 kn/m3", Dimension::UnitWeight),

@@ -117,23 +117,36 @@ fn variants(out: &mut String, of: &'static Variants, long: &mut Long) {
     nested(out, of.after, long);
 }
 
-/// Tables within tables.
+/// Tables within tables; keys with the same table share a heading.
 fn nested(out: &mut String, fields: &'static [Field], long: &mut Long) {
-    for field in fields {
-        let kinds = match &field.kind {
-            Kind::Either(kinds) => kinds,
-            kind => std::slice::from_ref(kind),
-        };
-        for kind in kinds {
-            let (of, title) = match kind {
-                Kind::Table(of) => (of, format!("{} = {{ ... }}", field.key)),
-                Kind::List(Kind::Table(of), ..) => (of, format!("{} = [{{ ... }}]", field.key)),
-                _ => continue,
-            };
-            let _ = writeln!(out, "`{title}`: {}\n", of.doc);
-            structure(out, of, long);
+    let tables: Vec<(String, &'static Struct)> = fields.iter().flat_map(tables_of).collect();
+    for (first, (_, of)) in tables.iter().enumerate() {
+        let is_same = |other: &&'static Struct| std::ptr::eq(*other, *of);
+        if tables[..first].iter().any(|(_, other)| is_same(other)) {
+            continue;
         }
+        let titles: Vec<_> = tables
+            .iter()
+            .filter(|(_, other)| is_same(other))
+            .map(|(title, _)| format!("`{title}`"))
+            .collect();
+        let _ = writeln!(out, "{}: {}\n", titles.join(", "), of.doc);
+        structure(out, of, long);
     }
+}
+
+/// The tables that a key may hold, with their headings.
+fn tables_of(field: &'static Field) -> Vec<(String, &'static Struct)> {
+    let kinds = match &field.kind {
+        Kind::Either(kinds) => kinds,
+        kind => std::slice::from_ref(kind),
+    };
+    let table = |kind: &'static Kind| match kind {
+        Kind::Table(of) => Some((format!("{} = {{ ... }}", field.key), *of)),
+        Kind::List(Kind::Table(of), ..) => Some((format!("{} = [{{ ... }}]", field.key), *of)),
+        _ => None,
+    };
+    kinds.iter().filter_map(table).collect()
 }
 
 fn rows(out: &mut String, fields: &mut dyn Iterator<Item = &'static Field>, long: &mut Long) {

@@ -13,10 +13,13 @@ pub(super) fn parse(source: &Source, problems: &mut Problems) -> Node {
     let (document, errors) = DeTable::parse_recoverable(&source.text);
     let mut errors: Vec<&Error> = errors.iter().collect();
     errors.sort_by_key(|error| error.span().map_or(usize::MAX, |span| span.start));
-    for (number, error) in errors.iter().enumerate() {
-        // Only these two do not upset what follows.
-        if number == 0 || is_unquoted(error) || error.message().starts_with(DUPLICATE) {
-            report(source, error, problems);
+    for error in errors {
+        report(source, error, problems);
+        // Others upset what follows.
+        let is_harmless =
+            error.message().starts_with(DUPLICATE) || is_unquoted(error) && !is_key(source, error);
+        if !is_harmless {
+            break;
         }
     }
     from_document(&document, 0)
@@ -29,11 +32,22 @@ fn is_unquoted(error: &Error) -> bool {
     error.message().starts_with(UNQUOTED)
 }
 
+/// Whether an unquoted text is a key, where a list was not closed.
+fn is_key(source: &Source, error: &Error) -> bool {
+    let end = error.span().map_or(0, |span| span.end);
+    let after = source.text.get(end..).unwrap_or("");
+    after.trim_start_matches([' ', '\t']).starts_with('=') || after.starts_with(']')
+}
+
 fn report(source: &Source, error: &Error, problems: &mut Problems) {
     let place = error.span().map(|span| Place::new(0, &span));
     let written = place.map_or("", |place| source.slice(place)).trim();
     let shown = clip(written, 40);
-    if is_unquoted(error) {
+    if is_unquoted(error) && is_key(source, error) {
+        problems
+            .error(place, format!("expected a value, found `{shown}`"))
+            .help("is a bracket or a quote missing before it?");
+    } else if is_unquoted(error) {
         let problem = problems.error(place, format!("`{shown}` needs quotes"));
         match written {
             "True" | "False" => problem.help(format!("write {}", written.to_lowercase())),

@@ -30,6 +30,9 @@ pub(super) fn point(point: [f64; 2]) -> String {
 
 /// A whole number in groups of three digits.
 pub(super) fn count(value: f64) -> String {
+    if !value.is_finite() {
+        return "infinitely many".to_owned();
+    }
     if value >= 1e15 {
         return number(value);
     }

@@ -65,6 +65,11 @@ impl Node {
         Self::written(Value::Invalid, place)
     }
 
+    /// Whether the value was found wrong.
+    pub(super) fn is_invalid(&self) -> bool {
+        matches!(self.value, Value::Invalid)
+    }
+
     /// The value of a key, for a table that has it.
     pub(super) fn get(&self, key: &str) -> Option<&Self> {
         self.entry(key).map(|entry| &entry.node)
@@ -195,11 +200,23 @@ pub(super) fn shift(node: &mut Node, by: usize) {
     }
 }
 
+/// Something that was found wrong, and reported.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Wrong;
+
 /// Values of keys, when the table has them and they were found right.
 impl Node {
     /// The number of a key in SI units.
     pub(super) fn number_at(&self, key: &str) -> Option<f64> {
         self.get(key)?.number()
+    }
+
+    /// The number of a key that may be missing.
+    pub(super) fn optional_number(&self, key: &str) -> Result<Option<f64>, Wrong> {
+        match self.get(key) {
+            None => Ok(None),
+            Some(value) => value.number().map(Some).ok_or(Wrong),
+        }
     }
 
     /// The count of a key.

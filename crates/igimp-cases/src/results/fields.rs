@@ -53,7 +53,7 @@ pub(super) fn deviatoric_stress(sigma: &Tensor) -> f64 {
     (1.5 * (normal + 2.0 * shear)).sqrt()
 }
 
-/// Share of the shear strength of a particle's law that its stress mobilises.
+/// Share of the shear strength of a particle's law that its stress mobilises (theory, eq. 35).
 ///
 /// The stress is that of the law, C ½ ln b_e: Kirchhoff stress with finite strain, Cauchy stress
 /// with small strain.

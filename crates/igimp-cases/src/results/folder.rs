@@ -5,7 +5,7 @@
 //! |---|---|
 //! | `summary.json`, `report.html` | outcome, for programs and for people |
 //! | `case.toml`, `case.completed.toml` | the case as given, and with every default |
-//! | `convergence.csv` | residuals of steps that found no equilibrium |
+//! | `convergence.csv` | residuals of all steps, accepted or cut |
 //! | `curves/`, `monitors/`, `sections/` | tables (`.csv`) |
 //! | `figures/` | pictures (`.svg`, `.png`) |
 //! | `paraview/` | particles and grid (`.pvd`, `.vtu`) |
@@ -148,6 +148,19 @@ impl Folder {
     pub fn checkpoint(&self) -> PathBuf {
         self.root.join(CHECKPOINT)
     }
+}
+
+/// Marks a folder as one of igimp, so that a file may be put there before its run begins; it is made.
+///
+/// # Errors
+/// [`CaseError::ForeignFolder`] for a folder that is not empty and was not written by igimp;
+/// [`CaseError::File`].
+pub fn claim(root: &Path) -> Result<(), CaseError> {
+    if root.exists() && !is_empty(root)? && !is_ours(root) {
+        return Err(CaseError::ForeignFolder { path: root.into() });
+    }
+    fs::create_dir_all(root).map_err(at(root))?;
+    write_atomically(&root.join(MARKER), MARKER_TEXT)
 }
 
 /// A name for a file, from the name of a stage, curve or monitor: letters and digits as they are,
@@ -353,6 +366,24 @@ mod tests {
         let file = scratch.path().join("case.toml");
         let error = Folder::afresh(&file).unwrap_err();
         insta::assert_snapshot!(scratch.hide(&error), @"cannot access DIR/case.toml");
+    }
+
+    #[test]
+    fn a_claimed_folder_may_hold_a_file_before_its_run() {
+        let scratch = Scratch::new();
+        let root = scratch.path().join("task-0001");
+        claim(&root).unwrap();
+        fs::write(root.join("task.json"), "{}").unwrap();
+        claim(&root).unwrap();
+        Folder::afresh(&root).unwrap();
+        assert!(root.join("task.json").exists());
+        let foreign = scratch.path().join("mine");
+        fs::create_dir(&foreign).unwrap();
+        fs::write(foreign.join("notes.txt"), "the user's").unwrap();
+        assert!(matches!(
+            claim(&foreign),
+            Err(CaseError::ForeignFolder { .. })
+        ));
     }
 
     #[test]

@@ -49,6 +49,7 @@ fn render(folder: &Path, summary: &Summary) -> Result<String, minijinja::Error> 
         [
             (true, "numbers", "Key numbers"),
             (!summary.checks.is_empty(), "checks", "Checks"),
+            (summary.failure.is_some(), "failure", "Want of equilibrium"),
             (!summary.warnings.is_empty(), "warnings", "Warnings"),
             (true, "stages", "Stages"),
             (!safety.is_empty(), "safety", "Factor of safety"),
@@ -72,6 +73,7 @@ fn render(folder: &Path, summary: &Summary) -> Result<String, minijinja::Error> 
         contents: entries,
         numbers: rows::numbers(summary),
         checks: rows::checks(summary),
+        failure: summary.failure.as_deref(),
         warnings: &summary.warnings,
         stages: rows::stages(summary),
         phase_names: rows::PHASES,
@@ -97,6 +99,7 @@ struct Page<'a> {
     contents: Vec<Entry>,
     numbers: Vec<rows::Number>,
     checks: Vec<rows::CheckView>,
+    failure: Option<&'a str>,
     warnings: &'a [String],
     stages: Vec<rows::StageView>,
     phase_names: [&'static str; 5],

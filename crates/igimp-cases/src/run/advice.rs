@@ -32,8 +32,16 @@ pub fn advice(
     let Some(stage) = case.stages.get(stage) else {
         return Vec::new();
     };
+    let yielding = near_worst.is_some_and(|[all, yielding, _]| share(yielding, all) >= COLLAPSE);
     let mut try_this = match &*error.failure {
         StepFailure::LeavesGrid { position, .. } => off_grid(case, stage, *position),
+        // Soil that flows away can also turn a particle inside out, or leave a singular matrix.
+        StepFailure::Assembly(AssemblyError::Inverted { .. } | AssemblyError::Material { .. })
+        | StepFailure::Linear(
+            LinearSolverError::Singular { .. }
+            | LinearSolverError::NotPositiveDefinite { .. }
+            | LinearSolverError::Inaccurate { .. },
+        ) if yielding => no_equilibrium(case, stage, error, near_worst),
         StepFailure::Assembly(assembly) => unformed(case, stage, assembly),
         StepFailure::Linear(linear) => unsolved(case, linear),
         StepFailure::MaxIterations { .. } | StepFailure::Diverged | StepFailure::Stagnated => {
@@ -44,6 +52,10 @@ pub fn advice(
     try_this
 }
 
+fn share(count: usize, of: usize) -> f64 {
+    count as f64 / of.max(1) as f64
+}
+
 /// The iteration ended without equilibrium.
 fn no_equilibrium(
     case: &Case,
@@ -51,7 +63,6 @@ fn no_equilibrium(
     error: &StepError,
     near_worst: Option<[usize; 3]>,
 ) -> Vec<String> {
-    let share = |count: usize, of: usize| count as f64 / of.max(1) as f64;
     let yielding = near_worst.map_or(0.0, |[all, yielding, _]| share(yielding, all));
     let apex = near_worst.map_or(0.0, |[all, _, apex]| share(apex, all));
     let [x, y, _] = error.worst.map_or([f64::NAN; 3], |(x, _)| x);
@@ -60,7 +71,7 @@ fn no_equilibrium(
 
     out.extend(round_off(case, error));
     out.extend(still_falling(case, error));
-    if yielding >= COLLAPSE && apex < APEX_RICH {
+    if yielding >= COLLAPSE {
         out.extend(collapse(case, stage));
     }
     out.push(more_steps(stage));

@@ -32,6 +32,9 @@ pub fn run(
     interrupt: &AtomicBool,
 ) -> Result<Run, CaseError> {
     let clock = Instant::now();
+    if case.stages.is_empty() {
+        return Err(CaseError::NoStages);
+    }
     let (model, initial) = Model::new(case)?;
     let records = Records::new(case, &model.laws, &initial.body.particles)?;
     let mut session = Session {
@@ -107,6 +110,7 @@ impl Course {
             session.summary.size.unknowns = left.unknowns;
             session.ends = output.ends(case, left.stages.len())?;
             course.first = left.stages.len();
+            course.state = Some(left.state.clone());
             course.left = Some(left);
         } else {
             output.model_picture(case)?;
@@ -118,9 +122,6 @@ impl Course {
     /// Runs the stages from the first that is not done.
     fn stages(&mut self, session: &mut Session<'_>, initial: &State) -> Result<(), CaseError> {
         let case = session.model.case;
-        if self.first >= case.stages.len() {
-            return Err(CaseError::NothingToRun);
-        }
         for number in self.first..case.stages.len() {
             if session.interrupted() {
                 session.summary.interrupted = true;
@@ -264,7 +265,11 @@ impl Course {
         summary: &StageSummary,
     ) -> Result<(), CaseError> {
         let case = session.model.case;
-        let tables = sections::read(session.model, &state.body.particles, number);
+        // A search leaves the body as it was found: there is nothing new to see along sections.
+        let tables = match case.stages[number].kind {
+            StageKind::StrengthReduction(_) => Vec::new(),
+            _ => sections::read(session.model, state, number)?,
+        };
         let resistance = session.last_resistance;
         let moment = Moment {
             stage: number,
@@ -297,6 +302,7 @@ impl Course {
             session.summary.checks.extend(rows);
         }
         session.summary.peak_memory_mib = peak_memory_mib();
+        session.summary.failure = self.failure.as_ref().map(ToString::to_string);
         if let Some(output) = &mut session.output {
             output.finish(case, &session.records, &mut session.summary, clock)?;
         } else {

@@ -1,4 +1,5 @@
-//! The stresses of level ground: the weight above, and K₀ times that sideways.
+//! The stresses of level ground: the weight above, and K₀ times that sideways (theory, eqs. 36
+//! and 37).
 
 use igimp_assembly::Particles;
 

@@ -67,10 +67,9 @@ pub(crate) fn load(
                 resistance,
                 drag: 0.0,
             };
-            let interrupted = session.interrupted();
             if let Some(output) = &mut session.output {
                 let run = &session.summary;
-                output.after_step(number, model, summary, taken, &resumption, run, interrupted)?;
+                output.after_step(number, model, summary, taken, &resumption, run)?;
             }
             Ok(stop)
         },

@@ -8,6 +8,7 @@ mod fingerprint;
 mod footing;
 mod initial;
 mod loading;
+mod message;
 mod model;
 mod output;
 mod records;
@@ -25,8 +26,12 @@ use crate::summary::{ModelSize, StageSummary, Summary, TrialSummary};
 use crate::table::Table;
 
 pub use engine::{in_memory, run};
+pub use message::worst_node;
 pub use model::Model;
 pub use state::{Controls, State};
+
+/// Why a stage ended that reached its end.
+pub const REACHED_ITS_END: &str = "reached its end";
 
 /// What happens during a run, as it happens.
 #[derive(Clone, Copy, Debug)]

@@ -12,6 +12,7 @@ use super::footing::Footing;
 use super::state::{Controls, State};
 use crate::case::{Case, LoadKind, Side};
 use crate::error::CaseError;
+use crate::figures::{Outline, OutlineStyle};
 use crate::seed::fill_polygon;
 use crate::summary::ModelSize;
 
@@ -132,21 +133,8 @@ impl<'c> Model<'c> {
     ///
     /// # Errors
     /// [`AssemblyError::Material`] for a factor that makes no law.
-    // A factor of exactly 1 leaves a law as it is.
-    #[allow(clippy::float_cmp)]
     pub fn laws_reduced_by(&self, srf: &[f64]) -> Result<Vec<SharedLaw>, AssemblyError> {
-        self.laws
-            .iter()
-            .zip(srf)
-            .map(|(law, &srf)| {
-                if srf == 1.0 {
-                    Ok(Arc::clone(law))
-                } else {
-                    law.reduced(srf)
-                        .map_err(|source| AssemblyError::Law { source })
-                }
-            })
-            .collect()
+        reduced(&self.laws, srf)
     }
 
     /// Resistance of the footing, compression positive, times its reaction factor \[N/m\].
@@ -154,6 +142,22 @@ impl<'c> Model<'c> {
         self.footing
             .as_ref()
             .map_or(0.0, |footing| footing.resistance(grid, reactions))
+    }
+
+    /// The footing where it stands, as a block two cells high, for pictures.
+    pub(crate) fn footing_outline(&self, settlement: f64) -> Option<Outline> {
+        self.case.loads.iter().find_map(|load| match load.kind {
+            LoadKind::RigidFooting { from, to, .. } if settlement > 0.0 => {
+                let base = from[1] - settlement;
+                let top = from[1].max(base + 2.0 * self.case.grid.cell[1]);
+                let corners = [[from[0], base], [to[0], base], [to[0], top], [from[0], top]];
+                Some(Outline {
+                    points: corners.to_vec(),
+                    style: OutlineStyle::Block,
+                })
+            }
+            _ => None,
+        })
     }
 
     fn supports(&self, grid: &Grid<2>) -> Result<Constraints<2>, AssemblyError> {
@@ -207,6 +211,21 @@ impl<'c> Model<'c> {
     pub fn workspace(&self) -> Workspace {
         Workspace::new(self.case.solver.linear.build())
     }
+}
+
+/// Laws at strengths divided by these factors, by material.
+pub(crate) fn reduced(laws: &[SharedLaw], srf: &[f64]) -> Result<Vec<SharedLaw>, AssemblyError> {
+    laws.iter()
+        .zip(srf)
+        .map(|(law, &srf)| {
+            if srf.total_cmp(&1.0).is_eq() {
+                Ok(Arc::clone(law))
+            } else {
+                law.reduced(srf)
+                    .map_err(|source| AssemblyError::Law { source })
+            }
+        })
+        .collect()
 }
 
 /// The points that carry pressures and forces, each under the number of its load.

@@ -1,11 +1,9 @@
 //! The results folder of a run: what is written, when, and how a run is taken up again from it.
 
 use std::collections::HashMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use igimp_assembly::Particles;
-use igimp_shape::Grid;
 use igimp_solver::{Body, Standing};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -216,7 +214,7 @@ impl Output {
         };
         let found = checkpoint::read(&path, Some(&fingerprint::of_case(case)))?;
         checkpoint::discard_after(&path)?;
-        Self::take_up(folder, case, records, found)
+        Self::take_up(folder, case, records, &found)
     }
 
     /// A results folder taken up at the beginning of a stage.
@@ -244,14 +242,14 @@ impl Output {
         checkpoint::discard_after(&path)?;
         write_atomically(&folder.case(), &target.source)?;
         write_atomically(&folder.completed_case(), &target.completed)?;
-        Self::take_up(folder, case, records, found)
+        Self::take_up(folder, case, records, &found)
     }
 
     fn take_up(
         folder: Folder,
         case: &Case,
         records: &mut Records,
-        found: checkpoint::Checkpoint,
+        found: &checkpoint::Checkpoint,
     ) -> Result<(Self, Option<Left>), CaseError> {
         let path = folder.checkpoint();
         let notes: Notes = notes_of(&path, &found.meta)?;
@@ -382,7 +380,6 @@ impl Output {
         taken: &Taken<'_>,
         resumption: &Resumption,
         run: &Summary,
-        interrupted: bool,
     ) -> Result<(), CaseError> {
         let clock = Instant::now();
         self.steps += 1;
@@ -390,10 +387,12 @@ impl Output {
         if let Every::Steps(every) = self.every
             && summary.steps.is_multiple_of(every.max(1))
         {
-            self.add_frame(model, &body.particles, &taken.accepted.conditions.grid)?;
+            let conditions = &taken.accepted.conditions;
+            let own = (&body.particles, &conditions.laws[..]);
+            self.frames.add(self.steps as f64, own, &conditions.grid)?;
         }
         let due = self.checkpoint_every > 0 && summary.steps.is_multiple_of(self.checkpoint_every);
-        if due || interrupted {
+        if due || taken.interrupted {
             let notes = Notes {
                 stage: Some(summary.clone()),
                 resumption: Some(resumption.clone()),
@@ -461,13 +460,15 @@ impl Output {
     ) -> Result<(), CaseError> {
         let clock = Instant::now();
         let case = model.case;
-        let particles = &state.body.particles;
         for table in sections {
             table.write_csv(&self.folder.sections())?;
         }
         if self.every != Every::Never {
             let grid = model.grid(state.controls.settlement)?;
-            self.add_frame(model, particles, &grid)?;
+            let laws = model.laws_reduced_by(&state.controls.srf)?;
+            // The time of a frame is the number of steps and trials so far.
+            self.frames
+                .add(self.steps as f64, (&state.body.particles, &laws), &grid)?;
         }
         if let Some(safety) = &summary.safety {
             self.factor_of_safety = match (safety.stable, safety.failed) {
@@ -479,25 +480,30 @@ impl Output {
             self.figures.push(picture);
         }
         for (name, srf, kept) in std::mem::take(&mut self.kept) {
-            let particles = &kept.body.particles;
             if self.every != Every::Never {
-                self.frames.beside(&name, (particles, &model.laws))?;
+                let laws = model.laws_reduced_by(&kept.controls.srf)?;
+                self.frames.beside(&name, (&kept.body.particles, &laws))?;
             }
             let shown = Shown {
                 title: format!("{}, SRF {srf:.4}", summary.name),
                 when: format!("in the {} state, SRF {srf:.4}", words(&name)),
                 name,
             };
-            self.field_pictures(model, &shown, particles)?;
+            self.field_pictures(model, &shown, &kept)?;
         }
         if summary.safety.is_none() {
-            self.field_pictures(model, &Shown::end_of_stage(case, number), particles)?;
+            self.field_pictures(model, &Shown::end_of_stage(case, number), state)?;
         }
-        for (section, table) in case.sections.iter().zip(sections) {
-            let (root, title) = (self.folder.root(), &case.title);
-            let own = pictures::section_pictures(root, title, section, &summary.name, table)?;
-            self.figures.extend(own);
-        }
+        let (root, title) = (self.folder.root(), &case.title);
+        let drawn = case
+            .sections
+            .par_iter()
+            .zip(sections)
+            .map(|(section, table)| {
+                pictures::section_pictures(root, title, section, &summary.name, table)
+            })
+            .collect::<Result<Vec<_>, _>>()?;
+        self.figures.extend(drawn.concat());
         self.seconds += clock.elapsed().as_secs_f64();
         Ok(())
     }
@@ -545,32 +551,24 @@ impl Output {
         Ok(saved)
     }
 
-    /// A frame for ParaView; its time is the number of steps and trials so far.
-    fn add_frame(
-        &mut self,
-        model: &Model<'_>,
-        particles: &Particles<2>,
-        grid: &Grid<2>,
-    ) -> Result<(), CaseError> {
-        let time = self.steps as f64;
-        self.frames.add(time, (particles, &model.laws), grid)
-    }
-
     /// The pictures of the fields that the case wants to see.
     fn field_pictures(
         &mut self,
         model: &Model<'_>,
         shown: &Shown,
-        particles: &Particles<2>,
+        state: &State,
     ) -> Result<(), CaseError> {
         let root = self.folder.root();
-        let own = (particles, &model.laws[..]);
+        let laws = model.laws_reduced_by(&state.controls.srf)?;
+        let own = (&state.body.particles, &laws[..]);
+        let footing = model.footing_outline(state.controls.settlement);
+        let footing = footing.as_slice();
         let drawn = model
             .case
             .output
             .figures
             .par_iter()
-            .map(|&field| pictures::field_picture(root, model.case, shown, field, own, &[]))
+            .map(|&field| pictures::field_picture(root, model.case, shown, field, own, footing))
             .collect::<Result<Vec<_>, _>>()?;
         self.figures.extend(drawn);
         Ok(())
@@ -597,16 +595,13 @@ impl Output {
         let mut figures = std::mem::take(&mut self.figures);
         let at = figures.len().min(1);
         let (root, title) = (self.folder.root(), &case.title);
-        let mut histories = Vec::new();
-        for (curve, table) in case.curves.iter().zip(&records.curves) {
-            histories.push(pictures::curve_picture(root, title, curve, table)?);
-        }
-        for (monitor, table) in case.monitors.iter().zip(&records.monitors) {
-            histories.extend(pictures::monitor_pictures(root, title, monitor, table)?);
-        }
-        figures.splice(at..at, histories);
         let tolerance = Some(case.solver.tolerance);
-        figures.extend(pictures::convergence_pictures(root, title, tolerance)?);
+        let (histories, convergence) = rayon::join(
+            || histories(root, case, records),
+            || pictures::convergence_pictures(root, title, tolerance),
+        );
+        figures.splice(at..at, histories?);
+        figures.extend(convergence?);
         summary.figures = figures;
         self.seconds += clock.elapsed().as_secs_f64();
         summary.seconds = begun.elapsed().as_secs_f64();
@@ -681,6 +676,19 @@ impl Output {
     }
 }
 
+/// The pictures of curves and monitors.
+fn histories(root: &Path, case: &Case, records: &Records) -> Result<Vec<FigureNote>, CaseError> {
+    let title = &case.title;
+    let curves = (&case.curves, &records.curves)
+        .into_par_iter()
+        .map(|(curve, table)| Ok(vec![pictures::curve_picture(root, title, curve, table)?]));
+    let monitors = (&case.monitors, &records.monitors)
+        .into_par_iter()
+        .map(|(monitor, table)| pictures::monitor_pictures(root, title, monitor, table));
+    let drawn = curves.chain(monitors).collect::<Result<Vec<_>, _>>()?;
+    Ok(drawn.concat())
+}
+
 /// File of a table.
 fn csv(name: &str) -> String {
     format!("{name}.csv")
@@ -700,7 +708,7 @@ fn end_of_stage(number: usize) -> String {
     format!("stage-{:02}-end", number + 1)
 }
 
-fn notes_of(path: &std::path::Path, meta: &Meta) -> Result<Notes, CheckpointError> {
+fn notes_of(path: &Path, meta: &Meta) -> Result<Notes, CheckpointError> {
     serde_json::from_value(meta.data.clone()).map_err(|error| CheckpointError::Damaged {
         path: path.to_path_buf(),
         file: "meta.json".to_owned(),

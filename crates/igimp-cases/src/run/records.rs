@@ -2,6 +2,7 @@
 
 use igimp_assembly::{Particles, SharedLaw};
 
+use super::model::reduced;
 use super::state::Controls;
 use crate::case::{Case, Quantity};
 use crate::error::CaseError;
@@ -99,6 +100,11 @@ impl Records {
         })
     }
 
+    /// The laws at the strength that acts; full strength where none can be made of it.
+    fn laws_at(&self, moment: &Moment<'_>) -> Vec<SharedLaw> {
+        reduced(&self.laws, &moment.controls.srf).unwrap_or_else(|_| self.laws.clone())
+    }
+
     /// A quantity of a moment, in SI units.
     pub(crate) fn quantity(&self, of: Quantity, moment: &Moment<'_>) -> f64 {
         let controls = moment.controls;
@@ -108,7 +114,8 @@ impl Records {
             Quantity::LoadFactor(load) => controls.factors[load],
             Quantity::Monitor(monitor, field) => {
                 let particle = self.watched[monitor];
-                fields::value(field, moment.particles, particle, &self.laws)
+                let laws = self.laws_at(moment);
+                fields::value(field, moment.particles, particle, &laws)
             }
             Quantity::LargestDisplacement => moment.largest_displacement(),
             Quantity::GravityFactor => controls.gravity,
@@ -146,6 +153,7 @@ impl Records {
         }
         for (k, monitor) in case.monitors.iter().enumerate().filter(|_| !reopens) {
             let (particles, particle) = (moment.particles, self.watched[k]);
+            let laws = self.laws_at(moment);
             let mut row = vec![
                 moment.stage as f64 + 1.0,
                 moment.number as f64,
@@ -155,7 +163,7 @@ impl Records {
                 monitor
                     .record
                     .iter()
-                    .map(|&field| fields::value(field, particles, particle, &self.laws)),
+                    .map(|&field| fields::value(field, particles, particle, &laws)),
             );
             self.monitors[k].push(row.clone());
             rows.monitors.push(row);

@@ -1,11 +1,12 @@
 //! Run-out: a slope whose strength is reduced beyond its factor of safety moves until it rests.
 //!
 //! Beyond collapse there is no equilibrium nearby to step to. Here every step balances the weight
-//! with a drag proportional to the step's displacement, so that the slope creeps down the way that
-//! its strength allows and gains no speed. The drag is adapted so that the largest displacement of a
-//! step stays about the same. The share of the external force that the drag carries tells how far
-//! from equilibrium the slope is; when it has all but vanished, a last step without any drag has to
-//! find equilibrium. This is a mode for run-out alone, never for a factor of safety.
+//! with a drag proportional to the step's displacement (theory, eq. 38), so that the slope creeps
+//! down the way that its strength allows and gains no speed. The drag is adapted so that the largest
+//! displacement of a step stays about the same (eq. 39). The share of the external force that the
+//! drag carries (eq. 40) tells how far from equilibrium the slope is; when it has all but vanished, a
+//! last step without any drag has to find equilibrium. This is a mode for run-out alone, never for a
+//! factor of safety.
 
 use std::cell::Cell;
 
@@ -88,10 +89,9 @@ pub(crate) fn run_out(
                 resistance: taken.resistance,
                 drag: drag.get(),
             };
-            let interrupted = session.interrupted();
             if let Some(output) = &mut session.output {
                 let run = &session.summary;
-                output.after_step(number, model, summary, taken, &resumption, run, interrupted)?;
+                output.after_step(number, model, summary, taken, &resumption, run)?;
             }
             let share = taken.accepted.report.drag_share;
             Ok((share < run_out.at_rest).then(|| at_rest(summary.steps, share)))

@@ -1,4 +1,5 @@
-//! The factor of safety by strength reduction: an interval, found by a search that always ends.
+//! The factor of safety by strength reduction: an interval, found by a search that always ends
+//! (theory, eqs. 31 to 34).
 
 use igimp_solver::Standing;
 
@@ -125,10 +126,7 @@ impl<'a> Trials<'a> {
         if let Some(&listed) = self.reduction.factors.get(made) {
             return Some(listed);
         }
-        // The factor 1 is tried as it is written.
-        #[allow(clippy::float_cmp)]
-        let tried = |srf: f64| self.made.iter().any(|trial| trial.srf == srf);
-        if !tried(1.0) {
+        if !self.made.iter().any(at_full_strength) {
             return Some(1.0);
         }
         if made >= MOST_TRIALS + self.reduction.factors.len() {
@@ -199,6 +197,13 @@ impl<'a> Trials<'a> {
         if matches!(ended, Ended::Interrupted) {
             return Ok(Some(ended));
         }
+        // A reduction that was ended by the criterion has failed at the factor that it reached.
+        let srf = match (&ended, reduction.path) {
+            (Ended::Stopped(_), ReductionPath::Reduce) => {
+                state.controls.srf[reduction.materials[0]]
+            }
+            _ => srf,
+        };
         let displacement = session.displacement(reduction.monitor, &state.body.particles);
         let exceeded = limit.is_some_and(|limit| displacement > limit);
         let (stable, reason) = match &ended {
@@ -392,16 +397,19 @@ impl<'a> Trials<'a> {
     }
 }
 
+/// Whether a trial is the one at F = 1.
+fn at_full_strength(trial: &TrialSummary) -> bool {
+    (trial.srf - 1.0).abs() < 1e-9
+}
+
 /// What a reader has to know about an interval.
-// The factor 1 is tried as it is written.
-#[allow(clippy::float_cmp)]
 fn remarks(safety: &SafetySummary, reduction: &StrengthReduction) -> Vec<String> {
     let mut remarks = Vec::new();
     let [low, high] = reduction.bracket;
     if safety
         .trials
         .iter()
-        .any(|trial| trial.srf == 1.0 && !trial.stable)
+        .any(|trial| at_full_strength(trial) && !trial.stable)
     {
         remarks.push(
             "the body does not stand at full strength (SRF 1): the factor of safety is below 1, or \

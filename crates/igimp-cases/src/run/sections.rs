@@ -1,8 +1,9 @@
 //! Fields along the sections of a case at the end of a stage.
 
-use igimp_assembly::Particles;
+use igimp_assembly::AssemblyError;
 
 use super::model::Model;
+use super::state::State;
 use crate::case::Case;
 use crate::measure::nearest;
 use crate::results::fields;
@@ -17,11 +18,18 @@ fn stage_name(case: &Case, stage: usize) -> String {
 /// One table per section, named `SECTION__STAGE`: the particles nearest to equally spaced places
 /// along the line, each once, with the foot of the particle on the line. Places without a particle
 /// within a cell are left out. Values are as the particles hold them, neither averaged nor
-/// interpolated.
-pub(crate) fn read(model: &Model<'_>, particles: &Particles<2>, stage: usize) -> Vec<Table> {
+/// interpolated; the share of mobilised strength is that of the strength that acts.
+pub(crate) fn read(
+    model: &Model<'_>,
+    state: &State,
+    stage: usize,
+) -> Result<Vec<Table>, AssemblyError> {
     let case = model.case;
+    let particles = &state.body.particles;
+    let laws = model.laws_reduced_by(&state.controls.srf)?;
     let reach = case.grid.cell[0].max(case.grid.cell[1]);
-    case.sections
+    let tables = case
+        .sections
         .iter()
         .map(|section| {
             let mut header: Vec<String> = ["distance_[m]", "x_[m]", "y_[m]"]
@@ -52,11 +60,12 @@ pub(crate) fn read(model: &Model<'_>, particles: &Particles<2>, stage: usize) ->
                     section
                         .record
                         .iter()
-                        .map(|&field| fields::value(field, particles, particle, &model.laws)),
+                        .map(|&field| fields::value(field, particles, particle, &laws)),
                 );
                 table.push(row);
             }
             table
         })
-        .collect()
+        .collect();
+    Ok(tables)
 }

@@ -13,7 +13,7 @@ use super::model::Model;
 use super::output::Output;
 use super::records::{Moment, Records, largest_displacement};
 use super::state::{Controls, State};
-use super::{Event, Listener};
+use super::{Event, Listener, REACHED_ITS_END};
 use crate::error::CaseError;
 use crate::summary::{StageSummary, Summary};
 
@@ -146,6 +146,8 @@ pub(crate) struct Taken<'a> {
     pub(crate) controls: &'a Controls,
     /// Resistance of the footing \[N/m\].
     pub(crate) resistance: f64,
+    /// Whether the user wants the run to end here.
+    pub(crate) interrupted: bool,
 }
 
 impl<'a> Taken<'a> {
@@ -222,7 +224,7 @@ pub(crate) fn march_path(
         (Outcome::StepTooSmall { cause, .. }, _) => Ended::NotConverged(cause),
         (_, Some(Stop::Stage(reason))) => Ended::Stopped(reason),
         (Outcome::Stopped { .. }, Some(Stop::User) | None) => Ended::Interrupted,
-        (Outcome::Completed, _) => Ended::Completed("reached its end".to_owned()),
+        (Outcome::Completed, _) => Ended::Completed(REACHED_ITS_END.to_owned()),
     })
 }
 
@@ -253,6 +255,7 @@ impl Watch<'_, '_> {
             accepted,
             controls: &controls,
             resistance: model.footing_resistance(grid, &accepted.forces.reactions),
+            interrupted: self.session.interrupted(),
         };
         self.session.last_resistance = taken.resistance;
         let reason = (self.each)(self.session, self.stage, &taken)?;

@@ -29,9 +29,7 @@ impl Controls {
 
     /// The controls a share `t` of the way to `end`.
     pub(crate) fn towards(&self, end: &Self, t: f64) -> Self {
-        // What does not change keeps its bits.
-        #[allow(clippy::float_cmp)]
-        let between = |a: f64, b: f64| if a == b { b } else { a + t * (b - a) };
+        let between = |a: f64, b: f64| if t >= 1.0 { b } else { a + t * (b - a) };
         let all = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| between(*a, *b)).collect();
         Self {
             gravity: between(self.gravity, end.gravity),

@@ -28,6 +28,7 @@ use thiserror::Error;
 use crate::case::Case;
 use crate::error::CaseError;
 use crate::input::{CaseFile, InputError};
+use crate::results::folder;
 use crate::run::{self, Listener, Run, Start, Target};
 
 pub use collect::{Collected, aligned, collect};
@@ -195,6 +196,7 @@ impl Sweep {
     ) -> Result<(Run, Ending), SweepError> {
         let file = self.case_of(task)?;
         let mut record = Record::new(self, task, &file);
+        folder::claim(&task.folder)?;
         record.write(&task.folder)?;
         let mut case: Case = file.case().clone();
         case.output.folder.clone_from(&task.folder);

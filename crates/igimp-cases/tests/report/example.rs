@@ -8,7 +8,7 @@ use igimp_cases::case::{
     Material, Monitor, Output, Quantity, Reference, ReferenceValues, Section, Side, SolverSettings,
     Stage, StageKind, StopWhen, Strength,
 };
-use igimp_cases::results::pictures;
+use igimp_cases::results::pictures::{self, Shown};
 use igimp_cases::seed::fill_polygon;
 use igimp_cases::summary::{FigureNote, Summary};
 use igimp_shape::{Axis, Grid};
@@ -274,7 +274,17 @@ pub(crate) fn draw(folder: &Path, case: &Case) -> Vec<FigureNote> {
         Field::Utilisation,
     ] {
         let state = (&particles, laws.as_slice());
-        notes.push(pictures::field_picture(folder, case, 1, field, state, &[]).unwrap());
+        notes.push(
+            pictures::field_picture(
+                folder,
+                case,
+                &Shown::end_of_stage(case, 1),
+                field,
+                state,
+                &[],
+            )
+            .unwrap(),
+        );
     }
     notes
 }

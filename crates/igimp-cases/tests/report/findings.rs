@@ -121,6 +121,7 @@ pub(crate) fn summary() -> Summary {
         CheckRow { check, pass }
     };
     Summary {
+        failure: None,
         program: "igimp 0.1.0".into(),
         title: case().title,
         method: "iGIMP, B-bar, finite strain".into(),

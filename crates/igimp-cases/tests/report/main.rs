@@ -8,7 +8,7 @@ use std::path::Path;
 
 use igimp_cases::CaseError;
 use igimp_cases::case::{Field, ReferenceValues};
-use igimp_cases::results::pictures;
+use igimp_cases::results::pictures::{self, Shown};
 use igimp_cases::results::report::write_report;
 use igimp_cases::summary::{FigureNote, SafetySummary, StageOutcome, Summary};
 use igimp_cases::table::Table;
@@ -318,13 +318,29 @@ fn every_field_has_a_picture() {
     let (particles, laws) = example::particles(&case);
     for field in igimp_cases::results::fields::ALL {
         let state = (&particles, laws.as_slice());
-        let note = pictures::field_picture(&folder, &case, 0, field, state, &[]).unwrap();
+        let note = pictures::field_picture(
+            &folder,
+            &case,
+            &Shown::end_of_stage(&case, 0),
+            field,
+            state,
+            &[],
+        )
+        .unwrap();
         assert!(
             folder.join(format!("{}.svg", note.file)).exists(),
             "{field:?}"
         );
     }
     let state = (&particles, laws.as_slice());
-    let beyond = pictures::field_picture(&folder, &case, 9, Field::P, state, &[]).unwrap();
+    let beyond = pictures::field_picture(
+        &folder,
+        &case,
+        &Shown::end_of_stage(&case, 9),
+        Field::P,
+        state,
+        &[],
+    )
+    .unwrap();
     assert_eq!(beyond.file, "figures/field-10-x-p");
 }

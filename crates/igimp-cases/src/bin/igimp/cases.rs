@@ -1,11 +1,12 @@
 //! `igimp check` and `igimp explain`.
 
+use igimp_cases::check::count;
 use igimp_cases::estimate::{estimate, readable};
 use igimp_cases::input::CaseFile;
 
 use crate::arguments::CaseArguments;
 use crate::error::{Exit, ProgramError};
-use crate::output::{self, count};
+use crate::output;
 
 pub(crate) fn explain(arguments: &CaseArguments) -> Result<Exit, ProgramError> {
     let file = read(&arguments.case, &arguments.set)?;

@@ -1,7 +1,6 @@
 //! What ends the program early, and its exit codes.
 
 use std::error::Error;
-use std::fmt::Write as _;
 use std::io::ErrorKind;
 use std::path::PathBuf;
 
@@ -100,20 +99,9 @@ impl ProgramError {
             }) => format!("error: {self}"),
             Self::Usage { what, help } if help.is_empty() => format!("error: {what}"),
             Self::Usage { what, help } => format!("error: {what}\n  help: {help}"),
-            _ => chain(self),
+            _ => igimp_cases::chain(self),
         }
     }
-}
-
-/// An error and its causes, a line each.
-pub(crate) fn chain(error: &dyn Error) -> String {
-    let mut text = format!("error: {error}");
-    let mut cause = error.source();
-    while let Some(next) = cause {
-        let _ = write!(text, "\n  because: {next}");
-        cause = next.source();
-    }
-    text
 }
 
 #[cfg(test)]

@@ -4,7 +4,6 @@
 mod arguments;
 mod cases;
 mod error;
-mod failure;
 mod interrupt;
 mod output;
 mod pages;

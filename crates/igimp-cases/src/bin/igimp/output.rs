@@ -65,19 +65,6 @@ pub(crate) fn kind(stage: &igimp_cases::case::Stage) -> &'static str {
     }
 }
 
-/// A count with thin gaps between thousands, as in `1 310`.
-pub(crate) fn count(number: usize) -> String {
-    let digits = number.to_string();
-    let mut text = String::new();
-    for (place, digit) in digits.chars().enumerate() {
-        if place > 0 && (digits.len() - place).is_multiple_of(3) {
-            text.push(' ');
-        }
-        text.push(digit);
-    }
-    text
-}
-
 /// Number of the stage with a name.
 pub(crate) fn stage_named(case: &Case, name: &str) -> Result<usize, ProgramError> {
     let names = || case.stages.iter().map(|stage| stage.name.as_str());
@@ -117,13 +104,6 @@ pub(crate) fn writable(folder: &std::path::Path) -> Result<(), ProgramError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn thousands_are_set_apart() {
-        assert_eq!(count(7), "7");
-        assert_eq!(count(1310), "1 310");
-        assert_eq!(count(1_234_567), "1 234 567");
-    }
 
     #[test]
     fn columns_are_aligned() {

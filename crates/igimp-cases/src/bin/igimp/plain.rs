@@ -2,12 +2,10 @@
 
 use std::fmt::Write as _;
 
-use igimp_cases::check::short;
-use igimp_cases::run::Event;
+use igimp_cases::check::{count, short};
+use igimp_cases::run::{Event, REACHED_ITS_END, worst_node};
 use igimp_cases::summary::{SafetySummary, StageOutcome, StageSummary, TrialSummary};
 use igimp_solver::{StepError, StepReport};
-
-use crate::output::count;
 
 const SEARCH: &str = "strength-reduction";
 
@@ -76,6 +74,9 @@ pub(crate) fn step(number: usize, steps: usize, progress: f64, report: &StepRepo
         residual(report.residuals.last().copied()),
         100.0 * report.plastic_share
     );
+    if let Some(worst) = worst_node(report.worst) {
+        let _ = write!(line, "  worst {worst}");
+    }
     if report.at_round_off {
         line += "  (at round-off)";
     }
@@ -91,17 +92,10 @@ fn cut(error: &StepError) -> String {
     if let Some(last) = error.residuals.last() {
         let _ = write!(line, ", residual {}", residual(Some(*last)));
     }
-    if let Some(worst) = worst_node(error) {
+    if let Some(worst) = worst_node(error.worst) {
         let _ = write!(line, ", worst node {worst}");
     }
     line
-}
-
-/// Position and axis of the largest out-of-balance force.
-pub(crate) fn worst_node(error: &StepError) -> Option<String> {
-    let (x, axis) = error.worst?;
-    let name = ["x", "y", "z"].get(axis)?;
-    Some(format!("({}, {}) m, {name}", short(x[0]), short(x[1])))
 }
 
 /// A trial of a strength reduction.
@@ -141,16 +135,17 @@ pub(crate) fn outcome(summary: &StageSummary) -> String {
         return interval(safety);
     }
     let word = match summary.outcome {
-        StageOutcome::Completed => return "completed".to_owned(),
-        StageOutcome::Stopped => "stopped as planned",
+        StageOutcome::Completed => "completed",
+        StageOutcome::Stopped => "stopped",
         StageOutcome::NotConverged => "not converged",
         StageOutcome::Interrupted => "interrupted",
     };
     let mut text = word.to_owned();
-    if summary.outcome != StageOutcome::Stopped {
+    let cut_short = [StageOutcome::NotConverged, StageOutcome::Interrupted];
+    if cut_short.contains(&summary.outcome) {
         let _ = write!(text, " at {} %", short(100.0 * summary.reached));
     }
-    if !summary.reason.is_empty() {
+    if !summary.reason.is_empty() && summary.reason != REACHED_ITS_END {
         let _ = write!(text, ": {}", summary.reason);
     }
     text
@@ -177,7 +172,7 @@ pub(crate) fn residual(value: Option<f64>) -> String {
 
 #[cfg(test)]
 mod tests {
-    use igimp_assembly::Particles;
+    use igimp_assembly::{ParticleSeed, Particles};
     use igimp_cases::run::{Controls, State};
     use igimp_solver::{Body, PhaseTimes, StepFailure};
 
@@ -203,6 +198,7 @@ mod tests {
             unknowns: 100,
             plastic_share: 0.031,
             drag_share: 0.0,
+            worst: Some(([31.5, 10.5, 0.0], 0)),
             times: PhaseTimes::default(),
         }
     }
@@ -281,8 +277,15 @@ mod tests {
             }),
             ..StageSummary::default()
         };
+        let seed = ParticleSeed {
+            x: [0.5; 2],
+            half_length: [0.25; 2],
+            volume: 0.25,
+            density: 0.0,
+            law: 0,
+        };
         let state = State {
-            body: Body::new(Particles::new(&[]).unwrap()),
+            body: Body::new(Particles::new(&[seed]).unwrap()),
             controls: Controls {
                 gravity: 1.0,
                 factors: Vec::new(),

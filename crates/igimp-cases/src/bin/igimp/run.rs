@@ -8,7 +8,7 @@ use igimp_cases::sweep::{Ending, Sweep};
 use crate::arguments::Run;
 use crate::error::{Exit, ProgramError};
 use crate::progress::Progress;
-use crate::{cases, failure, interrupt, output, verdict};
+use crate::{cases, interrupt, output, verdict};
 
 pub(crate) fn run(arguments: &Run) -> Result<Exit, ProgramError> {
     output::use_threads(arguments.threads);
@@ -36,7 +36,24 @@ pub(crate) fn run(arguments: &Run) -> Result<Exit, ProgramError> {
     let mut progress = Progress::new(arguments.quiet);
     let run = engine::run(&case, Some(&target), start, &mut progress, &flag);
     progress.finish();
-    tell(&run?, &folder, arguments)
+    match run {
+        Ok(run) => tell(&run, &folder, arguments),
+        Err(error) => Ok(give_up(&error.into(), &folder, arguments)),
+    }
+}
+
+/// Tells of a run that cannot go on, and how it can later if there is something to go on from.
+fn give_up(error: &ProgramError, folder: &Path, arguments: &Run) -> Exit {
+    output::complain(&error.render());
+    let kept =
+        std::fs::read_dir(folder.join("checkpoint")).is_ok_and(|mut saved| saved.next().is_some());
+    if error.exit() == Exit::InputOutput && kept {
+        output::complain(&format!(
+            "what was computed is kept; to go on later: {}",
+            again(arguments)
+        ));
+    }
+    error.exit()
 }
 
 /// One task of a sweep.
@@ -67,9 +84,14 @@ fn afresh_or_resume(arguments: &Run) -> Start {
 fn tell(run: &engine::Run, folder: &Path, arguments: &Run) -> Result<Exit, ProgramError> {
     let summary = &run.summary;
     let ending = Ending::of(summary);
+    if arguments.quiet {
+        for warning in &summary.warnings {
+            output::complain(&format!("warning: {warning}"));
+        }
+    }
     output::say(&verdict::stages_and_checks(summary))?;
     if let Some(failure) = &run.failure {
-        output::complain(&failure::render(failure));
+        output::complain(&failure.to_string());
     }
     if ending == Ending::Interrupted {
         output::complain(&format!("interrupted; to go on: {}", again(arguments)));

@@ -9,7 +9,7 @@ use igimp_cases::sweep::Ending;
 
 use crate::arguments::Validate;
 use crate::error::{Exit, ProgramError};
-use crate::{failure, interrupt, output, verdict};
+use crate::{interrupt, output, verdict};
 
 /// Steps times unknowns up to which a case counts as quick: seconds on any computer.
 const QUICK: f64 = 2e5;
@@ -41,7 +41,7 @@ pub(crate) fn validate(arguments: &Validate) -> Result<Exit, ProgramError> {
         output::say(&format!("{}: {ending}", shipped.name))?;
         output::say(&verdict::checks(&run.summary.checks))?;
         if let Some(failure) = &run.failure {
-            output::complain(&failure::render(failure));
+            output::complain(&failure.to_string());
             worst = worst.max(Exit::NotConverged);
         }
         worst = worst.max(ending.into());

@@ -140,7 +140,7 @@ mod tests {
         stages
           initial stresses  gravity             10 steps  completed
           factor of safety  strength-reduction  10 steps  1.366 <= F < 1.375 (fails when no equilibrium is found; materials clay; without rock; 34 % of the mass moves)
-          load              load                10 steps  stopped as planned: displacement reached 0.5 m
+          load              load                10 steps  stopped: displacement reached 0.5 m
         checks
           met  F [-]  1.371  expected 1.38  ± 2 %  (Griffiths and Lane 1999)
         results in results/slope (12.3 s)

@@ -47,6 +47,7 @@ fn part(node: &Node, names: &AllNames, problems: &mut Problems) -> Option<BodyPa
     });
     let polygon = node
         .get("polygon")
+        .filter(|polygon| !polygon.is_invalid())
         .and_then(|polygon| corners(polygon, name, problems));
     let points = node.count_at("points_per_cell")?;
     Some(BodyPart {
@@ -88,7 +89,7 @@ fn corners(node: &Node, name: &str, problems: &mut Problems) -> Option<Vec<[f64;
     let (lower, upper) = bounding_box(&corners);
     let area = area_and_centroid(&corners).0.abs();
     let size = (upper[0] - lower[0]).max(upper[1] - lower[1]);
-    if !(area > 1e-9 * size * size) {
+    if area.is_nan() || area <= 1e-9 * size * size {
         problems
             .error(node.place, format!("the polygon of `{name}` has no area"))
             .help("its corners lie on one line");
@@ -134,7 +135,11 @@ pub(super) fn check(
             let points = (body.per_direction * body.per_direction) as f64;
             particles += cells * points;
         }
-        if particles > MOST {
+        let cells = (0..2)
+            .map(|axis| (frame.upper[axis] - frame.lower[axis]) / frame.cell[axis])
+            .product::<f64>();
+        // Too many cells are reported as such.
+        if particles > MOST && cells <= MOST {
             let message = format!("the bodies would have {} particles", count(particles));
             problems
                 .error(tree.get("grid").map(|grid| grid.place_at("cell")), message)

@@ -6,7 +6,7 @@ use crate::case::{CaseCheck, Load, Quantity, Stage, StageKind};
 use crate::check::Band;
 use crate::input::diagnostic::Problems;
 use crate::input::text::clip;
-use crate::input::tree::Node;
+use crate::input::tree::{Node, Wrong};
 
 /// The checks.
 pub(super) fn checks(
@@ -24,24 +24,21 @@ pub(super) fn checks(
                 .get("of")
                 .and_then(|of| quantity(of, names, loads, problems));
             let divide_by = divisor(node, problems);
-            let stage = match node.get("stage") {
-                None => Some(None),
-                Some(stage) => {
-                    let who = format!("check `{name}` looks at");
-                    names.stages.find(stage, &who, problems).map(Some)
+            let who = format!("check `{name}` looks at");
+            let stage = names.stages.find_optional(node, "stage", &who, problems);
+            let stage = match (stage, of) {
+                (Ok(stage), Some(Quantity::FactorOfSafety)) => {
+                    search(node, stage, stages, problems).map(Some)
                 }
+                (stage, _) => stage,
             };
-            let stage = stage.and_then(|stage| match of {
-                Some(Quantity::FactorOfSafety) => search(node, stage, stages, problems).map(Some),
-                _ => Some(stage),
-            });
             let band = band(node, problems);
             let (expected, band) = band?;
             Some(CaseCheck {
                 name: node.text_at("name")?.to_owned(),
                 of: of?,
                 divide_by: divide_by?,
-                stage: stage?,
+                stage: stage.ok()?,
                 expected,
                 band,
                 source: node.text_at("source")?.to_owned(),
@@ -56,9 +53,9 @@ fn search(
     stage: Option<usize>,
     stages: &[Option<Stage>],
     problems: &mut Problems,
-) -> Option<usize> {
+) -> Result<usize, Wrong> {
     if stages.iter().any(Option::is_none) {
-        return None;
+        return Err(Wrong);
     }
     let searches = |index: &usize| {
         let stage = stages.get(*index).and_then(Option::as_ref);
@@ -66,7 +63,7 @@ fn search(
     };
     if let Some(stage) = stage {
         if searches(&stage) {
-            return Some(stage);
+            return Ok(stage);
         }
         problems
             .error(
@@ -74,7 +71,7 @@ fn search(
                 "this stage does not search for a factor of safety",
             )
             .help("name a stage of type strength-reduction");
-        return None;
+        return Err(Wrong);
     }
     let last = (0..stages.len()).rev().find(searches);
     if last.is_none() {
@@ -82,7 +79,7 @@ fn search(
             .error(node.place_at("of"), "no stage finds a factor of safety")
             .help("add a stage of type strength-reduction");
     }
-    last
+    last.ok_or(Wrong)
 }
 
 /// What is expected, and the band around it.
@@ -92,10 +89,7 @@ fn band(node: &Node, problems: &mut Problems) -> Option<(f64, Band)> {
         .into_iter()
         .filter(|band| node.get(band).is_some())
         .collect();
-    let expected = match node.get("expected") {
-        None => None,
-        Some(expected) => Some(expected.number()?),
-    };
+    let expected = node.optional_number("expected").ok()?;
     let &[form] = given.as_slice() else {
         let message = if given.is_empty() {
             "the check does not say what is accepted".to_owned()

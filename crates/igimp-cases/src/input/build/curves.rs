@@ -12,7 +12,7 @@ use crate::input::text::clip;
 use crate::input::tree::Node;
 
 /// Most bytes of a reference file.
-const LARGEST: u64 = 4 << 20;
+const LARGEST: u64 = 1 << 20;
 
 /// The curves; files of references are beside the case file.
 pub(super) fn curves(
@@ -28,23 +28,17 @@ pub(super) fn curves(
             let name = node.text_at("name");
             let x = axis(node.get("x")?, names, loads, problems);
             let y = axis(node.get("y")?, names, loads, problems);
-            let stage = match node.get("stage") {
-                None => Some(None),
-                Some(stage) => {
-                    let who = format!("curve `{}` records", clip(name.unwrap_or("?"), 40));
-                    names.stages.find(stage, &who, problems).map(Some)
-                }
-            };
-            let reference = match node.get("reference") {
-                None => Some(None),
-                Some(reference) => self::reference(reference, file, problems).map(Some),
-            };
+            let who = format!("curve `{}` records", clip(name.unwrap_or("?"), 40));
+            let stage = names.stages.find_optional(node, "stage", &who, problems);
+            let reference = node
+                .get("reference")
+                .map(|reference| self::reference(reference, file, problems));
             Some(Curve {
                 name: name?.to_owned(),
                 x: x?,
                 y: y?,
-                stage: stage?,
-                reference: reference?,
+                stage: stage.ok()?,
+                reference: reference.map_or(Some(None), |found| found.map(Some))?,
             })
         })
         .collect()
@@ -97,10 +91,7 @@ fn reference(node: &Node, file: &Path, problems: &mut Problems) -> Option<Refere
     let values = match form {
         "y" => ReferenceValues::Level {
             y: value.number()?,
-            at: match node.get("at") {
-                None => None,
-                Some(at) => Some(at.number()?),
-            },
+            at: node.optional_number("at").ok()?,
         },
         "points" => {
             let points: Option<Vec<_>> = value.items().iter().map(Node::pair).collect();
@@ -127,20 +118,19 @@ fn reference(node: &Node, file: &Path, problems: &mut Problems) -> Option<Refere
             }
         }
     };
-    let tolerance = match node.get("tolerance") {
-        None => None,
-        Some(tolerance) => Some(tolerance.number()?),
-    };
     Some(Reference {
         label: node.text_at("label")?.to_owned(),
         values,
-        tolerance,
+        tolerance: node.optional_number("tolerance").ok()?,
     })
 }
 
 /// The points of a CSV file: a header and two columns.
 fn read_points(path: &Path) -> Result<Vec<[f64; 2]>, String> {
     let file = File::open(path).map_err(|error| error.to_string())?;
+    if !file.metadata().is_ok_and(|about| about.is_file()) {
+        return Err("it is not a file".to_owned());
+    }
     let mut text = String::new();
     file.take(LARGEST + 1)
         .read_to_string(&mut text)

@@ -62,7 +62,7 @@ pub(super) fn grid(tree: &Node, frame: Option<Frame>, problems: &mut Problems) -
     let extent = [upper[0] - lower[0], upper[1] - lower[1]];
     let cells = [extent[0] / cell[0], extent[1] / cell[1]];
     let total = cells[0].max(1.0) * cells[1].max(1.0);
-    if !(total <= MOST) {
+    if total.is_nan() || total > MOST {
         problems
             .error(
                 node.place_at("cell"),
@@ -76,6 +76,16 @@ pub(super) fn grid(tree: &Node, frame: Option<Frame>, problems: &mut Problems) -
     }
     let mut is_right = true;
     for (axis, key) in ["x", "y"].into_iter().enumerate() {
+        if cell[axis] < 1e-9 * lower[axis].abs().max(upper[axis].abs()) {
+            problems
+                .error(
+                    domain.place_at(key),
+                    format!("the coordinates in {key} are too large for cells this small"),
+                )
+                .help("move the origin to the model");
+            is_right = false;
+            continue;
+        }
         let whole = cells[axis].round().max(1.0);
         if (cells[axis] - whole).abs() > 1e-6 {
             let end = number(lower[axis] + whole * cell[axis]);

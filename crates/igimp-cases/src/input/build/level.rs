@@ -7,7 +7,7 @@ use crate::input::text::point;
 pub(super) fn uneven(site: &Site) -> Option<String> {
     let surface = site.surface();
     let round_off = 10.0 * site.round_off;
-    for [from, to] in &surface {
+    for [from, to] in surface {
         if (from[1] - to[1]).abs() > round_off {
             return Some(format!(
                 "the surface is inclined from {} to {}",

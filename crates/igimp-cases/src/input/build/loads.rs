@@ -64,6 +64,20 @@ fn footing(node: &Node, name: &str, site: &Site, problems: &mut Problems) -> Opt
         return None;
     }
     if let Some(frame) = site.frame {
+        let is_outside = [from, to].iter().any(|end| {
+            (0..2).any(|k| {
+                end[k] < frame.lower[k] - site.round_off || end[k] > frame.upper[k] + site.round_off
+            })
+        });
+        if is_outside {
+            problems
+                .error(
+                    node.place_at("from"),
+                    format!("the footing `{shown}` lies outside the grid domain"),
+                )
+                .help("extend [grid] domain");
+            return None;
+        }
         on_grid(node, &shown, from, to, frame, site, problems);
     }
     if site.is_complete {
@@ -120,18 +134,6 @@ fn on_grid(
 ) {
     let Frame { lower, upper, cell } = frame;
     let place = node.place_at("from");
-    let is_outside = |x: [f64; 2]| {
-        (0..2).any(|k| x[k] < lower[k] - site.round_off || x[k] > upper[k] + site.round_off)
-    };
-    if is_outside(from) || is_outside(to) {
-        problems
-            .error(
-                place,
-                format!("the footing `{name}` lies outside the grid domain"),
-            )
-            .help("extend [grid] domain");
-        return;
-    }
     let row = (from[1] - lower[1]) / cell[1];
     if (row - row.round()).abs() > 1e-6 {
         let depth = from[1] - lower[1];
@@ -149,19 +151,17 @@ fn on_grid(
                 number(depth / row.round().max(1.0))
             ));
     }
-    for x in [from[0], to[0]] {
+    for key in ["from", "to"] {
+        let Some([x, _]) = node.pair_at(key) else {
+            continue;
+        };
         if x - lower[0] <= site.round_off || upper[0] - x <= site.round_off {
             continue;
         }
         let column = (x - lower[0]) / cell[0];
         if (column - column.floor() - 0.5).abs() > 1e-6 {
-            let place = if x == node.pair_at("from").map_or(x, |from| from[0]) {
-                place
-            } else {
-                node.place_at("to")
-            };
             let problem = problems.warning(
-                place,
+                node.place_at(key),
                 format!(
                     "the edge of the footing `{name}` at x = {} m is not in the middle of a cell",
                     number(x)

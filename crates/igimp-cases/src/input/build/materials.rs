@@ -3,7 +3,7 @@
 use crate::case::{Material, Strength};
 use crate::input::diagnostic::Problems;
 use crate::input::text::{clip, number};
-use crate::input::tree::{Entry, Node};
+use crate::input::tree::{Entry, Node, Wrong};
 
 /// The materials in the order of the file.
 pub(super) fn materials(tree: &Node, problems: &mut Problems) -> Vec<Option<Material>> {
@@ -48,7 +48,7 @@ fn material(entry: &Entry, problems: &mut Problems) -> Option<Material> {
         young: node.number_at("young")?,
         poisson: poisson?,
         strength: strength?,
-        k0: k0?,
+        k0: k0.ok()?,
     };
     if problems.errors() == before
         && let Err(error) = material.law()
@@ -101,10 +101,7 @@ fn mohr_coulomb(name: &str, node: &Node, problems: &mut Problems) -> Option<Stre
                 .help("a small one helps steps converge, like cohesion = \"0.1 kPa\"");
         }
     }
-    let tension_cutoff = match node.get("tension_cutoff") {
-        Some(cutoff) => Some(cutoff.number()?),
-        None => None,
-    };
+    let tension_cutoff = node.optional_number("tension_cutoff").ok()?;
     if let (Some(cohesion), Some(friction), Some(cutoff)) = (cohesion, friction, tension_cutoff) {
         let apex = cohesion / friction.tan();
         if friction > 0.0 && cutoff > apex * (1.0 + 1e-12) {
@@ -127,21 +124,22 @@ fn mohr_coulomb(name: &str, node: &Node, problems: &mut Problems) -> Option<Stre
     })
 }
 
-/// K₀ of a material; the outer `None` when it is wrong.
-fn k0(node: &Node, strength: Option<Strength>, problems: &mut Problems) -> Option<Option<f64>> {
-    let Some(k0) = node.get("k0") else {
-        return Some(None);
-    };
-    if k0.text().is_none() {
-        return k0.number().map(Some);
-    }
-    match strength? {
-        Strength::MohrCoulomb { friction_angle, .. } => Some(Some(1.0 - friction_angle.sin())),
-        _ => {
+/// K₀ of a material, if it states one.
+fn k0(
+    node: &Node,
+    strength: Option<Strength>,
+    problems: &mut Problems,
+) -> Result<Option<f64>, Wrong> {
+    let is_jaky = node.text_at("k0").is_some();
+    match strength {
+        _ if !is_jaky => node.optional_number("k0"),
+        Some(Strength::MohrCoulomb { friction_angle, .. }) => Ok(Some(1.0 - friction_angle.sin())),
+        None => Err(Wrong),
+        Some(_) => {
             problems
-                .error(k0.place, "k0 = \"jaky\" needs a friction angle")
+                .error(node.place_at("k0"), "k0 = \"jaky\" needs a friction angle")
                 .help("write a number, like k0 = 0.5");
-            None
+            Err(Wrong)
         }
     }
 }

@@ -34,7 +34,7 @@ pub(super) fn solver(
         matches!(
             material.strength,
             Strength::MohrCoulomb { friction_angle, dilation_angle, .. }
-                if friction_angle != dilation_angle
+                if dilation_angle < friction_angle
         )
     });
     if needs_symmetry && let Some(material) = unsymmetric {
@@ -86,7 +86,7 @@ pub(super) fn sections(tree: &Node, site: &Site, problems: &mut Problems) -> Vec
     items
         .map(|node| {
             let (from, to) = (node.pair_at("from")?, node.pair_at("to")?);
-            if from == to {
+            if (to[0] - from[0]).hypot(to[1] - from[1]) <= site.round_off {
                 problems.error(node.place_at("to"), "this section has no length");
             }
             let along = |t: f64| {

@@ -99,11 +99,13 @@ pub(super) fn quantity(
             }
         }
     }
+    let message = format!("there is no quantity `{}`", clip(name, 60));
+    if problems.are_many() {
+        problems.error(value.place, message);
+        return None;
+    }
     let known = known(names, loads);
-    let problem = problems.error(
-        value.place,
-        format!("there is no quantity `{}`", clip(name, 60)),
-    );
+    let problem = problems.error(value.place, message);
     if let Some(near) = nearest(name, known.iter().map(String::as_str)) {
         problem.help(format!("did you mean `{near}`?"));
     }

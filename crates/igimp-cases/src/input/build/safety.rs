@@ -93,7 +93,7 @@ pub(super) fn strength_reduction(
         None => (None, None),
         Some(also) => (
             Some(also.number_at("displacement")?),
-            context.monitor(also, name, problems)?,
+            context.monitor(also, name, problems).ok()?,
         ),
     };
     Some(StrengthReduction {

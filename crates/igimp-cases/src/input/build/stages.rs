@@ -7,7 +7,7 @@ use super::site::Site;
 use crate::case::{BodyPart, Load, LoadKind, Material, Stage, StageKind, StopWhen, Strength};
 use crate::input::diagnostic::Problems;
 use crate::input::text::{clip, number, row};
-use crate::input::tree::Node;
+use crate::input::tree::{Node, Wrong};
 
 /// What stages refer to.
 pub(super) struct Context<'a> {
@@ -29,21 +29,16 @@ impl Context<'_> {
         self.stage_nodes().get(index)?.text_at("type")
     }
 
-    /// Index of the monitor that a table names, if it names one; the outer `None` when it is not
-    /// defined.
+    /// Index of the monitor that a table names, if it names one.
     pub(super) fn monitor(
         &self,
         table: &Node,
         who: &str,
         problems: &mut Problems,
-    ) -> Option<Option<usize>> {
-        match table.get("monitor") {
-            None => Some(None),
-            Some(name) => {
-                let who = format!("stage `{who}` watches");
-                self.names.monitors.find(name, &who, problems).map(Some)
-            }
-        }
+    ) -> Result<Option<usize>, Wrong> {
+        let who = format!("stage `{who}` watches");
+        let monitors = &self.names.monitors;
+        monitors.find_optional(table, "monitor", &who, problems)
     }
 
     /// Whether a material is that of a body.
@@ -88,7 +83,7 @@ fn stage(
         name: node.text_at("name")?.to_owned(),
         kind: kind?,
         steps: node.count_at("steps")?,
-        start_from: start_from?,
+        start_from: start_from.ok()?,
         reset_displacements: node.flag_at("reset_displacements")?,
         stop_when: stop_when?,
     })
@@ -100,29 +95,30 @@ fn start_from(
     node: &Node,
     name: &str,
     problems: &mut Problems,
-) -> Option<Option<usize>> {
-    let Some(start) = node.get("start_from") else {
-        return Some(None);
-    };
-    if index == 0 {
+) -> Result<Option<usize>, Wrong> {
+    let place = node.place_at("start_from");
+    if index == 0 && node.get("start_from").is_some() {
         problems
             .error(
-                start.place,
+                place,
                 "the first stage starts from undeformed bodies, not from a stage",
             )
             .help("remove start_from");
-        return None;
+        return Err(Wrong);
     }
     let who = format!("stage `{name}` starts from");
-    let from = context.names.stages.find(start, &who, problems)?;
-    if from >= index {
-        let earlier = context.names.stages.known().take(index);
+    let stages = &context.names.stages;
+    let from = stages.find_optional(node, "start_from", &who, problems)?;
+    if from.is_some_and(|from| from >= index) {
         problems
-            .error(start.place, "start_from has to name an earlier stage")
-            .help(format!("earlier stages: {}", row(earlier)));
-        return None;
+            .error(place, "start_from has to name an earlier stage")
+            .help(format!(
+                "earlier stages: {}",
+                row(stages.known().take(index))
+            ));
+        return Err(Wrong);
     }
-    Some(Some(from))
+    Ok(from)
 }
 
 fn stop_when(
@@ -133,13 +129,9 @@ fn stop_when(
 ) -> Option<StopWhen> {
     let table = node.get("stop_when")?;
     let kind = node.text_at("type")?;
-    let monitor = context.monitor(table, name, problems)?;
-    let number = |key: &str| match table.get(key) {
-        None => Some(None),
-        Some(value) => value.number().map(Some),
-    };
-    let displacement = number("displacement")?;
-    let load_grows_less_than = number("load_grows_less_than")?;
+    let monitor = context.monitor(table, name, problems).ok()?;
+    let displacement = table.optional_number("displacement").ok()?;
+    let load_grows_less_than = table.optional_number("load_grows_less_than").ok()?;
     if monitor.is_some() && displacement.is_none() {
         problems
             .error(
@@ -178,6 +170,7 @@ fn k0(context: &Context<'_>, index: usize, node: &Node, problems: &mut Problems)
         problems
             .error(place, "a k0 stage sets the stresses of undeformed ground")
             .help("make it the first stage");
+        return;
     }
     if context.site.is_complete
         && let Some(reason) = uneven(context.site)
@@ -264,33 +257,27 @@ fn displacement(
     let value = node.get("load")?;
     let load = context.names.loads.find(value, &who, problems)?;
     let settlement = node.number_at("settlement")?;
-    match context.loads.get(load)?.as_ref()?.kind {
-        LoadKind::RigidFooting { from, .. } => {
-            if let Some(frame) = context.site.frame
-                && settlement >= from[1] - frame.lower[1]
-            {
-                problems
-                    .error(
-                        node.place_at("settlement"),
-                        "the footing would reach the bottom of the grid",
-                    )
-                    .help(format!(
-                        "its base is {} m above it",
-                        number(from[1] - frame.lower[1])
-                    ));
-            }
-        }
-        _ => {
-            let footings = context.loads.iter().flatten();
-            let footings = footings
-                .filter(|load| matches!(load.kind, LoadKind::RigidFooting { .. }))
-                .map(|load| load.name.as_str());
-            problems
-                .error(value.place, "only a rigid footing can be pushed")
-                .help(format!("rigid footings: {}", row(footings)))
-                .help("pressures and point loads are for stages of type load");
-            return None;
-        }
+    let LoadKind::RigidFooting { from, .. } = context.loads.get(load)?.as_ref()?.kind else {
+        let footings = context.loads.iter().flatten();
+        let footings = footings
+            .filter(|load| matches!(load.kind, LoadKind::RigidFooting { .. }))
+            .map(|load| load.name.as_str());
+        problems
+            .error(value.place, "only a rigid footing can be pushed")
+            .help(format!("rigid footings: {}", row(footings)))
+            .help("pressures and point loads are for stages of type load");
+        return None;
+    };
+    if let Some(frame) = context.site.frame
+        && settlement >= from[1] - frame.lower[1]
+    {
+        let depth = number(from[1] - frame.lower[1]);
+        problems
+            .error(
+                node.place_at("settlement"),
+                "the footing would reach the bottom of the grid",
+            )
+            .help(format!("its base is {depth} m above it"));
     }
     Some(StageKind::Displacement { load, settlement })
 }
@@ -308,6 +295,13 @@ pub(super) fn check_use(context: &Context<'_>, problems: &mut Problems) {
         .flat_map(|stage| stage.get("load").into_iter().chain(stage.items_at("loads")))
         .filter_map(Node::text)
         .collect();
+    // A name that is not defined may be a slip for one that is not used.
+    if used
+        .iter()
+        .any(|name| context.names.loads.position(name).is_none())
+    {
+        return;
+    }
     for load in context.tree.items_at("loads") {
         if let Some(name) = load.text_at("name").filter(|name| !used.contains(name)) {
             let message = format!("no stage applies the load `{}`", clip(name, 40));

@@ -11,8 +11,14 @@ use super::spec::{Choice, Kind, Range, Struct, choice, default, derived, optiona
 /// Version of the input format that this program reads.
 pub(super) const FORMAT: i64 = 1;
 
-/// Most items in a list of things, and most numbers in a list of numbers.
+/// Most items in a list of small things, such as corners and points.
 const MANY: usize = 100_000;
+/// Most things of one kind.
+pub(super) const MOST_THINGS: usize = 1000;
+/// Most bodies.
+const MOST_BODIES: usize = 5000;
+/// Most curves.
+const MOST_CURVES: usize = 200;
 
 /// A point: two lengths.
 static LENGTH: Kind = Kind::Quantity(Length, Range::Any);
@@ -49,7 +55,7 @@ pub(super) static ROOT: Struct = Struct {
         ),
         required(
             "bodies",
-            Kind::List(&BODY, 1, MANY),
+            Kind::List(&BODY, 1, MOST_BODIES),
             "[{ name = \"soil\" }]",
             "polygons of one material each",
         ),
@@ -61,13 +67,13 @@ pub(super) static ROOT: Struct = Struct {
         ),
         default(
             "loads",
-            Kind::List(&loads::LOAD, 0, MANY),
+            Kind::List(&loads::LOAD, 0, MOST_THINGS),
             "[]",
             "loads that stages apply",
         ),
         required(
             "stages",
-            Kind::List(&stages::STAGE, 1, MANY),
+            Kind::List(&stages::STAGE, 1, MOST_THINGS),
             "[{ name = \"weight\", type = \"gravity\" }]",
             "what happens, in order",
         ),
@@ -79,25 +85,25 @@ pub(super) static ROOT: Struct = Struct {
         ),
         default(
             "monitors",
-            Kind::List(&outputs::MONITOR, 0, MANY),
+            Kind::List(&outputs::MONITOR, 0, MOST_THINGS),
             "[]",
             "material points that are watched in every step",
         ),
         default(
             "sections",
-            Kind::List(&outputs::SECTION, 0, MANY),
+            Kind::List(&outputs::SECTION, 0, MOST_THINGS),
             "[]",
             "lines along which results are written at the end of every stage",
         ),
         default(
             "curves",
-            Kind::List(&outputs::CURVE, 0, MANY),
+            Kind::List(&outputs::CURVE, 0, MOST_CURVES),
             "[]",
             "one recorded quantity against another",
         ),
         default(
             "checks",
-            Kind::List(&outputs::CHECK, 0, MANY),
+            Kind::List(&outputs::CHECK, 0, MOST_THINGS),
             "[]",
             "results that are held against outside values",
         ),
@@ -314,7 +320,7 @@ static BOUNDARIES: Struct = Struct {
         ),
         default(
             "boxes",
-            Kind::List(&BOX, 0, MANY),
+            Kind::List(&BOX, 0, MOST_THINGS),
             "[]",
             "boxes in which nodes are held",
         ),
@@ -352,7 +358,7 @@ static MATERIAL_NAME: Kind = Kind::Reference("material");
 const fn reduced_materials() -> super::spec::Field {
     derived(
         "materials",
-        Kind::List(&MATERIAL_NAME, 1, MANY),
+        Kind::List(&MATERIAL_NAME, 1, MOST_THINGS),
         "all materials of bodies that have a strength",
         "materials whose strength is reduced; the others keep theirs",
     )

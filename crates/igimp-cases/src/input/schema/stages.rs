@@ -1,6 +1,6 @@
 //! Stages.
 
-use super::{MANY, reduced_materials};
+use super::{MOST_THINGS, reduced_materials};
 use crate::input::quantity::Dimension::Length;
 use crate::input::spec::{
     Choice, Field, Kind, Range, Struct, Variant, Variants, choice, default, derived, optional,
@@ -51,7 +51,7 @@ pub(in crate::input) static STAGE: Kind = Kind::Variants(&Variants {
                 ),
                 optional(
                     "loads",
-                    Kind::List(&LOAD_NAME, 1, MANY),
+                    Kind::List(&LOAD_NAME, 1, MOST_THINGS),
                     "`load` names it",
                     "the loads, if they are several",
                 ),

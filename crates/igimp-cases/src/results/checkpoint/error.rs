@@ -31,8 +31,8 @@ pub enum CheckpointError {
     },
     /// The checkpoint has another fingerprint.
     #[error(
-        "the checkpoint in {} belongs to another case or to other input; run without --resume to \
-         begin afresh",
+        "the checkpoint in {} belongs to another case or to other input; run without --resume \
+         and --from-stage to begin afresh",
         path.display()
     )]
     OtherCase {

@@ -214,7 +214,7 @@ fn every_damage_is_noticed() {
         .unwrap()
         .map(|entry| entry.unwrap().path())
         .collect();
-    assert_eq!(arrays.len(), 14);
+    assert_eq!(arrays.len(), 15);
     for array in arrays {
         let whole = fs::read(&array).unwrap();
         let mut flipped = whole.clone();
@@ -294,7 +294,7 @@ fn refusals_say_what_to_do() {
     let refusal = |expected| scratch.hide(&read(&path, expected).unwrap_err());
     insta::assert_snapshot!(
         refusal(Some("0")),
-        @"the checkpoint in DIR/a belongs to another case or to other input; run without --resume to begin afresh"
+        @"the checkpoint in DIR/a belongs to another case or to other input; run without --resume and --from-stage to begin afresh"
     );
     let mut other = meta();
     other.program = "igimp 0.0.7".into();

@@ -1,23 +1,34 @@
 //! The message of a step that found no equilibrium: where, how, what is kept, what to try.
 
-use std::fmt::Write as _;
+use std::fmt::{self, Write as _};
 use std::path::Path;
 
-use igimp_cases::check::short;
-use igimp_cases::run::Failure;
 use igimp_solver::StepFailure;
 
+use super::Failure;
+use crate::check::{count, short};
 use crate::error::chain;
-use crate::output::count;
-use crate::plain::worst_node;
 
 /// Residuals shown before the gap; the last one follows it.
 const SHOWN: usize = 5;
 /// Widest line of suggestions that stay side by side.
 const WIDE: usize = 100;
 
-/// The complete message.
-pub(crate) fn render(failure: &Failure) -> String {
+impl fmt::Display for Failure {
+    /// The complete message, several lines that begin with `error: `.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&render(self))
+    }
+}
+
+/// Position and axis of the largest out-of-balance force, in words.
+pub fn worst_node(worst: Option<([f64; 3], usize)>) -> Option<String> {
+    let (x, axis) = worst?;
+    let name = ["x", "y", "z"].get(axis)?;
+    Some(format!("({}, {}) m, {name}", short(x[0]), short(x[1])))
+}
+
+fn render(failure: &Failure) -> String {
     let error = &failure.error;
     let mut text = format!(
         "error: stage \"{}\", step {} of {} did not converge ({})\n",
@@ -43,7 +54,7 @@ pub(crate) fn render(failure: &Failure) -> String {
     if !error.residuals.is_empty() {
         row("residual |r|/|f|", &history(&error.residuals, reason));
     }
-    if let Some(worst) = worst_node(error) {
+    if let Some(worst) = worst_node(error.worst) {
         row("worst node", &(worst + &near(failure)));
     }
     if !failure.saved.is_empty() {

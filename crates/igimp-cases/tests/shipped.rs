@@ -1,0 +1,311 @@
+//! GOAL: every case file that comes with the program runs to its planned end and makes physical
+//! sense, on meshes so coarse that all of them take less than a minute.
+
+use std::sync::atomic::AtomicBool;
+
+use igimp_cases::input::CaseFile;
+use igimp_cases::run::{Event, Run, Start, run};
+use igimp_cases::shipped::{SHIPPED, find};
+use igimp_cases::summary::StageOutcome::{self, Completed, Stopped};
+
+/// A shipped case after a run in memory.
+struct Ran {
+    run: Run,
+    gravity: f64,
+}
+
+/// Runs a shipped case with changed values.
+fn ran(name: &str, overrides: &[&str]) -> Ran {
+    let overrides: Vec<String> = overrides.iter().map(ToString::to_string).collect();
+    let text = find(name).unwrap().text;
+    let file = CaseFile::parse(name, text, &overrides).unwrap_or_else(|error| panic!("{error}"));
+    let run = run(
+        file.case(),
+        None,
+        Start::Afresh,
+        &mut |_: &Event<'_>| {},
+        &AtomicBool::new(false),
+    )
+    .unwrap();
+    Ran {
+        run,
+        gravity: file.case().gravity,
+    }
+}
+
+impl Ran {
+    /// Outcomes of the stages, in order.
+    fn outcomes(&self) -> Vec<StageOutcome> {
+        let stages = &self.run.summary.stages;
+        stages.iter().map(|stage| stage.outcome).collect()
+    }
+
+    /// Points of a curve.
+    fn curve(&self, name: &str) -> Vec<[f64; 2]> {
+        let table = self.run.curves.iter().find(|table| table.name == name);
+        table.unwrap().points(0, 1)
+    }
+
+    /// Ordinate at the end of a curve.
+    fn end_of(&self, name: &str) -> f64 {
+        self.curve(name).last().unwrap()[1]
+    }
+
+    /// What a check measured.
+    fn measured(&self, quantity: &str) -> f64 {
+        let rows = &self.run.summary.checks;
+        let row = rows.iter().find(|row| row.check.quantity == quantity);
+        row.unwrap_or_else(|| panic!("no check of {quantity}"))
+            .check
+            .measured
+    }
+
+    /// Whether every check of the case is met.
+    fn meets_its_checks(&self) -> bool {
+        let checks = &self.run.summary.checks;
+        !checks.is_empty() && checks.iter().all(|row| row.pass)
+    }
+
+    /// The interval of the factor of safety that a stage found.
+    fn factor_of_safety(&self, stage: usize) -> [f64; 2] {
+        let safety = self.run.summary.stages[stage].safety.as_ref().unwrap();
+        [safety.stable.unwrap(), safety.failed.unwrap()]
+    }
+
+    /// Work of the vertical stress over that of the weight, for the virtual displacement v = y: 1
+    /// in equilibrium on a base at y = 0, whatever the law and however large the deformation.
+    fn virtual_work(&self, gravity_factor: f64) -> f64 {
+        let particles = &self.run.body.particles;
+        let stress: f64 = (0..particles.len())
+            .map(|particle| particles.sigma[particle][1][1] * particles.volume(particle))
+            .sum();
+        let weight: f64 = std::iter::zip(&particles.mass, &particles.x)
+            .map(|(mass, x)| mass * self.gravity * gravity_factor * x[1])
+            .sum();
+        -stress / weight
+    }
+}
+
+#[track_caller]
+fn between(value: f64, low: f64, high: f64) {
+    assert!(low <= value && value <= high, "{value} in {low} .. {high}");
+}
+
+#[test]
+fn every_case_has_a_test() {
+    let source = include_str!("shipped.rs");
+    for case in SHIPPED {
+        let call = format!("ran(\"{}\"", case.name);
+        let broken = format!("ran(\n        \"{}\"", case.name);
+        assert!(
+            source.contains(&call) || source.contains(&broken),
+            "{}",
+            case.name
+        );
+    }
+}
+
+#[test]
+fn column_has_the_height_of_the_exact_solution() {
+    let ran = ran("column", &[]);
+    assert_eq!(ran.outcomes(), [Completed]);
+    assert!(ran.meets_its_checks());
+    between(ran.virtual_work(1.0), 0.999, 1.001);
+}
+
+#[test]
+fn von_mises_slope_is_in_equilibrium_at_large_displacement() {
+    let ran = ran(
+        "von_mises_slope",
+        &[
+            "grid.cell=1 m",
+            "grid.domain.y=[\"0 m\", \"16 m\"]",
+            "stages.0.steps=5",
+        ],
+    );
+    assert_eq!(ran.outcomes(), [Completed]);
+    between(ran.run.summary.stages[0].largest_displacement, 0.6, 0.9);
+    between(ran.virtual_work(1.0), 0.99, 1.01);
+}
+
+#[test]
+fn mohr_coulomb_slope_has_its_factor_of_safety() {
+    let ran = ran(
+        "mohr_coulomb_slope",
+        &[
+            "grid.cell=2 m",
+            "grid.domain.y=[\"0 m\", \"12 m\"]",
+            "stages.0.factors=[0.8, 1.2]",
+            "stages.0.tolerance=0.05",
+        ],
+    );
+    assert_eq!(ran.outcomes(), [Completed]);
+    let [stable, failed] = ran.factor_of_safety(0);
+    between(stable, 1.32, failed);
+    between(failed, stable, 1.52);
+    // Every listed factor makes a point of the curve, and nothing else does.
+    let curve = ran.curve("displacement");
+    assert_eq!(curve.len(), 2);
+    between(curve[0][1], 0.36, 0.39);
+    between(curve[1][1], 0.39, 0.45);
+}
+
+#[test]
+fn footing_follows_limit_analysis_at_first() {
+    let ran = ran(
+        "footing",
+        &[
+            "grid.cell=0.2 m",
+            "stages.0.settlement=0.2 m",
+            "stages.0.steps=14",
+        ],
+    );
+    assert_eq!(ran.outcomes(), [Completed]);
+    between(ran.end_of("resistance"), 5.2, 5.8);
+}
+
+#[test]
+fn slope_stands_fails_and_rests() {
+    let ran = ran(
+        "slope",
+        &[
+            "grid.cell=2 m",
+            "stages.0.steps=4",
+            "stages.1.tolerance=0.05",
+        ],
+    );
+    let outcomes = ran.outcomes();
+    assert_eq!(outcomes[..2], [Completed, Completed]);
+    assert!(ran.run.failure.is_none());
+    let [stable, failed] = ran.factor_of_safety(1);
+    between(stable, 1.25, 1.6);
+    between(failed, 1.3, 1.65);
+    let run_out = &ran.run.summary.stages[2];
+    assert_eq!(run_out.outcome, Completed, "{}", run_out.reason);
+    between(run_out.largest_displacement, 0.2, 6.0);
+    // The share of mobilised strength is that of the strength that acts, reduced in the run-out.
+    let sections = &ran.run.sections;
+    let section = sections.iter().find(|t| t.name.ends_with("3-run-out"));
+    let utilisation = section.unwrap().points(0, 8);
+    let most = utilisation.iter().map(|p| p[1]).fold(0.0, f64::max);
+    between(most, 0.99, 1.001);
+    between(ran.virtual_work(1.0), 0.98, 1.02);
+}
+
+#[test]
+fn layered_slope_is_safer_when_one_layer_alone_weakens() {
+    let ran = ran(
+        "layered_slope",
+        &[
+            "grid.cell=1 m",
+            "grid.domain.y=[\"0 m\", \"13 m\"]",
+            "stages.0.steps=4",
+            "stages.1.tolerance=0.05",
+            "stages.1.steps=15",
+            "stages.2.tolerance=0.05",
+            "stages.2.steps=15",
+        ],
+    );
+    assert_eq!(ran.outcomes(), [Completed; 3]);
+    let all = ran.factor_of_safety(1);
+    let soft = ran.factor_of_safety(2);
+    between(all[0], 1.15, 1.4);
+    assert!(all[1] < soft[0], "{all:?} {soft:?}");
+    between(soft[1], 1.5, 2.0);
+}
+
+#[test]
+fn undrained_slope_collapses_near_the_bounds() {
+    let ran = ran(
+        "undrained_slope",
+        &["grid.cell=2.5 m", "grid.domain.y=[\"0 m\", \"22.5 m\"]"],
+    );
+    assert_eq!(ran.outcomes(), [Completed, Stopped]);
+    let limit = ran.end_of("load-displacement");
+    between(limit, 5.2, 6.3);
+    between(ran.virtual_work(limit * 0.225), 0.98, 1.02);
+}
+
+#[test]
+fn vertical_cut_collapses_near_the_bounds() {
+    let ran = ran("vertical_cut", &["grid.cell=0.5 m", "stages.1.steps=15"]);
+    assert_eq!(ran.outcomes(), [Completed, Stopped]);
+    between(ran.end_of("load-displacement"), 3.7, 4.4);
+}
+
+#[test]
+fn bearing_capacity_is_that_of_prandtl() {
+    let ran = ran(
+        "bearing_capacity",
+        &["grid.cell=2/9 m", "stages.0.steps=40"],
+    );
+    assert!(ran.run.failure.is_none());
+    between(ran.end_of("load-settlement"), 4.9, 5.9);
+}
+
+#[test]
+fn two_layer_footing_lies_between_its_layers() {
+    let ran = ran(
+        "two_layer_footing",
+        &[
+            "grid.cell.x=0.4 m",
+            "grid.cell.y=0.5 m",
+            "stages.0.steps=20",
+        ],
+    );
+    between(ran.end_of("load-settlement"), 2.571, 5.142);
+}
+
+#[test]
+fn strip_load_collapses_near_prandtl() {
+    let ran = ran("strip_load", &["grid.cell=0.25 m", "stages.0.steps=30"]);
+    assert_eq!(ran.outcomes(), [Stopped]);
+    between(ran.end_of("load-settlement"), 4.9, 6.0);
+}
+
+#[test]
+fn embankment_settles_more_with_every_lift() {
+    let ran = ran(
+        "embankment",
+        &[
+            "grid.cell=2 m",
+            "grid.domain.y=[\"0 m\", \"26 m\"]",
+            "stages.1.steps=2",
+            "stages.2.steps=2",
+            "stages.3.steps=2",
+        ],
+    );
+    assert_eq!(ran.outcomes(), [Completed; 4]);
+    let settlements: Vec<f64> = ran.curve("settlement").iter().map(|p| p[1]).collect();
+    assert!(settlements.windows(2).all(|pair| pair[0] <= pair[1]));
+    between(ran.end_of("settlement"), 70.0, 140.0);
+    let stress = ran.measured("vertical stress in the clay below the axis");
+    between(stress, 150.0, 200.0);
+}
+
+#[test]
+fn k0_ground_is_exact() {
+    let ran = ran("k0_ground", &["stages.0.steps=1"]);
+    assert_eq!(ran.outcomes(), [Completed]);
+    assert!(ran.meets_its_checks());
+    between(ran.virtual_work(1.0), 1.0 - 1e-9, 1.0 + 1e-9);
+}
+
+#[test]
+fn cantilever_bends_as_a_beam() {
+    let ran = ran("cantilever", &["grid.cell=0.25 m", "stages.1.steps=5"]);
+    assert_eq!(ran.outcomes(), [Completed, Completed]);
+    between(ran.measured("small deflection in mm") / 33.53, 0.9, 1.1);
+    between(ran.end_of("deflection") / 0.30172, 0.9, 1.1);
+}
+
+#[test]
+fn block_slumps_until_it_rests() {
+    let ran = ran(
+        "block",
+        &["grid.cell=0.5 m", "bodies.block.points_per_cell=4"],
+    );
+    assert_eq!(ran.outcomes(), [Completed, Completed]);
+    between(ran.measured("height on the axis at rest"), 1.7, 2.6);
+    between(ran.virtual_work(1.0), 0.98, 1.02);
+}
