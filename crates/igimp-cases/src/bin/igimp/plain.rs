@@ -242,7 +242,7 @@ mod tests {
             .collect();
         insta::assert_snapshot!(text.join("\n"), @r#"
         stage 1/3 "initial stresses" (gravity, 10 steps)
-          step  1/10  load factor 0.1000   3 it  residual 4.2e-10  plastic   3.1 %
+          step  1/10  load factor 0.1000   3 it  residual 4.2e-10  plastic   3.1 %  worst (31.5, 10.5) m, x
           cut  load factor 0.1000 to 0.2000: the residual stagnates, residual 8.2e-2, worst node (31.5, 10.5) m, x
           completed; 10 steps, 31 iterations, 1 cuts, largest displacement 0.02134 m
         warning: thin ice
