@@ -398,12 +398,7 @@ impl Output {
                 resumption: Some(resumption.clone()),
                 ..self.notes(model.case, stage, run, taken.controls)
             };
-            self.save(
-                &self.name(),
-                &[("current", body)],
-                &notes,
-                self.checkpoint_keep,
-            )?;
+            self.save(&[("current", body)], &notes)?;
         }
         self.seconds += clock.elapsed().as_secs_f64();
         Ok(())
@@ -438,7 +433,7 @@ impl Output {
                 states.push((name, &state.body));
             }
         }
-        self.save(&self.name(), &states, &notes, self.checkpoint_keep)?;
+        self.save(&states, &notes)?;
         self.seconds += clock.elapsed().as_secs_f64();
         Ok(())
     }
@@ -518,12 +513,7 @@ impl Output {
     ) -> Result<(), CaseError> {
         let clock = Instant::now();
         let notes = self.notes(case, number, run, &state.controls);
-        self.save(
-            &end_of_stage(number),
-            &[("current", &state.body)],
-            &notes,
-            1,
-        )?;
+        self.save_end(number, &state.body, &notes)?;
         self.write_summary(run)?;
         self.seconds += clock.elapsed().as_secs_f64();
         Ok(())
@@ -622,11 +612,6 @@ impl Output {
         write_atomically(&path, text + "\n")
     }
 
-    /// Name of the checkpoint after this step.
-    fn name(&self) -> String {
-        format!("step-{:06}", self.steps)
-    }
-
     fn notes(&self, case: &Case, stage: usize, run: &Summary, controls: &Controls) -> Notes {
         Notes {
             history: fingerprint::of_history(case, stage + 1),
@@ -658,20 +643,29 @@ impl Output {
         Ok(Meta::new(&self.fingerprint, data))
     }
 
-    /// Writes a checkpoint, after the rows that it counts on.
-    fn save(
-        &self,
-        name: &str,
-        states: &[(&str, &Body<2>)],
-        notes: &Notes,
-        keep: usize,
-    ) -> Result<(), CaseError> {
+    /// Writes a checkpoint within a stage. It follows the rows that it counts on; what is in the
+    /// hands of the system outlasts a kill.
+    fn save(&self, states: &[(&str, &Body<2>)], notes: &Notes) -> Result<(), CaseError> {
+        let name = format!("step-{:06}", self.steps);
+        let (folder, meta) = (self.folder.checkpoint(), self.meta(notes)?);
+        checkpoint::write_quickly(&folder, &name, states, &meta, self.checkpoint_keep)?;
+        Ok(())
+    }
+
+    /// Writes the checkpoint at the end of a stage, after its rows, to outlast a loss of power.
+    fn save_end(&self, stage: usize, body: &Body<2>, notes: &Notes) -> Result<(), CaseError> {
         for writer in self.curves.iter().chain(&self.monitors) {
             writer.sync()?;
         }
         self.convergence.sync()?;
-        let meta = self.meta(notes)?;
-        checkpoint::write(&self.folder.checkpoint(), name, states, &meta, keep)?;
+        let (folder, meta) = (self.folder.checkpoint(), self.meta(notes)?);
+        checkpoint::write(
+            &folder,
+            &end_of_stage(stage),
+            &[("current", body)],
+            &meta,
+            1,
+        )?;
         Ok(())
     }
 }

@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
-use std::fs;
-use std::io;
-use std::path::Path;
+use std::fs::{self, File};
+use std::io::{self, Write as _};
+use std::path::{Path, PathBuf};
 
 use igimp_solver::Body;
 use serde::{Deserialize, Serialize};
@@ -12,7 +12,6 @@ use serde_json::Value;
 use sha2::{Digest as _, Sha256};
 
 use super::error::{CheckpointError, at};
-use crate::results::atomic::write_synced;
 
 /// Version of the layout; another one is not read.
 pub const FORMAT_VERSION: u64 = 1;
@@ -111,14 +110,18 @@ impl Manifest {
         }
     }
 
-    pub(super) fn write(&self, checkpoint: &Path) -> Result<(), CheckpointError> {
+    /// Writes the file, and leaves it to the caller to hand it to the disk.
+    pub(super) fn write(&self, checkpoint: &Path) -> Result<(PathBuf, File), CheckpointError> {
         let path = checkpoint.join(FILE);
         let write = || {
             let mut text = serde_json::to_vec_pretty(self).map_err(io::Error::from)?;
             text.push(b'\n');
-            write_synced(&path, &text)
+            let mut file = File::create(&path)?;
+            file.write_all(&text)?;
+            Ok(file)
         };
-        write().map_err(at(&path))
+        let file = write().map_err(at(&path))?;
+        Ok((path, file))
     }
 
     pub(super) fn read(checkpoint: &Path) -> Result<Self, CheckpointError> {

@@ -18,7 +18,8 @@
 //! | `load_point_x`, `load_point_force` | m × 2 | loaded points \[m\], forces at factor 1 \[N/m\] |
 //! | `load_point_load` | m | index of the load |
 //!
-//! A checkpoint is written under a temporary name, handed to the disk, and renamed. One that it
+//! A checkpoint is written under a temporary name, handed to the disk ([`write`]) or left to the
+//! system to be ([`write_quickly`]), and renamed. One that it
 //! replaces is called `NAME.previous` in between. Whenever the program is killed, [`newest`] finds
 //! a whole checkpoint, the new one or the one before.
 
@@ -68,6 +69,40 @@ pub fn write(
     meta: &Meta,
     keep: usize,
 ) -> Result<PathBuf, CaseError> {
+    write_to_last(folder, name, states, meta, keep, Lasts::PowerLoss)
+}
+
+/// Writes a checkpoint as [`write`] does, without waiting for the disk: it outlasts a kill of the
+/// program, and a loss of power only if the system had time to write. A damaged one is noticed and
+/// passed over when a run is taken up again.
+///
+/// # Errors
+/// As [`write`].
+pub fn write_quickly(
+    folder: &Path,
+    name: &str,
+    states: &[(&str, &Body<2>)],
+    meta: &Meta,
+    keep: usize,
+) -> Result<PathBuf, CaseError> {
+    write_to_last(folder, name, states, meta, keep, Lasts::Kill)
+}
+
+/// What a checkpoint outlasts as soon as it is written.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Lasts {
+    Kill,
+    PowerLoss,
+}
+
+fn write_to_last(
+    folder: &Path,
+    name: &str,
+    states: &[(&str, &Body<2>)],
+    meta: &Meta,
+    keep: usize,
+    lasts: Lasts,
+) -> Result<PathBuf, CaseError> {
     for name in states.iter().map(|state| state.0).chain([name]) {
         check_name(name)?;
     }
@@ -86,18 +121,21 @@ pub fn write(
         .iter()
         .map(|(state, body)| write_state(&temporary, state, body, &mut unsynced))
         .collect::<Result<_, _>>()?;
-    for (path, file) in unsynced {
-        file.sync_all().map_err(at(&path))?;
+    unsynced.push(Manifest::new(name, sequence, meta, entries).write(&temporary)?);
+    if lasts == Lasts::PowerLoss {
+        for (path, file) in unsynced {
+            file.sync_all().map_err(at(&path))?;
+        }
+        let folders = states.iter().map(|(state, _)| temporary.join(state));
+        for folder in folders.chain([temporary.clone()]) {
+            sync_folder(&folder).map_err(at(&folder))?;
+        }
     }
-    for (state, _) in states {
-        let folder = temporary.join(state);
-        sync_folder(&folder).map_err(at(&folder))?;
-    }
-    Manifest::new(name, sequence, meta, entries).write(&temporary)?;
-    sync_folder(&temporary).map_err(at(&temporary))?;
     let path = folder.join(name);
     put_in_place(&temporary, &path)?;
-    sync_folder(folder).map_err(at(folder))?;
+    if lasts == Lasts::PowerLoss {
+        sync_folder(folder).map_err(at(folder))?;
+    }
     prune(folder, name, keep)?;
     Ok(path)
 }
