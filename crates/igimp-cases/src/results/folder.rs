@@ -163,24 +163,6 @@ pub fn claim(root: &Path) -> Result<(), CaseError> {
     write_atomically(&root.join(MARKER), MARKER_TEXT)
 }
 
-/// A name for a file, from the name of a stage, curve or monitor: letters and digits as they are,
-/// anything else as single hyphens.
-///
-/// ```
-/// assert_eq!(igimp_cases::results::folder::file_name("Run-out, φ = 20°"), "Run-out-φ-20");
-/// ```
-pub fn file_name(name: &str) -> String {
-    let words: Vec<&str> = name
-        .split(|symbol: char| !(symbol.is_alphanumeric() || symbol == '_'))
-        .filter(|word| !word.is_empty())
-        .collect();
-    if words.is_empty() {
-        "unnamed".into()
-    } else {
-        words.join("-")
-    }
-}
-
 fn is_empty(folder: &Path) -> Result<bool, CaseError> {
     Ok(fs::read_dir(folder).map_err(at(folder))?.next().is_none())
 }
@@ -407,21 +389,6 @@ mod tests {
         for name in ["a", "b"] {
             Folder::afresh(&scratch.path().join(name)).unwrap();
             assert!(scratch.names(&format!("{name}/checkpoint")).is_empty());
-        }
-    }
-
-    #[test]
-    fn names_become_file_names() {
-        for (name, expected) in [
-            ("load", "load"),
-            ("run out", "run-out"),
-            ("../x/", "x"),
-            ("a--b", "a-b"),
-            ("c_u (kPa)", "c_u-kPa"),
-            ("", "unnamed"),
-            ("..", "unnamed"),
-        ] {
-            assert_eq!(file_name(name), expected);
         }
     }
 }

@@ -4,8 +4,9 @@ use std::collections::HashMap;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
+use super::left::{Left, Resumption, Search};
 use super::model::Model;
-use super::output::{Left, Output, Resumption, Search};
+use super::output::Output;
 use super::records::{Moment, Records, largest_displacement};
 use super::session::{Ended, Session};
 use super::state::State;

@@ -3,7 +3,7 @@
 
 use igimp_solver::Standing;
 
-use super::output::Resumption;
+use super::left::Resumption;
 use super::records::Moment;
 use super::session::{Ended, Path, Session, Taken, march_path};
 use super::state::{Controls, State};

@@ -7,6 +7,7 @@ mod failure;
 mod fingerprint;
 mod footing;
 mod initial;
+mod left;
 mod loading;
 mod message;
 mod model;

@@ -1,15 +1,14 @@
-//! The results folder of a run: what is written, when, and how a run is taken up again from it.
+//! The results folder of a run: what is written, and when.
 
-use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use igimp_solver::{Body, Standing};
+use igimp_solver::Body;
 use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
 
 use super::Target;
 use super::fingerprint;
+use super::left::{Notes, Resumption, Search, end_of_stage};
 use super::model::Model;
 use super::records::{Records, Rows};
 use super::session::Taken;
@@ -17,84 +16,16 @@ use super::state::{Controls, State};
 use crate::case::{Case, Every};
 use crate::error::CaseError;
 use crate::results::atomic::write_atomically;
-use crate::results::checkpoint::{self, CheckpointError, Meta};
+use crate::results::checkpoint::{self, Meta};
 use crate::results::folder::Folder;
 use crate::results::frames::Frames;
 use crate::results::pictures::{self, Shown};
 use crate::results::report;
-use crate::results::rows::{self, RowWriter};
-use crate::summary::{CheckRow, FigureNote, StageSummary, Summary, TrialSummary};
+use crate::results::rows::RowWriter;
+use crate::summary::{FigureNote, StageSummary, Summary};
 use crate::table::Table;
 
-/// Where a march was left: with the body, all that it needs to go on.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub(crate) struct Resumption {
-    /// Controls at the beginning of the stage.
-    pub(crate) from: Controls,
-    /// Load factor reached, size of the next step, successes in a row.
-    #[serde(with = "standing")]
-    pub(crate) standing: Standing,
-    /// Resistance of the footing in the last step \[N/m\].
-    pub(crate) resistance: f64,
-    /// Drag of the next step \[1/s²\].
-    pub(crate) drag: f64,
-}
-
-/// Where a search for the factor of safety was left.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Search {
-    /// Trials made.
-    pub(crate) trials: Vec<TrialSummary>,
-    /// Largest stable factor and its state.
-    pub(crate) stable: Option<(f64, State)>,
-    /// Smallest failed factor and its last equilibrium.
-    pub(crate) failed: Option<(f64, State)>,
-}
-
-/// Where a run was left.
-#[derive(Clone, Debug)]
-pub(crate) struct Left {
-    /// Stages that are done.
-    pub(crate) stages: Vec<StageSummary>,
-    /// Checks made.
-    pub(crate) checks: Vec<CheckRow>,
-    /// Warnings given.
-    pub(crate) warnings: Vec<String>,
-    /// Most unknowns of a step.
-    pub(crate) unknowns: usize,
-    /// The stage that was not done, so far.
-    pub(crate) stage: Option<StageSummary>,
-    /// The state.
-    pub(crate) state: State,
-    /// Where its march was left.
-    pub(crate) resumption: Option<Resumption>,
-    /// Where its search was left.
-    pub(crate) search: Option<Search>,
-}
-
-/// A checkpoint's own words, beside its bodies.
-#[derive(Debug, Serialize, Deserialize)]
-struct Notes {
-    /// Fingerprint of all that the stages so far depend on.
-    history: String,
-    stages: Vec<StageSummary>,
-    checks: Vec<CheckRow>,
-    warnings: Vec<String>,
-    unknowns: usize,
-    figures: Vec<FigureNote>,
-    factor_of_safety: Option<f64>,
-    curve_rows: Vec<usize>,
-    monitor_rows: Vec<usize>,
-    convergence_rows: usize,
-    frames: usize,
-    steps: usize,
-    stage: Option<StageSummary>,
-    controls: Controls,
-    resumption: Option<Resumption>,
-    trials: Option<Vec<TrialSummary>>,
-    stable: Option<(f64, Controls)>,
-    failed: Option<(f64, Controls)>,
-}
+mod take_up;
 
 /// The files of a run, open.
 #[derive(Debug)]
@@ -194,142 +125,6 @@ impl Output {
             kept: Vec::new(),
             seconds: 0.0,
         })
-    }
-
-    /// A results folder taken up at its newest checkpoint; without one the run begins afresh.
-    pub(crate) fn resume(
-        target: &Target,
-        case: &Case,
-        records: &mut Records,
-    ) -> Result<(Self, Option<Left>), CaseError> {
-        let folder = match Folder::open(&target.folder) {
-            Ok(folder) => folder,
-            Err(CaseError::NoResults { .. }) => {
-                return Ok((Self::create(target, case, records)?, None));
-            }
-            Err(error) => return Err(error),
-        };
-        let Some(path) = checkpoint::newest(&folder.checkpoint())? else {
-            return Ok((Self::create(target, case, records)?, None));
-        };
-        let found = checkpoint::read(&path, Some(&fingerprint::of_case(case)))?;
-        checkpoint::discard_after(&path)?;
-        Self::take_up(folder, case, records, &found)
-    }
-
-    /// A results folder taken up at the beginning of a stage.
-    pub(crate) fn from_stage(
-        target: &Target,
-        case: &Case,
-        records: &mut Records,
-        stage: usize,
-    ) -> Result<(Self, Option<Left>), CaseError> {
-        let Some(before) = stage.checked_sub(1) else {
-            return Ok((Self::create(target, case, records)?, None));
-        };
-        let folder = Folder::open(&target.folder)?;
-        let Some(path) = checkpoint::named(&folder.checkpoint(), &end_of_stage(before))? else {
-            return Err(CaseError::NoStart {
-                stage: case.stages[stage].name.clone(),
-                from: case.stages[before].name.clone(),
-            });
-        };
-        let found = checkpoint::read(&path, None)?;
-        let notes: Notes = notes_of(&path, &found.meta)?;
-        if notes.history != fingerprint::of_history(case, stage) {
-            return Err(CheckpointError::OtherCase { path }.into());
-        }
-        checkpoint::discard_after(&path)?;
-        write_atomically(&folder.case(), &target.source)?;
-        write_atomically(&folder.completed_case(), &target.completed)?;
-        Self::take_up(folder, case, records, &found)
-    }
-
-    fn take_up(
-        folder: Folder,
-        case: &Case,
-        records: &mut Records,
-        found: &checkpoint::Checkpoint,
-    ) -> Result<(Self, Option<Left>), CaseError> {
-        let path = folder.checkpoint();
-        let notes: Notes = notes_of(&path, &found.meta)?;
-        let body = |name: &str| {
-            found
-                .states
-                .iter()
-                .find(|(state, _)| state == name)
-                .map(|(_, body)| body.clone())
-                .ok_or_else(|| CheckpointError::Damaged {
-                    path: path.clone(),
-                    file: name.to_owned(),
-                    why: "the state is missing".to_owned(),
-                })
-        };
-        let with_body = |name: &str, of: &Option<(f64, Controls)>| match of {
-            Some((srf, controls)) => {
-                let controls = controls.clone();
-                body(name).map(|body| Some((*srf, State { body, controls })))
-            }
-            None => Ok(None),
-        };
-        let search = match &notes.trials {
-            Some(trials) => Some(Search {
-                trials: trials.clone(),
-                stable: with_body("stable", &notes.stable)?,
-                failed: with_body("failed", &notes.failed)?,
-            }),
-            None => None,
-        };
-        let left = Left {
-            stages: notes.stages.clone(),
-            checks: notes.checks.clone(),
-            warnings: notes.warnings.clone(),
-            unknowns: notes.unknowns,
-            stage: notes.stage.clone(),
-            state: State {
-                body: body("current")?,
-                controls: notes.controls.clone(),
-            },
-            resumption: notes.resumption.clone(),
-            search,
-        };
-        let output = Self::open(folder, case, records, Some(&notes))?;
-        records.factor_of_safety = notes.factor_of_safety.unwrap_or(f64::NAN);
-        for table in &mut records.curves {
-            table.rows = rows::read(&output.folder.curves().join(csv(&table.name)))?.rows;
-        }
-        for table in &mut records.monitors {
-            table.rows = rows::read(&output.folder.monitors().join(csv(&table.name)))?.rows;
-        }
-        Ok((output, Some(left)))
-    }
-
-    /// The saved ends of the first `stages` stages.
-    pub(crate) fn ends(
-        &self,
-        case: &Case,
-        stages: usize,
-    ) -> Result<HashMap<usize, State>, CaseError> {
-        let mut ends = HashMap::new();
-        for number in 0..stages {
-            let wanted = case.stages[stages.min(case.stages.len() - 1)..]
-                .iter()
-                .any(|stage| stage.start_from == Some(number));
-            if !wanted {
-                continue;
-            }
-            let Some(path) = checkpoint::named(&self.folder.checkpoint(), &end_of_stage(number))?
-            else {
-                continue;
-            };
-            let found = checkpoint::read(&path, None)?;
-            let notes = notes_of(&path, &found.meta)?;
-            if let Some((_, body)) = found.states.into_iter().next() {
-                let controls = notes.controls;
-                ends.insert(number, State { body, controls });
-            }
-        }
-        Ok(ends)
     }
 
     /// Appends the rows of a moment.
@@ -694,37 +489,5 @@ fn words(name: &str) -> &'static str {
         "first unstable"
     } else {
         "last stable"
-    }
-}
-
-/// Name of the checkpoint at the end of a stage.
-fn end_of_stage(number: usize) -> String {
-    format!("stage-{:02}-end", number + 1)
-}
-
-fn notes_of(path: &Path, meta: &Meta) -> Result<Notes, CheckpointError> {
-    serde_json::from_value(meta.data.clone()).map_err(|error| CheckpointError::Damaged {
-        path: path.to_path_buf(),
-        file: "meta.json".to_owned(),
-        why: error.to_string(),
-    })
-}
-
-/// A standing as three numbers.
-mod standing {
-    use igimp_solver::Standing;
-    use serde::{Deserialize, Deserializer, Serialize, Serializer};
-
-    pub(super) fn serialize<S: Serializer>(of: &Standing, to: S) -> Result<S::Ok, S::Error> {
-        (of.at, of.size, of.successes).serialize(to)
-    }
-
-    pub(super) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Standing, D::Error> {
-        let (at, size, successes) = Deserialize::deserialize(from)?;
-        Ok(Standing {
-            at,
-            size,
-            successes,
-        })
     }
 }

@@ -12,8 +12,8 @@ use std::cell::Cell;
 
 use igimp_solver::Standing;
 
+use super::left::Resumption;
 use super::loading::begin;
-use super::output::Resumption;
 use super::session::{Ended, Path, Session, march_path};
 use super::state::State;
 use crate::case::{Reduction, RunOut};

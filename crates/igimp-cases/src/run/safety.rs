@@ -4,9 +4,9 @@
 use igimp_solver::Standing;
 
 use super::Event;
+use super::left::Search;
 use super::loading::begin;
 use super::model::Model;
-use super::output::Search;
 use super::records::{Moment, largest_displacement};
 use super::session::{Ended, Path, Session, march_path};
 use super::state::{Controls, State};

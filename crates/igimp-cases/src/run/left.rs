@@ -1,0 +1,113 @@
+//! Where a run was left, as checkpoints tell it.
+
+use std::path::Path;
+
+use igimp_solver::Standing;
+use serde::{Deserialize, Serialize};
+
+use super::state::{Controls, State};
+use crate::results::checkpoint::{CheckpointError, Meta};
+use crate::summary::{CheckRow, FigureNote, StageSummary, TrialSummary};
+
+/// Where a march was left: with the body, all that it needs to go on.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(crate) struct Resumption {
+    /// Controls at the beginning of the stage.
+    pub(crate) from: Controls,
+    /// Load factor reached, size of the next step, successes in a row.
+    #[serde(with = "standing")]
+    pub(crate) standing: Standing,
+    /// Resistance of the footing in the last step \[N/m\].
+    pub(crate) resistance: f64,
+    /// Drag of the next step \[1/s²\].
+    pub(crate) drag: f64,
+}
+
+/// Where a search for the factor of safety was left.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Search {
+    /// Trials made.
+    pub(crate) trials: Vec<TrialSummary>,
+    /// Largest stable factor and its state.
+    pub(crate) stable: Option<(f64, State)>,
+    /// Smallest failed factor and its last equilibrium.
+    pub(crate) failed: Option<(f64, State)>,
+}
+
+/// Where a run was left.
+#[derive(Clone, Debug)]
+pub(crate) struct Left {
+    /// Stages that are done.
+    pub(crate) stages: Vec<StageSummary>,
+    /// Checks made.
+    pub(crate) checks: Vec<CheckRow>,
+    /// Warnings given.
+    pub(crate) warnings: Vec<String>,
+    /// Most unknowns of a step.
+    pub(crate) unknowns: usize,
+    /// The stage that was not done, so far.
+    pub(crate) stage: Option<StageSummary>,
+    /// The state.
+    pub(crate) state: State,
+    /// Where its march was left.
+    pub(crate) resumption: Option<Resumption>,
+    /// Where its search was left.
+    pub(crate) search: Option<Search>,
+}
+
+/// A checkpoint's own words, beside its bodies.
+#[derive(Debug, Serialize, Deserialize)]
+pub(super) struct Notes {
+    /// Fingerprint of all that the stages so far depend on.
+    pub(super) history: String,
+    pub(super) stages: Vec<StageSummary>,
+    pub(super) checks: Vec<CheckRow>,
+    pub(super) warnings: Vec<String>,
+    pub(super) unknowns: usize,
+    pub(super) figures: Vec<FigureNote>,
+    pub(super) factor_of_safety: Option<f64>,
+    pub(super) curve_rows: Vec<usize>,
+    pub(super) monitor_rows: Vec<usize>,
+    pub(super) convergence_rows: usize,
+    pub(super) frames: usize,
+    pub(super) steps: usize,
+    pub(super) stage: Option<StageSummary>,
+    pub(super) controls: Controls,
+    pub(super) resumption: Option<Resumption>,
+    pub(super) trials: Option<Vec<TrialSummary>>,
+    pub(super) stable: Option<(f64, Controls)>,
+    pub(super) failed: Option<(f64, Controls)>,
+}
+
+/// Name of the checkpoint at the end of a stage.
+pub(super) fn end_of_stage(number: usize) -> String {
+    format!("stage-{:02}-end", number + 1)
+}
+
+/// The words of a checkpoint.
+pub(super) fn notes_of(path: &Path, meta: &Meta) -> Result<Notes, CheckpointError> {
+    serde_json::from_value(meta.data.clone()).map_err(|error| CheckpointError::Damaged {
+        path: path.to_path_buf(),
+        file: "meta.json".to_owned(),
+        why: error.to_string(),
+    })
+}
+
+/// A standing as three numbers.
+mod standing {
+    use igimp_solver::Standing;
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    pub(super) fn serialize<S: Serializer>(of: &Standing, to: S) -> Result<S::Ok, S::Error> {
+        (of.at, of.size, of.successes).serialize(to)
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Standing, D::Error> {
+        let (at, size, successes) = Deserialize::deserialize(from)?;
+        Ok(Standing {
+            at,
+            size,
+            successes,
+        })
+    }
+}

@@ -1,0 +1,154 @@
+//! How a run is taken up again from its results folder.
+
+use std::collections::HashMap;
+
+use super::{Output, csv};
+use crate::case::Case;
+use crate::error::CaseError;
+use crate::results::atomic::write_atomically;
+use crate::results::checkpoint::{self, CheckpointError};
+use crate::results::folder::Folder;
+use crate::results::rows;
+use crate::run::Target;
+use crate::run::fingerprint;
+use crate::run::left::{Left, Notes, Search, end_of_stage, notes_of};
+use crate::run::records::Records;
+use crate::run::state::{Controls, State};
+
+impl Output {
+    /// A results folder taken up at its newest checkpoint; without one the run begins afresh.
+    pub(crate) fn resume(
+        target: &Target,
+        case: &Case,
+        records: &mut Records,
+    ) -> Result<(Self, Option<Left>), CaseError> {
+        let folder = match Folder::open(&target.folder) {
+            Ok(folder) => folder,
+            Err(CaseError::NoResults { .. }) => {
+                return Ok((Self::create(target, case, records)?, None));
+            }
+            Err(error) => return Err(error),
+        };
+        let Some(path) = checkpoint::newest(&folder.checkpoint())? else {
+            return Ok((Self::create(target, case, records)?, None));
+        };
+        let found = checkpoint::read(&path, Some(&fingerprint::of_case(case)))?;
+        checkpoint::discard_after(&path)?;
+        Self::take_up(folder, case, records, &found)
+    }
+
+    /// A results folder taken up at the beginning of a stage.
+    pub(crate) fn from_stage(
+        target: &Target,
+        case: &Case,
+        records: &mut Records,
+        stage: usize,
+    ) -> Result<(Self, Option<Left>), CaseError> {
+        let Some(before) = stage.checked_sub(1) else {
+            return Ok((Self::create(target, case, records)?, None));
+        };
+        let folder = Folder::open(&target.folder)?;
+        let Some(path) = checkpoint::named(&folder.checkpoint(), &end_of_stage(before))? else {
+            return Err(CaseError::NoStart {
+                stage: case.stages[stage].name.clone(),
+                from: case.stages[before].name.clone(),
+            });
+        };
+        let found = checkpoint::read(&path, None)?;
+        let notes: Notes = notes_of(&path, &found.meta)?;
+        if notes.history != fingerprint::of_history(case, stage) {
+            return Err(CheckpointError::OtherCase { path }.into());
+        }
+        checkpoint::discard_after(&path)?;
+        write_atomically(&folder.case(), &target.source)?;
+        write_atomically(&folder.completed_case(), &target.completed)?;
+        Self::take_up(folder, case, records, &found)
+    }
+
+    fn take_up(
+        folder: Folder,
+        case: &Case,
+        records: &mut Records,
+        found: &checkpoint::Checkpoint,
+    ) -> Result<(Self, Option<Left>), CaseError> {
+        let path = folder.checkpoint();
+        let notes: Notes = notes_of(&path, &found.meta)?;
+        let body = |name: &str| {
+            found
+                .states
+                .iter()
+                .find(|(state, _)| state == name)
+                .map(|(_, body)| body.clone())
+                .ok_or_else(|| CheckpointError::Damaged {
+                    path: path.clone(),
+                    file: name.to_owned(),
+                    why: "the state is missing".to_owned(),
+                })
+        };
+        let with_body = |name: &str, of: &Option<(f64, Controls)>| match of {
+            Some((srf, controls)) => {
+                let controls = controls.clone();
+                body(name).map(|body| Some((*srf, State { body, controls })))
+            }
+            None => Ok(None),
+        };
+        let search = match &notes.trials {
+            Some(trials) => Some(Search {
+                trials: trials.clone(),
+                stable: with_body("stable", &notes.stable)?,
+                failed: with_body("failed", &notes.failed)?,
+            }),
+            None => None,
+        };
+        let left = Left {
+            stages: notes.stages.clone(),
+            checks: notes.checks.clone(),
+            warnings: notes.warnings.clone(),
+            unknowns: notes.unknowns,
+            stage: notes.stage.clone(),
+            state: State {
+                body: body("current")?,
+                controls: notes.controls.clone(),
+            },
+            resumption: notes.resumption.clone(),
+            search,
+        };
+        let output = Self::open(folder, case, records, Some(&notes))?;
+        records.factor_of_safety = notes.factor_of_safety.unwrap_or(f64::NAN);
+        for table in &mut records.curves {
+            table.rows = rows::read(&output.folder.curves().join(csv(&table.name)))?.rows;
+        }
+        for table in &mut records.monitors {
+            table.rows = rows::read(&output.folder.monitors().join(csv(&table.name)))?.rows;
+        }
+        Ok((output, Some(left)))
+    }
+
+    /// The saved ends of the first `stages` stages.
+    pub(crate) fn ends(
+        &self,
+        case: &Case,
+        stages: usize,
+    ) -> Result<HashMap<usize, State>, CaseError> {
+        let mut ends = HashMap::new();
+        for number in 0..stages {
+            let wanted = case.stages[stages.min(case.stages.len() - 1)..]
+                .iter()
+                .any(|stage| stage.start_from == Some(number));
+            if !wanted {
+                continue;
+            }
+            let Some(path) = checkpoint::named(&self.folder.checkpoint(), &end_of_stage(number))?
+            else {
+                continue;
+            };
+            let found = checkpoint::read(&path, None)?;
+            let notes = notes_of(&path, &found.meta)?;
+            if let Some((_, body)) = found.states.into_iter().next() {
+                let controls = notes.controls;
+                ends.insert(number, State { body, controls });
+            }
+        }
+        Ok(ends)
+    }
+}
