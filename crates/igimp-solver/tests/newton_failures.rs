@@ -239,7 +239,8 @@ fn equations_that_make_no_sense_are_refused() {
         *failure == StepFailure::Assembly(AssemblyError::NoUnknowns)
     });
 
-    let (mut body, conditions) = loaded(&elastic(), 0.3);
+    let (mut body, mut conditions) = loaded(&elastic(), 0.3);
+    conditions.loads.factors = vec![1.0];
     body.load_points = LoadPoint::along_edge([5.5, 1.0], [6.5, 1.0], [0.0, -1.0], 2, 0);
     fails(&body, &conditions, &settings(), |failure| {
         matches!(
