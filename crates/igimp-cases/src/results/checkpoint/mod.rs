@@ -18,7 +18,7 @@
 //! | `load_point_x`, `load_point_force` | m × 2 | loaded points \[m\], forces at factor 1 \[N/m\] |
 //! | `load_point_load` | m | index of the load |
 //!
-//! A checkpoint is written under a temporary name, handed to the disk ([`write`]) or left to the
+//! A checkpoint is written under a temporary name, handed to the disk ([`write()`]) or left to the
 //! system to be ([`write_quickly`]), and renamed. One that it
 //! replaces is called `NAME.previous` in between. Whenever the program is killed, [`newest`] finds
 //! a whole checkpoint, the new one or the one before.
@@ -72,12 +72,12 @@ pub fn write(
     write_to_last(folder, name, states, meta, keep, Lasts::PowerLoss)
 }
 
-/// Writes a checkpoint as [`write`] does, without waiting for the disk: it outlasts a kill of the
+/// Writes a checkpoint as [`write()`] does, without waiting for the disk: it outlasts a kill of the
 /// program, and a loss of power only if the system had time to write. A damaged one is noticed and
 /// passed over when a run is taken up again.
 ///
 /// # Errors
-/// As [`write`].
+/// As [`write()`].
 pub fn write_quickly(
     folder: &Path,
     name: &str,
