@@ -23,6 +23,7 @@ use std::path::PathBuf;
 
 use igimp_solver::{Body, StepError, StepReport};
 
+use crate::input::CaseFile;
 use crate::summary::{ModelSize, StageSummary, Summary, TrialSummary};
 use crate::table::Table;
 
@@ -121,6 +122,17 @@ pub struct Target {
     pub source: String,
     /// The case with every default, kept as `case.completed.toml`.
     pub completed: String,
+}
+
+impl Target {
+    /// The results folder of a case file.
+    pub fn of(file: &CaseFile, folder: impl Into<PathBuf>) -> Self {
+        Self {
+            folder: folder.into(),
+            source: file.source().to_owned(),
+            completed: file.explain(),
+        }
+    }
 }
 
 /// What a run hands back.

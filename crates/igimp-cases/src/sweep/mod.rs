@@ -200,11 +200,7 @@ impl Sweep {
         record.write(&task.folder)?;
         let mut case: Case = file.case().clone();
         case.output.folder.clone_from(&task.folder);
-        let target = Target {
-            folder: task.folder.clone(),
-            source: file.source().to_owned(),
-            completed: file.explain(),
-        };
+        let target = Target::of(&file, &task.folder);
         match run::run(&case, Some(&target), start, listener, interrupt) {
             Ok(run) => {
                 record.ending = Ending::of(&run.summary);

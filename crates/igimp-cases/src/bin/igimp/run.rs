@@ -27,11 +27,7 @@ pub(crate) fn run(arguments: &Run) -> Result<Exit, ProgramError> {
     };
     let folder = case.output.folder.clone();
     output::writable(&folder)?;
-    let target = Target {
-        folder: folder.clone(),
-        source: file.source().to_owned(),
-        completed: file.explain(),
-    };
+    let target = Target::of(&file, &folder);
     let flag = interrupt::watch();
     let mut progress = Progress::new(arguments.quiet);
     let run = engine::run(&case, Some(&target), start, &mut progress, &flag);

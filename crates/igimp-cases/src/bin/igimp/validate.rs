@@ -26,11 +26,10 @@ pub(crate) fn validate(arguments: &Validate) -> Result<Exit, ProgramError> {
             continue;
         }
         ran += 1;
-        let target = arguments.out.as_ref().map(|out| Target {
-            folder: out.join(shipped.name),
-            source: file.source().to_owned(),
-            completed: file.explain(),
-        });
+        let target = arguments
+            .out
+            .as_ref()
+            .map(|out| Target::of(&file, out.join(shipped.name)));
         let mut case = file.case().clone();
         if let Some(target) = &target {
             case.output.folder.clone_from(&target.folder);
