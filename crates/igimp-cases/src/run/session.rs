@@ -274,7 +274,10 @@ impl Watch<'_, '_> {
 
 impl Observer<2> for Watch<'_, '_> {
     fn on_step(&mut self, accepted: &Accepted<'_, 2>) -> ControlFlow<()> {
-        self.stopped = self.step(accepted);
+        // A file that could not be written after a cut ends the march here.
+        if self.stopped.is_ok() {
+            self.stopped = self.step(accepted);
+        }
         match self.stopped {
             Ok(None) => ControlFlow::Continue(()),
             _ => ControlFlow::Break(()),
@@ -282,7 +285,8 @@ impl Observer<2> for Watch<'_, '_> {
     }
 
     fn on_cut(&mut self, error: &StepError) {
-        if let Err(error) = self.session.tally_cut(self.stage, error) {
+        let told = self.session.tally_cut(self.stage, error);
+        if let (Ok(_), Err(error)) = (&self.stopped, told) {
             self.stopped = Err(error);
         }
     }
