@@ -18,10 +18,12 @@ pub struct NodeBlock {
     pub place: [usize; 3],
 }
 
-/// Sparsity pattern of the tangent matrix, compressed by columns, rows ascending within a column.
+/// Sparsity pattern of the tangent matrix by blocks: which nodes are coupled.
 ///
-/// The pattern is structurally symmetric: (i, j) is stored if and only if (j, i) is. Both halves
-/// are stored, also when the values are symmetric.
+/// All unknowns of two coupled nodes are coupled. Values are stored by columns, rows ascending:
+/// what follows from the blocks is a matrix in compressed sparse columns. The pattern is
+/// structurally symmetric: node i is listed for j if and only if j is listed for i, and every node
+/// is coupled to itself. Both halves are stored, also when the values are symmetric.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Pattern {
     /// Start of each column in `row_idx`, length `unknowns + 1`.
@@ -30,19 +32,70 @@ pub struct Pattern {
     pub row_idx: Vec<usize>,
     /// The nodes that carry unknowns, by ascending unknown; together they cover all of them.
     pub blocks: Vec<NodeBlock>,
+    /// Start of the list of each block in `coupled`, length `blocks + 1`.
+    pub starts: Vec<usize>,
+    /// For each block the blocks that it is coupled to, ascending, itself among them.
+    pub coupled: Vec<u32>,
+    /// First value of the columns of each block, length `blocks + 1`.
+    pub first_value: Vec<usize>,
     /// Largest distance, in nodes along one axis, between two coupled nodes.
     pub reach: usize,
 }
 
 impl Pattern {
+    /// The pattern of coupled blocks, with lists as described for the fields.
+    pub fn new(
+        blocks: Vec<NodeBlock>,
+        starts: Vec<usize>,
+        coupled: Vec<u32>,
+        reach: usize,
+    ) -> Self {
+        let mut first_value = vec![0];
+        let mut stored = 0;
+        let (mut col_ptr, mut row_idx) = (vec![0], Vec::new());
+        for (block, ends) in blocks.iter().zip(starts.windows(2)) {
+            let rows = coupled[ends[0]..ends[1]]
+                .iter()
+                .map(|&row| blocks[row as usize]);
+            let height: usize = rows.clone().map(|row| row.len).sum();
+            for _ in 0..block.len {
+                row_idx.extend(rows.clone().flat_map(|row| row.first..row.first + row.len));
+                col_ptr.push(row_idx.len());
+            }
+            stored += height * block.len;
+            first_value.push(stored);
+        }
+        Self {
+            col_ptr,
+            row_idx,
+            blocks,
+            starts,
+            coupled,
+            first_value,
+            reach,
+        }
+    }
+
     /// Number of unknowns (rows and columns).
     pub fn unknowns(&self) -> usize {
-        self.col_ptr.len() - 1
+        self.blocks
+            .last()
+            .map_or(0, |block| block.first + block.len)
     }
 
     /// Number of stored entries.
     pub fn stored(&self) -> usize {
-        self.row_idx.len()
+        self.first_value.last().copied().unwrap_or(0)
+    }
+
+    /// The blocks coupled to a block, ascending.
+    pub fn coupled_to(&self, block: usize) -> &[u32] {
+        &self.coupled[self.starts[block]..self.starts[block + 1]]
+    }
+
+    /// Stored entries of each column of a block.
+    pub fn height(&self, block: usize) -> usize {
+        (self.first_value[block + 1] - self.first_value[block]) / self.blocks[block].len
     }
 }
 

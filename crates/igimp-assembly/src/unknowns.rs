@@ -186,13 +186,12 @@ impl<const D: usize> BlockTable<D> {
     /// Turns the marks of coupled nodes into offsets, and writes the pattern.
     fn number(&mut self, grid: &Grid<D>, unknowns: &Unknowns<D>, columns: &[usize]) -> Pattern {
         let size = self.window.pow(D as u32);
-        let mut col_ptr = vec![0];
-        let mut row_idx = Vec::new();
+        let mut starts = vec![0];
+        let mut coupled = Vec::new();
         let mut blocks = Vec::with_capacity(columns.len());
-        let mut rows = Vec::new();
         for (position, &column) in columns.iter().enumerate() {
             let place = grid.node_place(column);
-            rows.clear();
+            let mut height = 0;
             for slot in 0..size {
                 let offset = &mut self.offsets[position * size + slot];
                 if *offset == NONE {
@@ -203,13 +202,11 @@ impl<const D: usize> BlockTable<D> {
                     *offset = NONE;
                     continue;
                 }
-                *offset = u32::try_from(rows.len()).expect("a column has fewer than 2^32 rows");
-                rows.extend(unknowns.before(row)..unknowns.before(row + 1));
+                *offset = height;
+                height += unknowns.count(row);
+                coupled.push(self.compact[row]);
             }
-            for _ in 0..unknowns.count(column) {
-                row_idx.extend_from_slice(&rows);
-                col_ptr.push(row_idx.len());
-            }
+            starts.push(coupled.len());
             let mut block_place = [0; 3];
             block_place[..D].copy_from_slice(&place);
             blocks.push(NodeBlock {
@@ -218,12 +215,7 @@ impl<const D: usize> BlockTable<D> {
                 place: block_place,
             });
         }
-        Pattern {
-            col_ptr,
-            row_idx,
-            blocks,
-            reach: self.reach,
-        }
+        Pattern::new(blocks, starts, coupled, self.reach)
     }
 
     /// A number for a node's place such that differences tell two nodes' distance apart.
