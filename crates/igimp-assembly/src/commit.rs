@@ -2,13 +2,15 @@
 
 use igimp_material::Tensor;
 use igimp_shape::Grid;
+use rayon::prelude::*;
 
 use crate::kinematics::ParticleTrial;
 use crate::method::{DomainUpdate, Kinematics, Method};
 use crate::particles::Particles;
 use crate::small::{congruence, determinant, identity, multiply, rotation, transpose};
 use crate::stencils::Stencils;
-use crate::system::Trial;
+use crate::supports::CHUNK;
+use crate::sweep::Trial;
 
 impl<const D: usize> Particles<D> {
     /// Accepts a converged trial: x, F, b_e, σ, l_p and history become those at nodal step
@@ -17,27 +19,47 @@ impl<const D: usize> Particles<D> {
         &mut self,
         stencils: &Stencils<D>,
         method: &Method,
-        trial: Trial<D>,
+        trial: &Trial<D>,
         u: &[[f64; D]],
     ) {
-        for (particle, own) in trial.particles.into_iter().enumerate() {
-            let displacement = interpolate(stencils, particle, u);
-            let fields = self.fields_mut();
-            let def_grad = multiply(&own.delta_def_grad, &fields.def_grad[particle]);
-            let (b_e, sigma) = stress_state(method.kinematics, &own, determinant(&def_grad));
-            let half_length0 = &fields.half_length0[particle];
-            fields.half_length[particle] =
-                updated_half_length(method.domain_update, half_length0, &def_grad);
-            for axis in 0..D {
-                fields.x[particle][axis] += displacement[axis];
-                fields.displacement[particle][axis] += displacement[axis];
-            }
-            fields.def_grad[particle] = def_grad;
-            fields.b_e[particle] = b_e;
-            fields.sigma[particle] = sigma;
-            fields.history[particle] = own.lifted.history;
-            fields.regime[particle] = own.lifted.regime;
+        let mut slots = vec![0_u32; self.len()];
+        for (slot, &particle) in stencils.order().iter().enumerate() {
+            slots[particle as usize] = slot as u32;
         }
+        let fields = self.fields_mut();
+        let moving = (
+            &mut fields.x,
+            &mut fields.displacement,
+            &mut fields.half_length,
+            &fields.half_length0,
+            &mut fields.def_grad,
+        );
+        let stressed = (
+            &mut fields.b_e,
+            &mut fields.sigma,
+            &mut fields.history,
+            &mut fields.regime,
+        );
+        let particles = moving.into_par_iter().zip(stressed.into_par_iter());
+        particles
+            .zip(slots)
+            .enumerate()
+            .with_min_len(CHUNK)
+            .for_each(|(particle, ((moving, stressed), slot))| {
+                let (x, displacement, half_length, half_length0, def_grad) = moving;
+                let (b_e, sigma, history, regime) = stressed;
+                let own = &trial.particles[slot as usize];
+                let step = interpolate(stencils, particle, u);
+                for axis in 0..D {
+                    x[axis] += step[axis];
+                    displacement[axis] += step[axis];
+                }
+                *def_grad = multiply(&own.delta_def_grad, def_grad);
+                *half_length = updated_half_length(method.domain_update, half_length0, def_grad);
+                (*b_e, *sigma) = stress_state(method.kinematics, own, determinant(def_grad));
+                *history = own.history;
+                *regime = own.regime;
+            });
     }
 
     /// The first particle that nodal step displacements `u` would carry off the grid, with its
@@ -48,12 +70,15 @@ impl<const D: usize> Particles<D> {
         stencils: &Stencils<D>,
         u: &[[f64; D]],
     ) -> Option<(usize, [f64; D])> {
-        (0..self.len()).find_map(|particle| {
-            let displacement = interpolate(stencils, particle, u);
-            let x: [f64; D] =
-                std::array::from_fn(|axis| self.x[particle][axis] + displacement[axis]);
-            (!grid.contains(&x)).then_some((particle, x))
-        })
+        (0..self.len())
+            .into_par_iter()
+            .with_min_len(CHUNK)
+            .find_map_first(|particle| {
+                let displacement = interpolate(stencils, particle, u);
+                let x: [f64; D] =
+                    std::array::from_fn(|axis| self.x[particle][axis] + displacement[axis]);
+                (!grid.contains(&x)).then_some((particle, x))
+            })
     }
 }
 
@@ -80,10 +105,8 @@ fn stress_state<const D: usize>(
 ) -> (Tensor, Tensor) {
     match kinematics {
         Kinematics::FiniteStrain => (
-            own.lifted.b_e(),
-            own.lifted
-                .tau
-                .map(|row| row.map(|component| component / det_f)),
+            own.b_e(),
+            own.tau.map(|row| row.map(|component| component / det_f)),
         ),
         Kinematics::SmallStrain => {
             let in_plane = rotation(&own.delta_def_grad);
@@ -91,10 +114,7 @@ fn stress_state<const D: usize>(
             for a in 0..D {
                 turn[a][..D].copy_from_slice(&in_plane[a]);
             }
-            (
-                congruence(&turn, &own.lifted.b_e()),
-                congruence(&turn, &own.lifted.tau),
-            )
+            (congruence(&turn, &own.b_e()), congruence(&turn, &own.tau))
         }
     }
 }

@@ -14,8 +14,8 @@
 //! the symmetric gradient plus a third of the difference of the two divergences on xx, yy and zz.
 
 use igimp_material::{
-    ConstitutiveModel, History, Lifted, MaterialError, TangentKind, Tensor, lift_finite,
-    lift_small, logarithmic_strain,
+    ConstitutiveModel, History, Lifted, MaterialError, Principal, Regime, TangentKind, Tensor,
+    elastic_left_cauchy_green, lift_finite, lift_small, logarithmic_strain,
 };
 use igimp_shape::Support;
 
@@ -24,28 +24,72 @@ use crate::method::Kinematics;
 use crate::small::{congruence, determinant, identity, inverse};
 
 /// A particle at a trial displacement: never committed by itself.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct ParticleTrial<const D: usize> {
     /// ΔF, the deformation gradient of the step.
     pub delta_def_grad: [[f64; D]; D],
+    /// Kirchhoff stress τ (Cauchy stress in small strain) \[force/length²\].
+    pub tau: Tensor,
+    /// Principal elastic Hencky strain.
+    pub eps_e: Principal,
+    /// Principal axes: `frame[a]` is the unit vector of principal value `a`.
+    pub frame: Tensor,
+    /// History of the law.
+    pub history: History,
+    /// Where on the yield surface the stress is.
+    pub regime: Regime,
+}
+
+impl<const D: usize> ParticleTrial<D> {
+    /// A particle at rest without stress: what is there before the first evaluation.
+    pub(crate) fn at_rest() -> Self {
+        Self {
+            delta_def_grad: identity(),
+            tau: [[0.0; 3]; 3],
+            eps_e: [0.0; 3],
+            frame: identity(),
+            history: History::default(),
+            regime: Regime::Elastic,
+        }
+    }
+
+    /// The elastic left Cauchy–Green tensor to carry to the next step.
+    pub fn b_e(&self) -> Tensor {
+        elastic_left_cauchy_green::<D>(&self.eps_e, &self.frame)
+    }
+}
+
+/// What the linearisation of a particle needs beside its stress.
+#[derive(Clone, Debug)]
+pub(crate) struct Linearisation<const D: usize> {
     /// ΔF⁻¹; the identity in small strain, where gradients are not pushed forward.
     pub(crate) push: [[f64; D]; D],
     /// ΔF_c⁻¹ of the cell-averaged gradient; the identity in small strain.
     pub(crate) push_bar: [[f64; D]; D],
-    /// Stress (Kirchhoff in finite strain, Cauchy in small), tangent and elastic strain.
-    pub lifted: Lifted<D>,
+    /// Stress and tangent in spatial axes.
+    pub(crate) lifted: Lifted<D>,
 }
 
-/// Evaluates one particle at nodal step displacements `u`.
+/// The state of a particle at the start of a step, with its law.
+#[derive(Clone, Copy)]
+pub(crate) struct ParticleState<'a> {
+    pub(crate) particle: usize,
+    pub(crate) b_e: &'a Tensor,
+    pub(crate) history: &'a History,
+    pub(crate) law: &'a dyn ConstitutiveModel,
+}
+
+/// Evaluates one particle at nodal step displacements `u`; writes its `trial`.
+#[inline]
 pub(crate) fn evaluate<const D: usize>(
-    particle: usize,
+    state: ParticleState<'_>,
     supports: &[Support<D>],
     u: &[[f64; D]],
-    (b_e, history): (&Tensor, &History),
-    law: &dyn ConstitutiveModel,
     kinematics: Kinematics,
     kind: TangentKind,
-) -> Result<ParticleTrial<D>, AssemblyError> {
+    trial: &mut ParticleTrial<D>,
+) -> Result<Linearisation<D>, AssemblyError> {
+    let particle = state.particle;
     let mut gradient = [[0.0; D]; D];
     let mut gradient_bar = [[0.0; D]; D];
     for support in supports {
@@ -65,45 +109,51 @@ pub(crate) fn evaluate<const D: usize>(
     }
     let det = positive(particle, determinant(&delta_def_grad))?;
     let material = |source| AssemblyError::Material { particle, source };
-    match kinematics {
+    let linearisation = match kinematics {
         Kinematics::FiniteStrain => {
             let det_bar = positive(particle, determinant(&delta_bar))?;
-            let lambda2 = (det_bar / det).cbrt().powi(2);
-            let trial = pushed_forward(b_e, &delta_def_grad, lambda2);
-            let lifted = lift_finite(law, &trial, history, kind).map_err(material)?;
-            finite(&lifted).map_err(material)?;
-            Ok(ParticleTrial {
+            let lambda = (det_bar / det).cbrt();
+            let b_trial = pushed_forward(state.b_e, &delta_def_grad, lambda * lambda);
+            Linearisation {
                 push: inverse(&delta_def_grad, det),
                 push_bar: inverse(&delta_bar, det_bar),
-                lifted,
-                delta_def_grad,
-            })
+                lifted: lift_finite(state.law, &b_trial, state.history, kind).map_err(material)?,
+            }
         }
         Kinematics::SmallStrain => {
-            let mut trial = logarithmic_strain(b_e).map_err(material)?;
+            let mut strain = logarithmic_strain(state.b_e).map_err(material)?;
             let mut difference = 0.0;
             for a in 0..D {
                 difference += gradient_bar[a][a] - gradient[a][a];
                 for b in 0..D {
-                    trial[a][b] += 0.5 * (gradient[a][b] + gradient[b][a]);
+                    strain[a][b] += 0.5 * (gradient[a][b] + gradient[b][a]);
                 }
             }
             for a in 0..3 {
-                trial[a][a] += difference / 3.0;
+                strain[a][a] += difference / 3.0;
             }
-            let lifted = lift_small(law, &trial, history, kind).map_err(material)?;
-            finite(&lifted).map_err(material)?;
-            Ok(ParticleTrial {
+            Linearisation {
                 push: identity(),
                 push_bar: identity(),
-                lifted,
-                delta_def_grad,
-            })
+                lifted: lift_small(state.law, &strain, state.history, kind).map_err(material)?,
+            }
         }
-    }
+    };
+    let lifted = &linearisation.lifted;
+    finite(lifted).map_err(material)?;
+    *trial = ParticleTrial {
+        delta_def_grad,
+        tau: lifted.tau,
+        eps_e: lifted.eps_e,
+        frame: lifted.frame,
+        history: lifted.history,
+        regime: lifted.regime,
+    };
+    Ok(linearisation)
 }
 
 /// The trial tensor λ² ΔF b ΔFᵀ, with λ² b_zz out of plane.
+#[inline]
 fn pushed_forward<const D: usize>(
     b: &Tensor,
     delta_def_grad: &[[f64; D]; D],
@@ -129,6 +179,7 @@ fn pushed_forward<const D: usize>(
 }
 
 /// What a law answers is checked here, whatever law it is, so that the particle can be named.
+#[inline]
 fn finite<const D: usize>(lifted: &Lifted<D>) -> Result<(), MaterialError> {
     if lifted.tau.iter().flatten().all(|tau| tau.is_finite()) {
         Ok(())
@@ -137,6 +188,7 @@ fn finite<const D: usize>(lifted: &Lifted<D>) -> Result<(), MaterialError> {
     }
 }
 
+#[inline]
 fn positive(particle: usize, determinant: f64) -> Result<f64, AssemblyError> {
     if determinant > 0.0 && determinant.is_finite() {
         Ok(determinant)

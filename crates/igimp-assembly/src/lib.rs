@@ -2,11 +2,12 @@
 //! interpolation material point method with B-bar.
 //!
 //! A step reads like the paper. [`Stencils`] hold who touches what, frozen for the step;
-//! [`System`] evaluates stress and internal force at a trial displacement and sums the exact
-//! tangent; [`Particles::commit`] accepts a converged trial. Tension is positive.
+//! [`System`] evaluates stress and internal force at a trial displacement and, in the same pass, the
+//! exact tangent; [`Particles::commit`] accepts a converged trial. Tension is positive.
 //!
 //! Nothing here iterates, cuts a step, reads a file or prints.
 
+mod blocks;
 mod commit;
 mod constraints;
 mod error;
@@ -19,8 +20,11 @@ mod method;
 mod particles;
 mod residual;
 mod small;
+mod small_cuts;
 mod stencils;
 mod strips;
+mod supports;
+mod sweep;
 mod system;
 mod unknowns;
 
@@ -33,5 +37,6 @@ pub use method::{DomainUpdate, Kinematics, Method, Remedy, SmallCuts};
 pub use particles::{ParticleFields, ParticleSeed, Particles};
 pub use residual::OutOfBalance;
 pub use stencils::{Stencils, Transpose};
-pub use system::{SharedLaw, StepConditions, System, Trial};
+pub use sweep::Trial;
+pub use system::{SharedLaw, StepConditions, System};
 pub use unknowns::Unknowns;

@@ -1,4 +1,4 @@
-//! The equilibrium of one particle, linearised: its nodal force and the blocks of its tangent.
+//! The equilibrium of one particle, linearised: its nodal force and the columns of its tangent.
 //!
 //! With gradients pushed to the trial state, `g_i = ΔF⁻ᵀ ∇S_i`, `ḡ_i = ΔF_c⁻ᵀ ∇S̄_i`,
 //! `d_i = (ḡ_i − g_i)/3` and `p = tr τ / 3` (theory, eq. 16–18):
@@ -12,129 +12,191 @@
 //!
 //! The repeated pairs pp and qq run over all three directions. In small strain the gradients are
 //! not pushed and the three terms of the changing geometry are absent.
+//!
+//! Sorted by the gradients of the column this is
+//!
+//! ```math
+//! K_{(ia)(jc)} = \sum_d y^{d}_{iac}\,g_{jd} + \sum_d h^{d}_{iac}\,\bar g_{jd},
+//! ```
+//! ```math
+//! z_{ia} = V\,(g_{ib} A_{abqq} + d_{ia} A_{ppqq}),\quad
+//! y^{d}_{iac} = V\,\{g_{ib} (A_{abcd} + (p\,\delta_{ad} - \tau_{ad})\,\delta_{bc}) + d_{ia} A_{ppcd}\}
+//!   - \tfrac13 z_{ia}\delta_{cd},\quad
+//! h^{d}_{iac} = \tfrac13 z_{ia}\delta_{cd} - V p\,\bar g_{ic}\,\delta_{ad},
+//! ```
+//!
+//! with factors y and h that are computed once for each row and serve all columns. They are kept as
+//! vectors over the rows, so that a column is a sum of long products.
 
 use igimp_shape::Support;
 
-use crate::kinematics::ParticleTrial;
+use crate::kinematics::Linearisation;
 use crate::method::Kinematics;
 use crate::small::transpose_apply;
 
-/// One support of a linearised particle; everything that a block needs, volume included in the
-/// row factors.
-#[derive(Clone, Copy, Debug)]
-struct Row<const D: usize> {
-    g: [f64; D],
-    g_bar: [f64; D],
-    d: [f64; D],
-    /// V (g_ib A_abcd + d_ia A_ppcd), by a, c, d.
-    y: [[[f64; D]; D]; D],
-    /// V (g_ib A_abqq + d_ia A_ppqq), by a.
-    z: [f64; D],
-    /// V (p g_ja − (τ g_j)_a); zero in small strain.
-    w: [f64; D],
-    /// V p ḡ_ja; zero in small strain.
-    w_bar: [f64; D],
-}
+/// Numbers that are worked on together.
+const LANES: usize = 4;
 
-/// Scratch for one particle after another.
+/// One particle after another.
 #[derive(Debug, Default)]
 pub(crate) struct Linearised<const D: usize> {
-    rows: Vec<Row<D>>,
+    /// Pushed gradients g by support.
+    g: Vec<[f64; D]>,
+    /// Pushed cell-averaged gradients ḡ by support.
+    g_bar: Vec<[f64; D]>,
+    /// The factors y by c, d and rows (i, a), the rows filled up to full lanes.
+    y: Vec<[f64; LANES]>,
+    /// The factors h, in the same way.
+    h: Vec<[f64; LANES]>,
+    /// The columns of one support by c and rows.
+    columns: Vec<[f64; LANES]>,
+    /// Lanes of a vector.
+    lanes: usize,
 }
 
 impl<const D: usize> Linearised<D> {
-    /// Prepares the blocks of a particle.
-    pub(crate) fn set(
+    /// Pushes the gradients of a particle forward.
+    #[inline]
+    pub(crate) fn push(&mut self, supports: &[Support<D>], own: &Linearisation<D>) {
+        self.g.clear();
+        self.g_bar.clear();
+        let g = |support: &Support<D>| transpose_apply(&own.push, &support.grad);
+        let g_bar = |support: &Support<D>| transpose_apply(&own.push_bar, &support.grad_bar);
+        self.g.extend(supports.iter().map(g));
+        self.g_bar.extend(supports.iter().map(g_bar));
+    }
+
+    /// The internal forces on the supports of a particle of volume `volume`.
+    #[inline]
+    pub(crate) fn forces(
+        &self,
+        own: &Linearisation<D>,
+        volume: f64,
+    ) -> impl Iterator<Item = [f64; D]> {
+        let mut tau = own.lifted.tau;
+        let p = (tau[0][0] + tau[1][1] + tau[2][2]) / 3.0;
+        for a in 0..D {
+            tau[a][a] -= p;
+        }
+        std::iter::zip(&self.g, &self.g_bar).map(move |(g, g_bar)| {
+            std::array::from_fn(|a| {
+                let mut force = p * g_bar[a];
+                for b in 0..D {
+                    force += tau[a][b] * g[b];
+                }
+                volume * force
+            })
+        })
+    }
+
+    /// Computes the factors of the rows.
+    #[inline]
+    pub(crate) fn linearise(
         &mut self,
-        supports: &[Support<D>],
-        trial: &ParticleTrial<D>,
+        own: &Linearisation<D>,
         volume: f64,
         kinematics: Kinematics,
     ) {
-        let tangent = &trial.lifted.tangent;
-        let tau = &trial.lifted.tau;
+        let tangent = own.lifted.tangent();
+        let tau = &own.lifted.tau;
+        let p = (tau[0][0] + tau[1][1] + tau[2][2]) / 3.0;
         let geometric = match kinematics {
             Kinematics::FiniteStrain => volume,
             Kinematics::SmallStrain => 0.0,
         };
-        let p = (tau[0][0] + tau[1][1] + tau[2][2]) / 3.0;
-        self.rows.clear();
-        for support in supports {
-            let (g, g_bar) = pushed(support, trial);
-            let mut row = Row {
-                g,
-                g_bar,
-                d: std::array::from_fn(|a| (g_bar[a] - g[a]) / 3.0),
-                y: [[[0.0; D]; D]; D],
-                z: [0.0; D],
-                w: [0.0; D],
-                w_bar: g_bar.map(|component| geometric * p * component),
-            };
-            for a in 0..D {
-                let mut tau_g = 0.0;
-                let mut z = row.d[a] * tangent.trace;
-                for b in 0..D {
-                    tau_g += tau[a][b] * g[b];
-                    z += g[b] * tangent.trace_right[a][b];
-                }
-                row.z[a] = volume * z;
-                row.w[a] = geometric * (p * g[a] - tau_g);
+        let vp = geometric * p;
+        // V (A_abcd + (p δ_ad − τ_ad) δ_bc) by c, d, b, a, and V A_ppcd / 3, V A_abqq / 3.
+        let mut modulus = [[[[0.0; D]; D]; D]; D];
+        let mut left = [[0.0; D]; D];
+        let mut right = [[0.0; D]; D];
+        let third = volume / 3.0;
+        for a in 0..D {
+            for b in 0..D {
                 for c in 0..D {
                     for d in 0..D {
-                        let mut y = row.d[a] * tangent.trace_left[c][d];
-                        for b in 0..D {
-                            y += g[b] * tangent.modulus[a][b][c][d];
-                        }
-                        row.y[a][c][d] = volume * y;
+                        modulus[c][d][b][a] = volume * tangent.modulus[a][b][c][d];
                     }
                 }
-            }
-            self.rows.push(row);
-        }
-    }
-
-    /// The block K_(ia)(jc) of supports i and j, by a and c.
-    #[inline]
-    pub(crate) fn block(&self, i: usize, j: usize) -> [[f64; D]; D] {
-        let (row, column) = (&self.rows[i], &self.rows[j]);
-        let mut block = [[0.0; D]; D];
-        for a in 0..D {
-            for c in 0..D {
-                let mut value = row.z[a] * column.d[c] + column.w[a] * row.g[c]
-                    - column.w_bar[a] * row.g_bar[c];
                 for d in 0..D {
-                    value += row.y[a][c][d] * column.g[d];
+                    modulus[b][d][b][a] -= geometric * tau[a][d];
                 }
-                block[a][c] = value;
+                modulus[b][a][b][a] += vp;
+                left[a][b] = third * tangent.trace_left[a][b];
+                right[b][a] = third * tangent.trace_right[a][b];
             }
         }
-        block
-    }
-}
-
-/// The internal force of one particle on one of its nodes.
-#[inline]
-pub(crate) fn internal_force<const D: usize>(
-    support: &Support<D>,
-    trial: &ParticleTrial<D>,
-    volume: f64,
-) -> [f64; D] {
-    let tau = &trial.lifted.tau;
-    let p = (tau[0][0] + tau[1][1] + tau[2][2]) / 3.0;
-    let (g, g_bar) = pushed(support, trial);
-    std::array::from_fn(|a| {
-        let mut force = p * (g_bar[a] - g[a]);
-        for b in 0..D {
-            force += tau[a][b] * g[b];
+        let trace = third * tangent.trace / 3.0;
+        self.lanes = (self.g.len() * D).div_ceil(LANES);
+        for factors in [&mut self.y, &mut self.h] {
+            factors.resize(D * D * self.lanes, [0.0; LANES]);
         }
-        volume * force
-    })
-}
+        self.columns.resize(D * self.lanes, [0.0; LANES]);
+        let (y, h) = (self.y.as_flattened_mut(), self.h.as_flattened_mut());
+        let stride = LANES * self.lanes;
+        for (i, (g, g_bar)) in std::iter::zip(&self.g, &self.g_bar).enumerate() {
+            let d_3: [f64; D] = std::array::from_fn(|a| g_bar[a] - g[a]);
+            let mut z = d_3.map(|d_3| trace * d_3);
+            for b in 0..D {
+                for a in 0..D {
+                    z[a] += right[b][a] * g[b];
+                }
+            }
+            for c in 0..D {
+                for d in 0..D {
+                    let mut own_y: [f64; D] = std::array::from_fn(|a| left[c][d] * d_3[a]);
+                    for b in 0..D {
+                        for a in 0..D {
+                            own_y[a] += modulus[c][d][b][a] * g[b];
+                        }
+                    }
+                    let mut own_h = [0.0; D];
+                    own_h[d] = -vp * g_bar[c];
+                    if c == d {
+                        for a in 0..D {
+                            own_y[a] -= z[a];
+                            own_h[a] += z[a];
+                        }
+                    }
+                    let place = (c * D + d) * stride + i * D;
+                    y[place..place + D].copy_from_slice(&own_y);
+                    h[place..place + D].copy_from_slice(&own_h);
+                }
+            }
+        }
+    }
 
-#[inline]
-fn pushed<const D: usize>(support: &Support<D>, trial: &ParticleTrial<D>) -> ([f64; D], [f64; D]) {
-    (
-        transpose_apply(&trial.push, &support.grad),
-        transpose_apply(&trial.push_bar, &support.grad_bar),
-    )
+    /// The columns (j, c) over all rows, by c.
+    #[inline]
+    pub(crate) fn columns(&mut self, j: usize) -> [&[f64]; D] {
+        // Known lengths leave nothing of the loops: supports on 2 × 2, 2 × 3 and 3 × 3 nodes.
+        match self.lanes {
+            2 => self.columns_of(2, j),
+            3 => self.columns_of(3, j),
+            5 => self.columns_of(5, j),
+            lanes => self.columns_of(lanes, j),
+        }
+    }
+
+    #[inline(always)]
+    fn columns_of(&mut self, lanes: usize, j: usize) -> [&[f64]; D] {
+        let (g, g_bar) = (self.g[j], self.g_bar[j]);
+        let factors = |all: &[[f64; LANES]]| all.len() == D * D * lanes;
+        assert!(factors(&self.y) && factors(&self.h) && self.columns.len() == D * lanes);
+        for c in 0..D {
+            let column = &mut self.columns[c * lanes..][..lanes];
+            for k in 0..lanes {
+                let mut sum = [0.0; LANES];
+                for d in 0..D {
+                    let place = (c * D + d) * lanes + k;
+                    let (y, h) = (&self.y[place], &self.h[place]);
+                    for lane in 0..LANES {
+                        sum[lane] += y[lane] * g[d] + h[lane] * g_bar[d];
+                    }
+                }
+                column[k] = sum;
+            }
+        }
+        let columns = self.columns.as_flattened();
+        std::array::from_fn(|c| &columns[c * LANES * lanes..][..LANES * lanes])
+    }
 }

@@ -4,8 +4,8 @@
 use igimp_shape::{Grid, Linear, Scratch, Support, supports};
 
 use crate::error::AssemblyError;
-use crate::particles::Particles;
-use crate::stencils::{Stencils, padded};
+use crate::stencils::Stencils;
+use crate::supports::padded;
 
 /// A force on a point that moves with the soil. Its direction stays (dead load).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -114,26 +114,13 @@ impl<const D: usize> StepLoads<D> {
 /// Nodal external force f_ext, by node \[force\].
 pub(crate) fn external_force<const D: usize>(
     grid: &Grid<D>,
-    particles: &Particles<D>,
     stencils: &Stencils<D>,
     points: &[LoadPoint<D>],
     loads: &StepLoads<D>,
 ) -> Result<Vec<[f64; D]>, AssemblyError> {
-    let mut f_ext = vec![[0.0; D]; grid.node_count()];
-    stencils
-        .strips()
-        .sum(&mut f_ext, Clone::clone, |members, nodes, slice| {
-            for &particle in members {
-                let particle = particle as usize;
-                let mass = particles.mass[particle];
-                for support in stencils.of(particle) {
-                    for axis in 0..D {
-                        slice[support.node - nodes.start][axis] +=
-                            support.value * mass * loads.gravity[axis];
-                    }
-                }
-            }
-        });
+    let mut f_ext: Vec<[f64; D]> = (0..grid.node_count())
+        .map(|node| loads.gravity.map(|g| stencils.node_mass(node) * g))
+        .collect();
     for (index, point) in points.iter().enumerate() {
         let factor = loads.factors.get(point.load).copied().unwrap_or(0.0);
         if factor == 0.0 {
@@ -141,7 +128,7 @@ pub(crate) fn external_force<const D: usize>(
         }
         for support in point.supports(grid, index)? {
             let node = stencils.master(support.node);
-            if support.value > 0.0 && stencils.node_volume()[node] == 0.0 {
+            if support.value > 0.0 && stencils.node_volume(node) == 0.0 {
                 let position = padded(&point.x);
                 return Err(AssemblyError::UnsupportedLoad {
                     point: index,
@@ -159,19 +146,11 @@ pub(crate) fn external_force<const D: usize>(
 /// Drag by node: force per step displacement \[force/length\]. Nodes without mass have none.
 pub(crate) fn nodal_drag<const D: usize>(
     grid: &Grid<D>,
-    particles: &Particles<D>,
     stencils: &Stencils<D>,
     drag: f64,
 ) -> Vec<(usize, f64)> {
-    let mut mass = vec![0.0; grid.node_count()];
-    for particle in 0..particles.len() {
-        for support in stencils.of(particle) {
-            mass[support.node] += support.value * particles.mass[particle];
-        }
-    }
-    mass.into_iter()
-        .map(|mass| drag * mass)
-        .enumerate()
+    (0..grid.node_count())
+        .map(|node| (node, drag * stencils.node_mass(node)))
         .filter(|&(_, drag)| drag > 0.0)
         .collect()
 }

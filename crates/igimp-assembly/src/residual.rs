@@ -1,8 +1,11 @@
 //! How far a trial is from equilibrium, and when that cannot be told from round-off.
 
+use rayon::prelude::*;
+
 use crate::error::AssemblyError;
 use crate::particles::Particles;
 use crate::stencils::Stencils;
+use crate::supports::CHUNK;
 use crate::system::StepConditions;
 use crate::unknowns::Unknowns;
 
@@ -76,15 +79,27 @@ pub(crate) fn force_of_round_off<const D: usize>(
     stencils: &Stencils<D>,
     conditions: &StepConditions<D>,
 ) -> f64 {
-    let mut squared = 0.0;
-    for particle in 0..particles.len() {
-        let elasticity = conditions.laws[particles.law[particle]].elasticity();
-        let modulus = elasticity.bulk() + 4.0 / 3.0 * elasticity.shear();
-        let stress = STRAIN_ROUND_OFF * modulus * particles.volume(particle);
-        for support in stencils.of(particle) {
-            let squares: f64 = support.grad.iter().map(|slope| slope * slope).sum();
-            squared += stress * stress * squares;
-        }
-    }
-    squared.sqrt()
+    let moduli: Vec<f64> = conditions
+        .laws
+        .iter()
+        .map(|law| law.elasticity().bulk() + 4.0 / 3.0 * law.elasticity().shear())
+        .collect();
+    let n = particles.len();
+    let parts: Vec<f64> = (0..n.div_ceil(CHUNK))
+        .into_par_iter()
+        .map(|chunk| {
+            let mut squared = 0.0;
+            for particle in chunk * CHUNK..n.min((chunk + 1) * CHUNK) {
+                let modulus = moduli[particles.law[particle]];
+                let stress = STRAIN_ROUND_OFF * modulus * particles.volume(particle);
+                let mut slopes = 0.0;
+                for support in stencils.of(particle) {
+                    slopes += support.grad.iter().map(|slope| slope * slope).sum::<f64>();
+                }
+                squared += stress * stress * slopes;
+            }
+            squared
+        })
+        .collect();
+    parts.iter().sum::<f64>().sqrt()
 }

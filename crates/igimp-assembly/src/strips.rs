@@ -1,80 +1,99 @@
 //! Sums over particles into node rows, in parallel and with the same bits for any thread count.
 //!
-//! Particles are grouped by the first node row of their support along the slowest axis. A strip is
-//! a run of such rows; strips of one parity touch disjoint rows, so they are summed in parallel
-//! into disjoint slices, particles ascending within a strip; then the other parity follows. The
-//! order of every sum is fixed by the grid alone.
+//! Particles are sorted by the first node of their supports, and so by cells; their places in this
+//! order are *slots*. A strip is a run of node rows along the slowest axis, with the particles
+//! whose supports begin there: a range of slots. Strips of one parity touch disjoint rows, so they
+//! are summed in parallel into disjoint slices, slots ascending within a strip; then the other
+//! parity follows. The order of every sum is fixed by the grid alone.
 
 use std::ops::Range;
 
 use igimp_shape::Grid;
-use rayon::prelude::*;
+
+use crate::supports::Supports;
 
 /// Particles by strips of node rows.
 #[derive(Clone, Debug)]
 pub(crate) struct Strips {
-    members: Vec<Vec<u32>>,
+    /// The particle in each slot.
+    order: Vec<u32>,
+    /// Slots of each strip.
+    slots: Vec<Range<usize>>,
     /// Nodes that a strip's particles may touch.
     nodes: Vec<Range<usize>>,
 }
 
 impl Strips {
-    /// Groups particles; `ends` names the first and last node of a particle's support.
-    pub(crate) fn build<const D: usize>(
-        grid: &Grid<D>,
-        particles: usize,
-        ends: impl Fn(usize) -> (usize, usize),
-    ) -> Self {
+    /// Sorts and groups the particles.
+    pub(crate) fn build<const D: usize>(grid: &Grid<D>, supports: &Supports<D>) -> Self {
         let rows = grid.axes[D - 1].node_count();
         let row_nodes = grid.node_count() / rows;
-        let extent = (0..particles)
-            .map(|particle| {
-                let (first, last) = ends(particle);
-                last / row_nodes - first / row_nodes + 1
-            })
-            .max()
-            .unwrap_or(1);
-        let height = extent.max(2);
-        let count = rows.div_ceil(height);
-        let mut members = vec![Vec::new(); count];
-        for particle in 0..particles {
-            let strip = ends(particle).0 / row_nodes / height;
-            members[strip].push(u32::try_from(particle).expect("fewer than 2^32 particles"));
+        let mut tallest = 2;
+        // How many particles begin before each node; the sort keeps the order of equal ones.
+        let mut start = vec![0_u32; grid.node_count() + 1];
+        for particle in 0..supports.len() {
+            let own = supports.of(particle);
+            let (first, last) = (own[0].node, own[own.len() - 1].node);
+            start[first + 1] += 1;
+            if last - first >= (tallest - 1) * row_nodes {
+                tallest = tallest.max(last / row_nodes - first / row_nodes + 1);
+            }
         }
-        let nodes = (0..count)
-            .map(|strip| {
-                let last_row = rows.min((strip + 1) * height + extent - 1);
-                strip * height * row_nodes..last_row * row_nodes
+        for node in 0..grid.node_count() {
+            start[node + 1] += start[node];
+        }
+        let strips = (0..rows).step_by(tallest);
+        let slots = strips
+            .clone()
+            .map(|row| {
+                let end = rows.min(row + tallest);
+                start[row * row_nodes] as usize..start[end * row_nodes] as usize
             })
             .collect();
-        Self { members, nodes }
-    }
-
-    /// Adds the contributions of all particles to `data`.
-    ///
-    /// `range` maps a range of nodes to the range of `data` that belongs to them; `add` adds one
-    /// strip's particles to such a slice, which begins at the given range.
-    pub(crate) fn sum<T, R, F>(&self, data: &mut [T], range: R, add: F)
-    where
-        T: Send,
-        R: Fn(&Range<usize>) -> Range<usize>,
-        F: Fn(&[u32], Range<usize>, &mut [T]) + Sync,
-    {
-        for parity in 0..2 {
-            let mut rest = &mut *data;
-            let mut taken = 0;
-            let mut tasks = Vec::new();
-            for strip in (parity..self.members.len()).step_by(2) {
-                let own = range(&self.nodes[strip]);
-                let (_, tail) = rest.split_at_mut(own.start - taken);
-                let (slice, tail) = tail.split_at_mut(own.len());
-                rest = tail;
-                taken = own.end;
-                tasks.push((strip, own, slice));
-            }
-            tasks.into_par_iter().for_each(|(strip, own, slice)| {
-                add(&self.members[strip], own, slice);
-            });
+        let nodes = strips
+            .map(|row| row * row_nodes..rows.min(row + 2 * tallest - 1) * row_nodes)
+            .collect();
+        let mut order = vec![0; supports.len()];
+        for particle in 0..supports.len() {
+            let slot = &mut start[supports.of(particle)[0].node];
+            order[*slot as usize] = u32::try_from(particle).expect("fewer than 2^32 particles");
+            *slot += 1;
+        }
+        Self {
+            order,
+            slots,
+            nodes,
         }
     }
+
+    /// The particle in each slot.
+    pub(crate) fn order(&self) -> &[u32] {
+        &self.order
+    }
+
+    /// The strips of one parity: their nodes and their slots, ascending.
+    pub(crate) fn of_parity(
+        &self,
+        parity: usize,
+    ) -> impl Iterator<Item = (&Range<usize>, &Range<usize>)> + Clone {
+        let pairs = self.nodes.iter().zip(&self.slots);
+        pairs.skip(parity).step_by(2)
+    }
+}
+
+/// Splits data into the slices of disjoint ascending ranges.
+pub(crate) fn split<T>(
+    mut data: &mut [T],
+    ranges: impl Iterator<Item = Range<usize>>,
+) -> Vec<&mut [T]> {
+    let mut taken = 0;
+    let mut slices = Vec::with_capacity(ranges.size_hint().0);
+    for range in ranges {
+        let (_, tail) = data.split_at_mut(range.start - taken);
+        let (slice, tail) = tail.split_at_mut(range.len());
+        data = tail;
+        taken = range.end;
+        slices.push(slice);
+    }
+    slices
 }

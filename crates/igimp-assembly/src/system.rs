@@ -1,24 +1,24 @@
 //! The equilibrium of one step: residual and tangent at a trial displacement.
 
-use std::ops::Range;
 use std::sync::Arc;
 
 use igimp_material::{ConstitutiveModel, TangentKind};
 use igimp_shape::Grid;
-use rayon::prelude::*;
 
+use crate::blocks::BlockTable;
 use crate::constraints::Constraints;
 use crate::error::AssemblyError;
 use crate::ghost::{Coupling, ghost_entries};
-use crate::kinematics::{ParticleTrial, evaluate};
-use crate::linearised::{Linearised, internal_force};
+use crate::kinematics::ParticleTrial;
+use crate::linearised::Linearised;
 use crate::loads::{LoadPoint, StepLoads, external_force, nodal_drag};
 use crate::matrix::{Pattern, TangentMatrix};
 use crate::method::{Kinematics, Method};
 use crate::particles::Particles;
 use crate::residual::{OutOfBalance, force_of_round_off};
 use crate::stencils::Stencils;
-use crate::unknowns::{BlockTable, Unknowns};
+use crate::sweep::Trial;
+use crate::unknowns::Unknowns;
 
 /// A constitutive law that several bodies and threads share.
 pub type SharedLaw = Arc<dyn ConstitutiveModel>;
@@ -36,23 +36,14 @@ pub struct StepConditions<const D: usize> {
     pub laws: Vec<SharedLaw>,
 }
 
-/// All particles at a trial displacement.
-#[derive(Clone, Debug)]
-pub struct Trial<const D: usize> {
-    /// Particle by particle.
-    pub particles: Vec<ParticleTrial<D>>,
-    /// Internal force by node, ghost penalty and drag included \[force\].
-    pub f_int: Vec<[f64; D]>,
-}
-
 /// One step's system of equations. Borrows the state at the step's start and never changes it.
 #[derive(Debug)]
 pub struct System<'a, const D: usize> {
-    particles: &'a Particles<D>,
-    stencils: &'a Stencils<D>,
-    conditions: &'a StepConditions<D>,
-    method: &'a Method,
-    unknowns: Unknowns<D>,
+    pub(crate) particles: &'a Particles<D>,
+    pub(crate) stencils: &'a Stencils<D>,
+    pub(crate) conditions: &'a StepConditions<D>,
+    pub(crate) method: &'a Method,
+    pub(crate) unknowns: Unknowns<D>,
     f_ext: Vec<[f64; D]>,
     /// ‖f_int‖ of strains that are round-off \[force\].
     round_off: f64,
@@ -60,8 +51,8 @@ pub struct System<'a, const D: usize> {
     couplings: Vec<Coupling>,
     /// Where the drag begins among the couplings.
     first_drag: usize,
-    table: BlockTable<D>,
-    pattern: Arc<Pattern>,
+    pub(crate) table: BlockTable<D>,
+    pub(crate) pattern: Arc<Pattern>,
     symmetric: bool,
 }
 
@@ -93,7 +84,7 @@ impl<'a, const D: usize> System<'a, D> {
         let grid = &conditions.grid;
         let cuts = method.small_cuts;
         let unknowns = Unknowns::number(grid, stencils, &conditions.constraints, cuts.below)?;
-        let f_ext = external_force(grid, particles, stencils, points, &conditions.loads)?;
+        let f_ext = external_force(grid, stencils, points, &conditions.loads)?;
         let mut couplings = if cuts.ghost_penalty > 0.0 {
             let young = |p: usize| conditions.laws[particles.law[p]].elasticity().young();
             ghost_entries(grid, particles, stencils, young, cuts.ghost_penalty)
@@ -102,7 +93,7 @@ impl<'a, const D: usize> System<'a, D> {
         };
         let first_drag = couplings.len();
         if conditions.loads.drag > 0.0 {
-            let drag = nodal_drag(grid, particles, stencils, conditions.loads.drag);
+            let drag = nodal_drag(grid, stencils, conditions.loads.drag);
             couplings.extend(drag.into_iter().map(|(node, stiffness)| Coupling {
                 row: node,
                 column: node,
@@ -145,60 +136,95 @@ impl<'a, const D: usize> System<'a, D> {
         &self.f_ext
     }
 
-    /// The state at the start of the step, stresses included.
+    /// Stress and internal force at nodal step displacements `u` \[length\].
     ///
     /// # Errors
-    /// As [`Self::evaluate`].
-    pub fn start(&self, kind: TangentKind) -> Result<Trial<D>, AssemblyError> {
-        self.evaluate(&vec![[0.0; D]; self.conditions.grid.node_count()], kind)
+    /// As [`Self::evaluate_into`].
+    pub fn evaluate(&self, u: &[[f64; D]], kind: TangentKind) -> Result<Trial<D>, AssemblyError> {
+        let mut trial = Trial::default();
+        self.evaluate_into(u, kind, &mut trial)?;
+        Ok(trial)
     }
 
-    /// Stress, tangent and internal force at nodal step displacements `u` \[length\].
+    /// Stress, internal force and the tangent matrix K = ∂f_int/∂u at nodal step displacements `u`
+    /// \[length\].
     ///
     /// # Errors
-    /// [`AssemblyError::Inverted`] or [`AssemblyError::Material`] of the first particle that
-    /// fails.
-    pub fn evaluate(&self, u: &[[f64; D]], kind: TangentKind) -> Result<Trial<D>, AssemblyError> {
-        let results: Vec<Result<ParticleTrial<D>, AssemblyError>> = (0..self.particles.len())
-            .into_par_iter()
-            .map(|particle| {
-                evaluate(
-                    particle,
-                    self.stencils.of(particle),
-                    u,
-                    (
-                        &self.particles.b_e[particle],
-                        &self.particles.history[particle],
-                    ),
-                    &*self.conditions.laws[self.particles.law[particle]],
-                    self.method.kinematics,
-                    kind,
-                )
-            })
-            .collect();
-        let particles = results.into_iter().collect::<Result<Vec<_>, _>>()?;
+    /// As [`Self::evaluate_into`].
+    pub fn linearise(
+        &self,
+        u: &[[f64; D]],
+        kind: TangentKind,
+    ) -> Result<(Trial<D>, TangentMatrix), AssemblyError> {
+        let mut trial = Trial::default();
+        let mut matrix = TangentMatrix::zeros(Arc::clone(&self.pattern), self.symmetric);
+        self.linearise_into(u, kind, &mut trial, &mut matrix)?;
+        Ok((trial, matrix))
+    }
 
-        let mut f_int = vec![[0.0; D]; u.len()];
-        self.stencils
-            .strips()
-            .sum(&mut f_int, Clone::clone, |members, nodes, slice| {
-                for &particle in members {
-                    let particle = particle as usize;
-                    let volume = self.reference_volume(particle);
-                    for support in self.stencils.of(particle) {
-                        let force = internal_force(support, &particles[particle], volume);
-                        for axis in 0..D {
-                            slice[support.node - nodes.start][axis] += force[axis];
-                        }
-                    }
-                }
-            });
+    /// Sets `trial` to nodal step displacements `u` \[length\]: stress and internal force.
+    ///
+    /// # Errors
+    /// [`AssemblyError::Inverted`] or [`AssemblyError::Material`] of a particle that fails: of
+    /// several always the same one. The trial is then of no use.
+    pub fn evaluate_into(
+        &self,
+        u: &[[f64; D]],
+        kind: TangentKind,
+        trial: &mut Trial<D>,
+    ) -> Result<(), AssemblyError> {
+        self.sweep(u, kind, trial, None)?;
+        self.add_couplings(u, trial);
+        Ok(())
+    }
+
+    /// Sets `trial` as [`Self::evaluate_into`] does and `matrix` to the tangent matrix, in the same
+    /// pass over the particles.
+    ///
+    /// # Errors
+    /// As [`Self::evaluate_into`].
+    ///
+    /// # Panics
+    /// If the matrix has another pattern than this system.
+    pub fn linearise_into(
+        &self,
+        u: &[[f64; D]],
+        kind: TangentKind,
+        trial: &mut Trial<D>,
+        matrix: &mut TangentMatrix,
+    ) -> Result<(), AssemblyError> {
+        assert!(
+            Arc::ptr_eq(&matrix.pattern, &self.pattern),
+            "the matrix belongs to this step"
+        );
+        matrix.symmetric = self.symmetric;
+        self.sweep(u, kind, trial, Some(&mut matrix.values))?;
+        self.add_couplings(u, trial);
         for entry in &self.couplings {
             for axis in 0..D {
-                f_int[entry.row][axis] += entry.stiffness * u[entry.column][axis];
+                if let (Some(row), Some(column)) = (
+                    self.unknowns.index(entry.row, axis),
+                    self.unknowns.index(entry.column, axis),
+                ) {
+                    let component = column - self.unknowns.before(entry.column);
+                    let rank = row - self.unknowns.before(entry.row);
+                    let place = self
+                        .table
+                        .value(&self.pattern, entry.column, component, entry.row);
+                    matrix.values[place + rank] += entry.stiffness;
+                }
             }
         }
-        Ok(Trial { particles, f_int })
+        Ok(())
+    }
+
+    /// Adds ghost penalty and drag to the internal force of a trial.
+    fn add_couplings(&self, u: &[[f64; D]], trial: &mut Trial<D>) {
+        for entry in &self.couplings {
+            for axis in 0..D {
+                trial.f_int[entry.row][axis] += entry.stiffness * u[entry.column][axis];
+            }
+        }
     }
 
     /// The out-of-balance force of a trial.
@@ -239,133 +265,43 @@ impl<'a, const D: usize> System<'a, D> {
         }
     }
 
-    /// The tangent matrix K = ∂f_int/∂u of a trial, summed straight into its pattern.
-    pub fn tangent(&self, trial: &Trial<D>) -> TangentMatrix {
-        let mut matrix = TangentMatrix::zeros(Arc::clone(&self.pattern), self.symmetric);
-        self.assemble(trial, &mut matrix.values);
-        matrix
-    }
-
-    /// Rewrites `matrix`, which must have this system's pattern, with the tangent of a trial.
-    ///
-    /// # Panics
-    /// If the matrix has another pattern.
-    pub fn tangent_into(&self, trial: &Trial<D>, matrix: &mut TangentMatrix) {
-        assert!(
-            Arc::ptr_eq(&matrix.pattern, &self.pattern),
-            "the matrix belongs to this step"
-        );
-        matrix.symmetric = self.symmetric;
-        matrix.values.fill(0.0);
-        self.assemble(trial, &mut matrix.values);
-    }
-
-    fn assemble(&self, trial: &Trial<D>, values: &mut [f64]) {
-        let range = |nodes: &Range<usize>| {
-            self.pattern.col_ptr[self.unknowns.before(nodes.start)]
-                ..self.pattern.col_ptr[self.unknowns.before(nodes.end)]
-        };
-        self.stencils
-            .strips()
-            .sum(values, range, |members, own, slice| {
-                let mut linearised = Linearised::default();
-                let mut codes = Vec::new();
-                for &particle in members {
-                    let particle = particle as usize;
-                    self.add_particle(
-                        particle,
-                        trial,
-                        &mut linearised,
-                        &mut codes,
-                        own.start,
-                        slice,
-                    );
-                }
-            });
-        for entry in &self.couplings {
-            for axis in 0..D {
-                if let (Some(row), Some(column)) = (
-                    self.unknowns.index(entry.row, axis),
-                    self.unknowns.index(entry.column, axis),
-                ) {
-                    let start = self.pattern.col_ptr[column]
-                        + self.table.offset(
-                            entry.column,
-                            self.code(entry.column),
-                            self.code(entry.row),
-                        );
-                    values[start + row - self.unknowns.before(entry.row)] += entry.stiffness;
-                }
-            }
-        }
-    }
-
-    /// Adds the blocks of one particle to the slice of values that begins at `start`.
-    fn add_particle(
-        &self,
-        particle: usize,
-        trial: &Trial<D>,
-        linearised: &mut Linearised<D>,
-        codes: &mut Vec<usize>,
-        start: usize,
-        slice: &mut [f64],
-    ) {
-        let supports = self.stencils.of(particle);
-        linearised.set(
-            supports,
-            &trial.particles[particle],
-            self.reference_volume(particle),
-            self.method.kinematics,
-        );
-        codes.clear();
-        codes.extend(supports.iter().map(|support| self.code(support.node)));
-        for (j, column) in supports.iter().enumerate() {
-            if self.unknowns.of(column.node).next().is_none() {
-                continue;
-            }
-            for (i, row) in supports.iter().enumerate() {
-                if self.unknowns.of(row.node).next().is_none() {
-                    continue;
-                }
-                let offset = self.table.offset(column.node, codes[j], codes[i]);
-                let block = linearised.block(i, j);
-                for (c, unknown) in self.unknowns.of(column.node) {
-                    let first = self.pattern.col_ptr[unknown] + offset - start;
-                    for (rank, (a, _)) in self.unknowns.of(row.node).enumerate() {
-                        slice[first + rank] += block[a][c];
-                    }
-                }
-            }
-        }
-    }
-
     /// The change of internal force K_fp u_p by unknown that the prescribed step displacements
-    /// cause, with the tangent of a trial: the part of the first correction that is known.
-    pub fn force_of_prescribed_motion(&self, trial: &Trial<D>) -> Vec<f64> {
+    /// cause, with the tangent at nodal step displacements `u`: the part of the first correction
+    /// that is known.
+    ///
+    /// # Errors
+    /// As [`Self::evaluate_into`].
+    pub fn force_of_prescribed_motion(
+        &self,
+        u: &[[f64; D]],
+        kind: TangentKind,
+    ) -> Result<Vec<f64>, AssemblyError> {
         let mut force = vec![0.0; self.unknowns.len()];
         let constraints = &self.conditions.constraints;
+        let moves = |node: usize| {
+            (0..D).any(|axis| constraints.of(node, axis).is_some_and(|value| value != 0.0))
+        };
+        let mut trial = ParticleTrial::at_rest();
         let mut linearised = Linearised::default();
         for particle in 0..self.particles.len() {
             let supports = self.stencils.of(particle);
-            let moves = |node: usize| {
-                (0..D).any(|axis| constraints.of(node, axis).is_some_and(|value| value != 0.0))
-            };
             if !supports.iter().any(|support| moves(support.node)) {
                 continue;
             }
-            linearised.set(
-                supports,
-                &trial.particles[particle],
-                self.reference_volume(particle),
-                self.method.kinematics,
-            );
+            let own = self.evaluate_particle(particle, u, kind, &mut trial)?;
+            let volume = self.reference_volume(particle);
+            linearised.push(supports, &own);
+            linearised.linearise(&own, volume, self.method.kinematics);
             for (j, column) in supports.iter().enumerate() {
+                if !moves(column.node) {
+                    continue;
+                }
+                let columns = linearised.columns(j);
                 for (i, row) in supports.iter().enumerate() {
-                    let block = linearised.block(i, j);
                     for (a, unknown) in self.unknowns.of(row.node) {
                         for c in 0..D {
                             let value = constraints.of(column.node, c).unwrap_or(0.0);
-                            force[unknown] += block[a][c] * value;
+                            force[unknown] += columns[c][i * D + a] * value;
                         }
                     }
                 }
@@ -377,7 +313,7 @@ impl<'a, const D: usize> System<'a, D> {
                 force[unknown] += entry.stiffness * value;
             }
         }
-        force
+        Ok(force)
     }
 
     /// Nodal step displacements that carry the prescribed motion and zeros elsewhere \[length\].
@@ -407,14 +343,10 @@ impl<'a, const D: usize> System<'a, D> {
 
     /// The volume that a particle's stress is multiplied by: V_0 with Kirchhoff stress in finite
     /// strain, V at the step's start with Cauchy stress in small strain.
-    fn reference_volume(&self, particle: usize) -> f64 {
+    pub(crate) fn reference_volume(&self, particle: usize) -> f64 {
         match self.method.kinematics {
             Kinematics::FiniteStrain => self.particles.volume0[particle],
             Kinematics::SmallStrain => self.particles.volume(particle),
         }
-    }
-
-    fn code(&self, node: usize) -> usize {
-        self.table.code(&self.conditions.grid.node_place(node))
     }
 }

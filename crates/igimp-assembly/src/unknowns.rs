@@ -1,15 +1,13 @@
-//! Which degrees of freedom are unknown, and where the blocks of the tangent matrix live.
-
-use std::sync::Arc;
+//! Which degrees of freedom are unknown.
 
 use igimp_shape::Grid;
 
 use crate::constraints::Constraints;
 use crate::error::AssemblyError;
-use crate::matrix::{NodeBlock, Pattern};
-use crate::stencils::{Stencils, cell_volume};
+use crate::small_cuts::cell_volume;
+use crate::stencils::Stencils;
 
-/// Marks a degree of freedom without an unknown, or a pair of nodes without a block.
+/// Marks a degree of freedom without an unknown.
 const NONE: u32 = u32::MAX;
 
 /// The unknowns of a step: free degrees of freedom of active nodes, nodes ascending.
@@ -19,6 +17,8 @@ pub struct Unknowns<const D: usize> {
     first: Vec<u32>,
     /// Rank of each component among the node's unknowns.
     rank: Vec<[u32; D]>,
+    /// Number of nodes with unknowns before each node; length nodes + 1.
+    blocks_before: Vec<u32>,
     /// Active nodes: with volume, not dropped as a small cut.
     active: Vec<bool>,
     len: usize,
@@ -40,10 +40,13 @@ impl<const D: usize> Unknowns<D> {
         let mut first = Vec::with_capacity(nodes + 1);
         let mut rank = vec![[NONE; D]; nodes];
         let mut active = vec![false; nodes];
+        let mut blocks_before = Vec::with_capacity(nodes + 1);
+        let mut blocks = 0;
         let mut len: u32 = 0;
         for node in 0..nodes {
             first.push(len);
-            let volume = stencils.node_volume()[node];
+            blocks_before.push(blocks);
+            let volume = stencils.node_volume(node);
             active[node] = volume > 0.0 && volume >= drop_below * cell_volume(grid, node);
             if !active[node] {
                 continue;
@@ -56,14 +59,17 @@ impl<const D: usize> Unknowns<D> {
                 }
             }
             len += own;
+            blocks += u32::from(own > 0);
         }
         first.push(len);
+        blocks_before.push(blocks);
         if len == 0 {
             return Err(AssemblyError::NoUnknowns);
         }
         Ok(Self {
             first,
             rank,
+            blocks_before,
             active,
             len: len as usize,
         })
@@ -101,159 +107,29 @@ impl<const D: usize> Unknowns<D> {
         self.first[node] as usize
     }
 
+    /// Number of nodes with unknowns before `node`.
+    pub(crate) fn blocks_before(&self, node: usize) -> usize {
+        self.blocks_before[node] as usize
+    }
+
     /// The free components of a node with their unknowns.
     #[inline]
     pub(crate) fn of(&self, node: usize) -> impl Iterator<Item = (usize, usize)> + '_ {
         (0..D).filter_map(move |axis| self.index(node, axis).map(|unknown| (axis, unknown)))
     }
 
-    fn count(&self, node: usize) -> u32 {
+    /// The free components of a node, one bit each.
+    #[inline]
+    pub(crate) fn free(&self, node: usize) -> u8 {
+        let mut free = 0;
+        for axis in 0..D {
+            free |= u8::from(self.rank[node][axis] != NONE) << axis;
+        }
+        free
+    }
+
+    /// Number of unknowns of a node.
+    pub(crate) fn count(&self, node: usize) -> u32 {
         self.first[node + 1] - self.first[node]
     }
-}
-
-/// Places of node blocks in the columns of the tangent matrix, found by the difference of the
-/// nodes' places on the grid.
-#[derive(Clone, Debug)]
-pub(crate) struct BlockTable<const D: usize> {
-    window: usize,
-    reach: usize,
-    /// Offset within a column of node j of the first row of node i, by j and code(i) − code(j).
-    offsets: Vec<u32>,
-    /// Position of each node in `offsets`.
-    compact: Vec<u32>,
-}
-
-impl<const D: usize> BlockTable<D> {
-    /// Finds the coupled nodes, and with them the sparsity pattern. `extra` lists further coupled
-    /// pairs of nodes, both ways.
-    pub(crate) fn build(
-        grid: &Grid<D>,
-        stencils: &Stencils<D>,
-        unknowns: &Unknowns<D>,
-        extra: &[(usize, usize)],
-        previous: Option<&Arc<Pattern>>,
-    ) -> (Self, Arc<Pattern>) {
-        let apart = |&(a, b): &(usize, usize)| {
-            let places = std::iter::zip(grid.node_place(a), grid.node_place(b));
-            places.map(|(a, b)| a.abs_diff(b)).max().unwrap_or(0)
-        };
-        let reach = extra.iter().map(apart).fold(stencils.reach(), usize::max);
-        let window = 2 * reach + 1;
-        let mut compact = vec![NONE; grid.node_count()];
-        let mut columns = Vec::new();
-        for node in 0..grid.node_count() {
-            if unknowns.count(node) > 0 {
-                compact[node] = u32::try_from(columns.len()).expect("fewer than 2^32 nodes");
-                columns.push(node);
-            }
-        }
-        let size = window.pow(D as u32);
-        let mut table = Self {
-            window,
-            reach,
-            offsets: vec![NONE; columns.len() * size],
-            compact,
-        };
-        let codes: Vec<usize> = (0..grid.node_count())
-            .map(|node| table.code(&grid.node_place(node)))
-            .collect();
-        for particle in 0..stencils.len() {
-            let own = stencils.of(particle);
-            for column in own {
-                if table.compact[column.node] == NONE {
-                    continue;
-                }
-                for row in own {
-                    let slot = table.slot(column.node, codes[column.node], codes[row.node]);
-                    table.offsets[slot] = 0;
-                }
-            }
-        }
-        for &(column, row) in extra {
-            if table.compact[column] != NONE {
-                let slot = table.slot(column, codes[column], codes[row]);
-                table.offsets[slot] = 0;
-            }
-        }
-        let pattern = table.number(grid, unknowns, &columns);
-        match previous {
-            Some(previous) if **previous == pattern => (table, Arc::clone(previous)),
-            _ => (table, Arc::new(pattern)),
-        }
-    }
-
-    /// Turns the marks of coupled nodes into offsets, and writes the pattern.
-    fn number(&mut self, grid: &Grid<D>, unknowns: &Unknowns<D>, columns: &[usize]) -> Pattern {
-        let size = self.window.pow(D as u32);
-        let mut starts = vec![0];
-        let mut coupled = Vec::new();
-        let mut blocks = Vec::with_capacity(columns.len());
-        for (position, &column) in columns.iter().enumerate() {
-            let place = grid.node_place(column);
-            let mut height = 0;
-            for slot in 0..size {
-                let offset = &mut self.offsets[position * size + slot];
-                if *offset == NONE {
-                    continue;
-                }
-                let row = neighbour(grid, &place, slot, self.window, self.reach);
-                if unknowns.count(row) == 0 {
-                    *offset = NONE;
-                    continue;
-                }
-                *offset = height;
-                height += unknowns.count(row);
-                coupled.push(self.compact[row]);
-            }
-            starts.push(coupled.len());
-            let mut block_place = [0; 3];
-            block_place[..D].copy_from_slice(&place);
-            blocks.push(NodeBlock {
-                first: unknowns.before(column),
-                len: unknowns.count(column) as usize,
-                place: block_place,
-            });
-        }
-        Pattern::new(blocks, starts, coupled, self.reach)
-    }
-
-    /// A number for a node's place such that differences tell two nodes' distance apart.
-    #[inline]
-    pub(crate) fn code(&self, place: &[usize; D]) -> usize {
-        place
-            .iter()
-            .rev()
-            .fold(0, |code, &position| code * self.window + position)
-    }
-
-    /// Offset within the columns of node `column` of the first row of node `row`; both must carry
-    /// unknowns and be coupled.
-    #[inline]
-    pub(crate) fn offset(&self, column: usize, column_code: usize, row_code: usize) -> usize {
-        self.offsets[self.slot(column, column_code, row_code)] as usize
-    }
-
-    #[inline]
-    fn slot(&self, column: usize, column_code: usize, row_code: usize) -> usize {
-        let size = self.window.pow(D as u32);
-        let centre = (size - 1) / 2;
-        self.compact[column] as usize * size + row_code + centre - column_code
-    }
-}
-
-/// The node that a slot of the window around `place` stands for.
-fn neighbour<const D: usize>(
-    grid: &Grid<D>,
-    place: &[usize; D],
-    slot: usize,
-    window: usize,
-    reach: usize,
-) -> usize {
-    let mut rest = slot;
-    grid.node_index(std::array::from_fn(|axis| {
-        let step = rest % window;
-        rest /= window;
-        place[axis] + step - reach
-    }))
 }

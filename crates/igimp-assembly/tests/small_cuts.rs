@@ -201,8 +201,8 @@ fn the_tangent_of_tied_bodies_is_the_derivative_of_the_force() {
             let stencils = Stencils::build(&grid, &body, &method, &conditions.constraints).unwrap();
             let system = System::new(&body, &stencils, &conditions, &method, &[], None).unwrap();
             let u = displacements(&grid, 0.02, &mut random);
-            let trial = system.evaluate(&u, TangentKind::Consistent).unwrap();
-            let matrix = dense(&system.tangent(&trial));
+            let (_, matrix) = system.linearise(&u, TangentKind::Consistent).unwrap();
+            let matrix = dense(&matrix);
             let (mut largest, mut error, mut compared) = (0.0_f64, 0.0_f64, 0);
             for (column, node, axis) in unknowns(&grid, &system) {
                 let d = 1e-6;
@@ -235,7 +235,7 @@ fn the_tangent_of_tied_bodies_is_the_derivative_of_the_force() {
 
 fn regimes(trial: &Trial<2>) -> Vec<igimp_material::Regime> {
     let own = trial.particles.iter();
-    own.map(|own| own.lifted.regime).collect()
+    own.map(|own| own.regime).collect()
 }
 
 /// The unknowns with their nodes and axes.
@@ -273,13 +273,16 @@ fn settle(method: &Method) -> (Vec<f64>, f64) {
     let body = body(&cells([0, 1], [3, 4]), [0.0, SLIVER]);
     let stencils = Stencils::build(&grid, &body, method, &conditions.constraints).unwrap();
     let system = System::new(&body, &stencils, &conditions, method, &[], None).unwrap();
-    let start = system.start(TangentKind::Elastic).unwrap();
-    let matrix = dense(&system.tangent(&start));
+    let still = vec![[0.0; 2]; grid.node_count()];
+    let (start, matrix) = system.linearise(&still, TangentKind::Elastic).unwrap();
+    let matrix = dense(&matrix);
     let singular_values = matrix.singular_values();
     let condition = singular_values.max() / singular_values.min();
 
     let mut u = system.prescribed_motion();
-    let mut force: Vec<f64> = system.force_of_prescribed_motion(&start);
+    let mut force = system
+        .force_of_prescribed_motion(&still, TangentKind::Elastic)
+        .unwrap();
     for force in &mut force {
         *force = -*force;
     }
@@ -288,13 +291,14 @@ fn settle(method: &Method) -> (Vec<f64>, f64) {
     for _ in 0..8 {
         let du = matrix.lu().solve(&DVector::from_vec(force)).unwrap();
         system.add_correction(&mut u, du.as_slice());
-        trial = system.evaluate(&u, TangentKind::Consistent).unwrap();
-        matrix = dense(&system.tangent(&trial));
+        let (next, tangent) = system.linearise(&u, TangentKind::Consistent).unwrap();
+        (trial, matrix) = (next, dense(&tangent));
         force = system.out_of_balance(&trial).unwrap().force;
     }
     let residual = force.iter().fold(0.0_f64, |m, value| m.max(value.abs()));
     assert!(residual < 1e-12 * 100.0, "{residual:e}");
-    let stress = trial.particles.iter().map(|own| own.lifted.tau[1][1]);
+    let stress = trial.by_particle(&stencils);
+    let stress = stress.iter().map(|own| own.tau[1][1]);
     (stress.collect(), condition)
 }
 
@@ -362,7 +366,7 @@ fn tied_nodes_miss_no_more_of_a_gradient_than_their_share() {
         let mut u = system.prescribed_motion();
         system.add_correction(&mut u, &du);
         let trial = system.evaluate(&u, TangentKind::Consistent).unwrap();
-        for (particle, own) in trial.particles.iter().enumerate() {
+        for (particle, own) in trial.by_particle(&stencils).into_iter().enumerate() {
             let reaches = body.x[particle][1] + 0.25 > 4.0;
             let share = if reaches { SLIVER / 0.5 } else { 0.0 };
             for a in 0..2 {
@@ -555,7 +559,9 @@ fn the_ghost_penalty_holds_nodes_that_a_single_domain_reaches() {
         method.small_cuts.ghost_penalty = 1e-3;
         let stencils = Stencils::build(&grid, &body, &method, &conditions.constraints).unwrap();
         let system = System::new(&body, &stencils, &conditions, &method, &[], None).unwrap();
-        let matrix = dense(&system.tangent(&system.start(TangentKind::Elastic).unwrap()));
+        let still = vec![[0.0; 2]; grid.node_count()];
+        let (_, matrix) = system.linearise(&still, TangentKind::Elastic).unwrap();
+        let matrix = dense(&matrix);
         let eigenvalues = matrix.symmetric_eigenvalues();
         let condition = eigenvalues.max() / eigenvalues.min();
         assert!(condition > 0.0 && condition < 1e6, "{condition:e}");

@@ -24,15 +24,9 @@ fn bits(threads: usize) -> Vec<u64> {
                     Stencils::build(&grid, &body, &method, &conditions.constraints).unwrap();
                 let system =
                     System::new(&body, &stencils, &conditions, &method, &[], None).unwrap();
-                let trial = system.evaluate(&u, TangentKind::Consistent).unwrap();
+                let (trial, matrix) = system.linearise(&u, TangentKind::Consistent).unwrap();
                 bits.extend(trial.f_int.iter().flatten().map(|value| value.to_bits()));
-                bits.extend(
-                    system
-                        .tangent(&trial)
-                        .values
-                        .iter()
-                        .map(|value| value.to_bits()),
-                );
+                bits.extend(matrix.values.iter().map(|value| value.to_bits()));
                 bits.extend(system.f_ext().iter().flatten().map(|value| value.to_bits()));
             }
         }

@@ -72,7 +72,9 @@ pub use elasticity::Elasticity;
 pub use error::MaterialError;
 pub use hencky::HenckyElastic;
 pub use law::{ConstitutiveModel, History, Regime, ReturnMap};
-pub use lift::{Lifted, TangentKind, lift_finite, lift_small, logarithmic_strain};
+pub use lift::{
+    Lifted, TangentKind, elastic_left_cauchy_green, lift_finite, lift_small, logarithmic_strain,
+};
 pub use mohr_coulomb::MohrCoulomb;
 pub use principal::{Principal, Tensor};
 pub use spatial::SpatialTangent;

@@ -37,8 +37,6 @@ pub enum TangentKind {
 pub struct Lifted<const D: usize> {
     /// Kirchhoff stress τ (Cauchy stress with small strain) \[stress\].
     pub tau: Tensor,
-    /// Its derivative by the velocity gradient.
-    pub tangent: SpatialTangent<D>,
     /// Principal elastic Hencky strain after the return, C⁻¹ τ.
     pub eps_e: Principal,
     /// Principal axes: `frame[a]` is the unit vector of principal value `a`. In plane strain the
@@ -50,13 +48,23 @@ pub struct Lifted<const D: usize> {
     pub history: History,
     /// Where on the yield surface the stress is.
     pub regime: Regime,
+    /// The components $`A_{aabb}`$ of the tangent in principal axes \[stress\].
+    normal: [[f64; 3]; 3],
+    /// The components $`A_{abab}`$ of the tangent off the diagonal \[stress\].
+    shear: [[f64; 3]; 3],
 }
 
 impl<const D: usize> Lifted<D> {
+    /// The derivative of stress by the velocity gradient, in spatial axes.
+    #[inline]
+    pub fn tangent(&self) -> SpatialTangent<D> {
+        SpatialTangent::from_principal(&self.frame, &self.normal, &self.shear)
+    }
+
     /// The elastic left Cauchy–Green tensor $`b_e = \exp(2\varepsilon_e)`$ to carry to the
     /// next step.
     pub fn b_e(&self) -> Tensor {
-        compose::<D>(&self.eps_e.map(|strain| (2.0 * strain).exp()), &self.frame)
+        elastic_left_cauchy_green::<D>(&self.eps_e, &self.frame)
     }
 
     /// The elastic Hencky strain tensor $`\varepsilon_e`$.
@@ -107,6 +115,12 @@ pub fn lift_small<const D: usize>(
         });
     }
     lift(law, &strain, frame, *history, kind, |_| [1.0; 2])
+}
+
+/// The elastic left Cauchy–Green tensor $`b_e = \exp(2\varepsilon_e)`$ with principal elastic
+/// Hencky strains `eps_e` in the axes `frame`.
+pub fn elastic_left_cauchy_green<const D: usize>(eps_e: &Principal, frame: &Tensor) -> Tensor {
+    compose::<D>(&eps_e.map(|strain| (2.0 * strain).exp()), frame)
 }
 
 /// The Hencky strain $`\tfrac12\ln b`$ of a left Cauchy–Green tensor `b` (upper triangle).
@@ -188,12 +202,13 @@ fn lift<const D: usize>(
     };
     Ok(Lifted {
         tau: compose::<D>(&answer.tau, &frame),
-        tangent: SpatialTangent::from_principal(&frame, &normal, &shear),
         eps_e,
         frame,
         delta_eps_p: answer.delta_eps_p,
         history: answer.history,
         regime: answer.regime,
+        normal,
+        shear,
     })
 }
 

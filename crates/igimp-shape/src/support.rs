@@ -29,6 +29,13 @@ pub struct Scratch<const D: usize> {
     weights: [Vec<NodeWeight>; D],
 }
 
+impl<const D: usize> Scratch<D> {
+    /// Number of nodes along each axis of the particle evaluated last.
+    pub fn counts(&self) -> [usize; D] {
+        self.weights.each_ref().map(Vec::len)
+    }
+}
+
 impl<const D: usize> Default for Scratch<D> {
     fn default() -> Self {
         Self {

@@ -131,7 +131,7 @@ pub(crate) fn tangent_error<const D: usize>(
     l_prime: &Tensor,
     r: f64,
 ) -> f64 {
-    let tangent = &lifted.tangent;
+    let tangent = &lifted.tangent();
     let mut most = 0.0_f64;
     let mut trace = r * tangent.trace;
     for a in 0..D {

@@ -1,0 +1,364 @@
+//! Where the blocks of the tangent matrix are stored: a table over pairs of nodes that are close.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use igimp_shape::{Grid, Support};
+
+use crate::linearised::Linearised;
+use crate::matrix::{NodeBlock, Pattern};
+use crate::stencils::Stencils;
+use crate::supports::bounds;
+use crate::unknowns::Unknowns;
+
+/// Marks a pair of nodes without a block, or a node without unknowns.
+const NONE: u32 = u32::MAX;
+
+/// Places of node blocks in the columns of the tangent matrix, found by the difference of the
+/// nodes' places on the grid.
+#[derive(Clone, Debug)]
+pub(crate) struct BlockTable<const D: usize> {
+    nodes: Vec<NodePlace>,
+    /// Pairs of nodes that a column node may have: a window of (2 reach + 1)^D nodes.
+    window: usize,
+    /// Offset within a column of node j of the first row of node i, by the block of j and
+    /// code(i) − code(j).
+    offsets: Vec<u32>,
+}
+
+/// What scattering needs to know of a node.
+#[derive(Clone, Copy, Debug)]
+struct NodePlace {
+    /// A number such that differences of it tell two nodes' distance apart.
+    code: u32,
+    /// Its block in the pattern, or [`NONE`].
+    block: u32,
+    /// First of its unknowns.
+    first: u32,
+    /// How many unknowns it has.
+    len: u8,
+    /// Which components they are, one bit each.
+    free: u8,
+}
+
+impl<const D: usize> BlockTable<D> {
+    /// Finds the coupled nodes, and with them the sparsity pattern. `extra` lists further coupled
+    /// pairs of nodes, both ways. A `previous` pattern is shared again when it still holds.
+    pub(crate) fn build(
+        grid: &Grid<D>,
+        stencils: &Stencils<D>,
+        unknowns: &Unknowns<D>,
+        extra: &[(usize, usize)],
+        previous: Option<&Arc<Pattern>>,
+    ) -> (Self, Arc<Pattern>) {
+        let apart = |&(a, b): &(usize, usize)| {
+            let places = std::iter::zip(grid.node_place(a), grid.node_place(b));
+            places.map(|(a, b)| a.abs_diff(b)).max().unwrap_or(0)
+        };
+        let reach = extra.iter().map(apart).fold(stencils.reach(), usize::max);
+        let side = 2 * reach + 1;
+        let mut table = Self {
+            nodes: Vec::with_capacity(grid.node_count()),
+            window: side.pow(D as u32),
+            offsets: Vec::new(),
+        };
+        let mut blocks = Vec::new();
+        for node in 0..grid.node_count() {
+            let place = grid.node_place(node);
+            let code = place.iter().rev().fold(0, |code, &k| code * side + k);
+            let len = unknowns.count(node) as usize;
+            let block = if len == 0 { NONE } else { blocks.len() as u32 };
+            table.nodes.push(NodePlace {
+                code: u32::try_from(code).expect("fewer than 2^32 places"),
+                block,
+                first: unknowns.before(node) as u32,
+                len: len as u8,
+                free: unknowns.free(node),
+            });
+            if len > 0 {
+                let mut block_place = [0; 3];
+                block_place[..D].copy_from_slice(&place);
+                blocks.push(NodeBlock {
+                    first: unknowns.before(node),
+                    len,
+                    place: block_place,
+                });
+            }
+        }
+        table.offsets = vec![NONE; blocks.len() * table.window];
+        table.mark(grid, stencils, extra);
+        let pattern = table.number(grid, unknowns, blocks, reach);
+        match previous {
+            Some(previous) if **previous == pattern => (table, Arc::clone(previous)),
+            _ => (table, Arc::new(pattern)),
+        }
+    }
+
+    /// Marks the coupled pairs. Particles that touch the same box of nodes couple the same pairs:
+    /// each box is marked once.
+    fn mark(&mut self, grid: &Grid<D>, stencils: &Stencils<D>, extra: &[(usize, usize)]) {
+        let mut last: &[Support<D>] = &[];
+        let mut seen = vec![0_u64; grid.node_count()];
+        for &particle in stencils.order() {
+            let own = stencils.of(particle as usize);
+            if same_nodes(own, last) {
+                continue;
+            }
+            last = own;
+            let first = own[0].node;
+            if let Some(shape) = box_shape(grid, own) {
+                if seen[first] & shape != 0 {
+                    continue;
+                }
+                seen[first] |= shape;
+            }
+            for column in own {
+                if self.nodes[column.node].block == NONE {
+                    continue;
+                }
+                for row in own {
+                    if self.nodes[row.node].block != NONE {
+                        let slot = self.slot(column.node, row.node);
+                        self.offsets[slot] = 0;
+                    }
+                }
+            }
+        }
+        for &(column, row) in extra {
+            if self.nodes[column].block != NONE && self.nodes[row].block != NONE {
+                let slot = self.slot(column, row);
+                self.offsets[slot] = 0;
+            }
+        }
+    }
+
+    /// Turns the marks of coupled nodes into offsets, and writes the pattern.
+    fn number(
+        &mut self,
+        grid: &Grid<D>,
+        unknowns: &Unknowns<D>,
+        blocks: Vec<NodeBlock>,
+        reach: usize,
+    ) -> Pattern {
+        // How far, in node numbers, the node of each slot is from the middle of the window.
+        let strides: [usize; D] =
+            std::array::from_fn(|axis| (0..axis).map(|a| grid.axes[a].node_count()).product());
+        let distances: Vec<isize> = (0..self.window)
+            .map(|slot| {
+                let mut rest = slot;
+                let mut distance = 0;
+                for stride in strides {
+                    let step = rest % (2 * reach + 1);
+                    rest /= 2 * reach + 1;
+                    distance += (step as isize - reach as isize) * stride as isize;
+                }
+                distance
+            })
+            .collect();
+        let mut starts = Vec::with_capacity(blocks.len() + 1);
+        let mut coupled = Vec::with_capacity(blocks.len() * 5_usize.pow(D as u32));
+        starts.push(0);
+        let columns = (0..grid.node_count()).filter(|&node| unknowns.count(node) > 0);
+        for (column, offsets) in columns.zip(self.offsets.chunks_exact_mut(self.window)) {
+            let mut height = 0;
+            for (offset, &distance) in offsets.iter_mut().zip(&distances) {
+                if *offset != NONE {
+                    let row = column.wrapping_add_signed(distance);
+                    *offset = height;
+                    height += unknowns.count(row);
+                    coupled.push(self.nodes[row].block);
+                }
+            }
+            starts.push(coupled.len());
+        }
+        Pattern::new(blocks, starts, coupled, reach)
+    }
+
+    /// Where the row of an unknown of node `row` is stored in the column of the unknown that is
+    /// `component`-th of node `column`; both nodes must be coupled. The row is the first of its
+    /// node.
+    #[inline]
+    pub(crate) fn value(
+        &self,
+        pattern: &Pattern,
+        column: usize,
+        component: usize,
+        row: usize,
+    ) -> usize {
+        let block = self.nodes[column].block as usize;
+        pattern.first_value[block]
+            + component * pattern.height(block)
+            + self.offsets[self.slot(column, row)] as usize
+    }
+
+    /// The offset within a column of a node of the first row of another, by the code of that.
+    #[inline]
+    fn offsets_of(&self, column: usize) -> impl Fn(u32) -> usize + '_ {
+        let column = &self.nodes[column];
+        let centre = (self.window as u32 - 1) / 2;
+        let offsets = &self.offsets[column.block as usize * self.window..][..self.window];
+        move |row| offsets[(row + centre - column.code) as usize] as usize
+    }
+
+    /// Adds the free components of block (i, j) of a particle to the columns of its node j.
+    fn add_block(
+        &self,
+        supports: &[Support<D>],
+        [i, j]: [usize; 2],
+        columns: &[&[f64]; D],
+        values: &mut [f64],
+    ) {
+        let (row, column) = (&self.nodes[supports[i].node], &self.nodes[supports[j].node]);
+        let place = self.offsets_of(supports[j].node)(row.code);
+        let height = values.len() / usize::from(column.len);
+        let free = |node: &NodePlace| {
+            let free = node.free;
+            (0..D).filter(move |axis| free & (1 << axis) != 0)
+        };
+        for (c, values) in free(column).zip(values.chunks_exact_mut(height)) {
+            for (a, value) in free(row).zip(&mut values[place..]) {
+                *value += columns[c][i * D + a];
+            }
+        }
+    }
+
+    #[inline]
+    fn slot(&self, column: usize, row: usize) -> usize {
+        let (column, row) = (&self.nodes[column], &self.nodes[row]);
+        let centre = (self.window as u32 - 1) / 2;
+        column.block as usize * self.window + (row.code + centre - column.code) as usize
+    }
+}
+
+/// The supports of one particle as blocks of the matrix.
+#[derive(Debug, Default)]
+pub(crate) struct Blocks {
+    /// Supports whose components are all unknown.
+    runs: Vec<Run>,
+    /// Supports with some unknown components.
+    partial: Vec<u16>,
+}
+
+/// Supports whose unknowns follow one another, and so do their values in every column.
+#[derive(Clone, Copy, Debug)]
+struct Run {
+    /// First support.
+    first: u16,
+    len: u16,
+    /// Code of its node.
+    code: u32,
+}
+
+impl Run {
+    fn supports(&self) -> Range<usize> {
+        usize::from(self.first)..usize::from(self.first + self.len)
+    }
+}
+
+impl Blocks {
+    /// Lists the blocks of a particle.
+    #[inline]
+    pub(crate) fn set<const D: usize>(&mut self, supports: &[Support<D>], table: &BlockTable<D>) {
+        self.runs.clear();
+        self.partial.clear();
+        let mut next = NONE;
+        for (i, support) in supports.iter().enumerate() {
+            let node = &table.nodes[support.node];
+            if usize::from(node.len) < D {
+                if node.len > 0 {
+                    self.partial.push(i as u16);
+                }
+                next = NONE;
+                continue;
+            }
+            match self.runs.last_mut() {
+                Some(run) if node.first == next => run.len += 1,
+                _ => self.runs.push(Run {
+                    first: i as u16,
+                    len: 1,
+                    code: node.code,
+                }),
+            }
+            next = node.first + D as u32;
+        }
+    }
+
+    /// Adds the tangent of one particle to the slice of values that begins at `start`.
+    #[inline]
+    pub(crate) fn scatter<const D: usize>(
+        &self,
+        supports: &[Support<D>],
+        table: &BlockTable<D>,
+        pattern: &Pattern,
+        linearised: &mut Linearised<D>,
+        (start, slice): (usize, &mut [f64]),
+    ) {
+        for j in self.runs.iter().flat_map(Run::supports) {
+            let node = supports[j].node;
+            let block = table.nodes[node].block as usize;
+            let ends = [pattern.first_value[block], pattern.first_value[block + 1]];
+            let values = &mut slice[ends[0] - start..ends[1] - start];
+            let height = values.len() / D;
+            let columns = linearised.columns(j);
+            let offsets = table.offsets_of(node);
+            for run in &self.runs {
+                let (first, offset) = (usize::from(run.first) * D, offsets(run.code));
+                for (c, column) in columns.iter().enumerate() {
+                    let sums = &mut values[c * height + offset..];
+                    let terms = &column[first..];
+                    match usize::from(run.len) * D {
+                        4 => add::<4>(sums, terms),
+                        6 => add::<6>(sums, terms),
+                        9 => add::<9>(sums, terms),
+                        len => {
+                            for (sum, term) in sums.iter_mut().zip(&terms[..len]) {
+                                *sum += term;
+                            }
+                        }
+                    }
+                }
+            }
+            for &i in &self.partial {
+                table.add_block(supports, [usize::from(i), j], &columns, values);
+            }
+        }
+        for &j in &self.partial {
+            let j = usize::from(j);
+            let block = table.nodes[supports[j].node].block as usize;
+            let ends = [pattern.first_value[block], pattern.first_value[block + 1]];
+            let values = &mut slice[ends[0] - start..ends[1] - start];
+            let columns = linearised.columns(j);
+            let partial = self.partial.iter().map(|&i| usize::from(i));
+            for i in self.runs.iter().flat_map(Run::supports).chain(partial) {
+                table.add_block(supports, [i, j], &columns, values);
+            }
+        }
+    }
+}
+
+/// Adds the first `N` terms to the first `N` sums: so few that nothing is left of the loop.
+#[inline]
+fn add<const N: usize>(sums: &mut [f64], terms: &[f64]) {
+    let (sums, terms) = (sums.first_chunk_mut::<N>(), terms.first_chunk::<N>());
+    if let (Some(sums), Some(terms)) = (sums, terms) {
+        for k in 0..N {
+            sums[k] += terms[k];
+        }
+    }
+}
+
+/// Whether two lists of supports have the same nodes.
+#[inline]
+fn same_nodes<const D: usize>(a: &[Support<D>], b: &[Support<D>]) -> bool {
+    a.len() == b.len() && std::iter::zip(a, b).all(|(a, b)| a.node == b.node)
+}
+
+/// One bit that stands for the lengths of the sides of the box of nodes that supports fill; `None`
+/// when they do not fill it, or when it is larger than any common one.
+#[inline]
+fn box_shape<const D: usize>(grid: &Grid<D>, own: &[Support<D>]) -> Option<u64> {
+    let (_, extent) = bounds(grid, own);
+    let filled: usize = extent.iter().map(|extent| extent + 1).product();
+    let common = extent.iter().all(|&extent| extent < 4);
+    (common && filled == own.len()).then(|| 1 << extent.iter().fold(0, |code, e| code * 4 + e))
+}

@@ -1,0 +1,172 @@
+//! One pass over the particles: from nodal step displacements to stress, internal force and, when
+//! it is asked for, the tangent matrix. Nothing is kept of a particle's tangent: it goes straight
+//! into the matrix.
+
+use std::ops::Range;
+
+use igimp_material::TangentKind;
+use rayon::prelude::*;
+
+use crate::blocks::Blocks;
+use crate::error::AssemblyError;
+use crate::kinematics::{Linearisation, ParticleState, ParticleTrial, evaluate};
+use crate::linearised::Linearised;
+use crate::stencils::Stencils;
+use crate::strips::split;
+use crate::system::System;
+
+/// All particles at a trial displacement. Its memory is used again from one trial to the next.
+#[derive(Clone, Debug, Default)]
+pub struct Trial<const D: usize> {
+    /// The particles in the order of [`Stencils::order`].
+    pub particles: Vec<ParticleTrial<D>>,
+    /// Internal force by node, ghost penalty and drag included \[force\].
+    pub f_int: Vec<[f64; D]>,
+}
+
+impl<const D: usize> Trial<D> {
+    /// The particles as the body numbers them; `stencils` are those that the trial was made with.
+    pub fn by_particle(&self, stencils: &Stencils<D>) -> Vec<&ParticleTrial<D>> {
+        let mut slots = vec![0; self.particles.len()];
+        for (slot, &particle) in stencils.order().iter().enumerate() {
+            slots[particle as usize] = slot;
+        }
+        slots
+            .into_iter()
+            .map(|slot| &self.particles[slot])
+            .collect()
+    }
+}
+
+/// Scratch of one task.
+#[derive(Debug, Default)]
+pub(crate) struct Scratch<const D: usize> {
+    pub(crate) linearised: Linearised<D>,
+    pub(crate) blocks: Blocks,
+}
+
+/// The part of a sweep that belongs to one strip.
+struct Strip<'a, const D: usize> {
+    slots: Range<usize>,
+    particles: &'a mut [ParticleTrial<D>],
+    first_node: usize,
+    f_int: &'a mut [[f64; D]],
+    /// Where the values of the strip begin, and the values; none when no tangent is asked for.
+    values: Option<(usize, &'a mut [f64])>,
+}
+
+impl<const D: usize> System<'_, D> {
+    /// Sets `trial`, and the stored `values` of the tangent if any, to nodal step displacements
+    /// `u`.
+    pub(crate) fn sweep(
+        &self,
+        u: &[[f64; D]],
+        kind: TangentKind,
+        trial: &mut Trial<D>,
+        mut values: Option<&mut [f64]>,
+    ) -> Result<(), AssemblyError> {
+        trial
+            .particles
+            .resize(self.particles.len(), ParticleTrial::at_rest());
+        trial.f_int.clear();
+        trial.f_int.resize(u.len(), [0.0; D]);
+        if let Some(values) = &mut values {
+            values.fill(0.0);
+        }
+        for parity in 0..2 {
+            let strips = self.stencils.strips().of_parity(parity);
+            let slots = strips.clone().map(|(_, slots)| slots.clone());
+            let nodes = strips.clone().map(|(nodes, _)| nodes.clone());
+            let stored = nodes.clone().map(|nodes| self.values_of(&nodes));
+            let values: Vec<Option<(usize, &mut [f64])>> = match &mut values {
+                Some(values) => std::iter::zip(stored.clone(), split(values, stored))
+                    .map(|(range, slice)| Some((range.start, slice)))
+                    .collect(),
+                None => nodes.clone().map(|_| None).collect(),
+            };
+            let f_int = split(&mut trial.f_int, nodes.clone());
+            let particles = split(&mut trial.particles, slots);
+            let parts = strips.zip(particles).zip(f_int).zip(values);
+            let tasks: Vec<Strip<'_, D>> = parts
+                .map(|((((nodes, slots), particles), f_int), values)| Strip {
+                    slots: slots.clone(),
+                    particles,
+                    first_node: nodes.start,
+                    f_int,
+                    values,
+                })
+                .collect();
+            let failures: Vec<Option<(usize, AssemblyError)>> = tasks
+                .into_par_iter()
+                .map_init(Scratch::default, |scratch, strip| {
+                    self.sweep_strip(u, kind, strip, scratch).err()
+                })
+                .collect();
+            let failures = failures.into_iter().flatten();
+            if let Some((_, error)) = failures.min_by_key(|&(particle, _)| particle) {
+                return Err(error);
+            }
+        }
+        Ok(())
+    }
+
+    /// The particles of one strip; the particle that fails and why.
+    #[inline]
+    fn sweep_strip(
+        &self,
+        u: &[[f64; D]],
+        kind: TangentKind,
+        mut strip: Strip<'_, D>,
+        scratch: &mut Scratch<D>,
+    ) -> Result<(), (usize, AssemblyError)> {
+        let order = &self.stencils.order()[strip.slots];
+        for (&particle, trial) in order.iter().zip(strip.particles) {
+            let particle = particle as usize;
+            let supports = self.stencils.of(particle);
+            let own = self
+                .evaluate_particle(particle, u, kind, trial)
+                .map_err(|error| (particle, error))?;
+            let volume = self.reference_volume(particle);
+            let Scratch { linearised, blocks } = &mut *scratch;
+            linearised.push(supports, &own);
+            for (support, force) in supports.iter().zip(linearised.forces(&own, volume)) {
+                let sum = &mut strip.f_int[support.node - strip.first_node];
+                for axis in 0..D {
+                    sum[axis] += force[axis];
+                }
+            }
+            if let Some((start, values)) = &mut strip.values {
+                blocks.set(supports, &self.table);
+                linearised.linearise(&own, volume, self.method.kinematics);
+                let place = (*start, &mut **values);
+                blocks.scatter(supports, &self.table, &self.pattern, linearised, place);
+            }
+        }
+        Ok(())
+    }
+
+    /// One particle at nodal step displacements `u`.
+    #[inline]
+    pub(crate) fn evaluate_particle(
+        &self,
+        particle: usize,
+        u: &[[f64; D]],
+        kind: TangentKind,
+        trial: &mut ParticleTrial<D>,
+    ) -> Result<Linearisation<D>, AssemblyError> {
+        let state = ParticleState {
+            particle,
+            b_e: &self.particles.b_e[particle],
+            history: &self.particles.history[particle],
+            law: &*self.conditions.laws[self.particles.law[particle]],
+        };
+        let supports = self.stencils.of(particle);
+        evaluate(state, supports, u, self.method.kinematics, kind, trial)
+    }
+
+    /// The stored values of the columns of some nodes.
+    fn values_of(&self, nodes: &Range<usize>) -> Range<usize> {
+        let first = |node: usize| self.pattern.first_value[self.unknowns.blocks_before(node)];
+        first(nodes.start)..first(nodes.end)
+    }
+}
