@@ -262,8 +262,8 @@ impl<'a, const D: usize> System<'a, D> {
 
     fn assemble(&self, trial: &Trial<D>, values: &mut [f64]) {
         let range = |nodes: &Range<usize>| {
-            self.pattern.col_ptr[self.unknowns.before(nodes.start)]
-                ..self.pattern.col_ptr[self.unknowns.before(nodes.end)]
+            self.first_value(self.unknowns.before(nodes.start))
+                ..self.first_value(self.unknowns.before(nodes.end))
         };
         self.stencils
             .strips()
@@ -288,7 +288,7 @@ impl<'a, const D: usize> System<'a, D> {
                     self.unknowns.index(entry.row, axis),
                     self.unknowns.index(entry.column, axis),
                 ) {
-                    let start = self.pattern.col_ptr[column]
+                    let start = self.first_value(column)
                         + self.table.offset(
                             entry.column,
                             self.code(entry.column),
@@ -298,6 +298,16 @@ impl<'a, const D: usize> System<'a, D> {
                 }
             }
         }
+    }
+
+    /// First stored value of the column of an unknown, or the end of all values after the last.
+    fn first_value(&self, unknown: usize) -> usize {
+        let blocks = &self.pattern.blocks;
+        let index = blocks.partition_point(|block| block.first + block.len <= unknown);
+        let within = blocks.get(index).map_or(0, |block| {
+            (unknown - block.first) * self.pattern.height(index)
+        });
+        self.pattern.first_value[index] + within
     }
 
     /// Adds the blocks of one particle to the slice of values that begins at `start`.
@@ -330,7 +340,7 @@ impl<'a, const D: usize> System<'a, D> {
                 let offset = self.table.offset(column.node, codes[j], codes[i]);
                 let block = linearised.block(i, j);
                 for (c, unknown) in self.unknowns.of(column.node) {
-                    let first = self.pattern.col_ptr[unknown] + offset - start;
+                    let first = self.first_value(unknown) + offset - start;
                     for (rank, (a, _)) in self.unknowns.of(row.node).enumerate() {
                         slice[first + rank] += block[a][c];
                     }
