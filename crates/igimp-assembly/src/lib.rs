@@ -32,7 +32,7 @@ pub use constraints::Constraints;
 pub use error::AssemblyError;
 pub use kinematics::ParticleTrial;
 pub use loads::{LoadPoint, StepLoads};
-pub use matrix::{NodeBlock, Pattern, TangentMatrix};
+pub use matrix::{CompressedColumns, NodeBlock, Pattern, TangentMatrix};
 pub use method::{DomainUpdate, Kinematics, Method, Remedy, SmallCuts};
 pub use particles::{ParticleFields, ParticleSeed, Particles};
 pub use residual::OutOfBalance;

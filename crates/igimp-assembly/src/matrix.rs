@@ -1,6 +1,7 @@
-//! The global tangent matrix in compressed sparse columns: a structurally symmetric pattern of
-//! unknowns that is built once per stencil, and values that are rewritten in every iteration.
+//! The global tangent matrix in sparse columns: a structurally symmetric pattern of coupled nodes
+//! that is built once per stencil, and values that are rewritten in every iteration.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use nalgebra_sparse::CscMatrix;
@@ -20,16 +21,13 @@ pub struct NodeBlock {
 
 /// Sparsity pattern of the tangent matrix by blocks: which nodes are coupled.
 ///
-/// All unknowns of two coupled nodes are coupled. Values are stored by columns, rows ascending:
-/// what follows from the blocks is a matrix in compressed sparse columns. The pattern is
-/// structurally symmetric: node i is listed for j if and only if j is listed for i, and every node
-/// is coupled to itself. Both halves are stored, also when the values are symmetric.
+/// All unknowns of two coupled nodes are coupled. Values are stored by columns, rows ascending: the
+/// columns of block j, one after the other, have one value for each unknown of the blocks that j is
+/// coupled to. The pattern is structurally symmetric: node i is listed for j if and only if j is
+/// listed for i, and every node is coupled to itself. Both halves are stored, also when the values
+/// are symmetric.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Pattern {
-    /// Start of each column in `row_idx`, length `unknowns + 1`.
-    pub col_ptr: Vec<usize>,
-    /// Row of each stored entry.
-    pub row_idx: Vec<usize>,
     /// The nodes that carry unknowns, by ascending unknown; together they cover all of them.
     pub blocks: Vec<NodeBlock>,
     /// Start of the list of each block in `coupled`, length `blocks + 1`.
@@ -42,6 +40,15 @@ pub struct Pattern {
     pub reach: usize,
 }
 
+/// A pattern unknown by unknown, in compressed sparse columns.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct CompressedColumns {
+    /// Start of each column in `row_idx`, length `unknowns + 1`.
+    pub col_ptr: Vec<usize>,
+    /// Row of each stored entry, ascending within a column; values keep their order.
+    pub row_idx: Vec<usize>,
+}
+
 impl Pattern {
     /// The pattern of coupled blocks, with lists as described for the fields.
     pub fn new(
@@ -50,24 +57,16 @@ impl Pattern {
         coupled: Vec<u32>,
         reach: usize,
     ) -> Self {
-        let mut first_value = vec![0];
+        let mut first_value = Vec::with_capacity(blocks.len() + 1);
         let mut stored = 0;
-        let (mut col_ptr, mut row_idx) = (vec![0], Vec::new());
+        first_value.push(stored);
         for (block, ends) in blocks.iter().zip(starts.windows(2)) {
-            let rows = coupled[ends[0]..ends[1]]
-                .iter()
-                .map(|&row| blocks[row as usize]);
-            let height: usize = rows.clone().map(|row| row.len).sum();
-            for _ in 0..block.len {
-                row_idx.extend(rows.clone().flat_map(|row| row.first..row.first + row.len));
-                col_ptr.push(row_idx.len());
-            }
+            let rows = coupled[ends[0]..ends[1]].iter();
+            let height: usize = rows.map(|&row| blocks[row as usize].len).sum();
             stored += height * block.len;
             first_value.push(stored);
         }
         Self {
-            col_ptr,
-            row_idx,
             blocks,
             starts,
             coupled,
@@ -89,13 +88,59 @@ impl Pattern {
     }
 
     /// The blocks coupled to a block, ascending.
+    #[inline]
     pub fn coupled_to(&self, block: usize) -> &[u32] {
         &self.coupled[self.starts[block]..self.starts[block + 1]]
     }
 
     /// Stored entries of each column of a block.
+    #[inline]
     pub fn height(&self, block: usize) -> usize {
-        (self.first_value[block + 1] - self.first_value[block]) / self.blocks[block].len
+        let stored = self.first_value[block + 1] - self.first_value[block];
+        // Division by a known number is fast.
+        match self.blocks[block].len {
+            1 => stored,
+            2 => stored / 2,
+            len => stored / len,
+        }
+    }
+
+    /// The values of the columns of a block, `height` for each column.
+    pub fn values_of(&self, block: usize) -> Range<usize> {
+        self.first_value[block]..self.first_value[block + 1]
+    }
+
+    /// The stored rows of the columns of a block, as runs of consecutive unknowns.
+    #[inline]
+    pub fn runs(&self, block: usize) -> impl Iterator<Item = Range<usize>> + '_ {
+        let mut rows = self
+            .coupled_to(block)
+            .iter()
+            .map(|&row| self.blocks[row as usize])
+            .peekable();
+        std::iter::from_fn(move || {
+            let first = rows.next()?;
+            let mut run = first.first..first.first + first.len;
+            while let Some(row) = rows.next_if(|row| row.first == run.end) {
+                run.end += row.len;
+            }
+            Some(run)
+        })
+    }
+
+    /// The pattern unknown by unknown, for solvers and tools that know no blocks: eight bytes for
+    /// each stored entry.
+    pub fn compressed_columns(&self) -> CompressedColumns {
+        let mut col_ptr = Vec::with_capacity(self.unknowns() + 1);
+        let mut row_idx = Vec::with_capacity(self.stored());
+        col_ptr.push(0);
+        for (index, block) in self.blocks.iter().enumerate() {
+            for _ in 0..block.len {
+                row_idx.extend(self.runs(index).flatten());
+                col_ptr.push(row_idx.len());
+            }
+        }
+        CompressedColumns { col_ptr, row_idx }
     }
 }
 
@@ -104,7 +149,7 @@ impl Pattern {
 pub struct TangentMatrix {
     /// The pattern, shared with solvers so that they can tell whether symbolic work still holds.
     pub pattern: Arc<Pattern>,
-    /// Stored values, aligned with `pattern.row_idx`.
+    /// Stored values, in the order that [`Pattern`] describes.
     pub values: Vec<f64>,
     /// Whether the laws present make K symmetric (associated flow everywhere).
     pub symmetric: bool,
@@ -128,15 +173,37 @@ impl TangentMatrix {
     pub fn multiply(&self, x: &[f64], y: &mut [f64]) {
         assert!(x.len() == self.pattern.unknowns() && y.len() == x.len());
         y.fill(0.0);
-        for (column, &value) in x.iter().enumerate() {
-            let range = self.pattern.col_ptr[column]..self.pattern.col_ptr[column + 1];
-            for (&row, &entry) in self.pattern.row_idx[range.clone()]
-                .iter()
-                .zip(&self.values[range])
-            {
-                y[row] += entry * value;
+        for (index, block) in self.pattern.blocks.iter().enumerate() {
+            let height = self.pattern.height(index);
+            let columns = &self.values[self.pattern.values_of(index)];
+            for (column, entries) in columns.chunks_exact(height).enumerate() {
+                let value = x[block.first + column];
+                let mut done = 0;
+                for run in self.pattern.runs(index) {
+                    let (start, len) = (done, run.len());
+                    done += len;
+                    for (row, entry) in y[run].iter_mut().zip(&entries[start..start + len]) {
+                        *row += entry * value;
+                    }
+                }
             }
         }
+    }
+
+    /// The diagonal entry of each unknown.
+    pub fn diagonal(&self) -> impl Iterator<Item = f64> + '_ {
+        let of_block = move |index: usize| {
+            let block = self.pattern.blocks[index];
+            let height = self.pattern.height(index);
+            let before = self.pattern.coupled_to(index).iter();
+            let offset: usize = before
+                .take_while(|&&row| (row as usize) < index)
+                .map(|&row| self.pattern.blocks[row as usize].len)
+                .sum();
+            let first = self.pattern.first_value[index] + offset;
+            (0..block.len).map(move |column| self.values[first + column * (height + 1)])
+        };
+        (0..self.pattern.blocks.len()).flat_map(of_block)
     }
 
     /// A copy as a `nalgebra-sparse` matrix, for independent solvers and for inspection.
@@ -145,13 +212,9 @@ impl TangentMatrix {
     /// Never for a pattern built by this crate: its offsets and rows are valid by construction.
     pub fn to_csc(&self) -> CscMatrix<f64> {
         let n = self.pattern.unknowns();
-        let pattern = SparsityPattern::try_from_offsets_and_indices(
-            n,
-            n,
-            self.pattern.col_ptr.clone(),
-            self.pattern.row_idx.clone(),
-        )
-        .expect("columns are sorted and unique");
+        let CompressedColumns { col_ptr, row_idx } = self.pattern.compressed_columns();
+        let pattern = SparsityPattern::try_from_offsets_and_indices(n, n, col_ptr, row_idx)
+            .expect("columns are sorted and unique");
         CscMatrix::try_from_pattern_and_values(pattern, self.values.clone())
             .expect("one value per stored entry")
     }

@@ -193,7 +193,7 @@ impl Workspace {
         let mut du = vec![0.0; force.len()];
         if let Some(matrix) = &self.matrix {
             self.solver.factor(matrix)?;
-            self.solver.solve(force, &mut du)?;
+            self.solver.solve(matrix, force, &mut du)?;
         }
         times.linear += clock.elapsed();
         Ok(du)

@@ -11,9 +11,13 @@ use igimp_assembly::{NodeBlock, Pattern, TangentMatrix};
 use igimp_solver::linear::{
     GeneralLu, LinearSolver, LinearSolverError, MultifrontalLu, SolverKind,
 };
-use support::{Body, Random, assemble, distance, from_dense, manufactured};
+use support::{Body, Random, assemble, distance, from_dense, manufactured, stored};
 
-const CHOLESKY: [SolverKind; 2] = [SolverKind::FaerCholesky, SolverKind::NalgebraCholesky];
+const CHOLESKY: [SolverKind; 3] = [
+    SolverKind::FaerCholesky,
+    SolverKind::MultifrontalCholesky,
+    SolverKind::NalgebraCholesky,
+];
 const LU: [SolverKind; 2] = [SolverKind::Auto, SolverKind::Multifrontal];
 
 fn solve(
@@ -24,7 +28,7 @@ fn solve(
     let mut solver = kind.build();
     solver.factor(matrix)?;
     let mut solution = vec![f64::NAN; rhs.len()];
-    solver.solve(rhs, &mut solution)?;
+    solver.solve(matrix, rhs, &mut solution)?;
     assert!(
         solution.iter().all(|x| x.is_finite()),
         "{kind:?} handed out {solution:?}"
@@ -41,7 +45,7 @@ fn values_that_are_not_finite_are_refused() {
             let mut solver = kind.build();
             solver.factor(&matrix).unwrap();
             rhs[5] = poison;
-            let refused = solver.solve(&rhs, &mut vec![0.0; rhs.len()]);
+            let refused = solver.solve(&matrix, &rhs, &mut vec![0.0; rhs.len()]);
             let what = "right-hand side";
             assert_eq!(
                 refused,
@@ -58,7 +62,7 @@ fn values_that_are_not_finite_are_refused() {
                 "{kind:?}"
             );
             rhs[5] = 1.0;
-            let refused = solver.solve(&rhs, &mut vec![0.0; rhs.len()]);
+            let refused = solver.solve(&matrix, &rhs, &mut vec![0.0; rhs.len()]);
             assert_eq!(refused, Err(LinearSolverError::NotFactored), "{kind:?}");
         }
     }
@@ -156,13 +160,18 @@ fn singular_matrices_are_told_from_regular_ones() {
     }
 }
 
+/// The stored entries on the diagonal.
+fn diagonal(pattern: &Pattern) -> Vec<(usize, usize, usize)> {
+    let mut entries = stored(pattern);
+    entries.retain(|&(column, row, _)| column == row);
+    entries
+}
+
 #[test]
 fn indefinite_matrices_go_to_lu() {
     let mut matrix = Body::plane(12, 8).tangent();
-    for column in 0..matrix.pattern.unknowns() {
-        let start = matrix.pattern.col_ptr[column];
-        let rows = &matrix.pattern.row_idx[start..matrix.pattern.col_ptr[column + 1]];
-        matrix.values[start + rows.binary_search(&column).unwrap()] -= 6.0;
+    for (_, _, entry) in diagonal(&matrix.pattern) {
+        matrix.values[entry] -= 6.0;
     }
     let (exact, rhs) = manufactured(&matrix, 4);
     for kind in CHOLESKY {
@@ -192,10 +201,8 @@ fn zero_diagonals_are_no_obstacle_to_lu() {
     for value in &mut grid.values {
         *value = random.signed();
     }
-    for column in 0..grid.pattern.unknowns() {
-        let start = grid.pattern.col_ptr[column];
-        let rows = &grid.pattern.row_idx[start..grid.pattern.col_ptr[column + 1]];
-        grid.values[start + rows.binary_search(&column).unwrap()] = 0.0;
+    for (_, _, entry) in diagonal(&grid.pattern) {
+        grid.values[entry] = 0.0;
     }
     for matrix in [exchange, cycle, grid] {
         let (exact, rhs) = manufactured(&matrix, 6);
@@ -236,9 +243,9 @@ fn pivots_out_of_reach_are_replaced_or_left_to_general_lu() {
             disagreement => panic!("{disagreement:?}"),
         }
         let mut solution = vec![0.0; rhs.len()];
-        general.solve(&rhs, &mut solution).unwrap();
+        general.solve(&matrix, &rhs, &mut solution).unwrap();
         assert!(distance(&exact, &solution) < 1e-6);
-        let report = multifrontal.solve(&rhs, &mut solution).unwrap();
+        let report = multifrontal.solve(&matrix, &rhs, &mut solution).unwrap();
         assert!(distance(&exact, &solution) < 1e-6, "{report:?}");
         refined += usize::from(report.perturbed_pivots > 0);
         fell_back += usize::from(report.method == "faer-lu");
@@ -256,14 +263,14 @@ fn misuse_is_refused() {
     let n = matrix.pattern.unknowns();
     for kind in SolverKind::ALL {
         let mut solver = kind.build();
-        let unprepared = solver.solve(&vec![1.0; n], &mut vec![0.0; n]);
+        let unprepared = solver.solve(&matrix, &vec![1.0; n], &mut vec![0.0; n]);
         assert_eq!(unprepared, Err(LinearSolverError::NotFactored), "{kind:?}");
         solver.factor(&matrix).unwrap();
-        let long_rhs = solver.solve(&vec![1.0; n + 1], &mut vec![0.0; n]);
+        let long_rhs = solver.solve(&matrix, &vec![1.0; n + 1], &mut vec![0.0; n]);
         assert!(
             matches!(long_rhs, Err(LinearSolverError::WrongLength { found, .. }) if found == n + 1)
         );
-        let short_solution = solver.solve(&vec![1.0; n], &mut vec![0.0; n - 1]);
+        let short_solution = solver.solve(&matrix, &vec![1.0; n], &mut vec![0.0; n - 1]);
         assert!(
             matches!(short_solution, Err(LinearSolverError::WrongLength { found, .. }) if found == n - 1)
         );
@@ -285,35 +292,22 @@ fn misuse_is_refused() {
 #[test]
 fn patterns_are_checked() {
     let sound = (*Body::plane(4, 3).tangent().pattern).clone();
-    let empty = Pattern {
-        col_ptr: vec![0],
-        row_idx: vec![],
-        blocks: vec![],
-        reach: 2,
-    };
+    let empty = Pattern::new(vec![], vec![0], vec![], 2);
     let mut broken = Vec::new();
-    broken.push(Pattern {
-        blocks: sound.blocks[1..].to_vec(),
-        ..sound.clone()
-    });
-    broken.push(Pattern {
-        blocks: sound.blocks[..3].to_vec(),
-        ..sound.clone()
-    });
-    broken.push(Pattern {
-        row_idx: sound.row_idx[1..].to_vec(),
-        ..sound.clone()
-    });
-    let mut swapped = sound.clone();
-    swapped.row_idx.swap(0, 1);
-    broken.push(swapped);
-    let mut outside = sound.clone();
-    let last = outside.col_ptr[1] - 1;
-    outside.row_idx[last] = 1_000_000;
-    broken.push(outside);
-    let mut backwards = sound.clone();
-    backwards.col_ptr[2] = 10_000;
-    broken.push(backwards);
+    let mut breaks = |change: &dyn Fn(&mut Pattern)| {
+        let mut pattern = sound.clone();
+        change(&mut pattern);
+        broken.push(pattern);
+    };
+    breaks(&|pattern| _ = pattern.blocks.remove(0));
+    breaks(&|pattern| pattern.blocks.truncate(3));
+    breaks(&|pattern| pattern.blocks[2].len += 1);
+    breaks(&|pattern| _ = pattern.coupled.remove(0));
+    breaks(&|pattern| pattern.coupled.swap(0, 1));
+    breaks(&|pattern| pattern.coupled[pattern.starts[1] - 1] = 1_000_000);
+    breaks(&|pattern| pattern.starts[2] = 10_000);
+    breaks(&|pattern| pattern.starts[1] = 0);
+    breaks(&|pattern| pattern.first_value[1] += 1);
     for kind in SolverKind::ALL {
         let refused = kind.build().analyse(&Arc::new(empty.clone()));
         assert_eq!(refused, Err(LinearSolverError::Empty), "{kind:?}");
@@ -326,20 +320,17 @@ fn patterns_are_checked() {
         }
     }
 
-    // Unknown 0 is coupled to the last one, and the last one not to it.
-    let mut one_sided = sound;
-    let last = one_sided.unknowns() - 1;
-    let after = one_sided.col_ptr[1];
-    assert!(one_sided.row_idx[after - 1] < last);
-    one_sided.row_idx.insert(after, last);
-    one_sided.col_ptr[1..]
-        .iter_mut()
-        .for_each(|start| *start += 1);
-    let refused = SolverKind::Multifrontal
-        .build()
-        .analyse(&Arc::new(one_sided));
-    assert!(
-        matches!(refused, Err(LinearSolverError::InvalidPattern { .. })),
-        "{refused:?}"
-    );
+    // Lists of blocks, of which the first is coupled to the second alone, or not to itself.
+    for lists in [&[&[0, 1][..], &[1]], &[&[1][..], &[0, 1]]] {
+        let starts = vec![0, lists[0].len(), lists[0].len() + lists[1].len()];
+        let coupled = lists.concat();
+        let one_sided = Arc::new(Pattern::new(sound.blocks[..2].to_vec(), starts, coupled, 2));
+        for kind in LU {
+            let refused = kind.build().analyse(&one_sided);
+            assert!(
+                matches!(refused, Err(LinearSolverError::InvalidPattern { .. })),
+                "{refused:?}"
+            );
+        }
+    }
 }

@@ -22,6 +22,8 @@ fn assert_is_an_order(pattern: &Pattern) {
     let mut nodes = order.nodes.clone();
     nodes.sort_unstable();
     assert!(nodes.iter().copied().eq(0..pattern.blocks.len()));
+    assert!(order.parts.is_sorted_by(|a, b| a < b) && order.parts[0] == 0);
+    assert_eq!(order.parts.last(), Some(&nodes.len()));
     let unknowns = order.unknowns(pattern);
     let mut start = 0;
     for &node in &order.nodes {
@@ -51,12 +53,7 @@ fn bodies_are_ordered() {
     for body in bodies {
         assert_is_an_order(&body.tangent().pattern);
     }
-    let empty = Pattern {
-        col_ptr: vec![0],
-        row_idx: vec![],
-        blocks: vec![],
-        reach: 2,
-    };
+    let empty = Pattern::new(vec![], vec![0], vec![], 2);
     assert!(NestedDissection::new(&empty).nodes.is_empty());
 }
 
@@ -73,7 +70,10 @@ proptest! {
             first += len;
             NodeBlock { first: first - len, len, place: [x * stretch, y, z] }
         });
-        let pattern = Pattern { col_ptr: vec![0], row_idx: vec![], blocks: blocks.collect(), reach };
+        let blocks: Vec<NodeBlock> = blocks.collect();
+        let alone = (0..=blocks.len()).collect();
+        let coupled = (0..blocks.len() as u32).collect();
+        let pattern = Pattern::new(blocks, alone, coupled, reach);
         assert_is_an_order(&pattern);
     }
 }
@@ -81,7 +81,8 @@ proptest! {
 /// Entries of L, and the operations to compute it, in the given order or that of minimum degree.
 fn fill(pattern: &Pattern, order: Option<&[usize]>) -> (usize, f64) {
     let n = pattern.unknowns();
-    let view = SymbolicSparseColMatRef::new_checked(n, n, &pattern.col_ptr, None, &pattern.row_idx);
+    let columns = pattern.compressed_columns();
+    let view = SymbolicSparseColMatRef::new_checked(n, n, &columns.col_ptr, None, &columns.row_idx);
     let mut position = vec![0; n];
     for (new, &old) in order.unwrap_or_default().iter().enumerate() {
         position[old] = new;

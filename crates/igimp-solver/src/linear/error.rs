@@ -18,13 +18,13 @@ pub enum LinearSolverError {
         found: usize,
     },
 
-    /// The pattern is not a valid, structurally symmetric pattern in compressed columns.
-    #[error("invalid sparsity pattern at column {column}: {reason}")]
+    /// The pattern is not a valid, structurally symmetric pattern of coupled blocks.
+    #[error("invalid sparsity pattern at block {block}: {reason}")]
     InvalidPattern {
         /// What is wrong.
         reason: &'static str,
-        /// First column where it is wrong.
-        column: usize,
+        /// First block where it is wrong.
+        block: usize,
     },
 
     /// `solve` was called before a successful `factor`.

@@ -11,10 +11,11 @@ use faer::sparse::SparseColMatRef;
 use faer::sparse::linalg::LuError;
 use faer::sparse::linalg::lu::{self, LuRef, LuSymbolicParams, NumericLu, SymbolicLu};
 use faer::{Conj, MatMut, Par, Spec};
-use igimp_assembly::{Pattern, TangentMatrix};
+use igimp_assembly::{CompressedColumns, Pattern, TangentMatrix};
 
-use super::refine::{Accuracy, probe, solve_refined};
-use super::symmetric::symbolic_view;
+use super::check::Sweep;
+use super::faer_cholesky::symbolic_view;
+use super::refine::{Accuracy, Refinement, probe};
 use super::{LinearSolver, LinearSolverError, SolveReport, check};
 
 /// LU with partial pivoting for any non-singular matrix.
@@ -24,12 +25,14 @@ pub struct GeneralLu {
     analyses: usize,
     analysis: Option<Analysis>,
     numeric: NumericLu<usize, f64>,
-    matrix: Option<TangentMatrix>,
+    sweep: Sweep,
+    refinement: Refinement,
     factored: bool,
 }
 
 struct Analysis {
     pattern: Arc<Pattern>,
+    columns: CompressedColumns,
     symbolic: SymbolicLu<usize>,
     workspace: MemBuffer,
 }
@@ -45,10 +48,11 @@ impl GeneralLu {
 
     fn solve_factored(
         &mut self,
+        matrix: &TangentMatrix,
         rhs: &[f64],
         solution: &mut [f64],
     ) -> Result<SolveReport, LinearSolverError> {
-        let (Some(analysis), Some(matrix)) = (self.analysis.as_mut(), self.matrix.as_ref()) else {
+        let Some(analysis) = &mut self.analysis else {
             return Err(LinearSolverError::NotFactored);
         };
         let Analysis {
@@ -57,15 +61,18 @@ impl GeneralLu {
             ..
         } = analysis;
         let factors = LuRef::new_unchecked(symbolic, &self.numeric);
-        let refined = solve_refined(matrix, rhs, solution, &self.accuracy, |vector| {
-            let rows = vector.len();
-            factors.solve_in_place_with_conj(
-                Conj::No,
-                MatMut::from_column_major_slice_mut(vector, rows, 1),
-                Par::Seq,
-                MemStack::new(workspace),
-            );
-        })?;
+        let accuracy = &self.accuracy;
+        let refined = self
+            .refinement
+            .solve(matrix, rhs, solution, accuracy, |vector| {
+                let rows = vector.len();
+                factors.solve_in_place_with_conj(
+                    Conj::No,
+                    MatMut::from_column_major_slice_mut(vector, rows, 1),
+                    Par::Seq,
+                    MemStack::new(workspace),
+                );
+            })?;
         Ok(SolveReport::new(
             "faer-lu",
             refined.relative_residual,
@@ -90,8 +97,9 @@ impl LinearSolver for GeneralLu {
         self.analysis = None;
         check::valid_pattern(pattern)?;
         let out_of_memory = LinearSolverError::OutOfMemory { what: "LU factors" };
+        let columns = pattern.compressed_columns();
         let symbolic =
-            lu::factorize_symbolic_lu(symbolic_view(pattern), LuSymbolicParams::default())
+            lu::factorize_symbolic_lu(symbolic_view(&columns), LuSymbolicParams::default())
                 .map_err(|_| out_of_memory.clone())?;
         let scratch = symbolic
             .factorize_numeric_lu_scratch::<f64>(Par::Seq, Spec::default())
@@ -99,6 +107,7 @@ impl LinearSolver for GeneralLu {
         let workspace = MemBuffer::try_new(scratch).map_err(|_| out_of_memory)?;
         self.analysis = Some(Analysis {
             pattern: Arc::clone(pattern),
+            columns,
             symbolic,
             workspace,
         });
@@ -111,7 +120,7 @@ impl LinearSolver for GeneralLu {
     fn factor(&mut self, matrix: &TangentMatrix) -> Result<(), LinearSolverError> {
         self.analyse(&matrix.pattern)?;
         self.factored = false;
-        check::valid_values(matrix)?;
+        self.sweep.over(matrix)?;
         let analysis = self
             .analysis
             .as_mut()
@@ -120,7 +129,7 @@ impl LinearSolver for GeneralLu {
             .symbolic
             .factorize_numeric_lu(
                 &mut self.numeric,
-                SparseColMatRef::new(symbolic_view(&analysis.pattern), &matrix.values),
+                SparseColMatRef::new(symbolic_view(&analysis.columns), &matrix.values),
                 Par::Seq,
                 MemStack::new(&mut analysis.workspace),
                 Spec::default(),
@@ -129,9 +138,8 @@ impl LinearSolver for GeneralLu {
                 LuError::SymbolicSingular { .. } => LinearSolverError::Singular { unknown: None },
                 LuError::Generic(_) => LinearSolverError::OutOfMemory { what: "LU factors" },
             })?;
-        check::keep(&mut self.matrix, matrix);
         probe(matrix.pattern.unknowns(), None, |rhs, solution| {
-            self.solve_factored(rhs, solution)
+            self.solve_factored(matrix, rhs, solution)
         })?;
         self.factored = true;
         Ok(())
@@ -139,13 +147,14 @@ impl LinearSolver for GeneralLu {
 
     fn solve(
         &mut self,
+        matrix: &TangentMatrix,
         rhs: &[f64],
         solution: &mut [f64],
     ) -> Result<SolveReport, LinearSolverError> {
         if !self.factored {
             return Err(LinearSolverError::NotFactored);
         }
-        self.solve_factored(rhs, solution)
+        self.solve_factored(matrix, rhs, solution)
     }
 
     fn analyses(&self) -> usize {

@@ -3,40 +3,39 @@
 //! | kind | matrix | method | role |
 //! |---|---|---|---|
 //! | [`SolverKind::Auto`] | any | chooses between the next two by the symmetry of K | default |
-//! | [`SolverKind::FaerCholesky`] | symmetric positive definite | supernodal Cholesky of `faer` | fast |
+//! | [`SolverKind::MultifrontalCholesky`] | symmetric positive definite | multifrontal Cholesky, own | fast |
 //! | [`SolverKind::Multifrontal`] | structurally symmetric | multifrontal LU, own | fast |
+//! | [`SolverKind::FaerCholesky`] | symmetric positive definite | supernodal Cholesky of `faer` | independent second, fast |
 //! | [`SolverKind::NalgebraCholesky`] | symmetric positive definite | `nalgebra-sparse` | independent second |
 //! | [`SolverKind::SprsBiCgStab`] | any | `sprs`' stabilised bi-conjugate gradients | independent second |
 //!
 //! The direct solvers eliminate the unknowns in the order of a geometric nested dissection
 //! ([`NestedDissection`]); every solution is checked against the matrix that was factorised, and
-//! refined where that helps. All of them work on one thread in a fixed order: the same input gives
-//! the same bits.
+//! refined where that helps. The multifrontal solvers use the threads of the current `rayon` pool, the
+//! others one; the same input gives the same bits on any number of threads.
 
-mod auto;
 mod check;
 mod error;
+mod faer_cholesky;
 mod general_lu;
 mod multifrontal;
 mod nalgebra_cholesky;
 mod ordering;
 mod refine;
 mod sprs_bicgstab;
-mod symmetric;
 
 use std::sync::Arc;
 
 use igimp_assembly::{Pattern, TangentMatrix};
 
-pub use auto::AutoSolver;
 pub use error::LinearSolverError;
+pub use faer_cholesky::FaerCholesky;
 pub use general_lu::GeneralLu;
-pub use multifrontal::MultifrontalLu;
+pub use multifrontal::{AutoSolver, MultifrontalCholesky, MultifrontalLu};
 pub use nalgebra_cholesky::NalgebraCholesky;
 pub use ordering::NestedDissection;
 pub use refine::Accuracy;
 pub use sprs_bicgstab::SprsBiCgStab;
-pub use symmetric::FaerCholesky;
 
 /// A solver for K x = b that reuses its symbolic work while the pattern of K stays the same.
 pub trait LinearSolver: Send {
@@ -44,15 +43,16 @@ pub trait LinearSolver: Send {
     fn name(&self) -> &'static str;
 
     /// Prepares everything that depends on the pattern only; does nothing when the pattern is the
-    /// one analysed before (the same allocation, or equal).
+    /// one analysed before (the same allocation, or equal), and little when the former analysis
+    /// serves it too.
     ///
     /// # Errors
     /// [`LinearSolverError::Empty`], [`LinearSolverError::InvalidPattern`] or
     /// [`LinearSolverError::OutOfMemory`].
     fn analyse(&mut self, pattern: &Arc<Pattern>) -> Result<(), LinearSolverError>;
 
-    /// Factorises the matrix, after analysing its pattern if needed, and keeps a copy of it to
-    /// check solutions against. After an error there is no matrix to solve with.
+    /// Factorises the matrix, after analysing its pattern if needed. After an error there is no
+    /// matrix to solve with.
     ///
     /// # Errors
     /// Those of [`LinearSolver::analyse`], and [`LinearSolverError::WrongLength`],
@@ -61,7 +61,8 @@ pub trait LinearSolver: Send {
     fn factor(&mut self, matrix: &TangentMatrix) -> Result<(), LinearSolverError>;
 
     /// Solves K x = `rhs` for the matrix factorised last; both slices have one entry per unknown.
-    /// The content of `solution` is meaningful only on success.
+    /// The solution is checked against `matrix` and refined with it: it must be the one that was
+    /// factorised. The content of `solution` is meaningful only on success.
     ///
     /// # Errors
     /// [`LinearSolverError::NotFactored`], [`LinearSolverError::WrongLength`],
@@ -69,6 +70,7 @@ pub trait LinearSolver: Send {
     /// [`LinearSolverError::Inaccurate`].
     fn solve(
         &mut self,
+        matrix: &TangentMatrix,
         rhs: &[f64],
         solution: &mut [f64],
     ) -> Result<SolveReport, LinearSolverError>;
@@ -108,11 +110,13 @@ impl SolveReport {
 /// The solvers to choose from, see the table of the [module](self).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum SolverKind {
-    /// Cholesky for symmetric matrices, multifrontal LU for the others and when Cholesky fails.
+    /// Cholesky for symmetric matrices, LU for the others and when Cholesky fails.
     #[default]
     Auto,
     /// Supernodal Cholesky factorisation of `faer`.
     FaerCholesky,
+    /// Multifrontal Cholesky factorisation for symmetric positive definite matrices.
+    MultifrontalCholesky,
     /// Multifrontal LU for structurally symmetric matrices.
     Multifrontal,
     /// Cholesky factorisation of `nalgebra-sparse`.
@@ -123,9 +127,10 @@ pub enum SolverKind {
 
 impl SolverKind {
     /// All kinds, for tests and for listings.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 6] = [
         Self::Auto,
         Self::FaerCholesky,
+        Self::MultifrontalCholesky,
         Self::Multifrontal,
         Self::NalgebraCholesky,
         Self::SprsBiCgStab,
@@ -136,6 +141,7 @@ impl SolverKind {
         match self {
             Self::Auto => Box::new(AutoSolver::default()),
             Self::FaerCholesky => Box::new(FaerCholesky::default()),
+            Self::MultifrontalCholesky => Box::new(MultifrontalCholesky::default()),
             Self::Multifrontal => Box::new(MultifrontalLu::default()),
             Self::NalgebraCholesky => Box::new(NalgebraCholesky::default()),
             Self::SprsBiCgStab => Box::new(SprsBiCgStab::default()),

@@ -5,12 +5,13 @@
 
 use std::sync::Arc;
 
-use igimp_assembly::{Pattern, TangentMatrix};
+use igimp_assembly::{CompressedColumns, Pattern, TangentMatrix};
 use nalgebra::DMatrixViewMut;
 use nalgebra_sparse::factorization::{CscCholesky, CscSymbolicCholesky};
 use nalgebra_sparse::pattern::SparsityPattern;
 
-use super::refine::{Accuracy, solve_refined};
+use super::check::Sweep;
+use super::refine::{Accuracy, Refinement};
 use super::{LinearSolver, LinearSolverError, NestedDissection, SolveReport, check};
 
 /// Column-by-column Cholesky factorisation for symmetric positive definite matrices.
@@ -20,7 +21,8 @@ pub struct NalgebraCholesky {
     analyses: usize,
     analysis: Option<Analysis>,
     factors: Option<CscCholesky<f64>>,
-    matrix: Option<TangentMatrix>,
+    sweep: Sweep,
+    refinement: Refinement,
 }
 
 struct Analysis {
@@ -67,7 +69,7 @@ impl LinearSolver for NalgebraCholesky {
         if !matrix.symmetric {
             return Err(LinearSolverError::NotSymmetric);
         }
-        check::valid_values(matrix)?;
+        self.sweep.over(matrix)?;
         let analysis = self
             .analysis
             .as_ref()
@@ -86,34 +88,35 @@ impl LinearSolver for NalgebraCholesky {
             .map(|&start| lower.values().get(start));
         let pivots = analysis.order.iter().zip(roots.flatten());
         check::sound_pivots(
-            matrix,
+            &self.sweep.diagonal,
             pivots.map(|(&unknown, root)| (unknown, root * root)),
         )?;
         self.factors = Some(factors);
-        check::keep(&mut self.matrix, matrix);
         Ok(())
     }
 
     fn solve(
         &mut self,
+        matrix: &TangentMatrix,
         rhs: &[f64],
         solution: &mut [f64],
     ) -> Result<SolveReport, LinearSolverError> {
-        let (Some(Analysis { order, .. }), Some(factors), Some(matrix)) =
-            (&self.analysis, &self.factors, &self.matrix)
-        else {
+        let (Some(Analysis { order, .. }), Some(factors)) = (&self.analysis, &self.factors) else {
             return Err(LinearSolverError::NotFactored);
         };
         let mut permuted = vec![0.0; order.len()];
-        let refined = solve_refined(matrix, rhs, solution, &self.accuracy, |vector| {
-            for (permuted, &unknown) in permuted.iter_mut().zip(order) {
-                *permuted = vector[unknown];
-            }
-            factors.solve_mut(DMatrixViewMut::from_slice(&mut permuted, order.len(), 1));
-            for (&permuted, &unknown) in permuted.iter().zip(order) {
-                vector[unknown] = permuted;
-            }
-        })?;
+        let accuracy = &self.accuracy;
+        let refined = self
+            .refinement
+            .solve(matrix, rhs, solution, accuracy, |vector| {
+                for (permuted, &unknown) in permuted.iter_mut().zip(order) {
+                    *permuted = vector[unknown];
+                }
+                factors.solve_mut(DMatrixViewMut::from_slice(&mut permuted, order.len(), 1));
+                for (&permuted, &unknown) in permuted.iter().zip(order) {
+                    vector[unknown] = permuted;
+                }
+            })?;
         Ok(SolveReport::new(
             self.name(),
             refined.relative_residual,
@@ -135,14 +138,15 @@ impl Analysis {
         for (new, &old) in order.iter().enumerate() {
             position[old] = new;
         }
+        let CompressedColumns { col_ptr, row_idx } = pattern.compressed_columns();
         let mut offsets = vec![0];
         let mut rows = Vec::with_capacity(pattern.stored());
         let mut sources = Vec::with_capacity(pattern.stored());
         let mut column: Vec<(usize, usize)> = Vec::new();
         for &old in &order {
-            let entries = pattern.col_ptr[old]..pattern.col_ptr[old + 1];
+            let entries = col_ptr[old]..col_ptr[old + 1];
             column.clear();
-            column.extend(entries.map(|entry| (position[pattern.row_idx[entry]], entry)));
+            column.extend(entries.map(|entry| (position[row_idx[entry]], entry)));
             column.sort_unstable();
             rows.extend(column.iter().map(|&(row, _)| row));
             sources.extend(column.iter().map(|&(_, entry)| entry));
@@ -152,7 +156,7 @@ impl Analysis {
             SparsityPattern::try_from_offsets_and_indices(unknowns, unknowns, offsets, rows)
                 .map_err(|_| LinearSolverError::InvalidPattern {
                     reason: "not square",
-                    column: 0,
+                    block: 0,
                 })?;
         let symbolic = CscSymbolicCholesky::factor(permuted);
         Ok(Self {

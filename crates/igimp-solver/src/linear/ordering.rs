@@ -6,31 +6,44 @@
 //! them and are eliminated last. Balancing by counted nodes and not by length keeps the fill low
 //! where half of the bounding box is empty, as in a slope.
 
-use igimp_assembly::{NodeBlock, Pattern};
+use igimp_assembly::Pattern;
 
 /// Nodes below which a part is not dissected further.
-const LEAF_NODES: usize = 4;
+const LEAF_NODES: usize = 8;
 
 /// An order of elimination of nodes and of their unknowns.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NestedDissection {
     /// The blocks of the pattern in order of elimination: `nodes[k]` is eliminated k-th.
     pub nodes: Vec<usize>,
+    /// Where each part begins in that order, and the end of the last: parts that were not
+    /// dissected further and separators, none of them empty.
+    pub parts: Vec<usize>,
 }
 
 impl NestedDissection {
     /// Dissects the nodes of a pattern; O(n log n) for n nodes, on grids of one to three
     /// dimensions of any shape.
     pub fn new(pattern: &Pattern) -> Self {
-        let mut nodes: Vec<usize> = (0..pattern.blocks.len()).collect();
-        let mut dissector = Dissector {
-            blocks: &pattern.blocks,
-            reach: pattern.reach.max(1),
-            layer_counts: Vec::new(),
-            buffer: Vec::with_capacity(nodes.len()),
+        let node = |(index, place): (usize, [usize; 3])| Node {
+            place: place.map(|along| u32::try_from(along).unwrap_or(u32::MAX)),
+            index: u32::try_from(index).expect("fewer than 2^32 nodes"),
         };
-        dissector.dissect(&mut nodes);
-        Self { nodes }
+        let places = pattern.blocks.iter().map(|block| block.place);
+        let mut nodes: Vec<Node> = places.enumerate().map(node).collect();
+        let mut dissector = Dissector {
+            reach: u32::try_from(pattern.reach.max(1)).unwrap_or(u32::MAX),
+            layer_counts: Vec::new(),
+            after: Vec::with_capacity(nodes.len()),
+            between: Vec::new(),
+            parts: vec![0],
+        };
+        let bounds = Bounds::of(&nodes);
+        dissector.dissect(&mut nodes, &bounds);
+        Self {
+            nodes: nodes.iter().map(|node| node.index as usize).collect(),
+            parts: dissector.parts,
+        }
     }
 
     /// The unknowns in order of elimination, those of a node together.
@@ -42,126 +55,165 @@ impl NestedDissection {
     }
 }
 
-/// Layers `start..end` across an axis that separate a part into two.
-struct Separator {
-    axis: usize,
-    start: usize,
-    end: usize,
+#[derive(Clone, Copy)]
+struct Node {
+    place: [u32; 3],
+    /// Block of the pattern.
+    index: u32,
 }
 
-struct Dissector<'a> {
-    blocks: &'a [NodeBlock],
-    reach: usize,
+/// Smallest and largest place of some nodes along each axis.
+#[derive(Clone, Copy)]
+struct Bounds {
+    low: [u32; 3],
+    high: [u32; 3],
+}
+
+impl Bounds {
+    const NOTHING: Self = Self {
+        low: [u32::MAX; 3],
+        high: [0; 3],
+    };
+
+    fn of(nodes: &[Node]) -> Self {
+        let mut bounds = Self::NOTHING;
+        nodes.iter().for_each(|node| bounds.include(node));
+        bounds
+    }
+
+    fn include(&mut self, node: &Node) {
+        for axis in 0..3 {
+            self.low[axis] = self.low[axis].min(node.place[axis]);
+            self.high[axis] = self.high[axis].max(node.place[axis]);
+        }
+    }
+
+    fn layers(&self, axis: usize) -> usize {
+        (self.high[axis] - self.low[axis]) as usize + 1
+    }
+
+    fn longest_axis(&self) -> usize {
+        (1..3).fold(0, |longest, axis| {
+            if self.layers(axis) > self.layers(longest) {
+                axis
+            } else {
+                longest
+            }
+        })
+    }
+}
+
+struct Dissector {
+    reach: u32,
     /// Scratch: nodes per layer.
     layer_counts: Vec<usize>,
-    /// Scratch: nodes set aside while a part is split.
-    buffer: Vec<usize>,
+    /// Scratch: nodes behind a separator and in it, while a part is split.
+    after: Vec<Node>,
+    between: Vec<Node>,
+    /// Starts of the parts found so far, and the end of the last.
+    parts: Vec<usize>,
 }
 
-impl Dissector<'_> {
+impl Dissector {
     /// Sorts a part into order of elimination: first half, second half, separator.
     ///
     /// Each half holds at most half of the nodes, or a single layer where that alone holds more, so
     /// the recursion is little deeper than log2 n.
-    fn dissect(&mut self, part: &mut [usize]) {
-        let separator = match part.len() {
-            0..=LEAF_NODES => None,
-            _ => self.separator(part),
-        };
-        let Some(separator) = separator else {
+    fn dissect(&mut self, part: &mut [Node], bounds: &Bounds) {
+        if part.len() <= LEAF_NODES {
+            self.end_part(part.len());
             return;
-        };
-        let (before, after) = self.split(part, &separator);
+        }
+        let axis = bounds.longest_axis();
+        if bounds.layers(axis) < self.reach as usize + 2 {
+            self.end_part(part.len());
+            return;
+        }
+        let start = self.separator(part, bounds, axis);
+        let (before, after, halves) = self.split(part, axis, start);
         let (first, rest) = part.split_at_mut(before);
         let (second, between) = rest.split_at_mut(after);
-        self.dissect(first);
-        self.dissect(second);
-        self.sort_along(between, separator.axis);
+        self.dissect(first, &halves[0]);
+        self.dissect(second, &halves[1]);
+        sort_along(between, axis);
+        self.end_part(between.len());
     }
 
-    /// The separator across the longest axis that balances the counts of nodes, if the part is
-    /// long enough to be separated.
-    fn separator(&mut self, part: &[usize]) -> Option<Separator> {
-        let (low, high) = self.bounds(part);
-        let axis = (0..3).max_by_key(|&axis| (high[axis] - low[axis], 3 - axis))?;
-        let layers = high[axis] - low[axis] + 1;
-        if layers < self.reach + 2 {
-            return None;
+    fn end_part(&mut self, len: usize) {
+        if len > 0 {
+            let start = self.parts.last().copied().unwrap_or(0);
+            self.parts.push(start + len);
+        }
+    }
+
+    /// The first layer of the separator across an axis that balances the counts of nodes. The part
+    /// has at least two layers more than a separator.
+    fn separator(&mut self, part: &[Node], bounds: &Bounds, axis: usize) -> u32 {
+        let (layers, reach) = (bounds.layers(axis), self.reach as usize);
+        let low = bounds.low[axis];
+        let size: usize = (0..3)
+            .map(|axis| bounds.layers(axis))
+            .fold(1, usize::saturating_mul);
+        if part.len() == size {
+            // A full box.
+            return low + ((layers - reach) / 2) as u32;
         }
         self.layer_counts.clear();
         self.layer_counts.resize(layers, 0);
-        for &node in part {
-            self.layer_counts[self.blocks[node].place[axis] - low[axis]] += 1;
+        for node in part {
+            self.layer_counts[(node.place[axis] - low) as usize] += 1;
         }
-
         let mut before = 0;
-        let mut between: usize = self.layer_counts[..self.reach].iter().sum();
+        let mut between: usize = self.layer_counts[..reach].iter().sum();
         let mut best = (usize::MAX, 0);
-        for start in 1..layers - self.reach {
+        for start in 1..layers - reach {
             before += self.layer_counts[start - 1];
-            between += self.layer_counts[start + self.reach - 1];
+            between += self.layer_counts[start + reach - 1];
             between -= self.layer_counts[start - 1];
             let after = part.len() - before - between;
             best = best.min((before.max(after), start));
         }
-        let start = low[axis] + best.1;
-        Some(Separator {
-            axis,
-            start,
-            end: start + self.reach,
-        })
-    }
-
-    /// Smallest and largest place of the nodes along each axis.
-    fn bounds(&self, part: &[usize]) -> ([usize; 3], [usize; 3]) {
-        let mut low = [usize::MAX; 3];
-        let mut high = [0; 3];
-        for &node in part {
-            for axis in 0..3 {
-                low[axis] = low[axis].min(self.blocks[node].place[axis]);
-                high[axis] = high[axis].max(self.blocks[node].place[axis]);
-            }
-        }
-        (low, high)
+        low + best.1 as u32
     }
 
     /// Moves the nodes before the separator to the front, then those after it, then the separator,
-    /// each in their former order; returns the first two counts.
-    fn split(&mut self, part: &mut [usize], separator: &Separator) -> (usize, usize) {
-        let place = |node: usize| self.blocks[node].place[separator.axis];
-        self.buffer.clear();
+    /// each in their former order; returns the first two counts and their bounds.
+    fn split(&mut self, part: &mut [Node], axis: usize, start: u32) -> (usize, usize, [Bounds; 2]) {
+        let end = start + self.reach;
+        self.after.clear();
+        self.between.clear();
+        let mut halves = [Bounds::NOTHING; 2];
         let mut before = 0;
         for position in 0..part.len() {
             let node = part[position];
-            if place(node) < separator.start {
+            let along = node.place[axis];
+            if along < start {
+                halves[0].include(&node);
                 part[before] = node;
                 before += 1;
+            } else if along >= end {
+                halves[1].include(&node);
+                self.after.push(node);
             } else {
-                self.buffer.push(node);
+                self.between.push(node);
             }
         }
-        let is_after = |node: &&usize| place(**node) >= separator.end;
-        let is_between = |node: &&usize| place(**node) < separator.end;
-        let last = self
-            .buffer
-            .iter()
-            .filter(is_after)
-            .chain(self.buffer.iter().filter(is_between));
-        let mut after = 0;
-        for (slot, &node) in part[before..].iter_mut().zip(last) {
-            *slot = node;
-            after += usize::from(place(node) >= separator.end);
-        }
-        (before, after)
+        let after = self.after.len();
+        part[before..before + after].copy_from_slice(&self.after);
+        part[before + after..].copy_from_slice(&self.between);
+        (before, after, halves)
     }
+}
 
-    /// Sorts a separator along its length, so that the boundary of a smaller part is a run of
-    /// consecutive nodes in it.
-    fn sort_along(&self, separator: &mut [usize], across: usize) {
-        separator.sort_by_key(|&node| {
-            let mut place = self.blocks[node].place;
-            let layer = std::mem::take(&mut place[across]);
-            (place, layer)
-        });
+/// Sorts a separator along its length, so that the boundary of a smaller part is a run of
+/// consecutive nodes in it.
+fn sort_along(separator: &mut [Node], across: usize) {
+    let key = |node: &Node| {
+        let mut place = node.place;
+        let layer = std::mem::take(&mut place[across]);
+        (place, layer)
+    };
+    if !separator.is_sorted_by_key(key) {
+        separator.sort_by_key(key);
     }
 }

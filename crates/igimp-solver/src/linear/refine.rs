@@ -33,71 +33,84 @@ impl Default for Accuracy {
     }
 }
 
-/// Outcome of [`solve_refined`].
+/// Vectors for refinement, kept from solve to solve.
+#[derive(Default)]
+pub(super) struct Refinement {
+    correction: Vec<f64>,
+    residual: Vec<f64>,
+    candidate: Vec<f64>,
+}
+
+/// Outcome of [`Refinement::solve`].
 pub(super) struct Refined {
     pub(super) relative_residual: f64,
     pub(super) refinements: usize,
 }
 
-/// Solves K x = b with `apply_inverse`, which replaces a vector by the approximate K⁻¹ times it,
-/// and refines x while that at least halves the residual.
-pub(super) fn solve_refined(
-    matrix: &TangentMatrix,
-    rhs: &[f64],
-    solution: &mut [f64],
-    accuracy: &Accuracy,
-    mut apply_inverse: impl FnMut(&mut [f64]),
-) -> Result<Refined, LinearSolverError> {
-    let unknowns = matrix.pattern.unknowns();
-    check::length("the right-hand side", rhs.len(), unknowns)?;
-    check::length("the solution", solution.len(), unknowns)?;
-    check::finite("right-hand side", rhs)?;
-    let scale = max_norm(rhs);
-    solution.fill(0.0);
-    if scale == 0.0 {
-        return Ok(Refined {
-            relative_residual: 0.0,
-            refinements: 0,
-        });
-    }
+impl Refinement {
+    /// Solves K x = b with `apply_inverse`, which replaces a vector by the approximate K⁻¹ times it,
+    /// and refines x while that at least halves the residual.
+    pub(super) fn solve(
+        &mut self,
+        matrix: &TangentMatrix,
+        rhs: &[f64],
+        solution: &mut [f64],
+        accuracy: &Accuracy,
+        mut apply_inverse: impl FnMut(&mut [f64]),
+    ) -> Result<Refined, LinearSolverError> {
+        let unknowns = matrix.pattern.unknowns();
+        check::length("the right-hand side", rhs.len(), unknowns)?;
+        check::length("the solution", solution.len(), unknowns)?;
+        check::finite("right-hand side", rhs)?;
+        let scale = max_norm(rhs);
+        if scale == 0.0 {
+            solution.fill(0.0);
+            return Ok(Refined {
+                relative_residual: 0.0,
+                refinements: 0,
+            });
+        }
 
-    let mut correction = rhs.to_vec();
-    apply_inverse(&mut correction);
-    check::finite("solution", &correction)?;
-    solution.copy_from_slice(&correction);
-    let mut residual = vec![0.0; unknowns];
-    let mut relative_residual = relative_residual_of(matrix, rhs, solution, &mut residual, scale);
+        let Self {
+            correction,
+            residual,
+            candidate,
+        } = self;
+        solution.copy_from_slice(rhs);
+        apply_inverse(solution);
+        check::finite("solution", solution)?;
+        residual.resize(unknowns, 0.0);
+        let mut relative_residual = relative_residual_of(matrix, rhs, solution, residual, scale);
 
-    let mut refinements = 0;
-    let mut candidate = vec![0.0; unknowns];
-    while relative_residual > accuracy.target && refinements < accuracy.max_refinements {
-        correction.copy_from_slice(&residual);
-        apply_inverse(&mut correction);
-        for ((candidate, &x), &dx) in candidate.iter_mut().zip(&*solution).zip(&correction) {
-            *candidate = x + dx;
+        let mut refinements = 0;
+        while relative_residual > accuracy.target && refinements < accuracy.max_refinements {
+            correction.clone_from(residual);
+            apply_inverse(correction);
+            candidate.clear();
+            candidate.extend(solution.iter().zip(&*correction).map(|(x, dx)| x + dx));
+            let refined = relative_residual_of(matrix, rhs, candidate, residual, scale);
+            refinements += 1;
+            let halved = refined <= 0.5 * relative_residual;
+            if refined < relative_residual {
+                solution.copy_from_slice(candidate);
+                relative_residual = refined;
+            }
+            if !halved {
+                break;
+            }
         }
-        let refined = relative_residual_of(matrix, rhs, &candidate, &mut residual, scale);
-        refinements += 1;
-        let halved = refined <= 0.5 * relative_residual;
-        if refined < relative_residual {
-            solution.copy_from_slice(&candidate);
-            relative_residual = refined;
+        if relative_residual <= accuracy.tolerance {
+            Ok(Refined {
+                relative_residual,
+                refinements,
+            })
+        } else {
+            let tolerance = accuracy.tolerance;
+            Err(LinearSolverError::Inaccurate {
+                relative_residual,
+                tolerance,
+            })
         }
-        if !halved {
-            break;
-        }
-    }
-    if relative_residual <= accuracy.tolerance {
-        Ok(Refined {
-            relative_residual,
-            refinements,
-        })
-    } else {
-        let tolerance = accuracy.tolerance;
-        Err(LinearSolverError::Inaccurate {
-            relative_residual,
-            tolerance,
-        })
     }
 }
 

@@ -6,10 +6,11 @@
 
 use std::sync::Arc;
 
-use igimp_assembly::{Pattern, TangentMatrix};
+use igimp_assembly::{CompressedColumns, Pattern, TangentMatrix};
 use sprs::linalg::bicgstab::BiCGSTAB;
 use sprs::{CsMat, CsVec};
 
+use super::check::Sweep;
 use super::refine::{max_norm, relative_residual_of};
 use super::{Accuracy, LinearSolver, LinearSolverError, SolveReport, check};
 
@@ -22,7 +23,7 @@ pub struct SprsBiCgStab {
     max_iterations: usize,
     analyses: usize,
     pattern: Option<Arc<Pattern>>,
-    matrix: Option<TangentMatrix>,
+    sweep: Sweep,
     system: Option<Scaled>,
 }
 
@@ -46,7 +47,7 @@ impl SprsBiCgStab {
             max_iterations: 20_000,
             analyses: 0,
             pattern: None,
-            matrix: None,
+            sweep: Sweep::default(),
             system: None,
         }
     }
@@ -70,25 +71,22 @@ impl LinearSolver for SprsBiCgStab {
     fn factor(&mut self, matrix: &TangentMatrix) -> Result<(), LinearSolverError> {
         self.analyse(&matrix.pattern)?;
         self.system = None;
-        check::valid_values(matrix)?;
-        self.system = Some(Scaled::new(matrix));
-        check::keep(&mut self.matrix, matrix);
+        self.sweep.over(matrix)?;
+        self.system = Some(Scaled::new(matrix, &self.sweep.diagonal));
         Ok(())
     }
 
     /// As for every solver; a matrix that is singular shows as [`LinearSolverError::Inaccurate`].
     fn solve(
         &mut self,
+        matrix: &TangentMatrix,
         rhs: &[f64],
         solution: &mut [f64],
     ) -> Result<SolveReport, LinearSolverError> {
-        let (
-            Some(Scaled {
-                matrix: scaled,
-                scale,
-            }),
-            Some(matrix),
-        ) = (&self.system, &self.matrix)
+        let Some(Scaled {
+            matrix: scaled,
+            scale,
+        }) = &self.system
         else {
             return Err(LinearSolverError::NotFactored);
         };
@@ -149,21 +147,17 @@ impl LinearSolver for SprsBiCgStab {
 }
 
 impl Scaled {
-    fn new(matrix: &TangentMatrix) -> Self {
-        let Pattern {
-            col_ptr, row_idx, ..
-        } = &*matrix.pattern;
-        let unknowns = matrix.pattern.unknowns();
-        let unit = |diagonal: f64| {
+    fn new(matrix: &TangentMatrix, diagonal: &[f64]) -> Self {
+        let CompressedColumns { col_ptr, row_idx } = matrix.pattern.compressed_columns();
+        let unknowns = diagonal.len();
+        let unit = |&diagonal: &f64| {
             if diagonal == 0.0 {
                 1.0
             } else {
                 1.0 / diagonal.abs().sqrt()
             }
         };
-        let scale: Vec<f64> = (0..unknowns)
-            .map(|unknown| unit(check::diagonal(matrix, unknown)))
-            .collect();
+        let scale: Vec<f64> = diagonal.iter().map(unit).collect();
         let mut values = matrix.values.clone();
         for column in 0..unknowns {
             for entry in col_ptr[column]..col_ptr[column + 1] {
@@ -171,7 +165,7 @@ impl Scaled {
             }
         }
         let shape = (unknowns, unknowns);
-        let matrix = CsMat::new_csc(shape, col_ptr.clone(), row_idx.clone(), values);
+        let matrix = CsMat::new_csc(shape, col_ptr, row_idx, values);
         Self {
             matrix: matrix.to_csr(),
             scale,

@@ -3,10 +3,10 @@
 
 #![allow(dead_code, reason = "each test target uses its part")]
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use igimp_assembly::{NodeBlock, Pattern, TangentMatrix};
+use igimp_assembly::{CompressedColumns, NodeBlock, Pattern, TangentMatrix};
 
 /// Random numbers (Vigna's splitmix64), the same in every run.
 pub(crate) struct Random(pub(crate) u64);
@@ -174,36 +174,48 @@ impl Body {
     }
 }
 
-/// A matrix from its entries by (column, row); the pattern is made structurally symmetric.
+/// A matrix from its entries by (column, row); the pattern is made structurally symmetric, by
+/// blocks.
 pub(crate) fn assemble(
     entries: &BTreeMap<(usize, usize), f64>,
     unknowns: usize,
     blocks: Vec<NodeBlock>,
     symmetric: bool,
 ) -> TangentMatrix {
-    let mut both = entries.clone();
+    let mut block_of = Vec::with_capacity(unknowns);
+    for (index, block) in blocks.iter().enumerate() {
+        block_of.extend(std::iter::repeat_n(index, block.len));
+    }
+    let mut pairs: BTreeSet<(usize, usize)> = (0..blocks.len()).map(|k| (k, k)).collect();
     for &(column, row) in entries.keys() {
-        both.entry((row, column)).or_default();
+        pairs.insert((block_of[column], block_of[row]));
+        pairs.insert((block_of[row], block_of[column]));
     }
-    let mut col_ptr = vec![0; unknowns + 1];
-    for &(column, _) in both.keys() {
-        col_ptr[column + 1] += 1;
+    let mut starts = vec![0; blocks.len() + 1];
+    for &(column, _) in &pairs {
+        starts[column + 1] += 1;
     }
-    for column in 0..unknowns {
-        col_ptr[column + 1] += col_ptr[column];
+    for column in 0..blocks.len() {
+        starts[column + 1] += starts[column];
     }
-    let row_idx = both.keys().map(|&(_, row)| row).collect();
-    let pattern = Arc::new(Pattern {
-        col_ptr,
-        row_idx,
-        blocks,
-        reach: 2,
-    });
-    TangentMatrix {
-        pattern,
-        values: both.into_values().collect(),
-        symmetric,
-    }
+    let coupled = pairs.iter().map(|&(_, row)| row as u32).collect();
+    let pattern = Arc::new(Pattern::new(blocks, starts, coupled, 2));
+    let mut matrix = TangentMatrix::zeros(pattern, symmetric);
+    let entry_of = |(column, row, _): (usize, usize, usize)| entries.get(&(column, row));
+    let values = stored(&matrix.pattern).into_iter().map(entry_of);
+    matrix.values = values.map(|value| value.copied().unwrap_or(0.0)).collect();
+    matrix
+}
+
+/// Column, row and place among the values of every stored entry.
+pub(crate) fn stored(pattern: &Pattern) -> Vec<(usize, usize, usize)> {
+    let CompressedColumns { col_ptr, row_idx } = pattern.compressed_columns();
+    let columns = (0..pattern.unknowns())
+        .flat_map(|column| std::iter::repeat_n(column, col_ptr[column + 1] - col_ptr[column]));
+    let rows = row_idx.iter().enumerate();
+    std::iter::zip(columns, rows)
+        .map(|(column, (entry, &row))| (column, row, entry))
+        .collect()
 }
 
 /// A matrix from dense rows, each unknown a node of its own on a line.

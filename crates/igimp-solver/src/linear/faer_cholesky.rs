@@ -15,9 +15,10 @@ use faer::sparse::linalg::cholesky::{
 };
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Par, Side, Spec};
-use igimp_assembly::{Pattern, TangentMatrix};
+use igimp_assembly::{CompressedColumns, Pattern, TangentMatrix};
 
-use super::refine::{Accuracy, solve_refined};
+use super::check::Sweep;
+use super::refine::{Accuracy, Refinement};
 use super::{LinearSolver, LinearSolverError, NestedDissection, SolveReport, check};
 
 /// Supernodal Cholesky factorisation for symmetric positive definite matrices; reads the lower triangle only.
@@ -27,12 +28,14 @@ pub struct FaerCholesky {
     analyses: usize,
     analysis: Option<Analysis>,
     factors: Vec<f64>,
-    matrix: Option<TangentMatrix>,
+    sweep: Sweep,
+    refinement: Refinement,
     factored: bool,
 }
 
 struct Analysis {
     pattern: Arc<Pattern>,
+    columns: CompressedColumns,
     symbolic: SymbolicCholesky<usize>,
     workspace: MemBuffer,
 }
@@ -79,26 +82,24 @@ impl LinearSolver for FaerCholesky {
         if !matrix.symmetric {
             return Err(LinearSolverError::NotSymmetric);
         }
-        check::valid_values(matrix)?;
+        self.sweep.over(matrix)?;
         let analysis = self
             .analysis
             .as_mut()
             .ok_or(LinearSolverError::NotFactored)?;
         self.factors.resize(analysis.symbolic.len_val(), 0.0);
-        analysis.factor(matrix, &mut self.factors)?;
-        check::keep(&mut self.matrix, matrix);
+        analysis.factor(matrix, &self.sweep.diagonal, &mut self.factors)?;
         self.factored = true;
         Ok(())
     }
 
     fn solve(
         &mut self,
+        matrix: &TangentMatrix,
         rhs: &[f64],
         solution: &mut [f64],
     ) -> Result<SolveReport, LinearSolverError> {
-        let (Some(analysis), Some(matrix), true) =
-            (self.analysis.as_mut(), self.matrix.as_ref(), self.factored)
-        else {
+        let (Some(analysis), true) = (&mut self.analysis, self.factored) else {
             return Err(LinearSolverError::NotFactored);
         };
         let Analysis {
@@ -107,15 +108,18 @@ impl LinearSolver for FaerCholesky {
             ..
         } = analysis;
         let factors = LltRef::new(symbolic, &self.factors);
-        let refined = solve_refined(matrix, rhs, solution, &self.accuracy, |vector| {
-            let rows = vector.len();
-            factors.solve_in_place_with_conj(
-                Conj::No,
-                MatMut::from_column_major_slice_mut(vector, rows, 1),
-                Par::Seq,
-                MemStack::new(workspace),
-            );
-        })?;
+        let accuracy = &self.accuracy;
+        let refined = self
+            .refinement
+            .solve(matrix, rhs, solution, accuracy, |vector| {
+                let rows = vector.len();
+                factors.solve_in_place_with_conj(
+                    Conj::No,
+                    MatMut::from_column_major_slice_mut(vector, rows, 1),
+                    Par::Seq,
+                    MemStack::new(workspace),
+                );
+            })?;
         Ok(SolveReport::new(
             self.name(),
             refined.relative_residual,
@@ -139,8 +143,9 @@ impl Analysis {
         let out_of_memory = LinearSolverError::OutOfMemory {
             what: "Cholesky factor",
         };
+        let columns = pattern.compressed_columns();
         let symbolic = cholesky::factorize_symbolic_cholesky(
-            symbolic_view(pattern),
+            symbolic_view(&columns),
             Side::Lower,
             SymmetricOrdering::Custom(PermRef::new_checked(&order, &position, order.len())),
             CholeskySymbolicParams::default(),
@@ -152,6 +157,7 @@ impl Analysis {
         let workspace = MemBuffer::try_new(scratch).map_err(|_| out_of_memory)?;
         Ok(Self {
             pattern: Arc::clone(pattern),
+            columns,
             symbolic,
             workspace,
         })
@@ -160,12 +166,13 @@ impl Analysis {
     fn factor(
         &mut self,
         matrix: &TangentMatrix,
+        diagonal: &[f64],
         factors: &mut [f64],
     ) -> Result<(), LinearSolverError> {
         self.symbolic
             .factorize_numeric_llt(
                 factors,
-                SparseColMatRef::new(symbolic_view(&self.pattern), &matrix.values),
+                SparseColMatRef::new(symbolic_view(&self.columns), &matrix.values),
                 Side::Lower,
                 LltRegularization::default(),
                 Par::Seq,
@@ -176,7 +183,10 @@ impl Analysis {
         let order = self.symbolic.perm().map(|perm| perm.arrays().0);
         let roots = self.pivot_roots(factors).into_iter().enumerate();
         let unknown_of = |k| order.map_or(k, |order| order[k]);
-        check::sound_pivots(matrix, roots.map(|(k, root)| (unknown_of(k), root * root)))
+        check::sound_pivots(
+            diagonal,
+            roots.map(|(k, root)| (unknown_of(k), root * root)),
+        )
     }
 
     /// The square roots of the pivots, the diagonal of L, in order of elimination.
@@ -201,14 +211,9 @@ impl Analysis {
     }
 }
 
-/// The pattern as `faer` sees it.
-pub(super) fn symbolic_view(pattern: &Pattern) -> SymbolicSparseColMatRef<'_, usize> {
-    let unknowns = pattern.unknowns();
-    SymbolicSparseColMatRef::new_checked(
-        unknowns,
-        unknowns,
-        &pattern.col_ptr,
-        None,
-        &pattern.row_idx,
-    )
+/// A pattern as `faer` sees it.
+pub(super) fn symbolic_view(columns: &CompressedColumns) -> SymbolicSparseColMatRef<'_, usize> {
+    let unknowns = columns.col_ptr.len() - 1;
+    let (col_ptr, row_idx) = (&columns.col_ptr, &columns.row_idx);
+    SymbolicSparseColMatRef::new_checked(unknowns, unknowns, col_ptr, None, row_idx)
 }

@@ -1,0 +1,191 @@
+//! Dense kernel: LU of a pivot block with pivots from the block only.
+//!
+//! G. H. Golub & C. F. Van Loan, *Matrix Computations*, 4th ed., 2013, section 3.4, recursive by
+//! columns so that the work is in matrix products (S. Toledo, SIAM J. Matrix Anal. Appl. 18, 1997).
+//! A pivot that has lost all digits is replaced instead of searched for outside of the block
+//! (X. S. Li & J. W. Demmel, *Making sparse Gaussian elimination scalable by static pivoting*, SC98).
+
+use faer::linalg::matmul::matmul;
+use faer::linalg::triangular_solve::solve_unit_lower_triangular_in_place;
+use faer::{Accum, MatMut, MatRef, Par};
+
+use super::tiles::by_columns;
+
+/// Pivots below this part of the largest entry of the scaled matrix carry no correct digit.
+const LOST: f64 = 1e-13;
+
+/// What replaces a lost pivot: the square root of the machine epsilon, large enough to bound the
+/// growth and small enough for refinement to undo the error.
+const REPLACEMENT: f64 = 1.490_116_119_384_765_6e-8;
+
+/// Columns that are eliminated one by one.
+const NARROW: usize = 8;
+
+/// Pivots replaced and growth met in a factorisation.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct PivotRecord {
+    /// How many pivots were replaced.
+    pub(super) replaced: usize,
+    /// Position in the order of elimination of the first of them.
+    pub(super) first_replaced: Option<usize>,
+    /// Largest magnitude in the factorised pivot blocks.
+    pub(super) largest: f64,
+}
+
+impl PivotRecord {
+    /// Adds the record of later pivots.
+    pub(super) fn add(&mut self, later: &Self) {
+        self.replaced += later.replaced;
+        self.first_replaced = self.first_replaced.or(later.first_replaced);
+        self.largest = self.largest.max(later.largest);
+    }
+}
+
+/// Factorises a square block, stored by columns, into P A = L U in its place; row k was exchanged
+/// with row `exchanges[k]` ≥ k. `first` is the position of the first pivot, for the record; a
+/// `large` block is shared by the threads.
+pub(super) fn factor_block(
+    block: &mut [f64],
+    exchanges: &mut [u32],
+    first: usize,
+    large: bool,
+    record: &mut PivotRecord,
+) {
+    let rows = exchanges.len();
+    let mut panel = Panel {
+        rows,
+        first,
+        large,
+        record,
+    };
+    panel.factor(block, 0, exchanges);
+    let sizes = block.iter().map(|value| value.abs());
+    record.largest = sizes.fold(record.largest, f64::max);
+}
+
+/// What the columns of a block have in common.
+struct Panel<'a> {
+    rows: usize,
+    /// Position of the first pivot of the block.
+    first: usize,
+    large: bool,
+    record: &'a mut PivotRecord,
+}
+
+impl Panel<'_> {
+    /// Factorises some columns, whose first pivot is in row `top`.
+    fn factor(&mut self, columns: &mut [f64], top: usize, exchanges: &mut [u32]) {
+        let (rows, count) = (self.rows, exchanges.len());
+        if count <= NARROW {
+            self.factor_narrow(columns, top, exchanges);
+            return;
+        }
+        let half = (count / 2).next_multiple_of(NARROW).min(count - 1);
+        let middle = top + half;
+        let (left, right) = columns.split_at_mut(half * rows);
+        let (left_exchanges, right_exchanges) = exchanges.split_at_mut(half);
+        self.factor(left, top, left_exchanges);
+
+        let factored = MatRef::from_column_major_slice(left, rows, half);
+        let (pivots, below) = (
+            factored.subrows(top, half),
+            factored.subrows(middle, rows - middle),
+        );
+        let remaining = MatMut::from_column_major_slice_mut(right, rows, count - half);
+        by_columns(self.large, remaining, &|_, mut tile: MatMut<'_, f64>| {
+            for column in tile.as_mut().col_iter_mut() {
+                if let Some(column) = column.try_as_col_major_mut() {
+                    exchange(column.as_slice_mut(), top, left_exchanges);
+                }
+            }
+            let (mut upper, lower) = tile.subrows_mut(top, rows - top).split_at_row_mut(half);
+            solve_unit_lower_triangular_in_place(pivots, upper.as_mut(), Par::Seq);
+            matmul(lower, Accum::Add, below, upper.as_ref(), -1.0, Par::Seq);
+        });
+
+        self.factor(right, middle, right_exchanges);
+        for column in left.chunks_exact_mut(rows) {
+            exchange(column, middle, right_exchanges);
+        }
+    }
+
+    /// Factorises a few columns one after the other.
+    fn factor_narrow(&mut self, columns: &mut [f64], top: usize, exchanges: &mut [u32]) {
+        let rows = self.rows;
+        for k in 0..exchanges.len() {
+            let pivot_row = top + k;
+            let column = &mut columns[k * rows..(k + 1) * rows];
+            let mut chosen = pivot_row;
+            for row in pivot_row + 1..rows {
+                if column[row].abs() > column[chosen].abs() {
+                    chosen = row;
+                }
+            }
+            if column[chosen].abs() <= LOST {
+                chosen = pivot_row;
+                column[chosen] = REPLACEMENT.copysign(column[chosen]);
+                self.record.replaced += 1;
+                let position = self.first + pivot_row;
+                self.record.first_replaced.get_or_insert(position);
+            }
+            exchanges[k] = u32::try_from(chosen).expect("a front has fewer than 2^32 rows");
+            for column in columns.chunks_exact_mut(rows) {
+                column.swap(pivot_row, chosen);
+            }
+
+            let (eliminated, later) = columns.split_at_mut((k + 1) * rows);
+            let (above, multipliers) = eliminated[k * rows..].split_at_mut(pivot_row + 1);
+            let inverse = 1.0 / above[pivot_row];
+            for value in &mut *multipliers {
+                *value *= inverse;
+            }
+            for column in later.chunks_exact_mut(rows) {
+                let (above, below) = column.split_at_mut(pivot_row + 1);
+                let factor = above[pivot_row];
+                for (value, multiplier) in below.iter_mut().zip(&*multipliers) {
+                    *value -= factor * multiplier;
+                }
+            }
+        }
+    }
+}
+
+/// Exchanges row `top + k` with row `exchanges[k]`, in turn, in a column.
+fn exchange(column: &mut [f64], top: usize, exchanges: &[u32]) {
+    for (k, &other) in exchanges.iter().enumerate() {
+        column.swap(top + k, other as usize);
+    }
+}
+
+/// Exchanges column k with column `exchanges[k]`, in turn, of a panel with columns of `rows` entries.
+pub(super) fn exchange_columns(panel: &mut [f64], rows: usize, exchanges: &[u32]) {
+    for (k, &other) in exchanges.iter().enumerate() {
+        let other = other as usize;
+        if other > k {
+            let (front, back) = panel.split_at_mut(other * rows);
+            front[k * rows..(k + 1) * rows].swap_with_slice(&mut back[..rows]);
+        }
+    }
+}
+
+/// y ← L⁻¹ P y for a block factorised by [`factor_block`].
+pub(super) fn solve_lower(block: &[f64], exchanges: &[u32], y: &mut [f64]) {
+    exchange(y, 0, exchanges);
+    for (k, column) in block.chunks_exact(exchanges.len()).enumerate() {
+        let (known, below) = y.split_at_mut(k + 1);
+        for (value, multiplier) in below.iter_mut().zip(&column[k + 1..]) {
+            *value -= known[k] * multiplier;
+        }
+    }
+}
+
+/// y ← U⁻¹ y for a block factorised by [`factor_block`].
+pub(super) fn solve_upper(block: &[f64], y: &mut [f64]) {
+    for (k, column) in block.chunks_exact(y.len()).enumerate().rev() {
+        let (above, known) = y.split_at_mut(k);
+        known[0] /= column[k];
+        for (value, factor) in above.iter_mut().zip(column) {
+            *value -= known[0] * factor;
+        }
+    }
+}

@@ -1,0 +1,218 @@
+//! The whole of a multifrontal solver: plan, factors, solution, and what to do when pivots fail.
+
+use std::sync::Arc;
+
+use igimp_assembly::{Pattern, TangentMatrix};
+
+use super::super::check::{self, Sweep};
+use super::super::refine::{Accuracy, Refinement, probe};
+use super::super::{GeneralLu, LinearSolver, LinearSolverError, SolveReport};
+use super::cholesky::{Cholesky, CholeskyFactors};
+use super::factors::Factors;
+use super::lu::{Lu, LuFactors};
+use super::plan::Plan;
+use super::scaling::Scaling;
+use super::substitution::Vectors;
+use super::workshop::Workshop;
+
+/// Largest system that [`GeneralLu`] is tried on: it needs ten times the memory and the time.
+const FALLBACK_UNKNOWNS: usize = 50_000;
+
+/// Growth of the entries beyond which a bad residual is blamed on the restricted choice of pivots
+/// and not on the condition of the matrix, about which free pivoting could do nothing.
+const SUSPICIOUS_GROWTH: f64 = 1e6;
+
+/// Plan and factors of one matrix after the other.
+#[derive(Default)]
+pub(super) struct Engine {
+    pub(super) accuracy: Accuracy,
+    pub(super) analyses: usize,
+    pub(super) plan: Option<Plan>,
+    factors: Factors,
+    scaling: Scaling,
+    sweep: Sweep,
+    workshop: Workshop,
+    vectors: Vectors,
+    refinement: Refinement,
+    factored: Option<Method>,
+}
+
+/// What there are factors of.
+enum Method {
+    Cholesky,
+    Lu,
+    /// Takes over from the own factors where they fail.
+    General(Box<GeneralLu>),
+}
+
+impl Engine {
+    pub(super) fn with_accuracy(accuracy: Accuracy) -> Self {
+        Self {
+            accuracy,
+            ..Self::default()
+        }
+    }
+
+    /// Makes a plan, unless there is one that holds for the pattern.
+    pub(super) fn analyse(&mut self, pattern: &Arc<Pattern>) -> Result<(), LinearSolverError> {
+        if let Some(plan) = &mut self.plan {
+            if check::same_pattern(Some(&plan.pattern), pattern) {
+                return Ok(());
+            }
+            self.factored = None;
+            if plan.adopt(pattern)? {
+                return Ok(());
+            }
+        }
+        self.plan = None;
+        self.plan = Some(Plan::new(pattern)?);
+        self.analyses += 1;
+        Ok(())
+    }
+
+    /// Prepares a factorisation: nothing is factorised until it succeeds.
+    fn prepare(&mut self, matrix: &TangentMatrix) -> Result<(), LinearSolverError> {
+        self.analyse(&matrix.pattern)?;
+        self.factored = None;
+        self.sweep.over(matrix)
+    }
+
+    /// Factorises a symmetric positive definite matrix.
+    pub(super) fn factor_cholesky(
+        &mut self,
+        matrix: &TangentMatrix,
+    ) -> Result<(), LinearSolverError> {
+        self.prepare(matrix)?;
+        let plan = self.plan.as_ref().ok_or(LinearSolverError::NotFactored)?;
+        let kernel = Cholesky {
+            matrix,
+            diagonal: &self.sweep.diagonal,
+        };
+        self.factors.compute(plan, &kernel, &self.workshop)?;
+        self.factored = Some(Method::Cholesky);
+        Ok(())
+    }
+
+    /// Factorises a matrix by LU; where a pivot had to be made up, a solve with a known right-hand
+    /// side shows here and not later whether the matrix is singular.
+    pub(super) fn factor_lu(&mut self, matrix: &TangentMatrix) -> Result<(), LinearSolverError> {
+        self.prepare(matrix)?;
+        self.scaling.fit(matrix, &self.sweep.diagonal);
+        let plan = self.plan.as_ref().ok_or(LinearSolverError::NotFactored)?;
+        let kernel = Lu {
+            matrix,
+            scale: &self.scaling.scale,
+        };
+        self.factors.compute(plan, &kernel, &self.workshop)?;
+        let suspect = self
+            .factors
+            .record
+            .first_replaced
+            .map(|position| plan.unknown_at(position));
+        self.factored = Some(Method::Lu);
+        if suspect.is_some() {
+            let unknowns = matrix.pattern.unknowns();
+            let probed = probe(unknowns, suspect, |rhs, x| self.solve_own(matrix, rhs, x));
+            if let Err(cause) = probed {
+                self.factored = None;
+                self.fall_back(matrix, cause)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Solves for the matrix factorised last.
+    pub(super) fn solve(
+        &mut self,
+        matrix: &TangentMatrix,
+        rhs: &[f64],
+        solution: &mut [f64],
+    ) -> Result<SolveReport, LinearSolverError> {
+        if let (Some(plan), Some(_)) = (&self.plan, &self.factored) {
+            let unknowns = matrix.pattern.unknowns();
+            check::length("the matrix", unknowns, plan.unknowns())?;
+        }
+        match &mut self.factored {
+            None => return Err(LinearSolverError::NotFactored),
+            Some(Method::General(general)) => return general.solve(matrix, rhs, solution),
+            Some(Method::Cholesky | Method::Lu) => {}
+        }
+        match self.solve_own(matrix, rhs, solution) {
+            Err(cause) if self.blames_pivots(&cause) => self.fall_back(matrix, cause)?,
+            other => return other,
+        }
+        match &mut self.factored {
+            Some(Method::General(general)) => general.solve(matrix, rhs, solution),
+            _ => Err(LinearSolverError::NotFactored),
+        }
+    }
+
+    /// Solves with the own factors.
+    fn solve_own(
+        &mut self,
+        matrix: &TangentMatrix,
+        rhs: &[f64],
+        solution: &mut [f64],
+    ) -> Result<SolveReport, LinearSolverError> {
+        let plan = self.plan.as_ref().ok_or(LinearSolverError::NotFactored)?;
+        let (factors, workshop) = (&self.factors, &self.workshop);
+        let (vectors, scale) = (&mut self.vectors, &self.scaling.scale[..]);
+        let by_cholesky = matches!(self.factored, Some(Method::Cholesky));
+        let mut failure = Ok(());
+        let refined = self
+            .refinement
+            .solve(matrix, rhs, solution, &self.accuracy, |vector| {
+                let solved = if by_cholesky {
+                    vectors.solve::<CholeskyFactors>(plan, factors, None, workshop, vector)
+                } else {
+                    vectors.solve::<LuFactors>(plan, factors, Some(scale), workshop, vector)
+                };
+                failure = std::mem::replace(&mut failure, Ok(())).and(solved);
+            });
+        failure?;
+        let refined = refined?;
+        let (residual, refinements) = (refined.relative_residual, refined.refinements);
+        if by_cholesky {
+            return Ok(SolveReport::new("multifrontal-llt", residual, refinements));
+        }
+        Ok(SolveReport {
+            perturbed_pivots: factors.record.replaced,
+            pivot_growth: factors.record.largest.max(1.0),
+            ..SolveReport::new("multifrontal-lu", residual, refinements)
+        })
+    }
+
+    /// Whether another choice of pivots may help against an error.
+    fn blames_pivots(&self, error: &LinearSolverError) -> bool {
+        let record = &self.factors.record;
+        let what_is_wrong = match error {
+            LinearSolverError::Inaccurate { .. } => true,
+            LinearSolverError::NonFinite { what, .. } => *what == "solution",
+            _ => false,
+        };
+        what_is_wrong && (record.replaced > 0 || record.largest > SUSPICIOUS_GROWTH)
+    }
+
+    /// Factorises the matrix with free pivoting, unless it is too large for that.
+    fn fall_back(
+        &mut self,
+        matrix: &TangentMatrix,
+        cause: LinearSolverError,
+    ) -> Result<(), LinearSolverError> {
+        if matrix.pattern.unknowns() > FALLBACK_UNKNOWNS {
+            return Err(cause);
+        }
+        let mut general = GeneralLu::with_accuracy(self.accuracy);
+        match (general.factor(matrix), cause) {
+            (Ok(()), _) => {
+                self.factored = Some(Method::General(Box::new(general)));
+                Ok(())
+            }
+            (
+                Err(LinearSolverError::Singular { .. }),
+                named @ LinearSolverError::Singular { .. },
+            ) => Err(named),
+            (Err(error), _) => Err(error),
+        }
+    }
+}

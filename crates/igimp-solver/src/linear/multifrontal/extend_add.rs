@@ -1,0 +1,181 @@
+//! Adding what a child contributes to the front of its parent, run by run.
+//!
+//! I. S. Duff & J. K. Reid, *The multifrontal solution of indefinite sparse symmetric linear
+//! systems*, ACM Trans. Math. Softw. 9 (1983).
+
+use super::plan::{Front, Plan};
+
+/// Consecutive border unknowns of a child that are consecutive in the parent.
+#[derive(Clone, Copy)]
+struct Run {
+    /// First of them in the border of the child.
+    source: usize,
+    /// First of them among the pivots or in the border of the parent.
+    target: usize,
+    len: usize,
+}
+
+/// Where the border of a child lies in its parent: first runs among the pivots, then in the border.
+#[derive(Default)]
+pub(super) struct BorderMap {
+    /// Unknowns of the border of the child.
+    rows: usize,
+    runs: Vec<Run>,
+    pivot_runs: usize,
+}
+
+/// A block stored by columns with so many rows.
+pub(super) struct Block<'a> {
+    pub(super) entries: &'a mut [f64],
+    pub(super) rows: usize,
+}
+
+impl BorderMap {
+    /// Maps the border of a child; `local` gives the first row in the border of the parent of each
+    /// of its border nodes, by rank.
+    pub(super) fn set(&mut self, plan: &Plan, child: &Front, parent: &Front, local: &[u32]) {
+        self.rows = child.border;
+        self.runs.clear();
+        self.pivot_runs = 0;
+        let mut source = 0;
+        for &rank in plan.rows(child) {
+            let positions = plan.positions_of(rank);
+            let len = positions.len();
+            let among_pivots = positions.start < parent.end();
+            let target = if among_pivots {
+                positions.start - parent.first
+            } else {
+                local[rank as usize] as usize
+            };
+            let begins = among_pivots || self.runs.len() > self.pivot_runs;
+            match self.runs.last_mut() {
+                Some(run) if begins && run.target + run.len == target => run.len += len,
+                _ => self.runs.push(Run {
+                    source,
+                    target,
+                    len,
+                }),
+            }
+            if among_pivots {
+                self.pivot_runs = self.runs.len();
+            }
+            source += len;
+        }
+    }
+
+    fn parts(&self) -> (&[Run], &[Run]) {
+        self.runs.split_at(self.pivot_runs)
+    }
+
+    /// Adds the rows of the child's columns among the pivots.
+    pub(super) fn add_to_pivots(&self, child: &[f64], pivots: &mut Block, lower: &mut Block) {
+        let (into_pivots, into_border) = self.parts();
+        for columns in into_pivots {
+            for k in 0..columns.len {
+                let source = &child[(columns.source + k) * self.rows..][..self.rows];
+                add_runs(pivots.column(columns.target + k), source, into_pivots);
+                add_runs(lower.column(columns.target + k), source, into_border);
+            }
+        }
+    }
+
+    /// The same where of all columns only the part from the diagonal on is stored.
+    pub(super) fn add_lower_to_pivots(&self, child: &[f64], pivots: &mut Block, lower: &mut Block) {
+        let (into_pivots, into_border) = self.parts();
+        for (index, columns) in into_pivots.iter().enumerate() {
+            for k in 0..columns.len {
+                let source = &child[(columns.source + k) * self.rows..][..self.rows];
+                let target = pivots.column(columns.target + k);
+                add_run(target, source, columns.from(k));
+                add_runs(target, source, &into_pivots[index + 1..]);
+                add_runs(lower.column(columns.target + k), source, into_border);
+            }
+        }
+    }
+
+    /// Adds the columns of the child's border to the rows of the pivots, into a transposed block.
+    pub(super) fn add_transposed(&self, child: &[f64], upper: &mut Block) {
+        let (into_pivots, into_border) = self.parts();
+        for rows in into_pivots {
+            for columns in into_border {
+                let target = &mut upper.entries[rows.target * upper.rows + columns.target..];
+                let source = &child[columns.source * self.rows + rows.source..];
+                add_block_transposed(target, upper.rows, source, self.rows, rows.len, columns.len);
+            }
+        }
+    }
+
+    /// Adds the part that the parent passes on to its own contribution.
+    pub(super) fn pass_on(&self, child: &[f64], contribution: &mut Block) {
+        let (_, into_border) = self.parts();
+        for columns in into_border {
+            for k in 0..columns.len {
+                let source = &child[(columns.source + k) * self.rows..][..self.rows];
+                add_runs(contribution.column(columns.target + k), source, into_border);
+            }
+        }
+    }
+
+    /// The same where of all columns only the part from the diagonal on is stored.
+    pub(super) fn pass_on_lower(&self, child: &[f64], contribution: &mut Block) {
+        let (_, into_border) = self.parts();
+        for (index, columns) in into_border.iter().enumerate() {
+            for k in 0..columns.len {
+                let source = &child[(columns.source + k) * self.rows..][..self.rows];
+                let target = contribution.column(columns.target + k);
+                add_run(target, source, columns.from(k));
+                add_runs(target, source, &into_border[index + 1..]);
+            }
+        }
+    }
+}
+
+impl Run {
+    /// What is left of a run without its first `k` unknowns.
+    fn from(&self, k: usize) -> Self {
+        Self {
+            source: self.source + k,
+            target: self.target + k,
+            len: self.len - k,
+        }
+    }
+}
+
+impl Block<'_> {
+    fn column(&mut self, column: usize) -> &mut [f64] {
+        &mut self.entries[column * self.rows..][..self.rows]
+    }
+}
+
+/// Adds runs of `source` where they belong in `target`.
+fn add_runs(target: &mut [f64], source: &[f64], runs: &[Run]) {
+    for &run in runs {
+        add_run(target, source, run);
+    }
+}
+
+fn add_run(target: &mut [f64], source: &[f64], run: Run) {
+    let into = &mut target[run.target..run.target + run.len];
+    let from = &source[run.source..run.source + run.len];
+    for (into, &value) in into.iter_mut().zip(from) {
+        *into += value;
+    }
+}
+
+/// Adds the transpose of a block of `rows` by `columns` entries; both are stored by columns, with
+/// the given numbers of entries from one column to the next.
+fn add_block_transposed(
+    target: &mut [f64],
+    target_step: usize,
+    source: &[f64],
+    source_step: usize,
+    rows: usize,
+    columns: usize,
+) {
+    for j in 0..rows {
+        let into = &mut target[j * target_step..][..columns];
+        for (k, into) in into.iter_mut().enumerate() {
+            *into += source[k * source_step + j];
+        }
+    }
+}

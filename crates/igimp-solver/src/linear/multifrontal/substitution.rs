@@ -1,0 +1,261 @@
+//! Solving with the factors, over the tree of tasks.
+//!
+//! What a task changes in the part of the vector that belongs to the tasks above it, it keeps apart
+//! until they add it up in their order; the bits of the solution do not depend on the number of
+//! threads.
+
+use super::super::LinearSolverError;
+use super::factors::Factors;
+use super::kernel::Substitution;
+use super::plan::{Front, Plan};
+use super::tasks::{Extent, Task};
+use super::workshop::{Tools, Workshop, make_room};
+
+/// Vectors for solves, kept from solve to solve.
+#[derive(Default)]
+pub(super) struct Vectors {
+    /// The vector being solved for, by position.
+    vector: Vec<f64>,
+    /// Parts of vectors on the borders of the tasks.
+    outer: Vec<f64>,
+}
+
+impl Vectors {
+    /// Replaces a vector by (an approximation of) K⁻¹ times it; `scale` is the diagonal of S where
+    /// S K S was factorised, by unknown.
+    pub(super) fn solve<S: Substitution>(
+        &mut self,
+        plan: &Plan,
+        factors: &Factors,
+        scale: Option<&[f64]>,
+        workshop: &Workshop,
+        vector: &mut [f64],
+    ) -> Result<(), LinearSolverError> {
+        let outer = plan.tasks.iter().map(|task| task.total.outer).sum();
+        make_room(&mut self.outer, outer, "vector")?;
+        self.vector.clear();
+        let scaled = |unknown: usize| scale.map_or(1.0, |scale| scale[unknown]);
+        for &block in &plan.order {
+            let block = plan.pattern.blocks[block as usize];
+            let unknowns = block.first..block.first + block.len;
+            self.vector
+                .extend(unknowns.map(|unknown| vector[unknown] * scaled(unknown)));
+        }
+        let job = Job::<S> {
+            plan,
+            factors,
+            workshop,
+            kind: std::marker::PhantomData,
+        };
+        let (y, outer) = (&mut self.vector[..], &mut self.outer[..outer]);
+        job.each(Direction::Forward, &plan.tasks, Place::default(), y, outer)?;
+        job.each(Direction::Backward, &plan.tasks, Place::default(), y, outer)?;
+        for (&block, &position) in plan.order.iter().zip(&plan.position) {
+            let block = plan.pattern.blocks[block as usize];
+            for k in 0..block.len {
+                let unknown = block.first + k;
+                vector[unknown] = self.vector[position as usize + k] * scaled(unknown);
+            }
+        }
+        Ok(())
+    }
+}
+
+#[derive(Clone, Copy)]
+enum Direction {
+    /// y ← L⁻¹ P y, children before parents.
+    Forward,
+    /// y ← U⁻¹ y, parents before children.
+    Backward,
+}
+
+/// Where the factors of a task and of those below it begin.
+#[derive(Clone, Copy, Default)]
+struct Place {
+    entries: usize,
+    position: usize,
+}
+
+struct Job<'a, S> {
+    plan: &'a Plan,
+    factors: &'a Factors,
+    workshop: &'a Workshop,
+    kind: std::marker::PhantomData<S>,
+}
+
+impl<S: Substitution> Job<'_, S> {
+    /// Goes through several tasks with everything below them. `y` and `outer` are their parts.
+    fn each(
+        &self,
+        direction: Direction,
+        tasks: &[Task],
+        place: Place,
+        y: &mut [f64],
+        outer: &mut [f64],
+    ) -> Result<(), LinearSolverError> {
+        match tasks {
+            [] => Ok(()),
+            [task] => match direction {
+                Direction::Forward => self.forward(task, place, y, outer),
+                Direction::Backward => self.backward(task, place, y, outer),
+            },
+            _ => {
+                let (left, right) = tasks.split_at(tasks.len() / 2);
+                let sum = |part: &dyn Fn(&Extent) -> usize| -> usize {
+                    left.iter().map(|task| part(&task.total)).sum()
+                };
+                let (left_y, right_y) = y.split_at_mut(sum(&|extent| extent.pivots));
+                let (left_outer, right_outer) = outer.split_at_mut(sum(&|extent| extent.outer));
+                let right_place = Place {
+                    entries: place.entries + sum(&S::entries),
+                    position: place.position + left_y.len(),
+                };
+                let (left, right) = rayon::join(
+                    || self.each(direction, left, place, left_y, left_outer),
+                    || self.each(direction, right, right_place, right_y, right_outer),
+                );
+                left.and(right)
+            }
+        }
+    }
+
+    fn forward(
+        &self,
+        task: &Task,
+        place: Place,
+        y: &mut [f64],
+        outer: &mut [f64],
+    ) -> Result<(), LinearSolverError> {
+        let (y_below, y) = y.split_at_mut(task.total.pivots - task.own.pivots);
+        let (outer_below, outer) = outer.split_at_mut(task.total.outer - task.own.outer);
+        self.each(Direction::Forward, &task.below, place, y_below, outer_below)?;
+
+        let mut tools = self.workshop.tools(self.plan)?;
+        let Tools { local, border, .. } = &mut tools;
+        let mut part = Part::new(self.plan, task, y, outer, local);
+        part.outer.fill(0.0);
+        for (child, changes) in task.outer_parts() {
+            let child = &self.plan.fronts[child];
+            part.add(self.plan, child, &outer_below[changes]);
+        }
+        let mut values = &self.factors.values[self.own_entries(task, place)..];
+        for front in &self.plan.fronts[task.fronts.clone()] {
+            let (own, later) = values.split_at(S::entries(&front.extent()));
+            values = later;
+            let exchanges = &self.factors.exchanges[front.first..front.end()];
+            let product = &mut border[..front.border];
+            S::forward(own, exchanges, part.pivots(front), product);
+            part.add(self.plan, front, product);
+        }
+        self.workshop.give_back(tools);
+        Ok(())
+    }
+
+    fn backward(
+        &self,
+        task: &Task,
+        place: Place,
+        y: &mut [f64],
+        outer: &mut [f64],
+    ) -> Result<(), LinearSolverError> {
+        let (y_below, y) = y.split_at_mut(task.total.pivots - task.own.pivots);
+        let (outer_below, outer) = outer.split_at_mut(task.total.outer - task.own.outer);
+        let mut tools = self.workshop.tools(self.plan)?;
+        let Tools { local, border, .. } = &mut tools;
+        let mut part = Part::new(self.plan, task, y, outer, local);
+        let first = self.own_entries(task, place);
+        let mut values = &self.factors.values[first..first + S::entries(&task.own)];
+        for front in self.plan.fronts[task.fronts.clone()].iter().rev() {
+            let (earlier, own) = values.split_at(values.len() - S::entries(&front.extent()));
+            values = earlier;
+            part.gather(self.plan, front, &mut border[..front.border]);
+            S::backward(own, part.pivots(front), &border[..front.border]);
+        }
+        for (child, known) in task.outer_parts() {
+            let child = &self.plan.fronts[child];
+            part.gather(self.plan, child, &mut outer_below[known]);
+        }
+        self.workshop.give_back(tools);
+        self.each(
+            Direction::Backward,
+            &task.below,
+            place,
+            y_below,
+            outer_below,
+        )
+    }
+
+    /// Where the factors of a task itself begin.
+    fn own_entries(&self, task: &Task, place: Place) -> usize {
+        place.entries + S::entries(&task.total) - S::entries(&task.own)
+    }
+}
+
+/// The part of a vector that a task sees: its own positions, and the border to those above.
+struct Part<'a> {
+    /// First and last position of its own.
+    start: usize,
+    end: usize,
+    y: &'a mut [f64],
+    outer: &'a mut [f64],
+    /// First row in the border, by rank.
+    local: &'a [u32],
+}
+
+impl<'a> Part<'a> {
+    fn new(
+        plan: &Plan,
+        task: &Task,
+        y: &'a mut [f64],
+        outer: &'a mut [f64],
+        local: &'a mut [u32],
+    ) -> Self {
+        let fronts = &plan.fronts[task.fronts.clone()];
+        let (first, root) = (&fronts[0], &fronts[fronts.len() - 1]);
+        plan.locate(root, local);
+        Self {
+            start: first.first,
+            end: root.end(),
+            y,
+            outer,
+            local,
+        }
+    }
+
+    fn pivots(&mut self, front: &Front) -> &mut [f64] {
+        &mut self.y[front.first - self.start..front.end() - self.start]
+    }
+
+    /// The entries of a border node.
+    fn entries(&mut self, plan: &Plan, rank: u32) -> &mut [f64] {
+        let positions = plan.positions_of(rank);
+        if positions.start < self.end {
+            &mut self.y[positions.start - self.start..positions.end - self.start]
+        } else {
+            let first = self.local[rank as usize] as usize;
+            &mut self.outer[first..first + positions.len()]
+        }
+    }
+
+    /// Adds to the border of a front.
+    fn add(&mut self, plan: &Plan, front: &Front, mut changes: &[f64]) {
+        for &rank in plan.rows(front) {
+            let entries = self.entries(plan, rank);
+            let (own, later) = changes.split_at(entries.len());
+            changes = later;
+            for (entry, change) in entries.iter_mut().zip(own) {
+                *entry += change;
+            }
+        }
+    }
+
+    /// Takes the border of a front.
+    fn gather(&mut self, plan: &Plan, front: &Front, mut border: &mut [f64]) {
+        for &rank in plan.rows(front) {
+            let entries = self.entries(plan, rank);
+            let (own, later) = border.split_at_mut(entries.len());
+            own.copy_from_slice(entries);
+            border = later;
+        }
+    }
+}
