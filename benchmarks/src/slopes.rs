@@ -29,7 +29,7 @@ pub struct PreparedStep {
 
 impl PreparedStep {
     /// A workspace with the solver that the cases use.
-    pub fn workspace() -> Workspace {
+    pub fn workspace() -> Workspace<2> {
         Workspace::new(SolverKind::Auto.build())
     }
 
@@ -37,7 +37,11 @@ impl PreparedStep {
     ///
     /// # Errors
     /// [`StepError`](igimp_solver::StepError) when no equilibrium is found.
-    pub fn take(&self, body: &mut Body<2>, workspace: &mut Workspace) -> BenchResult<StepReport> {
+    pub fn take(
+        &self,
+        body: &mut Body<2>,
+        workspace: &mut Workspace<2>,
+    ) -> BenchResult<StepReport> {
         let settings = NewtonSettings::default();
         let (method, conditions) = (&self.method, &self.conditions);
         let (report, _) = step(body, method, conditions, self.factors, &settings, workspace)?;

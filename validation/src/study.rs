@@ -40,7 +40,7 @@ pub(crate) struct Run {
     pub(crate) seconds: f64,
     /// Steps accepted above the tolerance, at round-off.
     pub(crate) at_round_off: usize,
-    /// Share of the time in accepted steps: set-up, evaluation, tangent, linear solver, commit \[-\].
+    /// Share of the time in accepted steps: set-up, assembly, factorisation, solution, commit \[-\].
     pub(crate) phases: [f64; 5],
     /// The last step that found no equilibrium, if that ended the run.
     #[serde(skip)]
@@ -118,9 +118,9 @@ impl Run {
 fn phase_shares(times: &PhaseTimes) -> [f64; 5] {
     let seconds = [
         times.set_up,
-        times.evaluate,
-        times.tangent,
-        times.linear,
+        times.assembly,
+        times.factor,
+        times.solve,
         times.commit,
     ]
     .map(|time| time.as_secs_f64());

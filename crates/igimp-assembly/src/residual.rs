@@ -13,7 +13,7 @@ use crate::unknowns::Unknowns;
 const STRAIN_ROUND_OFF: f64 = 8.0 * f64::EPSILON;
 
 /// The out-of-balance force of a trial.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct OutOfBalance {
     /// f_ext − f_int by unknown \[force\].
     pub force: Vec<f64>,
@@ -27,14 +27,16 @@ pub struct OutOfBalance {
 }
 
 impl OutOfBalance {
-    /// The difference of nodal external and internal force; at most `round_off` counts as none.
-    pub(crate) fn measure<const D: usize>(
+    /// Sets everything from the difference of nodal external and internal force; at most
+    /// `round_off` counts as none.
+    pub(crate) fn update<const D: usize>(
+        &mut self,
         unknowns: &Unknowns<D>,
         f_ext: &[[f64; D]],
         f_int: &[[f64; D]],
         round_off: f64,
-    ) -> Result<Self, AssemblyError> {
-        let mut force = vec![0.0; unknowns.len()];
+    ) -> Result<(), AssemblyError> {
+        self.force.resize(unknowns.len(), 0.0);
         let (mut free, mut external, mut reaction, mut largest) = (0.0, 0.0, 0.0, 0.0);
         let mut worst = (0, 0);
         for node in 0..f_int.len() {
@@ -48,7 +50,7 @@ impl OutOfBalance {
                 }
                 external += f_ext[node][axis] * f_ext[node][axis];
                 if let Some(unknown) = unknowns.index(node, axis) {
-                    force[unknown] = difference;
+                    self.force[unknown] = difference;
                     free += difference * difference;
                     if difference.abs() > largest {
                         largest = difference.abs();
@@ -61,13 +63,10 @@ impl OutOfBalance {
         }
         let reference: f64 = external.sqrt() + reaction.sqrt();
         let norm: f64 = free.sqrt();
-        let relative_norm = if norm == 0.0 { 0.0 } else { norm / reference };
-        Ok(OutOfBalance {
-            force,
-            relative_norm,
-            is_round_off: norm <= round_off,
-            worst,
-        })
+        self.relative_norm = if norm == 0.0 { 0.0 } else { norm / reference };
+        self.is_round_off = norm <= round_off;
+        self.worst = worst;
+        Ok(())
     }
 }
 

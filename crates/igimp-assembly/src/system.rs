@@ -218,6 +218,18 @@ impl<'a, const D: usize> System<'a, D> {
         Ok(())
     }
 
+    /// A matrix for [`Self::linearise_into`] in the memory of an earlier one: that one itself if its
+    /// pattern still holds.
+    pub fn matrix_from(&self, earlier: Option<TangentMatrix>) -> TangentMatrix {
+        let mut values = earlier.map_or_else(Vec::new, |matrix| matrix.values);
+        values.resize(self.pattern.stored(), 0.0);
+        TangentMatrix {
+            pattern: Arc::clone(&self.pattern),
+            values,
+            symmetric: self.symmetric,
+        }
+    }
+
     /// Adds ghost penalty and drag to the internal force of a trial.
     fn add_couplings(&self, u: &[[f64; D]], trial: &mut Trial<D>) {
         for entry in &self.couplings {
@@ -232,7 +244,21 @@ impl<'a, const D: usize> System<'a, D> {
     /// # Errors
     /// [`AssemblyError::NonFinite`] when a nodal force is not finite.
     pub fn out_of_balance(&self, trial: &Trial<D>) -> Result<OutOfBalance, AssemblyError> {
-        OutOfBalance::measure(&self.unknowns, &self.f_ext, &trial.f_int, self.round_off)
+        let mut residual = OutOfBalance::default();
+        self.update_out_of_balance(&mut residual, trial)?;
+        Ok(residual)
+    }
+
+    /// Rewrites the out-of-balance force with that of a trial.
+    ///
+    /// # Errors
+    /// As [`Self::out_of_balance`].
+    pub fn update_out_of_balance(
+        &self,
+        residual: &mut OutOfBalance,
+        trial: &Trial<D>,
+    ) -> Result<(), AssemblyError> {
+        residual.update(&self.unknowns, &self.f_ext, &trial.f_int, self.round_off)
     }
 
     /// The reaction f_int − f_ext by node, zero at unknowns \[force\].

@@ -287,12 +287,7 @@ fn commit_moves_the_centre_of_mass<const D: usize>(sample: Sample<D>) -> Result<
     )
     .unwrap();
     let mut after = state.before.clone();
-    after.commit(
-        &state.stencils,
-        &state.method,
-        &state.trial,
-        &state.u,
-    );
+    after.commit(&state.stencils, &state.method, &state.trial, &state.u);
     let mass: f64 = after.mass.iter().sum();
     for axis in 0..D {
         let gravity = state.conditions.loads.gravity[axis];
@@ -318,12 +313,7 @@ fn commit_moves_the_centre_of_mass<const D: usize>(sample: Sample<D>) -> Result<
 fn volume_follows_the_deformation<const D: usize>(sample: Sample<D>) -> Result<(), TestCaseError> {
     let state = State::of(sample, true);
     let mut after = state.before.clone();
-    after.commit(
-        &state.stencils,
-        &state.method,
-        &state.trial,
-        &state.u,
-    );
+    after.commit(&state.stencils, &state.method, &state.trial, &state.u);
     for particle in 0..after.len() {
         let mut increment = [[0.0; D]; D];
         for a in 0..D {

@@ -83,7 +83,7 @@ pub struct StageSummary {
     pub at_round_off: usize,
     /// Wall-clock time \[s\].
     pub seconds: f64,
-    /// Time by phase \[s\]: set-up, evaluation, tangent, linear solver, commit.
+    /// Time by phase \[s\]: set-up, assembly, factorisation, solution, commit.
     pub phases: [f64; 5],
     /// Largest particle displacement at the end \[m\].
     #[serde(deserialize_with = "or_not_a_number")]

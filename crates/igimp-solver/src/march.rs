@@ -179,7 +179,7 @@ pub fn march<const D: usize>(
     method: &Method,
     program: &dyn Program<D>,
     settings: &MarchSettings,
-    workspace: &mut Workspace,
+    workspace: &mut Workspace<D>,
     observer: &mut dyn Observer<D>,
 ) -> MarchReport {
     let start = Standing::start(settings);
@@ -194,7 +194,7 @@ pub fn march_from<const D: usize>(
     method: &Method,
     program: &dyn Program<D>,
     settings: &MarchSettings,
-    workspace: &mut Workspace,
+    workspace: &mut Workspace<D>,
     observer: &mut dyn Observer<D>,
 ) -> MarchReport {
     let mut report = MarchReport {

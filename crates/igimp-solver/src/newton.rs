@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 
 use igimp_assembly::{
     AssemblyError, Method, OutOfBalance, Pattern, Stencils, StepConditions, System, TangentMatrix,
+    Trial,
 };
 use igimp_material::TangentKind;
 use thiserror::Error;
@@ -89,12 +90,12 @@ pub struct StepError {
 pub struct PhaseTimes {
     /// Stencils, unknowns, external force, pattern.
     pub set_up: Duration,
-    /// Stress, internal force, residual.
-    pub evaluate: Duration,
-    /// Tangent matrix.
-    pub tangent: Duration,
-    /// Analysis, factorisation and solution of the linear systems.
-    pub linear: Duration,
+    /// Passes over the particles: stress, internal force, tangent matrix; residual.
+    pub assembly: Duration,
+    /// Factorisation of the tangent matrices, with the analysis of their patterns.
+    pub factor: Duration,
+    /// Solution of the linear systems.
+    pub solve: Duration,
     /// Writing the accepted state.
     pub commit: Duration,
 }
@@ -103,9 +104,9 @@ impl PhaseTimes {
     /// Adds another step's times.
     pub fn add(&mut self, other: &Self) {
         self.set_up += other.set_up;
-        self.evaluate += other.evaluate;
-        self.tangent += other.tangent;
-        self.linear += other.linear;
+        self.assembly += other.assembly;
+        self.factor += other.factor;
+        self.solve += other.solve;
         self.commit += other.commit;
     }
 }
@@ -145,14 +146,16 @@ pub struct NodalForces<const D: usize> {
     pub u: Vec<[f64; D]>,
 }
 
-/// What lasts from step to step besides the body: solver and matrix, so that symbolic work is
-/// done once while the pattern holds.
-pub struct Workspace {
+/// What lasts from step to step besides the body: the solver with its symbolic work, and the memory
+/// of the matrix and of the trial. It holds nothing that a result depends on.
+pub struct Workspace<const D: usize> {
     solver: Box<dyn LinearSolver>,
     matrix: Option<TangentMatrix>,
+    trial: Trial<D>,
+    du: Vec<f64>,
 }
 
-impl std::fmt::Debug for Workspace {
+impl<const D: usize> std::fmt::Debug for Workspace<D> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Workspace")
             .field("solver", &self.solver.name())
@@ -160,43 +163,19 @@ impl std::fmt::Debug for Workspace {
     }
 }
 
-impl Workspace {
+impl<const D: usize> Workspace<D> {
     /// A workspace around a linear solver.
     pub fn new(solver: Box<dyn LinearSolver>) -> Self {
         Self {
             solver,
             matrix: None,
+            trial: Trial::default(),
+            du: Vec::new(),
         }
     }
 
     fn pattern(&self) -> Option<&Arc<Pattern>> {
         self.matrix.as_ref().map(|matrix| &matrix.pattern)
-    }
-
-    /// Solves K du = force with the tangent of a trial.
-    fn correction<const D: usize>(
-        &mut self,
-        system: &System<'_, D>,
-        trial: &igimp_assembly::Trial<D>,
-        force: &[f64],
-        times: &mut PhaseTimes,
-    ) -> Result<Vec<f64>, LinearSolverError> {
-        let clock = Instant::now();
-        match &mut self.matrix {
-            Some(matrix) if Arc::ptr_eq(&matrix.pattern, system.pattern()) => {
-                system.tangent_into(trial, matrix);
-            }
-            matrix => *matrix = Some(system.tangent(trial)),
-        }
-        times.tangent += clock.elapsed();
-        let clock = Instant::now();
-        let mut du = vec![0.0; force.len()];
-        if let Some(matrix) = &self.matrix {
-            self.solver.factor(matrix)?;
-            self.solver.solve(matrix, force, &mut du)?;
-        }
-        times.linear += clock.elapsed();
-        Ok(du)
     }
 }
 
@@ -237,6 +216,17 @@ impl Course {
     }
 }
 
+impl Course {
+    /// Whether the next correction is likely to be the last: with quadratic convergence the factor
+    /// between residuals is squared each time. A tangent is then not needed.
+    fn foretells_equilibrium(&self, tolerance: f64) -> bool {
+        match self.residuals[..] {
+            [_, .., before, last] => last * (last / before).powi(2) < 0.1 * tolerance,
+            _ => false,
+        }
+    }
+}
+
 /// Advances a body by one load step, from load factor `from` to `to`: the step displacements
 /// that bring internal and external force into balance are found, and the particles are moved.
 /// The body is untouched unless the step is accepted.
@@ -249,7 +239,7 @@ pub fn step<const D: usize>(
     conditions: &StepConditions<D>,
     (from, to): (f64, f64),
     settings: &NewtonSettings,
-    workspace: &mut Workspace,
+    workspace: &mut Workspace<D>,
 ) -> Result<(StepReport, NodalForces<D>), StepError> {
     let mut course = Course::default();
     let result = equilibrium(body, method, conditions, settings, workspace, &mut course);
@@ -287,7 +277,7 @@ fn equilibrium<const D: usize>(
     method: &Method,
     conditions: &StepConditions<D>,
     settings: &NewtonSettings,
-    workspace: &mut Workspace,
+    workspace: &mut Workspace<D>,
     course: &mut Course,
 ) -> Result<(StepReport, NodalForces<D>), StepFailure> {
     let mut times = PhaseTimes::default();
@@ -304,13 +294,23 @@ fn equilibrium<const D: usize>(
     )?;
     times.set_up = clock.elapsed();
 
-    let mut trial = timed(&mut times.evaluate, || system.start(TangentKind::Elastic))?;
-    let mut residual = system.out_of_balance(&trial)?;
-    course.record(&residual, settings)?;
+    let Workspace {
+        solver,
+        matrix,
+        trial,
+        du,
+    } = workspace;
+    let earlier = matrix.take();
+    let matrix = matrix.insert(system.matrix_from(earlier));
     let mut u = vec![[0.0; D]; grid.node_count()];
+    timed(&mut times.assembly, || {
+        system.linearise_into(&u, TangentKind::Elastic, trial, matrix)
+    })?;
+    let mut residual = system.out_of_balance(trial)?;
+    course.record(&residual, settings)?;
     let mut iterations = 0;
     if conditions.constraints.prescribe_motion() {
-        let known = system.force_of_prescribed_motion(&trial);
+        let known = system.force_of_prescribed_motion(&u, TangentKind::Elastic)?;
         for (force, known) in residual.force.iter_mut().zip(known) {
             *force -= known;
         }
@@ -322,14 +322,29 @@ fn equilibrium<const D: usize>(
         if iterations == settings.max_iterations {
             return Err(StepFailure::MaxIterations { iterations });
         }
-        let du = workspace.correction(&system, &trial, &residual.force, &mut times)?;
-        system.add_correction(&mut u, &du);
-        iterations += 1;
-        trial = timed(&mut times.evaluate, || {
-            system.evaluate(&u, TangentKind::Consistent)
+        du.resize(residual.force.len(), 0.0);
+        timed(&mut times.factor, || solver.factor(matrix))?;
+        timed(&mut times.solve, || {
+            solver.solve(matrix, &residual.force, du)
         })?;
-        residual = system.out_of_balance(&trial)?;
+        system.add_correction(&mut u, du);
+        iterations += 1;
+        let kind = TangentKind::Consistent;
+        let is_last = course.foretells_equilibrium(settings.tolerance);
+        timed(&mut times.assembly, || {
+            if is_last {
+                system.evaluate_into(&u, kind, trial)
+            } else {
+                system.linearise_into(&u, kind, trial, matrix)
+            }
+        })?;
+        system.update_out_of_balance(&mut residual, trial)?;
         course.record(&residual, settings)?;
+        if is_last && !converged(&residual, settings.tolerance) {
+            timed(&mut times.assembly, || {
+                system.linearise_into(&u, kind, trial, matrix)
+            })?;
+        }
     }
     if let Some((particle, x)) = body.particles.leaving(grid, &stencils, &u) {
         return Err(StepFailure::LeavesGrid {
@@ -339,11 +354,11 @@ fn equilibrium<const D: usize>(
     }
 
     let clock = Instant::now();
-    let reactions = system.reactions(&trial);
+    let reactions = system.reactions(trial);
     let plastic = trial
         .particles
         .iter()
-        .filter(|own| own.lifted.regime.is_plastic())
+        .filter(|own| own.regime.is_plastic())
         .count();
     let report = StepReport {
         from: 0.0,

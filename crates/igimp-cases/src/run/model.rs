@@ -208,7 +208,7 @@ impl<'c> Model<'c> {
     }
 
     /// A workspace with the case's linear solver.
-    pub fn workspace(&self) -> Workspace {
+    pub fn workspace(&self) -> Workspace<2> {
         Workspace::new(self.case.solver.linear.build())
     }
 }

@@ -88,9 +88,9 @@ impl Session<'_> {
         let times = &report.times;
         let phases = [
             times.set_up,
-            times.evaluate,
-            times.tangent,
-            times.linear,
+            times.assembly,
+            times.factor,
+            times.solve,
             times.commit,
         ];
         for (sum, time) in stage.phases.iter_mut().zip(phases) {

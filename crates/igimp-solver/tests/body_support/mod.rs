@@ -199,7 +199,7 @@ pub(crate) fn pressed(law: &SharedLaw, height: f64, travel: f64) -> StepConditio
 }
 
 /// A workspace around the default solver.
-pub(crate) fn workspace() -> Workspace {
+pub(crate) fn workspace<const D: usize>() -> Workspace<D> {
     Workspace::new(SolverKind::Auto.build())
 }
 

@@ -8,7 +8,7 @@ use crate::results::fields::{Dimension, Scale};
 use crate::summary::{SafetySummary, StageOutcome, StageSummary, Summary};
 
 /// The phases of a stage, in the order of [`StageSummary::phases`].
-pub(super) const PHASES: [&str; 5] = ["set-up", "evaluation", "tangent", "linear solver", "commit"];
+pub(super) const PHASES: [&str; 5] = ["set-up", "assembly", "factorisation", "solution", "commit"];
 
 /// Stands for what is not a number.
 const UNKNOWN: &str = "–";
