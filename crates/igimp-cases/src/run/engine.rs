@@ -4,6 +4,7 @@ use std::collections::HashMap;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
+use super::export::Export;
 use super::left::{Left, Resumption, Search};
 use super::model::Model;
 use super::output::Output;
@@ -14,6 +15,7 @@ use super::{Event, Failure, Listener, Run, Start, Target};
 use super::{checks, failure, initial, loading, run_out, safety, sections};
 use crate::case::{Case, StageKind};
 use crate::error::CaseError;
+use crate::results::folder::refuse_foreign;
 use crate::summary::{StageOutcome, StageSummary, Summary};
 use crate::table::Table;
 use igimp_solver::StepError;
@@ -44,6 +46,7 @@ pub fn run(
         interrupt,
         records,
         output: None,
+        export: None,
         summary: Summary {
             program: format!("igimp {}", env!("CARGO_PKG_VERSION")),
             title: case.title.clone(),
@@ -97,6 +100,9 @@ impl Course {
             return Ok(course);
         };
         let case = session.model.case;
+        if let Some(systems) = &target.systems {
+            refuse_foreign(systems)?;
+        }
         let (mut output, left) = match start {
             Start::Afresh => (Output::create(target, case, &session.records)?, None),
             Start::Resume => Output::resume(target, case, &mut session.records)?,
@@ -117,6 +123,9 @@ impl Course {
             output.model_picture(case)?;
         }
         session.output = Some(output);
+        if let Some(systems) = &target.systems {
+            session.export = Some(Export::open(systems, course.first)?);
+        }
         Ok(course)
     }
 
@@ -183,6 +192,9 @@ impl Course {
             resumption.as_ref(),
             search,
         )?;
+        if let Some(export) = &mut session.export {
+            export.end_of_stage(number)?;
+        }
         summary.seconds = seconds_before + clock.elapsed().as_secs_f64();
         summary.largest_displacement = largest_displacement(&state.body.particles);
         let step_error = match ended {
