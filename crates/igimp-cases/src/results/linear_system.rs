@@ -166,6 +166,9 @@ impl LinearSystem {
     ///
     /// # Errors
     /// [`CaseError::File`].
+    ///
+    /// # Panics
+    /// If the arrays are not as long as each other says.
     pub fn write(self, folder: &Path) -> Result<(), CaseError> {
         fs::create_dir_all(folder).map_err(at(folder))?;
         remove_if_there(&folder.join(ABOUT))?;

@@ -6,6 +6,7 @@ use std::time::Instant;
 
 use super::export::Export;
 use super::left::{Left, Resumption, Search};
+use super::memory::{self, Before};
 use super::model::Model;
 use super::output::Output;
 use super::records::{Moment, Records, largest_displacement};
@@ -35,6 +36,7 @@ pub fn run(
     interrupt: &AtomicBool,
 ) -> Result<Run, CaseError> {
     let clock = Instant::now();
+    let before = Before::now();
     if case.stages.is_empty() {
         return Err(CaseError::NoStages);
     }
@@ -57,7 +59,7 @@ pub fn run(
         last_resistance: 0.0,
         ends: HashMap::new(),
     };
-    let mut course = Course::begin(&mut session, target, start)?;
+    let mut course = Course::begin(&mut session, target, start, before)?;
     let size = session.summary.size;
     session.tell(&Event::Prepared { size: &size });
     course.stages(&mut session, &initial)?;
@@ -75,6 +77,7 @@ pub fn in_memory(case: &Case) -> Result<Run, CaseError> {
 
 /// The course of a run through its stages.
 struct Course {
+    before: Before,
     first: usize,
     left: Option<Left>,
     state: Option<State>,
@@ -88,8 +91,10 @@ impl Course {
         session: &mut Session<'_>,
         target: Option<&Target>,
         start: Start,
+        before: Before,
     ) -> Result<Self, CaseError> {
         let mut course = Self {
+            before,
             first: 0,
             left: None,
             state: None,
@@ -314,7 +319,9 @@ impl Course {
             let rows = checks::of_curves(case, &session.records.curves);
             session.summary.checks.extend(rows);
         }
-        session.summary.peak_memory_mib = peak_memory_mib();
+        let peak = memory::peak_mib();
+        session.summary.peak_memory_mib = peak;
+        session.summary.memory = self.before.share(peak, &session.summary.size);
         session.summary.failure = self.failure.as_ref().map(ToString::to_string);
         if let Some(output) = &mut session.output {
             output.finish(case, &session.records, &mut session.summary, clock)?;
@@ -380,12 +387,4 @@ fn kind(kind: &StageKind) -> &'static str {
         StageKind::StrengthReduction(_) => "strength-reduction",
         StageKind::RunOut(_) => "run-out",
     }
-}
-
-/// Largest resident memory of this process so far \[MiB\], where the system tells.
-fn peak_memory_mib() -> Option<f64> {
-    let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;
-    let kib: f64 = line.split_whitespace().nth(1)?.parse().ok()?;
-    Some(kib / 1024.0)
 }

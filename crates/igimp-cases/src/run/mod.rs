@@ -10,6 +10,7 @@ mod footing;
 mod initial;
 mod left;
 mod loading;
+mod memory;
 mod message;
 mod model;
 mod output;
