@@ -290,11 +290,12 @@ def measure(name, folder):
     library = LIBRARIES[name](matrix, about["symmetric"])
     forget_peak()
     before = resident("VmRSS:")
-    times = {}
+    times, processor = {}, {}
     for phase in ("analyse", "factor", "factor", "solve"):
-        clock = time.perf_counter()
+        clock, start = time.perf_counter(), time.process_time()
         found = library.solve(rhs) if phase == "solve" else getattr(library, phase)()
         times[phase] = time.perf_counter() - clock
+        processor[phase] = time.process_time() - start
     peak = resident("VmHWM:")
     residual = numpy.abs(matrix @ found - rhs).max() / numpy.abs(rhs).max()
     return {
@@ -305,6 +306,8 @@ def measure(name, folder):
         "analysis": times["analyse"],
         "factor": times["factor"],
         "solve": times["solve"],
+        "analysis_cpu": processor["analyse"],
+        "factor_cpu": processor["factor"],
         "entries": library.entries(),
         "memory_mib": None if peak is None else peak - before,
         "residual": float(residual),

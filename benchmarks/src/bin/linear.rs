@@ -64,6 +64,7 @@ fn tell(arguments: &Arguments) -> Result<Value, Box<dyn Error>> {
     let rounds = arguments.rounds.max(1);
     let measured = measure(arguments.solver, &matrix, &system.rhs, rounds)?;
     let [analysis, factor, solve] = measured.seconds.map(median);
+    let [analysis_cpu, factor_cpu, _] = measured.cpu.map(median);
     let report = measured.report;
     Ok(json!({
         "solver": report.method,
@@ -74,6 +75,8 @@ fn tell(arguments: &Arguments) -> Result<Value, Box<dyn Error>> {
         "analysis": analysis,
         "factor": factor,
         "solve": solve,
+        "analysis_cpu": analysis_cpu,
+        "factor_cpu": factor_cpu,
         "entries": measured.entries,
         "memory_mib": measured.memory,
         "residual": report.relative_residual,
@@ -125,6 +128,9 @@ impl Solver {
 struct Measured {
     /// Times of analysis (ordering and symbolic work), factorisation and solution, by round \[s\].
     seconds: [Vec<f64>; 3],
+    /// Processor time of all threads in them \[s\]; to a few milliseconds, and not a number where
+    /// the system does not tell.
+    cpu: [Vec<f64>; 3],
     /// Entries of the factors.
     entries: Option<usize>,
     /// Largest resident memory beyond that of the matrix \[MiB\], where the system tells.
@@ -142,31 +148,73 @@ fn measure(
 ) -> Result<Measured, LinearSolverError> {
     let before = forget_peak().and_then(|()| resident("VmRSS:"));
     let mut seconds: [Vec<f64>; 3] = Default::default();
+    let mut cpu = seconds.clone();
     let mut last = None;
     for _ in 0..rounds {
         drop(last.take());
         let mut solver = Solver::new(kind, matrix.symmetric);
         let mut solution = vec![0.0; rhs.len()];
-        let clock = Instant::now();
+        let mut phase = |number: usize, clock: Clock| {
+            let [wall, processor] = clock.elapsed();
+            seconds[number].push(wall);
+            cpu[number].push(processor);
+        };
+        let clock = Clock::start();
         solver.get().analyse(&matrix.pattern)?;
-        seconds[0].push(clock.elapsed().as_secs_f64());
+        phase(0, clock);
         solver.get().factor(matrix)?;
-        let clock = Instant::now();
+        let clock = Clock::start();
         solver.get().factor(matrix)?;
-        seconds[1].push(clock.elapsed().as_secs_f64());
-        let clock = Instant::now();
+        phase(1, clock);
+        let clock = Clock::start();
         let report = solver.get().solve(rhs, &mut solution)?;
-        seconds[2].push(clock.elapsed().as_secs_f64());
+        phase(2, clock);
         last = Some((solver, report));
     }
     let (solver, report) = last.expect("there is at least one round");
     let peak = resident("VmHWM:");
     Ok(Measured {
         seconds,
+        cpu,
         entries: solver.factor_entries(),
         memory: before.zip(peak).map(|(before, peak)| peak - before),
         report,
     })
+}
+
+/// The beginning of a phase.
+struct Clock {
+    wall: Instant,
+    processor: Option<f64>,
+}
+
+impl Clock {
+    fn start() -> Self {
+        Self {
+            wall: Instant::now(),
+            processor: processor_seconds(),
+        }
+    }
+
+    /// Wall-clock and processor time since then \[s\].
+    fn elapsed(self) -> [f64; 2] {
+        let processor = self.processor.zip(processor_seconds());
+        [
+            self.wall.elapsed().as_secs_f64(),
+            processor.map_or(f64::NAN, |(start, end)| end - start),
+        ]
+    }
+}
+
+/// Processor time of all threads of this process \[s\], where the system tells.
+fn processor_seconds() -> Option<f64> {
+    let mut sum = 0.0;
+    for thread in fs::read_dir("/proc/self/task").ok()? {
+        let text = fs::read_to_string(thread.ok()?.path().join("schedstat")).ok()?;
+        let nanoseconds: f64 = text.split_whitespace().next()?.parse().ok()?;
+        sum += 1e-9 * nanoseconds;
+    }
+    Some(sum)
 }
 
 /// Makes the system count the peak of the resident memory anew, where it can.
