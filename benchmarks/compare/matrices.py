@@ -1,6 +1,7 @@
 """Tangents of the two slopes of the paper, exported by `igimp run` at several sizes of cell."""
 
 import json
+import shutil
 import subprocess
 from pathlib import Path
 
@@ -60,4 +61,5 @@ def make(igimp, cases, folder, kind, size):
     done = subprocess.run(command, capture_output=True, text=True)
     if done.returncode != 0:
         raise SystemExit(f"igimp run ends with {done.returncode}:\n{done.stderr}{done.stdout}")
+    shutil.rmtree(results)
     return system
