@@ -87,8 +87,14 @@ pub fn estimate(case: &Case) -> Result<Estimate, CaseError> {
 
 /// Memory of a run \[bytes\].
 pub fn memory(particles: usize, unknowns: usize) -> f64 {
-    let n = unknowns as f64;
-    BASE + PER_PARTICLE * particles as f64 + (PER_UNKNOWN + PER_FILL * n.max(2.0).log2()) * n
+    let [particle, unknown] = per_item(unknowns);
+    BASE + particle * particles as f64 + unknown * unknowns as f64
+}
+
+/// Memory of a particle, and of an unknown among so many with its share of the fill \[bytes\].
+pub fn per_item(unknowns: usize) -> [f64; 2] {
+    let doublings = (unknowns as f64).max(2.0).log2();
+    [PER_PARTICLE, PER_UNKNOWN + PER_FILL * doublings]
 }
 
 /// A number of bytes as a reader likes it.
@@ -200,6 +206,14 @@ mod tests {
             fix: [true, false],
         });
         assert_eq!(estimate(&case).unwrap().unknowns, 36 - 4);
+    }
+
+    #[test]
+    fn memory_is_that_of_particles_and_unknowns() {
+        let [particle, unknown] = per_item(1 << 19);
+        let sum = 1e6 * particle + f64::from(1 << 19) * unknown;
+        assert!((memory(1_000_000, 1 << 19) - BASE - sum).abs() < 1.0);
+        assert!((unknown - PER_UNKNOWN - 19.0 * PER_FILL).abs() < 1e-9);
     }
 
     #[test]

@@ -31,6 +31,8 @@ pub struct Summary {
     pub output_seconds: f64,
     /// Largest resident memory \[MiB\], where the system tells.
     pub peak_memory_mib: Option<f64>,
+    /// Memory by particle and by unknown, where the system tells.
+    pub memory: Option<MemoryShare>,
     /// Whether the run was interrupted and can be resumed.
     pub interrupted: bool,
 }
@@ -43,6 +45,16 @@ pub struct FigureNote {
     pub file: String,
     /// Caption.
     pub caption: String,
+}
+
+/// What the largest resident memory leaves when that at the beginning of the run is taken away, split
+/// in the proportions of the model of [`estimate`](mod@crate::estimate).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MemoryShare {
+    /// State, trial and supports of a particle \[bytes\].
+    pub bytes_per_particle: f64,
+    /// Matrix and factors, fill included, for an unknown \[bytes\].
+    pub bytes_per_unknown: f64,
 }
 
 /// Numbers that tell the size of a model.

@@ -164,6 +164,7 @@ fn a_case_is_checked_and_explained() {
         "cells      64 (8 x 8)",
         "unknowns   about 36",
         "memory     about",
+        "bytes for a particle, ",
         "1. own weight  gravity  5 steps",
     ] {
         assert!(text.contains(part), "{part} in {text}");

@@ -102,6 +102,31 @@ fn a_run_that_meets_its_reference_is_done() {
     assert!(folder.has("results/summary.json"));
 }
 
+/// GOAL: the memory by particle and unknown is that of the run, and not more than the peak.
+#[test]
+fn memory_is_shared_among_particles_and_unknowns() {
+    let folder = Folder::new("memory", &block(""));
+    let (code, _, err) = parts(&folder.igimp(&["run", "case.toml", "--set", "grid.cell=0.125 m"]));
+    assert_eq!(code, 0, "{err}");
+    let text = std::fs::read(folder.0.join("results/summary.json")).unwrap();
+    let summary: serde_json::Value = serde_json::from_slice(&text).unwrap();
+    let number = |value: &serde_json::Value| value.as_f64();
+    let Some(peak) = number(&summary["peak_memory_mib"]) else {
+        println!("skipped: the system does not tell the memory of a process");
+        return;
+    };
+    let [particles, unknowns] =
+        ["particles", "unknowns"].map(|name| number(&summary["size"][name]).unwrap());
+    let [particle, unknown] = ["bytes_per_particle", "bytes_per_unknown"]
+        .map(|name| number(&summary["memory"][name]).unwrap());
+    let used = (particle * particles + unknown * unknowns) / 1_048_576.0;
+    assert!(used > 0.0 && used < peak, "{used} of {peak} MiB");
+    assert!(
+        particle > 100.0 && unknown > particle,
+        "{particle} {unknown}"
+    );
+}
+
 #[test]
 fn logs_of_two_runs_are_equal_but_for_the_last_line() {
     let folder = Folder::new("equal", &block(""));

@@ -58,7 +58,7 @@ pub(super) fn sync_folder(folder: &Path) -> io::Result<()> {
 }
 
 /// Adds a path to what the system said.
-pub(super) fn at(path: &Path) -> impl FnOnce(io::Error) -> CaseError {
+pub(crate) fn at(path: &Path) -> impl FnOnce(io::Error) -> CaseError {
     let path = path.to_path_buf();
     move |source| CaseError::File { path, source }
 }

@@ -56,10 +56,8 @@ impl Folder {
     /// [`CaseError::ForeignFolder`] for a folder that is not empty and was not written by igimp;
     /// [`CaseError::File`], [`CaseError::Checkpoint`].
     pub fn afresh(root: &Path) -> Result<Self, CaseError> {
-        if root.exists() && !is_empty(root)? {
-            if !is_ours(root) {
-                return Err(CaseError::ForeignFolder { path: root.into() });
-            }
+        refuse_foreign(root)?;
+        if root.exists() {
             clear(root)?;
         }
         Self::lay_out(root)
@@ -156,11 +154,21 @@ impl Folder {
 /// [`CaseError::ForeignFolder`] for a folder that is not empty and was not written by igimp;
 /// [`CaseError::File`].
 pub fn claim(root: &Path) -> Result<(), CaseError> {
+    refuse_foreign(root)?;
+    fs::create_dir_all(root).map_err(at(root))?;
+    write_atomically(&root.join(MARKER), MARKER_TEXT)
+}
+
+/// Asks, before anything is written, whether igimp may write into a folder.
+///
+/// # Errors
+/// [`CaseError::ForeignFolder`] for a folder that is not empty and was not written by igimp;
+/// [`CaseError::File`].
+pub fn refuse_foreign(root: &Path) -> Result<(), CaseError> {
     if root.exists() && !is_empty(root)? && !is_ours(root) {
         return Err(CaseError::ForeignFolder { path: root.into() });
     }
-    fs::create_dir_all(root).map_err(at(root))?;
-    write_atomically(&root.join(MARKER), MARKER_TEXT)
+    Ok(())
 }
 
 fn is_empty(folder: &Path) -> Result<bool, CaseError> {

@@ -6,6 +6,7 @@ pub mod checkpoint;
 pub mod fields;
 pub mod folder;
 pub mod frames;
+pub mod linear_system;
 pub mod npy;
 pub mod particles;
 pub mod pictures;

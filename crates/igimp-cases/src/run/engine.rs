@@ -4,7 +4,9 @@ use std::collections::HashMap;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
+use super::export::Export;
 use super::left::{Left, Resumption, Search};
+use super::memory::{self, Before};
 use super::model::Model;
 use super::output::Output;
 use super::records::{Moment, Records, largest_displacement};
@@ -14,6 +16,7 @@ use super::{Event, Failure, Listener, Run, Start, Target};
 use super::{checks, failure, initial, loading, run_out, safety, sections};
 use crate::case::{Case, StageKind};
 use crate::error::CaseError;
+use crate::results::folder::refuse_foreign;
 use crate::summary::{StageOutcome, StageSummary, Summary};
 use crate::table::Table;
 use igimp_solver::StepError;
@@ -33,6 +36,7 @@ pub fn run(
     interrupt: &AtomicBool,
 ) -> Result<Run, CaseError> {
     let clock = Instant::now();
+    let before = Before::now();
     if case.stages.is_empty() {
         return Err(CaseError::NoStages);
     }
@@ -44,6 +48,7 @@ pub fn run(
         interrupt,
         records,
         output: None,
+        export: None,
         summary: Summary {
             program: format!("igimp {}", env!("CARGO_PKG_VERSION")),
             title: case.title.clone(),
@@ -54,7 +59,7 @@ pub fn run(
         last_resistance: 0.0,
         ends: HashMap::new(),
     };
-    let mut course = Course::begin(&mut session, target, start)?;
+    let mut course = Course::begin(&mut session, target, start, before)?;
     let size = session.summary.size;
     session.tell(&Event::Prepared { size: &size });
     course.stages(&mut session, &initial)?;
@@ -72,6 +77,7 @@ pub fn in_memory(case: &Case) -> Result<Run, CaseError> {
 
 /// The course of a run through its stages.
 struct Course {
+    before: Before,
     first: usize,
     left: Option<Left>,
     state: Option<State>,
@@ -85,8 +91,10 @@ impl Course {
         session: &mut Session<'_>,
         target: Option<&Target>,
         start: Start,
+        before: Before,
     ) -> Result<Self, CaseError> {
         let mut course = Self {
+            before,
             first: 0,
             left: None,
             state: None,
@@ -97,6 +105,9 @@ impl Course {
             return Ok(course);
         };
         let case = session.model.case;
+        if let Some(systems) = &target.systems {
+            refuse_foreign(systems)?;
+        }
         let (mut output, left) = match start {
             Start::Afresh => (Output::create(target, case, &session.records)?, None),
             Start::Resume => Output::resume(target, case, &mut session.records)?,
@@ -117,6 +128,9 @@ impl Course {
             output.model_picture(case)?;
         }
         session.output = Some(output);
+        if let Some(systems) = &target.systems {
+            session.export = Some(Export::open(systems, course.first)?);
+        }
         Ok(course)
     }
 
@@ -183,6 +197,9 @@ impl Course {
             resumption.as_ref(),
             search,
         )?;
+        if let Some(export) = &mut session.export {
+            export.end_of_stage(number)?;
+        }
         summary.seconds = seconds_before + clock.elapsed().as_secs_f64();
         summary.largest_displacement = largest_displacement(&state.body.particles);
         let step_error = match ended {
@@ -302,7 +319,9 @@ impl Course {
             let rows = checks::of_curves(case, &session.records.curves);
             session.summary.checks.extend(rows);
         }
-        session.summary.peak_memory_mib = peak_memory_mib();
+        let peak = memory::peak_mib();
+        session.summary.peak_memory_mib = peak;
+        session.summary.memory = self.before.share(peak, &session.summary.size);
         session.summary.failure = self.failure.as_ref().map(ToString::to_string);
         if let Some(output) = &mut session.output {
             output.finish(case, &session.records, &mut session.summary, clock)?;
@@ -368,12 +387,4 @@ fn kind(kind: &StageKind) -> &'static str {
         StageKind::StrengthReduction(_) => "strength-reduction",
         StageKind::RunOut(_) => "run-out",
     }
-}
-
-/// Largest resident memory of this process so far \[MiB\], where the system tells.
-fn peak_memory_mib() -> Option<f64> {
-    let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;
-    let kib: f64 = line.split_whitespace().nth(1)?.parse().ok()?;
-    Some(kib / 1024.0)
 }

@@ -3,12 +3,14 @@
 pub mod advice;
 mod checks;
 mod engine;
+mod export;
 mod failure;
 mod fingerprint;
 mod footing;
 mod initial;
 mod left;
 mod loading;
+mod memory;
 mod message;
 mod model;
 mod output;
@@ -122,6 +124,10 @@ pub struct Target {
     pub source: String,
     /// The case with every default, kept as `case.completed.toml`.
     pub completed: String,
+    /// Folder for a linear system of every stage ([`linear_system`]), if they are wanted.
+    ///
+    /// [`linear_system`]: crate::results::linear_system
+    pub systems: Option<PathBuf>,
 }
 
 impl Target {
@@ -131,6 +137,7 @@ impl Target {
             folder: folder.into(),
             source: file.source().to_owned(),
             completed: file.explain(),
+            systems: None,
         }
     }
 }

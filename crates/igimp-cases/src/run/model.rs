@@ -6,7 +6,8 @@ use igimp_assembly::{
     AssemblyError, Constraints, LoadPoint, Particles, SharedLaw, StepConditions, StepLoads,
 };
 use igimp_shape::{Axis, Grid, ShapeError};
-use igimp_solver::{Body, MarchSettings, NewtonSettings, Workspace};
+use igimp_solver::linear::LinearSolver;
+use igimp_solver::{Body, MarchSettings, NewtonSettings};
 
 use super::footing::Footing;
 use super::state::{Controls, State};
@@ -207,9 +208,9 @@ impl<'c> Model<'c> {
         }
     }
 
-    /// A workspace with the case's linear solver.
-    pub fn workspace(&self) -> Workspace<2> {
-        Workspace::new(self.case.solver.linear.build())
+    /// The case's linear solver.
+    pub fn solver(&self) -> Box<dyn LinearSolver> {
+        self.case.solver.linear.build()
     }
 }
 

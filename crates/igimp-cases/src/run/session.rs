@@ -6,9 +6,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use igimp_assembly::Particles;
 use igimp_solver::{
-    Accepted, MarchSettings, Observer, Outcome, Standing, StepError, StepReport, march_from,
+    Accepted, MarchSettings, Observer, Outcome, Standing, StepError, StepReport, Workspace,
+    march_from,
 };
 
+use super::export::Export;
 use super::model::Model;
 use super::output::Output;
 use super::records::{Moment, Records, largest_displacement};
@@ -24,6 +26,8 @@ pub(crate) struct Session<'a> {
     pub(crate) interrupt: &'a AtomicBool,
     pub(crate) records: Records,
     pub(crate) output: Option<Output>,
+    /// Where linear systems are written, if they are wanted.
+    pub(crate) export: Option<Export>,
     pub(crate) summary: Summary,
     /// Resistance of the footing after the last step \[N/m\].
     pub(crate) last_resistance: f64,
@@ -41,6 +45,15 @@ impl Session<'_> {
     pub(crate) fn warn(&mut self, text: String) {
         self.tell(&Event::Warning { text: &text });
         self.summary.warnings.push(text);
+    }
+
+    /// What a march needs besides the body.
+    fn workspace(&self) -> Workspace<2> {
+        let solver = self.model.solver();
+        Workspace::new(match &self.export {
+            Some(export) => export.watch(solver),
+            None => solver,
+        })
     }
 
     /// Whether the user wants the run to end.
@@ -198,7 +211,7 @@ pub(crate) fn march_path(
             (path.drag)(from, to),
         )
     };
-    let mut workspace = model.workspace();
+    let mut workspace = session.workspace();
     let mut watch = Watch {
         session,
         stage,
@@ -248,6 +261,9 @@ impl Watch<'_, '_> {
         let report = accepted.report;
         self.reached = report.to;
         self.session.tally(self.stage, report)?;
+        if let Some(export) = &mut self.session.export {
+            export.accepted(accepted.conditions, &self.session.summary, self.stage);
+        }
         let controls = self.path.from.towards(self.path.to, report.to);
         let grid = &accepted.conditions.grid;
         let model = self.session.model;
@@ -285,6 +301,9 @@ impl Observer<2> for Watch<'_, '_> {
     }
 
     fn on_cut(&mut self, error: &StepError) {
+        if let Some(export) = &mut self.session.export {
+            export.not_accepted();
+        }
         let told = self.session.tally_cut(self.stage, error);
         if let (Ok(_), Err(error)) = (&self.stopped, told) {
             self.stopped = Err(error);

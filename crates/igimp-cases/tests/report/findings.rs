@@ -160,6 +160,7 @@ pub(crate) fn summary() -> Summary {
         seconds: 96.4,
         output_seconds: 2.1,
         peak_memory_mib: Some(312.4),
+        memory: None,
         interrupted: false,
     }
 }

@@ -21,6 +21,7 @@ mod general_lu;
 mod multifrontal;
 mod nalgebra_cholesky;
 mod ordering;
+mod record;
 mod refine;
 mod sprs_bicgstab;
 
@@ -34,6 +35,7 @@ pub use general_lu::GeneralLu;
 pub use multifrontal::{AutoSolver, MultifrontalCholesky, MultifrontalLu};
 pub use nalgebra_cholesky::NalgebraCholesky;
 pub use ordering::NestedDissection;
+pub use record::{Record, SolvedSystem};
 pub use refine::Accuracy;
 pub use sprs_bicgstab::SprsBiCgStab;
 

@@ -87,6 +87,9 @@ pub(crate) struct Run {
     /// Run this task of a sweep, numbered from 1.
     #[arg(long, value_name = "N", conflicts_with_all = ["out", "set", "from_stage"])]
     pub(crate) task: Option<usize>,
+    /// Write a linear system of every stage into this folder, for other solvers.
+    #[arg(long, value_name = "DIR", conflicts_with = "task")]
+    pub(crate) export_matrix: Option<PathBuf>,
     /// Print the verdict only.
     #[arg(long, short)]
     pub(crate) quiet: bool,

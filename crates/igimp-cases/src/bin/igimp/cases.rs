@@ -1,7 +1,7 @@
 //! `igimp check` and `igimp explain`.
 
 use igimp_cases::check::count;
-use igimp_cases::estimate::{estimate, readable};
+use igimp_cases::estimate::{estimate, per_item, readable};
 use igimp_cases::input::CaseFile;
 
 use crate::arguments::CaseArguments;
@@ -24,6 +24,7 @@ pub(crate) fn check(arguments: &CaseArguments) -> Result<Exit, ProgramError> {
     let size = estimate(case)?;
     output::warn(&file.warnings());
     let [nx, ny] = case.grid.cells;
+    let [particle, unknown] = per_item(size.unknowns).map(|bytes| count(round(bytes)));
     let row = |name: &str, value: String| vec![name.to_owned(), value];
     let rows = [
         row("method", case.method.label()),
@@ -31,6 +32,10 @@ pub(crate) fn check(arguments: &CaseArguments) -> Result<Exit, ProgramError> {
         row("cells", format!("{} ({nx} x {ny})", count(size.cells))),
         row("unknowns", format!("about {}", count(size.unknowns))),
         row("memory", format!("about {}", readable(size.bytes))),
+        row(
+            "",
+            format!("about {particle} bytes for a particle, {unknown} for an unknown"),
+        ),
         row("results", case.output.folder.display().to_string()),
     ];
     let stages: Vec<Vec<String>> = case
@@ -53,6 +58,12 @@ pub(crate) fn check(arguments: &CaseArguments) -> Result<Exit, ProgramError> {
         output::table(&stages)
     ))?;
     Ok(Exit::Done)
+}
+
+/// A number of bytes to two digits: more are not known.
+fn round(bytes: f64) -> usize {
+    let unit = 10.0_f64.powf(bytes.max(1.0).log10().floor() - 1.0).max(1.0);
+    ((bytes / unit).round() * unit) as usize
 }
 
 /// Reads a case file; a sweep file is named as what it is.

@@ -27,7 +27,10 @@ pub(crate) fn run(arguments: &Run) -> Result<Exit, ProgramError> {
     };
     let folder = case.output.folder.clone();
     output::writable(&folder)?;
-    let target = Target::of(&file, &folder);
+    let target = Target {
+        systems: arguments.export_matrix.clone(),
+        ..Target::of(&file, &folder)
+    };
     let flag = interrupt::watch();
     let mut progress = Progress::new(arguments.quiet);
     let run = engine::run(&case, Some(&target), start, &mut progress, &flag);
@@ -92,6 +95,9 @@ fn tell(run: &engine::Run, folder: &Path, arguments: &Run) -> Result<Exit, Progr
     if ending == Ending::Interrupted {
         output::complain(&format!("interrupted; to go on: {}", again(arguments)));
     }
+    if let Some(systems) = &arguments.export_matrix {
+        output::say(&format!("linear systems in {}", systems.display()))?;
+    }
     output::say(&verdict::results(summary, folder))?;
     Ok(if run.failure.is_some() {
         Exit::NotConverged
@@ -112,6 +118,10 @@ fn again(arguments: &Run) -> String {
     }
     for set in &arguments.set {
         words.push(format!("--set {}", quoted(set)));
+    }
+    if let Some(systems) = &arguments.export_matrix {
+        let systems = quoted(&systems.display().to_string());
+        words.push(format!("--export-matrix {systems}"));
     }
     if let Some(threads) = arguments.threads {
         words.push(format!("--threads {threads}"));
@@ -147,6 +157,8 @@ mod tests {
             "materials.clay.cohesion=12 kPa",
             "--out",
             "out/a",
+            "--export-matrix",
+            "my systems",
             "--quiet",
         ];
         let Command::Run(arguments) = Program::parse_from(words).command else {
@@ -154,7 +166,8 @@ mod tests {
         };
         assert_eq!(
             again(&arguments),
-            "igimp run 'my slope.toml' --out out/a --set 'materials.clay.cohesion=12 kPa' --resume"
+            "igimp run 'my slope.toml' --out out/a --set 'materials.clay.cohesion=12 kPa' \
+             --export-matrix 'my systems' --resume"
         );
         assert_eq!(quoted("it's"), r"'it'\''s'");
     }
