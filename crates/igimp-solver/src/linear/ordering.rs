@@ -27,7 +27,7 @@ impl NestedDissection {
     pub fn new(pattern: &Pattern) -> Self {
         let node = |(index, place): (usize, [usize; 3])| Node {
             place: place.map(|along| u32::try_from(along).unwrap_or(u32::MAX)),
-            index: u32::try_from(index).expect("fewer than 2^32 nodes"),
+            index: index as u32,
         };
         let places = pattern.blocks.iter().map(|block| block.place);
         let mut nodes: Vec<Node> = places.enumerate().map(node).collect();
@@ -77,7 +77,9 @@ impl Bounds {
 
     fn of(nodes: &[Node]) -> Self {
         let mut bounds = Self::NOTHING;
-        nodes.iter().for_each(|node| bounds.include(node));
+        for node in nodes {
+            bounds.include(node);
+        }
         bounds
     }
 

@@ -20,15 +20,16 @@ pub(super) fn solver(
     let node = tree.get("solver")?;
     let cutting = node.get("step_cutting")?;
     let linear = match node.text_at("linear")? {
-        "cholesky" => SolverKind::FaerCholesky,
+        "cholesky" => SolverKind::MultifrontalCholesky,
         "lu" => SolverKind::Multifrontal,
+        "faer-cholesky" => SolverKind::FaerCholesky,
         "nalgebra-cholesky" => SolverKind::NalgebraCholesky,
         "bicgstab" => SolverKind::SprsBiCgStab,
         _ => SolverKind::Auto,
     };
     let needs_symmetry = matches!(
         linear,
-        SolverKind::FaerCholesky | SolverKind::NalgebraCholesky
+        SolverKind::MultifrontalCholesky | SolverKind::FaerCholesky | SolverKind::NalgebraCholesky
     );
     let unsymmetric = materials.iter().flatten().find(|material| {
         matches!(

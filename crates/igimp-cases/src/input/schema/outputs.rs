@@ -53,11 +53,12 @@ static STEP_CUTTING: Struct = Struct {
     ],
 };
 
-static LINEAR_SOLVERS: [Choice; 6] = [
+static LINEAR_SOLVERS: [Choice; 7] = [
     choice("auto", "Cholesky for symmetric matrices, LU for others"),
     choice("direct", "the same as auto"),
-    choice("cholesky", "supernodal Cholesky"),
+    choice("cholesky", "multifrontal Cholesky"),
     choice("lu", "multifrontal LU"),
+    choice("faer-cholesky", "an independent supernodal Cholesky"),
     choice("nalgebra-cholesky", "an independent Cholesky, slow"),
     choice("bicgstab", "stabilised bi-conjugate gradients, slow"),
 ];

@@ -25,7 +25,9 @@ use super::super::{LinearSolverError, check};
 use super::dense_lu::PivotRecord;
 use super::extend_add::{Block, BorderMap};
 use super::kernel::{Kernel, Room, Substitution};
-use super::panels::{subtract_product, subtract_transposed_product};
+use super::panels::{
+    solve_lower, solve_lower_transposed, subtract_product, subtract_transposed_product,
+};
 use super::plan::{Front, Plan};
 use super::tasks::Extent;
 use super::tiles::by_columns;
@@ -199,13 +201,7 @@ impl Substitution for CholeskyFactors {
     fn forward(factors: &[f64], _exchanges: &[u32], y: &mut [f64], product: &mut [f64]) {
         let w = y.len();
         let (pivots, lower) = factors.split_at(w * w);
-        for (k, column) in pivots.chunks_exact(w).enumerate() {
-            let (known, below) = y.split_at_mut(k + 1);
-            known[k] /= column[k];
-            for (value, multiplier) in below.iter_mut().zip(&column[k + 1..]) {
-                *value -= known[k] * multiplier;
-            }
-        }
+        solve_lower(pivots, false, y);
         product.fill(0.0);
         subtract_product(lower, y, product);
     }
@@ -214,13 +210,6 @@ impl Substitution for CholeskyFactors {
         let w = y.len();
         let (pivots, lower) = factors.split_at(w * w);
         subtract_transposed_product(lower, border, y);
-        for (k, column) in pivots.chunks_exact(w).enumerate().rev() {
-            let (unknown, known) = y.split_at_mut(k + 1);
-            let mut product = 0.0;
-            for (value, factor) in known.iter().zip(&column[k + 1..]) {
-                product += value * factor;
-            }
-            unknown[k] = (unknown[k] - product) / column[k];
-        }
+        solve_lower_transposed(pivots, y);
     }
 }

@@ -151,7 +151,7 @@ impl Panel<'_> {
 }
 
 /// Exchanges row `top + k` with row `exchanges[k]`, in turn, in a column.
-fn exchange(column: &mut [f64], top: usize, exchanges: &[u32]) {
+pub(super) fn exchange(column: &mut [f64], top: usize, exchanges: &[u32]) {
     for (k, &other) in exchanges.iter().enumerate() {
         column.swap(top + k, other as usize);
     }
@@ -164,28 +164,6 @@ pub(super) fn exchange_columns(panel: &mut [f64], rows: usize, exchanges: &[u32]
         if other > k {
             let (front, back) = panel.split_at_mut(other * rows);
             front[k * rows..(k + 1) * rows].swap_with_slice(&mut back[..rows]);
-        }
-    }
-}
-
-/// y ← L⁻¹ P y for a block factorised by [`factor_block`].
-pub(super) fn solve_lower(block: &[f64], exchanges: &[u32], y: &mut [f64]) {
-    exchange(y, 0, exchanges);
-    for (k, column) in block.chunks_exact(exchanges.len()).enumerate() {
-        let (known, below) = y.split_at_mut(k + 1);
-        for (value, multiplier) in below.iter_mut().zip(&column[k + 1..]) {
-            *value -= known[k] * multiplier;
-        }
-    }
-}
-
-/// y ← U⁻¹ y for a block factorised by [`factor_block`].
-pub(super) fn solve_upper(block: &[f64], y: &mut [f64]) {
-    for (k, column) in block.chunks_exact(y.len()).enumerate().rev() {
-        let (above, known) = y.split_at_mut(k);
-        known[0] /= column[k];
-        for (value, factor) in above.iter_mut().zip(column) {
-            *value -= known[0] * factor;
         }
     }
 }

@@ -109,7 +109,9 @@ impl<K: Kernel> Job<'_, K> {
             make_room(stack, len, "contributions")?;
         }
         let mut record = PivotRecord::default();
-        below.iter().for_each(|done| record.add(&done.record));
+        for done in &below {
+            record.add(&done.record);
+        }
         let mut output = self.workshop.buffer(task.own.outer * task.own.outer)?;
         for index in task.fronts.clone() {
             let front = &self.plan.fronts[index];

@@ -19,10 +19,10 @@ use faer::{Accum, MatMut, MatRef, Par};
 use igimp_assembly::TangentMatrix;
 
 use super::super::LinearSolverError;
-use super::dense_lu::{PivotRecord, exchange_columns, factor_block, solve_lower, solve_upper};
+use super::dense_lu::{PivotRecord, exchange, exchange_columns, factor_block};
 use super::extend_add::{Block, BorderMap};
 use super::kernel::{Kernel, Room, Substitution};
-use super::panels::{subtract_product, subtract_transposed_product};
+use super::panels::{solve_lower, solve_upper, subtract_product, subtract_transposed_product};
 use super::plan::{Front, Plan};
 use super::tasks::Extent;
 use super::tiles::by_columns;
@@ -169,7 +169,8 @@ impl Substitution for LuFactors {
 
     fn forward(factors: &[f64], exchanges: &[u32], y: &mut [f64], product: &mut [f64]) {
         let (w, r) = (y.len(), product.len());
-        solve_lower(&factors[..w * w], exchanges, y);
+        exchange(y, 0, exchanges);
+        solve_lower(&factors[..w * w], true, y);
         product.fill(0.0);
         subtract_product(&factors[w * w..][..r * w], y, product);
     }

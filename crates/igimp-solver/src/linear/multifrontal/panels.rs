@@ -1,10 +1,13 @@
-//! Products of tall panels with vectors, for solves: they read every factor once, and are bound by
+//! Products with tall panels and triangles for solves: they read every factor once, and are bound by
 //! memory. The order of the sums is fixed.
 
 use faer::traits::pulp::Arch;
 
-/// Columns, or lanes of a sum, that are worked on together.
+/// Columns that are worked on together.
 const WIDTH: usize = 4;
+
+/// Partial sums of a scalar product.
+const LANES: usize = 16;
 
 /// y ← y − A x for a panel A stored by columns.
 pub(super) fn subtract_product(panel: &[f64], x: &[f64], y: &mut [f64]) {
@@ -39,24 +42,73 @@ pub(super) fn subtract_transposed_product(panel: &[f64], x: &[f64], y: &mut [f64
     }
     Arch::new().dispatch(|| {
         for (y, column) in y.iter_mut().zip(panel.chunks_exact(x.len())) {
-            let mut lanes = [[0.0; WIDTH]; WIDTH];
-            let mut x_groups = x.chunks_exact(WIDTH * WIDTH);
-            let mut groups = column.chunks_exact(WIDTH * WIDTH);
-            for (x, group) in x_groups.by_ref().zip(groups.by_ref()) {
-                for (lane, sums) in lanes.iter_mut().enumerate() {
-                    for k in 0..WIDTH {
-                        sums[k] += x[lane * WIDTH + k] * group[lane * WIDTH + k];
-                    }
-                }
-            }
-            let mut sum = 0.0;
-            for (x, a) in x_groups.remainder().iter().zip(groups.remainder()) {
-                sum += x * a;
-            }
-            for sums in lanes {
-                sum += (sums[0] + sums[1]) + (sums[2] + sums[3]);
-            }
-            *y -= sum;
+            *y -= dot(column, x);
         }
     });
+}
+
+/// y ← L⁻¹ y for the lower triangle of a square block, with a diagonal of ones instead of its own where
+/// it is `unit`.
+pub(super) fn solve_lower(block: &[f64], unit: bool, y: &mut [f64]) {
+    Arch::new().dispatch(|| {
+        let rows = y.len();
+        for (k, column) in block.chunks_exact(rows).enumerate() {
+            let (known, below) = y.split_at_mut(k + 1);
+            if !unit {
+                known[k] /= column[k];
+            }
+            for (value, multiplier) in below.iter_mut().zip(&column[k + 1..]) {
+                *value -= known[k] * multiplier;
+            }
+        }
+    });
+}
+
+/// y ← L⁻ᵀ y for the lower triangle of a square block.
+pub(super) fn solve_lower_transposed(block: &[f64], y: &mut [f64]) {
+    Arch::new().dispatch(|| {
+        let rows = y.len();
+        for (k, column) in block.chunks_exact(rows).enumerate().rev() {
+            let (unknown, known) = y.split_at_mut(k + 1);
+            unknown[k] = (unknown[k] - dot(&column[k + 1..], known)) / column[k];
+        }
+    });
+}
+
+/// y ← U⁻¹ y for the upper triangle of a square block.
+pub(super) fn solve_upper(block: &[f64], y: &mut [f64]) {
+    Arch::new().dispatch(|| {
+        let rows = y.len();
+        for (k, column) in block.chunks_exact(rows).enumerate().rev() {
+            let (above, known) = y.split_at_mut(k);
+            known[0] /= column[k];
+            for (value, factor) in above.iter_mut().zip(column) {
+                *value -= known[0] * factor;
+            }
+        }
+    });
+}
+
+/// The scalar product of two vectors, in lanes that are added up in the end.
+#[expect(
+    clippy::inline_always,
+    reason = "it takes the vector instructions of its caller"
+)]
+#[inline(always)]
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let mut lanes = [0.0; LANES];
+    let (mut a, mut b) = (a.chunks_exact(LANES), b.chunks_exact(LANES));
+    for (a, b) in a.by_ref().zip(b.by_ref()) {
+        for (lane, (a, b)) in lanes.iter_mut().zip(a.iter().zip(b)) {
+            *lane += a * b;
+        }
+    }
+    let mut sum = 0.0;
+    for (a, b) in a.remainder().iter().zip(b.remainder()) {
+        sum += a * b;
+    }
+    for four in lanes.chunks_exact(WIDTH) {
+        sum += (four[0] + four[1]) + (four[2] + four[3]);
+    }
+    sum
 }

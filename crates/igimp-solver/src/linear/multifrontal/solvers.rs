@@ -7,6 +7,7 @@ use igimp_assembly::{Pattern, TangentMatrix};
 use super::super::{Accuracy, LinearSolver, LinearSolverError, SolveReport};
 use super::engine::Engine;
 use super::kernel::Kernel;
+use super::plan::Plan;
 use super::{cholesky::Cholesky, lu::Lu};
 
 /// Multifrontal LU for structurally symmetric patterns.
@@ -38,7 +39,7 @@ impl MultifrontalLu {
 
     /// Number of floating-point operations of a factorisation of the pattern analysed last.
     pub fn factor_operations(&self) -> f64 {
-        self.0.plan.as_ref().map_or(0.0, |plan| plan.operations())
+        self.0.plan.as_ref().map_or(0.0, Plan::operations)
     }
 }
 
@@ -56,7 +57,7 @@ impl MultifrontalCholesky {
 
     /// Number of floating-point operations of a factorisation of the pattern analysed last.
     pub fn factor_operations(&self) -> f64 {
-        0.5 * self.0.plan.as_ref().map_or(0.0, |plan| plan.operations())
+        0.5 * self.0.plan.as_ref().map_or(0.0, Plan::operations)
     }
 }
 

@@ -138,7 +138,7 @@ impl<S: Substitution> Job<'_, S> {
             let child = &self.plan.fronts[child];
             part.add(self.plan, child, &outer_below[changes]);
         }
-        let mut values = &self.factors.values[self.own_entries(task, place)..];
+        let mut values = &self.factors.values[Self::own_entries(task, place)..];
         for front in &self.plan.fronts[task.fronts.clone()] {
             let (own, later) = values.split_at(S::entries(&front.extent()));
             values = later;
@@ -163,7 +163,7 @@ impl<S: Substitution> Job<'_, S> {
         let mut tools = self.workshop.tools(self.plan)?;
         let Tools { local, border, .. } = &mut tools;
         let mut part = Part::new(self.plan, task, y, outer, local);
-        let first = self.own_entries(task, place);
+        let first = Self::own_entries(task, place);
         let mut values = &self.factors.values[first..first + S::entries(&task.own)];
         for front in self.plan.fronts[task.fronts.clone()].iter().rev() {
             let (earlier, own) = values.split_at(values.len() - S::entries(&front.extent()));
@@ -186,7 +186,7 @@ impl<S: Substitution> Job<'_, S> {
     }
 
     /// Where the factors of a task itself begin.
-    fn own_entries(&self, task: &Task, place: Place) -> usize {
+    fn own_entries(task: &Task, place: Place) -> usize {
         place.entries + S::entries(&task.total) - S::entries(&task.own)
     }
 }

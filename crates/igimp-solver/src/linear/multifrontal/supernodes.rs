@@ -243,7 +243,7 @@ fn effort(pivots: usize, border: usize) -> f64 {
     /// Of moving an entry through memory: once into the front and once on to the parent.
     const PER_ENTRY: f64 = 8.0;
     /// Of a front, however small: index work and calls of kernels.
-    const PER_FRONT: f64 = 20_000.0;
+    const PER_FRONT: f64 = 50_000.0;
     let (w, r) = (pivots as f64, border as f64);
     let operations = w * (w * w * (2.0 / 3.0) + 2.0 * r * (w + r));
     operations + PER_ENTRY * ((w + r) * (w + r) + r * r) + PER_FRONT

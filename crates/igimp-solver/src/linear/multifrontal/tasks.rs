@@ -106,7 +106,7 @@ impl Cutter<'_> {
     fn task(&mut self, root: usize) -> Task {
         let front = &self.fronts[root];
         let is_cut = self.work[root] > self.coarsest && !front.children.is_empty();
-        let (first, below) = if is_cut {
+        let (first, below): (usize, Vec<Task>) = if is_cut {
             let children = &self.children[front.children.clone()];
             let below = children.iter().map(|&child| self.task(child as usize));
             (root, below.collect())
@@ -119,7 +119,9 @@ impl Cutter<'_> {
         }
         own.outer = self.fronts[root].border;
         let mut total = own;
-        below.iter().for_each(|task: &Task| total.add(&task.total));
+        for task in &below {
+            total.add(&task.total);
+        }
         Task {
             fronts: first..root + 1,
             below,
