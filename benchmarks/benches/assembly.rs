@@ -48,7 +48,7 @@ fn iteration(criterion: &mut Criterion, soil: Soil, cells: usize, pools: &[Threa
     let input = OnceCell::new();
     let mut pass = None;
     let mut group = criterion.benchmark_group("assembly");
-    group.throughput(elements(Block::particles(cells)));
+    group.throughput(elements(Block::<2>::particles(cells)));
     if cells > SIZES[0] {
         group.sample_size(10).sampling_mode(SamplingMode::Flat);
     }
@@ -56,14 +56,17 @@ fn iteration(criterion: &mut Criterion, soil: Soil, cells: usize, pools: &[Threa
         for pool in pools {
             let threads = threads::name(pool.current_num_threads());
             let name = format!("{}/{phase}/{threads}", soil.name());
-            group.bench_function(BenchmarkId::new(name, Block::particles(cells)), |bencher| {
-                let (block, stencils) = input.get_or_init(|| block(soil, cells));
-                let pass = pass.get_or_insert_with(|| made(Pass::new(block, stencils)));
-                match phase {
-                    "evaluate" => bencher.iter(|| pool.install(|| pass.evaluate())),
-                    _ => bencher.iter(|| pool.install(|| pass.tangent())),
-                }
-            });
+            group.bench_function(
+                BenchmarkId::new(name, Block::<2>::particles(cells)),
+                |bencher| {
+                    let (block, stencils) = input.get_or_init(|| block(soil, cells));
+                    let pass = pass.get_or_insert_with(|| made(Pass::new(block, stencils)));
+                    match phase {
+                        "evaluate" => bencher.iter(|| pool.install(|| pass.evaluate())),
+                        _ => bencher.iter(|| pool.install(|| pass.tangent())),
+                    }
+                },
+            );
         }
     }
     group.finish();
@@ -72,13 +75,13 @@ fn iteration(criterion: &mut Criterion, soil: Soil, cells: usize, pools: &[Threa
 fn set_up(criterion: &mut Criterion, cells: usize, pools: &[ThreadPool]) {
     let input = OnceCell::new();
     let mut group = criterion.benchmark_group("set_up");
-    group.throughput(elements(Block::particles(cells)));
+    group.throughput(elements(Block::<2>::particles(cells)));
     if cells > SIZES[0] {
         group.sample_size(10).sampling_mode(SamplingMode::Flat);
     }
     for pool in pools {
         let threads = threads::name(pool.current_num_threads());
-        let id = |part| BenchmarkId::new(format!("{part}/{threads}"), Block::particles(cells));
+        let id = |part| BenchmarkId::new(format!("{part}/{threads}"), Block::<2>::particles(cells));
         group.bench_function(id("stencils"), |bencher| {
             let (block, _) = input.get_or_init(|| block(Soil::VonMises, cells));
             bencher.iter(|| pool.install(|| block.stencils()));
@@ -95,7 +98,7 @@ fn tangent_of(criterion: &mut Criterion, soil: Soil, pool: &ThreadPool) {
     let input = OnceCell::new();
     let mut pass = None;
     let mut group = criterion.benchmark_group("tangent");
-    group.throughput(elements(Block::particles(SMALL)));
+    group.throughput(elements(Block::<2>::particles(SMALL)));
     group.bench_function(soil.name(), |bencher| {
         let (block, stencils) = input.get_or_init(|| block(soil, SMALL));
         let pass = pass.get_or_insert_with(|| made(Pass::new(block, stencils)));

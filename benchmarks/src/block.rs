@@ -1,11 +1,11 @@
-//! A square block of soil at a trial displacement: the input of the assembly and factorisation
-//! benches.
+//! A square or cubic block of soil at a trial displacement: the input of the assembly and
+//! factorisation benches.
 //!
-//! The block fills its grid, is held at its base and rolls at its sides. Four particles per cell
-//! lie a little off their regular places, so that their domains overlap one or two cells along each
-//! axis, as in the midst of a march. The trial displacement is a smooth flow without change of
-//! volume plus a compression that grows with depth; it scales with the strain at yield, and
-//! about half of the particles are plastic at every size.
+//! The block fills its grid, is held at its base and rolls at its sides. Two particles per cell and
+//! direction lie a little off their regular places, so that their domains overlap one or two cells
+//! along each axis, as in the midst of a march. The trial displacement is a smooth flow in the
+//! plane, without change of volume, plus a compression that grows with depth; it scales with the
+//! strain at yield, and about half of the particles are plastic at every size.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::Arc;
@@ -80,15 +80,22 @@ impl Soil {
 
 /// A block of soil and a trial displacement.
 #[derive(Debug)]
-pub struct Block {
-    particles: Particles<2>,
-    conditions: StepConditions<2>,
+pub struct Block<const D: usize = 2> {
+    particles: Particles<D>,
+    conditions: StepConditions<D>,
     method: Method,
     /// Nodal trial displacement \[m\].
-    pub u: Vec<[f64; 2]>,
+    pub u: Vec<[f64; D]>,
 }
 
 impl Block {
+    /// Number of unknowns of a square block with so many cells along a side.
+    pub fn unknowns(cells: usize) -> usize {
+        2 * cells * cells
+    }
+}
+
+impl<const D: usize> Block<D> {
     /// A block with so many cells along a side.
     ///
     /// # Errors
@@ -97,12 +104,18 @@ impl Block {
         let law = soil.law()?;
         let h = SIDE / cells as f64;
         let axis = Axis::uniform(0.0, h, cells)?;
-        let grid = Grid::new([axis.clone(), axis]);
+        let grid = Grid::new(std::array::from_fn(|_| axis.clone()));
+        let upright = D - 1;
         let mut constraints = Constraints::free(&grid);
-        constraints.fix_wall(&grid, 0, false, 0);
-        constraints.fix_wall(&grid, 0, true, 0);
-        constraints.fix_wall(&grid, 1, false, 0);
-        constraints.fix_wall(&grid, 1, false, 1);
+        for side in 0..upright {
+            constraints.fix_wall(&grid, side, false, side);
+            constraints.fix_wall(&grid, side, true, side);
+        }
+        for direction in 0..D {
+            constraints.fix_wall(&grid, upright, false, direction);
+        }
+        let mut gravity = [0.0; D];
+        gravity[upright] = -9.81;
         let strain_at_yield = STRENGTH / (2.0 * law.elasticity().shear());
         let u = (0..grid.node_count())
             .map(|node| flow(grid.node_position(node), FLOW * strain_at_yield))
@@ -113,7 +126,7 @@ impl Block {
                 grid,
                 constraints,
                 loads: StepLoads {
-                    gravity: [0.0, -9.81],
+                    gravity,
                     factors: Vec::new(),
                     drag: 0.0,
                 },
@@ -126,12 +139,7 @@ impl Block {
 
     /// Number of particles of a block with so many cells along a side.
     pub fn particles(cells: usize) -> usize {
-        4 * cells * cells
-    }
-
-    /// Number of unknowns of a block with so many cells along a side.
-    pub fn unknowns(cells: usize) -> usize {
-        2 * cells * cells
+        (2 * cells).pow(D as u32)
     }
 
     /// Number of particles.
@@ -148,7 +156,7 @@ impl Block {
     ///
     /// # Errors
     /// Never: all particles are on the grid.
-    pub fn stencils(&self) -> Result<Stencils<2>, AssemblyError> {
+    pub fn stencils(&self) -> Result<Stencils<D>, AssemblyError> {
         Stencils::build(
             &self.conditions.grid,
             &self.particles,
@@ -161,7 +169,7 @@ impl Block {
     ///
     /// # Errors
     /// Never: the block has one law, and nodes that are free.
-    pub fn system<'a>(&'a self, stencils: &'a Stencils<2>) -> Result<System<'a, 2>, AssemblyError> {
+    pub fn system<'a>(&'a self, stencils: &'a Stencils<D>) -> Result<System<'a, D>, AssemblyError> {
         System::new(
             &self.particles,
             stencils,
@@ -174,17 +182,21 @@ impl Block {
 }
 
 /// Two particles per cell and direction, off their regular places at random.
-fn seeds(cells: usize, h: f64) -> Vec<ParticleSeed<2>> {
+fn seeds<const D: usize>(cells: usize, h: f64) -> Vec<ParticleSeed<D>> {
     let mut random = Random::new(3);
     let per_side = 2 * cells;
-    (0..per_side * per_side)
-        .map(|part| {
-            let place = [part % per_side, part / per_side];
+    (0..per_side.pow(D as u32))
+        .map(|mut part| {
+            let place: [usize; D] = std::array::from_fn(|_| {
+                let along = part % per_side;
+                part /= per_side;
+                along
+            });
             ParticleSeed {
                 x: place
                     .map(|k| 0.5 * h * (k as f64 + 0.5) + random.between(-JITTER * h, JITTER * h)),
-                half_length: [0.25 * h; 2],
-                volume: 0.25 * h * h,
+                half_length: [0.25 * h; D],
+                volume: (0.5 * h).powi(D as i32),
                 density: 2000.0,
                 law: 0,
             }
@@ -192,15 +204,17 @@ fn seeds(cells: usize, h: f64) -> Vec<ParticleSeed<2>> {
         .collect()
 }
 
-/// The trial displacement at a point for strains of about `strain`; zero where the block is held.
-fn flow([x, y]: [f64; 2], strain: f64) -> [f64; 2] {
+/// The trial displacement at a point for strains of about `strain`, in the plane of the first axis
+/// and the upright one; zero where the block is held.
+fn flow<const D: usize>(position: [f64; D], strain: f64) -> [f64; D] {
+    let (x, y) = (position[0], position[D - 1]);
     let (sin_x, cos_x) = (PI * x / SIDE).sin_cos();
     let (sin_y, cos_y) = (FRAC_PI_2 * y / SIDE).sin_cos();
     let settlement = 0.5 * y * (1.0 - 0.5 * y / SIDE);
-    [
-        strain * SIDE / PI * sin_x * sin_y,
-        strain * (SIDE / FRAC_PI_2 * cos_x * (cos_y - 1.0) - settlement),
-    ]
+    let mut u = [0.0; D];
+    u[0] = strain * SIDE / PI * sin_x * sin_y;
+    u[D - 1] = strain * (SIDE / FRAC_PI_2 * cos_x * (cos_y - 1.0) - settlement);
+    u
 }
 
 #[cfg(test)]
@@ -211,29 +225,35 @@ mod tests {
     #[test]
     fn about_half_of_the_particles_are_plastic() {
         for soil in Soil::ALL {
-            let block = Block::new(soil, 20).unwrap();
-            let stencils = block.stencils().unwrap();
-            let system = block.system(&stencils).unwrap();
-            let trial = system.evaluate(&block.u, TangentKind::Consistent).unwrap();
-            let plastic = trial
-                .particles
-                .iter()
-                .filter(|particle| particle.lifted.regime.is_plastic())
-                .count();
-            let share = plastic as f64 / block.len() as f64;
             let expected = match soil {
                 Soil::HenckyElastic => 0.0..0.01,
                 _ => 0.4..0.6,
             };
-            assert!(expected.contains(&share), "{soil:?}: {share}");
+            let shares = [plastic_share::<2>(soil, 20), plastic_share::<3>(soil, 8)];
+            for share in shares {
+                assert!(expected.contains(&share), "{soil:?}: {share}");
+            }
         }
+    }
+
+    fn plastic_share<const D: usize>(soil: Soil, cells: usize) -> f64 {
+        let block: Block<D> = Block::new(soil, cells).unwrap();
+        let stencils = block.stencils().unwrap();
+        let system = block.system(&stencils).unwrap();
+        let trial = system.evaluate(&block.u, TangentKind::Consistent).unwrap();
+        let plastic = trial
+            .particles
+            .iter()
+            .filter(|particle| particle.lifted.regime.is_plastic())
+            .count();
+        plastic as f64 / block.len() as f64
     }
 
     #[test]
     fn the_flow_respects_the_supports() {
-        let block = Block::new(Soil::VonMises, 4).unwrap();
+        let block: Block<3> = Block::new(Soil::VonMises, 4).unwrap();
         for (node, u) in block.u.iter().enumerate() {
-            for axis in 0..2 {
+            for axis in 0..3 {
                 let held = block.conditions.constraints.of(node, axis).is_some();
                 assert!(!held || u[axis].abs() < 1e-12, "node {node}: {u:?}");
             }
@@ -242,7 +262,7 @@ mod tests {
 
     #[test]
     fn domains_touch_about_six_nodes() {
-        let block = Block::new(Soil::VonMises, 20).unwrap();
+        let block: Block = Block::new(Soil::VonMises, 20).unwrap();
         let stencils = block.stencils().unwrap();
         let touched: usize = (0..block.len()).map(|p| stencils.of(p).len()).sum();
         let mean = touched as f64 / block.len() as f64;
@@ -252,8 +272,8 @@ mod tests {
     #[test]
     fn the_size_is_known_beforehand() {
         for cells in [4, 15] {
-            let block = Block::new(Soil::VonMises, cells).unwrap();
-            assert_eq!(block.len(), Block::particles(cells));
+            let block: Block = Block::new(Soil::VonMises, cells).unwrap();
+            assert_eq!(block.len(), Block::<2>::particles(cells));
             let stencils = block.stencils().unwrap();
             let system = block.system(&stencils).unwrap();
             assert_eq!(system.unknowns().len(), Block::unknowns(cells));

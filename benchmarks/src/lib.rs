@@ -2,9 +2,10 @@
 //!
 //! | module | what it makes | used by |
 //! |---|---|---|
-//! | [`block`] | a square block of soil at a trial displacement, of any size and law | `assembly`, `factorisation`, survey |
+//! | [`block`] | a square or cubic block of soil at a trial displacement, of any size and law | `assembly`, `factorisation`, survey |
 //! | [`pass`] | the system of a block: what a step sets up and a Newton iteration repeats | `assembly`, survey |
 //! | [`equations`] | tangent and force of a block, with the solver for them | `factorisation`, survey |
+//! | [`cube`] | what a factorisation in space would take | survey |
 //! | [`steps`] | the four cases of the paper, one load step before the one to measure | `whole_step`, survey |
 //! | [`states`] | elastic and plastic trial states of every law | `return_map` |
 //! | [`threads`] | pools of one thread and of several | `assembly`, survey |
@@ -14,6 +15,7 @@
 //! what is covered, what is not, and how to read the figures.
 
 pub mod block;
+pub mod cube;
 pub mod equations;
 pub mod pass;
 pub mod random;

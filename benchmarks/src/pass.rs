@@ -11,20 +11,20 @@ use crate::block::Block;
 
 /// The system of a block at its trial displacement, with a matrix to write into.
 #[derive(Debug)]
-pub struct Pass<'a> {
-    block: &'a Block,
-    stencils: &'a Stencils<2>,
-    system: System<'a, 2>,
-    trial: Trial<2>,
+pub struct Pass<'a, const D: usize = 2> {
+    block: &'a Block<D>,
+    stencils: &'a Stencils<D>,
+    system: System<'a, D>,
+    trial: Trial<D>,
     matrix: TangentMatrix,
 }
 
-impl<'a> Pass<'a> {
+impl<'a, const D: usize> Pass<'a, D> {
     /// The system of a block, evaluated once.
     ///
     /// # Errors
     /// Never: a block has one law, free nodes, and a trial displacement that all particles bear.
-    pub fn new(block: &'a Block, stencils: &'a Stencils<2>) -> Result<Self, AssemblyError> {
+    pub fn new(block: &'a Block<D>, stencils: &'a Stencils<D>) -> Result<Self, AssemblyError> {
         let system = block.system(stencils)?;
         let trial = system.evaluate(&block.u, TangentKind::Consistent)?;
         let matrix = system.tangent(&trial);
@@ -41,7 +41,7 @@ impl<'a> Pass<'a> {
     ///
     /// # Errors
     /// As [`Self::new`].
-    pub fn set_up(block: &Block) -> Result<(), AssemblyError> {
+    pub fn set_up(block: &Block<D>) -> Result<(), AssemblyError> {
         let stencils = block.stencils()?;
         block.system(&stencils).map(drop)
     }
@@ -72,10 +72,18 @@ impl<'a> Pass<'a> {
             + size_of::<History>()
             + size_of::<f64>() // volume
             + size_of::<usize>() // law
-            + size_of::<ParticleTrial<2>>();
-        supports * size_of::<Support<2>>()
+            + size_of::<ParticleTrial<D>>();
+        supports * size_of::<Support<D>>()
             + self.block.len() * of_particle
             + 2 * self.matrix.values.len() * size_of::<f64>()
+    }
+
+    /// Entries that a particle adds to the matrix on average: the square of its nodes times
+    /// directions.
+    pub fn entries_per_particle(&self) -> f64 {
+        let entries = |particle| (D * self.stencils.of(particle).len()).pow(2);
+        let all: usize = (0..self.block.len()).map(entries).sum();
+        all as f64 / self.block.len() as f64
     }
 
     /// The tangent matrix and the out-of-balance force of the trial.
@@ -95,7 +103,7 @@ mod tests {
 
     #[test]
     fn an_iteration_repeats_itself() {
-        let block = Block::new(Soil::MohrCoulomb, 8).unwrap();
+        let block: Block = Block::new(Soil::MohrCoulomb, 8).unwrap();
         Pass::set_up(&block).unwrap();
         let stencils = block.stencils().unwrap();
         let mut pass = Pass::new(&block, &stencils).unwrap();
@@ -108,7 +116,7 @@ mod tests {
 
     #[test]
     fn an_iteration_moves_at_least_its_matrix_and_its_supports() {
-        let block = Block::new(Soil::VonMises, 8).unwrap();
+        let block: Block = Block::new(Soil::VonMises, 8).unwrap();
         let stencils = block.stencils().unwrap();
         let pass = Pass::new(&block, &stencils).unwrap();
         let least = 16 * pass.matrix.pattern.stored() + 4 * 48 * block.len();

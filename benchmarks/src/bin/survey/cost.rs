@@ -107,7 +107,7 @@ pub(crate) fn run(scope: &mut Scope) -> BenchResult {
 }
 
 fn print_cost(scope: &mut Scope, subjects: &[Subject], corrections: f64) {
-    let particles = Block::particles(CELLS);
+    let particles = Block::<2>::particles(CELLS);
     let mut rows = Vec::new();
     for subject in subjects {
         let one = subject.times[0].all_included(corrections);
@@ -166,7 +166,7 @@ fn print_cost(scope: &mut Scope, subjects: &[Subject], corrections: f64) {
 }
 
 fn print_traffic(scope: &mut Scope, subjects: &[Subject], bandwidth: &[Rounds]) {
-    let particles = Block::particles(CELLS);
+    let particles = Block::<2>::particles(CELLS);
     let mut rows = Vec::new();
     for subject in subjects {
         for ((pool, times), copied) in scope.pools.iter().zip(&subject.times).zip(bandwidth) {

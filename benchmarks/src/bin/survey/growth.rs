@@ -21,21 +21,29 @@ pub(crate) fn run(scope: &mut Scope) -> BenchResult {
         let costs = measure(scope, soil, sizes)?;
         let mut points = Vec::new();
         for (&cells, cost) in std::iter::zip(sizes, &costs) {
-            let particles = Block::particles(cells);
+            let particles = Block::<2>::particles(cells);
             let name = format!("{}/iteration", soil.name());
             scope
                 .report
                 .row("growth", &name, particles, "ns/particle", cost);
             let ratio = cost.over(&costs[0]);
-            let name = format!("{}/over-smallest", soil.name());
-            scope.report.row("growth", &name, particles, "-", &ratio);
             points.push([particles as f64, particles as f64 * cost.median()]);
+            let mut power = String::new();
+            if points.len() > 1 {
+                let fitted = exponent(&points);
+                power = format!("{fitted:.3}");
+                let report = &mut scope.report;
+                let name = |part: &str| format!("{}/{part}", soil.name());
+                report.row("growth", &name("over-smallest"), particles, "-", &ratio);
+                let fitted = Rounds(vec![fitted]);
+                report.row("growth", &name("exponent"), particles, "-", &fitted);
+            }
             rows.push([
                 soil.name().to_owned(),
                 particles.to_string(),
                 format!("{:.0}", cost.median()),
                 format!("{:.2}", ratio.median()),
-                format!("{:.3}", exponent(&points)),
+                power,
             ]);
         }
         let label = format!("assembly, {}", soil.name());

@@ -13,6 +13,7 @@ mod plot;
 mod report;
 mod rounds;
 mod scope;
+mod space;
 mod step;
 mod yardstick;
 
@@ -48,12 +49,13 @@ struct Arguments {
 type Section = fn(&mut Scope) -> BenchResult;
 
 /// The parts by name, in the order of the report.
-const SECTIONS: [(&str, Section); 5] = [
+const SECTIONS: [(&str, Section); 6] = [
     ("survey/step", step::run),
     ("survey/cost", cost::run),
     ("survey/factorisation", factorisation::run),
     ("survey/growth", growth::run),
     ("survey/memory", memory::run),
+    ("survey/space", space::run),
 ];
 
 fn main() -> BenchResult {

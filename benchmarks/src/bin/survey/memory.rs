@@ -38,7 +38,7 @@ pub(crate) fn run(scope: &mut Scope) -> BenchResult {
                     .paragraph("Not known: the system does not tell the peak of a process.");
                 return Ok(());
             };
-            let (particles, unknowns) = (Block::particles(cells), Block::unknowns(cells));
+            let (particles, unknowns) = (Block::<2>::particles(cells), Block::unknowns(cells));
             let per_particle = memory.assembly / particles as f64;
             let per_unknown = memory.solver / unknowns as f64;
             let name = |part: &str| format!("{}/{part}", method.name());
