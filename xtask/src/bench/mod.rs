@@ -64,6 +64,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<u8, Failure> {
     let cores = available_parallelism().map_or(1, NonZeroUsize::get);
     let threads = arguments.threads.map_or(cores.min(2), NonZeroUsize::get);
     let (filter, quick) = (arguments.filter.as_deref(), arguments.quick);
+    let code = survey::build()?;
+    if code != 0 {
+        return Ok(code);
+    }
     let mut rows = Vec::new();
     if !filter.is_some_and(|filter| filter.starts_with(SURVEY)) {
         match criterion::run(filter, quick, threads, &target)? {

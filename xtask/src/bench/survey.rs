@@ -7,6 +7,15 @@ use super::row::{self, Row};
 use crate::failure::Failure;
 use crate::process::{cargo, status};
 
+/// How cargo finds the program.
+const PROGRAM: [&str; 5] = [
+    "--release",
+    "--package",
+    "igimp-benchmarks",
+    "--bin",
+    "survey",
+];
+
 /// What a survey left behind.
 #[derive(Debug, Default, PartialEq)]
 pub(crate) struct Survey {
@@ -16,6 +25,12 @@ pub(crate) struct Survey {
     pub(crate) rows: Vec<Row>,
     /// Whether it drew the growth of times with size.
     pub(crate) has_plot: bool,
+}
+
+/// Builds the survey, so that what does not compile shows before minutes of measurement; returns
+/// the exit code.
+pub(crate) fn build() -> Result<u8, Failure> {
+    status(cargo().arg("build").args(PROGRAM))
 }
 
 /// Runs the survey with a folder for its files, or returns the exit code of a run that failed.
@@ -33,14 +48,8 @@ pub(crate) fn run(
     }
     let mut survey = cargo();
     survey
-        .args([
-            "run",
-            "--release",
-            "--package",
-            "igimp-benchmarks",
-            "--bin",
-            "survey",
-        ])
+        .arg("run")
+        .args(PROGRAM)
         .args(["--", "--filter", filter.unwrap_or(""), "--folder"])
         .arg(folder)
         .env("RAYON_NUM_THREADS", threads.to_string());
