@@ -30,8 +30,17 @@ pub struct Setting {
     grid: Option<(f64, [f64; 2])>,
     /// Factor by which the strength is reduced.
     srf: f64,
-    /// Number of equal steps before the one to measure; `None`: all but the last of the stage.
-    before: Option<usize>,
+    /// Which step is measured.
+    step: Step,
+}
+
+/// A step of the way to full load.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Step {
+    /// The last of the steps that the case file asks for.
+    Last,
+    /// One, counted from 1, of so many equal steps.
+    Of(usize, usize),
 }
 
 impl Setting {
@@ -44,7 +53,7 @@ impl Setting {
                 case: "column",
                 grid: None,
                 srf: 1.0,
-                before: None,
+                step: Step::Last,
             },
             Self::von_mises_slope("von-mises-slope", 0.5),
             Self::mohr_coulomb_slope("mohr-coulomb-slope", 0.5),
@@ -53,21 +62,23 @@ impl Setting {
                 case: "footing",
                 grid: None,
                 srf: 1.0,
-                before: Some(3),
+                step: Step::Of(4, 75),
             },
         ]
     }
 
-    /// The slopes with about 100 000 particles, their strength whole: a fine grid finds slopes
-    /// weaker, and the steps have to converge.
+    /// The slopes with about 100 000 particles, their strength whole, half way to full gravity: a
+    /// fine grid finds slopes weaker, and the steps have to converge.
     pub fn large() -> [Self; 2] {
         [
             Self {
                 srf: 1.0,
+                step: Step::Of(10, 20),
                 ..Self::von_mises_slope("von-mises-slope-fine", 0.125)
             },
             Self {
                 srf: 1.0,
+                step: Step::Of(10, 20),
                 ..Self::mohr_coulomb_slope("mohr-coulomb-slope-fine", 0.1)
             },
         ]
@@ -79,7 +90,7 @@ impl Setting {
             case: "von_mises_slope",
             grid: Some((cell, [40.0, 15.0 + cell])),
             srf: REDUCTION,
-            before: None,
+            step: Step::Last,
         }
     }
 
@@ -89,7 +100,7 @@ impl Setting {
             case: "mohr_coulomb_slope",
             grid: Some((cell, [36.0, 10.0 + cell])),
             srf: REDUCTION,
-            before: None,
+            step: Step::Last,
         }
     }
 
@@ -116,10 +127,13 @@ impl Setting {
             settlement: share * end.settlement,
             ..end.clone()
         };
-        let steps = case.stages[0].steps.max(2);
-        let before = self.before.unwrap_or(steps - 1);
+        let (number, steps) = match self.step {
+            Step::Last => (case.stages[0].steps, case.stages[0].steps),
+            Step::Of(number, steps) => (number, steps),
+        };
+        let before = number - 1;
         let start = before as f64 / steps as f64;
-        let stop = (before + 1) as f64 / steps as f64;
+        let stop = number as f64 / steps as f64;
         let mut body = initial.body.clone();
         let report = march(
             &mut body,
@@ -209,7 +223,7 @@ mod tests {
     fn the_steps_converge_with_plastic_flow() {
         let coarse = [
             Setting {
-                before: Some(2),
+                step: Step::Of(3, 40),
                 ..Setting::of_the_paper()[0]
             },
             Setting::von_mises_slope("von Mises", 1.0),
@@ -230,7 +244,7 @@ mod tests {
     #[test]
     fn the_footing_starts_where_its_grid_has_followed_it() {
         let setting = Setting {
-            before: Some(1),
+            step: Step::Of(2, 75),
             ..Setting::of_the_paper()[3]
         };
         let prepared = setting.prepare().unwrap();

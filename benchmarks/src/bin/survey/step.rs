@@ -79,7 +79,8 @@ pub(crate) fn run(scope: &mut Scope) -> BenchResult {
     report.heading("Whole steps by phase");
     report.paragraph(
         "One load step of each case of the paper: the last to full load of column and slopes \
-         (strength reduced by 1.2), the fourth of the footing. Shares of the time of the step; \
+         (strength reduced by 1.2), the fourth of the footing; of the fine slopes, with \
+         whole strength, the tenth of twenty. Shares of the time of the step; \
          *rest* is what the phases leave. The analysis of the pattern is part of *linear*. *Gain*: \
          one thread over several. Files, pictures and checks are not part of a step.",
     );
