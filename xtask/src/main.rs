@@ -32,9 +32,11 @@ enum Task {
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         arguments: Vec<String>,
     },
-    /// Run the benches and print one table of times and costs per particle.
+    /// Measure speed and memory, and write one report.
     ///
-    /// The table is also written to `target/bench/bench.md` and `target/bench/bench.csv`.
+    /// Benches of the kernels, and a survey: cost per particle and iteration, time by phase, rates
+    /// against the machine's own, growth with size, memory. The report is `target/bench/bench.md`,
+    /// the same numbers are in `target/bench/bench.csv`.
     Bench(bench::Arguments),
     /// Check what the compiler does not: layers, printing, leftovers, licences, links.
     Tidy,

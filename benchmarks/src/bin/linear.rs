@@ -12,7 +12,7 @@ use clap::Parser;
 use igimp_assembly::TangentMatrix;
 use igimp_cases::results::linear_system::LinearSystem;
 use igimp_solver::linear::{
-    FaerCholesky, LinearSolver, LinearSolverError, MultifrontalLu, SolveReport, SolverKind,
+    LinearSolver, LinearSolverError, MultifrontalCholesky, MultifrontalLu, SolveReport, SolverKind,
 };
 use serde_json::{Value, json};
 
@@ -87,7 +87,7 @@ fn tell(arguments: &Arguments) -> Result<Value, Box<dyn Error>> {
 
 /// A solver; the direct ones tell the size of their factors.
 enum Solver {
-    Cholesky(FaerCholesky),
+    Cholesky(MultifrontalCholesky),
     Lu(MultifrontalLu),
     Other(Box<dyn LinearSolver>),
 }
@@ -97,8 +97,8 @@ impl Solver {
     /// made here.
     fn new(kind: SolverKind, symmetric: bool) -> Self {
         match (kind, symmetric) {
-            (SolverKind::FaerCholesky, _) | (SolverKind::Auto, true) => {
-                Self::Cholesky(FaerCholesky::default())
+            (SolverKind::MultifrontalCholesky, _) | (SolverKind::Auto, true) => {
+                Self::Cholesky(MultifrontalCholesky::default())
             }
             (SolverKind::Multifrontal, _) | (SolverKind::Auto, false) => {
                 Self::Lu(MultifrontalLu::default())

@@ -250,7 +250,7 @@ struct Run {
 }
 
 impl Run {
-    fn supports(&self) -> Range<usize> {
+    fn supports(self) -> Range<usize> {
         usize::from(self.first)..usize::from(self.first + self.len)
     }
 }
@@ -293,7 +293,7 @@ impl Blocks {
         linearised: &mut Linearised<D>,
         (start, slice): (usize, &mut [f64]),
     ) {
-        for j in self.runs.iter().flat_map(Run::supports) {
+        for j in self.runs.iter().copied().flat_map(Run::supports) {
             let node = supports[j].node;
             let block = table.nodes[node].block as usize;
             let ends = [pattern.first_value[block], pattern.first_value[block + 1]];
@@ -329,7 +329,8 @@ impl Blocks {
             let values = &mut slice[ends[0] - start..ends[1] - start];
             let columns = linearised.columns(j);
             let partial = self.partial.iter().map(|&i| usize::from(i));
-            for i in self.runs.iter().flat_map(Run::supports).chain(partial) {
+            let full = self.runs.iter().copied().flat_map(Run::supports);
+            for i in full.chain(partial) {
                 table.add_block(supports, [i, j], &columns, values);
             }
         }

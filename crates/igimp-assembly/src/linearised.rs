@@ -177,6 +177,11 @@ impl<const D: usize> Linearised<D> {
         }
     }
 
+    /// The columns for so many lanes: a constant where it is called, which it has to reach the loops.
+    #[allow(
+        clippy::inline_always,
+        reason = "otherwise the lengths of the loops are not known"
+    )]
     #[inline(always)]
     fn columns_of(&mut self, lanes: usize, j: usize) -> [&[f64]; D] {
         let (g, g_bar) = (self.g[j], self.g_bar[j]);

@@ -11,7 +11,7 @@ use support::{Body, manufactured};
 fn solve(solver: &mut dyn LinearSolver, matrix: &TangentMatrix, rhs: &[f64]) -> Vec<f64> {
     let mut solution = vec![0.0; rhs.len()];
     solver.factor(matrix).unwrap();
-    solver.solve(rhs, &mut solution).unwrap();
+    solver.solve(matrix, rhs, &mut solution).unwrap();
     solution
 }
 
@@ -55,7 +55,7 @@ fn a_system_that_cannot_be_solved_is_not_kept() {
     assert!(solver.factor(&matrix).is_err());
     let mut solution = vec![0.0; rhs.len()];
     assert_eq!(
-        solver.solve(&rhs, &mut solution),
+        solver.solve(&matrix, &rhs, &mut solution),
         Err(LinearSolverError::NotFactored)
     );
     assert!(record.take().is_none());

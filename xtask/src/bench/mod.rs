@@ -1,84 +1,143 @@
-//! `cargo xtask bench`: runs the benches and gathers what criterion measured in one table.
+//! `cargo xtask bench`: runs benches and survey, and writes one report.
 
+mod compare;
+mod criterion;
 mod estimate;
+mod machine;
+mod report;
+mod row;
+mod survey;
 mod table;
 
 use std::fs;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::thread::available_parallelism;
-use std::time::{Duration, SystemTime};
 
 use crate::failure::{BAD_INPUT, Failure};
-use crate::process::{cargo, output, root, status};
-use estimate::Measurement;
+use crate::process::{cargo, output, root};
+use compare::{Comparison, is_name};
+use report::Report;
+use row::Row;
 
-/// Criterion's flags for a first impression.
-const QUICK: [&str; 6] = [
-    "--warm-up-time",
-    "0.1",
-    "--measurement-time",
-    "0.3",
-    "--sample-size",
-    "10",
-];
+/// What begins the names of all that the survey measures.
+const SURVEY: &str = "survey";
 
 /// What to measure, and how.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Arguments {
-    /// Only benches whose name `group/bench/size` matches this regular expression.
+    /// Only benches whose name `group/bench/size` matches this regular expression, and parts of the
+    /// survey, such as `survey/cost`, whose name contains it.
     filter: Option<String>,
-    /// Short measurements: for a first impression, not for comparisons.
+    /// Short measurements and small sizes: for a first impression, not for comparisons.
     #[arg(long)]
     quick: bool,
-    /// Threads to use; all cores when not given.
+    /// Threads to compare with one; two when not given, or one where there is but one core.
     #[arg(long, value_name = "N")]
     threads: Option<NonZeroUsize>,
+    /// Keep the results under this name, for `--against`.
+    #[arg(long, value_name = "NAME", value_parser = name)]
+    save: Option<String>,
+    /// Compare with the results that were kept under this name.
+    #[arg(long, value_name = "NAME", value_parser = name)]
+    against: Option<String>,
 }
 
-/// Runs the benches, prints the table and writes it.
-pub(crate) fn run(arguments: &Arguments) -> Result<u8, Failure> {
-    // Time stamps of files may lag behind the clock.
-    let start = SystemTime::now() - Duration::from_secs(1);
-    let threads = arguments.threads.or(available_parallelism().ok());
-    let threads = threads.map_or(1, NonZeroUsize::get);
-    let mut bench = cargo();
-    bench
-        .args(["bench", "--package", "igimp-benchmarks", "--"])
-        .env("RAYON_NUM_THREADS", threads.to_string());
-    if arguments.quick {
-        bench.args(QUICK);
+/// A name that a file can have.
+fn name(text: &str) -> Result<String, String> {
+    if is_name(text) {
+        Ok(text.to_owned())
+    } else {
+        Err("a name is made of letters, digits, `-`, `_` and `.`".to_owned())
     }
-    bench.args(&arguments.filter);
-    let code = status(&mut bench)?;
+}
+
+/// Runs benches and survey, prints the tables and writes the report.
+pub(crate) fn run(arguments: &Arguments) -> Result<u8, Failure> {
+    let target = target_directory()?;
+    let folder = target.join("bench");
+    let saved = folder.join("saved");
+    // Asked for before the measurement, which takes minutes.
+    let against = arguments.against.as_ref();
+    let earlier = against.map(|name| read_saved(&saved, name)).transpose()?;
+
+    let cores = available_parallelism().map_or(1, NonZeroUsize::get);
+    let threads = arguments.threads.map_or(cores.min(2), NonZeroUsize::get);
+    let (filter, quick) = (arguments.filter.as_deref(), arguments.quick);
+    let code = survey::build()?;
     if code != 0 {
         return Ok(code);
     }
-
-    let target = target_directory()?;
-    let mut measurements = Vec::new();
-    gather(&target.join("criterion"), start, &mut measurements)?;
-    if measurements.is_empty() {
+    let mut rows = Vec::new();
+    if !filter.is_some_and(|filter| filter.starts_with(SURVEY)) {
+        match criterion::run(filter, quick, threads, &target)? {
+            Ok(found) => rows = found,
+            Err(code) => return Ok(code),
+        }
+    }
+    let survey = match survey::run(filter, quick, threads, &folder.join(SURVEY))? {
+        Ok(survey) => survey,
+        Err(code) => return Ok(code),
+    };
+    rows.extend_from_slice(&survey.rows);
+    if rows.is_empty() {
         return Err(Failure::new(BAD_INPUT, "no bench has such a name"));
     }
-    measurements.sort_by(|a, b| (&a.group, &a.bench, a.size).cmp(&(&b.group, &b.bench, b.size)));
 
-    println!("\n{}", table::text(&measurements));
-    let length = if arguments.quick { "short" } else { "full" };
-    let note = format!(
-        "Time: median of one pass, with its 95 % confidence interval. Cost: time divided by size. \
-         Threads: {threads}. Measurement: {length}."
-    );
-    let markdown = format!("# Benches\n\n{note}\n\n{}", table::markdown(&measurements));
-    let folder = target.join("bench");
-    write(&folder, "bench.md", &markdown)?;
-    write(&folder, "bench.csv", &table::csv(&measurements))?;
+    let comparison = std::iter::zip(against, earlier)
+        .map(|(name, earlier)| Comparison::new(name, &rows, &earlier))
+        .next();
+    let side_by_side = fs::read_to_string(folder.join("compare.md")).ok();
+    let report = Report {
+        machine: &machine::line(),
+        note: &note(arguments, threads),
+        survey: &survey,
+        side_by_side: side_by_side.as_deref(),
+        rows: &rows,
+        against: comparison.as_ref(),
+    };
+    print(&report);
+    write(&folder, "bench.md", &report.markdown())?;
+    let ratios = comparison.as_ref().map(|comparison| &*comparison.ratios);
+    write(&folder, "bench.csv", &row::csv(&rows, ratios))?;
+    if let Some(name) = &arguments.save {
+        write(&saved, &format!("{name}.csv"), &row::csv(&rows, None))?;
+    }
     let shown = folder.strip_prefix(root()).unwrap_or(&folder);
-    println!(
-        "{note}\nWritten to bench.md and bench.csv in {}.",
-        shown.display()
-    );
+    println!("Written to bench.md and bench.csv in {}.", shown.display());
     Ok(0)
+}
+
+/// How it was measured.
+fn note(arguments: &Arguments, threads: usize) -> String {
+    let threads = match threads {
+        1 => "1".to_owned(),
+        several => format!("1 and {several}"),
+    };
+    let length = if arguments.quick { "short" } else { "full" };
+    let filter = arguments.filter.as_ref();
+    let filter = filter.map_or(String::new(), |filter| format!(" Filter: `{filter}`."));
+    format!("Threads: {threads}. Measurement: {length}.{filter}")
+}
+
+/// The report for a terminal.
+fn print(report: &Report<'_>) {
+    println!("\n{}\n{}\n", report.machine, report.note);
+    print!("{}", report.survey.tables);
+    println!("{}", table::text(report.rows, report.against));
+    if let Some(comparison) = report.against {
+        println!("{}", comparison.verdict(report.rows));
+    }
+}
+
+/// The rows that were kept under a name.
+fn read_saved(saved: &Path, name: &str) -> Result<Vec<Row>, Failure> {
+    let path = saved.join(format!("{name}.csv"));
+    let text = fs::read_to_string(&path).map_err(|error| {
+        let what = format!("cannot read {} (`--save {name}` writes it)", path.display());
+        Failure::input_output(what, error)
+    })?;
+    row::parse(&text).map_err(|error| Failure::input_output(path.display(), error))
 }
 
 /// Where cargo, and so criterion, puts its files.
@@ -88,31 +147,6 @@ fn target_directory() -> Result<PathBuf, Failure> {
         .ok()
         .and_then(|metadata| metadata["target_directory"].as_str().map(PathBuf::from))
         .ok_or_else(|| Failure::input_output("cargo metadata", "names no target directory"))
-}
-
-/// Collects the measurements below a folder that were made since `start`.
-fn gather(folder: &Path, start: SystemTime, found: &mut Vec<Measurement>) -> Result<(), Failure> {
-    let failure = |error| Failure::input_output(format!("cannot read {}", folder.display()), error);
-    for entry in fs::read_dir(folder).map_err(failure)? {
-        let path = entry.map_err(failure)?.path();
-        if !path.is_dir() {
-            continue;
-        }
-        let estimates = path.join("estimates.json");
-        let is_new = path.file_name().is_some_and(|name| name == "new");
-        if is_new && modified_since(&estimates, start) {
-            found.push(Measurement::read(&path.join("benchmark.json"), &estimates)?);
-        } else if !is_new {
-            gather(&path, start, found)?;
-        }
-    }
-    Ok(())
-}
-
-fn modified_since(path: &Path, start: SystemTime) -> bool {
-    fs::metadata(path)
-        .and_then(|metadata| metadata.modified())
-        .is_ok_and(|modified| modified >= start)
 }
 
 fn write(folder: &Path, name: &str, content: &str) -> Result<(), Failure> {

@@ -1,90 +1,88 @@
-//! Measurements as a table: aligned text, Markdown and CSV.
+//! Rows as a table: aligned text for a terminal, and Markdown.
 
-use super::estimate::Measurement;
-
-const HEADER: [&str; 6] = ["group", "bench", "size", "time", "interval", "cost"];
+use super::compare::Comparison;
+use super::row::Row;
 
 /// Columns from this one on hold numbers and are set flush right.
 const FIRST_NUMBER: usize = 2;
 
 /// The table for a terminal.
-pub(crate) fn text(measurements: &[Measurement]) -> String {
-    let rows = rows(measurements);
-    let widths = widths(&rows);
-    let lines: Vec<String> = rows
+pub(crate) fn text(rows: &[Row], against: Option<&Comparison>) -> String {
+    let cells = cells(rows, against);
+    let widths = widths(&cells);
+    let lines: Vec<String> = cells
         .iter()
-        .map(|row| format!("{}\n", cells(row, &widths).join("  ").trim_end()))
+        .map(|row| format!("{}\n", padded(row, &widths).join("  ").trim_end()))
         .collect();
     lines.concat()
 }
 
 /// The table in Markdown, aligned in its source too.
-pub(crate) fn markdown(measurements: &[Measurement]) -> String {
-    let rows = rows(measurements);
-    let widths = widths(&rows);
+pub(crate) fn markdown(rows: &[Row], against: Option<&Comparison>) -> String {
+    let cells = cells(rows, against);
+    let widths = widths(&cells);
     let rule = widths.iter().enumerate().map(|(column, &width)| {
         let right = if column < FIRST_NUMBER { '-' } else { ':' };
         format!("|{}{right}", "-".repeat(width + 1))
     });
-    let mut lines: Vec<String> = rows
+    let mut lines: Vec<String> = cells
         .iter()
-        .map(|row| format!("| {} |\n", cells(row, &widths).join(" | ")))
+        .map(|row| format!("| {} |\n", padded(row, &widths).join(" | ")))
         .collect();
     lines.insert(1, format!("{}|\n", rule.collect::<String>()));
     lines.concat()
 }
 
-/// The table for other programs: plain numbers, times in nanoseconds.
-pub(crate) fn csv(measurements: &[Measurement]) -> String {
-    let header = "group,bench,size,unit,time_[ns],low_[ns],high_[ns],cost_[ns/unit]\n";
-    let rows = measurements.iter().map(|measurement| {
-        let Measurement {
-            group,
-            bench,
-            size,
-            time,
-            interval: [low, high],
-        } = measurement;
-        let (unit, cost) = (measurement.unit(), measurement.cost());
-        format!("{group},{bench},{size},{unit},{time:.1},{low:.1},{high:.1},{cost:.3}\n")
-    });
-    std::iter::once(header.to_owned()).chain(rows).collect()
-}
-
 /// The cells, header first.
-fn rows(measurements: &[Measurement]) -> Vec<[String; 6]> {
-    let mut rows = vec![HEADER.map(str::to_owned)];
-    for measurement in measurements {
-        let [low, high] = measurement.interval.map(duration);
-        rows.push([
-            measurement.group.clone(),
-            measurement.bench.clone(),
-            measurement.size.to_string(),
-            duration(measurement.time),
+fn cells(rows: &[Row], against: Option<&Comparison>) -> Vec<Vec<String>> {
+    let mut header = ["group", "bench", "size", "time", "value", "range"]
+        .map(str::to_owned)
+        .to_vec();
+    header.extend(against.map(|comparison| format!("over {}", comparison.name)));
+    let mut cells = vec![header];
+    for (number, row) in rows.iter().enumerate() {
+        let [low, high] = row.range.map(digits);
+        let mut line = vec![
+            row.group.clone(),
+            row.bench.clone(),
+            row.size.to_string(),
+            row.time().map_or_else(String::new, duration),
+            match row.unit.as_str() {
+                "-" => digits(row.value),
+                unit => format!("{} {unit}", digits(row.value)),
+            },
             format!("{low} .. {high}"),
-            format!("{} ns/{}", digits(measurement.cost()), measurement.unit()),
-        ]);
+        ];
+        if let Some(comparison) = against {
+            let ratio = comparison.ratios.get(number).copied().flatten();
+            line.push(ratio.map_or_else(String::new, |ratio| format!("{ratio:.2}")));
+        }
+        cells.push(line);
     }
-    rows
+    cells
 }
 
-fn widths(rows: &[[String; 6]]) -> [usize; 6] {
-    std::array::from_fn(|column| {
-        let widths = rows.iter().map(|row| row[column].chars().count());
+fn widths(cells: &[Vec<String>]) -> Vec<usize> {
+    let columns = cells.first().map_or(0, Vec::len);
+    let width = |column: usize| {
+        let widths = cells.iter().map(|row| row[column].chars().count());
         widths.max().unwrap_or(0)
-    })
+    };
+    (0..columns).map(width).collect()
 }
 
 /// The cells of a row, filled up to the widths.
-fn cells(row: &[String; 6], widths: &[usize; 6]) -> [String; 6] {
-    std::array::from_fn(|column| {
-        let (cell, width) = (&row[column], widths[column]);
-        if column < FIRST_NUMBER {
-            format!("{cell:<width$}")
-        } else {
-            format!("{cell:>width$}")
-        }
-    })
+fn padded(row: &[String], widths: &[usize]) -> Vec<String> {
+    let cells = std::iter::zip(row, widths).enumerate();
+    cells
+        .map(|(column, (cell, &width))| {
+            if column < FIRST_NUMBER {
+                format!("{cell:<width$}")
+            } else {
+                format!("{cell:>width$}")
+            }
+        })
+        .collect()
 }
 
 /// A time in the unit that suits it.
@@ -98,9 +96,9 @@ fn duration(nanoseconds: f64) -> String {
     format!("{} {unit}", digits(nanoseconds / divisor))
 }
 
-/// A positive number with three significant digits, or all those before the point.
+/// A number with three significant digits, or all those before the point.
 fn digits(value: f64) -> String {
-    let decimals = match value {
+    let decimals = match value.abs() {
         value if value < 9.995 => 2,
         value if value < 99.95 => 1,
         _ => 0,
@@ -110,35 +108,35 @@ fn digits(value: f64) -> String {
 
 #[cfg(test)]
 mod tests {
+    use super::super::row::tests::example;
     use super::*;
 
-    fn measurements() -> Vec<Measurement> {
-        let measurement = |group: &str, bench: &str, size, time: f64| Measurement {
-            group: group.to_owned(),
-            bench: bench.to_owned(),
-            size,
-            time,
-            interval: [0.9 * time, 1.1 * time],
-        };
+    fn rows() -> Vec<Row> {
         vec![
-            measurement("assembly", "von-mises/evaluate", 10_000, 3.214e6),
-            measurement("factorisation", "lu/solve", 500, 999.4e3),
+            example(
+                "assembly",
+                "von-mises/evaluate",
+                10_000,
+                "ns/particle",
+                321.4,
+            ),
+            example("survey/traffic", "copy", 500, "GB/s", 9.5),
         ]
     }
 
     #[test]
     fn text_is_aligned() {
         let expected = "\
-group          bench                size     time            interval             cost
-assembly       von-mises/evaluate  10000  3.21 ms  2.89 ms .. 3.54 ms  321 ns/particle
-factorisation  lu/solve              500   999 us   899 us .. 1.10 ms  1999 ns/unknown
+group           bench                size     time            value         range
+assembly        von-mises/evaluate  10000  3.21 ms  321 ns/particle    320 .. 322
+survey/traffic  copy                  500                 9.50 GB/s  8.50 .. 10.5
 ";
-        assert_eq!(text(&measurements()), expected);
+        assert_eq!(text(&rows(), None), expected);
     }
 
     #[test]
     fn markdown_has_a_rule_below_its_header() {
-        let found = markdown(&measurements());
+        let found = markdown(&rows(), None);
         let lines: Vec<&str> = found.lines().collect();
         assert_eq!(lines.len(), 4);
         assert!(lines[1].starts_with("|---") && lines[1].ends_with(":|"));
@@ -147,11 +145,15 @@ factorisation  lu/solve              500   999 us   899 us .. 1.10 ms  1999 ns/u
     }
 
     #[test]
-    fn csv_holds_plain_numbers() {
-        let found = csv(&measurements());
-        let row = found.lines().nth(1).unwrap();
-        let numbers = "10000,particle,3214000.0,2892600.0,3535400.0,321.400";
-        assert_eq!(row, format!("assembly,von-mises/evaluate,{numbers}"));
+    fn a_comparison_adds_a_column() {
+        let comparison = Comparison {
+            name: "before".to_owned(),
+            ratios: vec![Some(1.234), None],
+        };
+        let found = markdown(&rows(), Some(&comparison));
+        assert!(found.lines().next().unwrap().ends_with("| over before |"));
+        assert!(found.lines().nth(2).unwrap().ends_with("|        1.23 |"));
+        assert!(found.lines().nth(3).unwrap().ends_with("|             |"));
     }
 
     #[test]

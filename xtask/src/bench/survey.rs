@@ -1,0 +1,76 @@
+//! The survey: a program of its own that measures what no single bench can say.
+
+use std::fs;
+use std::path::Path;
+
+use super::row::{self, Row};
+use crate::failure::Failure;
+use crate::process::{cargo, status};
+
+/// How cargo finds the program.
+const PROGRAM: [&str; 5] = [
+    "--release",
+    "--package",
+    "igimp-benchmarks",
+    "--bin",
+    "survey",
+];
+
+/// What a survey left behind.
+#[derive(Debug, Default, PartialEq)]
+pub(crate) struct Survey {
+    /// Its tables, in Markdown.
+    pub(crate) tables: String,
+    /// Its rows.
+    pub(crate) rows: Vec<Row>,
+    /// Whether it drew the growth of times with size.
+    pub(crate) has_plot: bool,
+}
+
+/// Builds the survey, so that what does not compile shows before minutes of measurement; returns
+/// the exit code.
+pub(crate) fn build() -> Result<u8, Failure> {
+    status(cargo().arg("build").args(PROGRAM))
+}
+
+/// Runs the survey with a folder for its files, or returns the exit code of a run that failed.
+pub(crate) fn run(
+    filter: Option<&str>,
+    quick: bool,
+    threads: usize,
+    folder: &Path,
+) -> Result<Result<Survey, u8>, Failure> {
+    let plot = folder.join("growth.svg");
+    if plot.exists() {
+        fs::remove_file(&plot).map_err(|error| {
+            Failure::input_output(format!("cannot remove {}", plot.display()), error)
+        })?;
+    }
+    let mut survey = cargo();
+    survey
+        .arg("run")
+        .args(PROGRAM)
+        .args(["--", "--filter", filter.unwrap_or(""), "--folder"])
+        .arg(folder)
+        .env("RAYON_NUM_THREADS", threads.to_string());
+    if quick {
+        survey.arg("--quick");
+    }
+    let code = status(&mut survey)?;
+    if code != 0 {
+        return Ok(Err(code));
+    }
+    let text = |name: &str| {
+        let path = folder.join(name);
+        fs::read_to_string(&path).map_err(|error| {
+            Failure::input_output(format!("cannot read {}", path.display()), error)
+        })
+    };
+    let rows = row::parse(&text("rows.csv")?)
+        .map_err(|error| Failure::input_output("the rows of the survey", error))?;
+    Ok(Ok(Survey {
+        tables: text("tables.md")?,
+        rows,
+        has_plot: plot.exists(),
+    }))
+}
