@@ -274,6 +274,13 @@ fn misuse_is_refused() {
         assert!(
             matches!(short_solution, Err(LinearSolverError::WrongLength { found, .. }) if found == n - 1)
         );
+        let another = Body::plane(5, 3).tangent();
+        let n_other = another.pattern.unknowns();
+        let other_matrix = solver.solve(&another, &vec![1.0; n_other], &mut vec![0.0; n_other]);
+        assert!(
+            matches!(other_matrix, Err(LinearSolverError::WrongLength { found, .. }) if found == n_other),
+            "{kind:?}: {other_matrix:?}"
+        );
         let mut cut = matrix.clone();
         cut.values.pop();
         assert!(matches!(

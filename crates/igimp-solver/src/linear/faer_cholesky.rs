@@ -102,6 +102,8 @@ impl LinearSolver for FaerCholesky {
         let (Some(analysis), true) = (&mut self.analysis, self.factored) else {
             return Err(LinearSolverError::NotFactored);
         };
+        let unknowns = matrix.pattern.unknowns();
+        check::length("the matrix", unknowns, analysis.pattern.unknowns())?;
         let Analysis {
             symbolic,
             workspace,

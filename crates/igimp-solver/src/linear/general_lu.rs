@@ -55,6 +55,8 @@ impl GeneralLu {
         let Some(analysis) = &mut self.analysis else {
             return Err(LinearSolverError::NotFactored);
         };
+        let unknowns = matrix.pattern.unknowns();
+        check::length("the matrix", unknowns, analysis.pattern.unknowns())?;
         let Analysis {
             symbolic,
             workspace,

@@ -104,6 +104,8 @@ impl LinearSolver for NalgebraCholesky {
         let (Some(Analysis { order, .. }), Some(factors)) = (&self.analysis, &self.factors) else {
             return Err(LinearSolverError::NotFactored);
         };
+        let unknowns = matrix.pattern.unknowns();
+        check::length("the matrix", unknowns, order.len())?;
         let mut permuted = vec![0.0; order.len()];
         let accuracy = &self.accuracy;
         let refined = self

@@ -90,6 +90,7 @@ impl LinearSolver for SprsBiCgStab {
         else {
             return Err(LinearSolverError::NotFactored);
         };
+        check::length("the matrix", matrix.pattern.unknowns(), scale.len())?;
         check::length("the right-hand side", rhs.len(), scale.len())?;
         check::length("the solution", solution.len(), scale.len())?;
         check::finite("right-hand side", rhs)?;
