@@ -62,7 +62,7 @@ impl Setting {
                 case: "footing",
                 grid: None,
                 srf: 1.0,
-                step: Step::Of(4, 75),
+                step: Step::Of(2, 40),
             },
         ]
     }

@@ -112,7 +112,7 @@ fn pushes(level: Level) -> Vec<Push> {
                 "iGIMP + B-bar, rough, B/h = 13",
                 Role::Deep,
                 13,
-                &[to(1.0, 130)],
+                &[to(1.0, 65)],
             ),
             of(
                 "small_strain_13",
@@ -137,7 +137,7 @@ fn pushes(level: Level) -> Vec<Push> {
                 "iGIMP + B-bar, rough, B/h = 17",
                 Role::Deep,
                 17,
-                &[to(1.0, 170)],
+                &[to(1.0, 85)],
             ),
         ]);
     }
