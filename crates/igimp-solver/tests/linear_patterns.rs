@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use igimp_assembly::{Pattern, TangentMatrix};
-use igimp_solver::linear::{LinearSolver, SolverKind};
+use igimp_solver::linear::{LinearSolver, MultifrontalLu, SolverKind};
 use nalgebra::DVector;
 use support::{Body, distance, manufactured, stored};
 
@@ -161,5 +161,58 @@ fn couplings_beyond_the_reach_are_planned_for() {
     };
     for kind in PLANNED {
         recovers(&mut *kind.build(), &matrix);
+    }
+}
+
+/// A body with some nodes of its upper rim coupled to nodes three layers away, as tied nodes are.
+fn with_far_couplings(body: &Body) -> TangentMatrix {
+    let matrix = body.tangent();
+    let pattern = &matrix.pattern;
+    let at = |place: [usize; 3]| {
+        let mut blocks = pattern.blocks.iter();
+        blocks.position(|block| block.place == place).unwrap()
+    };
+    let top = body.nodes[1] - 1;
+    let far: Vec<[usize; 2]> = [4, 15, 26]
+        .map(|x| [at([x, top, 0]), at([x + 3, top - 1, 0])])
+        .to_vec();
+    let coupled = |a: usize, b: usize| far.contains(&[a, b]) || far.contains(&[b, a]);
+    let (mut starts, mut rows) = (vec![0], Vec::new());
+    for block in 0..pattern.blocks.len() {
+        let near = pattern.coupled_to(block);
+        let is_row = |&row: &u32| near.contains(&row) || coupled(block, row as usize);
+        rows.extend((0..pattern.blocks.len() as u32).filter(is_row));
+        starts.push(rows.len());
+    }
+    let more = Pattern::new(pattern.blocks.clone(), starts, rows, 3);
+    let mut extended = TangentMatrix::zeros(Arc::new(more), matrix.symmetric);
+    let values: BTreeMap<(usize, usize), f64> = stored(pattern)
+        .into_iter()
+        .map(|(column, row, entry)| ((column, row), matrix.values[entry]))
+        .collect();
+    for (column, row, entry) in stored(&extended.pattern) {
+        extended.values[entry] = values.get(&(column, row)).copied().unwrap_or(1e-3);
+    }
+    extended
+}
+
+#[test]
+fn a_few_far_couplings_cost_next_to_nothing() {
+    for unsymmetric in [0.0, 0.3] {
+        let body = Body::plane(40, 30).unsymmetric(unsymmetric);
+        let far = with_far_couplings(&body);
+        for kind in PLANNED {
+            let mut solver = kind.build();
+            if unsymmetric == 0.0 || kind != SolverKind::MultifrontalCholesky {
+                recovers(&mut *solver, &far);
+            }
+        }
+        let operations = |matrix: &TangentMatrix| {
+            let mut solver = MultifrontalLu::default();
+            solver.analyse(&matrix.pattern).unwrap();
+            solver.factor_operations()
+        };
+        let ratio = operations(&far) / operations(&body.tangent());
+        assert!(ratio < 1.15, "{ratio}");
     }
 }

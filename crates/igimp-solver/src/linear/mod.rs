@@ -21,6 +21,7 @@ mod general_lu;
 mod multifrontal;
 mod nalgebra_cholesky;
 mod ordering;
+mod reach;
 mod record;
 mod refine;
 mod sprs_bicgstab;

@@ -2,11 +2,13 @@
 //!
 //! A. George, *Nested dissection of a regular finite element mesh*, SIAM J. Numer. Anal. 10 (1973).
 //! The active nodes are bisected by layers across their longer axis so that both halves hold about
-//! the same number of nodes; the layers between the halves, as many as the supports reach, separate
-//! them and are eliminated last. Balancing by counted nodes and not by length keeps the fill low
+//! the same number of nodes; the layers between the halves, as many as supports reach, separate
+//! them and are eliminated last, with the few nodes that are coupled further. Balancing by counted nodes and not by length keeps the fill low
 //! where half of the bounding box is empty, as in a slope.
 
 use igimp_assembly::Pattern;
+
+use super::reach::Reach;
 
 /// Nodes below which a part is not dissected further.
 const LEAF_NODES: usize = 8;
@@ -25,6 +27,12 @@ impl NestedDissection {
     /// Dissects the nodes of a pattern; O(n log n) for n nodes, on grids of one to three
     /// dimensions of any shape.
     pub fn new(pattern: &Pattern) -> Self {
+        Self::within(pattern, &Reach::of(pattern))
+    }
+
+    /// Dissects with separators as wide as the common reach; nodes coupled across a separator
+    /// join it.
+    pub(super) fn within(pattern: &Pattern, reach: &Reach) -> Self {
         let node = |(index, place): (usize, [usize; 3])| Node {
             place: place.map(|along| u32::try_from(along).unwrap_or(u32::MAX)),
             index: index as u32,
@@ -32,7 +40,9 @@ impl NestedDissection {
         let places = pattern.blocks.iter().map(|block| block.place);
         let mut nodes: Vec<Node> = places.enumerate().map(node).collect();
         let mut dissector = Dissector {
-            reach: u32::try_from(pattern.reach.max(1)).unwrap_or(u32::MAX),
+            pattern,
+            reach,
+            width: u32::try_from(reach.common).unwrap_or(u32::MAX),
             layer_counts: Vec::new(),
             after: Vec::with_capacity(nodes.len()),
             between: Vec::new(),
@@ -105,8 +115,11 @@ impl Bounds {
     }
 }
 
-struct Dissector {
-    reach: u32,
+struct Dissector<'a> {
+    pattern: &'a Pattern,
+    reach: &'a Reach,
+    /// Layers of a separator.
+    width: u32,
     /// Scratch: nodes per layer.
     layer_counts: Vec<usize>,
     /// Scratch: nodes behind a separator and in it, while a part is split.
@@ -116,7 +129,7 @@ struct Dissector {
     parts: Vec<usize>,
 }
 
-impl Dissector {
+impl Dissector<'_> {
     /// Sorts a part into order of elimination: first half, second half, separator.
     ///
     /// Each half holds at most half of the nodes, or a single layer where that alone holds more, so
@@ -127,7 +140,7 @@ impl Dissector {
             return;
         }
         let axis = bounds.longest_axis();
-        if bounds.layers(axis) < self.reach as usize + 2 {
+        if bounds.layers(axis) < self.width as usize + 2 {
             self.end_part(part.len());
             return;
         }
@@ -151,7 +164,7 @@ impl Dissector {
     /// The first layer of the separator across an axis that balances the counts of nodes. The part
     /// has at least two layers more than a separator.
     fn separator(&mut self, part: &[Node], bounds: &Bounds, axis: usize) -> u32 {
-        let (layers, reach) = (bounds.layers(axis), self.reach as usize);
+        let (layers, reach) = (bounds.layers(axis), self.width as usize);
         let low = bounds.low[axis];
         let size: usize = (0..3)
             .map(|axis| bounds.layers(axis))
@@ -181,7 +194,7 @@ impl Dissector {
     /// Moves the nodes before the separator to the front, then those after it, then the separator,
     /// each in their former order; returns the first two counts and their bounds.
     fn split(&mut self, part: &mut [Node], axis: usize, start: u32) -> (usize, usize, [Bounds; 2]) {
-        let end = start + self.reach;
+        let end = start + self.width;
         self.after.clear();
         self.between.clear();
         let mut halves = [Bounds::NOTHING; 2];
@@ -189,7 +202,7 @@ impl Dissector {
         for position in 0..part.len() {
             let node = part[position];
             let along = node.place[axis];
-            if along < start {
+            if along < start && !self.reaches(&node, axis, end) {
                 halves[0].include(&node);
                 part[before] = node;
                 before += 1;
@@ -204,6 +217,12 @@ impl Dissector {
         part[before..before + after].copy_from_slice(&self.after);
         part[before + after..].copy_from_slice(&self.between);
         (before, after, halves)
+    }
+
+    /// Whether a node before a separator is coupled to one behind it.
+    fn reaches(&self, node: &Node, axis: usize, end: u32) -> bool {
+        let mut far = self.reach.far_of(node.index as usize);
+        far.any(|other| self.pattern.blocks[other].place[axis] >= end as usize)
     }
 }
 

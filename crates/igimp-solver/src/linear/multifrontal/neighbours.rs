@@ -1,4 +1,4 @@
-//! Which nodes may be coupled: all pairs within the reach of the supports.
+//! Which nodes may be coupled: all pairs within the common reach, and the few known beyond.
 //!
 //! A plan for all of them holds while the nodes stay, whichever of the pairs the particles couple.
 //! Nodes are called by their rank in the order of elimination.
@@ -6,6 +6,8 @@
 use std::ops::Range;
 
 use igimp_assembly::Pattern;
+
+use super::super::reach::Reach;
 
 /// Marks the absence of a node, such as the parent of a root.
 pub(super) const NONE: u32 = u32::MAX;
@@ -20,6 +22,7 @@ pub(super) struct Neighbours<'a> {
     order: &'a [usize],
     /// Rank of each block.
     rank: &'a [u32],
+    reach: &'a Reach,
     map: Option<Map>,
 }
 
@@ -31,12 +34,18 @@ struct Map {
 }
 
 impl<'a> Neighbours<'a> {
-    pub(super) fn new(pattern: &'a Pattern, order: &'a [usize], rank: &'a [u32]) -> Self {
-        let map = Map::new(pattern, rank).filter(|_| within_reach(pattern));
+    pub(super) fn new(
+        pattern: &'a Pattern,
+        order: &'a [usize],
+        rank: &'a [u32],
+        reach: &'a Reach,
+    ) -> Self {
+        let map = Map::new(pattern, rank).filter(|_| reach.covers(pattern));
         Self {
             pattern,
             order,
             rank,
+            reach,
             map,
         }
     }
@@ -64,7 +73,7 @@ impl<'a> Neighbours<'a> {
             }
         }
         let size: usize = (0..3).map(|axis| high[axis] - low[axis] + 1).product();
-        let reach = self.pattern.reach;
+        let reach = self.reach.common;
         if size == nodes.len() {
             map.visit_box(low, high, reach, &mut visit);
         } else {
@@ -72,6 +81,8 @@ impl<'a> Neighbours<'a> {
                 map.visit_box(place(node), place(node), reach, &mut visit);
             }
         }
+        let far = nodes.iter().flat_map(|&node| self.reach.far_of(node));
+        far.for_each(|other| visit(self.rank[other]));
     }
 }
 
@@ -135,16 +146,4 @@ impl Map {
             }
         }
     }
-}
-
-/// Whether all coupled nodes of a pattern are within its reach.
-pub(super) fn within_reach(pattern: &Pattern) -> bool {
-    let reach = pattern.reach;
-    (0..pattern.blocks.len()).all(|index| {
-        let place = pattern.blocks[index].place;
-        pattern.coupled_to(index).iter().all(|&other| {
-            let other = pattern.blocks[other as usize].place;
-            (0..3).all(|axis| place[axis].abs_diff(other[axis]) <= reach)
-        })
-    })
 }

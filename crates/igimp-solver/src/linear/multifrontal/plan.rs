@@ -10,8 +10,9 @@ use std::sync::Arc;
 
 use igimp_assembly::Pattern;
 
+use super::super::reach::Reach;
 use super::super::{LinearSolverError, NestedDissection, check};
-use super::neighbours::{NONE, Neighbours, within_reach};
+use super::neighbours::{NONE, Neighbours};
 use super::supernodes::Supernodes;
 use super::tasks::{Extent, Task, cut};
 
@@ -58,8 +59,8 @@ impl Front {
 /// Everything that a factorisation needs to know besides the values.
 pub(super) struct Plan {
     pub(super) pattern: Arc<Pattern>,
-    /// Whether the plan holds for all couplings within reach.
-    covers_reach: bool,
+    /// The couplings that the plan holds for, if for more than those of the pattern.
+    reach: Option<Reach>,
     /// For each coupled pair of blocks (j, i) where the rows of j begin within a column of i.
     pub(super) mirrored: Vec<u32>,
     /// Block of the pattern at each rank of the order of elimination.
@@ -85,13 +86,14 @@ impl Plan {
     pub(super) fn new(pattern: &Arc<Pattern>) -> Result<Self, LinearSolverError> {
         check::valid_pattern(pattern)?;
         let mirrored = check::mirrored(pattern)?;
-        let NestedDissection { nodes, parts } = NestedDissection::new(pattern);
+        let reach = Reach::of(pattern);
+        let NestedDissection { nodes, parts } = NestedDissection::within(pattern, &reach);
         let mut rank = vec![0; nodes.len()];
         for (new, &old) in nodes.iter().enumerate() {
             rank[old] = new as u32;
         }
         let before = positions(pattern, nodes.iter().copied());
-        let neighbours = Neighbours::new(pattern, &nodes, &rank);
+        let neighbours = Neighbours::new(pattern, &nodes, &rank, &reach);
         let mut supernodes = Supernodes::new(&parts, &before, &neighbours);
         let covers_reach = neighbours.cover_reach();
         let sequence = supernodes.sequence();
@@ -110,7 +112,7 @@ impl Plan {
         }
         let mut plan = Self {
             pattern: Arc::clone(pattern),
-            covers_reach,
+            reach: covers_reach.then_some(reach),
             mirrored,
             position: positions(pattern, order.iter().map(|&block| block as usize)),
             order,
@@ -131,11 +133,10 @@ impl Plan {
     /// Whether the plan serves another pattern, which it then takes over: one with the same nodes
     /// whose couplings keep to the reach that was planned for.
     pub(super) fn adopt(&mut self, pattern: &Arc<Pattern>) -> Result<bool, LinearSolverError> {
-        let fits = self.covers_reach
-            && pattern.reach <= self.pattern.reach
+        let fits = pattern.reach <= self.pattern.reach
             && pattern.blocks == self.pattern.blocks
             && check::valid_pattern(pattern).is_ok()
-            && within_reach(pattern);
+            && (self.reach.as_ref()).is_some_and(|reach| reach.covers(pattern));
         if fits {
             self.mirrored = check::mirrored(pattern)?;
             self.pattern = Arc::clone(pattern);
