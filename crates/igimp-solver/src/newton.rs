@@ -216,12 +216,27 @@ impl Course {
     }
 }
 
+/// When the factors of the last tangent serve once more.
+///
+/// With quadratic convergence, r₊ = C r², the same factors used again leave about 2 C r r₊ (Kelley
+/// 1995, section 5.4). Where that is well below the tolerance, a new tangent and its factorisation
+/// would be wasted on digits that nobody asked for.
 impl Course {
-    /// Whether the next correction is likely to be the last: with quadratic convergence the factor
-    /// between residuals is squared each time. A tangent is then not needed.
-    fn foretells_equilibrium(&self, tolerance: f64) -> bool {
+    /// Whether they serve for the residual at hand.
+    fn factors_suffice(&self, tolerance: f64) -> bool {
         match self.residuals[..] {
-            [_, .., before, last] => last * (last / before).powi(2) < 0.1 * tolerance,
+            [_, .., before, last] => 2.0 * last * last / before < 0.1 * tolerance,
+            _ => false,
+        }
+    }
+
+    /// Whether they will probably serve for the residual after the next correction.
+    fn factors_will_suffice(&self, tolerance: f64) -> bool {
+        match self.residuals[..] {
+            [_, .., before, last] => {
+                let next = last * (last / before).powi(2);
+                2.0 * next * next / last < 0.1 * tolerance
+            }
             _ => false,
         }
     }
@@ -271,7 +286,7 @@ pub fn step<const D: usize>(
 /// The Newton–Raphson loop.
 ///
 /// The first correction uses the elastic tangent and carries the prescribed motion; all others
-/// use the consistent tangent.
+/// use the consistent tangent, the last one that before the last correction.
 fn equilibrium<const D: usize>(
     body: &mut Body<D>,
     method: &Method,
@@ -310,41 +325,40 @@ fn equilibrium<const D: usize>(
     course.record(&residual, settings)?;
     let mut iterations = 0;
     if conditions.constraints.prescribe_motion() {
-        let known = system.force_of_prescribed_motion(&u, TangentKind::Elastic)?;
-        for (force, known) in residual.force.iter_mut().zip(known) {
-            *force -= known;
-        }
-        residual.relative_norm = f64::INFINITY;
-        residual.is_round_off = false;
-        u = system.prescribed_motion();
+        carry_prescribed_motion(&system, &mut residual, &mut u)?;
     }
+    let kind = TangentKind::Consistent;
+    // Whether the matrix is the tangent at u, or that before the last correction.
+    let mut is_current = true;
     while !converged(&residual, settings.tolerance) {
         if iterations == settings.max_iterations {
             return Err(StepFailure::MaxIterations { iterations });
         }
+        if !is_current && !course.factors_suffice(settings.tolerance) {
+            timed(&mut times.assembly, || {
+                system.linearise_into(&u, kind, trial, matrix)
+            })?;
+            is_current = true;
+        }
+        if is_current {
+            timed(&mut times.factor, || solver.factor(matrix))?;
+        }
         du.resize(residual.force.len(), 0.0);
-        timed(&mut times.factor, || solver.factor(matrix))?;
         timed(&mut times.solve, || {
             solver.solve(matrix, &residual.force, du)
         })?;
         system.add_correction(&mut u, du);
         iterations += 1;
-        let kind = TangentKind::Consistent;
-        let is_last = course.foretells_equilibrium(settings.tolerance);
+        is_current = !course.factors_will_suffice(settings.tolerance);
         timed(&mut times.assembly, || {
-            if is_last {
-                system.evaluate_into(&u, kind, trial)
-            } else {
+            if is_current {
                 system.linearise_into(&u, kind, trial, matrix)
+            } else {
+                system.evaluate_into(&u, kind, trial)
             }
         })?;
         system.update_out_of_balance(&mut residual, trial)?;
         course.record(&residual, settings)?;
-        if is_last && !converged(&residual, settings.tolerance) {
-            timed(&mut times.assembly, || {
-                system.linearise_into(&u, kind, trial, matrix)
-            })?;
-        }
     }
     if let Some((particle, x)) = body.particles.leaving(grid, &stencils, &u) {
         return Err(StepFailure::LeavesGrid {
@@ -379,6 +393,23 @@ fn equilibrium<const D: usize>(
     let mut report = report;
     report.times.commit = clock.elapsed();
     Ok((report, NodalForces { reactions, u }))
+}
+
+/// Lets the first correction carry the prescribed motion: sets `u` to it and takes the force that it
+/// causes from the residual, which counts as unconverged whatever it was.
+fn carry_prescribed_motion<const D: usize>(
+    system: &System<'_, D>,
+    residual: &mut OutOfBalance,
+    u: &mut Vec<[f64; D]>,
+) -> Result<(), AssemblyError> {
+    let known = system.force_of_prescribed_motion(u, TangentKind::Elastic)?;
+    for (force, known) in residual.force.iter_mut().zip(known) {
+        *force -= known;
+    }
+    residual.relative_norm = f64::INFINITY;
+    residual.is_round_off = false;
+    *u = system.prescribed_motion();
+    Ok(())
 }
 
 /// Whether a residual meets the tolerance, or is nothing but round-off; one that is not a number
