@@ -186,7 +186,7 @@ impl<const D: usize> BlockTable<D> {
         row: usize,
     ) -> usize {
         let block = self.nodes[column].block as usize;
-        pattern.first_value[block]
+        pattern.values_of(block).start
             + component * pattern.height(block)
             + self.offsets[self.slot(column, row)] as usize
     }
@@ -296,8 +296,8 @@ impl Blocks {
         for j in self.runs.iter().copied().flat_map(Run::supports) {
             let node = supports[j].node;
             let block = table.nodes[node].block as usize;
-            let ends = [pattern.first_value[block], pattern.first_value[block + 1]];
-            let values = &mut slice[ends[0] - start..ends[1] - start];
+            let stored = pattern.values_of(block);
+            let values = &mut slice[stored.start - start..stored.end - start];
             let height = values.len() / D;
             let columns = linearised.columns(j);
             let offsets = table.offsets_of(node);
@@ -325,8 +325,8 @@ impl Blocks {
         for &j in &self.partial {
             let j = usize::from(j);
             let block = table.nodes[supports[j].node].block as usize;
-            let ends = [pattern.first_value[block], pattern.first_value[block + 1]];
-            let values = &mut slice[ends[0] - start..ends[1] - start];
+            let stored = pattern.values_of(block);
+            let values = &mut slice[stored.start - start..stored.end - start];
             let columns = linearised.columns(j);
             let partial = self.partial.iter().map(|&i| usize::from(i));
             let full = self.runs.iter().copied().flat_map(Run::supports);
@@ -340,11 +340,14 @@ impl Blocks {
 /// Adds the first `N` terms to the first `N` sums: so few that nothing is left of the loop.
 #[inline]
 fn add<const N: usize>(sums: &mut [f64], terms: &[f64]) {
-    let (sums, terms) = (sums.first_chunk_mut::<N>(), terms.first_chunk::<N>());
-    if let (Some(sums), Some(terms)) = (sums, terms) {
-        for k in 0..N {
-            sums[k] += terms[k];
-        }
+    let sums = sums
+        .first_chunk_mut::<N>()
+        .expect("a run ends within its column");
+    let terms = terms
+        .first_chunk::<N>()
+        .expect("a run ends within the rows");
+    for k in 0..N {
+        sums[k] += terms[k];
     }
 }
 

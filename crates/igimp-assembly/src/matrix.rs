@@ -106,6 +106,7 @@ impl Pattern {
     }
 
     /// The values of the columns of a block, `height` for each column.
+    #[inline]
     pub fn values_of(&self, block: usize) -> Range<usize> {
         self.first_value[block]..self.first_value[block + 1]
     }
