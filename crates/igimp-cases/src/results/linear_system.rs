@@ -154,9 +154,13 @@ impl LinearSystem {
             let rows = self.col_ptr[block.first] as usize..self.col_ptr[block.first + 1] as usize;
             let block_of =
                 |row: &i32| blocks.partition_point(|block| block.first <= *row as usize) - 1;
-            coupled.extend(self.row_idx[rows].iter().map(|row| block_of(row) as u32));
-            coupled[starts[starts.len() - 1]..].sort_unstable();
-            coupled.dedup();
+            let mut own: Vec<u32> = self.row_idx[rows]
+                .iter()
+                .map(|row| block_of(row) as u32)
+                .collect();
+            own.sort_unstable();
+            own.dedup();
+            coupled.extend(own);
             starts.push(coupled.len());
         }
         let pattern = Pattern::new(blocks, starts, coupled, self.about.reach);
