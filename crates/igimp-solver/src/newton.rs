@@ -286,7 +286,7 @@ pub fn step<const D: usize>(
 /// The Newton–Raphson loop.
 ///
 /// The first correction uses the elastic tangent and carries the prescribed motion; all others
-/// use the consistent tangent, the last one that before the last correction.
+/// use the consistent tangent; the last one may use that of the correction before.
 fn equilibrium<const D: usize>(
     body: &mut Body<D>,
     method: &Method,

@@ -130,13 +130,13 @@ impl Plan {
         Ok(plan)
     }
 
-    /// Whether the plan serves another pattern, which it then takes over: one with the same nodes
-    /// whose couplings keep to the reach that was planned for.
+    /// Whether the plan serves another pattern, which it then takes over: one that would be given
+    /// the same plan, so that the bits of a solution do not depend on what was solved before.
     pub(super) fn adopt(&mut self, pattern: &Arc<Pattern>) -> Result<bool, LinearSolverError> {
-        let fits = pattern.reach <= self.pattern.reach
-            && pattern.blocks == self.pattern.blocks
+        let fits = pattern.blocks == self.pattern.blocks
             && check::valid_pattern(pattern).is_ok()
-            && (self.reach.as_ref()).is_some_and(|reach| reach.covers(pattern));
+            && (self.reach.as_ref())
+                .is_some_and(|reach| *reach == Reach::of(pattern) && reach.covers(pattern));
         if fits {
             self.mirrored = check::mirrored(pattern)?;
             self.pattern = Arc::clone(pattern);
