@@ -10,18 +10,31 @@ use igimp_cases::figures::{Colour, CurvePlot, LineStyle, Scale, Series, SeriesSt
 use igimp_cases::table::Table;
 use rayon::prelude::*;
 
+use crate::oracle::{Oracle, OracleKind};
 use crate::reference::column_stress_error;
 use crate::runs::{Computed, corners, mesh, method, shipped_case, unwatched};
 use crate::study::{Run, Study};
 
+/// What the book says of the study.
+const ABOUT: &str = "A column of soft soil one cell wide settles under its own weight. Mean stress error against the exact solution, under refinement: iGIMP converges with second order, iMPM does not.";
 /// Initial height of the column \[m\].
 const HEIGHT: f64 = 50.0;
-/// Source of the table of stress errors.
-const TABLE: &str = "independent program, after Charlton et al. 2017";
+/// The stress errors.
+const TABLE: Oracle = Oracle {
+    kind: OracleKind::IndependentProgram,
+    source: "independent iGIMP program, set-up of Charlton et al. 2017",
+    locator: "validation/reference/column_stress_error.csv",
+};
+/// The height.
+const HENCKY_COLUMN: Oracle = Oracle {
+    kind: OracleKind::Exact,
+    source: "Hencky column under its own weight",
+    locator: "Lambert's W, `igimp_cases::exact::Column`",
+};
 
 /// Runs the study; it is short enough to be the same at every level.
 pub(crate) fn study(out: &Path) -> Result<Study, CaseError> {
-    let mut study = Study::new("column", out)?;
+    let mut study = Study::new("column", ABOUT, out)?;
     let meshes = [4, 8, 16, 32, 64, 128, 256];
     let soft = Series1D::run(&mut study, "10 kPa", &meshes)?;
     let stiff = Series1D::run(&mut study, "1 MPa", &meshes[2..])?;
@@ -42,7 +55,7 @@ pub(crate) fn study(out: &Path) -> Result<Study, CaseError> {
             study.check(
                 *run,
                 "stress error [-]",
-                (error, TABLE),
+                TABLE.says(error),
                 band,
                 result.stress_error,
             );
@@ -56,22 +69,27 @@ pub(crate) fn study(out: &Path) -> Result<Study, CaseError> {
             .map_or(f64::NAN, |p| p[1]);
         let band = Band::Between(0.05, 0.11);
         let quantity = "stress error, must not converge [-]";
-        study.check(*run, quantity, (expected, TABLE), band, result.stress_error);
+        study.control(
+            *run,
+            quantity,
+            TABLE.says(expected),
+            band,
+            result.stress_error,
+        );
     }
     for (cells, result, run) in stiff.of(0) {
         if *cells >= 16 {
             let band = Band::Between(0.03, 0.045);
             let quantity = "stress error, must not converge [-]";
-            study.check(*run, quantity, (0.04, TABLE), band, result.stress_error);
+            study.control(*run, quantity, TABLE.says(0.04), band, result.stress_error);
         }
     }
     for series in [&soft, &stiff] {
         let (_, finest, run) = series.of(2).last().expect("a series has meshes");
-        let height = finest.exact_top;
         study.check(
             *run,
             "height of the column [m]",
-            (height, "exact: Lambert's W"),
+            HENCKY_COLUMN.says(finest.exact_top),
             Band::Relative(1e-3),
             finest.top,
         );

@@ -13,13 +13,38 @@ use igimp_cases::measure::{displacement_norm, eps_p_eq, sigma};
 use igimp_cases::table::Table;
 use rayon::prelude::*;
 
+use crate::oracle::{Oracle, OracleKind};
 use crate::pictures::{contours, scaled};
 use crate::reference::{footing_sequential_limit_analysis, interpolate};
 use crate::runs::{Computed, mesh, method, shipped_case};
 use crate::study::{Level, Run, Study};
 
-/// Source of the large-deformation curve.
-const SEQUENTIAL: &str = "sequential limit analysis";
+/// What the book says of the study.
+const ABOUT: &str = "A rigid strip footing in undrained soil, pushed one width deep: resistance against penetration.";
+/// The limit load at small strain.
+const PRANDTL: Oracle = Oracle {
+    kind: OracleKind::Exact,
+    source: "Prandtl 1920",
+    locator: "strip on weightless Tresca soil, 2 + π",
+};
+/// The penetration asked for.
+const SET_UP: Oracle = Oracle {
+    kind: OracleKind::Published,
+    source: "Kardani et al. 2015",
+    locator: "set-up of the strip footing, pushed to 1 B",
+};
+/// The large-deformation curve.
+const SEQUENTIAL: Oracle = Oracle {
+    kind: OracleKind::LimitAnalysis,
+    source: "sequential limit analysis",
+    locator: "validation/reference/footing_sequential_limit_analysis.csv",
+};
+/// The large-deformation curve beyond 0.3 B.
+const PROGRAM: Oracle = Oracle {
+    kind: OracleKind::IndependentProgram,
+    source: "independent iGIMP + B-bar program",
+    locator: "same footing and mesh; sequential limit analysis has 5.95 at 0.5 B and 6.40 at 1 B",
+};
 
 /// One push and what is asked of it.
 struct Push {
@@ -156,7 +181,7 @@ fn reached(result: &Computed) -> f64 {
 
 /// Runs the study.
 pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
-    let mut study = Study::new("footing", out)?;
+    let mut study = Study::new("footing", ABOUT, out)?;
     let pushes = pushes(level);
     let results = pushes
         .par_iter()
@@ -184,71 +209,56 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
 
 fn check(study: &mut Study, push: &Push, run: usize, result: &Computed, sequential: &[[f64; 2]]) {
     let resistance_at = |penetration| interpolate(&resistance(result), penetration);
-    let prandtl = 2.0 + std::f64::consts::PI;
     match push.role {
-        Role::SmallStrain => {
-            let plateau = resistance_at(0.005);
-            let expected = (prandtl, "Prandtl 1920, 2 + π");
-            study.check(
-                run,
-                "N at small strain [-]",
-                expected,
-                Band::Relative(0.02),
-                plateau,
-            );
-        }
+        Role::SmallStrain => study.check(
+            run,
+            "N at small strain [-]",
+            PRANDTL.says(2.0 + std::f64::consts::PI),
+            Band::Relative(0.02),
+            resistance_at(0.005),
+        ),
         Role::Deep => {
-            let expected = (1.0, "set-up of Kardani et al. 2015");
             study.check(
                 run,
                 "w/B reached [-]",
-                expected,
+                SET_UP.says(1.0),
                 Band::AtLeast(1.0),
                 reached(result),
             );
-            let expected = (interpolate(sequential, 0.2), SEQUENTIAL);
-            let measured = resistance_at(0.2);
             study.check(
                 run,
                 "N at 0.2 B [-]",
-                expected,
+                SEQUENTIAL.says(interpolate(sequential, 0.2)),
                 Band::Relative(0.03),
-                measured,
+                resistance_at(0.2),
             );
-            let source = "independent program 6.54; sequential limit analysis 5.95: open question";
-            let measured = resistance_at(0.5);
             study.check(
                 run,
                 "N at 0.5 B [-]",
-                (6.54, source),
+                PROGRAM.says(6.54),
                 Band::Between(6.3, 6.7),
-                measured,
+                resistance_at(0.5),
             );
             let expected = match push.cells_per_width {
                 9 => 7.44,
                 _ => 7.33,
             };
-            let source = "independent program; sequential limit analysis 6.40: open question";
-            let measured = resistance_at(1.0);
             study.check(
                 run,
                 "N at 1.0 B [-]",
-                (expected, source),
+                PROGRAM.says(expected),
                 Band::Relative(0.03),
-                measured,
+                resistance_at(1.0),
             );
         }
-        Role::Locked => {
-            let with_bbar = interpolate(sequential, 0.2);
-            let source = "30 % above sequential limit analysis: without B-bar it locks";
-            study.check(
-                run,
-                "N at 0.2 B [-]",
-                (1.3 * with_bbar, source),
-                Band::AtLeast(1.3 * with_bbar),
-                resistance_at(0.2),
-            );
-        }
+        // At least 30 % above the value with B-bar.
+        Role::Locked => study.control(
+            run,
+            "N at 0.2 B [-]",
+            SEQUENTIAL.says(interpolate(sequential, 0.2)),
+            Band::AtLeast(1.3 * interpolate(sequential, 0.2)),
+            resistance_at(0.2),
+        ),
         Role::Shown => {}
     }
 }

@@ -3,7 +3,9 @@
 
 mod column;
 mod footing;
+mod matrix;
 mod mohr_coulomb_slope;
+mod oracle;
 mod pictures;
 mod reference;
 mod runs;
@@ -29,11 +31,6 @@ const BAD_INPUT: u8 = 2;
 const NOT_CONVERGED: u8 = 3;
 const INPUT_OUTPUT: u8 = 4;
 
-/// Where the matrix stands in the book, and its marks.
-const MATRIX_PAGE: &str = "docs/src/verification.md";
-const MATRIX_BEGIN: &str = "<!-- matrix:begin -->";
-const MATRIX_END: &str = "<!-- matrix:end -->";
-
 /// Runs the benchmark cases and holds them against outside values and snapshots.
 ///
 /// Exit codes: 0 all met; 1 a reference or a snapshot missed; 2 bad input; 3 a run that had to
@@ -55,8 +52,8 @@ struct Arguments {
     /// Rewrite the snapshots with today's results.
     #[arg(long)]
     accept: bool,
-    /// Rewrite the verification matrix in the book with today's results.
-    #[arg(long)]
+    /// Rewrite the verification matrix in the book with today's results, at the full level.
+    #[arg(long, requires = "full", conflicts_with = "case")]
     matrix: bool,
     /// Folder for tables, pictures and the summary.
     #[arg(long, value_name = "DIR", default_value = "target/validation")]
@@ -67,11 +64,12 @@ struct Arguments {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+// In the order of the printed table; started from the last one, which takes longest.
 enum Case {
-    Footing,
     Column,
     VonMisesSlope,
     MohrCoulombSlope,
+    Footing,
 }
 
 impl Case {
@@ -158,6 +156,7 @@ fn validate(arguments: &Arguments) -> Result<u8, CaseError> {
     };
     let cases: Vec<Case> = Case::value_variants()
         .iter()
+        .rev()
         .copied()
         .filter(|case| arguments.case.is_empty() || arguments.case.contains(case))
         .collect();
@@ -180,20 +179,26 @@ fn validate(arguments: &Arguments) -> Result<u8, CaseError> {
             Err(error) => errors.push(error),
         }
     }
-    let order = ["column", "von-mises-slope", "mohr-coulomb-slope", "footing"];
-    studies.sort_by_key(|study| order.iter().position(|&case| case == study.case));
+    studies.reverse();
+    errors.reverse();
 
-    let missed = snapshot::compare(&studies);
+    let mut missed = snapshot::compare(&studies);
     table::write_summary(&studies, &missed, &arguments.out)?;
-    if arguments.matrix {
-        write_matrix(&studies)?;
+    if arguments.matrix && errors.is_empty() {
+        matrix::write(&studies)?;
     }
-    Ok(print_report(
-        &studies,
-        &missed,
-        arguments,
-        clock.elapsed().as_secs_f64(),
-    ))
+    let all_cases = arguments.case.is_empty() && errors.is_empty();
+    let drift = matrix::drift(&studies, level, all_cases)?;
+    missed.extend(
+        drift
+            .iter()
+            .map(|line| format!("verification matrix: {line}")),
+    );
+    let code = print_report(&studies, &missed, arguments, clock.elapsed().as_secs_f64());
+    for error in &errors {
+        report_error(error);
+    }
+    Ok(errors.first().map_or(code, exit_code))
 }
 
 /// Prints notes, table and what was missed; returns the exit code.
@@ -209,7 +214,7 @@ fn print_report(studies: &[Study], missed: &[String], arguments: &Arguments, sec
         rows().count() - failed
     );
     println!(
-        "snapshots: {} differ; {seconds:.0} s; tables, pictures and summary.json in {}",
+        "snapshots and matrix: {} differ; {seconds:.0} s; tables, pictures and summary.json in {}",
         missed.len(),
         arguments.out.display(),
     );
@@ -235,7 +240,10 @@ fn print_report(studies: &[Study], missed: &[String], arguments: &Arguments, sec
         }
     }
     for name in missed {
-        println!("snapshot differs: {name} (accept today's results with --accept)");
+        println!("differs: {name}");
+    }
+    if !missed.is_empty() {
+        println!("accept snapshots with --accept, the matrix with --full --matrix");
     }
     let unfinished: Vec<&String> = studies.iter().flat_map(|study| &study.unfinished).collect();
     for text in &unfinished {
@@ -248,28 +256,4 @@ fn print_report(studies: &[Study], missed: &[String], arguments: &Arguments, sec
     } else {
         0
     }
-}
-
-/// Writes the matrix between its marks in the book.
-fn write_matrix(studies: &[Study]) -> Result<(), CaseError> {
-    let path = PathBuf::from(MATRIX_PAGE);
-    let file = |source| CaseError::File {
-        path: path.clone(),
-        source,
-    };
-    let page = std::fs::read_to_string(&path).map_err(file)?;
-    let (Some(begin), Some(end)) = (page.find(MATRIX_BEGIN), page.find(MATRIX_END)) else {
-        let missing = format!("no marks {MATRIX_BEGIN} and {MATRIX_END}");
-        return Err(file(std::io::Error::new(
-            std::io::ErrorKind::InvalidData,
-            missing,
-        )));
-    };
-    let page = format!(
-        "{}\n\n{}\n{}",
-        &page[..begin + MATRIX_BEGIN.len()],
-        table::matrix(studies),
-        &page[end..]
-    );
-    std::fs::write(&path, page).map_err(file)
 }

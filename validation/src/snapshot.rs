@@ -12,6 +12,8 @@ use crate::study::Study;
 const RELATIVE: f64 = 1e-5;
 /// Largest difference relative to the largest number of the snapshot \[-\].
 const ABSOLUTE: f64 = 1e-8;
+/// Tolerance of Newton's method in all studies \[-\].
+const CONVERGED: f64 = 1e-9;
 /// Most rows of a curve in a snapshot.
 const ROWS: usize = 40;
 
@@ -45,6 +47,10 @@ fn compare_study(study: &Study) -> Vec<String> {
     for table in &study.tables {
         let name = format!("{}__{}", study.case, table.name);
         hold(name, &table.to_text(ROWS), Box::new(Numeric));
+    }
+    for (name, history) in &study.histories {
+        let name = format!("{}__residuals__{name}", study.case);
+        hold(name, history, Box::new(Residuals));
     }
     for run in &study.runs {
         // Past failure the number of corrections hangs on round-off.
@@ -92,7 +98,50 @@ impl Comparator for Numeric {
     }
 }
 
+/// Compares residual histories: as many residuals in every step, each of the same size.
+struct Residuals;
+
+impl Comparator for Residuals {
+    fn matches(&self, reference: &insta::Snapshot, test: &insta::Snapshot) -> bool {
+        match (reference.contents(), test.contents()) {
+            (SnapshotContents::Text(reference), SnapshotContents::Text(test)) => {
+                residuals_agree(&reference.to_string(), &test.to_string())
+            }
+            _ => false,
+        }
+    }
+
+    fn dyn_clone(&self) -> Box<dyn Comparator> {
+        Box::new(Self)
+    }
+}
+
+/// Residuals agree within a factor of 2; converged ones are round-off and need only be converged.
+fn residuals_agree(reference: &str, test: &str) -> bool {
+    let tokens = |text: &str| {
+        text.split_whitespace()
+            .map(str::to_owned)
+            .collect::<Vec<_>>()
+    };
+    let (a, b) = (tokens(reference), tokens(test));
+    a.len() == b.len()
+        && a.iter()
+            .zip(&b)
+            .all(|(a, b)| match (a.parse::<f64>(), b.parse::<f64>()) {
+                (Ok(x), Ok(y)) => {
+                    (x <= CONVERGED && y <= CONVERGED) || (x <= 2.0 * y && y <= 2.0 * x)
+                }
+                _ => a == b,
+            })
+}
+
 fn numbers_agree(reference: &str, test: &str) -> bool {
+    within(reference, test, RELATIVE)
+}
+
+/// Whether two texts agree: words to the letter, numbers within a relative difference, plus 1e-8 of
+/// the largest one.
+pub(crate) fn within(reference: &str, test: &str, relative: f64) -> bool {
     let (a, b): (Vec<&str>, Vec<&str>) = (
         reference.split_whitespace().collect(),
         test.split_whitespace().collect(),
@@ -101,11 +150,12 @@ fn numbers_agree(reference: &str, test: &str) -> bool {
     let largest = a
         .iter()
         .filter_map(number)
+        .filter(|value| value.is_finite())
         .fold(0.0, |m: f64, v| m.max(v.abs()));
     a.len() == b.len()
         && a.iter().zip(&b).all(|(a, b)| match (number(a), number(b)) {
             (Some(x), Some(y)) => {
-                (x - y).abs() <= RELATIVE * x.abs().max(y.abs()) + ABSOLUTE * largest
+                a == b || (x - y).abs() <= relative * x.abs().max(y.abs()) + ABSOLUTE * largest
             }
             _ => a == b,
         })
@@ -125,6 +175,31 @@ mod tests {
         assert!(!numbers_agree("x 1.0", "y 1.0"));
         assert!(!numbers_agree("1.0 2.0", "1.0"));
         assert!(!numbers_agree("1.0", "NaN"));
+    }
+
+    #[test]
+    fn a_lost_quadratic_rate_is_noticed() {
+        let quadratic = "step 1: 1.0e0 1.0e-2 1.0e-4 3.0e-8 1.0e-15";
+        assert!(residuals_agree(
+            quadratic,
+            "step 1: 1.1e0 0.9e-2 1.1e-4 2.0e-8 9.0e-11"
+        ));
+        assert!(!residuals_agree(
+            quadratic,
+            "step 1: 1.0e0 1.0e-2 1.0e-4 1.0e-6 1.0e-15"
+        ));
+        assert!(!residuals_agree(
+            quadratic,
+            "step 1: 1.0e0 1.0e-2 1.0e-4 3.0e-8 1.0e-8"
+        ));
+        assert!(!residuals_agree(
+            quadratic,
+            "step 1: 1.0e0 1.0e-2 1.0e-4 3.0e-8"
+        ));
+        assert!(!residuals_agree(
+            quadratic,
+            "step 1: 1.0e0 1.0e-2 1.0e-4 3.0e-8 NaN"
+        ));
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! What a study of one case hands back: runs, checks and tables.
 
+use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -9,8 +10,19 @@ use igimp_cases::table::Table;
 use igimp_solver::{MarchReport, Outcome, PhaseTimes, StepError};
 use serde::Serialize;
 
+use crate::oracle::{Expected, Oracle, OracleKind};
+
 /// Relative residuals below this are round-off and say nothing about the rate of convergence \[-\].
 const ROUND_OFF: f64 = 1e-12;
+
+/// Newton's method near a solution.
+const NEWTON: Oracle = Oracle {
+    kind: OracleKind::Theory,
+    source: "Newton's method",
+    locator: "r₊ = C r² with C of order 1; a linear tail of rate 0.1 scores above 10⁴",
+};
+/// Most steps of a run whose residuals are kept for its snapshot.
+const STEPS_KEPT: usize = 6;
 
 /// How much is run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -134,6 +146,12 @@ pub(crate) struct Row {
     /// The check.
     #[serde(flatten)]
     pub(crate) check: Check,
+    /// What the outside value rests on.
+    pub(crate) oracle: OracleKind,
+    /// Where in the source it is found.
+    pub(crate) locator: &'static str,
+    /// Whether this is a negative control: a variant that must miss what the method meets.
+    pub(crate) control: bool,
     /// Whether the band is met.
     pub(crate) pass: bool,
     /// Index of its run.
@@ -146,6 +164,8 @@ pub(crate) struct Row {
 pub(crate) struct Study {
     /// Name of the case; also of its folder.
     pub(crate) case: &'static str,
+    /// What is computed and asked, in a sentence or two of Markdown for the book.
+    pub(crate) about: &'static str,
     /// Where its files go.
     pub(crate) folder: PathBuf,
     /// The runs, and sums of runs.
@@ -154,6 +174,8 @@ pub(crate) struct Study {
     pub(crate) rows: Vec<Row>,
     /// Tables that are held against snapshots.
     pub(crate) tables: Vec<Table>,
+    /// Residual histories that are held against snapshots: a name and its text.
+    pub(crate) histories: Vec<(String, String)>,
     /// Paragraphs for the reader of the printed report.
     pub(crate) notes: Vec<String>,
     /// Runs that had to reach their end and did not: where and why.
@@ -162,7 +184,11 @@ pub(crate) struct Study {
 
 impl Study {
     /// A study that writes into a folder of its own, which is made.
-    pub(crate) fn new(case: &'static str, out: &Path) -> Result<Self, CaseError> {
+    pub(crate) fn new(
+        case: &'static str,
+        about: &'static str,
+        out: &Path,
+    ) -> Result<Self, CaseError> {
         let folder = out.join(case);
         std::fs::create_dir_all(&folder).map_err(|source| CaseError::File {
             path: folder.clone(),
@@ -170,10 +196,12 @@ impl Study {
         })?;
         Ok(Self {
             case,
+            about,
             folder,
             runs: Vec::new(),
             rows: Vec::new(),
             tables: Vec::new(),
+            histories: Vec::new(),
             notes: Vec::new(),
             unfinished: Vec::new(),
         })
@@ -194,25 +222,52 @@ impl Study {
         self.run(run)
     }
 
-    /// Records a check on a run.
+    /// Records a check on a run: the method must meet the band.
     pub(crate) fn check(
         &mut self,
         run: usize,
         quantity: impl Into<String>,
-        (expected, source): (f64, &str),
+        expected: Expected,
         band: Band,
         measured: f64,
+    ) {
+        self.record(run, quantity.into(), expected, (band, measured), false);
+    }
+
+    /// Records a negative control on a run: a variant without a part of the method, which must miss
+    /// what the method meets. The band says by how much at least.
+    pub(crate) fn control(
+        &mut self,
+        run: usize,
+        quantity: impl Into<String>,
+        expected: Expected,
+        band: Band,
+        measured: f64,
+    ) {
+        self.record(run, quantity.into(), expected, (band, measured), true);
+    }
+
+    fn record(
+        &mut self,
+        run: usize,
+        quantity: String,
+        expected: Expected,
+        (band, measured): (Band, f64),
+        control: bool,
     ) {
         let check = Check {
             case: self.case.to_owned(),
             variant: self.runs[run].variant.clone(),
-            quantity: quantity.into(),
-            expected,
-            source: source.to_owned(),
+            quantity,
+            expected: expected.value,
+            source: expected.oracle.source.to_owned(),
             band,
             measured,
         };
         self.rows.push(Row {
+            oracle: expected.oracle.kind,
+            locator: expected.oracle.locator,
+            control,
             pass: check.passes(),
             check,
             run,
@@ -226,8 +281,8 @@ impl Study {
         Ok(())
     }
 
-    /// The residual history of a run as a table: step, iteration, residual; and the check that its
-    /// tail is quadratic.
+    /// The residual history of a run as a table: step, iteration, residual; the check that its tail
+    /// is quadratic; and, for a run without a cut, some of its steps for a snapshot.
     pub(crate) fn newton(&mut self, name: &str, run: usize) -> Result<(), CaseError> {
         let mut table = Table::new(
             format!("newton_{name}"),
@@ -240,18 +295,34 @@ impl Study {
         }
         table.write_csv(&self.folder)?;
         let constant = quadratic_constant(&self.runs[run].residuals);
+        if self.runs[run].cuts == 0 {
+            let history = history(&self.runs[run].residuals);
+            self.histories.push((name.to_owned(), history));
+        }
         self.check(
             run,
             "Newton's tail r₊/r², median over steps [-]",
-            (
-                1.0,
-                "of order 1 when quadratic; > 10⁴ for a linear tail of rate 0.1",
-            ),
+            NEWTON.says(1.0),
             Band::AtMost(100.0),
             constant,
         );
         Ok(())
     }
+}
+
+/// The relative residuals of some steps spread over a run, the last among them, a line each.
+fn history(residuals: &[Vec<f64>]) -> String {
+    let kept = STEPS_KEPT.min(residuals.len());
+    let mut text = String::new();
+    for k in 1..=kept {
+        let step = k * residuals.len() / kept;
+        let _ = write!(text, "step {step}:");
+        for residual in &residuals[step - 1] {
+            let _ = write!(text, " {residual:.1e}");
+        }
+        text.push('\n');
+    }
+    text
 }
 
 /// What is known of a run that found no equilibrium.
@@ -312,5 +383,15 @@ mod tests {
         let linear = vec![(0..10).map(|k| 0.1_f64.powi(k)).collect()];
         assert!(quadratic_constant(&linear) > 1e4);
         assert!(quadratic_constant(&[vec![1e-1, 1e-9]]).is_nan());
+    }
+
+    #[test]
+    fn a_history_keeps_steps_to_the_last() {
+        let residuals: Vec<Vec<f64>> = (1..=20).map(|k| vec![f64::from(k), 1e-3]).collect();
+        let text = history(&residuals);
+        assert_eq!(text.lines().count(), STEPS_KEPT);
+        assert!(text.starts_with("step 3: 3.0e0 1.0e-3\n"));
+        assert!(text.ends_with("step 20: 2.0e1 1.0e-3\n"));
+        assert_eq!(history(&residuals[..1]), "step 1: 1.0e0 1.0e-3\n");
     }
 }

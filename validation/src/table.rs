@@ -6,7 +6,7 @@ use std::path::Path;
 use igimp_cases::CaseError;
 use igimp_cases::check::short;
 
-use crate::study::Study;
+use crate::study::{Row, Study};
 
 /// The checks of all studies as aligned text, one line each, and the sources that their numbers in
 /// brackets stand for.
@@ -16,13 +16,14 @@ pub(crate) fn checks(studies: &[Study]) -> String {
         "time [s]",
     ];
     let mut rows: Vec<Vec<String>> = vec![header.iter().map(|&text| text.to_owned()).collect()];
-    let mut sources: Vec<&str> = Vec::new();
+    let mut sources: Vec<String> = Vec::new();
     for study in studies {
         for row in &study.rows {
             let (check, run) = (&row.check, &study.runs[row.run]);
-            let known = sources.iter().position(|&source| source == check.source);
+            let source = format!("{}: {} ({})", check.source, row.locator, row.oracle);
+            let known = sources.iter().position(|known| *known == source);
             let number = known.unwrap_or_else(|| {
-                sources.push(&check.source);
+                sources.push(source);
                 sources.len() - 1
             }) + 1;
             rows.push(vec![
@@ -32,7 +33,7 @@ pub(crate) fn checks(studies: &[Study]) -> String {
                 format!("{} [{number}]", short(check.expected)),
                 check.band.to_string(),
                 short(check.measured),
-                if row.pass { "ok" } else { "MISSED" }.to_owned(),
+                verdict(row).to_owned(),
                 run.steps.to_string(),
                 run.iterations.to_string(),
                 format!("{:.1}", run.seconds),
@@ -45,6 +46,15 @@ pub(crate) fn checks(studies: &[Study]) -> String {
         let _ = writeln!(text, "  [{}] {source}", index + 1);
     }
     text
+}
+
+/// What came of a check; a negative control says so.
+fn verdict(row: &Row) -> &'static str {
+    match (row.pass, row.control) {
+        (true, false) => "ok",
+        (true, true) => "ok, control",
+        (false, _) => "MISSED",
+    }
 }
 
 /// Columns of equal width; numbers are not told apart from words.
@@ -71,31 +81,6 @@ fn aligned(rows: &[Vec<String>]) -> String {
             text.push_str(&"-".repeat(widths.iter().sum::<usize>() + 2 * (columns - 1)));
             text.push('\n');
         }
-    }
-    text
-}
-
-/// The checks as a Markdown table: the verification matrix of the book.
-pub(crate) fn matrix(studies: &[Study]) -> String {
-    let mut text = String::from(
-        "| case | variant | quantity | expected | band | measured | source |\n\
-         |---|---|---|---|---|---|---|\n",
-    );
-    for row in studies.iter().flat_map(|study| &study.rows) {
-        let check = &row.check;
-        let cells = [
-            check.case.clone(),
-            check.variant.clone(),
-            check.quantity.clone(),
-            short(check.expected),
-            check.band.to_string(),
-            short(check.measured),
-            check.source.clone(),
-        ];
-        let cells: Vec<String> = cells.iter().map(|cell| cell.replace('|', "\\|")).collect();
-        text.push_str("| ");
-        text.push_str(&cells.join(" | "));
-        text.push_str(" |\n");
     }
     text
 }

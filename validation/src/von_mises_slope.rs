@@ -13,11 +13,26 @@ use igimp_cases::table::Table;
 use igimp_solver::Outcome;
 use rayon::prelude::*;
 
+use crate::oracle::{Oracle, OracleKind};
 use crate::pictures::{contours, scaled, with_outlines};
 use crate::reference::slope_limit_load_bounds;
 use crate::runs::{Computed, corners, mesh, method, shipped_case, unwatched};
 use crate::study::{Level, Run, Study};
 
+/// What the book says of the study.
+const ABOUT: &str = "A 45° slope in undrained soil: smoothness of stress in soft soil that crosses cells, and the collapse load of stiff soil, for the four variants of the method.";
+/// How smooth the stresses of each variant are.
+const PROGRAM: Oracle = Oracle {
+    kind: OracleKind::IndependentProgram,
+    source: "independent iGIMP + B-bar program",
+    locator: "same slope, mesh and measure, h = 0.5 m, E = 1 MPa",
+};
+/// The limit load.
+const BOUNDS: Oracle = Oracle {
+    kind: OracleKind::LimitAnalysis,
+    source: "finite-element limit analysis, lower and upper bound",
+    locator: "validation/reference/slope_limit_load_bounds.csv; band: bounds ± 2 %",
+};
 /// Height H of the slope \[m\].
 const HEIGHT: f64 = 10.0;
 /// Largest displacement at which the load of a stiff slope is read as its limit \[m\].
@@ -25,7 +40,7 @@ const LIMIT_DISPLACEMENT: f64 = 0.05;
 
 /// Runs the study.
 pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
-    let mut study = Study::new("von-mises-slope", out)?;
+    let mut study = Study::new("von-mises-slope", ABOUT, out)?;
     smoothness(&mut study)?;
     limit_load(&mut study, level)?;
     Ok(study)
@@ -59,19 +74,18 @@ fn smoothness(study: &mut Study) -> Result<(), CaseError> {
         scores.push(roughness(result));
     }
     let quantity = "oscillation of σ_yy / (γH) [-]";
-    let source = "independent program (0.013)";
     study.check(
         runs[3],
         quantity,
-        (0.013, source),
+        PROGRAM.says(0.013),
         Band::AtMost(0.016),
         scores[3],
     );
     for k in 0..3 {
         let expected = [0.135, 0.091, 0.062][k];
-        let source = "independent program; at least 4 × that of iGIMP + B-bar";
+        // At least four times that of iGIMP + B-bar.
         let band = Band::AtLeast(4.0 * scores[3]);
-        study.check(runs[k], quantity, (expected, source), band, scores[k]);
+        study.control(runs[k], quantity, PROGRAM.says(expected), band, scores[k]);
     }
     for (name, &run) in ["impm", "impm_bbar", "igimp", "igimp_bbar"]
         .iter()
@@ -212,26 +226,13 @@ fn limit_load(study: &mut Study, level: Level) -> Result<(), CaseError> {
         let (lower, upper) = (bound(&lower, depth), bound(&upper, depth));
         let measured = limit(result).unwrap_or(f64::INFINITY);
         let middle = 0.5 * (lower + upper);
+        let (quantity, expected) = ("γH/c_u at collapse [-]", BOUNDS.says(middle));
         if collapse.bbar {
-            let source = "limit analysis bounds, widened by 2 %";
             let band = Band::Between(0.98 * lower, 1.02 * upper);
-            study.check(
-                run,
-                "γH/c_u at collapse [-]",
-                (middle, source),
-                band,
-                measured,
-            );
+            study.check(run, quantity, expected, band, measured);
         } else {
-            let source = "above the upper bound and 2 %: without B-bar it locks";
             let band = Band::AtLeast(1.02 * upper);
-            study.check(
-                run,
-                "γH/c_u at collapse [-]",
-                (middle, source),
-                band,
-                measured,
-            );
+            study.control(run, quantity, expected, band, measured);
         }
         let mut table = Table::new(
             format!("limit_{}_D{depth}_h{h}", slug(&label)),
