@@ -7,6 +7,7 @@ use std::path::Path;
 use igimp_cases::CaseError;
 use igimp_cases::check::short;
 
+use crate::oracle::OracleKind;
 use crate::snapshot::within;
 use crate::study::{Level, Row, Study};
 
@@ -18,22 +19,17 @@ const END: &str = "<!-- matrix:end -->";
 /// the last of which may flip \[-\].
 const PRINTED: f64 = 2e-3;
 
-const HEADER: &str = "| variant | quantity | oracle | source and locator | expected | band | measured |\n\
-                      |---|---|---|---|---|---|---|\n";
+const HEADER: &str = "| variant | quantity | oracle | expected | band | measured |\n\
+                      |---|---|---|---|---|---|\n";
 
-/// The cells of a row of the matrix.
-fn cells(row: &Row) -> [String; 7] {
+/// The cells of a row of the matrix, its oracle as a number in brackets.
+fn cells(row: &Row, number: usize) -> [String; 6] {
     let check = &row.check;
-    let oracle = if row.control {
-        format!("**control**: {}", row.oracle)
-    } else {
-        row.oracle.to_string()
-    };
+    let control = if row.control { "**control**: " } else { "" };
     [
         check.variant.clone(),
         check.quantity.clone(),
-        oracle,
-        format!("{}: {}", check.source, row.locator),
+        format!("{control}{} [{number}]", row.oracle),
         short(check.expected),
         check.band.to_string(),
         short(check.measured),
@@ -41,38 +37,128 @@ fn cells(row: &Row) -> [String; 7] {
     .map(|cell| cell.replace('|', "\\|"))
 }
 
+/// Who says so, and where.
+fn source(row: &Row) -> String {
+    format!("{}: {}", row.check.source, row.locator)
+}
+
+/// The sources of a study in the order of its checks, each once.
+fn sources(study: &Study) -> Vec<String> {
+    let mut sources = Vec::new();
+    for source in study.rows.iter().map(source) {
+        if !sources.contains(&source) {
+            sources.push(source);
+        }
+    }
+    sources
+}
+
+/// The rows of a study as the page has them: the cells of the table, and the text of the source.
+fn rows(study: &Study) -> Vec<Printed> {
+    let sources = sources(study);
+    let number = |row: &Row| {
+        let place = sources.iter().position(|known| *known == source(row));
+        place.map_or(0, |place| place + 1)
+    };
+    let rows = study.rows.iter().map(|row| Printed {
+        case: study.case.to_owned(),
+        cells: cells(row, number(row)).to_vec(),
+        source: source(row),
+    });
+    rows.collect()
+}
+
+/// How many checks there are, by kind of oracle.
+fn count(studies: &[Study]) -> String {
+    let rows = || studies.iter().flat_map(|study| &study.rows);
+    let kinds = [
+        OracleKind::Exact,
+        OracleKind::LimitAnalysis,
+        OracleKind::Theory,
+        OracleKind::Published,
+        OracleKind::IndependentProgram,
+    ];
+    let kinds: Vec<String> = kinds
+        .iter()
+        .map(|kind| (kind, rows().filter(|row| row.oracle == *kind).count()))
+        .map(|(kind, number)| format!("{number} {kind}"))
+        .collect();
+    format!(
+        "{} checks: {}; of them {} are negative controls.",
+        rows().count(),
+        kinds.join(", "),
+        rows().filter(|row| row.control).count(),
+    )
+}
+
 /// The checks of each study as a Markdown table under its name.
 fn text(studies: &[Study]) -> String {
-    let mut text = String::new();
+    let mut text = format!("{}\n\n", count(studies));
     for study in studies.iter().filter(|study| !study.rows.is_empty()) {
         let _ = write!(text, "### {}\n\n{}\n\n{HEADER}", study.case, study.about);
-        for row in &study.rows {
-            let _ = writeln!(text, "| {} |", cells(row).join(" | "));
+        for row in rows(study) {
+            let _ = writeln!(text, "| {} |", row.cells.join(" | "));
+        }
+        text.push('\n');
+        for (index, source) in sources(study).iter().enumerate() {
+            let _ = writeln!(text, "- [{}] {source}", index + 1);
         }
         text.push('\n');
     }
     text
 }
 
-/// A row as the page has it: its case and its cells.
-type Printed = (String, Vec<String>);
+/// A row as the page has it.
+#[derive(Debug, PartialEq)]
+struct Printed {
+    case: String,
+    cells: Vec<String>,
+    source: String,
+}
+
+impl Printed {
+    /// What stands between brackets in the cell of the oracle.
+    fn number(&self) -> Option<&str> {
+        let (_, number) = self.cells.get(2)?.rsplit_once('[')?;
+        number.strip_suffix(']')
+    }
+
+    /// What is compared: all but the number of the source, which is its place in a list.
+    fn says(&self) -> String {
+        let kind = self.cells.get(2).and_then(|cell| cell.rsplit_once(" ["));
+        let rest = self.cells.get(3..).unwrap_or_default().join(" | ");
+        format!(
+            "{} | {rest} | {}",
+            kind.map_or("", |(kind, _)| kind),
+            self.source
+        )
+    }
+}
 
 /// The rows between the marks.
 fn printed(page: &str) -> Vec<Printed> {
+    let mut rows: Vec<Printed> = Vec::new();
     let mut case = String::new();
-    let mut rows = Vec::new();
     for line in page.lines() {
+        let row = line
+            .strip_prefix("| ")
+            .and_then(|rest| rest.strip_suffix(" |"));
+        let listed = line
+            .strip_prefix("- [")
+            .and_then(|rest| rest.split_once("] "));
         if let Some(name) = line.strip_prefix("### ") {
             name.clone_into(&mut case);
-        } else if let Some(inner) = line
-            .strip_prefix("| ")
-            .and_then(|rest| rest.strip_suffix(" |"))
-            && !line.starts_with("| variant |")
-        {
-            rows.push((
-                case.clone(),
-                inner.split(" | ").map(str::to_owned).collect(),
-            ));
+        } else if let Some((number, source)) = listed {
+            let of_source = |row: &&mut Printed| row.case == case && row.number() == Some(number);
+            for row in rows.iter_mut().filter(of_source) {
+                source.clone_into(&mut row.source);
+            }
+        } else if let Some(row) = row.filter(|row| !row.starts_with("variant |")) {
+            rows.push(Printed {
+                case: case.clone(),
+                cells: row.split(" | ").map(str::to_owned).collect(),
+                source: String::new(),
+            });
         }
     }
     rows
@@ -105,35 +191,29 @@ pub(crate) fn drift(
 fn differences(on_page: &[Printed], studies: &[Study], complete: bool) -> Vec<String> {
     let mut lines = Vec::new();
     let mut found = vec![false; on_page.len()];
-    for study in studies {
-        for row in &study.rows {
-            let cells = cells(row);
-            let place = on_page
-                .iter()
-                .position(|(case, printed)| case == study.case && printed[..2] == cells[..2]);
-            let name = format!("{}, {}: {}", study.case, cells[0], cells[1]);
-            let Some(place) = place else {
-                lines.push(format!("{name} is not on the page"));
-                continue;
-            };
-            found[place] = true;
-            let printed = &on_page[place].1;
-            if printed.len() != cells.len()
-                || !within(&printed.join(" "), &cells.join(" "), PRINTED)
-            {
-                lines.push(format!(
-                    "{name}: the page has `{}`, the check has `{}`",
-                    printed[2..].join(" | "),
-                    cells[2..].join(" | "),
-                ));
-            }
+    for row in studies.iter().flat_map(rows) {
+        let name = format!("{}, {}: {}", row.case, row.cells[0], row.cells[1]);
+        let same = |printed: &Printed| {
+            printed.case == row.case && printed.cells.get(..2) == row.cells.get(..2)
+        };
+        let Some(place) = on_page.iter().position(same) else {
+            lines.push(format!("{name} is not on the page"));
+            continue;
+        };
+        found[place] = true;
+        let (page, check) = (on_page[place].says(), row.says());
+        if !within(&page, &check, PRINTED) {
+            lines.push(format!(
+                "{name}: the page has `{page}`, the check has `{check}`"
+            ));
         }
     }
     if complete {
-        for ((case, printed), _) in on_page.iter().zip(found).filter(|(_, found)| !found) {
+        for (row, _) in on_page.iter().zip(found).filter(|(_, found)| !found) {
+            let [variant, quantity] = [0, 1].map(|k| row.cells.get(k).map_or("", |cell| cell));
             lines.push(format!(
-                "{case}, {}: {} is on the page and not checked",
-                printed[0], printed[1]
+                "{}, {variant}: {quantity} is on the page and not checked",
+                row.case
             ));
         }
     }
@@ -167,7 +247,7 @@ mod tests {
     use igimp_solver::{MarchReport, Outcome};
 
     use super::*;
-    use crate::oracle::{Oracle, OracleKind};
+    use crate::oracle::Oracle;
     use crate::study::Run;
 
     const ORACLE: Oracle = Oracle {
@@ -217,5 +297,8 @@ mod tests {
         assert!(differences(&on_page, &[], false).is_empty());
         let new = differences(&[], &[study(5.1)], false);
         assert!(new[0].contains("not on the page"), "{new:?}");
+        let other = text(&[study(5.1)]).replace("eq. 1", "eq. 2");
+        let moved = differences(&printed(&other), &[study(5.1)], true);
+        assert_eq!(moved.len(), 2, "{moved:?}");
     }
 }
