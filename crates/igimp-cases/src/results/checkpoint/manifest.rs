@@ -20,7 +20,7 @@ pub const FORMAT_VERSION: u64 = 1;
 pub const PROGRAM: &str = concat!("igimp ", env!("CARGO_PKG_VERSION"));
 
 const FORMAT: &str = "igimp checkpoint";
-const FILE: &str = "meta.json";
+pub(super) const FILE: &str = "meta.json";
 
 /// What the program says about a checkpoint.
 #[derive(Clone, Debug, PartialEq)]
@@ -114,33 +114,43 @@ impl Manifest {
     pub(super) fn write(&self, checkpoint: &Path) -> Result<(PathBuf, File), CheckpointError> {
         let path = checkpoint.join(FILE);
         let write = || {
-            let mut text = serde_json::to_vec_pretty(self).map_err(io::Error::from)?;
-            text.push(b'\n');
             let mut file = File::create(&path)?;
-            file.write_all(&text)?;
+            file.write_all(&self.to_bytes()?)?;
             Ok(file)
         };
         let file = write().map_err(at(&path))?;
         Ok((path, file))
     }
 
+    /// The bytes of the file.
+    pub(super) fn to_bytes(&self) -> io::Result<Vec<u8>> {
+        let mut text = serde_json::to_vec_pretty(self).map_err(io::Error::from)?;
+        text.push(b'\n');
+        Ok(text)
+    }
+
     pub(super) fn read(checkpoint: &Path) -> Result<Self, CheckpointError> {
         let path = checkpoint.join(FILE);
-        let bytes = match fs::read(&path) {
-            Ok(bytes) => bytes,
+        match fs::read(&path) {
+            Ok(bytes) => Self::from_bytes(checkpoint, &bytes),
             Err(error) if error.kind() == io::ErrorKind::NotFound => {
-                let why = "it has no meta.json";
-                let path = checkpoint.into();
-                return Err(CheckpointError::NotACheckpoint { path, why });
+                Err(CheckpointError::NotACheckpoint {
+                    path: checkpoint.into(),
+                    why: "it has no meta.json",
+                })
             }
-            Err(error) => return Err(at(&path)(error)),
-        };
+            Err(error) => Err(at(&path)(error)),
+        }
+    }
+
+    /// What the bytes of the file say; messages name the folder.
+    pub(super) fn from_bytes(checkpoint: &Path, bytes: &[u8]) -> Result<Self, CheckpointError> {
         let damaged = |error: serde_json::Error| CheckpointError::Damaged {
             path: checkpoint.into(),
             file: FILE.into(),
             why: error.to_string(),
         };
-        let value: Value = serde_json::from_slice(&bytes).map_err(damaged)?;
+        let value: Value = serde_json::from_slice(bytes).map_err(damaged)?;
         if value["format"] != FORMAT {
             return Err(CheckpointError::NotACheckpoint {
                 path: checkpoint.into(),

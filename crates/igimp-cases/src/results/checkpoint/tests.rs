@@ -87,6 +87,35 @@ fn states_come_back_to_the_bit() {
     assert_eq!(scratch.names("checkpoint"), ["load-0010"]);
 }
 
+/// ORACLE: the files on disk.
+#[test]
+fn in_memory_and_on_disk_are_the_same() {
+    let scratch = Scratch::new();
+    let (current, stable) = (body(3), body(1));
+    let states = [("current", &current), ("stable", &stable)];
+    let path = write(scratch.path(), "a", &states, &meta(), 1).unwrap();
+    let files = to_files("a", 1, &states, &meta()).unwrap();
+    assert_eq!(files.len(), 31);
+    for (file, bytes) in &files {
+        assert_eq!(&fs::read(path.join(file)).unwrap(), bytes, "{file}");
+    }
+    let back = from_files(&path, &files, None).unwrap();
+    assert_eq!(back.meta, meta());
+    assert_eq!(bits(&back.states[0].1), bits(&current));
+    assert_eq!(bits(&back.states[1].1), bits(&stable));
+    let mut files = files;
+    files.remove("stable/x.npy");
+    insta::assert_snapshot!(
+        scratch.hide(&from_files(&path, &files, None).unwrap_err()),
+        @"the checkpoint in DIR/a is damaged: stable/x.npy: there is no such file"
+    );
+    files.clear();
+    insta::assert_snapshot!(
+        scratch.hide(&from_files(&path, &files, None).unwrap_err()),
+        @"DIR/a is not a checkpoint of igimp: it has no meta.json"
+    );
+}
+
 /// ORACLE: FIPS 180-4 test vector.
 #[test]
 fn the_checksum_is_sha_256() {
