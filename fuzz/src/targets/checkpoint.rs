@@ -2,7 +2,7 @@
 //!
 //! An entry of the corpus is a folder. Files that it leaves out are those of the entry `whole`, so
 //! that a damaged array is one small file; a manifest that it leaves out is that of `whole` with
-//! lengths and sums of the entry's own arrays.
+//! lengths and sums of the entry's own arrays. Manifests are sealed when they are read.
 //!
 //! What must hold, beside that nothing panics and nothing is reserved before it is there:
 //!
@@ -13,7 +13,9 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use igimp_cases::results::checkpoint::{Checkpoint, Files, PROGRAM, from_files, sha256, to_files};
+use igimp_cases::results::checkpoint::{
+    self, Checkpoint, Files, PROGRAM, from_files, sha256, to_files,
+};
 use igimp_cases::results::npy::Array;
 use serde_json::{Value, json};
 
@@ -43,6 +45,8 @@ pub(super) fn complete(paths: &[PathBuf], known: Vec<Input>) -> Vec<Input> {
         }
         if is_sealed {
             seal(&mut input.parts);
+        } else {
+            seal_manifest(&mut input.parts);
         }
         input
     };
@@ -67,6 +71,9 @@ pub(super) fn mutated(
         let other = other.parts.get(MANIFEST).map_or(&[][..], Vec::as_slice);
         if let Some(manifest) = input.parts.get_mut(MANIFEST) {
             damage(manifest, other, words, random);
+        }
+        if !random.once_in(4) {
+            seal_manifest(&mut input.parts);
         }
     }
     for _ in 0..arrays {
@@ -133,9 +140,24 @@ fn seal(parts: &mut BTreeMap<String, Vec<u8>>) {
             }
         }
     }
-    if let Ok(mut bytes) = serde_json::to_vec_pretty(&manifest) {
-        bytes.push(b'\n');
-        parts.insert(MANIFEST.to_owned(), bytes);
+    if let Some(entries) = manifest.as_object_mut() {
+        entries.insert("sha256".to_owned(), "".into());
+    }
+    parts.insert(MANIFEST.to_owned(), manifest.to_string().into_bytes());
+    seal_manifest(parts);
+}
+
+/// The manifest's own sum is made that of its text, whatever that says.
+fn seal_manifest(parts: &mut BTreeMap<String, Vec<u8>>) {
+    let text = parts.get(MANIFEST).map(|bytes| std::str::from_utf8(bytes));
+    let Some(Ok(text)) = text else { return };
+    let Ok(manifest) = serde_json::from_str::<Value>(text) else {
+        return;
+    };
+    let digits = manifest["sha256"].as_str().unwrap_or_default();
+    if let Some((before, after)) = text.rsplit_once(digits) {
+        let text = checkpoint::seal(&[before, after].concat());
+        parts.insert(MANIFEST.to_owned(), text.into_bytes());
     }
 }
 

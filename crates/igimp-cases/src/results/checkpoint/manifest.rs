@@ -14,7 +14,7 @@ use sha2::{Digest as _, Sha256};
 use super::error::{CheckpointError, at};
 
 /// Version of the layout; another one is not read.
-pub const FORMAT_VERSION: u64 = 1;
+pub const FORMAT_VERSION: u64 = 2;
 
 /// The program and its version, as written into checkpoints.
 pub const PROGRAM: &str = concat!("igimp ", env!("CARGO_PKG_VERSION"));
@@ -66,6 +66,32 @@ pub(super) struct Manifest {
     pub(super) sequence: u64,
     data: Value,
     pub(super) states: Vec<StateEntry>,
+    /// SHA-256 of the file without these digits; the last entry.
+    sha256: String,
+}
+
+/// The text of a manifest whose last `"sha256": ""` is filled with the SHA-256 of the text as it was
+/// given.
+///
+/// This is how a manifest vouches for itself: its digits taken out, it has the sum that they state.
+/// Whoever changes a manifest empties the entry and seals it again.
+pub fn seal(manifest: &str) -> String {
+    let empty = ["\"sha256\": \"\"", "\"sha256\":\"\""];
+    let ends = empty.map(|empty| manifest.rfind(empty).map(|at| at + empty.len() - 1));
+    match ends.into_iter().flatten().max() {
+        None => manifest.to_owned(),
+        Some(at) => {
+            let sum = sha256(manifest.as_bytes());
+            [&manifest[..at], &sum, &manifest[at..]].concat()
+        }
+    }
+}
+
+/// Whether a manifest says what was sealed, its sum being these digits.
+fn is_sealed(manifest: &str, sum: &str) -> bool {
+    manifest
+        .rsplit_once(sum)
+        .is_some_and(|(before, after)| sha256([before, after].concat().as_bytes()) == sum)
 }
 
 /// One state of a checkpoint.
@@ -99,6 +125,7 @@ impl Manifest {
             sequence,
             data,
             states,
+            sha256: String::new(),
         }
     }
 
@@ -124,9 +151,9 @@ impl Manifest {
 
     /// The bytes of the file.
     pub(super) fn to_bytes(&self) -> io::Result<Vec<u8>> {
-        let mut text = serde_json::to_vec_pretty(self).map_err(io::Error::from)?;
-        text.push(b'\n');
-        Ok(text)
+        let mut text = serde_json::to_string_pretty(self).map_err(io::Error::from)?;
+        text.push('\n');
+        Ok(seal(&text).into_bytes())
     }
 
     pub(super) fn read(checkpoint: &Path) -> Result<Self, CheckpointError> {
@@ -164,7 +191,16 @@ impl Manifest {
                 return Err(CheckpointError::OtherFormat { path, found });
             }
         }
-        serde_json::from_value(value).map_err(damaged)
+        let manifest: Self = serde_json::from_value(value).map_err(damaged)?;
+        let text = String::from_utf8_lossy(bytes);
+        if !is_sealed(&text, &manifest.sha256) {
+            return Err(CheckpointError::Damaged {
+                path: checkpoint.into(),
+                file: FILE.into(),
+                why: "it does not say what was written (SHA-256)".into(),
+            });
+        }
+        Ok(manifest)
     }
 }
 

@@ -2,8 +2,8 @@
 //!
 //! A checkpoint is a folder: `meta.json`, and for each named state (a [`Body`]) a folder of `.npy`
 //! arrays. `meta.json` holds the format version, the program, the fingerprint of the case, a value
-//! of the caller, and for each array its length in bytes and its SHA-256; whoever changes an array
-//! in numpy writes both anew.
+//! of the caller, for each array its length in bytes and its SHA-256, and its own SHA-256
+//! ([`seal`]); whoever changes an array in numpy writes all three anew.
 //!
 //! | array | shape | |
 //! |---|---|---|
@@ -40,7 +40,7 @@ mod manifest;
 pub use error::CheckpointError;
 use error::at;
 pub use in_memory::{Files, from_files, to_files};
-pub use manifest::{FORMAT_VERSION, Meta, PROGRAM, sha256};
+pub use manifest::{FORMAT_VERSION, Meta, PROGRAM, seal, sha256};
 use manifest::{Manifest, StateEntry};
 
 const TEMPORARY: &str = ".tmp-";

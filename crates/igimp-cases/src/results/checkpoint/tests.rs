@@ -263,8 +263,20 @@ fn every_damage_is_noticed() {
         let error = read(&path, None).unwrap_err();
         assert!(matches!(error, CheckpointError::Damaged { .. }), "{error}");
     }
+    for at in 0..whole.len() {
+        let mut flipped = whole.clone();
+        flipped[at] ^= 1;
+        fs::write(&file, &flipped).unwrap();
+        assert!(read(&path, None).is_err(), "byte {at}");
+    }
     fs::write(&file, whole).unwrap();
     read(&path, None).unwrap();
+}
+
+/// A manifest that vouches for itself.
+fn sealed(mut manifest: serde_json::Value) -> String {
+    manifest["sha256"] = "".into();
+    seal(&manifest.to_string())
 }
 
 /// GOAL: meta.json and arrays that agree with each other but make no body are refused.
@@ -278,7 +290,7 @@ fn a_forged_state_is_refused() {
         let mut value: serde_json::Value = serde_json::from_slice(&text).unwrap();
         value["states"][0]["files"][array] =
             json!({ "bytes": bytes.len(), "sha256": sha256(bytes) });
-        fs::write(&file, value.to_string()).unwrap();
+        fs::write(&file, sealed(value)).unwrap();
         let array = path.join("current").join(array).with_extension("npy");
         let before = fs::read(&array).unwrap();
         fs::write(&array, bytes).unwrap();
@@ -310,7 +322,8 @@ fn a_forged_state_is_refused() {
         ("\"particles\": 2", "\"particles\": 0"),
     ] {
         assert!(text.contains(from));
-        fs::write(&file, text.replace(from, to)).unwrap();
+        let value = serde_json::from_str(&text.replace(from, to)).unwrap();
+        fs::write(&file, sealed(value)).unwrap();
         let error = read(&path, None).unwrap_err();
         assert!(matches!(error, CheckpointError::Damaged { .. }), "{error}");
     }
@@ -336,12 +349,12 @@ fn refusals_say_what_to_do() {
     let text = fs::read_to_string(&file).unwrap();
     fs::write(
         &file,
-        text.replace("\"format_version\": 1", "\"format_version\": 2"),
+        text.replace("\"format_version\": 2", "\"format_version\": 3"),
     )
     .unwrap();
     insta::assert_snapshot!(
         refusal(None),
-        @"the checkpoint in DIR/a has format version 2; this program reads version 1"
+        @"the checkpoint in DIR/a has format version 3; this program reads version 2"
     );
     fs::write(&file, "{}").unwrap();
     insta::assert_snapshot!(
