@@ -4,6 +4,7 @@
 mod bench;
 mod book;
 mod failure;
+mod fuzz;
 mod process;
 mod tidy;
 mod validate;
@@ -38,6 +39,17 @@ enum Task {
     /// against the machine's own, growth with size, memory. The report is `target/bench/bench.md`,
     /// the same numbers are in `target/bench/bench.csv`.
     Bench(bench::Arguments),
+    /// Feed damaged inputs to the readers of case files, checkpoints and quantities.
+    ///
+    /// All arguments go to the fuzzing program (`--target`, `--executions`, `--seed`, …), and its
+    /// exit code is passed on: 0 nothing found, 1 something found, 4 input or output. Inputs that
+    /// fail are written to `fuzz/found`.
+    #[command(disable_help_flag = true)]
+    Fuzz {
+        /// Arguments of the fuzzing program; `--help` lists them.
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        arguments: Vec<String>,
+    },
     /// Check what the compiler does not: layers, printing, leftovers, licences, links.
     Tidy,
     /// Build the book in `docs/` with mdbook.
@@ -51,6 +63,7 @@ enum Task {
 fn main() -> ExitCode {
     let result = match Arguments::parse().task {
         Task::Validate { arguments } => validate::run(&arguments),
+        Task::Fuzz { arguments } => fuzz::run(&arguments),
         Task::Bench(arguments) => bench::run(&arguments),
         Task::Tidy => tidy::run(),
         Task::Book { open } => book::run(open),

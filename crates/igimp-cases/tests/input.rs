@@ -554,6 +554,51 @@ fn tabs_carriage_returns_and_accents_keep_their_columns() {
     insta::assert_snapshot!(format!("{first}\n{second}"));
 }
 
+/// A file from elsewhere must not get at the terminal through what is said of it.
+#[test]
+fn messages_hold_no_control_characters() {
+    for (key, value) in [
+        ("\"coh\\u001b[31mesion\"", "\"10 kPa\""),
+        ("cohesion", "\"10 k\\u0007Pa\""),
+        ("cohesion", "\"\\u001b[2J\""),
+        ("cohesion", "'''10\nkPa'''"),
+    ] {
+        let text = edited(
+            SLOPE.1,
+            &[("cohesion = \"10 kPa\"", &format!("{key} = {value}"))],
+        );
+        let error = CaseFile::parse(SLOPE.0, &text, &[]).unwrap_err();
+        let InputError::Invalid {
+            text, diagnostics, ..
+        } = error
+        else {
+            panic!("{error}");
+        };
+        assert!(
+            text.chars().all(|c| c == '\n' || !c.is_control()),
+            "{text:?}"
+        );
+        for found in &diagnostics {
+            let mut lines = found.help.iter().chain([&found.message]);
+            assert!(
+                lines.all(|line| !line.contains(char::is_control)),
+                "{found:?}"
+            );
+        }
+    }
+}
+
+/// Every unknown key is counted, and none is compared with all others.
+#[test]
+fn files_of_unknown_keys_are_judged_quickly() {
+    let mut text = SLOPE.1.to_owned();
+    for key in 0..50_000 {
+        let _ = writeln!(text, "key_{key} = 1");
+    }
+    let error = CaseFile::parse(SLOPE.0, &text, &[]).unwrap_err();
+    assert!(matches!(error, InputError::Invalid { errors: 50_000, .. }));
+}
+
 #[test]
 fn an_explained_file_states_the_same_case() {
     let pressure = "[[loads]]\nname = \"strip\"\ntype = \"pressure\"\nfrom = [\"2 m\", \"5 m\"]\nto = [\"3 m\", \"5 m\"]\npressure = \"10 kPa\"\n[[stages]]\nname = \"press\"\ntype = \"load\"\nload = \"strip\"\n[[stages]]\nname = \"push";

@@ -180,7 +180,7 @@ fn damaged_files_are_accepted_or_explained() {
                     let again = again.unwrap_or_else(|error| panic!("{error}\n{explained}"));
                     assert_eq!(format!("{:?}", file.case()), format!("{:?}", again.case()));
                 }
-                Err(InputError::Invalid { text, errors }) => {
+                Err(InputError::Invalid { text, errors, .. }) => {
                     outcomes[1] += 1;
                     assert!(errors > 0 && text.contains("damaged.toml"), "{text}");
                 }

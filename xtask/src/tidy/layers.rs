@@ -3,7 +3,7 @@
 use super::metadata::{Metadata, Package};
 
 /// Crates of the project with those that they may depend on, for tests too.
-const LAYERS: [(&str, &[&str]); 8] = [
+const LAYERS: [(&str, &[&str]); 9] = [
     ("igimp-shape", &[]),
     ("igimp-material", &[]),
     ("igimp-assembly", &["igimp-shape", "igimp-material"]),
@@ -14,6 +14,7 @@ const LAYERS: [(&str, &[&str]); 8] = [
     ("igimp-cases", BELOW_CASES),
     ("igimp-benchmarks", ALL),
     ("igimp-validation", ALL),
+    ("igimp-fuzz", &["igimp-cases"]),
     ("xtask", &[]),
 ];
 
@@ -96,7 +97,7 @@ mod tests {
 
     type Row<'a> = (&'a str, bool, Option<&'a str>, &'a [&'a str]);
 
-    const SOUND: [Row<'_>; 9] = [
+    const SOUND: [Row<'_>; 10] = [
         ("igimp-shape", true, None, &["thiserror"]),
         ("igimp-material", true, None, &[]),
         (
@@ -109,6 +110,7 @@ mod tests {
         ("igimp-cases", true, None, &["igimp-solver"]),
         ("igimp-benchmarks", true, None, &["igimp-cases"]),
         ("igimp-validation", true, None, &["igimp-cases"]),
+        ("igimp-fuzz", true, None, &["igimp-cases"]),
         ("xtask", true, None, &["serde"]),
         ("serde", false, None, &[]),
     ];

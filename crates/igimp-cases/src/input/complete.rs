@@ -209,18 +209,24 @@ impl Completer<'_> {
         elsewhere: &dyn Fn(&str) -> Option<String>,
     ) -> Vec<&'static str> {
         let mut meant = Vec::new();
+        let is_missing = |key: &&&str| node.get(key).is_none();
+        let missing: Vec<_> = known.iter().filter(is_missing).copied().collect();
         for entry in node.entries() {
             if known.contains(&entry.key.as_str()) {
                 continue;
             }
             let message = format!("unknown field `{}`", clip(&entry.key, 40));
+            let are_many = self.problems.are_many();
             let problem = self.problems.error(entry.key_place, message);
+            if are_many {
+                continue;
+            }
             if let Some(help) = elsewhere(&entry.key) {
                 problem.help(help);
                 continue;
             }
-            let missing = known.iter().copied().filter(|key| node.get(key).is_none());
-            let near = nearest(&entry.key, missing).or_else(|| nearest(&entry.key, known.to_vec()));
+            let near = nearest(&entry.key, missing.clone())
+                .or_else(|| nearest(&entry.key, known.to_vec()));
             if let Some(near) = near {
                 let near = known.iter().find(|key| **key == near).copied();
                 meant.extend(near);

@@ -1,6 +1,7 @@
 //! Problems found in a case file, collected and printed together in the order of the file.
 
 use std::fmt::Write;
+use std::ops::Range;
 
 use super::source::{Place, Source};
 use super::text::plural;
@@ -26,8 +27,44 @@ pub(super) struct Problem {
 impl Problem {
     /// Adds a line of help.
     pub(super) fn help(&mut self, text: impl Into<String>) -> &mut Self {
-        self.help.push(text.into());
+        self.help.push(printable(text.into()));
         self
+    }
+}
+
+/// What is wrong with a case file, in one place of it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Diagnostic {
+    /// Whether the case cannot be run; a warning otherwise.
+    pub is_error: bool,
+    /// What is wrong, in the words of the file.
+    pub message: String,
+    /// Where; none for what concerns the whole file, such as a missing table.
+    pub place: Option<DiagnosticPlace>,
+    /// What to do about it, a line each.
+    pub help: Vec<String>,
+}
+
+/// A stretch of a case file or of an override.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct DiagnosticPlace {
+    /// The override by its number from 0; none: the file.
+    pub override_number: Option<usize>,
+    /// Bytes of its text.
+    pub bytes: Range<usize>,
+}
+
+impl From<&Problem> for Diagnostic {
+    fn from(problem: &Problem) -> Self {
+        Self {
+            is_error: problem.severity == Severity::Error,
+            message: problem.message.clone(),
+            place: problem.place.map(|place| DiagnosticPlace {
+                override_number: place.source.checked_sub(1),
+                bytes: place.start..place.end,
+            }),
+            help: problem.help.clone(),
+        }
     }
 }
 
@@ -66,6 +103,7 @@ impl Problems {
     }
 
     fn add(&mut self, severity: Severity, place: Option<Place>, message: String) -> &mut Problem {
+        let message = printable(message);
         let problem = Problem {
             severity,
             message,
@@ -98,6 +136,11 @@ impl Problems {
         self.list.len() >= 2 * MOST
     }
 
+    /// The problems that are kept, in the order in which they were found.
+    pub(super) fn diagnostics(&self) -> Vec<Diagnostic> {
+        self.list.iter().map(Diagnostic::from).collect()
+    }
+
     /// All problems and a line that counts them; empty when there are none.
     pub(super) fn render(&self, sources: &[Source]) -> String {
         if self.list.is_empty() {
@@ -126,6 +169,15 @@ impl Problems {
         let file = sources.first().map_or("", |source| &source.name);
         let _ = writeln!(out, "{count} in {file}");
         out
+    }
+}
+
+/// A text of a file in a message: control characters, which a terminal would obey, are replaced.
+fn printable(text: String) -> String {
+    if text.contains(char::is_control) {
+        text.replace(char::is_control, "\u{fffd}")
+    } else {
+        text
     }
 }
 

@@ -38,6 +38,7 @@ mod tree;
 mod units;
 mod value;
 
+pub use diagnostic::{Diagnostic, DiagnosticPlace};
 pub use json_schema::json_schema;
 pub use quantity::{Dimension, Quantity, QuantityError};
 pub use read::{CaseFile, InputError};

@@ -1,5 +1,7 @@
 //! Quantities as text, such as `"25 kPa"`: a number or a fraction, and a unit.
 
+use std::fmt::{self, Display, Formatter};
+
 use thiserror::Error;
 
 use super::units::Unit;
@@ -164,6 +166,17 @@ impl Quantity {
             None => Err(QuantityError::NoUnit {
                 text: clip(text.trim()),
             }),
+        }
+    }
+}
+
+/// The value and its SI unit, such as `25000 Pa`: reads back to the same bits.
+impl Display for Quantity {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.value)?;
+        match self.dimension {
+            Some(dimension) => write!(f, " {}", dimension.si_unit()),
+            None => Ok(()),
         }
     }
 }

@@ -8,7 +8,7 @@ use thiserror::Error;
 
 use super::build::build;
 use super::complete::complete;
-use super::diagnostic::Problems;
+use super::diagnostic::{Diagnostic, Problems};
 use super::explain::explain;
 use super::overrides::apply;
 use super::source::{Place, Source};
@@ -26,6 +26,7 @@ pub struct CaseFile {
     completed: Node,
     text: String,
     warnings: String,
+    diagnostics: Vec<Diagnostic>,
 }
 
 /// Why a case file cannot be used.
@@ -47,6 +48,8 @@ pub enum InputError {
         text: String,
         /// Number of errors, without warnings.
         errors: usize,
+        /// The first thousand problems as data.
+        diagnostics: Vec<Diagnostic>,
     },
 }
 
@@ -66,16 +69,29 @@ impl CaseFile {
         file.take(LARGEST as u64 + 1)
             .read_to_end(&mut bytes)
             .map_err(file_error)?;
+        Self::from_bytes(&name, bytes, overrides)
+    }
+
+    /// Parses the bytes of a file of this name.
+    ///
+    /// # Errors
+    /// [`InputError::Invalid`], also for bytes that are no UTF-8 text.
+    pub fn from_bytes(
+        name: &str,
+        bytes: Vec<u8>,
+        overrides: &[String],
+    ) -> Result<Self, InputError> {
         match String::from_utf8(bytes) {
-            Ok(text) => Self::parse(&name, &text, overrides),
+            Ok(text) => Self::parse(name, &text, overrides),
             Err(error) => {
                 let at = error.utf8_error().valid_up_to();
                 let text = String::from_utf8_lossy(error.as_bytes()).into_owned();
                 let mut problems = Problems::default();
+                let wrong = at..at + char::REPLACEMENT_CHARACTER.len_utf8();
                 problems
-                    .error(Place::new(0, &(at..at + 1)), "this is not UTF-8 text")
+                    .error(Place::new(0, &wrong), "this is not UTF-8 text")
                     .help("save the file as UTF-8");
-                Err(invalid(&problems, &[Source::new(&name, &text, false)]))
+                Err(invalid(&problems, &[Source::new(name, &text, false)]))
             }
         }
     }
@@ -110,6 +126,7 @@ impl CaseFile {
                 completed,
                 text: text.to_owned(),
                 warnings: problems.render(&sources),
+                diagnostics: problems.diagnostics(),
             }),
             _ => {
                 if problems.errors() == 0 {
@@ -135,6 +152,11 @@ impl CaseFile {
         self.warnings.clone()
     }
 
+    /// Warnings as data.
+    pub fn diagnostics(&self) -> &[Diagnostic] {
+        &self.diagnostics
+    }
+
     /// The file with overrides and every default written out, commented; it states the same case.
     pub fn explain(&self) -> String {
         explain(&self.completed)
@@ -150,5 +172,6 @@ fn invalid(problems: &Problems, sources: &[Source]) -> InputError {
     InputError::Invalid {
         text: problems.render(sources),
         errors: problems.errors(),
+        diagnostics: problems.diagnostics(),
     }
 }

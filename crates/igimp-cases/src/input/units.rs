@@ -54,6 +54,21 @@ impl Dimension {
         }
     }
 
+    /// The SI unit, in which values are stored.
+    pub fn si_unit(self) -> &'static str {
+        match self {
+            Self::Length => "m",
+            Self::Stress => "Pa",
+            Self::UnitWeight => "N/m3",
+            Self::Angle => "rad",
+            Self::Acceleration => "m/s2",
+            Self::ForcePerLength => "N/m",
+            Self::MassDensity => "kg/m3",
+            Self::Force => "N",
+            Self::Area => "m2",
+        }
+    }
+
     /// A quantity for messages.
     pub fn example(self) -> &'static str {
         match self {

@@ -39,7 +39,11 @@ path = checkpoint / state["name"] / "sigma.npy"
 np.save(path, 2.0 * arrays["sigma"])
 content = path.read_bytes()
 state["files"]["sigma"] = {"bytes": len(content), "sha256": hashlib.sha256(content).hexdigest()}
-(checkpoint / "meta.json").write_text(json.dumps(meta))
+meta["sha256"] = ""
+text = json.dumps(meta)
+own = hashlib.sha256(text.encode()).hexdigest()
+text = f'"sha256": "{own}"'.join(text.rsplit('"sha256": ""', 1))
+(checkpoint / "meta.json").write_text(text)
 
 np.save(folder / "i32.npy", np.arange(-3, 3, dtype=np.int32).reshape(2, 3))
 np.save(folder / "f32.npy", np.ones(3, dtype=np.float32))

@@ -7,6 +7,7 @@
 //! | `tangents` | consistent tangent against differences, symmetry |
 //! | `lifts` | spatial tangent against differences, rotation, plane strain against 3D |
 //! | `close_eigenvalues` | the same where principal values are equal or nearly so |
+//! | `random_laws` | the same for laws with random parameters |
 //! | `reduction` | strength reduction and limits between laws |
 //! | `utilisation` | the share of the strength that a stress mobilises |
 //! | `refusals` | what is not accepted, and the words for it |
@@ -18,6 +19,7 @@ mod close_eigenvalues;
 mod flow_rule;
 mod lifts;
 mod random;
+mod random_laws;
 mod reduction;
 mod refusals;
 mod returns;

@@ -123,6 +123,7 @@ mod tests {
         let invalid = InputError::Invalid {
             text: "error: no".into(),
             errors: 1,
+            diagnostics: Vec::new(),
         };
         let invalid = ProgramError::from(invalid);
         assert_eq!(invalid.exit(), Exit::BadInput);

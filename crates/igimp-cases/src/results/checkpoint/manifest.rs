@@ -14,13 +14,13 @@ use sha2::{Digest as _, Sha256};
 use super::error::{CheckpointError, at};
 
 /// Version of the layout; another one is not read.
-pub const FORMAT_VERSION: u64 = 1;
+pub const FORMAT_VERSION: u64 = 2;
 
 /// The program and its version, as written into checkpoints.
 pub const PROGRAM: &str = concat!("igimp ", env!("CARGO_PKG_VERSION"));
 
 const FORMAT: &str = "igimp checkpoint";
-const FILE: &str = "meta.json";
+pub(super) const FILE: &str = "meta.json";
 
 /// What the program says about a checkpoint.
 #[derive(Clone, Debug, PartialEq)]
@@ -66,6 +66,32 @@ pub(super) struct Manifest {
     pub(super) sequence: u64,
     data: Value,
     pub(super) states: Vec<StateEntry>,
+    /// SHA-256 of the file without these digits; the last entry.
+    sha256: String,
+}
+
+/// The text of a manifest whose last `"sha256": ""` is filled with the SHA-256 of the text as it was
+/// given.
+///
+/// This is how a manifest vouches for itself: its digits taken out, it has the sum that they state.
+/// Whoever changes a manifest empties the entry and seals it again.
+pub fn seal(manifest: &str) -> String {
+    let empty = ["\"sha256\": \"\"", "\"sha256\":\"\""];
+    let ends = empty.map(|empty| manifest.rfind(empty).map(|at| at + empty.len() - 1));
+    match ends.into_iter().flatten().max() {
+        None => manifest.to_owned(),
+        Some(at) => {
+            let sum = sha256(manifest.as_bytes());
+            [&manifest[..at], &sum, &manifest[at..]].concat()
+        }
+    }
+}
+
+/// Whether a manifest says what was sealed, its sum being these digits.
+fn is_sealed(manifest: &str, sum: &str) -> bool {
+    manifest
+        .rsplit_once(sum)
+        .is_some_and(|(before, after)| sha256([before, after].concat().as_bytes()) == sum)
 }
 
 /// One state of a checkpoint.
@@ -99,6 +125,7 @@ impl Manifest {
             sequence,
             data,
             states,
+            sha256: String::new(),
         }
     }
 
@@ -114,33 +141,43 @@ impl Manifest {
     pub(super) fn write(&self, checkpoint: &Path) -> Result<(PathBuf, File), CheckpointError> {
         let path = checkpoint.join(FILE);
         let write = || {
-            let mut text = serde_json::to_vec_pretty(self).map_err(io::Error::from)?;
-            text.push(b'\n');
             let mut file = File::create(&path)?;
-            file.write_all(&text)?;
+            file.write_all(&self.to_bytes()?)?;
             Ok(file)
         };
         let file = write().map_err(at(&path))?;
         Ok((path, file))
     }
 
+    /// The bytes of the file.
+    pub(super) fn to_bytes(&self) -> io::Result<Vec<u8>> {
+        let mut text = serde_json::to_string_pretty(self).map_err(io::Error::from)?;
+        text.push('\n');
+        Ok(seal(&text).into_bytes())
+    }
+
     pub(super) fn read(checkpoint: &Path) -> Result<Self, CheckpointError> {
         let path = checkpoint.join(FILE);
-        let bytes = match fs::read(&path) {
-            Ok(bytes) => bytes,
+        match fs::read(&path) {
+            Ok(bytes) => Self::from_bytes(checkpoint, &bytes),
             Err(error) if error.kind() == io::ErrorKind::NotFound => {
-                let why = "it has no meta.json";
-                let path = checkpoint.into();
-                return Err(CheckpointError::NotACheckpoint { path, why });
+                Err(CheckpointError::NotACheckpoint {
+                    path: checkpoint.into(),
+                    why: "it has no meta.json",
+                })
             }
-            Err(error) => return Err(at(&path)(error)),
-        };
+            Err(error) => Err(at(&path)(error)),
+        }
+    }
+
+    /// What the bytes of the file say; messages name the folder.
+    pub(super) fn from_bytes(checkpoint: &Path, bytes: &[u8]) -> Result<Self, CheckpointError> {
         let damaged = |error: serde_json::Error| CheckpointError::Damaged {
             path: checkpoint.into(),
             file: FILE.into(),
             why: error.to_string(),
         };
-        let value: Value = serde_json::from_slice(&bytes).map_err(damaged)?;
+        let value: Value = serde_json::from_slice(bytes).map_err(damaged)?;
         if value["format"] != FORMAT {
             return Err(CheckpointError::NotACheckpoint {
                 path: checkpoint.into(),
@@ -154,7 +191,16 @@ impl Manifest {
                 return Err(CheckpointError::OtherFormat { path, found });
             }
         }
-        serde_json::from_value(value).map_err(damaged)
+        let manifest: Self = serde_json::from_value(value).map_err(damaged)?;
+        let text = String::from_utf8_lossy(bytes);
+        if !is_sealed(&text, &manifest.sha256) {
+            return Err(CheckpointError::Damaged {
+                path: checkpoint.into(),
+                file: FILE.into(),
+                why: "it does not say what was written (SHA-256)".into(),
+            });
+        }
+        Ok(manifest)
     }
 }
 

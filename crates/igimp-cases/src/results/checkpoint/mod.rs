@@ -2,8 +2,8 @@
 //!
 //! A checkpoint is a folder: `meta.json`, and for each named state (a [`Body`]) a folder of `.npy`
 //! arrays. `meta.json` holds the format version, the program, the fingerprint of the case, a value
-//! of the caller, and for each array its length in bytes and its SHA-256; whoever changes an array
-//! in numpy writes both anew.
+//! of the caller, for each array its length in bytes and its SHA-256, and its own SHA-256
+//! ([`seal`]); whoever changes an array in numpy writes all three anew.
 //!
 //! | array | shape | |
 //! |---|---|---|
@@ -34,11 +34,13 @@ use crate::error::CaseError;
 
 mod arrays;
 mod error;
+mod in_memory;
 mod manifest;
 
 pub use error::CheckpointError;
 use error::at;
-pub use manifest::{FORMAT_VERSION, Meta, PROGRAM, sha256};
+pub use in_memory::{Files, from_files, to_files};
+pub use manifest::{FORMAT_VERSION, Meta, PROGRAM, seal, sha256};
 use manifest::{Manifest, StateEntry};
 
 const TEMPORARY: &str = ".tmp-";
@@ -173,7 +175,16 @@ pub fn read(
     path: &Path,
     expected_fingerprint: Option<&str>,
 ) -> Result<Checkpoint, CheckpointError> {
-    let manifest = Manifest::read(path)?;
+    let manifest = accepted(path, Manifest::read(path)?, expected_fingerprint)?;
+    load(path, manifest)
+}
+
+/// The manifest, if it is of this program and of the expected case.
+fn accepted(
+    path: &Path,
+    manifest: Manifest,
+    expected_fingerprint: Option<&str>,
+) -> Result<Manifest, CheckpointError> {
     if expected_fingerprint.is_some_and(|expected| expected != manifest.fingerprint) {
         return Err(CheckpointError::OtherCase { path: path.into() });
     }
@@ -183,7 +194,7 @@ pub fn read(
             found: manifest.program,
         });
     }
-    load(path, manifest)
+    Ok(manifest)
 }
 
 /// Removes every checkpoint that was written after the given one: a run that goes on from here
@@ -282,10 +293,21 @@ fn first_whole(found: Vec<Found>) -> Result<Option<PathBuf>, CheckpointError> {
 }
 
 fn load(path: &Path, manifest: Manifest) -> Result<Checkpoint, CheckpointError> {
+    load_from(path, manifest, |file| {
+        fs::read(path.join(file)).map_err(|error| error.to_string())
+    })
+}
+
+/// The states of a manifest, from the bytes of the files that it lists.
+fn load_from(
+    path: &Path,
+    manifest: Manifest,
+    bytes: impl Fn(&str) -> Result<Vec<u8>, String>,
+) -> Result<Checkpoint, CheckpointError> {
     let states = manifest
         .states
         .iter()
-        .map(|entry| Ok((entry.name.clone(), read_state(path, entry)?)))
+        .map(|entry| Ok((entry.name.clone(), read_state(path, entry, &bytes)?)))
         .collect::<Result<_, CheckpointError>>()?;
     let meta = manifest.into_meta();
     Ok(Checkpoint { meta, states })
@@ -301,7 +323,7 @@ fn write_state(
     fs::create_dir(&folder).map_err(at(&folder))?;
     let mut entry = StateEntry::new(name, body);
     for (array, values) in arrays::of_body(body) {
-        let path = folder.join(array).with_extension("npy");
+        let path = checkpoint.join(array_file(name, array));
         let bytes = values.to_bytes();
         let mut file = File::create(&path).map_err(at(&path))?;
         file.write_all(&bytes).map_err(at(&path))?;
@@ -311,23 +333,31 @@ fn write_state(
     Ok(entry)
 }
 
-fn read_state(checkpoint: &Path, entry: &StateEntry) -> Result<Body<2>, CheckpointError> {
+fn read_state(
+    checkpoint: &Path,
+    entry: &StateEntry,
+    bytes: &impl Fn(&str) -> Result<Vec<u8>, String>,
+) -> Result<Body<2>, CheckpointError> {
     let name = &entry.name;
     let damaged = |(array, why): (&str, String)| CheckpointError::Damaged {
         path: checkpoint.into(),
-        file: format!("{name}/{array}.npy"),
+        file: array_file(name, array),
         why,
     };
     if check_name(name).is_err() {
         return Err(damaged(("*", "the state has no proper name".into())));
     }
     arrays::to_body([entry.particles, entry.load_points], |array| {
-        let path = checkpoint.join(name).join(array).with_extension("npy");
-        let bytes = fs::read(&path).map_err(|error| error.to_string())?;
+        let bytes = bytes(&array_file(name, array))?;
         entry.compare(array, &bytes)?;
         Ok(bytes)
     })
     .map_err(damaged)
+}
+
+/// Where an array of a state is within its checkpoint.
+fn array_file(state: &str, array: &str) -> String {
+    format!("{state}/{array}.npy")
 }
 
 /// Gives a finished checkpoint its name; at any moment it or the one before is there.

@@ -87,6 +87,35 @@ fn states_come_back_to_the_bit() {
     assert_eq!(scratch.names("checkpoint"), ["load-0010"]);
 }
 
+/// ORACLE: the files on disk.
+#[test]
+fn in_memory_and_on_disk_are_the_same() {
+    let scratch = Scratch::new();
+    let (current, stable) = (body(3), body(1));
+    let states = [("current", &current), ("stable", &stable)];
+    let path = write(scratch.path(), "a", &states, &meta(), 1).unwrap();
+    let files = to_files("a", 1, &states, &meta()).unwrap();
+    assert_eq!(files.len(), 31);
+    for (file, bytes) in &files {
+        assert_eq!(&fs::read(path.join(file)).unwrap(), bytes, "{file}");
+    }
+    let back = from_files(&path, &files, None).unwrap();
+    assert_eq!(back.meta, meta());
+    assert_eq!(bits(&back.states[0].1), bits(&current));
+    assert_eq!(bits(&back.states[1].1), bits(&stable));
+    let mut files = files;
+    files.remove("stable/x.npy");
+    insta::assert_snapshot!(
+        scratch.hide(&from_files(&path, &files, None).unwrap_err()),
+        @"the checkpoint in DIR/a is damaged: stable/x.npy: there is no such file"
+    );
+    files.clear();
+    insta::assert_snapshot!(
+        scratch.hide(&from_files(&path, &files, None).unwrap_err()),
+        @"DIR/a is not a checkpoint of igimp: it has no meta.json"
+    );
+}
+
 /// ORACLE: FIPS 180-4 test vector.
 #[test]
 fn the_checksum_is_sha_256() {
@@ -234,8 +263,20 @@ fn every_damage_is_noticed() {
         let error = read(&path, None).unwrap_err();
         assert!(matches!(error, CheckpointError::Damaged { .. }), "{error}");
     }
+    for at in 0..whole.len() {
+        let mut flipped = whole.clone();
+        flipped[at] ^= 1;
+        fs::write(&file, &flipped).unwrap();
+        assert!(read(&path, None).is_err(), "byte {at}");
+    }
     fs::write(&file, whole).unwrap();
     read(&path, None).unwrap();
+}
+
+/// A manifest that vouches for itself.
+fn sealed(mut manifest: serde_json::Value) -> String {
+    manifest["sha256"] = "".into();
+    seal(&manifest.to_string())
 }
 
 /// GOAL: meta.json and arrays that agree with each other but make no body are refused.
@@ -249,7 +290,7 @@ fn a_forged_state_is_refused() {
         let mut value: serde_json::Value = serde_json::from_slice(&text).unwrap();
         value["states"][0]["files"][array] =
             json!({ "bytes": bytes.len(), "sha256": sha256(bytes) });
-        fs::write(&file, value.to_string()).unwrap();
+        fs::write(&file, sealed(value)).unwrap();
         let array = path.join("current").join(array).with_extension("npy");
         let before = fs::read(&array).unwrap();
         fs::write(&array, bytes).unwrap();
@@ -281,7 +322,8 @@ fn a_forged_state_is_refused() {
         ("\"particles\": 2", "\"particles\": 0"),
     ] {
         assert!(text.contains(from));
-        fs::write(&file, text.replace(from, to)).unwrap();
+        let value = serde_json::from_str(&text.replace(from, to)).unwrap();
+        fs::write(&file, sealed(value)).unwrap();
         let error = read(&path, None).unwrap_err();
         assert!(matches!(error, CheckpointError::Damaged { .. }), "{error}");
     }
@@ -307,12 +349,12 @@ fn refusals_say_what_to_do() {
     let text = fs::read_to_string(&file).unwrap();
     fs::write(
         &file,
-        text.replace("\"format_version\": 1", "\"format_version\": 2"),
+        text.replace("\"format_version\": 2", "\"format_version\": 3"),
     )
     .unwrap();
     insta::assert_snapshot!(
         refusal(None),
-        @"the checkpoint in DIR/a has format version 2; this program reads version 1"
+        @"the checkpoint in DIR/a has format version 3; this program reads version 2"
     );
     fs::write(&file, "{}").unwrap();
     insta::assert_snapshot!(

@@ -1,0 +1,171 @@
+//! GOAL: particles seeded from any polygon have its volume, and their domains tile the cells that it
+//! reaches into.
+//! BODY: random polygons without crossing edges (corners at ascending angles about a centre, so also
+//! concave ones, slivers and needles), on random graded grids, corners often on nodes.
+//! ORACLE: the shoelace formula; a count of the parts of each cell.
+
+use std::collections::BTreeSet;
+use std::f64::consts::TAU;
+
+use igimp_cases::CaseError;
+use igimp_cases::seed::fill_polygon;
+use igimp_shape::{Axis, Grid};
+use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
+
+fn axis() -> impl Strategy<Value = Axis> {
+    let sizes = prop::collection::vec(0.2..1.5, 1..=7);
+    let uniform = (-5.0..5.0, 0.1..1.0, 1_usize..=9)
+        .prop_map(|(start, size, cells)| Axis::uniform(start, size, cells).unwrap());
+    let graded = (-5.0..5.0, sizes).prop_map(|(start, sizes)| {
+        let mut nodes = vec![start];
+        for size in sizes {
+            nodes.push(nodes[nodes.len() - 1] + size);
+        }
+        Axis::from_nodes(nodes).unwrap()
+    });
+    prop_oneof![uniform, graded]
+}
+
+/// A polygon on a grid; its corners are shares of the grid, and some are moved onto nodes.
+#[derive(Clone, Debug)]
+struct Sample {
+    grid: Grid<2>,
+    polygon: Vec<[f64; 2]>,
+    per_direction: usize,
+}
+
+fn sample() -> impl Strategy<Value = Sample> {
+    let corner = (0.0..TAU, 0.02..1.0);
+    let corners = prop::collection::vec(corner, 3..=9);
+    let centre = [0.1..0.9, 0.1..0.9];
+    (
+        [axis(), axis()],
+        corners,
+        centre,
+        any::<bool>(),
+        1_usize..=4,
+    )
+        .prop_map(|(axes, mut corners, centre, on_nodes, per_direction)| {
+            let grid = Grid::new(axes);
+            let (lower, upper) = grid.bounds();
+            corners.sort_by(|a, b| a.0.total_cmp(&b.0));
+            let polygon = corners
+                .into_iter()
+                .map(|(angle, reach)| {
+                    let way = [angle.cos(), angle.sin()];
+                    std::array::from_fn(|d| {
+                        let share = (centre[d] + 0.9 * reach * way[d]).clamp(0.0, 1.0);
+                        let x = lower[d] + share * (upper[d] - lower[d]);
+                        let axis = &grid.axes[d];
+                        let x = x.clamp(axis.start(), axis.end());
+                        let next = axis.nodes().iter().find(|&&node| node >= x);
+                        next.copied().filter(|_| on_nodes).unwrap_or(x)
+                    })
+                })
+                .collect();
+            Sample {
+                grid,
+                polygon,
+                per_direction,
+            }
+        })
+}
+
+/// Twice the area that the edges enclose, counted with their sense, by the shoelace formula.
+fn shoelace(polygon: &[[f64; 2]]) -> f64 {
+    let next = polygon.iter().cycle().skip(1);
+    let cross = |(p, q): (&[f64; 2], &[f64; 2])| (p[0] - q[0]) * (p[1] + q[1]);
+    0.5 * std::iter::zip(polygon, next).map(cross).sum::<f64>()
+}
+
+fn check(sample: &Sample) -> Result<(), TestCaseError> {
+    let Sample {
+        grid,
+        polygon,
+        per_direction,
+    } = sample;
+    let (lower, upper) = grid.bounds();
+    let whole = (upper[0] - lower[0]) * (upper[1] - lower[1]);
+    let far: f64 = lower
+        .iter()
+        .chain(&upper)
+        .fold(1.0, |most, x| most.max(x.abs()));
+    let area = shoelace(polygon).abs();
+    let seeds = match fill_polygon(grid, polygon, *per_direction, 2.0, 3) {
+        Ok(seeds) => seeds,
+        Err(CaseError::EmptyBody) => {
+            // All parts are slivers of less than a tenth.
+            prop_assert!(area < 0.1 * whole, "{area} of {whole}");
+            return Ok(());
+        }
+        Err(error) => return Err(TestCaseError::fail(error.to_string())),
+    };
+    let volume: f64 = seeds.iter().map(|seed| seed.volume).sum();
+    let round_off = 1e-13 * far * far;
+    prop_assert!((volume - area).abs() <= round_off, "{volume} {area}");
+    let mut taken = BTreeSet::new();
+    for seed in &seeds {
+        let cell = grid.cell_at(&seed.x).unwrap();
+        let size = grid.cell_size(cell);
+        let corner = grid.node_position(grid.node_index(cell));
+        let mut part = [0; 2];
+        for d in 0..2 {
+            // The domain is a whole part of its cell: parts of equal size, each at its place.
+            let own = size[d] / *per_direction as f64;
+            prop_assert!((2.0 * seed.half_length[d] - own).abs() <= 1e-14 * size[d]);
+            let place = (seed.x[d] - corner[d]) / own - 0.5;
+            prop_assert!(
+                (place - place.round()).abs() <= 1e-13 * far / own,
+                "{place}"
+            );
+            prop_assert!(place.round() >= 0.0 && place.round() < *per_direction as f64);
+            part[d] = place.round() as usize;
+        }
+        prop_assert!(taken.insert((cell, part)), "two particles share a part");
+        prop_assert!(seed.volume > 0.0);
+        prop_assert!(seed.density.to_bits() == 2.0_f64.to_bits() && seed.law == 3);
+    }
+    // The sense of the corners and where they begin make no difference but for round-off.
+    let mut turned: Vec<_> = polygon.iter().rev().copied().collect();
+    turned.rotate_left(1);
+    let again = fill_polygon(grid, &turned, *per_direction, 2.0, 3).unwrap();
+    let sum: f64 = again.iter().map(|seed| seed.volume).sum();
+    prop_assert!((sum - area).abs() <= round_off, "{sum} {area}");
+    Ok(())
+}
+
+/// A polygon that is all of the grid fills every part of every cell with its whole volume.
+fn fills(grid: &Grid<2>, per_direction: usize) -> Result<(), TestCaseError> {
+    let ([x0, y0], [x1, y1]) = grid.bounds();
+    let polygon = [[x0, y0], [x1, y0], [x1, y1], [x0, y1]];
+    let seeds = fill_polygon(grid, &polygon, per_direction, 1.0, 0).unwrap();
+    prop_assert_eq!(
+        seeds.len(),
+        grid.cell_count() * per_direction * per_direction
+    );
+    for seed in &seeds {
+        let domain = 4.0 * seed.half_length[0] * seed.half_length[1];
+        prop_assert!((seed.volume - domain).abs() <= 1e-12 * domain, "{seed:?}");
+    }
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig {
+        cases: 400,
+        failure_persistence: None,
+        rng_seed: RngSeed::Fixed(20_261_121),
+        ..ProptestConfig::default()
+    })]
+
+    #[test]
+    fn polygons_are_filled(sample in sample()) {
+        check(&sample)?;
+    }
+
+    #[test]
+    fn the_whole_grid_is_filled(axes in [axis(), axis()], per_direction in 1_usize..=4) {
+        fills(&Grid::new(axes), per_direction)?;
+    }
+}
