@@ -18,13 +18,13 @@ pub(crate) fn named<const D: usize>(
 ) -> StepFailure {
     match error {
         LinearSolverError::NonFinite { what: "matrix", .. } => {
-            let tangents = match made_at {
-                Some(u) => system.finite_tangents(u, TangentKind::Consistent),
-                None => {
+            let tangents = made_at.map_or_else(
+                || {
                     let still = vec![[0.0; D]; grid.node_count()];
                     system.finite_tangents(&still, TangentKind::Elastic)
-                }
-            };
+                },
+                |u| system.finite_tangents(u, TangentKind::Consistent),
+            );
             tangents.map_or_else(StepFailure::from, |()| error.into())
         }
         LinearSolverError::NonFinite { what, index } => {
@@ -39,22 +39,34 @@ pub(crate) fn named<const D: usize>(
     }
 }
 
+/// Refuses a correction that is not finite, whatever solver handed it out.
+pub(crate) fn finite_correction<const D: usize>(
+    du: &[f64],
+    system: &System<'_, D>,
+    grid: &Grid<D>,
+) -> Result<(), StepFailure> {
+    match du.iter().position(|du| !du.is_finite()) {
+        Some(unknown) => Err(not_finite("correction", unknown, system, grid)),
+        None => Ok(()),
+    }
+}
+
 /// The failure that names the node of an unknown.
-pub(crate) fn not_finite<const D: usize>(
+fn not_finite<const D: usize>(
     what: &'static str,
     unknown: usize,
     system: &System<'_, D>,
     grid: &Grid<D>,
 ) -> StepFailure {
-    match system.unknowns().place(unknown) {
-        Some((node, axis)) => StepFailure::NotFinite {
+    system.unknowns().place(unknown).map_or_else(
+        || {
+            let index = unknown;
+            LinearSolverError::NonFinite { what, index }.into()
+        },
+        |(node, axis)| StepFailure::NotFinite {
             what,
             position: padded(&grid.node_position(node)),
             axis,
         },
-        None => {
-            let index = unknown;
-            LinearSolverError::NonFinite { what, index }.into()
-        }
-    }
+    )
 }

@@ -12,7 +12,7 @@ use thiserror::Error;
 
 use crate::body::Body;
 use crate::linear::{LinearSolver, LinearSolverError};
-use crate::named::{named, not_finite};
+use crate::named::{finite_correction, named};
 
 /// Iterations without a new smallest residual after which a step is given up.
 const STAGNATION: usize = 8;
@@ -362,9 +362,7 @@ fn equilibrium<const D: usize>(
             solver.solve(matrix, &residual.force, du)
         })
         .map_err(|error| named(error, &system, grid, made_at))?;
-        if let Some(index) = du.iter().position(|du| !du.is_finite()) {
-            return Err(not_finite("correction", index, &system, grid));
-        }
+        finite_correction(du, &system, grid)?;
         system.add_correction(&mut u, du);
         iterations += 1;
         is_current = !course.factors_will_suffice(settings.tolerance);

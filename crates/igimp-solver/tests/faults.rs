@@ -34,7 +34,7 @@ enum Part {
     History,
 }
 
-/// A law that is spoilt at one of its calls.
+/// A law that is spoilt at one of its calls, or from there on.
 #[derive(Debug)]
 struct Spoilt {
     sound: SharedLaw,
@@ -60,8 +60,9 @@ impl ConstitutiveModel for Spoilt {
     ) -> Result<ReturnMap, MaterialError> {
         let mut answer = self.sound.return_map(eps_e_trial, history)?;
         let call = self.calls.fetch_add(1, Ordering::Relaxed) + 1;
-        // The pass that looks for the culprit sees the same answer again.
-        if call == self.at_call || (self.part == Part::Tangent && call == self.at_call + 1) {
+        // Stress and history once; a tangent from then on, as the pass that looks for the culprit
+        // asks for it again.
+        if call == self.at_call || (self.part == Part::Tangent && call > self.at_call) {
             match self.part {
                 Part::Tau => answer.tau[1] = self.value,
                 Part::Tangent => answer.tangent[0][2] = self.value,
@@ -178,8 +179,8 @@ fn a_fault_of_a_law_is_caught_in_its_pass_and_named() {
             }
         }
     }
-    // The elastic pass at the start, the last pass, and one that used the factors of another.
-    assert!((6..=9).contains(&unused), "{unused}");
+    // The last pass, and with it one whose correction used the factors of the pass before.
+    assert!((3..=6).contains(&unused), "{unused}");
 }
 
 /// A fault that happens once costs one cut, and the march ends where it would have ended.
@@ -291,7 +292,9 @@ fn a_correction_that_is_not_finite_names_its_node() {
     for entry in [0, 11, 20] {
         let ([x, y], axis) = place_of(&before, &conditions, entry);
         for at_solve in 1..=3 {
-            for spoil in [|_| f64::NAN, |_| f64::INFINITY, |_| f64::NEG_INFINITY] {
+            let spoils: [fn(f64) -> f64; 3] =
+                [|_| f64::NAN, |_| f64::INFINITY, |_| f64::NEG_INFINITY];
+            for spoil in spoils {
                 let mut body = before.clone();
                 let mut workspace = Corrupting::workspace(at_solve, entry, spoil);
                 let error = solve_with(&mut body, &conditions, &mut workspace).unwrap_err();
@@ -318,7 +321,8 @@ fn a_wrong_finite_correction_is_corrected_or_refused() {
     solve_with(&mut clean, &conditions, &mut default_workspace()).unwrap();
     let mut accepted = 0;
     for entry in [0, 11, 20] {
-        for spoil in [|x| 1.5 * x, |x| -x, |x| x + 0.3, |_| 1e200, |_| -1e300] {
+        let spoils: [fn(f64) -> f64; 5] = [|x| 1.5 * x, |x| -x, |x| x + 0.3, |_| 1e200, |_| -1e300];
+        for spoil in spoils {
             let mut body = before.clone();
             let mut workspace = Corrupting::workspace(1, entry, spoil);
             match solve_with(&mut body, &conditions, &mut workspace) {
