@@ -217,8 +217,7 @@ fn with_own_mounts(folder: &Folder, script: &str) -> Option<String> {
 
 /// The words of a run as a shell reads them.
 fn quoted(out: &str, more: &[&str]) -> String {
-    let words = Folder::words(out, more);
-    words.iter().map(|word| format!(" '{word}'")).collect()
+    format!(" '{}'", Folder::words(out, more).join("' '"))
 }
 
 /// A disk that runs full at some moment, and is then made larger.

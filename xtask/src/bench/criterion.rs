@@ -82,3 +82,31 @@ fn gather(
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// GOAL: a bench that ran while the clock went back is found, one that did not run is not.
+    #[test]
+    fn a_measurement_is_new_whatever_its_time_is() {
+        let root = std::env::temp_dir().join(format!("igimp-stamps-{}", std::process::id()));
+        for bench in ["a", "b/c"] {
+            let folder = root.join(bench).join("new");
+            fs::create_dir_all(&folder).unwrap();
+            fs::write(folder.join("estimates.json"), "{}").unwrap();
+            fs::write(folder.join("sample.json"), "{}").unwrap();
+        }
+        let before = stamps(&root);
+        assert_eq!(before.len(), 2);
+        let ran = root.join("b/c/new/estimates.json");
+        let file = fs::File::options().write(true).open(&ran).unwrap();
+        file.set_modified(SystemTime::UNIX_EPOCH).unwrap();
+        let after = stamps(&root);
+        let new = after
+            .iter()
+            .filter(|(path, time)| before.get(*path) != Some(*time));
+        assert_eq!(new.map(|(path, _)| path).collect::<Vec<_>>(), [&ran]);
+        fs::remove_dir_all(&root).unwrap();
+    }
+}

@@ -129,6 +129,7 @@ mod tests {
     #[test]
     fn a_computer_has_a_speed() {
         let speed = Speed::measured().unwrap();
+        println!("{speed:?}");
         assert!(speed.assembly > 0.0 && speed.assembly.is_finite());
         assert!(speed.factor > 0.0 && speed.factor.is_finite());
     }

@@ -21,7 +21,7 @@ use crate::summary::StageSummary;
 /// Set-up and commit of a step \[s per particle\].
 const STEP: f64 = 6e-7;
 /// A pass over the particles \[s per particle\].
-const PASS: f64 = 6.8e-7;
+const PASS: f64 = 7.2e-7;
 /// Factorisation of a symmetric matrix \[s\], times $`n^{3/2}`$.
 const FACTOR: f64 = 2.0e-8;
 /// What an unsymmetric one costs of that \[-\].
@@ -31,7 +31,7 @@ const SOLVE: f64 = 3e-7;
 /// Rows, progress and bookkeeping of a step \[s\].
 const ROWS: f64 = 5e-4;
 /// A picture \[s\], and its part by particle when it shows a field.
-const PICTURE: [f64; 2] = [2.5e-2, 8e-6];
+const PICTURE: [f64; 2] = [2e-2, 7e-6];
 /// A checkpoint or a frame \[s\], and its part by particle.
 const STATE: [f64; 2] = [4e-3, 1.5e-6];
 /// Start, model, report \[s\].
