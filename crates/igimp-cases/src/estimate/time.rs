@@ -23,7 +23,7 @@ const STEP: f64 = 6e-7;
 /// A pass over the particles \[s per particle\].
 const PASS: f64 = 7.2e-7;
 /// Factorisation of a symmetric matrix \[s\], times $`n^{3/2}`$.
-const FACTOR: f64 = 2.0e-8;
+const FACTOR: f64 = 1.8e-8;
 /// What an unsymmetric one costs of that \[-\].
 const UNSYMMETRIC: f64 = 1.5;
 /// Solution \[s per unknown\].
