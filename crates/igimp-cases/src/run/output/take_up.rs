@@ -188,3 +188,32 @@ fn unfit(case: &Case, body: &Body<2>) -> Option<(&'static str, String)> {
     let why = format!("load point {point} belongs to load {load}, and there are {loads}");
     Some(("load_point_load", why))
 }
+
+#[cfg(test)]
+mod tests {
+    use igimp_assembly::{LoadPoint, Particles};
+
+    use super::*;
+    use crate::estimate::tests::case;
+    use crate::run::Model;
+
+    /// GOAL: a state that names what the case does not have is refused before a step looks for it.
+    #[test]
+    fn materials_and_loads_that_are_not_there_are_named() {
+        let case = case();
+        let mut body = Model::new(&case).unwrap().1.body;
+        assert_eq!(unfit(&case, &body), None);
+        body.load_points = vec![LoadPoint {
+            x: [1.0, 2.0],
+            force: [0.0, -1.0],
+            load: 4,
+        }];
+        let why = "load point 0 belongs to load 4, and there are 0".to_owned();
+        assert_eq!(unfit(&case, &body), Some(("load_point_load", why)));
+        let mut fields = (*body.particles).clone();
+        fields.law[3] = 1;
+        body.particles = Particles::from_fields(fields).unwrap();
+        let why = "particle 3 is of material 1, and there are 1".to_owned();
+        assert_eq!(unfit(&case, &body), Some(("law", why)));
+    }
+}
