@@ -23,6 +23,9 @@ use crate::error::AssemblyError;
 use crate::method::Kinematics;
 use crate::small::{congruence, determinant, identity, inverse};
 
+/// An elastic Hencky strain beyond this makes b_e = exp(2 ε_e) leave the floating-point numbers \[-\].
+const LARGEST_STRAIN: f64 = 300.0;
+
 /// A particle at a trial displacement: never committed by itself.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ParticleTrial<const D: usize> {
@@ -181,11 +184,16 @@ fn pushed_forward<const D: usize>(
 /// What a law answers is checked here, whatever law it is, so that the particle can be named.
 #[inline]
 fn finite<const D: usize>(lifted: &Lifted<D>) -> Result<(), MaterialError> {
-    if lifted.tau.iter().flatten().all(|tau| tau.is_finite()) {
-        Ok(())
+    let quantity = if !lifted.tau.iter().flatten().all(|tau| tau.is_finite()) {
+        "stress"
+    } else if !lifted.eps_e.iter().all(|eps| eps.abs() < LARGEST_STRAIN) {
+        "elastic strain"
+    } else if !lifted.history.eps_p_eq.is_finite() {
+        "accumulated plastic strain"
     } else {
-        Err(MaterialError::NonFinite { quantity: "stress" })
-    }
+        return Ok(());
+    };
+    Err(MaterialError::NonFinite { quantity })
 }
 
 #[inline]

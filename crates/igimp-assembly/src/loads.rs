@@ -111,6 +111,32 @@ impl<const D: usize> StepLoads<D> {
     }
 }
 
+/// Refuses loads that are not finite, named with the axis, the load or the point.
+pub(crate) fn finite_loads<const D: usize>(
+    points: &[LoadPoint<D>],
+    loads: &StepLoads<D>,
+) -> Result<(), AssemblyError> {
+    let finite = |what, index, values: &[f64]| {
+        if values.iter().all(|value| value.is_finite()) {
+            Ok(())
+        } else {
+            Err(AssemblyError::NonFinite { what, index })
+        }
+    };
+    for (axis, gravity) in loads.gravity.iter().enumerate() {
+        finite("gravity", axis, &[*gravity])?;
+    }
+    for (load, factor) in loads.factors.iter().enumerate() {
+        finite("load factor", load, &[*factor])?;
+    }
+    finite("drag", 0, &[loads.drag])?;
+    for (index, point) in points.iter().enumerate() {
+        finite("position of a load point", index, &point.x)?;
+        finite("force of a load point", index, &point.force)?;
+    }
+    Ok(())
+}
+
 /// Nodal external force f_ext, by node \[force\].
 pub(crate) fn external_force<const D: usize>(
     grid: &Grid<D>,

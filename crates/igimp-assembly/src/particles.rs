@@ -106,7 +106,9 @@ impl<const D: usize> Particles<D> {
     /// Particles with a state that was saved before.
     ///
     /// # Errors
-    /// [`AssemblyError::EmptyBody`] without particles.
+    /// [`AssemblyError::EmptyBody`] without particles; [`AssemblyError::InvalidParticle`] for the
+    /// first particle with a number that is not finite, a deformation gradient without positive
+    /// determinant, a half-length or volume that is not positive, or a negative mass.
     ///
     /// # Panics
     /// If the arrays differ in length.
@@ -132,6 +134,7 @@ impl<const D: usize> Particles<D> {
             lengths.iter().all(|&length| length == n),
             "arrays of one body have one length"
         );
+        (0..n).try_for_each(|particle| validate_state(particle, &fields))?;
         Ok(Self { fields })
     }
 
@@ -162,29 +165,86 @@ impl<const D: usize> Particles<D> {
 }
 
 fn validate<const D: usize>(particle: usize, seed: &ParticleSeed<D>) -> Result<(), AssemblyError> {
-    let invalid = |field, value, requirement| {
-        Err(AssemblyError::InvalidParticle {
+    let hold = |field, values: &[f64], range| require(particle, field, values, range);
+    hold("x", &seed.x, Range::Finite)?;
+    hold("half_length", &seed.half_length, Range::Positive)?;
+    hold("volume", &[seed.volume], Range::Positive)?;
+    hold("density", &[seed.density], Range::NotNegative)
+}
+
+fn validate_state<const D: usize>(
+    particle: usize,
+    fields: &ParticleFields<D>,
+) -> Result<(), AssemblyError> {
+    let hold = |field, values: &[f64], range| require(particle, field, values, range);
+    let def_grad = &fields.def_grad[particle];
+    hold("x", &fields.x[particle], Range::Finite)?;
+    hold(
+        "displacement",
+        &fields.displacement[particle],
+        Range::Finite,
+    )?;
+    hold("def_grad", def_grad.as_flattened(), Range::Finite)?;
+    hold("det def_grad", &[determinant(def_grad)], Range::Positive)?;
+    hold("b_e", fields.b_e[particle].as_flattened(), Range::Finite)?;
+    hold(
+        "sigma",
+        fields.sigma[particle].as_flattened(),
+        Range::Finite,
+    )?;
+    hold(
+        "half_length",
+        &fields.half_length[particle],
+        Range::Positive,
+    )?;
+    hold(
+        "half_length0",
+        &fields.half_length0[particle],
+        Range::Positive,
+    )?;
+    hold("volume0", &[fields.volume0[particle]], Range::Positive)?;
+    hold("mass", &[fields.mass[particle]], Range::NotNegative)?;
+    hold(
+        "eps_p_eq",
+        &[fields.history[particle].eps_p_eq],
+        Range::Finite,
+    )
+}
+
+/// What is accepted of a number.
+#[derive(Clone, Copy)]
+enum Range {
+    Finite,
+    Positive,
+    NotNegative,
+}
+
+/// The error that names the first value out of its range.
+fn require(
+    particle: usize,
+    field: &'static str,
+    values: &[f64],
+    range: Range,
+) -> Result<(), AssemblyError> {
+    let holds = |value: f64| {
+        value.is_finite()
+            && match range {
+                Range::Finite => true,
+                Range::Positive => value > 0.0,
+                Range::NotNegative => value >= 0.0,
+            }
+    };
+    match values.iter().find(|&&value| !holds(value)) {
+        None => Ok(()),
+        Some(&value) => Err(AssemblyError::InvalidParticle {
             particle,
             field,
             value,
-            requirement,
-        })
-    };
-    if let Some(&value) = seed.x.iter().find(|value| !value.is_finite()) {
-        return invalid("x", value, "finite");
+            requirement: match range {
+                Range::Finite => "finite",
+                Range::Positive => "positive and finite",
+                Range::NotNegative => "zero or positive, and finite",
+            },
+        }),
     }
-    if let Some(&value) = seed
-        .half_length
-        .iter()
-        .find(|&&value| !(value > 0.0 && value.is_finite()))
-    {
-        return invalid("half_length", value, "positive and finite");
-    }
-    if !(seed.volume > 0.0 && seed.volume.is_finite()) {
-        return invalid("volume", seed.volume, "positive and finite");
-    }
-    if !(seed.density >= 0.0 && seed.density.is_finite()) {
-        return invalid("density", seed.density, "zero or positive, and finite");
-    }
-    Ok(())
 }

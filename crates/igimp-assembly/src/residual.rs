@@ -29,6 +29,10 @@ pub struct OutOfBalance {
 impl OutOfBalance {
     /// Sets everything from the difference of nodal external and internal force; at most
     /// `round_off` counts as none.
+    ///
+    /// # Errors
+    /// [`AssemblyError::NonFinite`] for a force, or a norm of them, that is not finite: an infinite
+    /// reference would make any residual look small.
     pub(crate) fn update<const D: usize>(
         &mut self,
         unknowns: &Unknowns<D>,
@@ -63,8 +67,14 @@ impl OutOfBalance {
         }
         let reference: f64 = external.sqrt() + reaction.sqrt();
         let norm: f64 = free.sqrt();
+        if !(reference.is_finite() && norm.is_finite()) {
+            return Err(AssemblyError::NonFinite {
+                what: "norm of the nodal forces",
+                index: worst.0,
+            });
+        }
         self.relative_norm = if norm == 0.0 { 0.0 } else { norm / reference };
-        self.is_round_off = norm <= round_off;
+        self.is_round_off = round_off.is_finite() && norm <= round_off;
         self.worst = worst;
         Ok(())
     }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use igimp_material::{ConstitutiveModel, TangentKind};
+use igimp_material::{ConstitutiveModel, MaterialError, TangentKind};
 use igimp_shape::Grid;
 
 use crate::blocks::BlockTable;
@@ -11,7 +11,7 @@ use crate::error::AssemblyError;
 use crate::ghost::{Coupling, ghost_entries};
 use crate::kinematics::ParticleTrial;
 use crate::linearised::Linearised;
-use crate::loads::{LoadPoint, StepLoads, external_force, nodal_drag};
+use crate::loads::{LoadPoint, StepLoads, external_force, finite_loads, nodal_drag};
 use crate::matrix::{Pattern, TangentMatrix};
 use crate::method::{Kinematics, Method};
 use crate::particles::Particles;
@@ -61,7 +61,8 @@ impl<'a, const D: usize> System<'a, D> {
     /// pattern is shared again when it still holds.
     ///
     /// # Errors
-    /// [`AssemblyError::UnknownLaw`], [`AssemblyError::NoUnknowns`], or a load point off the body.
+    /// [`AssemblyError::UnknownLaw`], [`AssemblyError::NoUnknowns`], a load point off the body, or
+    /// [`AssemblyError::NonFinite`] for loads and a ghost penalty that are not finite.
     pub fn new(
         particles: &'a Particles<D>,
         stencils: &'a Stencils<D>,
@@ -83,6 +84,11 @@ impl<'a, const D: usize> System<'a, D> {
             .all(|(law, &used)| !used || law.has_symmetric_tangent());
         let grid = &conditions.grid;
         let cuts = method.small_cuts;
+        finite_loads(points, &conditions.loads)?;
+        if !cuts.ghost_penalty.is_finite() {
+            let (what, index) = ("ghost penalty", 0);
+            return Err(AssemblyError::NonFinite { what, index });
+        }
         let unknowns = Unknowns::number(grid, stencils, &conditions.constraints, cuts.below)?;
         let f_ext = external_force(grid, stencils, points, &conditions.loads)?;
         let mut couplings = if cuts.ghost_penalty > 0.0 {
@@ -340,6 +346,25 @@ impl<'a, const D: usize> System<'a, D> {
             }
         }
         Ok(force)
+    }
+
+    /// The first particle whose law answers a tangent that is not finite at nodal step
+    /// displacements `u` \[length\], as an error that names it. A pass over all particles, for when
+    /// a matrix was found not to be finite.
+    ///
+    /// # Errors
+    /// [`AssemblyError::Material`]; those of [`Self::evaluate_into`].
+    pub fn finite_tangents(&self, u: &[[f64; D]], kind: TangentKind) -> Result<(), AssemblyError> {
+        let mut trial = ParticleTrial::at_rest();
+        for particle in 0..self.particles.len() {
+            let own = self.evaluate_particle(particle, u, kind, &mut trial)?;
+            if !own.lifted.tangent().is_finite() {
+                let quantity = "tangent";
+                let source = MaterialError::NonFinite { quantity };
+                return Err(AssemblyError::Material { particle, source });
+            }
+        }
+        Ok(())
     }
 
     /// Nodal step displacements that carry the prescribed motion and zeros elsewhere \[length\].

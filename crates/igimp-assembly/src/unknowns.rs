@@ -92,6 +92,16 @@ impl<const D: usize> Unknowns<D> {
         (rank != NONE).then(|| (self.first[node] + rank) as usize)
     }
 
+    /// The node and the axis of an unknown, if there is such an unknown.
+    pub fn place(&self, unknown: usize) -> Option<(usize, usize)> {
+        let after = self
+            .first
+            .partition_point(|&first| first as usize <= unknown);
+        let node = after.checked_sub(1).filter(|_| unknown < self.len)?;
+        let axis = (0..D).find(|&axis| self.index(node, axis) == Some(unknown))?;
+        Some((node, axis))
+    }
+
     /// Whether a node takes part: it carries enough volume.
     pub fn is_active(&self, node: usize) -> bool {
         self.active[node]

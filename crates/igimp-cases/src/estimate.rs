@@ -1,25 +1,38 @@
-//! The size of a case before it runs: particles, cells, unknowns, and about how much memory.
+//! What a case will cost before it runs: particles, cells, unknowns, memory ([`estimate`]) and time
+//! ([`time`]).
 //!
-//! The memory model has three parts, each a count times bytes: particles (state, trial and
-//! supports), stored entries of the tangent matrix (proportional to the unknowns $`n`$), and fill of
-//! its factors ($`n \log_2 n`$, the law of nested dissection in the plane). The bytes were fitted
-//! to the peak memory of slopes with 500 to 110 000 unknowns and 4 to 9 particles per cell, and
-//! reproduce it within a tenth from 7 000 unknowns on; small cases are estimated too high.
+//! The memory model counts particles (state, trial and supports), stored entries of the tangent
+//! matrix (proportional to the unknowns $`n`$), and fill of its factors ($`n \log_2 n`$, the law of
+//! nested dissection in the plane). The bytes were fitted to the peak memory of slopes with 500 to
+//! 110 000 unknowns and 4 to 9 particles per cell. Pictures are drawn when the matrix is gone, as
+//! many at a time as there are threads: the larger of the two counts. A search along the reduction
+//! of strength keeps several states.
+
+pub mod speed;
+pub mod time;
+pub mod watch;
 
 use igimp_shape::{Axis, Grid, Scratch, supports};
 
-use crate::case::{Case, LoadKind, Side, StageKind};
+use crate::case::{Case, LoadKind, ReductionPath, Side, StageKind};
 use crate::error::CaseError;
 use crate::seed::fill_polygon;
+use crate::summary::{Expected, StageSummary};
+use speed::Speed;
+use time::Time;
 
 /// Program, tables and buffers \[bytes\].
-const BASE: f64 = 2e7;
+const BASE: f64 = 1.8e7;
 /// State, trial and supports of a particle \[bytes\].
 const PER_PARTICLE: f64 = 2e3;
+/// The states that a search along the reduction of strength keeps \[bytes per particle\].
+const PER_SEARCHED: f64 = 2e3;
 /// Matrix, its copies and its pattern \[bytes per unknown\].
 const PER_UNKNOWN: f64 = 3e3;
 /// Factors, for each unknown and each doubling of the unknowns \[bytes\].
 const PER_FILL: f64 = 1.5e2;
+/// A picture of 1920 x 1290 pixels of four bytes while it is drawn and packed \[bytes\].
+const PER_PICTURE: f64 = 2.1 * 1920.0 * 1290.0 * 4.0;
 /// Trials that a strength reduction is taken to make.
 const TRIALS: f64 = 9.0;
 
@@ -32,7 +45,7 @@ pub struct Estimate {
     pub cells: usize,
     /// Unknowns of the first step.
     pub unknowns: usize,
-    /// Memory \[bytes\].
+    /// Memory on the threads of the current pool \[bytes\].
     pub bytes: f64,
     /// Steps of all stages, each trial of a strength reduction included, times unknowns \[-\].
     pub work: f64,
@@ -80,15 +93,59 @@ pub fn estimate(case: &Case) -> Result<Estimate, CaseError> {
         particles,
         cells: grid.cell_count(),
         unknowns,
-        bytes: memory(particles, unknowns),
+        bytes: memory(case, particles, unknowns),
         work: steps(case) * unknowns as f64,
     })
 }
 
-/// Memory of a run \[bytes\].
-pub fn memory(particles: usize, unknowns: usize) -> f64 {
+/// What a run is thought to cost on this computer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Expectation {
+    /// Time of the planned steps.
+    pub time: Time,
+    /// Memory \[bytes\].
+    pub bytes: f64,
+    /// The speed that the time was found for.
+    pub speed: Speed,
+}
+
+impl Expectation {
+    /// Measures the computer and estimates a case.
+    ///
+    /// # Errors
+    /// As [`estimate`] and [`Speed::measured`].
+    pub fn of(case: &Case) -> Result<Self, CaseError> {
+        let (size, speed) = (estimate(case)?, Speed::measured()?);
+        Ok(Self {
+            time: time::time(case, &size, speed),
+            bytes: size.bytes,
+            speed,
+        })
+    }
+
+    /// As it is told after a run with these stages.
+    pub(crate) fn told(&self, case: &Case, stages: &[StageSummary]) -> Expected {
+        Expected {
+            seconds: self.time.seconds,
+            open_ended: self.time.open_ended,
+            threads: self.time.threads,
+            bytes: self.bytes,
+            seconds_of_steps_taken: time::time_of_steps_taken(case, self.speed, stages).ok(),
+        }
+    }
+}
+
+/// Memory of a run on the threads of the current pool \[bytes\].
+fn memory(case: &Case, particles: usize, unknowns: usize) -> f64 {
     let [particle, unknown] = per_item(unknowns);
-    BASE + particle * particles as f64 + unknown * unknowns as f64
+    let searches = case.stages.iter().any(|stage| {
+        matches!(&stage.kind, StageKind::StrengthReduction(search)
+            if search.path == ReductionPath::Reduce)
+    });
+    let kept = if searches { PER_SEARCHED } else { 0.0 };
+    let solving = (particle + kept) * particles as f64 + unknown * unknowns as f64;
+    let drawing = PER_PICTURE * rayon::current_num_threads() as f64;
+    BASE + solving.max(drawing + kept * particles as f64)
 }
 
 /// Memory of a particle, and of an unknown among so many with its share of the fill \[bytes\].
@@ -165,12 +222,12 @@ fn held(case: &Case, x: [f64; 2]) -> [bool; 2] {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
     use crate::case::FixedBox;
     use crate::input::CaseFile;
 
-    fn case() -> Case {
+    pub(crate) fn case() -> Case {
         let text = "igimp = 1\n[case]\ntitle = \"block\"\ngravity = \"9.81 m/s2\"\n\
             [grid]\ncell = \"0.5 m\"\ndomain = { x = [\"0 m\", \"4 m\"], y = [\"0 m\", \"4 m\"] }\n\
             [materials.clay]\nmodel = \"elastic\"\nunit_weight = \"18 kN/m3\"\n\
@@ -212,8 +269,11 @@ mod tests {
     fn memory_is_that_of_particles_and_unknowns() {
         let [particle, unknown] = per_item(1 << 19);
         let sum = 1e6 * particle + f64::from(1 << 19) * unknown;
-        assert!((memory(1_000_000, 1 << 19) - BASE - sum).abs() < 1.0);
+        assert!((memory(&case(), 1_000_000, 1 << 19) - BASE - sum).abs() < 1.0);
         assert!((unknown - PER_UNKNOWN - 19.0 * PER_FILL).abs() < 1e-9);
+        // A small case is a program that draws pictures.
+        let drawing = PER_PICTURE * rayon::current_num_threads() as f64;
+        assert!((memory(&case(), 64, 36) - BASE - drawing).abs() < 1.0);
     }
 
     #[test]

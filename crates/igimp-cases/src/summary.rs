@@ -29,12 +29,32 @@ pub struct Summary {
     pub seconds: f64,
     /// Of that, time spent writing results \[s\].
     pub output_seconds: f64,
+    /// Time of all processors together \[s\], where the system tells.
+    pub cpu_seconds: Option<f64>,
     /// Largest resident memory \[MiB\], where the system tells.
     pub peak_memory_mib: Option<f64>,
     /// Memory by particle and by unknown, where the system tells.
     pub memory: Option<MemoryShare>,
+    /// What the run was thought to cost before it began, to be held against `seconds` and
+    /// `peak_memory_mib`.
+    pub estimate: Option<Expected>,
     /// Whether the run was interrupted and can be resumed.
     pub interrupted: bool,
+}
+
+/// The estimate of a run ([`estimate`](mod@crate::estimate)).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Expected {
+    /// Time of all planned steps, pictures and files \[s\].
+    pub seconds: f64,
+    /// Whether a stage may end before its planned steps are used up: `seconds` is then an upper bound.
+    pub open_ended: bool,
+    /// Threads that it holds for.
+    pub threads: usize,
+    /// Memory \[bytes\].
+    pub bytes: f64,
+    /// Time by the same model of the steps and corrections that were taken \[s\].
+    pub seconds_of_steps_taken: Option<f64>,
 }
 
 /// A picture of a results folder.

@@ -165,6 +165,7 @@ fn a_case_is_checked_and_explained() {
         "unknowns   about 36",
         "memory     about",
         "bytes for a particle, ",
+        "time       about",
         "1. own weight  gravity  5 steps",
     ] {
         assert!(text.contains(part), "{part} in {text}");

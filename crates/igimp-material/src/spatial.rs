@@ -21,6 +21,14 @@ pub struct SpatialTangent<const D: usize> {
 }
 
 impl<const D: usize> SpatialTangent<D> {
+    /// Whether every component is a finite number.
+    pub fn is_finite(&self) -> bool {
+        let modulus = self.modulus.as_flattened().as_flattened().as_flattened();
+        let traces = [&self.trace_left, &self.trace_right].map(|trace| trace.as_flattened());
+        let values = modulus.iter().chain(traces[0]).chain(traces[1]);
+        values.chain([&self.trace]).all(|value| value.is_finite())
+    }
+
     /// From the principal axes `frame`, the normal part $`A_{aabb}`$ in `normal` and
     /// the shear part $`A_{abab}`$ off the diagonal of `shear`: in principal axes
     /// $`d\tau_{ab} = A_{abab}\,l_{ab} + A_{baba}\,l_{ba}`$.

@@ -9,6 +9,7 @@ pub mod linear;
 
 mod body;
 mod march;
+mod named;
 mod newton;
 
 pub use body::Body;

@@ -12,6 +12,7 @@ use thiserror::Error;
 
 use crate::body::Body;
 use crate::linear::{LinearSolver, LinearSolverError};
+use crate::named::{finite_correction, named};
 
 /// Iterations without a new smallest residual after which a step is given up.
 const STAGNATION: usize = 8;
@@ -59,6 +60,16 @@ pub enum StepFailure {
         particle: usize,
         /// Where it would go \[length\], axes beyond the dimension 0.
         position: [f64; 3],
+    },
+    /// A number of the linear system that must be finite is not.
+    #[error("the {what} at {position:?} m, axis {axis}, is not finite")]
+    NotFinite {
+        /// `"right-hand side"` or `"correction"`.
+        what: &'static str,
+        /// Place of the node \[length\], axes beyond the dimension 0.
+        position: [f64; 3],
+        /// The component, from 0.
+        axis: usize,
     },
     /// The equations could not be formed.
     #[error("the equations could not be formed")]
@@ -340,13 +351,18 @@ fn equilibrium<const D: usize>(
             })?;
             is_current = true;
         }
+        // What the matrix was made with: the elastic tangent belongs to the start of the step.
+        let made_at = (iterations > 0).then_some(&u[..]);
         if is_current {
-            timed(&mut times.factor, || solver.factor(matrix))?;
+            timed(&mut times.factor, || solver.factor(matrix))
+                .map_err(|error| named(error, &system, grid, made_at))?;
         }
         du.resize(residual.force.len(), 0.0);
         timed(&mut times.solve, || {
             solver.solve(matrix, &residual.force, du)
-        })?;
+        })
+        .map_err(|error| named(error, &system, grid, made_at))?;
+        finite_correction(du, &system, grid)?;
         system.add_correction(&mut u, du);
         iterations += 1;
         is_current = !course.factors_will_suffice(settings.tolerance);
@@ -427,7 +443,7 @@ fn timed<T>(total: &mut Duration, phase: impl FnOnce() -> T) -> T {
 }
 
 /// A position with zeros beyond the dimension, for messages.
-fn padded<const D: usize>(x: &[f64; D]) -> [f64; 3] {
+pub(crate) fn padded<const D: usize>(x: &[f64; D]) -> [f64; 3] {
     let mut out = [0.0; 3];
     out[..D].copy_from_slice(x);
     out

@@ -100,7 +100,7 @@ fn a_law_that_answers_nan_is_not_believed() {
     });
 }
 
-/// A tangent that is not a number is refused where it is used.
+/// A tangent that is not a number is refused where it is used, and its particle named.
 #[test]
 fn a_tangent_that_is_not_a_number_is_refused() {
     let (mut body, conditions) = loaded(&poisoned(true), 1.0);
@@ -109,7 +109,12 @@ fn a_tangent_that_is_not_a_number_is_refused() {
     assert!(
         matches!(
             *error.failure,
-            StepFailure::Linear(LinearSolverError::NonFinite { what: "matrix", .. })
+            StepFailure::Assembly(AssemblyError::Material {
+                source: MaterialError::NonFinite {
+                    quantity: "tangent"
+                },
+                ..
+            })
         ),
         "{error:?}"
     );

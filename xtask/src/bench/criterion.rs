@@ -1,13 +1,17 @@
 //! The criterion benches: running them, and gathering what they left behind.
 
+use std::collections::BTreeMap;
 use std::fs;
-use std::path::Path;
-use std::time::{Duration, SystemTime};
+use std::path::{Path, PathBuf};
+use std::time::SystemTime;
 
 use super::estimate;
 use super::row::Row;
 use crate::failure::Failure;
 use crate::process::{cargo, status};
+
+/// Where criterion keeps the newest measurement of a bench.
+const ESTIMATES: &str = "new/estimates.json";
 
 /// Criterion's flags for a first impression.
 const QUICK: [&str; 6] = [
@@ -27,8 +31,8 @@ pub(crate) fn run(
     threads: usize,
     target: &Path,
 ) -> Result<Result<Vec<Row>, u8>, Failure> {
-    // Time stamps of files may lag behind the clock.
-    let start = SystemTime::now() - Duration::from_secs(1);
+    let folder = target.join("criterion");
+    let before = stamps(&folder);
     let mut bench = cargo();
     bench
         .args(["bench", "--package", "igimp-benchmarks", "--"])
@@ -42,35 +46,67 @@ pub(crate) fn run(
         return Ok(Err(code));
     }
     let mut rows = Vec::new();
-    let folder = target.join("criterion");
-    if folder.is_dir() {
-        gather(&folder, start, &mut rows)?;
-    }
+    gather(&folder, &before, &mut rows)?;
     rows.sort_by(|a, b| (&a.group, &a.bench, a.size).cmp(&(&b.group, &b.bench, b.size)));
     Ok(Ok(rows))
 }
 
-/// Collects the measurements below a folder that were made since `start`.
-fn gather(folder: &Path, start: SystemTime, found: &mut Vec<Row>) -> Result<(), Failure> {
-    let failure = |error| Failure::input_output(format!("cannot read {}", folder.display()), error);
-    for entry in fs::read_dir(folder).map_err(failure)? {
-        let path = entry.map_err(failure)?.path();
-        if !path.is_dir() {
-            continue;
+/// Time stamps of the measurements below a folder. They are told apart and never ordered, so that a
+/// clock that jumps does no harm.
+fn stamps(folder: &Path) -> BTreeMap<PathBuf, SystemTime> {
+    let mut found = BTreeMap::new();
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        let path = entry.path();
+        if path.is_dir() {
+            found.extend(stamps(&path));
+        } else if path.ends_with(ESTIMATES)
+            && let Ok(modified) = entry.metadata().and_then(|metadata| metadata.modified())
+        {
+            found.insert(path, modified);
         }
-        let estimates = path.join("estimates.json");
-        let is_new = path.file_name().is_some_and(|name| name == "new");
-        if is_new && modified_since(&estimates, start) {
+    }
+    found
+}
+
+/// Collects the measurements below a folder whose time stamps are not those of `before`.
+fn gather(
+    folder: &Path,
+    before: &BTreeMap<PathBuf, SystemTime>,
+    found: &mut Vec<Row>,
+) -> Result<(), Failure> {
+    for (estimates, modified) in stamps(folder) {
+        if before.get(&estimates) != Some(&modified) {
+            let path = estimates.parent().unwrap_or(folder);
             found.push(estimate::read(&path.join("benchmark.json"), &estimates)?);
-        } else if !is_new {
-            gather(&path, start, found)?;
         }
     }
     Ok(())
 }
 
-fn modified_since(path: &Path, start: SystemTime) -> bool {
-    fs::metadata(path)
-        .and_then(|metadata| metadata.modified())
-        .is_ok_and(|modified| modified >= start)
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// GOAL: a bench that ran while the clock went back is found, one that did not run is not.
+    #[test]
+    fn a_measurement_is_new_whatever_its_time_is() {
+        let root = std::env::temp_dir().join(format!("igimp-stamps-{}", std::process::id()));
+        for bench in ["a", "b/c"] {
+            let folder = root.join(bench).join("new");
+            fs::create_dir_all(&folder).unwrap();
+            fs::write(folder.join("estimates.json"), "{}").unwrap();
+            fs::write(folder.join("sample.json"), "{}").unwrap();
+        }
+        let before = stamps(&root);
+        assert_eq!(before.len(), 2);
+        let ran = root.join("b/c/new/estimates.json");
+        let file = fs::File::options().write(true).open(&ran).unwrap();
+        file.set_modified(SystemTime::UNIX_EPOCH).unwrap();
+        let after = stamps(&root);
+        let new = after
+            .iter()
+            .filter(|(path, time)| before.get(*path) != Some(*time));
+        assert_eq!(new.map(|(path, _)| path).collect::<Vec<_>>(), [&ran]);
+        fs::remove_dir_all(&root).unwrap();
+    }
 }

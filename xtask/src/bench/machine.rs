@@ -15,6 +15,10 @@ pub(crate) fn line() -> String {
     });
     let cpuinfo = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let processor = processor(&cpuinfo).unwrap_or("unknown processor");
+    #[allow(
+        clippy::disallowed_methods,
+        reason = "a date for the reader, compared with nothing"
+    )]
     let now = SystemTime::now()
         .duration_since(UNIX_EPOCH)
         .unwrap_or_default();

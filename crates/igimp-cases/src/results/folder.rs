@@ -16,7 +16,7 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use super::atomic::at;
+use super::atomic::{at, temporary_name};
 use super::{checkpoint, pvd};
 use crate::error::CaseError;
 
@@ -175,7 +175,8 @@ fn is_empty(folder: &Path) -> Result<bool, CaseError> {
     Ok(fs::read_dir(folder).map_err(at(folder))?.next().is_none())
 }
 
-/// Whether igimp wrote here: by the marker, by a summary that names igimp, by a checkpoint.
+/// Whether igimp wrote here: by the marker, or its temporary where a run was killed just then; by a
+/// summary that names igimp, by a checkpoint.
 ///
 /// A `case.toml` alone is no proof: it may be the input of a run that was told to write here.
 fn is_ours(root: &Path) -> bool {
@@ -184,7 +185,9 @@ fn is_ours(root: &Path) -> bool {
         program.is_some_and(|program| program.starts_with("igimp"))
     };
     let summary = fs::read(root.join(SUMMARY)).ok();
-    root.join(MARKER).is_file()
+    let marker = root.join(MARKER);
+    marker.is_file()
+        || temporary_name(&marker).is_file()
         || summary
             .and_then(|bytes| serde_json::from_slice(&bytes).ok())
             .is_some_and(names_igimp)
@@ -356,6 +359,18 @@ mod tests {
         let file = scratch.path().join("case.toml");
         let error = Folder::afresh(&file).unwrap_err();
         insta::assert_snapshot!(scratch.hide(&error), @"cannot access DIR/case.toml");
+    }
+
+    /// A run killed while it wrote the marker leaves a folder that the next run takes.
+    #[test]
+    fn a_folder_with_half_a_marker_is_ours() {
+        let scratch = Scratch::new();
+        let root = scratch.path().join("results");
+        fs::create_dir(&root).unwrap();
+        fs::write(temporary_name(&root.join(MARKER)), "igimp wri").unwrap();
+        Folder::open(&root).unwrap();
+        Folder::afresh(&root).unwrap();
+        assert!(!temporary_name(&root.join(MARKER)).exists());
     }
 
     #[test]

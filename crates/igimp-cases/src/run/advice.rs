@@ -44,6 +44,7 @@ pub fn advice(
         ) if yielding => no_equilibrium(case, stage, error, near_worst),
         StepFailure::Assembly(assembly) => unformed(case, stage, assembly),
         StepFailure::Linear(linear) => unsolved(case, linear),
+        StepFailure::NotFinite { .. } => vec![more_steps(stage), finer_cell(case)],
         StepFailure::MaxIterations { .. } | StepFailure::Diverged | StepFailure::Stagnated => {
             no_equilibrium(case, stage, error, near_worst)
         }

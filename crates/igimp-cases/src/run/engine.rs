@@ -13,9 +13,10 @@ use super::records::{Moment, Records, largest_displacement};
 use super::session::{Ended, Session};
 use super::state::State;
 use super::{Event, Failure, Listener, Run, Start, Target};
-use super::{checks, failure, initial, loading, run_out, safety, sections};
+use super::{checks, failure, initial, loading, processor, run_out, safety, sections};
 use crate::case::{Case, StageKind};
 use crate::error::CaseError;
+use crate::estimate::Expectation;
 use crate::results::folder::refuse_foreign;
 use crate::summary::{StageOutcome, StageSummary, Summary};
 use crate::table::Table;
@@ -78,6 +79,7 @@ pub fn in_memory(case: &Case) -> Result<Run, CaseError> {
 /// The course of a run through its stages.
 struct Course {
     before: Before,
+    expectation: Option<Expectation>,
     first: usize,
     left: Option<Left>,
     state: Option<State>,
@@ -95,6 +97,7 @@ impl Course {
     ) -> Result<Self, CaseError> {
         let mut course = Self {
             before,
+            expectation: target.and_then(|target| target.expectation),
             first: 0,
             left: None,
             state: None,
@@ -322,6 +325,12 @@ impl Course {
         let peak = memory::peak_mib();
         session.summary.peak_memory_mib = peak;
         session.summary.memory = self.before.share(peak, &session.summary.size);
+        session.summary.cpu_seconds = processor::seconds();
+        let stages = &session.summary.stages;
+        let expected = self
+            .expectation
+            .map(|expectation| expectation.told(case, stages));
+        session.summary.estimate = expected;
         session.summary.failure = self.failure.as_ref().map(ToString::to_string);
         if let Some(output) = &mut session.output {
             output.finish(case, &session.records, &mut session.summary, clock)?;

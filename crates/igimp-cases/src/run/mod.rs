@@ -14,6 +14,7 @@ mod memory;
 mod message;
 mod model;
 mod output;
+mod processor;
 mod records;
 mod run_out;
 mod safety;
@@ -25,6 +26,7 @@ use std::path::PathBuf;
 
 use igimp_solver::{Body, StepError, StepReport};
 
+use crate::estimate::Expectation;
 use crate::input::CaseFile;
 use crate::summary::{ModelSize, StageSummary, Summary, TrialSummary};
 use crate::table::Table;
@@ -128,6 +130,8 @@ pub struct Target {
     ///
     /// [`linear_system`]: crate::results::linear_system
     pub systems: Option<PathBuf>,
+    /// What the run is thought to cost, to be kept beside what it did.
+    pub expectation: Option<Expectation>,
 }
 
 impl Target {
@@ -138,6 +142,7 @@ impl Target {
             source: file.source().to_owned(),
             completed: file.explain(),
             systems: None,
+            expectation: None,
         }
     }
 }

@@ -162,6 +162,7 @@ pub(crate) fn summary() -> Summary {
         peak_memory_mib: Some(312.4),
         memory: None,
         interrupted: false,
+        ..Summary::default()
     }
 }
 

@@ -1,7 +1,8 @@
 //! `igimp check` and `igimp explain`.
 
 use igimp_cases::check::count;
-use igimp_cases::estimate::{estimate, per_item, readable};
+use igimp_cases::estimate::speed::Speed;
+use igimp_cases::estimate::{estimate, per_item, readable, time};
 use igimp_cases::input::CaseFile;
 
 use crate::arguments::CaseArguments;
@@ -35,6 +36,10 @@ pub(crate) fn check(arguments: &CaseArguments) -> Result<Exit, ProgramError> {
         row(
             "",
             format!("about {particle} bytes for a particle, {unknown} for an unknown"),
+        ),
+        row(
+            "time",
+            time::sentence(&time::time(case, &size, Speed::measured()?)),
         ),
         row("results", case.output.folder.display().to_string()),
     ];

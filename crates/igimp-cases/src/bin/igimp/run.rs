@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use igimp_cases::estimate::Expectation;
+use igimp_cases::estimate::watch::{exceeded, lacks_memory};
 use igimp_cases::run::{self as engine, Start, Target};
 use igimp_cases::sweep::{Ending, Sweep};
 
@@ -27,8 +29,17 @@ pub(crate) fn run(arguments: &Run) -> Result<Exit, ProgramError> {
     };
     let folder = case.output.folder.clone();
     output::writable(&folder)?;
+    // A run that goes on makes a part of the steps only.
+    let expectation = match start {
+        Start::Afresh => Expectation::of(&case).ok(),
+        Start::Resume | Start::FromStage(_) => None,
+    };
+    if let Some(lack) = expectation.and_then(|expected| lacks_memory(expected.bytes)) {
+        output::complain(&format!("warning: {lack}"));
+    }
     let target = Target {
         systems: arguments.export_matrix.clone(),
+        expectation,
         ..Target::of(&file, &folder)
     };
     let flag = interrupt::watch();
@@ -99,6 +110,9 @@ fn tell(run: &engine::Run, folder: &Path, arguments: &Run) -> Result<Exit, Progr
         output::say(&format!("linear systems in {}", systems.display()))?;
     }
     output::say(&verdict::results(summary, folder))?;
+    for more in exceeded(summary) {
+        output::complain(&format!("warning: {more}"));
+    }
     Ok(if run.failure.is_some() {
         Exit::NotConverged
     } else {

@@ -1,6 +1,6 @@
 //! A body as named arrays of numbers, and back.
 
-use igimp_assembly::{LoadPoint, ParticleFields, Particles};
+use igimp_assembly::{AssemblyError, LoadPoint, ParticleFields, Particles};
 use igimp_material::History;
 use igimp_solver::Body;
 
@@ -111,10 +111,21 @@ pub(super) fn to_body(
             .collect(),
         regime,
     };
-    let particles = Particles::from_fields(fields).map_err(|error| ("x", error.to_string()))?;
-    let load_points = vectors("load_point_x", m)?
+    let particles =
+        Particles::from_fields(fields).map_err(|error| (array_of(&error), error.to_string()))?;
+    let finite = |name: &'static str| {
+        let values: Vec<[f64; 2]> = vectors(name, m)?;
+        match values
+            .iter()
+            .position(|value| !value.iter().all(|v| v.is_finite()))
+        {
+            Some(point) => Err((name, format!("load point {point} is not finite"))),
+            None => Ok(values),
+        }
+    };
+    let load_points = finite("load_point_x")?
         .into_iter()
-        .zip(vectors("load_point_force", m)?)
+        .zip(finite("load_point_force")?)
         .zip(indices("load_point_load", m)?)
         .map(|((x, force), load)| LoadPoint { x, force, load })
         .collect();
@@ -122,6 +133,18 @@ pub(super) fn to_body(
         particles,
         load_points,
     })
+}
+
+/// The array that a particle is refused for.
+fn array_of(error: &AssemblyError) -> &'static str {
+    match error {
+        AssemblyError::InvalidParticle {
+            field: "det def_grad",
+            ..
+        } => "def_grad",
+        AssemblyError::InvalidParticle { field, .. } => field,
+        _ => "x",
+    }
 }
 
 fn scalars(values: &[f64]) -> Array {

@@ -19,13 +19,18 @@ pub(in crate::results) fn body(n: usize) -> Body<2> {
     let fields = ParticleFields {
         x: (0..n).map(|k| vector(k, 0)).collect(),
         displacement: (0..n).map(|_| [-0.0, f64::MIN_POSITIVE / 8.0]).collect(),
-        def_grad: (0..n).map(|k| [vector(k, 2), vector(k, 4)]).collect(),
+        def_grad: (0..n)
+            .map(|k| {
+                let ([a, b], [c, d]) = (vector(k, 2), vector(k, 4));
+                [[1.0 + a, b], [c, 1.0 + d]]
+            })
+            .collect(),
         b_e: (0..n).map(|k| tensor(k, 6)).collect(),
         sigma: (0..n).map(|k| tensor(k, 15)).collect(),
-        half_length: (0..n).map(|k| vector(k, 24)).collect(),
-        half_length0: (0..n).map(|k| vector(k, 26)).collect(),
-        volume0: by_particle(&|k| number(k, 28)),
-        mass: by_particle(&|k| number(k, 29)),
+        half_length: (0..n).map(|k| vector(k, 24).map(f64::abs)).collect(),
+        half_length0: (0..n).map(|k| vector(k, 26).map(f64::abs)).collect(),
+        volume0: by_particle(&|k| number(k, 28).abs()),
+        mass: by_particle(&|k| number(k, 29).abs()),
         law: (0..n).map(|k| k % 3).collect(),
         history: (0..n)
             .map(|k| History {
@@ -310,6 +315,21 @@ fn a_forged_state_is_refused() {
     insta::assert_snapshot!(
         forge("mass", &Array::new(&[2], Values::I32(vec![0; 2])).to_bytes()),
         @"the checkpoint in DIR/a is damaged: current/mass.npy: its numbers are not of type <f8"
+    );
+    let mut b_e = vec![0.5; 18];
+    b_e[13] = f64::NAN;
+    insta::assert_snapshot!(
+        forge("b_e", &Array::new(&[2, 3, 3], Values::F64(b_e)).to_bytes()),
+        @"the checkpoint in DIR/a is damaged: current/b_e.npy: particle 1: b_e is NaN, but must be finite"
+    );
+    insta::assert_snapshot!(
+        forge("def_grad", &Array::new(&[2, 2, 2], Values::F64(vec![1.0; 8])).to_bytes()),
+        @"the checkpoint in DIR/a is damaged: current/def_grad.npy: particle 0: det def_grad is 0, but must be positive and finite"
+    );
+    let force = Array::new(&[1, 2], Values::F64(vec![1.0, f64::INFINITY]));
+    insta::assert_snapshot!(
+        forge("load_point_force", &force.to_bytes()),
+        @"the checkpoint in DIR/a is damaged: current/load_point_force.npy: load point 0 is not finite"
     );
     insta::assert_snapshot!(
         forge("law", b"no array"),

@@ -2,6 +2,8 @@
 
 use std::collections::HashMap;
 
+use igimp_solver::Body;
+
 use super::{Output, csv};
 use crate::case::Case;
 use crate::error::CaseError;
@@ -11,7 +13,7 @@ use crate::results::folder::Folder;
 use crate::results::rows;
 use crate::run::Target;
 use crate::run::fingerprint;
-use crate::run::left::{Left, Notes, Search, end_of_stage, notes_of};
+use crate::run::left::{Left, Notes, Resumption, Search, end_of_stage, notes_of};
 use crate::run::records::Records;
 use crate::run::state::{Controls, State};
 
@@ -73,18 +75,35 @@ impl Output {
     ) -> Result<(Self, Option<Left>), CaseError> {
         let path = folder.checkpoint();
         let notes: Notes = notes_of(&path, &found.meta)?;
+        let damaged = |file: String, why: String| CheckpointError::Damaged {
+            path: path.clone(),
+            file,
+            why,
+        };
         let body = |name: &str| {
             found
                 .states
                 .iter()
                 .find(|(state, _)| state == name)
                 .map(|(_, body)| body.clone())
-                .ok_or_else(|| CheckpointError::Damaged {
-                    path: path.clone(),
-                    file: name.to_owned(),
-                    why: "the state is missing".to_owned(),
-                })
+                .ok_or_else(|| damaged(name.to_owned(), "the state is missing".to_owned()))
         };
+        for (name, body) in &found.states {
+            unfit(case, body).map_or(Ok(()), |(array, why)| {
+                Err(damaged(format!("{name}/{array}.npy"), why))
+            })?;
+        }
+        if let Some(Resumption { standing, .. }) = &notes.resumption
+            && !(standing.size > 0.0
+                && standing.size.is_finite()
+                && (0.0..=1.0).contains(&standing.at))
+        {
+            let why = format!(
+                "no march stands at {} with steps of {}",
+                standing.at, standing.size
+            );
+            return Err(damaged("meta.json".to_owned(), why).into());
+        }
         let with_body = |name: &str, of: &Option<(f64, Controls)>| match of {
             Some((srf, controls)) => {
                 let controls = controls.clone();
@@ -150,5 +169,51 @@ impl Output {
             }
         }
         Ok(ends)
+    }
+}
+
+/// The array of a body that names a material or a load that the case does not have, and what it
+/// names.
+fn unfit(case: &Case, body: &Body<2>) -> Option<(&'static str, String)> {
+    let (materials, loads) = (case.materials.len(), case.loads.len());
+    let law = &body.particles.law;
+    if let Some(particle) = law.iter().position(|&law| law >= materials) {
+        let law = law[particle];
+        let why = format!("particle {particle} is of material {law}, and there are {materials}");
+        return Some(("law", why));
+    }
+    let points = &body.load_points;
+    let point = points.iter().position(|point| point.load >= loads)?;
+    let load = points[point].load;
+    let why = format!("load point {point} belongs to load {load}, and there are {loads}");
+    Some(("load_point_load", why))
+}
+
+#[cfg(test)]
+mod tests {
+    use igimp_assembly::{LoadPoint, Particles};
+
+    use super::*;
+    use crate::estimate::tests::case;
+    use crate::run::Model;
+
+    /// GOAL: a state that names what the case does not have is refused before a step looks for it.
+    #[test]
+    fn materials_and_loads_that_are_not_there_are_named() {
+        let case = case();
+        let mut body = Model::new(&case).unwrap().1.body;
+        assert_eq!(unfit(&case, &body), None);
+        body.load_points = vec![LoadPoint {
+            x: [1.0, 2.0],
+            force: [0.0, -1.0],
+            load: 4,
+        }];
+        let why = "load point 0 belongs to load 4, and there are 0".to_owned();
+        assert_eq!(unfit(&case, &body), Some(("load_point_load", why)));
+        let mut fields = (*body.particles).clone();
+        fields.law[3] = 1;
+        body.particles = Particles::from_fields(fields).unwrap();
+        let why = "particle 3 is of material 1, and there are 1".to_owned();
+        assert_eq!(unfit(&case, &body), Some(("law", why)));
     }
 }

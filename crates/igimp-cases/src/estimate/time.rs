@@ -1,0 +1,289 @@
+//! How long a case will take.
+//!
+//! A step costs its set-up and commit (proportional to the particles) and corrections; a correction
+//! is a pass over the particles, a factorisation ($`n^{3/2}`$ for $`n`$ unknowns, the law of nested
+//! dissection in the plane; an unsymmetric tangent costs half as much again) and a solution. Steps
+//! are those that the case plans; corrections per step are what the shipped cases take, by kind of
+//! stage. Pictures, checkpoints and rows come on top. The nanoseconds belong to the reference
+//! computer of [`Speed`], on one thread.
+//!
+//! A stage that ends when something happens (`stop_when`, a run-out that comes to rest) may take fewer
+//! steps than it plans: the time is then an upper bound, and [`Time::open_ended`] says so.
+
+use serde::{Deserialize, Serialize};
+
+use super::speed::Speed;
+use super::{Estimate, TRIALS, estimate};
+use crate::case::{Case, Every, ReductionPath, Stage, StageKind};
+use crate::error::CaseError;
+use crate::summary::StageSummary;
+
+/// Set-up and commit of a step \[s per particle\].
+const STEP: f64 = 6e-7;
+/// A pass over the particles \[s per particle\].
+const PASS: f64 = 7.2e-7;
+/// Factorisation of a symmetric matrix \[s\], times $`n^{3/2}`$.
+const FACTOR: f64 = 1.8e-8;
+/// What an unsymmetric one costs of that \[-\].
+const UNSYMMETRIC: f64 = 1.5;
+/// Solution \[s per unknown\].
+const SOLVE: f64 = 3e-7;
+/// Rows, progress and bookkeeping of a step \[s\].
+const ROWS: f64 = 5e-4;
+/// A picture \[s\], and its part by particle when it shows a field.
+const PICTURE: [f64; 2] = [2e-2, 7e-6];
+/// A checkpoint or a frame \[s\], and its part by particle.
+const STATE: [f64; 2] = [4e-3, 1.5e-6];
+/// Start, model, report \[s\].
+const BEGINNING: f64 = 6e-2;
+/// Shares of the time that more threads divide: of marching, of output \[-\].
+const PARALLEL: [f64; 2] = [0.8, 0.6];
+/// Corrections of a trial that fails, beside those of its accepted steps.
+const FAILING: f64 = 15.0;
+
+/// The time of a case.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Time {
+    /// All planned steps, pictures and files \[s\].
+    pub seconds: f64,
+    /// Whether a stage may end before its planned steps are used up.
+    pub open_ended: bool,
+    /// Threads.
+    pub threads: usize,
+}
+
+/// The time of a case of a size on a computer of a speed, with the threads of the current pool.
+pub fn time(case: &Case, size: &Estimate, speed: Speed) -> Time {
+    let stages: Vec<Taken> = case.stages.iter().map(planned).collect();
+    Time {
+        seconds: of_stages(case, size, speed, &stages),
+        open_ended: case.stages.iter().any(is_open_ended),
+        threads: rayon::current_num_threads(),
+    }
+}
+
+/// The time by the same model of the steps and corrections that a run took \[s\]: what tells a computer
+/// that was slow from a case that took more steps than planned.
+///
+/// # Errors
+/// As [`estimate`].
+pub fn time_of_steps_taken(
+    case: &Case,
+    speed: Speed,
+    stages: &[StageSummary],
+) -> Result<f64, CaseError> {
+    let size = estimate(case)?;
+    let taken: Vec<Taken> = stages.iter().map(taken).collect();
+    Ok(of_stages(case, &size, speed, &taken))
+}
+
+/// What a stage takes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Taken {
+    steps: f64,
+    corrections: f64,
+    trials: f64,
+}
+
+/// What the case plans for a stage.
+fn planned(stage: &Stage) -> Taken {
+    let steps = stage.steps as f64;
+    let (steps, trials) = match &stage.kind {
+        StageKind::StrengthReduction(search) => {
+            let [low, high] = search.bracket;
+            let halvings = ((high - low) / search.tolerance).max(2.0).log2();
+            let trials = search.factors.len() as f64 + halvings.min(TRIALS);
+            match search.path {
+                ReductionPath::Gravity => (steps * trials, trials),
+                // A march of the reduction ends about half way of the bracket; small strides follow.
+                ReductionPath::Reduce => (0.5 * steps + 3.0, 4.0),
+            }
+        }
+        _ => (steps, 0.0),
+    };
+    let to_collapse =
+        stage.stop_when.no_equilibrium || stage.stop_when.load_grows_less_than.is_some();
+    let by_step = match &stage.kind {
+        StageKind::K0 => 0.5,
+        StageKind::Gravity { .. } | StageKind::Load { .. } if to_collapse => 5.0,
+        StageKind::Gravity { .. } | StageKind::Load { .. } => 3.7,
+        StageKind::Displacement { .. } => 6.5,
+        StageKind::StrengthReduction(_) | StageKind::RunOut(_) => 5.0,
+    };
+    let failing = if trials > 0.0 || to_collapse {
+        FAILING
+    } else {
+        0.0
+    };
+    Taken {
+        steps,
+        corrections: by_step * steps + failing * (1.0 + 0.25 * trials),
+        trials,
+    }
+}
+
+/// What a stage took.
+fn taken(stage: &StageSummary) -> Taken {
+    let trials = stage
+        .safety
+        .as_ref()
+        .map_or(0, |safety| safety.trials.len());
+    let failed = stage.cuts + usize::from(stage.cuts > 0);
+    Taken {
+        steps: stage.steps as f64,
+        corrections: stage.iterations as f64 + 0.5 * FAILING * failed as f64,
+        trials: trials as f64,
+    }
+}
+
+/// Whether a stage may end before its steps are used up.
+fn is_open_ended(stage: &Stage) -> bool {
+    let stop = &stage.stop_when;
+    matches!(stage.kind, StageKind::RunOut(_))
+        || stop.displacement.is_some()
+        || stop.no_equilibrium
+        || stop.load_grows_less_than.is_some()
+}
+
+fn of_stages(case: &Case, size: &Estimate, speed: Speed, stages: &[Taken]) -> f64 {
+    let (particles, unknowns) = (size.particles as f64, size.unknowns as f64);
+    let symmetric = case
+        .materials
+        .iter()
+        .all(|material| material.law().is_ok_and(|law| law.has_symmetric_tangent()));
+    let factor = FACTOR * unknowns.powf(1.5) * if symmetric { 1.0 } else { UNSYMMETRIC };
+    let mut marching = 0.0;
+    let mut states = stages.len() as f64;
+    for stage in stages {
+        let passes = stage.corrections + stage.steps;
+        let assembly = particles * (STEP * stage.steps + PASS * passes);
+        let solving = stage.corrections * (factor + SOLVE * unknowns);
+        marching += speed.assembly * (assembly + ROWS * stage.steps) + speed.factor * solving;
+        if case.output.checkpoint_every > 0 {
+            states += stage.trials + stage.steps / case.output.checkpoint_every as f64;
+        }
+        if let Every::Steps(every) = case.output.paraview {
+            states += stage.steps / every.max(1) as f64;
+        }
+    }
+    let [picture, field] = PICTURE;
+    let (pictures, fields) = pictures(case);
+    let [state, part] = STATE;
+    let output = BEGINNING
+        + picture * pictures
+        + field * fields * particles
+        + states * (state + part * particles);
+    let more = 1.0 / rayon::current_num_threads() as f64;
+    let divided = |share: f64| 1.0 - share + share * more;
+    marching * divided(PARALLEL[0]) + speed.assembly * output * divided(PARALLEL[1])
+}
+
+/// Pictures of a run, and how many of them show a field.
+fn pictures(case: &Case) -> (f64, f64) {
+    let stages = case.stages.len();
+    let searches = case
+        .stages
+        .iter()
+        .filter(|stage| matches!(stage.kind, StageKind::StrengthReduction(_)))
+        .count();
+    // A search shows its last stable and its first unstable state, and the trials.
+    let fields = case.output.figures.len() * (stages + searches);
+    let sections = case.sections.len() * (stages - searches);
+    let histories: usize = case
+        .monitors
+        .iter()
+        .map(|monitor| monitor.record.len())
+        .sum();
+    let others = 1 + sections + case.curves.len() + histories + stages + searches;
+    ((fields + others) as f64, fields as f64)
+}
+
+/// A time in words.
+pub fn sentence(time: &Time) -> String {
+    let plural = if time.threads == 1 { "" } else { "s" };
+    let about = readable(time.seconds);
+    let threads = time.threads;
+    if time.open_ended {
+        format!(
+            "up to {about} on {threads} thread{plural}, when every planned step is taken: a stage may \
+             end earlier"
+        )
+    } else {
+        format!("about {about} on {threads} thread{plural}")
+    }
+}
+
+/// A time as a reader likes it: two digits are more than the model knows.
+pub fn readable(seconds: f64) -> String {
+    let rounded = |value: f64, unit: f64| (value / unit).ceil() * unit;
+    if seconds < 10.0 {
+        format!("{:.0} s", seconds.max(1.0).ceil())
+    } else if seconds < 100.0 {
+        format!("{:.0} s", rounded(seconds, 5.0))
+    } else if seconds < 6000.0 {
+        format!("{:.0} min", (seconds / 60.0).ceil())
+    } else {
+        format!("{:.1} h", seconds / 3600.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::case;
+    use super::*;
+
+    fn seconds(case: &Case) -> f64 {
+        time(case, &estimate(case).unwrap(), Speed::REFERENCE).seconds
+    }
+
+    /// Pictures and files aside, twice the steps take twice the time, and a computer of half the speed
+    /// takes twice the time for all of it.
+    #[test]
+    fn time_grows_with_steps_and_with_slowness() {
+        let mut case = case();
+        let one = seconds(&case);
+        case.stages[0].steps *= 2;
+        let two = seconds(&case);
+        case.stages[0].steps *= 2;
+        let four = seconds(&case);
+        assert!((four - two - 2.0 * (two - one)).abs() < 1e-9 * four);
+        let slow = Speed {
+            assembly: 2.0,
+            factor: 2.0,
+        };
+        let slower = time(&case, &estimate(&case).unwrap(), slow).seconds;
+        assert!((slower - 2.0 * four).abs() < 1e-9 * four);
+    }
+
+    #[test]
+    fn a_stage_that_may_end_early_is_open_ended() {
+        let mut case = case();
+        let size = estimate(&case).unwrap();
+        assert!(!time(&case, &size, Speed::REFERENCE).open_ended);
+        case.stages[0].stop_when.displacement = Some(0.1);
+        assert!(time(&case, &size, Speed::REFERENCE).open_ended);
+    }
+
+    /// What was planned and taken to the letter costs what was estimated.
+    #[test]
+    fn steps_taken_as_planned_cost_what_was_estimated() {
+        let case = case();
+        let steps = case.stages[0].steps;
+        let stage = StageSummary {
+            steps,
+            iterations: (3.7 * steps as f64) as usize,
+            ..StageSummary::default()
+        };
+        let taken = time_of_steps_taken(&case, Speed::REFERENCE, &[stage]).unwrap();
+        assert!((taken / seconds(&case) - 1.0).abs() < 0.05);
+    }
+
+    #[test]
+    fn times_are_readable() {
+        assert_eq!(readable(0.2), "1 s");
+        assert_eq!(readable(4.1), "5 s");
+        assert_eq!(readable(41.0), "45 s");
+        assert_eq!(readable(130.0), "3 min");
+        assert_eq!(readable(7200.0), "2.0 h");
+    }
+}

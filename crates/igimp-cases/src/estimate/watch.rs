@@ -1,0 +1,114 @@
+//! Whether a run kept to its estimate, and whether the computer has the memory for it.
+
+use super::{readable, time};
+use crate::summary::Summary;
+
+/// A run may cost this many times its estimate before anything is said \[-\].
+const FACTOR: f64 = 1.5;
+/// Nobody waits for less \[s\].
+const LEAST_SECONDS: f64 = 10.0;
+/// Nobody runs short of less \[MiB\].
+const LEAST_MEMORY: f64 = 100.0;
+
+/// What a run cost beyond its estimate, in sentences. A run that took its time because the computer
+/// was busy with other work is judged by the time of the processors.
+pub fn exceeded(summary: &Summary) -> Vec<String> {
+    let Some(expected) = &summary.estimate else {
+        return Vec::new();
+    };
+    let mut told = Vec::new();
+    let threads = expected.threads.max(1) as f64;
+    let used = summary
+        .cpu_seconds
+        .map_or(summary.seconds, |cpu| cpu / threads);
+    if used > FACTOR * expected.seconds && used - expected.seconds > LEAST_SECONDS {
+        told.push(format!(
+            "the run took {}, {:.1} times the estimate of {}: more steps were cut, or more corrections \
+             needed, than is usual",
+            time::readable(used),
+            used / expected.seconds,
+            time::readable(expected.seconds),
+        ));
+    }
+    let estimated = expected.bytes / 1_048_576.0;
+    if let Some(peak) = summary.peak_memory_mib
+        && peak > FACTOR * estimated
+        && peak - estimated > LEAST_MEMORY
+    {
+        told.push(format!(
+            "the run needed {} of memory, {:.1} times the estimate of {}",
+            readable(peak * 1_048_576.0),
+            peak / estimated,
+            readable(expected.bytes),
+        ));
+    }
+    told
+}
+
+/// Says so if a run will not fit into the memory that is available.
+pub fn lacks_memory(bytes: f64) -> Option<String> {
+    let available = available()?;
+    (bytes > available).then(|| {
+        format!(
+            "the run is thought to need {} of memory, and {} are available",
+            readable(bytes),
+            readable(available)
+        )
+    })
+}
+
+/// Memory that the system can give without swapping \[bytes\], where it tells.
+fn available() -> Option<f64> {
+    let text = std::fs::read_to_string("/proc/meminfo").ok()?;
+    let line = text
+        .lines()
+        .find(|line| line.starts_with("MemAvailable:"))?;
+    let kib: f64 = line.split_whitespace().nth(1)?.parse().ok()?;
+    Some(1024.0 * kib)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::summary::Expected;
+
+    fn summary(cpu_seconds: f64, peak_memory_mib: f64) -> Summary {
+        Summary {
+            seconds: 1000.0,
+            cpu_seconds: Some(cpu_seconds),
+            peak_memory_mib: Some(peak_memory_mib),
+            estimate: Some(Expected {
+                seconds: 100.0,
+                open_ended: false,
+                threads: 2,
+                bytes: 400.0 * 1_048_576.0,
+                seconds_of_steps_taken: None,
+            }),
+            ..Summary::default()
+        }
+    }
+
+    #[test]
+    fn a_run_within_its_estimate_is_not_spoken_of() {
+        assert!(exceeded(&summary(280.0, 590.0)).is_empty());
+        assert!(exceeded(&Summary::default()).is_empty());
+    }
+
+    #[test]
+    fn a_run_beyond_its_estimate_is_told_in_words() {
+        insta::assert_snapshot!(exceeded(&summary(480.0, 800.0)).join("\n"), @r"
+        the run took 4 min, 2.4 times the estimate of 2 min: more steps were cut, or more corrections needed, than is usual
+        the run needed 800 MiB of memory, 2.0 times the estimate of 400 MiB
+        ");
+    }
+
+    #[test]
+    fn a_run_beyond_all_memory_is_told_beforehand() {
+        if available().is_none() {
+            println!("skipped: the system does not tell its memory");
+            return;
+        }
+        assert_eq!(lacks_memory(1.0), None);
+        assert!(lacks_memory(1e18).unwrap().contains("are available"));
+    }
+}

@@ -1,0 +1,306 @@
+//! GOAL: what users and machines do to a run costs time and no result: a kill at any moment, a full
+//! disk, a folder that cannot be written, file times that make no sense, another number of threads.
+//! CASE: a coarse slope under gravity, its factor of safety, and its run-out.
+//! ORACLE: every byte of the same run left alone, times aside.
+
+mod run_support;
+
+use std::fs::{self, File};
+use std::path::{Path, PathBuf};
+use std::process::Child;
+use std::time::{Duration, Instant, SystemTime};
+
+use run_support::{Folder, differing};
+
+/// Kills in a test run; `IGIMP_KILLS` asks for more.
+const KILLS: usize = 6;
+
+/// Random numbers in \[0, 1) (Vigna's splitmix64).
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut bits = self.0;
+        bits = (bits ^ (bits >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        bits = (bits ^ (bits >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        ((bits ^ (bits >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+    }
+}
+
+/// Whether a checkpoint is being written into a results folder.
+fn is_writing(out: &Path) -> bool {
+    let entries = fs::read_dir(out.join("checkpoint"));
+    entries.into_iter().flatten().flatten().any(|entry| {
+        let name = entry.file_name();
+        let name = name.to_string_lossy();
+        name.starts_with(".tmp-") && !name.ends_with("-removed")
+    })
+}
+
+/// Whether a process that was started is still there.
+fn lives(child: &mut Child) -> bool {
+    child.try_wait().unwrap().is_none()
+}
+
+/// Kills a run after a time, or at its next write of a checkpoint from then on; whether it was alive
+/// when it was killed.
+fn kill(child: &mut Child, after: Duration, at_write: Option<&Path>) -> bool {
+    let clock = Instant::now();
+    while clock.elapsed() < after && lives(child) {
+        std::thread::sleep(Duration::from_micros(200));
+    }
+    if let Some(out) = at_write {
+        while lives(child) && !is_writing(out) {
+            std::hint::spin_loop();
+        }
+    }
+    let alive = lives(child);
+    child.kill().unwrap();
+    child.wait().unwrap();
+    alive
+}
+
+#[test]
+fn a_run_killed_at_any_moment_ends_with_the_same_files() {
+    let folder = Folder::new("killed-run");
+    let clock = Instant::now();
+    let (code, said) = folder.end("whole", &[]);
+    let whole = clock.elapsed();
+    assert_eq!(code, Some(0), "{said}");
+    let expected = folder.everything("whole");
+    assert!(folder.tables("whole").len() >= 4, "{:?}", expected.keys());
+    let wanted = std::env::var("IGIMP_KILLS").map_or(KILLS, |kills| kills.parse().unwrap());
+    let mut random = Random(0x5EED);
+    let (mut kills, mut within_a_write, mut twice, mut runs) = (0, 0, 0, 0);
+    while kills < wanted {
+        assert!(runs < 10 * wanted, "{kills} kills in {runs} runs");
+        let out = format!("killed-{runs}");
+        let path = folder.0.join(&out);
+        let mut hits = 0;
+        // Killed twice on its way: the second time while it goes on.
+        for more in [&[][..], &["--resume"]] {
+            let mut child = folder.run(&out, more).spawn().unwrap();
+            let moment = whole.mul_f64(random.next());
+            let at_write = (random.next() < 0.5).then_some(&*path);
+            hits += usize::from(kill(&mut child, moment, at_write));
+            within_a_write += usize::from(is_writing(&path));
+        }
+        runs += 1;
+        kills += hits;
+        twice += usize::from(hits == 2);
+        let (code, said) = folder.end(&out, &["--resume"]);
+        assert_eq!(code, Some(0), "run {runs}: {said}");
+        let found = folder.everything(&out);
+        assert_eq!(
+            differing(&expected, &found),
+            Vec::<PathBuf>::new(),
+            "run {runs}"
+        );
+        fs::remove_dir_all(&path).unwrap();
+    }
+    println!(
+        "{kills} kills of living processes in {runs} runs, {twice} runs killed twice, {within_a_write} \
+         kills within the writing of a checkpoint: all files equal"
+    );
+}
+
+#[test]
+fn threads_do_not_change_a_byte() {
+    let folder = Folder::new("threads");
+    let run = |threads: &str| {
+        let out = format!("on-{threads}");
+        let (code, said) = folder.end(&out, &["--threads", threads]);
+        assert_eq!(code, Some(0), "{said}");
+        folder.everything(&out)
+    };
+    let one = run("1");
+    let arrays = one
+        .keys()
+        .filter(|path| path.extension().is_some_and(|e| e == "npy"));
+    assert!(arrays.count() >= 45, "the ends of three stages");
+    for threads in ["2", "3", "7"] {
+        assert_eq!(
+            differing(&one, &run(threads)),
+            Vec::<PathBuf>::new(),
+            "{threads} threads"
+        );
+    }
+}
+
+/// Sets the times of a file or folder and of all below it.
+fn set_times(path: &Path, time: SystemTime) {
+    if path.is_dir() {
+        for entry in fs::read_dir(path).unwrap() {
+            set_times(&entry.unwrap().path(), time);
+        }
+    }
+    File::open(path)
+        .and_then(|file| file.set_modified(time))
+        .unwrap();
+}
+
+/// A clock that jumped leaves files from the future or from long ago, in an order that is not that in
+/// which they were written.
+#[test]
+fn file_times_that_make_no_sense_change_nothing() {
+    let folder = Folder::new("clock");
+    let (code, said) = folder.end("whole", &[]);
+    assert_eq!(code, Some(0), "{said}");
+    let expected = folder.everything("whole");
+    let saved = |out: &str| {
+        let mut saved: Vec<PathBuf> = fs::read_dir(folder.0.join(out).join("checkpoint"))
+            .into_iter()
+            .flatten()
+            .map(|entry| entry.unwrap().path())
+            .collect();
+        saved.sort();
+        saved
+    };
+    for backwards in [true, false] {
+        let out = format!("jumped-{backwards}");
+        let mut child = folder.run(&out, &[]).spawn().unwrap();
+        while lives(&mut child) && saved(&out).len() < 4 {
+            std::thread::sleep(Duration::from_micros(500));
+        }
+        child.kill().unwrap();
+        child.wait().unwrap();
+        let (past, future) = (SystemTime::UNIX_EPOCH, Duration::from_secs(4_000_000_000));
+        let everything = if backwards { past } else { past + future };
+        set_times(&folder.0.join(&out), everything);
+        for (age, path) in saved(&out).iter().rev().enumerate() {
+            let years = Duration::from_secs(31_557_600 * (1 + age as u64));
+            set_times(
+                path,
+                if backwards {
+                    past + years
+                } else {
+                    past + future - years
+                },
+            );
+        }
+        let (code, said) = folder.end(&out, &["--resume"]);
+        assert_eq!(code, Some(0), "{said}");
+        let found = folder.everything(&out);
+        assert_eq!(differing(&expected, &found), Vec::<PathBuf>::new());
+    }
+}
+
+/// Runs a script as `sh` in a mount namespace of its own, where the system allows that; its standard
+/// output. `$0` is the program.
+#[cfg(target_os = "linux")]
+fn with_own_mounts(folder: &Folder, script: &str) -> Option<String> {
+    use std::process::Command;
+    let unshared = |words: &[&str]| {
+        let mut command = Command::new("unshare");
+        command
+            .args(["-m", "--"])
+            .args(words)
+            .current_dir(&folder.0);
+        command.output()
+    };
+    let can = unshared(&[
+        "sh",
+        "-c",
+        "mkdir -p probe && mount -t tmpfs -o size=64k tmpfs probe",
+    ]);
+    if !can.is_ok_and(|output| output.status.success()) {
+        println!("skipped: no mounts without being root");
+        return None;
+    }
+    let output = unshared(&["sh", "-c", script, env!("CARGO_BIN_EXE_igimp")]).unwrap();
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{said}{errors}");
+    Some(said)
+}
+
+/// The words of a run as a shell reads them.
+fn quoted(out: &str, more: &[&str]) -> String {
+    format!(" '{}'", Folder::words(out, more).join("' '"))
+}
+
+/// A disk that runs full at some moment, and is then made larger.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_run_on_a_full_disk_goes_on_when_there_is_room() {
+    let folder = Folder::new("full-disk");
+    let (code, said) = folder.end("whole", &[]);
+    assert_eq!(code, Some(0), "{said}");
+    let expected = folder.everything("whole");
+    let (afresh, resumed) = (quoted("disk/out", &[]), quoted("disk/out", &["--resume"]));
+    let mut full = 0;
+    for size in ["100k", "300k", "600k", "1000k", "1500k"] {
+        let script = format!(
+            "mkdir -p disk copy-{size} && mount -t tmpfs -o size={size} tmpfs disk || exit 9\n\
+             \"$0\"{afresh} 2>&1; echo \"code $?\"\n\
+             mount -o remount,size=200m disk || exit 9\n\
+             \"$0\"{resumed} 2>&1 || exit 8\n\
+             cp -r disk/out copy-{size}/"
+        );
+        let Some(said) = with_own_mounts(&folder, &script) else {
+            return;
+        };
+        if said.contains("code 4") {
+            full += 1;
+            assert!(
+                said.contains("cannot ") && said.contains(" disk/out/"),
+                "{said}"
+            );
+            assert!(said.contains("because: No space left on device"), "{said}");
+        } else {
+            assert!(said.contains("code 0"), "{said}");
+        }
+        let found = folder.everything(&format!("copy-{size}/out"));
+        assert_eq!(
+            differing(&expected, &found),
+            Vec::<PathBuf>::new(),
+            "{size}"
+        );
+    }
+    assert!(full >= 3, "the disk was full {full} times");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_folder_that_cannot_be_written_is_named_before_anything_is_computed() {
+    let folder = Folder::new("read-only");
+    for out in ["/proc/results", "slope.toml/results"] {
+        let (code, said) = folder.end(out, &[]);
+        assert_eq!(code, Some(4), "{said}");
+        assert!(
+            said.starts_with(&format!("error: cannot access {out}")),
+            "{said}"
+        );
+        assert!(said.contains("because: "), "{said}");
+    }
+    let (code, said) = folder.end("kept/out", &[]);
+    assert_eq!(code, Some(0), "{said}");
+    let before = folder.everything("kept/out");
+    let script = format!(
+        "mount --bind kept kept && mount -o remount,ro,bind kept || exit 9\n\
+         \"$0\"{} 2>&1; echo \"code $?\"\n\"$0\"{} 2>&1; echo \"code $?\"\n\
+         \"$0\"{} 2>&1; echo \"code $?\"",
+        quoted("kept/out", &[]),
+        quoted("kept/out", &["--resume"]),
+        quoted("kept/new", &[])
+    );
+    let Some(said) = with_own_mounts(&folder, &script) else {
+        return;
+    };
+    assert_eq!(said.matches("code 4").count(), 3, "{said}");
+    assert_eq!(
+        said.matches("error: cannot access kept/").count(),
+        3,
+        "{said}"
+    );
+    assert_eq!(
+        said.matches("because: Read-only file system").count(),
+        3,
+        "{said}"
+    );
+    assert_eq!(
+        differing(&before, &folder.everything("kept/out")),
+        Vec::<PathBuf>::new()
+    );
+}
