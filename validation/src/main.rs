@@ -2,7 +2,11 @@
 //! compares curves and effort with snapshots. `cargo xtask validate` calls this program.
 
 mod column;
+mod cylinder;
+mod exact;
 mod footing;
+mod laboratory;
+mod manufactured;
 mod matrix;
 mod mohr_coulomb_slope;
 mod oracle;
@@ -70,6 +74,8 @@ enum Case {
     VonMisesSlope,
     MohrCoulombSlope,
     Footing,
+    Manufactured,
+    Cylinder,
 }
 
 impl Case {
@@ -79,6 +85,8 @@ impl Case {
             Self::VonMisesSlope => von_mises_slope::study(level, out),
             Self::MohrCoulombSlope => mohr_coulomb_slope::study(level, out),
             Self::Footing => footing::study(level, out),
+            Self::Manufactured => manufactured::study(level, out),
+            Self::Cylinder => cylinder::study(level, out),
         }
     }
 }

@@ -1,0 +1,3 @@
+//! Exact solutions that studies are held against.
+
+pub(crate) mod cylinder;

@@ -1,0 +1,200 @@
+//! A manufactured solution at large strain: the body force that keeps a chosen displacement field in
+//! equilibrium is applied, and the field has to come back, with a rate that theory knows.
+
+mod field;
+mod stress;
+
+use std::path::Path;
+use std::sync::Arc;
+
+use igimp_assembly::{
+    Constraints, LoadPoint, Method, Particles, SharedLaw, StepConditions, StepLoads,
+};
+use igimp_cases::CaseError;
+use igimp_cases::check::Band;
+use igimp_cases::figures::{CurvePlot, LineStyle, Scale, Series, SeriesStyle};
+use igimp_cases::table::Table;
+use igimp_material::{Elasticity, HenckyElastic};
+use igimp_shape::Grid;
+use igimp_solver::{Body, MarchSettings};
+use rayon::prelude::*;
+
+use self::field::Field;
+use self::stress::Moduli;
+use crate::laboratory::{filled, grid_of, run, unobserved};
+use crate::oracle::{Oracle, OracleKind};
+use crate::study::{Level, Run, Study};
+
+/// What the book says of the study.
+const ABOUT: &str = "A smooth field with stretches from 0.7 to 1.3 is prescribed by its own body force on the unit square and cube. Errors of displacement and stress under refinement, in one step and in ten: second order in displacement and first in stress until particles cross cells, where iMPM stalls and iGIMP goes on.";
+/// Linear interpolation, as long as every cell has the same particles.
+const LINEAR_CELLS: Oracle = Oracle {
+    kind: OracleKind::Theory,
+    source: "interpolation by linear cells, Strang and Fix 1973",
+    locator: "theorem 3.7: second order in displacement, first in its gradient",
+};
+/// Particles that lie anywhere.
+const CROSSING: Oracle = Oracle {
+    kind: OracleKind::Theory,
+    source: "Steffen, Kirby and Berzins 2008",
+    locator: "IJNME 76:922-948, section 4: crossing leaves errors of the nodal force that do not vanish with h under linear basis functions",
+};
+/// Young's modulus \[force/length²\].
+const YOUNG: f64 = 1000.0;
+/// Poisson's ratio \[-\].
+const POISSON: f64 = 0.3;
+/// The variants of the method in the order of tables.
+const METHODS: [&str; 4] = ["iMPM", "iMPM + B-bar", "iGIMP", "iGIMP + B-bar"];
+
+fn method(index: usize) -> Method {
+    match index {
+        0 => Method::impm(),
+        1 => Method::impm_bbar(),
+        2 => Method::igimp(),
+        _ => Method::igimp_bbar(),
+    }
+}
+
+/// Runs the study.
+pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
+    let mut study = Study::new("manufactured", ABOUT, out)?;
+    let (plane, solid): (&[usize], &[usize]) = match level {
+        Level::Quick => (&[4, 8, 16], &[4]),
+        Level::Default => (&[4, 8, 16, 32], &[4, 8]),
+        Level::Full => (&[4, 8, 16, 32, 64], &[4, 8, 16]),
+    };
+    for steps in [1, 10] {
+        Convergence::run(&mut study, &Field::<2>::aligned(0.1), steps, plane)?;
+        Convergence::run(&mut study, &Field::<2>::swirls(0.05), steps, plane)?;
+        Convergence::run(&mut study, &Field::<3>::aligned(0.1), steps, solid)?;
+        Convergence::run(&mut study, &Field::<3>::swirls(0.05), steps, solid)?;
+    }
+    Ok(study)
+}
+
+/// Relative errors over the body, root of the mean of squares.
+#[derive(Clone, Copy, Debug)]
+struct Errors {
+    /// ‖u − u_exact‖/‖u_exact‖ \[-\].
+    displacement: f64,
+    /// ‖σ − σ_exact‖/‖σ_exact‖ \[-\].
+    stress: f64,
+}
+
+impl Errors {
+    fn new<const D: usize>(particles: &Particles<D>, field: &Field<D>, moduli: Moduli) -> Self {
+        let (mut u, mut sigma) = ([0.0; 2], [0.0; 2]);
+        for particle in 0..particles.len() {
+            let volume = particles.volume0[particle];
+            let moved = particles.displacement[particle];
+            let x0 = std::array::from_fn(|axis| particles.x[particle][axis] - moved[axis]);
+            let exact = field.displacement(&x0);
+            let stress = field.cauchy(&x0, moduli);
+            for i in 0..D {
+                u[0] += volume * (moved[i] - exact[i]).powi(2);
+                u[1] += volume * exact[i].powi(2);
+                for j in 0..D {
+                    let difference = particles.sigma[particle][i][j] - stress[i][j];
+                    sigma[0] += volume * difference.powi(2);
+                    sigma[1] += volume * stress[i][j].powi(2);
+                }
+            }
+        }
+        Self {
+            displacement: (u[0] / u[1]).sqrt(),
+            stress: (sigma[0] / sigma[1]).sqrt(),
+        }
+    }
+}
+
+/// Brings the field about in so many equal steps of its amplitude.
+fn solve<const D: usize>(
+    field: &Field<D>,
+    method: &Method,
+    cells: usize,
+    steps: usize,
+) -> Result<(Run, Errors), CaseError> {
+    let grid = grid_of(1.0 / cells as f64, [cells; D])?;
+    let elasticity = Elasticity::new(YOUNG, POISSON)?;
+    let moduli = Moduli {
+        bulk: elasticity.bulk(),
+        shear: elasticity.shear(),
+    };
+    let law: SharedLaw = Arc::new(HenckyElastic::new(elasticity));
+    let particles = Particles::new(&filled(&grid, 2))?;
+    let x0 = particles.x.clone();
+    let load_points = (0..particles.len() * D)
+        .map(|load| {
+            let mut force = [0.0; D];
+            force[load % D] = particles.volume0[load / D];
+            let x = x0[load / D];
+            LoadPoint { x, force, load }
+        })
+        .collect();
+    let mut body = Body {
+        particles,
+        load_points,
+    };
+    let constraints = walls(&grid, field.rollers);
+    let program = |_from: f64, to: f64| {
+        let now = field.scaled(to);
+        let forces: Vec<[f64; D]> = x0.iter().map(|x| now.body_force(x, moduli)).collect();
+        Ok(StepConditions {
+            grid: grid.clone(),
+            constraints: constraints.clone(),
+            loads: StepLoads {
+                gravity: [0.0; D],
+                factors: forces.into_flattened(),
+                drag: 0.0,
+            },
+            laws: vec![Arc::clone(&law)],
+        })
+    };
+    let label = method.label();
+    let variant = format!("{label}, {D}D, {}, {cells} cells, steps: {steps}", field.name);
+    let settings = MarchSettings::steps(steps);
+    let (run, _) = run(variant, &mut body, method, &settings, &program, &mut unobserved);
+    Ok((run, Errors::new(&body.particles, field, moduli)))
+}
+
+/// Walls that hold the normal component of displacement, or all of it.
+fn walls<const D: usize>(grid: &Grid<D>, rollers: bool) -> Constraints<D> {
+    let mut constraints = Constraints::free(grid);
+    for normal in 0..D {
+        for upper in [false, true] {
+            for axis in (0..D).filter(|&axis| axis == normal || !rollers) {
+                constraints.fix_wall(grid, normal, upper, axis);
+            }
+        }
+    }
+    constraints
+}
+
+/// Errors by method and mesh, with the runs.
+struct Convergence {
+    cells: Vec<usize>,
+    results: Vec<Vec<(usize, Errors)>>,
+}
+
+impl Convergence {
+    fn run<const D: usize>(
+        study: &mut Study,
+        field: &Field<D>,
+        steps: usize,
+        meshes: &[usize],
+    ) -> Result<Self, CaseError> {
+        let jobs: Vec<(usize, usize)> = (0..METHODS.len())
+            .flat_map(|index| meshes.iter().map(move |&cells| (index, cells)))
+            .collect();
+        let solved = jobs
+            .par_iter()
+            .map(|&(index, cells)| solve(field, &method(index), cells, steps))
+            .collect::<Result<Vec<_>, CaseError>>()?;
+        let mut results = vec![Vec::new(); METHODS.len()];
+        for ((index, cells), (run, errors)) in jobs.into_iter().zip(solved) {
+            eprintln!("{} {:.3e} {:.3e} {} {:.2}", run.variant, errors.displacement, errors.stress, run.outcome, run.seconds);
+            results[index].push((study.run_to_end(run), errors));
+        }
+        Ok(Self { cells: meshes.to_vec(), results })
+    }
+}
