@@ -5,10 +5,12 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::Arc;
 
-use igimp_assembly::{AssemblyError, Constraints, Method, Particles, SharedLaw, StepConditions, StepLoads};
+use igimp_assembly::{
+    AssemblyError, Constraints, Method, Particles, SharedLaw, StepConditions, StepLoads,
+};
 use igimp_cases::CaseError;
 use igimp_cases::check::Band;
-use igimp_cases::figures::{Colour, CurvePlot, Series};
+use igimp_cases::figures::{Colour, CurvePlot, ReferenceLine, ReferenceValue, Series};
 use igimp_cases::seed::fill_polygon;
 use igimp_cases::table::Table;
 use igimp_material::{Elasticity, VonMises};
@@ -21,6 +23,44 @@ use crate::laboratory::{grid_of, run};
 use crate::oracle::{Oracle, OracleKind};
 use crate::study::{Level, Run, Study};
 
+/// What the book says of the study.
+const ABOUT: &str = "A thick cylinder of nearly incompressible elastic-plastic soil is expanded from within by half its radius, and a cavity in soil without end to four times its radius. The pressure is held against the exact curve at finite strain; without B-bar it locks.";
+/// Pressure once all of the cylinder yields.
+const RIGID_PLASTIC: Oracle = Oracle {
+    kind: OracleKind::Exact,
+    source: "expanding incompressible thick cylinder, all of it yielding",
+    locator: "p = 2 s_u ln(b/a), b² − a² kept",
+};
+/// Pressure while part of it is elastic.
+const ELASTIC_PLASTIC: Oracle = Oracle {
+    kind: OracleKind::Exact,
+    source: "expanding incompressible thick cylinder, Hencky elasticity",
+    locator: "p = ∫ min(4G ln(r/R), 2 s_u) dr/r with r² − R² = a² − a₀²",
+};
+/// Cavity in soil without end; Gibson and Anderson 1961 with finite elastic strain.
+const CAVITY_EXPANSION: Oracle = Oracle {
+    kind: OracleKind::Exact,
+    source: "expanding cylindrical cavity, Hencky elasticity",
+    locator: "p = ∫ min(4G ln(r/R), 2 s_u) dr/r to infinity; Gibson and Anderson 1961 for small elastic strain",
+};
+/// The thick cylinder.
+const THICK: ThickCylinder = ThickCylinder {
+    inner: 1.0,
+    outer: 2.0,
+    shear: 100.0,
+    strength: 1.0,
+};
+/// The part of soil without end that is modelled around a cavity.
+const CAVITY: ThickCylinder = ThickCylinder {
+    inner: 1.0,
+    outer: 8.0,
+    shear: 100.0 / 3.0,
+    strength: 1.0,
+};
+/// Nodes up to this far beyond the wall are moved with it: those that hardly touch the soil \[cells\].
+const WALL: f64 = 0.25;
+/// Particles in a cell along one direction.
+const POINTS: usize = 3;
 /// Corners of the polygon along a quarter of a circle; its area is right to 1e-5.
 const ARC: usize = 200;
 /// Poisson's ratio: nearly incompressible \[-\].
@@ -35,8 +75,6 @@ struct Expansion {
     steps: usize,
     /// Cells along the initial inner radius.
     cells: usize,
-    /// Particles in a cell along one direction.
-    points: usize,
     method: Method,
 }
 
@@ -47,12 +85,12 @@ impl Expansion {
     }
 
     /// Runs it; the table has radius, pressure and exact pressure.
-    fn run(&self, name: &str) -> Result<(Run, Table), CaseError> {
+    fn run(&self) -> Result<(Run, Table), CaseError> {
         let cell = self.exact.inner / self.cells as f64;
         let reach = self.exact.outer_at(self.radius(1.0)) + cell;
         let grid = grid_of(cell, [(reach / cell).ceil() as usize; 2])?;
         let polygon = quarter_ring(self.exact.inner, self.exact.outer);
-        let seeds = fill_polygon(&grid, &polygon, self.points, 1.0, 0)?;
+        let seeds = fill_polygon(&grid, &polygon, POINTS, 1.0, 0)?;
         let mut body = Body::new(Particles::new(&seeds)?);
         let young = 2.0 * (1.0 + POISSON) * self.exact.shear;
         let elasticity = Elasticity::new(young, POISSON)?;
@@ -69,7 +107,8 @@ impl Expansion {
             })
         };
         let header = ["inner_radius_[-]", "pressure_[s_u]", "exact_[s_u]"];
-        let mut curve = Table::new(format!("pressure_{name}"), &header);
+        let body_name = if self.to > 2.0 { "cavity" } else { "thick" };
+        let mut curve = Table::new(format!("pressure_{body_name}_{}", self.cells), &header);
         let mut observe = |accepted: &Accepted<'_, 2>| {
             let a = self.radius(accepted.report.to);
             let unit = self.exact.strength;
@@ -77,22 +116,35 @@ impl Expansion {
             curve.push(vec![a, pressure, self.exact.pressure(a) / unit]);
             ControlFlow::Continue(())
         };
-        let variant = format!("{}, a₀/h = {}", self.method.label(), self.cells);
+        let variant = format!(
+            "{}, {body_name}, a₀/h = {}",
+            self.method.label(),
+            self.cells
+        );
         let settings = MarchSettings::steps(self.steps);
-        let (run, _) = run(variant, &mut body, &self.method, &settings, &program, &mut observe);
+        let (run, _) = run(
+            variant,
+            &mut body,
+            &self.method,
+            &settings,
+            &program,
+            &mut observe,
+        );
         Ok((run, curve))
     }
 
-    /// Planes of symmetry, and the exact motion r'² = r² + a'² − a² of all nodes within the cavity.
+    /// Planes of symmetry, and the exact motion r'² = r² + a'² − a² of all nodes within the cavity
+    /// and next to its wall.
     fn driven(&self, grid: &Grid<2>, from: f64, to: f64) -> Result<Constraints<2>, AssemblyError> {
         let mut constraints = Constraints::free(grid);
         constraints.fix_wall(grid, 0, false, 0);
         constraints.fix_wall(grid, 1, false, 1);
         let added = to * to - from * from;
+        let reach = from + WALL * self.exact.inner / self.cells as f64;
         for node in 0..grid.node_count() {
             let x = grid.node_position(node);
             let r = x[0].hypot(x[1]);
-            if r > 0.0 && r <= from * (1.0 + 1e-9) {
+            if r > 0.0 && r <= reach {
                 let stretch = (r * r + added).sqrt() / r;
                 for axis in 0..2 {
                     constraints.prescribe(node, axis, (stretch - 1.0) * x[axis])?;
@@ -127,37 +179,193 @@ fn quarter_ring(inner: f64, outer: f64) -> Vec<[f64; 2]> {
         [radius * rounded(cosine), radius * rounded(sine)]
     };
     let outside = (0..=ARC).map(|k| at(outer, k));
-    outside.chain((0..=ARC).rev().map(|k| at(inner, k))).collect()
+    outside
+        .chain((0..=ARC).rev().map(|k| at(inner, k)))
+        .collect()
 }
 
 /// Runs the study.
 pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
-    let mut study = Study::new("cylinder", "", out)?;
-    let exact = ThickCylinder { inner: 1.0, outer: 2.0, shear: 100.0, strength: 1.0 };
-    let mut jobs = vec![];
-    for (method, points) in [(Method::igimp_bbar(), 2), (Method::igimp_bbar(), 3), (Method::igimp(), 2), (Method::impm_bbar(), 2)] {
-        for cells in [4, 8, 16] {
-            for steps in [25, 50] {
-            jobs.push(Expansion { exact, to: 1.5, steps, cells, points, method: method.clone() });
-            }
+    let mut study = Study::new("cylinder", ABOUT, out)?;
+    let meshes: &[usize] = match level {
+        Level::Quick => &[8],
+        Level::Default => &[8, 16],
+        Level::Full => &[8, 16, 32],
+    };
+    let thick = |cells: usize, method: Method| Expansion {
+        exact: THICK,
+        to: 1.5,
+        steps: 100,
+        cells,
+        method,
+    };
+    let mut jobs: Vec<Expansion> = meshes
+        .iter()
+        .map(|&cells| thick(cells, Method::igimp_bbar()))
+        .collect();
+    jobs.push(thick(8, Method::igimp()));
+    if level > Level::Quick {
+        jobs.push(Expansion {
+            exact: CAVITY,
+            to: 4.0,
+            steps: 120,
+            cells: 4,
+            method: Method::igimp_bbar(),
+        });
+    }
+    let done = jobs
+        .par_iter()
+        .map(Expansion::run)
+        .collect::<Result<Vec<_>, CaseError>>()?;
+    let mut shown = Vec::new();
+    for (job, (run, curve)) in jobs.iter().zip(done) {
+        if job.exact.outer > THICK.outer {
+            cavity(&mut study, job, run, curve)?;
+        } else if job.method.bbar {
+            shown.push(thick_cylinder(&mut study, job, run, curve)?);
+        } else {
+            shown.push(locked(&mut study, run, &curve));
         }
     }
-    let soft = ThickCylinder { inner: 1.0, outer: 8.0, shear: 100.0/3.0, strength: 1.0 };
-    for (cells, points) in [(2, 2), (2, 3), (4, 2), (4,3)] {
-            jobs.push(Expansion { exact: soft, to: 4.0, steps: 60, cells, points, method: Method::igimp_bbar() });
-    }
-    let _ = level;
-    for job in &jobs {
-        let (run, curve) = job.run("x")?;
-        eprintln!("{} points {} steps {} {} cuts {} {:.1} s", run.variant, job.points, job.steps, run.outcome, run.cuts, run.seconds);
-        let n = curve.rows.len();
-        for row in curve.rows.iter().step_by((n / 10).max(1)) {
-            eprintln!("   {:.3} {:.4} {:.4} {:+.2} %", row[0], row[1], row[2], 100.0 * (row[1] / row[2] - 1.0));
-        }
-        if let Some(row) = curve.rows.last() {
-            eprintln!("   {:.3} {:.4} {:.4} {:+.2} %", row[0], row[1], row[2], 100.0 * (row[1] / row[2] - 1.0));
-        }
-        study.run(run);
-    }
+    picture(&study, shown)?;
     Ok(study)
+}
+
+/// Checks a run of the thick cylinder.
+fn thick_cylinder(
+    study: &mut Study,
+    job: &Expansion,
+    run: Run,
+    curve: Table,
+) -> Result<Series, CaseError> {
+    let run = study.run_to_end(run);
+    let (early, late) = if job.cells < 16 {
+        (0.02, 0.01)
+    } else {
+        (0.01, 0.005)
+    };
+    for (a, share, oracle) in [
+        (1.005, early, ELASTIC_PLASTIC),
+        (1.1, late, RIGID_PLASTIC),
+        (1.5, late, RIGID_PLASTIC),
+    ] {
+        let quantity = format!("p/s_u at a = {a} a₀ [-]");
+        let exact = oracle.says(job.exact.pressure(a));
+        study.check(run, quantity, exact, Band::Relative(share), at(&curve, a));
+    }
+    study.check(
+        run,
+        "mean of |p − p_exact|/p_exact over the curve [-]",
+        ELASTIC_PLASTIC.says(0.0),
+        Band::AtMost(late),
+        mean_deviation(&curve),
+    );
+    if job.cells == 16 {
+        study.newton("thick_16", run)?;
+    }
+    let label = format!("{}, a_{{0}}/h = {}", job.method.label(), job.cells);
+    let series = Series::markers(label, curve.points(0, 1));
+    study.table(curve)?;
+    Ok(series)
+}
+
+/// The control: without B-bar the pressure is far too high wherever the run gets to.
+fn locked(study: &mut Study, run: Run, curve: &Table) -> Series {
+    let run = study.run(run);
+    let highest = curve
+        .rows
+        .iter()
+        .filter(|row| row[0] >= 1.02)
+        .map(|row| row[1] / row[2])
+        .fold(f64::NAN, f64::max);
+    study.control(
+        run,
+        "largest p/p_exact beyond a = 1.02 a₀, must lock [-]",
+        RIGID_PLASTIC.says(1.0),
+        Band::AtLeast(1.5),
+        highest,
+    );
+    Series::line("iGIMP, a_{0}/h = 8: locked", curve.points(0, 1))
+}
+
+/// Checks the cavity. What soil without end adds beyond the model is known exactly: the motion does
+/// not depend on it.
+fn cavity(study: &mut Study, job: &Expansion, run: Run, curve: Table) -> Result<(), CaseError> {
+    let run = study.run_to_end(run);
+    for a in [2.0, 3.0, 4.0] {
+        let beyond = job.exact.beyond(a);
+        study.check(
+            run,
+            format!("p/s_u in soil without end at a = {a} a₀ [-]"),
+            CAVITY_EXPANSION.says(job.exact.pressure(a) + beyond),
+            Band::Relative(0.01),
+            at(&curve, a) + beyond,
+        );
+    }
+    let measured = curve
+        .rows
+        .iter()
+        .map(|row| [row[0], row[1] + job.exact.beyond(row[0])]);
+    let exact = curve
+        .rows
+        .iter()
+        .map(|row| [row[0], row[2] + job.exact.beyond(row[0])]);
+    CurvePlot {
+        title: "Cavity in soil without end, G/s_{u} = 33.3".into(),
+        x_label: "radius of the cavity / a_{0}".into(),
+        y_label: "pressure / s_{u}".into(),
+        series: vec![
+            Series::line("exact", exact.collect()).in_colour(Colour::BLACK),
+            Series::markers("iGIMP + B-bar, a_{0}/h = 4", measured.collect()),
+        ],
+        lines: vec![ReferenceLine {
+            label: "limit 4.514".into(),
+            at: ReferenceValue::Y(job.exact.limit_pressure()),
+        }],
+        ..CurvePlot::default()
+    }
+    .write(&study.folder.join("cavity"))?;
+    curve.write_csv(&study.folder)
+}
+
+fn picture(study: &Study, mut shown: Vec<Series>) -> Result<(), CaseError> {
+    let exact = (0..=500)
+        .map(|k| {
+            let a = 1.0 + 0.001 * f64::from(k);
+            [a, THICK.pressure(a)]
+        })
+        .collect();
+    shown.insert(0, Series::line("exact", exact).in_colour(Colour::BLACK));
+    CurvePlot {
+        title: "Expanding thick cylinder, b_{0} = 2 a_{0}, G/s_{u} = 100".into(),
+        x_label: "inner radius / a_{0}".into(),
+        y_label: "pressure within / s_{u}".into(),
+        y_range: Some((0.0, 3.0)),
+        series: shown,
+        ..CurvePlot::default()
+    }
+    .write(&study.folder.join("pressure"))?;
+    Ok(())
+}
+
+/// Pressure at a radius, between the nearest two of the curve.
+fn at(curve: &Table, a: f64) -> f64 {
+    let rows = &curve.rows;
+    let after = rows.partition_point(|row| row[0] < a - 1e-9).max(1);
+    let (Some(before), Some(after)) = (rows.get(after - 1), rows.get(after)) else {
+        return f64::NAN;
+    };
+    let share = (a - before[0]) / (after[0] - before[0]);
+    before[1] + share * (after[1] - before[1])
+}
+
+/// The mean over the radius of |p − p_exact|/p_exact \[-\].
+fn mean_deviation(curve: &Table) -> f64 {
+    let (mut sum, mut length) = (0.0, 0.0);
+    for pair in curve.rows.windows(2) {
+        let step = pair[1][0] - pair[0][0];
+        sum += step * (pair[1][1] / pair[1][2] - 1.0).abs();
+        length += step;
+    }
+    sum / length
 }

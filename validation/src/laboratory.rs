@@ -7,15 +7,14 @@ use std::time::Instant;
 use igimp_assembly::{Method, ParticleSeed};
 use igimp_shape::{Axis, Grid, ShapeError};
 use igimp_solver::linear::SolverKind;
-use igimp_solver::{Accepted, Body, MarchReport, MarchSettings, Observer, Program, Workspace, march};
+use igimp_solver::{
+    Accepted, Body, MarchReport, MarchSettings, Observer, Program, Workspace, march,
+};
 
 use crate::study::Run;
 
 /// A grid of equal cells from the origin, `cells[d]` along axis d, of size `cell` \[length\].
-pub(crate) fn grid_of<const D: usize>(
-    cell: f64,
-    cells: [usize; D],
-) -> Result<Grid<D>, ShapeError> {
+pub(crate) fn grid_of<const D: usize>(cell: f64, cells: [usize; D]) -> Result<Grid<D>, ShapeError> {
     let mut axes = Vec::new();
     for count in cells {
         axes.push(Axis::uniform(0.0, cell, count)?);
@@ -34,13 +33,13 @@ pub(crate) fn filled<const D: usize>(grid: &Grid<D>, per_direction: usize) -> Ve
     for cell in 0..grid.cell_count() {
         let place: [usize; D] = digits(cell, cells);
         let lower = grid.node_position(grid.node_index(place));
-        let size = grid.cell_size(place).map(|size| size / per_direction as f64);
+        let size = grid
+            .cell_size(place)
+            .map(|size| size / per_direction as f64);
         for part in 0..parts {
             let step: [usize; D] = digits(part, [per_direction; D]);
             seeds.push(ParticleSeed {
-                x: std::array::from_fn(|axis| {
-                    lower[axis] + (step[axis] as f64 + 0.5) * size[axis]
-                }),
+                x: std::array::from_fn(|axis| lower[axis] + (step[axis] as f64 + 0.5) * size[axis]),
                 half_length: size.map(|size| 0.5 * size),
                 volume: size.iter().product(),
                 density: 1.0,

@@ -68,10 +68,7 @@ impl ThickCylinder {
 
 /// The dilogarithm Li₂(x) = Σ x^k/k² for 0 ≤ x ≤ 0.95.
 fn dilogarithm(x: f64) -> f64 {
-    (1..TERMS)
-        .rev()
-        .map(|k| x.powi(k) / f64::from(k * k))
-        .sum()
+    (1..TERMS).rev().map(|k| x.powi(k) / f64::from(k * k)).sum()
 }
 
 #[cfg(test)]
@@ -109,7 +106,10 @@ mod tests {
             for a in [1.0001, 1.01, 1.1, 1.5] {
                 let cylinder = cylinder(shear);
                 let difference = cylinder.pressure(a) - by_quadrature(&cylinder, a);
-                assert!(difference.abs() < 1e-6, "G = {shear}, a = {a}: {difference}");
+                assert!(
+                    difference.abs() < 1e-6,
+                    "G = {shear}, a = {a}: {difference}"
+                );
             }
         }
     }

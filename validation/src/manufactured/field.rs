@@ -97,9 +97,8 @@ impl<const D: usize> Field<D> {
 
     /// Deformation gradient F = I + ∂u/∂X.
     pub(crate) fn def_grad(&self, x: &[f64; D]) -> Matrix<D> {
-        let entry = |i: usize, j: usize| {
-            self.product(i, x, std::array::from_fn(|d| usize::from(d == j)))
-        };
+        let entry =
+            |i: usize, j: usize| self.product(i, x, std::array::from_fn(|d| usize::from(d == j)));
         std::array::from_fn(|i| {
             std::array::from_fn(|j| entry(i, j) + if i == j { 1.0 } else { 0.0 })
         })
@@ -107,9 +106,7 @@ impl<const D: usize> Field<D> {
 
     /// ∂F/∂X_k \[1/length\].
     pub(crate) fn def_grad_slope(&self, x: &[f64; D], k: usize) -> Matrix<D> {
-        let orders = |j: usize| {
-            std::array::from_fn(|d| usize::from(d == j) + usize::from(d == k))
-        };
+        let orders = |j: usize| std::array::from_fn(|d| usize::from(d == j) + usize::from(d == k));
         std::array::from_fn(|i| std::array::from_fn(|j| self.product(i, x, orders(j))))
     }
 }

@@ -73,7 +73,9 @@ impl<const D: usize> Jet<D> {
 fn kirchhoff<const D: usize>(f: &Jet<D>, moduli: Moduli) -> Jet<D> {
     let identity = Jet::constant(identity());
     let b = f.times(&f.transposed());
-    let z = b.plus(-1.0, &identity).times(&b.plus(1.0, &identity).inverse());
+    let z = b
+        .plus(-1.0, &identity)
+        .times(&b.plus(1.0, &identity).inverse());
     let square = z.times(&z);
     let (mut strain, mut power) = (z, z);
     for k in 1..TERMS {

@@ -1,0 +1,99 @@
+//! A prism between smooth platens, pressed to half its height.
+
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::sync::Arc;
+
+use igimp_assembly::{Constraints, Method, Particles, SharedLaw, StepConditions, StepLoads};
+use igimp_cases::CaseError;
+use igimp_cases::check::Band;
+use igimp_cases::seed::fill_polygon;
+use igimp_cases::table::Table;
+use igimp_material::{Elasticity, Tresca};
+use igimp_shape::{Axis, Grid};
+use igimp_solver::{Accepted, Body, MarchSettings};
+
+use crate::laboratory::run;
+use crate::oracle::{Oracle, OracleKind};
+use crate::study::{Level, Run, Study};
+
+/// Presses half a prism of unit height and half-width.
+fn press(cells: usize, method: &Method, steps: usize) -> Result<(Run, Table), CaseError> {
+    let h = 1.0 / cells as f64;
+    let height = |factor: f64| 1.0 - 0.5 * factor;
+    let grid_at = |height: f64| -> Result<Grid<2>, igimp_shape::ShapeError> {
+        Ok(Grid::new([
+            Axis::uniform(0.0, h, 2 * cells + 2)?,
+            Axis::uniform(0.0, height / cells as f64, cells)?,
+        ]))
+    };
+    let polygon = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+    let mut body = Body::new(Particles::new(&fill_polygon(
+        &grid_at(1.0)?,
+        &polygon,
+        2,
+        1.0,
+        0,
+    )?)?);
+    let law: SharedLaw = Arc::new(Tresca::new(Elasticity::new(1000.0, 0.4999)?, 1.0)?);
+    let program = |from: f64, to: f64| {
+        let grid = grid_at(height(from)).expect("the prism has a height");
+        let mut constraints = Constraints::free(&grid);
+        constraints.fix_wall(&grid, 0, false, 0);
+        constraints.fix_wall(&grid, 1, false, 1);
+        for column in 0..grid.axes[0].node_count() {
+            let node = grid.node_index([column, cells]);
+            constraints.prescribe(node, 1, height(to) - height(from))?;
+        }
+        Ok(StepConditions {
+            grid,
+            constraints,
+            loads: StepLoads::gravity([0.0; 2]),
+            laws: vec![Arc::clone(&law)],
+        })
+    };
+    let mut curve = Table::new("force", &["height_[-]", "force_[s_u]", "exact_[s_u]"]);
+    let mut observe = |accepted: &Accepted<'_, 2>| {
+        let grid = &accepted.conditions.grid;
+        let force: f64 = (0..grid.axes[0].node_count())
+            .map(|column| -accepted.forces.reactions[grid.node_index([column, cells])][1])
+            .sum();
+        let now = height(accepted.report.to);
+        curve.push(vec![now, force, 2.0 / now]);
+        ControlFlow::Continue(())
+    };
+    let variant = format!("{}, {cells} cells", method.label());
+    let settings = MarchSettings::steps(steps);
+    let (run, _) = run(
+        variant,
+        &mut body,
+        method,
+        &settings,
+        &program,
+        &mut observe,
+    );
+    Ok((run, curve))
+}
+
+pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
+    let mut study = Study::new("prism", "", out)?;
+    for method in [Method::igimp_bbar(), Method::igimp(), Method::impm_bbar()] {
+        for (cells, steps) in [(4, 20), (8, 20), (8, 40)] {
+            let (run, curve) = press(cells, &method, steps)?;
+            eprintln!(
+                "{} steps {steps} {} cuts {} {:.2} s",
+                run.variant, run.outcome, run.cuts, run.seconds
+            );
+            for row in curve.rows.iter().step_by(4) {
+                eprintln!(
+                    "   {:.4} {:.4} {:+.3} %",
+                    row[0],
+                    row[1],
+                    100.0 * (row[1] / row[2] - 1.0)
+                );
+            }
+        }
+    }
+    let _ = level;
+    Ok(study)
+}
