@@ -5,7 +5,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use igimp_assembly::{
-    Constraints, DomainUpdate, LoadPoint, Method, Particles, SharedLaw, StepConditions, StepLoads,
+    Constraints, LoadPoint, Method, Particles, SharedLaw, StepConditions, StepLoads,
 };
 use igimp_cases::CaseError;
 use igimp_cases::check::Band;
@@ -96,7 +96,6 @@ impl Bending {
 
 pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
     let mut study = Study::new("elastica", "", out)?;
-    let m = Method::igimp_bbar;
     let mut jobs = vec![];
     let base = |cells, points, steps, hold, method| Bending {
         load: 1.0,
@@ -107,59 +106,60 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
         method,
         shift: 0.0,
     };
-    for (cells, points) in [(4, 3), (8, 2), (8, 3), (8, 4), (16, 3)] {
-        jobs.push((String::new(), base(cells, points, 10, 0, m())));
-    }
-    for steps in [1, 2, 5, 20, 40] {
-        jobs.push((String::new(), base(8, 3, steps, 0, m())));
-    }
-    jobs.push((String::new(), base(8, 3, 10, 30, m())));
-    jobs.push((String::new(), base(8, 3, 10, 30, Method::igimp())));
-    jobs.push((String::new(), base(8, 3, 10, 30, Method::impm_bbar())));
-    jobs.push((
-        "fixed domains".into(),
-        base(
-            8,
-            3,
-            10,
-            30,
-            Method {
-                domain_update: DomainUpdate::Fixed,
-                ..m()
+    for method in [Method::igimp(), Method::igimp_bbar()] {
+        for (cells, points, steps) in [
+            (8, 2, 10),
+            (8, 4, 10),
+            (8, 3, 1),
+            (8, 3, 40),
+            (16, 3, 1),
+            (16, 3, 10),
+            (4, 3, 10),
+        ] {
+            jobs.push((String::new(), base(cells, points, steps, 0, method.clone())));
+        }
+        for load in [2.0, 5.0] {
+            jobs.push((
+                String::new(),
+                Bending {
+                    load,
+                    ..base(8, 3, 20, 0, method.clone())
+                },
+            ));
+        }
+        for below in [1e-6, 1e-5, 1e-3] {
+            let mut other = method.clone();
+            other.small_cuts.below = below;
+            jobs.push((format!("below {below}"), base(8, 3, 10, 0, other)));
+        }
+        jobs.push((
+            "small strain".into(),
+            base(
+                8,
+                3,
+                10,
+                0,
+                Method {
+                    kinematics: igimp_assembly::Kinematics::SmallStrain,
+                    ..method.clone()
+                },
+            ),
+        ));
+        jobs.push((
+            "shifted".into(),
+            Bending {
+                shift: 0.5,
+                ..base(8, 3, 10, 0, method.clone())
             },
-        ),
-    ));
-    let mut none = m();
-    none.small_cuts.below = 0.0;
-    jobs.push(("no ties".into(), base(8, 3, 10, 30, none)));
-    let mut ghost = m();
-    ghost.small_cuts.ghost_penalty = 1e-3;
-    jobs.push(("ghost 1e-3".into(), base(8, 3, 10, 30, ghost)));
-    let mut more = m();
-    more.small_cuts.below = 1e-2;
-    jobs.push(("ties below 1e-2".into(), base(8, 3, 10, 30, more)));
-    jobs.push((
-        "shifted".into(),
-        Bending {
-            shift: 0.5,
-            ..base(8, 3, 10, 0, m())
-        },
-    ));
-    jobs.push((
-        "tiny, one step".into(),
-        Bending {
-            load: 0.01,
-            ..base(8, 3, 1, 20, m())
-        },
-    ));
-    jobs.push((
-        "tiny, shifted".into(),
-        Bending {
-            load: 0.01,
-            shift: 0.5,
-            ..base(8, 3, 1, 20, m())
-        },
-    ));
+        ));
+        jobs.push((
+            "shifted".into(),
+            Bending {
+                shift: 0.5,
+                ..base(8, 3, 1, 0, method.clone())
+            },
+        ));
+    }
     for (name, job) in &jobs {
         let exact = Cantilever {
             load: job.load,

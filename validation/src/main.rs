@@ -97,7 +97,7 @@ impl Case {
             Self::Cylinder => cylinder::study(level, out),
             Self::Cook => cook::study(level, out),
             Self::NotchedStrip => notched_strip::study(level, out),
-            Self::Prism => prism::study(level, out),
+            Self::Prism => prism::study(out),
             Self::Elastica => elastica::study(level, out),
         }
     }

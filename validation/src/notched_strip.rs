@@ -1,6 +1,7 @@
 //! The strip with two deep notches: fully plastic flow that is constrained in all directions, the
 //! problem with which locking was found.
 
+use std::f64::consts::PI;
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::Arc;
@@ -19,27 +20,32 @@ use crate::laboratory::{filled, run};
 use crate::oracle::{Oracle, OracleKind};
 use crate::study::{Level, Run, Study};
 
+/// What the book says of the study.
+const ABOUT: &str = "A strip with two deep notches is pulled until its net section flows. Von Mises soil under full constraint: the limit is Prandtl's. With B-bar the force levels off there, without B-bar it rises for ever.";
+/// Net stress at the limit.
+const PRANDTL: Oracle = Oracle {
+    kind: OracleKind::Exact,
+    source: "Prandtl's field between deep notches; Nagtegaal, Parks and Rice 1974",
+    locator: "net stress (2 + π)/√3 σ_y, plane strain",
+};
 /// Half the net section \[length\].
 const LIGAMENT: f64 = 1.0;
 /// Half the width and half the length of the strip over half the net section \[-\].
 const SIZE: f64 = 10.0;
 /// Young's modulus over the yield stress \[-\].
-const YOUNG: f64 = 1e4;
+const YOUNG: f64 = 3e4;
 /// Elongation of half the strip at the end over half the net section \[-\].
-const PULL: f64 = 0.006;
+const PULL: f64 = 0.005;
+/// Steps of a run.
+const STEPS: usize = 25;
 
 /// Pulls a quarter; the curve has elongation and net stress over σ_y. Cells along the ligament are a
 /// whole number and a half, so that the tip of the notch is in the middle of a cell.
-fn pull(
-    cells: usize,
-    method: &Method,
-    points: usize,
-    steps: usize,
-) -> Result<(Run, Table), CaseError> {
+fn pull(cells: usize, method: &Method) -> Result<(Run, Table), CaseError> {
     let h = LIGAMENT / (cells as f64 + 0.5);
     let axis = graded(h, SIZE * LIGAMENT)?;
     let strip = Grid::new([axis.clone(), axis.clone()]);
-    let mut body = Body::new(Particles::new(&filled(&strip, points))?);
+    let mut body = Body::new(Particles::new(&filled(&strip, 2))?);
     let mut nodes = axis.nodes().to_vec();
     let count = axis.cell_count();
     nodes.push(axis.end() + axis.spacing(count - 1));
@@ -67,7 +73,10 @@ fn pull(
             laws: vec![Arc::clone(&law)],
         })
     };
-    let mut curve = Table::new("net_stress", &["elongation_[-]", "net_stress_[σ_y]"]);
+    let mut curve = Table::new(
+        format!("net_stress_{cells}.5"),
+        &["elongation_[-]", "net_stress_[σ_y]"],
+    );
     curve.push(vec![0.0; 2]);
     let mut observe = |accepted: &Accepted<'_, 2>| {
         let force: f64 = (0..=cells)
@@ -77,7 +86,7 @@ fn pull(
         ControlFlow::Continue(())
     };
     let variant = format!("{}, c/h = {cells}.5", method.label());
-    let settings = MarchSettings::steps(steps);
+    let settings = MarchSettings::steps(STEPS);
     let (run, _) = run(
         variant,
         &mut body,
@@ -105,25 +114,69 @@ fn graded(h: f64, end: f64) -> Result<Axis, ShapeError> {
     Axis::from_nodes(nodes)
 }
 
+/// Runs the study.
 pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
-    let mut study = Study::new("notched-strip", "", out)?;
-    for method in [Method::igimp_bbar(), Method::igimp()] {
-        for (cells, points) in [(2, 2), (4, 2), (4, 3), (8, 2)] {
-            let (run, curve) = pull(cells, &method, points, 20)?;
-            eprintln!(
-                "{} points {points} {} cuts {} {:.2} s",
-                run.variant, run.outcome, run.cuts, run.seconds
-            );
-            for row in curve.rows.iter().step_by(2) {
-                eprintln!(
-                    "   {:.4} {:.4} {:+.2} %",
-                    row[0],
-                    row[1],
-                    100.0 * (row[1] / 2.9685 - 1.0)
+    let mut study = Study::new("notched-strip", ABOUT, out)?;
+    let meshes: &[usize] = match level {
+        Level::Quick => &[2, 4],
+        Level::Default => &[2, 4, 8],
+        Level::Full => &[2, 4, 8, 16],
+    };
+    let mut jobs: Vec<(usize, Method)> = meshes
+        .iter()
+        .map(|&cells| (cells, Method::igimp_bbar()))
+        .collect();
+    jobs.push((4, Method::igimp()));
+    let done = jobs
+        .par_iter()
+        .map(|(cells, method)| pull(*cells, method))
+        .collect::<Result<Vec<_>, CaseError>>()?;
+    let limit = (2.0 + PI) / 3.0_f64.sqrt();
+    let mut ends: Vec<[f64; 2]> = Vec::new();
+    let mut shown = Vec::new();
+    for ((cells, method), (run, curve)) in jobs.iter().zip(done) {
+        let run = study.run_to_end(run);
+        let end = curve.rows.last().map_or(f64::NAN, |row| row[1]);
+        let quantity = format!("net stress / σ_y at E u/(σ_y c) = {} [-]", PULL * YOUNG);
+        let expected = PRANDTL.says(limit);
+        let label = format!("{}, c/h = {cells}.5", method.label());
+        shown.push(Series::line(label, scaled(&curve)));
+        if method.bbar {
+            let size = 1.0 / (*cells as f64 + 0.5);
+            let band = Band::Between(limit * (1.0 - 0.25 * size), 1.01 * limit);
+            study.check(run, quantity, expected, band, end);
+            if let Some(&[coarse, before]) = ends.last() {
+                let extrapolated = end + (end - before) * size / (coarse - size);
+                let quantity = format!(
+                    "net stress / σ_y, c/h = {}.5 and {cells}.5 extrapolated to h = 0 [-]",
+                    cells / 2
                 );
+                study.check(run, quantity, expected, Band::Relative(0.02), extrapolated);
             }
+            ends.push([size, end]);
+            study.table(curve)?;
+        } else {
+            let quantity = format!("{quantity}, must find no limit");
+            study.control(run, quantity, expected, Band::AtLeast(1.05 * limit), end);
         }
     }
-    let _ = level;
+    CurvePlot {
+        title: "Strip with deep notches".into(),
+        x_label: "E u / (σ_{y} c)".into(),
+        y_label: "net stress / σ_{y}".into(),
+        series: shown,
+        lines: vec![ReferenceLine {
+            label: "(2 + π)/√3".into(),
+            at: ReferenceValue::Y(limit),
+        }],
+        ..CurvePlot::default()
+    }
+    .write(&study.folder.join("net_stress"))?;
     Ok(study)
+}
+
+/// A curve over the elastic measure of elongation.
+fn scaled(curve: &Table) -> Vec<[f64; 2]> {
+    let rows = curve.rows.iter();
+    rows.map(|row| [row[0] * YOUNG, row[1]]).collect()
 }
