@@ -33,9 +33,9 @@ const LIGAMENT: f64 = 1.0;
 /// Half the width and half the length of the strip over half the net section \[-\].
 const SIZE: f64 = 10.0;
 /// Young's modulus over the yield stress \[-\].
-const YOUNG: f64 = 3e4;
+const YOUNG: f64 = 6e4;
 /// Elongation of half the strip at the end over half the net section \[-\].
-const PULL: f64 = 0.005;
+const PULL: f64 = 0.0025;
 /// Steps of a run.
 const STEPS: usize = 25;
 
@@ -143,8 +143,11 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
         shown.push(Series::line(label, scaled(&curve)));
         if method.bbar {
             let size = 1.0 / (*cells as f64 + 0.5);
-            let band = Band::Between(limit * (1.0 - 0.25 * size), 1.01 * limit);
-            study.check(run, quantity, expected, band, end);
+            if Some(cells) == meshes.last() {
+                // The tip is blurred over a cell: a quarter of one is missing from the section.
+                let share = if *cells < 8 { 0.06 } else { 0.04 };
+                study.check(run, quantity, expected, Band::Relative(share), end);
+            }
             if let Some(&[coarse, before]) = ends.last() {
                 let extrapolated = end + (end - before) * size / (coarse - size);
                 let quantity = format!(

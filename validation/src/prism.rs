@@ -111,3 +111,17 @@ pub(crate) fn study(out: &Path) -> Result<Study, CaseError> {
     }
     Ok(study)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_force_is_twice_the_strength_times_the_width() {
+        let (run, curve) = press(2, &Method::igimp_bbar()).unwrap();
+        assert_eq!(run.outcome, "completed");
+        for row in &curve.rows {
+            assert!((row[1] / row[2] - 1.0).abs() < 1e-4, "{row:?}");
+        }
+    }
+}
