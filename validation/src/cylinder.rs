@@ -222,7 +222,10 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
         if job.exact.outer > THICK.outer {
             cavity(&mut study, job, run, curve)?;
         } else if job.method.bbar {
-            shown.push(thick_cylinder(&mut study, job, run, curve)?);
+            let series = thick_cylinder(&mut study, job, run, curve)?;
+            if meshes.last() == Some(&job.cells) {
+                shown.push(series);
+            }
         } else {
             shown.push(locked(&mut study, run, &curve));
         }
@@ -264,9 +267,13 @@ fn thick_cylinder(
         study.newton("thick_16", run)?;
     }
     let label = format!("{}, a_{{0}}/h = {}", job.method.label(), job.cells);
-    let series = Series::markers(label, curve.points(0, 1));
-    study.table(curve)?;
-    Ok(series)
+    let shown = curve.points(0, 1).into_iter().step_by(4).collect();
+    if study.runs[run].cuts == 0 {
+        study.table(curve)?;
+    } else {
+        curve.write_csv(&study.folder)?;
+    }
+    Ok(Series::markers(label, shown))
 }
 
 /// The control: without B-bar the pressure is far too high wherever the run gets to.

@@ -249,7 +249,7 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
         .map(|(job, _)| job.run())
         .collect::<Result<Vec<_>, CaseError>>()?;
     let mut table = Table::new(
-        "deflection",
+        format!("deflection_{}_runs", jobs.len()),
         &[
             "bbar",
             "load_[-]",
