@@ -2,11 +2,19 @@
 //! compares curves and effort with snapshots. `cargo xtask validate` calls this program.
 
 mod column;
+mod cook;
+mod cylinder;
+mod elastica;
+mod exact;
 mod footing;
+mod laboratory;
+mod manufactured;
 mod matrix;
 mod mohr_coulomb_slope;
+mod notched_strip;
 mod oracle;
 mod pictures;
+mod prism;
 mod reference;
 mod runs;
 mod snapshot;
@@ -70,6 +78,12 @@ enum Case {
     VonMisesSlope,
     MohrCoulombSlope,
     Footing,
+    Manufactured,
+    Cylinder,
+    Cook,
+    NotchedStrip,
+    Prism,
+    Elastica,
 }
 
 impl Case {
@@ -79,6 +93,12 @@ impl Case {
             Self::VonMisesSlope => von_mises_slope::study(level, out),
             Self::MohrCoulombSlope => mohr_coulomb_slope::study(level, out),
             Self::Footing => footing::study(level, out),
+            Self::Manufactured => manufactured::study(level, out),
+            Self::Cylinder => cylinder::study(level, out),
+            Self::Cook => cook::study(level, out),
+            Self::NotchedStrip => notched_strip::study(level, out),
+            Self::Prism => prism::study(out),
+            Self::Elastica => elastica::study(level, out),
         }
     }
 }

@@ -1,0 +1,4 @@
+//! Exact solutions that studies are held against.
+
+pub(crate) mod cylinder;
+pub(crate) mod elastica;
