@@ -3,12 +3,14 @@
 
 mod column;
 mod footing;
+mod limit_equilibrium;
 mod matrix;
 mod mohr_coulomb_slope;
 mod oracle;
 mod pictures;
 mod reference;
 mod runs;
+mod slopes;
 mod snapshot;
 mod study;
 mod table;
@@ -69,6 +71,7 @@ enum Case {
     Column,
     VonMisesSlope,
     MohrCoulombSlope,
+    Slopes,
     Footing,
 }
 
@@ -78,6 +81,7 @@ impl Case {
             Self::Column => column::study(out),
             Self::VonMisesSlope => von_mises_slope::study(level, out),
             Self::MohrCoulombSlope => mohr_coulomb_slope::study(level, out),
+            Self::Slopes => slopes::study(level, out),
             Self::Footing => footing::study(level, out),
         }
     }

@@ -30,6 +30,16 @@ impl Reference {
         Self { header, rows }
     }
 
+    /// All rows, for a table of this many columns.
+    ///
+    /// # Panics
+    /// If the table has another number of columns.
+    pub(crate) fn rows<const N: usize>(&self) -> Vec<[f64; N]> {
+        let rows = self.rows.iter();
+        rows.map(|row| row[..].try_into().expect("the table has these columns"))
+            .collect()
+    }
+
     /// Two columns as points.
     ///
     /// # Panics
