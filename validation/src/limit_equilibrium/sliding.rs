@@ -108,10 +108,11 @@ mod tests {
     }
 
     /// GOAL: the slide along the weak layer of Griffiths and Lane (1999), example 3, at a strength
-    /// ratio of 0.2. ORACLE: 0.45 to 0.50 by Janbu's method on three lines, their figure 7.
+    /// ratio of 0.2. ORACLE: an upper bound lies above 0.60 by finite elements, read off their figure
+    /// 7 to 0.05, and above 0.45 to 0.50 by Janbu's method, which has no strength in the joints.
     #[test]
     fn the_weak_layer_carries_the_slide() {
         let found = upper_bound(&weak_layer(0.2), weak_layer_edges());
-        assert!(0.42 < found && found < 0.60, "{found}");
+        assert!(0.55 < found && found < 0.70, "{found}");
     }
 }

@@ -114,13 +114,14 @@ fn searches(problems: &[Problem], level: Level) -> Vec<Search> {
             search(variant(10, false, true));
         }
         if level == Level::Full {
-            search(variant(20, true, true));
+            for cells in [20, 40] {
+                if cells <= problem.finest {
+                    search(variant(cells, true, true));
+                }
+            }
             if drained {
                 search(variant(10, true, false));
                 search(variant(20, true, false));
-            }
-            if problem.finest {
-                search(variant(40, true, true));
             }
         }
     }

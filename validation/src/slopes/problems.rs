@@ -63,8 +63,9 @@ pub(crate) struct Problem {
     pub(crate) level: Level,
     /// Whether it is run without B-bar too, as a control.
     pub(crate) locks: bool,
-    /// Whether it is run on forty cells over the height too, and extrapolated.
-    pub(crate) finest: bool,
+    /// The most cells over the height, of 10, 20 and 40, at the full level; with 40 the factor is
+    /// extrapolated too.
+    pub(crate) finest: u32,
 }
 
 /// A hand calculation.
@@ -91,7 +92,7 @@ pub(crate) fn undrained(bounds: &[[f64; 4]]) -> Vec<Problem> {
             section: Section::homogeneous(&name, (run, depth), (cohesion, 0.0), margins),
             oracle: UNDRAINED_BOUNDS,
             known: Some([lower, upper].map(|number| number * cohesion / 200.0)),
-            excess: 0.02,
+            excess: if depth > 1.0 { 0.02 } else { 0.065 },
             opinion: Opinion::Rotation,
             bracket: [0.9, 1.3],
             level: if depth == 1.5 {
@@ -100,7 +101,7 @@ pub(crate) fn undrained(bounds: &[[f64; 4]]) -> Vec<Problem> {
                 Level::Default
             },
             locks: true,
-            finest: false,
+            finest: if depth > 1.0 { 20 } else { 40 },
         }
     };
     bounds.iter().map(problem).collect()
@@ -117,7 +118,7 @@ pub(crate) fn drained() -> Vec<Problem> {
         bracket: [known[0] - 0.1, known[0] + 0.2],
         level: Level::Quick,
         locks: false,
-        finest: true,
+        finest: 40,
     };
     vec![
         slope(
@@ -158,7 +159,7 @@ pub(crate) fn published() -> Vec<Problem> {
         bracket: [0.8, 2.2],
         level: Level::Default,
         locks: false,
-        finest: false,
+        finest: 20,
     };
     let layer = |ratio, known| Problem {
         section: weak_layer(ratio),
@@ -169,7 +170,7 @@ pub(crate) fn published() -> Vec<Problem> {
         bracket: [0.4, 1.6],
         level: Level::Default,
         locks: false,
-        finest: false,
+        finest: 20,
     };
     let acads = |section, known| Problem {
         section,
@@ -180,7 +181,7 @@ pub(crate) fn published() -> Vec<Problem> {
         bracket: [0.9, 1.5],
         level: Level::Default,
         locks: false,
-        finest: false,
+        finest: 20,
     };
     vec![
         foundation(0.6, None),
