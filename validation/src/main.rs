@@ -14,6 +14,7 @@ mod slopes;
 mod snapshot;
 mod study;
 mod table;
+mod tilted_layer;
 mod von_mises_slope;
 
 use std::error::Error;
@@ -72,6 +73,7 @@ enum Case {
     VonMisesSlope,
     MohrCoulombSlope,
     Slopes,
+    TiltedLayer,
     Footing,
 }
 
@@ -82,6 +84,7 @@ impl Case {
             Self::VonMisesSlope => von_mises_slope::study(level, out),
             Self::MohrCoulombSlope => mohr_coulomb_slope::study(level, out),
             Self::Slopes => slopes::study(level, out),
+            Self::TiltedLayer => tilted_layer::study(level, out),
             Self::Footing => footing::study(level, out),
         }
     }

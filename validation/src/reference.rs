@@ -81,6 +81,11 @@ pub(crate) fn slope_limit_load_bounds() -> Reference {
     Reference::parse(include_str!("../reference/slope_limit_load_bounds.csv"))
 }
 
+/// Bounds on the factor of safety of drained slopes.
+pub(crate) fn slope_safety_bounds() -> Reference {
+    Reference::parse(include_str!("../reference/slope_safety_bounds.csv"))
+}
+
 /// Griffiths and Lane's dimensionless displacement against strength reduction factor.
 pub(crate) fn griffiths_lane() -> Reference {
     Reference::parse(include_str!("../reference/griffiths_lane_1999_table2.csv"))

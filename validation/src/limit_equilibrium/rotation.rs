@@ -110,7 +110,7 @@ pub(crate) fn upper_bound(section: &Section) -> f64 {
         section
             .layers
             .iter()
-            .all(|layer| layer.friction == friction),
+            .all(|layer| (layer.friction - friction).abs() < 1e-9),
         "a spiral needs one angle of friction"
     );
     let [left, right] = section.sides();

@@ -15,7 +15,7 @@ use rayon::prelude::*;
 
 use crate::limit_equilibrium::{bishop, rotation, sliding};
 use crate::oracle::{Oracle, OracleKind};
-use crate::reference::slope_limit_load_bounds;
+use crate::reference::{slope_limit_load_bounds, slope_safety_bounds};
 use crate::runs::Computed;
 use crate::slopes::problems::{Opinion, Problem, drained, published, undrained, weak_layer_edges};
 use crate::slopes::section::Variant;
@@ -68,7 +68,7 @@ pub(crate) struct Known {
 pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
     let mut study = Study::new("slopes", ABOUT, out)?;
     let mut problems = undrained(&slope_limit_load_bounds().rows());
-    problems.extend(drained());
+    problems.extend(drained(&slope_safety_bounds().rows()));
     problems.extend(published());
     let searches = searches(&problems, level);
     let known = problems.par_iter().map(second_opinion).collect::<Vec<_>>();
@@ -104,25 +104,21 @@ fn searches(problems: &[Problem], level: Level) -> Vec<Search> {
             searches.push(Search {
                 problem: k,
                 variant,
-            })
+            });
         };
-        let drained = problem.section.layers.iter().any(|l| l.friction > 0.0);
-        if level >= problem.level {
-            search(variant(10, true, true));
+        // Of the published ones only values for ψ = φ or of slices are known.
+        let drained = problem.oracle.kind == OracleKind::LimitAnalysis
+            && problem.section.layers[0].friction > 0.0;
+        for (place, &cells) in problem.meshes.iter().enumerate() {
+            if level == Level::Full || (place == 0 && level >= problem.level) {
+                search(variant(cells, true, true));
+            }
+            if level == Level::Full && drained && cells <= 20 {
+                search(variant(cells, true, false));
+            }
         }
         if level >= Level::Default && problem.locks {
-            search(variant(10, false, true));
-        }
-        if level == Level::Full {
-            for cells in [20, 40] {
-                if cells <= problem.finest {
-                    search(variant(cells, true, true));
-                }
-            }
-            if drained {
-                search(variant(10, true, false));
-                search(variant(20, true, false));
-            }
+            search(variant(problem.meshes[0], false, true));
         }
     }
     searches

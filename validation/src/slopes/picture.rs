@@ -3,9 +3,7 @@
 use std::path::Path;
 
 use igimp_cases::CaseError;
-use igimp_cases::figures::{
-    CurvePlot, LineStyle, ReferenceLine, ReferenceValue, Series, SeriesStyle,
-};
+use igimp_cases::figures::{Band, CurvePlot, ReferenceLine, ReferenceValue, Series};
 
 use super::Known;
 use super::section::Variant;
@@ -17,26 +15,25 @@ pub(crate) fn write(
     points: &[(usize, Variant, f64)],
 ) -> Result<(), CaseError> {
     let middle = |slope: usize| 0.5 * (known[slope].interval[0] + known[slope].interval[1]);
-    let mut bars = Vec::new();
-    for (slope, known) in known.iter().enumerate() {
+    let bands = known.iter().enumerate().map(|(slope, known)| {
         let x = slope as f64 + 1.0;
-        let [low, high] = known.interval.map(|end| end / middle(slope));
-        for (across, y) in [
-            (-0.3, low),
-            (0.3, low),
-            (0.3, high),
-            (-0.3, high),
-            (-0.3, low),
-        ] {
-            bars.push([x + across, y]);
+        let edge = |end: f64| {
+            [-0.4, 0.4]
+                .map(|across| [x + across, end / middle(slope)])
+                .to_vec()
+        };
+        Band {
+            label: if slope == 0 {
+                "known".into()
+            } else {
+                String::new()
+            },
+            lower: edge(known.interval[0]),
+            upper: edge(known.interval[1]),
         }
-        bars.push([f64::NAN; 2]);
-    }
-    let mut series = vec![Series::new(
-        "known: bounds or published values",
-        bars,
-        SeriesStyle::Line(LineStyle::Solid),
-    )];
+    });
+    let bands = bands.collect();
+    let mut series = Vec::new();
     let hand = known.iter().enumerate();
     series.push(Series::markers(
         "by hand",
@@ -72,6 +69,7 @@ pub(crate) fn write(
             label: String::new(),
             at: ReferenceValue::Y(1.0),
         }],
+        bands,
         series,
         ..CurvePlot::default()
     }

@@ -63,9 +63,8 @@ pub(crate) struct Problem {
     pub(crate) level: Level,
     /// Whether it is run without B-bar too, as a control.
     pub(crate) locks: bool,
-    /// The most cells over the height, of 10, 20 and 40, at the full level; with 40 the factor is
-    /// extrapolated too.
-    pub(crate) finest: u32,
+    /// Cells over the height: the first at that level, all of them at the full level.
+    pub(crate) meshes: &'static [u32],
 }
 
 /// A hand calculation.
@@ -95,57 +94,56 @@ pub(crate) fn undrained(bounds: &[[f64; 4]]) -> Vec<Problem> {
             excess: if depth > 1.0 { 0.02 } else { 0.065 },
             opinion: Opinion::Rotation,
             bracket: [0.9, 1.3],
-            level: if depth == 1.5 {
+            level: if (1.2..1.8).contains(&depth) {
                 Level::Quick
             } else {
                 Level::Default
             },
             locks: true,
-            finest: if depth > 1.0 { 20 } else { 40 },
+            meshes: if depth > 1.0 {
+                &[10, 20]
+            } else {
+                &[10, 20, 40]
+            },
         }
     };
     bounds.iter().map(problem).collect()
 }
 
-/// The homogeneous drained slopes with bounds.
-pub(crate) fn drained() -> Vec<Problem> {
-    let slope = |name: &str, shape, cohesion, margins, oracle, known| Problem {
-        section: Section::homogeneous(name, shape, (cohesion, 20.0), margins),
-        oracle,
-        known: Some(known),
-        excess: 0.10,
-        opinion: Opinion::Rotation,
-        bracket: [known[0] - 0.1, known[0] + 0.2],
-        level: Level::Quick,
-        locks: false,
-        finest: 40,
-    };
-    vec![
-        slope(
+/// The homogeneous drained slopes: number of the example and bounds on the factor of safety.
+pub(crate) fn drained(bounds: &[[f64; 3]]) -> Vec<Problem> {
+    let slopes = [
+        (
             "Griffiths and Lane 1",
+            DRAINED_BOUNDS,
             (2.0, 1.0),
             10.0,
             [12.0, 0.0],
-            DRAINED_BOUNDS,
-            [1.372, 1.397],
         ),
-        slope(
+        (
             "Griffiths and Lane 2",
+            DRAINED_BOUNDS,
             (2.0, 1.5),
             10.0,
             [12.0, 20.0],
-            DRAINED_BOUNDS,
-            [1.359, 1.368],
         ),
-        slope(
-            "Dawson et al.",
-            (1.0, 1.5),
-            12.38,
-            [15.0, 10.0],
-            DAWSON,
-            [0.988, 1.0],
-        ),
-    ]
+        ("Dawson et al.", DAWSON, (1.0, 1.5), 12.38, [15.0, 10.0]),
+    ];
+    let problem = |(slope, &[_, lower, upper]): (_, &[f64; 3])| {
+        let (name, oracle, shape, cohesion, margins) = slope;
+        Problem {
+            section: Section::homogeneous(name, shape, (cohesion, 20.0), margins),
+            oracle,
+            known: Some([lower, upper]),
+            excess: 0.10,
+            opinion: Opinion::Rotation,
+            bracket: [lower - 0.1, lower + 0.2],
+            level: Level::Quick,
+            locks: false,
+            meshes: &[10, 20, 40],
+        }
+    };
+    slopes.into_iter().zip(bounds).map(problem).collect()
 }
 
 /// The slopes of published studies, layered ones among them.
@@ -159,18 +157,18 @@ pub(crate) fn published() -> Vec<Problem> {
         bracket: [0.8, 2.2],
         level: Level::Default,
         locks: false,
-        finest: 20,
+        meshes: &[10, 20],
     };
-    let layer = |ratio, known| Problem {
+    let layer = |ratio, meshes| Problem {
         section: weak_layer(ratio),
         oracle: GRIFFITHS_LANE_3,
-        known,
-        excess: 0.05,
+        known: None,
+        excess: 0.25,
         opinion: Opinion::Sliding,
         bracket: [0.4, 1.6],
-        level: Level::Default,
+        level: Level::Full,
         locks: false,
-        finest: 20,
+        meshes,
     };
     let acads = |section, known| Problem {
         section,
@@ -181,17 +179,20 @@ pub(crate) fn published() -> Vec<Problem> {
         bracket: [0.9, 1.5],
         level: Level::Default,
         locks: false,
-        finest: 20,
+        meshes: &[10, 20],
     };
+    // Without any cohesion the thin end of the upper layer at the toe fails by itself.
+    let mut layered = acads_1c();
+    layered.layers[0].cohesion = 0.1;
+    layered.name += " with c = 0.1 kPa for 0";
     vec![
         foundation(0.6, None),
         foundation(1.5, None),
         foundation(2.0, Some([2.03, 2.10])),
-        layer(0.6, None),
-        layer(0.4, None),
-        layer(0.2, None),
+        layer(0.4, &[20]),
+        layer(0.2, &[20, 40]),
         acads(acads_1a(), Some([0.987, 1.0])),
-        acads(acads_1c(), Some([1.375, 1.405])),
+        acads(layered, Some([1.375, 1.405])),
     ]
 }
 

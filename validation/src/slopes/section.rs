@@ -93,7 +93,9 @@ impl Section {
     /// The section seen from behind, so that one that falls to the left falls to the right.
     pub(crate) fn mirrored(mut self) -> Self {
         let turn = |points: &mut Vec<[f64; 2]>, ends: f64| {
-            points.iter_mut().for_each(|p| p[0] = ends - p[0]);
+            for p in points.iter_mut() {
+                p[0] = ends - p[0];
+            }
             points.reverse();
         };
         let ends = self.sides().iter().sum();
@@ -247,7 +249,8 @@ mod tests {
     fn a_mirrored_section_has_its_crest_on_the_other_side() {
         let right = Section::homogeneous("slope", (2.0, 1.5), (10.0, 20.0), [12.0, 20.0]);
         let left = right.clone().mirrored();
-        assert_eq!(right.sides(), left.sides());
+        let moved = |k: usize| (right.sides()[k] - left.sides()[k]).abs();
+        assert!(moved(0) + moved(1) < 1e-9);
         assert!((right.level(22.0) - 10.0).abs() < 1e-12);
         assert!((left.level(30.0) - 10.0).abs() < 1e-12);
         assert!((area(&right) - area(&left)).abs() < 1e-9);
