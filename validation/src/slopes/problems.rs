@@ -23,17 +23,17 @@ pub(crate) const DAWSON: Oracle = Oracle {
     source: "Dawson, Roth and Drescher 1999, after Chen 1975; finite-element limit analysis",
     locator: "upper bound 1.000 by a logarithmic spiral; lower bound 0.988 computed",
 };
-/// Two-layer and weak-layer slopes.
+/// The thin weak layer.
 pub(crate) const GRIFFITHS_LANE_3: Oracle = Oracle {
-    kind: OracleKind::Published,
-    source: "Griffiths and Lane 1999, example 3; three sliding blocks",
-    locator: "figs 6 to 8: finite elements, Janbu; upper bound: limit_equilibrium/sliding.rs",
+    kind: OracleKind::LimitAnalysis,
+    source: "least upper bound of rigid blocks; slope of Griffiths and Lane 1999, example 3",
+    locator: "limit_equilibrium/sliding.rs and rotation.rs; their fig. 7: 1.05 and 0.60 at ratios of 0.4 and 0.2",
 };
 /// The weak or strong foundation.
 pub(crate) const GRIFFITHS_LANE_4: Oracle = Oracle {
     kind: OracleKind::LimitAnalysis,
-    source: "rotating block, upper bound; Griffiths and Lane 1999, example 4",
-    locator: "limit_equilibrium/rotation.rs; figs 9 and 10",
+    source: "least upper bound of rotating blocks; slope of Griffiths and Lane 1999, example 4",
+    locator: "limit_equilibrium/rotation.rs; their fig. 10: 2.03 at a ratio of 2",
 };
 /// The survey of programs.
 pub(crate) const ACADS: Oracle = Oracle {
@@ -100,11 +100,7 @@ pub(crate) fn undrained(bounds: &[[f64; 4]]) -> Vec<Problem> {
                 Level::Default
             },
             locks: true,
-            meshes: if depth > 1.0 {
-                &[10, 20]
-            } else {
-                &[10, 20, 40]
-            },
+            meshes: if depth < 1.8 { &[10, 20] } else { &[10] },
         }
     };
     bounds.iter().map(problem).collect()
@@ -119,6 +115,7 @@ pub(crate) fn drained(bounds: &[[f64; 3]]) -> Vec<Problem> {
             (2.0, 1.0),
             10.0,
             [12.0, 0.0],
+            &[10, 20, 40],
         ),
         (
             "Griffiths and Lane 2",
@@ -126,11 +123,19 @@ pub(crate) fn drained(bounds: &[[f64; 3]]) -> Vec<Problem> {
             (2.0, 1.5),
             10.0,
             [12.0, 20.0],
+            &[10, 20],
         ),
-        ("Dawson et al.", DAWSON, (1.0, 1.5), 12.38, [15.0, 10.0]),
+        (
+            "Dawson et al.",
+            DAWSON,
+            (1.0, 1.5),
+            12.38,
+            [15.0, 10.0],
+            &[10, 20],
+        ),
     ];
     let problem = |(slope, &[_, lower, upper]): (_, &[f64; 3])| {
-        let (name, oracle, shape, cohesion, margins) = slope;
+        let (name, oracle, shape, cohesion, margins, meshes): (_, _, _, _, _, &[u32]) = slope;
         Problem {
             section: Section::homogeneous(name, shape, (cohesion, 20.0), margins),
             oracle,
@@ -140,7 +145,7 @@ pub(crate) fn drained(bounds: &[[f64; 3]]) -> Vec<Problem> {
             bracket: [lower - 0.1, lower + 0.2],
             level: Level::Quick,
             locks: false,
-            meshes: &[10, 20, 40],
+            meshes,
         }
     };
     slopes.into_iter().zip(bounds).map(problem).collect()
@@ -148,19 +153,19 @@ pub(crate) fn drained(bounds: &[[f64; 3]]) -> Vec<Problem> {
 
 /// The slopes of published studies, layered ones among them.
 pub(crate) fn published() -> Vec<Problem> {
-    let foundation = |ratio, known| Problem {
+    let foundation = |ratio| Problem {
         section: two_layers(ratio),
         oracle: GRIFFITHS_LANE_4,
-        known,
-        excess: 0.05,
+        known: None,
+        excess: 0.08,
         opinion: Opinion::Rotation,
-        bracket: [0.8, 2.2],
+        bracket: [0.8, 2.3],
         level: Level::Default,
         locks: false,
-        meshes: &[10, 20],
+        meshes: &[10],
     };
-    let layer = |ratio, meshes| Problem {
-        section: weak_layer(ratio),
+    let weak = Problem {
+        section: weak_layer(0.2),
         oracle: GRIFFITHS_LANE_3,
         known: None,
         excess: 0.25,
@@ -168,13 +173,13 @@ pub(crate) fn published() -> Vec<Problem> {
         bracket: [0.4, 1.6],
         level: Level::Full,
         locks: false,
-        meshes,
+        meshes: &[20],
     };
-    let acads = |section, known| Problem {
+    let acads = |section, known, excess| Problem {
         section,
         oracle: ACADS,
         known,
-        excess: 0.10,
+        excess,
         opinion: Opinion::Bishop,
         bracket: [0.9, 1.5],
         level: Level::Default,
@@ -185,14 +190,14 @@ pub(crate) fn published() -> Vec<Problem> {
     let mut layered = acads_1c();
     layered.layers[0].cohesion = 0.1;
     layered.name += " with c = 0.1 kPa for 0";
+    layered.watched = Some(layered.surface[1]);
     vec![
-        foundation(0.6, None),
-        foundation(1.5, None),
-        foundation(2.0, Some([2.03, 2.10])),
-        layer(0.4, &[20]),
-        layer(0.2, &[20, 40]),
-        acads(acads_1a(), Some([0.987, 1.0])),
-        acads(layered, Some([1.375, 1.405])),
+        foundation(0.6),
+        foundation(1.5),
+        foundation(2.0),
+        weak,
+        acads(acads_1a(), Some([0.987, 1.0]), 0.08),
+        acads(layered, Some([1.375, 1.405]), 0.03),
     ]
 }
 
@@ -323,6 +328,7 @@ fn acads(name: &str, unit_weight: f64, layers: Vec<Layer>) -> Section {
         surface: vec![[20.0, 25.0], [30.0, 25.0], [50.0, 35.0], [70.0, 35.0]],
         base: 20.0,
         layers,
+        watched: None,
     };
     published.mirrored()
 }

@@ -43,6 +43,8 @@ pub(crate) struct Section {
     pub(crate) base: f64,
     /// Layers; together they fill what is between base and surface.
     pub(crate) layers: Vec<Layer>,
+    /// The point whose displacement tells failure; none: the largest displacement does \[m\].
+    pub(crate) watched: Option<[f64; 2]>,
 }
 
 /// Mesh and method of one search.
@@ -87,6 +89,7 @@ impl Section {
             surface,
             base: 0.0,
             layers: vec![layer],
+            watched: None,
         }
     }
 
@@ -218,6 +221,21 @@ impl Section {
                 corners(polygon),
             );
         }
+        if let Some([x, y]) = self.watched {
+            text = text.replace(
+                "[stages.failure]",
+                "[stages.failure]\nalso.monitor = \"crest\"",
+            );
+            let _ = write!(
+                text,
+                "
+                 [[monitors]]
+                 name = \"crest\"
+                 point = [\"{x} m\", \"{y} m\"]
+                 record = [\"displacement\"]
+                "
+            );
+        }
         Ok(CaseFile::parse(&self.name, &text, &[])?.into_case())
     }
 }
@@ -265,9 +283,12 @@ mod tests {
             associated: true,
         };
         for friction in [0.0, 20.0] {
-            let section = Section::homogeneous("slope", (1.0, 1.0), (10.0, friction), [10.0, 0.0]);
+            let shape = (1.0, 1.0);
+            let mut section = Section::homogeneous("slope", shape, (10.0, friction), [10.0, 0.0]);
+            section.watched = (friction > 0.0).then_some([10.0, 10.0]);
             let case = section.case(variant, [1.0, 1.4]).unwrap();
             assert_eq!(case.grid.cells, [20, 11]);
+            assert_eq!(case.monitors.len(), usize::from(friction > 0.0));
         }
     }
 }
