@@ -64,7 +64,7 @@ pub(crate) struct Problem {
     /// Whether it is run without B-bar too, as a control.
     pub(crate) locks: bool,
     /// Cells over the height: the first at that level, all of them at the full level.
-    pub(crate) meshes: &'static [u32],
+    pub(crate) meshes: Vec<u32>,
 }
 
 /// A hand calculation.
@@ -100,7 +100,7 @@ pub(crate) fn undrained(bounds: &[[f64; 4]]) -> Vec<Problem> {
                 Level::Default
             },
             locks: true,
-            meshes: if depth < 1.8 { &[10, 20] } else { &[10] },
+            meshes: if depth < 1.8 { vec![10, 20] } else { vec![10] },
         }
     };
     bounds.iter().map(problem).collect()
@@ -115,7 +115,7 @@ pub(crate) fn drained(bounds: &[[f64; 3]]) -> Vec<Problem> {
             (2.0, 1.0),
             10.0,
             [12.0, 0.0],
-            &[10, 20, 40],
+            vec![10, 20, 40],
         ),
         (
             "Griffiths and Lane 2",
@@ -123,7 +123,7 @@ pub(crate) fn drained(bounds: &[[f64; 3]]) -> Vec<Problem> {
             (2.0, 1.5),
             10.0,
             [12.0, 20.0],
-            &[10, 20],
+            vec![10, 20],
         ),
         (
             "Dawson et al.",
@@ -131,11 +131,11 @@ pub(crate) fn drained(bounds: &[[f64; 3]]) -> Vec<Problem> {
             (1.0, 1.5),
             12.38,
             [15.0, 10.0],
-            &[10, 20],
+            vec![10, 20],
         ),
     ];
     let problem = |(slope, &[_, lower, upper]): (_, &[f64; 3])| {
-        let (name, oracle, shape, cohesion, margins, meshes): (_, _, _, _, _, &[u32]) = slope;
+        let (name, oracle, shape, cohesion, margins, meshes) = slope;
         Problem {
             section: Section::homogeneous(name, shape, (cohesion, 20.0), margins),
             oracle,
@@ -162,7 +162,7 @@ pub(crate) fn published() -> Vec<Problem> {
         bracket: [0.8, 2.3],
         level: Level::Default,
         locks: false,
-        meshes: &[10],
+        meshes: vec![10],
     };
     let weak = Problem {
         section: weak_layer(0.2),
@@ -173,7 +173,7 @@ pub(crate) fn published() -> Vec<Problem> {
         bracket: [0.4, 1.6],
         level: Level::Full,
         locks: false,
-        meshes: &[20],
+        meshes: vec![20],
     };
     let acads = |section, known, excess| Problem {
         section,
@@ -184,7 +184,7 @@ pub(crate) fn published() -> Vec<Problem> {
         bracket: [0.9, 1.5],
         level: Level::Default,
         locks: false,
-        meshes: &[10, 20],
+        meshes: vec![10, 20],
     };
     // Without any cohesion the thin end of the upper layer at the toe fails by itself.
     let mut layered = acads_1c();
