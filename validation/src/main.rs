@@ -9,6 +9,7 @@ mod exact;
 mod footing;
 mod laboratory;
 mod manufactured;
+mod limit_equilibrium;
 mod matrix;
 mod mohr_coulomb_slope;
 mod notched_strip;
@@ -17,9 +18,11 @@ mod pictures;
 mod prism;
 mod reference;
 mod runs;
+mod slopes;
 mod snapshot;
 mod study;
 mod table;
+mod tilted_layer;
 mod von_mises_slope;
 
 use std::error::Error;
@@ -77,6 +80,8 @@ enum Case {
     Column,
     VonMisesSlope,
     MohrCoulombSlope,
+    Slopes,
+    TiltedLayer,
     Footing,
     Manufactured,
     Cylinder,
@@ -92,6 +97,8 @@ impl Case {
             Self::Column => column::study(out),
             Self::VonMisesSlope => von_mises_slope::study(level, out),
             Self::MohrCoulombSlope => mohr_coulomb_slope::study(level, out),
+            Self::Slopes => slopes::study(level, out),
+            Self::TiltedLayer => tilted_layer::study(level, out),
             Self::Footing => footing::study(level, out),
             Self::Manufactured => manufactured::study(level, out),
             Self::Cylinder => cylinder::study(level, out),

@@ -30,6 +30,16 @@ impl Reference {
         Self { header, rows }
     }
 
+    /// All rows, for a table of this many columns.
+    ///
+    /// # Panics
+    /// If the table has another number of columns.
+    pub(crate) fn rows<const N: usize>(&self) -> Vec<[f64; N]> {
+        let rows = self.rows.iter();
+        rows.map(|row| row[..].try_into().expect("the table has these columns"))
+            .collect()
+    }
+
     /// Two columns as points.
     ///
     /// # Panics
@@ -69,6 +79,11 @@ pub(crate) fn column_stress_error() -> Reference {
 /// Bounds on the limit load of undrained slopes.
 pub(crate) fn slope_limit_load_bounds() -> Reference {
     Reference::parse(include_str!("../reference/slope_limit_load_bounds.csv"))
+}
+
+/// Bounds on the factor of safety of drained slopes.
+pub(crate) fn slope_safety_bounds() -> Reference {
+    Reference::parse(include_str!("../reference/slope_safety_bounds.csv"))
 }
 
 /// Griffiths and Lane's dimensionless displacement against strength reduction factor.

@@ -18,6 +18,10 @@ use crate::summary::{SafetySummary, StageSummary, TrialSummary};
 /// Most trials that a search makes before it reports the interval that it has.
 const MOST_TRIALS: usize = 40;
 
+/// The search goes no further down than this factor \[-\]: with a hundred times its strength a body
+/// that falls is one that no strength holds.
+const LEAST_FACTOR: f64 = 0.01;
+
 /// A particle moves when its displacement exceeds this share of the largest \[-\].
 const MOVING: f64 = 0.1;
 
@@ -468,7 +472,8 @@ fn next_factor(
         (Some(stable), None) if stable < low => Some(low),
         (Some(stable), None) if stable < high => Some(high),
         (Some(stable), None) => Some(stable + (high - low)),
-        (None, Some(failed)) => Some(0.5 * failed),
+        (None, Some(failed)) if failed <= LEAST_FACTOR => None,
+        (None, Some(failed)) => Some((0.5 * failed).max(LEAST_FACTOR)),
         (None, None) => Some(1.0),
     }
 }
@@ -518,5 +523,8 @@ mod tests {
     fn a_search_without_an_end_ends() {
         let (_, failed, made) = search(f64::INFINITY, (1.0, 2.0));
         assert_eq!((failed, made), (None, MOST_TRIALS));
+        let (stable, failed, made) = search(0.0, (1.0, 2.0));
+        assert_eq!((stable, failed), (None, Some(LEAST_FACTOR)));
+        assert!(made < 10, "{made}");
     }
 }

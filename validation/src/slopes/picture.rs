@@ -1,0 +1,78 @@
+//! All slopes in one picture: what is known as an interval, and what was computed.
+
+use std::path::Path;
+
+use igimp_cases::CaseError;
+use igimp_cases::figures::{Band, CurvePlot, ReferenceLine, ReferenceValue, Series};
+
+use super::Known;
+use super::section::Variant;
+
+/// Factors of safety over the middle of what is known: the slope's number, mesh and method, factor.
+pub(crate) fn write(
+    folder: &Path,
+    known: &[Known],
+    points: &[(usize, Variant, f64)],
+) -> Result<(), CaseError> {
+    let middle = |slope: usize| 0.5 * (known[slope].interval[0] + known[slope].interval[1]);
+    let bands = known.iter().enumerate().map(|(slope, known)| {
+        let x = slope as f64 + 1.0;
+        let edge = |end: f64| {
+            [-0.4, 0.4]
+                .map(|across| [x + across, end / middle(slope)])
+                .to_vec()
+        };
+        Band {
+            label: if slope == 0 {
+                "known".into()
+            } else {
+                String::new()
+            },
+            lower: edge(known.interval[0]),
+            upper: edge(known.interval[1]),
+        }
+    });
+    let bands = bands.collect();
+    let mut series = Vec::new();
+    let hand = known.iter().enumerate();
+    series.push(Series::markers(
+        "by hand",
+        hand.map(|(slope, known)| [slope as f64 + 1.0, known.opinion / middle(slope)])
+            .collect(),
+    ));
+    for (label, cells, bbar, associated, aside) in [
+        ("h = H/10", 10, true, true, -0.2),
+        ("h = H/20", 20, true, true, 0.0),
+        ("h = H/40", 40, true, true, 0.2),
+        ("ψ = 0, h = H/20", 20, true, false, 0.1),
+        ("without B-bar, h = H/10", 10, false, true, -0.1),
+    ] {
+        let variant = Variant {
+            cells,
+            bbar,
+            associated,
+        };
+        let chosen = points.iter().filter(|point| point.1 == variant);
+        let chosen: Vec<[f64; 2]> = chosen
+            .map(|&(slope, _, factor)| [slope as f64 + 1.0 + aside, factor / middle(slope)])
+            .collect();
+        if !chosen.is_empty() {
+            series.push(Series::markers(label, chosen));
+        }
+    }
+    CurvePlot {
+        title: "Factors of safety over the middle of what is known".into(),
+        x_label: "number of the slope".into(),
+        y_label: "F / F_{known}".into(),
+        x_range: Some((0.0, known.len() as f64 + 1.0)),
+        lines: vec![ReferenceLine {
+            label: String::new(),
+            at: ReferenceValue::Y(1.0),
+        }],
+        bands,
+        series,
+        ..CurvePlot::default()
+    }
+    .write(&folder.join("factors_of_safety"))?;
+    Ok(())
+}
