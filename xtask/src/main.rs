@@ -4,6 +4,9 @@
 mod bench;
 mod book;
 mod failure;
+mod mdbook;
+mod metadata;
+mod pages;
 mod process;
 mod tidy;
 mod validate;
@@ -38,11 +41,19 @@ enum Task {
     /// against the machine's own, growth with size, memory. The report is `target/bench/bench.md`,
     /// the same numbers are in `target/bench/bench.csv`.
     Bench(bench::Arguments),
-    /// Check what the compiler does not: layers, printing, leftovers, licences, links.
+    /// Check what the compiler does not: layers, printing, leftovers, licences, links, equations.
     Tidy,
-    /// Build the book in `docs/` with mdbook.
+    /// Build the book in `docs/`, set its mathematics and check its links.
+    ///
+    /// mdBook is installed into `target/tools` unless it is there.
     Book {
         /// Show it in the browser.
+        #[arg(long)]
+        open: bool,
+    },
+    /// Build the pages of the crates, set their mathematics and check their links.
+    Doc {
+        /// Show them in the browser.
         #[arg(long)]
         open: bool,
     },
@@ -53,7 +64,8 @@ fn main() -> ExitCode {
         Task::Validate { arguments } => validate::run(&arguments),
         Task::Bench(arguments) => bench::run(&arguments),
         Task::Tidy => tidy::run(),
-        Task::Book { open } => book::run(open),
+        Task::Book { open } => book::book(open),
+        Task::Doc { open } => book::crates(open),
     };
     match result {
         Ok(code) => ExitCode::from(code),

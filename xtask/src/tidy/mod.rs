@@ -4,12 +4,11 @@ mod deny;
 mod layers;
 mod licences;
 mod links;
-mod metadata;
 mod sources;
 
 use crate::failure::{FOUND, Failure};
+use crate::metadata::Metadata;
 use crate::process::root;
-use metadata::Metadata;
 
 /// Runs all checks; prints what is wrong, one line each.
 pub(crate) fn run() -> Result<u8, Failure> {

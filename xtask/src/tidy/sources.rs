@@ -4,8 +4,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::layers::BELOW_CASES;
-use super::metadata::Metadata;
 use crate::failure::Failure;
+use crate::metadata::Metadata;
 
 /// Marks of unfinished work, as whole words; in two parts so that this file passes.
 const LEFTOVERS: [&str; 2] = [concat!("TO", "DO"), concat!("FIX", "ME")];
