@@ -1,4 +1,4 @@
-//! Isotropic Hencky elasticity: Kirchhoff stress linear in the logarithmic strain.
+//! Isotropic Hencky elasticity: Kirchhoff stress linear in the logarithmic strain (theory, eq. 19).
 
 use crate::MaterialError;
 use crate::error::{positive, required};

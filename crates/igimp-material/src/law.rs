@@ -1,6 +1,6 @@
 //! The seam between laws and everything else: a pure function from trial strain to stress.
 //!
-//! A law lives in principal space, knows no rotation, no grid and no step, and changes nothing:
+//! The problem that every law solves is eq. 19a of the theory. A law lives in principal space, knows no rotation, no grid and no step, and changes nothing:
 //! the same input gives the same output. [`lift_finite`](crate::lift_finite) and
 //! [`lift_small`](crate::lift_small) carry it to tensors.
 

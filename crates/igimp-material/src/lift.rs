@@ -3,7 +3,7 @@
 //! For an isotropic law stress and trial strain share their principal axes, so the stress is the
 //! return map of the principal strains set into these axes, and the spatial tangent follows from
 //! the principal tangent D and the secants of shear (Ogden 1984; de Souza Neto, Perić & Owen
-//! 2008, appendix A): with the principal values b of the trial elastic left Cauchy–Green tensor
+//! 2008, appendix A; theory, eq. 23): with the principal values b of the trial elastic left Cauchy–Green tensor
 //!
 //! ```math
 //! A_{aabb} = D_{ab},\qquad

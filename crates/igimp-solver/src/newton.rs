@@ -1,4 +1,5 @@
-//! One load step: the Newton–Raphson iteration to equilibrium (Yuan et al. 2021, section 2).
+//! One load step: the Newton–Raphson iteration to equilibrium (theory, eqs. 24 and 25; Yuan et al.
+//! 2021, section 2).
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};

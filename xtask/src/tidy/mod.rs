@@ -1,6 +1,7 @@
 //! `cargo xtask tidy`: invariants of the workspace that the compiler does not check.
 
 mod deny;
+mod equations;
 mod layers;
 mod licences;
 mod links;
@@ -20,6 +21,7 @@ pub(crate) fn run() -> Result<u8, Failure> {
         ("sources", sources::check(&metadata, &root)?),
         ("licences", licences::check(&metadata, &allowed)),
         ("links", links::check(&root)?),
+        ("equations", equations::check(&metadata, &root)?),
     ];
     let mut count = 0;
     for (name, problems) in &checks {

@@ -41,7 +41,7 @@ pub(super) fn check(metadata: &Metadata, root: &Path) -> Result<Vec<String>, Fai
 }
 
 /// Collects the `.rs` files below a folder, build output excepted.
-fn rust_files(folder: &Path, files: &mut Vec<PathBuf>) -> Result<(), Failure> {
+pub(super) fn rust_files(folder: &Path, files: &mut Vec<PathBuf>) -> Result<(), Failure> {
     let failure = |error| Failure::input_output(format!("cannot read {}", folder.display()), error);
     for entry in fs::read_dir(folder).map_err(failure)? {
         let path = entry.map_err(failure)?.path();
