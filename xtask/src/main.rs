@@ -3,6 +3,8 @@
 
 mod bench;
 mod book;
+#[cfg(test)]
+mod commands_on_pages;
 mod failure;
 mod mdbook;
 mod metadata;

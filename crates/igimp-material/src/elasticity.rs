@@ -58,7 +58,7 @@ impl Elasticity {
         self.young
     }
 
-    /// Poisson's ratio ν.
+    /// Poisson's ratio ν \[-\].
     pub fn poisson(&self) -> f64 {
         self.poisson
     }
