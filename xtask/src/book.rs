@@ -1,21 +1,73 @@
-//! `cargo xtask book`: the book in `docs/`.
+//! `cargo xtask book` and `cargo xtask doc`: the pages for readers, with mathematics that is set when they
+//! are built and links that are checked.
 
-use crate::failure::{Failure, INPUT_OUTPUT};
-use crate::process::{output, program, status};
+use std::fs;
+use std::path::Path;
+
+use crate::failure::Failure;
+use crate::mdbook;
+use crate::metadata::Metadata;
+use crate::pages::{self, Finished};
+use crate::process::{cargo, program, root, status};
+
+/// Where mdBook writes, from the root.
+const BOOK: &str = "docs/book";
 
 /// Builds the book, and opens it on request.
-pub(crate) fn run(open: bool) -> Result<u8, Failure> {
-    if output(program("mdbook").arg("--version")).is_err() {
-        return Err(Failure::new(
-            INPUT_OUTPUT,
-            "mdbook is not installed: the book is not built.\n\
-             Install it with `cargo install mdbook`, or read the Markdown files in docs/src.",
-        ));
+pub(crate) fn book(open: bool) -> Result<u8, Failure> {
+    let mdbook = mdbook::find_or_install(&Metadata::of_workspace()?.target)?;
+    let folder = root().join(BOOK);
+    clear(&folder)?;
+    let code = status(program(&mdbook).args(["build", "docs"]))?;
+    if code != 0 {
+        return Ok(code);
     }
-    let mut build = program("mdbook");
-    build.args(["build", "docs"]);
+    tell(
+        "book",
+        pages::finish(&folder)?,
+        &folder.join("index.html"),
+        open,
+    )
+}
+
+/// Builds the pages of the crates, and opens them on request.
+pub(crate) fn crates(open: bool) -> Result<u8, Failure> {
+    let folder = Metadata::of_workspace()?.target.join("doc");
+    clear(&folder)?;
+    let code = status(cargo().args(["doc", "--workspace", "--no-deps"]))?;
+    if code != 0 {
+        return Ok(code);
+    }
+    tell(
+        "doc",
+        pages::finish(&folder)?,
+        &folder.join("igimp_cases/index.html"),
+        open,
+    )
+}
+
+/// Removes pages of an earlier build: they are finished already, and may be of pages that are no more.
+fn clear(folder: &Path) -> Result<(), Failure> {
+    if !folder.exists() {
+        return Ok(());
+    }
+    fs::remove_dir_all(folder)
+        .map_err(|error| Failure::input_output(format!("cannot clear {}", folder.display()), error))
+}
+
+fn tell(name: &str, finished: Finished, first: &Path, open: bool) -> Result<u8, Failure> {
+    let Finished { pages, formulas } = finished;
+    println!("{name}: {pages} pages, {formulas} formulas, all links lead somewhere");
+    println!("{name}: {}", first.display());
     if open {
-        build.arg("--open");
+        let opener = if cfg!(target_os = "macos") {
+            "open"
+        } else if cfg!(windows) {
+            "explorer"
+        } else {
+            "xdg-open"
+        };
+        return status(program(opener).arg(first));
     }
-    status(&mut build)
+    Ok(0)
 }

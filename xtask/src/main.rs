@@ -3,8 +3,13 @@
 
 mod bench;
 mod book;
+#[cfg(test)]
+mod commands_on_pages;
 mod failure;
 mod fuzz;
+mod mdbook;
+mod metadata;
+mod pages;
 mod process;
 mod tidy;
 mod validate;
@@ -50,11 +55,19 @@ enum Task {
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         arguments: Vec<String>,
     },
-    /// Check what the compiler does not: layers, printing, leftovers, licences, links.
+    /// Check what the compiler does not: layers, printing, leftovers, licences, links, equations.
     Tidy,
-    /// Build the book in `docs/` with mdbook.
+    /// Build the book in `docs/`, set its mathematics and check its links.
+    ///
+    /// mdBook is installed into `target/tools` unless it is there.
     Book {
         /// Show it in the browser.
+        #[arg(long)]
+        open: bool,
+    },
+    /// Build the pages of the crates, set their mathematics and check their links.
+    Doc {
+        /// Show them in the browser.
         #[arg(long)]
         open: bool,
     },
@@ -66,7 +79,8 @@ fn main() -> ExitCode {
         Task::Fuzz { arguments } => fuzz::run(&arguments),
         Task::Bench(arguments) => bench::run(&arguments),
         Task::Tidy => tidy::run(),
-        Task::Book { open } => book::run(open),
+        Task::Book { open } => book::book(open),
+        Task::Doc { open } => book::crates(open),
     };
     match result {
         Ok(code) => ExitCode::from(code),

@@ -1,4 +1,5 @@
-//! The one place where the state of particles changes: an accepted step.
+//! The one place where the state of particles changes: an accepted step (theory, eq. 10 with small
+//! strain, eq. 15 with finite strain, eq. 29 for the domains).
 
 use igimp_material::Tensor;
 use igimp_shape::Grid;

@@ -29,11 +29,11 @@ const LARGEST_STRAIN: f64 = 300.0;
 /// A particle at a trial displacement: never committed by itself.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ParticleTrial<const D: usize> {
-    /// ΔF, the deformation gradient of the step.
+    /// ΔF, the deformation gradient of the step \[-\].
     pub delta_def_grad: [[f64; D]; D],
-    /// Kirchhoff stress τ (Cauchy stress in small strain) \[force/length²\].
+    /// Kirchhoff stress τ (Cauchy stress in small strain) \[force/length²\], tension positive.
     pub tau: Tensor,
-    /// Principal elastic Hencky strain.
+    /// Principal elastic Hencky strain after the return \[-\], extension positive.
     pub eps_e: Principal,
     /// Principal axes: `frame[a]` is the unit vector of principal value `a`.
     pub frame: Tensor,

@@ -1,4 +1,5 @@
-//! The equilibrium of one particle, linearised: its nodal force and the columns of its tangent.
+//! The equilibrium of one particle, linearised: its nodal force and the columns of its tangent. For an
+//! elastic law the force is the derivative of the stored energy (theory, eqs. 15a and 16a).
 //!
 //! With gradients pushed to the trial state, `g_i = ΔF⁻ᵀ ∇S_i`, `ḡ_i = ΔF_c⁻ᵀ ∇S̄_i`,
 //! `d_i = (ḡ_i − g_i)/3` and `p = tr τ / 3` (theory, eq. 16–18):
@@ -11,7 +12,7 @@
 //! ```
 //!
 //! The repeated pairs pp and qq run over all three directions. In small strain the gradients are
-//! not pushed and the three terms of the changing geometry are absent.
+//! not pushed and the three terms of the changing geometry are absent (eqs. 11 and 11a).
 //!
 //! Sorted by the gradients of the column this is
 //!

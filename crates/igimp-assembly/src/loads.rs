@@ -68,7 +68,7 @@ impl<const D: usize> LoadPoint<D> {
         Ok(own)
     }
 
-    /// The point carried along by nodal step displacements.
+    /// The point carried along by nodal step displacements `u` \[length\].
     ///
     /// # Errors
     /// [`AssemblyError::LoadPoint`] when it is not on the grid.
@@ -101,7 +101,7 @@ pub struct StepLoads<const D: usize> {
 }
 
 impl<const D: usize> StepLoads<D> {
-    /// Gravity alone.
+    /// Gravity alone \[length/time²\], with its direction.
     pub fn gravity(gravity: [f64; D]) -> Self {
         Self {
             gravity,

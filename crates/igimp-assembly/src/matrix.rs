@@ -150,7 +150,7 @@ impl Pattern {
 pub struct TangentMatrix {
     /// The pattern, shared with solvers so that they can tell whether symbolic work still holds.
     pub pattern: Arc<Pattern>,
-    /// Stored values, in the order that [`Pattern`] describes.
+    /// Stored values \[force/length\], in the order that [`Pattern`] describes.
     pub values: Vec<f64>,
     /// Whether the laws present make K symmetric (associated flow everywhere).
     pub symmetric: bool,
@@ -167,7 +167,7 @@ impl TangentMatrix {
         }
     }
 
-    /// The product y = K x.
+    /// The product y = K x, one entry per unknown: forces \[force\] from displacements \[length\].
     ///
     /// # Panics
     /// If `x` or `y` is not as long as the number of unknowns.
@@ -191,7 +191,7 @@ impl TangentMatrix {
         }
     }
 
-    /// The diagonal entry of each unknown.
+    /// The diagonal entry of each unknown \[force/length\].
     pub fn diagonal(&self) -> impl Iterator<Item = f64> + '_ {
         let of_block = move |index: usize| {
             let block = self.pattern.blocks[index];
@@ -207,7 +207,7 @@ impl TangentMatrix {
         (0..self.pattern.blocks.len()).flat_map(of_block)
     }
 
-    /// A copy as a `nalgebra-sparse` matrix, for independent solvers and for inspection.
+    /// A copy as a `nalgebra-sparse` matrix \[force/length\], for independent solvers and for inspection.
     ///
     /// # Panics
     /// Never for a pattern built by this crate: its offsets and rows are valid by construction.

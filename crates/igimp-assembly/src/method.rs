@@ -9,11 +9,12 @@ use igimp_shape::{Basis, Gimp, Linear};
 pub enum Kinematics {
     /// Hencky strain from b_e, Kirchhoff stress, exact under rotation (theory, eq. 12–18).
     FiniteStrain,
-    /// The small-strain B̄ matrix over a step; stress is rotated when the step is committed.
+    /// The small-strain B̄ matrix over a step; stress is rotated when the step is committed (theory,
+    /// eqs. 9 to 11 and 11a).
     SmallStrain,
 }
 
-/// How a particle's domain follows the deformation gradient F = R U.
+/// How a particle's domain follows the deformation gradient F = R U (theory, eq. 29).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DomainUpdate {
     /// The half-lengths stay as seeded.

@@ -1,4 +1,5 @@
-//! How far a trial is from equilibrium, and when that cannot be told from round-off.
+//! How far a trial is from equilibrium (theory, eq. 24), and when that cannot be told from round-off
+//! (eq. 24a).
 
 use rayon::prelude::*;
 
@@ -81,8 +82,7 @@ impl OutOfBalance {
 }
 
 /// The norm of the internal force of strains that are round-off, independent from particle to
-/// particle: where a body is all but free of
-/// force, as after unloading or in rigid motion, no smaller residual can be reached \[force\].
+/// particle (theory, eq. 24a): where a body is all but free of force, as after unloading or in rigid motion, no smaller residual can be reached \[force\].
 pub(crate) fn force_of_round_off<const D: usize>(
     particles: &Particles<D>,
     stencils: &Stencils<D>,

@@ -1,5 +1,5 @@
-//! Nodes that a body only touches at a corner, and the nodes that they are tied to (theory,
-//! "small cuts").
+//! Nodes that a body only touches at a corner, and the nodes that they are tied to (theory, eqs. 26
+//! and 27).
 
 use std::collections::BTreeMap;
 

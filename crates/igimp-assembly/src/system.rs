@@ -298,8 +298,8 @@ impl<'a, const D: usize> System<'a, D> {
     }
 
     /// The change of internal force K_fp u_p by unknown that the prescribed step displacements
-    /// cause, with the tangent at nodal step displacements `u`: the part of the first correction
-    /// that is known.
+    /// cause \[force\], with the tangent at nodal step displacements `u` \[length\]: the part of the first
+    /// correction that is known (theory, eq. 25).
     ///
     /// # Errors
     /// As [`Self::evaluate_into`].
@@ -378,7 +378,8 @@ impl<'a, const D: usize> System<'a, D> {
             .collect()
     }
 
-    /// Adds a correction by unknown to nodal displacements; tied nodes follow their masters.
+    /// Adds a correction `du` by unknown to nodal displacements `u` \[length\]; tied nodes follow their
+    /// masters.
     pub fn add_correction(&self, u: &mut [[f64; D]], du: &[f64]) {
         for (node, displacement) in u.iter_mut().enumerate() {
             for axis in 0..D {

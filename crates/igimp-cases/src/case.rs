@@ -288,7 +288,7 @@ pub enum StageKind {
 pub struct StrengthReduction {
     /// Indices of the materials whose strength is reduced.
     pub materials: Vec<usize>,
-    /// Factors tried first, for the curve of displacement against factor; may be empty.
+    /// Factors tried first, for the curve of displacement against factor \[-\]; may be empty.
     pub factors: Vec<f64>,
     /// Where the search begins: a factor thought stable and one thought unstable \[-\].
     pub bracket: [f64; 2],
@@ -477,7 +477,7 @@ pub struct Curve {
 pub struct CurveAxis {
     /// The quantity.
     pub of: Quantity,
-    /// It is divided by this, in SI units.
+    /// It is divided by this \[SI units\].
     pub divide_by: f64,
     /// Label with unit, as in `d / B [-]`.
     pub label: String,
@@ -515,11 +515,11 @@ pub struct CaseCheck {
     pub name: String,
     /// What is measured, at the end of a stage.
     pub of: Quantity,
-    /// It is divided by this.
+    /// It is divided by this \[SI units\].
     pub divide_by: f64,
     /// The stage; none: the last.
     pub stage: Option<usize>,
-    /// Outside value, in the unit after division.
+    /// Outside value \[SI units after division\].
     pub expected: f64,
     /// What is accepted.
     pub band: Band,

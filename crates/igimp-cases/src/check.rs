@@ -50,13 +50,13 @@ pub struct Check {
     pub variant: String,
     /// What is measured, with unit.
     pub quantity: String,
-    /// The outside value.
+    /// The outside value, in the unit that `quantity` names.
     pub expected: f64,
     /// Where it comes from.
     pub source: String,
     /// What is accepted.
     pub band: Band,
-    /// What was computed; JSON has `null` for what is not a number.
+    /// What was computed, in the same unit; JSON has `null` for what is not a number.
     #[serde(deserialize_with = "or_not_a_number")]
     pub measured: f64,
 }

@@ -104,7 +104,7 @@ fn plane_at(x: &[[f64; 2]], field: &[f64], particles: &[usize], at: &[f64; 2]) -
     Some(level + slope[0] * (at[0] - centre[0]) + slope[1] * (at[1] - centre[1]))
 }
 
-/// The particle nearest to a position, within `reach` of it.
+/// The particle nearest to a position \[length\], within `reach` \[length\] of it.
 pub fn nearest(particles: &Particles<2>, position: &[f64; 2], reach: f64) -> Option<usize> {
     (0..particles.len())
         .map(|particle| (distance(&particles.x[particle], position), particle))

@@ -59,7 +59,7 @@ fn clip(polygon: &[[f64; 2]], axis: usize, inside: impl Fn(f64) -> bool, limit: 
     out
 }
 
-/// The smallest box around a polygon.
+/// The smallest box around a polygon: lower and upper corner \[length\].
 pub fn bounding_box(polygon: &[[f64; 2]]) -> ([f64; 2], [f64; 2]) {
     let mut lower = [f64::INFINITY; 2];
     let mut upper = [f64::NEG_INFINITY; 2];

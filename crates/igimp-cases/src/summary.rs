@@ -145,9 +145,9 @@ pub enum StageOutcome {
 /// A factor of safety as an interval, and how it was found.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SafetySummary {
-    /// Largest factor found stable.
+    /// Largest factor found stable \[-\].
     pub stable: Option<f64>,
-    /// Smallest factor found failed.
+    /// Smallest factor found failed \[-\].
     pub failed: Option<f64>,
     /// What counts as failure.
     pub criterion: String,

@@ -1,4 +1,4 @@
-//! Isotropic Hencky elasticity: Kirchhoff stress linear in the logarithmic strain.
+//! Isotropic Hencky elasticity: Kirchhoff stress linear in the logarithmic strain (theory, eq. 19).
 
 use crate::MaterialError;
 use crate::error::{positive, required};
@@ -58,7 +58,7 @@ impl Elasticity {
         self.young
     }
 
-    /// Poisson's ratio ν.
+    /// Poisson's ratio ν \[-\].
     pub fn poisson(&self) -> f64 {
         self.poisson
     }

@@ -1,4 +1,4 @@
-//! Return to a convex surface made of planes, exactly and without iteration.
+//! Return to a convex surface made of planes, exactly and without iteration (theory, eq. 22).
 //!
 //! A plane is $`a\cdot\tau \le k`$ with the flow direction b. Where planes yield together
 //! (Koiter 1953), plastic strain is $`\Delta\varepsilon_p = \sum\lambda_k b_k`$ with

@@ -1,6 +1,6 @@
 //! The seam between laws and everything else: a pure function from trial strain to stress.
 //!
-//! A law lives in principal space, knows no rotation, no grid and no step, and changes nothing:
+//! The problem that every law solves is eq. 19a of the theory. A law lives in principal space, knows no rotation, no grid and no step, and changes nothing:
 //! the same input gives the same output. [`lift_finite`](crate::lift_finite) and
 //! [`lift_small`](crate::lift_small) carry it to tensors.
 
@@ -17,7 +17,7 @@ use crate::{Elasticity, MaterialError};
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct History {
     /// Accumulated plastic strain invariant $`\sum\sqrt{\tfrac23\,\Delta e_p:\Delta e_p}`$,
-    /// with $`\Delta e_p`$ the deviatoric part of a step's plastic strain. Never negative.
+    /// with $`\Delta e_p`$ the deviatoric part of a step's plastic strain \[-\]. Never negative.
     pub eps_p_eq: f64,
 }
 
@@ -67,12 +67,12 @@ impl Regime {
 /// The answer of a law to a trial strain, in the order of its principal values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReturnMap {
-    /// Principal Kirchhoff stress τ \[stress\], admissible.
+    /// Principal Kirchhoff stress τ \[stress\], tension positive, admissible.
     pub tau: Principal,
     /// Consistent tangent $`D_{ab} = \partial\tau_a/\partial\varepsilon_b^{tr}`$ \[stress\],
     /// taken within the regime.
     pub tangent: [[f64; 3]; 3],
-    /// Plastic strain increment $`\Delta\varepsilon_p = C^{-1}(\tau^{tr} - \tau)`$.
+    /// Plastic strain increment $`\Delta\varepsilon_p = C^{-1}(\tau^{tr} - \tau)`$ \[-\], extension positive.
     pub delta_eps_p: Principal,
     /// History at the end of the increment.
     pub history: History,

@@ -3,7 +3,7 @@
 //! For an isotropic law stress and trial strain share their principal axes, so the stress is the
 //! return map of the principal strains set into these axes, and the spatial tangent follows from
 //! the principal tangent D and the secants of shear (Ogden 1984; de Souza Neto, Perić & Owen
-//! 2008, appendix A): with the principal values b of the trial elastic left Cauchy–Green tensor
+//! 2008, appendix A; theory, eq. 23): with the principal values b of the trial elastic left Cauchy–Green tensor
 //!
 //! ```math
 //! A_{aabb} = D_{ab},\qquad
@@ -35,14 +35,14 @@ pub enum TangentKind {
 /// The answer of a law to a trial tensor, in spatial axes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lifted<const D: usize> {
-    /// Kirchhoff stress τ (Cauchy stress with small strain) \[stress\].
+    /// Kirchhoff stress τ (Cauchy stress with small strain) \[stress\], tension positive.
     pub tau: Tensor,
-    /// Principal elastic Hencky strain after the return, C⁻¹ τ.
+    /// Principal elastic Hencky strain after the return, C⁻¹ τ \[-\].
     pub eps_e: Principal,
-    /// Principal axes: `frame[a]` is the unit vector of principal value `a`. In plane strain the
-    /// last one is z.
+    /// Principal axes: `frame[a]` is the unit vector of principal value `a` \[-\]. In plane strain
+    /// the last one is z.
     pub frame: [[f64; 3]; 3],
-    /// Principal plastic strain increment of the step, in the same axes.
+    /// Principal plastic strain increment of the step, in the same axes \[-\].
     pub delta_eps_p: Principal,
     /// History at the end of the step.
     pub history: History,

@@ -1,4 +1,5 @@
-//! Mohr–Coulomb plasticity with non-associated flow and an optional tension cut-off.
+//! Mohr–Coulomb plasticity with non-associated flow and an optional tension cut-off (theory, eqs. 21
+//! and 31).
 //!
 //! Exact return in principal space after Clausen, Damkilde & Andersen (2006), *Efficient return
 //! algorithms for associated plasticity with multiple yield planes*, Int. J. Numer. Meth. Engng

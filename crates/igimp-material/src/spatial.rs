@@ -10,13 +10,13 @@ use crate::principal::Tensor;
 /// which is all that B-bar asks for.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SpatialTangent<const D: usize> {
-    /// The in-plane components $`A_{abcd}`$.
+    /// The in-plane components $`A_{abcd}`$ \[stress\], by a, b, c, d.
     pub modulus: [[[[f64; D]; D]; D]; D],
-    /// $`\sum_a A_{aacd}`$ over all three a.
+    /// $`\sum_a A_{aacd}`$ over all three a \[stress\], by c, d.
     pub trace_left: [[f64; D]; D],
-    /// $`\sum_c A_{abcc}`$ over all three c.
+    /// $`\sum_c A_{abcc}`$ over all three c \[stress\], by a, b.
     pub trace_right: [[f64; D]; D],
-    /// $`\sum_{ac} A_{aacc}`$ over all three a and c.
+    /// $`\sum_{ac} A_{aacc}`$ over all three a and c \[stress\].
     pub trace: f64,
 }
 

@@ -1,4 +1,5 @@
-//! Tresca plasticity: the largest shear stress is bounded by the undrained strength.
+//! Tresca plasticity: the largest shear stress is bounded by the undrained strength (theory, eq. 21
+//! without friction).
 
 use std::sync::Arc;
 

@@ -1,6 +1,6 @@
 //! Von Mises plasticity without hardening: a cylinder around the hydrostatic axis.
 //!
-//! Radial return and its consistent tangent, de Souza Neto, Perić & Owen (2008), section 7.3.
+//! Radial return and its consistent tangent: theory, eq. 20; de Souza Neto, Perić & Owen (2008), section 7.3.
 
 use std::sync::Arc;
 

@@ -33,7 +33,7 @@ pub struct Axis {
 }
 
 impl Axis {
-    /// Evenly spaced axis: node `k` at `start + k * spacing`, `cells + 1` nodes.
+    /// Evenly spaced axis: node `k` at `start + k * spacing` \[length\], `cells + 1` nodes.
     ///
     /// # Errors
     ///
@@ -129,7 +129,7 @@ impl Axis {
         self.nodes[cell + 1] - self.nodes[cell]
     }
 
-    /// The cell that contains `x`; `None` outside the axis and for NaN.
+    /// The cell that contains `x` \[length\]; `None` outside the axis and for NaN.
     ///
     /// The axis is closed at both ends. A point on an inner node belongs to the cell that starts
     /// there, a point on the last node to the last cell.

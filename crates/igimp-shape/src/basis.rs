@@ -1,6 +1,6 @@
 //! Basis weights of one direction: linear (iMPM) and GIMP, on any axis and any domain.
 //!
-//! Bardenhagen & Kober (2004) for GIMP; Yuan et al. (2021), doi:10.1631/jzus.A2100219, for the
+//! Theory, eqs. 3 and 5. Bardenhagen & Kober (2004) for GIMP; Yuan et al. (2021), doi:10.1631/jzus.A2100219, for the
 //! cell-averaged centre gradient.
 
 use crate::{Axis, ShapeError};
@@ -80,15 +80,17 @@ pub struct Linear;
 /// The domain is cut at the ends of the axis, which are walls, and means are taken over what
 /// remains. Every cell $`c`$ of size $`h`$ that the domain overlaps by the fraction $`w`$ of its
 /// length, with the overlap's middle at local coordinate $`m \in [0, 1]`$, adds to its two nodes
+/// (theory, eq. 5)
 ///
 /// ```math
-/// S_\text{left} \mathrel{+}= w (1 - m), \quad S_\text{right} \mathrel{+}= w m, \quad
-/// S'_\text{left} \mathrel{-}= w / h, \quad S'_\text{right} \mathrel{+}= w / h, \quad
-/// \bar S_\text{left} \mathrel{+}= w / 2, \quad \bar S_\text{right} \mathrel{+}= w / 2 .
+/// \begin{array}{lll}
+/// \text{left:} & S \leftarrow S + w (1 - m), & S' \leftarrow S' - w / h, & \bar S \leftarrow \bar S + w / 2 \\
+/// \text{right:} & S \leftarrow S + w m, & S' \leftarrow S' + w / h, & \bar S \leftarrow \bar S + w / 2
+/// \end{array}
 /// ```
 ///
 /// This holds for any $`l_p`$ and any spacing. On a uniform axis with $`l_p \le h/2`$ and no wall
-/// near it is, with $`r = x_p - x_i`$ and $`a = |r|`$, the well-known
+/// near it is, with $`r = x_p - x_i`$ and $`a = |r|`$, the well-known (eq. 4)
 ///
 /// ```math
 /// \begin{array}{llll}

@@ -76,7 +76,7 @@ impl<const D: usize> Grid<D> {
         unflatten(cell, array::from_fn(|d| self.axes[d].cell_count()))
     }
 
-    /// Place of the cell that contains `x`; `None` outside the grid and for NaN.
+    /// Place of the cell that contains `x` \[length\]; `None` outside the grid and for NaN.
     ///
     /// Faces belong to the cell above, the last face to the last cell: see [`Axis::cell_at`].
     #[inline]
@@ -98,7 +98,7 @@ impl<const D: usize> Grid<D> {
         array::from_fn(|d| self.axes[d].spacing(place[d]))
     }
 
-    /// Whether `x` lies in the grid, its boundary included; false for NaN.
+    /// Whether `x` \[length\] lies in the grid, its boundary included; false for NaN.
     #[inline]
     pub fn contains(&self, x: &[f64; D]) -> bool {
         self.axes

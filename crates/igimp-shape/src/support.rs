@@ -1,4 +1,4 @@
-//! Supports of a particle: the tensor product of the weights of its directions.
+//! Supports of a particle: the tensor product of the weights of its directions (theory, eqs. 6 to 8).
 //!
 //! Yuan et al. (2021), doi:10.1631/jzus.A2100219, for the cell-averaged centre gradient.
 

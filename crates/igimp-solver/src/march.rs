@@ -49,9 +49,9 @@ pub struct Accepted<'a, const D: usize> {
 /// Where a march stands between two steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Standing {
-    /// Load factor reached.
+    /// Load factor reached \[-\].
     pub at: f64,
-    /// Size of the next step.
+    /// Size of the next step, in load factor \[-\].
     pub size: f64,
     /// Accepted steps in a row since the last cut or growth.
     pub successes: usize,
@@ -126,12 +126,12 @@ pub enum Outcome {
     Completed,
     /// The observer ended the march.
     Stopped {
-        /// Load factor reached.
+        /// Load factor reached \[-\].
         at: f64,
     },
     /// No equilibrium was found, however small the step.
     StepTooSmall {
-        /// Load factor of the last equilibrium.
+        /// Load factor of the last equilibrium \[-\].
         last_converged: f64,
         /// The smallest step that failed, and why.
         cause: StepError,
@@ -150,7 +150,7 @@ pub struct MarchReport {
 }
 
 impl MarchReport {
-    /// Load factor of the last equilibrium.
+    /// Load factor of the last equilibrium \[-\].
     pub fn reached(&self) -> f64 {
         self.steps.last().map_or(0.0, |step| step.to)
     }

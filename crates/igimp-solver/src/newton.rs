@@ -1,4 +1,5 @@
-//! One load step: the Newton–Raphson iteration to equilibrium (Yuan et al. 2021, section 2).
+//! One load step: the Newton–Raphson iteration to equilibrium (theory, eqs. 24 and 25; Yuan et al.
+//! 2021, section 2).
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -83,11 +84,11 @@ pub enum StepFailure {
 #[derive(Clone, Debug, Error, PartialEq)]
 #[error("no equilibrium between load factors {from} and {to}")]
 pub struct StepError {
-    /// Load factor at the start.
+    /// Load factor at the start \[-\].
     pub from: f64,
-    /// Load factor tried.
+    /// Load factor tried \[-\].
     pub to: f64,
-    /// Relative out-of-balance norm before each correction.
+    /// Relative out-of-balance norm before each correction \[-\].
     pub residuals: Vec<f64>,
     /// Position \[length\] and axis of the largest out-of-balance force.
     pub worst: Option<([f64; 3], usize)>,
@@ -125,13 +126,13 @@ impl PhaseTimes {
 /// An accepted step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StepReport {
-    /// Load factor at the start.
+    /// Load factor at the start \[-\].
     pub from: f64,
-    /// Load factor reached.
+    /// Load factor reached \[-\].
     pub to: f64,
     /// Number of corrections.
     pub iterations: usize,
-    /// Relative out-of-balance norm before each correction and at the end.
+    /// Relative out-of-balance norm before each correction and at the end \[-\].
     pub residuals: Vec<f64>,
     /// Whether the step was accepted above the tolerance because its residual is nothing but
     /// round-off of the internal force.

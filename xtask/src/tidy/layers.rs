@@ -1,6 +1,6 @@
 //! The crates form a chain, and those below the cases neither read files nor print.
 
-use super::metadata::{Metadata, Package};
+use crate::metadata::{Metadata, Package};
 
 /// Crates of the project with those that they may depend on, for tests too.
 const LAYERS: [(&str, &[&str]); 9] = [
@@ -92,8 +92,8 @@ fn check_member(member: &Package, members: &[&str]) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::metadata::tests::metadata;
     use super::*;
+    use crate::metadata::tests::metadata;
 
     type Row<'a> = (&'a str, bool, Option<&'a str>, &'a [&'a str]);
 

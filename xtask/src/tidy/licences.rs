@@ -1,6 +1,6 @@
 //! Licences of all dependencies: SPDX expressions against the list in `deny.toml`.
 
-use super::metadata::Metadata;
+use crate::metadata::Metadata;
 
 /// What is wrong with the licences.
 pub(super) fn check(metadata: &Metadata, allowed: &[String]) -> Vec<String> {
@@ -101,8 +101,8 @@ impl Parser<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::metadata::tests::metadata;
     use super::*;
+    use crate::metadata::tests::metadata;
 
     fn allowed() -> Vec<String> {
         [

@@ -140,11 +140,17 @@ fn without_code(line: &str) -> String {
         .collect()
 }
 
-/// The anchors of the headings of a text, as mdBook and GitHub make them.
+/// The anchors of a text: those of its headings, as mdBook and GitHub make them, and `eq-N` for a
+/// numbered equation, as the book makes it.
 fn anchors(text: &str) -> Vec<String> {
     let mut fence: Option<String> = None;
     let mut slugs: Vec<String> = Vec::new();
-    let mut anchors: Vec<String> = Vec::new();
+    let mut anchors: Vec<String> = text
+        .split("\\tag{")
+        .skip(1)
+        .filter_map(|rest| rest.split_once('}'))
+        .map(|(number, _)| format!("eq-{number}"))
+        .collect();
     for line in text.lines() {
         let ticks: String = line.chars().take_while(|&c| c == '`').collect();
         match &fence {
@@ -242,6 +248,7 @@ mod tests {
             anchors(text),
             ["a-tour", "4-rigid-footing-x--1", "fields", "fields-1"]
         );
+        assert_eq!(anchors("```math\na = b\n\\tag{7a}\n```"), ["eq-7a"]);
     }
 
     #[test]

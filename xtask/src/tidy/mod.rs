@@ -1,15 +1,15 @@
 //! `cargo xtask tidy`: invariants of the workspace that the compiler does not check.
 
 mod deny;
+mod equations;
 mod layers;
 mod licences;
 mod links;
-mod metadata;
 mod sources;
 
 use crate::failure::{FOUND, Failure};
+use crate::metadata::Metadata;
 use crate::process::root;
-use metadata::Metadata;
 
 /// Runs all checks; prints what is wrong, one line each.
 pub(crate) fn run() -> Result<u8, Failure> {
@@ -21,6 +21,7 @@ pub(crate) fn run() -> Result<u8, Failure> {
         ("sources", sources::check(&metadata, &root)?),
         ("licences", licences::check(&metadata, &allowed)),
         ("links", links::check(&root)?),
+        ("equations", equations::check(&metadata, &root)?),
     ];
     let mut count = 0;
     for (name, problems) in &checks {

@@ -4,8 +4,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::layers::BELOW_CASES;
-use super::metadata::Metadata;
 use crate::failure::Failure;
+use crate::metadata::Metadata;
 
 /// Marks of unfinished work, as whole words; in two parts so that this file passes.
 const LEFTOVERS: [&str; 2] = [concat!("TO", "DO"), concat!("FIX", "ME")];
@@ -41,7 +41,7 @@ pub(super) fn check(metadata: &Metadata, root: &Path) -> Result<Vec<String>, Fai
 }
 
 /// Collects the `.rs` files below a folder, build output excepted.
-fn rust_files(folder: &Path, files: &mut Vec<PathBuf>) -> Result<(), Failure> {
+pub(super) fn rust_files(folder: &Path, files: &mut Vec<PathBuf>) -> Result<(), Failure> {
     let failure = |error| Failure::input_output(format!("cannot read {}", folder.display()), error);
     for entry in fs::read_dir(folder).map_err(failure)? {
         let path = entry.map_err(failure)?.path();

@@ -69,11 +69,11 @@ pub struct LinearSystem {
     pub col_ptr: Vec<u64>,
     /// Row of each stored entry.
     pub row_idx: Vec<i32>,
-    /// Stored values of K.
+    /// Stored values of K \[N/m per m\].
     pub values: Vec<f64>,
-    /// b.
+    /// b, the out-of-balance force \[N/m\].
     pub rhs: Vec<f64>,
-    /// x.
+    /// x, the correction \[m\].
     pub solution: Vec<f64>,
     /// Column and row of each unknown's node on the grid, and its component.
     pub places: Vec<[i32; 3]>,

@@ -29,7 +29,7 @@ pub struct Collection {
 /// A frame of a collection.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Frame {
-    /// Time that ParaView shows; frames come in the order of their times.
+    /// Pseudo-time that ParaView shows \[-\]; frames come in the order of their times.
     pub time: f64,
     /// File, relative to the collection.
     pub file: String,

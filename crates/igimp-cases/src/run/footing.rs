@@ -1,4 +1,4 @@
-//! A rigid footing and the grid that follows it (theory, "moving grid").
+//! A rigid footing and the grid that follows it (theory, eq. 30).
 //!
 //! At the start of each step the rows at or below the initial surface are compressed to
 //! `y₀ (D − w)/D` above the bottom of the grid, with D the depth of the base and w its settlement,

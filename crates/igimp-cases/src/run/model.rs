@@ -101,7 +101,7 @@ impl<'c> Model<'c> {
         }
     }
 
-    /// What holds during a step between two controls.
+    /// What holds during a step between two controls, with so much `drag` \[1/s²\].
     ///
     /// # Errors
     /// [`AssemblyError`] when the grid or the reduced laws cannot be made.
@@ -130,7 +130,7 @@ impl<'c> Model<'c> {
         })
     }
 
-    /// The laws at reduced strength.
+    /// The laws at reduced strength; `srf` has a strength reduction factor for each \[-\].
     ///
     /// # Errors
     /// [`AssemblyError::Material`] for a factor that makes no law.

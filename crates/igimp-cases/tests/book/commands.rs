@@ -47,6 +47,15 @@ pub(crate) fn said(output: &Output) -> String {
 
 /// The commands of a block that run the program or make a folder for it, continued lines joined.
 fn commands(block: &Block) -> Vec<String> {
+    if block.language == "console" {
+        let prompted = block
+            .text
+            .lines()
+            .filter_map(|line| line.strip_prefix("$ "));
+        return prompted
+            .map(|line| line.replace("igimp run ", "igimp check "))
+            .collect();
+    }
     let joined = block.text.replace("\\\n", " ");
     let extra = block.mark("tried with:");
     joined
@@ -106,6 +115,27 @@ fn file_text(block: &Block) -> String {
     }
 }
 
+/// Whether Python can import packages, separated by commas.
+pub(crate) fn can_import(packages: &str) -> bool {
+    let import = format!("import {packages}");
+    let found = Command::new("python3").args(["-c", &import]).output();
+    let found = found.is_ok_and(|output| output.status.success());
+    if !found {
+        println!("skipped: python3 cannot import {packages}");
+    }
+    found
+}
+
+/// Runs a block of Python; what is wrong with it.
+fn try_python(folder: &Path, block: &Block) -> Option<String> {
+    if !can_import(block.mark("needs:").unwrap_or("sys")) {
+        return None;
+    }
+    fs::write(folder.join("block.py"), file_text(block)).unwrap();
+    let output = shell(folder, "python3 block.py");
+    (!output.status.success()).then(|| said(&output))
+}
+
 /// Runs the commands of a page, one after the other in one folder; how many there are, and what is
 /// wrong.
 fn try_page(page: &Path) -> (usize, String) {
@@ -127,7 +157,28 @@ fn try_page(page: &Path) -> (usize, String) {
                 let _ = writeln!(problems, "{name}:{}: prints\n{last}", block.line);
             }
         }
-        if block.language != "sh" || block.mark("not tried:").is_some() {
+        let marked = ["not tried:", "tried by:"]
+            .iter()
+            .any(|mark| block.mark(mark).is_some());
+        if marked {
+            continue;
+        }
+        for first in block
+            .marks
+            .iter()
+            .filter_map(|mark| mark.strip_prefix("first: "))
+        {
+            let output = shell(&folder, first);
+            let done = matches!(output.status.code(), Some(0 | 1));
+            assert!(done, "{name}: `{first}`: {}", said(&output));
+        }
+        if block.language == "python" {
+            if let Some(problem) = try_python(&folder, &block) {
+                let _ = writeln!(problems, "{name}:{}: {problem}", block.line);
+            }
+            tried += 1;
+        }
+        if block.language != "sh" && block.language != "console" {
             continue;
         }
         let lines = commands(&block);

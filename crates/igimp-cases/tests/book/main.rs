@@ -9,6 +9,9 @@
 //! | `tried with: OPTIONS` | options put behind every `igimp run` of the block, to be quick |
 //! | `exit: CODE` | exit code of the block's last command, 0 when not said |
 //! | `not tried: REASON` | the block is not run |
+//! | `tried by: TEST` | a test of its own runs it |
+//! | `first: COMMAND` | run before the block, and not shown; its exit code may be 0 or 1 |
+//! | `needs: PACKAGES` | packages of Python without which the block is skipped |
 //! | `tried as: FROM => TO` | a change of a file, to be quick |
 //! | `file: NAME` | the block is written to this file before the next commands run |
 //! | `from: NAME.toml` | its lines are those of a shipped case, comments aside |
@@ -20,9 +23,14 @@
 //! | `of: FILE` | the lines stand in this file of the workspace |
 //! | `generated: WHAT` to `generated: end` | made by the program |
 //!
+//! In blocks of the language `console`, `igimp run` is tried as `igimp check`: the cases themselves are
+//! run by `tests/shipped.rs`. A block of Python runs in the folder of its page. `coverage.rs` sees to it
+//! that no block of any page is left out.
+//!
 //! Messages and what is generated are written anew with `INSTA_UPDATE=always`, like snapshots.
 
 mod commands;
+mod coverage;
 mod page;
 mod results;
 

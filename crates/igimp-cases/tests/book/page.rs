@@ -34,7 +34,9 @@ pub(crate) fn pages() -> Vec<PathBuf> {
         .filter(|path| path.extension().is_some_and(|end| end == "md"))
         .collect();
     pages.sort();
-    pages.extend(["docs/src/tour.md", "README.md"].map(|name| root().join(name)));
+    pages.extend(
+        ["docs/src/tour.md", "docs/src/cases.md", "README.md"].map(|name| root().join(name)),
+    );
     pages
 }
 

@@ -2,12 +2,11 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 use std::sync::OnceLock;
 
 use igimp_cases::results::checkpoint;
 
-use crate::commands::{folder, has_shell, said, shell};
+use crate::commands::{can_import, folder, has_shell, said, shell};
 use crate::page::root;
 
 /// The slope on cells so large that it runs in a second or two.
@@ -74,14 +73,7 @@ fn the_page_on_results_names_every_file_and_field() {
 
 #[test]
 fn the_python_recipe_works() {
-    if !has_shell() {
-        return;
-    }
-    let import = Command::new("python3")
-        .args(["-c", "import numpy, pandas"])
-        .output();
-    if !import.is_ok_and(|output| output.status.success()) {
-        println!("skipped: python3 cannot import numpy and pandas");
+    if !has_shell() || !can_import("numpy, pandas") {
         return;
     }
     let recipe = root().join("docs/src/guide/python_recipe.py");
@@ -92,4 +84,10 @@ fn the_python_recipe_works() {
     );
     assert!(output.status.success(), "{}", said(&output));
     println!("{}", said(&output));
+    let picture = folder.join("results/slope/python.png").exists();
+    assert_eq!(
+        picture,
+        can_import("matplotlib"),
+        "a picture where matplotlib is installed"
+    );
 }

@@ -1,4 +1,4 @@
-//! The three-range formulas of GIMP on a uniform axis, $`l_p \le h/2`$, away from walls.
+//! The three-range formulas of GIMP (theory, eq. 4) on a uniform axis, $`l_p \le h/2`$, away from walls.
 
 use igimp_shape::{Axis, Basis, Gimp};
 use proptest::prelude::*;

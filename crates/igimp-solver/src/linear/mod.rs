@@ -63,7 +63,8 @@ pub trait LinearSolver: Send {
     /// [`LinearSolverError::NotSymmetric`] or [`LinearSolverError::NotPositiveDefinite`].
     fn factor(&mut self, matrix: &TangentMatrix) -> Result<(), LinearSolverError>;
 
-    /// Solves K x = `rhs` for the matrix factorised last; both slices have one entry per unknown.
+    /// Solves K x = `rhs` \[force\] for the matrix factorised last; both slices have one entry per
+    /// unknown, `solution` \[length\].
     /// The solution is checked against `matrix` and refined with it: it must be the one that was
     /// factorised. The content of `solution` is meaningful only on success.
     ///
@@ -87,14 +88,14 @@ pub trait LinearSolver: Send {
 pub struct SolveReport {
     /// The method that produced the solution, after any fallback.
     pub method: &'static str,
-    /// `` $`\max_i |b - K x|_i / \max_i |b|_i`$ ``, zero for a zero right-hand side.
+    /// $`\max_i |b - K x|_i / \max_i |b|_i`$ \[-\], zero for a zero right-hand side.
     pub relative_residual: f64,
     /// Steps of iterative refinement, or iterations of an iterative solver.
     pub refinements: usize,
     /// Pivots that were too small to divide by and were replaced (zero for most methods).
     pub perturbed_pivots: usize,
     /// Largest entry met among the pivots of the elimination, the matrix being scaled to entries
-    /// of about 1; 1 for methods that do not record it.
+    /// of about 1 \[-\]; 1 for methods that do not record it.
     pub pivot_growth: f64,
 }
 

@@ -14,9 +14,9 @@ pub struct SolvedSystem {
     pub number: usize,
     /// K.
     pub matrix: TangentMatrix,
-    /// b, one entry per unknown.
+    /// b, the out-of-balance force, one entry per unknown \[force\].
     pub rhs: Vec<f64>,
-    /// x, one entry per unknown.
+    /// x, the correction found, one entry per unknown \[length\].
     pub solution: Vec<f64>,
 }
 

@@ -15,9 +15,9 @@ use super::{LinearSolverError, SolveReport, check};
 /// iteration, which judges it by its own out-of-balance force.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Accuracy {
-    /// Relative residual at which refinement stops.
+    /// Relative residual at which refinement stops \[-\].
     pub target: f64,
-    /// Largest relative residual of a solution that is handed out.
+    /// Largest relative residual of a solution that is handed out \[-\].
     pub tolerance: f64,
     /// Largest number of refinements.
     pub max_refinements: usize,

@@ -28,6 +28,8 @@ pub(crate) struct Package {
 /// The workspace and all it depends on, on any platform.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Metadata {
+    /// Where cargo builds.
+    pub(crate) target: PathBuf,
     packages: BTreeMap<String, Package>,
 }
 
@@ -70,7 +72,8 @@ impl Metadata {
                 }
             }
         }
-        Some(Self { packages })
+        let target = PathBuf::from(value["target_directory"].as_str()?);
+        Some(Self { target, packages })
     }
 
     /// All packages.
@@ -116,7 +119,7 @@ impl Metadata {
 }
 
 #[cfg(test)]
-pub(super) mod tests {
+pub(crate) mod tests {
     use super::*;
     use serde_json::json;
 
@@ -147,7 +150,7 @@ pub(super) mod tests {
             })
             .collect();
         let value = json!({"packages": list, "workspace_members": members,
-            "resolve": {"nodes": nodes}});
+            "resolve": {"nodes": nodes}, "target_directory": "target"});
         Metadata::parse(&value.to_string()).unwrap()
     }
 
