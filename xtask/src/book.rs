@@ -1,5 +1,5 @@
 //! `cargo xtask book` and `cargo xtask doc`: the pages for readers, with mathematics that is set when they
-//! are built and links that are checked.
+//! are built.
 
 use std::fs;
 use std::path::Path;
@@ -7,7 +7,7 @@ use std::path::Path;
 use crate::failure::Failure;
 use crate::mdbook;
 use crate::metadata::Metadata;
-use crate::pages::{self, Finished};
+use crate::pages;
 use crate::process::{cargo, program, root, status};
 
 /// Where mdBook writes, from the root.
@@ -22,12 +22,13 @@ pub(crate) fn book(open: bool) -> Result<u8, Failure> {
     if code != 0 {
         return Ok(code);
     }
-    tell(
-        "book",
-        pages::finish(&folder)?,
-        &folder.join("index.html"),
-        open,
-    )
+    let (pages, formulas) = pages::typeset(&folder)?;
+    pages::check_links(&folder, &pages)?;
+    println!(
+        "book: {} pages, {formulas} formulas, all links lead somewhere",
+        pages.len()
+    );
+    show(&folder.join("index.html"), open)
 }
 
 /// Builds the pages of the crates, and opens them on request.
@@ -38,12 +39,9 @@ pub(crate) fn crates(open: bool) -> Result<u8, Failure> {
     if code != 0 {
         return Ok(code);
     }
-    tell(
-        "doc",
-        pages::finish(&folder)?,
-        &folder.join("igimp_cases/index.html"),
-        open,
-    )
+    let (pages, formulas) = pages::typeset(&folder)?;
+    println!("doc: {} pages, {formulas} formulas", pages.len());
+    show(&folder.join("igimp_cases/index.html"), open)
 }
 
 /// Removes pages of an earlier build: they are finished already, and may be of pages that are no more.
@@ -55,10 +53,9 @@ fn clear(folder: &Path) -> Result<(), Failure> {
         .map_err(|error| Failure::input_output(format!("cannot clear {}", folder.display()), error))
 }
 
-fn tell(name: &str, finished: Finished, first: &Path, open: bool) -> Result<u8, Failure> {
-    let Finished { pages, formulas } = finished;
-    println!("{name}: {pages} pages, {formulas} formulas, all links lead somewhere");
-    println!("{name}: {}", first.display());
+/// Says where the pages begin, and shows them on request.
+fn show(first: &Path, open: bool) -> Result<u8, Failure> {
+    println!("{}", first.display());
     if open {
         let opener = if cfg!(target_os = "macos") {
             "open"

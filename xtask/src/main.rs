@@ -65,7 +65,7 @@ enum Task {
         #[arg(long)]
         open: bool,
     },
-    /// Build the pages of the crates, set their mathematics and check their links.
+    /// Build the pages of the crates and set their mathematics.
     Doc {
         /// Show them in the browser.
         #[arg(long)]

@@ -83,7 +83,7 @@ pub struct Linear;
 /// (theory, eq. 5)
 ///
 /// ```math
-/// \begin{array}{lll}
+/// \begin{array}{llll}
 /// \text{left:} & S \leftarrow S + w (1 - m), & S' \leftarrow S' - w / h, & \bar S \leftarrow \bar S + w / 2 \\
 /// \text{right:} & S \leftarrow S + w m, & S' \leftarrow S' + w / h, & \bar S \leftarrow \bar S + w / 2
 /// \end{array}

@@ -1,4 +1,5 @@
-//! Finishing built pages, those of the book and those of rustdoc: mathematics is set, links are checked.
+//! Finishing built pages: the mathematics of the book and of rustdoc is set, and the links of the book are
+//! checked. Those of rustdoc are checked by its lints, and its scripts make some of the anchors.
 
 mod check;
 mod html;
@@ -17,23 +18,18 @@ const FONT: (&str, &str) = ("pulldown-latex", "font/latinmodern-math.woff2");
 /// Style of formulas; `FONT` stands for the path to the font.
 const STYLE: &str = include_str!("math.css");
 
-/// How many pages and formulas there were.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Finished {
-    pub(crate) pages: usize,
-    pub(crate) formulas: usize,
-}
+/// Built pages: their texts by their paths within a folder.
+pub(crate) type Pages = BTreeMap<PathBuf, String>;
 
-/// Sets the mathematics of all pages below a folder, and checks their links.
+/// Sets the mathematics of all pages below a folder; the pages, and how many formulas they have.
 ///
 /// # Errors
 ///
-/// A file that cannot be read or written; formulas that cannot be set and links that lead nowhere, all
-/// of them.
-pub(crate) fn finish(folder: &Path) -> Result<Finished, Failure> {
+/// A file that cannot be read or written; formulas that cannot be set, all of them.
+pub(crate) fn typeset(folder: &Path) -> Result<(Pages, usize), Failure> {
     let mut paths = Vec::new();
     html_files(folder, &mut paths)?;
-    let (mut pages, mut problems, mut formulas) = (BTreeMap::new(), Vec::new(), 0);
+    let (mut pages, mut problems, mut formulas) = (Pages::new(), Vec::new(), 0);
     let font = format!("fonts/{}", FONT.1.rsplit('/').next().unwrap_or_default());
     for path in paths {
         let shown = path.strip_prefix(folder).unwrap_or(&path).to_path_buf();
@@ -58,12 +54,22 @@ pub(crate) fn finish(folder: &Path) -> Result<Finished, Failure> {
     if formulas > 0 {
         copy_font(&folder.join(font))?;
     }
-    problems.extend(check::problems(&pages, |path| folder.join(path).exists()));
+    told(&problems)?;
+    Ok((pages, formulas))
+}
+
+/// Checks the links of all pages of a folder.
+///
+/// # Errors
+///
+/// Links that lead nowhere and files fetched from the network, all of them.
+pub(crate) fn check_links(folder: &Path, pages: &Pages) -> Result<(), Failure> {
+    told(&check::problems(pages, |path| folder.join(path).exists()))
+}
+
+fn told(problems: &[String]) -> Result<(), Failure> {
     if problems.is_empty() {
-        return Ok(Finished {
-            pages: pages.len(),
-            formulas,
-        });
+        return Ok(());
     }
     let message = format!("problems: {}\n  {}", problems.len(), problems.join("\n  "));
     Err(Failure::new(FOUND, message))

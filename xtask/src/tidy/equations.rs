@@ -1,5 +1,6 @@
-//! Numbered equations of the theory: every number is given once and in order, every number that the
-//! code cites is there, and every equation is cited by the code or its tests.
+//! The theory and the code: every equation has a number, once and in order, every number that the code
+//! cites is there, every equation is cited by the code or its tests, and the names that the table of
+//! symbols gives are names of the code.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -18,6 +19,7 @@ type Number = (usize, String);
 pub(super) fn check(metadata: &Metadata, root: &Path) -> Result<Vec<String>, Failure> {
     let theory = read(&root.join(THEORY))?;
     let mut cited: BTreeMap<Number, String> = BTreeMap::new();
+    let mut words = BTreeSet::new();
     for member in metadata.members().filter(|member| member.name != "xtask") {
         let mut files = Vec::new();
         rust_files(&member.folder, &mut files)?;
@@ -28,12 +30,39 @@ pub(super) fn check(metadata: &Metadata, root: &Path) -> Result<Vec<String>, Fai
                 .unwrap_or(&file)
                 .display()
                 .to_string();
-            for number in citations(&read(&file)?) {
+            let source = read(&file)?;
+            for number in citations(&source) {
                 cited.entry(number).or_insert_with(|| shown.clone());
             }
+            words.extend(source.split(is_no_word).map(str::to_owned));
         }
     }
-    Ok(problems(&numbers(&theory), &cited))
+    let mut problems = problems(&numbers(&theory), &cited);
+    let unknown = names(&theory)
+        .into_iter()
+        .filter(|name| !words.contains(name));
+    problems.extend(unknown.map(|name| format!("{THEORY}: there is no `{name}` in the code")));
+    Ok(problems)
+}
+
+fn is_no_word(c: char) -> bool {
+    !c.is_alphanumeric() && c != '_'
+}
+
+/// The names in the second column of the table of symbols.
+fn names(page: &str) -> Vec<String> {
+    let section = page
+        .split("\n## ")
+        .find(|part| part.starts_with("Symbols\n"));
+    let rows = section
+        .unwrap_or("")
+        .lines()
+        .filter(|line| line.starts_with("| $"));
+    rows.filter_map(|row| row.split(" | ").nth(1))
+        .flat_map(|column| column.split('`').skip(1).step_by(2))
+        .flat_map(|name| name.split("::"))
+        .map(str::to_owned)
+        .collect()
 }
 
 fn read(path: &Path) -> Result<String, Failure> {
@@ -153,6 +182,13 @@ mod tests {
     fn numbers_of_the_theory_are_found() {
         let page = "```math\na = b\n\\tag{1}\n```\nText (1).\n```math\nc\n\\tag{1a}\n```\n\\tag{2}";
         assert_eq!(shown(&numbers(page)), ["1", "1a", "2"]);
+    }
+
+    #[test]
+    fn names_of_symbols_are_found() {
+        let page = "# T\n## Symbols\n\n| symbol | name |\n|---|---|\n\
+                    | $`x_p`$ | `x`, `Loads::force` | length |\n## Sources\n| $`y`$ | `no` |\n";
+        assert_eq!(names(page), ["x", "Loads", "force"]);
     }
 
     #[test]
