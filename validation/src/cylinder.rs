@@ -220,7 +220,7 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
     let mut shown = Vec::new();
     for (job, (run, curve)) in jobs.iter().zip(done) {
         if job.exact.outer > THICK.outer {
-            cavity(&mut study, job, run, curve)?;
+            cavity(&mut study, job, run, &curve)?;
         } else if job.method.bbar {
             let series = thick_cylinder(&mut study, job, run, curve)?;
             if meshes.last() == Some(&job.cells) {
@@ -297,7 +297,7 @@ fn locked(study: &mut Study, run: Run, curve: &Table) -> Series {
 
 /// Checks the cavity. What soil without end adds beyond the model is known exactly: the motion does
 /// not depend on it.
-fn cavity(study: &mut Study, job: &Expansion, run: Run, curve: Table) -> Result<(), CaseError> {
+fn cavity(study: &mut Study, job: &Expansion, run: Run, curve: &Table) -> Result<(), CaseError> {
     let run = study.run_to_end(run);
     for a in [2.0, 3.0, 4.0] {
         let beyond = job.exact.beyond(a);
@@ -306,7 +306,7 @@ fn cavity(study: &mut Study, job: &Expansion, run: Run, curve: Table) -> Result<
             format!("p/s_u in soil without end at a = {a} a₀ [-]"),
             CAVITY_EXPANSION.says(job.exact.pressure(a) + beyond),
             Band::Relative(0.01),
-            at(&curve, a) + beyond,
+            at(curve, a) + beyond,
         );
     }
     let measured = curve

@@ -67,10 +67,6 @@ impl Bent {
 }
 
 impl Bending {
-    fn exact(&self) -> f64 {
-        deflection(self.load)
-    }
-
     fn run(&self) -> Result<Bent, CaseError> {
         let h = 1.0 / self.cells as f64;
         let grid = Grid::new([
@@ -155,142 +151,90 @@ fn stored_share(particles: &Particles<2>) -> f64 {
     product / square
 }
 
-/// Runs the study.
-pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
-    let mut study = Study::new("elastica", ABOUT, out)?;
-    let bar = Bending {
+/// The beams of a level, each with the error that is accepted \[-\].
+fn beams(level: Level) -> Vec<(Bending, f64)> {
+    let bar = |cells: usize, points: usize, steps: usize| Bending {
         load: 1.0,
-        cells: 8,
-        points: 3,
-        steps: 1,
+        cells,
+        points,
+        steps,
         method: Method::igimp_bbar(),
     };
-    let plain = Bending {
+    let plain = |steps: usize| Bending {
         method: Method::igimp(),
-        ..bar.clone()
+        ..bar(8, 3, steps)
     };
-    let mut jobs = vec![
-        (bar.clone(), 0.005),
-        (plain.clone(), 0.005),
-        (
-            Bending {
-                steps: 10,
-                ..bar.clone()
-            },
-            0.025,
-        ),
-        (
-            Bending {
-                steps: 10,
-                ..plain.clone()
-            },
-            0.005,
-        ),
+    let mut beams = vec![
+        (bar(8, 3, 1), 0.005),
+        (plain(1), 0.005),
+        (bar(8, 3, 10), 0.025),
+        (plain(10), 0.005),
     ];
     if level > Level::Quick {
         for steps in [2, 5, 20, 40] {
-            jobs.push((
-                Bending {
-                    steps,
-                    ..bar.clone()
-                },
-                0.03,
-            ));
+            beams.push((bar(8, 3, steps), 0.03));
         }
         for load in [2.0, 5.0] {
-            jobs.push((
-                Bending {
-                    load,
-                    steps: 20,
-                    ..bar.clone()
-                },
-                0.03,
-            ));
+            let beam = Bending {
+                load,
+                ..bar(8, 3, 20)
+            };
+            beams.push((beam, 0.03));
         }
-        for points in [2, 4] {
-            jobs.push((
-                Bending {
-                    points,
-                    steps: 10,
-                    ..bar.clone()
-                },
-                0.035,
-            ));
+        for (cells, points) in [(8, 2), (8, 4), (4, 3)] {
+            beams.push((bar(cells, points, 10), 0.035));
         }
-        jobs.push((
-            Bending {
-                cells: 4,
-                steps: 10,
-                ..bar.clone()
-            },
-            0.035,
-        ));
     }
     if level == Level::Full {
-        jobs.push((
-            Bending {
-                cells: 16,
-                steps: 1,
-                ..bar.clone()
-            },
-            0.005,
-        ));
-        jobs.push((
-            Bending {
-                cells: 16,
-                steps: 10,
-                ..bar.clone()
-            },
-            0.015,
-        ));
+        beams.push((bar(16, 3, 1), 0.005));
+        beams.push((bar(16, 3, 10), 0.015));
     }
-    let done = jobs
+    beams
+}
+
+/// Runs the study.
+pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
+    let mut study = Study::new("elastica", ABOUT, out)?;
+    let beams = beams(level);
+    let done = beams
         .par_iter()
-        .map(|(job, _)| job.run())
+        .map(|(beam, _)| beam.run())
         .collect::<Result<Vec<_>, CaseError>>()?;
-    let mut table = Table::new(
-        format!("deflection_{}_runs", jobs.len()),
-        &[
-            "bbar",
-            "load_[-]",
-            "cells",
-            "points",
-            "steps",
-            "deflection_[-]",
-            "exact_[-]",
-            "stored_share_of_volume_change_[-]",
-        ],
-    );
+    let header = [
+        "bbar",
+        "load_[-]",
+        "cells",
+        "points",
+        "steps",
+        "deflection_[-]",
+        "exact_[-]",
+        "stored_share_of_volume_change_[-]",
+    ];
+    let mut table = Table::new(format!("deflection_{}_runs", beams.len()), &header);
     let mut drift = Vec::new();
     let mut longest = Vec::new();
-    for ((job, share), bent) in jobs.iter().zip(done) {
-        let (end, exact) = (bent.end(), job.exact());
+    for ((beam, share), bent) in beams.iter().zip(done) {
+        let (end, exact) = (bent.end(), deflection(beam.load));
         table.push(vec![
-            f64::from(u8::from(job.method.bbar)),
-            job.load,
-            job.cells as f64,
-            job.points as f64,
-            job.steps as f64,
+            f64::from(u8::from(beam.method.bbar)),
+            beam.load,
+            beam.cells as f64,
+            beam.points as f64,
+            beam.steps as f64,
             end,
             exact,
             bent.stored,
         ]);
-        let standard = job.cells == 8 && job.points == 3 && job.load <= 1.0;
-        if job.method.bbar && standard {
-            drift.push([job.steps as f64, 100.0 * (end / exact - 1.0)]);
+        if beam.method.bbar && beam.cells == 8 && beam.points == 3 && beam.load <= 1.0 {
+            drift.push([beam.steps as f64, 100.0 * (end / exact - 1.0)]);
         }
-        if job.load > 2.0 {
+        if beam.load > 2.0 {
             longest = bent.curve;
         }
         let run = study.run_to_end(bent.run);
         let quantity = "deflection of the end over the length [-]";
-        study.check(
-            run,
-            quantity,
-            REISSNER.says(exact),
-            Band::Relative(*share),
-            end,
-        );
+        let band = Band::Relative(*share);
+        study.check(run, quantity, REISSNER.says(exact), band, end);
     }
     pictures(&study, drift, longest)?;
     study.table(table)?;

@@ -1,5 +1,6 @@
-//! Runs the four benchmark cases of the paper, holds every result against outside values, and
-//! compares curves and effort with snapshots. `cargo xtask validate` calls this program.
+//! Runs the four benchmark cases of the paper and problems with exact answers, holds every result
+//! against outside values, and compares curves and effort with snapshots. `cargo xtask validate`
+//! calls this program.
 
 mod column;
 mod cook;
