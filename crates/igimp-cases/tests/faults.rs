@@ -66,7 +66,7 @@ fn a_run_killed_at_any_moment_ends_with_the_same_files() {
     let folder = Folder::new("killed-run");
     let clock = Instant::now();
     let (code, said) = folder.end("whole", &[]);
-    let whole = clock.elapsed();
+    let mut whole = clock.elapsed();
     assert_eq!(code, Some(0), "{said}");
     let expected = folder.everything("whole");
     assert!(folder.tables("whole").len() >= 4, "{:?}", expected.keys());
@@ -83,7 +83,13 @@ fn a_run_killed_at_any_moment_ends_with_the_same_files() {
             let mut child = folder.run(&out, more).spawn().unwrap();
             let moment = whole.mul_f64(random.next());
             let at_write = (random.next() < 0.5).then_some(&*path);
-            hits += usize::from(kill(&mut child, moment, at_write));
+            let clock = Instant::now();
+            let alive = kill(&mut child, moment, at_write);
+            if !alive && more.is_empty() {
+                // The computer has become quicker since the time of a whole run was taken.
+                whole = whole.min(clock.elapsed());
+            }
+            hits += usize::from(alive);
             within_a_write += usize::from(is_writing(&path));
         }
         runs += 1;

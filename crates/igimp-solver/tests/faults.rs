@@ -130,13 +130,13 @@ fn default_workspace() -> Workspace<2> {
 
 /// The messages of an error and its causes.
 fn chain(error: &StepError) -> String {
-    let mut text = error.to_string();
+    let mut messages = vec![error.to_string()];
     let mut cause = error.source();
     while let Some(next) = cause {
-        text += &format!(": {next}");
+        messages.push(next.to_string());
         cause = next.source();
     }
-    text
+    messages.join(": ")
 }
 
 /// Stress and history are asked for in every pass: whichever pass the fault is in, the step is
@@ -347,27 +347,35 @@ fn a_saved_state_that_is_not_finite_is_refused_by_field_and_particle() {
     type Spoil = fn(&mut ParticleFields<2>, f64);
     let (body, _) = loaded(&von_mises(), 1.0);
     let places: [(&str, Spoil); 10] = [
-        ("x", |fields, value| fields.x[PARTICLE][1] = value),
+        ("x", |fields, value| {
+            fields.x[PARTICLE][1] = value;
+        }),
         ("displacement", |fields, value| {
-            fields.displacement[PARTICLE][0] = value
+            fields.displacement[PARTICLE][0] = value;
         }),
         ("def_grad", |fields, value| {
-            fields.def_grad[PARTICLE][0][1] = value
+            fields.def_grad[PARTICLE][0][1] = value;
         }),
-        ("b_e", |fields, value| fields.b_e[PARTICLE][2][2] = value),
+        ("b_e", |fields, value| {
+            fields.b_e[PARTICLE][2][2] = value;
+        }),
         ("sigma", |fields, value| {
-            fields.sigma[PARTICLE][0][1] = value
+            fields.sigma[PARTICLE][0][1] = value;
         }),
         ("half_length", |fields, value| {
-            fields.half_length[PARTICLE][1] = value
+            fields.half_length[PARTICLE][1] = value;
         }),
         ("half_length0", |fields, value| {
-            fields.half_length0[PARTICLE][0] = value
+            fields.half_length0[PARTICLE][0] = value;
         }),
-        ("volume0", |fields, value| fields.volume0[PARTICLE] = value),
-        ("mass", |fields, value| fields.mass[PARTICLE] = value),
+        ("volume0", |fields, value| {
+            fields.volume0[PARTICLE] = value;
+        }),
+        ("mass", |fields, value| {
+            fields.mass[PARTICLE] = value;
+        }),
         ("eps_p_eq", |fields, value| {
-            fields.history[PARTICLE].eps_p_eq = value
+            fields.history[PARTICLE].eps_p_eq = value;
         }),
     ];
     for (field, spoil) in places {
@@ -401,19 +409,19 @@ fn conditions_that_are_not_finite_are_named() {
     };
     let places: [(&str, usize, Spoil); 5] = [
         ("gravity", 1, |_, conditions, value| {
-            conditions.loads.gravity[1] = value
+            conditions.loads.gravity[1] = value;
         }),
         ("load factor", 0, |_, conditions, value| {
-            conditions.loads.factors[0] = value
+            conditions.loads.factors[0] = value;
         }),
         ("drag", 0, |_, conditions, value| {
-            conditions.loads.drag = value
+            conditions.loads.drag = value;
         }),
         ("position of a load point", 2, |body, _, value| {
-            body.load_points[2].x[0] = value
+            body.load_points[2].x[0] = value;
         }),
         ("force of a load point", 2, |body, _, value| {
-            body.load_points[2].force[1] = value
+            body.load_points[2].force[1] = value;
         }),
     ];
     for (what, index, spoil) in places {
