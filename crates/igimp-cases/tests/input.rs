@@ -561,7 +561,7 @@ fn messages_hold_no_control_characters() {
         ("\"coh\\u001b[31mesion\"", "\"10 kPa\""),
         ("cohesion", "\"10 k\\u0007Pa\""),
         ("cohesion", "\"\\u001b[2J\""),
-        ("cohesion", "'''10\nkPa'''"),
+        ("cohesion", "'''10\nkPaa'''"),
     ] {
         let text = edited(
             SLOPE.1,

@@ -46,30 +46,38 @@ fn sample() -> impl Strategy<Value = Sample> {
         any::<bool>(),
         1_usize..=4,
     )
-        .prop_map(|(axes, mut corners, centre, on_nodes, per_direction)| {
-            let grid = Grid::new(axes);
-            let (lower, upper) = grid.bounds();
-            corners.sort_by(|a, b| a.0.total_cmp(&b.0));
-            let polygon = corners
-                .into_iter()
-                .map(|(angle, reach)| {
-                    let way = [angle.cos(), angle.sin()];
-                    std::array::from_fn(|d| {
-                        let share = (centre[d] + 0.9 * reach * way[d]).clamp(0.0, 1.0);
-                        let x = lower[d] + share * (upper[d] - lower[d]);
-                        let axis = &grid.axes[d];
-                        let x = x.clamp(axis.start(), axis.end());
-                        let next = axis.nodes().iter().find(|&&node| node >= x);
-                        next.copied().filter(|_| on_nodes).unwrap_or(x)
+        .prop_map(
+            |(axes, mut corners, centre, on_nodes, per_direction): (
+                _,
+                Vec<(f64, f64)>,
+                [f64; 2],
+                _,
+                _,
+            )| {
+                let grid = Grid::new(axes);
+                let (lower, upper) = grid.bounds();
+                corners.sort_by(|a, b| a.0.total_cmp(&b.0));
+                let polygon = corners
+                    .into_iter()
+                    .map(|(angle, reach)| {
+                        let way = [angle.cos(), angle.sin()];
+                        std::array::from_fn(|d| {
+                            let share = (centre[d] + 0.9 * reach * way[d]).clamp(0.0, 1.0);
+                            let x = lower[d] + share * (upper[d] - lower[d]);
+                            let axis = &grid.axes[d];
+                            let x = x.clamp(axis.start(), axis.end());
+                            let next = axis.nodes().iter().find(|&&node| node >= x);
+                            next.copied().filter(|_| on_nodes).unwrap_or(x)
+                        })
                     })
-                })
-                .collect();
-            Sample {
-                grid,
-                polygon,
-                per_direction,
-            }
-        })
+                    .collect();
+                Sample {
+                    grid,
+                    polygon,
+                    per_direction,
+                }
+            },
+        )
 }
 
 /// Twice the area that the edges enclose, counted with their sense, by the shoelace formula.
