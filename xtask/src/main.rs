@@ -3,6 +3,7 @@
 
 mod bench;
 mod book;
+mod campaign;
 mod failure;
 mod process;
 mod tidy;
@@ -32,6 +33,16 @@ enum Task {
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         arguments: Vec<String>,
     },
+    /// Run random slopes to collapse and footings deep, and watch how they end.
+    ///
+    /// All arguments go to the campaign program, and its exit code is passed on: 0 every run kept
+    /// to what is asked, 1 one did not, 2 bad input, 4 input or output.
+    #[command(disable_help_flag = true)]
+    Campaign {
+        /// Arguments of the campaign program; `--help` lists them.
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        arguments: Vec<String>,
+    },
     /// Measure speed and memory, and write one report.
     ///
     /// Benches of the kernels, and a survey: cost per particle and iteration, time by phase, rates
@@ -51,6 +62,7 @@ enum Task {
 fn main() -> ExitCode {
     let result = match Arguments::parse().task {
         Task::Validate { arguments } => validate::run(&arguments),
+        Task::Campaign { arguments } => campaign::run(&arguments),
         Task::Bench(arguments) => bench::run(&arguments),
         Task::Tidy => tidy::run(),
         Task::Book { open } => book::run(open),

@@ -2,6 +2,7 @@
 //! to end with a reason, without a panic, in time, and without a step that was accepted above the
 //! tolerance and is not at round-off. `cargo xtask campaign` calls this program.
 
+mod bound;
 mod distribution;
 mod effort;
 mod footing;

@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use crate::bound::stability_number;
 use crate::random::Random;
 
 /// Most particles of a slope: the mesh is coarser where more would be needed.
@@ -10,6 +11,11 @@ const MOST_PARTICLES: f64 = 2500.0;
 const FEWEST_CELLS: usize = 5;
 /// Most cells over the height.
 const MOST_CELLS: usize = 20;
+
+/// γH/c of flat slopes in deep undrained soil \[-\].
+const DEEP: f64 = 5.52;
+/// Largest γH/c that is asked of a slope \[-\].
+const MOST_STABLE: f64 = 60.0;
 
 /// How a slope is brought to collapse.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -147,9 +153,9 @@ impl Slope {
             poisson,
             stiffness,
         };
-        // Most slopes stand at full gravity, some do not.
-        slope.stability_number = slope.estimate() * random.uniform(0.3, 1.1);
         slope.coarsen(has_foundation.then_some(depth));
+        // Most slopes stand at full gravity, some do not.
+        slope.stability_number = slope.target() * random.uniform(0.3, 1.1);
         slope
     }
 
@@ -174,16 +180,40 @@ impl Slope {
         (upper + lower) * (self.per_direction as f64).powi(2)
     }
 
-    /// An estimate of γH/c at collapse: a plane through the toe (Culmann 1866), an upper bound; in
-    /// undrained soil at most 5.52 below which flat slopes fail on deep soil (Taylor 1937).
-    pub(crate) fn estimate(&self) -> f64 {
-        let (beta, phi) = (self.angle.to_radians(), self.friction.to_radians());
-        if self.friction == 0.0 {
-            let culmann = 4.0 * beta.sin() / (1.0 - beta.cos());
-            return culmann.min(5.52);
+    /// γH/c at collapse by limit analysis of stiff soil with associated flow \[-\].
+    pub(crate) fn bound(&self) -> f64 {
+        self.bound_reduced_by(1.0)
+    }
+
+    /// The factor of safety under full gravity by the same limit analysis \[-\].
+    pub(crate) fn factor_of_safety(&self) -> f64 {
+        let (mut stable, mut failed) = (1e-2, 1e2);
+        while failed - stable > 1e-3 * stable {
+            let middle = f64::sqrt(stable * failed);
+            if self.bound_reduced_by(middle) / middle > self.stability_number {
+                stable = middle;
+            } else {
+                failed = middle;
+            }
         }
-        let excess = (beta - phi).max(0.15);
-        (4.0 * beta.sin() * phi.cos() / (1.0 - excess.cos())).min(60.0)
+        stable
+    }
+
+    /// The bound on γH/c for a friction angle whose tangent is divided by a factor. Undrained soil
+    /// below the toe fails at 5.52 at most, however flat the slope (Taylor 1937).
+    fn bound_reduced_by(&self, factor: f64) -> f64 {
+        let phi = (self.friction.to_radians().tan() / factor).atan();
+        let bound = stability_number(self.angle.to_radians(), phi, self.foundation == 0);
+        if self.friction == 0.0 && self.foundation > 0 {
+            bound.min(DEEP)
+        } else {
+            bound
+        }
+    }
+
+    /// The bound, or a number of its size where friction alone holds the slope \[-\].
+    fn target(&self) -> f64 {
+        self.bound().min(MOST_STABLE)
     }
 
     /// h \[m\].
@@ -203,7 +233,7 @@ impl Slope {
 
     /// Multiple of gravity at which a slope driven by gravity has certainly collapsed \[-\].
     pub(crate) fn last_gravity(&self) -> f64 {
-        2.0 * self.estimate() / self.stability_number
+        2.0 * self.target() / self.stability_number
     }
 
     /// Horizontal length of the face \[m\].
@@ -232,7 +262,7 @@ impl Slope {
         let (crest, toe) = (self.crest(), self.crest() + self.run());
         let top = base + self.height;
         let width = self.width();
-        let room = (0.5 * self.cells as f64).ceil() * self.cell();
+        let room = self.cells as f64 * self.cell();
         let mut polygon = vec![[0.0, 0.0]];
         if self.foundation > 0 {
             polygon.extend([[width, 0.0], [width, base]]);

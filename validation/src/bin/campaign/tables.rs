@@ -51,7 +51,7 @@ fn corrections(watched: &Watched) -> Vec<f64> {
 pub(crate) fn slopes_csv(runs: &[(Slope, Watched)]) -> String {
     let mut text = format!(
         "number,drive,law,angle_deg,height_m,cells,per_direction,foundation_cells,gamma_h_over_c,\
-         friction_deg,dilation_deg,poisson,e_over_c,particles,load,load_over_estimate,{EFFORT}\n"
+         friction_deg,dilation_deg,poisson,e_over_c,particles,load,load_over_bound,{EFFORT}\n"
     );
     for (slope, watched) in runs {
         let (load, share) = load(slope, watched);
@@ -78,17 +78,17 @@ pub(crate) fn slopes_csv(runs: &[(Slope, Watched)]) -> String {
     text
 }
 
-/// γH/c at the end under rising gravity, or the factor of safety; and either over its estimate.
+/// γH/c at the end under rising gravity, or the factor of safety; and the load over its bound.
 fn load(slope: &Slope, watched: &Watched) -> (f64, f64) {
     match (slope.drive, &watched.safety) {
         (Drive::Gravity, _) => {
             let load = watched.reached * slope.last_gravity() * slope.stability_number;
-            (load, load / slope.estimate())
+            (load, load / slope.bound())
         }
         (_, Some(safety)) => {
             let factor =
                 0.5 * (safety.stable.unwrap_or(f64::NAN) + safety.failed.unwrap_or(f64::NAN));
-            (factor, factor * slope.stability_number / slope.estimate())
+            (factor, factor / slope.factor_of_safety())
         }
         _ => (f64::NAN, f64::NAN),
     }

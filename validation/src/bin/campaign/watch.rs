@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 
 use igimp_cases::case::Case;
 use igimp_cases::chain;
-use igimp_cases::run::{self, Event, Listener, Start};
+use igimp_cases::run::{self, Event, Listener, Run, Start};
 use igimp_cases::summary::{SafetySummary, StageOutcome};
 use igimp_cases::table::Table;
 
@@ -36,6 +36,8 @@ pub(crate) enum End {
     Moved,
     /// Found no equilibrium on the way to full gravity, before strength was reduced.
     OwnWeight,
+    /// Failed for another reason than want of equilibrium, such as a particle that left the grid.
+    OtherFailure,
     /// Reached its end.
     Completed,
     /// Used up its budget of corrections or time, and ended when it was told.
@@ -55,6 +57,7 @@ impl End {
             Self::NoEquilibrium => "no equilibrium",
             Self::Moved => "displacement limit",
             Self::OwnWeight => "no equilibrium at full gravity",
+            Self::OtherFailure => "the soil left the grid, or another cause",
             Self::Completed => "reached its end",
             Self::Budget => "budget used up",
             Self::Hangs => "hangs",
@@ -210,6 +213,9 @@ fn follow(case: &Case, budget: Budget, interrupt: &AtomicBool) -> Watched {
         .filter(|_| watch.ended_by_cut);
     let (end, cut) = match (&stage.outcome, &stage.safety) {
         (StageOutcome::Interrupted, _) => (End::Budget, None),
+        (StageOutcome::NotConverged, _) if !is_want_of_equilibrium(&run) => {
+            (End::OtherFailure, of_march)
+        }
         (_, Some(safety)) if safety.failed.is_none() => (End::Completed, None),
         (_, Some(_)) if watch.failed.is_some() => (End::NoEquilibrium, watch.failed),
         (_, Some(_)) => (End::Moved, None),
@@ -220,13 +226,13 @@ fn follow(case: &Case, budget: Budget, interrupt: &AtomicBool) -> Watched {
     };
     let safety = stage.safety;
     let reason = match &safety {
-        Some(safety) => safety
+        Some(safety) if stage.outcome == StageOutcome::Completed => safety
             .trials
             .iter()
             .filter(|trial| !trial.stable)
             .min_by(|a, b| a.srf.total_cmp(&b.srf))
             .map_or(stage.reason, |trial| trial.reason.clone()),
-        None => stage.reason,
+        _ => stage.reason,
     };
     Watched {
         end,
@@ -239,4 +245,10 @@ fn follow(case: &Case, budget: Budget, interrupt: &AtomicBool) -> Watched {
         particles: run.summary.size.particles,
         seconds,
     }
+}
+
+/// Whether the step that ended a run did so for want of equilibrium.
+fn is_want_of_equilibrium(run: &Run) -> bool {
+    let failure = run.failure.as_ref();
+    failure.is_some_and(|failure| failure.error.failure.is_want_of_equilibrium())
 }
