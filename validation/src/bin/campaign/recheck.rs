@@ -73,7 +73,7 @@ pub(crate) fn equilibrium(
     for node in 0..grid.node_count() {
         // Nodes with hardly any soil that no neighbour takes along are held.
         let is_held = stencils.node_volume(node) < case.method.small_cuts.below * dx * dy
-            && u[node] == [0.0; 2];
+            && u[node].iter().all(|component| component.abs() == 0.0);
         for a in 0..2 {
             let difference: f64 = f_ext[node][a] - f_int[node][a];
             external += f_ext[node][a] * f_ext[node][a];

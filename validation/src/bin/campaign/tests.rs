@@ -10,7 +10,7 @@ use crate::slope::{Drive, Slope};
 use crate::watch::{Budget, End, Watched, watch};
 
 const BUDGET: Budget = Budget {
-    corrections: 3000,
+    corrections: 6000,
     time: Duration::from_secs(300),
     grace: Duration::from_secs(60),
 };

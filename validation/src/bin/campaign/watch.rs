@@ -218,10 +218,9 @@ fn follow(case: &Case, budget: Budget, interrupt: &AtomicBool) -> Watched {
         }
         (_, Some(safety)) if safety.failed.is_none() => (End::Completed, None),
         (_, Some(_)) if watch.failed.is_some() => (End::NoEquilibrium, watch.failed),
-        (_, Some(_)) => (End::Moved, None),
         (StageOutcome::NotConverged, None) => (End::OwnWeight, of_march),
         (StageOutcome::Stopped, None) if of_march.is_some() => (End::NoEquilibrium, of_march),
-        (StageOutcome::Stopped, None) => (End::Moved, None),
+        (StageOutcome::Stopped, None) | (_, Some(_)) => (End::Moved, None),
         (StageOutcome::Completed, None) => (End::Completed, None),
     };
     let safety = stage.safety;
