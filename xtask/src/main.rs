@@ -5,6 +5,7 @@ mod bench;
 mod book;
 #[cfg(test)]
 mod commands_on_pages;
+mod campaign;
 mod failure;
 mod fuzz;
 mod mdbook;
@@ -35,6 +36,16 @@ enum Task {
     #[command(disable_help_flag = true)]
     Validate {
         /// Arguments of the validation program; `--help` lists them.
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        arguments: Vec<String>,
+    },
+    /// Run random slopes to collapse and footings deep, and watch how they end.
+    ///
+    /// All arguments go to the campaign program, and its exit code is passed on: 0 every run kept
+    /// to what is asked, 1 one did not, 2 bad input, 4 input or output.
+    #[command(disable_help_flag = true)]
+    Campaign {
+        /// Arguments of the campaign program; `--help` lists them.
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         arguments: Vec<String>,
     },
@@ -77,6 +88,7 @@ fn main() -> ExitCode {
     let result = match Arguments::parse().task {
         Task::Validate { arguments } => validate::run(&arguments),
         Task::Fuzz { arguments } => fuzz::run(&arguments),
+        Task::Campaign { arguments } => campaign::run(&arguments),
         Task::Bench(arguments) => bench::run(&arguments),
         Task::Tidy => tidy::run(),
         Task::Book { open } => book::book(open),

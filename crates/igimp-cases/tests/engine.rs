@@ -177,6 +177,35 @@ fn a_stage_ends_where_the_case_wants() {
     assert!(stage.reached < 0.9 && stage.largest_displacement > 0.012);
 }
 
+/// Soil that flows off its grid tells nothing of the load that it carries: where want of equilibrium
+/// is the planned end of a stage, this is not that end.
+#[test]
+fn soil_that_leaves_the_grid_is_no_collapse() {
+    let bulging = GROUND
+        .replace("x = [\"0 m\", \"4 m\"]", "x = [\"0 m\", \"4.5 m\"]")
+        .replace("right = \"roller\"", "right = \"free\"")
+        .replace("cohesion = \"1 kPa\"", "cohesion = \"1 MPa\"")
+        .replace("young = \"5 MPa\"", "young = \"20 kPa\"")
+        .replace("poisson = 0.0", "poisson = 0.45");
+    let run = ran(&(bulging
+        + "[[stages]]\nname = \"weight\"\ntype = \"gravity\"\nsteps = 20\n\
+           stop_when = { no_equilibrium = true }\n"));
+    let stage = &run.summary.stages[0];
+    assert_eq!(
+        stage.outcome,
+        StageOutcome::NotConverged,
+        "{}",
+        stage.reason
+    );
+    assert!(
+        stage.reason.contains("would leave the background grid"),
+        "{}",
+        stage.reason
+    );
+    let failure = run.failure.expect("the step is described");
+    assert!(!failure.error.failure.is_want_of_equilibrium());
+}
+
 /// A wall of soft clay, 4 m high, that stands or falls by its strength.
 fn wall(strength: &str, young: &str, stages: &str) -> String {
     format!(

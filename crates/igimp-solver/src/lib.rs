@@ -8,6 +8,7 @@
 pub mod linear;
 
 mod body;
+mod course;
 mod march;
 mod named;
 mod newton;

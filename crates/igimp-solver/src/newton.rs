@@ -12,11 +12,12 @@ use igimp_material::TangentKind;
 use thiserror::Error;
 
 use crate::body::Body;
+use crate::course::Course;
 use crate::linear::{LinearSolver, LinearSolverError};
 use crate::named::{finite_correction, named};
 
-/// Iterations without a new smallest residual after which a step is given up.
-const STAGNATION: usize = 8;
+/// How often a correction is halved.
+const MOST_HALVINGS: u32 = 4;
 
 /// When a step counts as converged, and when it is given up.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -78,6 +79,25 @@ pub enum StepFailure {
     /// The linear system could not be solved.
     #[error("the linear system could not be solved")]
     Linear(#[from] LinearSolverError),
+}
+
+impl StepFailure {
+    /// Whether the failure speaks for want of equilibrium, as past a limit load: the equations were
+    /// there and Newton's method found no solution near. A particle that leaves the grid, a law that
+    /// cannot answer or memory that runs out tell nothing of the load that a body carries.
+    pub fn is_want_of_equilibrium(&self) -> bool {
+        match self {
+            Self::MaxIterations { .. } | Self::Diverged | Self::Stagnated => true,
+            Self::LeavesGrid { .. } => false,
+            Self::Assembly(error) => matches!(error, AssemblyError::Inverted { .. }),
+            Self::Linear(error) => matches!(
+                error,
+                LinearSolverError::Singular { .. }
+                    | LinearSolverError::NotPositiveDefinite { .. }
+                    | LinearSolverError::Inaccurate { .. }
+            ),
+        }
+    }
 }
 
 /// A step that was not accepted, with what is known of it.
@@ -191,69 +211,6 @@ impl<const D: usize> Workspace<D> {
     }
 }
 
-/// The course of the residual within one step.
-#[derive(Default)]
-struct Course {
-    residuals: Vec<f64>,
-    /// Node and axis of the largest out-of-balance force.
-    worst: Option<(usize, usize)>,
-    best: f64,
-    best_iteration: usize,
-}
-
-impl Course {
-    /// Records a residual; an error when the iteration should not go on.
-    fn record(
-        &mut self,
-        residual: &OutOfBalance,
-        settings: &NewtonSettings,
-    ) -> Result<(), StepFailure> {
-        let iteration = self.residuals.len();
-        let norm = residual.relative_norm;
-        self.residuals.push(norm);
-        self.worst = Some(residual.worst);
-        if iteration <= 1 || norm < self.best {
-            self.best = norm;
-            self.best_iteration = iteration;
-        }
-        if residual.is_round_off {
-            Ok(())
-        } else if norm > settings.divergence * self.best {
-            Err(StepFailure::Diverged)
-        } else if iteration - self.best_iteration >= STAGNATION {
-            Err(StepFailure::Stagnated)
-        } else {
-            Ok(())
-        }
-    }
-}
-
-/// When the factors of the last tangent serve once more.
-///
-/// With quadratic convergence, r₊ = C r², the same factors used again leave about 2 C r r₊ (Kelley
-/// 1995, section 5.4). Where that is well below the tolerance, a new tangent and its factorisation
-/// would be wasted on digits that nobody asked for.
-impl Course {
-    /// Whether they serve for the residual at hand.
-    fn factors_suffice(&self, tolerance: f64) -> bool {
-        match self.residuals[..] {
-            [_, .., before, last] => 2.0 * last * last / before < 0.1 * tolerance,
-            _ => false,
-        }
-    }
-
-    /// Whether they will probably serve for the residual after the next correction.
-    fn factors_will_suffice(&self, tolerance: f64) -> bool {
-        match self.residuals[..] {
-            [_, .., before, last] => {
-                let next = last * (last / before).powi(2);
-                2.0 * next * next / last < 0.1 * tolerance
-            }
-            _ => false,
-        }
-    }
-}
-
 /// Advances a body by one load step, from load factor `from` to `to`: the step displacements
 /// that bring internal and external force into balance are found, and the particles are moved.
 /// The body is untouched unless the step is accepted.
@@ -298,7 +255,8 @@ pub fn step<const D: usize>(
 /// The Newton–Raphson loop.
 ///
 /// The first correction uses the elastic tangent and carries the prescribed motion; all others
-/// use the consistent tangent; the last one may use that of the correction before.
+/// use the consistent tangent; the last one may use that of the correction before. One that turns a
+/// particle inside out, or raises the residual manyfold, is halved.
 fn equilibrium<const D: usize>(
     body: &mut Body<D>,
     method: &Method,
@@ -367,14 +325,10 @@ fn equilibrium<const D: usize>(
         system.add_correction(&mut u, du);
         iterations += 1;
         is_current = !course.factors_will_suffice(settings.tolerance);
+        let tangent = is_current.then_some(&mut *matrix);
         timed(&mut times.assembly, || {
-            if is_current {
-                system.linearise_into(&u, kind, trial, matrix)
-            } else {
-                system.evaluate_into(&u, kind, trial)
-            }
+            evaluate_within_reach(&system, course, (&mut u, du), trial, tangent, &mut residual)
         })?;
-        system.update_out_of_balance(&mut residual, trial)?;
         course.record(&residual, settings)?;
     }
     if let Some((particle, x)) = body.particles.leaving(grid, &stencils, &u) {
@@ -410,6 +364,52 @@ fn equilibrium<const D: usize>(
     let mut report = report;
     report.times.commit = clock.elapsed();
     Ok((report, NodalForces { reactions, u }))
+}
+
+/// Evaluates the trial at `u`, to which the correction `du` was added, with its tangent where a matrix
+/// is given. A correction that goes too far is halved: one that turns a particle inside out, or
+/// raises the residual manyfold.
+fn evaluate_within_reach<const D: usize>(
+    system: &System<'_, D>,
+    course: &Course,
+    (u, du): (&mut [[f64; D]], &mut [f64]),
+    trial: &mut Trial<D>,
+    mut matrix: Option<&mut TangentMatrix>,
+    residual: &mut OutOfBalance,
+) -> Result<(), AssemblyError> {
+    let kind = TangentKind::Consistent;
+    let mut halvings = 0;
+    loop {
+        let evaluated = match &mut matrix {
+            Some(matrix) => system.linearise_into(u, kind, trial, matrix),
+            None => system.evaluate_into(u, kind, trial),
+        }
+        .and_then(|()| system.update_out_of_balance(residual, trial));
+        let too_far = match &evaluated {
+            Ok(()) => course.overshoots(residual),
+            Err(error) => matches!(error, AssemblyError::Inverted { .. }),
+        };
+        if !too_far || halvings == MOST_HALVINGS {
+            return evaluated;
+        }
+        take_back_half(system, u, du, halvings);
+        halvings += 1;
+    }
+}
+
+/// Takes back half of what is left of a correction in `u`. `du` is the correction itself, or what was
+/// taken back last.
+fn take_back_half<const D: usize>(
+    system: &System<'_, D>,
+    u: &mut [[f64; D]],
+    du: &mut [f64],
+    halvings: u32,
+) {
+    let share = if halvings == 0 { -0.5 } else { 0.5 };
+    for component in du.iter_mut() {
+        *component *= share;
+    }
+    system.add_correction(u, du);
 }
 
 /// Lets the first correction carry the prescribed motion: sets `u` to it and takes the force that it

@@ -13,9 +13,10 @@ use body_support::{
     loaded, methods, pressed, shifted_block, solve, standing, unit_grid, von_mises,
 };
 use igimp_assembly::{
-    Constraints, Kinematics, LoadPoint, Method, Pattern, Remedy, Stencils, System, TangentMatrix,
+    Constraints, Kinematics, LoadPoint, Method, Pattern, Remedy, SharedLaw, Stencils, System,
+    TangentMatrix,
 };
-use igimp_material::TangentKind;
+use igimp_material::{Elasticity, HenckyElastic, TangentKind};
 use igimp_solver::linear::{LinearSolver, LinearSolverError, SolveReport, SolverKind};
 use igimp_solver::{Body, NewtonSettings, NodalForces, StepFailure, Workspace, step};
 
@@ -505,4 +506,35 @@ fn the_first_correction_uses_the_elastic_tangent() {
     };
     assert!(off(TangentKind::Elastic) < 1e-12 * YOUNG);
     assert!(off(TangentKind::Consistent) > 1e-2 * YOUNG);
+}
+
+/// A column that its own weight presses to half its height is loaded at once: whole corrections
+/// turn its particles inside out, halved ones arrive. Its exact top is known (τ = E ln λ without
+/// lateral strain: λ = W(s)/s with Lambert's function of the load s above, as in the exact solution
+/// of the benchmark), and at ρ₀ g l₀ / E = 2 stands at (w + w²/2)/2 of the height, w = W(2).
+#[test]
+fn a_load_that_whole_corrections_overshoot_is_taken_in_one_step() {
+    let cells = 16;
+    let grid = unit_grid([1, cells]);
+    let mut constraints = standing(&grid);
+    constraints.fix_wall(&grid, 0, false, 0);
+    constraints.fix_wall(&grid, 0, true, 0);
+    let law: SharedLaw = Arc::new(HenckyElastic::new(Elasticity::new(YOUNG, 0.0).unwrap()));
+    let height = cells as f64;
+    let conditions = conditions(&grid, &constraints, &law, 2.0 * YOUNG / height);
+    for method in [Method::igimp(), Method::igimp_bbar()] {
+        let mut body = block(&grid, [0, 0], [1, cells]);
+        let (report, _) = solve(&mut body, &method, &conditions, &TIGHT).unwrap();
+        let growth = report.residuals.windows(2).skip(1).map(|r| r[1] / r[0]);
+        assert!(growth.fold(0.0, f64::max) < 20.0, "{:?}", report.residuals);
+        // W(2) = 0.8526055020137254, at which w exp(w) = 2.
+        let w: f64 = 0.852_605_502_013_725_4;
+        assert!((w * w.exp() - 2.0).abs() < 1e-14);
+        let top = 0.5 * height * (w + 0.5 * w * w);
+        let particles = &body.particles;
+        let highest = (0..particles.len())
+            .map(|p| particles.x[p][1] + particles.half_length[p][1])
+            .fold(0.0, f64::max);
+        assert!((highest / top - 1.0).abs() < 0.01, "{highest} {top}");
+    }
 }

@@ -219,7 +219,9 @@ impl Course {
                 "interrupted by the user".clone_into(&mut summary.reason);
                 None
             }
-            Ended::NotConverged(error) if stage.stop_when.no_equilibrium => {
+            Ended::NotConverged(error)
+                if stage.stop_when.no_equilibrium && error.failure.is_want_of_equilibrium() =>
+            {
                 let failure = &error.failure;
                 summary.outcome = StageOutcome::Stopped;
                 summary.reason = format!(
@@ -231,7 +233,11 @@ impl Course {
             Ended::NotConverged(error) => {
                 let failure = &error.failure;
                 summary.outcome = StageOutcome::NotConverged;
-                summary.reason = format!("no equilibrium: {failure}");
+                summary.reason = if failure.is_want_of_equilibrium() {
+                    format!("no equilibrium: {failure}")
+                } else {
+                    failure.to_string()
+                };
                 Some(error)
             }
         };

@@ -24,7 +24,7 @@ mod state;
 
 use std::path::PathBuf;
 
-use igimp_solver::{Body, StepError, StepReport};
+use igimp_solver::{Accepted, Body, StepError, StepReport};
 
 use crate::estimate::Expectation;
 use crate::input::CaseFile;
@@ -59,6 +59,12 @@ pub enum Event<'a> {
         kind: &'static str,
         /// Load steps when none is cut; of each trial in a strength reduction.
         steps: usize,
+    },
+    /// A step found equilibrium; its [`Event::Step`] follows when it is recorded. For those who
+    /// look at body and nodal forces themselves.
+    Equilibrium {
+        /// The body in its new state, conditions, forces and report of the step.
+        accepted: &'a Accepted<'a, 2>,
     },
     /// A step was accepted.
     Step {

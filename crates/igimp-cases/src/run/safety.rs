@@ -156,7 +156,8 @@ impl<'a> Trials<'a> {
         )
     }
 
-    /// Tries a factor; `Some` when the user interrupted.
+    /// Tries a factor; `Some` when the search cannot go on: the user interrupted, or a step failed for
+    /// other reasons than want of equilibrium.
     fn trial(
         &mut self,
         session: &mut Session<'_>,
@@ -198,8 +199,13 @@ impl<'a> Trials<'a> {
                 Ok((failed && !listed).then(|| self.exceeded(session)))
             },
         )?;
-        if matches!(ended, Ended::Interrupted) {
-            return Ok(Some(ended));
+        match &ended {
+            Ended::Interrupted => return Ok(Some(ended)),
+            // It tells nothing of the strength that the body needs.
+            Ended::NotConverged(cause) if !cause.failure.is_want_of_equilibrium() => {
+                return Ok(Some(ended));
+            }
+            _ => {}
         }
         // A reduction that was ended by the criterion has failed at the factor that it reached.
         let srf = match (&ended, reduction.path) {

@@ -260,6 +260,7 @@ impl Watch<'_, '_> {
     fn step(&mut self, accepted: &Accepted<'_, 2>) -> Result<Option<Stop>, CaseError> {
         let report = accepted.report;
         self.reached = report.to;
+        self.session.tell(&Event::Equilibrium { accepted });
         self.session.tally(self.stage, report)?;
         if let Some(export) = &mut self.session.export {
             export.accepted(accepted.conditions, &self.session.summary, self.stage);

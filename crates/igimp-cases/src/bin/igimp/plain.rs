@@ -48,6 +48,7 @@ impl Lines {
                     stage + 1
                 ))
             }
+            Event::Equilibrium { .. } => None,
             Event::Step { .. } | Event::Cut { .. } if self.search => None,
             Event::Step {
                 number,

@@ -1,0 +1,92 @@
+//! The course of the residual within one step: when to give up, when a correction went too far, and
+//! when factors serve once more.
+
+use igimp_assembly::OutOfBalance;
+
+use crate::newton::{NewtonSettings, StepFailure};
+
+/// Growth of the residual in one correction above which half the correction is tried \[-\]. Of the
+/// steps that find equilibrium by whole corrections, one in a hundred goes beyond.
+const OVERSHOOT: f64 = 20.0;
+
+/// Iterations without a new smallest residual after which a step is given up.
+const STAGNATION: usize = 8;
+
+/// The course of the residual within one step.
+#[derive(Default)]
+pub(crate) struct Course {
+    /// Relative out-of-balance norms \[-\].
+    pub(crate) residuals: Vec<f64>,
+    /// Node and axis of the largest out-of-balance force.
+    pub(crate) worst: Option<(usize, usize)>,
+    best: f64,
+    best_iteration: usize,
+}
+
+impl Course {
+    /// Records a residual; an error when the iteration should not go on.
+    pub(crate) fn record(
+        &mut self,
+        residual: &OutOfBalance,
+        settings: &NewtonSettings,
+    ) -> Result<(), StepFailure> {
+        let iteration = self.residuals.len();
+        let norm = residual.relative_norm;
+        self.residuals.push(norm);
+        self.worst = Some(residual.worst);
+        if iteration <= 1 || norm < self.best {
+            self.best = norm;
+            self.best_iteration = iteration;
+        }
+        if residual.is_round_off {
+            Ok(())
+        } else if norm > settings.divergence * self.best {
+            Err(StepFailure::Diverged)
+        } else if iteration - self.best_iteration >= STAGNATION {
+            Err(StepFailure::Stagnated)
+        } else {
+            Ok(())
+        }
+    }
+}
+
+/// When a correction went too far.
+impl Course {
+    /// Whether the residual after a correction is so much larger than before it that the consistent
+    /// tangent told nothing of the way there, as where many particles change their regime at once. The
+    /// first correction, which the elastic tangent makes, may raise it.
+    pub(crate) fn overshoots(&self, residual: &OutOfBalance) -> bool {
+        match self.residuals[..] {
+            [_, .., before] => {
+                !residual.is_round_off && residual.relative_norm > OVERSHOOT * before
+            }
+            _ => false,
+        }
+    }
+}
+
+/// When the factors of the last tangent serve once more.
+///
+/// With quadratic convergence, r₊ = C r², the same factors used again leave about 2 C r r₊ (Kelley
+/// 1995, section 5.4). Where that is well below the tolerance, a new tangent and its factorisation
+/// would be wasted on digits that nobody asked for.
+impl Course {
+    /// Whether they serve for the residual at hand.
+    pub(crate) fn factors_suffice(&self, tolerance: f64) -> bool {
+        match self.residuals[..] {
+            [_, .., before, last] => 2.0 * last * last / before < 0.1 * tolerance,
+            _ => false,
+        }
+    }
+
+    /// Whether they will probably serve for the residual after the next correction.
+    pub(crate) fn factors_will_suffice(&self, tolerance: f64) -> bool {
+        match self.residuals[..] {
+            [_, .., before, last] => {
+                let next = last * (last / before).powi(2);
+                2.0 * next * next / last < 0.1 * tolerance
+            }
+            _ => false,
+        }
+    }
+}
