@@ -2,6 +2,7 @@
 //! compares curves and effort with snapshots. `cargo xtask validate` calls this program.
 
 mod column;
+mod comparisons;
 mod footing;
 mod matrix;
 mod mohr_coulomb_slope;
@@ -70,6 +71,7 @@ enum Case {
     VonMisesSlope,
     MohrCoulombSlope,
     Footing,
+    Comparisons,
 }
 
 impl Case {
@@ -79,6 +81,7 @@ impl Case {
             Self::VonMisesSlope => von_mises_slope::study(level, out),
             Self::MohrCoulombSlope => mohr_coulomb_slope::study(level, out),
             Self::Footing => footing::study(level, out),
+            Self::Comparisons => comparisons::study(level, out),
         }
     }
 }
