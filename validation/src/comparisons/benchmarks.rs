@@ -8,7 +8,7 @@ use igimp_cases::table::Table;
 use rayon::prelude::*;
 
 use crate::footing;
-use crate::runs::{Computed, mesh, shipped_case, unwatched};
+use crate::runs::{Computed, corners, mesh, shipped_case, unwatched};
 use crate::study::{Run, Study};
 
 /// One choice: what it changes in a case.
@@ -155,6 +155,61 @@ pub(super) fn soft_slope(cell: f64, factor: f64, steps: usize) -> Result<Case, C
     overrides.push(format!("stages.own weight.steps={steps}"));
     overrides.push("stages.own weight.stop_when={ no_equilibrium = true }".to_owned());
     shipped_case("von_mises_slope", overrides)
+}
+
+/// The shipped cantilever with so many cells over its depth of 1 m, under a multiple of its load \[-\]
+/// that is raised in equal steps.
+pub(super) fn cantilever(cells: usize, load: usize, steps: usize) -> Result<Case, CaseError> {
+    let mut overrides = mesh(1.0 / cells as f64, [11.0, 11.0]);
+    let corner = [[0.0, 9.0], [10.25, 9.0], [10.25, 10.0], [0.0, 10.0]];
+    overrides.push(format!("bodies.beam.polygon={}", corners(&corner)));
+    overrides.push(format!("loads.end load.at=[\"10 m\", \"{} m\"]", TIP[1]));
+    overrides.extend(unwatched());
+    overrides.push("curves=[]".to_owned());
+    overrides.push(format!("stages.large.factor={load}"));
+    overrides.push(format!("stages.large.steps={steps}"));
+    overrides.push("stages.large.stop_when={ no_equilibrium = true }".to_owned());
+    shipped_case("cantilever", overrides)
+}
+
+/// The loaded point of the cantilever before it is bent \[m\].
+const TIP: [f64; 2] = [10.0, 9.5];
+
+/// Deflection of the cantilever's tip over its length; not a number when it did not reach its load
+/// \[-\].
+pub(super) fn deflection(computed: &Computed) -> f64 {
+    if reached(computed) < 1.0 {
+        return f64::NAN;
+    }
+    let particles = computed.particles();
+    let distance = |particle: usize| {
+        let (x, u) = (particles.x[particle], particles.displacement[particle]);
+        (x[0] - u[0] - TIP[0]).hypot(x[1] - u[1] - TIP[1])
+    };
+    let tip = (0..particles.len()).min_by(|&a, &b| distance(a).total_cmp(&distance(b)));
+    tip.map_or(f64::NAN, |tip| -particles.displacement[tip][1] / TIP[0])
+}
+
+/// The drained slope of the benchmark, h = 1 m, with a search for its factor of safety alone.
+pub(super) fn drained_slope() -> Result<Case, CaseError> {
+    let mut overrides = mesh(1.0, [36.0, 11.0]);
+    overrides.push("stages.strength reduction.factors=[]".to_owned());
+    overrides.push("curves=[]".to_owned());
+    shipped_case("mohr_coulomb_slope", overrides)
+}
+
+/// Middle of the interval of the factor of safety \[-\].
+pub(super) fn factor_of_safety(computed: &Computed) -> f64 {
+    let interval = computed
+        .safety()
+        .and_then(|safety| Some([safety.stable?, safety.failed?]));
+    interval.map_or(f64::NAN, |[stable, failed]| 0.5 * (stable + failed))
+}
+
+/// Corrections of all trials of a search \[-\].
+pub(super) fn corrections_of_trials(computed: &Computed) -> f64 {
+    let trials = computed.trials.iter();
+    trials.map(|trial| trial.summary.iterations).sum::<usize>() as f64
 }
 
 /// Oscillation of σ_yy over γH in the slope, H = 10 m: deviation from local planes of radius 1.3 h \[-\].

@@ -150,14 +150,10 @@ pub(super) struct Settled {
     pub(super) condition: f64,
     /// Largest displacement of a node in the first step over that of a particle \[-\].
     pub(super) node_over_particle: f64,
-    /// Its steps.
-    pub(super) report: MarchReport,
-    /// Wall-clock time.
-    pub(super) elapsed: Duration,
 }
 
-/// Lets a block of 4 + offset cells settle, of 8 by 8 particles, between two walls: rollers on the left
-/// and below. Its other sides reach by the offset into the next cells.
+/// Lets a block of 8 by 8 particles and 4 + offset cells settle under its own weight, on rollers on the
+/// left and below. Its other sides reach by the offset into the next cells.
 pub(super) fn settle(method: &Method, offset: f64, beside: Beside) -> Result<Settled, CaseError> {
     let side = 4.0 + offset;
     let grid = Grid::new([Axis::uniform(0.0, 1.0, 7)?, Axis::uniform(0.0, 1.0, 7)?]);
@@ -181,7 +177,7 @@ pub(super) fn settle(method: &Method, offset: f64, beside: Beside) -> Result<Set
     let condition = condition(&body, method, &program(0.0, 1.0)?)?;
     let mut ratio = f64::NAN;
     let mut first = true;
-    let (report, elapsed) = marched(&mut body, method, 5, program, |accepted| {
+    let (report, _) = marched(&mut body, method, 5, program, |accepted| {
         if std::mem::take(&mut first) {
             let nodes = largest(&accepted.forces.u);
             ratio = nodes / largest(&accepted.body.particles.displacement[..64]);
@@ -199,9 +195,51 @@ pub(super) fn settle(method: &Method, offset: f64, beside: Beside) -> Result<Set
         settlement: if complete { mean / exact } else { f64::NAN },
         condition,
         node_over_particle: ratio,
-        report,
-        elapsed,
     })
+}
+
+/// A stiff block whose base is let down by a quarter of a cell in five steps, with its own weight, its
+/// upper and right sides reaching by an offset into the next cells.
+///
+/// Returns the force on its base over its weight, of which equilibrium asks that it is one, and the
+/// steps. The force is not a number when a step failed.
+pub(super) fn let_down(
+    method: &Method,
+    offset: f64,
+) -> Result<(f64, MarchReport, Duration), CaseError> {
+    let side = 4.0 + offset;
+    let grid = Grid::new([Axis::uniform(0.0, 1.0, 7)?, Axis::uniform(0.0, 1.0, 7)?]);
+    let laws = vec![law(YOUNG)?];
+    let mut body = Body::new(Particles::new(&square([0.0, 1.0], side, 8))?);
+    let base = |node: usize| grid.node_place(node)[1] <= 1;
+    let program = |from: f64, to: f64| {
+        let mut constraints = Constraints::free(&grid);
+        constraints.fix_wall(&grid, 0, false, 0);
+        for node in (0..grid.node_count()).filter(|&node| base(node)) {
+            constraints.prescribe(node, 1, 0.25 * (from - to))?;
+        }
+        Ok(StepConditions {
+            grid: grid.clone(),
+            constraints,
+            loads: StepLoads::gravity([0.0, -1.0]),
+            laws: laws.clone(),
+        })
+    };
+    let mut force = f64::NAN;
+    let (report, elapsed) = marched(&mut body, method, 5, program, |accepted| {
+        let reactions = accepted.forces.reactions.iter().enumerate();
+        force = reactions
+            .filter(|(node, _)| base(*node))
+            .map(|(_, reaction)| reaction[1])
+            .sum();
+    });
+    let complete = report.reached() >= 1.0;
+    let share = if complete {
+        force / (side * side)
+    } else {
+        f64::NAN
+    };
+    Ok((share, report, elapsed))
 }
 
 /// Weightless particles that fill the grid's six by six lower cells outside a square.

@@ -1,6 +1,6 @@
 //! Finite against small strain: column, rigid rotation, soft and stiff slope, footing.
 
-use igimp_assembly::{Kinematics, Method};
+use igimp_assembly::{Kinematics, Method, SmallCuts};
 use igimp_cases::CaseError;
 use igimp_cases::check::Band;
 use igimp_cases::figures::{
@@ -11,7 +11,8 @@ use rayon::prelude::*;
 
 use crate::column::{self, ColumnResult};
 use crate::comparisons::benchmarks::{
-    Footings, Results, Variant, corrections, cuts, largest_displacement, reached, soft_slope,
+    Footings, Results, Variant, cantilever, corrections, corrections_of_trials, cuts, deflection,
+    drained_slope, factor_of_safety, largest_displacement, reached, soft_slope,
 };
 use crate::comparisons::block::{QUARTER, small_strain_turned, turn};
 use crate::footing;
@@ -64,8 +65,10 @@ pub(super) fn compare(study: &mut Study, footings: Option<&Footings>) -> Result<
     column(study)?;
     rotation(study)?;
     if let Some(footings) = footings {
+        bent(study)?;
         soft(study)?;
         stiff(study)?;
+        drained(study)?;
         push(study, footings)?;
     }
     Ok(())
@@ -77,6 +80,7 @@ fn column(study: &mut Study) -> Result<(), CaseError> {
     let results = Results::compute(&VARIANTS, "steps", &steps, |steps| {
         let mut case = column::case(32, "10 kPa", ("gimp", true))?;
         case.stages[0].steps = steps;
+        case.method.small_cuts = SmallCuts::default();
         Ok(case)
     })?;
     let height = |computed: &Computed| ColumnResult::new(computed).top / column::HEIGHT;
@@ -209,15 +213,42 @@ fn soft(study: &mut Study) -> Result<(), CaseError> {
         soft_slope(1.0, 1.0, steps)
     })?;
     study.table(weight.table("kinematics_soft_slope", &quantities))?;
-    let to_collapse = Results::compute(&VARIANTS, "steps", &[15, 30, 60], |steps| {
-        soft_slope(1.0, 1.5, steps)
+    let to_collapse = Results::compute(&VARIANTS, "steps", &[20, 40, 80], |steps| {
+        soft_slope(1.0, 2.0, steps)
     })?;
-    let factor = |computed: &Computed| 1.5 * reached(computed);
+    let factor = |computed: &Computed| 2.0 * reached(computed);
     study.table(to_collapse.table(
         "kinematics_soft_slope_to_collapse",
         &[
             ("gravity_factor_[-]", &factor),
             ("displacement_[m]", &largest_displacement),
+        ],
+    ))
+}
+
+/// The cantilever under ten times its shipped load, against the number of steps.
+fn bent(study: &mut Study) -> Result<(), CaseError> {
+    let results = Results::compute(&VARIANTS, "steps", &[10, 20, 40], |steps| {
+        cantilever(4, 10, steps)
+    })?;
+    study.table(results.table(
+        "kinematics_cantilever",
+        &[
+            ("deflection/L_[-]", &deflection),
+            ("corrections_per_step_[-]", &corrections),
+            ("cuts_[-]", &cuts),
+        ],
+    ))
+}
+
+/// The factor of safety of the drained slope.
+fn drained(study: &mut Study) -> Result<(), CaseError> {
+    let results = Results::compute(&VARIANTS, "cell_[m]", &[1], |_| drained_slope())?;
+    study.table(results.table(
+        "kinematics_drained_slope",
+        &[
+            ("factor_of_safety_[-]", &factor_of_safety),
+            ("corrections_[-]", &corrections_of_trials),
         ],
     ))
 }

@@ -28,8 +28,8 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
         None
     };
     kinematics::compare(&mut study, footings.as_ref())?;
-    domains::compare(&mut study, footings.as_ref())?;
-    points::compare(&mut study, footings.as_ref())?;
+    domains::compare(&mut study, level, footings.as_ref())?;
+    points::compare(&mut study, level, footings.as_ref())?;
     small_cuts::compare(&mut study, level)?;
     Ok(study)
 }

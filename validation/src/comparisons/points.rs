@@ -7,14 +7,14 @@ use igimp_cases::table::Table;
 
 use crate::column::{self, ColumnResult};
 use crate::comparisons::benchmarks::{
-    Footings, Results, Variant, corrections, cuts, largest_displacement, roughness, soft_slope,
-    work,
+    Footings, Results, Variant, corrections, corrections_of_trials, cuts, drained_slope,
+    factor_of_safety, largest_displacement, roughness, soft_slope, work,
 };
 use crate::footing::{self, SEQUENTIAL};
 use crate::oracle::{Oracle, OracleKind};
 use crate::reference::{footing_sequential_limit_analysis, interpolate};
 use crate::runs::Computed;
-use crate::study::Study;
+use crate::study::{Level, Study};
 
 /// The error of the column.
 const SECOND_ORDER: Oracle = Oracle {
@@ -42,11 +42,18 @@ const VARIANTS: [Variant; 3] = [
     },
 ];
 
-/// The comparison: column always, slope and footing with the footings of the full level.
-pub(super) fn compare(study: &mut Study, footings: Option<&Footings>) -> Result<(), CaseError> {
-    column(study)?;
+/// The comparison: column from the default level on, slopes and footing with the footings of the full one.
+pub(super) fn compare(
+    study: &mut Study,
+    level: Level,
+    footings: Option<&Footings>,
+) -> Result<(), CaseError> {
+    if level >= Level::Default {
+        column(study)?;
+    }
     if let Some(footings) = footings {
         slope(study)?;
+        drained(study)?;
         push(study, footings)?;
     }
     Ok(())
@@ -105,6 +112,18 @@ fn slope(study: &mut Study) -> Result<(), CaseError> {
             ("displacement_[m]", &largest_displacement),
             ("corrections_per_step_[-]", &corrections),
             ("million_particle_corrections_[-]", &work),
+        ],
+    ))
+}
+
+/// The factor of safety of the drained slope.
+fn drained(study: &mut Study) -> Result<(), CaseError> {
+    let results = Results::compute(&VARIANTS, "cell_[m]", &[1], |_| drained_slope())?;
+    study.table(results.table(
+        "points_drained_slope",
+        &[
+            ("factor_of_safety_[-]", &factor_of_safety),
+            ("corrections_[-]", &corrections_of_trials),
         ],
     ))
 }

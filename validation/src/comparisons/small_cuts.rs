@@ -11,9 +11,10 @@ use rayon::prelude::*;
 
 use crate::column::{self, ColumnResult};
 use crate::comparisons::benchmarks::{
-    Results, Variant, corrections, cuts, largest_displacement, reached, soft_slope,
+    Results, Variant, corrections, corrections_of_trials, cuts, drained_slope, factor_of_safety,
+    largest_displacement, reached, soft_slope,
 };
-use crate::comparisons::block::{Beside, Settled, settle};
+use crate::comparisons::block::{Beside, Settled, let_down, settle};
 use crate::oracle::{Oracle, OracleKind};
 use crate::runs::Computed;
 use crate::study::{Level, Run, Study};
@@ -25,11 +26,17 @@ const COLUMN: Oracle = Oracle {
     source: "independent iGIMP program, set-up of Charlton et al. 2017",
     locator: "validation/reference/column_stress_error.csv, 128 cells",
 };
-/// The settlement of the block.
-const SETTLEMENT: Oracle = Oracle {
+/// The displacement of the soft slope.
+const SOFT_SLOPE: Oracle = Oracle {
+    kind: OracleKind::IndependentProgram,
+    source: "independent iGIMP + B-bar program",
+    locator: "same slope, E = 1 MPa: 0.74 m",
+};
+/// The force on the base of the block.
+const EQUILIBRIUM: Oracle = Oracle {
     kind: OracleKind::Exact,
-    source: "elastic block on a smooth base under its own weight, small strain",
-    locator: "mean settlement γH²(1 − ν²)/(3E)",
+    source: "vertical equilibrium of a block on its base",
+    locator: "force on the base = weight",
 };
 
 const fn cut(below: f64, remedy: Remedy, ghost_penalty: f64) -> SmallCuts {
@@ -62,9 +69,14 @@ const VARIANTS: [Variant; 9] = [
     variant("ghost 1e-2", |case| case.method.small_cuts = GHOST_MORE),
     variant("none", |case| case.method.small_cuts = NONE),
 ];
+/// Their remedies.
+const REMEDIES: [SmallCuts; 9] = [
+    TIE, TIE_MORE, DROP_LESS, DROP, DROP_MORE, GHOST_LESS, GHOST, GHOST_MORE, NONE,
+];
 /// Places of variants that checks look at.
 const TIED: usize = 0;
 const DROPPED: usize = 3;
+const DROPPED_MOST: usize = 4;
 
 const fn variant(label: &'static str, change: fn(&mut Case)) -> Variant {
     Variant {
@@ -77,17 +89,19 @@ const fn variant(label: &'static str, change: fn(&mut Case)) -> Variant {
 /// The comparison: column and block always, slopes at the full level.
 pub(super) fn compare(study: &mut Study, level: Level) -> Result<(), CaseError> {
     column(study)?;
-    block(study)?;
+    settling(study)?;
+    sinking(study)?;
     if level == Level::Full {
         stiff(study)?;
         soft(study)?;
+        drained(study)?;
     }
     Ok(())
 }
 
 /// The column of 1 MPa.
 fn column(study: &mut Study) -> Result<(), CaseError> {
-    let results = Results::compute(&VARIANTS, "cells", &[32, 64, 128], |cells| {
+    let results = Results::compute(&VARIANTS, "cells", &[64, 128], |cells| {
         column::case(cells, "1 MPa", ("gimp", true))
     })?;
     let error = |computed: &Computed| ColumnResult::new(computed).stress_error;
@@ -120,20 +134,14 @@ const OFFSETS: [f64; 16] = [
     0.0, 1e-6, 1e-5, 1e-4, 1e-3, 3e-3, 0.01, 0.02, 0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 0.9, 1.0,
 ];
 
-/// A block whose upper and right sides reach any distance into the next cells.
-fn block(study: &mut Study) -> Result<(), CaseError> {
-    let remedies: [(&str, SmallCuts, Beside); 10] = [
-        ("tie 1e-4", TIE, Beside::Air),
-        ("tie 1e-2", TIE_MORE, Beside::Air),
-        ("drop 1e-6", DROP_LESS, Beside::Air),
-        ("drop 1e-4", DROP, Beside::Air),
-        ("drop 1e-2", DROP_MORE, Beside::Air),
-        ("ghost 1e-4", GHOST_LESS, Beside::Air),
-        ("ghost 1e-3", GHOST, Beside::Air),
-        ("ghost 1e-2", GHOST_MORE, Beside::Air),
-        ("none", NONE, Beside::Air),
-        ("soft ground", NONE, Beside::SoftGround),
-    ];
+/// A block whose upper and right sides reach any distance into the next cells, under its own weight.
+fn settling(study: &mut Study) -> Result<(), CaseError> {
+    let mut remedies: Vec<(&str, SmallCuts, Beside)> = VARIANTS
+        .iter()
+        .zip(REMEDIES)
+        .map(|(variant, remedy)| (variant.label, remedy, Beside::Air))
+        .collect();
+    remedies.push(("soft ground", NONE, Beside::SoftGround));
     let jobs: Vec<_> = remedies
         .iter()
         .flat_map(|remedy| OFFSETS.iter().map(move |&offset| (remedy, offset)))
@@ -150,32 +158,6 @@ fn block(study: &mut Study) -> Result<(), CaseError> {
         .collect::<Result<Vec<_>, CaseError>>()?;
     let by_remedy: Vec<&[Settled]> = settled.chunks(OFFSETS.len()).collect();
 
-    let farthest = |settled: &[Settled]| {
-        settled.iter().fold(0.0, |most: f64, one| {
-            let error = (one.settlement - 1.0).abs();
-            if error.is_nan() {
-                f64::INFINITY
-            } else {
-                most.max(error)
-            }
-        })
-    };
-    let quantity = "largest error of the settlement over all offsets [-]";
-    for place in [TIED, 4] {
-        let own = by_remedy[place];
-        let runs: Vec<Run> = own
-            .iter()
-            .map(|one| Run::new("", &one.report, one.elapsed))
-            .collect();
-        let name = format!("{}: block, offsets 0 to 1", remedies[place].0);
-        let run = study.run(Run::sum(name, &runs.iter().collect::<Vec<_>>()));
-        let expected = SETTLEMENT.says(0.0);
-        if place == TIED {
-            study.check(run, quantity, expected, Band::AtMost(0.03), farthest(own));
-        } else {
-            study.control(run, quantity, expected, Band::AtLeast(0.1), farthest(own));
-        }
-    }
     type Of = fn(&Settled) -> f64;
     let tables: [(&str, Of); 3] = [
         ("settlement", |one| one.settlement),
@@ -227,6 +209,86 @@ fn block(study: &mut Study) -> Result<(), CaseError> {
     Ok(())
 }
 
+/// The same block with its base let down: what holds it up beside its base?
+fn sinking(study: &mut Study) -> Result<(), CaseError> {
+    let offsets = &OFFSETS[1..];
+    let mut header = vec!["offset_[cells]".to_owned()];
+    header.extend(
+        VARIANTS
+            .iter()
+            .map(|variant| format!("{}_[-]", variant.label)),
+    );
+    let header: Vec<&str> = header.iter().map(String::as_str).collect();
+    let mut table = Table::new("small_cuts_block_let_down", &header);
+    let mut rows = vec![Vec::new(); offsets.len()];
+    for (k, (variant, small_cuts)) in VARIANTS.iter().zip(REMEDIES).enumerate() {
+        let method = Method {
+            small_cuts,
+            ..Method::default()
+        };
+        let found = offsets
+            .par_iter()
+            .map(|&offset| let_down(&method, offset))
+            .collect::<Result<Vec<_>, _>>()?;
+        for (row, (force, ..)) in rows.iter_mut().zip(&found) {
+            row.push(*force);
+        }
+        if k != TIED && k != DROPPED {
+            continue;
+        }
+        let farthest = found.iter().fold(0.0, |most: f64, (force, ..)| {
+            let error = (force - 1.0).abs();
+            if error.is_nan() {
+                f64::INFINITY
+            } else {
+                most.max(error)
+            }
+        });
+        let runs: Vec<Run> = found
+            .iter()
+            .map(|(_, report, elapsed)| Run::new("", report, *elapsed))
+            .collect();
+        let name = format!("{}: block let down, offsets 1e-6 to 1", variant.label);
+        let run = study.run(Run::sum(name, &runs.iter().collect::<Vec<_>>()));
+        let quantity = "force on the base / weight, largest error over all offsets [-]";
+        let expected = EQUILIBRIUM.says(0.0);
+        if k == TIED {
+            study.check(run, quantity, expected, Band::AtMost(1e-6), farthest);
+        } else {
+            study.control(run, quantity, expected, Band::AtLeast(0.1), farthest);
+        }
+    }
+    for (&offset, row) in offsets.iter().zip(rows) {
+        table.push([vec![offset], row].concat());
+    }
+    let series = VARIANTS.iter().enumerate().map(|(k, variant)| {
+        let style = SeriesStyle::LineAndMarkers(LineStyle::Solid);
+        Series::new(variant.label, table.points(0, k + 1), style)
+    });
+    CurvePlot {
+        title: "Stiff block, base let down by a quarter of a cell".into(),
+        x_label: "reach of its sides into the next cells [cells]".into(),
+        y_label: "force on the base / weight".into(),
+        x_scale: Scale::Log,
+        series: series.collect(),
+        ..CurvePlot::default()
+    }
+    .write(&study.folder.join("small_cuts_block_let_down"))?;
+    study.table(table)
+}
+
+/// The factor of safety of the drained slope, E/c = 1e4.
+fn drained(study: &mut Study) -> Result<(), CaseError> {
+    let results = Results::compute(&VARIANTS, "cell_[m]", &[1], |_| drained_slope())?;
+    study.table(results.table(
+        "small_cuts_drained_slope",
+        &[
+            ("factor_of_safety_[-]", &factor_of_safety),
+            ("corrections_[-]", &corrections_of_trials),
+        ],
+    ))
+}
+
 /// The collapse load of the stiff slope, D = 2, h = 1 m, E/c_u = 2222.
 fn stiff(study: &mut Study) -> Result<(), CaseError> {
     let results = Results::compute(&VARIANTS, "steps", &[64], |steps| {
@@ -248,6 +310,14 @@ fn stiff(study: &mut Study) -> Result<(), CaseError> {
         Band::Between(0.98 * lower, 1.02 * upper),
         measured(results.at(TIED, 64)),
     );
+    let run = results.record(study, "stiff slope, D = 2, h = 1 m", (DROPPED_MOST, 64));
+    study.control(
+        run,
+        "γH/c_u at collapse [-]",
+        BOUNDS.says(0.5 * (lower + upper)),
+        Band::AtLeast(1.02 * upper),
+        measured(results.at(DROPPED_MOST, 64)),
+    );
     let factor = |computed: &Computed| 1.6 * reached(computed);
     study.table(results.table(
         "small_cuts_stiff_slope",
@@ -266,6 +336,31 @@ fn soft(study: &mut Study) -> Result<(), CaseError> {
     let results = Results::compute(&VARIANTS, "steps", &[10], |steps| {
         soft_slope(1.0, 1.0, steps)
     })?;
+    let quantity = "largest displacement [m]";
+    for (k, name) in [
+        (TIED, "soft slope, h = 1 m"),
+        (DROPPED_MOST, "soft slope, h = 1 m"),
+    ] {
+        let run = results.record(study, name, (k, 10));
+        let measured = largest_displacement(results.at(k, 10));
+        if k == TIED {
+            study.check(
+                run,
+                quantity,
+                SOFT_SLOPE.says(0.74),
+                Band::Relative(0.02),
+                measured,
+            );
+        } else {
+            study.control(
+                run,
+                quantity,
+                SOFT_SLOPE.says(0.74),
+                Band::AtMost(0.6),
+                measured,
+            );
+        }
+    }
     study.table(results.table(
         "small_cuts_soft_slope",
         &[
