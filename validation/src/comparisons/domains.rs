@@ -36,11 +36,12 @@ const RIGID_ROTATION: Oracle = Oracle {
     source: "rigid rotation",
     locator: "a body keeps its area",
 };
-/// The bent cantilever.
+/// The bent cantilever: ∫cos²θ ds = 0.280 L of shear and ∫sin²θ ds = 0.720 L of stretch along the
+/// elastica, as P/(κGA) and P/(EA) weigh them.
 const ELASTICA: Oracle = Oracle {
-    kind: OracleKind::Published,
-    source: "Mattiasson 1981",
-    locator: "cantilever under a dead end load, P L²/(E I) = 10: deflection 0.81061 L",
+    kind: OracleKind::Theory,
+    source: "elastica, Mattiasson 1981, with shear and stretch of a beam of depth L/10",
+    locator: "dead end load, P L²/(E I) = 10: 0.81061 L + 0.0056 L + 0.0060 L",
 };
 
 /// The variants; the default first.
@@ -205,7 +206,7 @@ fn bent(study: &mut Study) -> Result<(), CaseError> {
     study.check(
         run,
         quantity,
-        ELASTICA.says(0.81061),
+        ELASTICA.says(0.8222),
         Band::Relative(0.02),
         measured,
     );

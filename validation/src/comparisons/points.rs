@@ -130,7 +130,13 @@ fn drained(study: &mut Study) -> Result<(), CaseError> {
 
 /// The footing pushed one width deep.
 fn push(study: &mut Study, footings: &Footings) -> Result<(), CaseError> {
-    let pushes = [("2x2", "2 × 2"), ("default", "3 × 3"), ("4x4", "4 × 4")];
+    let pushes = [
+        ("2x2", "2 × 2"),
+        ("default", "3 × 3"),
+        ("4x4", "4 × 4"),
+        ("2x2-9", "2 × 2, B/h = 9"),
+        ("default-9", "3 × 3, B/h = 9"),
+    ];
     let sequential = footing_sequential_limit_analysis().points("w_over_B", "N");
     let expected = interpolate(&sequential, 0.2);
     let run = footings.record(study, "default", "3 × 3");
@@ -142,7 +148,7 @@ fn push(study: &mut Study, footings: &Footings) -> Result<(), CaseError> {
         footings.resistance_at("default", 0.2),
     );
     CurvePlot {
-        title: "Rough footing, B/h = 5: particles per cell".into(),
+        title: "Rough footing: particles per cell".into(),
         x_label: "penetration w/B".into(),
         y_label: "resistance N = Q/(B s_{u}), compression positive".into(),
         series: pushes
@@ -153,6 +159,7 @@ fn push(study: &mut Study, footings: &Footings) -> Result<(), CaseError> {
     }
     .write(&study.folder.join("points_footing"))?;
     let header = [
+        "cells_per_width",
         "particles_per_direction",
         "scatter_of_N_[-]",
         "corrections_per_step_[-]",
@@ -160,10 +167,11 @@ fn push(study: &mut Study, footings: &Footings) -> Result<(), CaseError> {
         "million_particle_corrections_[-]",
     ];
     let mut effort = Table::new("points_footing_effort", &header);
-    for (per_direction, (name, _)) in [2.0, 3.0, 4.0].into_iter().zip(pushes) {
+    for (name, _) in pushes {
         let computed = footings.of(name);
         effort.push(vec![
-            per_direction,
+            (1.0 / computed.case.grid.cell[0]).round(),
+            computed.case.bodies[0].per_direction as f64,
             footings.scatter(name),
             corrections(computed),
             cuts(computed),
@@ -171,6 +179,5 @@ fn push(study: &mut Study, footings: &Footings) -> Result<(), CaseError> {
         ]);
     }
     study.table(effort)?;
-    let named = pushes.map(|(name, _)| (name, if name == "default" { "3x3" } else { name }));
-    study.table(footings.table("points_footing", &named))
+    study.table(footings.table("points_footing", &pushes))
 }
