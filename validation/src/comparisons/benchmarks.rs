@@ -119,6 +119,12 @@ impl<'a> Results<'a> {
     }
 }
 
+/// Writes a table that is not held against a snapshot: its states lie past failure or behind cut
+/// steps, and hang on round-off.
+pub(super) fn written(study: &Study, table: &Table) -> Result<(), CaseError> {
+    table.write_csv(&study.folder)
+}
+
 /// Newton corrections per accepted step \[-\].
 pub(super) fn corrections(computed: &Computed) -> f64 {
     computed.report.iterations() as f64 / computed.report.steps.len() as f64

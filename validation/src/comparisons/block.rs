@@ -146,7 +146,7 @@ pub(super) enum Beside {
 pub(super) struct Settled {
     /// Mean settlement over the exact one; not a number when a step failed \[-\].
     pub(super) settlement: f64,
-    /// Condition number of the first tangent; beyond 1e16 it is a lower bound \[-\].
+    /// Condition number of the first tangent; round-off where it is beyond 1e10 or so \[-\].
     pub(super) condition: f64,
     /// Largest displacement of a node in the first step over that of a particle \[-\].
     pub(super) node_over_particle: f64,

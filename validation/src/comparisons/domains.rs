@@ -10,7 +10,7 @@ use igimp_cases::table::Table;
 
 use crate::column::{self, ColumnResult};
 use crate::comparisons::benchmarks::{
-    Footings, Results, Variant, cantilever, corrections, cuts, deflection,
+    Footings, Results, Variant, cantilever, corrections, cuts, deflection, written,
 };
 use crate::comparisons::block::turn;
 use crate::footing;
@@ -210,15 +210,18 @@ fn bent(study: &mut Study) -> Result<(), CaseError> {
         Band::Relative(0.02),
         measured,
     );
-    study.table(results.table(
-        "domains_cantilever",
-        &[
-            ("deflection/L_[-]", &deflection),
-            ("oscillation_of_p_[-]", &pressure_oscillation),
-            ("corrections_per_step_[-]", &corrections),
-            ("cuts_[-]", &cuts),
-        ],
-    ))
+    written(
+        study,
+        &results.table(
+            "domains_cantilever",
+            &[
+                ("deflection/L_[-]", &deflection),
+                ("oscillation_of_p_[-]", &pressure_oscillation),
+                ("corrections_per_step_[-]", &corrections),
+                ("cuts_[-]", &cuts),
+            ],
+        ),
+    )
 }
 
 /// Oscillation of the mean stress over its root mean square: deviation from local planes of radius

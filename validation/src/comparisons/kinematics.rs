@@ -13,6 +13,7 @@ use crate::column::{self, ColumnResult};
 use crate::comparisons::benchmarks::{
     Footings, Quantity, Results, Variant, cantilever, corrections, corrections_of_trials, cuts,
     deflection, drained_slope, factor_of_safety, largest_displacement, reached, soft_slope,
+    written,
 };
 use crate::comparisons::block::{QUARTER, small_strain_turned, turn};
 use crate::footing;
@@ -219,13 +220,16 @@ fn soft(study: &mut Study) -> Result<(), CaseError> {
         soft_slope(1.0, 2.0, steps)
     })?;
     let factor = |computed: &Computed| 2.0 * reached(computed);
-    study.table(to_collapse.table(
-        "kinematics_soft_slope_to_collapse",
-        &[
-            ("gravity_factor_[-]", &factor),
-            ("displacement_[m]", &largest_displacement),
-        ],
-    ))
+    written(
+        study,
+        &to_collapse.table(
+            "kinematics_soft_slope_to_collapse",
+            &[
+                ("gravity_factor_[-]", &factor),
+                ("displacement_[m]", &largest_displacement),
+            ],
+        ),
+    )
 }
 
 /// The cantilever under two and ten times its shipped load, against the number of steps.
@@ -234,14 +238,17 @@ fn bent(study: &mut Study) -> Result<(), CaseError> {
         let results = Results::compute(&VARIANTS, "steps", &[20, 80, 320], |steps| {
             cantilever(4, load, steps)
         })?;
-        study.table(results.table(
-            &format!("kinematics_cantilever_load_{load}"),
-            &[
-                ("share_of_load_reached_[-]", &reached),
-                ("deflection/L_[-]", &deflection),
-                ("corrections_per_step_[-]", &corrections),
-            ],
-        ))?;
+        written(
+            study,
+            &results.table(
+                &format!("kinematics_cantilever_load_{load}"),
+                &[
+                    ("share_of_load_reached_[-]", &reached),
+                    ("deflection/L_[-]", &deflection),
+                    ("corrections_per_step_[-]", &corrections),
+                ],
+            ),
+        )?;
     }
     Ok(())
 }
@@ -249,13 +256,16 @@ fn bent(study: &mut Study) -> Result<(), CaseError> {
 /// The factor of safety of the drained slope.
 fn drained(study: &mut Study) -> Result<(), CaseError> {
     let results = Results::compute(&VARIANTS, "cell_[m]", &[1], |_| drained_slope())?;
-    study.table(results.table(
-        "kinematics_drained_slope",
-        &[
-            ("factor_of_safety_[-]", &factor_of_safety),
-            ("corrections_[-]", &corrections_of_trials),
-        ],
-    ))
+    written(
+        study,
+        &results.table(
+            "kinematics_drained_slope",
+            &[
+                ("factor_of_safety_[-]", &factor_of_safety),
+                ("corrections_[-]", &corrections_of_trials),
+            ],
+        ),
+    )
 }
 
 /// The collapse load of the stiff slope, D = 2, h = 1 m.

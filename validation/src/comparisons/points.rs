@@ -8,7 +8,7 @@ use igimp_cases::table::Table;
 use crate::column::{self, ColumnResult};
 use crate::comparisons::benchmarks::{
     Footings, Results, Variant, corrections, corrections_of_trials, cuts, drained_slope,
-    factor_of_safety, largest_displacement, roughness, soft_slope, work,
+    factor_of_safety, largest_displacement, roughness, soft_slope, work, written,
 };
 use crate::footing::{self, SEQUENTIAL};
 use crate::oracle::{Oracle, OracleKind};
@@ -119,13 +119,16 @@ fn slope(study: &mut Study) -> Result<(), CaseError> {
 /// The factor of safety of the drained slope.
 fn drained(study: &mut Study) -> Result<(), CaseError> {
     let results = Results::compute(&VARIANTS, "cell_[m]", &[1], |_| drained_slope())?;
-    study.table(results.table(
-        "points_drained_slope",
-        &[
-            ("factor_of_safety_[-]", &factor_of_safety),
-            ("corrections_[-]", &corrections_of_trials),
-        ],
-    ))
+    written(
+        study,
+        &results.table(
+            "points_drained_slope",
+            &[
+                ("factor_of_safety_[-]", &factor_of_safety),
+                ("corrections_[-]", &corrections_of_trials),
+            ],
+        ),
+    )
 }
 
 /// The footing pushed one width deep.
@@ -178,6 +181,6 @@ fn push(study: &mut Study, footings: &Footings) -> Result<(), CaseError> {
             work(computed),
         ]);
     }
-    study.table(effort)?;
-    study.table(footings.table("points_footing", &pushes))
+    written(study, &effort)?;
+    written(study, &footings.table("points_footing", &pushes))
 }

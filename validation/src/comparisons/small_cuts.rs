@@ -1,23 +1,20 @@
 //! Remedies for small cuts: tying, dropping, ghost penalty, soft ground, none; on the column, a block
 //! whose sides slide over the cells, the stiff slope at collapse and the soft slope.
 
-use igimp_assembly::{Method, Remedy, SmallCuts};
+use igimp_assembly::{Remedy, SmallCuts};
 use igimp_cases::CaseError;
 use igimp_cases::case::Case;
 use igimp_cases::check::Band;
-use igimp_cases::figures::{CurvePlot, LineStyle, Scale, Series, SeriesStyle};
-use igimp_cases::table::Table;
-use rayon::prelude::*;
 
 use crate::column::{self, ColumnResult};
 use crate::comparisons::benchmarks::{
     Results, Variant, corrections, corrections_of_trials, cuts, drained_slope, factor_of_safety,
-    largest_displacement, reached, soft_slope,
+    largest_displacement, reached, soft_slope, written,
 };
-use crate::comparisons::block::{Beside, Settled, let_down, settle};
+use crate::comparisons::sliding_block;
 use crate::oracle::{Oracle, OracleKind};
 use crate::runs::Computed;
-use crate::study::{Level, Run, Study};
+use crate::study::{Level, Study};
 use crate::von_mises_slope::{BOUNDS, Collapse, bounds, limit, slope_to_collapse};
 
 /// The stress error of the column.
@@ -32,13 +29,6 @@ const SOFT_SLOPE: Oracle = Oracle {
     source: "independent iGIMP + B-bar program",
     locator: "same slope, E = 1 MPa: 0.74 m",
 };
-/// The force on the base of the block.
-const EQUILIBRIUM: Oracle = Oracle {
-    kind: OracleKind::Exact,
-    source: "vertical equilibrium of a block on its base",
-    locator: "force on the base = weight",
-};
-
 const fn cut(below: f64, remedy: Remedy, ghost_penalty: f64) -> SmallCuts {
     SmallCuts {
         below,
@@ -55,10 +45,10 @@ const DROP_MORE: SmallCuts = cut(1e-2, Remedy::Drop, 0.0);
 const GHOST_LESS: SmallCuts = cut(0.0, Remedy::Tie, 1e-4);
 const GHOST: SmallCuts = cut(0.0, Remedy::Tie, 1e-3);
 const GHOST_MORE: SmallCuts = cut(0.0, Remedy::Tie, 1e-2);
-const NONE: SmallCuts = cut(0.0, Remedy::Tie, 0.0);
+pub(super) const NONE: SmallCuts = cut(0.0, Remedy::Tie, 0.0);
 
 /// The variants; the default first.
-const VARIANTS: [Variant; 9] = [
+pub(super) const VARIANTS: [Variant; 9] = [
     variant("tie 1e-4", |case| case.method.small_cuts = TIE),
     variant("tie 1e-2", |case| case.method.small_cuts = TIE_MORE),
     variant("drop 1e-6", |case| case.method.small_cuts = DROP_LESS),
@@ -70,12 +60,12 @@ const VARIANTS: [Variant; 9] = [
     variant("none", |case| case.method.small_cuts = NONE),
 ];
 /// Their remedies.
-const REMEDIES: [SmallCuts; 9] = [
+pub(super) const REMEDIES: [SmallCuts; 9] = [
     TIE, TIE_MORE, DROP_LESS, DROP, DROP_MORE, GHOST_LESS, GHOST, GHOST_MORE, NONE,
 ];
 /// Places of variants that checks look at.
-const TIED: usize = 0;
-const DROPPED: usize = 3;
+pub(super) const TIED: usize = 0;
+pub(super) const DROPPED: usize = 3;
 const DROPPED_MOST: usize = 4;
 
 const fn variant(label: &'static str, change: fn(&mut Case)) -> Variant {
@@ -89,8 +79,8 @@ const fn variant(label: &'static str, change: fn(&mut Case)) -> Variant {
 /// The comparison: column and block always, slopes at the full level.
 pub(super) fn compare(study: &mut Study, level: Level) -> Result<(), CaseError> {
     column(study)?;
-    settling(study)?;
-    sinking(study)?;
+    sliding_block::settling(study)?;
+    sliding_block::sinking(study)?;
     if level == Level::Full {
         stiff(study)?;
         soft(study)?;
@@ -129,166 +119,19 @@ fn column(study: &mut Study) -> Result<(), CaseError> {
     ))
 }
 
-/// By how much the sides of the block reach into the next cells \[cells\].
-const OFFSETS: [f64; 16] = [
-    0.0, 1e-6, 1e-5, 1e-4, 1e-3, 3e-3, 0.01, 0.02, 0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 0.9, 1.0,
-];
-
-/// How a quantity of a settled block is read.
-type Of = fn(&Settled) -> f64;
-
-/// A block whose upper and right sides reach any distance into the next cells, under its own weight.
-fn settling(study: &mut Study) -> Result<(), CaseError> {
-    let mut remedies: Vec<(&str, SmallCuts, Beside)> = VARIANTS
-        .iter()
-        .zip(REMEDIES)
-        .map(|(variant, remedy)| (variant.label, remedy, Beside::Air))
-        .collect();
-    remedies.push(("soft ground", NONE, Beside::SoftGround));
-    let jobs: Vec<_> = remedies
-        .iter()
-        .flat_map(|remedy| OFFSETS.iter().map(move |&offset| (remedy, offset)))
-        .collect();
-    let settled = jobs
-        .par_iter()
-        .map(|((_, small_cuts, beside), offset)| {
-            let method = Method {
-                small_cuts: *small_cuts,
-                ..Method::default()
-            };
-            settle(&method, *offset, *beside)
-        })
-        .collect::<Result<Vec<_>, CaseError>>()?;
-    let by_remedy: Vec<&[Settled]> = settled.chunks(OFFSETS.len()).collect();
-
-    let tables: [(&str, Of); 3] = [
-        ("settlement", |one| one.settlement),
-        ("condition", |one| one.condition.min(1e16)),
-        ("node_over_particle", |one| one.node_over_particle),
-    ];
-    for (name, of) in tables {
-        let mut header = vec!["offset_[cells]".to_owned()];
-        header.extend(remedies.iter().map(|(remedy, ..)| format!("{remedy}_[-]")));
-        let header: Vec<&str> = header.iter().map(String::as_str).collect();
-        let mut table = Table::new(format!("small_cuts_block_{name}"), &header);
-        for (k, &offset) in OFFSETS.iter().enumerate() {
-            let mut row = vec![offset];
-            row.extend(by_remedy.iter().map(|own| of(&own[k])));
-            table.push(row);
-        }
-        study.table(table)?;
-    }
-    let series = |of: Of| {
-        let lines = remedies.iter().zip(&by_remedy);
-        lines
-            .map(|((name, ..), own)| {
-                let points = OFFSETS.iter().zip(*own);
-                let points = points.map(|(&offset, one)| [offset, of(one)]).collect();
-                Series::new(*name, points, SeriesStyle::LineAndMarkers(LineStyle::Solid))
-            })
-            .collect()
-    };
-    CurvePlot {
-        title: "Block settling under its own weight".into(),
-        x_label: "reach of its sides into the next cells [cells]".into(),
-        y_label: "mean settlement / exact".into(),
-        x_scale: Scale::Log,
-        y_range: Some((0.9, 1.05)),
-        series: series(|one| one.settlement),
-        ..CurvePlot::default()
-    }
-    .write(&study.folder.join("small_cuts_block_settlement"))?;
-    CurvePlot {
-        title: "Block settling under its own weight".into(),
-        x_label: "reach of its sides into the next cells [cells]".into(),
-        y_label: "condition number of the tangent".into(),
-        x_scale: Scale::Log,
-        y_scale: Scale::Log,
-        series: series(|one| one.condition.min(1e16)),
-        ..CurvePlot::default()
-    }
-    .write(&study.folder.join("small_cuts_block_condition"))?;
-    Ok(())
-}
-
-/// The same block with its base let down: what holds it up beside its base?
-fn sinking(study: &mut Study) -> Result<(), CaseError> {
-    let offsets = &OFFSETS[1..];
-    let mut header = vec!["offset_[cells]".to_owned()];
-    header.extend(
-        VARIANTS
-            .iter()
-            .map(|variant| format!("{}_[-]", variant.label)),
-    );
-    let header: Vec<&str> = header.iter().map(String::as_str).collect();
-    let mut table = Table::new("small_cuts_block_let_down", &header);
-    let mut rows = vec![Vec::new(); offsets.len()];
-    for (k, (variant, small_cuts)) in VARIANTS.iter().zip(REMEDIES).enumerate() {
-        let method = Method {
-            small_cuts,
-            ..Method::default()
-        };
-        let found = offsets
-            .par_iter()
-            .map(|&offset| let_down(&method, offset))
-            .collect::<Result<Vec<_>, _>>()?;
-        for (row, (force, ..)) in rows.iter_mut().zip(&found) {
-            row.push(*force);
-        }
-        if k != TIED && k != DROPPED {
-            continue;
-        }
-        let farthest = found.iter().fold(0.0, |most: f64, (force, ..)| {
-            let error = (force - 1.0).abs();
-            if error.is_nan() {
-                f64::INFINITY
-            } else {
-                most.max(error)
-            }
-        });
-        let runs: Vec<Run> = found
-            .iter()
-            .map(|(_, report, elapsed)| Run::new("", report, *elapsed))
-            .collect();
-        let name = format!("{}: block let down, offsets 1e-6 to 1", variant.label);
-        let run = study.run(Run::sum(name, &runs.iter().collect::<Vec<_>>()));
-        let quantity = "force on the base / weight, largest error over all offsets [-]";
-        let expected = EQUILIBRIUM.says(0.0);
-        if k == TIED {
-            study.check(run, quantity, expected, Band::AtMost(1e-6), farthest);
-        } else {
-            study.control(run, quantity, expected, Band::AtLeast(0.01), farthest);
-        }
-    }
-    for (&offset, row) in offsets.iter().zip(rows) {
-        table.push([vec![offset], row].concat());
-    }
-    let series = VARIANTS.iter().enumerate().map(|(k, variant)| {
-        let style = SeriesStyle::LineAndMarkers(LineStyle::Solid);
-        Series::new(variant.label, table.points(0, k + 1), style)
-    });
-    CurvePlot {
-        title: "Stiff block, base let down by a quarter of a cell".into(),
-        x_label: "reach of its sides into the next cells [cells]".into(),
-        y_label: "force on the base / weight".into(),
-        x_scale: Scale::Log,
-        series: series.collect(),
-        ..CurvePlot::default()
-    }
-    .write(&study.folder.join("small_cuts_block_let_down"))?;
-    study.table(table)
-}
-
 /// The factor of safety of the drained slope, E/c = 1e4.
 fn drained(study: &mut Study) -> Result<(), CaseError> {
     let results = Results::compute(&VARIANTS, "cell_[m]", &[1], |_| drained_slope())?;
-    study.table(results.table(
-        "small_cuts_drained_slope",
-        &[
-            ("factor_of_safety_[-]", &factor_of_safety),
-            ("corrections_[-]", &corrections_of_trials),
-        ],
-    ))
+    written(
+        study,
+        &results.table(
+            "small_cuts_drained_slope",
+            &[
+                ("factor_of_safety_[-]", &factor_of_safety),
+                ("corrections_[-]", &corrections_of_trials),
+            ],
+        ),
+    )
 }
 
 /// The collapse load of the stiff slope, D = 2, E/c_u = 2222: all remedies with h = 1 m, the default and
@@ -376,13 +219,16 @@ fn soft(study: &mut Study) -> Result<(), CaseError> {
             );
         }
     }
-    study.table(results.table(
-        "small_cuts_soft_slope",
-        &[
-            ("gravity_factor_reached_[-]", &reached),
-            ("displacement_[m]", &largest_displacement),
-            ("corrections_per_step_[-]", &corrections),
-            ("cuts_[-]", &cuts),
-        ],
-    ))
+    written(
+        study,
+        &results.table(
+            "small_cuts_soft_slope",
+            &[
+                ("gravity_factor_reached_[-]", &reached),
+                ("displacement_[m]", &largest_displacement),
+                ("corrections_per_step_[-]", &corrections),
+                ("cuts_[-]", &cuts),
+            ],
+        ),
+    )
 }
