@@ -292,13 +292,16 @@ fn stiff(study: &mut Study) -> Result<(), CaseError> {
             measured(results.at(k, 64)),
         );
     }
-    study.table(results.table(
-        "kinematics_stiff_slope",
-        &[
-            ("gamma_H/c_u_[-]", &measured),
-            ("corrections_per_step_[-]", &corrections),
-        ],
-    ))
+    written(
+        study,
+        &results.table(
+            "kinematics_stiff_slope",
+            &[
+                ("gamma_H/c_u_[-]", &measured),
+                ("corrections_per_step_[-]", &corrections),
+            ],
+        ),
+    )
 }
 
 /// The footing pushed one width deep.

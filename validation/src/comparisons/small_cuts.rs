@@ -177,16 +177,19 @@ fn stiff(study: &mut Study) -> Result<(), CaseError> {
                 measured(results.at(DROPPED_MOST, cells)),
             );
         }
-        study.table(results.table(
-            &format!("small_cuts_stiff_slope_{cells}_per_m"),
-            &[
-                ("gamma_H/c_u_[-]", &measured),
-                ("gravity_factor_reached_[-]", &factor),
-                ("displacement_[m]", &largest_displacement),
-                ("corrections_per_step_[-]", &corrections),
-                ("cuts_[-]", &cuts),
-            ],
-        ))?;
+        written(
+            study,
+            &results.table(
+                &format!("small_cuts_stiff_slope_{cells}_per_m"),
+                &[
+                    ("gamma_H/c_u_[-]", &measured),
+                    ("gravity_factor_reached_[-]", &factor),
+                    ("displacement_[m]", &largest_displacement),
+                    ("corrections_per_step_[-]", &corrections),
+                    ("cuts_[-]", &cuts),
+                ],
+            ),
+        )?;
     }
     Ok(())
 }
