@@ -18,7 +18,7 @@ use crate::study::{Run, Study};
 /// What the book says of the study.
 const ABOUT: &str = "A column of soft soil one cell wide settles under its own weight. Mean stress error against the exact solution, under refinement: iGIMP converges with second order, iMPM does not.";
 /// Initial height of the column \[m\].
-const HEIGHT: f64 = 50.0;
+pub(crate) const HEIGHT: f64 = 50.0;
 /// The stress errors.
 const TABLE: Oracle = Oracle {
     kind: OracleKind::IndependentProgram,
@@ -105,19 +105,20 @@ pub(crate) fn study(out: &Path) -> Result<Study, CaseError> {
 }
 
 /// The column in equilibrium under its full weight, or as far as it came.
-struct ColumnResult {
+pub(crate) struct ColumnResult {
     /// Σ|σ_yy − σ_exact| V_0 / (ρ₀ g l₀ ΣV_0) \[-\].
-    stress_error: f64,
+    pub(crate) stress_error: f64,
     /// Height of the column, to the top edge of the highest particle \[m\].
-    top: f64,
+    pub(crate) top: f64,
     /// Exact height \[m\].
-    exact_top: f64,
+    pub(crate) exact_top: f64,
     /// Initial height, position, σ_yy and its exact value by particle, bottom to top.
     stress: Table,
 }
 
 impl ColumnResult {
-    fn new(computed: &Computed) -> Self {
+    /// Reads it off the end of a run.
+    pub(crate) fn new(computed: &Computed) -> Self {
         let exact = exact_solution(&computed.case);
         let particles = computed.particles();
         let header = [
@@ -156,7 +157,11 @@ fn exact_solution(case: &Case) -> exact::Column {
 }
 
 /// The shipped column of so many cells, in a variant of the method.
-fn case(cells: usize, young: &str, (basis, bbar): (&str, bool)) -> Result<Case, CaseError> {
+pub(crate) fn case(
+    cells: usize,
+    young: &str,
+    (basis, bbar): (&str, bool),
+) -> Result<Case, CaseError> {
     let h = HEIGHT / cells as f64;
     let mut overrides = mesh(h, [h, HEIGHT + h]);
     overrides.extend(method(basis, bbar));

@@ -34,7 +34,7 @@ const SET_UP: Oracle = Oracle {
     locator: "set-up of the strip footing, pushed to 1 B",
 };
 /// The large-deformation curve.
-const SEQUENTIAL: Oracle = Oracle {
+pub(crate) const SEQUENTIAL: Oracle = Oracle {
     kind: OracleKind::LimitAnalysis,
     source: "sequential limit analysis",
     locator: "validation/reference/footing_sequential_limit_analysis.csv",
@@ -83,7 +83,7 @@ enum Role {
 }
 
 /// Overrides for a push to a penetration in so many steps \[m\].
-fn to(penetration: f64, steps: usize) -> Vec<String> {
+pub(crate) fn to(penetration: f64, steps: usize) -> Vec<String> {
     vec![
         format!("stages.push to one width.settlement=\"{penetration} m\""),
         format!("stages.push to one width.steps={steps}"),
@@ -170,7 +170,7 @@ fn pushes(level: Level) -> Vec<Push> {
 }
 
 /// w/B against N = resistance / (B s_u), compression positive.
-fn resistance(result: &Computed) -> Vec<[f64; 2]> {
+pub(crate) fn resistance(result: &Computed) -> Vec<[f64; 2]> {
     result.curve("resistance").points(0, 1)
 }
 

@@ -3,14 +3,15 @@
 //! calls this program.
 
 mod column;
+mod comparisons;
 mod cook;
 mod cylinder;
 mod elastica;
 mod exact;
 mod footing;
 mod laboratory;
-mod manufactured;
 mod limit_equilibrium;
+mod manufactured;
 mod matrix;
 mod mohr_coulomb_slope;
 mod notched_strip;
@@ -90,6 +91,7 @@ enum Case {
     NotchedStrip,
     Prism,
     Elastica,
+    Comparisons,
 }
 
 impl Case {
@@ -107,6 +109,7 @@ impl Case {
             Self::NotchedStrip => notched_strip::study(level, out),
             Self::Prism => prism::study(out),
             Self::Elastica => elastica::study(level, out),
+            Self::Comparisons => comparisons::study(level, out),
         }
     }
 }

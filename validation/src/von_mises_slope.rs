@@ -28,7 +28,7 @@ const PROGRAM: Oracle = Oracle {
     locator: "same slope, mesh and measure, h = 0.5 m, E = 1 MPa",
 };
 /// The limit load.
-const BOUNDS: Oracle = Oracle {
+pub(crate) const BOUNDS: Oracle = Oracle {
     kind: OracleKind::LimitAnalysis,
     source: "finite-element limit analysis, lower and upper bound",
     locator: "validation/reference/slope_limit_load_bounds.csv; band: bounds ± 2 %",
@@ -177,10 +177,13 @@ fn smoothness_figures(study: &mut Study, results: &[Computed]) -> Result<(), Cas
 }
 
 /// One march to collapse.
-struct Collapse {
-    depth_factor: f64,
-    bbar: bool,
-    cell: f64,
+pub(crate) struct Collapse {
+    /// Depth of the base below the crest over the height \[-\].
+    pub(crate) depth_factor: f64,
+    /// Whether volumetric locking is controlled.
+    pub(crate) bbar: bool,
+    /// Size of the cells \[m\].
+    pub(crate) cell: f64,
 }
 
 /// Stiff soil, gravity raised to collapse, with the base at toe level and at twice the height.
@@ -206,24 +209,13 @@ fn limit_load(study: &mut Study, level: Level) -> Result<(), CaseError> {
         .map(|collapse| Computed::new(slope_to_collapse(collapse)?))
         .collect::<Result<Vec<_>, _>>()?;
 
-    let bounds = slope_limit_load_bounds();
-    let (lower, upper) = (
-        bounds.points("depth_factor", "lower"),
-        bounds.points("depth_factor", "upper"),
-    );
-    let bound = |points: &[[f64; 2]], depth_factor: f64| {
-        points
-            .iter()
-            .find(|p| (p[0] - depth_factor).abs() < 1e-9)
-            .map_or(f64::NAN, |p| p[1])
-    };
     let mut series = Vec::new();
     for (collapse, result) in list.iter().zip(&marches) {
         let (depth, h) = (collapse.depth_factor, collapse.cell);
         let label = result.method();
         let variant = format!("{label}, D = {depth}, h = {h} m, E/c_u = 2222");
         let run = study.run(Run::new(variant, &result.report, result.elapsed));
-        let (lower, upper) = (bound(&lower, depth), bound(&upper, depth));
+        let [lower, upper] = bounds(depth);
         let measured = limit(result).unwrap_or(f64::INFINITY);
         let middle = 0.5 * (lower + upper);
         let (quantity, expected) = ("γH/c_u at collapse [-]", BOUNDS.says(middle));
@@ -256,7 +248,7 @@ fn limit_load(study: &mut Study, level: Level) -> Result<(), CaseError> {
             .iter()
             .map(|&depth| ReferenceLine {
                 label: format!("upper bound, D = {depth}"),
-                at: ReferenceValue::Y(bound(&upper, depth)),
+                at: ReferenceValue::Y(bounds(depth)[1]),
             })
             .collect(),
         series,
@@ -266,8 +258,18 @@ fn limit_load(study: &mut Study, level: Level) -> Result<(), CaseError> {
     Ok(())
 }
 
+/// Lower and upper bound of γH/c_u at collapse; not a number for a depth factor that has none \[-\].
+pub(crate) fn bounds(depth_factor: f64) -> [f64; 2] {
+    let bounds = slope_limit_load_bounds();
+    ["lower", "upper"].map(|side| {
+        let points = bounds.points("depth_factor", side);
+        let found = points.iter().find(|p| (p[0] - depth_factor).abs() < 1e-9);
+        found.map_or(f64::NAN, |p| p[1])
+    })
+}
+
 /// The shipped slope of stiff soil on another foundation, with gravity raised until it flows.
-fn slope_to_collapse(collapse: &Collapse) -> Result<Case, CaseError> {
+pub(crate) fn slope_to_collapse(collapse: &Collapse) -> Result<Case, CaseError> {
     let foundation = HEIGHT * (collapse.depth_factor - 1.0);
     let beyond = if foundation > 0.0 { 20.0 } else { 15.0 };
     let (crest, toe, width) = (beyond, beyond + HEIGHT, HEIGHT + 2.0 * beyond);
@@ -308,7 +310,7 @@ fn stability_numbers(result: &Computed) -> Vec<[f64; 2]> {
 /// γH/c_u at which the largest displacement reaches [`LIMIT_DISPLACEMENT`], linear between steps
 /// \[-\]. Where the march ended before that for want of equilibrium it is the last one reached;
 /// `None` when the slope was still standing at the end of the march.
-fn limit(result: &Computed) -> Option<f64> {
+pub(crate) fn limit(result: &Computed) -> Option<f64> {
     let points = stability_numbers(result);
     let mut pairs = points.windows(2);
     match (

@@ -3,9 +3,9 @@
 
 mod bench;
 mod book;
+mod campaign;
 #[cfg(test)]
 mod commands_on_pages;
-mod campaign;
 mod failure;
 mod fuzz;
 mod mdbook;
