@@ -88,7 +88,7 @@ impl StepFailure {
     pub fn is_want_of_equilibrium(&self) -> bool {
         match self {
             Self::MaxIterations { .. } | Self::Diverged | Self::Stagnated => true,
-            Self::LeavesGrid { .. } => false,
+            Self::LeavesGrid { .. } | Self::NotFinite { .. } => false,
             Self::Assembly(error) => matches!(error, AssemblyError::Inverted { .. }),
             Self::Linear(error) => matches!(
                 error,
