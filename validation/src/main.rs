@@ -1,8 +1,10 @@
-//! Runs the four benchmark cases of the paper, holds every result against outside values, and
+//! Runs the four benchmark cases of the paper and a study of the footing's side, holds every result against outside values, and
 //! compares curves and effort with snapshots. `cargo xtask validate` calls this program.
 
 mod column;
 mod footing;
+mod footing_contact;
+mod footing_side;
 mod mohr_coulomb_slope;
 mod pictures;
 mod reference;
@@ -69,6 +71,7 @@ struct Arguments {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Case {
     Footing,
+    FootingContact,
     Column,
     VonMisesSlope,
     MohrCoulombSlope,
@@ -81,6 +84,7 @@ impl Case {
             Self::VonMisesSlope => von_mises_slope::study(level, out),
             Self::MohrCoulombSlope => mohr_coulomb_slope::study(level, out),
             Self::Footing => footing::study(level, out),
+            Self::FootingContact => footing_contact::study(level, out),
         }
     }
 }
@@ -180,7 +184,13 @@ fn validate(arguments: &Arguments) -> Result<u8, CaseError> {
             Err(error) => errors.push(error),
         }
     }
-    let order = ["column", "von-mises-slope", "mohr-coulomb-slope", "footing"];
+    let order = [
+        "column",
+        "von-mises-slope",
+        "mohr-coulomb-slope",
+        "footing",
+        "footing-contact",
+    ];
     studies.sort_by_key(|study| order.iter().position(|&case| case == study.case));
 
     let missed = snapshot::compare(&studies);
