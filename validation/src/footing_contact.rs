@@ -47,8 +47,8 @@ impl Variant {
             Beside::BearsNothing(_) => "bears nothing",
         };
         format!(
-            "soil beside {beside}, B/h = {}, E/s_u = {}",
-            self.cells_per_width, self.stiffness
+            "soil beside {beside}, B/h = {}, E/s_u = {}, to {} B",
+            self.cells_per_width, self.stiffness, self.depth
         )
     }
 
@@ -77,12 +77,12 @@ fn variants(level: Level) -> Vec<Variant> {
     let nothing = Beside::BearsNothing(1.0);
     match level {
         Level::Quick => Vec::new(),
-        Level::Default => vec![of("nothing_9", nothing, 9, 100, 0.5, 20)],
+        Level::Default => vec![of("nothing_9_half", nothing, 9, 100, 0.5, 20)],
         Level::Full => vec![
             of("sticks_9", Beside::Sticks, 9, 100, 1.0, 40),
             of("nothing_9", nothing, 9, 100, 1.0, 40),
             of("pressure_9", Beside::BearsPressure(1.0), 9, 100, 0.5, 20),
-            of("nothing_9_stiff", nothing, 9, 300, 0.5, 20),
+            of("nothing_9_stiff", nothing, 9, 300, 0.5, 40),
             of("nothing_13", nothing, 13, 100, 1.0, 65),
         ],
     }

@@ -271,3 +271,49 @@ fn undrained_strength(case: &Case, material: usize) -> f64 {
         _ => panic!("the footing stands on Tresca soil"),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::runs::{Computed, mesh, shipped_case};
+
+    /// A push by 0.2 m in four steps on three cells per width.
+    fn coarse() -> Case {
+        let mut overrides = mesh(1.0 / 3.0, [5.0, 6.0]);
+        let stage = "stages.push to one width";
+        overrides.push(format!("{stage}.settlement=\"0.2 m\""));
+        overrides.push(format!("{stage}.steps=4"));
+        shipped_case("footing", overrides).unwrap()
+    }
+
+    /// GOAL: soil that sticks is pushed as in a run of the case. ORACLE: that run.
+    #[test]
+    fn soil_that_sticks_is_the_case_itself() {
+        let case = coarse();
+        let pushed = push(&case, 0.2, 4, Beside::Sticks).unwrap();
+        let computed = Computed::new(case).unwrap();
+        let curve = computed.curve("resistance").points(0, 1);
+        let expected = curve.last().unwrap();
+        let last = pushed.moments.last().unwrap();
+        assert!((last.settlement - expected[0]).abs() < 1e-12);
+        assert!((last.resistance - 1e3 * expected[1]).abs() < 1e-6 * last.resistance);
+        assert!(last.let_go.total_cmp(&0.0).is_eq());
+    }
+
+    /// GOAL: soil is taken out beside the shaft and nowhere else, and counted. ORACLE: the volume that
+    /// was seeded.
+    #[test]
+    fn soil_that_is_taken_out_is_counted() {
+        let case = coarse();
+        let pushed = push(&case, 0.2, 4, Beside::BearsNothing(1.0)).unwrap();
+        let left: f64 = pushed.particles.volume0.iter().sum();
+        // What lets go after the last step is in no moment.
+        let next = push(&case, 0.15, 3, Beside::BearsNothing(1.0)).unwrap();
+        let at_three = pushed.moments[3].let_go;
+        assert!((next.particles.volume0.iter().sum::<f64>() + at_three - 25.0).abs() < 1e-9);
+        assert!(at_three > 0.0 && left < 25.0 - at_three + 1e-9);
+        let shaft = Shaft::of(&case);
+        let beside = |x: &[f64; 2]| shaft.is_beside(*x, 0.2, 1.0);
+        assert!(!pushed.particles.x.iter().any(beside));
+    }
+}
