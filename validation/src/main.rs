@@ -1,6 +1,8 @@
 //! Runs the four benchmark cases of the paper and problems with exact answers, holds every result
 //! against outside values, and compares curves and effort with snapshots. `cargo xtask validate`
 //! calls this program.
+//! Runs the four benchmark cases of the paper and a study of the footing's side, holds every result against outside values, and
+//! compares curves and effort with snapshots. `cargo xtask validate` calls this program.
 
 mod column;
 mod comparisons;
@@ -13,6 +15,8 @@ mod laboratory;
 mod limit_equilibrium;
 mod manufactured;
 mod matrix;
+mod footing_contact;
+mod footing_side;
 mod mohr_coulomb_slope;
 mod notched_strip;
 mod oracle;
@@ -79,6 +83,8 @@ struct Arguments {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 // In the order of the printed table; started from the last one, which takes longest.
 enum Case {
+    Footing,
+    FootingContact,
     Column,
     VonMisesSlope,
     MohrCoulombSlope,
@@ -110,6 +116,7 @@ impl Case {
             Self::Prism => prism::study(out),
             Self::Elastica => elastica::study(level, out),
             Self::Comparisons => comparisons::study(level, out),
+            Self::FootingContact => footing_contact::study(level, out),
         }
     }
 }
@@ -212,6 +219,14 @@ fn validate(arguments: &Arguments) -> Result<u8, CaseError> {
     }
     studies.reverse();
     errors.reverse();
+    let order = [
+        "column",
+        "von-mises-slope",
+        "mohr-coulomb-slope",
+        "footing",
+        "footing-contact",
+    ];
+    studies.sort_by_key(|study| order.iter().position(|&case| case == study.case));
 
     let mut missed = snapshot::compare(&studies);
     table::write_summary(&studies, &missed, &arguments.out)?;
