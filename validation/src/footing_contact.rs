@@ -16,13 +16,33 @@ use igimp_cases::table::Table;
 use rayon::prelude::*;
 
 use crate::footing_side::{Beside, Pushed, push};
+use crate::oracle::{Oracle, OracleKind};
 use crate::pictures::{contours, scaled, with_outlines};
 use crate::reference::{footing_sequential_limit_analysis, interpolate};
 use crate::runs::{mesh, shipped_case};
 use crate::study::{Level, Run, Study};
 
-/// Source of the large-deformation curve.
-const SEQUENTIAL: &str = "sequential limit analysis";
+/// What the book says of the study.
+const ABOUT: &str = "The same footing beyond 0.3 B: what the resistance becomes when the soil in the cell beside the shaft \
+    sticks, bears pressure only, or bears nothing.";
+/// The large-deformation curve.
+const SEQUENTIAL: Oracle = Oracle {
+    kind: OracleKind::LimitAnalysis,
+    source: "sequential limit analysis",
+    locator: "no contact on the side; validation/reference/footing_sequential_limit_analysis.csv",
+};
+/// What separating contact can carry.
+const NO_TENSION: Oracle = Oracle {
+    kind: OracleKind::Theory,
+    source: "contact that can separate",
+    locator: "does not pull",
+};
+/// The other way to let the side go.
+const BEARS_NOTHING: Oracle = Oracle {
+    kind: OracleKind::IndependentProgram,
+    source: "the run in which the soil beside bears nothing",
+    locator: "same mesh, N at 0.5 B",
+};
 /// Undrained strength of the case \[Pa\]; its footing is 1 m wide.
 const STRENGTH: f64 = 1e3;
 
@@ -81,6 +101,7 @@ fn variants(level: Level) -> Vec<Variant> {
         Level::Full => vec![
             of("sticks_9", Beside::Sticks, 9, 100, 1.0, 40),
             of("nothing_9", nothing, 9, 100, 1.0, 40),
+            of("nothing_9_half", nothing, 9, 100, 0.5, 20),
             of("pressure_9", Beside::BearsPressure(1.0), 9, 100, 0.5, 20),
             of("nothing_9_stiff", nothing, 9, 300, 0.5, 40),
             of("nothing_13", nothing, 13, 100, 1.0, 65),
@@ -98,7 +119,7 @@ fn resistance(pushed: &Pushed) -> Vec<[f64; 2]> {
 
 /// Runs the study.
 pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
-    let mut study = Study::new("footing-contact", out)?;
+    let mut study = Study::new("footing-contact", ABOUT, out)?;
     let variants = variants(level);
     let results = variants
         .par_iter()
@@ -118,11 +139,10 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
         let run = variants
             .iter()
             .position(|variant| variant.name == "pressure_9");
-        let source = "the run in which the soil beside bears nothing";
         study.check(
             run.unwrap_or_default(),
             "N at 0.5 B [-]",
-            (interpolate(&resistance(nothing), 0.5), source),
+            BEARS_NOTHING.says(interpolate(&resistance(nothing), 0.5)),
             Band::Relative(0.01),
             interpolate(&resistance(pressure), 0.5),
         );
@@ -137,27 +157,26 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
 fn check(study: &mut Study, variant: &Variant, run: usize, pushed: &Pushed) {
     let sequential = footing_sequential_limit_analysis().points("w_over_B", "N");
     let resistance = resistance(pushed);
-    let expected = |depth| (interpolate(&sequential, depth), SEQUENTIAL);
+    let expected = |depth| SEQUENTIAL.says(interpolate(&sequential, depth));
     let quantity = |depth: f64| format!("N at {depth} B [-]");
     match variant.beside {
         Beside::Sticks => {
-            let source = "12 % above sequential limit analysis: soil that sticks to the side";
-            let least = 1.12 * expected(1.0).0;
-            let measured = interpolate(&resistance, 1.0);
-            study.check(
+            // Soil that sticks to the side adds 12 % at least.
+            study.control(
                 run,
                 quantity(1.0),
-                (least, source),
-                Band::AtLeast(least),
-                measured,
+                expected(1.0),
+                Band::AtLeast(1.12 * expected(1.0).value),
+                interpolate(&resistance, 1.0),
             );
-            let source = "contact that can separate does not pull";
-            let pull = pushed
-                .moments
-                .last()
-                .map_or(f64::NAN, |last| last.pull / STRENGTH);
-            let quantity = "pull of one side at 1 B over s_u B [-]";
-            study.check(run, quantity, (0.0, source), Band::AtLeast(0.0), pull);
+            let last = pushed.moments.last();
+            study.control(
+                run,
+                "pull of one side at 1 B over s_u B [-]",
+                NO_TENSION.says(0.0),
+                Band::AtLeast(0.0),
+                last.map_or(f64::NAN, |last| last.pull / STRENGTH),
+            );
         }
         Beside::BearsPressure(_) => {}
         Beside::BearsNothing(_) => {
@@ -211,7 +230,7 @@ fn curves(study: &Study, variants: &[Variant], results: &[Pushed]) -> Result<(),
         .collect();
     series.push(
         Series::new(
-            SEQUENTIAL,
+            SEQUENTIAL.source,
             sequential.clone(),
             SeriesStyle::Line(LineStyle::Dashed),
         )

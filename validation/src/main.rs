@@ -11,12 +11,12 @@ mod cylinder;
 mod elastica;
 mod exact;
 mod footing;
+mod footing_contact;
+mod footing_side;
 mod laboratory;
 mod limit_equilibrium;
 mod manufactured;
 mod matrix;
-mod footing_contact;
-mod footing_side;
 mod mohr_coulomb_slope;
 mod notched_strip;
 mod oracle;
@@ -83,13 +83,9 @@ struct Arguments {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 // In the order of the printed table; started from the last one, which takes longest.
 enum Case {
-    Footing,
-    FootingContact,
     Column,
     VonMisesSlope,
     MohrCoulombSlope,
-    Slopes,
-    TiltedLayer,
     Footing,
     Manufactured,
     Cylinder,
@@ -97,6 +93,9 @@ enum Case {
     NotchedStrip,
     Prism,
     Elastica,
+    Slopes,
+    TiltedLayer,
+    FootingContact,
     Comparisons,
 }
 
@@ -106,8 +105,6 @@ impl Case {
             Self::Column => column::study(out),
             Self::VonMisesSlope => von_mises_slope::study(level, out),
             Self::MohrCoulombSlope => mohr_coulomb_slope::study(level, out),
-            Self::Slopes => slopes::study(level, out),
-            Self::TiltedLayer => tilted_layer::study(level, out),
             Self::Footing => footing::study(level, out),
             Self::Manufactured => manufactured::study(level, out),
             Self::Cylinder => cylinder::study(level, out),
@@ -115,8 +112,10 @@ impl Case {
             Self::NotchedStrip => notched_strip::study(level, out),
             Self::Prism => prism::study(out),
             Self::Elastica => elastica::study(level, out),
-            Self::Comparisons => comparisons::study(level, out),
+            Self::Slopes => slopes::study(level, out),
+            Self::TiltedLayer => tilted_layer::study(level, out),
             Self::FootingContact => footing_contact::study(level, out),
+            Self::Comparisons => comparisons::study(level, out),
         }
     }
 }

@@ -58,6 +58,7 @@ fn cause(failure: &StepFailure) -> &'static str {
         StepFailure::Diverged => "residual diverges",
         StepFailure::Stagnated => "residual stagnates",
         StepFailure::LeavesGrid { .. } => "leaves the grid",
+        StepFailure::NotFinite { .. } => "not finite",
         StepFailure::Assembly(AssemblyError::Inverted { .. }) => "particle inverted",
         StepFailure::Assembly(AssemblyError::Material { .. }) => "law fails",
         StepFailure::Assembly(_) => "no equations",
