@@ -57,7 +57,7 @@ impl End {
             Self::NoEquilibrium => "no equilibrium",
             Self::Moved => "displacement limit",
             Self::OwnWeight => "no equilibrium at full gravity",
-            Self::OtherFailure => "the soil left the grid, or another cause",
+            Self::OtherFailure => "other failure (soil left the grid)",
             Self::Completed => "reached its end",
             Self::Budget => "budget used up",
             Self::Hangs => "hangs",
