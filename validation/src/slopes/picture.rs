@@ -15,24 +15,19 @@ pub(crate) fn write(
     points: &[(usize, Variant, f64)],
 ) -> Result<(), CaseError> {
     let middle = |slope: usize| 0.5 * (known[slope].interval[0] + known[slope].interval[1]);
-    let bands = known.iter().enumerate().map(|(slope, known)| {
-        let x = slope as f64 + 1.0;
-        let edge = |end: f64| {
-            [-0.4, 0.4]
-                .map(|across| [x + across, end / middle(slope)])
-                .to_vec()
-        };
-        Band {
-            label: if slope == 0 {
-                "known".into()
-            } else {
-                String::new()
-            },
-            lower: edge(known.interval[0]),
-            upper: edge(known.interval[1]),
-        }
-    });
-    let bands = bands.collect();
+    // One band of all intervals, without height between them.
+    let edge = |end: usize| {
+        let boxes = known.iter().enumerate().flat_map(|(slope, known)| {
+            let (x, y) = (slope as f64 + 1.0, known.interval[end] / middle(slope));
+            [(-0.4, 1.0), (-0.4, y), (0.4, y), (0.4, 1.0)].map(|(across, y)| [x + across, y])
+        });
+        boxes.collect()
+    };
+    let bands = vec![Band {
+        label: "known".into(),
+        lower: edge(0),
+        upper: edge(1),
+    }];
     let mut series = Vec::new();
     let hand = known.iter().enumerate();
     series.push(Series::markers(

@@ -131,7 +131,7 @@ pub(crate) fn drained(bounds: &[[f64; 3]]) -> Vec<Problem> {
             (1.0, 1.5),
             12.38,
             [15.0, 10.0],
-            vec![10, 20],
+            vec![10, 20, 40],
         ),
     ];
     let problem = |(slope, &[_, lower, upper]): (_, &[f64; 3])| {
