@@ -92,9 +92,9 @@ fn stencils<const D: usize>(sample: &Sample<D>, cuts: bool) -> (Particles<D>, St
 }
 
 /// Σ S = 1, Σ ∇S = Σ ∇S̄ = 0, values and supports in range: also for tied nodes.
-fn sums_over_nodes<const D: usize>(sample: Sample<D>) -> Result<(), TestCaseError> {
+fn sums_over_nodes<const D: usize>(sample: &Sample<D>) -> Result<(), TestCaseError> {
     for cuts in [false, true] {
-        let (particles, stencils) = stencils(&sample, cuts);
+        let (particles, stencils) = stencils(sample, cuts);
         for particle in 0..particles.len() {
             let own = stencils.of(particle);
             prop_assert!(own.windows(2).all(|pair| pair[0].node < pair[1].node));
@@ -117,11 +117,11 @@ fn sums_over_nodes<const D: usize>(sample: Sample<D>) -> Result<(), TestCaseErro
 }
 
 /// A field a + B·x: S gives it at the middle of the domain as it is cut, ∇S and ∇S̄ give B.
-fn linear_fields<const D: usize>(sample: Sample<D>) -> Result<(), TestCaseError> {
-    let (particles, stencils) = stencils(&sample, false);
+fn linear_fields<const D: usize>(sample: &Sample<D>) -> Result<(), TestCaseError> {
+    let (particles, stencils) = stencils(sample, false);
     for particle in 0..particles.len() {
         let own = stencils.of(particle);
-        let middle = middle(&sample, particle);
+        let middle = middle(sample, particle);
         let weighted = |of: &dyn Fn(&Support<D>) -> f64, a: usize| -> f64 {
             let about = |node: usize| sample.grid.node_position(node)[a] - middle[a];
             own.iter()
@@ -140,7 +140,9 @@ fn linear_fields<const D: usize>(sample: Sample<D>) -> Result<(), TestCaseError>
             }
         }
         if !sample.method.bbar {
-            prop_assert!(own.iter().all(|support| support.grad == support.grad_bar));
+            prop_assert!(own.iter().all(
+                |support| support.grad.map(f64::to_bits) == support.grad_bar.map(f64::to_bits)
+            ));
         }
     }
     Ok(())
@@ -165,9 +167,9 @@ fn middle<const D: usize>(sample: &Sample<D>, particle: usize) -> [f64; D] {
 
 /// Node volumes and masses are Σ S V and Σ S m over the particles, and sum to those of the body;
 /// tied or not. A node without supports has none.
-fn shares_add_up<const D: usize>(sample: Sample<D>) -> Result<(), TestCaseError> {
+fn shares_add_up<const D: usize>(sample: &Sample<D>) -> Result<(), TestCaseError> {
     for cuts in [false, true] {
-        let (particles, stencils) = stencils(&sample, cuts);
+        let (particles, stencils) = stencils(sample, cuts);
         let nodes = sample.grid.node_count();
         let (mut volumes, mut masses) = (vec![0.0; nodes], vec![0.0; nodes]);
         for particle in 0..particles.len() {
@@ -195,9 +197,9 @@ fn shares_add_up<const D: usize>(sample: Sample<D>) -> Result<(), TestCaseError>
 
 /// Ties only join nodes: what a particle gives to a node is what it gave to those that the node now
 /// stands for, so that supports never grow in number.
-fn ties_only_join<const D: usize>(sample: Sample<D>) -> Result<(), TestCaseError> {
-    let (particles, plain) = stencils(&sample, false);
-    let (_, tied) = stencils(&sample, true);
+fn ties_only_join<const D: usize>(sample: &Sample<D>) -> Result<(), TestCaseError> {
+    let (particles, plain) = stencils(sample, false);
+    let (_, tied) = stencils(sample, true);
     for particle in 0..particles.len() {
         let (before, after) = (plain.of(particle), tied.of(particle));
         prop_assert!(after.len() <= before.len());
@@ -227,14 +229,14 @@ macro_rules! in_two_and_three_dimensions {
             use super::*;
             proptest! {
                 #![proptest_config(config(300))]
-                $(#[test] fn $check(sample in sample::<2>()) { super::$check(sample)?; })*
+                $(#[test] fn $check(sample in sample::<2>()) { super::$check(&sample)?; })*
             }
         }
         mod solid {
             use super::*;
             proptest! {
                 #![proptest_config(config(80))]
-                $(#[test] fn $check(sample in sample::<3>()) { super::$check(sample)?; })*
+                $(#[test] fn $check(sample in sample::<3>()) { super::$check(&sample)?; })*
             }
         }
     };

@@ -124,7 +124,7 @@ fn returns_are_idempotent() {
         let again = sample.law.return_map(&kept, &answer.history).unwrap();
         assert_eq!(again.regime, Regime::Elastic, "{:?} {strain:?}", sample.law);
         assert_eq!(again.history, answer.history);
-        assert_eq!(size(&again.delta_eps_p), 0.0);
+        assert!(size(&again.delta_eps_p) <= 0.0);
         // The deviator of a stress sums to zero but for round-off, over 2 G and times K again.
         let ratio = elasticity.bulk() / elasticity.shear();
         let round_off = 1e-15 * (10.0 + ratio) * size(&answer.tau);

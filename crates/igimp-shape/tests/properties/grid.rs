@@ -120,8 +120,8 @@ proptest! {
     }
 
     #[test]
-    fn cells_of_points_in_1d(axes in [axis()], share in [0.0..1.0], near in [0_usize..64]) {
-        location(axes, share, near)?;
+    fn cells_of_points_in_1d(axes in [axis()], share in 0.0..1.0, near in 0_usize..64) {
+        location(axes, [share], [near])?;
     }
 
     #[test]
