@@ -22,10 +22,10 @@ use crate::slopes::section::Variant;
 use crate::study::{Level, Run, Study};
 
 /// What the book says of the study.
-const ABOUT: &str = "Slopes of undrained and drained soil, homogeneous and in layers, whose factor of safety is bounded by limit analysis or published; strength is reduced on three meshes, and every slope has a second opinion by hand calculation.";
+const ABOUT: &str = "Slopes of undrained and drained soil, homogeneous and in layers, whose factor of safety is bounded by limit analysis or published; strength is reduced on up to three meshes, and every slope has a second opinion by hand calculation.";
 /// What is measured.
 const QUANTITY: &str = "factor of safety [-]";
-/// The factor falls with the cell at about first order.
+/// What is extrapolated: the factor falls with the cell at about first order.
 const EXTRAPOLATED: &str = "factor of safety, 2 F(h) − F(2h) [-]";
 /// By how much an upper bound of rigid blocks may lie above the factor of safety \[-\].
 const BLOCKS: f64 = 0.05;
@@ -100,7 +100,7 @@ fn searches(problems: &[Problem], level: Level) -> Vec<Search> {
                 variant,
             });
         };
-        // Of the published ones only values for ψ = φ or of slices are known.
+        // Values of slices know no flow rule: ψ = 0 is run where bounds are known.
         let drained = problem.oracle.kind == OracleKind::LimitAnalysis
             && problem.section.layers[0].friction > 0.0;
         for (place, &cells) in problem.meshes.iter().enumerate() {
@@ -294,10 +294,11 @@ fn summary(
 
 /// Slope, method, mesh and flow rule in words.
 fn label(problem: &Problem, variant: Variant, computed: &Computed) -> String {
-    let flow = match (variant.associated, problem.opinion) {
-        _ if problem.section.layers.iter().all(|l| l.friction == 0.0) => "",
-        (true, _) => ", ψ = φ",
-        (false, _) => ", ψ = 0",
+    let drained = problem.section.layers.iter().any(|l| l.friction > 0.0);
+    let flow = match (drained, variant.associated) {
+        (false, _) => "",
+        (true, true) => ", ψ = φ",
+        (true, false) => ", ψ = 0",
     };
     format!(
         "{}, {}, h = H/{}{flow}",
