@@ -218,14 +218,6 @@ fn validate(arguments: &Arguments) -> Result<u8, CaseError> {
     }
     studies.reverse();
     errors.reverse();
-    let order = [
-        "column",
-        "von-mises-slope",
-        "mohr-coulomb-slope",
-        "footing",
-        "footing-contact",
-    ];
-    studies.sort_by_key(|study| order.iter().position(|&case| case == study.case));
 
     let mut missed = snapshot::compare(&studies);
     table::write_summary(&studies, &missed, &arguments.out)?;

@@ -18,6 +18,8 @@ const END: &str = "<!-- matrix:end -->";
 /// Relative difference of two measured values that print the same matrix: the page has four digits,
 /// the last of which may flip \[-\].
 const PRINTED: f64 = 2e-3;
+/// Measured values below this are round-off: errors that are zero by theory.
+const ROUND_OFF: f64 = 1e-9;
 
 const HEADER: &str = "| variant | quantity | oracle | expected | band | measured |\n\
                       |---|---|---|---|---|---|\n";
@@ -32,9 +34,18 @@ fn cells(row: &Row, number: usize) -> [String; 6] {
         format!("{control}{} [{number}]", row.oracle),
         short(check.expected),
         check.band.to_string(),
-        short(check.measured),
+        measured(check.measured),
     ]
     .map(|cell| cell.replace('|', "\\|"))
+}
+
+/// A measured value; of one that is round-off no digit is told, since it differs between computers.
+fn measured(value: f64) -> String {
+    if value != 0.0 && value.abs() < ROUND_OFF {
+        format!("< {ROUND_OFF:e}")
+    } else {
+        short(value)
+    }
 }
 
 /// Who says so, and where.

@@ -267,3 +267,44 @@ fn an_unknown_built_in_case_is_bad_input() {
     assert_eq!(code(&output), 2);
     assert!(stderr(&output).contains("did you mean `slope`?"));
 }
+
+/// A pipe in place of a table would be waited for without end.
+#[cfg(unix)]
+#[test]
+fn a_pipe_is_no_table_of_a_reference() {
+    let folder = Folder::new("pipe");
+    let made = Command::new("mkfifo")
+        .arg("points.csv")
+        .current_dir(&folder.0)
+        .status();
+    if !made.is_ok_and(|status| status.success()) {
+        println!("skipped: no pipe can be made here");
+        return;
+    }
+    let curve = "[[curves]]\nname = \"load\"\n\
+        x = { of = \"gravity_factor\", label = \"gravity [-]\" }\n\
+        y = { of = \"largest_displacement\", label = \"displacement [m]\" }\n\
+        reference = { file = \"points.csv\", label = \"a pipe\" }\n";
+    folder.write("case.toml", &format!("{SMALL}{curve}"));
+    let mut check = Command::new(env!("CARGO_BIN_EXE_igimp"))
+        .args(["check", "case.toml"])
+        .current_dir(&folder.0)
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let ended = (0..600).any(|_| {
+        std::thread::sleep(std::time::Duration::from_millis(50));
+        check.try_wait().unwrap().is_some()
+    });
+    if !ended {
+        check.kill().unwrap();
+    }
+    let output = check.wait_with_output().unwrap();
+    assert!(ended, "the program waits for a pipe");
+    assert_eq!(code(&output), 2);
+    assert!(
+        stderr(&output).contains("it is not a file"),
+        "{}",
+        stderr(&output)
+    );
+}

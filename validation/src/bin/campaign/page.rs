@@ -5,7 +5,7 @@ use std::path::Path;
 use igimp_cases::CaseError;
 
 /// Where the tables stand in the book.
-pub(crate) const PAGE: &str = "docs/src/hard-numerics.part.md";
+pub(crate) const PAGE: &str = "docs/src/hard-numerics.md";
 
 /// Writes a file.
 pub(crate) fn write_file(path: &Path, text: &str) -> Result<(), CaseError> {

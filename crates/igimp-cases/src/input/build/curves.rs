@@ -127,10 +127,12 @@ fn reference(node: &Node, file: &Path, problems: &mut Problems) -> Option<Refere
 
 /// The points of a CSV file: a header and two columns.
 fn read_points(path: &Path) -> Result<Vec<[f64; 2]>, String> {
-    let file = File::open(path).map_err(|error| error.to_string())?;
-    if !file.metadata().is_ok_and(|about| about.is_file()) {
+    // Asked before it is opened: a pipe would be waited for.
+    let about = std::fs::metadata(path).map_err(|error| error.to_string())?;
+    if !about.is_file() {
         return Err("it is not a file".to_owned());
     }
+    let file = File::open(path).map_err(|error| error.to_string())?;
     let mut text = String::new();
     file.take(LARGEST + 1)
         .read_to_string(&mut text)
