@@ -272,7 +272,7 @@ fn an_unknown_built_in_case_is_bad_input() {
 #[cfg(unix)]
 #[test]
 fn a_pipe_is_no_table_of_a_reference() {
-    let folder = Folder::new("pipe");
+    let folder = Folder::new("pipe-table");
     let made = Command::new("mkfifo")
         .arg("points.csv")
         .current_dir(&folder.0)
