@@ -26,7 +26,7 @@ const TABLE: Oracle = Oracle {
     locator: "validation/reference/column_stress_error.csv",
 };
 /// The height.
-const HENCKY_COLUMN: Oracle = Oracle {
+pub(crate) const HENCKY_COLUMN: Oracle = Oracle {
     kind: OracleKind::Exact,
     source: "Hencky column under its own weight",
     locator: "Lambert's W, `igimp_cases::exact::Column`",

@@ -9,7 +9,7 @@ use igimp_cases::figures::{
 use igimp_cases::table::Table;
 use rayon::prelude::*;
 
-use crate::column::{self, ColumnResult};
+use crate::column::{self, ColumnResult, HENCKY_COLUMN};
 use crate::comparisons::benchmarks::{
     Footings, Quantity, Results, Variant, cantilever, corrections, corrections_of_trials, cuts,
     deflection, drained_slope, factor_of_safety, largest_displacement, reached, soft_slope,
@@ -22,12 +22,6 @@ use crate::runs::Computed;
 use crate::study::{Run, Study};
 use crate::von_mises_slope::{BOUNDS, Collapse, bounds, limit, slope_to_collapse};
 
-/// The height in finite strain.
-const HENCKY_COLUMN: Oracle = Oracle {
-    kind: OracleKind::Exact,
-    source: "Hencky column under its own weight",
-    locator: "Lambert's W, `igimp_cases::exact::Column`",
-};
 /// The height in small strain, steps without end.
 const SMALL_STRAIN_COLUMN: Oracle = Oracle {
     kind: OracleKind::Exact,
