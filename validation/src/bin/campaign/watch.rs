@@ -34,8 +34,9 @@ pub(crate) enum End {
     NoEquilibrium,
     /// Moved as far as the case counts as collapse.
     Moved,
-    /// Found no equilibrium on the way to full gravity, before strength was reduced.
-    OwnWeight,
+    /// Found no equilibrium before the end that was planned: on the way to full gravity, or before a
+    /// footing was as deep as asked.
+    Early,
     /// Failed for another reason than want of equilibrium, such as a particle that left the grid.
     OtherFailure,
     /// Reached its end.
@@ -56,7 +57,7 @@ impl End {
         match self {
             Self::NoEquilibrium => "no equilibrium",
             Self::Moved => "displacement limit",
-            Self::OwnWeight => "no equilibrium at full gravity",
+            Self::Early => "no equilibrium before the planned end",
             Self::OtherFailure => "other failure (soil left the grid)",
             Self::Completed => "reached its end",
             Self::Budget => "budget used up",
@@ -218,7 +219,7 @@ fn follow(case: &Case, budget: Budget, interrupt: &AtomicBool) -> Watched {
         }
         (_, Some(safety)) if safety.failed.is_none() => (End::Completed, None),
         (_, Some(_)) if watch.failed.is_some() => (End::NoEquilibrium, watch.failed),
-        (StageOutcome::NotConverged, None) => (End::OwnWeight, of_march),
+        (StageOutcome::NotConverged, None) => (End::Early, of_march),
         (StageOutcome::Stopped, None) if of_march.is_some() => (End::NoEquilibrium, of_march),
         (StageOutcome::Stopped, None) | (_, Some(_)) => (End::Moved, None),
         (StageOutcome::Completed, None) => (End::Completed, None),
