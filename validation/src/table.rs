@@ -8,16 +8,17 @@ use igimp_cases::check::short;
 
 use crate::study::{Row, Study};
 
-/// The checks of all studies as aligned text, one line each, and the sources that their numbers in
-/// brackets stand for.
+/// The checks of all studies as aligned text, a table under the name of each study, and the sources
+/// that their numbers in brackets stand for.
 pub(crate) fn checks(studies: &[Study]) -> String {
     let header = [
-        "case", "variant", "quantity", "expected", "band", "measured", "verdict", "steps", "iter.",
+        "variant", "quantity", "expected", "band", "measured", "verdict", "steps", "iter.",
         "time [s]",
     ];
-    let mut rows: Vec<Vec<String>> = vec![header.iter().map(|&text| text.to_owned()).collect()];
+    let mut text = String::new();
     let mut sources: Vec<String> = Vec::new();
-    for study in studies {
+    for study in studies.iter().filter(|study| !study.rows.is_empty()) {
+        let mut rows: Vec<Vec<String>> = vec![header.iter().map(|&text| text.to_owned()).collect()];
         for row in &study.rows {
             let (check, run) = (&row.check, &study.runs[row.run]);
             let source = format!("{}: {} ({})", check.source, row.locator, row.oracle);
@@ -27,7 +28,6 @@ pub(crate) fn checks(studies: &[Study]) -> String {
                 sources.len() - 1
             }) + 1;
             rows.push(vec![
-                check.case.clone(),
                 check.variant.clone(),
                 check.quantity.clone(),
                 format!("{} [{number}]", short(check.expected)),
@@ -39,9 +39,16 @@ pub(crate) fn checks(studies: &[Study]) -> String {
                 format!("{:.1}", run.seconds),
             ]);
         }
+        let passed = study.rows.iter().filter(|row| row.pass).count();
+        let _ = writeln!(
+            text,
+            "{}: {passed} of {} met\n{}",
+            study.case,
+            study.rows.len(),
+            aligned(&rows)
+        );
     }
-    let mut text = aligned(&rows);
-    text.push_str("\nsources\n");
+    text.push_str("sources\n");
     for (index, source) in sources.iter().enumerate() {
         let _ = writeln!(text, "  [{}] {source}", index + 1);
     }
