@@ -6,7 +6,7 @@ use igimp_shape::Grid;
 use rayon::prelude::*;
 
 use crate::kinematics::ParticleTrial;
-use crate::method::{DomainUpdate, Kinematics, Method};
+use crate::method::{DomainUpdate, Geometry, Kinematics, Method};
 use crate::particles::Particles;
 use crate::small::{congruence, determinant, identity, multiply, rotation, transpose};
 use crate::stencils::Stencils;
@@ -15,7 +15,7 @@ use crate::sweep::Trial;
 
 impl<const D: usize> Particles<D> {
     /// Accepts a converged trial: x, F, b_e, σ, l_p and history become those at nodal step
-    /// displacements `u` \[length\].
+    /// displacements `u` \[length\]. On a given geometry x, F and l_p stay.
     pub fn commit(
         &mut self,
         stencils: &Stencils<D>,
@@ -52,12 +52,26 @@ impl<const D: usize> Particles<D> {
                 let own = &trial.particles[slot as usize];
                 let step = interpolate(stencils, particle, u);
                 for axis in 0..D {
-                    x[axis] += step[axis];
                     displacement[axis] += step[axis];
                 }
-                *def_grad = multiply(&own.delta_def_grad, def_grad);
-                *half_length = updated_half_length(method.domain_update, half_length0, def_grad);
-                (*b_e, *sigma) = stress_state(method.kinematics, own, determinant(def_grad));
+                match method.geometry {
+                    Geometry::Moving => {
+                        for axis in 0..D {
+                            x[axis] += step[axis];
+                        }
+                        *def_grad = multiply(&own.delta_def_grad, def_grad);
+                        let update = method.domain_update;
+                        *half_length = updated_half_length(update, half_length0, def_grad);
+                        (*b_e, *sigma) = stress_state(method.kinematics, own, determinant(def_grad));
+                    }
+                    Geometry::Given => {
+                        *b_e = own.b_e();
+                        *sigma = match method.kinematics {
+                            Kinematics::FiniteStrain => divided(&own.tau, determinant(def_grad)),
+                            Kinematics::SmallStrain => own.tau,
+                        };
+                    }
+                }
                 *history = own.history;
                 *regime = own.regime;
             });
@@ -107,7 +121,7 @@ fn stress_state<const D: usize>(
     match kinematics {
         Kinematics::FiniteStrain => (
             own.b_e(),
-            own.tau.map(|row| row.map(|component| component / det_f)),
+            divided(&own.tau, det_f),
         ),
         Kinematics::SmallStrain => {
             let in_plane = rotation(&own.delta_def_grad);
@@ -118,6 +132,11 @@ fn stress_state<const D: usize>(
             (congruence(&turn, &own.b_e()), congruence(&turn, &own.tau))
         }
     }
+}
+
+/// Cauchy stress of a Kirchhoff stress.
+fn divided(tau: &Tensor, det_f: f64) -> Tensor {
+    tau.map(|row| row.map(|component| component / det_f))
 }
 
 /// Half-lengths after the deformation F \[length\].

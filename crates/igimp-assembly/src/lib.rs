@@ -33,7 +33,7 @@ pub use error::AssemblyError;
 pub use kinematics::ParticleTrial;
 pub use loads::{LoadPoint, StepLoads};
 pub use matrix::{CompressedColumns, NodeBlock, Pattern, TangentMatrix};
-pub use method::{DomainUpdate, Kinematics, Method, Remedy, SmallCuts};
+pub use method::{DomainUpdate, Geometry, Kinematics, Locking, Method, Remedy, SmallCuts};
 pub use particles::{ParticleFields, ParticleSeed, Particles};
 pub use residual::OutOfBalance;
 pub use stencils::{Stencils, Transpose};

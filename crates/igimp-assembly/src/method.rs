@@ -1,8 +1,33 @@
-//! The switches of the method: basis, B-bar, kinematics, domain update, small cuts.
+//! The switches of the method: basis, locking control, geometry, kinematics, domain update, small cuts.
 
 use std::sync::Arc;
 
 use igimp_shape::{Basis, Gimp, Linear};
+
+/// What is done against locking: which gradients the strain of a particle is made of (theory,
+/// "locking").
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Locking {
+    /// Nothing: every particle has the dilatation and the distortion of its own place.
+    None,
+    /// The paper's B-bar: the dilatation is that of the cells (theory, eq. 9). Cures nearly incompressible
+    /// elasticity and plastic flow that keeps volume.
+    BBar,
+    /// B-bar, and most of the distortion shared as well by particles of full cells whose law yields
+    /// (theory, eqs. 8a to 8c). Cures plastic flow that changes volume too.
+    SharedStrain,
+}
+
+/// The geometry that the steps of a march are computed on.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Geometry {
+    /// Every step begins where the last one carried the particles (the default).
+    #[default]
+    Moving,
+    /// Positions, domains, F and supports stay as they are; strain adds up as small strain (theory,
+    /// eq. 11b). Displacements are recorded and enter no equation.
+    Given,
+}
 
 /// How strain is measured over a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -68,8 +93,10 @@ pub struct Method {
     /// Grid basis as a particle sees it: [`Linear`] is the plain material point method (iMPM),
     /// [`Gimp`] the generalised interpolation one (iGIMP).
     pub basis: Arc<dyn Basis>,
-    /// Volumetric-locking control: dilatation from the cell-averaged centre gradient.
-    pub bbar: bool,
+    /// What is done against locking.
+    pub locking: Locking,
+    /// The geometry that steps are computed on.
+    pub geometry: Geometry,
     /// Strain measure.
     pub kinematics: Kinematics,
     /// Update of the particle domains.
@@ -79,10 +106,11 @@ pub struct Method {
 }
 
 impl Method {
-    fn with(basis: Arc<dyn Basis>, bbar: bool) -> Self {
+    fn with(basis: Arc<dyn Basis>, locking: Locking) -> Self {
         Self {
             basis,
-            bbar,
+            locking,
+            geometry: Geometry::Moving,
             kinematics: Kinematics::FiniteStrain,
             domain_update: DomainUpdate::DiagonalU,
             small_cuts: SmallCuts::default(),
@@ -91,22 +119,22 @@ impl Method {
 
     /// Plain implicit material point method.
     pub fn impm() -> Self {
-        Self::with(Arc::new(Linear), false)
+        Self::with(Arc::new(Linear), Locking::None)
     }
 
     /// Implicit material point method with B-bar.
     pub fn impm_bbar() -> Self {
-        Self::with(Arc::new(Linear), true)
+        Self::with(Arc::new(Linear), Locking::BBar)
     }
 
     /// Implicit generalised interpolation material point method.
     pub fn igimp() -> Self {
-        Self::with(Arc::new(Gimp), false)
+        Self::with(Arc::new(Gimp), Locking::None)
     }
 
     /// Implicit generalised interpolation material point method with B-bar (the default).
     pub fn igimp_bbar() -> Self {
-        Self::with(Arc::new(Gimp), true)
+        Self::with(Arc::new(Gimp), Locking::BBar)
     }
 
     /// The variant's name as the paper writes it, such as `iGIMP + B-bar`.
@@ -116,10 +144,18 @@ impl Method {
         } else {
             "iGIMP"
         };
-        if self.bbar {
-            format!("{basis} + B-bar")
-        } else {
-            basis.to_owned()
+        match self.locking {
+            Locking::None => basis.to_owned(),
+            Locking::BBar => format!("{basis} + B-bar"),
+            Locking::SharedStrain => format!("{basis} + shared strain"),
+        }
+    }
+
+    /// How strain is measured over a step of this geometry: increments on a given one are small.
+    pub(crate) fn kinematics_of_step(&self) -> Kinematics {
+        match self.geometry {
+            Geometry::Moving => self.kinematics,
+            Geometry::Given => Kinematics::SmallStrain,
         }
     }
 }

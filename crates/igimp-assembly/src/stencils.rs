@@ -6,13 +6,13 @@ use std::collections::BTreeMap;
 use igimp_shape::{Grid, Support};
 use rayon::prelude::*;
 
-use crate::constraints::Constraints;
 use crate::error::AssemblyError;
 use crate::method::{Method, Remedy};
 use crate::particles::Particles;
 use crate::small_cuts::masters_of_cuts;
 use crate::strips::{Strips, split};
 use crate::supports::{Supports, bounds};
+use crate::system::{SharedLaw, StepConditions};
 
 /// Basis values S, gradients ∇S and cell-averaged centre gradients ∇S̄ of all particles.
 ///
@@ -38,21 +38,28 @@ pub(crate) struct NodeShare {
 }
 
 impl<const D: usize> Stencils<D> {
-    /// Evaluates the basis of a method at all particles, and ties nodes that are small cuts to
+    /// Evaluates the basis of a method at all particles on the grid of a step, and ties nodes that are small cuts to
     /// their neighbours if the method says so.
     ///
     /// Half-lengths count up to one cell: a domain stretched further would couple ever more nodes
     /// without gain.
     ///
     /// # Errors
-    /// [`AssemblyError::Shape`] names the first particle whose centre left the grid.
+    /// [`AssemblyError::Shape`] names the first particle whose centre left the grid,
+    /// [`AssemblyError::UnknownLaw`] one whose law is not there.
     pub fn build(
-        grid: &Grid<D>,
         particles: &Particles<D>,
         method: &Method,
-        constraints: &Constraints<D>,
+        conditions: &StepConditions<D>,
     ) -> Result<Self, AssemblyError> {
-        let mut supports = Supports::build(grid, particles, method)?;
+        let StepConditions {
+            grid,
+            constraints,
+            laws,
+            ..
+        } = conditions;
+        known_laws(particles, laws)?;
+        let mut supports = Supports::build(grid, particles, method, laws)?;
         let mut strips = Strips::build(grid, &supports);
         let mut shares = node_shares(grid, particles, &supports, &strips);
         let mut masters = BTreeMap::new();
@@ -172,6 +179,22 @@ impl Transpose {
     /// The particles that touch one node, ascending.
     pub fn of(&self, node: usize) -> &[usize] {
         &self.particles[self.offsets[node]..self.offsets[node + 1]]
+    }
+}
+
+/// Refuses particles whose law is not among those of the step.
+fn known_laws<const D: usize>(
+    particles: &Particles<D>,
+    laws: &[SharedLaw],
+) -> Result<(), AssemblyError> {
+    let unknown = |law: &usize| *law >= laws.len();
+    match particles.law.iter().position(unknown) {
+        Some(particle) => Err(AssemblyError::UnknownLaw {
+            particle,
+            law: particles.law[particle],
+            laws: laws.len(),
+        }),
+        None => Ok(()),
     }
 }
 

@@ -4,7 +4,8 @@ use igimp_shape::{Grid, Scratch, Support, supports};
 use rayon::prelude::*;
 
 use crate::error::AssemblyError;
-use crate::method::Method;
+use crate::method::{Locking, Method};
+use crate::system::SharedLaw;
 use crate::particles::Particles;
 
 /// Particles that are handled together: fixed, so that results do not depend on the number of
@@ -30,7 +31,9 @@ struct Chunk<const D: usize> {
 }
 
 impl<const D: usize> Supports<D> {
-    /// Evaluates the basis of a method at all particles. Without B-bar, ∇S̄ is replaced by ∇S.
+    /// Evaluates the basis of a method at all particles. Here alone is decided of which gradients the
+    /// strain of a particle is made: without locking control ∇S̄ is replaced by ∇S, with shared strain
+    /// ∇S by a mean of the two (theory, eq. 8a).
     ///
     /// # Errors
     /// [`AssemblyError::Shape`] names the first particle whose centre left the grid.
@@ -38,11 +41,16 @@ impl<const D: usize> Supports<D> {
         grid: &Grid<D>,
         particles: &Particles<D>,
         method: &Method,
+        laws: &[SharedLaw],
     ) -> Result<Self, AssemblyError> {
         let len = particles.len();
+        let own_shares = match method.locking {
+            Locking::SharedStrain => own_shares(grid, particles, laws),
+            Locking::None | Locking::BBar => Vec::new(),
+        };
         let chunks: Vec<Result<Chunk<D>, AssemblyError>> = (0..len.div_ceil(CHUNK))
             .into_par_iter()
-            .map(|chunk| Chunk::build(grid, particles, method, chunk * CHUNK))
+            .map(|chunk| Chunk::build(grid, particles, method, &own_shares, chunk * CHUNK))
             .collect();
         let chunks = chunks.into_iter().collect::<Result<Vec<_>, _>>()?;
         let reach = chunks.iter().map(|chunk| chunk.reach).max().unwrap_or(0);
@@ -104,6 +112,7 @@ impl<const D: usize> Chunk<D> {
         grid: &Grid<D>,
         particles: &Particles<D>,
         method: &Method,
+        own_shares: &[f64],
         first: usize,
     ) -> Result<Self, AssemblyError> {
         let range = first..particles.len().min(first + CHUNK);
@@ -130,9 +139,21 @@ impl<const D: usize> Chunk<D> {
                 position: padded(&x),
                 source,
             })?;
-            if !method.bbar {
-                for support in &mut own {
-                    support.grad_bar = support.grad;
+            match method.locking {
+                Locking::None => {
+                    for support in &mut own {
+                        support.grad_bar = support.grad;
+                    }
+                }
+                Locking::BBar => {}
+                Locking::SharedStrain => {
+                    let share = own_shares[particle];
+                    for support in &mut own {
+                        for axis in 0..D {
+                            support.grad[axis] = share * support.grad[axis]
+                                + (1.0 - share) * support.grad_bar[axis];
+                        }
+                    }
                 }
             }
             for count in scratch.counts() {
@@ -145,6 +166,38 @@ impl<const D: usize> Chunk<D> {
         }
         Ok(chunk)
     }
+}
+
+/// The share β of its own gradient in the distortion of each particle \[-\].
+fn own_shares<const D: usize>(
+    grid: &Grid<D>,
+    particles: &Particles<D>,
+    laws: &[SharedLaw],
+) -> Vec<f64> {
+    let env = |n: &str, d: f64| std::env::var(n).ok().and_then(|s| s.parse().ok()).unwrap_or(d);
+    let (beta, full) = (env("BETA", 0.1), env("FULL", 0.95));
+    let counts: [usize; D] = std::array::from_fn(|axis| grid.axes[axis].node_count() - 1);
+    let number = |place: [usize; D]| (0..D).rev().fold(0, |n, axis| n * counts[axis] + place[axis]);
+    let cells: Vec<_> = particles.x.iter().map(|x| grid.cell_at(x)).collect();
+    let mut soil = vec![0.0; counts.iter().product()];
+    for (particle, cell) in cells.iter().enumerate() {
+        if let Some(cell) = cell {
+            soil[number(*cell)] += particles.volume(particle);
+        }
+    }
+    cells
+        .iter()
+        .enumerate()
+        .map(|(particle, cell)| match cell {
+            Some(cell)
+                if laws[particles.law[particle]].yields()
+                    && soil[number(*cell)] >= full * grid.cell_size(*cell).iter().product::<f64>() =>
+            {
+                beta
+            }
+            _ => 1.0,
+        })
+        .collect()
 }
 
 /// The lowest place of supports, and how far they extend along each axis.

@@ -137,7 +137,7 @@ impl<const D: usize> System<'_, D> {
             }
             if let Some((start, values)) = &mut strip.values {
                 blocks.set(supports, &self.table);
-                linearised.linearise(&own, volume, self.method.kinematics);
+                linearised.linearise(&own, volume, self.method.kinematics_of_step());
                 let place = (*start, &mut **values);
                 blocks.scatter(supports, &self.table, &self.pattern, linearised, place);
             }
@@ -161,7 +161,8 @@ impl<const D: usize> System<'_, D> {
             law: &*self.conditions.laws[self.particles.law[particle]],
         };
         let supports = self.stencils.of(particle);
-        evaluate(state, supports, u, self.method.kinematics, kind, trial)
+        let kinematics = self.method.kinematics_of_step();
+        evaluate(state, supports, u, kinematics, kind, trial)
     }
 
     /// The stored values of the columns of some nodes.

@@ -61,7 +61,7 @@ impl<'a, const D: usize> System<'a, D> {
     /// pattern is shared again when it still holds.
     ///
     /// # Errors
-    /// [`AssemblyError::UnknownLaw`], [`AssemblyError::NoUnknowns`], a load point off the body, or
+    /// [`AssemblyError::NoUnknowns`], a load point off the body, or
     /// [`AssemblyError::NonFinite`] for loads and a ghost penalty that are not finite.
     pub fn new(
         particles: &'a Particles<D>,
@@ -71,14 +71,9 @@ impl<'a, const D: usize> System<'a, D> {
         points: &[LoadPoint<D>],
         previous: Option<&Arc<Pattern>>,
     ) -> Result<Self, AssemblyError> {
-        let laws = conditions.laws.len();
-        let mut used = vec![false; laws];
-        for (particle, &law) in particles.law.iter().enumerate() {
-            *used.get_mut(law).ok_or(AssemblyError::UnknownLaw {
-                particle,
-                law,
-                laws,
-            })? = true;
+        let mut used = vec![false; conditions.laws.len()];
+        for &law in &particles.law {
+            used[law] = true;
         }
         let symmetric = std::iter::zip(&conditions.laws, &used)
             .all(|(law, &used)| !used || law.has_symmetric_tangent());
@@ -323,7 +318,7 @@ impl<'a, const D: usize> System<'a, D> {
             let own = self.evaluate_particle(particle, u, kind, &mut trial)?;
             let volume = self.reference_volume(particle);
             linearised.push(supports, &own);
-            linearised.linearise(&own, volume, self.method.kinematics);
+            linearised.linearise(&own, volume, self.method.kinematics_of_step());
             for (j, column) in supports.iter().enumerate() {
                 if !moves(column.node) {
                     continue;

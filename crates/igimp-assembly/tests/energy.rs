@@ -24,7 +24,7 @@ fn error_of_force<const D: usize>(method: &Method, cells: usize, count: usize) -
     let (_, law) = laws().remove(0);
     let mut body = particles(&grid, 1.0, &mut random);
     let conditions = conditions(&grid, &law);
-    let build = |body: &_| Stencils::build(&grid, body, method, &conditions.constraints).unwrap();
+    let build = |body: &_| Stencils::build(body, method, &conditions).unwrap();
     // Stress and deformation from an earlier step.
     let stencils = build(&body);
     let earlier = displacements(&grid, 0.05, &mut random);

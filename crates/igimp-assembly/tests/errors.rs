@@ -64,7 +64,7 @@ fn an_unknown_law() {
     let body = Particles::new(&[ParticleSeed { law: 3, ..SEED }]).unwrap();
     let method = Method::default();
     let conditions = conditions(&grid, &laws()[0].1);
-    let stencils = Stencils::build(&grid, &body, &method, &conditions.constraints).unwrap();
+    let stencils = Stencils::build(&body, &method, &conditions).unwrap();
     let error = System::new(&body, &stencils, &conditions, &method, &[], None).unwrap_err();
     assert_eq!(
         error.to_string(),
@@ -88,7 +88,7 @@ fn everything_fixed() {
     let body = Particles::new(&[SEED]).unwrap();
     let method = Method::default();
     let mut conditions = conditions(&grid, &laws()[0].1);
-    let stencils = Stencils::build(&grid, &body, &method, &conditions.constraints).unwrap();
+    let stencils = Stencils::build(&body, &method, &conditions).unwrap();
     for node in 0..grid.node_count() {
         for axis in 0..2 {
             conditions.constraints.prescribe(node, axis, 0.0).unwrap();
@@ -105,7 +105,7 @@ fn a_load_on_empty_cells() {
     let method = Method::default();
     let mut conditions = conditions(&grid, &laws()[0].1);
     conditions.loads.factors = vec![1.0];
-    let stencils = Stencils::build(&grid, &body, &method, &conditions.constraints).unwrap();
+    let stencils = Stencils::build(&body, &method, &conditions).unwrap();
     let point = LoadPoint {
         x: [5.5, 5.5],
         force: [1.0, 0.0],
@@ -125,7 +125,7 @@ fn a_displacement_that_turns_a_particle_inside_out_or_is_not_a_number() {
     let method = Method::default();
     for (_, law) in laws() {
         let conditions = conditions(&grid, &law);
-        let stencils = Stencils::build(&grid, &body, &method, &conditions.constraints).unwrap();
+        let stencils = Stencils::build(&body, &method, &conditions).unwrap();
         let system = System::new(&body, &stencils, &conditions, &method, &[], None).unwrap();
         let folded: Vec<[f64; 2]> = (0..grid.node_count())
             .map(|node| [-2.0 * grid.node_position(node)[0], 0.0])
@@ -150,7 +150,7 @@ fn an_edge_load_keeps_resultant_and_moment() {
     let body = particles(&grid, 0.0, &mut Random(1));
     let method = Method::default();
     let mut conditions = conditions(&grid, &laws()[0].1);
-    let stencils = Stencils::build(&grid, &body, &method, &conditions.constraints).unwrap();
+    let stencils = Stencils::build(&body, &method, &conditions).unwrap();
     conditions.loads.gravity = [0.0; 2];
     conditions.loads.factors = vec![2.0];
     let points = LoadPoint::along_edge([1.3, 4.1], [4.4, 3.7], [3.0, -5.0], 11, 0);

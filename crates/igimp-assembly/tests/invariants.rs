@@ -171,7 +171,7 @@ fn evaluate<const D: usize>(
     u: &[[f64; D]],
 ) -> (Stencils<D>, Trial<D>) {
     let stencils =
-        Stencils::build(&conditions.grid, body, method, &conditions.constraints).unwrap();
+        Stencils::build(body, method, &conditions).unwrap();
     let system = System::new(body, &stencils, conditions, method, &[], None).unwrap();
     let trial = system.evaluate(u, TangentKind::Consistent).unwrap();
     (stencils, trial)

@@ -44,7 +44,7 @@ fn uniform_gradient_is_exact<const D: usize>(cells: usize) {
             let label = format!("{name}, {}, {:?}, {D}D", method.label(), method.kinematics);
             let body = particles(&grid, 0.0, &mut Random(1));
             let conditions = conditions(&grid, &law);
-            let stencils = Stencils::build(&grid, &body, &method, &conditions.constraints).unwrap();
+            let stencils = Stencils::build(&body, &method, &conditions).unwrap();
             let system = System::new(&body, &stencils, &conditions, &method, &[], None).unwrap();
             let u = affine(&grid, &f);
             let trial = system.evaluate(&u, TangentKind::Consistent).unwrap();
@@ -128,7 +128,7 @@ fn rotation_rotates_stress<const D: usize>(cells: usize) {
             let mut body = particles(&grid, 1.0, &mut random);
             let conditions = conditions(&grid, &law);
             let strain = common::displacements(&grid, 0.05, &mut random);
-            let stencils = Stencils::build(&grid, &body, &method, &conditions.constraints).unwrap();
+            let stencils = Stencils::build(&body, &method, &conditions).unwrap();
             let system = System::new(&body, &stencils, &conditions, &method, &[], None).unwrap();
             let trial = system.evaluate(&strain, TangentKind::Consistent).unwrap();
             body.commit(&stencils, &method, &trial, &strain);
@@ -141,7 +141,7 @@ fn rotation_rotates_stress<const D: usize>(cells: usize) {
             turn[0][1] = -1.0;
             turn[1][0] = 1.0;
             let u = affine(&grid, &turn);
-            let stencils = Stencils::build(&grid, &body, &method, &conditions.constraints).unwrap();
+            let stencils = Stencils::build(&body, &method, &conditions).unwrap();
             let system = System::new(&body, &stencils, &conditions, &method, &[], None).unwrap();
             let trial = system.evaluate(&u, TangentKind::Consistent).unwrap();
             body.commit(&stencils, &method, &trial, &u);

@@ -113,7 +113,7 @@ fn a_rigid_translation_of_tied_bodies_causes_no_strain() {
                 );
                 let body = body(cells, shift);
                 let stencils =
-                    Stencils::build(&grid, &body, &method, &conditions.constraints).unwrap();
+                    Stencils::build(&body, &method, &conditions).unwrap();
                 let raw = Stencils::build(
                     &grid,
                     &body,
@@ -198,7 +198,7 @@ fn the_tangent_of_tied_bodies_is_the_derivative_of_the_force() {
             let label = format!("{name}, {}, {:?}", method.label(), method.kinematics);
             let conditions = free(&grid, &law);
             let body = body(&outlines()[1], shifts(&method)[0]);
-            let stencils = Stencils::build(&grid, &body, &method, &conditions.constraints).unwrap();
+            let stencils = Stencils::build(&body, &method, &conditions).unwrap();
             let system = System::new(&body, &stencils, &conditions, &method, &[], None).unwrap();
             let u = displacements(&grid, 0.02, &mut random);
             let (_, matrix) = system.linearise(&u, TangentKind::Consistent).unwrap();
@@ -271,7 +271,7 @@ fn settle(method: &Method) -> (Vec<f64>, f64) {
         }
     }
     let body = body(&cells([0, 1], [3, 4]), [0.0, SLIVER]);
-    let stencils = Stencils::build(&grid, &body, method, &conditions.constraints).unwrap();
+    let stencils = Stencils::build(&body, method, &conditions).unwrap();
     let system = System::new(&body, &stencils, &conditions, method, &[], None).unwrap();
     let still = vec![[0.0; 2]; grid.node_count()];
     let (start, matrix) = system.linearise(&still, TangentKind::Elastic).unwrap();
@@ -356,7 +356,7 @@ fn tied_nodes_miss_no_more_of_a_gradient_than_their_share() {
     let gradient = [[0.01, -0.03], [0.02, -0.015]];
     let body = body(&cells([1, 1], [4, 4]), [0.0, SLIVER]);
     for method in [Method::igimp(), Method::igimp_bbar()] {
-        let stencils = Stencils::build(&grid, &body, &method, &conditions.constraints).unwrap();
+        let stencils = Stencils::build(&body, &method, &conditions).unwrap();
         let system = System::new(&body, &stencils, &conditions, &method, &[], None).unwrap();
         let mut du = vec![0.0; system.unknowns().len()];
         for (unknown, node, axis) in unknowns(&grid, &system) {
@@ -410,7 +410,7 @@ fn a_node_is_tied_to_one_with_the_same_constraints() {
     conditions.constraints.fix_wall(&grid, 0, false, 0);
     conditions.constraints.fix_wall(&grid, 1, false, 1);
     let master_of = |conditions: &StepConditions<2>, cut: usize| {
-        let stencils = Stencils::build(&grid, &body, &method, &conditions.constraints).unwrap();
+        let stencils = Stencils::build(&body, &method, &conditions).unwrap();
         let system = System::new(&body, &stencils, conditions, &method, &[], None).unwrap();
         assert!(!system.unknowns().is_active(cut));
         moves_with(&system, grid.node_count())[cut]
@@ -437,7 +437,7 @@ fn a_node_is_tied_to_one_with_the_same_constraints() {
         .constraints
         .prescribe(node(0, 4), 1, 0.3)
         .unwrap();
-    let stencils = Stencils::build(&grid, &body, &method, &conditions.constraints).unwrap();
+    let stencils = Stencils::build(&body, &method, &conditions).unwrap();
     let transpose = stencils.transpose(grid.node_count());
     assert!(!transpose.of(node(0, 4)).is_empty());
     let system = System::new(&body, &stencils, &conditions, &method, &[], None).unwrap();
@@ -453,7 +453,7 @@ fn loads_on_a_sliver_keep_their_resultant_and_move_along() {
     let conditions = free(&grid, &elastic());
     let points = LoadPoint::along_edge([1.5, 4.002], [3.5, 4.002], [3.0, -5.0], 7, 0);
     for method in [Method::igimp(), Method::igimp_bbar()] {
-        let stencils = Stencils::build(&grid, &body, &method, &conditions.constraints).unwrap();
+        let stencils = Stencils::build(&body, &method, &conditions).unwrap();
         let system = System::new(&body, &stencils, &conditions, &method, &points, None).unwrap();
         let mut resultant = [0.0; 2];
         for (node, force) in system.f_ext().iter().enumerate() {
@@ -482,7 +482,7 @@ fn ghost_stiffness(body: &Particles<2>, gamma: f64) -> (Grid<2>, DMatrix<f64>) {
     let force = |gamma: f64, column: usize, axis: usize| {
         let mut method = Method::igimp_bbar();
         method.small_cuts.ghost_penalty = gamma;
-        let stencils = Stencils::build(&grid, body, &method, &conditions.constraints).unwrap();
+        let stencils = Stencils::build(body, &method, &conditions).unwrap();
         let system = System::new(body, &stencils, &conditions, &method, &[], None).unwrap();
         let mut u = vec![[0.0; 2]; nodes];
         u[column][axis] = 1e-3;
@@ -557,7 +557,7 @@ fn the_ghost_penalty_holds_nodes_that_a_single_domain_reaches() {
     let body = Particles::from_fields(fields).unwrap();
     for mut method in [Method::igimp(), Method::igimp_bbar()] {
         method.small_cuts.ghost_penalty = 1e-3;
-        let stencils = Stencils::build(&grid, &body, &method, &conditions.constraints).unwrap();
+        let stencils = Stencils::build(&body, &method, &conditions).unwrap();
         let system = System::new(&body, &stencils, &conditions, &method, &[], None).unwrap();
         let still = vec![[0.0; 2]; grid.node_count()];
         let (_, matrix) = system.linearise(&still, TangentKind::Elastic).unwrap();

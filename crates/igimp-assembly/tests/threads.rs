@@ -21,7 +21,7 @@ fn bits(threads: usize) -> Vec<u64> {
             for method in methods() {
                 let conditions = conditions(&grid, &law);
                 let stencils =
-                    Stencils::build(&grid, &body, &method, &conditions.constraints).unwrap();
+                    Stencils::build(&body, &method, &conditions).unwrap();
                 let system =
                     System::new(&body, &stencils, &conditions, &method, &[], None).unwrap();
                 let (trial, matrix) = system.linearise(&u, TangentKind::Consistent).unwrap();

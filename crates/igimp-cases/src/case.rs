@@ -6,7 +6,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use igimp_assembly::{Method, SharedLaw};
+use igimp_assembly::{Geometry, Method, SharedLaw};
 use igimp_material::{Elasticity, HenckyElastic, MaterialError, MohrCoulomb, Tresca, VonMises};
 use igimp_solver::linear::SolverKind;
 
@@ -244,6 +244,8 @@ pub struct Stage {
     pub kind: StageKind,
     /// Load steps when none is cut; of each trial in a strength reduction.
     pub steps: usize,
+    /// The geometry that its steps are computed on.
+    pub geometry: Geometry,
     /// Stage whose end this one starts from; `None`: the undeformed, stress-free bodies for the
     /// first stage.
     pub start_from: Option<usize>,

@@ -52,6 +52,10 @@ impl ConstitutiveModel for HenckyElastic {
         0.0
     }
 
+    fn yields(&self) -> bool {
+        false
+    }
+
     fn has_symmetric_tangent(&self) -> bool {
         true
     }

@@ -127,6 +127,11 @@ pub trait ConstitutiveModel: Send + Sync + Debug {
     /// limit on tension plays no part. Each law states the ratio.
     fn utilisation(&self, tau: &Principal, history: &History) -> f64;
 
+    /// Whether the law has a yield surface: locking of plastic flow concerns no other.
+    fn yields(&self) -> bool {
+        true
+    }
+
     /// Whether consistent tangents are symmetric, which is so when the flow is associated.
     fn has_symmetric_tangent(&self) -> bool;
 

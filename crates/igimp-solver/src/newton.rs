@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use igimp_assembly::{
-    AssemblyError, Method, OutOfBalance, Pattern, Stencils, StepConditions, System, TangentMatrix,
+    AssemblyError, Geometry, Method, OutOfBalance, Pattern, Stencils, StepConditions, System, TangentMatrix,
     Trial,
 };
 use igimp_material::TangentKind;
@@ -268,7 +268,7 @@ fn equilibrium<const D: usize>(
     let mut times = PhaseTimes::default();
     let clock = Instant::now();
     let grid = &conditions.grid;
-    let stencils = Stencils::build(grid, &body.particles, method, &conditions.constraints)?;
+    let stencils = Stencils::build(&body.particles, method, conditions)?;
     let system = System::new(
         &body.particles,
         &stencils,
@@ -331,7 +331,8 @@ fn equilibrium<const D: usize>(
         })?;
         course.record(&residual, settings)?;
     }
-    if let Some((particle, x)) = body.particles.leaving(grid, &stencils, &u) {
+    let moves = method.geometry == Geometry::Moving;
+    if moves && let Some((particle, x)) = body.particles.leaving(grid, &stencils, &u) {
         return Err(StepFailure::LeavesGrid {
             particle,
             position: padded(&x),
@@ -357,8 +358,10 @@ fn equilibrium<const D: usize>(
         drag_share: system.drag_share(&u),
         times,
     };
-    for (index, point) in body.load_points.iter_mut().enumerate() {
-        *point = point.carried(grid, index, &u)?;
+    if moves {
+        for (index, point) in body.load_points.iter_mut().enumerate() {
+            *point = point.carried(grid, index, &u)?;
+        }
     }
     body.particles.commit(&stencils, method, trial, &u);
     let mut report = report;

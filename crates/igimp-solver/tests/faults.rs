@@ -276,7 +276,7 @@ fn place_of(body: &Body<2>, conditions: &StepConditions<2>, unknown: usize) -> (
     let method = Method::default();
     let grid = &conditions.grid;
     let stencils =
-        igimp_assembly::Stencils::build(grid, &body.particles, &method, &conditions.constraints)
+        igimp_assembly::Stencils::build(&body.particles, &method, &conditions)
             .unwrap();
     let mut free = (0..grid.node_count())
         .filter(|&node| stencils.node_volume(node) > 0.0)

@@ -85,12 +85,7 @@ fn kernels() -> Result<[Duration; 2], CaseError> {
         laws: vec![Arc::new(law) as SharedLaw],
     };
     let method = Method::default();
-    let stencils = Stencils::build(
-        &conditions.grid,
-        &particles,
-        &method,
-        &conditions.constraints,
-    )?;
+    let stencils = Stencils::build(&particles, &method, &conditions)?;
     let system = System::new(&particles, &stencils, &conditions, &method, &[], None)?;
     // A shear beyond yield, so that the laws have their work.
     let u: Vec<[f64; 2]> = (0..conditions.grid.node_count())

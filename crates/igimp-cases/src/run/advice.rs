@@ -1,7 +1,7 @@
 //! What may help after a step without equilibrium, in the words of the case file, most promising
 //! first. Every rule looks at the failure and at the case, and says nothing when it is of no use.
 
-use igimp_assembly::AssemblyError;
+use igimp_assembly::{AssemblyError, Locking};
 use igimp_solver::linear::LinearSolverError;
 use igimp_solver::{StepError, StepFailure};
 
@@ -247,8 +247,8 @@ fn tension(material: &Material) -> Option<String> {
 }
 
 fn incompressible(case: &Case, material: &Material) -> Option<String> {
-    if !case.method.bbar && material.poisson >= 0.4 {
-        return Some("bbar = true in [grid], against volumetric locking".to_owned());
+    if case.method.locking == Locking::None && material.poisson >= 0.4 {
+        return Some("locking = \"b-bar\" in [grid], against volumetric locking".to_owned());
     }
     (material.poisson > NEARLY_INCOMPRESSIBLE)
         .then(|| format!("poisson = {NEARLY_INCOMPRESSIBLE} in \"{}\"", material.name))

@@ -189,10 +189,10 @@ fn undrained_soil_wants_a_lower_poisson() {
         try_this.contains(&"poisson = 0.49 in \"clay\"".to_owned()),
         "{try_this:?}"
     );
-    case.method.bbar = false;
+    case.method.locking = Locking::None;
     let try_this = advice(&case, 0, &stagnated(), Some([16, 2, 0]));
     assert!(
-        try_this.iter().any(|text| text.contains("bbar = true")),
+        try_this.iter().any(|text| text.contains("locking = ")),
         "{try_this:?}"
     );
 }

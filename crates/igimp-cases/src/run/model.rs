@@ -101,19 +101,17 @@ impl<'c> Model<'c> {
         }
     }
 
-    /// What holds during a step between two controls, with so much `drag` \[1/s²\].
+    /// What holds during a step between two controls on a grid, with so much `drag` \[1/s²\].
     ///
     /// # Errors
     /// [`AssemblyError`] when the grid or the reduced laws cannot be made.
     pub fn conditions(
         &self,
-        from: &Controls,
-        to: &Controls,
+        grid: Result<Grid<2>, ShapeError>,
+        (from, to): (&Controls, &Controls),
         drag: f64,
     ) -> Result<StepConditions<2>, AssemblyError> {
-        let grid = self
-            .grid(from.settlement)
-            .map_err(|source| AssemblyError::Grid { source })?;
+        let grid = grid.map_err(|source| AssemblyError::Grid { source })?;
         let mut constraints = self.supports(&grid)?;
         if let Some(footing) = self.footing.as_ref().filter(|_| to.settlement > 0.0) {
             footing.push(&grid, &mut constraints, from.settlement - to.settlement)?;

@@ -8,6 +8,7 @@
 //! last step without any drag has to find equilibrium. This is a mode for run-out alone, never for a
 //! factor of safety.
 
+use igimp_assembly::Geometry;
 use std::cell::Cell;
 
 use igimp_solver::Standing;
@@ -64,6 +65,7 @@ pub(crate) fn run_out(
         from: &to,
         to: &to,
         drag: &|from, to| drag.get() / ((to - from) * steps as f64),
+        geometry: Geometry::Moving,
         standing: resumption.map_or_else(|| Standing::start(&settings), |left| left.standing),
         settings,
     };
@@ -126,6 +128,7 @@ fn stand(
     let settings = session.model.march_settings(1);
     let last = Path {
         drag: &|_, _| 0.0,
+        geometry: Geometry::Moving,
         standing: Standing::start(&settings),
         settings,
         ..*path

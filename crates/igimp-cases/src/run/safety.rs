@@ -172,6 +172,7 @@ impl<'a> Trials<'a> {
             from: &from,
             to: &to,
             drag: &|_, _| 0.0,
+            geometry: self.stage.geometry,
             standing: Standing::start(&settings),
             settings,
         };

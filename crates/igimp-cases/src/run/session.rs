@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use igimp_assembly::Particles;
+use igimp_assembly::{Geometry, Method, Particles};
 use igimp_solver::{
     Accepted, MarchSettings, Observer, Outcome, Standing, StepError, StepReport, Workspace,
     march_from,
@@ -145,6 +145,8 @@ pub(crate) struct Path<'a> {
     pub(crate) to: &'a Controls,
     /// Drag of a step between two load factors, for overdamped motion \[1/s²\].
     pub(crate) drag: &'a dyn Fn(f64, f64) -> f64,
+    /// The geometry that its steps are computed on.
+    pub(crate) geometry: Geometry,
     /// Sizes of steps.
     pub(crate) settings: MarchSettings,
     /// Where the march begins.
@@ -205,11 +207,19 @@ pub(crate) fn march_path(
 ) -> Result<Ended, CaseError> {
     let model = session.model;
     let program = |from: f64, to: f64| {
-        model.conditions(
-            &path.from.towards(path.to, from),
-            &path.from.towards(path.to, to),
-            (path.drag)(from, to),
-        )
+        let (before, after) = (
+            path.from.towards(path.to, from),
+            path.from.towards(path.to, to),
+        );
+        let grid = match path.geometry {
+            Geometry::Moving => model.grid(before.settlement),
+            Geometry::Given => model.grid(path.from.settlement),
+        };
+        model.conditions(grid, (&before, &after), (path.drag)(from, to))
+    };
+    let method = Method {
+        geometry: path.geometry,
+        ..model.case.method.clone()
     };
     let mut workspace = session.workspace();
     let mut watch = Watch {
@@ -223,7 +233,7 @@ pub(crate) fn march_path(
     let report = march_from(
         path.standing,
         &mut state.body,
-        &model.case.method,
+        &method,
         &program,
         &path.settings,
         &mut workspace,

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use igimp_assembly::{DomainUpdate, Kinematics, Method, Remedy, SmallCuts};
+use igimp_assembly::{DomainUpdate, Geometry, Kinematics, Locking, Method, Remedy, SmallCuts};
 use igimp_shape::{Basis, Gimp, Linear};
 
 use crate::case::GridSpec;
@@ -126,7 +126,12 @@ pub(super) fn method(tree: &Node) -> Option<Method> {
     };
     Some(Method {
         basis,
-        bbar: grid.flag_at("bbar")?,
+        locking: match grid.text_at("locking")? {
+            "none" => Locking::None,
+            "shared-strain" => Locking::SharedStrain,
+            _ => Locking::BBar,
+        },
+        geometry: Geometry::Moving,
         kinematics: match grid.text_at("kinematics")? {
             "small" => Kinematics::SmallStrain,
             _ => Kinematics::FiniteStrain,

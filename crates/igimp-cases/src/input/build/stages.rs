@@ -1,5 +1,7 @@
 //! Stages: what each needs from loads, materials and the stages before it.
 
+use igimp_assembly::Geometry;
+
 use super::AllNames;
 use super::level::uneven;
 use super::safety::{run_out, strength_reduction};
@@ -83,10 +85,19 @@ fn stage(
         name: node.text_at("name")?.to_owned(),
         kind: kind?,
         steps: node.count_at("steps")?,
+        geometry: geometry(node),
         start_from: start_from.ok()?,
         reset_displacements: node.flag_at("reset_displacements")?,
         stop_when: stop_when?,
     })
+}
+
+/// The geometry that the steps of a stage are computed on; types without the key move the particles.
+fn geometry(node: &Node) -> Geometry {
+    match node.text_at("geometry") {
+        Some("given") => Geometry::Given,
+        _ => Geometry::Moving,
+    }
 }
 
 fn start_from(

@@ -166,7 +166,12 @@ static GRID: Struct = Struct {
             "\"gimp\"",
             "how a particle sees the grid",
         ),
-        default("bbar", Kind::Flag, "true", "volumetric-locking control"),
+        default(
+            "locking",
+            Kind::Choice(&LOCKINGS),
+            "\"b-bar\"",
+            "what is done against locking",
+        ),
         default(
             "kinematics",
             Kind::Choice(&KINEMATICS),
@@ -217,6 +222,15 @@ static DOMAIN: Struct = Struct {
 static BASES: [Choice; 2] = [
     choice("gimp", "generalised interpolation (iGIMP)"),
     choice("linear", "plain material point method (iMPM)"),
+];
+
+static LOCKINGS: [Choice; 3] = [
+    choice("none", "nothing"),
+    choice("b-bar", "the dilatation is that of the cells"),
+    choice(
+        "shared-strain",
+        "b-bar, and most of the distortion shared in full cells too: for soil that dilates",
+    ),
 ];
 
 static KINEMATICS: [Choice; 2] = [

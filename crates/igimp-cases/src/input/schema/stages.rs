@@ -27,12 +27,15 @@ pub(in crate::input) static STAGE: Kind = Kind::Variants(&Variants {
         Variant {
             name: "gravity",
             doc: "Raises gravity from where it is to a multiple of its value.",
-            fields: &[default(
-                "factor",
-                Kind::Number(Range::NotNegative),
-                "1",
-                "the multiple",
-            )],
+            fields: &[
+                default(
+                    "factor",
+                    Kind::Number(Range::NotNegative),
+                    "1",
+                    "the multiple",
+                ),
+                geometry("\"moving\""),
+            ],
         },
         Variant {
             name: "k0",
@@ -61,6 +64,7 @@ pub(in crate::input) static STAGE: Kind = Kind::Variants(&Variants {
                     "1",
                     "their factor at the end of the stage",
                 ),
+                geometry("\"moving\""),
             ],
         },
         Variant {
@@ -79,6 +83,7 @@ pub(in crate::input) static STAGE: Kind = Kind::Variants(&Variants {
                     "\"0.2 m\"",
                     "further settlement",
                 ),
+                geometry("\"moving\""),
             ],
         },
         Variant {
@@ -110,6 +115,7 @@ pub(in crate::input) static STAGE: Kind = Kind::Variants(&Variants {
                     "\"reduce\"",
                     "how the reduced strength is reached",
                 ),
+                geometry("\"given\""),
                 default(
                     "failure",
                     Kind::Table(&FAILURE),
@@ -174,6 +180,27 @@ pub(in crate::input) static STAGE: Kind = Kind::Variants(&Variants {
 
 static LOAD_NAME: Kind = Kind::Reference("load");
 static FACTOR: Kind = Kind::Number(Range::Positive);
+
+/// The geometry that a stage is computed on.
+const fn geometry(value: &'static str) -> Field {
+    default(
+        "geometry",
+        Kind::Choice(&GEOMETRIES),
+        value,
+        "the geometry that its steps are computed on",
+    )
+}
+
+static GEOMETRIES: [Choice; 2] = [
+    choice(
+        "given",
+        "positions and supports stay as the stage finds them; strain adds up as small strain",
+    ),
+    choice(
+        "moving",
+        "every step begins where the last one carried the particles",
+    ),
+];
 
 static PATHS: [Choice; 2] = [
     choice(
