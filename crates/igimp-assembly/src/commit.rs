@@ -62,7 +62,8 @@ impl<const D: usize> Particles<D> {
                         *def_grad = multiply(&own.delta_def_grad, def_grad);
                         let update = method.domain_update;
                         *half_length = updated_half_length(update, half_length0, def_grad);
-                        (*b_e, *sigma) = stress_state(method.kinematics, own, determinant(def_grad));
+                        (*b_e, *sigma) =
+                            stress_state(method.kinematics, own, determinant(def_grad));
                     }
                     Geometry::Given => {
                         *b_e = own.b_e();
@@ -119,10 +120,7 @@ fn stress_state<const D: usize>(
     det_f: f64,
 ) -> (Tensor, Tensor) {
     match kinematics {
-        Kinematics::FiniteStrain => (
-            own.b_e(),
-            divided(&own.tau, det_f),
-        ),
+        Kinematics::FiniteStrain => (own.b_e(), divided(&own.tau, det_f)),
         Kinematics::SmallStrain => {
             let in_plane = rotation(&own.delta_def_grad);
             let mut turn = identity::<3>();

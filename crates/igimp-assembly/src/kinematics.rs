@@ -20,7 +20,7 @@ use igimp_material::{
 use igimp_shape::Support;
 
 use crate::error::AssemblyError;
-use crate::method::Kinematics;
+use crate::method::{Geometry, Kinematics, Method};
 use crate::small::{congruence, determinant, identity, inverse};
 
 /// An elastic Hencky strain beyond this makes b_e = exp(2 ε_e) leave the floating-point numbers \[-\].
@@ -88,7 +88,7 @@ pub(crate) fn evaluate<const D: usize>(
     state: ParticleState<'_>,
     supports: &[Support<D>],
     u: &[[f64; D]],
-    kinematics: Kinematics,
+    method: &Method,
     kind: TangentKind,
     trial: &mut ParticleTrial<D>,
 ) -> Result<Linearisation<D>, AssemblyError> {
@@ -110,10 +110,13 @@ pub(crate) fn evaluate<const D: usize>(
         delta_def_grad[a][a] += 1.0;
         delta_bar[a][a] += 1.0;
     }
-    let det = positive(particle, determinant(&delta_def_grad))?;
     let material = |source| AssemblyError::Material { particle, source };
-    let linearisation = match kinematics {
+    if method.geometry == Geometry::Moving {
+        positive(particle, determinant(&delta_def_grad))?;
+    }
+    let linearisation = match method.kinematics_of_step() {
         Kinematics::FiniteStrain => {
+            let det = determinant(&delta_def_grad);
             let det_bar = positive(particle, determinant(&delta_bar))?;
             let lambda = (det_bar / det).cbrt();
             let b_trial = pushed_forward(state.b_e, &delta_def_grad, lambda * lambda);

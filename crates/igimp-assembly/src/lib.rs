@@ -8,6 +8,7 @@
 //! Nothing here iterates, cuts a step, reads a file or prints.
 
 mod blocks;
+mod cell_soil;
 mod commit;
 mod constraints;
 mod error;

@@ -3,10 +3,11 @@
 use igimp_shape::{Grid, Scratch, Support, supports};
 use rayon::prelude::*;
 
+use crate::cell_soil::CellSoil;
 use crate::error::AssemblyError;
-use crate::method::{Locking, Method};
-use crate::system::SharedLaw;
+use crate::method::{Geometry, Locking, Method};
 use crate::particles::Particles;
+use crate::system::SharedLaw;
 
 /// Particles that are handled together: fixed, so that results do not depend on the number of
 /// threads.
@@ -32,8 +33,8 @@ struct Chunk<const D: usize> {
 
 impl<const D: usize> Supports<D> {
     /// Evaluates the basis of a method at all particles. Here alone is decided of which gradients the
-    /// strain of a particle is made: without locking control ∇S̄ is replaced by ∇S, with shared strain
-    /// ∇S by a mean of the two (theory, eq. 8a).
+    /// strain of a particle is made: without locking control ∇S̄ is replaced by ∇S; shared strain and
+    /// a given geometry take both from the cells (theory, eqs. 8a to 8d).
     ///
     /// # Errors
     /// [`AssemblyError::Shape`] names the first particle whose centre left the grid.
@@ -44,13 +45,14 @@ impl<const D: usize> Supports<D> {
         laws: &[SharedLaw],
     ) -> Result<Self, AssemblyError> {
         let len = particles.len();
-        let own_shares = match method.locking {
-            Locking::SharedStrain => own_shares(grid, particles, laws),
-            Locking::None | Locking::BBar => Vec::new(),
-        };
+        let by_cells =
+            method.locking == Locking::SharedStrain || method.geometry == Geometry::Given;
+        let soil = by_cells
+            .then(|| CellSoil::build(grid, particles, method, laws))
+            .transpose()?;
         let chunks: Vec<Result<Chunk<D>, AssemblyError>> = (0..len.div_ceil(CHUNK))
             .into_par_iter()
-            .map(|chunk| Chunk::build(grid, particles, method, &own_shares, chunk * CHUNK))
+            .map(|chunk| Chunk::build(grid, particles, method, soil.as_ref(), chunk * CHUNK))
             .collect();
         let chunks = chunks.into_iter().collect::<Result<Vec<_>, _>>()?;
         let reach = chunks.iter().map(|chunk| chunk.reach).max().unwrap_or(0);
@@ -112,7 +114,7 @@ impl<const D: usize> Chunk<D> {
         grid: &Grid<D>,
         particles: &Particles<D>,
         method: &Method,
-        own_shares: &[f64],
+        soil: Option<&CellSoil<D>>,
         first: usize,
     ) -> Result<Self, AssemblyError> {
         let range = first..particles.len().min(first + CHUNK);
@@ -124,40 +126,29 @@ impl<const D: usize> Chunk<D> {
         let mut scratch = Scratch::default();
         let mut own = Vec::new();
         for particle in range {
-            let x = particles.x[particle];
-            let half_length = capped_half_length(grid, &x, particles.half_length[particle]);
-            supports(
-                grid,
-                &*method.basis,
-                &x,
-                &half_length,
-                &mut scratch,
-                &mut own,
-            )
-            .map_err(|source| AssemblyError::Shape {
-                particle,
-                position: padded(&x),
-                source,
-            })?;
-            match method.locking {
-                Locking::None => {
+            if let Some(soil) = soil {
+                soil.supports(grid, (particle, particles.law[particle]), &mut own);
+                let (_, extent) = bounds(grid, &own);
+                chunk.reach = extent.into_iter().fold(chunk.reach, usize::max);
+            } else {
+                let x = particles.x[particle];
+                let half_length = capped_half_length(grid, &x, particles.half_length[particle]);
+                let basis = &*method.basis;
+                supports(grid, basis, &x, &half_length, &mut scratch, &mut own).map_err(
+                    |source| AssemblyError::Shape {
+                        particle,
+                        position: padded(&x),
+                        source,
+                    },
+                )?;
+                if method.locking == Locking::None {
                     for support in &mut own {
                         support.grad_bar = support.grad;
                     }
                 }
-                Locking::BBar => {}
-                Locking::SharedStrain => {
-                    let share = own_shares[particle];
-                    for support in &mut own {
-                        for axis in 0..D {
-                            support.grad[axis] = share * support.grad[axis]
-                                + (1.0 - share) * support.grad_bar[axis];
-                        }
-                    }
+                for count in scratch.counts() {
+                    chunk.reach = chunk.reach.max(count - 1);
                 }
-            }
-            for count in scratch.counts() {
-                chunk.reach = chunk.reach.max(count - 1);
             }
             chunk
                 .places
@@ -166,38 +157,6 @@ impl<const D: usize> Chunk<D> {
         }
         Ok(chunk)
     }
-}
-
-/// The share β of its own gradient in the distortion of each particle \[-\].
-fn own_shares<const D: usize>(
-    grid: &Grid<D>,
-    particles: &Particles<D>,
-    laws: &[SharedLaw],
-) -> Vec<f64> {
-    let env = |n: &str, d: f64| std::env::var(n).ok().and_then(|s| s.parse().ok()).unwrap_or(d);
-    let (beta, full) = (env("BETA", 0.1), env("FULL", 0.95));
-    let counts: [usize; D] = std::array::from_fn(|axis| grid.axes[axis].node_count() - 1);
-    let number = |place: [usize; D]| (0..D).rev().fold(0, |n, axis| n * counts[axis] + place[axis]);
-    let cells: Vec<_> = particles.x.iter().map(|x| grid.cell_at(x)).collect();
-    let mut soil = vec![0.0; counts.iter().product()];
-    for (particle, cell) in cells.iter().enumerate() {
-        if let Some(cell) = cell {
-            soil[number(*cell)] += particles.volume(particle);
-        }
-    }
-    cells
-        .iter()
-        .enumerate()
-        .map(|(particle, cell)| match cell {
-            Some(cell)
-                if laws[particles.law[particle]].yields()
-                    && soil[number(*cell)] >= full * grid.cell_size(*cell).iter().product::<f64>() =>
-            {
-                beta
-            }
-            _ => 1.0,
-        })
-        .collect()
 }
 
 /// The lowest place of supports, and how far they extend along each axis.
@@ -218,7 +177,7 @@ pub(crate) fn bounds<const D: usize>(
 }
 
 /// Adds up neighbouring supports of the same node; returns how many are left at the front.
-fn merge_equal_nodes<const D: usize>(own: &mut [Support<D>]) -> usize {
+pub(crate) fn merge_equal_nodes<const D: usize>(own: &mut [Support<D>]) -> usize {
     let mut kept = 0;
     for k in 1..own.len() {
         let support = own[k];
@@ -238,7 +197,7 @@ fn merge_equal_nodes<const D: usize>(own: &mut [Support<D>]) -> usize {
 }
 
 /// Half-lengths limited to the size of the cell that holds the centre.
-fn capped_half_length<const D: usize>(
+pub(crate) fn capped_half_length<const D: usize>(
     grid: &Grid<D>,
     x: &[f64; D],
     mut half_length: [f64; D],

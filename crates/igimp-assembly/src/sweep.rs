@@ -161,8 +161,7 @@ impl<const D: usize> System<'_, D> {
             law: &*self.conditions.laws[self.particles.law[particle]],
         };
         let supports = self.stencils.of(particle);
-        let kinematics = self.method.kinematics_of_step();
-        evaluate(state, supports, u, kinematics, kind, trial)
+        evaluate(state, supports, u, self.method, kind, trial)
     }
 
     /// The stored values of the columns of some nodes.

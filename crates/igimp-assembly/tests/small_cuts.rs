@@ -112,8 +112,7 @@ fn a_rigid_translation_of_tied_bodies_causes_no_strain() {
                     method.small_cuts.ghost_penalty
                 );
                 let body = body(cells, shift);
-                let stencils =
-                    Stencils::build(&body, &method, &conditions).unwrap();
+                let stencils = Stencils::build(&body, &method, &conditions).unwrap();
                 let raw = Stencils::build(
                     &grid,
                     &body,

@@ -20,8 +20,7 @@ fn bits(threads: usize) -> Vec<u64> {
         for (_, law) in laws() {
             for method in methods() {
                 let conditions = conditions(&grid, &law);
-                let stencils =
-                    Stencils::build(&body, &method, &conditions).unwrap();
+                let stencils = Stencils::build(&body, &method, &conditions).unwrap();
                 let system =
                     System::new(&body, &stencils, &conditions, &method, &[], None).unwrap();
                 let (trial, matrix) = system.linearise(&u, TangentKind::Consistent).unwrap();

@@ -242,7 +242,8 @@ pub struct Stage {
     pub name: String,
     /// Kind.
     pub kind: StageKind,
-    /// Load steps when none is cut; of each trial in a strength reduction.
+    /// Load steps when none is cut; in a strength reduction those of each trial by gravity, or of a
+    /// reduction across the bracket.
     pub steps: usize,
     /// The geometry that its steps are computed on.
     pub geometry: Geometry,

@@ -151,6 +151,9 @@ pub struct SafetySummary {
     pub failed: Option<f64>,
     /// What counts as failure.
     pub criterion: String,
+    /// Whether the geometry is that which the stage found, so that the factor of safety is a limit load.
+    #[serde(default)]
+    pub given_geometry: bool,
     /// Materials that were reduced.
     pub materials: Vec<String>,
     /// Materials that kept their strength.
@@ -180,6 +183,10 @@ pub struct TrialSummary {
     pub iterations: usize,
     /// Steps that were cut.
     pub cuts: usize,
+    /// Strength reduction factor \[-\] and that displacement \[m\] at every equilibrium of a trial that
+    /// reduces strength step by step.
+    #[serde(default)]
+    pub course: Vec<[f64; 2]>,
 }
 
 /// A check and whether it passed.

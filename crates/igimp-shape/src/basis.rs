@@ -3,7 +3,7 @@
 //! Theory, eqs. 3 and 5. Bardenhagen & Kober (2004) for GIMP; Yuan et al. (2021), doi:10.1631/jzus.A2100219, for the
 //! cell-averaged centre gradient.
 
-use crate::{Axis, ShapeError};
+use crate::{Axis, AxisPart, ShapeError};
 
 /// What one node of an axis means to one particle, in one direction.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -49,6 +49,19 @@ pub trait Basis: Send + Sync + std::fmt::Debug {
         x: f64,
         half_length: f64,
         out: &mut Vec<NodeWeight>,
+    ) -> Result<(), ShapeError>;
+
+    /// Appends the parts of the particle's domain in the cells that it overlaps, ascending: what
+    /// the weights are made of.
+    ///
+    /// # Errors
+    /// As [`axis_weights`](Self::axis_weights).
+    fn axis_parts(
+        &self,
+        axis: &Axis,
+        x: f64,
+        half_length: f64,
+        out: &mut Vec<AxisPart>,
     ) -> Result<(), ShapeError>;
 
     /// Short name for case files and reports: `"linear"` or `"gimp"`.
@@ -133,6 +146,18 @@ impl Basis for Linear {
         Ok(())
     }
 
+    fn axis_parts(
+        &self,
+        axis: &Axis,
+        x: f64,
+        half_length: f64,
+        out: &mut Vec<AxisPart>,
+    ) -> Result<(), ShapeError> {
+        check_particle(axis, x, half_length)?;
+        out.push(point_part(axis, x));
+        Ok(())
+    }
+
     fn name(&self) -> &'static str {
         "linear"
     }
@@ -155,6 +180,24 @@ impl Basis for Gimp {
             push_point(axis, x, out);
         } else {
             push_interval(axis, lower, upper, out);
+        }
+        Ok(())
+    }
+
+    fn axis_parts(
+        &self,
+        axis: &Axis,
+        x: f64,
+        half_length: f64,
+        out: &mut Vec<AxisPart>,
+    ) -> Result<(), ShapeError> {
+        check_particle(axis, x, half_length)?;
+        let lower = (x - half_length).max(axis.start());
+        let upper = (x + half_length).min(axis.end());
+        if upper - lower <= 2.0 * axis.resolution() {
+            out.push(point_part(axis, x));
+        } else {
+            out.extend(interval_parts(axis, lower, upper));
         }
         Ok(())
     }
@@ -205,6 +248,36 @@ fn push_point(axis: &Axis, x: f64, out: &mut Vec<NodeWeight>) {
             centre: 0.5,
         },
     ]);
+}
+
+/// The whole particle in the cell that contains `x`.
+fn point_part(axis: &Axis, x: f64) -> AxisPart {
+    let cell = axis.nearest_cell(x);
+    let (left, right) = (axis.nodes()[cell], axis.nodes()[cell + 1]);
+    AxisPart {
+        cell,
+        share: 1.0,
+        middle: (x - left) / (right - left),
+    }
+}
+
+/// The parts of `lower..upper`, an interval on the axis longer than twice its resolution; cells that
+/// are only touched have none.
+fn interval_parts(axis: &Axis, lower: f64, upper: f64) -> impl Iterator<Item = AxisPart> {
+    let first = axis.nearest_cell(lower + axis.resolution());
+    let last = axis.nearest_cell(upper - axis.resolution());
+    let nodes = axis.nodes();
+    let lower = lower.max(nodes[first]);
+    let upper = upper.min(nodes[last + 1]);
+    (first..=last).map(move |cell| {
+        let (left, right) = (nodes[cell], nodes[cell + 1]);
+        let (from, to) = (lower.max(left), upper.min(right));
+        AxisPart {
+            cell,
+            share: (to - from) / (upper - lower),
+            middle: 0.5 * ((from - left) + (to - left)) / (right - left),
+        }
+    })
 }
 
 /// Means over `lower..upper`, an interval on the axis longer than twice its resolution.

@@ -51,10 +51,12 @@ mod axis;
 mod basis;
 mod error;
 mod grid;
+mod parts;
 mod support;
 
 pub use axis::Axis;
 pub use basis::{Basis, Gimp, Linear, NodeWeight};
 pub use error::ShapeError;
 pub use grid::Grid;
+pub use parts::{AxisPart, CellPart, cell_parts};
 pub use support::{Scratch, Support, supports};

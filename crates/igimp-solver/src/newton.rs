@@ -5,8 +5,8 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use igimp_assembly::{
-    AssemblyError, Geometry, Method, OutOfBalance, Pattern, Stencils, StepConditions, System, TangentMatrix,
-    Trial,
+    AssemblyError, Geometry, Method, OutOfBalance, Pattern, Stencils, StepConditions, System,
+    TangentMatrix, Trial,
 };
 use igimp_material::TangentKind;
 use thiserror::Error;

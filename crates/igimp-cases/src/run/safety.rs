@@ -1,7 +1,8 @@
 //! The factor of safety by strength reduction: an interval, found by a search that always ends
 //! (theory, eqs. 31 to 34).
 
-use igimp_solver::Standing;
+use igimp_assembly::Geometry;
+use igimp_solver::{MarchSettings, Standing, StepError};
 
 use super::Event;
 use super::left::Search;
@@ -24,6 +25,9 @@ const LEAST_FACTOR: f64 = 0.01;
 
 /// A particle moves when its displacement exceeds this share of the largest \[-\].
 const MOVING: f64 = 0.1;
+
+/// Displacements of the last standing state above this share of the height are worth a remark \[-\].
+const SLID: f64 = 0.01;
 
 /// A moving share of the mass below this is called local \[-\].
 const LOCAL: f64 = 0.02;
@@ -55,6 +59,8 @@ struct Trials<'a> {
     reduction: &'a StrengthReduction,
     /// The state that the search was asked for.
     found: &'a State,
+    /// The displacement at which the body counts as failed \[m\], if one does.
+    limit: Option<f64>,
     /// What every trial begins with: that state, or undeformed bodies where gravity is raised anew.
     base: State,
     made: Vec<TrialSummary>,
@@ -78,12 +84,16 @@ impl<'a> Trials<'a> {
             ReductionPath::Gravity => Model::new(session.model.case)?.1,
         };
         base.body.particles.reset_displacements();
+        let limit = reduction
+            .failure_displacement
+            .or_else(|| default_limit(session.model, stage, &base));
         let left = left.unwrap_or_default();
         Ok(Self {
             number,
             stage,
             reduction,
             found,
+            limit,
             base,
             made: left.trials,
             stable: left.stable,
@@ -167,7 +177,7 @@ impl<'a> Trials<'a> {
         let listed = self.made.len() < self.reduction.factors.len();
         let (mut state, from) = self.start(srf);
         let to = self.end(srf);
-        let settings = session.model.march_settings(self.steps(&from, srf));
+        let settings = self.settings(session.model, &from, srf);
         let path = Path {
             from: &from,
             to: &to,
@@ -178,7 +188,8 @@ impl<'a> Trials<'a> {
         };
         let before = [summary.steps, summary.iterations, summary.cuts];
         let reduction = self.reduction;
-        let limit = reduction.failure_displacement;
+        let limit = self.limit;
+        let mut course: Vec<[f64; 2]> = Vec::new();
         // The last equilibrium within the criterion: its factor and state.
         let mut within: Option<(f64, State)> = None;
         let ended = march_path(
@@ -190,6 +201,9 @@ impl<'a> Trials<'a> {
                 let particles = &taken.accepted.body.particles;
                 let displacement = session.displacement(reduction.monitor, particles);
                 let failed = limit.is_some_and(|limit| displacement > limit);
+                if reduction.path == ReductionPath::Reduce {
+                    course.push([taken.controls.srf[reduction.materials[0]], displacement]);
+                }
                 if !failed && reduction.path == ReductionPath::Reduce {
                     let state = State {
                         body: taken.accepted.body.clone(),
@@ -208,17 +222,20 @@ impl<'a> Trials<'a> {
             }
             _ => {}
         }
-        // A reduction that was ended by the criterion has failed at the factor that it reached.
+        // A reduction fails at the factor that it reached by the criterion, or at the smallest one at
+        // which it found no equilibrium.
+        let begun = from.srf[reduction.materials[0]];
         let srf = match (&ended, reduction.path) {
             (Ended::Stopped(_), ReductionPath::Reduce) => {
                 state.controls.srf[reduction.materials[0]]
             }
+            (Ended::NotConverged(cause), ReductionPath::Reduce) => begun + cause.to * (srf - begun),
             _ => srf,
         };
         let displacement = session.displacement(reduction.monitor, &state.body.particles);
         let exceeded = limit.is_some_and(|limit| displacement > limit);
         let (stable, reason) = match &ended {
-            Ended::NotConverged(cause) => (false, self.no_equilibrium(&from, srf, cause)),
+            Ended::NotConverged(cause) => (false, self.no_equilibrium(&state, cause)),
             _ if exceeded => (false, self.exceeded(session)),
             _ => (true, "in equilibrium".to_owned()),
         };
@@ -230,6 +247,7 @@ impl<'a> Trials<'a> {
             steps: summary.steps - before[0],
             iterations: summary.iterations - before[1],
             cuts: summary.cuts - before[2],
+            course,
         };
         session.tell(&Event::Trial {
             trial: &trial,
@@ -273,26 +291,35 @@ impl<'a> Trials<'a> {
         end
     }
 
-    /// Steps of a trial: those of the stage for a reduction as wide as the bracket.
-    fn steps(&self, from: &Controls, srf: f64) -> usize {
-        match self.reduction.path {
-            ReductionPath::Gravity => self.stage.steps,
-            ReductionPath::Reduce => {
-                let [low, high] = self.reduction.bracket;
-                let way = (srf - from.srf[self.reduction.materials[0]]).abs();
-                let steps = (self.stage.steps as f64 * way / (high - low)).ceil();
-                (steps as usize).max(1)
-            }
+    /// Steps of a trial: by gravity those of the stage; of a reduction, one on the way to the lower end of
+    /// the bracket, where equilibrium is expected, and beyond it as many as the stage has across the
+    /// bracket. A reduction is cut until its step is no wider than the tolerance, and once more.
+    fn settings(&self, model: &Model<'_>, from: &Controls, srf: f64) -> MarchSettings {
+        let [low, high] = self.reduction.bracket;
+        if self.reduction.path == ReductionPath::Gravity {
+            return model.march_settings(self.stage.steps);
         }
+        let way = (srf - from.srf[self.reduction.materials[0]]).abs();
+        let stride = (high - low) / self.stage.steps as f64;
+        let steps = if srf <= low {
+            1
+        } else {
+            ((way / stride).ceil() as usize).max(1)
+        };
+        let mut settings = model.march_settings(steps);
+        let wide = way / steps as f64 / self.reduction.tolerance;
+        let halvings = (wide.max(1.0).ln() / -settings.cut_factor.ln()).ceil();
+        settings.cuts = settings.cuts.max(halvings as u32 + 1);
+        settings
     }
 
     fn exceeded(&self, session: &Session<'_>) -> String {
-        let limit = self.reduction.failure_displacement.unwrap_or(f64::INFINITY);
+        let limit = self.limit.unwrap_or(f64::INFINITY);
         let whose = session.whose_displacement(self.reduction.monitor);
         format!("{whose} exceeds {} m", short(limit))
     }
 
-    fn no_equilibrium(&self, from: &Controls, srf: f64, cause: &igimp_solver::StepError) -> String {
+    fn no_equilibrium(&self, state: &State, cause: &StepError) -> String {
         let failure = &cause.failure;
         match self.reduction.path {
             ReductionPath::Gravity => {
@@ -300,8 +327,7 @@ impl<'a> Trials<'a> {
                 format!("no equilibrium beyond {reached} of the load: {failure}")
             }
             ReductionPath::Reduce => {
-                let begun = from.srf[self.reduction.materials[0]];
-                let reached = begun + cause.from * (srf - begun);
+                let reached = state.controls.srf[self.reduction.materials[0]];
                 format!("no equilibrium beyond SRF {reached:.4}: {failure}")
             }
         }
@@ -360,6 +386,23 @@ impl<'a> Trials<'a> {
         }
     }
 
+    /// A remark when the last standing state of a moving geometry is no longer the slope that was asked for.
+    fn slid(&self, session: &Session<'_>) -> Option<String> {
+        let (srf, state) = self.stable.as_ref()?;
+        let particles = &state.body.particles;
+        let moved = session.displacement(self.reduction.monitor, particles);
+        let height = height(&self.base);
+        let far = self.stage.geometry == Geometry::Moving && moved > SLID * height;
+        far.then(|| {
+            format!(
+                "the state that stands at SRF {srf:.4} has moved {} m, {} % of the height: the factor is \
+                 that of a flatter slope; geometry = \"given\" asks for that of the slope as it is",
+                short(moved),
+                short(100.0 * moved / height)
+            )
+        })
+    }
+
     /// The interval with its criterion; warns of what a reader has to know.
     fn finish(self, session: &mut Session<'_>) -> SafetySummary {
         let case = session.model.case;
@@ -372,22 +415,24 @@ impl<'a> Trials<'a> {
                 .collect()
         };
         let mut criterion = "no equilibrium is found".to_owned();
-        if self.reduction.failure_displacement.is_some() {
+        if self.limit.is_some() {
             criterion = format!("{criterion}, or {}", self.exceeded(session));
         }
         let moving_mass = self.failed.as_ref().map(|(_, state)| moving_mass(state));
         let stable = self.stable.as_ref().map(|(srf, _)| *srf);
         let failed = self.failed.as_ref().map(|(srf, _)| *srf);
+        let slid = self.slid(session);
         let safety = SafetySummary {
             stable,
             failed,
             criterion,
+            given_geometry: self.stage.geometry == Geometry::Given,
             materials: names(true),
             excluded: names(false),
             moving_mass,
             trials: self.made,
         };
-        for text in remarks(&safety, self.reduction) {
+        for text in remarks(&safety, self.reduction).into_iter().chain(slid) {
             session.warn(text);
         }
         session.records.factor_of_safety = match (stable, failed) {
@@ -450,19 +495,55 @@ fn remarks(safety: &SafetySummary, reduction: &StrengthReduction) -> Vec<String>
     remarks
 }
 
-/// The share of the mass that moves by more than a tenth of the largest displacement \[-\].
+/// The share of the mass that moves by more than a tenth of the largest displacement \[-\]; of the
+/// volume where nothing has a weight.
 fn moving_mass(state: &State) -> f64 {
     let particles = &state.body.particles;
     let limit = MOVING * largest_displacement(particles);
+    let weighs = particles.mass.iter().any(|&mass| mass > 0.0);
+    let share = if weighs {
+        &particles.mass
+    } else {
+        &particles.volume0
+    };
     let moving: f64 = particles
         .displacement
         .iter()
-        .zip(&particles.mass)
+        .zip(share)
         .filter(|(d, _)| d[0].hypot(d[1]) > limit)
-        .map(|(_, mass)| mass)
+        .map(|(_, share)| share)
         .sum();
-    let mass = particles.mass.iter().sum::<f64>();
-    if mass > 0.0 { moving / mass } else { 0.0 }
+    moving / share.iter().sum::<f64>()
+}
+
+/// Height of the bodies \[m\].
+fn height(state: &State) -> f64 {
+    let particles = &state.body.particles;
+    let levels = || {
+        let edges = particles.x.iter().zip(&particles.half_length);
+        edges.flat_map(|(x, half_length)| [x[1] - half_length[1], x[1] + half_length[1]])
+    };
+    levels().fold(f64::NEG_INFINITY, f64::max) - levels().fold(f64::INFINITY, f64::min)
+}
+
+/// The displacement γH²/E at which a body of moving geometry counts as failed when the case states none
+/// \[m\] (theory, eq. 34a), with means over the volume: the mean unit weight and the mean of 1/E. None on
+/// a given geometry, which needs none, and for bodies without weight.
+fn default_limit(model: &Model<'_>, stage: &Stage, state: &State) -> Option<f64> {
+    if stage.geometry == Geometry::Given {
+        return None;
+    }
+    let particles = &state.body.particles;
+    let weight = particles.mass.iter().sum::<f64>() * model.case.gravity;
+    let volume: f64 = particles.volume0.iter().sum();
+    let soft: f64 = particles
+        .law
+        .iter()
+        .zip(&particles.volume0)
+        .map(|(&law, volume)| volume / model.laws[law].elasticity().young())
+        .sum();
+    let limit = weight / volume * height(state).powi(2) * soft / volume;
+    (limit > 0.0).then_some(limit)
 }
 
 /// The factor to try next between the largest stable and the smallest failed one, at most a stride
@@ -480,6 +561,7 @@ fn next_factor(
         (Some(stable), None) if stable < high => Some(high),
         (Some(stable), None) => Some(stable + (high - low)),
         (None, Some(failed)) if failed <= LEAST_FACTOR => None,
+        (None, Some(failed)) if low < failed => Some(low),
         (None, Some(failed)) => Some((0.5 * failed).max(LEAST_FACTOR)),
         (None, None) => Some(1.0),
     }

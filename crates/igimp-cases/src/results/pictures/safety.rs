@@ -39,7 +39,19 @@ pub fn safety_picture(
         points
     };
     let (stable, failed) = (of(true), of(false));
-    let heights = || stable.iter().chain(&failed).map(|point| point[1]);
+    // Every equilibrium of every march, so that the knee is seen.
+    let mut course: Vec<[f64; 2]> = safety
+        .trials
+        .iter()
+        .flat_map(|trial| &trial.course)
+        .map(|[srf, displacement]| [*srf, displacement / unit.divide_by])
+        .filter(|[srf, _]| safety.stable.is_some_and(|stable| *srf <= stable))
+        .collect();
+    course.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let heights = || {
+        let all = stable.iter().chain(&failed).chain(&course);
+        all.map(|point| point[1])
+    };
     let highest = heights().fold(0.0, f64::max);
     let lowest = heights().filter(|&d| d > 0.0).fold(f64::INFINITY, f64::min);
     let (y_scale, y_range) = if highest > WIDE * lowest {
@@ -55,6 +67,12 @@ pub fn safety_picture(
         lower: vec![[from, bottom], [to, bottom]],
         upper: vec![[from, top], [to, top]],
     });
+    let style = SeriesStyle::LineAndMarkers(LineStyle::Solid);
+    let stands = if course.is_empty() { stable } else { course };
+    let series = vec![
+        Series::new("stands", stands, style).in_colour(Colour::CURVE),
+        Series::markers("fails, last equilibrium", failed).in_colour(Colour::FAILURE),
+    ];
     let plot = CurvePlot {
         title: titled(case_title, stage),
         x_label: "strength reduction factor F [−]".into(),
@@ -62,21 +80,13 @@ pub fn safety_picture(
         y_scale,
         y_range,
         bands: bands.into_iter().collect(),
-        series: vec![
-            Series::new(
-                "stands",
-                stable,
-                SeriesStyle::LineAndMarkers(LineStyle::Solid),
-            )
-            .in_colour(Colour::CURVE),
-            Series::markers("fails", failed).in_colour(Colour::FAILURE),
-        ],
+        series,
         ..CurvePlot::default()
     };
     let caption = format!(
-        "Displacement at the end of every trial of “{stage}” over its strength reduction factor; \
-         shaded: the interval of the factor of safety. For a trial that fails it is that of its \
-         last equilibrium."
+        "Displacement over the strength reduction factor at every equilibrium of “{stage}”; shaded: the \
+         interval of the factor of safety. A trial that fails stands at the smallest factor at which \
+         it failed, with the displacement of its last equilibrium."
     );
     let name = format!("safety-{}", file_name(stage));
     write(folder, &name, &plot.draw()?, caption)
