@@ -6,7 +6,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use igimp_assembly::{
-    AssemblyError, Constraints, Method, Particles, SharedLaw, StepConditions, StepLoads,
+    AssemblyError, Constraints, Locking, Method, Particles, SharedLaw, StepConditions, StepLoads,
 };
 use igimp_cases::CaseError;
 use igimp_cases::check::Band;
@@ -221,7 +221,7 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
     for (job, (run, curve)) in jobs.iter().zip(done) {
         if job.exact.outer > THICK.outer {
             cavity(&mut study, job, run, &curve)?;
-        } else if job.method.bbar {
+        } else if job.method.locking == Locking::BBar {
             let series = thick_cylinder(&mut study, job, run, curve)?;
             if meshes.last() == Some(&job.cells) {
                 shown.push(series);

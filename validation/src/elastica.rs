@@ -5,7 +5,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use igimp_assembly::{
-    Constraints, LoadPoint, Method, Particles, SharedLaw, StepConditions, StepLoads,
+    Constraints, LoadPoint, Locking, Method, Particles, SharedLaw, StepConditions, StepLoads,
 };
 use igimp_cases::CaseError;
 use igimp_cases::check::Band;
@@ -216,7 +216,7 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
     for ((beam, share), bent) in beams.iter().zip(done) {
         let (end, exact) = (bent.end(), deflection(beam.load));
         table.push(vec![
-            f64::from(u8::from(beam.method.bbar)),
+            f64::from(u8::from(beam.method.locking == Locking::BBar)),
             beam.load,
             beam.cells as f64,
             beam.points as f64,
@@ -225,7 +225,11 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
             exact,
             bent.stored,
         ]);
-        if beam.method.bbar && beam.cells == 8 && beam.points == 3 && beam.load <= 1.0 {
+        if beam.method.locking == Locking::BBar
+            && beam.cells == 8
+            && beam.points == 3
+            && beam.load <= 1.0
+        {
             drift.push([beam.steps as f64, 100.0 * (end / exact - 1.0)]);
         }
         if beam.load > 2.0 {

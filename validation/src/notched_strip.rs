@@ -6,7 +6,9 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::Arc;
 
-use igimp_assembly::{Constraints, Method, Particles, SharedLaw, StepConditions, StepLoads};
+use igimp_assembly::{
+    Constraints, Locking, Method, Particles, SharedLaw, StepConditions, StepLoads,
+};
 use igimp_cases::CaseError;
 use igimp_cases::check::Band;
 use igimp_cases::figures::{CurvePlot, ReferenceLine, ReferenceValue, Series};
@@ -141,7 +143,7 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
         let expected = PRANDTL.says(limit);
         let label = format!("{}, c/h = {cells}.5", method.label());
         shown.push(Series::line(label, scaled(&curve)));
-        if method.bbar {
+        if method.locking == Locking::BBar {
             let size = 1.0 / (*cells as f64 + 0.5);
             if *cells > 2 {
                 // The tip is blurred over a cell: about a quarter of one is missing.

@@ -13,7 +13,7 @@ use igimp_cases::summary::{SafetySummary, TrialSummary};
 use igimp_cases::table::Table;
 use igimp_solver::{MarchReport, Outcome};
 
-/// The shipped case of a name, changed by overrides such as `grid.bbar=false`.
+/// The shipped case of a name, changed by overrides such as `grid.locking=none`.
 ///
 /// # Panics
 /// If there is no such case: the cases are part of the program.
@@ -35,7 +35,7 @@ pub(crate) fn mesh(cell: f64, upper: [f64; 2]) -> Vec<String> {
 pub(crate) fn method(basis: &str, bbar: bool) -> Vec<String> {
     vec![
         format!("grid.basis=\"{basis}\""),
-        format!("grid.bbar={bbar}"),
+        format!("grid.locking={}", if bbar { "b-bar" } else { "none" }),
     ]
 }
 

@@ -15,7 +15,7 @@ pub struct Shipped {
 }
 
 impl Shipped {
-    /// The file, changed by overrides such as `grid.bbar=false`.
+    /// The file, changed by overrides such as `grid.locking=none`.
     ///
     /// # Errors
     /// [`InputError::Invalid`] for overrides that make no sense.

@@ -6,6 +6,7 @@
 // Values are read to the last digit.
 #![allow(clippy::float_cmp)]
 
+use igimp_assembly::Locking;
 use std::fmt::Write;
 
 use igimp_cases::input::{CaseFile, InputError, json_schema, reference_markdown};
@@ -113,7 +114,7 @@ fn slips_of_syntax() {
         SLOPE,
         &[
             &[("\"10 kPa\"", "10 kPa")],
-            &[("bbar = true", "bbar = True")],
+            &[("tolerance = 1e-6", "tolerance = True")],
             &[(
                 "young = \"20 MPa\"",
                 "young = \"20 MPa\"\nyoung = \"30 MPa\""
@@ -122,7 +123,7 @@ fn slips_of_syntax() {
             &[("title = \"10 m", "title = 10 m")],
             &[("\"60 m\"], y", "\"60 m\", y")],
             &[("[boundaries]", "[boundaries")],
-            &[("bbar", "\u{0} bbar")],
+            &[("locking", "\u{0} locking")],
         ]
     ));
 }
@@ -135,8 +136,8 @@ fn slips_of_keys() {
             &[("igimp = 1 ", "# igimp = 1 ")],
             &[("igimp = 1 ", "igimp = 2 ")],
             &[("[grid]", "[gird]")],
-            &[("bbar = true", "gravity = \"9.81 m/s2\"")],
-            &[("bbar = true", "colour = \"red\"")],
+            &[("locking = \"b-bar\"", "gravity = \"9.81 m/s2\"")],
+            &[("locking = \"b-bar\"", "colour = \"red\"")],
             &[("friction = \"20 deg\"\n", "")],
             &[("model = \"mohr-coulomb\"\n", "")],
             &[("model = \"mohr-coulomb\"", "model = \"mohr coulomb\"")],
@@ -163,7 +164,7 @@ fn slips_of_values() {
             &[("young = \"20 MPa\"", "young = \"inf MPa\"")],
             &[("poisson = 0.3", "poisson = \"0.3\"")],
             &[("poisson = 0.3", "poisson = nan")],
-            &[("bbar = true", "bbar = \"true\"")],
+            &[("locking = \"b-bar\"", "locking = \"bbar\"")],
             &[("steps = 10\n", "steps = 10.5\n")],
             &[("points_per_cell = 4", "points_per_cell = 6")],
             &[("tolerance = 1e-6", "tolerance = 0")],
@@ -484,7 +485,7 @@ fn overrides_change_values_of_any_type() {
             "stages.0.steps=5",
             "stages.run-out.steps=7",
             "stages.\"factor of safety\".bracket=[1.2, 1.6]",
-            "grid.bbar=false",
+            "grid.locking=none",
             "grid.small_cuts.remedy=drop",
             "solver.linear=lu",
             "output.folder=elsewhere",
@@ -495,7 +496,7 @@ fn overrides_change_values_of_any_type() {
     assert_eq!(case.materials[1].poisson, 0.2);
     assert_eq!(case.bodies[0].per_direction, 3);
     assert_eq!((case.stages[0].steps, case.stages[2].steps), (5, 7));
-    assert!(!case.method.bbar);
+    assert_eq!(case.method.locking, Locking::None);
     let debug = format!("{case:?}");
     for part in [
         "cohesion: 12000.0",

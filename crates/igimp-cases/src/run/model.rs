@@ -101,11 +101,22 @@ impl<'c> Model<'c> {
         }
     }
 
-    /// What holds during a step between two controls on a grid, with so much `drag` \[1/s²\].
+    /// What holds during a step between two controls, with so much `drag` \[1/s²\], on the grid of the
+    /// settlement that the step begins with.
     ///
     /// # Errors
     /// [`AssemblyError`] when the grid or the reduced laws cannot be made.
     pub fn conditions(
+        &self,
+        from: &Controls,
+        to: &Controls,
+        drag: f64,
+    ) -> Result<StepConditions<2>, AssemblyError> {
+        self.conditions_on(self.grid(from.settlement), (from, to), drag)
+    }
+
+    /// The same on another grid.
+    pub(crate) fn conditions_on(
         &self,
         grid: Result<Grid<2>, ShapeError>,
         (from, to): (&Controls, &Controls),

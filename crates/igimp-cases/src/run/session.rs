@@ -215,7 +215,7 @@ pub(crate) fn march_path(
             Geometry::Moving => model.grid(before.settlement),
             Geometry::Given => model.grid(path.from.settlement),
         };
-        model.conditions(grid, (&before, &after), (path.drag)(from, to))
+        model.conditions_on(grid, (&before, &after), (path.drag)(from, to))
     };
     let method = Method {
         geometry: path.geometry,
