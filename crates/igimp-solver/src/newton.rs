@@ -5,10 +5,11 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use igimp_assembly::{
-    AssemblyError, Method, OutOfBalance, Pattern, Stencils, StepConditions, System, TangentMatrix,
-    Trial,
+    AssemblyError, LoadPoint, Method, OutOfBalance, Pattern, Stencils, StepConditions, System,
+    TangentMatrix, Trial,
 };
 use igimp_material::TangentKind;
+use igimp_shape::Grid;
 use thiserror::Error;
 
 use crate::body::Body;
@@ -63,6 +64,14 @@ pub enum StepFailure {
         /// Where it would go \[length\], axes beyond the dimension 0.
         position: [f64; 3],
     },
+    /// Converged, but a load point would be carried off the background grid.
+    #[error("load point {point} would leave the background grid at {position:?} m")]
+    LoadPointLeavesGrid {
+        /// Number of the point, from 0.
+        point: usize,
+        /// Where it would go \[length\], axes beyond the dimension 0.
+        position: [f64; 3],
+    },
     /// A number of the linear system that must be finite is not.
     #[error("the {what} at {position:?} m, axis {axis}, is not finite")]
     NotFinite {
@@ -88,7 +97,9 @@ impl StepFailure {
     pub fn is_want_of_equilibrium(&self) -> bool {
         match self {
             Self::MaxIterations { .. } | Self::Diverged | Self::Stagnated => true,
-            Self::LeavesGrid { .. } | Self::NotFinite { .. } => false,
+            Self::LeavesGrid { .. } | Self::LoadPointLeavesGrid { .. } | Self::NotFinite { .. } => {
+                false
+            }
             Self::Assembly(error) => matches!(error, AssemblyError::Inverted { .. }),
             Self::Linear(error) => matches!(
                 error,
@@ -97,6 +108,14 @@ impl StepFailure {
                     | LinearSolverError::Inaccurate { .. }
             ),
         }
+    }
+
+    /// Whether something was to be carried off the grid: a smaller step only puts that off.
+    pub(crate) fn leaves_grid(&self) -> bool {
+        matches!(
+            self,
+            Self::LeavesGrid { .. } | Self::LoadPointLeavesGrid { .. }
+        )
     }
 }
 
@@ -337,6 +356,7 @@ fn equilibrium<const D: usize>(
             position: padded(&x),
         });
     }
+    let load_points = carried(&body.load_points, grid, &u)?;
 
     let clock = Instant::now();
     let reactions = system.reactions(trial);
@@ -357,13 +377,31 @@ fn equilibrium<const D: usize>(
         drag_share: system.drag_share(&u),
         times,
     };
-    for (index, point) in body.load_points.iter_mut().enumerate() {
-        *point = point.carried(grid, index, &u)?;
-    }
+    body.load_points = load_points;
     body.particles.commit(&stencils, method, trial, &u);
     let mut report = report;
     report.times.commit = clock.elapsed();
     Ok((report, NodalForces { reactions, u }))
+}
+
+/// The load points where nodal step displacements `u` carry them, all of them on the grid.
+fn carried<const D: usize>(
+    points: &[LoadPoint<D>],
+    grid: &Grid<D>,
+    u: &[[f64; D]],
+) -> Result<Vec<LoadPoint<D>>, StepFailure> {
+    let carry = |(index, point): (usize, &LoadPoint<D>)| {
+        let carried = point.carried(grid, index, u)?;
+        if grid.contains(&carried.x) {
+            Ok(carried)
+        } else {
+            Err(StepFailure::LoadPointLeavesGrid {
+                point: index,
+                position: padded(&carried.x),
+            })
+        }
+    };
+    points.iter().enumerate().map(carry).collect()
 }
 
 /// Evaluates the trial at `u`, to which the correction `du` was added, with its tangent where a matrix

@@ -171,6 +171,45 @@ fn a_particle_that_leaves_the_grid_is_named() {
     });
 }
 
+/// A load point on the upper side goes off the grid where no particle does; the points before it
+/// stay where they were.
+#[test]
+fn a_load_point_that_would_leave_the_grid_stays() {
+    let mut constraints = Constraints::free(&grid());
+    for column in 0..=6 {
+        let node = grid().node_index([column, 1]);
+        constraints.prescribe(node, 0, 0.0).unwrap();
+        constraints.prescribe(node, 1, 2.1).unwrap();
+    }
+    let lifted = conditions(&grid(), &constraints, &elastic(), 0.0);
+    let mut body = floating();
+    body.load_points = LoadPoint::along_edge([2.0, 2.0], [2.0, 5.0], [0.0, -1.0], 2, 0);
+    body.load_points[1].x[1] = 4.0;
+    fails(&body, &lifted, &settings(), |failure| {
+        !failure.is_want_of_equilibrium()
+            && matches!(
+                failure,
+                StepFailure::LoadPointLeavesGrid { point: 1, position }
+                    if (position[0] - 2.0).abs() < 1e-12 && (position[1] - 6.1).abs() < 1e-12
+            )
+    });
+}
+
+/// A point that is off the grid from the start, and whose load does not act, is found out after
+/// the iteration: the points before it have not moved then.
+#[test]
+fn a_load_point_off_the_grid_moves_no_other() {
+    let (mut body, conditions) = loaded(&elastic(), 0.3);
+    body.load_points = LoadPoint::along_edge([1.0, 2.0], [2.0, 2.0], [0.0, -1.0], 2, 0);
+    body.load_points[1].x = [100.0, 2.0];
+    fails(&body, &conditions, &settings(), |failure| {
+        matches!(
+            failure,
+            StepFailure::Assembly(AssemblyError::LoadPoint { point: 1, .. })
+        )
+    });
+}
+
 #[test]
 fn corrections_run_out() {
     let (body, conditions) = loaded(&von_mises(), 1.0);
