@@ -108,11 +108,11 @@ impl<const D: usize> Block<D> {
         let upright = D - 1;
         let mut constraints = Constraints::free(&grid);
         for side in 0..upright {
-            constraints.fix_wall(&grid, side, false, side);
-            constraints.fix_wall(&grid, side, true, side);
+            constraints.fix_wall(&grid, side, false, side)?;
+            constraints.fix_wall(&grid, side, true, side)?;
         }
         for direction in 0..D {
-            constraints.fix_wall(&grid, upright, false, direction);
+            constraints.fix_wall(&grid, upright, false, direction)?;
         }
         let mut gravity = [0.0; D];
         gravity[upright] = -9.81;

@@ -10,6 +10,7 @@
 mod blocks;
 mod commit;
 mod constraints;
+mod dropped;
 mod error;
 mod ghost;
 mod kinematics;

@@ -45,13 +45,15 @@ impl<const D: usize> Stencils<D> {
     /// without gain.
     ///
     /// # Errors
-    /// [`AssemblyError::Shape`] names the first particle whose centre left the grid.
+    /// [`AssemblyError::Shape`] names the first particle whose centre left the grid;
+    /// [`AssemblyError::OtherGrid`] if the constraints were made for another one.
     pub fn build(
         grid: &Grid<D>,
         particles: &Particles<D>,
         method: &Method,
         constraints: &Constraints<D>,
     ) -> Result<Self, AssemblyError> {
+        constraints.belong_to(grid)?;
         let mut supports = Supports::build(grid, particles, method)?;
         let mut strips = Strips::build(grid, &supports);
         let mut shares = node_shares(grid, particles, &supports, &strips);

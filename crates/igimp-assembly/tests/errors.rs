@@ -98,6 +98,48 @@ fn everything_fixed() {
     assert_eq!(error, AssemblyError::NoUnknowns);
 }
 
+/// Constraints of a smaller and of a larger grid, and of one with as many nodes in other rows.
+#[test]
+fn constraints_of_another_grid_or_axis() {
+    let uniform = |cells: [usize; 2]| {
+        let axes = cells.map(|cells| igimp_shape::Axis::uniform(0.0, 1.0, cells).unwrap());
+        igimp_shape::Grid::new(axes)
+    };
+    let grid = uniform([5, 3]);
+    let body = Particles::new(&[SEED]).unwrap();
+    let method = Method::default();
+    for other in [[2, 2], [9, 9], [3, 5]] {
+        let mut foreign = Constraints::free(&uniform(other));
+        let expected = AssemblyError::OtherGrid {
+            made_for: other.map(|cells| cells + 1).to_vec(),
+            grid: vec![6, 4],
+        };
+        assert_eq!(foreign.fix_wall(&grid, 0, false, 0), Err(expected.clone()));
+        assert_eq!(foreign, Constraints::free(&uniform(other)));
+        let error = Stencils::build(&grid, &body, &method, &foreign).unwrap_err();
+        assert_eq!(error, expected);
+        let mut step = conditions(&grid, &laws()[0].1);
+        let stencils = Stencils::build(&grid, &body, &method, &step.constraints).unwrap();
+        step.constraints = foreign;
+        let error = System::new(&body, &stencils, &step, &method, &[], None).unwrap_err();
+        assert_eq!(error, expected);
+        assert!(error.to_string().contains("[6, 4]"), "{error}");
+    }
+
+    let mut own = Constraints::free(&grid);
+    let unknown = |axis| Err(AssemblyError::UnknownAxis { axis, axes: 2 });
+    assert_eq!(own.fix_wall(&grid, 2, false, 0), unknown(2));
+    assert_eq!(own.fix_wall(&grid, 0, true, 3), unknown(3));
+    assert_eq!(own.prescribe(0, 2, 0.0), unknown(2));
+    let node = AssemblyError::UnknownNode {
+        node: 24,
+        nodes: 24,
+    };
+    assert_eq!(own.prescribe(24, 0, 0.0), Err(node));
+    assert_eq!(own, Constraints::free(&grid));
+    assert_eq!((own.of(24, 0), own.of(0, 2)), (None, None));
+}
+
 #[test]
 fn a_load_on_empty_cells() {
     let grid = grid::<2>(6);

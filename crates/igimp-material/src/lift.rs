@@ -76,7 +76,8 @@ impl<const D: usize> Lifted<D> {
 
 /// Finite strain: the law at the trial elastic left Cauchy–Green tensor `b_e_trial`.
 ///
-/// `D = 2` is plane strain and reads xx, yy, xy and zz; `D = 3` reads the upper triangle.
+/// `D = 1` is uniaxial strain and reads xx, yy and zz; `D = 2` is plane strain and reads xy too;
+/// `D = 3` reads the upper triangle.
 /// Strains are $`\tfrac12\ln b`$, accurate to the digits that b holds also near b = I.
 ///
 /// # Errors

@@ -249,10 +249,12 @@ pub fn march_from<const D: usize>(
                 standing.size = settings.cut_factor * standing.size.min(1.0 - at);
                 standing.successes = 0;
                 cuts += 1;
+                let next = next_factor(at, standing.size, nominal);
+                let is_a_cut = at < next && next < to;
                 if cuts > settings.cuts
                     || standing.size < smallest
+                    || !is_a_cut
                     || error.failure.leaves_grid()
-                    || next_factor(at, standing.size, nominal) <= at
                 {
                     report.outcome = Outcome::StepTooSmall {
                         last_converged: at,

@@ -180,6 +180,8 @@ pub struct StepReport {
     pub unknowns: usize,
     /// Share of particles that returned to the yield surface \[-\].
     pub plastic_share: f64,
+    /// Share of the load that dropped nodes take without a support \[-\].
+    pub false_support: f64,
     /// Position \[length\] and axis of the largest out-of-balance force that was left.
     pub worst: Option<([f64; 3], usize)>,
     /// Share of the external force that drag against motion carries; zero in equilibrium \[-\].
@@ -373,6 +375,7 @@ fn equilibrium<const D: usize>(
         at_round_off: residual.relative_norm > settings.tolerance,
         unknowns: system.unknowns().len(),
         plastic_share: plastic as f64 / trial.particles.len() as f64,
+        false_support: system.false_support(&reactions),
         worst: None,
         drag_share: system.drag_share(&u),
         times,

@@ -80,7 +80,7 @@ fn a_body_that_floats_or_falls_is_singular() {
     let mut constraints = Constraints::free(&grid());
     let free = conditions(&grid(), &constraints, &elastic(), 0.3);
     fails(&floating(), &free, &settings(), singular);
-    constraints.fix_wall(&grid(), 0, false, 0);
+    constraints.fix_wall(&grid(), 0, false, 0).unwrap();
     let beside_a_wall = conditions(&grid(), &constraints, &elastic(), 0.3);
     let falling = block(&grid(), [0, 1], [3, 4]);
     fails(&falling, &beside_a_wall, &settings(), singular);
@@ -131,7 +131,7 @@ fn a_stress_that_is_not_a_number_names_its_particle() {
         tangent_alone: false,
     });
     let mut constraints = standing(&grid);
-    constraints.fix_wall(&grid, 0, true, 0);
+    constraints.fix_wall(&grid, 0, true, 0).unwrap();
     let mut body = block(&grid, [0, 0], [3, 3]);
     let conditions = conditions(&grid, &constraints, &law, 0.8);
     let error = solve(&mut body, &Method::igimp(), &conditions, &settings()).unwrap_err();

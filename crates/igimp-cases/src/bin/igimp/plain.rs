@@ -198,6 +198,7 @@ mod tests {
             at_round_off: false,
             unknowns: 100,
             plastic_share: 0.031,
+            false_support: 0.0,
             drag_share: 0.0,
             worst: Some(([31.5, 10.5, 0.0], 0)),
             times: PhaseTimes::default(),
