@@ -19,6 +19,7 @@ mod loads;
 mod matrix;
 mod method;
 mod particles;
+mod reach;
 mod residual;
 mod small;
 mod small_cuts;

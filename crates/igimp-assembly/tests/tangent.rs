@@ -7,7 +7,7 @@ mod common;
 use common::{Random, conditions, displacements, grid, laws, methods, particles};
 use igimp_assembly::{Kinematics, Method, Particles, SharedLaw, Stencils, System, TangentMatrix};
 use igimp_material::TangentKind;
-use igimp_shape::Grid;
+use igimp_shape::{Axis, Grid};
 
 /// Largest difference between tangent and differences, relative to the largest entry, and the
 /// asymmetry of the tangent.
@@ -233,6 +233,29 @@ fn elastic_tangent_is_symmetric_where_strength_fell() {
             let off = asymmetry(&matrix) / largest;
             assert!(off < 1e-12, "{name}, {}: {off:e}", method.label());
             assert_eq!(matrix.symmetric, law.has_symmetric_tangent());
+        }
+    }
+}
+
+/// A particle in a large cell that reaches over many small ones: its nodes are stored apart from all
+/// others.
+#[test]
+fn a_wide_particle_has_the_tangent_of_its_force() {
+    let nodes = std::iter::once(0.0).chain((0..14).map(|k| 8.0 + f64::from(k)));
+    let axes = [
+        Axis::from_nodes(nodes.collect()).unwrap(),
+        Axis::uniform(0.0, 1.0, 40).unwrap(),
+    ];
+    let grid = Grid::new(axes);
+    let mut random = Random(9);
+    let mut fields = (*particles(&grid, 1.0, &mut random)).clone();
+    fields.x[0] = [7.0, 20.3];
+    fields.half_length[0] = [7.0, 0.3];
+    let body = Particles::from_fields(fields).unwrap();
+    for (_, law) in &laws()[..2] {
+        for method in [Method::igimp(), Method::igimp_bbar()] {
+            let (error, asymmetry) = tangent_error(&grid, &body, law, &method, 60, &mut random);
+            assert!(error < 1e-7 && asymmetry < 1e-12, "{error:e} {asymmetry:e}");
         }
     }
 }
