@@ -10,7 +10,7 @@ use crate::constraints::Constraints;
 use crate::error::AssemblyError;
 use crate::method::{Method, Remedy};
 use crate::particles::Particles;
-use crate::small_cuts::masters_of_cuts;
+use crate::small_cuts::{cell_volume, masters_of_cuts};
 use crate::strips::{Strips, split};
 use crate::supports::{Supports, bounds};
 
@@ -123,6 +123,12 @@ impl<const D: usize> Stencils<D> {
     /// Mass that a grid node represents, Σ_p S_i m_p \[mass\].
     pub fn node_mass(&self, node: usize) -> f64 {
         self.shares[node].mass
+    }
+
+    /// Volume that a grid node represents over the mean volume of the cells around it \[-\]: 1 within a
+    /// full body, and next to nothing at a small cut.
+    pub fn node_fill(&self, grid: &Grid<D>, node: usize) -> f64 {
+        self.shares[node].volume / cell_volume(grid, node)
     }
 
     /// Tied nodes with the nodes that they move with.

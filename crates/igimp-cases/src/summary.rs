@@ -126,6 +126,9 @@ pub struct StageSummary {
     /// Largest share of the load, in any step, that dropped nodes took without a support \[-\].
     #[serde(default)]
     pub false_support: f64,
+    /// Steps that a ghost penalty held at nodes which hardly touch soil.
+    #[serde(default)]
+    pub ghost_steps: usize,
     /// What a strength reduction found.
     pub safety: Option<SafetySummary>,
 }

@@ -17,6 +17,9 @@ use crate::course::Course;
 use crate::linear::{LinearSolver, LinearSolverError};
 use crate::named::{finite_correction, named};
 
+/// The ghost penalty of a step that is singular at a node which hardly touches soil \[-\].
+const GHOST_PENALTY: f64 = 1e-3;
+
 /// How often a correction is halved.
 const MOST_HALVINGS: u32 = 4;
 
@@ -182,6 +185,9 @@ pub struct StepReport {
     pub plastic_share: f64,
     /// Share of the load that dropped nodes take without a support \[-\].
     pub false_support: f64,
+    /// The ghost penalty that the step was given because a node that hardly touches soil left its
+    /// system singular; zero in a step that did without \[-\].
+    pub ghost_penalty: f64,
     /// Position \[length\] and axis of the largest out-of-balance force that was left.
     pub worst: Option<([f64; 3], usize)>,
     /// Share of the external force that drag against motion carries; zero in equilibrium \[-\].
@@ -236,6 +242,9 @@ impl<const D: usize> Workspace<D> {
 /// that bring internal and external force into balance are found, and the particles are moved.
 /// The body is untouched unless the step is accepted.
 ///
+/// A step whose system is singular at a node that hardly touches soil is tried once more with a ghost
+/// penalty (theory, eq. 28), and the report says so.
+///
 /// # Errors
 /// [`StepError`] when no equilibrium was found, with the residuals so far.
 pub fn step<const D: usize>(
@@ -246,8 +255,24 @@ pub fn step<const D: usize>(
     settings: &NewtonSettings,
     workspace: &mut Workspace<D>,
 ) -> Result<(StepReport, NodalForces<D>), StepError> {
-    let mut course = Course::default();
-    let result = equilibrium(body, method, conditions, settings, workspace, &mut course);
+    let mut attempt = |body: &mut Body<D>, method: &Method| {
+        let mut course = Course::default();
+        let result = equilibrium(body, method, conditions, settings, workspace, &mut course);
+        (result, course)
+    };
+    let (mut result, mut course) = attempt(body, method);
+    if result.is_err() && course.is_weakly_held() && method.small_cuts.ghost_penalty == 0.0 {
+        let mut held = method.clone();
+        held.small_cuts.ghost_penalty = GHOST_PENALTY;
+        // What fails all the same fails for the first reason.
+        if let (Ok((report, forces)), own) = attempt(body, &held) {
+            let report = StepReport {
+                ghost_penalty: GHOST_PENALTY,
+                ..report
+            };
+            (result, course) = (Ok((report, forces)), own);
+        }
+    }
     let worst = course
         .worst
         .map(|(node, axis)| (padded(&conditions.grid.node_position(node)), axis));
@@ -334,8 +359,10 @@ fn equilibrium<const D: usize>(
         // What the matrix was made with: the elastic tangent belongs to the start of the step.
         let made_at = (iterations > 0).then_some(&u[..]);
         if is_current {
-            timed(&mut times.factor, || solver.factor(matrix))
-                .map_err(|error| named(error, &system, grid, made_at))?;
+            timed(&mut times.factor, || solver.factor(matrix)).map_err(|error| {
+                course.fill_of_singular = fill_of_singular(&error, &system, &stencils, grid);
+                named(error, &system, grid, made_at)
+            })?;
         }
         du.resize(residual.force.len(), 0.0);
         timed(&mut times.solve, || {
@@ -376,6 +403,7 @@ fn equilibrium<const D: usize>(
         unknowns: system.unknowns().len(),
         plastic_share: plastic as f64 / trial.particles.len() as f64,
         false_support: system.false_support(&reactions),
+        ghost_penalty: 0.0,
         worst: None,
         drag_share: system.drag_share(&u),
         times,
@@ -385,6 +413,23 @@ fn equilibrium<const D: usize>(
     let mut report = report;
     report.times.commit = clock.elapsed();
     Ok((report, NodalForces { reactions, u }))
+}
+
+/// How full the cells are around the node that a singular system names \[-\].
+fn fill_of_singular<const D: usize>(
+    error: &LinearSolverError,
+    system: &System<'_, D>,
+    stencils: &Stencils<D>,
+    grid: &Grid<D>,
+) -> Option<f64> {
+    let LinearSolverError::Singular {
+        unknown: Some(unknown),
+    } = error
+    else {
+        return None;
+    };
+    let (node, _) = system.unknowns().place(*unknown)?;
+    Some(stencils.node_fill(grid, node))
 }
 
 /// The load points where nodal step displacements `u` carry them, all of them on the grid.

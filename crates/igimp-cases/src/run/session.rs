@@ -101,6 +101,7 @@ impl Session<'_> {
         stage.steps += 1;
         stage.iterations += report.iterations;
         stage.at_round_off += usize::from(report.at_round_off);
+        stage.ghost_steps += usize::from(report.ghost_penalty > 0.0);
         stage.plastic_share = report.plastic_share;
         let before = stage.false_support;
         stage.false_support = before.max(report.false_support);
