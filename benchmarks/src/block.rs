@@ -108,11 +108,11 @@ impl<const D: usize> Block<D> {
         let upright = D - 1;
         let mut constraints = Constraints::free(&grid);
         for side in 0..upright {
-            constraints.fix_wall(&grid, side, false, side);
-            constraints.fix_wall(&grid, side, true, side);
+            constraints.fix_wall(&grid, side, false, side)?;
+            constraints.fix_wall(&grid, side, true, side)?;
         }
         for direction in 0..D {
-            constraints.fix_wall(&grid, upright, false, direction);
+            constraints.fix_wall(&grid, upright, false, direction)?;
         }
         let mut gravity = [0.0; D];
         gravity[upright] = -9.81;
@@ -157,12 +157,7 @@ impl<const D: usize> Block<D> {
     /// # Errors
     /// Never: all particles are on the grid.
     pub fn stencils(&self) -> Result<Stencils<D>, AssemblyError> {
-        Stencils::build(
-            &self.conditions.grid,
-            &self.particles,
-            &self.method,
-            &self.conditions.constraints,
-        )
+        Stencils::build(&self.particles, &self.method, &self.conditions)
     }
 
     /// The system of equations, with a pattern of its own.

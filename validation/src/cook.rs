@@ -63,8 +63,8 @@ fn corner(poisson: f64, method: &Method, cells: usize) -> Result<(Run, f64), Cas
     };
     let law: SharedLaw = Arc::new(HenckyElastic::new(Elasticity::new(YOUNG, poisson)?));
     let mut constraints = Constraints::free(&grid);
-    constraints.fix_wall(&grid, 0, false, 0);
-    constraints.fix_wall(&grid, 0, false, 1);
+    constraints.fix_wall(&grid, 0, false, 0)?;
+    constraints.fix_wall(&grid, 0, false, 1)?;
     let method = Method {
         kinematics: Kinematics::SmallStrain,
         ..method.clone()

@@ -137,8 +137,8 @@ impl Expansion {
     /// and next to its wall.
     fn driven(&self, grid: &Grid<2>, from: f64, to: f64) -> Result<Constraints<2>, AssemblyError> {
         let mut constraints = Constraints::free(grid);
-        constraints.fix_wall(grid, 0, false, 0);
-        constraints.fix_wall(grid, 1, false, 1);
+        constraints.fix_wall(grid, 0, false, 0)?;
+        constraints.fix_wall(grid, 1, false, 1)?;
         let added = to * to - from * from;
         let reach = from + WALL * self.exact.inner / self.cells as f64;
         for node in 0..grid.node_count() {

@@ -86,8 +86,8 @@ impl Bending {
         let elasticity = Elasticity::new(12.0 * LENGTH * LENGTH, 0.0)?;
         let law: SharedLaw = Arc::new(HenckyElastic::new(elasticity));
         let mut constraints = Constraints::free(&grid);
-        constraints.fix_wall(&grid, 0, false, 0);
-        constraints.fix_wall(&grid, 0, false, 1);
+        constraints.fix_wall(&grid, 0, false, 0)?;
+        constraints.fix_wall(&grid, 0, false, 1)?;
         let program = |_from: f64, to: f64| {
             Ok(StepConditions {
                 grid: grid.clone(),

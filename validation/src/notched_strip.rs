@@ -58,7 +58,7 @@ fn pull(cells: usize, method: &Method) -> Result<(Run, Table), CaseError> {
     )?);
     let program = |from: f64, to: f64| {
         let mut constraints = Constraints::free(&grid);
-        constraints.fix_wall(&grid, 0, false, 0);
+        constraints.fix_wall(&grid, 0, false, 0)?;
         for column in 0..=cells {
             constraints.prescribe(grid.node_index([column, 0]), 1, 0.0)?;
         }

@@ -49,8 +49,8 @@ fn press(cells: usize, method: &Method) -> Result<(Run, Table), CaseError> {
     let program = |from: f64, to: f64| {
         let grid = grid_at(height(from)).expect("the prism has a height");
         let mut constraints = Constraints::free(&grid);
-        constraints.fix_wall(&grid, 0, false, 0);
-        constraints.fix_wall(&grid, 1, false, 1);
+        constraints.fix_wall(&grid, 0, false, 0)?;
+        constraints.fix_wall(&grid, 1, false, 1)?;
         for column in 0..grid.axes[0].node_count() {
             let node = grid.node_index([column, cells]);
             constraints.prescribe(node, 1, height(to) - height(from))?;

@@ -132,10 +132,11 @@ impl Layer {
         let law = MohrCoulomb::new(elasticity, 0.0, phi, phi).expect("the soil has friction");
         let law: SharedLaw = Arc::new(law);
         let mut supports = Constraints::free(&grid);
-        supports.fix_wall(&grid, 1, false, 0);
-        supports.fix_wall(&grid, 1, false, 1);
-        supports.fix_wall(&grid, 0, false, 0);
-        supports.fix_wall(&grid, 0, true, 0);
+        for (normal, upper, axis) in [(1, false, 0), (1, false, 1), (0, false, 0), (0, true, 0)] {
+            supports
+                .fix_wall(&grid, normal, upper, axis)
+                .expect("the walls are those of the grid");
+        }
         let program = |_: f64, to: f64| {
             let weight = UNIT_WEIGHT * (to / LEVEL_SHARE).min(1.0);
             let (sin, cos) = tilt(to).sin_cos();

@@ -1,5 +1,7 @@
-//! Where the blocks of the tangent matrix are stored: a table over pairs of nodes that are close.
+//! Where the blocks of the tangent matrix are stored: a table over pairs of nodes that are close, and
+//! lists for the few nodes with couplings that reach further.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -7,6 +9,7 @@ use igimp_shape::{Grid, Support};
 
 use crate::linearised::Linearised;
 use crate::matrix::{NodeBlock, Pattern};
+use crate::reach::{SMALL_REACH, common_reach, furthest};
 use crate::stencils::Stencils;
 use crate::supports::bounds;
 use crate::unknowns::Unknowns;
@@ -19,11 +22,15 @@ const NONE: u32 = u32::MAX;
 #[derive(Clone, Debug)]
 pub(crate) struct BlockTable<const D: usize> {
     nodes: Vec<NodePlace>,
-    /// Pairs of nodes that a column node may have: a window of (2 reach + 1)^D nodes.
+    /// Pairs of nodes that a column node may have: a window of (2 reach + 1)^D nodes, with the reach
+    /// of nearly all nodes.
     window: usize,
     /// Offset within a column of node j of the first row of node i, by the block of j and
     /// code(i) − code(j).
     offsets: Vec<u32>,
+    /// The same for column nodes that reach beyond the window: by the block of j, the blocks of its
+    /// rows, ascending, with their offsets. One wide particle must not widen the window of all.
+    wide: BTreeMap<u32, Vec<(u32, u32)>>,
 }
 
 /// What scattering needs to know of a node.
@@ -39,6 +46,8 @@ struct NodePlace {
     len: u8,
     /// Which components they are, one bit each.
     free: u8,
+    /// Whether some of its couplings reach beyond the window.
+    is_wide: bool,
 }
 
 impl<const D: usize> BlockTable<D> {
@@ -56,11 +65,18 @@ impl<const D: usize> BlockTable<D> {
             places.map(|(a, b)| a.abs_diff(b)).max().unwrap_or(0)
         };
         let reach = extra.iter().map(apart).fold(stencils.reach(), usize::max);
-        let side = 2 * reach + 1;
+        let (near, is_wide) = if reach > SMALL_REACH {
+            let far = extra.iter().map(|pair| (*pair, apart(pair)));
+            common_reach(&furthest(grid, stencils, far), reach)
+        } else {
+            (reach, Vec::new())
+        };
+        let side = 2 * near + 1;
         let mut table = Self {
             nodes: Vec::with_capacity(grid.node_count()),
             window: side.pow(D as u32),
             offsets: Vec::new(),
+            wide: BTreeMap::new(),
         };
         let mut blocks = Vec::new();
         for node in 0..grid.node_count() {
@@ -74,6 +90,7 @@ impl<const D: usize> BlockTable<D> {
                 first: unknowns.before(node) as u32,
                 len: len as u8,
                 free: unknowns.free(node),
+                is_wide: is_wide.get(node).is_some_and(|&is_wide| is_wide),
             });
             if len > 0 {
                 let mut block_place = [0; 3];
@@ -86,8 +103,9 @@ impl<const D: usize> BlockTable<D> {
             }
         }
         table.offsets = vec![NONE; blocks.len() * table.window];
-        table.mark(grid, stencils, extra);
-        let pattern = table.number(grid, unknowns, blocks, reach);
+        let wide = table.mark(grid, stencils, extra);
+        let (starts, coupled) = table.number(grid, unknowns, near, &wide);
+        let pattern = Pattern::new(blocks, starts, coupled, reach);
         match previous {
             Some(previous) if **previous == pattern => (table, Arc::clone(previous)),
             _ => (table, Arc::new(pattern)),
@@ -95,8 +113,14 @@ impl<const D: usize> BlockTable<D> {
     }
 
     /// Marks the coupled pairs. Particles that touch the same box of nodes couple the same pairs:
-    /// each box is marked once.
-    fn mark(&mut self, grid: &Grid<D>, stencils: &Stencils<D>, extra: &[(usize, usize)]) {
+    /// each box is marked once. Returns the row nodes of each wide column node.
+    fn mark(
+        &mut self,
+        grid: &Grid<D>,
+        stencils: &Stencils<D>,
+        extra: &[(usize, usize)],
+    ) -> BTreeMap<usize, BTreeSet<usize>> {
+        let mut wide = BTreeMap::new();
         let mut last: &[Support<D>] = &[];
         let mut seen = vec![0_u64; grid.node_count()];
         for &particle in stencils.order() {
@@ -118,28 +142,37 @@ impl<const D: usize> BlockTable<D> {
                 }
                 for row in own {
                     if self.nodes[row.node].block != NONE {
-                        let slot = self.slot(column.node, row.node);
-                        self.offsets[slot] = 0;
+                        self.couple(column.node, row.node, &mut wide);
                     }
                 }
             }
         }
         for &(column, row) in extra {
             if self.nodes[column].block != NONE && self.nodes[row].block != NONE {
-                let slot = self.slot(column, row);
-                self.offsets[slot] = 0;
+                self.couple(column, row, &mut wide);
             }
+        }
+        wide
+    }
+
+    #[inline]
+    fn couple(&mut self, column: usize, row: usize, wide: &mut BTreeMap<usize, BTreeSet<usize>>) {
+        if self.nodes[column].is_wide {
+            wide.entry(column).or_default().insert(row);
+        } else {
+            let slot = self.slot(column, row);
+            self.offsets[slot] = 0;
         }
     }
 
-    /// Turns the marks of coupled nodes into offsets, and writes the pattern.
+    /// Turns the marks of coupled nodes into offsets, and lists the coupled blocks of each block.
     fn number(
         &mut self,
         grid: &Grid<D>,
         unknowns: &Unknowns<D>,
-        blocks: Vec<NodeBlock>,
         reach: usize,
-    ) -> Pattern {
+        wide: &BTreeMap<usize, BTreeSet<usize>>,
+    ) -> (Vec<usize>, Vec<u32>) {
         // How far, in node numbers, the node of each slot is from the middle of the window.
         let strides: [usize; D] =
             std::array::from_fn(|axis| (0..axis).map(|a| grid.axes[a].node_count()).product());
@@ -155,23 +188,34 @@ impl<const D: usize> BlockTable<D> {
                 distance
             })
             .collect();
-        let mut starts = Vec::with_capacity(blocks.len() + 1);
-        let mut coupled = Vec::with_capacity(blocks.len() * 5_usize.pow(D as u32));
+        let blocks = self.offsets.len() / self.window;
+        let mut starts = Vec::with_capacity(blocks + 1);
+        let mut coupled = Vec::with_capacity(blocks * 5_usize.pow(D as u32));
         starts.push(0);
         let columns = (0..grid.node_count()).filter(|&node| unknowns.count(node) > 0);
         for (column, offsets) in columns.zip(self.offsets.chunks_exact_mut(self.window)) {
             let mut height = 0;
-            for (offset, &distance) in offsets.iter_mut().zip(&distances) {
-                if *offset != NONE {
-                    let row = column.wrapping_add_signed(distance);
-                    *offset = height;
+            if let Some(rows) = wide.get(&column) {
+                let mut list = Vec::with_capacity(rows.len());
+                for &row in rows {
+                    list.push((self.nodes[row].block, height));
                     height += unknowns.count(row);
                     coupled.push(self.nodes[row].block);
+                }
+                self.wide.insert(self.nodes[column].block, list);
+            } else {
+                for (offset, &distance) in offsets.iter_mut().zip(&distances) {
+                    if *offset != NONE {
+                        let row = column.wrapping_add_signed(distance);
+                        *offset = height;
+                        height += unknowns.count(row);
+                        coupled.push(self.nodes[row].block);
+                    }
                 }
             }
             starts.push(coupled.len());
         }
-        Pattern::new(blocks, starts, coupled, reach)
+        (starts, coupled)
     }
 
     /// Where the row of an unknown of node `row` is stored in the column of the unknown that is
@@ -186,18 +230,31 @@ impl<const D: usize> BlockTable<D> {
         row: usize,
     ) -> usize {
         let block = self.nodes[column].block as usize;
+        let row = &self.nodes[row];
         pattern.values_of(block).start
             + component * pattern.height(block)
-            + self.offsets[self.slot(column, row)] as usize
+            + self.offsets_of(column)(row.code, row.block)
     }
 
-    /// The offset within a column of a node of the first row of another, by the code of that.
+    /// The offset within a column of a node of the first row of another, by the code and the block
+    /// of that.
     #[inline]
-    fn offsets_of(&self, column: usize) -> impl Fn(u32) -> usize + '_ {
+    fn offsets_of(&self, column: usize) -> impl Fn(u32, u32) -> usize + '_ {
         let column = &self.nodes[column];
         let centre = (self.window as u32 - 1) / 2;
         let offsets = &self.offsets[column.block as usize * self.window..][..self.window];
-        move |row| offsets[(row + centre - column.code) as usize] as usize
+        let wide: &[(u32, u32)] = if column.is_wide {
+            &self.wide[&column.block]
+        } else {
+            &[]
+        };
+        move |code, block| {
+            if wide.is_empty() {
+                offsets[(code + centre - column.code) as usize] as usize
+            } else {
+                wide[wide.partition_point(|&(other, _)| other < block)].1 as usize
+            }
+        }
     }
 
     /// Adds the free components of block (i, j) of a particle to the columns of its node j.
@@ -209,7 +266,7 @@ impl<const D: usize> BlockTable<D> {
         values: &mut [f64],
     ) {
         let (row, column) = (&self.nodes[supports[i].node], &self.nodes[supports[j].node]);
-        let place = self.offsets_of(supports[j].node)(row.code);
+        let place = self.offsets_of(supports[j].node)(row.code, row.block);
         let height = values.len() / usize::from(column.len);
         let free = |node: &NodePlace| {
             let free = node.free;
@@ -220,6 +277,12 @@ impl<const D: usize> BlockTable<D> {
                 *value += columns[c][i * D + a];
             }
         }
+    }
+
+    /// How many places the table holds.
+    #[cfg(test)]
+    pub(crate) fn places(&self) -> usize {
+        self.offsets.len() + self.wide.values().map(Vec::len).sum::<usize>()
     }
 
     #[inline]
@@ -247,6 +310,8 @@ struct Run {
     len: u16,
     /// Code of its node.
     code: u32,
+    /// Block of its node.
+    block: u32,
 }
 
 impl Run {
@@ -277,6 +342,7 @@ impl Blocks {
                     first: i as u16,
                     len: 1,
                     code: node.code,
+                    block: node.block,
                 }),
             }
             next = node.first + D as u32;
@@ -302,7 +368,7 @@ impl Blocks {
             let columns = linearised.columns(j);
             let offsets = table.offsets_of(node);
             for run in &self.runs {
-                let (first, offset) = (usize::from(run.first) * D, offsets(run.code));
+                let (first, offset) = (usize::from(run.first) * D, offsets(run.code, run.block));
                 for (c, column) in columns.iter().enumerate() {
                     let sums = &mut values[c * height + offset..];
                     let terms = &column[first..];
@@ -353,7 +419,7 @@ fn add<const N: usize>(sums: &mut [f64], terms: &[f64]) {
 
 /// Whether two lists of supports have the same nodes.
 #[inline]
-fn same_nodes<const D: usize>(a: &[Support<D>], b: &[Support<D>]) -> bool {
+pub(crate) fn same_nodes<const D: usize>(a: &[Support<D>], b: &[Support<D>]) -> bool {
     a.len() == b.len() && std::iter::zip(a, b).all(|(a, b)| a.node == b.node)
 }
 

@@ -7,6 +7,8 @@ use crate::error::AssemblyError;
 /// Prescribed step displacements, by node and axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Constraints<const D: usize> {
+    /// Nodes along each axis of the grid.
+    extent: [usize; D],
     prescribed: Vec<[Option<f64>; D]>,
 }
 
@@ -14,6 +16,7 @@ impl<const D: usize> Constraints<D> {
     /// No constraint on any node of a grid.
     pub fn free(grid: &Grid<D>) -> Self {
         Self {
+            extent: extent(grid),
             prescribed: vec![[None; D]; grid.node_count()],
         }
     }
@@ -22,13 +25,15 @@ impl<const D: usize> Constraints<D> {
     /// call replaces an earlier one.
     ///
     /// # Errors
-    /// [`AssemblyError::UnknownNode`] or [`AssemblyError::NonFinite`].
+    /// [`AssemblyError::UnknownNode`], [`AssemblyError::UnknownAxis`] or
+    /// [`AssemblyError::NonFinite`].
     pub fn prescribe(&mut self, node: usize, axis: usize, value: f64) -> Result<(), AssemblyError> {
         let nodes = self.prescribed.len();
         let entry = self
             .prescribed
             .get_mut(node)
             .ok_or(AssemblyError::UnknownNode { node, nodes })?;
+        known_axis::<D>(axis)?;
         if !value.is_finite() {
             return Err(AssemblyError::NonFinite {
                 what: "prescribed displacement",
@@ -42,24 +47,33 @@ impl<const D: usize> Constraints<D> {
     /// Holds one component of displacement on all nodes of a wall: axis `normal`, its lower or
     /// upper end, component `axis`.
     ///
-    /// # Panics
-    /// Never: the nodes come from the grid that the constraints were made for.
-    pub fn fix_wall(&mut self, grid: &Grid<D>, normal: usize, upper: bool, axis: usize) {
-        let wall = if upper {
-            grid.axes[normal].node_count() - 1
-        } else {
-            0
-        };
-        for node in 0..grid.node_count() {
+    /// # Errors
+    /// [`AssemblyError::UnknownAxis`], or [`AssemblyError::OtherGrid`] if the constraints were made
+    /// for a grid with other numbers of nodes.
+    pub fn fix_wall(
+        &mut self,
+        grid: &Grid<D>,
+        normal: usize,
+        upper: bool,
+        axis: usize,
+    ) -> Result<(), AssemblyError> {
+        known_axis::<D>(normal)?;
+        known_axis::<D>(axis)?;
+        self.belong_to(grid)?;
+        let wall = if upper { self.extent[normal] - 1 } else { 0 };
+        for (node, prescribed) in self.prescribed.iter_mut().enumerate() {
             if grid.node_place(node)[normal] == wall {
-                self.prescribed[node][axis] = Some(0.0);
+                prescribed[axis] = Some(0.0);
             }
         }
+        Ok(())
     }
 
-    /// The prescribed step displacement of a node along an axis \[length\], if any.
+    /// The prescribed step displacement of a node along an axis \[length\], if any: none for a node
+    /// or an axis that the grid does not have.
+    #[inline]
     pub fn of(&self, node: usize, axis: usize) -> Option<f64> {
-        self.prescribed[node][axis]
+        *self.prescribed.get(node)?.get(axis)?
     }
 
     /// Whether any node is made to move.
@@ -74,5 +88,31 @@ impl<const D: usize> Constraints<D> {
     /// Number of nodes.
     pub fn node_count(&self) -> usize {
         self.prescribed.len()
+    }
+
+    /// Refuses a grid with other numbers of nodes than that the constraints were made for.
+    pub(crate) fn belong_to(&self, grid: &Grid<D>) -> Result<(), AssemblyError> {
+        let other = extent(grid);
+        if self.extent == other {
+            Ok(())
+        } else {
+            Err(AssemblyError::OtherGrid {
+                made_for: self.extent.to_vec(),
+                grid: other.to_vec(),
+            })
+        }
+    }
+}
+
+/// Nodes along each axis.
+fn extent<const D: usize>(grid: &Grid<D>) -> [usize; D] {
+    std::array::from_fn(|axis| grid.axes[axis].node_count())
+}
+
+fn known_axis<const D: usize>(axis: usize) -> Result<(), AssemblyError> {
+    if axis < D {
+        Ok(())
+    } else {
+        Err(AssemblyError::UnknownAxis { axis, axes: D })
     }
 }

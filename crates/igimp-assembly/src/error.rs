@@ -104,6 +104,25 @@ pub enum AssemblyError {
         /// How many nodes there are.
         nodes: usize,
     },
+    /// A constraint names an axis that space does not have.
+    #[error("a constraint names axis {axis}, but there are {axes} axes (numbered from 0)")]
+    UnknownAxis {
+        /// The axis named.
+        axis: usize,
+        /// How many axes there are.
+        axes: usize,
+    },
+    /// Constraints and grid do not belong together.
+    #[error(
+        "the constraints were made for a grid of {made_for:?} nodes along its axes, but this one \
+             has {grid:?}: make them for the grid of the step"
+    )]
+    OtherGrid {
+        /// Nodes along each axis of the grid that the constraints know.
+        made_for: Vec<usize>,
+        /// Nodes along each axis of the grid given.
+        grid: Vec<usize>,
+    },
     /// Every degree of freedom is prescribed or dropped.
     #[error("no unknown is left: every active node is fixed")]
     NoUnknowns,

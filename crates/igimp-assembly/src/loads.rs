@@ -3,9 +3,12 @@
 
 use igimp_shape::{Grid, Linear, Scratch, Support, supports};
 
+use crate::constraints::Constraints;
+use crate::dropped::shares_of_carried;
 use crate::error::AssemblyError;
 use crate::stencils::Stencils;
 use crate::supports::padded;
+use crate::unknowns::Unknowns;
 
 /// A force on a point that moves with the soil. Its direction stays (dead load).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -137,10 +140,13 @@ pub(crate) fn finite_loads<const D: usize>(
     Ok(())
 }
 
-/// Nodal external force f_ext, by node \[force\].
+/// Nodal external force f_ext, by node \[force\]. What falls to dropped nodes is handed on: no force
+/// of a load point is lost.
 pub(crate) fn external_force<const D: usize>(
     grid: &Grid<D>,
     stencils: &Stencils<D>,
+    unknowns: &Unknowns<D>,
+    constraints: &Constraints<D>,
     points: &[LoadPoint<D>],
     loads: &StepLoads<D>,
 ) -> Result<Vec<[f64; D]>, AssemblyError> {
@@ -152,17 +158,21 @@ pub(crate) fn external_force<const D: usize>(
         if factor == 0.0 {
             continue;
         }
-        for support in point.supports(grid, index)? {
-            let node = stencils.master(support.node);
-            if support.value > 0.0 && stencils.node_volume(node) == 0.0 {
-                let position = padded(&point.x);
-                return Err(AssemblyError::UnsupportedLoad {
-                    point: index,
-                    position,
-                });
+        let unsupported = || AssemblyError::UnsupportedLoad {
+            point: index,
+            position: padded(&point.x),
+        };
+        let mut own = point.supports(grid, index)?;
+        for support in &mut own {
+            support.node = stencils.master(support.node);
+            if support.value > 0.0 && stencils.node_volume(support.node) == 0.0 {
+                return Err(unsupported());
             }
+        }
+        let shares = shares_of_carried(grid, unknowns, constraints, &point.x, &own);
+        for (node, share) in shares.ok_or_else(unsupported)? {
             for axis in 0..D {
-                f_ext[node][axis] += support.value * factor * point.force[axis];
+                f_ext[node][axis] += share * factor * point.force[axis];
             }
         }
     }

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use crate::error::AssemblyError;
 use crate::method::{Method, Remedy};
 use crate::particles::Particles;
-use crate::small_cuts::masters_of_cuts;
+use crate::small_cuts::{cell_volume, masters_of_cuts};
 use crate::strips::{Strips, split};
 use crate::supports::{Supports, bounds};
 use crate::system::{SharedLaw, StepConditions};
@@ -46,7 +46,8 @@ impl<const D: usize> Stencils<D> {
     ///
     /// # Errors
     /// [`AssemblyError::Shape`] names the first particle whose centre left the grid,
-    /// [`AssemblyError::UnknownLaw`] one whose law is not there.
+    /// [`AssemblyError::UnknownLaw`] one whose law is not there; [`AssemblyError::OtherGrid`] if the
+    /// constraints were made for another grid.
     pub fn build(
         particles: &Particles<D>,
         method: &Method,
@@ -58,6 +59,7 @@ impl<const D: usize> Stencils<D> {
             laws,
             ..
         } = conditions;
+        constraints.belong_to(grid)?;
         known_laws(particles, laws)?;
         let mut supports = Supports::build(grid, particles, method, laws)?;
         let mut strips = Strips::build(grid, &supports);
@@ -128,6 +130,12 @@ impl<const D: usize> Stencils<D> {
     /// Mass that a grid node represents, Σ_p S_i m_p \[mass\].
     pub fn node_mass(&self, node: usize) -> f64 {
         self.shares[node].mass
+    }
+
+    /// Volume that a grid node represents over the mean volume of the cells around it \[-\]: 1 within a
+    /// full body, and next to nothing at a small cut.
+    pub fn node_fill(&self, grid: &Grid<D>, node: usize) -> f64 {
+        self.shares[node].volume / cell_volume(grid, node)
     }
 
     /// Tied nodes with the nodes that they move with.

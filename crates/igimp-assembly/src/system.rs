@@ -61,7 +61,8 @@ impl<'a, const D: usize> System<'a, D> {
     /// pattern is shared again when it still holds.
     ///
     /// # Errors
-    /// [`AssemblyError::NoUnknowns`], a load point off the body, or
+    /// [`AssemblyError::NoUnknowns`], [`AssemblyError::OtherGrid`] for constraints that were made for
+    /// another grid, a load point off the body, or
     /// [`AssemblyError::NonFinite`] for loads and a ghost penalty that are not finite.
     pub fn new(
         particles: &'a Particles<D>,
@@ -78,6 +79,7 @@ impl<'a, const D: usize> System<'a, D> {
         let symmetric = std::iter::zip(&conditions.laws, &used)
             .all(|(law, &used)| !used || law.has_symmetric_tangent());
         let grid = &conditions.grid;
+        conditions.constraints.belong_to(grid)?;
         let cuts = method.small_cuts;
         finite_loads(points, &conditions.loads)?;
         if !cuts.ghost_penalty.is_finite() {
@@ -85,7 +87,9 @@ impl<'a, const D: usize> System<'a, D> {
             return Err(AssemblyError::NonFinite { what, index });
         }
         let unknowns = Unknowns::number(grid, stencils, &conditions.constraints, cuts.below)?;
-        let f_ext = external_force(grid, stencils, points, &conditions.loads)?;
+        let supports = &conditions.constraints;
+        let loads = &conditions.loads;
+        let f_ext = external_force(grid, stencils, &unknowns, supports, points, loads)?;
         let mut couplings = if cuts.ghost_penalty > 0.0 {
             let young = |p: usize| conditions.laws[particles.law[p]].elasticity().young();
             ghost_entries(grid, particles, stencils, young, cuts.ghost_penalty)
@@ -273,6 +277,26 @@ impl<'a, const D: usize> System<'a, D> {
             }
         }
         reactions
+    }
+
+    /// The force that dropped nodes take without a support, as a share of the load \[-\] (theory,
+    /// eq. 27b): of [`Self::reactions`], those of components that nothing prescribes.
+    pub fn false_support(&self, reactions: &[[f64; D]]) -> f64 {
+        let (mut held, mut unheld) = (0.0, 0.0);
+        for (node, reaction) in reactions.iter().enumerate() {
+            for axis in 0..D {
+                match self.conditions.constraints.of(node, axis) {
+                    Some(_) => held += reaction[axis].abs(),
+                    None => unheld += reaction[axis].abs(),
+                }
+            }
+        }
+        let external: f64 = self.f_ext.as_flattened().iter().map(|f| f.abs()).sum();
+        if unheld == 0.0 {
+            0.0
+        } else {
+            unheld / external.max(held)
+        }
     }
 
     /// The norm of the drag at nodal step displacements over that of the external force: the share

@@ -4,7 +4,8 @@ mod common;
 
 use common::{Random, conditions, grid, laws, particles};
 use igimp_assembly::{
-    AssemblyError, Constraints, LoadPoint, Method, ParticleSeed, Particles, Stencils, System,
+    AssemblyError, Constraints, LoadPoint, Method, ParticleSeed, Particles, Stencils,
+    StepConditions, System,
 };
 use igimp_material::TangentKind;
 
@@ -49,8 +50,8 @@ fn a_particle_off_the_grid_is_named() {
         },
     ])
     .unwrap();
-    let error =
-        Stencils::build(&grid, &body, &Method::default(), &Constraints::free(&grid)).unwrap_err();
+    let conditions = conditions(&grid, &laws()[0].1);
+    let error = Stencils::build(&body, &Method::default(), &conditions).unwrap_err();
     assert!(matches!(error, AssemblyError::Shape { particle: 1, .. }));
     assert_eq!(
         error.to_string(),
@@ -64,8 +65,7 @@ fn an_unknown_law() {
     let body = Particles::new(&[ParticleSeed { law: 3, ..SEED }]).unwrap();
     let method = Method::default();
     let conditions = conditions(&grid, &laws()[0].1);
-    let stencils = Stencils::build(&body, &method, &conditions).unwrap();
-    let error = System::new(&body, &stencils, &conditions, &method, &[], None).unwrap_err();
+    let error = Stencils::build(&body, &method, &conditions).unwrap_err();
     assert_eq!(
         error.to_string(),
         "particle 0 uses law 3, but there are 1 laws (numbered from 0)"
@@ -96,6 +96,52 @@ fn everything_fixed() {
     }
     let error = System::new(&body, &stencils, &conditions, &method, &[], None).unwrap_err();
     assert_eq!(error, AssemblyError::NoUnknowns);
+}
+
+/// Constraints of a smaller and of a larger grid, and of one with as many nodes in other rows.
+#[test]
+fn constraints_of_another_grid_or_axis() {
+    let uniform = |cells: [usize; 2]| {
+        let axes = cells.map(|cells| igimp_shape::Axis::uniform(0.0, 1.0, cells).unwrap());
+        igimp_shape::Grid::new(axes)
+    };
+    let grid = uniform([5, 3]);
+    let body = Particles::new(&[SEED]).unwrap();
+    let method = Method::default();
+    for other in [[2, 2], [9, 9], [3, 5]] {
+        let mut foreign = Constraints::free(&uniform(other));
+        let expected = AssemblyError::OtherGrid {
+            made_for: other.map(|cells| cells + 1).to_vec(),
+            grid: vec![6, 4],
+        };
+        assert_eq!(foreign.fix_wall(&grid, 0, false, 0), Err(expected.clone()));
+        assert_eq!(foreign, Constraints::free(&uniform(other)));
+        let mut step = conditions(&grid, &laws()[0].1);
+        let other = StepConditions {
+            constraints: foreign.clone(),
+            ..step.clone()
+        };
+        let error = Stencils::build(&body, &method, &other).unwrap_err();
+        assert_eq!(error, expected);
+        let stencils = Stencils::build(&body, &method, &step).unwrap();
+        step.constraints = foreign;
+        let error = System::new(&body, &stencils, &step, &method, &[], None).unwrap_err();
+        assert_eq!(error, expected);
+        assert!(error.to_string().contains("[6, 4]"), "{error}");
+    }
+
+    let mut own = Constraints::free(&grid);
+    let unknown = |axis| Err(AssemblyError::UnknownAxis { axis, axes: 2 });
+    assert_eq!(own.fix_wall(&grid, 2, false, 0), unknown(2));
+    assert_eq!(own.fix_wall(&grid, 0, true, 3), unknown(3));
+    assert_eq!(own.prescribe(0, 2, 0.0), unknown(2));
+    let node = AssemblyError::UnknownNode {
+        node: 24,
+        nodes: 24,
+    };
+    assert_eq!(own.prescribe(24, 0, 0.0), Err(node));
+    assert_eq!(own, Constraints::free(&grid));
+    assert_eq!((own.of(24, 0), own.of(0, 2)), (None, None));
 }
 
 #[test]

@@ -113,13 +113,8 @@ fn a_rigid_translation_of_tied_bodies_causes_no_strain() {
                 );
                 let body = body(cells, shift);
                 let stencils = Stencils::build(&body, &method, &conditions).unwrap();
-                let raw = Stencils::build(
-                    &grid,
-                    &body,
-                    &with_remedy(&method, Remedy::Drop),
-                    &conditions.constraints,
-                )
-                .unwrap();
+                let raw = Stencils::build(&body, &with_remedy(&method, Remedy::Drop), &conditions)
+                    .unwrap();
                 let supports = |stencils: &Stencils<2>| -> usize {
                     (0..stencils.len()).map(|p| stencils.of(p).len()).sum()
                 };
@@ -262,8 +257,8 @@ fn dense(matrix: &TangentMatrix) -> DMatrix<f64> {
 fn settle(method: &Method) -> (Vec<f64>, f64) {
     let grid = unit_grid([3, 6]);
     let mut conditions = free(&grid, &elastic());
-    conditions.constraints.fix_wall(&grid, 0, false, 0);
-    conditions.constraints.fix_wall(&grid, 0, true, 0);
+    conditions.constraints.fix_wall(&grid, 0, false, 0).unwrap();
+    conditions.constraints.fix_wall(&grid, 0, true, 0).unwrap();
     for node in 0..grid.node_count() {
         if grid.node_place(node)[1] <= 1 {
             conditions.constraints.prescribe(node, 1, -0.2).unwrap();
@@ -406,8 +401,8 @@ fn a_node_is_tied_to_one_with_the_same_constraints() {
     let method = Method::igimp_bbar();
     let node = |column: usize, row: usize| grid.node_index([column, row]);
     let mut conditions = free(&grid, &elastic());
-    conditions.constraints.fix_wall(&grid, 0, false, 0);
-    conditions.constraints.fix_wall(&grid, 1, false, 1);
+    conditions.constraints.fix_wall(&grid, 0, false, 0).unwrap();
+    conditions.constraints.fix_wall(&grid, 1, false, 1).unwrap();
     let master_of = |conditions: &StepConditions<2>, cut: usize| {
         let stencils = Stencils::build(&body, &method, &conditions).unwrap();
         let system = System::new(&body, &stencils, conditions, &method, &[], None).unwrap();
@@ -468,6 +463,55 @@ fn loads_on_a_sliver_keep_their_resultant_and_move_along() {
             let carried = point.carried(&grid, index, &u).unwrap();
             assert!((carried.x[0] - point.x[0] - 0.25).abs() < 1e-15);
             assert!((carried.x[1] - point.x[1] + 0.5).abs() < 1e-15);
+        }
+    }
+}
+
+/// Loads beside nodes that are dropped keep resultant and moment, also where they stand far above
+/// the sliver, and act on unknowns alone.
+#[test]
+fn loads_beside_dropped_nodes_keep_resultant_and_moment() {
+    let grid = unit_grid([6, 6]);
+    let body = body(&cells([1, 1], [4, 4]), [0.0, SLIVER]);
+    let mut rollers = free(&grid, &elastic());
+    for column in 0..=6 {
+        // No node below is held alike, so that there is no master.
+        let node = grid.node_index([column, 5]);
+        rollers.constraints.prescribe(node, 0, 0.0).unwrap();
+    }
+    let mut dropping = Method::igimp_bbar();
+    dropping.small_cuts.remedy = Remedy::Drop;
+    for (conditions, method) in [
+        (free(&grid, &elastic()), dropping),
+        (rollers, Method::igimp_bbar()),
+    ] {
+        for height in [4.002, 4.3, 4.7] {
+            let points =
+                LoadPoint::along_edge([1.2, height], [3.7, height - 0.001], [3.0, -5.0], 7, 0);
+            let stencils = Stencils::build(&body, &method, &conditions).unwrap();
+            let system =
+                System::new(&body, &stencils, &conditions, &method, &points, None).unwrap();
+            let mut sums = [0.0; 3];
+            for (node, force) in system.f_ext().iter().enumerate() {
+                let x = grid.node_position(node);
+                sums[0] += force[0];
+                sums[1] += force[1];
+                sums[2] += x[0] * force[1] - x[1] * force[0];
+                for axis in 0..2 {
+                    let is_unknown = system.unknowns().index(node, axis).is_some();
+                    let label = format!("{height} {node} {force:?}");
+                    assert!(force[axis] == 0.0 || is_unknown, "{label}");
+                }
+            }
+            let mut expected = [0.0; 3];
+            for LoadPoint { x, force, .. } in &points {
+                expected[0] += force[0];
+                expected[1] += force[1];
+                expected[2] += x[0] * force[1] - x[1] * force[0];
+            }
+            for (sum, expected) in sums.iter().zip(expected) {
+                assert!((sum - expected).abs() < 1e-11, "{height}: {sum} {expected}");
+            }
         }
     }
 }

@@ -5,9 +5,9 @@
 mod common;
 
 use common::{Random, conditions, displacements, grid, laws, methods, particles};
-use igimp_assembly::{Kinematics, Method, Particles, SharedLaw, Stencils, System};
+use igimp_assembly::{Kinematics, Method, Particles, SharedLaw, Stencils, System, TangentMatrix};
 use igimp_material::TangentKind;
-use igimp_shape::Grid;
+use igimp_shape::{Axis, Grid};
 
 /// Largest difference between tangent and differences, relative to the largest entry, and the
 /// asymmetry of the tangent.
@@ -66,9 +66,14 @@ fn tangent_error<const D: usize>(
         compared > columns * 3 / 4,
         "{compared} of {columns} columns compared"
     );
+    (error / largest, asymmetry(&matrix) / largest)
+}
+
+/// Largest difference of an entry and its mirror image.
+fn asymmetry(matrix: &TangentMatrix) -> f64 {
     let dense = nalgebra_sparse::CooMatrix::from(&matrix.to_csc());
     let transposed = matrix.to_csc().transpose();
-    let asymmetry = dense
+    dense
         .triplet_iter()
         .map(|(i, j, value)| {
             let other = transposed
@@ -76,8 +81,7 @@ fn tangent_error<const D: usize>(
                 .map_or(0.0, nalgebra_sparse::SparseEntry::into_value);
             (value - other).abs()
         })
-        .fold(0.0, f64::max);
-    (error / largest, asymmetry / largest)
+        .fold(0.0, f64::max)
 }
 
 /// A body with a strained and yielded past.
@@ -202,6 +206,56 @@ fn force_of_prescribed_motion_is_the_derivative_along_it() {
                     assert!((difference - known[unknown]).abs() < 1e-6 * scale, "{name}");
                 }
             }
+        }
+    }
+}
+
+/// A step that begins on a surface which has shrunk since: its elastic tangent is symmetric, as it
+/// says of itself.
+#[test]
+fn elastic_tangent_is_symmetric_where_strength_fell() {
+    let grid = grid::<2>(6);
+    let mut random = Random(8);
+    let still = vec![[0.0; 2]; grid.node_count()];
+    for (name, law) in laws() {
+        for method in methods() {
+            let body = strained(&grid, &law, &method, &mut random);
+            let conditions = conditions(&grid, &law.reduced(1.5).unwrap());
+            let stencils = Stencils::build(&body, &method, &conditions).unwrap();
+            let system = System::new(&body, &stencils, &conditions, &method, &[], None).unwrap();
+            let (trial, matrix) = system.linearise(&still, TangentKind::Elastic).unwrap();
+            let plastic = trial.particles.iter().filter(|own| own.regime.is_plastic());
+            assert!(
+                name == "elastic" || plastic.count() > body.len() / 8,
+                "{name}"
+            );
+            let largest = matrix.diagonal().fold(0.0, f64::max);
+            let off = asymmetry(&matrix) / largest;
+            assert!(off < 1e-12, "{name}, {}: {off:e}", method.label());
+            assert_eq!(matrix.symmetric, law.has_symmetric_tangent());
+        }
+    }
+}
+
+/// A particle in a large cell that reaches over many small ones: its nodes are stored apart from all
+/// others.
+#[test]
+fn a_wide_particle_has_the_tangent_of_its_force() {
+    let nodes = std::iter::once(0.0).chain((0..14).map(|k| 8.0 + f64::from(k)));
+    let axes = [
+        Axis::from_nodes(nodes.collect()).unwrap(),
+        Axis::uniform(0.0, 1.0, 40).unwrap(),
+    ];
+    let grid = Grid::new(axes);
+    let mut random = Random(9);
+    let mut fields = (*particles(&grid, 1.0, &mut random)).clone();
+    fields.x[0] = [7.0, 20.3];
+    fields.half_length[0] = [7.0, 0.3];
+    let body = Particles::from_fields(fields).unwrap();
+    for (_, law) in &laws()[..2] {
+        for method in [Method::igimp(), Method::igimp_bbar()] {
+            let (error, asymmetry) = tangent_error(&grid, &body, law, &method, 60, &mut random);
+            assert!(error < 1e-7 && asymmetry < 1e-12, "{error:e} {asymmetry:e}");
         }
     }
 }

@@ -123,6 +123,12 @@ pub struct StageSummary {
     /// Share of particles that yielded in the last step \[-\].
     #[serde(deserialize_with = "or_not_a_number")]
     pub plastic_share: f64,
+    /// Largest share of the load, in any step, that dropped nodes took without a support \[-\].
+    #[serde(default)]
+    pub false_support: f64,
+    /// Steps that a ghost penalty held at nodes which hardly touch soil.
+    #[serde(default)]
+    pub ghost_steps: usize,
     /// What a strength reduction found.
     pub safety: Option<SafetySummary>,
 }

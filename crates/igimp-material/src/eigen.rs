@@ -11,25 +11,26 @@ const SWEEPS: usize = 12;
 
 /// Principal values of a symmetric tensor, in no particular order.
 ///
-/// `D = 2` is plane strain and reads xx, yy, xy and zz; `D = 3` reads the upper triangle.
+/// `D = 1` is uniaxial strain and reads xx, yy and zz; `D = 2` is plane strain and reads xy too;
+/// `D = 3` reads the upper triangle.
 pub fn principal_values<const D: usize>(tensor: &Tensor) -> Principal {
     principal_axes::<D>(tensor).0
 }
 
 /// Principal values and the axes: `frame[a]` is the unit vector of value `a`.
 ///
-/// `D = 2` reads the components xx, yy, xy and zz, and the last axis is z; `D = 3` reads the
-/// upper triangle. The order is that of the spatial axes as far as there is one: a diagonal
+/// `D = 1` reads the components xx, yy and zz and keeps the spatial axes; `D = 2` reads xy too, and
+/// the last axis is z; `D = 3` reads the upper triangle. The order is that of the spatial axes as far as there is one: a diagonal
 /// tensor keeps its axes.
 #[inline]
 pub(crate) fn principal_axes<const D: usize>(tensor: &Tensor) -> (Principal, Tensor) {
-    const { assert!(D == 2 || D == 3, "plane strain or 3D") };
+    const { assert!(1 <= D && D <= 3, "uniaxial strain, plane strain or 3D") };
     let mut a = *tensor;
     let mut frame = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     if D == 2 {
         [a[0][2], a[1][2]] = [0.0; 2];
         rotate(&mut a, &mut frame, [0, 1, 2]);
-    } else {
+    } else if D == 3 {
         for _ in 0..SWEEPS {
             // Sums, not maxima: they pass on what is not a number.
             let off = a[0][1].abs() + a[0][2].abs() + a[1][2].abs();

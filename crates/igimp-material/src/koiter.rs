@@ -92,19 +92,21 @@ struct Edge {
 impl Edge {
     /// The line that two planes share.
     fn new(elasticity: &Elasticity, planes: [Plane; 2]) -> Self {
-        let normals = planes.map(|plane| plane.normal);
+        let [a, b] = planes.map(|plane| plane.normal);
         let flows = planes.map(|plane| plane.flow);
-        // The point of the line that is nearest to zero stress.
-        let weights = inverse(normals, normals)
-            .map(|row| row[0] * planes[0].strength + row[1] * planes[1].strength);
-        let point =
-            std::array::from_fn(|a| weights[0] * normals[0][a] + weights[1] * normals[1][a]);
-        let direction = cross(&normals[0], &normals[1]);
+        let direction = cross(&a, &b);
+        // The point of the line that is nearest to zero stress. Steep planes are nearly parallel:
+        // products of their normals would lose the digits that tell them apart.
+        let (along_a, along_b) = (cross(&b, &direction), cross(&direction, &a));
+        let square = dot(&direction, &direction);
+        let point = std::array::from_fn(|i| {
+            (planes[0].strength * along_a[i] + planes[1].strength * along_b[i]) / square
+        });
         let compliant = elasticity.strain(&cross(&flows[0], &flows[1]));
         let scale = dot(&compliant, &direction);
         Self {
             planes,
-            multipliers: inverse(normals, flows.map(|flow| elasticity.stress(&flow))),
+            multipliers: inverse([a, b], flows.map(|flow| elasticity.stress(&flow))),
             point,
             direction,
             coordinate: compliant.map(|component| component / scale),

@@ -25,7 +25,8 @@ use crate::{
 /// Which tangent a lift answers; the stress is that of the return map either way.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum TangentKind {
-    /// That of the elastic part of the law at the trial state: symmetric and regular, also at the
+    /// That of the elastic part of the law at the trial state, turned with the returned stress where
+    /// there was a return (theory, eq. 23a): symmetric with the stress and regular, also at the
     /// apex. For the first correction of a load step.
     Elastic,
     /// That of the return map, for the quadratic convergence of Newton's method.
@@ -75,7 +76,8 @@ impl<const D: usize> Lifted<D> {
 
 /// Finite strain: the law at the trial elastic left Cauchy–Green tensor `b_e_trial`.
 ///
-/// `D = 2` is plane strain and reads xx, yy, xy and zz; `D = 3` reads the upper triangle.
+/// `D = 1` is uniaxial strain and reads xx, yy and zz; `D = 2` is plane strain and reads xy too;
+/// `D = 3` reads the upper triangle.
 /// Strains are $`\tfrac12\ln b`$, accurate to the digits that b holds also near b = I.
 ///
 /// # Errors
@@ -186,13 +188,20 @@ fn lift<const D: usize>(
     for a in 0..D {
         for b in 0..a {
             let x = 2.0 * (strain[a] - strain[b]);
-            let secant = match kind {
-                TangentKind::Elastic => elasticity.shear(),
-                TangentKind::Consistent => secant(&answer, [a, b], x, noise),
-            };
             let [ab, ba] = shares(x);
-            shear[a][b] = secant * ab;
-            shear[b][a] = secant * ba;
+            let consistent = secant(&answer, [a, b], x, noise);
+            (shear[a][b], shear[b][a]) = match kind {
+                TangentKind::Consistent => (consistent * ab, consistent * ba),
+                TangentKind::Elastic => {
+                    let elastic = elasticity.shear();
+                    let excess = if answer.regime.is_plastic() {
+                        0.5 * (elastic - consistent) * (ba - ab)
+                    } else {
+                        0.0
+                    };
+                    (elastic * ab + excess, elastic * ba - excess)
+                }
+            };
         }
     }
     let eps_e = if answer.regime.is_plastic() {

@@ -187,8 +187,7 @@ impl ConstitutiveModel for MohrCoulomb {
         self.pyramid.yield_function(tau)
     }
 
-    /// The larger of 2 c cos φ and the cut-off, plus twice the largest principal stress in
-    /// magnitude.
+    /// 2 c cos φ plus twice the largest principal stress in magnitude.
     fn stress_scale(&self, tau: &Principal) -> f64 {
         self.pyramid.stress_scale(tau)
     }

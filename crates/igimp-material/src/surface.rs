@@ -16,7 +16,7 @@ const ROUND_OFF: f64 = 1e-13;
 pub(crate) struct PlanarSurface {
     elasticity: Elasticity,
     planes: Vec<Plane>,
-    /// The greatest strength of a plane.
+    /// The strength of the first plane.
     strength: f64,
     regions: Vec<Region>,
 }
@@ -31,16 +31,13 @@ pub(crate) struct Returned<'a> {
 }
 
 impl PlanarSurface {
-    /// A surface that has planes but no regions yet. List regions from the common to the rare;
-    /// the last one must be admissible whatever the trial state.
+    /// A surface that has planes but no regions yet. List planes and regions from the common to the
+    /// rare; the last region must be admissible whatever the trial state.
     pub(crate) fn new(elasticity: Elasticity, planes: Vec<Plane>) -> Self {
-        let strength = planes
-            .iter()
-            .fold(0.0, |most: f64, plane| most.max(plane.strength));
         Self {
             elasticity,
+            strength: planes[0].strength,
             planes,
-            strength,
             regions: Vec::new(),
         }
     }
@@ -85,8 +82,10 @@ impl PlanarSurface {
             .fold(f64::NEG_INFINITY, |most, plane| most.max(plane.excess(tau)))
     }
 
-    /// What round-off in [`Self::yield_function`] is relative to \[stress\]: the greatest strength
-    /// plus twice the largest stress, as no plane weighs its stresses by more than two in all.
+    /// What round-off in [`Self::yield_function`] is relative to \[stress\]: the strength of the
+    /// first plane plus twice the largest stress, as no plane weighs its stresses by more than two
+    /// in all. The strength of another plane plays no part: close to that plane it is no more than
+    /// twice the largest stress, and far from it, however strong, it must not blunt the others.
     #[inline]
     pub(crate) fn stress_scale(&self, tau: &Principal) -> f64 {
         self.strength + 2.0 * largest(tau)

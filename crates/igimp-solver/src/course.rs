@@ -9,6 +9,9 @@ use crate::newton::{NewtonSettings, StepFailure};
 /// steps that find equilibrium by whole corrections, one in a hundred goes beyond.
 const OVERSHOOT: f64 = 20.0;
 
+/// A node hardly touches soil when less of the cells around it is full than this \[-\].
+const HARDLY_FULL: f64 = 0.01;
+
 /// Iterations without a new smallest residual after which a step is given up.
 const STAGNATION: usize = 8;
 
@@ -19,6 +22,8 @@ pub(crate) struct Course {
     pub(crate) residuals: Vec<f64>,
     /// Node and axis of the largest out-of-balance force.
     pub(crate) worst: Option<(usize, usize)>,
+    /// How full the cells are around the node at which a system was singular \[-\].
+    pub(crate) fill_of_singular: Option<f64>,
     best: f64,
     best_iteration: usize,
 }
@@ -47,6 +52,15 @@ impl Course {
         } else {
             Ok(())
         }
+    }
+}
+
+/// When a system is singular for want of soil.
+impl Course {
+    /// Whether a node that hardly touches soil left the system singular: the strains of one or two
+    /// particles, seen by their gradients alone, cannot hold it.
+    pub(crate) fn is_weakly_held(&self) -> bool {
+        self.fill_of_singular.is_some_and(|fill| fill < HARDLY_FULL)
     }
 }
 

@@ -249,9 +249,12 @@ pub fn march_from<const D: usize>(
                 standing.size = settings.cut_factor * standing.size.min(1.0 - at);
                 standing.successes = 0;
                 cuts += 1;
+                let next = next_factor(at, standing.size, nominal);
+                let is_a_cut = at < next && next < to;
                 if cuts > settings.cuts
                     || standing.size < smallest
-                    || matches!(*error.failure, StepFailure::LeavesGrid { .. })
+                    || !is_a_cut
+                    || error.failure.leaves_grid()
                 {
                     report.outcome = Outcome::StepTooSmall {
                         last_converged: at,
@@ -266,13 +269,15 @@ pub fn march_from<const D: usize>(
 }
 
 /// The load factor after a step: uncut steps land on multiples of the nominal size, and no sliver
-/// is left before 1.
+/// is left before 1. What counts as near is told by the step itself: one that was cut often must
+/// not end where it began.
 fn next_factor(at: f64, size: f64, nominal: f64) -> f64 {
     let to = at + size;
     let nearest = (to / nominal).round() * nominal;
-    if to > 1.0 - 1e-6 * nominal {
+    let near = 1e-6 * size;
+    if to > 1.0 - near {
         1.0
-    } else if (to - nearest).abs() < 1e-6 * nominal {
+    } else if (to - nearest).abs() < near {
         nearest
     } else {
         to

@@ -5,16 +5,20 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use igimp_assembly::{
-    AssemblyError, Geometry, Method, OutOfBalance, Pattern, Stencils, StepConditions, System,
-    TangentMatrix, Trial,
+    AssemblyError, Geometry, LoadPoint, Method, OutOfBalance, Pattern, Stencils, StepConditions,
+    System, TangentMatrix, Trial,
 };
 use igimp_material::TangentKind;
+use igimp_shape::Grid;
 use thiserror::Error;
 
 use crate::body::Body;
 use crate::course::Course;
 use crate::linear::{LinearSolver, LinearSolverError};
 use crate::named::{finite_correction, named};
+
+/// The ghost penalty of a step that is singular at a node which hardly touches soil \[-\].
+const GHOST_PENALTY: f64 = 1e-3;
 
 /// How often a correction is halved.
 const MOST_HALVINGS: u32 = 4;
@@ -63,6 +67,14 @@ pub enum StepFailure {
         /// Where it would go \[length\], axes beyond the dimension 0.
         position: [f64; 3],
     },
+    /// Converged, but a load point would be carried off the background grid.
+    #[error("load point {point} would leave the background grid at {position:?} m")]
+    LoadPointLeavesGrid {
+        /// Number of the point, from 0.
+        point: usize,
+        /// Where it would go \[length\], axes beyond the dimension 0.
+        position: [f64; 3],
+    },
     /// A number of the linear system that must be finite is not.
     #[error("the {what} at {position:?} m, axis {axis}, is not finite")]
     NotFinite {
@@ -88,7 +100,9 @@ impl StepFailure {
     pub fn is_want_of_equilibrium(&self) -> bool {
         match self {
             Self::MaxIterations { .. } | Self::Diverged | Self::Stagnated => true,
-            Self::LeavesGrid { .. } | Self::NotFinite { .. } => false,
+            Self::LeavesGrid { .. } | Self::LoadPointLeavesGrid { .. } | Self::NotFinite { .. } => {
+                false
+            }
             Self::Assembly(error) => matches!(error, AssemblyError::Inverted { .. }),
             Self::Linear(error) => matches!(
                 error,
@@ -97,6 +111,14 @@ impl StepFailure {
                     | LinearSolverError::Inaccurate { .. }
             ),
         }
+    }
+
+    /// Whether something was to be carried off the grid: a smaller step only puts that off.
+    pub(crate) fn leaves_grid(&self) -> bool {
+        matches!(
+            self,
+            Self::LeavesGrid { .. } | Self::LoadPointLeavesGrid { .. }
+        )
     }
 }
 
@@ -161,6 +183,11 @@ pub struct StepReport {
     pub unknowns: usize,
     /// Share of particles that returned to the yield surface \[-\].
     pub plastic_share: f64,
+    /// Share of the load that dropped nodes take without a support \[-\].
+    pub false_support: f64,
+    /// The ghost penalty that the step was given because a node that hardly touches soil left its
+    /// system singular; zero in a step that did without \[-\].
+    pub ghost_penalty: f64,
     /// Position \[length\] and axis of the largest out-of-balance force that was left.
     pub worst: Option<([f64; 3], usize)>,
     /// Share of the external force that drag against motion carries; zero in equilibrium \[-\].
@@ -215,6 +242,10 @@ impl<const D: usize> Workspace<D> {
 /// that bring internal and external force into balance are found, and the particles are moved.
 /// The body is untouched unless the step is accepted.
 ///
+/// A step whose system is singular at a node that hardly touches soil is tried once more with a ghost
+/// penalty (theory, eq. 28), and the report says so. On a given geometry it is not: at a limit load the
+/// penalty would be a support.
+///
 /// # Errors
 /// [`StepError`] when no equilibrium was found, with the residuals so far.
 pub fn step<const D: usize>(
@@ -225,8 +256,25 @@ pub fn step<const D: usize>(
     settings: &NewtonSettings,
     workspace: &mut Workspace<D>,
 ) -> Result<(StepReport, NodalForces<D>), StepError> {
-    let mut course = Course::default();
-    let result = equilibrium(body, method, conditions, settings, workspace, &mut course);
+    let mut attempt = |body: &mut Body<D>, method: &Method| {
+        let mut course = Course::default();
+        let result = equilibrium(body, method, conditions, settings, workspace, &mut course);
+        (result, course)
+    };
+    let (mut result, mut course) = attempt(body, method);
+    let may_hold = method.geometry == Geometry::Moving && method.small_cuts.ghost_penalty == 0.0;
+    if result.is_err() && may_hold && course.is_weakly_held() {
+        let mut held = method.clone();
+        held.small_cuts.ghost_penalty = GHOST_PENALTY;
+        // What fails all the same fails for the first reason.
+        if let (Ok((report, forces)), own) = attempt(body, &held) {
+            let report = StepReport {
+                ghost_penalty: GHOST_PENALTY,
+                ..report
+            };
+            (result, course) = (Ok((report, forces)), own);
+        }
+    }
     let worst = course
         .worst
         .map(|(node, axis)| (padded(&conditions.grid.node_position(node)), axis));
@@ -313,8 +361,10 @@ fn equilibrium<const D: usize>(
         // What the matrix was made with: the elastic tangent belongs to the start of the step.
         let made_at = (iterations > 0).then_some(&u[..]);
         if is_current {
-            timed(&mut times.factor, || solver.factor(matrix))
-                .map_err(|error| named(error, &system, grid, made_at))?;
+            timed(&mut times.factor, || solver.factor(matrix)).map_err(|error| {
+                course.fill_of_singular = fill_of_singular(&error, &system, &stencils, grid);
+                named(error, &system, grid, made_at)
+            })?;
         }
         du.resize(residual.force.len(), 0.0);
         timed(&mut times.solve, || {
@@ -338,6 +388,11 @@ fn equilibrium<const D: usize>(
             position: padded(&x),
         });
     }
+    let load_points = if moves {
+        Some(carried(&body.load_points, grid, &u)?)
+    } else {
+        None
+    };
 
     let clock = Instant::now();
     let reactions = system.reactions(trial);
@@ -354,19 +409,56 @@ fn equilibrium<const D: usize>(
         at_round_off: residual.relative_norm > settings.tolerance,
         unknowns: system.unknowns().len(),
         plastic_share: plastic as f64 / trial.particles.len() as f64,
+        false_support: system.false_support(&reactions),
+        ghost_penalty: 0.0,
         worst: None,
         drag_share: system.drag_share(&u),
         times,
     };
-    if moves {
-        for (index, point) in body.load_points.iter_mut().enumerate() {
-            *point = point.carried(grid, index, &u)?;
-        }
+    if let Some(load_points) = load_points {
+        body.load_points = load_points;
     }
     body.particles.commit(&stencils, method, trial, &u);
     let mut report = report;
     report.times.commit = clock.elapsed();
     Ok((report, NodalForces { reactions, u }))
+}
+
+/// How full the cells are around the node that a singular system names \[-\].
+fn fill_of_singular<const D: usize>(
+    error: &LinearSolverError,
+    system: &System<'_, D>,
+    stencils: &Stencils<D>,
+    grid: &Grid<D>,
+) -> Option<f64> {
+    let LinearSolverError::Singular {
+        unknown: Some(unknown),
+    } = error
+    else {
+        return None;
+    };
+    let (node, _) = system.unknowns().place(*unknown)?;
+    Some(stencils.node_fill(grid, node))
+}
+
+/// The load points where nodal step displacements `u` carry them, all of them on the grid.
+fn carried<const D: usize>(
+    points: &[LoadPoint<D>],
+    grid: &Grid<D>,
+    u: &[[f64; D]],
+) -> Result<Vec<LoadPoint<D>>, StepFailure> {
+    let carry = |(index, point): (usize, &LoadPoint<D>)| {
+        let carried = point.carried(grid, index, u)?;
+        if grid.contains(&carried.x) {
+            Ok(carried)
+        } else {
+            Err(StepFailure::LoadPointLeavesGrid {
+                point: index,
+                position: padded(&carried.x),
+            })
+        }
+    };
+    points.iter().enumerate().map(carry).collect()
 }
 
 /// Evaluates the trial at `u`, to which the correction `du` was added, with its tangent where a matrix

@@ -16,7 +16,7 @@ fn a_block_without_support_moves_by_gravity_over_drag() {
     let (mut body, mut conditions) = loaded(&elastic(), GRAVITY);
     let grid = &conditions.grid;
     conditions.constraints = Constraints::free(grid);
-    conditions.constraints.fix_wall(grid, 0, false, 0);
+    conditions.constraints.fix_wall(grid, 0, false, 0).unwrap();
     conditions.loads.drag = 2.0;
     let (settings, method) = (NewtonSettings::default(), Method::default());
     let before = body.particles.x.clone();

@@ -192,6 +192,26 @@ fn failed_steps_are_halved_and_grow_again() {
     assert_eq!(tried[..begin.len()], begin);
 }
 
+/// However often a step may be cut, the march ends, and no attempt is made twice or has no size.
+#[test]
+fn a_march_with_many_cuts_ends() {
+    for cuts in [19, 21, 25, 40, 60, 2000] {
+        for limit in [0.5, 0.75, 0.8, 1.0 - 1e-7, 1.0 - 1e-12] {
+            let count = RefCell::new(0);
+            let tried = attempts(4, cuts, |_, to| {
+                *count.borrow_mut() += 1;
+                assert!(*count.borrow() < 2_000, "the march goes on and on");
+                to > limit
+            });
+            let mut different = BTreeSet::new();
+            for &(from, to, _) in &tried {
+                assert!(from < to && to <= 1.0, "{cuts} {limit}: {from} {to}");
+                assert!(different.insert((from.to_bits(), to.to_bits())));
+            }
+        }
+    }
+}
+
 /// A failure in the middle of the march alone: afterwards steps grow back to the nominal size.
 #[test]
 fn steps_grow_back_to_the_nominal_size() {

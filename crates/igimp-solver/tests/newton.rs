@@ -517,8 +517,8 @@ fn a_load_that_whole_corrections_overshoot_is_taken_in_one_step() {
     let cells = 16;
     let grid = unit_grid([1, cells]);
     let mut constraints = standing(&grid);
-    constraints.fix_wall(&grid, 0, false, 0);
-    constraints.fix_wall(&grid, 0, true, 0);
+    constraints.fix_wall(&grid, 0, false, 0).unwrap();
+    constraints.fix_wall(&grid, 0, true, 0).unwrap();
     let law: SharedLaw = Arc::new(HenckyElastic::new(Elasticity::new(YOUNG, 0.0).unwrap()));
     let height = cells as f64;
     let conditions = conditions(&grid, &constraints, &law, 2.0 * YOUNG / height);
@@ -536,5 +536,37 @@ fn a_load_that_whole_corrections_overshoot_is_taken_in_one_step() {
             .map(|p| particles.x[p][1] + particles.half_length[p][1])
             .fold(0.0, f64::max);
         assert!((highest / top - 1.0).abs() < 0.01, "{highest} {top}");
+    }
+}
+
+/// What dropped nodes take is what the supports do not get: the report says how much. A tied node
+/// takes nothing.
+#[test]
+fn the_report_tells_of_false_supports() {
+    let grid = unit_grid([5, 5]);
+    let law = elastic();
+    let weight = conditions(&grid, &standing(&grid), &law, 0.5);
+    for (remedy, takes) in [(Remedy::Drop, true), (Remedy::Tie, false)] {
+        let mut method = Method::default();
+        method.small_cuts.remedy = remedy;
+        let mut body = shifted_block(&grid, [0, 0], [3, 3], [0.003, 0.003]);
+        let (report, forces) = solve(&mut body, &method, &weight, &TIGHT).unwrap();
+        let (mut held, mut unheld, mut upwards) = (0.0, 0.0, 0.0);
+        for (node, reaction) in forces.reactions.iter().enumerate() {
+            for axis in 0..2 {
+                if weight.constraints.of(node, axis).is_some() {
+                    held += reaction[axis].abs();
+                    upwards += reaction[axis] * axis as f64;
+                } else {
+                    unheld += reaction[axis].abs();
+                }
+            }
+        }
+        let weight = 0.5 * 9.0;
+        assert_eq!(unheld > 0.0, takes);
+        assert!((report.false_support - unheld / f64::max(held, weight)).abs() < 1e-12);
+        let missing = (weight - upwards).abs();
+        assert!(missing <= unheld + 1e-9, "{missing} {unheld}");
+        assert_eq!(missing > 1e-9, takes, "{missing}");
     }
 }

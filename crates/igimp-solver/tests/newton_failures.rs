@@ -80,7 +80,7 @@ fn a_body_that_floats_or_falls_is_singular() {
     let mut constraints = Constraints::free(&grid());
     let free = conditions(&grid(), &constraints, &elastic(), 0.3);
     fails(&floating(), &free, &settings(), singular);
-    constraints.fix_wall(&grid(), 0, false, 0);
+    constraints.fix_wall(&grid(), 0, false, 0).unwrap();
     let beside_a_wall = conditions(&grid(), &constraints, &elastic(), 0.3);
     let falling = block(&grid(), [0, 1], [3, 4]);
     fails(&falling, &beside_a_wall, &settings(), singular);
@@ -131,7 +131,7 @@ fn a_stress_that_is_not_a_number_names_its_particle() {
         tangent_alone: false,
     });
     let mut constraints = standing(&grid);
-    constraints.fix_wall(&grid, 0, true, 0);
+    constraints.fix_wall(&grid, 0, true, 0).unwrap();
     let mut body = block(&grid, [0, 0], [3, 3]);
     let conditions = conditions(&grid, &constraints, &law, 0.8);
     let error = solve(&mut body, &Method::igimp(), &conditions, &settings()).unwrap_err();
@@ -167,6 +167,45 @@ fn a_particle_that_leaves_the_grid_is_named() {
                 if *particle == first
                     && (position[0] - 1.25).abs() < 1e-12
                     && (position[1] - 6.25).abs() < 1e-12
+        )
+    });
+}
+
+/// A load point on the upper side goes off the grid where no particle does; the points before it
+/// stay where they were.
+#[test]
+fn a_load_point_that_would_leave_the_grid_stays() {
+    let mut constraints = Constraints::free(&grid());
+    for column in 0..=6 {
+        let node = grid().node_index([column, 1]);
+        constraints.prescribe(node, 0, 0.0).unwrap();
+        constraints.prescribe(node, 1, 2.1).unwrap();
+    }
+    let lifted = conditions(&grid(), &constraints, &elastic(), 0.0);
+    let mut body = floating();
+    body.load_points = LoadPoint::along_edge([2.0, 2.0], [2.0, 5.0], [0.0, -1.0], 2, 0);
+    body.load_points[1].x[1] = 4.0;
+    fails(&body, &lifted, &settings(), |failure| {
+        !failure.is_want_of_equilibrium()
+            && matches!(
+                failure,
+                StepFailure::LoadPointLeavesGrid { point: 1, position }
+                    if (position[0] - 2.0).abs() < 1e-12 && (position[1] - 6.1).abs() < 1e-12
+            )
+    });
+}
+
+/// A point that is off the grid from the start, and whose load does not act, is found out after
+/// the iteration: the points before it have not moved then.
+#[test]
+fn a_load_point_off_the_grid_moves_no_other() {
+    let (mut body, conditions) = loaded(&elastic(), 0.3);
+    body.load_points = LoadPoint::along_edge([1.0, 2.0], [2.0, 2.0], [0.0, -1.0], 2, 0);
+    body.load_points[1].x = [100.0, 2.0];
+    fails(&body, &conditions, &settings(), |failure| {
+        matches!(
+            failure,
+            StepFailure::Assembly(AssemblyError::LoadPoint { point: 1, .. })
         )
     });
 }

@@ -165,8 +165,8 @@ pub(super) fn settle(method: &Method, offset: f64, beside: Beside) -> Result<Set
     let mut body = Body::new(Particles::new(&seeds)?);
     let program = |_: f64, to: f64| {
         let mut constraints = Constraints::free(&grid);
-        constraints.fix_wall(&grid, 0, false, 0);
-        constraints.fix_wall(&grid, 1, false, 1);
+        constraints.fix_wall(&grid, 0, false, 0)?;
+        constraints.fix_wall(&grid, 1, false, 1)?;
         Ok(StepConditions {
             grid: grid.clone(),
             constraints,
@@ -214,7 +214,7 @@ pub(super) fn let_down(
     let base = |node: usize| grid.node_place(node)[1] <= 1;
     let program = |from: f64, to: f64| {
         let mut constraints = Constraints::free(&grid);
-        constraints.fix_wall(&grid, 0, false, 0);
+        constraints.fix_wall(&grid, 0, false, 0)?;
         for node in (0..grid.node_count()).filter(|&node| base(node)) {
             constraints.prescribe(node, 1, 0.25 * (from - to))?;
         }

@@ -182,7 +182,9 @@ fn walls<const D: usize>(grid: &Grid<D>, rollers: bool) -> Constraints<D> {
     for normal in 0..D {
         for upper in [false, true] {
             for axis in (0..D).filter(|&axis| axis == normal || !rollers) {
-                constraints.fix_wall(grid, normal, upper, axis);
+                constraints
+                    .fix_wall(grid, normal, upper, axis)
+                    .expect("the walls are those of the grid");
             }
         }
     }

@@ -75,7 +75,7 @@ fn kernels() -> Result<[Duration; 2], CaseError> {
     let particles = Particles::new(&seeds)?;
     let mut constraints = Constraints::free(&grid);
     for axis in 0..2 {
-        constraints.fix_wall(&grid, 1, false, axis);
+        constraints.fix_wall(&grid, 1, false, axis)?;
     }
     let law = VonMises::from_undrained_strength(Elasticity::new(1e4, 0.3)?, 1.0)?;
     let conditions = StepConditions {

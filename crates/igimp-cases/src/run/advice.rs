@@ -34,7 +34,8 @@ pub fn advice(
     };
     let yielding = near_worst.is_some_and(|[all, yielding, _]| share(yielding, all) >= COLLAPSE);
     let mut try_this = match &*error.failure {
-        StepFailure::LeavesGrid { position, .. } => off_grid(case, stage, *position),
+        StepFailure::LeavesGrid { position, .. }
+        | StepFailure::LoadPointLeavesGrid { position, .. } => off_grid(case, stage, *position),
         // Soil that flows away can also turn a particle inside out, or leave a singular matrix.
         StepFailure::Assembly(AssemblyError::Inverted { .. } | AssemblyError::Material { .. })
         | StepFailure::Linear(

@@ -181,7 +181,7 @@ impl<'c> Model<'c> {
         ] {
             for axis in 0..2 {
                 if side == Side::Fixed || (side == Side::Roller && axis == normal) {
-                    constraints.fix_wall(grid, normal, upper, axis);
+                    constraints.fix_wall(grid, normal, upper, axis)?;
                 }
             }
         }

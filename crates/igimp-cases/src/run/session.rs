@@ -16,8 +16,12 @@ use super::output::Output;
 use super::records::{Moment, Records, largest_displacement};
 use super::state::{Controls, State};
 use super::{Event, Listener, REACHED_ITS_END};
+use crate::check::short;
 use crate::error::CaseError;
 use crate::summary::{StageSummary, Summary};
+
+/// Share of the load from which on a false support at dropped nodes is worth a warning \[-\].
+const FALSE_SUPPORT: f64 = 1e-3;
 
 /// A run between its stages.
 pub(crate) struct Session<'a> {
@@ -97,7 +101,19 @@ impl Session<'_> {
         stage.steps += 1;
         stage.iterations += report.iterations;
         stage.at_round_off += usize::from(report.at_round_off);
+        stage.ghost_steps += usize::from(report.ghost_penalty > 0.0);
         stage.plastic_share = report.plastic_share;
+        let before = stage.false_support;
+        stage.false_support = before.max(report.false_support);
+        if before <= FALSE_SUPPORT && stage.false_support > FALSE_SUPPORT {
+            self.warn(format!(
+                "stage \"{}\": nodes that hardly touch soil and were dropped take {} % of the load, \
+                 which no support gives; try small_cuts = {{ remedy = \"tie\" }} or \
+                 small_cuts = {{ below = 0, ghost_penalty = 1e-3 }} in [grid]",
+                stage.name,
+                short(100.0 * stage.false_support)
+            ));
+        }
         let times = &report.times;
         let phases = [
             times.set_up,

@@ -205,7 +205,10 @@ fn carried_state_belongs_to_the_stress() {
     }
 }
 
-/// GOAL: the elastic kind has the stress of the return map and the tangent of Hencky elasticity.
+/// GOAL: the elastic kind has the stress of the return map and the tangent of Hencky elasticity, to
+/// the bit where nothing was returned. Where something was, stretches are answered alike, and
+/// turns so that the tangent is symmetric together with the geometric part of the returned stress:
+/// `A_abcd − τ_ad δ_bc = A_cdab − τ_cb δ_da`.
 #[test]
 fn elastic_kind_changes_the_tangent_only() {
     for entry in all() {
@@ -221,9 +224,24 @@ fn elastic_kind_changes_the_tangent_only() {
                 let full: Lifted<2> = measure.lift(&*entry.law, &state, TangentKind::Consistent);
                 let hencky: Lifted<2> = measure.lift(&elastic, &state, TangentKind::Elastic);
                 assert_eq!(own.tau, full.tau);
-                assert_eq!(own.tangent(), hencky.tangent());
+                let (of_own, of_hencky) = (own.tangent(), hencky.tangent());
+                if !own.regime.is_plastic() || measure == Measure::Small {
+                    assert_eq!(of_own, of_hencky);
+                }
+                let geometric = f64::from(u8::from(measure == Measure::Finite));
+                let [own_a, hencky_a] = [of_own.modulus, of_hencky.modulus];
+                let round_off = 1e-13 * (1.0 + largest(&own.tau) + elastic_scale(&entry.law));
+                for [a, b, c, d] in indices() {
+                    let stretch = own_a[a][b][c][d] + own_a[a][b][d][c];
+                    let expected = hencky_a[a][b][c][d] + hencky_a[a][b][d][c];
+                    assert!((stretch - expected).abs() < round_off, "{}", entry.label);
+                    let delta = |i: usize, j: usize| geometric * f64::from(u8::from(i == j));
+                    let one = own_a[a][b][c][d] - own.tau[a][d] * delta(b, c);
+                    let other = own_a[c][d][a][b] - own.tau[c][b] * delta(d, a);
+                    assert!((one - other).abs() < round_off, "{}", entry.label);
+                }
                 let exact: Lifted<2> = measure.lift(&elastic, &state, TangentKind::Consistent);
-                let error = exact.tangent().modulus[0][1][0][1] - own.tangent().modulus[0][1][0][1];
+                let error = exact.tangent().modulus[0][1][0][1] - hencky_a[0][1][0][1];
                 assert!(
                     error.abs() < 1e-9 * elastic_scale(&entry.law),
                     "{}",
@@ -232,6 +250,11 @@ fn elastic_kind_changes_the_tangent_only() {
             }
         }
     }
+}
+
+/// All a, b, c, d in the plane.
+fn indices() -> impl Iterator<Item = [usize; 4]> {
+    (0..16).map(|k| [k / 8, k / 4 % 2, k / 2 % 2, k % 2])
 }
 
 fn elastic_scale(law: &std::sync::Arc<dyn igimp_material::ConstitutiveModel>) -> f64 {

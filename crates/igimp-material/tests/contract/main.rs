@@ -3,6 +3,7 @@
 //! | file | what is asked |
 //! |---|---|
 //! | `returns` | admissible, split of strain, dissipation, closest point, isotropy |
+//! | `active_sets` | returns to planes against every set of planes |
 //! | `flow_rule` | plastic strain in the cone of the active planes |
 //! | `tangents` | consistent tangent against differences, symmetry |
 //! | `lifts` | spatial tangent against differences, rotation, plane strain against 3D |
@@ -14,6 +15,7 @@
 //!
 //! A new law joins by its lines in `catalogue`.
 
+mod active_sets;
 mod catalogue;
 mod close_eigenvalues;
 mod flow_rule;

@@ -69,6 +69,25 @@ fn a_cutoff_above_the_apex_never_acts() {
     }
 }
 
+/// A cut-off that no state comes near changes nothing, however large: it does not blunt the planes
+/// of shear.
+#[test]
+fn a_cutoff_far_away_never_acts() {
+    let law = MohrCoulomb::new(elasticity(), 1.0, 0.0, 0.0).unwrap();
+    for cutoff in [1e3, 1e9, 1e15, 1e200] {
+        let cut = law.clone().with_tension_cutoff(cutoff).unwrap();
+        let mut random = Random(34);
+        let mut plastic = 0;
+        for _ in 0..5_000 {
+            let strain = random.values(0.1);
+            let (plain, cut) = (answer(&law, &strain), answer(&cut, &strain));
+            assert_eq!(plain, cut, "{cutoff:e} {strain:?}");
+            plastic += usize::from(cut.regime.is_plastic());
+        }
+        assert!(plastic > 1_000);
+    }
+}
+
 #[test]
 fn reduction_divides_strength_and_keeps_elasticity() {
     let srf = 1.3;

@@ -141,9 +141,9 @@ pub(crate) fn shifted_block(
 /// A roller at the lower end of axis 0, everything held at the lower end of axis 1.
 pub(crate) fn standing(grid: &Grid<2>) -> Constraints<2> {
     let mut constraints = Constraints::free(grid);
-    constraints.fix_wall(grid, 0, false, 0);
-    constraints.fix_wall(grid, 1, false, 0);
-    constraints.fix_wall(grid, 1, false, 1);
+    constraints.fix_wall(grid, 0, false, 0).unwrap();
+    constraints.fix_wall(grid, 1, false, 0).unwrap();
+    constraints.fix_wall(grid, 1, false, 1).unwrap();
     constraints
 }
 
@@ -188,9 +188,9 @@ pub(crate) fn pressed(law: &SharedLaw, height: f64, travel: f64) -> StepConditio
         Axis::uniform(0.0, 0.25 * height, 5).unwrap(),
     ]);
     let mut constraints = Constraints::free(&grid);
-    constraints.fix_wall(&grid, 0, false, 0);
-    constraints.fix_wall(&grid, 0, true, 0);
-    constraints.fix_wall(&grid, 1, false, 1);
+    constraints.fix_wall(&grid, 0, false, 0).unwrap();
+    constraints.fix_wall(&grid, 0, true, 0).unwrap();
+    constraints.fix_wall(&grid, 1, false, 1).unwrap();
     for column in 0..=3 {
         let node = grid.node_index([column, 4]);
         constraints.prescribe(node, 1, -travel).unwrap();

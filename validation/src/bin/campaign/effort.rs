@@ -57,7 +57,9 @@ fn cause(failure: &StepFailure) -> &'static str {
         StepFailure::MaxIterations { .. } => "corrections run out",
         StepFailure::Diverged => "residual diverges",
         StepFailure::Stagnated => "residual stagnates",
-        StepFailure::LeavesGrid { .. } => "leaves the grid",
+        StepFailure::LeavesGrid { .. } | StepFailure::LoadPointLeavesGrid { .. } => {
+            "leaves the grid"
+        }
         StepFailure::NotFinite { .. } => "not finite",
         StepFailure::Assembly(AssemblyError::Inverted { .. }) => "particle inverted",
         StepFailure::Assembly(AssemblyError::Material { .. }) => "law fails",

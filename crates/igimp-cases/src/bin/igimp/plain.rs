@@ -81,6 +81,9 @@ pub(crate) fn step(number: usize, steps: usize, progress: f64, report: &StepRepo
     if report.at_round_off {
         line += "  (at round-off)";
     }
+    if report.ghost_penalty > 0.0 {
+        line += "  (with a ghost penalty)";
+    }
     line
 }
 
@@ -198,6 +201,8 @@ mod tests {
             at_round_off: false,
             unknowns: 100,
             plastic_share: 0.031,
+            false_support: 0.0,
+            ghost_penalty: 0.0,
             drag_share: 0.0,
             worst: Some(([31.5, 10.5, 0.0], 0)),
             times: PhaseTimes::default(),
