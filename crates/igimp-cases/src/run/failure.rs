@@ -48,8 +48,9 @@ pub(crate) fn describe(
 fn around(case: &Case, particles: &Particles<2>, place: [f64; 2]) -> ([usize; 3], Option<String>) {
     let mut counts = [0; 3];
     let mut by_material = vec![0_usize; case.materials.len()];
+    let reach = case.grid.cell_at(place);
     for (particle, x) in particles.x.iter().enumerate() {
-        let near = (0..2).all(|axis| (x[axis] - place[axis]).abs() <= case.grid.cell[axis]);
+        let near = (0..2).all(|axis| (x[axis] - place[axis]).abs() <= reach[axis]);
         if !near {
             continue;
         }

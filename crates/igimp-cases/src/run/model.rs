@@ -5,7 +5,7 @@ use std::sync::Arc;
 use igimp_assembly::{
     AssemblyError, Constraints, LoadPoint, Particles, SharedLaw, StepConditions, StepLoads,
 };
-use igimp_shape::{Axis, Grid, ShapeError};
+use igimp_shape::{Grid, ShapeError};
 use igimp_solver::linear::LinearSolver;
 use igimp_solver::{Body, MarchSettings, NewtonSettings};
 
@@ -78,7 +78,7 @@ impl<'c> Model<'c> {
         let particles = &body.particles;
         ModelSize {
             particles: particles.len(),
-            cells: self.case.grid.cells.iter().product(),
+            cells: self.case.grid.cells().iter().product(),
             unknowns: 0,
             weight: particles.mass.iter().sum::<f64>() * self.case.gravity,
             volume: particles.volume0.iter().sum(),
@@ -90,14 +90,12 @@ impl<'c> Model<'c> {
     /// # Errors
     /// [`ShapeError`] for cells that make no grid.
     pub fn grid(&self, settlement: f64) -> Result<Grid<2>, ShapeError> {
-        let spec = &self.case.grid;
-        let [x, y] =
-            [0, 1].map(|axis| Axis::uniform(spec.lower[axis], spec.cell[axis], spec.cells[axis]));
+        let [x, y] = &self.case.grid.axes;
         match &self.footing {
             Some(footing) if settlement > 0.0 => {
-                Ok(Grid::new([x?, footing.rows(spec, settlement)?]))
+                Ok(Grid::new([x.axis()?, footing.rows(y, settlement)?]))
             }
-            _ => Ok(Grid::new([x?, y?])),
+            _ => self.case.grid.grid(),
         }
     }
 
@@ -150,7 +148,7 @@ impl<'c> Model<'c> {
         self.case.loads.iter().find_map(|load| match load.kind {
             LoadKind::RigidFooting { from, to, .. } if settlement > 0.0 => {
                 let base = from[1] - settlement;
-                let top = from[1].max(base + 2.0 * self.case.grid.cell[1]);
+                let top = from[1].max(base + 2.0 * self.case.grid.axes[1].cell_at(from[1]));
                 let corners = [[from[0], base], [to[0], base], [to[0], top], [from[0], top]];
                 Some(Outline {
                     points: corners.to_vec(),
@@ -176,7 +174,7 @@ impl<'c> Model<'c> {
                 }
             }
         }
-        let reach = self.case.grid.cell.map(|cell| 1e-6 * cell);
+        let reach = self.case.grid.smallest_cell().map(|cell| 1e-6 * cell);
         for held in &boundaries.boxes {
             for node in 0..grid.node_count() {
                 let x = grid.node_position(node);
@@ -231,13 +229,16 @@ pub(crate) fn reduced(laws: &[SharedLaw], srf: &[f64]) -> Result<Vec<SharedLaw>,
 
 /// The points that carry pressures and forces, each under the number of its load.
 fn load_points(case: &Case) -> Vec<LoadPoint<2>> {
-    let cell = case.grid.cell[0].min(case.grid.cell[1]);
+    let [x, y] = &case.grid.axes;
     let mut points = Vec::new();
     for (load, kind) in case.loads.iter().map(|load| load.kind).enumerate() {
         match kind {
             LoadKind::RigidFooting { .. } => {}
             LoadKind::Pressure { from, to, traction } => {
                 let length = (to[0] - from[0]).hypot(to[1] - from[1]);
+                let cell = x
+                    .smallest_between(from[0], to[0])
+                    .min(y.smallest_between(from[1], to[1]));
                 let count = (POINTS_PER_CELL * length / cell).ceil().max(1.0) as usize;
                 points.extend(LoadPoint::along_edge(from, to, traction, count, load));
             }

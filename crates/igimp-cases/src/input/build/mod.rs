@@ -9,6 +9,7 @@ mod curves;
 mod derive;
 mod grid;
 mod level;
+mod lines;
 mod loads;
 mod materials;
 mod outputs;
@@ -71,11 +72,14 @@ pub(super) fn build(tree: &mut Node, file: &Path, problems: &mut Problems) -> Op
     let names = AllNames::new(tree, problems);
     header(tree, problems);
 
-    let frame = grid::frame(tree, problems);
-    let grid = grid::grid(tree, frame, problems);
+    let mut frame = grid::frame(tree, problems);
     let method = grid::method(tree);
     let materials = materials::materials(tree, problems);
     let bodies = bodies::bodies(tree, &names, problems);
+    let grid = grid::grid(tree, frame.as_ref(), &bodies, problems);
+    if let (Some(frame), Some(grid)) = (&mut frame, &grid) {
+        frame.axes.clone_from(&grid.axes);
+    }
     let site = Site::new(frame, &bodies);
     bodies::check(tree, &names, &bodies, &site, problems);
     let boundaries = boundaries::boundaries(tree, &site, problems);
