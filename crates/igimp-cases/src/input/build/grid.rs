@@ -14,6 +14,10 @@ use crate::input::tree::Node;
 
 /// Most cells, and most particles.
 pub(super) const MOST: f64 = 5e7;
+/// Most lines in a direction that has them at places of its own.
+const MOST_LINES: f64 = 2e4;
+/// Least ratio of neighbouring cells that can be asked for \[-\].
+const LEAST_GROWTH: f64 = 1.05;
 /// Ratio of neighbouring cells beyond which a warning is given \[-\].
 const MOST_JUMP: f64 = 2.0;
 /// The keys of the two directions.
@@ -164,8 +168,16 @@ fn equal_cells(
 
 /// An axis with lines where they are wanted; warns of neighbouring cells that differ too much.
 fn with_lines(node: &Node, key: &str, wish: &Wish, problems: &mut Problems) -> Option<AxisSpec> {
-    let Some(axis) = wish.axis(MOST) else {
-        too_many(node, &format!("more than {}", count(MOST)), problems);
+    let Some(axis) = wish.axis(MOST_LINES) else {
+        problems
+            .error(
+                node.place_at("cell"),
+                format!(
+                    "the grid would have more than {} lines in {key}",
+                    count(MOST_LINES)
+                ),
+            )
+            .help("use larger cells, or shorter zones");
         return None;
     };
     let (jump, at) = largest_jump(&axis);
@@ -203,8 +215,8 @@ fn wish(
     let key = DIRECTIONS[axis];
     let growth = node.number_at("growth")?;
     let mut is_right = true;
-    if growth <= 1.0 || growth > MOST_JUMP {
-        let message = format!("`growth` must be above 1 and at most {MOST_JUMP}");
+    if !(LEAST_GROWTH..=MOST_JUMP).contains(&growth) {
+        let message = format!("`growth` must be from {LEAST_GROWTH} to {MOST_JUMP}");
         problems
             .error(node.place_at("growth"), message)
             .help("1.3 is usual");

@@ -55,6 +55,13 @@ impl Wish {
                 cells: cells.round() as usize,
             });
         }
+        let finest = self
+            .zones
+            .iter()
+            .map(|zone| (zone.ends[1] - zone.ends[0]) / zone.cell);
+        if finest.fold(0.0, f64::max) > most || cells > most {
+            return None;
+        }
         let mut zones = self.zones.clone();
         zones.extend(fixed.windows(2).map(|ends| Zone {
             ends: [ends[0], ends[1]],
@@ -111,6 +118,10 @@ fn divide(
     most: f64,
     lines: &mut Vec<f64>,
 ) -> Option<()> {
+    if to - from <= size(from).min(size(to)) {
+        lines.push(to);
+        return Some(());
+    }
     // Places at equal shares of a cell.
     let (mut x, mut count, mut places) = (from, 0.0, vec![(0.0, from)]);
     let mut is_even = true;

@@ -8,6 +8,7 @@ mod checks;
 mod curves;
 mod derive;
 mod grid;
+mod layers;
 mod level;
 mod lines;
 mod loads;
@@ -26,6 +27,7 @@ use super::schema::FORMAT;
 use super::tree::Node;
 use crate::case::Case;
 
+use layers::Layers;
 pub(super) use quantities::QUANTITY_DOCS;
 use site::Site;
 
@@ -84,6 +86,13 @@ pub(super) fn build(tree: &mut Node, file: &Path, problems: &mut Problems) -> Op
     bodies::check(tree, &names, &bodies, &site, problems);
     let boundaries = boundaries::boundaries(tree, &site, problems);
     bodies::check_support(tree, &bodies, boundaries.as_ref(), &site, problems);
+    let layers = Layers {
+        tree,
+        bodies: &bodies,
+        materials: &materials,
+        site: &site,
+    };
+    layers::check(&layers, problems);
     let loads = loads::loads(tree, &site, problems);
     let context = stages::Context {
         tree,
@@ -95,6 +104,8 @@ pub(super) fn build(tree: &mut Node, file: &Path, problems: &mut Problems) -> Op
     };
     let stages = stages::stages(&context, problems);
     stages::check_use(&context, problems);
+    let gravity = tree.get("case").and_then(|case| case.number_at("gravity"));
+    layers::check_stiffness(&layers, &stages, gravity, problems);
     let solver = outputs::solver(tree, &materials, problems);
     let monitors = outputs::monitors(tree, &site, problems);
     let sections = outputs::sections(tree, &site, problems);

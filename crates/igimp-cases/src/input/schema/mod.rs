@@ -184,7 +184,7 @@ static GRID: Struct = Struct {
             "growth",
             Kind::Number(Range::Positive),
             "1.3",
-            "ratio of neighbouring cells beside zones and thin layers; above 1, at most 2",
+            "ratio of neighbouring cells beside zones and thin layers; from 1.05 to 2",
         ),
         default(
             "basis",
@@ -237,13 +237,13 @@ static LINES: Struct = Struct {
     fields: &[
         default(
             "x",
-            Kind::List(&LENGTH, 0, MANY),
+            Kind::List(&LENGTH, 0, MOST_THINGS),
             "[]",
             "places of upright lines",
         ),
         default(
             "y",
-            Kind::List(&LENGTH, 0, MANY),
+            Kind::List(&LENGTH, 0, MOST_THINGS),
             "[]",
             "places of level lines",
         ),
