@@ -12,7 +12,7 @@ use igimp_assembly::{Method, SharedLaw};
 use igimp_material::{Elasticity, HenckyElastic, MaterialError, MohrCoulomb, Tresca, VonMises};
 use igimp_solver::linear::SolverKind;
 
-pub use grid::{AxisSpec, GridSpec};
+pub use grid::{AxisSpec, GridSpec, MixedCells};
 
 use crate::check::Band;
 

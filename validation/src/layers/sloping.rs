@@ -61,6 +61,30 @@ impl Way {
         Self::Split,
         Self::OwnDilatation,
     ];
+
+    /// As the table says it.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Own => "own stiffness",
+            Self::MeanStiffness => "mean stiffness of the cell",
+            Self::MeanCompliance => "mean compliance of the cell",
+            Self::MeanStress => "mean stress of the cell",
+            Self::Split => "domains end at the boundary",
+            Self::OwnDilatation => "own stiffness, no B-bar",
+        }
+    }
+
+    /// As files are named.
+    pub(super) fn key(self) -> &'static str {
+        match self {
+            Self::Own => "own",
+            Self::MeanStiffness => "mean_stiffness",
+            Self::MeanCompliance => "mean_compliance",
+            Self::MeanStress => "mean_stress",
+            Self::Split => "split",
+            Self::OwnDilatation => "own_dilatation",
+        }
+    }
 }
 
 /// The exact solution: normal and tangent of the boundary, and strains of the two soils.

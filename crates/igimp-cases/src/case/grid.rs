@@ -8,6 +8,18 @@ use igimp_shape::{Axis, Grid, ShapeError};
 pub struct GridSpec {
     /// One axis for each direction.
     pub axes: [AxisSpec; 2],
+    /// Stiffness of particles in cells that several soils share.
+    pub mixed_cells: MixedCells,
+}
+
+/// Stiffness of particles in cells that several soils share when the bodies are filled.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum MixedCells {
+    /// Each has that of its own soil.
+    #[default]
+    Own,
+    /// All have the inverse of the mean compliance of the cell, by volume.
+    Mean,
 }
 
 /// One direction of the grid.
@@ -34,7 +46,10 @@ impl GridSpec {
             cell: cell[axis],
             cells: cells[axis],
         });
-        Self { axes }
+        Self {
+            axes,
+            mixed_cells: MixedCells::Own,
+        }
     }
 
     /// Lower left corner \[m\].
@@ -73,8 +88,10 @@ impl GridSpec {
     /// When `n` is zero.
     #[must_use]
     pub fn refined(&self, n: usize) -> Self {
-        let axes = self.axes.each_ref().map(|axis| axis.refined(n));
-        Self { axes }
+        Self {
+            axes: self.axes.each_ref().map(|axis| axis.refined(n)),
+            mixed_cells: self.mixed_cells,
+        }
     }
 
     /// The grid.
@@ -292,6 +309,7 @@ mod tests {
                     cells: 3,
                 },
             ],
+            mixed_cells: MixedCells::Mean,
         };
         let finer = grid.refined(2);
         assert_eq!(finer.cells(), [6, 6]);

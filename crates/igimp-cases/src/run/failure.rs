@@ -62,7 +62,7 @@ fn around(case: &Case, particles: &Particles<2>, place: [f64; 2]) -> ([usize; 3]
         counts[0] += 1;
         counts[1] += usize::from(regime.is_plastic());
         counts[2] += usize::from(at_tip);
-        by_material[particles.law[particle]] += 1;
+        by_material[particles.law[particle] % case.materials.len()] += 1;
     }
     let most = by_material
         .iter()

@@ -11,7 +11,7 @@ use igimp_solver::{Body, MarchSettings, NewtonSettings};
 
 use super::footing::Footing;
 use super::state::{Controls, State};
-use crate::case::{Case, LoadKind, Side};
+use crate::case::{Case, LoadKind, MixedCells, Side};
 use crate::error::CaseError;
 use crate::figures::{Outline, OutlineStyle};
 use crate::seed::fill_polygon;
@@ -28,7 +28,8 @@ const POINTS_PER_CELL: f64 = 4.0;
 pub struct Model<'c> {
     /// The case.
     pub case: &'c Case,
-    /// Laws of full strength, by material.
+    /// Laws of full strength: one for each material in their order, then again one for each material
+    /// for every cell whose soils share a mean stiffness.
     pub laws: Vec<SharedLaw>,
     footing: Option<Footing>,
 }
@@ -44,7 +45,7 @@ impl<'c> Model<'c> {
             .iter()
             .map(crate::case::Material::law)
             .collect::<Result<Vec<_>, _>>()?;
-        let model = Self {
+        let mut model = Self {
             case,
             laws,
             footing: Footing::of(case)?,
@@ -66,6 +67,9 @@ impl<'c> Model<'c> {
                 density,
                 part.material,
             )?);
+        }
+        if case.grid.mixed_cells == MixedCells::Mean {
+            super::mixed_cells::share_stiffness(case, &grid, &mut seeds, &mut model.laws)?;
         }
         let mut body = Body::new(Particles::new(&seeds)?);
         body.load_points = load_points(case);
@@ -212,10 +216,11 @@ impl<'c> Model<'c> {
     }
 }
 
-/// Laws at strengths divided by these factors, by material.
+/// Laws at strengths divided by these factors, by material; laws run through the materials in their
+/// order, again and again.
 pub(crate) fn reduced(laws: &[SharedLaw], srf: &[f64]) -> Result<Vec<SharedLaw>, AssemblyError> {
     laws.iter()
-        .zip(srf)
+        .zip(srf.iter().cycle())
         .map(|(law, &srf)| {
             if srf.total_cmp(&1.0).is_eq() {
                 Ok(Arc::clone(law))

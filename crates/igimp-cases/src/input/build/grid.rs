@@ -6,7 +6,7 @@ use igimp_assembly::{DomainUpdate, Kinematics, Method, Remedy, SmallCuts};
 use igimp_shape::{Basis, Gimp, Linear};
 
 use super::lines::{Wish, Zone, largest_jump};
-use crate::case::{AxisSpec, BodyPart, GridSpec};
+use crate::case::{AxisSpec, BodyPart, GridSpec, MixedCells};
 use crate::check::short;
 use crate::input::diagnostic::Problems;
 use crate::input::text::{count, number};
@@ -107,7 +107,13 @@ pub(super) fn grid(
     let [Some(x), Some(y)] = found else {
         return None;
     };
-    let grid = GridSpec { axes: [x, y] };
+    let grid = GridSpec {
+        axes: [x, y],
+        mixed_cells: match node.text_at("mixed_cells")? {
+            "mean" => MixedCells::Mean,
+            _ => MixedCells::Own,
+        },
+    };
     let total: f64 = grid.cells().iter().map(|&cells| cells as f64).product();
     if total > MOST {
         too_many(node, &count(total), problems);

@@ -2,7 +2,7 @@
 //!
 //! The wanted size of a cell is that of the grid, or what is finer nearby: a zone, or two lines
 //! closer together than a cell. Away from them it grows so that each cell is `growth` times its
-//! neighbour. Between two given lines the cells are as near to that as a whole number of them
+//! neighbour (theory, eq. 37c). Between two given lines the cells are as near to that as a whole number of them
 //! allows.
 
 use crate::case::AxisSpec;

@@ -187,6 +187,12 @@ static GRID: Struct = Struct {
             "ratio of neighbouring cells beside zones and thin layers; from 1.05 to 2",
         ),
         default(
+            "mixed_cells",
+            Kind::Choice(&MIXED_CELLS),
+            "\"own\"",
+            "stiffness of particles in cells that several soils share",
+        ),
+        default(
             "basis",
             Kind::Choice(&BASES),
             "\"gimp\"",
@@ -255,6 +261,14 @@ static FITS: [Choice; 2] = [
     choice(
         "layers",
         "level lines move onto the level edges of bodies: layer boundaries and surfaces",
+    ),
+];
+
+static MIXED_CELLS: [Choice; 2] = [
+    choice("own", "that of the particle's own soil"),
+    choice(
+        "mean",
+        "the inverse of the mean compliance of the cell, as it is filled; strength stays the particle's own",
     ),
 ];
 
