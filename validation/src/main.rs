@@ -116,7 +116,7 @@ impl Case {
             Self::Elastica => elastica::study(level, out),
             Self::Slopes => slopes::study(level, out),
             Self::TiltedLayer => tilted_layer::study(level, out),
-            Self::Layers => layers::study(level, out),
+            Self::Layers => layers::study(out),
             Self::FootingContact => footing_contact::study(level, out),
             Self::Comparisons => comparisons::study(level, out),
         }

@@ -77,11 +77,12 @@ fn boundaries_within_cells_are_told_with_a_remedy() {
         warnings.contains("at y = 4.5 m lies within cells"),
         "{warnings}"
     );
-    assert!(warnings.contains("up to 66.7 % off"), "{warnings}");
+    assert!(warnings.contains("up to 66.67 % off"), "{warnings}");
     assert!(warnings.contains("fit = \"layers\""), "{warnings}");
     assert_eq!(file(&ground("fit = \"layers\"")).warnings(), "");
     let alike = ground("").replace("young = \"6 MPa\"", "young = \"30 MPa\"");
     assert_eq!(file(&alike).warnings(), "");
+    assert_eq!(file(&ground("mixed_cells = \"mean\"")).warnings(), "");
     let sloping = ground("").replace("[\"12 m\",\"4.5 m\"]", "[\"12 m\",\"6.5 m\"]");
     let warnings =
         file(&sloping.replace("[\"12 m\",\"4.5 m\"]", "[\"12 m\",\"6.5 m\"]")).warnings();

@@ -72,6 +72,7 @@ fn check_pairs(
     let items = layers.tree.items_at("bodies");
     let grid = layers.tree.get("grid");
     let is_fitted = grid.and_then(|grid| grid.text_at("fit")) == Some("layers");
+    let is_shared = grid.and_then(|grid| grid.text_at("mixed_cells")) == Some("mean");
     let mut neighbours = vec![Neighbours::default(); bodies.len()];
     for (second, b) in bodies.iter().enumerate() {
         for (first, a) in bodies[..second].iter().enumerate() {
@@ -122,7 +123,7 @@ fn check_pairs(
                     (within.error(ordered), within)
                 })
                 .max_by(|a, b| a.0.total_cmp(&b.0));
-            if let Some((error, within)) = worst.filter(|(error, _)| *error > WORTH) {
+            if let Some((error, within)) = worst.filter(|(error, _)| *error > WORTH && !is_shared) {
                 let names = [&a.name, &b.name].map(|name| clip(name, 40));
                 within.warn(&names, error, is_fitted, Report { place, problems });
             }
@@ -201,7 +202,7 @@ impl Within {
                 .help(format!(
                     "where it halves a cell, the stress across it is {percent} % off at particles"
                 ))
-                .help("the mean of the cell is right; finer cells narrow the band");
+                .help("mixed_cells = \"mean\" in [grid] shares one stiffness in such cells; finer cells narrow the band");
             return;
         };
         let key = ["x", "y"][axis];
