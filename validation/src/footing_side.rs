@@ -106,7 +106,7 @@ impl Shaft {
         Self {
             edge,
             level,
-            cell: case.grid.cell[0],
+            cell: case.grid.smallest_cell()[0],
             reaction_factor,
         }
     }

@@ -14,6 +14,7 @@ mod footing;
 mod footing_contact;
 mod footing_side;
 mod laboratory;
+mod layers;
 mod limit_equilibrium;
 mod manufactured;
 mod matrix;
@@ -95,6 +96,7 @@ enum Case {
     Elastica,
     Slopes,
     TiltedLayer,
+    Layers,
     FootingContact,
     Comparisons,
 }
@@ -114,6 +116,7 @@ impl Case {
             Self::Elastica => elastica::study(level, out),
             Self::Slopes => slopes::study(level, out),
             Self::TiltedLayer => tilted_layer::study(level, out),
+            Self::Layers => layers::study(out),
             Self::FootingContact => footing_contact::study(level, out),
             Self::Comparisons => comparisons::study(level, out),
         }

@@ -99,7 +99,7 @@ fn smoothness(study: &mut Study) -> Result<(), CaseError> {
 /// Root mean square of the deviation of σ_yy from local planes of radius 1.3 h, over γH \[-\].
 fn roughness(result: &Computed) -> f64 {
     let particles = result.particles();
-    let radius = 1.3 * result.case.grid.cell[0];
+    let radius = 1.3 * result.case.grid.smallest_cell()[0];
     let scale = soil(&result.case).0 * HEIGHT;
     oscillation(&particles.x, &sigma(particles, 1, 1), radius) / scale
 }
@@ -152,7 +152,7 @@ fn smoothness_figures(study: &mut Study, results: &[Computed]) -> Result<(), Cas
                 &compression(result),
                 (section.from, section.to),
                 section.points,
-                result.case.grid.cell[0],
+                result.case.grid.smallest_cell()[0],
             );
             let mut table = Table::new(
                 format!("{name}_{}", slug(&result.method())),

@@ -137,6 +137,11 @@ impl Method {
         Self::with(Arc::new(Gimp), Locking::BBar)
     }
 
+    /// iGIMP with the strain shared within cells, for soil that dilates.
+    pub fn shared_strain() -> Self {
+        Self::with(Arc::new(Gimp), Locking::SharedStrain)
+    }
+
     /// The variant's name as the paper writes it, such as `iGIMP + B-bar`.
     pub fn label(&self) -> String {
         let basis = if self.basis.name() == "linear" {

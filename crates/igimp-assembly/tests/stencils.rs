@@ -86,8 +86,8 @@ fn stencils<const D: usize>(sample: &Sample<D>, cuts: bool) -> (Particles<D>, St
         method.small_cuts.below = 0.0;
     }
     let particles = Particles::new(&sample.seeds).unwrap();
-    let free = Constraints::free(&sample.grid);
-    let stencils = Stencils::build(&sample.grid, &particles, &method, &free).unwrap();
+    let conditions = conditions(&sample.grid, &laws()[1].1);
+    let stencils = Stencils::build(&particles, &method, &conditions).unwrap();
     (particles, stencils)
 }
 

@@ -3,12 +3,16 @@
 //! Lengths are in m, stresses in Pa, unit weights in N/m³, angles in rad, forces in N/m (plane
 //! strain, per metre run). The second axis points up; gravity acts along its negative direction.
 
+mod grid;
+
 use std::path::PathBuf;
 use std::sync::Arc;
 
 use igimp_assembly::{Geometry, Method, SharedLaw};
 use igimp_material::{Elasticity, HenckyElastic, MaterialError, MohrCoulomb, Tresca, VonMises};
 use igimp_solver::linear::SolverKind;
+
+pub use grid::{AxisSpec, GridSpec, MixedCells};
 
 use crate::check::Band;
 
@@ -45,24 +49,6 @@ pub struct Case {
     pub checks: Vec<CaseCheck>,
     /// What is written, and where.
     pub output: Output,
-}
-
-/// A fixed background grid of equal cells.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct GridSpec {
-    /// Cell size by direction \[m\].
-    pub cell: [f64; 2],
-    /// Lower left corner \[m\].
-    pub lower: [f64; 2],
-    /// Number of cells by direction.
-    pub cells: [usize; 2],
-}
-
-impl GridSpec {
-    /// Upper right corner \[m\].
-    pub fn upper(&self) -> [f64; 2] {
-        std::array::from_fn(|axis| self.lower[axis] + self.cells[axis] as f64 * self.cell[axis])
-    }
 }
 
 /// A material.

@@ -13,7 +13,7 @@ pub mod speed;
 pub mod time;
 pub mod watch;
 
-use igimp_shape::{Axis, Grid, Scratch, supports};
+use igimp_shape::{Scratch, supports};
 
 use crate::case::{Case, LoadKind, ReductionPath, Side, StageKind};
 use crate::error::CaseError;
@@ -60,11 +60,7 @@ pub struct Estimate {
 /// # Errors
 /// [`CaseError`] for a grid that cannot be made and bodies that do not lie on it.
 pub fn estimate(case: &Case) -> Result<Estimate, CaseError> {
-    let spec = &case.grid;
-    let grid = Grid::new([
-        Axis::uniform(spec.lower[0], spec.cell[0], spec.cells[0])?,
-        Axis::uniform(spec.lower[1], spec.cell[1], spec.cells[1])?,
-    ]);
+    let grid = case.grid.grid()?;
     let mut active = vec![false; grid.node_count()];
     let (mut scratch, mut list) = (Scratch::default(), Vec::new());
     let mut particles = 0;
@@ -186,8 +182,9 @@ fn steps(case: &Case) -> f64 {
 
 /// Which components of a node are held by supports and footings.
 fn held(case: &Case, x: [f64; 2]) -> [bool; 2] {
-    let (lower, upper) = (case.grid.lower, case.grid.upper());
-    let near = |a: f64, b: f64, axis: usize| (a - b).abs() < 1e-6 * case.grid.cell[axis];
+    let (lower, upper) = (case.grid.lower(), case.grid.upper());
+    let cell = case.grid.smallest_cell();
+    let near = |a: f64, b: f64, axis: usize| (a - b).abs() < 1e-6 * cell[axis];
     let sides = &case.boundaries;
     let mut held = [false; 2];
     for (side, axis, at) in [
@@ -203,7 +200,7 @@ fn held(case: &Case, x: [f64; 2]) -> [bool; 2] {
     }
     for fixed in &sides.boxes {
         let inside = (0..2).all(|axis| {
-            let slack = 1e-6 * case.grid.cell[axis];
+            let slack = 1e-6 * cell[axis];
             fixed.lower[axis] - slack <= x[axis] && x[axis] <= fixed.upper[axis] + slack
         });
         if inside {
@@ -215,7 +212,7 @@ fn held(case: &Case, x: [f64; 2]) -> [bool; 2] {
             from, to, rough, ..
         } = load.kind
         {
-            let slack = 1e-6 * case.grid.cell[0];
+            let slack = 1e-6 * cell[0];
             let below = from[0].min(to[0]) - slack <= x[0] && x[0] <= from[0].max(to[0]) + slack;
             if below && near(x[1], from[1], 1) {
                 held = [held[0] || rough, true];

@@ -4,7 +4,7 @@
 use std::error::Error;
 
 use igimp_assembly::Remedy;
-use igimp_cases::case::{Case, LoadKind, Strength};
+use igimp_cases::case::{Case, GridSpec, LoadKind, Strength};
 use igimp_cases::exact;
 use igimp_cases::run::in_memory;
 use igimp_cases::shipped::find;
@@ -61,9 +61,13 @@ fn nonsense_is_refused_with_its_reason() {
         poisson.contains("poisson") && poisson.contains("0.5"),
         "{poisson}"
     );
-    let cell = refused("column", &|case| case.grid.cell[1] = 0.0);
+    let cell = refused("column", &|case| {
+        case.grid = GridSpec::equal([0.0; 2], [1.0, 0.0], case.grid.cells());
+    });
     assert!(cell.starts_with("the grid cannot be made: "), "{cell}");
-    let outside = refused("column", &|case| case.grid.cells[1] = 3);
+    let outside = refused("column", &|case| {
+        case.grid = GridSpec::equal([0.0; 2], case.grid.smallest_cell(), [1, 3]);
+    });
     assert!(outside.ends_with("outside the grid domain"), "{outside}");
     let dilation = refused("mohr_coulomb_slope", &|case| {
         if let Strength::MohrCoulomb { dilation_angle, .. } = &mut case.materials[0].strength {

@@ -222,7 +222,7 @@ pub(super) fn corrections_of_trials(computed: &Computed) -> f64 {
 /// Oscillation of σ_yy over γH in the slope, H = 10 m: deviation from local planes of radius 1.3 h \[-\].
 pub(super) fn roughness(computed: &Computed) -> f64 {
     let particles = computed.particles();
-    let radius = 1.3 * computed.case.grid.cell[0];
+    let radius = 1.3 * computed.case.grid.smallest_cell()[0];
     let scale = 10.0 * computed.case.materials[0].unit_weight;
     oscillation(&particles.x, &sigma(particles, 1, 1), radius) / scale
 }

@@ -234,7 +234,11 @@ fn pressure_oscillation(computed: &Computed) -> f64 {
         .map(|sigma| (sigma[0][0] + sigma[1][1] + sigma[2][2]) / 3.0)
         .collect();
     let square = mean.iter().map(|p| p * p).sum::<f64>() / mean.len() as f64;
-    oscillation(&particles.x, &mean, 1.3 * computed.case.grid.cell[0]) / square.sqrt()
+    oscillation(
+        &particles.x,
+        &mean,
+        1.3 * computed.case.grid.smallest_cell()[0],
+    ) / square.sqrt()
 }
 
 /// The footing pushed one width deep.

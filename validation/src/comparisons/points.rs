@@ -173,7 +173,7 @@ fn push(study: &mut Study, footings: &Footings) -> Result<(), CaseError> {
     for (name, _) in pushes {
         let computed = footings.of(name);
         effort.push(vec![
-            (1.0 / computed.case.grid.cell[0]).round(),
+            (1.0 / computed.case.grid.smallest_cell()[0]).round(),
             computed.case.bodies[0].per_direction as f64,
             footings.scatter(name),
             corrections(computed),

@@ -287,7 +287,7 @@ mod tests {
             let mut section = Section::homogeneous("slope", shape, (10.0, friction), [10.0, 0.0]);
             section.watched = (friction > 0.0).then_some([10.0, 10.0]);
             let case = section.case(variant, [1.0, 1.4]).unwrap();
-            assert_eq!(case.grid.cells, [20, 11]);
+            assert_eq!(case.grid.cells(), [20, 11]);
             assert_eq!(case.monitors.len(), usize::from(friction > 0.0));
         }
     }

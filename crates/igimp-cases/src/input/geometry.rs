@@ -156,6 +156,100 @@ fn shared(a: &[[f64; 2]], b: &[[f64; 2]]) -> Vec<[f64; 2]> {
     out
 }
 
+/// A stretch where two polygons face each other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Facing {
+    /// Its ends on the edge of the first polygon.
+    pub(super) ends: [Point; 2],
+    /// Half-way between the two.
+    pub(super) middle: Point,
+    /// How far apart they are there; 0 for a shared edge.
+    pub(super) distance: f64,
+}
+
+/// The stretches where edges of two polygons run side by side, their insides on opposite sides, not
+/// further apart than a distance.
+pub(super) fn facing(a: &[Point], b: &[Point], most: f64) -> Vec<Facing> {
+    let ((a_low, a_high), (b_low, b_high)) = (bounding_box(a), bounding_box(b));
+    let apart =
+        |axis: usize| a_high[axis] + most < b_low[axis] || b_high[axis] + most < a_low[axis];
+    if apart(0) || apart(1) {
+        return Vec::new();
+    }
+    let turn = |polygon: &[Point]| area_and_centroid(polygon).0.signum();
+    let is_same_way = turn(a) * turn(b) > 0.0;
+    let outwards = turn(a);
+    let mut out = Vec::new();
+    for (p, q) in edges(a) {
+        let along = [q[0] - p[0], q[1] - p[1]];
+        let length = along[0].hypot(along[1]);
+        let along = [along[0] / length, along[1] / length];
+        // Along the edge, and outwards from the first polygon.
+        let local = |x: Point| {
+            let to = [x[0] - p[0], x[1] - p[1]];
+            [
+                to[0] * along[0] + to[1] * along[1],
+                outwards * (to[0] * along[1] - to[1] * along[0]),
+            ]
+        };
+        for (r, s) in edges(b) {
+            let (mut r, mut s) = (local(r), local(s));
+            if is_same_way {
+                (r, s) = (s, r);
+            }
+            // Nearly parallel, and the other way round.
+            let run = s[0] - r[0];
+            if run <= 0.0 || (s[1] - r[1]).abs() > 0.1 * run {
+                continue;
+            }
+            let (from, to) = (r[0].max(0.0), s[0].min(length));
+            if to - from <= 1e-6 * length {
+                continue;
+            }
+            let t = 0.5 * (from + to);
+            let distance = r[1] + (t - r[0]) / run * (s[1] - r[1]);
+            if distance.abs() > most {
+                continue;
+            }
+            let at = |t: f64, off: f64| {
+                [
+                    p[0] + t * along[0] + off * outwards * along[1],
+                    p[1] + t * along[1] - off * outwards * along[0],
+                ]
+            };
+            out.push(Facing {
+                ends: [at(from, 0.0), at(to, 0.0)],
+                middle: at(t, 0.5 * distance),
+                distance: distance.abs(),
+            });
+        }
+    }
+    out
+}
+
+/// The longest stretch of a polygon along an axis.
+pub(super) fn largest_run(polygon: &[Point], axis: usize) -> [f64; 2] {
+    let turned: Vec<Point> = if axis == 0 {
+        polygon.to_vec()
+    } else {
+        polygon.iter().map(|x| [x[1], x[0]]).collect()
+    };
+    let mut levels: Vec<f64> = turned.iter().map(|corner| corner[1]).collect();
+    levels.sort_by(f64::total_cmp);
+    // Lengths are linear between corners: they are longest beside one.
+    let beside = levels.windows(2).flat_map(|pair| {
+        let off = 1e-6 * (pair[1] - pair[0]);
+        [pair[0] + off, pair[1] - off]
+    });
+    beside
+        .flat_map(|y| intervals(&turned, y))
+        .max_by(|a, b| (a[1] - a[0]).total_cmp(&(b[1] - b[0])))
+        .unwrap_or_else(|| {
+            let (lower, upper) = bounding_box(polygon);
+            [lower[axis], upper[axis]]
+        })
+}
+
 /// Edges of a polygon that have its inside below them: left end, right end.
 pub(super) fn top_edges(polygon: &[Point]) -> Vec<[Point; 2]> {
     let is_counter_clockwise = area_and_centroid(polygon).0 > 0.0;
@@ -217,6 +311,32 @@ mod tests {
             [0.0, third],
         ];
         assert_eq!(overlap(&soil, &rock, 1e-9), None);
+    }
+
+    #[test]
+    fn polygons_face_each_other_across_a_gap_whichever_way_round_they_are() {
+        let beside = moved(&SQUARE, [2.1, 0.5]);
+        let mut reversed = beside.clone();
+        reversed.reverse();
+        for other in [beside, reversed] {
+            let found = facing(&SQUARE, &other, 0.2);
+            assert_eq!(found.len(), 1, "{found:?}");
+            assert!((found[0].distance - 0.1).abs() < 1e-12);
+            assert!((found[0].middle[0] - 2.05).abs() < 1e-12);
+            assert!((found[0].middle[1] - 1.25).abs() < 1e-12);
+        }
+        assert!(facing(&SQUARE, &moved(&SQUARE, [2.0, 0.0]), 0.2)[0].distance < 1e-12);
+        assert!(facing(&SQUARE, &moved(&SQUARE, [2.0, 2.0]), 0.2).is_empty());
+        assert!(facing(&SQUARE, &moved(&SQUARE, [2.3, 0.0]), 0.2).is_empty());
+    }
+
+    #[test]
+    fn a_wedge_is_as_thick_as_its_thick_end() {
+        let wedge = [[0.0, 0.0], [6.0, 0.0], [0.0, 1.0]];
+        let height = largest_run(&wedge, 1);
+        assert!(height[0].abs() < 1e-5 && (height[1] - 1.0).abs() < 1e-5);
+        let width = largest_run(&wedge, 0);
+        assert!((width[1] - width[0] - 6.0).abs() < 1e-4);
     }
 
     #[test]

@@ -89,12 +89,12 @@ fn no_equilibrium(
 }
 
 fn off_grid(case: &Case, stage: &Stage, position: [f64; 3]) -> Vec<String> {
-    let (lower, upper) = (case.grid.lower, case.grid.upper());
+    let (lower, upper) = (case.grid.lower(), case.grid.upper());
     let mut out = Vec::new();
     for (axis, name) in ["x", "y"].into_iter().enumerate() {
         let at = position[axis];
-        if !(lower[axis] + case.grid.cell[axis]..=upper[axis] - case.grid.cell[axis]).contains(&at)
-        {
+        let spec = &case.grid.axes[axis];
+        if !(lower[axis] + spec.rise(1)..=upper[axis] - spec.last_cell()).contains(&at) {
             let side = if at > 0.5 * (lower[axis] + upper[axis]) {
                 format!("above {name} = {}", metres(upper[axis]))
             } else {
@@ -260,7 +260,7 @@ fn ghost_penalty() -> String {
 }
 
 fn finer_cell(case: &Case) -> String {
-    let [x, y] = case.grid.cell.map(|cell| 0.5 * cell);
+    let [x, y] = case.grid.largest_cell().map(|cell| 0.5 * cell);
     if (x - y).abs() < 1e-9 * x {
         format!("cell = \"{}\"", metres(x))
     } else {
@@ -275,7 +275,7 @@ fn metres(length: f64) -> String {
 /// The material at a place in the undeformed bodies; beside all bodies, that of the nearest body.
 fn material_at(case: &Case, x: [f64; 2]) -> Option<&Material> {
     let share = |polygon: &[[f64; 2]]| {
-        let half = case.grid.cell.map(|cell| 0.5 * cell);
+        let half = case.grid.cell_at(x).map(|cell| 0.5 * cell);
         let lower = [x[0] - half[0], x[1] - half[1]];
         let upper = [x[0] + half[0], x[1] + half[1]];
         area_and_centroid(&clip_to_box(polygon, lower, upper))

@@ -26,11 +26,7 @@ fn case(kind: StageKind) -> Case {
     Case {
         title: String::new(),
         gravity: 9.81,
-        grid: GridSpec {
-            cell: [0.5, 0.5],
-            lower: [0.0, 0.0],
-            cells: [40, 40],
-        },
+        grid: GridSpec::equal([0.0, 0.0], [0.5, 0.5], [40, 40]),
         method: Method::default(),
         materials: vec![
             material(

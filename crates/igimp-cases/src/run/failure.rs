@@ -48,8 +48,9 @@ pub(crate) fn describe(
 fn around(case: &Case, particles: &Particles<2>, place: [f64; 2]) -> ([usize; 3], Option<String>) {
     let mut counts = [0; 3];
     let mut by_material = vec![0_usize; case.materials.len()];
+    let reach = case.grid.cell_at(place);
     for (particle, x) in particles.x.iter().enumerate() {
-        let near = (0..2).all(|axis| (x[axis] - place[axis]).abs() <= case.grid.cell[axis]);
+        let near = (0..2).all(|axis| (x[axis] - place[axis]).abs() <= reach[axis]);
         if !near {
             continue;
         }
@@ -61,7 +62,7 @@ fn around(case: &Case, particles: &Particles<2>, place: [f64; 2]) -> ([usize; 3]
         counts[0] += 1;
         counts[1] += usize::from(regime.is_plastic());
         counts[2] += usize::from(at_tip);
-        by_material[particles.law[particle]] += 1;
+        by_material[particles.law[particle] % case.materials.len()] += 1;
     }
     let most = by_material
         .iter()

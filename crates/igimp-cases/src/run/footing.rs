@@ -7,7 +7,7 @@
 use igimp_assembly::{AssemblyError, Constraints};
 use igimp_shape::{Axis, Grid, ShapeError};
 
-use crate::case::{Case, GridSpec, LoadKind};
+use crate::case::{AxisSpec, Case, LoadKind};
 use crate::error::CaseError;
 
 /// The footing of a case, as columns and rows of its grid.
@@ -39,8 +39,7 @@ impl Footing {
         if footings.next().is_some() {
             return Err(CaseError::SeveralFootings);
         }
-        let spec = &case.grid;
-        let place = |x: f64, axis: usize| (x - spec.lower[axis]) / spec.cell[axis];
+        let place = |x: f64, axis: usize| case.grid.axes[axis].place(x);
         let row = place(from[1], 1).round();
         if (place(from[1], 1) - row).abs() > 1e-6 || row < 1.0 {
             return Err(CaseError::FootingOffGrid { level: from[1] });
@@ -56,13 +55,13 @@ impl Footing {
     }
 
     /// The rows of the grid at a settlement w \[m\], with rows added on top for those that sank.
-    pub(crate) fn rows(&self, spec: &GridSpec, w: f64) -> Result<Axis, ShapeError> {
-        let (lower, h) = (spec.lower[1], spec.cell[1]);
-        let depth = self.row as f64 * h;
-        let rows = spec.cells[1] + (w / h).ceil() as usize;
+    pub(crate) fn rows(&self, spec: &AxisSpec, w: f64) -> Result<Axis, ShapeError> {
+        let lower = spec.lower();
+        let depth = spec.rise(self.row);
+        let rows = spec.cells() + (w / spec.last_cell()).ceil() as usize;
         let nodes = (0..=rows)
             .map(|row| {
-                let y0 = row as f64 * h;
+                let y0 = spec.rise(row);
                 lower
                     + if row <= self.row {
                         y0 * (depth - w) / depth

@@ -18,7 +18,7 @@ pub(crate) fn level_ground(model: &Model<'_>, state: &mut State) -> Result<(), C
     for particle in 0..fields.x.len() {
         let x = fields.x[particle];
         let vertical = -weight_above(model, &x);
-        let material = &case.materials[fields.law[particle]];
+        let material = &case.materials[fields.law[particle] % case.materials.len()];
         let k0 = material
             .k0
             .unwrap_or(material.poisson / (1.0 - material.poisson));

@@ -12,6 +12,7 @@ mod left;
 mod loading;
 mod memory;
 mod message;
+mod mixed_cells;
 mod model;
 mod output;
 mod processor;

@@ -5,13 +5,13 @@ use std::sync::Arc;
 use igimp_assembly::{
     AssemblyError, Constraints, LoadPoint, Particles, SharedLaw, StepConditions, StepLoads,
 };
-use igimp_shape::{Axis, Grid, ShapeError};
+use igimp_shape::{Grid, ShapeError};
 use igimp_solver::linear::LinearSolver;
 use igimp_solver::{Body, MarchSettings, NewtonSettings};
 
 use super::footing::Footing;
 use super::state::{Controls, State};
-use crate::case::{Case, LoadKind, Side};
+use crate::case::{Case, LoadKind, MixedCells, Side};
 use crate::error::CaseError;
 use crate::figures::{Outline, OutlineStyle};
 use crate::seed::fill_polygon;
@@ -28,7 +28,8 @@ const POINTS_PER_CELL: f64 = 4.0;
 pub struct Model<'c> {
     /// The case.
     pub case: &'c Case,
-    /// Laws of full strength, by material.
+    /// Laws of full strength: one for each material in their order, then again one for each material
+    /// for every cell whose soils share a mean stiffness.
     pub laws: Vec<SharedLaw>,
     footing: Option<Footing>,
 }
@@ -44,7 +45,7 @@ impl<'c> Model<'c> {
             .iter()
             .map(crate::case::Material::law)
             .collect::<Result<Vec<_>, _>>()?;
-        let model = Self {
+        let mut model = Self {
             case,
             laws,
             footing: Footing::of(case)?,
@@ -67,6 +68,9 @@ impl<'c> Model<'c> {
                 part.material,
             )?);
         }
+        if case.grid.mixed_cells == MixedCells::Mean {
+            super::mixed_cells::share_stiffness(case, &grid, &mut seeds, &mut model.laws)?;
+        }
         let mut body = Body::new(Particles::new(&seeds)?);
         body.load_points = load_points(case);
         let controls = Controls::none(case.loads.len(), case.materials.len());
@@ -78,7 +82,7 @@ impl<'c> Model<'c> {
         let particles = &body.particles;
         ModelSize {
             particles: particles.len(),
-            cells: self.case.grid.cells.iter().product(),
+            cells: self.case.grid.cells().iter().product(),
             unknowns: 0,
             weight: particles.mass.iter().sum::<f64>() * self.case.gravity,
             volume: particles.volume0.iter().sum(),
@@ -90,14 +94,12 @@ impl<'c> Model<'c> {
     /// # Errors
     /// [`ShapeError`] for cells that make no grid.
     pub fn grid(&self, settlement: f64) -> Result<Grid<2>, ShapeError> {
-        let spec = &self.case.grid;
-        let [x, y] =
-            [0, 1].map(|axis| Axis::uniform(spec.lower[axis], spec.cell[axis], spec.cells[axis]));
+        let [x, y] = &self.case.grid.axes;
         match &self.footing {
             Some(footing) if settlement > 0.0 => {
-                Ok(Grid::new([x?, footing.rows(spec, settlement)?]))
+                Ok(Grid::new([x.axis()?, footing.rows(y, settlement)?]))
             }
-            _ => Ok(Grid::new([x?, y?])),
+            _ => self.case.grid.grid(),
         }
     }
 
@@ -159,7 +161,7 @@ impl<'c> Model<'c> {
         self.case.loads.iter().find_map(|load| match load.kind {
             LoadKind::RigidFooting { from, to, .. } if settlement > 0.0 => {
                 let base = from[1] - settlement;
-                let top = from[1].max(base + 2.0 * self.case.grid.cell[1]);
+                let top = from[1].max(base + 2.0 * self.case.grid.axes[1].cell_at(from[1]));
                 let corners = [[from[0], base], [to[0], base], [to[0], top], [from[0], top]];
                 Some(Outline {
                     points: corners.to_vec(),
@@ -185,7 +187,7 @@ impl<'c> Model<'c> {
                 }
             }
         }
-        let reach = self.case.grid.cell.map(|cell| 1e-6 * cell);
+        let reach = self.case.grid.smallest_cell().map(|cell| 1e-6 * cell);
         for held in &boundaries.boxes {
             for node in 0..grid.node_count() {
                 let x = grid.node_position(node);
@@ -223,10 +225,11 @@ impl<'c> Model<'c> {
     }
 }
 
-/// Laws at strengths divided by these factors, by material.
+/// Laws at strengths divided by these factors, by material; laws run through the materials in their
+/// order, again and again.
 pub(crate) fn reduced(laws: &[SharedLaw], srf: &[f64]) -> Result<Vec<SharedLaw>, AssemblyError> {
     laws.iter()
-        .zip(srf)
+        .zip(srf.iter().cycle())
         .map(|(law, &srf)| {
             if srf.total_cmp(&1.0).is_eq() {
                 Ok(Arc::clone(law))
@@ -240,13 +243,16 @@ pub(crate) fn reduced(laws: &[SharedLaw], srf: &[f64]) -> Result<Vec<SharedLaw>,
 
 /// The points that carry pressures and forces, each under the number of its load.
 fn load_points(case: &Case) -> Vec<LoadPoint<2>> {
-    let cell = case.grid.cell[0].min(case.grid.cell[1]);
+    let [x, y] = &case.grid.axes;
     let mut points = Vec::new();
     for (load, kind) in case.loads.iter().map(|load| load.kind).enumerate() {
         match kind {
             LoadKind::RigidFooting { .. } => {}
             LoadKind::Pressure { from, to, traction } => {
                 let length = (to[0] - from[0]).hypot(to[1] - from[1]);
+                let cell = x
+                    .smallest_between(from[0], to[0])
+                    .min(y.smallest_between(from[1], to[1]));
                 let count = (POINTS_PER_CELL * length / cell).ceil().max(1.0) as usize;
                 points.extend(LoadPoint::along_edge(from, to, traction, count, load));
             }

@@ -57,7 +57,8 @@ pub(crate) fn run_out(
     }
     let steps = case.stages[number].steps;
     let settings = model.march_settings(steps);
-    let target = run_out.move_per_step * case.grid.cell[0].min(case.grid.cell[1]);
+    let [width, height] = case.grid.smallest_cell();
+    let target = run_out.move_per_step * width.min(height);
     // The whole weight would move the body by the target.
     let largest = case.gravity / target;
     let drag = Cell::new(resumption.map_or(largest, |left| left.drag));

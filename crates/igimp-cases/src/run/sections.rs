@@ -27,7 +27,6 @@ pub(crate) fn read(
     let case = model.case;
     let particles = &state.body.particles;
     let laws = model.laws_reduced_by(&state.controls.srf)?;
-    let reach = case.grid.cell[0].max(case.grid.cell[1]);
     let tables = case
         .sections
         .iter()
@@ -47,6 +46,8 @@ pub(crate) fn read(
             for k in 0..section.points {
                 let t = (k as f64 + 0.5) / section.points as f64;
                 let place = [0, 1].map(|axis| section.from[axis] + t * way[axis]);
+                let [width, height] = case.grid.cell_at(place);
+                let reach = width.max(height);
                 let Some(particle) = nearest(particles, &place, reach) else {
                     continue;
                 };

@@ -11,7 +11,6 @@ use igimp_cases::case::{
 use igimp_cases::results::pictures::{self, Shown};
 use igimp_cases::seed::fill_polygon;
 use igimp_cases::summary::{FigureNote, Summary};
-use igimp_shape::{Axis, Grid};
 
 use crate::findings;
 
@@ -51,11 +50,7 @@ pub(crate) fn case() -> Case {
     Case {
         title: "10 m cut slope, 1:1, c-φ soil on rock".into(),
         gravity: 9.81,
-        grid: GridSpec {
-            cell: [0.5, 0.5],
-            lower: [0.0, 0.0],
-            cells: [120, 44],
-        },
+        grid: GridSpec::equal([0.0, 0.0], [0.5, 0.5], [120, 44]),
         method: Method::default(),
         materials: materials(),
         bodies: vec![
@@ -206,8 +201,7 @@ pub(crate) fn curve() -> Curve {
 /// The slope with stresses that grow with depth and a slide along a circle.
 pub(crate) fn particles(case: &Case) -> (Particles<2>, Vec<SharedLaw>) {
     let laws: Vec<SharedLaw> = case.materials.iter().map(|m| m.law().unwrap()).collect();
-    let axis = |k: usize| Axis::uniform(case.grid.lower[k], case.grid.cell[k], case.grid.cells[k]);
-    let grid = Grid::new([axis(0).unwrap(), axis(1).unwrap()]);
+    let grid = case.grid.grid().unwrap();
     let seeds: Vec<_> = case
         .bodies
         .iter()

@@ -68,7 +68,7 @@ pub(crate) fn equilibrium(
         let noise = STRAIN_ROUND_OFF * modulus * before.volume(particle);
         round_off += noise * noise * slopes;
     }
-    let [dx, dy] = case.grid.cell;
+    let [dx, dy] = case.grid.smallest_cell();
     let (mut free, mut reaction, mut external) = (0.0, 0.0, 0.0);
     for node in 0..grid.node_count() {
         // Nodes with hardly any soil that no neighbour takes along are held.

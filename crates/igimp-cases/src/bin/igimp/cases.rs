@@ -24,7 +24,7 @@ pub(crate) fn check(arguments: &CaseArguments) -> Result<Exit, ProgramError> {
     }
     let size = estimate(case)?;
     output::warn(&file.warnings());
-    let [nx, ny] = case.grid.cells;
+    let [nx, ny] = case.grid.cells();
     let [particle, unknown] = per_item(size.unknowns).map(|bytes| count(round(bytes)));
     let row = |name: &str, value: String| vec![name.to_owned(), value];
     let rows = [

@@ -108,7 +108,7 @@ pub(super) fn check(
 ) {
     let items = tree.items_at("bodies");
     let place = |index: usize| items[index].place_at("polygon");
-    if let Some(frame) = site.frame {
+    if let Some(frame) = &site.frame {
         let mut particles = 0.0;
         for (index, body) in bodies.iter().enumerate() {
             let Some(body) = body else { continue };
@@ -131,12 +131,20 @@ pub(super) fn check(
                     .help("extend [grid] domain");
                 continue;
             }
-            let cells = area_and_centroid(&body.polygon).0.abs() / (frame.cell[0] * frame.cell[1]);
+            let (lower, upper) = bounding_box(&body.polygon);
+            // Cells of the box around the body, times its share of the box.
+            let cells = area_and_centroid(&body.polygon).0.abs()
+                * (0..2)
+                    .map(|axis| {
+                        let [from, to] = [lower, upper].map(|x| frame.axes[axis].place(x[axis]));
+                        (to - from) / (upper[axis] - lower[axis])
+                    })
+                    .product::<f64>();
             let points = (body.per_direction * body.per_direction) as f64;
             particles += cells * points;
         }
         let cells = (0..2)
-            .map(|axis| (frame.upper[axis] - frame.lower[axis]) / frame.cell[axis])
+            .map(|axis| frame.axes[axis].place(frame.upper[axis]))
             .product::<f64>();
         // Too many cells are reported as such.
         if particles > MOST && cells <= MOST {
@@ -177,10 +185,11 @@ pub(super) fn check_support(
     site: &Site,
     problems: &mut Problems,
 ) {
-    let (Some(boundaries), Some(frame), true) = (boundaries, site.frame, site.is_complete) else {
+    let (Some(boundaries), Some(frame), true) = (boundaries, &site.frame, site.is_complete) else {
         return;
     };
-    let reach = frame.cell[0].max(frame.cell[1]);
+    let [x, y] = frame.axes.each_ref().map(|axis| axis.extremes()[1]);
+    let reach = x.max(y);
     let polygons = &site.polygons;
     let held = |polygon: &Vec<[f64; 2]>| {
         let (lower, upper) = bounding_box(polygon);

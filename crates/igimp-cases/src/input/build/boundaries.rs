@@ -34,13 +34,12 @@ fn fixed_box(node: &Node, site: &Site, problems: &mut Problems) -> Option<FixedB
     let (from, to) = (node.pair_at("from")?, node.pair_at("to")?);
     let lower = [from[0].min(to[0]), from[1].min(to[1])];
     let upper = [from[0].max(to[0]), from[1].max(to[1])];
-    if let Some(frame) = site.frame {
+    if let Some(frame) = &site.frame {
         let has_nodes = (0..2).all(|axis| {
             let slack = 1e-6;
-            let low = lower[axis].max(frame.lower[axis]) - frame.lower[axis];
-            let high = upper[axis].min(frame.upper[axis]) - frame.lower[axis];
-            let first = (low / frame.cell[axis] - slack).ceil();
-            first <= high / frame.cell[axis] + slack
+            let place = |x: f64| frame.axes[axis].place(x);
+            let first = (place(lower[axis].max(frame.lower[axis])) - slack).ceil();
+            first <= place(upper[axis].min(frame.upper[axis])) + slack
         });
         if !has_nodes {
             problems

@@ -5,23 +5,33 @@ use std::sync::Arc;
 use igimp_assembly::{DomainUpdate, Geometry, Kinematics, Locking, Method, Remedy, SmallCuts};
 use igimp_shape::{Basis, Gimp, Linear};
 
-use crate::case::GridSpec;
+use super::lines::{Wish, Zone, largest_jump};
+use crate::case::{AxisSpec, BodyPart, GridSpec, MixedCells};
+use crate::check::short;
 use crate::input::diagnostic::Problems;
 use crate::input::text::{count, number};
 use crate::input::tree::Node;
 
 /// Most cells, and most particles.
 pub(super) const MOST: f64 = 5e7;
+/// Most lines in a direction that has them at places of its own.
+const MOST_LINES: f64 = 2e4;
+/// Least ratio of neighbouring cells that can be asked for \[-\].
+const LEAST_GROWTH: f64 = 1.05;
+/// Ratio of neighbouring cells beyond which a warning is given \[-\].
+const MOST_JUMP: f64 = 2.0;
+/// The keys of the two directions.
+const DIRECTIONS: [&str; 2] = ["x", "y"];
 
-/// Extent of the grid and size of its cells as written \[m\].
-#[derive(Clone, Copy, Debug)]
+/// Extent of the grid and its axes, for the checks of what lies on it \[m\].
+#[derive(Clone, Debug)]
 pub(super) struct Frame {
     /// Lower left corner.
     pub(super) lower: [f64; 2],
     /// Upper right corner.
     pub(super) upper: [f64; 2],
-    /// Size of a cell.
-    pub(super) cell: [f64; 2],
+    /// The axes; equal cells as written as long as the grid is not known.
+    pub(super) axes: [AxisSpec; 2],
 }
 
 /// The frame, if its numbers make sense.
@@ -32,15 +42,11 @@ pub(super) fn frame(tree: &Node, problems: &mut Problems) -> Option<Frame> {
         one => [one.number()?; 2],
     };
     let domain = grid.get("domain")?;
-    let mut frame = Frame {
-        lower: [0.0; 2],
-        upper: [0.0; 2],
-        cell,
-    };
+    let (mut lower, mut upper) = ([0.0; 2], [0.0; 2]);
     let mut is_right = true;
-    for (axis, key) in ["x", "y"].into_iter().enumerate() {
+    for (axis, key) in DIRECTIONS.into_iter().enumerate() {
         let [from, to] = domain.pair_at(key)?;
-        (frame.lower[axis], frame.upper[axis]) = (from, to);
+        (lower[axis], upper[axis]) = (from, to);
         if from >= to || !(to - from).is_finite() {
             problems
                 .error(
@@ -51,69 +57,275 @@ pub(super) fn frame(tree: &Node, problems: &mut Problems) -> Option<Frame> {
             is_right = false;
         }
     }
-    is_right.then_some(frame)
+    let axes = [0, 1].map(|axis| AxisSpec::Equal {
+        lower: lower[axis],
+        cell: cell[axis],
+        cells: ((upper[axis] - lower[axis]) / cell[axis]).round().max(1.0) as usize,
+    });
+    is_right.then_some(Frame { lower, upper, axes })
 }
 
-/// The grid; reports a domain that is not a whole number of cells, and too many cells.
-pub(super) fn grid(tree: &Node, frame: Option<Frame>, problems: &mut Problems) -> Option<GridSpec> {
+/// The grid; reports a domain that is not a whole number of cells, lines off the domain, and too
+/// many cells.
+pub(super) fn grid(
+    tree: &Node,
+    frame: Option<&Frame>,
+    bodies: &[Option<BodyPart>],
+    problems: &mut Problems,
+) -> Option<GridSpec> {
     let node = tree.get("grid")?;
-    let domain = node.get("domain")?;
-    let Frame { lower, upper, cell } = frame?;
+    let Frame { lower, upper, axes } = frame?;
+    let cell = [0, 1].map(|axis| axes[axis].cell_at(lower[axis]));
     let extent = [upper[0] - lower[0], upper[1] - lower[1]];
     let cells = [extent[0] / cell[0], extent[1] / cell[1]];
     let total = cells[0].max(1.0) * cells[1].max(1.0);
     if total.is_nan() || total > MOST {
-        problems
-            .error(
-                node.place_at("cell"),
-                format!("the grid would have {} cells", count(total)),
-            )
-            .help(format!(
-                "at most {} are possible: use larger cells or a smaller domain",
-                count(MOST)
-            ));
+        too_many(node, &count(total), problems);
         return None;
     }
-    let mut is_right = true;
-    for (axis, key) in ["x", "y"].into_iter().enumerate() {
+    let levels = match node.text_at("fit")? {
+        "layers" => levels(bodies, 1e-9 * extent[1].max(upper[1].abs())),
+        _ => Vec::new(),
+    };
+    let found = [0, 1].map(|axis| {
+        let key = DIRECTIONS[axis];
         if cell[axis] < 1e-9 * lower[axis].abs().max(upper[axis].abs()) {
             problems
                 .error(
-                    domain.place_at(key),
+                    node.get("domain")?.place_at(key),
                     format!("the coordinates in {key} are too large for cells this small"),
                 )
                 .help("move the origin to the model");
-            is_right = false;
-            continue;
+            return None;
         }
-        let whole = cells[axis].round().max(1.0);
-        if (cells[axis] - whole).abs() > 1e-6 {
-            let end = number(lower[axis] + whole * cell[axis]);
-            let size = number(extent[axis] / whole);
+        let ends = [lower[axis], upper[axis]];
+        match wish(node, axis, ends, cell[axis], &levels, problems)? {
+            Some(wish) => with_lines(node, key, &wish, problems),
+            None => equal_cells(node, key, ends, cell[axis], problems),
+        }
+    });
+    let [Some(x), Some(y)] = found else {
+        return None;
+    };
+    let grid = GridSpec {
+        axes: [x, y],
+        mixed_cells: match node.text_at("mixed_cells")? {
+            "mean" => MixedCells::Mean,
+            _ => MixedCells::Own,
+        },
+    };
+    let total: f64 = grid.cells().iter().map(|&cells| cells as f64).product();
+    if total > MOST {
+        too_many(node, &count(total), problems);
+        return None;
+    }
+    Some(grid)
+}
+
+fn too_many(node: &Node, cells: &str, problems: &mut Problems) {
+    problems
+        .error(
+            node.place_at("cell"),
+            format!("the grid would have {cells} cells"),
+        )
+        .help(format!(
+            "at most {} are possible: use larger cells or a smaller domain",
+            count(MOST)
+        ));
+}
+
+/// An axis of equal cells that fill the domain.
+fn equal_cells(
+    node: &Node,
+    key: &str,
+    [lower, upper]: [f64; 2],
+    cell: f64,
+    problems: &mut Problems,
+) -> Option<AxisSpec> {
+    let extent = upper - lower;
+    let cells = extent / cell;
+    let whole = cells.round().max(1.0);
+    if (cells - whole).abs() > 1e-6 {
+        let end = number(lower + whole * cell);
+        let size = number(extent / whole);
+        problems
+            .error(
+                node.get("domain")?.place_at(key),
+                format!(
+                    "the domain in {key} is not a whole number of cells: {} m / {} m = {}",
+                    number(extent),
+                    number(cell),
+                    number(cells)
+                ),
+            )
+            .help(format!(
+                "the nearest that is: {key} = [\"{} m\", \"{end} m\"], or a cell of {size} m",
+                number(lower)
+            ));
+        return None;
+    }
+    Some(AxisSpec::Equal {
+        lower,
+        // The cell that fits, to the last digit.
+        cell: extent / whole,
+        cells: whole as usize,
+    })
+}
+
+/// An axis with lines where they are wanted; warns of neighbouring cells that differ too much.
+fn with_lines(node: &Node, key: &str, wish: &Wish, problems: &mut Problems) -> Option<AxisSpec> {
+    let Some(axis) = wish.axis(MOST_LINES) else {
+        problems
+            .error(
+                node.place_at("cell"),
+                format!(
+                    "the grid would have more than {} lines in {key}",
+                    count(MOST_LINES)
+                ),
+            )
+            .help("use larger cells, or shorter zones");
+        return None;
+    };
+    let (jump, at) = largest_jump(&axis);
+    if jump > MOST_JUMP + 1e-9 {
+        problems
+            .warning(
+                node.place_at("growth"),
+                format!(
+                    "neighbouring cells at {key} = {} m differ by a factor of {}",
+                    number(at),
+                    short(jump)
+                ),
+            )
+            .help(format!(
+                "neighbours should not differ by more than {MOST_JUMP}: \
+                 move lines or zones, or let cells grow more slowly"
+            ));
+    }
+    Some(axis)
+}
+
+/// What is wanted of an axis beyond equal cells; none within: nothing. None: something is wrong.
+#[allow(
+    clippy::option_option,
+    reason = "wrong, nothing and something are three answers"
+)]
+fn wish(
+    node: &Node,
+    axis: usize,
+    ends: [f64; 2],
+    cell: f64,
+    levels: &[f64],
+    problems: &mut Problems,
+) -> Option<Option<Wish>> {
+    let key = DIRECTIONS[axis];
+    let growth = node.number_at("growth")?;
+    let mut is_right = true;
+    if !(LEAST_GROWTH..=MOST_JUMP).contains(&growth) {
+        let message = format!("`growth` must be from {LEAST_GROWTH} to {MOST_JUMP}");
+        problems
+            .error(node.place_at("growth"), message)
+            .help("1.3 is usual");
+        is_right = false;
+    }
+    let round_off = 1e-9 * ends[0].abs().max(ends[1].abs());
+    let is_inside = |x: f64| ends[0] - round_off <= x && x <= ends[1] + round_off;
+    let mut lines = Vec::new();
+    for line in node.get("lines")?.items_at(key) {
+        let x = line.number()?;
+        if is_inside(x) {
+            lines.push(x);
+        } else {
             problems
                 .error(
-                    domain.place_at(key),
+                    line.place,
                     format!(
-                        "the domain in {key} is not a whole number of cells: {} m / {} m = {}",
-                        number(extent[axis]),
-                        number(cell[axis]),
-                        number(cells[axis])
+                        "this line at {key} = {} m is off the grid domain",
+                        number(x)
                     ),
                 )
-                .help(format!(
-                    "the nearest that is: {key} = [\"{} m\", \"{end} m\"], or a cell of {size} m",
-                    number(lower[axis])
-                ));
+                .help("extend [grid] domain, or leave the line out");
             is_right = false;
         }
     }
-    let whole = cells.map(|cells| cells.round().max(1.0));
-    is_right.then(|| GridSpec {
-        // The cell that fits, to the last digit.
-        cell: [extent[0] / whole[0], extent[1] / whole[1]],
-        lower,
-        cells: whole.map(|cells| cells as usize),
+    let mut zones = Vec::new();
+    for zone in node.get("zones")?.items_at(key) {
+        let own = Zone {
+            ends: [zone.number_at("from")?, zone.number_at("to")?],
+            cell: zone.number_at("cell")?,
+        };
+        let wrong = if own.ends[0] >= own.ends[1] {
+            Some((
+                "from",
+                "this zone has no extent",
+                "write the lower end first",
+            ))
+        } else if !own.ends.into_iter().all(is_inside) {
+            Some((
+                "from",
+                "this zone reaches off the grid domain",
+                "extend [grid] domain",
+            ))
+        } else if own.cell >= cell {
+            let help = "write the size of the coarse cells as `cell` of the grid";
+            Some((
+                "cell",
+                "the cells of this zone are no finer than those of the grid",
+                help,
+            ))
+        } else if own.cell < round_off {
+            let help = "move the origin to the model";
+            Some((
+                "cell",
+                "the coordinates are too large for cells this small",
+                help,
+            ))
+        } else {
+            None
+        };
+        if let Some((at, message, help)) = wrong {
+            problems.error(zone.place_at(at), message).help(help);
+            is_right = false;
+        } else {
+            zones.push(own);
+        }
+    }
+    let levels = if axis == 1 { levels } else { &[] };
+    let levels: Vec<f64> = levels.iter().copied().filter(|&y| is_inside(y)).collect();
+    let is_equal = lines.is_empty() && zones.is_empty() && levels.is_empty();
+    is_right.then(|| {
+        (!is_equal).then_some(Wish {
+            ends,
+            cell,
+            lines,
+            levels,
+            zones,
+            growth,
+        })
     })
+}
+
+/// Level edges of bodies, the longest first \[m\].
+fn levels(bodies: &[Option<BodyPart>], round_off: f64) -> Vec<f64> {
+    let mut levels: Vec<(f64, f64)> = Vec::new();
+    for body in bodies.iter().flatten() {
+        for (k, p) in body.polygon.iter().enumerate() {
+            let q = body.polygon[(k + 1) % body.polygon.len()];
+            if (p[1] - q[1]).abs() > round_off {
+                continue;
+            }
+            let length = (p[0] - q[0]).abs();
+            match levels
+                .iter_mut()
+                .find(|(y, _)| (y - p[1]).abs() <= round_off)
+            {
+                Some((_, known)) => *known += length,
+                None => levels.push((p[1], length)),
+            }
+        }
+    }
+    levels.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.total_cmp(&b.0)));
+    levels.into_iter().map(|(y, _)| y).collect()
 }
 
 /// The variant of the method.

@@ -2,7 +2,7 @@
 
 use super::grid::Frame;
 use super::site::Site;
-use crate::case::{Load, LoadKind};
+use crate::case::{AxisSpec, Load, LoadKind};
 use crate::input::diagnostic::Problems;
 use crate::input::geometry::cover;
 use crate::input::text::{clip, number, point};
@@ -63,7 +63,7 @@ fn footing(node: &Node, name: &str, site: &Site, problems: &mut Problems) -> Opt
         );
         return None;
     }
-    if let Some(frame) = site.frame {
+    if let Some(frame) = &site.frame {
         let is_outside = [from, to].iter().any(|end| {
             (0..2).any(|k| {
                 end[k] < frame.lower[k] - site.round_off || end[k] > frame.upper[k] + site.round_off
@@ -128,28 +128,33 @@ fn on_grid(
     name: &str,
     from: [f64; 2],
     to: [f64; 2],
-    frame: Frame,
+    frame: &Frame,
     site: &Site,
     problems: &mut Problems,
 ) {
-    let Frame { lower, upper, cell } = frame;
+    let Frame { lower, upper, axes } = frame;
     let place = node.place_at("from");
-    let row = (from[1] - lower[1]) / cell[1];
+    let row = axes[1].place(from[1]);
     if (row - row.round()).abs() > 1e-6 {
         let depth = from[1] - lower[1];
-        problems
-            .error(
-                place,
-                format!(
-                    "the base of the footing `{name}` is not on a line of the grid: \
+        let problem = problems.error(
+            place,
+            format!(
+                "the base of the footing `{name}` is not on a line of the grid: \
                      it lies {} cells above the bottom",
-                    number(row)
-                ),
-            )
-            .help(format!(
+                number(row)
+            ),
+        );
+        if let AxisSpec::Equal { .. } = axes[1] {
+            problem.help(format!(
                 "a cell of height {} m has a line there",
                 number(depth / row.round().max(1.0))
             ));
+        }
+        problem.help(format!(
+            "lines = {{ y = [\"{} m\"] }} in [grid] puts one there",
+            number(from[1])
+        ));
     }
     for key in ["from", "to"] {
         let Some([x, _]) = node.pair_at(key) else {
@@ -158,7 +163,7 @@ fn on_grid(
         if x - lower[0] <= site.round_off || upper[0] - x <= site.round_off {
             continue;
         }
-        let column = (x - lower[0]) / cell[0];
+        let column = axes[0].place(x);
         if (column - column.floor() - 0.5).abs() > 1e-6 {
             let problem = problems.warning(
                 node.place_at(key),
@@ -176,8 +181,11 @@ fn on_grid(
 }
 
 /// A width of cells that has the edges of a footing mid-cell and fills the domain.
-fn better_cell(edge: f64, ends: [f64; 2], frame: Frame) -> Option<String> {
-    let Frame { lower, upper, cell } = frame;
+fn better_cell(edge: f64, ends: [f64; 2], frame: &Frame) -> Option<String> {
+    let Frame { lower, upper, axes } = frame;
+    let AxisSpec::Equal { cell, .. } = axes[0] else {
+        return None;
+    };
     let extent = upper[0] - lower[0];
     let fits = |halves: f64| {
         let width = 2.0 * edge / halves;
@@ -190,19 +198,19 @@ fn better_cell(edge: f64, ends: [f64; 2], frame: Frame) -> Option<String> {
                 is_side || near(column - column.floor(), 0.5)
             })
     };
-    let now = 2.0 * edge / cell[0];
+    let now = 2.0 * edge / cell;
     let odd = 2.0 * (0.5 * now).floor() + 1.0;
     let mut candidates: Vec<f64> = (-20..=20)
         .map(|k| odd + 2.0 * f64::from(k))
         .filter(|&halves| halves >= 1.0 && fits(halves))
         .collect();
-    let off = |halves: &f64| (2.0 * edge / halves - cell[0]).abs();
+    let off = |halves: &f64| (2.0 * edge / halves - cell).abs();
     candidates.sort_by(|a, b| off(a).total_cmp(&off(b)));
     let halves = candidates.first()?;
     let width = format!("{}/{} m", number(2.0 * edge), number(*halves));
     Some(format!(
         "with cell = {{ x = \"{width}\", y = \"{} m\" }} it is",
-        number(cell[1])
+        number(axes[1].extremes()[1])
     ))
 }
 

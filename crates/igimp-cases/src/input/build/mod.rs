@@ -8,7 +8,9 @@ mod checks;
 mod curves;
 mod derive;
 mod grid;
+mod layers;
 mod level;
+mod lines;
 mod loads;
 mod materials;
 mod outputs;
@@ -25,6 +27,7 @@ use super::schema::FORMAT;
 use super::tree::Node;
 use crate::case::Case;
 
+use layers::Layers;
 pub(super) use quantities::QUANTITY_DOCS;
 use site::Site;
 
@@ -71,15 +74,25 @@ pub(super) fn build(tree: &mut Node, file: &Path, problems: &mut Problems) -> Op
     let names = AllNames::new(tree, problems);
     header(tree, problems);
 
-    let frame = grid::frame(tree, problems);
-    let grid = grid::grid(tree, frame, problems);
+    let mut frame = grid::frame(tree, problems);
     let method = grid::method(tree);
     let materials = materials::materials(tree, problems);
     let bodies = bodies::bodies(tree, &names, problems);
+    let grid = grid::grid(tree, frame.as_ref(), &bodies, problems);
+    if let (Some(frame), Some(grid)) = (&mut frame, &grid) {
+        frame.axes.clone_from(&grid.axes);
+    }
     let site = Site::new(frame, &bodies);
     bodies::check(tree, &names, &bodies, &site, problems);
     let boundaries = boundaries::boundaries(tree, &site, problems);
     bodies::check_support(tree, &bodies, boundaries.as_ref(), &site, problems);
+    let layers = Layers {
+        tree,
+        bodies: &bodies,
+        materials: &materials,
+        site: &site,
+    };
+    layers::check(&layers, problems);
     let loads = loads::loads(tree, &site, problems);
     let context = stages::Context {
         tree,
@@ -91,6 +104,8 @@ pub(super) fn build(tree: &mut Node, file: &Path, problems: &mut Problems) -> Op
     };
     let stages = stages::stages(&context, problems);
     stages::check_use(&context, problems);
+    let gravity = tree.get("case").and_then(|case| case.number_at("gravity"));
+    layers::check_stiffness(&layers, &stages, gravity, problems);
     let solver = outputs::solver(tree, &materials, problems);
     let monitors = outputs::monitors(tree, &site, problems);
     let sections = outputs::sections(tree, &site, problems);

@@ -55,8 +55,10 @@ impl Site {
 
     /// Smallest side of a cell \[m\].
     pub(super) fn cell(&self) -> f64 {
-        self.frame
-            .map_or(self.round_off, |frame| frame.cell[0].min(frame.cell[1]))
+        self.frame.as_ref().map_or(self.round_off, |frame| {
+            let [x, y] = frame.axes.each_ref().map(|axis| axis.extremes()[0]);
+            x.min(y)
+        })
     }
 
     /// Polygons whose box comes within a margin of a point.

@@ -279,7 +279,7 @@ fn displacement(
             .help("pressures and point loads are for stages of type load");
         return None;
     };
-    if let Some(frame) = context.site.frame
+    if let Some(frame) = &context.site.frame
         && settlement >= from[1] - frame.lower[1]
     {
         let depth = number(from[1] - frame.lower[1]);

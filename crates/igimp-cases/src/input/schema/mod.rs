@@ -20,8 +20,10 @@ const MOST_BODIES: usize = 5000;
 /// Most curves.
 const MOST_CURVES: usize = 200;
 
+/// A length.
+const A_LENGTH: Kind = Kind::Quantity(Length, Range::Any);
+static LENGTH: Kind = A_LENGTH;
 /// A point: two lengths.
-static LENGTH: Kind = Kind::Quantity(Length, Range::Any);
 const POINT: Kind = Kind::List(&LENGTH, 2, 2);
 static CORNER: Kind = POINT;
 
@@ -146,7 +148,7 @@ static ANALYSES: [Choice; 2] = [
 ];
 
 static GRID: Struct = Struct {
-    doc: "Fixed background grid of equal cells, and the variant of the method.",
+    doc: "Fixed background grid, and the variant of the method.",
     fields: &[
         required(
             "cell",
@@ -159,6 +161,36 @@ static GRID: Struct = Struct {
             Kind::Table(&DOMAIN),
             "{ x = [\"0 m\", \"60 m\"], y = [\"0 m\", \"22 m\"] }",
             "extent of the grid; leave room for the motion",
+        ),
+        default(
+            "lines",
+            Kind::Table(&LINES),
+            "{}",
+            "places that grid lines go through",
+        ),
+        default(
+            "fit",
+            Kind::Choice(&FITS),
+            "\"none\"",
+            "whether grid lines go through layer boundaries",
+        ),
+        default(
+            "zones",
+            Kind::Table(&ZONES),
+            "{}",
+            "stretches of finer cells",
+        ),
+        default(
+            "growth",
+            Kind::Number(Range::Positive),
+            "1.3",
+            "ratio of neighbouring cells beside zones and thin layers; from 1.05 to 2",
+        ),
+        default(
+            "mixed_cells",
+            Kind::Choice(&MIXED_CELLS),
+            "\"own\"",
+            "stiffness of particles in cells that several soils share",
         ),
         default(
             "basis",
@@ -211,8 +243,74 @@ static CELL: Struct = Struct {
     ],
 };
 
+static LINES: Struct = Struct {
+    doc: "Places that grid lines go through. Between them the cells are as near to `cell` as equal division allows.",
+    fields: &[
+        default(
+            "x",
+            Kind::List(&LENGTH, 0, MOST_THINGS),
+            "[]",
+            "places of upright lines",
+        ),
+        default(
+            "y",
+            Kind::List(&LENGTH, 0, MOST_THINGS),
+            "[]",
+            "places of level lines",
+        ),
+    ],
+};
+
+static FITS: [Choice; 2] = [
+    choice("none", "lines are where cell, lines and zones put them"),
+    choice(
+        "layers",
+        "level lines move onto the level edges of bodies: layer boundaries and surfaces",
+    ),
+];
+
+static MIXED_CELLS: [Choice; 2] = [
+    choice("own", "that of the particle's own soil"),
+    choice(
+        "mean",
+        "the inverse of the mean compliance of the cell, as it is filled; strength stays the particle's own",
+    ),
+];
+
+static ZONES: Struct = Struct {
+    doc: "Stretches of finer cells; beside them cells grow by `growth` up to `cell`.",
+    fields: &[
+        default(
+            "x",
+            Kind::List(&ZONE, 0, MOST_THINGS),
+            "[]",
+            "stretches of narrower cells",
+        ),
+        default(
+            "y",
+            Kind::List(&ZONE, 0, MOST_THINGS),
+            "[]",
+            "stretches of lower cells",
+        ),
+    ],
+};
+
+static ZONE: Kind = Kind::Table(&Struct {
+    doc: "A stretch of finer cells across the whole grid.",
+    fields: &[
+        required("from", A_LENGTH, "\"9 m\"", "where it begins"),
+        required("to", A_LENGTH, "\"12 m\"", "where it ends"),
+        required(
+            "cell",
+            Kind::Quantity(Length, Range::Positive),
+            "\"0.25 m\"",
+            "size of its cells, in its own direction",
+        ),
+    ],
+});
+
 static DOMAIN: Struct = Struct {
-    doc: "Extent of the grid, a whole number of cells in each direction.",
+    doc: "Extent of the grid. Without lines, zones and fit it is a whole number of cells in each direction.",
     fields: &[
         required("x", POINT, "[\"0 m\", \"60 m\"]", "from left to right"),
         required("y", POINT, "[\"0 m\", \"22 m\"]", "from bottom to top"),

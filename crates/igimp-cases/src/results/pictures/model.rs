@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::field::body_outlines;
 use super::write;
-use crate::case::{Case, GridSpec, LoadKind, Side};
+use crate::case::{AxisSpec, Case, GridSpec, LoadKind, Side};
 use crate::check::short;
 use crate::error::CaseError;
 use crate::figures::{FieldPlot, KeyEntry, KeySample, Outline, OutlineStyle};
@@ -26,12 +26,10 @@ pub fn model_picture(folder: &Path, case: &Case) -> Result<FigureNote, CaseError
     let plot = plot(case);
     let grid = &case.grid;
     let lines = if has_lines(grid) { "" } else { " (not drawn)" };
+    let [columns, rows] = grid.cells();
+    let [width, height] = grid.axes.each_ref().map(sizes);
     let caption = format!(
-        "The model: {} × {} cells of {} m × {} m{lines}, bodies by material, supports and loads.",
-        grid.cells[0],
-        grid.cells[1],
-        short(grid.cell[0]),
-        short(grid.cell[1]),
+        "The model: {columns} × {rows} cells of {width} × {height}{lines}, bodies by material, supports and loads.",
     );
     write(folder, "model", &plot.draw()?, caption)
 }
@@ -78,7 +76,7 @@ fn plot(case: &Case) -> FieldPlot {
         });
         plot.labels.push((monitor.point, monitor.name.clone()));
     }
-    let (lower, upper) = (case.grid.lower, case.grid.upper());
+    let (lower, upper) = (case.grid.lower(), case.grid.upper());
     let range = |axis: usize| {
         let low = reach.iter().map(|p| p[axis]).fold(lower[axis], f64::min);
         let high = reach.iter().map(|p| p[axis]).fold(upper[axis], f64::max);
@@ -93,32 +91,40 @@ fn plot(case: &Case) -> FieldPlot {
 fn model_size(case: &Case) -> f64 {
     let corners: Vec<[f64; 2]> = case.bodies.iter().flat_map(|b| b.polygon.clone()).collect();
     let (lower, upper) = bounding_box(&corners);
-    let (from, to) = (case.grid.lower, case.grid.upper());
+    let (from, to) = (case.grid.lower(), case.grid.upper());
     let side = |axis: usize| upper[axis].max(to[axis]) - lower[axis].min(from[axis]);
     side(0).max(side(1))
 }
 
+/// The size of cells, or the range of it.
+fn sizes(axis: &AxisSpec) -> String {
+    let [smallest, largest] = axis.extremes();
+    match axis {
+        AxisSpec::Equal { cell, .. } => format!("{} m", short(*cell)),
+        AxisSpec::Lines(_) => format!("{} to {} m", short(smallest), short(largest)),
+    }
+}
+
 fn has_lines(grid: &GridSpec) -> bool {
-    grid.cells.iter().all(|&cells| cells <= MOST_LINES)
+    grid.cells().iter().all(|&cells| cells <= MOST_LINES)
 }
 
 fn grid_lines(grid: &GridSpec) -> impl Iterator<Item = Outline> {
-    let (grid, upper) = (*grid, grid.upper());
-    let line = move |axis: usize, k: usize| {
-        let at = grid.lower[axis] + k as f64 * grid.cell[axis];
-        let (mut from, mut to) = (grid.lower, upper);
+    let (lower, upper) = (grid.lower(), grid.upper());
+    let line = move |axis: usize, at: f64| {
+        let (mut from, mut to) = (lower, upper);
         (from[axis], to[axis]) = (at, at);
         Outline {
             points: vec![from, to],
             style: OutlineStyle::Grid,
         }
     };
-    (0..2).flat_map(move |axis| (0..=grid.cells[axis]).map(move |k| line(axis, k)))
+    (0..2).flat_map(move |axis| grid.axes[axis].lines().map(move |at| line(axis, at)))
 }
 
 /// Sides counter-clockwise, so that their symbols stand outside; boxes clockwise, symbols within.
 fn add_supports(plot: &mut FieldPlot, case: &Case) {
-    let ([left, bottom], [right, top]) = (case.grid.lower, case.grid.upper());
+    let ([left, bottom], [right, top]) = (case.grid.lower(), case.grid.upper());
     let sides = &case.boundaries;
     let lines = [
         (sides.bottom, [left, bottom], [right, bottom]),
