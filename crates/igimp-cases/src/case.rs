@@ -43,8 +43,43 @@ pub struct Case {
     pub curves: Vec<Curve>,
     /// Results that are held against outside values.
     pub checks: Vec<CaseCheck>,
+    /// On how many meshes the case is computed, for the error of the mesh.
+    pub mesh_study: MeshStudy,
     /// What is written, and where.
     pub output: Output,
+}
+
+impl Case {
+    /// The same problem on a grid whose cells are cut into `n` in each direction.
+    ///
+    /// Places, lengths and steps stay. What a file states by the cell (particles, small cuts) goes by
+    /// the small cells, but for the stride of a run-out, which stays the length that it was.
+    #[must_use]
+    pub fn refined(&self, n: usize) -> Self {
+        let mut case = self.clone();
+        case.grid = self.grid.refined(n);
+        for stage in &mut case.stages {
+            if let StageKind::RunOut(run_out) = &mut stage.kind {
+                run_out.move_per_step *= n as f64;
+            }
+        }
+        case
+    }
+}
+
+/// A study of the mesh error: the case on its grid and on finer ones ([`mesh_study`]).
+///
+/// [`mesh_study`]: mod@crate::mesh_study
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MeshStudy {
+    /// Meshes, that of the case among them; 1: no study.
+    pub meshes: usize,
+}
+
+impl Default for MeshStudy {
+    fn default() -> Self {
+        Self { meshes: 1 }
+    }
 }
 
 /// A fixed background grid of equal cells.
@@ -62,6 +97,16 @@ impl GridSpec {
     /// Upper right corner \[m\].
     pub fn upper(&self) -> [f64; 2] {
         std::array::from_fn(|axis| self.lower[axis] + self.cells[axis] as f64 * self.cell[axis])
+    }
+
+    /// The grid with every cell cut into `n` in each direction.
+    #[must_use]
+    pub fn refined(&self, n: usize) -> Self {
+        Self {
+            cell: self.cell.map(|cell| cell / n as f64),
+            lower: self.lower,
+            cells: self.cells.map(|cells| n * cells),
+        }
     }
 }
 
@@ -519,12 +564,24 @@ pub struct CaseCheck {
     pub divide_by: f64,
     /// The stage; none: the last.
     pub stage: Option<usize>,
+    /// Which value is held against it.
+    pub value: CheckValue,
     /// Outside value \[SI units after division\].
     pub expected: f64,
     /// What is accepted.
     pub band: Band,
     /// Where the value comes from.
     pub source: String,
+}
+
+/// Which value a check looks at.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum CheckValue {
+    /// That of the mesh; of the finest in a study of the mesh error.
+    #[default]
+    Computed,
+    /// The one extrapolated from the meshes of a study; without a study that of the mesh.
+    Extrapolated,
 }
 
 /// What is written, and where.

@@ -1,6 +1,7 @@
 //! `report.html`: one page without outside parts that tells what a run found.
 
 mod files;
+mod meshes;
 mod rows;
 mod verdict;
 
@@ -45,9 +46,11 @@ fn render(folder: &Path, summary: &Summary) -> Result<String, minijinja::Error> 
     let tables = files::tables(folder);
     let inputs = files::inputs(folder);
     let safety = rows::safety(summary);
+    let study = summary.mesh_study.as_ref().map(meshes::view);
     let entries = contents(
         [
             (true, "numbers", "Key numbers"),
+            (study.is_some(), "meshes", "Mesh error"),
             (!summary.checks.is_empty(), "checks", "Checks"),
             (summary.failure.is_some(), "failure", "Want of equilibrium"),
             (!summary.warnings.is_empty(), "warnings", "Warnings"),
@@ -72,6 +75,7 @@ fn render(folder: &Path, summary: &Summary) -> Result<String, minijinja::Error> 
         verdict: verdict::verdict(summary),
         contents: entries,
         numbers: rows::numbers(summary),
+        study,
         checks: rows::checks(summary),
         failure: summary.failure.as_deref(),
         warnings: &summary.warnings,
@@ -98,6 +102,7 @@ struct Page<'a> {
     verdict: verdict::Verdict,
     contents: Vec<Entry>,
     numbers: Vec<rows::Number>,
+    study: Option<meshes::StudyView>,
     checks: Vec<rows::CheckView>,
     failure: Option<&'a str>,
     warnings: &'a [String],

@@ -4,7 +4,8 @@ use igimp_assembly::Method;
 
 use super::*;
 use crate::case::{
-    BodyPart, Boundaries, Every, GridSpec, Output, Reduction, RunOut, SolverSettings, StopWhen,
+    BodyPart, Boundaries, Every, GridSpec, MeshStudy, Output, Reduction, RunOut, SolverSettings,
+    StopWhen,
 };
 
 /// A slope of Mohr–Coulomb soil on elastic rock.
@@ -63,6 +64,7 @@ fn case(kind: StageKind) -> Case {
         sections: Vec::new(),
         curves: Vec::new(),
         checks: Vec::new(),
+        mesh_study: MeshStudy::default(),
         output: Output {
             folder: "results".into(),
             paraview: Every::Never,

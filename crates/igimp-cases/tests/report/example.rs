@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use igimp_assembly::{Method, ParticleFields, Particles, SharedLaw};
 use igimp_cases::case::{
     BodyPart, Boundaries, Case, Curve, CurveAxis, Every, Field, FixedBox, GridSpec, Load, LoadKind,
-    Material, Monitor, Output, Quantity, Reference, ReferenceValues, Section, Side, SolverSettings,
-    Stage, StageKind, StopWhen, Strength,
+    Material, MeshStudy, Monitor, Output, Quantity, Reference, ReferenceValues, Section, Side,
+    SolverSettings, Stage, StageKind, StopWhen, Strength,
 };
 use igimp_cases::results::pictures::{self, Shown};
 use igimp_cases::seed::fill_polygon;
@@ -105,6 +105,7 @@ pub(crate) fn case() -> Case {
         ],
         curves: vec![curve()],
         checks: Vec::new(),
+        mesh_study: MeshStudy::default(),
         output: Output {
             folder: "results/slope".into(),
             paraview: Every::Stage,

@@ -108,6 +108,12 @@ pub(super) static ROOT: Struct = Struct {
             "results that are held against outside values",
         ),
         default(
+            "mesh_study",
+            Kind::Table(&outputs::MESH_STUDY),
+            "{}",
+            "the case on finer meshes too, for the error of the mesh",
+        ),
+        default(
             "output",
             Kind::Table(&outputs::OUTPUT),
             "{}",
@@ -159,6 +165,12 @@ static GRID: Struct = Struct {
             Kind::Table(&DOMAIN),
             "{ x = [\"0 m\", \"60 m\"], y = [\"0 m\", \"22 m\"] }",
             "extent of the grid; leave room for the motion",
+        ),
+        default(
+            "refine",
+            Kind::Integer(1, 64),
+            "1",
+            "every cell is cut into so many in each direction",
         ),
         default(
             "basis",
