@@ -84,7 +84,7 @@ pub fn estimate(values: &[Computed]) -> Option<Estimate> {
     })
 }
 
-/// The value on cells of no size, with the order that it was found with (theory, eqs. 40a, 40c).
+/// The value on cells of no size, with the order that it was found with (theory, eq. 40a).
 fn extrapolate(values: &[Computed]) -> (f64, Order) {
     let order = match values {
         [a, b, c] => observed(a, b, c),
@@ -113,7 +113,7 @@ fn share(coarse: f64, fine: f64, p: f64) -> f64 {
     1.0 / ((coarse / fine).powf(p) - 1.0)
 }
 
-/// The order of convergence on three meshes (theory, eq. 40b).
+/// The order of convergence on three meshes (theory, eqs. 40b, 40c).
 fn observed(a: &Computed, b: &Computed, c: &Computed) -> Order {
     let (first, second) = (a.value - b.value, b.value - c.value);
     let seen = |x: &Computed, y: &Computed, change: f64| change.abs() > x.half_width + y.half_width;
@@ -156,7 +156,7 @@ fn observed(a: &Computed, b: &Computed, c: &Computed) -> Order {
     }
 }
 
-/// The part of the uncertainty that the mesh leaves (theory, eqs. 40d, 40e).
+/// The part of the uncertainty that the mesh leaves (theory, eqs. 40c, 40d).
 fn of_mesh(values: &[Computed], order: Order) -> f64 {
     let [coarse, fine] = last_two(values);
     let change = (coarse.value - fine.value).abs();

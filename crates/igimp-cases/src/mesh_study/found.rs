@@ -1,7 +1,7 @@
 //! What the runs of a study found, side by side.
 
 use super::{Computed, ResultKind, StudyResult, estimate, plan};
-use crate::case::{Case, CheckValue, Quantity, StageKind};
+use crate::case::{Case, CheckValue, Quantity, Stage, StageKind};
 use crate::summary::{CheckRow, StageOutcome, StageSummary, Summary};
 
 /// A value and half the width of the interval in which a search left it.
@@ -99,23 +99,33 @@ fn result(name: String, kind: ResultKind, found: &[Option<Found>], parts: &[usiz
 /// The result that a stage is made for, if it is made for one.
 fn of_stage(case: &Case, number: usize) -> Option<(String, ResultKind)> {
     let stage = &case.stages[number];
-    let limit = |what: &str| {
-        Some((
-            format!("{what} at the end of `{}` [-]", stage.name),
-            ResultKind::LimitLoad,
-        ))
-    };
+    let name = &stage.name;
+    let searches = |stage: &&Stage| matches!(stage.kind, StageKind::StrengthReduction(_));
     match &stage.kind {
         StageKind::StrengthReduction(_) => {
-            let name = format!("factor of safety, `{}` [-]", stage.name);
-            Some((name, ResultKind::FactorOfSafety))
+            let only = case.stages.iter().filter(searches).count() == 1;
+            let of = if only {
+                String::new()
+            } else {
+                format!(", \"{name}\"")
+            };
+            Some((
+                format!("factor of safety{of} [-]"),
+                ResultKind::FactorOfSafety,
+            ))
         }
-        StageKind::Gravity { .. } if stage.stop_when.no_equilibrium => limit("multiple of gravity"),
-        StageKind::Load { .. } if stage.stop_when.no_equilibrium => limit("load factor"),
-        StageKind::Displacement { .. } => {
-            let name = format!("largest resistance in `{}` [N/m]", stage.name);
-            Some((name, ResultKind::LimitLoad))
-        }
+        StageKind::Gravity { .. } if stage.stop_when.no_equilibrium => Some((
+            format!("gravity at the end of \"{name}\" [-]"),
+            ResultKind::LimitLoad,
+        )),
+        StageKind::Load { .. } if stage.stop_when.no_equilibrium => Some((
+            format!("load factor at the end of \"{name}\" [-]"),
+            ResultKind::LimitLoad,
+        )),
+        StageKind::Displacement { .. } => Some((
+            format!("largest resistance in \"{name}\" [N/m]"),
+            ResultKind::LimitLoad,
+        )),
         _ => None,
     }
 }
@@ -134,7 +144,7 @@ fn at_stage(case: &Case, run: &Summary, number: usize) -> Option<Found> {
     }
 }
 
-/// Middle of the interval of a factor of safety, and half its width.
+/// Middle of the interval of a factor of safety, and half its width (theory, eq. 40e).
 fn interval(stage: &StageSummary) -> Option<Found> {
     let safety = stage.safety.as_ref()?;
     let (stable, failed) = (safety.stable?, safety.failed?);
@@ -142,7 +152,7 @@ fn interval(stage: &StageSummary) -> Option<Found> {
 }
 
 /// The load at which a stage ended before its end. The smallest step that was tried lies beyond it: it
-/// counts to either side.
+/// counts to either side (theory, eq. 40e).
 fn limit(case: &Case, run: &Summary, number: usize, of: Quantity) -> Option<Found> {
     let (stage, summary) = (&case.stages[number], run.stages.get(number)?);
     if !stage.stop_when.no_equilibrium || summary.outcome != StageOutcome::Stopped {

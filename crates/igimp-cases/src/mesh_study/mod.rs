@@ -17,6 +17,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
+use crate::check::short;
 use crate::error::CaseError;
 use crate::summary::ModelSize;
 use crate::sweep::Ending;
@@ -144,6 +145,26 @@ pub enum ResultKind {
     Check,
 }
 
+impl Estimate {
+    /// The uncertainty, rounded up to two digits: more are not known.
+    pub fn rounded_uncertainty(&self) -> f64 {
+        let uncertainty = self.uncertainty;
+        if uncertainty <= 0.0 || !uncertainty.is_finite() {
+            return uncertainty;
+        }
+        let digits = 1.0 - uncertainty.log10().floor();
+        let unit = 10.0_f64.powf(-digits);
+        // What is a round number stays one.
+        unit * (uncertainty / unit - 1e-9).ceil()
+    }
+
+    /// As it is printed: the value, and how far it may be off.
+    pub fn sentence(&self) -> String {
+        let (value, uncertainty) = (short(self.value), short(self.rounded_uncertainty()));
+        format!("{value} ± {uncertainty}")
+    }
+}
+
 impl Order {
     /// In words for a table.
     pub fn sentence(self) -> String {
@@ -159,5 +180,48 @@ impl Order {
             Self::Oscillating => "none: up and down".to_owned(),
             Self::Diverging => "none: no convergence seen".to_owned(),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_uncertainty_is_rounded_up() {
+        let text = |value, uncertainty| {
+            let order = Order::Assumed;
+            let found = Estimate {
+                value,
+                uncertainty,
+                order,
+            };
+            found.sentence()
+        };
+        assert_eq!(text(1.265, 0.113_38), "1.265 ± 0.12");
+        assert_eq!(text(1.265, 0.1), "1.265 ± 0.1");
+        assert_eq!(text(514.2, 3.001), "514.2 ± 3.1");
+        assert_eq!(text(2.0, 0.0), "2 ± 0");
+    }
+
+    #[test]
+    fn a_study_ends_as_badly_as_its_worst_mesh() {
+        let mesh = |parts, ending| MeshSummary {
+            parts,
+            ending,
+            ..MeshSummary::default()
+        };
+        let mut study = StudySummary {
+            meshes: vec![mesh(1, Ending::Done), mesh(2, Ending::Done)],
+            results: Vec::new(),
+        };
+        assert_eq!(study.ending(), Ending::Done);
+        assert_eq!(
+            study.shown().map(MeshSummary::label).as_deref(),
+            Some("h/2")
+        );
+        study.meshes[1].ending = Ending::NotConverged;
+        assert_eq!(study.ending(), Ending::NotConverged);
+        assert_eq!(study.shown().map(MeshSummary::label).as_deref(), Some("h"));
     }
 }

@@ -151,7 +151,7 @@ mod tests {
         assert_eq!(refinements(&case), [1, 2, 4]);
         let finest = &meshes(&case)[2];
         assert_eq!(finest.grid.cells, [32, 32]);
-        assert_eq!(finest.grid.upper(), case.grid.upper());
+        assert_eq!(format!("{:?}", finest.grid.upper()), "[4.0, 4.0]");
         assert_eq!(finest.mesh_study.meshes, 1);
         assert!(differences(&case).is_empty());
         assert_eq!([1, 2].map(label), ["h", "h/2"]);

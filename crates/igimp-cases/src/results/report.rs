@@ -47,6 +47,12 @@ fn render(folder: &Path, summary: &Summary) -> Result<String, minijinja::Error> 
     let inputs = files::inputs(folder);
     let safety = rows::safety(summary);
     let study = summary.mesh_study.as_ref().map(meshes::view);
+    let mut verdict = verdict::verdict(summary);
+    let mut numbers = rows::numbers(summary);
+    if let Some(study) = &summary.mesh_study {
+        meshes::add_to(&mut verdict, study);
+        numbers.splice(0..0, meshes::numbers(study));
+    }
     let entries = contents(
         [
             (true, "numbers", "Key numbers"),
@@ -72,9 +78,9 @@ fn render(folder: &Path, summary: &Summary) -> Result<String, minijinja::Error> 
         title,
         program: &summary.program,
         method: &summary.method,
-        verdict: verdict::verdict(summary),
+        verdict,
         contents: entries,
-        numbers: rows::numbers(summary),
+        numbers,
         study,
         checks: rows::checks(summary),
         failure: summary.failure.as_deref(),

@@ -58,10 +58,12 @@ pub(super) fn run(
     };
     let taken: Option<f64> = target.and_then(|target| {
         let speed = target.expectation?.speed;
-        let of_mesh = |(mesh, run): (&Case, &Option<&Summary>)| {
-            time_of_steps_taken(mesh, speed, &(*run)?.stages).ok()
+        let of_mesh = |(mesh, run): (&Case, Option<&Summary>)| {
+            time_of_steps_taken(mesh, speed, &run?.stages).ok()
         };
-        std::iter::zip(&meshes, &summaries).map(of_mesh).sum()
+        std::iter::zip(&meshes, summaries.iter().copied())
+            .map(of_mesh)
+            .sum()
     });
     let mut run = together(case, runs, found)?;
     let summary = &mut run.summary;

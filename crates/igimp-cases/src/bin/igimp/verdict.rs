@@ -80,8 +80,7 @@ fn mesh_error(study: &StudySummary) -> String {
             );
             row.extend(match result.estimate {
                 Some(found) => vec![
-                    format!("extrapolated {}", short(found.value)),
-                    format!("± {}", short(found.uncertainty)),
+                    format!("extrapolated {}", found.sentence()),
                     format!("(order {})", found.order.sentence()),
                 ],
                 None => vec!["nothing is extrapolated of one value".to_owned()],

@@ -73,16 +73,13 @@ fn plot(
         let way = vec![[0.0, found.value], *finest];
         let dashed = SeriesStyle::Line(LineStyle::Dashed);
         series.push(Series::new("", way, dashed).in_colour(Colour::CURVE));
-        let (low, high) = (
-            found.value - found.uncertainty,
-            found.value + found.uncertainty,
-        );
+        let reach = found.rounded_uncertainty();
+        let level = |y: f64| vec![[-0.5 * ROOM, y], [0.5 * ROOM, y]];
         bands.push(Band {
-            label: format!("{} ± {}", short(found.value), short(found.uncertainty)),
-            lower: vec![[0.0, low], [1.0, low]],
-            upper: vec![[0.0, high], [1.0, high]],
+            label: found.sentence(),
+            lower: level(found.value - reach),
+            upper: level(found.value + reach),
         });
-        series.push(Series::line("", vec![[0.0, low], [0.0, high]]).in_colour(Colour::BLACK));
         let mark = Series::markers("extrapolated", vec![[0.0, found.value]]);
         series.push(mark.in_colour(Colour::BLACK));
     }
@@ -111,9 +108,8 @@ fn caption(study: &StudySummary, result: &StudyResult) -> String {
         || "Of one mesh nothing is extrapolated.".to_owned(),
         |found| {
             format!(
-                "Extrapolated to cells of no size: {} ± {} (order {}).",
-                short(found.value),
-                short(found.uncertainty),
+                "Extrapolated to cells of no size: {} (order {}).",
+                found.sentence(),
                 found.order.sentence()
             )
         },

@@ -1,10 +1,13 @@
 //! The study of the mesh error as the rows of a report.
 
+use std::fmt::Write as _;
+
 use serde::Serialize;
 
-use super::rows::{UNKNOWN, grouped, time};
+use super::rows::{Number, UNKNOWN, grouped, time};
+use super::verdict::Verdict;
 use crate::check::short;
-use crate::mesh_study::{MeshSummary, StudyResult, StudySummary};
+use crate::mesh_study::{MeshSummary, ResultKind, StudyResult, StudySummary};
 use crate::sweep::Ending;
 
 /// A study.
@@ -49,6 +52,45 @@ pub(super) fn view(study: &StudySummary) -> StudyView {
     }
 }
 
+/// Factors of safety and limit loads as extrapolated.
+pub(super) fn numbers(study: &StudySummary) -> Vec<Number> {
+    let own = |result: &StudyResult| {
+        let name = match result.kind {
+            ResultKind::FactorOfSafety => "Factor of safety, extrapolated",
+            ResultKind::LimitLoad => "Limit load, extrapolated",
+            ResultKind::Check => return None,
+        };
+        let value = result.estimate?.sentence();
+        Some(Number { name, value })
+    };
+    study.results.iter().filter_map(own).collect()
+}
+
+/// Tells in the verdict what the study found, and that a mesh went wrong if one did.
+pub(super) fn add_to(verdict: &mut Verdict, study: &StudySummary) {
+    match study.ending() {
+        Ending::NotConverged => (verdict.class, verdict.word) = ("bad", "Not converged"),
+        Ending::Failed => (verdict.class, verdict.word) = ("bad", "A mesh failed"),
+        _ => {}
+    }
+    for result in &study.results {
+        if let (Some(found), true) = (result.estimate, result.kind != ResultKind::Check) {
+            let _ = write!(
+                verdict.text,
+                " Extrapolated to cells of no size: {}, {} (order {}).",
+                result.name,
+                found.sentence(),
+                found.order.sentence()
+            );
+        }
+    }
+    for mesh in &study.meshes {
+        if let Some(message) = mesh.message.as_ref().and_then(|text| text.lines().next()) {
+            let _ = write!(verdict.text, " Mesh {}: {message}", mesh.label());
+        }
+    }
+}
+
 fn mesh(mesh: &MeshSummary) -> MeshView {
     let class = match mesh.ending {
         Ending::Done | Ending::Missed => "good",
@@ -85,7 +127,7 @@ fn result(result: &StudyResult) -> ResultView {
         values: values.collect(),
         extrapolated: value(found.map(|found| found.value)),
         uncertainty: found.map_or_else(String::new, |found| {
-            format!("± {}", short(found.uncertainty))
+            format!("± {}", short(found.rounded_uncertainty()))
         }),
         order: found.map_or_else(String::new, |found| found.order.sentence()),
     }

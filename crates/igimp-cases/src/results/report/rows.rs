@@ -16,8 +16,8 @@ pub(super) const UNKNOWN: &str = "–";
 /// A number with its name.
 #[derive(Serialize)]
 pub(super) struct Number {
-    name: &'static str,
-    value: String,
+    pub(super) name: &'static str,
+    pub(super) value: String,
 }
 
 /// The numbers that are looked for first.
