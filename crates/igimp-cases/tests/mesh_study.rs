@@ -226,7 +226,7 @@ fn a_study_that_makes_no_sense_is_told() {
     let (code, said) = check(&["mesh_study.meshes=4"]);
     assert_eq!(code, Some(2));
     assert!(said.contains("mesh_study.meshes=4"), "{said}");
-    let (code, said) = check(&["mesh_study.meshes=3", "grid.cell=0.005 m"]);
+    let (code, said) = check(&["mesh_study.meshes=3", "grid.cell=0.01 m"]);
     assert_eq!(code, Some(2));
     assert!(
         said.contains("the finest mesh, h/4, would have too many"),

@@ -330,6 +330,8 @@ mod tests {
             folder.paraview().join(".particles_0002.vtu.tmp"),
             folder.paraview().join("grid.pvd"),
             folder.paraview().join("grid_12345.vtu"),
+            folder.paraview().join("stage-02-last-stable.vtu"),
+            folder.paraview().join("stage-02-first-unstable.vtu"),
         ] {
             fs::write(path, "x").unwrap();
         }
