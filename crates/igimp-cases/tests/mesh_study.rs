@@ -232,6 +232,12 @@ fn a_study_that_makes_no_sense_is_told() {
         said.contains("the finest mesh, h/4, would have too many"),
         "{said}"
     );
+    let (code, said) = check(&["grid.refine=64", "grid.cell=0.1 m"]);
+    assert_eq!(code, Some(2));
+    assert!(
+        said.contains("the refined grid would have too many"),
+        "{said}"
+    );
     let (code, said) = check(&["checks.0.value=extrapolated"]);
     assert_eq!(code, Some(0));
     assert!(

@@ -1,6 +1,6 @@
 //! From values on several meshes to a value on cells of no size, and how far that may be off.
 //!
-//! Pure functions of numbers; theory, eqs. (40a) to (40f).
+//! Pure functions of numbers; theory, eqs. (40a) to (40g).
 
 use serde::{Deserialize, Serialize};
 
@@ -53,15 +53,18 @@ pub enum Order {
         /// The order used in its place \[-\].
         used: f64,
     },
-    /// The values differ by less than the intervals in which they were found: it was taken as 1.
-    Unseen,
+    /// Three meshes on which the values, within the intervals in which they were found, may follow order
+    /// 1: it was taken.
+    Admitted,
     /// The values go up and down: nothing is extrapolated.
     Oscillating,
     /// The values differ the more, the finer the mesh: nothing is extrapolated.
     Diverging,
 }
 
-/// Extrapolates values on two or three meshes, from coarse to fine; of more the three finest count.
+/// Extrapolates values on two or three meshes, from coarse to fine; of more the three finest count (theory,
+/// eqs. 40a, 40f).
+///
 /// `None` for fewer than two finite values, and for meshes that do not become finer.
 pub fn estimate(values: &[Computed]) -> Option<Estimate> {
     let right = |value: &&Computed| {
@@ -76,58 +79,55 @@ pub fn estimate(values: &[Computed]) -> Option<Estimate> {
     if values.len() < 2 || values.windows(2).any(|pair| pair[1].h >= pair[0].h) {
         return None;
     }
-    let (value, order) = extrapolate(values);
-    Some(Estimate {
-        value,
-        uncertainty: of_mesh(values, order) + of_search(values, value),
-        order,
-    })
-}
-
-/// The value on cells of no size, with the order that it was found with (theory, eq. 40a).
-fn extrapolate(values: &[Computed]) -> (f64, Order) {
     let order = match values {
         [a, b, c] => observed(a, b, c),
         _ => Order::Assumed,
     };
     let [coarse, fine] = last_two(values);
-    let correction = order_used(order).map_or(0.0, |p| {
-        (fine.value - coarse.value) * share(coarse.h, fine.h, p)
-    });
-    (fine.value + correction, order)
+    // What is left of the change between the last two meshes, as a share of it; none is extrapolated
+    // without an order.
+    let left = order_used(order).map_or(0.0, |p| share(coarse.h, fine.h, p));
+    let of_search = (1.0 + left) * fine.half_width + left * coarse.half_width;
+    Some(Estimate {
+        value: fine.value + left * (fine.value - coarse.value),
+        uncertainty: of_mesh(values, order) + of_search,
+        order,
+    })
 }
 
 /// The order used in an extrapolation; none where none is made.
 fn order_used(order: Order) -> Option<f64> {
     match order {
-        Order::Assumed | Order::Unseen => Some(USUAL_ORDER),
+        Order::Assumed | Order::Admitted => Some(USUAL_ORDER),
         Order::Observed(p) => Some(p),
         Order::Limited { used, .. } => Some(used),
         Order::Oscillating | Order::Diverging => None,
     }
 }
 
-/// What is left of a value's change from a coarse mesh to a fine one, as a share of that change:
-/// $`h_2^p/(h_1^p - h_2^p)`$.
+/// What is left of a value's change from a coarse mesh to a fine one, as a share of that change (theory,
+/// eq. 40a).
 fn share(coarse: f64, fine: f64, p: f64) -> f64 {
     1.0 / ((coarse / fine).powf(p) - 1.0)
 }
 
-/// The order of convergence on three meshes (theory, eqs. 40b, 40c).
+/// The order of convergence on three meshes (theory, eqs. 40b to 40d); the usual one if the intervals of the
+/// values admit it.
 fn observed(a: &Computed, b: &Computed, c: &Computed) -> Order {
     let (first, second) = (a.value - b.value, b.value - c.value);
-    let seen = |x: &Computed, y: &Computed, change: f64| change.abs() > x.half_width + y.half_width;
-    if !seen(a, b, first) && !seen(b, c, second) {
-        return Order::Unseen;
-    }
-    if first * second < 0.0 {
-        return Order::Oscillating;
-    }
     // With cells of a constant ratio r this is r^p; it grows with p.
     let ratio = |p: f64| {
         let [a, b, c] = [a.h / c.h, b.h / c.h, 1.0].map(|h: f64| h.powf(p));
         (a - b) / (b - c)
     };
+    let usual = ratio(USUAL_ORDER);
+    let reach = a.half_width + (1.0 + usual) * b.half_width + usual * c.half_width;
+    if (first - usual * second).abs() <= reach {
+        return Order::Admitted;
+    }
+    if first * second < 0.0 {
+        return Order::Oscillating;
+    }
     if first.abs() <= ratio(SOUGHT[0]) * second.abs() {
         return Order::Diverging;
     }
@@ -156,7 +156,7 @@ fn observed(a: &Computed, b: &Computed, c: &Computed) -> Order {
     }
 }
 
-/// The part of the uncertainty that the mesh leaves (theory, eqs. 40c, 40d).
+/// The part of the uncertainty that the mesh leaves (theory, eq. 40e).
 fn of_mesh(values: &[Computed], order: Order) -> f64 {
     let [coarse, fine] = last_two(values);
     let change = (coarse.value - fine.value).abs();
@@ -164,11 +164,11 @@ fn of_mesh(values: &[Computed], order: Order) -> f64 {
     // What the least order that is believed would add to the usual one.
     let slowest = share(BELIEVED[0]) - share(USUAL_ORDER);
     match order {
-        Order::Assumed | Order::Unseen => slowest * change,
+        Order::Assumed => slowest * change,
         Order::Observed(p) => {
             (IN_DOUBT * share(p) + (share(p) - share(USUAL_ORDER)).abs()) * change
         }
-        Order::Limited { .. } => {
+        Order::Admitted | Order::Limited { .. } => {
             // The first change foretells the second by the usual order.
             let foretold = match values {
                 [a, b, c] => (a.value - b.value).abs() * (b.h - c.h) / (a.h - b.h),
@@ -184,22 +184,6 @@ fn of_mesh(values: &[Computed], order: Order) -> f64 {
             WITHOUT_ORDER * (high - low)
         }
     }
-}
-
-/// The part that the intervals of searches leave: the farthest that the extrapolated value moves when
-/// every value is put to an end of its interval (theory, eq. 40f).
-fn of_search(values: &[Computed], extrapolated: f64) -> f64 {
-    let corners = 0..1_u32 << values.len();
-    corners
-        .map(|corner| {
-            let mut moved = values.to_vec();
-            for (k, value) in moved.iter_mut().enumerate() {
-                let sign = if corner >> k & 1 == 0 { -1.0 } else { 1.0 };
-                value.value += sign * value.half_width;
-            }
-            (extrapolate(&moved).0 - extrapolated).abs()
-        })
-        .fold(0.0, f64::max)
 }
 
 fn last_two(values: &[Computed]) -> [Computed; 2] {
@@ -305,16 +289,46 @@ mod tests {
         assert!((away.uncertainty - 0.45).abs() < 1e-12);
     }
 
-    /// GOAL: changes within the intervals of the search show no order, up and down or not.
+    /// GOAL: where the intervals of the search admit order 1, no other is read out of their noise.
     #[test]
     fn noise_of_a_search_is_no_order() {
         let found = estimate(&values(&[1.500, 1.504, 1.502], 0.005)).unwrap();
-        assert_eq!(found.order, Order::Unseen);
+        assert_eq!(found.order, Order::Admitted);
         assert!((found.value - 1.500).abs() < 1e-12);
-        // Values and their intervals lie within.
-        assert!(found.uncertainty > 0.009, "{found:?}");
+        // Changes of 0.035 and 0.030, each to 0.01.
+        let slow = estimate(&values(&[1.091, 1.056, 1.026], 0.005)).unwrap();
+        assert_eq!(slow.order, Order::Admitted);
+        assert!((slow.value - 0.996).abs() < 1e-12);
+        let sharp = estimate(&values(&[1.091, 1.056, 1.026], 0.0)).unwrap();
+        assert!(matches!(sharp.order, Order::Limited { .. }), "{sharp:?}");
         let same = estimate(&values(&[2.0, 2.0, 2.0], 0.0)).unwrap();
         assert_eq!((same.value, same.uncertainty), (2.0, 0.0));
+    }
+
+    /// GOAL: slopes on ten, twenty and forty cells over the height, each in an interval of 0.01: all bounds
+    /// are covered, and all but one met within 1.5 %.
+    /// ORACLE: bounds of limit analysis; the values are those of B-bar with moving geometry.
+    #[test]
+    fn slopes_meet_their_bounds() {
+        let slopes: [(&[f64], [f64; 2]); 8] = [
+            (&[1.061, 1.023], [0.984, 1.003]),
+            (&[1.014, 1.005], [0.986, 1.002]),
+            (&[1.455, 1.417], [1.372, 1.397]),
+            (&[1.455, 1.417, 1.398], [1.372, 1.397]),
+            (&[1.433, 1.405], [1.359, 1.368]),
+            (&[1.091, 1.056], [0.988, 1.000]),
+            (&[1.091, 1.056, 1.026], [0.988, 1.000]),
+            (&[1.051, 1.027], [0.987, 1.000]),
+        ];
+        let mut near = 0;
+        for (computed, [low, high]) in slopes {
+            let found = estimate(&values(computed, 0.005)).unwrap();
+            let (value, reach) = (found.value, found.uncertainty);
+            near += usize::from(0.985 * low <= value && value <= 1.015 * high);
+            assert!(value - reach <= low && high <= value + reach, "{found:?}");
+        }
+        // Of the sixth on ten and twenty cells, 9 and 6 % too strong, 2 % are left.
+        assert_eq!(near, slopes.len() - 1);
     }
 
     #[test]

@@ -144,7 +144,7 @@ fn at_stage(case: &Case, run: &Summary, number: usize) -> Option<Found> {
     }
 }
 
-/// Middle of the interval of a factor of safety, and half its width (theory, eq. 40e).
+/// Middle of the interval of a factor of safety, and half its width (theory, eq. 40g).
 fn interval(stage: &StageSummary) -> Option<Found> {
     let safety = stage.safety.as_ref()?;
     let (stable, failed) = (safety.stable?, safety.failed?);
@@ -152,7 +152,7 @@ fn interval(stage: &StageSummary) -> Option<Found> {
 }
 
 /// The load at which a stage ended before its end. The smallest step that was tried lies beyond it: it
-/// counts to either side (theory, eq. 40e).
+/// counts to either side (theory, eq. 40g).
 fn limit(case: &Case, run: &Summary, number: usize, of: Quantity) -> Option<Found> {
     let (stage, summary) = (&case.stages[number], run.stages.get(number)?);
     if !stage.stop_when.no_equilibrium || summary.outcome != StageOutcome::Stopped {

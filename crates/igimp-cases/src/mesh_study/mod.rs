@@ -176,7 +176,7 @@ impl Order {
                 format!("below {used}: {used} taken")
             }
             Self::Limited { used, .. } => format!("above {used}: {used} taken"),
-            Self::Unseen => "1, assumed: the search hides it".to_owned(),
+            Self::Admitted => "1, within the search".to_owned(),
             Self::Oscillating => "none: up and down".to_owned(),
             Self::Diverging => "none: no convergence seen".to_owned(),
         }

@@ -18,10 +18,15 @@ pub(super) fn mesh_study(tree: &Node) -> Option<MeshStudy> {
 pub(super) fn check(tree: &Node, case: &Case, problems: &mut Problems) {
     let place = tree.get("mesh_study").map(|study| study.place_at("meshes"));
     if case.mesh_study.meshes < 2 {
-        if is_too_large(case, 1) {
-            let grid = tree.get("grid").map(|grid| grid.place_at("refine"));
+        // A grid that is too large as it is was told of before.
+        let grid = tree.get("grid");
+        let refine = grid.and_then(|grid| grid.count_at("refine"));
+        if refine.is_some_and(|parts| parts > 1) && is_too_large(case, 1) {
             problems
-                .error(grid, "the grid would have too many cells or particles")
+                .error(
+                    grid.map(|grid| grid.place_at("refine")),
+                    "the refined grid would have too many cells or particles",
+                )
                 .help(format!("at most {} are possible", count(MOST)));
         }
         one_mesh_only(tree, case, problems);
