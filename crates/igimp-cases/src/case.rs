@@ -52,18 +52,14 @@ pub struct Case {
 impl Case {
     /// The same problem on a grid whose cells are cut into `n` in each direction.
     ///
-    /// Places, lengths and steps stay. What a file states by the cell (particles, small cuts) goes by
-    /// the small cells, but for the stride of a run-out, which stays the length that it was.
+    /// Places, lengths and steps stay. What a file states by the cell (particles, small cuts, the stride
+    /// of a run-out) goes by the small cells.
     #[must_use]
     pub fn refined(&self, n: usize) -> Self {
-        let mut case = self.clone();
-        case.grid = self.grid.refined(n);
-        for stage in &mut case.stages {
-            if let StageKind::RunOut(run_out) = &mut stage.kind {
-                run_out.move_per_step *= n as f64;
-            }
+        Self {
+            grid: self.grid.refined(n),
+            ..self.clone()
         }
-        case
     }
 }
 

@@ -162,7 +162,12 @@ fn limit(case: &Case, run: &Summary, number: usize, of: Quantity) -> Option<Foun
         .start_from
         .map_or(0.0, |before| at_end(case, run, before, of));
     let solver = &case.solver;
-    let smallest = solver.cut_factor.powi(i32::try_from(solver.cuts).ok()?) / stage.steps as f64;
+    // A displacement is passed in a planned step.
+    let cuts = match stage.stop_when.displacement {
+        Some(_) => 0,
+        None => i32::try_from(solver.cuts).ok()?,
+    };
+    let smallest = solver.cut_factor.powi(cuts) / stage.steps as f64;
     let whole = (aim(&stage.kind, of)? - from).abs();
     Some((at_end(case, run, number, of), smallest * whole))
 }
