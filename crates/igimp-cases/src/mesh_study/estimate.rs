@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 /// Order at which limit loads and factors of safety of perfect plasticity converge \[-\].
 const USUAL_ORDER: f64 = 1.0;
-/// Orders that are believed \[-\].
+/// Orders that are believed (theory, eq. 40c) \[-\].
 const BELIEVED: [f64; 2] = [0.5, 2.0];
 /// Orders among which an observed one is looked for \[-\].
 const SOUGHT: [f64; 2] = [1e-3, 16.0];
@@ -111,7 +111,7 @@ fn share(coarse: f64, fine: f64, p: f64) -> f64 {
     1.0 / ((coarse / fine).powf(p) - 1.0)
 }
 
-/// The order of convergence on three meshes (theory, eqs. 40b to 40d); the usual one if the intervals of the
+/// The order of convergence on three meshes (theory, eqs. 40b, 40d); the usual one if the intervals of the
 /// values admit it.
 fn observed(a: &Computed, b: &Computed, c: &Computed) -> Order {
     let (first, second) = (a.value - b.value, b.value - c.value);
