@@ -13,8 +13,8 @@ pub enum Locking {
     /// The paper's B-bar: the dilatation is that of the cells (theory, eq. 9). Cures nearly incompressible
     /// elasticity and plastic flow that keeps volume.
     BBar,
-    /// B-bar, and most of the distortion shared as well by particles of full cells whose law yields
-    /// (theory, eqs. 8a to 8c). Cures plastic flow that changes volume too.
+    /// Dilatation and most of the distortion are those of the soil of a cell, for particles whose law
+    /// yields (theory, eqs. 8a to 8c). Cures plastic flow that changes volume too.
     SharedStrain,
 }
 

@@ -7,8 +7,8 @@
 
 mod common;
 
-use common::methods;
-use igimp_assembly::{Constraints, Locking, Method, ParticleSeed, Particles, Stencils};
+use common::{conditions, laws, methods};
+use igimp_assembly::{Locking, Method, ParticleSeed, Particles, Stencils};
 use igimp_shape::{Axis, Grid, Support};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;

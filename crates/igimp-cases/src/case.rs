@@ -47,8 +47,39 @@ pub struct Case {
     pub curves: Vec<Curve>,
     /// Results that are held against outside values.
     pub checks: Vec<CaseCheck>,
+    /// On how many meshes the case is computed, for the error of the mesh.
+    pub mesh_study: MeshStudy,
     /// What is written, and where.
     pub output: Output,
+}
+
+impl Case {
+    /// The same problem on a grid whose cells are cut into `n` in each direction.
+    ///
+    /// Places, lengths and steps stay. What a file states by the cell (particles, small cuts, the stride
+    /// of a run-out) goes by the small cells.
+    #[must_use]
+    pub fn refined(&self, n: usize) -> Self {
+        Self {
+            grid: self.grid.refined(n),
+            ..self.clone()
+        }
+    }
+}
+
+/// A study of the mesh error: the case on its grid and on finer ones ([`mesh_study`]).
+///
+/// [`mesh_study`]: mod@crate::mesh_study
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MeshStudy {
+    /// Meshes, that of the case among them; 1: no study.
+    pub meshes: usize,
+}
+
+impl Default for MeshStudy {
+    fn default() -> Self {
+        Self { meshes: 1 }
+    }
 }
 
 /// A material.
@@ -508,12 +539,24 @@ pub struct CaseCheck {
     pub divide_by: f64,
     /// The stage; none: the last.
     pub stage: Option<usize>,
+    /// Which value is held against it.
+    pub value: CheckValue,
     /// Outside value \[SI units after division\].
     pub expected: f64,
     /// What is accepted.
     pub band: Band,
     /// Where the value comes from.
     pub source: String,
+}
+
+/// Which value a check looks at.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum CheckValue {
+    /// That of the mesh; of the finest in a study of the mesh error.
+    #[default]
+    Computed,
+    /// The one extrapolated from the meshes of a study; without a study that of the mesh.
+    Extrapolated,
 }
 
 /// What is written, and where.

@@ -17,6 +17,7 @@ use igimp_shape::{Scratch, supports};
 
 use crate::case::{Case, LoadKind, ReductionPath, Side, StageKind};
 use crate::error::CaseError;
+use crate::mesh_study::plan;
 use crate::seed::fill_polygon;
 use crate::summary::{Expected, StageSummary};
 use speed::Speed;
@@ -98,7 +99,17 @@ pub fn estimate(case: &Case) -> Result<Estimate, CaseError> {
     })
 }
 
-/// What a run is thought to cost on this computer.
+/// Memory of runs that need so much each: of all when they go side by side, else of the largest
+/// \[bytes\].
+pub fn together(bytes: &[f64]) -> f64 {
+    if watch::side_by_side(bytes) > 1 {
+        bytes.iter().sum()
+    } else {
+        bytes.iter().copied().fold(0.0, f64::max)
+    }
+}
+
+/// What a run is thought to cost on this computer; of a study of the mesh error, all its meshes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Expectation {
     /// Time of the planned steps.
@@ -115,10 +126,20 @@ impl Expectation {
     /// # Errors
     /// As [`estimate`] and [`Speed::measured`].
     pub fn of(case: &Case) -> Result<Self, CaseError> {
-        let (size, speed) = (estimate(case)?, Speed::measured()?);
+        let speed = Speed::measured()?;
+        let meshes = plan::meshes(case);
+        let mut each = Vec::new();
+        for mesh in &meshes {
+            let size = estimate(mesh)?;
+            each.push((time::time(mesh, &size, speed), size.bytes));
+        }
         Ok(Self {
-            time: time::time(case, &size, speed),
-            bytes: size.bytes,
+            time: Time {
+                seconds: each.iter().map(|(time, _)| time.seconds).sum(),
+                open_ended: each.iter().any(|(time, _)| time.open_ended),
+                threads: rayon::current_num_threads(),
+            },
+            bytes: together(&each.iter().map(|(_, bytes)| *bytes).collect::<Vec<_>>()),
             speed,
         })
     }

@@ -13,6 +13,7 @@
 //! | [`check`], [`exact`], [`measure`] | bands, exact solutions, what is read off particles |
 //! | [`seed`], [`polygon`], [`estimate`] | particles from polygons; the size of a case before it runs |
 //! | [`sweep`] | many cases that differ in a few values |
+//! | [`mesh_study`] | the mesh error: a case on several meshes, and what their values say together |
 //!
 //! # The factor of safety of a slope
 //!
@@ -30,6 +31,7 @@ pub mod exact;
 pub mod figures;
 pub mod input;
 pub mod measure;
+pub mod mesh_study;
 pub mod polygon;
 pub mod results;
 pub mod run;

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::check::{Check, or_not_a_number};
+use crate::mesh_study::StudySummary;
 
 /// The outcome of a run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -40,6 +41,9 @@ pub struct Summary {
     pub estimate: Option<Expected>,
     /// Whether the run was interrupted and can be resumed.
     pub interrupted: bool,
+    /// What a study of the mesh error found on all its meshes; stages and pictures are then those of
+    /// the finest mesh that came to its end.
+    pub mesh_study: Option<StudySummary>,
 }
 
 /// The estimate of a run ([`estimate`](mod@crate::estimate)).
@@ -129,6 +133,8 @@ pub struct StageSummary {
     /// Steps that a ghost penalty held at nodes which hardly touch soil.
     #[serde(default)]
     pub ghost_steps: usize,
+    /// Largest resistance of a footing that the stage pushed \[N/m\].
+    pub peak_resistance: Option<f64>,
     /// What a strength reduction found.
     pub safety: Option<SafetySummary>,
 }

@@ -7,7 +7,8 @@
 use std::sync::Arc;
 
 use igimp_assembly::{
-    Constraints, Kinematics, Method, ParticleSeed, Particles, SharedLaw, StepConditions, StepLoads,
+    Constraints, Kinematics, Locking, Method, ParticleSeed, Particles, SharedLaw, StepConditions,
+    StepLoads,
 };
 use igimp_cases::CaseError;
 use igimp_cases::polygon::{area_and_centroid, bounding_box, clip_to_box};
@@ -183,7 +184,11 @@ pub(super) fn patch(
     };
     let method = Method {
         kinematics: Kinematics::SmallStrain,
-        bbar: way != Way::OwnDilatation,
+        locking: if way == Way::OwnDilatation {
+            Locking::None
+        } else {
+            Locking::BBar
+        },
         ..Method::igimp_bbar()
     };
     let name = format!("inclined by {slope}°, E ratio {stiffness}, 1/{cells}, {way:?}");

@@ -151,6 +151,7 @@ impl Section {
             bbar,
             associated,
         } = variant;
+        let locking = if bbar { "b-bar" } else { "none" };
         let cell = self.height / f64::from(cells);
         let ([left, right], top) = (self.sides(), self.top() + cell);
         let base = self.base;
@@ -164,7 +165,7 @@ impl Section {
              cell = \"{cell} m\"
              domain.x = [\"{left} m\", \"{right} m\"]
              domain.y = [\"{base} m\", \"{top} m\"]
-             bbar = {bbar}
+             locking = \"{locking}\"
              [boundaries]
              left = \"roller\"
              right = \"roller\"
@@ -179,6 +180,7 @@ impl Section {
              bracket = {bracket:?}
              tolerance = 0.01
              steps = 5
+             geometry = \"moving\"
              [stages.failure]
              when = \"no-equilibrium\"
              also.displacement = \"{} m\"

@@ -106,7 +106,7 @@ pub fn laws() -> Vec<(&'static str, SharedLaw)> {
     ]
 }
 
-/// The four variants in both kinematics, and one with the ghost penalty.
+/// The variants in both kinematics, and one with the ghost penalty.
 pub fn methods() -> Vec<Method> {
     let mut methods = Vec::new();
     for method in [
@@ -114,6 +114,7 @@ pub fn methods() -> Vec<Method> {
         Method::impm_bbar(),
         Method::igimp(),
         Method::igimp_bbar(),
+        Method::shared_strain(),
     ] {
         for kinematics in [Kinematics::FiniteStrain, Kinematics::SmallStrain] {
             methods.push(Method {

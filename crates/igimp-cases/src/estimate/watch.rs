@@ -57,6 +57,20 @@ pub fn lacks_memory(bytes: f64) -> Option<String> {
     })
 }
 
+/// How many runs that need so much memory each may go side by side on the threads of the current pool.
+///
+/// All have room, or they go one after another; and so they do within a pool that has other work, and
+/// on one thread.
+pub fn side_by_side(bytes: &[f64]) -> usize {
+    let threads = rayon::current_num_threads();
+    let all: f64 = bytes.iter().sum();
+    if rayon::current_thread_index().is_some() || available().is_some_and(|free| all > free) {
+        1
+    } else {
+        threads.min(bytes.len()).max(1)
+    }
+}
+
 /// Memory that the system can give without swapping \[bytes\], where it tells.
 fn available() -> Option<f64> {
     let text = std::fs::read_to_string("/proc/meminfo").ok()?;
@@ -100,6 +114,20 @@ mod tests {
         the run took 4 min, 2.4 times the estimate of 2 min: more steps were cut, or more corrections needed, than is usual
         the run needed 800 MiB of memory, 2.0 times the estimate of 400 MiB
         ");
+    }
+
+    #[test]
+    fn runs_go_side_by_side_if_all_have_room() {
+        assert_eq!(side_by_side(&[]), 1);
+        assert_eq!(side_by_side(&[1.0; 3]), rayon::current_num_threads().min(3));
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(4)
+            .build()
+            .unwrap();
+        assert_eq!(pool.install(|| side_by_side(&[1.0; 3])), 1);
+        if available().is_some() {
+            assert_eq!(side_by_side(&[1e18, 1.0]), 1);
+        }
     }
 
     #[test]

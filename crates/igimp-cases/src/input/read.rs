@@ -13,8 +13,9 @@ use super::explain::explain;
 use super::overrides::apply;
 use super::source::{Place, Source};
 use super::syntax::parse;
-use super::tree::Node;
+use super::tree::{Node, Value};
 use crate::case::Case;
+use crate::mesh_study::plan;
 
 /// Most bytes of a case file.
 const LARGEST: usize = 8 << 20;
@@ -160,6 +161,31 @@ impl CaseFile {
     /// The file with overrides and every default written out, commented; it states the same case.
     pub fn explain(&self) -> String {
         explain(&self.completed)
+    }
+
+    /// The completed file of every mesh of a study of the mesh error; nothing without a study.
+    pub fn explain_meshes(&self) -> Vec<String> {
+        if self.case.mesh_study.meshes < 2 {
+            return Vec::new();
+        }
+        let parts = plan::refinements(&self.case);
+        parts
+            .iter()
+            .map(|&parts| self.explain_mesh(parts))
+            .collect()
+    }
+
+    fn explain_mesh(&self, parts: usize) -> String {
+        let mut mesh = self.completed.clone();
+        let own = mesh.get("grid").and_then(|grid| grid.count_at("refine"));
+        let refine = own.unwrap_or(1) * parts;
+        for (table, key, count) in [("grid", "refine", refine), ("mesh_study", "meshes", 1)] {
+            if let Some(node) = mesh.get_mut(table).and_then(|table| table.get_mut(key)) {
+                node.value = Value::Integer(i64::try_from(count).unwrap_or(i64::MAX));
+                node.written = true;
+            }
+        }
+        explain(&mesh)
     }
 
     /// The text of the file.

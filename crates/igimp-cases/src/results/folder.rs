@@ -10,6 +10,8 @@
 //! | `figures/` | pictures (`.svg`, `.png`) |
 //! | `paraview/` | particles and grid (`.pvd`, `.vtu`) |
 //! | `checkpoint/`, `last-converged/` | states ([`checkpoint`]) |
+//! | `mesh-1/`, `mesh-2/`, … | of a study of the mesh error: a folder like this for each mesh |
+//! | `mesh_study.csv` | its results on all meshes |
 //! | `.igimp` | says that igimp made the folder |
 
 use std::fs;
@@ -19,6 +21,7 @@ use std::path::{Path, PathBuf};
 use super::atomic::{at, temporary_name};
 use super::{checkpoint, pvd};
 use crate::error::CaseError;
+use crate::summary::Summary;
 
 pub use super::atomic::write_atomically;
 
@@ -26,12 +29,16 @@ const MARKER: &str = ".igimp";
 const MARKER_TEXT: &str = "igimp writes its results here; a further run replaces them.\n";
 
 const SUMMARY: &str = "summary.json";
-const FILES: [&str; 4] = [
+const MESH_STUDY: &str = "mesh_study.csv";
+const FILES: [&str; 5] = [
     SUMMARY,
+    MESH_STUDY,
     "report.html",
     "case.completed.toml",
     "convergence.csv",
 ];
+/// Most meshes of a study of the mesh error.
+const MOST_MESHES: usize = 3;
 const TABLES: [&str; 3] = ["curves", "monitors", "sections"];
 const FIGURES: &str = "figures";
 const PARAVIEW: &str = "paraview";
@@ -159,6 +166,67 @@ pub fn claim(root: &Path) -> Result<(), CaseError> {
     write_atomically(&root.join(MARKER), MARKER_TEXT)
 }
 
+/// Writes the `summary.json` of a results folder.
+///
+/// # Errors
+/// [`CaseError::File`].
+pub fn write_summary(root: &Path, summary: &Summary) -> Result<(), CaseError> {
+    let path = root.join(SUMMARY);
+    let text = serde_json::to_string_pretty(summary).map_err(|source| CaseError::File {
+        path: path.clone(),
+        source: source.into(),
+    })?;
+    write_atomically(&path, text + "\n")
+}
+
+/// Name of the folder of a mesh within that of its study, numbered from 1.
+pub fn mesh_name(number: usize) -> String {
+    format!("mesh-{number}")
+}
+
+/// Lays out the folder of a study of the mesh error, whose meshes have folders of their own in it.
+///
+/// From the beginning, what an earlier run left is cleared as in [`Folder::afresh`], and so are the
+/// folders of meshes.
+///
+/// # Errors
+/// [`CaseError::ForeignFolder`] for a folder that is not empty and was not written by igimp;
+/// [`CaseError::File`], [`CaseError::Checkpoint`].
+pub fn of_study(root: &Path, afresh: bool) -> Result<(), CaseError> {
+    claim(root)?;
+    if afresh {
+        clear(root)?;
+        clear_meshes(root)?;
+    }
+    Ok(())
+}
+
+/// Clears the folders of meshes that an earlier study left in a results folder: the files of our names,
+/// and what is empty then.
+///
+/// # Errors
+/// [`CaseError::File`], [`CaseError::Checkpoint`].
+pub fn clear_meshes(root: &Path) -> Result<(), CaseError> {
+    for number in 1..=MOST_MESHES {
+        let mesh = root.join(mesh_name(number));
+        if !mesh.is_dir() || !is_ours(&mesh) {
+            continue;
+        }
+        clear(&mesh)?;
+        remove_files(&mesh, |name| [MARKER, "case.toml"].contains(&name))?;
+        for name in TABLES
+            .into_iter()
+            .chain([FIGURES, PARAVIEW, CHECKPOINT, ""])
+        {
+            let path = mesh.join(name);
+            if path.is_dir() && is_empty(&path)? {
+                fs::remove_dir(&path).map_err(at(&path))?;
+            }
+        }
+    }
+    Ok(())
+}
+
 /// Asks, before anything is written, whether igimp may write into a folder.
 ///
 /// # Errors
@@ -262,6 +330,8 @@ mod tests {
             folder.paraview().join(".particles_0002.vtu.tmp"),
             folder.paraview().join("grid.pvd"),
             folder.paraview().join("grid_12345.vtu"),
+            folder.paraview().join("stage-02-last-stable.vtu"),
+            folder.paraview().join("stage-02-first-unstable.vtu"),
         ] {
             fs::write(path, "x").unwrap();
         }

@@ -166,11 +166,26 @@ fn attribute<'a>(tag: &'a str, name: &str) -> Option<&'a str> {
     Some(rest.split_once('"')?.0)
 }
 
-/// Whether a file of `paraview/` has a name that a run gives: `STEM.pvd`, `STEM_0001.vtu`.
+/// Whether a file of `paraview/` has a name that a run gives: `STEM.pvd`, `STEM_0001.vtu`, and the states
+/// of a search, `stage-02-last-stable.vtu`.
 pub(super) fn is_our_name(name: &str) -> bool {
-    [PARTICLES, GRID]
+    let is_frame = [PARTICLES, GRID]
         .iter()
-        .any(|stem| name.strip_prefix(stem) == Some(".pvd") || frame_number(name, stem).is_some())
+        .any(|stem| name.strip_prefix(stem) == Some(".pvd") || frame_number(name, stem).is_some());
+    is_frame || is_state_of_a_search(name)
+}
+
+fn is_state_of_a_search(name: &str) -> bool {
+    let inner = name
+        .strip_prefix("stage-")
+        .and_then(|rest| rest.strip_suffix(".vtu"));
+    inner
+        .and_then(|inner| inner.split_once('-'))
+        .is_some_and(|(digits, what)| {
+            digits.len() >= 2
+                && digits.bytes().all(|byte| byte.is_ascii_digit())
+                && matches!(what, "last-stable" | "first-unstable")
+        })
 }
 
 /// Number of a frame from its name, such as `particles_0001.vtu`.

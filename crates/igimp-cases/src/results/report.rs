@@ -1,6 +1,7 @@
 //! `report.html`: one page without outside parts that tells what a run found.
 
 mod files;
+mod meshes;
 mod rows;
 mod verdict;
 
@@ -45,9 +46,17 @@ fn render(folder: &Path, summary: &Summary) -> Result<String, minijinja::Error> 
     let tables = files::tables(folder);
     let inputs = files::inputs(folder);
     let safety = rows::safety(summary);
+    let study = summary.mesh_study.as_ref().map(meshes::view);
+    let mut verdict = verdict::verdict(summary);
+    let mut numbers = rows::numbers(summary);
+    if let Some(study) = &summary.mesh_study {
+        meshes::add_to(&mut verdict, study);
+        numbers.splice(0..0, meshes::numbers(study));
+    }
     let entries = contents(
         [
             (true, "numbers", "Key numbers"),
+            (study.is_some(), "meshes", "Mesh error"),
             (!summary.checks.is_empty(), "checks", "Checks"),
             (summary.failure.is_some(), "failure", "Want of equilibrium"),
             (!summary.warnings.is_empty(), "warnings", "Warnings"),
@@ -69,9 +78,10 @@ fn render(folder: &Path, summary: &Summary) -> Result<String, minijinja::Error> 
         title,
         program: &summary.program,
         method: &summary.method,
-        verdict: verdict::verdict(summary),
+        verdict,
         contents: entries,
-        numbers: rows::numbers(summary),
+        numbers,
+        study,
         checks: rows::checks(summary),
         failure: summary.failure.as_deref(),
         warnings: &summary.warnings,
@@ -98,6 +108,7 @@ struct Page<'a> {
     verdict: verdict::Verdict,
     contents: Vec<Entry>,
     numbers: Vec<rows::Number>,
+    study: Option<meshes::StudyView>,
     checks: Vec<rows::CheckView>,
     failure: Option<&'a str>,
     warnings: &'a [String],

@@ -1,10 +1,12 @@
 //! GOAL: the first suggestion is the one a colleague would give who knows the case.
 
 use igimp_assembly::Method;
+use igimp_assembly::{Geometry, Locking};
 
 use super::*;
 use crate::case::{
-    BodyPart, Boundaries, Every, GridSpec, Output, Reduction, RunOut, SolverSettings, StopWhen,
+    BodyPart, Boundaries, Every, GridSpec, MeshStudy, Output, Reduction, RunOut, SolverSettings,
+    StopWhen,
 };
 
 /// A slope of Mohr–Coulomb soil on elastic rock.
@@ -50,6 +52,7 @@ fn case(kind: StageKind) -> Case {
             name: "first".into(),
             kind,
             steps: 200,
+            geometry: Geometry::Moving,
             start_from: None,
             reset_displacements: false,
             stop_when: StopWhen::default(),
@@ -59,6 +62,7 @@ fn case(kind: StageKind) -> Case {
         sections: Vec::new(),
         curves: Vec::new(),
         checks: Vec::new(),
+        mesh_study: MeshStudy::default(),
         output: Output {
             folder: "results".into(),
             paraview: Every::Never,

@@ -13,16 +13,20 @@ use super::records::{Moment, Records, largest_displacement};
 use super::session::{Ended, Session};
 use super::state::State;
 use super::{Event, Failure, Listener, Run, Start, Target};
-use super::{checks, failure, initial, loading, processor, run_out, safety, sections};
+use super::{checks, failure, initial, loading, processor, run_out, safety, sections, study};
 use crate::case::{Case, StageKind};
 use crate::error::CaseError;
 use crate::estimate::Expectation;
-use crate::results::folder::refuse_foreign;
+use crate::results::folder::{clear_meshes, refuse_foreign};
 use crate::summary::{StageOutcome, StageSummary, Summary};
 use crate::table::Table;
 use igimp_solver::StepError;
 
 /// Runs a case. With a target everything is written as it is computed.
+///
+/// A case with a [`mesh_study`](Case::mesh_study) of several meshes is run on each of them, and what
+/// they say together is told in the [`Summary`]; the rest of the [`Run`] is that of the finest mesh that
+/// came to its end.
 ///
 /// Want of equilibrium is a result ([`Run::failure`]), and so is an interruption: when `interrupt`
 /// becomes true the run ends after its step, with everything saved.
@@ -30,6 +34,20 @@ use igimp_solver::StepError;
 /// # Errors
 /// [`CaseError`] for a case that cannot be set up, and for files that cannot be written or read.
 pub fn run(
+    case: &Case,
+    target: Option<&Target>,
+    start: Start,
+    listener: &mut dyn Listener,
+    interrupt: &AtomicBool,
+) -> Result<Run, CaseError> {
+    if case.mesh_study.meshes > 1 {
+        return study::run(case, target, start, listener, interrupt);
+    }
+    one_mesh(case, target, start, listener, interrupt)
+}
+
+/// Runs a case on its own grid.
+pub(super) fn one_mesh(
     case: &Case,
     target: Option<&Target>,
     start: Start,
@@ -112,7 +130,11 @@ impl Course {
             refuse_foreign(systems)?;
         }
         let (mut output, left) = match start {
-            Start::Afresh => (Output::create(target, case, &session.records)?, None),
+            Start::Afresh => {
+                let output = Output::create(target, case, &session.records)?;
+                clear_meshes(&target.folder)?;
+                (output, None)
+            }
             Start::Resume => Output::resume(target, case, &mut session.records)?,
             Start::FromStage(stage) => {
                 Output::from_stage(target, case, &mut session.records, stage)?
@@ -350,6 +372,7 @@ impl Course {
             sections: self.sections,
             body: self.state.map_or_else(|| initial.body, |state| state.body),
             failure: self.failure,
+            lost: Vec::new(),
         })
     }
 }

@@ -22,11 +22,13 @@ mod safety;
 mod sections;
 mod session;
 mod state;
+mod study;
 
 use std::path::PathBuf;
 
 use igimp_solver::{Accepted, Body, StepError, StepReport};
 
+use crate::error::CaseError;
 use crate::estimate::Expectation;
 use crate::input::CaseFile;
 use crate::summary::{ModelSize, StageSummary, Summary, TrialSummary};
@@ -98,15 +100,22 @@ pub enum Event<'a> {
         /// In a sentence.
         text: &'a str,
     },
+    /// Something happens on a mesh of a study of the mesh error; meshes run side by side.
+    OfMesh {
+        /// Into how many parts the mesh cuts the cells of the case.
+        parts: usize,
+        /// What happens.
+        event: &'a Event<'a>,
+    },
 }
 
 /// Listens to a run: a progress bar, a log. Closures are listeners.
-pub trait Listener {
+pub trait Listener: Send {
     /// Called as it happens.
     fn on_event(&mut self, event: &Event<'_>);
 }
 
-impl<F: FnMut(&Event<'_>)> Listener for F {
+impl<F: FnMut(&Event<'_>) + Send> Listener for F {
     fn on_event(&mut self, event: &Event<'_>) {
         self(event);
     }
@@ -139,6 +148,8 @@ pub struct Target {
     pub systems: Option<PathBuf>,
     /// What the run is thought to cost, to be kept beside what it did.
     pub expectation: Option<Expectation>,
+    /// Of a study of the mesh error: the completed case of each mesh.
+    pub meshes: Vec<String>,
 }
 
 impl Target {
@@ -150,6 +161,7 @@ impl Target {
             completed: file.explain(),
             systems: None,
             expectation: None,
+            meshes: file.explain_meshes(),
         }
     }
 }
@@ -169,6 +181,8 @@ pub struct Run {
     pub body: Body<2>,
     /// The step that ended the run for want of equilibrium, if one did.
     pub failure: Option<Failure>,
+    /// Why meshes of a study could not be run, or their results not be written; the others are there.
+    pub lost: Vec<CaseError>,
 }
 
 /// A step that found no equilibrium where the case wanted one.

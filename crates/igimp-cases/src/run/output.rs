@@ -17,7 +17,7 @@ use crate::case::{Case, Every};
 use crate::error::CaseError;
 use crate::results::atomic::write_atomically;
 use crate::results::checkpoint::{self, Meta};
-use crate::results::folder::Folder;
+use crate::results::folder::{Folder, write_summary};
 use crate::results::frames::Frames;
 use crate::results::pictures::{self, Shown};
 use crate::results::report;
@@ -399,12 +399,7 @@ impl Output {
     }
 
     fn write_summary(&self, summary: &Summary) -> Result<(), CaseError> {
-        let path = self.folder.summary();
-        let text = serde_json::to_string_pretty(summary).map_err(|source| CaseError::File {
-            path: path.clone(),
-            source: source.into(),
-        })?;
-        write_atomically(&path, text + "\n")
+        write_summary(self.folder.root(), summary)
     }
 
     fn notes(&self, case: &Case, stage: usize, run: &Summary, controls: &Controls) -> Notes {

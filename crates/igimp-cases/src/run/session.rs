@@ -301,6 +301,10 @@ impl Watch<'_, '_> {
             interrupted: self.session.interrupted(),
         };
         self.session.last_resistance = taken.resistance;
+        if self.path.to.settlement > self.path.from.settlement {
+            let before = self.stage.peak_resistance.unwrap_or(taken.resistance);
+            self.stage.peak_resistance = Some(before.max(taken.resistance));
+        }
         let reason = (self.each)(self.session, self.stage, &taken)?;
         self.session.tell(&Event::Step {
             number: self.stage.steps,

@@ -32,6 +32,7 @@ use crate::results::folder;
 use crate::run::{self, Listener, Run, Start, Target};
 
 pub use collect::{Collected, aligned, collect};
+pub(crate) use record::chain as on_one_line;
 pub use record::{Ending, Record};
 
 /// A parameter study that was read, with every task's case checked.

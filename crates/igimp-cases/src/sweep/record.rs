@@ -10,6 +10,7 @@ use sha2::{Digest, Sha256};
 
 use super::{Sweep, SweepError, Task};
 use crate::input::CaseFile;
+use crate::mesh_study::StudySummary;
 use crate::summary::{StageOutcome, Summary};
 
 /// How a task ended.
@@ -35,7 +36,11 @@ impl Ending {
     /// How a run with this summary ended.
     pub fn of(summary: &Summary) -> Self {
         let stage = |outcome| summary.stages.iter().any(|stage| stage.outcome == outcome);
-        if summary.interrupted || stage(StageOutcome::Interrupted) {
+        let meshes = summary.mesh_study.as_ref();
+        let meshes = meshes.map_or(Self::Done, StudySummary::ending);
+        if meshes != Self::Done {
+            meshes
+        } else if summary.interrupted || stage(StageOutcome::Interrupted) {
             Self::Interrupted
         } else if stage(StageOutcome::NotConverged) {
             Self::NotConverged
@@ -127,7 +132,7 @@ pub(super) fn fingerprint(file: &CaseFile) -> String {
 }
 
 /// An error and its causes on one line.
-pub(super) fn chain(error: &dyn Error) -> String {
+pub(crate) fn chain(error: &dyn Error) -> String {
     let mut text = error.to_string();
     let mut cause = error.source();
     while let Some(next) = cause {

@@ -2,11 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
+use igimp_assembly::Geometry;
 use igimp_assembly::{Method, ParticleFields, Particles, SharedLaw};
 use igimp_cases::case::{
     BodyPart, Boundaries, Case, Curve, CurveAxis, Every, Field, FixedBox, GridSpec, Load, LoadKind,
-    Material, Monitor, Output, Quantity, Reference, ReferenceValues, Section, Side, SolverSettings,
-    Stage, StageKind, StopWhen, Strength,
+    Material, MeshStudy, Monitor, Output, Quantity, Reference, ReferenceValues, Section, Side,
+    SolverSettings, Stage, StageKind, StopWhen, Strength,
 };
 use igimp_cases::results::pictures::{self, Shown};
 use igimp_cases::seed::fill_polygon;
@@ -29,6 +30,7 @@ pub(crate) fn case() -> Case {
         name: name.into(),
         kind,
         steps: 10,
+        geometry: Geometry::Moving,
         start_from: None,
         reset_displacements: false,
         stop_when: StopWhen::default(),
@@ -100,6 +102,7 @@ pub(crate) fn case() -> Case {
         ],
         curves: vec![curve()],
         checks: Vec::new(),
+        mesh_study: MeshStudy::default(),
         output: Output {
             folder: "results/slope".into(),
             paraview: Every::Stage,

@@ -73,8 +73,10 @@ pub(crate) fn safety() -> SafetySummary {
         steps: 10,
         iterations: 48,
         cuts: if stable { 0 } else { 5 },
+        course: Vec::new(),
     };
     SafetySummary {
+        given_geometry: false,
         stable: Some(1.375),
         failed: Some(1.3828),
         criterion: "no equilibrium, or the crest moves by 0.5 m".into(),

@@ -118,6 +118,13 @@ fn collect(root: &Path, folder: &Path, files: &mut BTreeMap<PathBuf, Vec<u8>>) {
 fn without_times(summary: &mut Value) {
     let whole = summary.as_object_mut().unwrap();
     whole.retain(|key, _| !TIMES.contains(&key.as_str()));
+    for mesh in whole["mesh_study"]["meshes"]
+        .as_array_mut()
+        .into_iter()
+        .flatten()
+    {
+        mesh.as_object_mut().unwrap().remove("seconds");
+    }
     for stage in whole["stages"].as_array_mut().unwrap() {
         let stage = stage.as_object_mut().unwrap();
         stage.retain(|key, _| key != "seconds" && key != "phases");

@@ -61,6 +61,29 @@ pub(crate) struct CaseArguments {
     /// Replace a value of the file, as in materials.clay.cohesion="12 kPa" (may be repeated).
     #[arg(long, value_name = "KEY=VALUE")]
     pub(crate) set: Vec<String>,
+    /// Compute the case on so many meshes, of h, h/2 and h/4, for the error of the mesh.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=3))]
+    pub(crate) meshes: Option<u8>,
+}
+
+impl CaseArguments {
+    /// All that replaces values of the file.
+    pub(crate) fn settings(&self) -> Vec<String> {
+        with_meshes(&self.set, self.meshes)
+    }
+}
+
+impl Run {
+    /// All that replaces values of the file.
+    pub(crate) fn settings(&self) -> Vec<String> {
+        with_meshes(&self.set, self.meshes)
+    }
+}
+
+/// `--meshes` is a short way to set a value.
+fn with_meshes(set: &[String], meshes: Option<u8>) -> Vec<String> {
+    let study = meshes.map(|meshes| format!("mesh_study.meshes={meshes}"));
+    set.iter().cloned().chain(study).collect()
 }
 
 // Each switch is its own flag on the command line.
@@ -75,6 +98,9 @@ pub(crate) struct Run {
     /// Replace a value of the file, as in materials.clay.cohesion="12 kPa" (may be repeated).
     #[arg(long, value_name = "KEY=VALUE")]
     pub(crate) set: Vec<String>,
+    /// Compute the case on so many meshes, of h, h/2 and h/4, for the error of the mesh.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=3), conflicts_with = "task")]
+    pub(crate) meshes: Option<u8>,
     /// Threads to use; all cores when not given.
     #[arg(long, value_name = "N", value_parser = at_least_one)]
     pub(crate) threads: Option<usize>,

@@ -1,28 +1,32 @@
 //! `igimp check` and `igimp explain`.
 
+use igimp_cases::case::Case;
 use igimp_cases::check::count;
 use igimp_cases::estimate::speed::Speed;
-use igimp_cases::estimate::{estimate, per_item, readable, time};
+use igimp_cases::estimate::watch::side_by_side;
+use igimp_cases::estimate::{estimate, per_item, readable, time, together};
 use igimp_cases::input::CaseFile;
+use igimp_cases::mesh_study::plan;
 
 use crate::arguments::CaseArguments;
 use crate::error::{Exit, ProgramError};
 use crate::output;
 
 pub(crate) fn explain(arguments: &CaseArguments) -> Result<Exit, ProgramError> {
-    let file = read(&arguments.case, &arguments.set)?;
+    let file = read(&arguments.case, &arguments.settings())?;
     output::warn(&file.warnings());
     output::print(&file.explain())?;
     Ok(Exit::Done)
 }
 
 pub(crate) fn check(arguments: &CaseArguments) -> Result<Exit, ProgramError> {
-    let file = read(&arguments.case, &arguments.set)?;
+    let file = read(&arguments.case, &arguments.settings())?;
     let case = file.case();
     for material in &case.materials {
         material.law().map_err(igimp_cases::CaseError::from)?;
     }
     let size = estimate(case)?;
+    let speed = Speed::measured()?;
     output::warn(&file.warnings());
     let [nx, ny] = case.grid.cells();
     let [particle, unknown] = per_item(size.unknowns).map(|bytes| count(round(bytes)));
@@ -37,10 +41,7 @@ pub(crate) fn check(arguments: &CaseArguments) -> Result<Exit, ProgramError> {
             "",
             format!("about {particle} bytes for a particle, {unknown} for an unknown"),
         ),
-        row(
-            "time",
-            time::sentence(&time::time(case, &size, Speed::measured()?)),
-        ),
+        row("time", time::sentence(&time::time(case, &size, speed))),
         row("results", case.output.folder.display().to_string()),
     ];
     let stages: Vec<Vec<String>> = case
@@ -56,13 +57,51 @@ pub(crate) fn check(arguments: &CaseArguments) -> Result<Exit, ProgramError> {
         })
         .collect();
     output::print(&format!(
-        "{} is fine\n  {}\n\n{}\nstages\n{}",
+        "{} is fine\n  {}\n\n{}\nstages\n{}{}",
         arguments.case.display(),
         case.title,
         output::table(&rows),
-        output::table(&stages)
+        output::table(&stages),
+        study(case, speed)?
     ))?;
     Ok(Exit::Done)
+}
+
+/// The meshes of a study of the mesh error, each with its size, and the cost of all; empty without one.
+fn study(case: &Case, speed: Speed) -> Result<String, ProgramError> {
+    if case.mesh_study.meshes < 2 {
+        return Ok(String::new());
+    }
+    let mut rows = Vec::new();
+    let (mut bytes, mut all) = (Vec::new(), None::<time::Time>);
+    for (mesh, parts) in std::iter::zip(plan::meshes(case), plan::refinements(case)) {
+        let size = estimate(&mesh)?;
+        let own = time::time(&mesh, &size, speed);
+        rows.push(vec![
+            plan::label(parts),
+            format!("{} particles", count(size.particles)),
+            format!("{} cells", count(size.cells)),
+            format!("about {} unknowns", count(size.unknowns)),
+            format!("about {}", readable(size.bytes)),
+            format!("about {}", time::readable(own.seconds)),
+        ]);
+        bytes.push(size.bytes);
+        all = Some(all.map_or(own, |all| time::Time {
+            seconds: all.seconds + own.seconds,
+            ..own
+        }));
+    }
+    let how = if side_by_side(&bytes) > 1 {
+        "side by side"
+    } else {
+        "one after another"
+    };
+    Ok(format!(
+        "\nmeshes\n{}  {how}: about {} of memory, {}\n",
+        output::table(&rows),
+        readable(together(&bytes)),
+        all.map_or_else(String::new, |all| time::sentence(&all))
+    ))
 }
 
 /// A number of bytes to two digits: more are not known.

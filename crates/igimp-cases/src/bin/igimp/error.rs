@@ -76,14 +76,7 @@ impl ProgramError {
         if self.is_closed_pipe() {
             return Exit::Done;
         }
-        let mut link: Option<&(dyn Error + 'static)> = Some(self);
-        while let Some(error) = link {
-            if error.is::<std::io::Error>() || error.is::<csv::Error>() {
-                return Exit::InputOutput;
-            }
-            link = error.source();
-        }
-        Exit::BadInput
+        of_cause(self)
     }
 
     /// The complete message.
@@ -102,6 +95,23 @@ impl ProgramError {
             _ => igimp_cases::chain(self),
         }
     }
+}
+
+/// The exit code of a mesh that could not be run.
+pub(crate) fn of_case(error: &CaseError) -> Exit {
+    of_cause(error)
+}
+
+/// Anything that comes from a file is input or output, the rest is bad input.
+fn of_cause(error: &(dyn Error + 'static)) -> Exit {
+    let mut link = Some(error);
+    while let Some(error) = link {
+        if error.is::<std::io::Error>() || error.is::<csv::Error>() {
+            return Exit::InputOutput;
+        }
+        link = error.source();
+    }
+    Exit::BadInput
 }
 
 #[cfg(test)]

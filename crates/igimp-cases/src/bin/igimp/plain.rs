@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use igimp_cases::check::{count, short};
+use igimp_cases::mesh_study::plan::label;
 use igimp_cases::run::{Event, REACHED_ITS_END, worst_node};
 use igimp_cases::summary::{SafetySummary, StageOutcome, StageSummary, TrialSummary};
 use igimp_solver::{StepError, StepReport};
@@ -16,6 +17,8 @@ pub(crate) struct Lines {
     pub(crate) steps: usize,
     /// Whether the stage is a search, whose trials are lines instead of their steps.
     pub(crate) search: bool,
+    /// Of a study of the mesh error: the lines of each mesh by its parts.
+    meshes: Vec<(usize, Lines)>,
 }
 
 impl Lines {
@@ -62,7 +65,21 @@ impl Lines {
             Event::Trial { trial, .. } => Some(format!("  {}", self::trial(trial))),
             Event::StageEnded { summary } => Some(format!("  {}", end(summary))),
             Event::Warning { text } => Some(format!("warning: {text}")),
+            Event::OfMesh { parts, event } => self.of_mesh(*parts, event),
         }
+    }
+
+    /// The line of an event on a mesh. Meshes run side by side: each line says of which it is, and
+    /// steps are left out.
+    fn of_mesh(&mut self, parts: usize, event: &Event<'_>) -> Option<String> {
+        let known = self.meshes.iter().position(|(own, _)| *own == parts);
+        let place = known.unwrap_or_else(|| {
+            self.meshes.push((parts, Lines::default()));
+            self.meshes.len() - 1
+        });
+        let line = self.meshes[place].1.line(event)?;
+        let is_step = matches!(event, Event::Step { .. } | Event::Cut { .. });
+        (!is_step).then(|| format!("{:<4} {line}", label(parts)))
     }
 }
 

@@ -17,7 +17,7 @@ pub(crate) fn run(arguments: &Run) -> Result<Exit, ProgramError> {
     if let Some(number) = arguments.task {
         return task(arguments, number);
     }
-    let file = cases::read(&arguments.case, &arguments.set)?;
+    let file = cases::read(&arguments.case, &arguments.settings())?;
     output::warn(&file.warnings());
     let mut case = file.case().clone();
     if let Some(out) = &arguments.out {
@@ -113,11 +113,17 @@ fn tell(run: &engine::Run, folder: &Path, arguments: &Run) -> Result<Exit, Progr
     for more in exceeded(summary) {
         output::complain(&format!("warning: {more}"));
     }
-    Ok(if run.failure.is_some() {
+    let mut exit = if run.failure.is_some() {
         Exit::NotConverged
     } else {
         ending.into()
-    })
+    };
+    // Of what went wrong on several meshes the worst counts; what the system refused is told apart.
+    for error in &run.lost {
+        output::complain(&igimp_cases::chain(error));
+        exit = exit.max(crate::error::of_case(error));
+    }
+    Ok(exit)
 }
 
 /// The command that goes on with an interrupted run.
@@ -132,6 +138,9 @@ fn again(arguments: &Run) -> String {
     }
     for set in &arguments.set {
         words.push(format!("--set {}", quoted(set)));
+    }
+    if let Some(meshes) = arguments.meshes {
+        words.push(format!("--meshes {meshes}"));
     }
     if let Some(systems) = &arguments.export_matrix {
         let systems = quoted(&systems.display().to_string());

@@ -3,7 +3,8 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use igimp_cases::check::short;
+use igimp_cases::check::{count, short};
+use igimp_cases::mesh_study::{MeshSummary, StudySummary};
 use igimp_cases::summary::{CheckRow, SafetySummary, Summary};
 
 use crate::output;
@@ -24,7 +25,15 @@ pub(crate) fn stages_and_checks(summary: &Summary) -> String {
             ]
         })
         .collect();
-    let mut text = format!("stages\n{}", output::table(&rows));
+    let mut text = match summary.mesh_study.as_ref() {
+        Some(study) => {
+            let shown = study.shown().map_or_else(String::new, MeshSummary::label);
+            let meshes = output::table(&study.meshes.iter().map(mesh).collect::<Vec<_>>());
+            format!("meshes\n{meshes}stages ({shown})\n")
+        }
+        None => "stages\n".to_owned(),
+    };
+    text += &output::table(&rows);
     let at_round_off: usize = summary.stages.iter().map(|stage| stage.at_round_off).sum();
     if at_round_off > 0 {
         let _ = writeln!(
@@ -32,10 +41,54 @@ pub(crate) fn stages_and_checks(summary: &Summary) -> String {
             "  {at_round_off} steps were accepted above the tolerance, at round-off"
         );
     }
+    if let Some(study) = &summary.mesh_study {
+        let _ = write!(text, "mesh error\n{}", mesh_error(study));
+    }
     if !summary.checks.is_empty() {
         let _ = write!(text, "checks\n{}", checks(&summary.checks));
     }
     text
+}
+
+/// A mesh of a study: its size, and how its run ended.
+fn mesh(mesh: &MeshSummary) -> Vec<String> {
+    vec![
+        mesh.label(),
+        mesh.folder.clone(),
+        format!("{} particles", count(mesh.size.particles)),
+        format!("{} cells", count(mesh.size.cells)),
+        mesh.ending.to_string(),
+    ]
+}
+
+/// The results of a study: the values on all meshes, and what they say together.
+fn mesh_error(study: &StudySummary) -> String {
+    let rows: Vec<Vec<String>> = study
+        .results
+        .iter()
+        .map(|result| {
+            let mut row = vec![result.name.clone()];
+            row.extend(
+                study
+                    .meshes
+                    .iter()
+                    .zip(&result.values)
+                    .map(|(mesh, value)| {
+                        let value = value.map_or_else(|| "-".to_owned(), short);
+                        format!("{} {value}", mesh.label())
+                    }),
+            );
+            row.extend(match result.estimate {
+                Some(found) => vec![
+                    format!("extrapolated {}", found.sentence()),
+                    format!("(order {})", found.order.sentence()),
+                ],
+                None => vec!["nothing is extrapolated of one value".to_owned()],
+            });
+            row
+        })
+        .collect();
+    output::table(&rows)
 }
 
 /// The last line: where the results are, and the time taken.

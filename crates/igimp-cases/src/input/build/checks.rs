@@ -2,7 +2,7 @@
 
 use super::AllNames;
 use super::quantities::{divisor, quantity};
-use crate::case::{CaseCheck, Load, Quantity, Stage, StageKind};
+use crate::case::{CaseCheck, CheckValue, Load, Quantity, Stage, StageKind};
 use crate::check::Band;
 use crate::input::diagnostic::Problems;
 use crate::input::text::clip;
@@ -39,6 +39,10 @@ pub(super) fn checks(
                 of: of?,
                 divide_by: divide_by?,
                 stage: stage.ok()?,
+                value: match node.text_at("value")? {
+                    "extrapolated" => CheckValue::Extrapolated,
+                    _ => CheckValue::Computed,
+                },
                 expected,
                 band,
                 source: node.text_at("source")?.to_owned(),

@@ -18,6 +18,7 @@ mod quantities;
 mod safety;
 mod site;
 mod stages;
+mod study;
 
 use std::path::Path;
 
@@ -112,9 +113,10 @@ pub(super) fn build(tree: &mut Node, file: &Path, problems: &mut Problems) -> Op
     let curves = curves::curves(tree, &names, &loads, file, problems);
     let checks = checks::checks(tree, &names, &loads, &stages, problems);
     let output = outputs::output(tree, problems);
+    let mesh_study = study::mesh_study(tree);
 
     let case = tree.get("case")?;
-    Some(Case {
+    let case = Case {
         title: case.text_at("title")?.to_owned(),
         gravity: case.number_at("gravity")?,
         grid: grid?,
@@ -129,8 +131,12 @@ pub(super) fn build(tree: &mut Node, file: &Path, problems: &mut Problems) -> Op
         sections: all(sections)?,
         curves: all(curves)?,
         checks: all(checks)?,
+        mesh_study: mesh_study?,
         output: output?,
-    })
+    };
+    let case = case.refined(tree.get("grid")?.count_at("refine")?);
+    study::check(tree, &case, problems);
+    Some(case)
 }
 
 fn all<T>(parts: Vec<Option<T>>) -> Option<Vec<T>> {

@@ -110,6 +110,12 @@ pub(super) static ROOT: Struct = Struct {
             "results that are held against outside values",
         ),
         default(
+            "mesh_study",
+            Kind::Table(&outputs::MESH_STUDY),
+            "{}",
+            "the case on finer meshes too, for the error of the mesh",
+        ),
+        default(
             "output",
             Kind::Table(&outputs::OUTPUT),
             "{}",
@@ -193,6 +199,12 @@ static GRID: Struct = Struct {
             "stiffness of particles in cells that several soils share",
         ),
         default(
+            "refine",
+            Kind::Integer(1, 64),
+            "1",
+            "every cell is cut into so many in each direction",
+        ),
+        default(
             "basis",
             Kind::Choice(&BASES),
             "\"gimp\"",
@@ -201,7 +213,7 @@ static GRID: Struct = Struct {
         default(
             "locking",
             Kind::Choice(&LOCKINGS),
-            "\"b-bar\"",
+            "\"shared-strain\"",
             "what is done against locking",
         ),
         default(
@@ -324,10 +336,13 @@ static BASES: [Choice; 2] = [
 
 static LOCKINGS: [Choice; 3] = [
     choice("none", "nothing"),
-    choice("b-bar", "the dilatation is that of the cells"),
+    choice(
+        "b-bar",
+        "the dilatation is that of the cells, as in the paper",
+    ),
     choice(
         "shared-strain",
-        "b-bar, and most of the distortion shared in full cells too: for soil that dilates",
+        "b-bar, and most of the distortion is that of the cells too where soil yields",
     ),
 ];
 

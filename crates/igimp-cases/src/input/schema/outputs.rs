@@ -255,6 +255,12 @@ pub(in crate::input) static CHECK: Kind = Kind::Table(&Struct {
             "the middle of `between`, or the limit",
             "the outside value, after division",
         ),
+        default(
+            "value",
+            Kind::Choice(&VALUES),
+            "\"computed\"",
+            "which value is held against it",
+        ),
         optional(
             "tolerance",
             Kind::Number(Range::Positive),
@@ -287,6 +293,27 @@ pub(in crate::input) static CHECK: Kind = Kind::Table(&Struct {
         ),
     ],
 });
+
+static VALUES: [Choice; 2] = [
+    choice(
+        "computed",
+        "that of the mesh, of the finest in a mesh study",
+    ),
+    choice(
+        "extrapolated",
+        "the one that a mesh study extrapolates to cells of no size",
+    ),
+];
+
+pub(in crate::input) static MESH_STUDY: Struct = Struct {
+    doc: "The case on its grid and on finer ones: the error of the mesh.",
+    fields: &[default(
+        "meshes",
+        Kind::Integer(1, 3),
+        "1",
+        "number of meshes; 1: no study, 2: cells of h and h/2, 3: h/4 too",
+    )],
+};
 
 pub(in crate::input) static OUTPUT: Struct = Struct {
     doc: "What is written, and where.",

@@ -9,6 +9,7 @@
 //! | [`section_pictures`] | `section-NAME-KIND` |
 //! | [`field_picture`] | `field-STAGE-FIELD` |
 //! | [`convergence_pictures`] | `convergence-STAGE` |
+//! | [`mesh_pictures`] | `mesh-study-NUMBER-RESULT` |
 //!
 //! Each makes the folder, replaces older pictures of its name, and returns what the summary says
 //! of it. Tables without rows make pictures that say "no data".
@@ -17,6 +18,7 @@ mod convergence;
 mod curve;
 mod field;
 mod histories;
+mod meshes;
 mod model;
 mod safety;
 
@@ -27,6 +29,7 @@ pub(super) use convergence::{convergence_caption, stages_of};
 pub use curve::curve_picture;
 pub use field::{Shown, field_picture};
 pub use histories::{monitor_pictures, section_pictures};
+pub use meshes::mesh_pictures;
 pub use model::model_picture;
 pub use safety::safety_picture;
 

@@ -41,8 +41,9 @@ struct Link {
 }
 
 /// The headings, with the beginnings of the names of the pictures below them.
-const GROUPS: [(&str, &str, &[&str]); 6] = [
+const GROUPS: [(&str, &str, &[&str]); 7] = [
     ("model", "Model", &["model"]),
+    ("mesh-error", "Mesh error, pictures", &["mesh-study"]),
     ("curves", "Curves", &["curve", "safety"]),
     (
         "histories",
@@ -68,11 +69,11 @@ pub(super) fn pictures(folder: &Path, summary: &Summary) -> Vec<Group> {
                 .iter()
                 .any(|start| !start.is_empty() && name.starts_with(start))
         };
-        let place = GROUPS.iter().position(named).unwrap_or(4);
+        let place = GROUPS.iter().position(named).unwrap_or(5);
         groups[place].pictures.push(picture(folder, note));
     }
-    if groups[5].pictures.is_empty() {
-        groups[5].pictures = convergence(folder, summary);
+    if groups[6].pictures.is_empty() {
+        groups[6].pictures = convergence(folder, summary);
     }
     groups
         .into_iter()
@@ -162,7 +163,7 @@ pub(super) fn tables(folder: &Path) -> Vec<FileView> {
                 .into_iter()
                 .map(move |name| format!("{within}/{name}"))
         })
-        .chain(["convergence.csv".to_owned()])
+        .chain(["mesh_study.csv", "convergence.csv"].map(str::to_owned))
         .filter_map(|name| table(folder, name))
         .collect();
     for (name, about) in [

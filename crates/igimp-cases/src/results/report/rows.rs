@@ -11,13 +11,13 @@ use crate::summary::{SafetySummary, StageOutcome, StageSummary, Summary};
 pub(super) const PHASES: [&str; 5] = ["set-up", "assembly", "factorisation", "solution", "commit"];
 
 /// Stands for what is not a number.
-const UNKNOWN: &str = "–";
+pub(super) const UNKNOWN: &str = "–";
 
 /// A number with its name.
 #[derive(Serialize)]
 pub(super) struct Number {
-    name: &'static str,
-    value: String,
+    pub(super) name: &'static str,
+    pub(super) value: String,
 }
 
 /// The numbers that are looked for first.
@@ -251,7 +251,7 @@ fn quantity(value: f64, unit: &str) -> String {
 }
 
 /// A wall-clock time.
-fn time(seconds: f64) -> String {
+pub(super) fn time(seconds: f64) -> String {
     if !seconds.is_finite() || seconds < 0.0 {
         return UNKNOWN.to_owned();
     }

@@ -1,0 +1,227 @@
+//! The mesh error of an answer: a case on several meshes, and what their values say together.
+//!
+//! | | |
+//! |---|---|
+//! | [`mod@estimate`] | from values on two or three meshes to an extrapolated value and its uncertainty; numbers only |
+//! | [`plan`] | which meshes a case is computed on, and whether they are meshes of one problem |
+//! | [`study`] | factors of safety, limit loads and checks of the runs on all meshes |
+//!
+//! [`run`](crate::run::run) computes a case whose [`mesh_study`](crate::case::Case::mesh_study) asks for
+//! more than one mesh on all of them; its [`Summary`](crate::summary::Summary) tells what was found.
+
+pub mod estimate;
+mod found;
+pub mod plan;
+
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use crate::check::short;
+use crate::error::CaseError;
+use crate::summary::ModelSize;
+use crate::sweep::Ending;
+pub use estimate::{Computed, Estimate, Order, estimate};
+pub(crate) use found::check_rows;
+pub use found::study;
+
+/// What a case gave on all its meshes, as written to `summary.json`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct StudySummary {
+    /// The meshes from coarse to fine.
+    pub meshes: Vec<MeshSummary>,
+    /// Factors of safety, limit loads and checks.
+    pub results: Vec<StudyResult>,
+}
+
+impl StudySummary {
+    /// How the study ended: as badly as the worst of its meshes.
+    pub fn ending(&self) -> Ending {
+        let with = |ending| self.meshes.iter().any(|mesh| mesh.ending == ending);
+        [Ending::Failed, Ending::NotConverged, Ending::Interrupted]
+            .into_iter()
+            .find(|&ending| with(ending))
+            .unwrap_or(Ending::Done)
+    }
+
+    /// The mesh whose stages and pictures stand for the study: the finest that came to its end, or the
+    /// finest that ran at all.
+    pub fn shown(&self) -> Option<&MeshSummary> {
+        let done = |mesh: &&MeshSummary| mesh.ending == Ending::Done;
+        let ran = |mesh: &&MeshSummary| mesh.ending != Ending::Failed;
+        let mut backwards = self.meshes.iter().rev();
+        let good = backwards.clone().find(done);
+        good.or_else(|| backwards.find(ran))
+    }
+
+    /// Writes the results as a table, a row each: values and half-widths by mesh, estimate, order.
+    pub(crate) fn write_table(&self, path: &Path) -> Result<(), CaseError> {
+        let labels = || self.meshes.iter().map(MeshSummary::label);
+        let mut header = vec!["result".to_owned()];
+        header.extend(labels().map(|label| format!("value ({label})")));
+        header.extend(labels().map(|label| format!("half width ({label})")));
+        header.extend(["extrapolated", "uncertainty", "order"].map(str::to_owned));
+        let number = |value: Option<f64>| value.map_or_else(String::new, |v| format!("{v:.9e}"));
+        let write = || -> Result<(), csv::Error> {
+            let mut writer = csv::Writer::from_path(path)?;
+            writer.write_record(&header)?;
+            for result in &self.results {
+                let mut row = vec![result.name.clone()];
+                row.extend(result.values.iter().map(|&value| number(value)));
+                row.extend(result.half_widths.iter().map(|&width| number(Some(width))));
+                row.push(number(result.estimate.map(|found| found.value)));
+                row.push(number(result.estimate.map(|found| found.uncertainty)));
+                let order = result.estimate.map(|found| found.order.sentence());
+                row.push(order.unwrap_or_default());
+                writer.write_record(&row)?;
+            }
+            Ok(writer.flush()?)
+        };
+        write().map_err(|source| CaseError::Table {
+            path: path.to_owned(),
+            source,
+        })
+    }
+}
+
+/// A mesh of a study, and how its run went.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct MeshSummary {
+    /// Into how many parts it cuts the cells of the case, in each direction.
+    pub parts: usize,
+    /// Its folder within that of the study.
+    pub folder: String,
+    /// Size of the model.
+    pub size: ModelSize,
+    /// How its run ended; a check that is missed on a single mesh counts as done.
+    pub ending: Ending,
+    /// Why it failed, if it did.
+    pub message: Option<String>,
+    /// Accepted steps of all stages.
+    pub steps: usize,
+    /// Wall-clock time \[s\].
+    pub seconds: f64,
+}
+
+impl MeshSummary {
+    /// The size of its cells, as in `h/2`.
+    pub fn label(&self) -> String {
+        plan::label(self.parts)
+    }
+}
+
+/// One result on all meshes.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct StudyResult {
+    /// Name with unit.
+    pub name: String,
+    /// What it is.
+    pub kind: ResultKind,
+    /// By mesh; none where the run did not come to it.
+    pub values: Vec<Option<f64>>,
+    /// By mesh: half the width of the interval in which a search left the value; 0 where nothing was
+    /// searched for.
+    pub half_widths: Vec<f64>,
+    /// What they say together; none for less than two values.
+    pub estimate: Option<Estimate>,
+}
+
+impl StudyResult {
+    /// The value on the finest mesh that has one.
+    pub fn finest(&self) -> Option<f64> {
+        self.values.iter().rev().copied().flatten().next()
+    }
+}
+
+/// What a result of a study is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ResultKind {
+    /// Middle of the interval that a strength reduction found.
+    FactorOfSafety,
+    /// Load at which a stage found no further equilibrium, or the largest resistance of a footing.
+    LimitLoad,
+    /// A check.
+    Check,
+}
+
+impl Estimate {
+    /// The uncertainty, rounded up to two digits: more are not known.
+    pub fn rounded_uncertainty(&self) -> f64 {
+        let uncertainty = self.uncertainty;
+        if uncertainty <= 0.0 || !uncertainty.is_finite() {
+            return uncertainty;
+        }
+        let digits = 1.0 - uncertainty.log10().floor();
+        let unit = 10.0_f64.powf(-digits);
+        // What is a round number stays one.
+        unit * (uncertainty / unit - 1e-9).ceil()
+    }
+
+    /// As it is printed: the value, and how far it may be off.
+    pub fn sentence(&self) -> String {
+        let (value, uncertainty) = (short(self.value), short(self.rounded_uncertainty()));
+        format!("{value} ± {uncertainty}")
+    }
+}
+
+impl Order {
+    /// In words for a table.
+    pub fn sentence(self) -> String {
+        let two = |value: f64| format!("{value:.2}");
+        match self {
+            Self::Assumed => "1, assumed".to_owned(),
+            Self::Observed(p) => format!("{}, observed", two(p)),
+            Self::Limited { observed, used } if observed < used => {
+                format!("below {used}: {used} taken")
+            }
+            Self::Limited { used, .. } => format!("above {used}: {used} taken"),
+            Self::Admitted => "1, within the search".to_owned(),
+            Self::Oscillating => "none: up and down".to_owned(),
+            Self::Diverging => "none: no convergence seen".to_owned(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_uncertainty_is_rounded_up() {
+        let text = |value, uncertainty| {
+            let order = Order::Assumed;
+            let found = Estimate {
+                value,
+                uncertainty,
+                order,
+            };
+            found.sentence()
+        };
+        assert_eq!(text(1.265, 0.113_38), "1.265 ± 0.12");
+        assert_eq!(text(1.265, 0.1), "1.265 ± 0.1");
+        assert_eq!(text(514.2, 3.001), "514.2 ± 3.1");
+        assert_eq!(text(2.0, 0.0), "2 ± 0");
+    }
+
+    #[test]
+    fn a_study_ends_as_badly_as_its_worst_mesh() {
+        let mesh = |parts, ending| MeshSummary {
+            parts,
+            ending,
+            ..MeshSummary::default()
+        };
+        let mut study = StudySummary {
+            meshes: vec![mesh(1, Ending::Done), mesh(2, Ending::Done)],
+            results: Vec::new(),
+        };
+        assert_eq!(study.ending(), Ending::Done);
+        assert_eq!(
+            study.shown().map(MeshSummary::label).as_deref(),
+            Some("h/2")
+        );
+        study.meshes[1].ending = Ending::NotConverged;
+        assert_eq!(study.ending(), Ending::NotConverged);
+        assert_eq!(study.shown().map(MeshSummary::label).as_deref(), Some("h"));
+    }
+}

@@ -1,0 +1,188 @@
+//! The meshes of a study, and what keeps them meshes of one problem.
+
+use crate::case::{Case, LoadKind};
+use crate::check::short;
+
+/// Into how many parts each mesh cuts the cells of the case, in each direction.
+const HALVES: [usize; 3] = [1, 2, 4];
+/// The same where a footing's edge lies in the middle of a cell: it stays there.
+const ODD: [usize; 3] = [1, 3, 5];
+/// Places closer than this share of a cell are the same \[-\].
+const NEAR: f64 = 1e-6;
+
+/// Into how many parts the meshes of a case's study cut its cells in each direction, from 1.
+///
+/// 1, 2, 4; but 1, 3, 5 with a rigid footing whose edge lies in the middle of a cell. The footing holds
+/// the nodes below it, and acts about half a cell wider than they reach: only with its edges at the
+/// same place within a cell are the meshes those of one footing.
+pub fn refinements(case: &Case) -> Vec<usize> {
+    let mid_cell = footing_ends(case)
+        .iter()
+        .any(|&end| (offset(case, end) - 0.5).abs() < NEAR);
+    let parts = if mid_cell { ODD } else { HALVES };
+    parts[..case.mesh_study.meshes.clamp(1, parts.len())].to_vec()
+}
+
+/// The cases of a study, from coarse to fine.
+pub fn meshes(case: &Case) -> Vec<Case> {
+    let mesh = |&parts: &usize| {
+        let mut mesh = case.refined(parts);
+        mesh.mesh_study.meshes = 1;
+        mesh
+    };
+    refinements(case).iter().map(mesh).collect()
+}
+
+/// The size of the cells of a mesh that cuts them into so many parts, as in `h/2`.
+pub fn label(parts: usize) -> String {
+    match parts {
+        1 => "h".to_owned(),
+        parts => format!("h/{parts}"),
+    }
+}
+
+/// What makes the meshes of a study meshes of different problems, in sentences.
+pub fn differences(case: &Case) -> Vec<String> {
+    let parts = refinements(case);
+    let (Some(&first), Some(&last)) = (parts.first(), parts.last()) else {
+        return Vec::new();
+    };
+    let mut told = Vec::new();
+    for end in footing_ends(case) {
+        let share = offset(case, end);
+        let kept = parts.iter().all(|&parts| {
+            let finer = (share * parts as f64).rem_euclid(1.0);
+            (finer - share).abs() < NEAR || (finer - share).abs() > 1.0 - NEAR
+        });
+        if !kept {
+            told.push(format!(
+                "the edge of the footing at x = {} m has another place in its cell on every mesh: the \
+                 meshes are those of footings of different width",
+                short(end)
+            ));
+        }
+    }
+    for held in &case.boundaries.boxes {
+        let moves = (0..2).any(|axis| {
+            [(held.lower[axis], 1.0), (held.upper[axis], -1.0)]
+                .into_iter()
+                .any(|(end, inwards)| {
+                    let [coarse, fine] =
+                        [first, last].map(|parts| outermost(case, axis, end, inwards, parts));
+                    (coarse - fine).abs() > NEAR
+                })
+        });
+        if moves {
+            told.push(format!(
+                "box `{}` holds more nodes at its edges on the finer meshes: it is larger there",
+                held.name
+            ));
+        }
+    }
+    told
+}
+
+/// The ends of rigid footings that do not lie at a side of the grid \[m\].
+fn footing_ends(case: &Case) -> Vec<f64> {
+    let mut ends = Vec::new();
+    for load in &case.loads {
+        if let LoadKind::RigidFooting { from, to, .. } = load.kind {
+            ends.extend([from[0], to[0]]);
+        }
+    }
+    let columns = case.grid.cells()[0] as f64;
+    ends.retain(|&end| {
+        let place = place(case, 0, end);
+        place > NEAR && place < columns - NEAR
+    });
+    ends
+}
+
+/// Where a coordinate lies, in cells from the lower side.
+fn place(case: &Case, axis: usize, x: f64) -> f64 {
+    case.grid.axes[axis].place(x)
+}
+
+/// Where in its cell an x lies, as a share of the cell from 0 to below 1 \[-\].
+fn offset(case: &Case, x: f64) -> f64 {
+    let share = place(case, 0, x).rem_euclid(1.0);
+    if share > 1.0 - NEAR { 0.0 } else { share }
+}
+
+/// The node next to the end of a box on the side where the box lies, in cells of the case; on a mesh
+/// that cuts them into so many parts. An end beyond the grid stands for its side.
+fn outermost(case: &Case, axis: usize, end: f64, inwards: f64, parts: usize) -> f64 {
+    let columns = case.grid.cells()[axis] as f64;
+    let parts = parts as f64;
+    let place = place(case, axis, end).clamp(0.0, columns) * parts;
+    let node = if inwards > 0.0 {
+        (place - NEAR).ceil()
+    } else {
+        (place + NEAR).floor()
+    };
+    node / parts
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::case::{FixedBox, Load};
+    use crate::estimate::tests::case;
+
+    /// Cells of 0.5 m from 0 to 4 m.
+    fn study(footing: Option<[f64; 2]>) -> Case {
+        let mut case = case();
+        case.mesh_study.meshes = 3;
+        case.loads.extend(footing.map(|[from, to]| Load {
+            name: "footing".into(),
+            kind: LoadKind::RigidFooting {
+                from: [from, 2.0],
+                to: [to, 2.0],
+                rough: true,
+                reaction_factor: 1.0,
+            },
+        }));
+        case
+    }
+
+    #[test]
+    fn cells_are_halved() {
+        let case = study(None);
+        assert_eq!(refinements(&case), [1, 2, 4]);
+        let finest = &meshes(&case)[2];
+        assert_eq!(finest.grid.cells(), [32, 32]);
+        assert_eq!(format!("{:?}", finest.grid.upper()), "[4.0, 4.0]");
+        assert_eq!(finest.mesh_study.meshes, 1);
+        assert!(differences(&case).is_empty());
+        assert_eq!([1, 2].map(label), ["h", "h/2"]);
+    }
+
+    /// GOAL: an edge in the middle of a cell stays there; the axis of symmetry at the side does not count.
+    #[test]
+    fn a_footing_keeps_its_width() {
+        let case = study(Some([0.0, 0.75]));
+        assert_eq!(refinements(&case), [1, 3, 5]);
+        assert!(differences(&case).is_empty());
+        let on_line = study(Some([0.0, 1.0]));
+        assert_eq!(refinements(&on_line), [1, 2, 4]);
+        assert!(differences(&on_line).is_empty());
+        let odd = study(Some([0.0, 0.6]));
+        assert_eq!(differences(&odd).len(), 1);
+    }
+
+    #[test]
+    fn a_box_that_catches_more_nodes_is_told() {
+        let mut case = study(None);
+        let held = |lower: [f64; 2], upper: [f64; 2]| FixedBox {
+            name: "wall".into(),
+            lower,
+            upper,
+            fix: [true; 2],
+        };
+        // Around a line of nodes, and beyond the grid.
+        case.boundaries.boxes = vec![held([0.95, -1.0], [1.05, 9.0])];
+        assert!(differences(&case).is_empty());
+        case.boundaries.boxes = vec![held([0.95, 0.0], [1.3, 2.0])];
+        assert!(differences(&case)[0].contains("`wall`"));
+    }
+}

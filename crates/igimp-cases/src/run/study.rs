@@ -1,0 +1,278 @@
+//! A case on several meshes: their runs side by side, and what they say together.
+//!
+//! A mesh is a run of its own with a folder of its own; what happens beside it changes none of its bits.
+//! What goes wrong on a mesh takes nothing from the others.
+
+use std::path::Path;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::time::Instant;
+
+use super::engine::one_mesh;
+use super::{Event, Listener, Run, Start, Target, memory, processor};
+use crate::case::Case;
+use crate::error::CaseError;
+use crate::estimate::estimate;
+use crate::estimate::time::time_of_steps_taken;
+use crate::estimate::watch::side_by_side;
+use crate::mesh_study::{MeshSummary, StudySummary, check_rows, plan, study};
+use crate::results::folder::{self, mesh_name, write_atomically, write_summary};
+use crate::results::{pictures, report};
+use crate::summary::{Expected, Summary};
+use crate::sweep::{Ending, on_one_line};
+
+/// Runs a case on all meshes of its study.
+pub(super) fn run(
+    case: &Case,
+    target: Option<&Target>,
+    start: Start,
+    listener: &mut dyn Listener,
+    interrupt: &AtomicBool,
+) -> Result<Run, CaseError> {
+    let clock = Instant::now();
+    let meshes = plan::meshes(case);
+    if let Some(target) = target {
+        folder::of_study(&target.folder, start == Start::Afresh)?;
+        write_atomically(&target.folder.join("case.toml"), &target.source)?;
+        write_atomically(
+            &target.folder.join("case.completed.toml"),
+            &target.completed,
+        )?;
+    }
+    let targets: Vec<Option<Target>> = (0..meshes.len())
+        .map(|number| target.map(|target| of_mesh(target, number)))
+        .collect();
+    let parts = plan::refinements(case);
+    let runs = all(&meshes, &targets, &parts, start, listener, interrupt);
+
+    let summaries: Vec<Option<&Summary>> = runs
+        .iter()
+        .map(|run| run.as_ref().ok().map(|run| &run.summary))
+        .collect();
+    let found = StudySummary {
+        meshes: std::iter::zip(&runs, &parts)
+            .enumerate()
+            .map(|(number, (run, &parts))| mesh_summary(number, parts, run))
+            .collect(),
+        results: study(case, &summaries),
+    };
+    let taken: Option<f64> = target.and_then(|target| {
+        let speed = target.expectation?.speed;
+        let of_mesh = |(mesh, run): (&Case, Option<&Summary>)| {
+            time_of_steps_taken(mesh, speed, &run?.stages).ok()
+        };
+        std::iter::zip(&meshes, summaries.iter().copied())
+            .map(of_mesh)
+            .sum()
+    });
+    let mut run = together(case, runs, found)?;
+    let summary = &mut run.summary;
+    summary.estimate = target.and_then(|target| {
+        let expected = target.expectation?;
+        Some(Expected {
+            seconds: expected.time.seconds,
+            open_ended: expected.time.open_ended,
+            threads: expected.time.threads,
+            bytes: expected.bytes,
+            seconds_of_steps_taken: taken,
+        })
+    });
+    summary.peak_memory_mib = memory::peak_mib();
+    summary.memory = None;
+    summary.cpu_seconds = processor::seconds();
+    if let Some(target) = target {
+        write(case, &target.folder, summary, clock)?;
+    } else {
+        summary.figures.clear();
+        summary.seconds = clock.elapsed().as_secs_f64();
+    }
+    Ok(run)
+}
+
+/// The results folder of a mesh.
+fn of_mesh(target: &Target, number: usize) -> Target {
+    let name = mesh_name(number + 1);
+    Target {
+        folder: target.folder.join(&name),
+        source: target.source.clone(),
+        completed: target
+            .meshes
+            .get(number)
+            .unwrap_or(&target.completed)
+            .clone(),
+        systems: target.systems.as_ref().map(|systems| systems.join(&name)),
+        expectation: None,
+        meshes: Vec::new(),
+    }
+}
+
+/// Runs the meshes, the coarsest first, as many at a time as processors and memory allow.
+fn all(
+    meshes: &[Case],
+    targets: &[Option<Target>],
+    parts: &[usize],
+    start: Start,
+    listener: &mut dyn Listener,
+    interrupt: &AtomicBool,
+) -> Vec<Result<Run, CaseError>> {
+    let bytes: Vec<f64> = meshes
+        .iter()
+        .filter_map(|mesh| Some(estimate(mesh).ok()?.bytes))
+        .collect();
+    let listener = Mutex::new(listener);
+    let run = |number: usize| {
+        let mut own = OfMesh {
+            parts: parts[number],
+            listener: &listener,
+        };
+        let target = targets[number].as_ref();
+        one_mesh(&meshes[number], target, start, &mut own, interrupt)
+    };
+    let jobs = side_by_side(&bytes).min(meshes.len());
+    if jobs < 2 {
+        return (0..meshes.len()).map(run).collect();
+    }
+    // Threads of their own that hand their work to the one pool: who is done leaves it to the others.
+    let next = AtomicUsize::new(0);
+    let done = Mutex::new(Vec::new());
+    std::thread::scope(|scope| {
+        for _ in 0..jobs {
+            scope.spawn(|| {
+                loop {
+                    let number = next.fetch_add(1, Ordering::Relaxed);
+                    if number >= meshes.len() {
+                        break;
+                    }
+                    let ended = run(number);
+                    if let Ok(mut done) = done.lock() {
+                        done.push((number, ended));
+                    }
+                }
+            });
+        }
+    });
+    let mut done = done.into_inner().unwrap_or_default();
+    done.sort_by_key(|(number, _)| *number);
+    done.into_iter().map(|(_, run)| run).collect()
+}
+
+/// Tells what happens on a mesh to the listener of the study.
+struct OfMesh<'a, 'l> {
+    parts: usize,
+    listener: &'a Mutex<&'l mut dyn Listener>,
+}
+
+impl Listener for OfMesh<'_, '_> {
+    fn on_event(&mut self, event: &Event<'_>) {
+        if let Ok(mut listener) = self.listener.lock() {
+            listener.on_event(&Event::OfMesh {
+                parts: self.parts,
+                event,
+            });
+        }
+    }
+}
+
+fn mesh_summary(number: usize, parts: usize, run: &Result<Run, CaseError>) -> MeshSummary {
+    let folder = mesh_name(number + 1);
+    match run {
+        Ok(run) => {
+            let summary = &run.summary;
+            let ending = match Ending::of(summary) {
+                Ending::Missed => Ending::Done,
+                other => other,
+            };
+            MeshSummary {
+                parts,
+                folder,
+                size: summary.size,
+                ending,
+                message: summary.failure.clone(),
+                steps: summary.stages.iter().map(|stage| stage.steps).sum(),
+                seconds: summary.seconds,
+            }
+        }
+        Err(error) => MeshSummary {
+            parts,
+            folder,
+            ending: Ending::Failed,
+            message: Some(on_one_line(error)),
+            ..MeshSummary::default()
+        },
+    }
+}
+
+/// The run of the finest mesh that came to its end, or of the finest at all, with what the study found.
+///
+/// # Errors
+/// The first error, if no mesh could be run.
+fn together(
+    case: &Case,
+    runs: Vec<Result<Run, CaseError>>,
+    found: StudySummary,
+) -> Result<Run, CaseError> {
+    let mut ran = Vec::new();
+    let mut lost = Vec::new();
+    for (run, mesh) in std::iter::zip(runs, &found.meshes) {
+        match run {
+            Ok(run) => ran.push((run, mesh)),
+            Err(error) => lost.push(error),
+        }
+    }
+    let mut warnings = Vec::new();
+    let mut failure = None;
+    let mut told = None;
+    for (run, mesh) in &mut ran {
+        let label = mesh.label();
+        let own = run.summary.warnings.iter();
+        warnings.extend(own.map(|warning| format!("{label}: {warning}")));
+        if told.is_none() {
+            let text = run.summary.failure.as_ref();
+            told = text.map(|text| format!("on the mesh {label}: {text}"));
+            failure = run.failure.take();
+        }
+    }
+    let interrupted = ran.iter().any(|(run, _)| run.summary.interrupted);
+    let good = ran
+        .iter()
+        .rposition(|(_, mesh)| mesh.ending == Ending::Done);
+    let Some(base) = good.or_else(|| ran.len().checked_sub(1)) else {
+        return Err(lost.swap_remove(0));
+    };
+    let (mut run, mesh) = ran.swap_remove(base);
+    let (folder, label) = (mesh.folder.clone(), mesh.label());
+    drop(ran);
+    let summary = &mut run.summary;
+    if !interrupted {
+        summary.checks = check_rows(case, summary, &found.results);
+    }
+    summary.warnings = warnings;
+    summary.failure = told;
+    summary.interrupted = interrupted;
+    for note in &mut summary.figures {
+        note.file = format!("{folder}/{}", note.file);
+        note.caption = format!("Mesh {label}. {}", note.caption);
+    }
+    summary.mesh_study = Some(found);
+    run.failure = failure;
+    run.lost = lost;
+    Ok(run)
+}
+
+/// Writes table, pictures, summary and report of a study.
+fn write(case: &Case, root: &Path, summary: &mut Summary, clock: Instant) -> Result<(), CaseError> {
+    let begun = Instant::now();
+    if let Some(found) = &summary.mesh_study {
+        found.write_table(&root.join("mesh_study.csv"))?;
+        let drawn = pictures::mesh_pictures(root, summary)?;
+        let at = summary.figures.len().min(1);
+        summary.figures.splice(at..at, drawn);
+    }
+    summary.output_seconds += begun.elapsed().as_secs_f64();
+    summary.seconds = clock.elapsed().as_secs_f64();
+    write_summary(root, summary)?;
+    if case.output.report {
+        report::write_report(root)?;
+    }
+    Ok(())
+}
