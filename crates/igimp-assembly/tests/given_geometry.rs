@@ -1,0 +1,163 @@
+//! GOAL: on a given geometry strain adds up without turning or moving anything, and a sliver of soil
+//! beyond a face resists nothing.
+//! BODY: a block of three by three cells, moved a little over a line of the grid, so that its particles
+//! reach into the cells beyond.
+//! ORACLE: strain that adds up linearly, identities of a consistent gradient, and modes that a mean over
+//! cells does not see.
+
+mod common;
+
+use common::{Random, laws, particles};
+use igimp_assembly::{
+    Constraints, Geometry, Locking, Method, Particles, Stencils, StepConditions, StepLoads, System,
+};
+use igimp_material::TangentKind;
+use igimp_shape::{Axis, Grid};
+
+fn grid() -> Grid<2> {
+    let axis = Axis::uniform(0.0, 1.0, 8).unwrap();
+    Grid::new([axis.clone(), axis])
+}
+
+fn conditions(law: usize) -> StepConditions<2> {
+    let grid = grid();
+    StepConditions {
+        constraints: Constraints::free(&grid),
+        grid,
+        loads: StepLoads::gravity([0.0; 2]),
+        laws: vec![laws()[law].1.clone()],
+    }
+}
+
+/// Quarter-cell particles from 2 to 5 along both axes, moved by `shift`.
+fn block(shift: f64) -> Particles<2> {
+    let mut seeds = Vec::new();
+    for row in 0..6 {
+        for column in 0..6 {
+            seeds.push(igimp_assembly::ParticleSeed {
+                x: [column, row].map(|k| 2.25 + 0.5 * f64::from(k) + shift),
+                half_length: [0.25; 2],
+                volume: 0.25,
+                density: 1.0,
+                law: 0,
+            });
+        }
+    }
+    Particles::new(&seeds).unwrap()
+}
+
+fn given(locking: Locking) -> Method {
+    Method {
+        locking,
+        geometry: Geometry::Given,
+        ..Method::igimp_bbar()
+    }
+}
+
+/// Nodal displacements of a uniform gradient.
+fn affine(grid: &Grid<2>, gradient: [[f64; 2]; 2]) -> Vec<[f64; 2]> {
+    (0..grid.node_count())
+        .map(|node| {
+            let x = grid.node_position(node);
+            std::array::from_fn(|a| gradient[a][0] * x[0] + gradient[a][1] * x[1])
+        })
+        .collect()
+}
+
+#[test]
+fn two_half_steps_are_one_whole_step_and_nothing_moves() {
+    let conditions = conditions(0);
+    let gradient = [[3.0, 1.0], [-1.0, -2.0]];
+    for locking in [Locking::None, Locking::BBar, Locking::SharedStrain] {
+        let method = given(locking);
+        let mut ends = Vec::new();
+        for parts in [1, 2] {
+            let mut body = block(0.003);
+            let before = body.clone();
+            let part = gradient.map(|row| row.map(|g| g / f64::from(parts) * 1e-3));
+            let u = affine(&conditions.grid, part);
+            for _ in 0..parts {
+                let stencils = Stencils::build(&body, &method, &conditions).unwrap();
+                let system =
+                    System::new(&body, &stencils, &conditions, &method, &[], None).unwrap();
+                let trial = system.evaluate(&u, TangentKind::Consistent).unwrap();
+                body.commit(&stencils, &method, &trial, &u);
+            }
+            assert_eq!(body.x, before.x);
+            assert_eq!(body.def_grad, before.def_grad);
+            assert_eq!(body.half_length, before.half_length);
+            assert_ne!(body.displacement, before.displacement);
+            ends.push(body.sigma.clone());
+        }
+        let largest = |sigma: &[[[f64; 3]; 3]]| {
+            let all = sigma.iter().flatten().flatten();
+            all.fold(0.0_f64, |largest, own| largest.max(own.abs()))
+        };
+        let scale = largest(&ends[0]);
+        assert!(scale > 0.0);
+        for (one, two) in ends[0].iter().zip(&ends[1]) {
+            for (a, b) in one.iter().flatten().zip(two.iter().flatten()) {
+                assert!((a - b).abs() < 1e-12 * scale, "{locking:?}: {a} {b}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_sliver_has_no_nodes_of_its_own() {
+    let conditions = conditions(0);
+    // The block reaches 0.3 % of a cell beyond the lines at 5, and leaves those at 2.
+    let body = block(0.003);
+    for locking in [Locking::None, Locking::BBar, Locking::SharedStrain] {
+        let stencils = Stencils::build(&body, &given(locking), &conditions).unwrap();
+        for particle in 0..body.len() {
+            let own = stencils.of(particle);
+            let place = |node| conditions.grid.node_place(node);
+            assert!(
+                own.iter()
+                    .all(|s| place(s.node).into_iter().all(|k| k <= 5))
+            );
+            for a in 0..2 {
+                for b in 0..2 {
+                    let sum = |gradient: fn(&igimp_shape::Support<2>) -> [f64; 2]| -> f64 {
+                        own.iter()
+                            .map(|s| gradient(s)[b] * conditions.grid.node_position(s.node)[a])
+                            .sum()
+                    };
+                    let identity = f64::from(u8::from(a == b));
+                    assert!((sum(|s| s.grad) - identity).abs() < 1e-13);
+                    assert!((sum(|s| s.grad_bar) - identity).abs() < 1e-13);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn the_mean_of_a_cell_sees_no_hourglass() {
+    let conditions = conditions(1);
+    let grid = grid();
+    let body = particles::<2>(&grid, 0.0, &mut Random(7));
+    let mut method = given(Locking::SharedStrain);
+    method.geometry = Geometry::Moving;
+    let stencils = Stencils::build(&body, &method, &conditions).unwrap();
+    // Hourglass: zero mean strain in every cell.
+    let u: Vec<[f64; 2]> = (0..grid.node_count())
+        .map(|node| {
+            let [i, j] = grid.node_place(node);
+            let sign = if (i + j) % 2 == 0 { 1e-6 } else { -1e-6 };
+            [sign, 0.0]
+        })
+        .collect();
+    for particle in 0..body.len() {
+        let strain = |gradient: fn(&igimp_shape::Support<2>) -> [f64; 2]| -> f64 {
+            let own = stencils.of(particle).iter();
+            own.map(|s| u[s.node][0] * gradient(s)[0])
+                .sum::<f64>()
+                .abs()
+        };
+        assert!(strain(|s| s.grad_bar) < 1e-12);
+        // A fiftieth of the particle's own is left, at most 2e-6 across a cell.
+        assert!(strain(|s| s.grad) < 0.021 * 2e-6);
+    }
+}
