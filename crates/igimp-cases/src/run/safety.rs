@@ -527,7 +527,7 @@ fn height(state: &State) -> f64 {
 }
 
 /// The displacement γH²/E at which a body of moving geometry counts as failed when the case states none
-/// \[m\] (theory, eq. 34a), with means over the volume: the mean unit weight and the mean of 1/E. None on
+/// \[m\] (theory, eq. 32a), with means over the volume: the mean unit weight and the mean of 1/E. None on
 /// a given geometry, which needs none, and for bodies without weight.
 fn default_limit(model: &Model<'_>, stage: &Stage, state: &State) -> Option<f64> {
     if stage.geometry == Geometry::Given {
