@@ -5,7 +5,7 @@ use igimp_shape::{CellPart, Grid, Support, cell_parts};
 use rayon::prelude::*;
 
 use crate::error::AssemblyError;
-use crate::method::{Locking, Method};
+use crate::method::{Geometry, Locking, Method};
 use crate::particles::Particles;
 use crate::supports::{CHUNK, capped_half_length, merge_equal_nodes, padded};
 use crate::system::SharedLaw;
@@ -31,6 +31,7 @@ pub(crate) struct CellSoil<const D: usize> {
     /// Share β of its own distortion that a particle keeps, by law \[-\].
     own_share: Vec<f64>,
     locking: Locking,
+    geometry: Geometry,
 }
 
 impl<const D: usize> CellSoil<D> {
@@ -73,6 +74,7 @@ impl<const D: usize> CellSoil<D> {
             centroid: vec![[0.0; D]; grid.cell_count()],
             own_share: laws.iter().map(own_share).collect(),
             locking: method.locking,
+            geometry: method.geometry,
         };
         soil.fill(grid, particles);
         Ok(soil)
@@ -95,12 +97,16 @@ impl<const D: usize> CellSoil<D> {
             *centroid = centroid.map(|moment| moment / volume);
         }
         let size = |cell: usize| -> f64 { grid.cell_size(grid.cell_place(cell)).iter().product() };
-        let sliver = |(cell, volume): (usize, &f64)| *volume < SLIVER * size(cell);
+        let least = match self.geometry {
+            Geometry::Given => SLIVER,
+            Geometry::Moving => 0.0,
+        };
+        let sliver = |(cell, volume): (usize, &f64)| *volume < least * size(cell);
         self.is_sliver = volume.iter().enumerate().map(sliver).collect();
     }
 
-    /// Replaces `out` with the supports of a particle of law number `law`, nodes ascending. Slivers are
-    /// cut off, unless there is nothing else.
+    /// Replaces `out` with the supports of a particle of law number `law`, nodes ascending. On a given
+    /// geometry slivers are cut off, unless there is nothing else.
     pub(crate) fn supports(
         &self,
         grid: &Grid<D>,

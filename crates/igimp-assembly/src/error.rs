@@ -96,6 +96,14 @@ pub enum AssemblyError {
         /// det ΔF, or det of its cell-averaged part.
         determinant: f64,
     },
+    /// A trial displacement strains a particle beyond what numbers hold.
+    #[error("particle {particle}: the elastic strain {strain:e} is beyond all bounds")]
+    Overstrained {
+        /// Number of the particle, from 0.
+        particle: usize,
+        /// A principal elastic Hencky strain \[-\].
+        strain: f64,
+    },
     /// A constraint names a node that the grid does not have.
     #[error("a constraint names node {node}, but the grid has {nodes} nodes (numbered from 0)")]
     UnknownNode {
@@ -134,4 +142,11 @@ pub enum AssemblyError {
         /// Index within it.
         index: usize,
     },
+}
+
+impl AssemblyError {
+    /// Whether a trial displacement went further than any material follows: a shorter one may do.
+    pub fn is_too_far(&self) -> bool {
+        matches!(self, Self::Inverted { .. } | Self::Overstrained { .. })
+    }
 }

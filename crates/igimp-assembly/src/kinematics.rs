@@ -147,6 +147,9 @@ pub(crate) fn evaluate<const D: usize>(
     };
     let lifted = &linearisation.lifted;
     finite(lifted).map_err(material)?;
+    if let Some(&strain) = lifted.eps_e.iter().find(|eps| eps.abs() >= LARGEST_STRAIN) {
+        return Err(AssemblyError::Overstrained { particle, strain });
+    }
     *trial = ParticleTrial {
         delta_def_grad,
         tau: lifted.tau,
@@ -189,7 +192,7 @@ fn pushed_forward<const D: usize>(
 fn finite<const D: usize>(lifted: &Lifted<D>) -> Result<(), MaterialError> {
     let quantity = if !lifted.tau.iter().flatten().all(|tau| tau.is_finite()) {
         "stress"
-    } else if !lifted.eps_e.iter().all(|eps| eps.abs() < LARGEST_STRAIN) {
+    } else if !lifted.eps_e.iter().all(|eps| eps.is_finite()) {
         "elastic strain"
     } else if !lifted.history.eps_p_eq.is_finite() {
         "accumulated plastic strain"

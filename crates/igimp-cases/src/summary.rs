@@ -163,9 +163,6 @@ pub struct SafetySummary {
     pub failed: Option<f64>,
     /// What counts as failure.
     pub criterion: String,
-    /// Whether the geometry is that which the stage found, so that the factor of safety is a limit load.
-    #[serde(default)]
-    pub given_geometry: bool,
     /// Materials that were reduced.
     pub materials: Vec<String>,
     /// Materials that kept their strength.

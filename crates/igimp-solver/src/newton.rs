@@ -103,7 +103,7 @@ impl StepFailure {
             Self::LeavesGrid { .. } | Self::LoadPointLeavesGrid { .. } | Self::NotFinite { .. } => {
                 false
             }
-            Self::Assembly(error) => matches!(error, AssemblyError::Inverted { .. }),
+            Self::Assembly(error) => error.is_too_far(),
             Self::Linear(error) => matches!(
                 error,
                 LinearSolverError::Singular { .. }
@@ -482,7 +482,7 @@ fn evaluate_within_reach<const D: usize>(
         .and_then(|()| system.update_out_of_balance(residual, trial));
         let too_far = match &evaluated {
             Ok(()) => course.overshoots(residual),
-            Err(error) => matches!(error, AssemblyError::Inverted { .. }),
+            Err(error) => error.is_too_far(),
         };
         if !too_far || halvings == MOST_HALVINGS {
             return evaluated;

@@ -37,7 +37,11 @@ pub fn advice(
         StepFailure::LeavesGrid { position, .. }
         | StepFailure::LoadPointLeavesGrid { position, .. } => off_grid(case, stage, *position),
         // Soil that flows away can also turn a particle inside out, or leave a singular matrix.
-        StepFailure::Assembly(AssemblyError::Inverted { .. } | AssemblyError::Material { .. })
+        StepFailure::Assembly(
+            AssemblyError::Inverted { .. }
+            | AssemblyError::Overstrained { .. }
+            | AssemblyError::Material { .. },
+        )
         | StepFailure::Linear(
             LinearSolverError::Singular { .. }
             | LinearSolverError::NotPositiveDefinite { .. }
@@ -125,7 +129,9 @@ fn unformed(case: &Case, stage: &Stage, error: &AssemblyError) -> Vec<String> {
         AssemblyError::NoUnknowns => {
             vec!["a free or roller side in [boundaries]: every node is held".to_owned()]
         }
-        AssemblyError::Inverted { .. } | AssemblyError::Material { .. } => {
+        AssemblyError::Inverted { .. }
+        | AssemblyError::Overstrained { .. }
+        | AssemblyError::Material { .. } => {
             vec![more_steps(stage), finer_cell(case)]
         }
         _ => vec![more_steps(stage)],

@@ -49,7 +49,7 @@ pub(crate) fn load(
         from: &from,
         to: &to,
         drag: &|_, _| 0.0,
-        geometry: stage.geometry,
+        method: model.method(stage.geometry),
         standing: resumption.map_or_else(|| Standing::start(&settings), |left| left.standing),
         settings,
     };

@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use igimp_assembly::{
-    AssemblyError, Constraints, LoadPoint, Particles, SharedLaw, StepConditions, StepLoads,
+    AssemblyError, Constraints, Geometry, LoadPoint, Method, Particles, SharedLaw, StepConditions,
+    StepLoads,
 };
 use igimp_shape::{Grid, ShapeError};
 use igimp_solver::linear::LinearSolver;
@@ -75,6 +76,14 @@ impl<'c> Model<'c> {
         body.load_points = load_points(case);
         let controls = Controls::none(case.loads.len(), case.materials.len());
         Ok((model, State { body, controls }))
+    }
+
+    /// The method of the case on a geometry.
+    pub(crate) fn method(&self, geometry: Geometry) -> Method {
+        Method {
+            geometry,
+            ..self.case.method.clone()
+        }
     }
 
     /// The size of the model.

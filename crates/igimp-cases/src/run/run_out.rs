@@ -8,13 +8,14 @@
 //! last step without any drag has to find equilibrium. This is a mode for run-out alone, never for a
 //! factor of safety.
 
-use igimp_assembly::Geometry;
+use igimp_assembly::{Geometry, Locking, Method};
 use std::cell::Cell;
 
 use igimp_solver::Standing;
 
 use super::left::Resumption;
 use super::loading::begin;
+use super::model::Model;
 use super::session::{Ended, Path, Session, march_path};
 use super::state::State;
 use crate::case::{Reduction, RunOut};
@@ -66,7 +67,7 @@ pub(crate) fn run_out(
         from: &to,
         to: &to,
         drag: &|from, to| drag.get() / ((to - from) * steps as f64),
-        geometry: Geometry::Moving,
+        method: flowing(session.model),
         standing: resumption.map_or_else(|| Standing::start(&settings), |left| left.standing),
         settings,
     };
@@ -118,6 +119,16 @@ fn at_rest(steps: usize, share: f64) -> String {
     format!("at rest after {steps} steps, when drag carried {share} % of the load")
 }
 
+/// The method of a body that flows: on its way cells are filled in part, and modes that a shared strain
+/// does not see add up from step to step. There B-bar serves better.
+fn flowing(model: &Model<'_>) -> Method {
+    let mut method = model.method(Geometry::Moving);
+    if method.locking == Locking::SharedStrain {
+        method.locking = Locking::BBar;
+    }
+    method
+}
+
 /// The last step, without drag: the slope has to be in equilibrium where it rests.
 fn stand(
     session: &mut Session<'_>,
@@ -129,7 +140,7 @@ fn stand(
     let settings = session.model.march_settings(1);
     let last = Path {
         drag: &|_, _| 0.0,
-        geometry: Geometry::Moving,
+        method: flowing(session.model),
         standing: Standing::start(&settings),
         settings,
         ..*path

@@ -182,7 +182,7 @@ impl<'a> Trials<'a> {
             from: &from,
             to: &to,
             drag: &|_, _| 0.0,
-            geometry: self.stage.geometry,
+            method: session.model.method(self.stage.geometry),
             standing: Standing::start(&settings),
             settings,
         };
@@ -414,7 +414,10 @@ impl<'a> Trials<'a> {
                 .map(|(_, material)| material.name.clone())
                 .collect()
         };
-        let mut criterion = "no equilibrium is found".to_owned();
+        let mut criterion = match self.stage.geometry {
+            Geometry::Given => "no equilibrium is found on the given geometry".to_owned(),
+            Geometry::Moving => "no equilibrium is found".to_owned(),
+        };
         if self.limit.is_some() {
             criterion = format!("{criterion}, or {}", self.exceeded(session));
         }
@@ -426,7 +429,6 @@ impl<'a> Trials<'a> {
             stable,
             failed,
             criterion,
-            given_geometry: self.stage.geometry == Geometry::Given,
             materials: names(true),
             excluded: names(false),
             moving_mass,

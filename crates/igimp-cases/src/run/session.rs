@@ -161,8 +161,8 @@ pub(crate) struct Path<'a> {
     pub(crate) to: &'a Controls,
     /// Drag of a step between two load factors, for overdamped motion \[1/s²\].
     pub(crate) drag: &'a dyn Fn(f64, f64) -> f64,
-    /// The geometry that its steps are computed on.
-    pub(crate) geometry: Geometry,
+    /// The method, with the geometry that its steps are computed on.
+    pub(crate) method: Method,
     /// Sizes of steps.
     pub(crate) settings: MarchSettings,
     /// Where the march begins.
@@ -227,15 +227,11 @@ pub(crate) fn march_path(
             path.from.towards(path.to, from),
             path.from.towards(path.to, to),
         );
-        let grid = match path.geometry {
+        let grid = match path.method.geometry {
             Geometry::Moving => model.grid(before.settlement),
             Geometry::Given => model.grid(path.from.settlement),
         };
         model.conditions_on(grid, (&before, &after), (path.drag)(from, to))
-    };
-    let method = Method {
-        geometry: path.geometry,
-        ..model.case.method.clone()
     };
     let mut workspace = session.workspace();
     let mut watch = Watch {
@@ -249,7 +245,7 @@ pub(crate) fn march_path(
     let report = march_from(
         path.standing,
         &mut state.body,
-        &method,
+        &path.method,
         &program,
         &path.settings,
         &mut workspace,

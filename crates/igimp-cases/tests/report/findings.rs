@@ -76,7 +76,6 @@ pub(crate) fn safety() -> SafetySummary {
         course: Vec::new(),
     };
     SafetySummary {
-        given_geometry: false,
         stable: Some(1.375),
         failed: Some(1.3828),
         criterion: "no equilibrium, or the crest moves by 0.5 m".into(),
