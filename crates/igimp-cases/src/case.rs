@@ -260,7 +260,7 @@ pub struct Stage {
     /// Kind.
     pub kind: StageKind,
     /// Load steps when none is cut; in a strength reduction those of each trial by gravity, or of a
-    /// reduction across the bracket.
+    /// reduction from F = 1 to the upper end of the bracket.
     pub steps: usize,
     /// The geometry that its steps are computed on.
     pub geometry: Geometry,

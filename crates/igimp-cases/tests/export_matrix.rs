@@ -18,7 +18,7 @@ const MOHR_COULOMB: &str =
 fn case(law: &str) -> String {
     format!(
         "igimp = 1\n[case]\ntitle = \"face\"\ngravity = \"9.81 m/s2\"\n\
-        [grid]\ncell = \"0.5 m\"\ndomain = {{ x = [\"0 m\", \"6 m\"], y = [\"0 m\", \"3 m\"] }}\n\
+        [grid]\nlocking = \"b-bar\"\ncell = \"0.5 m\"\ndomain = {{ x = [\"0 m\", \"6 m\"], y = [\"0 m\", \"3 m\"] }}\n\
         [materials.soil]\nunit_weight = \"18 kN/m3\"\nyoung = \"10 MPa\"\npoisson = 0.3\n{law}\n\
         [[bodies]]\nname = \"face\"\nmaterial = \"soil\"\npoints_per_cell = 4\n\
         polygon = [[\"0 m\", \"0 m\"], [\"3 m\", \"0 m\"], [\"3 m\", \"2 m\"], [\"0 m\", \"2 m\"]]\n\

@@ -292,15 +292,15 @@ impl<'a> Trials<'a> {
     }
 
     /// Steps of a trial: by gravity those of the stage; of a reduction, one on the way to the lower end of
-    /// the bracket, where equilibrium is expected, and beyond it as many as the stage has across the
-    /// bracket. A reduction is cut until its step is no wider than the tolerance, and once more.
+    /// the bracket, where equilibrium is expected, and beyond it in strides of which the stage has so many
+    /// from full strength to the upper end. A reduction is cut until its step is no wider than the tolerance, and once more.
     fn settings(&self, model: &Model<'_>, from: &Controls, srf: f64) -> MarchSettings {
         let [low, high] = self.reduction.bracket;
         if self.reduction.path == ReductionPath::Gravity {
             return model.march_settings(self.stage.steps);
         }
         let way = (srf - from.srf[self.reduction.materials[0]]).abs();
-        let stride = (high - low) / self.stage.steps as f64;
+        let stride = (high - low).max(high - 1.0) / self.stage.steps as f64;
         let steps = if srf <= low {
             1
         } else {

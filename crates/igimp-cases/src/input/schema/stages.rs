@@ -155,7 +155,7 @@ pub(in crate::input) static STAGE: Kind = Kind::Variants(&Variants {
             "steps",
             Kind::Integer(1, MOST_STEPS),
             "10",
-            "load steps when none is cut; in a strength reduction those of each trial by gravity, or from the lower to the upper end of the bracket",
+            "load steps when none is cut; in a strength reduction those of each trial by gravity, or from F = 1 to the upper end of the bracket",
         ),
         derived(
             "start_from",
