@@ -1,0 +1,99 @@
+//! What shared strain costs: corrections and cuts of Newton's method over all slopes, beside those of
+//! B-bar on the same meshes.
+
+use std::fmt::Write as _;
+
+use igimp_assembly::Locking;
+use igimp_cases::CaseError;
+use igimp_cases::check::Band;
+use igimp_cases::table::Table;
+
+use super::Slopes;
+use super::section::Variant;
+use crate::oracle::{Oracle, OracleKind};
+use crate::study::{Run, Study};
+
+/// Shared strain must not make Newton's method worse.
+const AS_BBAR: Oracle = Oracle {
+    kind: OracleKind::IndependentProgram,
+    source: "B-bar on the same meshes",
+    locator: "the search of every slope, by the same bracket and steps",
+};
+
+/// Counts both over the slopes that were run with both.
+pub(super) fn report(study: &mut Study, slopes: &Slopes) -> Result<(), CaseError> {
+    let mut table = Table::new(
+        "effort",
+        &[
+            "slope",
+            "cells_over_H",
+            "steps_shared",
+            "corrections_shared",
+            "cuts_shared",
+            "steps_b-bar",
+            "corrections_b-bar",
+            "cuts_b-bar",
+        ],
+    );
+    let mut note = String::from(
+        "effort: slope, mesh; shared strain: steps, corrections, cuts; B-bar: the same\n",
+    );
+    let [mut shared, mut bbar] = [const { Vec::new() }; 2];
+    for (place, problem) in slopes.problems.iter().enumerate() {
+        let cells = problem.meshes[0];
+        let of = |locking| {
+            let variant = Variant {
+                cells,
+                locking,
+                associated: true,
+            };
+            let found = slopes.of(place, variant);
+            found.map(|found| found.run(String::new()))
+        };
+        let (Some(a), Some(b)) = (of(Locking::SharedStrain), of(Locking::BBar)) else {
+            continue;
+        };
+        let _ = writeln!(
+            note,
+            "  {:>2} H/{cells:<3} {:>5} {:>6} {:>4}; {:>5} {:>6} {:>4}",
+            place + 1,
+            a.steps,
+            a.iterations,
+            a.cuts,
+            b.steps,
+            b.iterations,
+            b.cuts,
+        );
+        let counts = [&a, &b].map(|run| [run.steps, run.iterations, run.cuts]);
+        let mut row = vec![place as f64 + 1.0, f64::from(cells)];
+        row.extend(counts.as_flattened().iter().map(|&count| count as f64));
+        table.push(row);
+        shared.push(a);
+        bbar.push(b);
+    }
+    let sum = |name: &str, runs: &[Run]| Run::sum(name, &runs.iter().collect::<Vec<_>>());
+    let (a, b) = (sum("shared strain, all slopes", &shared), sum("", &bbar));
+    let _ = writeln!(
+        note,
+        "  all       {:>5} {:>6} {:>4}; {:>5} {:>6} {:>4}",
+        a.steps, a.iterations, a.cuts, b.steps, b.iterations, b.cuts,
+    );
+    let ratio = |a: usize, b: usize| a as f64 / b as f64;
+    let corrections = ratio(a.iterations, b.iterations);
+    let cuts = ratio(a.cuts, b.cuts);
+    let run = study.run(a);
+    for (quantity, most, measured) in [
+        ("corrections over those with B-bar [-]", 1.15, corrections),
+        ("cuts over those with B-bar [-]", 1.0, cuts),
+    ] {
+        study.check(
+            run,
+            quantity,
+            AS_BBAR.says(1.0),
+            Band::AtMost(most),
+            measured,
+        );
+    }
+    study.notes.push(note);
+    table.write_csv(&study.folder)
+}
