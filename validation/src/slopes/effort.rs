@@ -8,8 +8,8 @@ use igimp_cases::CaseError;
 use igimp_cases::check::Band;
 use igimp_cases::table::Table;
 
-use super::Slopes;
-use super::section::Variant;
+use super::section::{Path, Variant};
+use super::{Found, Slopes};
 use crate::oracle::{Oracle, OracleKind};
 use crate::study::{Run, Study};
 
@@ -30,15 +30,18 @@ pub(super) fn report(study: &mut Study, slopes: &Slopes) -> Result<(), CaseError
             "steps_shared",
             "corrections_shared",
             "cuts_shared",
+            "failed_trials_shared",
             "steps_b-bar",
             "corrections_b-bar",
             "cuts_b-bar",
+            "failed_trials_b-bar",
         ],
     );
     let mut note = String::from(
-        "effort: slope, mesh; shared strain: steps, corrections, cuts; B-bar: the same\n",
+        "effort: slope, mesh; shared strain: steps, corrections, cuts, failed trials; B-bar: the same\n",
     );
     let [mut shared, mut bbar] = [const { Vec::new() }; 2];
+    let (mut failed, mut cuts) = ([0, 0], [0, 0]);
     for (place, problem) in slopes.problems.iter().enumerate() {
         let cells = problem.meshes[0];
         let of = |locking| {
@@ -47,24 +50,34 @@ pub(super) fn report(study: &mut Study, slopes: &Slopes) -> Result<(), CaseError
                 locking,
                 associated: true,
             };
-            let found = slopes.of(place, variant);
-            found.map(|found| found.run(String::new()))
+            slopes.of(place, variant)
         };
-        let (Some(a), Some(b)) = (of(Locking::SharedStrain), of(Locking::BBar)) else {
+        let (Some(of_shared), Some(of_bbar)) = (of(Locking::SharedStrain), of(Locking::BBar))
+        else {
             continue;
         };
+        let both = [of_shared, of_bbar];
+        let [a, b] = both.map(|found| found.run(String::new()));
+        let fails = both.map(Found::failed_trials);
+        failed = [0, 1].map(|which| failed[which] + fails[which]);
+        if problem.search.path == Path::Reduce {
+            cuts = [cuts[0] + a.cuts, cuts[1] + b.cuts];
+        }
         let _ = writeln!(
             note,
-            "  {:>2} H/{cells:<3} {:>5} {:>6} {:>4}; {:>5} {:>6} {:>4}",
+            "  {:>2} H/{cells:<3} {:>5} {:>6} {:>4} {:>4}; {:>5} {:>6} {:>4} {:>4}",
             place + 1,
             a.steps,
             a.iterations,
             a.cuts,
+            fails[0],
             b.steps,
             b.iterations,
             b.cuts,
+            fails[1],
         );
-        let counts = [&a, &b].map(|run| [run.steps, run.iterations, run.cuts]);
+        let of = |run: &Run, fails| [run.steps, run.iterations, run.cuts, fails];
+        let counts = [of(&a, fails[0]), of(&b, fails[1])];
         let mut row = vec![place as f64 + 1.0, f64::from(cells)];
         row.extend(counts.as_flattened().iter().map(|&count| count as f64));
         table.push(row);
@@ -75,16 +88,26 @@ pub(super) fn report(study: &mut Study, slopes: &Slopes) -> Result<(), CaseError
     let (a, b) = (sum("shared strain, all slopes", &shared), sum("", &bbar));
     let _ = writeln!(
         note,
-        "  all       {:>5} {:>6} {:>4}; {:>5} {:>6} {:>4}",
-        a.steps, a.iterations, a.cuts, b.steps, b.iterations, b.cuts,
+        "  all       {:>5} {:>6} {:>4} {:>4}; {:>5} {:>6} {:>4} {:>4}",
+        a.steps, a.iterations, a.cuts, failed[0], b.steps, b.iterations, b.cuts, failed[1],
     );
+    // A march through the bracket fails once, whatever its factor. A search by gravity fails as often as
+    // the bracket has it, and a trial that fails is cut until it cannot be cut further.
     let ratio = |a: usize, b: usize| a as f64 / b as f64;
-    let corrections = ratio(a.iterations, b.iterations);
-    let cuts = ratio(a.cuts, b.cuts);
+    let corrections = ratio(a.iterations, a.steps) / ratio(b.iterations, b.steps);
+    let cuts = ratio(cuts[0], cuts[1]);
     let run = study.run(a);
     for (quantity, most, measured) in [
-        ("corrections over those with B-bar [-]", 1.15, corrections),
-        ("cuts over those with B-bar [-]", 1.0, cuts),
+        (
+            "corrections in a step over those with B-bar [-]",
+            1.15,
+            corrections,
+        ),
+        (
+            "cuts in marches that reduce strength, over those with B-bar [-]",
+            1.05,
+            cuts,
+        ),
     ] {
         study.check(
             run,

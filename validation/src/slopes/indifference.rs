@@ -50,7 +50,10 @@ pub(super) fn report(study: &mut Study, problems: &[Problem]) -> Result<(), Case
     ] {
         let found = searches
             .par_iter()
-            .map(|&search| Found::of(Computed::new(problem.section.case(variant, search)?)?))
+            .map(|&search| {
+                let case = problem.section.case(variant, search)?;
+                Ok(Found::of(Computed::new(case)?))
+            })
             .collect::<Result<Vec<_>, CaseError>>()?;
         for (search, found) in searches.iter().zip(&found) {
             let [stable, failed] = found.interval;

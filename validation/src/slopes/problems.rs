@@ -134,8 +134,10 @@ pub(crate) fn undrained(bounds: &[[f64; 4]]) -> Vec<Problem> {
             0.0
         } else if angle > 50.0 {
             angle.to_radians().tan().recip()
+        } else if angle > 40.0 {
+            1.0
         } else {
-            (angle > 40.0).then_some(1.0).unwrap_or(2.0)
+            2.0
         };
         // About F = 1.3.
         let cohesion = (260.0 / upper).round();
@@ -168,7 +170,7 @@ pub(crate) fn undrained(bounds: &[[f64; 4]]) -> Vec<Problem> {
             } else {
                 [Level::Default, Level::Full]
             },
-            locks: true,
+            locks: (1.2..1.8).contains(&depth) && angle < 40.0,
             meshes: vec![10, 20],
         }
     };
@@ -283,10 +285,10 @@ pub(crate) fn published() -> Vec<Problem> {
         meshes: vec![10, 20],
         ..of(section, ACADS, Opinion::Bishop, search)
     };
-    // Without any cohesion the thin end of the upper layer at the toe fails by itself.
+    // With less cohesion than γh/20 on the fine mesh the thin end of the upper layer at the toe fails by itself.
     let mut layered = acads_1c();
-    layered.layers[0].cohesion = 0.1;
-    layered.name += " with c = 0.1 kPa for 0";
+    layered.layers[0].cohesion = 0.5;
+    layered.name += " with c = 0.5 kPa for 0";
     let layered = Problem {
         // 1.355 to 1.42.
         asked: Asked {
