@@ -166,9 +166,9 @@ pub(crate) fn undrained(bounds: &[[f64; 4]]) -> Vec<Problem> {
             opinion: Opinion::Rotation,
             search: reduce([1.0, 2.0]),
             levels: if (1.2..1.8).contains(&depth) && angle < 40.0 {
-                [Level::Quick, Level::Full]
+                [Level::Quick, Level::Default]
             } else {
-                [Level::Default, Level::Full]
+                [Level::Default; 2]
             },
             locks: (1.2..1.8).contains(&depth) && angle < 40.0,
             meshes: vec![10, 20],
@@ -189,7 +189,7 @@ pub(crate) fn drained(bounds: &[[f64; 3]]) -> Vec<Problem> {
             without_dilation: Some(KEEPS_VOLUME),
             opinion: Opinion::Rotation,
             search,
-            levels: [Level::Quick, Level::Full],
+            levels: [Level::Quick, Level::Default],
             locks: false,
             meshes: vec![10, 20],
         }
