@@ -278,7 +278,7 @@ fn condition(
     method: &Method,
     conditions: &StepConditions<2>,
 ) -> Result<f64, CaseError> {
-    let stencils = Stencils::build(&body.particles, method, &conditions)?;
+    let stencils = Stencils::build(&body.particles, method, conditions)?;
     let system = System::new(&body.particles, &stencils, conditions, method, &[], None)?;
     let still = vec![[0.0; 2]; conditions.grid.node_count()];
     let (_, matrix) = system.linearise(&still, TangentKind::Elastic)?;

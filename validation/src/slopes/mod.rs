@@ -1,6 +1,9 @@
 //! Slopes whose factor of safety is known: undrained and drained ones with bounds by limit analysis,
 //! and layered ones from the literature; each with a second opinion by hand calculation.
 
+mod effort;
+mod indifference;
+mod mesh_error;
 mod picture;
 pub(crate) mod problems;
 pub(crate) mod section;
@@ -8,31 +11,33 @@ pub(crate) mod section;
 use std::fmt::Write as _;
 use std::path::Path;
 
+use igimp_assembly::Locking;
 use igimp_cases::CaseError;
 use igimp_cases::check::Band;
 use igimp_cases::table::Table;
 use rayon::prelude::*;
 
 use crate::limit_equilibrium::{bishop, rotation, sliding};
-use crate::oracle::OracleKind;
 use crate::reference::{slope_limit_load_bounds, slope_safety_bounds};
 use crate::runs::Computed;
-use crate::slopes::problems::{Opinion, Problem, drained, published, undrained, weak_layer_edges};
-use crate::slopes::section::Variant;
+use crate::slopes::problems::{
+    Asked, Opinion, Problem, drained, published, undrained, weak_layer_edges,
+};
+use crate::slopes::section::{Variant, YOUNG};
 use crate::study::{Level, Run, Study};
 
 /// What the book says of the study.
-const ABOUT: &str = "Slopes of undrained and drained soil, homogeneous and in layers, whose factor of safety is bounded by limit analysis or published; strength is reduced on up to three meshes, and every slope has a second opinion by hand calculation.";
+const ABOUT: &str = "Slopes of undrained and drained soil, homogeneous and in layers, whose factor of safety is bounded by limit analysis or published; the factor of safety of the given geometry is searched for on two meshes, with its mesh error, and every slope has a second opinion by hand calculation.";
 /// What is measured.
 const QUANTITY: &str = "factor of safety [-]";
-/// What is extrapolated: the factor falls with the cell at about first order.
-const EXTRAPOLATED: &str = "factor of safety, 2 F(h) − F(2h) [-]";
+/// What is measured of soil that locks.
+const STANDS: &str = "largest factor that stands [-]";
 /// By how much an upper bound of rigid blocks may lie above the factor of safety \[-\].
 const BLOCKS: f64 = 0.05;
 
 /// A search for the factor of safety of one slope.
 #[derive(Clone, Copy)]
-struct Search {
+struct Sought {
     problem: usize,
     variant: Variant,
 }
@@ -48,6 +53,25 @@ impl Found {
     fn factor(&self) -> f64 {
         0.5 * (self.interval[0] + self.interval[1])
     }
+
+    fn half_width(&self) -> f64 {
+        0.5 * (self.interval[1] - self.interval[0])
+    }
+
+    /// How many trials failed.
+    fn failed_trials(&self) -> usize {
+        let trials = self.computed.trials.iter();
+        trials.filter(|trial| !trial.summary.stable).count()
+    }
+
+    /// All trials as one run.
+    fn run(&self, name: String) -> Run {
+        let trials = self.computed.trials.iter();
+        let runs: Vec<Run> = trials
+            .map(|trial| Run::new("", &trial.report, trial.elapsed))
+            .collect();
+        Run::sum(name, &runs.iter().collect::<Vec<_>>())
+    }
 }
 
 /// What is known of a slope: by its oracle, and by hand.
@@ -58,77 +82,114 @@ pub(crate) struct Known {
     pub(crate) opinion: f64,
 }
 
+/// All slopes, what is known of them and what was found.
+struct Slopes {
+    problems: Vec<Problem>,
+    known: Vec<Known>,
+    sought: Vec<Sought>,
+    found: Vec<Found>,
+}
+
+impl Slopes {
+    /// What was found for a variant of a slope, if that was run.
+    fn of(&self, problem: usize, variant: Variant) -> Option<&Found> {
+        let mut sought = self.sought.iter();
+        let place = sought.position(|s| s.problem == problem && s.variant == variant)?;
+        Some(&self.found[place])
+    }
+}
+
 /// Runs the study.
 pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
     let mut study = Study::new("slopes", ABOUT, out)?;
     let mut problems = undrained(&slope_limit_load_bounds().rows());
     problems.extend(drained(&slope_safety_bounds().rows()));
     problems.extend(published());
-    let searches = searches(&problems, level);
+    let sought = sought(&problems, level);
     let known = problems.par_iter().map(second_opinion).collect::<Vec<_>>();
-    let found = searches
+    let found = sought
         .par_iter()
-        .map(|search| problems[search.problem].find(search.variant))
+        .map(|sought| problems[sought.problem].find(sought.variant))
         .collect::<Result<Vec<_>, _>>()?;
-    for (search, found) in searches.iter().zip(&found) {
-        let (problem, known) = (&problems[search.problem], &known[search.problem]);
-        report(&mut study, problem, known, search.variant, found)?;
+    let slopes = Slopes {
+        problems,
+        known,
+        sought,
+        found,
+    };
+    for (sought, found) in slopes.sought.iter().zip(&slopes.found) {
+        let problem = &slopes.problems[sought.problem];
+        let known = &slopes.known[sought.problem];
+        report(&mut study, problem, known, sought.variant, found)?;
     }
-    extrapolate(&mut study, &problems, &known, &searches, &found);
-    summary(&mut study, &problems, &known, &searches, &found)?;
-    let points: Vec<_> = searches
-        .iter()
-        .zip(&found)
-        .map(|(search, found)| (search.problem, search.variant, found.factor()))
+    mesh_error::report(&mut study, &slopes)?;
+    if level >= Level::Default {
+        effort::report(&mut study, &slopes)?;
+        indifference::report(&mut study, &slopes.problems)?;
+    }
+    summary(&mut study, &slopes)?;
+    let found = slopes.sought.iter().zip(&slopes.found);
+    let points: Vec<_> = found
+        .map(|(sought, found)| (sought.problem, sought.variant, found.factor()))
         .collect();
-    picture::write(&study.folder, &known, &points)?;
+    picture::write(&study.folder, &slopes.known, &points)?;
     Ok(study)
 }
 
 /// What is run at a level.
-fn searches(problems: &[Problem], level: Level) -> Vec<Search> {
-    let variant = |cells, bbar, associated| Variant {
+fn sought(problems: &[Problem], level: Level) -> Vec<Sought> {
+    let variant = |cells, locking, associated| Variant {
         cells,
-        bbar,
+        locking,
         associated,
     };
-    let mut searches = Vec::new();
-    for (k, problem) in problems.iter().enumerate() {
-        let mut search = |variant| {
-            searches.push(Search {
-                problem: k,
-                variant,
-            });
-        };
-        // Values of slices know no flow rule: ψ = 0 is run where bounds are known.
-        let drained = problem.oracle.kind == OracleKind::LimitAnalysis
-            && problem.section.layers[0].friction > 0.0;
-        for (place, &cells) in problem.meshes.iter().enumerate() {
-            if level == Level::Full || (place == 0 && level >= problem.level) {
-                search(variant(cells, true, true));
+    let mut all = Vec::new();
+    for (problem, slope) in problems.iter().enumerate() {
+        let mut seek = |variant| all.push(Sought { problem, variant });
+        for (&cells, &least) in slope.meshes.iter().zip(&slope.levels) {
+            if level < least {
+                continue;
             }
-            if level == Level::Full && drained && cells <= 20 {
-                search(variant(cells, true, false));
+            seek(variant(cells, Locking::SharedStrain, true));
+            if level >= Level::Default && slope.without_dilation.is_some() {
+                seek(variant(cells, Locking::SharedStrain, false));
             }
-        }
-        if level >= Level::Default && problem.locks {
-            search(variant(problem.meshes[0], false, true));
+            if level >= Level::Default && cells == slope.meshes[0] {
+                seek(variant(cells, Locking::BBar, true));
+                if slope.locks {
+                    seek(variant(cells, Locking::None, true));
+                }
+            }
         }
     }
-    searches
+    all
 }
 
 impl Problem {
     /// Searches for the factor of safety.
     fn find(&self, variant: Variant) -> Result<Found, CaseError> {
-        let bracket = self.bracket;
-        let computed = Computed::new(self.section.case(variant, bracket)?)?;
+        let case = self.section.case(variant, self.search)?;
+        Ok(Found::of(Computed::new(case)?))
+    }
+
+    /// What is asked of a variant.
+    fn asked(&self, variant: Variant) -> Option<Asked> {
+        match (variant.locking, variant.associated) {
+            (Locking::SharedStrain, true) => Some(self.asked),
+            (Locking::SharedStrain, false) => self.without_dilation,
+            _ => None,
+        }
+    }
+}
+
+impl Found {
+    fn of(computed: Computed) -> Self {
         let safety = computed.safety();
         let end = |which: fn(&_) -> Option<f64>| safety.and_then(which).unwrap_or(f64::NAN);
-        Ok(Found {
+        Self {
             interval: [end(|safety| safety.stable), end(|safety| safety.failed)],
             computed,
-        })
+        }
     }
 }
 
@@ -158,100 +219,51 @@ fn report(
     found: &Found,
 ) -> Result<(), CaseError> {
     let name = label(problem, variant, &found.computed);
-    let run = Run::sum(
-        name.clone(),
-        &found
-            .computed
-            .trials
-            .iter()
-            .map(|trial| Run::new("", &trial.report, trial.elapsed))
-            .collect::<Vec<_>>()
-            .iter()
-            .collect::<Vec<_>>(),
-    );
-    let run = study.run(run);
+    let run = study.run(found.run(name.clone()));
     let [lower, upper] = known.interval;
     let expected = problem.oracle.says(0.5 * (lower + upper));
-    if !variant.bbar {
+    if variant.locking == Locking::None {
         let band = Band::AtLeast(1.02 * upper);
-        study.control(run, QUANTITY, expected, band, found.factor());
-    } else if variant.associated {
-        let share = problem.excess * (10.0 / f64::from(variant.cells)).powf(2.0 / 3.0);
-        let band = Band::Between(0.98 * lower, (1.0 + share) * upper);
+        // Soil that locks carries any load on a given geometry: there is a factor that stands, and
+        // often none that fails.
+        study.control(run, STANDS, expected, band, found.interval[0]);
+    } else if let Some(asked) = problem.asked(variant) {
+        let above = asked.above[usize::from(variant.cells != problem.meshes[0])];
+        let band = Band::Between((1.0 - asked.below) * lower, (1.0 + above) * upper);
         study.check(run, QUANTITY, expected, band, found.factor());
     }
-    let limit = problem.section.failure_displacement();
+    let scale = YOUNG / (problem.section.unit_weight * problem.section.height.powi(2));
     let mut trials = Table::new(
         slug(&name),
         &[
             "SRF_[-]",
-            "displacement/limit_[-]",
+            "E_displacement/(gamma_H2)_[-]",
             "stands_(1)_or_failed_(0)",
         ],
     );
     for trial in found.computed.trials.iter().map(|trial| &trial.summary) {
-        // Past failure displacements hang on round-off.
-        let displacement = if trial.stable {
-            trial.displacement / limit
-        } else {
-            1.0
-        };
-        trials.push(vec![
-            trial.srf,
-            displacement,
-            f64::from(u8::from(trial.stable)),
-        ]);
+        for &[srf, displacement] in &trial.course {
+            trials.push(vec![srf, displacement * scale, 1.0]);
+        }
+        let stands = f64::from(u8::from(trial.stable));
+        if !trial.stable {
+            // Past failure displacements hang on round-off.
+            trials.push(vec![trial.srf, f64::NAN, stands]);
+        } else if trial.course.is_empty() {
+            trials.push(vec![trial.srf, trial.displacement * scale, stands]);
+        }
     }
     study.table(trials)
 }
 
-/// First-order extrapolation from the two finest meshes of each homogeneous slope. Coarse cells do not
-/// see the thin ends of layers, so that layered ones have no order.
-fn extrapolate(
-    study: &mut Study,
-    problems: &[Problem],
-    known: &[Known],
-    searches: &[Search],
-    found: &[Found],
-) {
-    let homogeneous = |problem: &Problem| problem.section.layers.len() == 1;
-    let chosen = problems.iter().enumerate();
-    for (k, problem) in chosen.filter(|(_, problem)| homogeneous(problem)) {
-        let on = |cells| {
-            let variant = Variant {
-                cells,
-                bbar: true,
-                associated: true,
-            };
-            let place = searches
-                .iter()
-                .position(|s| s.problem == k && s.variant == variant);
-            place.map(|place| (place, found[place].factor()))
-        };
-        let finest = problem.meshes[problem.meshes.len() - 1];
-        if let (Some((_, coarse)), Some((place, fine))) = (on(finest / 2), on(finest)) {
-            let [lower, upper] = known[k].interval;
-            let expected = problem.oracle.says(0.5 * (lower + upper));
-            let band = Band::Between(0.98 * lower, 1.02 * upper);
-            study.check(place, EXTRAPOLATED, expected, band, 2.0 * fine - coarse);
-        }
-    }
-}
-
 /// All factors in one table, as CSV and for the reader of the report.
-fn summary(
-    study: &mut Study,
-    problems: &[Problem],
-    known: &[Known],
-    searches: &[Search],
-    found: &[Found],
-) -> Result<(), CaseError> {
+fn summary(study: &mut Study, slopes: &Slopes) -> Result<(), CaseError> {
     let mut table = Table::new(
         "factors_of_safety",
         &[
             "slope",
             "cells_over_H",
-            "bbar",
+            "none_(0)_b-bar_(1)_shared_strain_(2)",
             "psi=phi",
             "known_from_[-]",
             "known_to_[-]",
@@ -261,18 +273,24 @@ fn summary(
         ],
     );
     let mut note = String::from("factors of safety: known; by hand; computed\n");
-    for (search, found) in searches.iter().zip(found) {
-        let (problem, known) = (&problems[search.problem], &known[search.problem]);
+    for (sought, found) in slopes.sought.iter().zip(&slopes.found) {
+        let problem = &slopes.problems[sought.problem];
+        let known = &slopes.known[sought.problem];
         let ([lower, upper], [stable, failed]) = (known.interval, found.interval);
         let Variant {
             cells,
-            bbar,
+            locking,
             associated,
-        } = search.variant;
+        } = sought.variant;
+        let cure = match locking {
+            Locking::None => 0.0,
+            Locking::BBar => 1.0,
+            Locking::SharedStrain => 2.0,
+        };
         table.push(vec![
-            search.problem as f64 + 1.0,
+            sought.problem as f64 + 1.0,
             f64::from(cells),
-            f64::from(u8::from(bbar)),
+            cure,
             f64::from(u8::from(associated)),
             lower,
             upper,
@@ -283,8 +301,8 @@ fn summary(
         let _ = writeln!(
             note,
             "  {:>2} {:<64} {lower:.3} … {upper:.3}; {:.3}; {stable:.3} ≤ F < {failed:.3}",
-            search.problem + 1,
-            label(problem, search.variant, &found.computed),
+            sought.problem + 1,
+            label(problem, sought.variant, &found.computed),
             known.opinion,
         );
     }

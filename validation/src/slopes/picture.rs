@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use igimp_assembly::Locking;
 use igimp_cases::CaseError;
 use igimp_cases::figures::{Band, CurvePlot, ReferenceLine, ReferenceValue, Series};
 
@@ -35,19 +36,20 @@ pub(crate) fn write(
         hand.map(|(slope, known)| [slope as f64 + 1.0, known.opinion / middle(slope)])
             .collect(),
     ));
-    for (label, cells, bbar, associated, aside) in [
-        ("h = H/10", 10, true, true, -0.2),
-        ("h = H/20", 20, true, true, 0.0),
-        ("h = H/40", 40, true, true, 0.2),
-        ("ψ = 0, h = H/20", 20, true, false, 0.1),
-        ("without B-bar, h = H/10", 10, false, true, -0.1),
+    let (shared, bbar) = (Locking::SharedStrain, Locking::BBar);
+    for (label, coarse, locking, associated, aside) in [
+        ("h = H/10", true, shared, true, -0.2),
+        ("h = H/20", false, shared, true, 0.0),
+        ("ψ = 0, h = H/10", true, shared, false, -0.1),
+        ("ψ = 0, h = H/20", false, shared, false, 0.1),
+        ("B-bar, h = H/10", true, bbar, true, 0.2),
+        ("without, h = H/10", true, Locking::None, true, 0.3),
     ] {
-        let variant = Variant {
-            cells,
-            bbar,
-            associated,
-        };
-        let chosen = points.iter().filter(|point| point.1 == variant);
+        let chosen = points.iter().filter(|(_, variant, _)| {
+            (variant.cells <= 10) == coarse
+                && variant.locking == locking
+                && variant.associated == associated
+        });
         let chosen: Vec<[f64; 2]> = chosen
             .map(|&(slope, _, factor)| [slope as f64 + 1.0 + aside, factor / middle(slope)])
             .collect();

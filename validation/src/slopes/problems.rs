@@ -1,7 +1,7 @@
 //! The slopes: geometry and strength as their sources state them, and what is known of their factor
 //! of safety.
 
-use super::section::{Layer, Section};
+use super::section::{Layer, Path, Search, Section, YOUNG};
 use crate::oracle::{Oracle, OracleKind};
 use crate::study::Level;
 
@@ -35,6 +35,12 @@ pub(crate) const GRIFFITHS_LANE_4: Oracle = Oracle {
     source: "least upper bound of rotating blocks; slope of Griffiths and Lane 1999, example 4",
     locator: "limit_equilibrium/rotation.rs; their fig. 10: 2.03 at a ratio of 2",
 };
+/// A slope that many programs were tried on.
+pub(crate) const ARAI_TAGYO: Oracle = Oracle {
+    kind: OracleKind::LimitAnalysis,
+    source: "least upper bound of rotating blocks; slope of Arai and Tagyo 1985, example 1",
+    locator: "limit_equilibrium/rotation.rs: 1.408",
+};
 /// The survey of programs.
 pub(crate) const ACADS: Oracle = Oracle {
     kind: OracleKind::Published,
@@ -52,19 +58,60 @@ pub(crate) struct Problem {
     /// Least and greatest value of the factor of safety by that knowledge \[-\]; none: the hand
     /// calculation is all there is.
     pub(crate) known: Option<[f64; 2]>,
-    /// The share by which the factor may exceed what is known on ten cells over the height; it
-    /// falls with h^(2/3) \[-\].
-    pub(crate) excess: f64,
+    /// What is asked with ψ = φ.
+    pub(crate) asked: Asked,
+    /// What is asked with ψ = 0, if that is run.
+    pub(crate) without_dilation: Option<Asked>,
     /// How the second opinion is computed.
     pub(crate) opinion: Opinion,
-    /// Where the search begins \[-\].
-    pub(crate) bracket: [f64; 2],
-    /// The lowest level at which the slope is run.
-    pub(crate) level: Level,
-    /// Whether it is run without B-bar too, as a control.
+    /// How the factor of safety is searched for.
+    pub(crate) search: Search,
+    /// The lowest levels at which the slope is run on its coarse and its fine mesh.
+    pub(crate) levels: [Level; 2],
+    /// Whether it is run without a cure for locking too, as a control.
     pub(crate) locks: bool,
-    /// Cells over the height: the first at that level, all of them at the full level.
+    /// Cells over the height, coarse and fine.
     pub(crate) meshes: Vec<u32>,
+}
+
+/// How far a factor of safety may lie beyond what is known, as shares of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Asked {
+    /// Below the least value \[-\].
+    pub(crate) below: f64,
+    /// Above the greatest value, on the coarse and on the fine mesh \[-\].
+    pub(crate) above: [f64; 2],
+}
+
+/// Soil that dilates as it is sheared, ψ = φ.
+const DILATES: Asked = Asked {
+    below: 0.02,
+    above: [0.03, 0.02],
+};
+/// Soil that keeps its volume: undrained, or ψ = 0.
+const KEEPS_VOLUME: Asked = Asked {
+    below: 0.01,
+    above: [0.02, 0.02],
+};
+
+/// Strength is reduced on the loaded slope, through the bracket in ten steps.
+fn reduce(bracket: [f64; 2]) -> Search {
+    Search {
+        bracket,
+        path: Path::Reduce,
+        steps: 10,
+        young: YOUNG,
+    }
+}
+
+/// Gravity is raised on reduced strength: for slopes near F = 1 and below, which do not bear their weight.
+fn by_gravity(bracket: [f64; 2]) -> Search {
+    Search {
+        bracket,
+        path: Path::Gravity,
+        steps: 5,
+        young: YOUNG,
+    }
 }
 
 /// A hand calculation.
@@ -82,25 +129,49 @@ pub(crate) enum Opinion {
 /// as factors of safety.
 pub(crate) fn undrained(bounds: &[[f64; 4]]) -> Vec<Problem> {
     let problem = |&[angle, depth, lower, upper]: &[f64; 4]| {
-        let run = if angle > 40.0 { 1.0 } else { 2.0 };
-        // About F = 1.
-        let cohesion = (200.0 / upper).round();
-        let margins = if depth > 1.0 { [20.0; 2] } else { [15.0, 0.0] };
+        let upright = angle > 89.0;
+        let run = if upright {
+            0.0
+        } else if angle > 50.0 {
+            angle.to_radians().tan().recip()
+        } else if angle > 40.0 {
+            1.0
+        } else {
+            2.0
+        };
+        // About F = 1.3.
+        let cohesion = (260.0 / upper).round();
+        let margins = match (depth > 1.0, upright) {
+            (true, true) => [10.0, 20.0],
+            // The right side lies on a line of the grid.
+            (true, false) => [20.0, 20.0 + (10.0 * run).ceil() - 10.0 * run],
+            (false, _) => [15.0, 0.0],
+        };
         let name = format!("undrained, {angle}°, D = {depth}");
+        let above = match (depth > 1.0, upright) {
+            (true, false) => KEEPS_VOLUME.above,
+            (true, true) => [0.045, 0.025],
+            // The slip line ends in the corner between face and rough base.
+            (false, _) => [0.06, 0.03],
+        };
         Problem {
             section: Section::homogeneous(&name, (run, depth), (cohesion, 0.0), margins),
             oracle: UNDRAINED_BOUNDS,
             known: Some([lower, upper].map(|number| number * cohesion / 200.0)),
-            excess: if depth > 1.0 { 0.02 } else { 0.065 },
-            opinion: Opinion::Rotation,
-            bracket: [0.9, 1.3],
-            level: if (1.2..1.8).contains(&depth) {
-                Level::Quick
-            } else {
-                Level::Default
+            asked: Asked {
+                above,
+                ..KEEPS_VOLUME
             },
-            locks: true,
-            meshes: if depth < 1.8 { vec![10, 20] } else { vec![10] },
+            without_dilation: None,
+            opinion: Opinion::Rotation,
+            search: reduce([1.0, 2.0]),
+            levels: if (1.2..1.8).contains(&depth) && angle < 40.0 {
+                [Level::Quick, Level::Default]
+            } else {
+                [Level::Default; 2]
+            },
+            locks: (1.2..1.8).contains(&depth) && angle < 40.0,
+            meshes: vec![10, 20],
         }
     };
     bounds.iter().map(problem).collect()
@@ -108,96 +179,132 @@ pub(crate) fn undrained(bounds: &[[f64; 4]]) -> Vec<Problem> {
 
 /// The homogeneous drained slopes: number of the example and bounds on the factor of safety.
 pub(crate) fn drained(bounds: &[[f64; 3]]) -> Vec<Problem> {
-    let slopes = [
-        (
-            "Griffiths and Lane 1",
-            DRAINED_BOUNDS,
-            (2.0, 1.0),
-            10.0,
-            [12.0, 0.0],
-            vec![10, 20, 40],
-        ),
-        (
-            "Griffiths and Lane 2",
-            DRAINED_BOUNDS,
-            (2.0, 1.5),
-            10.0,
-            [12.0, 20.0],
-            vec![10, 20],
-        ),
-        (
-            "Dawson et al.",
-            DAWSON,
-            (1.0, 1.5),
-            12.38,
-            [15.0, 10.0],
-            vec![10, 20, 40],
-        ),
-    ];
-    let problem = |(slope, &[_, lower, upper]): (_, &[f64; 3])| {
-        let (name, oracle, shape, cohesion, margins, meshes) = slope;
+    let of = |example: usize, section, oracle, search| {
+        let [_, lower, upper] = bounds[example - 1];
         Problem {
-            section: Section::homogeneous(name, shape, (cohesion, 20.0), margins),
+            section,
             oracle,
             known: Some([lower, upper]),
-            excess: 0.10,
+            asked: DILATES,
+            without_dilation: Some(KEEPS_VOLUME),
             opinion: Opinion::Rotation,
-            bracket: [lower - 0.1, lower + 0.2],
-            level: Level::Quick,
+            search,
+            levels: [Level::Quick, Level::Default],
             locks: false,
-            meshes,
+            meshes: vec![10, 20],
         }
     };
-    slopes.into_iter().zip(bounds).map(problem).collect()
+    let (common, steep) = ((10.0, 20.0), (12.38, 20.0));
+    let griffiths_lane_1 =
+        Section::homogeneous("Griffiths and Lane 1", (2.0, 1.0), common, [12.0, 0.0]);
+    let griffiths_lane_2 =
+        Section::homogeneous("Griffiths and Lane 2", (2.0, 1.5), common, [12.0, 20.0]);
+    let dawson = Section::homogeneous("Dawson et al.", (1.0, 1.5), steep, [15.0, 10.0]);
+    let low = Section::cut(
+        "4.5 m high, 2:1",
+        [4.5, 2.0, 2.0],
+        16.0,
+        (5.0, 20.0),
+        [4.5, 4.5],
+    );
+    let low = Problem {
+        meshes: vec![9, 18],
+        asked: Asked {
+            below: 0.007,
+            above: [0.031, 0.0115],
+        },
+        ..of(4, low, DRAINED_BOUNDS, reduce([1.0, 2.0]))
+    };
+    vec![
+        of(1, griffiths_lane_1, DRAINED_BOUNDS, reduce([1.0, 2.0])),
+        of(2, griffiths_lane_2, DRAINED_BOUNDS, reduce([1.0, 2.0])),
+        of(3, dawson, DAWSON, by_gravity([0.9, 1.2])),
+        low,
+    ]
 }
 
 /// The slopes of published studies, layered ones among them.
 pub(crate) fn published() -> Vec<Problem> {
-    let foundation = |ratio| Problem {
-        section: two_layers(ratio),
-        oracle: GRIFFITHS_LANE_4,
+    let of = |section, oracle, opinion, search| Problem {
+        section,
+        oracle,
         known: None,
-        excess: 0.08,
-        opinion: Opinion::Rotation,
-        bracket: [0.8, 2.3],
-        level: Level::Default,
+        asked: DILATES,
+        without_dilation: None,
+        opinion,
+        search,
+        levels: [Level::Default, Level::Full],
         locks: false,
         meshes: vec![10],
     };
+    let foundation = |ratio, search| Problem {
+        asked: Asked {
+            below: 0.02,
+            above: [0.08, 0.08],
+        },
+        ..of(
+            two_layers(ratio),
+            GRIFFITHS_LANE_4,
+            Opinion::Rotation,
+            search,
+        )
+    };
     let weak = Problem {
-        section: weak_layer(0.2),
-        oracle: GRIFFITHS_LANE_3,
-        known: None,
-        excess: 0.25,
-        opinion: Opinion::Sliding,
-        bracket: [0.4, 1.6],
-        level: Level::Full,
-        locks: false,
+        asked: Asked {
+            below: 0.02,
+            above: [0.25, 0.25],
+        },
+        levels: [Level::Full; 2],
         meshes: vec![20],
+        ..of(
+            weak_layer(0.2),
+            GRIFFITHS_LANE_3,
+            Opinion::Sliding,
+            by_gravity([0.4, 1.6]),
+        )
     };
-    let acads = |section, known, excess| Problem {
-        section,
-        oracle: ACADS,
-        known,
-        excess,
-        opinion: Opinion::Bishop,
-        bracket: [0.9, 1.5],
-        level: Level::Default,
-        locks: false,
+    let arai_tagyo = Section::cut(
+        "Arai and Tagyo 1",
+        [20.0, 1.5, 16.0],
+        18.82,
+        (41.65, 15.0),
+        [30.0, 30.0],
+    );
+    let arai_tagyo = Problem {
+        without_dilation: Some(KEEPS_VOLUME),
         meshes: vec![10, 20],
+        ..of(
+            arai_tagyo,
+            ARAI_TAGYO,
+            Opinion::Rotation,
+            reduce([1.0, 2.0]),
+        )
     };
-    // Without any cohesion the thin end of the upper layer at the toe fails by itself.
+    let acads = |section, known, search| Problem {
+        known: Some(known),
+        meshes: vec![10, 20],
+        ..of(section, ACADS, Opinion::Bishop, search)
+    };
+    // With less cohesion than γh/20 on the fine mesh the thin end of the upper layer at the toe fails by itself.
     let mut layered = acads_1c();
-    layered.layers[0].cohesion = 0.1;
-    layered.name += " with c = 0.1 kPa for 0";
-    layered.watched = Some(layered.surface[1]);
+    layered.layers[0].cohesion = 0.5;
+    layered.name += " with c = 0.5 kPa for 0";
+    let layered = Problem {
+        // 1.355 to 1.42.
+        asked: Asked {
+            below: 0.0145,
+            above: [0.0106, 0.0106],
+        },
+        ..acads(layered, [1.375, 1.405], reduce([1.0, 2.0]))
+    };
     vec![
-        foundation(0.6),
-        foundation(1.5),
-        foundation(2.0),
+        foundation(0.6, by_gravity([0.8, 1.3])),
+        foundation(1.5, reduce([1.0, 3.0])),
+        foundation(2.0, reduce([1.0, 3.0])),
         weak,
-        acads(acads_1a(), Some([0.987, 1.0]), 0.08),
-        acads(layered, Some([1.375, 1.405]), 0.03),
+        arai_tagyo,
+        acads(acads_1a(), [0.987, 1.0], by_gravity([0.9, 1.2])),
+        layered,
     ]
 }
 
@@ -328,7 +435,6 @@ fn acads(name: &str, unit_weight: f64, layers: Vec<Layer>) -> Section {
         surface: vec![[20.0, 25.0], [30.0, 25.0], [50.0, 35.0], [70.0, 35.0]],
         base: 20.0,
         layers,
-        watched: None,
     };
     published.mirrored()
 }

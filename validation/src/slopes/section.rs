@@ -3,19 +3,25 @@
 
 use std::fmt::Write as _;
 
+use igimp_assembly::Locking;
 use igimp_cases::CaseError;
 use igimp_cases::case::Case;
 use igimp_cases::input::CaseFile;
 
 use crate::runs::corners;
 
+/// Width of the interval at which a search ends \[-\].
+pub(crate) const TOLERANCE: f64 = 0.005;
 /// Young's modulus of all soils \[kPa\]: factors of safety do not depend on it.
-const YOUNG: f64 = 1e5;
+pub(crate) const YOUNG: f64 = 1e5;
 /// Poisson's ratio of all soils \[-\].
 const POISSON: f64 = 0.3;
-/// A slope has failed at this multiple of the settlement of its highest column under its own weight
-/// without sideways strain, if it has not lost equilibrium before \[-\].
-pub(crate) const FAILURE: f64 = 3.0;
+/// The stage that a reduction of the strength of loaded soil starts from, on the given geometry too.
+const WEIGHT: &str = "[[stages]]
+             name = \"weight\"
+             type = \"gravity\"
+             steps = 5
+             geometry = \"given\"";
 
 /// A layer of one soil.
 #[derive(Clone, Debug)]
@@ -43,8 +49,6 @@ pub(crate) struct Section {
     pub(crate) base: f64,
     /// Layers; together they fill what is between base and surface.
     pub(crate) layers: Vec<Layer>,
-    /// The point whose displacement tells failure; none: the largest displacement does \[m\].
-    pub(crate) watched: Option<[f64; 2]>,
 }
 
 /// Mesh and method of one search.
@@ -52,10 +56,32 @@ pub(crate) struct Section {
 pub(crate) struct Variant {
     /// Cells over the height of the slope.
     pub(crate) cells: u32,
-    /// Whether B-bar is on.
-    pub(crate) bbar: bool,
+    /// What is done against locking.
+    pub(crate) locking: Locking,
     /// ψ = φ, or else ψ = 0.
     pub(crate) associated: bool,
+}
+
+/// How a factor of safety is searched for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Search {
+    /// Where the search begins \[-\].
+    pub(crate) bracket: [f64; 2],
+    /// How the reduced strength is reached.
+    pub(crate) path: Path,
+    /// Steps of a trial, or of the march through the bracket.
+    pub(crate) steps: u32,
+    /// Young's modulus of all soils \[kPa\].
+    pub(crate) young: f64,
+}
+
+/// How reduced strength is reached.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Path {
+    /// Gravity is raised on the whole strength, which is then reduced step by step.
+    Reduce,
+    /// Gravity is raised on soil of reduced strength: for slopes that do not stand otherwise.
+    Gravity,
 }
 
 impl Section {
@@ -64,11 +90,23 @@ impl Section {
     pub(crate) fn homogeneous(
         name: &str,
         (run, depth_factor): (f64, f64),
+        strength: (f64, f64),
+        margins: [f64; 2],
+    ) -> Self {
+        let foundation = 10.0 * (depth_factor - 1.0);
+        Self::cut(name, [10.0, run, foundation], 20.0, strength, margins)
+    }
+
+    /// A homogeneous slope of a height \[m\], `run` across for one down, on a foundation \[m\], with
+    /// unit weight, cohesion and friction \[kN/m³, kPa, degree\] and ground before and beyond the face
+    /// \[m\].
+    pub(crate) fn cut(
+        name: &str,
+        [height, run, foundation]: [f64; 3],
+        unit_weight: f64,
         (cohesion, friction): (f64, f64),
         [before, beyond]: [f64; 2],
     ) -> Self {
-        let height = 10.0;
-        let foundation = height * (depth_factor - 1.0);
         let (toe, top) = (before + run * height, foundation + height);
         let mut surface = vec![[0.0, top], [before, top], [toe, foundation]];
         let mut polygon = vec![[0.0, 0.0]];
@@ -85,11 +123,10 @@ impl Section {
         Self {
             name: name.to_owned(),
             height,
-            unit_weight: 20.0,
+            unit_weight,
             surface,
             base: 0.0,
             layers: vec![layer],
-            watched: None,
         }
     }
 
@@ -134,24 +171,32 @@ impl Section {
         found.unwrap_or(&self.layers[0])
     }
 
-    /// The displacement at which the slope counts as failed \[m\].
-    pub(crate) fn failure_displacement(&self) -> f64 {
-        let constrained = YOUNG * (1.0 - POISSON) / ((1.0 + POISSON) * (1.0 - 2.0 * POISSON));
-        FAILURE * self.unit_weight * (self.top() - self.base).powi(2) / (2.0 * constrained)
-    }
-
-    /// The case that searches for the factor of safety, from a bracket of factors: gravity is raised
-    /// in five steps on undeformed soil of reduced strength.
+    /// The case that searches for the factor of safety of the section as it is given: no equilibrium
+    /// alone is failure.
     ///
     /// # Errors
     /// If the section states no case.
-    pub(crate) fn case(&self, variant: Variant, bracket: [f64; 2]) -> Result<Case, CaseError> {
+    pub(crate) fn case(&self, variant: Variant, search: Search) -> Result<Case, CaseError> {
         let Variant {
             cells,
-            bbar,
+            locking,
             associated,
         } = variant;
-        let locking = if bbar { "b-bar" } else { "none" };
+        let Search {
+            bracket,
+            path,
+            steps,
+            young,
+        } = search;
+        let locking = match locking {
+            Locking::None => "none",
+            Locking::BBar => "b-bar",
+            Locking::SharedStrain => "shared-strain",
+        };
+        let (weight, path) = match path {
+            Path::Reduce => (WEIGHT, "reduce"),
+            Path::Gravity => ("", "gravity"),
+        };
         let cell = self.height / f64::from(cells);
         let ([left, right], top) = (self.sides(), self.top() + cell);
         let base = self.base;
@@ -173,20 +218,16 @@ impl Section {
              [solver]
              tolerance = 1e-6
              max_iterations = 20
+             {weight}
              [[stages]]
              name = \"strength reduction\"
              type = \"strength-reduction\"
-             path = \"gravity\"
+             path = \"{path}\"
              bracket = {bracket:?}
-             tolerance = 0.01
-             steps = 5
-             geometry = \"moving\"
-             [stages.failure]
-             when = \"no-equilibrium\"
-             also.displacement = \"{} m\"
+             tolerance = {TOLERANCE}
+             steps = {steps}
             ",
             self.name,
-            self.failure_displacement(),
         );
         for (k, layer) in self.layers.iter().enumerate() {
             let Layer {
@@ -210,7 +251,7 @@ impl Section {
                 "
                  [materials.soil-{k}]
                  unit_weight = \"{} kN/m3\"
-                 young = \"{YOUNG} kPa\"
+                 young = \"{young} kPa\"
                  poisson = {POISSON}
                  {strength}
                  [[bodies]]
@@ -221,21 +262,6 @@ impl Section {
                 ",
                 self.unit_weight,
                 corners(polygon),
-            );
-        }
-        if let Some([x, y]) = self.watched {
-            text = text.replace(
-                "[stages.failure]",
-                "[stages.failure]\nalso.monitor = \"crest\"",
-            );
-            let _ = write!(
-                text,
-                "
-                 [[monitors]]
-                 name = \"crest\"
-                 point = [\"{x} m\", \"{y} m\"]
-                 record = [\"displacement\"]
-                "
             );
         }
         Ok(CaseFile::parse(&self.name, &text, &[])?.into_case())
@@ -281,16 +307,21 @@ mod tests {
     fn a_section_states_a_case() {
         let variant = Variant {
             cells: 10,
-            bbar: true,
+            locking: Locking::SharedStrain,
             associated: true,
         };
-        for friction in [0.0, 20.0] {
+        for (friction, path, stages) in [(0.0, Path::Gravity, 1), (20.0, Path::Reduce, 2)] {
             let shape = (1.0, 1.0);
-            let mut section = Section::homogeneous("slope", shape, (10.0, friction), [10.0, 0.0]);
-            section.watched = (friction > 0.0).then_some([10.0, 10.0]);
-            let case = section.case(variant, [1.0, 1.4]).unwrap();
+            let section = Section::homogeneous("slope", shape, (10.0, friction), [10.0, 0.0]);
+            let search = Search {
+                bracket: [1.0, 1.4],
+                path,
+                steps: 5,
+                young: YOUNG,
+            };
+            let case = section.case(variant, search).unwrap();
             assert_eq!(case.grid.cells(), [20, 11]);
-            assert_eq!(case.monitors.len(), usize::from(friction > 0.0));
+            assert_eq!(case.stages.len(), stages);
         }
     }
 }

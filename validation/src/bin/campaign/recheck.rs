@@ -30,7 +30,7 @@ pub(crate) fn equilibrium(
     let conditions = accepted.conditions;
     let (grid, u) = (&conditions.grid, &accepted.forces.u);
     let after = &accepted.body.particles;
-    let stencils = Stencils::build(before, &case.method, &conditions).ok()?;
+    let stencils = Stencils::build(before, &case.method, conditions).ok()?;
     let mut f_int = vec![[0.0; 2]; grid.node_count()];
     let mut f_ext = vec![[0.0; 2]; grid.node_count()];
     let mut round_off = 0.0;
