@@ -381,18 +381,7 @@ fn equilibrium<const D: usize>(
         })?;
         course.record(&residual, settings)?;
     }
-    let moves = method.geometry == Geometry::Moving;
-    if moves && let Some((particle, x)) = body.particles.leaving(grid, &stencils, &u) {
-        return Err(StepFailure::LeavesGrid {
-            particle,
-            position: padded(&x),
-        });
-    }
-    let load_points = if moves {
-        Some(carried(&body.load_points, grid, &u)?)
-    } else {
-        None
-    };
+    let load_points = carried(body, method, grid, &stencils, &u)?;
 
     let clock = Instant::now();
     let reactions = system.reactions(trial);
@@ -415,9 +404,7 @@ fn equilibrium<const D: usize>(
         drag_share: system.drag_share(&u),
         times,
     };
-    if let Some(load_points) = load_points {
-        body.load_points = load_points;
-    }
+    body.load_points = load_points;
     body.particles.commit(&stencils, method, trial, &u);
     let mut report = report;
     report.times.commit = clock.elapsed();
@@ -441,12 +428,24 @@ fn fill_of_singular<const D: usize>(
     Some(stencils.node_fill(grid, node))
 }
 
-/// The load points where nodal step displacements `u` carry them, all of them on the grid.
+/// The load points where nodal step displacements `u` carry them: all of them on the grid, and the
+/// particles too. On a given geometry nothing moves.
 fn carried<const D: usize>(
-    points: &[LoadPoint<D>],
+    body: &Body<D>,
+    method: &Method,
     grid: &Grid<D>,
+    stencils: &Stencils<D>,
     u: &[[f64; D]],
 ) -> Result<Vec<LoadPoint<D>>, StepFailure> {
+    if method.geometry == Geometry::Given {
+        return Ok(body.load_points.clone());
+    }
+    if let Some((particle, x)) = body.particles.leaving(grid, stencils, u) {
+        return Err(StepFailure::LeavesGrid {
+            particle,
+            position: padded(&x),
+        });
+    }
     let carry = |(index, point): (usize, &LoadPoint<D>)| {
         let carried = point.carried(grid, index, u)?;
         if grid.contains(&carried.x) {
@@ -458,7 +457,7 @@ fn carried<const D: usize>(
             })
         }
     };
-    points.iter().enumerate().map(carry).collect()
+    body.load_points.iter().enumerate().map(carry).collect()
 }
 
 /// Evaluates the trial at `u`, to which the correction `du` was added, with its tangent where a matrix

@@ -275,7 +275,7 @@ impl LinearSolver for Corrupting {
 fn place_of(body: &Body<2>, conditions: &StepConditions<2>, unknown: usize) -> ([f64; 2], usize) {
     let method = Method::default();
     let grid = &conditions.grid;
-    let stencils = igimp_assembly::Stencils::build(&body.particles, &method, &conditions).unwrap();
+    let stencils = igimp_assembly::Stencils::build(&body.particles, &method, conditions).unwrap();
     let mut free = (0..grid.node_count())
         .filter(|&node| stencils.node_volume(node) > 0.0)
         .flat_map(|node| [(node, 0), (node, 1)])
