@@ -170,7 +170,7 @@ fn evaluate<const D: usize>(
     method: &Method,
     u: &[[f64; D]],
 ) -> (Stencils<D>, Trial<D>) {
-    let stencils = Stencils::build(body, method, &conditions).unwrap();
+    let stencils = Stencils::build(body, method, conditions).unwrap();
     let system = System::new(body, &stencils, conditions, method, &[], None).unwrap();
     let trial = system.evaluate(u, TangentKind::Consistent).unwrap();
     (stencils, trial)

@@ -404,7 +404,7 @@ fn a_node_is_tied_to_one_with_the_same_constraints() {
     conditions.constraints.fix_wall(&grid, 0, false, 0).unwrap();
     conditions.constraints.fix_wall(&grid, 1, false, 1).unwrap();
     let master_of = |conditions: &StepConditions<2>, cut: usize| {
-        let stencils = Stencils::build(&body, &method, &conditions).unwrap();
+        let stencils = Stencils::build(&body, &method, conditions).unwrap();
         let system = System::new(&body, &stencils, conditions, &method, &[], None).unwrap();
         assert!(!system.unknowns().is_active(cut));
         moves_with(&system, grid.node_count())[cut]
