@@ -105,8 +105,8 @@ impl<const D: usize> CellSoil<D> {
         self.is_sliver = volume.iter().enumerate().map(sliver).collect();
     }
 
-    /// Replaces `out` with the supports of a particle of law number `law`, nodes ascending. On a given
-    /// geometry slivers are cut off, unless there is nothing else.
+    /// Replaces `out` with the supports of a particle of law number `law` (theory, eq. 8b), nodes
+    /// ascending. On a given geometry slivers are cut off, unless there is nothing else.
     pub(crate) fn supports(
         &self,
         grid: &Grid<D>,
