@@ -281,7 +281,7 @@ impl Slope {
             "igimp = 1\n\n\
              [case]\ntitle = \"Random slope {}\"\nanalysis = \"plane-strain\"\n\
              gravity = \"9.81 m/s2\"\n\n\
-             [grid]\ncell = \"{h} m\"\n\
+             [grid]\nlocking = \"b-bar\"\ncell = \"{h} m\"\n\
              domain = {{ x = [\"0 m\", \"{right} m\"], y = [\"0 m\", \"{} m\"] }}\n\n\
              [materials.soil]\n{}\n\
              [[bodies]]\nname = \"slope\"\nmaterial = \"soil\"\npoints_per_cell = {}\n\
@@ -338,12 +338,12 @@ impl Slope {
             Drive::Reduction => format!(
                 "[[stages]]\nname = \"weight\"\ntype = \"gravity\"\nsteps = 8\n\
                  reset_displacements = true\n\n\
-                 [[stages]]\nname = \"reduction\"\ntype = \"strength-reduction\"\n\
+                 [[stages]]\nname = \"reduction\"\ntype = \"strength-reduction\"\ngeometry = \"moving\"\n\
                  materials = [\"soil\"]\nbracket = [1.0, 2.0]\ntolerance = 0.05\nsteps = 8\n\
                  failure = {{ when = \"no-equilibrium\", also = {{ displacement = \"{far} m\" }} }}\n"
             ),
             Drive::WeakerSoil => format!(
-                "[[stages]]\nname = \"reduction\"\ntype = \"strength-reduction\"\n\
+                "[[stages]]\nname = \"reduction\"\ntype = \"strength-reduction\"\ngeometry = \"moving\"\n\
                  path = \"gravity\"\nmaterials = [\"soil\"]\nbracket = [1.0, 2.0]\n\
                  tolerance = 0.05\nsteps = 6\n\
                  failure = {{ when = \"no-equilibrium\", also = {{ displacement = \"{} m\" }} }}\n",
