@@ -112,6 +112,26 @@ fn a_run_killed_at_any_moment_ends_with_the_same_files() {
 }
 
 #[test]
+fn a_run_killed_after_the_step_that_ends_its_stage_does_not_take_another() {
+    let folder = Folder::new("killed-at-rest");
+    let every_step = ["--set", "output.checkpoint.every=1"];
+    let (code, said) = folder.end("run", &every_step);
+    assert_eq!(code, Some(0), "{said}");
+    let expected = folder.everything("run");
+    let checkpoints = folder.0.join("run/checkpoint");
+    fs::remove_dir_all(checkpoints.join("stage-03-end")).unwrap();
+    let left = fs::read_dir(&checkpoints).unwrap().flatten();
+    let steps = left.filter(|entry| entry.file_name().to_string_lossy().starts_with("step-"));
+    assert!(steps.count() > 0, "the step at which the slope rests");
+    let (code, said) = folder.end("run", &[&every_step[..], &["--resume"]].concat());
+    assert_eq!(code, Some(0), "{said}");
+    assert_eq!(
+        differing(&expected, &folder.everything("run")),
+        Vec::<PathBuf>::new()
+    );
+}
+
+#[test]
 fn threads_do_not_change_a_byte() {
     let folder = Folder::new("threads");
     let run = |threads: &str| {

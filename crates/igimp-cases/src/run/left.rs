@@ -21,6 +21,8 @@ pub(crate) struct Resumption {
     pub(crate) resistance: f64,
     /// Drag of the next step \[1/s²\].
     pub(crate) drag: f64,
+    /// Why the march ended with its last step, if its stage said so.
+    pub(crate) end: Option<String>,
 }
 
 /// Where a search for the factor of safety was left.

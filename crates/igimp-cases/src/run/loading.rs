@@ -1,8 +1,6 @@
 //! Stages that move the controls from where they are to where the case wants them: gravity, loads,
 //! settlement, level ground.
 
-use igimp_solver::Standing;
-
 use super::left::Resumption;
 use super::records::Moment;
 use super::session::{Ended, Path, Session, Taken, march_path};
@@ -40,7 +38,6 @@ pub(crate) fn load(
     let stage = &model.case.stages[number];
     let from = resumption.map_or_else(|| state.controls.clone(), |left| left.from.clone());
     let to = target(stage, &from);
-    let settings = model.march_settings(stage.steps);
     let mut resistance = resumption.map_or(0.0, |left| left.resistance);
     if resumption.is_none() {
         begin(session, state, number)?;
@@ -50,8 +47,8 @@ pub(crate) fn load(
         to: &to,
         drag: &|_, _| 0.0,
         method: model.method(stage.geometry),
-        standing: resumption.map_or_else(|| Standing::start(&settings), |left| left.standing),
-        settings,
+        settings: model.march_settings(stage.steps),
+        left: resumption,
     };
     march_path(
         session,
@@ -60,19 +57,20 @@ pub(crate) fn load(
         summary,
         &mut |session, summary, taken| {
             session.record(&taken.moment(number, summary.steps))?;
-            let stop = reason_to_stop(session, stage, resistance, taken);
+            let end = reason_to_stop(session, stage, resistance, taken);
             resistance = taken.resistance;
             let resumption = Resumption {
                 from: from.clone(),
                 standing: *taken.accepted.standing,
                 resistance,
                 drag: 0.0,
+                end,
             };
             if let Some(output) = &mut session.output {
                 let run = &session.summary;
                 output.after_step(number, model, summary, taken, &resumption, run)?;
             }
-            Ok(stop)
+            Ok(resumption.end)
         },
     )
 }

@@ -11,8 +11,6 @@
 use igimp_assembly::{Geometry, Locking, Method};
 use std::cell::Cell;
 
-use igimp_solver::Standing;
-
 use super::left::Resumption;
 use super::loading::begin;
 use super::model::Model;
@@ -57,7 +55,6 @@ pub(crate) fn run_out(
         begin(session, state, number)?;
     }
     let steps = case.stages[number].steps;
-    let settings = model.march_settings(steps);
     let [width, height] = case.grid.smallest_cell();
     let target = run_out.move_per_step * width.min(height);
     // The whole weight would move the body by the target.
@@ -68,8 +65,8 @@ pub(crate) fn run_out(
         to: &to,
         drag: &|from, to| drag.get() / ((to - from) * steps as f64),
         method: flowing(session.model),
-        standing: resumption.map_or_else(|| Standing::start(&settings), |left| left.standing),
-        settings,
+        settings: session.model.march_settings(steps),
+        left: resumption,
     };
     let ended = march_path(
         session,
@@ -87,18 +84,19 @@ pub(crate) fn run_out(
                 .fold(0.0, f64::max);
             let change = (moved / target).clamp(CHANGE[0], CHANGE[1]);
             drag.set((drag.get() * change).clamp(1e-9 * largest, largest));
+            let share = taken.accepted.report.drag_share;
             let resumption = Resumption {
                 from: to.clone(),
                 standing: *taken.accepted.standing,
                 resistance: taken.resistance,
                 drag: drag.get(),
+                end: (share < run_out.at_rest).then(|| at_rest(summary.steps, share)),
             };
             if let Some(output) = &mut session.output {
                 let run = &session.summary;
                 output.after_step(number, model, summary, taken, &resumption, run)?;
             }
-            let share = taken.accepted.report.drag_share;
-            Ok((share < run_out.at_rest).then(|| at_rest(summary.steps, share)))
+            Ok(resumption.end)
         },
     )?;
     match ended {
@@ -137,12 +135,11 @@ fn stand(
     summary: &mut StageSummary,
     rest: &str,
 ) -> Result<Ended, CaseError> {
-    let settings = session.model.march_settings(1);
     let last = Path {
         drag: &|_, _| 0.0,
         method: flowing(session.model),
-        standing: Standing::start(&settings),
-        settings,
+        settings: session.model.march_settings(1),
+        left: None,
         ..*path
     };
     Ok(

@@ -2,7 +2,7 @@
 //! (theory, eqs. 31 to 34).
 
 use igimp_assembly::Geometry;
-use igimp_solver::{MarchSettings, Standing, StepError};
+use igimp_solver::{MarchSettings, StepError};
 
 use super::Event;
 use super::left::Search;
@@ -183,8 +183,8 @@ impl<'a> Trials<'a> {
             to: &to,
             drag: &|_, _| 0.0,
             method: session.model.method(self.stage.geometry),
-            standing: Standing::start(&settings),
             settings,
+            left: None,
         };
         let before = [summary.steps, summary.iterations, summary.cuts];
         let reduction = self.reduction;

@@ -11,6 +11,7 @@ use igimp_solver::{
 };
 
 use super::export::Export;
+use super::left::Resumption;
 use super::model::Model;
 use super::output::Output;
 use super::records::{Moment, Records, largest_displacement};
@@ -165,8 +166,8 @@ pub(crate) struct Path<'a> {
     pub(crate) method: Method,
     /// Sizes of steps.
     pub(crate) settings: MarchSettings,
-    /// Where the march begins.
-    pub(crate) standing: Standing,
+    /// Where an earlier run left the march.
+    pub(crate) left: Option<&'a Resumption>,
 }
 
 /// An accepted step as a stage sees it.
@@ -233,17 +234,27 @@ pub(crate) fn march_path(
         };
         model.conditions_on(grid, (&before, &after), (path.drag)(from, to))
     };
+    let mut standing = Standing::start(&path.settings);
+    if let Some(left) = path.left {
+        standing = left.standing;
+        session.last_resistance = left.resistance;
+    }
+    if let Some(end) = path.left.and_then(|left| left.end.clone()) {
+        state.controls = path.from.towards(path.to, standing.at);
+        stage.reached = standing.at;
+        return Ok(Ended::Stopped(end));
+    }
     let mut workspace = session.workspace();
     let mut watch = Watch {
         session,
         stage,
         path,
         each,
-        reached: path.standing.at,
+        reached: standing.at,
         stopped: Ok(None),
     };
     let report = march_from(
-        path.standing,
+        standing,
         &mut state.body,
         &path.method,
         &program,
