@@ -6,9 +6,8 @@ use std::ops::ControlFlow;
 use igimp_assembly::{AssemblyError, Method, StepConditions};
 
 use crate::body::Body;
-use crate::newton::{
-    NewtonSettings, NodalForces, PhaseTimes, StepError, StepFailure, StepReport, Workspace, step,
-};
+use crate::newton::{NewtonSettings, Workspace, step};
+use crate::report::{NodalForces, PhaseTimes, StepError, StepFailure, StepReport};
 
 /// Successes in a row after which a cut step grows again.
 const SUCCESSES_TO_GROW: usize = 2;
