@@ -70,15 +70,15 @@ fn corner(poisson: f64, method: &Method, cells: usize) -> Result<(Run, f64), Cas
         ..method.clone()
     };
     let program = |_from: f64, to: f64| {
-        Ok(StepConditions {
-            grid: grid.clone(),
-            constraints: constraints.clone(),
-            loads: StepLoads {
+        StepConditions::new(
+            grid.clone(),
+            constraints.clone(),
+            StepLoads {
                 factors: vec![to * SHARE],
                 ..StepLoads::gravity([0.0; 2])
             },
-            laws: vec![Arc::clone(&law)],
-        })
+            vec![Arc::clone(&law)],
+        )
     };
     let mut rise = f64::NAN;
     let mut observe = |accepted: &Accepted<'_, 2>| {

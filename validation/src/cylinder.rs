@@ -99,12 +99,12 @@ impl Expansion {
             self.exact.strength,
         )?);
         let program = |from: f64, to: f64| {
-            Ok(StepConditions {
-                constraints: self.driven(&grid, self.radius(from), self.radius(to))?,
-                grid: grid.clone(),
-                loads: StepLoads::gravity([0.0; 2]),
-                laws: vec![Arc::clone(&law)],
-            })
+            StepConditions::new(
+                grid.clone(),
+                self.driven(&grid, self.radius(from), self.radius(to))?,
+                StepLoads::gravity([0.0; 2]),
+                vec![Arc::clone(&law)],
+            )
         };
         let header = ["inner_radius_[-]", "pressure_[s_u]", "exact_[s_u]"];
         let body_name = if self.to > 2.0 { "cavity" } else { "thick" };

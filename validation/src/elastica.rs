@@ -89,15 +89,15 @@ impl Bending {
         constraints.fix_wall(&grid, 0, false, 0)?;
         constraints.fix_wall(&grid, 0, false, 1)?;
         let program = |_from: f64, to: f64| {
-            Ok(StepConditions {
-                grid: grid.clone(),
-                constraints: constraints.clone(),
-                loads: StepLoads {
+            StepConditions::new(
+                grid.clone(),
+                constraints.clone(),
+                StepLoads {
                     factors: vec![to],
                     ..StepLoads::gravity([0.0; 2])
                 },
-                laws: vec![Arc::clone(&law)],
-            })
+                vec![Arc::clone(&law)],
+            )
         };
         let mut curve = Vec::new();
         let mut observe = |accepted: &Accepted<'_, 2>| {

@@ -68,12 +68,12 @@ fn pull(cells: usize, method: &Method) -> Result<(Run, Table), CaseError> {
                 constraints.prescribe(node, 1, (to - from) * PULL)?;
             }
         }
-        Ok(StepConditions {
-            grid: grid.clone(),
+        StepConditions::new(
+            grid.clone(),
             constraints,
-            loads: StepLoads::gravity([0.0; 2]),
-            laws: vec![Arc::clone(&law)],
-        })
+            StepLoads::gravity([0.0; 2]),
+            vec![Arc::clone(&law)],
+        )
     };
     let mut curve = Table::new(
         format!("net_stress_{cells}.5"),

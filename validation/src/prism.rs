@@ -55,12 +55,12 @@ fn press(cells: usize, method: &Method) -> Result<(Run, Table), CaseError> {
             let node = grid.node_index([column, cells]);
             constraints.prescribe(node, 1, height(to) - height(from))?;
         }
-        Ok(StepConditions {
+        StepConditions::new(
             grid,
             constraints,
-            loads: StepLoads::gravity([0.0; 2]),
-            laws: vec![Arc::clone(&law)],
-        })
+            StepLoads::gravity([0.0; 2]),
+            vec![Arc::clone(&law)],
+        )
     };
     let mut curve = Table::new("force", &["height_[-]", "force_[s_u]", "exact_[s_u]"]);
     let mut observe = |accepted: &Accepted<'_, 2>| {

@@ -138,12 +138,12 @@ impl Layer {
         let program = |_: f64, to: f64| {
             let weight = UNIT_WEIGHT * (to / LEVEL_SHARE).min(1.0);
             let (sin, cos) = tilt(to).sin_cos();
-            Ok(StepConditions {
-                grid: grid.clone(),
-                constraints: supports.clone(),
-                loads: StepLoads::gravity([weight * sin, -weight * cos]),
-                laws: vec![law.clone()],
-            })
+            StepConditions::new(
+                grid.clone(),
+                supports.clone(),
+                StepLoads::gravity([weight * sin, -weight * cos]),
+                vec![law.clone()],
+            )
         };
         let middle = 2 * columns * (2 * rows - 1) + columns;
         // Displacement in the middle and tilt before the last step and after it.

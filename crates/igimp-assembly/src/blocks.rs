@@ -3,7 +3,6 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
-use std::sync::Arc;
 
 use igimp_shape::{Grid, Support};
 
@@ -52,14 +51,13 @@ struct NodePlace {
 
 impl<const D: usize> BlockTable<D> {
     /// Finds the coupled nodes, and with them the sparsity pattern. `extra` lists further coupled
-    /// pairs of nodes, both ways. A `previous` pattern is shared again when it still holds.
+    /// pairs of nodes, both ways.
     pub(crate) fn build(
         grid: &Grid<D>,
         stencils: &Stencils<D>,
         unknowns: &Unknowns<D>,
         extra: &[(usize, usize)],
-        previous: Option<&Arc<Pattern>>,
-    ) -> (Self, Arc<Pattern>) {
+    ) -> (Self, Pattern) {
         let apart = |&(a, b): &(usize, usize)| {
             let places = std::iter::zip(grid.node_place(a), grid.node_place(b));
             places.map(|(a, b)| a.abs_diff(b)).max().unwrap_or(0)
@@ -106,10 +104,7 @@ impl<const D: usize> BlockTable<D> {
         let wide = table.mark(grid, stencils, extra);
         let (starts, coupled) = table.number(grid, unknowns, near, &wide);
         let pattern = Pattern::new(blocks, starts, coupled, reach);
-        match previous {
-            Some(previous) if **previous == pattern => (table, Arc::clone(previous)),
-            _ => (table, Arc::new(pattern)),
-        }
+        (table, pattern)
     }
 
     /// Marks the coupled pairs. Particles that touch the same box of nodes couple the same pairs:

@@ -25,6 +25,7 @@ mod residual;
 mod small;
 mod small_cuts;
 mod stencils;
+mod step_conditions;
 mod strips;
 mod supports;
 mod sweep;
@@ -40,6 +41,7 @@ pub use method::{DomainUpdate, Geometry, Kinematics, Locking, Method, Remedy, Sm
 pub use particles::{ParticleFields, ParticleSeed, Particles};
 pub use residual::OutOfBalance;
 pub use stencils::{Stencils, Transpose};
+pub use step_conditions::StepConditions;
 pub use sweep::Trial;
-pub use system::{SharedLaw, StepConditions, System};
+pub use system::{SharedLaw, System};
 pub use unknowns::Unknowns;

@@ -10,9 +10,10 @@ use crate::error::AssemblyError;
 use crate::method::{Method, Remedy};
 use crate::particles::Particles;
 use crate::small_cuts::{cell_volume, masters_of_cuts};
+use crate::step_conditions::StepConditions;
 use crate::strips::{Strips, split};
 use crate::supports::{Supports, bounds};
-use crate::system::{SharedLaw, StepConditions};
+use crate::system::SharedLaw;
 
 /// Basis values S, gradients ∇S and cell-averaged centre gradients ∇S̄ of all particles.
 ///

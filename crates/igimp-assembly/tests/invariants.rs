@@ -8,8 +8,8 @@ mod common;
 
 use common::{Random, displacements, laws, methods};
 use igimp_assembly::{
-    Constraints, Kinematics, LoadPoint, Method, ParticleSeed, Particles, Stencils, StepConditions,
-    StepLoads, System, Trial,
+    Constraints, Kinematics, Method, ParticleSeed, Particles, Stencils, StepConditions, StepLoads,
+    System, Trial,
 };
 use igimp_material::TangentKind;
 use igimp_shape::{Axis, Grid};
@@ -102,16 +102,17 @@ impl<const D: usize> State<D> {
             method.small_cuts.below = 0.0;
         }
         let mut random = Random(motion);
-        let conditions = StepConditions {
-            grid: grid.clone(),
-            constraints: Constraints::free(&grid),
-            loads: StepLoads {
+        let conditions = StepConditions::new(
+            grid.clone(),
+            Constraints::free(&grid),
+            StepLoads {
                 gravity: std::array::from_fn(|axis| 1.0 + axis as f64),
                 factors: Vec::new(),
                 drag: 0.0,
             },
-            laws: laws().into_iter().map(|(_, law)| law).collect(),
-        };
+            laws().into_iter().map(|(_, law)| law).collect(),
+        )
+        .unwrap();
         let mut body = Particles::new(&seeds).unwrap();
         let first = displacements(&grid, LARGEST_STEP, &mut random);
         let (stencils, trial) = evaluate(&conditions, &body, &method, &first);
@@ -171,7 +172,7 @@ fn evaluate<const D: usize>(
     u: &[[f64; D]],
 ) -> (Stencils<D>, Trial<D>) {
     let stencils = Stencils::build(body, method, conditions).unwrap();
-    let system = System::new(body, &stencils, conditions, method, &[], None).unwrap();
+    let system = System::new(body, &stencils, conditions, method).unwrap();
     let trial = system.evaluate(u, TangentKind::Consistent).unwrap();
     (stencils, trial)
 }
@@ -275,14 +276,11 @@ fn node_volumes_sum<const D: usize>(sample: Sample<D>) -> Result<(), TestCaseErr
 /// m_i = Σ_p S_i m_p, which are what gravity pulls at; and displacement counts what x gained.
 fn commit_moves_the_centre_of_mass<const D: usize>(sample: Sample<D>) -> Result<(), TestCaseError> {
     let state = State::of(sample, true);
-    let no_points: [LoadPoint<D>; 0] = [];
     let system = System::new(
         &state.before,
         &state.stencils,
         &state.conditions,
         &state.method,
-        &no_points,
-        None,
     )
     .unwrap();
     let mut after = state.before.clone();

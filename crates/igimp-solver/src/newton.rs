@@ -157,14 +157,9 @@ fn equilibrium<const D: usize>(
     let grid = &conditions.grid;
     let clock = Instant::now();
     let stencils = Stencils::build(&body.particles, method, conditions)?;
-    let system = System::new(
-        &body.particles,
-        &stencils,
-        conditions,
-        method,
-        &body.load_points,
-        workspace.pattern(),
-    )?;
+    let system = System::new(&body.particles, &stencils, conditions, method)?
+        .with_load_points(&body.load_points)?
+        .sharing(workspace.pattern());
     let set_up = clock.elapsed();
     let of_step = (&system, &stencils);
     let mut corrector = Corrector::new(of_step, grid, settings, workspace, history, set_up);

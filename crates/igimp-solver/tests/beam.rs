@@ -46,15 +46,15 @@ fn bent(cells: usize, points: usize, steps: usize, method: &Method) -> (Body<2>,
     constraints.fix_wall(&grid, 0, false, 0).unwrap();
     constraints.fix_wall(&grid, 0, false, 1).unwrap();
     let program = |_: f64, to: f64| {
-        Ok(StepConditions {
-            grid: grid.clone(),
-            constraints: constraints.clone(),
-            loads: StepLoads {
+        StepConditions::new(
+            grid.clone(),
+            constraints.clone(),
+            StepLoads {
                 factors: vec![to],
                 ..StepLoads::gravity([0.0; 2])
             },
-            laws: vec![Arc::clone(&law)],
-        })
+            vec![Arc::clone(&law)],
+        )
     };
     let report = march(
         &mut body,

@@ -104,12 +104,12 @@ pub(super) fn turn(method: &Method, angle: f64, steps: usize) -> Result<Turned, 
             constraints.prescribe(node, 0, u[0])?;
             constraints.prescribe(node, 1, u[1])?;
         }
-        Ok(StepConditions {
-            grid: grid.clone(),
+        StepConditions::new(
+            grid.clone(),
             constraints,
-            loads: StepLoads::gravity([0.0; 2]),
-            laws: laws.clone(),
-        })
+            StepLoads::gravity([0.0; 2]),
+            laws.clone(),
+        )
     };
     let (report, elapsed) = marched(&mut body, method, steps, program, |_| {});
     let particles = &body.particles;
@@ -167,12 +167,12 @@ pub(super) fn settle(method: &Method, offset: f64, beside: Beside) -> Result<Set
         let mut constraints = Constraints::free(&grid);
         constraints.fix_wall(&grid, 0, false, 0)?;
         constraints.fix_wall(&grid, 1, false, 1)?;
-        Ok(StepConditions {
-            grid: grid.clone(),
+        StepConditions::new(
+            grid.clone(),
             constraints,
-            loads: StepLoads::gravity([0.0, -to]),
-            laws: laws.clone(),
-        })
+            StepLoads::gravity([0.0, -to]),
+            laws.clone(),
+        )
     };
     let condition = condition(&body, method, &program(0.0, 1.0)?)?;
     let mut ratio = f64::NAN;
@@ -218,12 +218,12 @@ pub(super) fn let_down(
         for node in (0..grid.node_count()).filter(|&node| base(node)) {
             constraints.prescribe(node, 1, 0.25 * (from - to))?;
         }
-        Ok(StepConditions {
-            grid: grid.clone(),
+        StepConditions::new(
+            grid.clone(),
             constraints,
-            loads: StepLoads::gravity([0.0, -1.0]),
-            laws: laws.clone(),
-        })
+            StepLoads::gravity([0.0, -1.0]),
+            laws.clone(),
+        )
     };
     let mut force = f64::NAN;
     let (report, elapsed) = marched(&mut body, method, 5, program, |accepted| {
@@ -279,7 +279,7 @@ fn condition(
     conditions: &StepConditions<2>,
 ) -> Result<f64, CaseError> {
     let stencils = Stencils::build(&body.particles, method, conditions)?;
-    let system = System::new(&body.particles, &stencils, conditions, method, &[], None)?;
+    let system = System::new(&body.particles, &stencils, conditions, method)?;
     let still = vec![[0.0; 2]; conditions.grid.node_count()];
     let (_, matrix) = system.linearise(&still, TangentKind::Elastic)?;
     let n = matrix.pattern.unknowns();

@@ -175,12 +175,12 @@ pub(super) fn patch(
                 }
             }
         }
-        Ok(StepConditions {
-            grid: grid.clone(),
+        StepConditions::new(
+            grid.clone(),
             constraints,
-            loads: StepLoads::gravity([0.0; 2]),
-            laws: laws.clone(),
-        })
+            StepLoads::gravity([0.0; 2]),
+            laws.clone(),
+        )
     };
     let method = Method {
         kinematics: Kinematics::SmallStrain,

@@ -148,16 +148,16 @@ fn solve<const D: usize>(
     let program = |_from: f64, to: f64| {
         let now = field.scaled(to);
         let forces: Vec<[f64; D]> = x0.iter().map(|x| now.body_force(x, moduli)).collect();
-        Ok(StepConditions {
-            grid: grid.clone(),
-            constraints: constraints.clone(),
-            loads: StepLoads {
+        StepConditions::new(
+            grid.clone(),
+            constraints.clone(),
+            StepLoads {
                 gravity: [0.0; D],
                 factors: forces.into_flattened(),
                 drag: 0.0,
             },
-            laws: vec![Arc::clone(&law)],
-        })
+            vec![Arc::clone(&law)],
+        )
     };
     let label = method.label();
     let variant = format!(

@@ -143,14 +143,15 @@ pub fn conditions<const D: usize>(grid: &Grid<D>, law: &SharedLaw) -> StepCondit
     }
     let mut gravity = [0.0; D];
     gravity[D - 1] = -1.0;
-    StepConditions {
-        grid: grid.clone(),
+    StepConditions::new(
+        grid.clone(),
         constraints,
-        loads: StepLoads {
+        StepLoads {
             gravity,
             factors: Vec::new(),
             drag: 0.0,
         },
-        laws: vec![law.clone()],
-    }
+        vec![law.clone()],
+    )
+    .unwrap()
 }
