@@ -1,11 +1,17 @@
 //! What holds during one step, besides the particles.
 
+use std::sync::Arc;
+
+use igimp_material::ConstitutiveModel;
 use igimp_shape::Grid;
 
 use crate::constraints::Constraints;
 use crate::error::AssemblyError;
 use crate::loads::StepLoads;
-use crate::system::SharedLaw;
+use crate::particles::Particles;
+
+/// A constitutive law that several bodies and threads share.
+pub type SharedLaw = Arc<dyn ConstitutiveModel>;
 
 /// What holds during one step, besides the particles.
 #[derive(Clone, Debug)]
@@ -43,9 +49,24 @@ impl<const D: usize> StepConditions<D> {
         Ok(conditions)
     }
 
-    /// Looks whether they agree: a field may have been changed since they were made.
-    pub(crate) fn agree(&self) -> Result<(), AssemblyError> {
+    /// Refuses conditions that do not agree.
+    fn agree(&self) -> Result<(), AssemblyError> {
         self.constraints.belong_to(&self.grid)?;
         self.loads.are_finite()
+    }
+
+    /// Refuses conditions that do not agree, for a field may have been changed since they were made,
+    /// and particles whose law is not among them.
+    pub(crate) fn serve(&self, particles: &Particles<D>) -> Result<(), AssemblyError> {
+        self.agree()?;
+        let laws = self.laws.len();
+        match particles.law.iter().position(|&law| law >= laws) {
+            Some(particle) => Err(AssemblyError::UnknownLaw {
+                particle,
+                law: particles.law[particle],
+                laws,
+            }),
+            None => Ok(()),
+        }
     }
 }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use igimp_material::{ConstitutiveModel, MaterialError, TangentKind};
+use igimp_material::{MaterialError, TangentKind};
 
 use crate::blocks::BlockTable;
 use crate::error::AssemblyError;
@@ -16,11 +16,8 @@ use crate::particles::Particles;
 use crate::residual::{OutOfBalance, force_of_round_off};
 use crate::stencils::Stencils;
 use crate::step_conditions::StepConditions;
-use crate::sweep::Trial;
+use crate::trial::Trial;
 use crate::unknowns::Unknowns;
-
-/// A constitutive law that several bodies and threads share.
-pub type SharedLaw = Arc<dyn ConstitutiveModel>;
 
 /// One step's system of equations. Borrows the state at the step's start and never changes it.
 #[derive(Debug)]
@@ -48,14 +45,15 @@ impl<'a, const D: usize> System<'a, D> {
     ///
     /// # Errors
     /// [`AssemblyError::NoUnknowns`], [`AssemblyError::OtherGrid`] for constraints that were made for
-    /// another grid, or [`AssemblyError::NonFinite`] for loads and a ghost penalty that are not finite.
+    /// another grid, [`AssemblyError::UnknownLaw`] of a particle whose law is not there, or
+    /// [`AssemblyError::NonFinite`] for loads and a ghost penalty that are not finite.
     pub fn new(
         particles: &'a Particles<D>,
         stencils: &'a Stencils<D>,
         conditions: &'a StepConditions<D>,
         method: &'a Method,
     ) -> Result<Self, AssemblyError> {
-        conditions.agree()?;
+        conditions.serve(particles)?;
         let mut used = vec![false; conditions.laws.len()];
         for &law in &particles.law {
             used[law] = true;
@@ -184,7 +182,7 @@ impl<'a, const D: usize> System<'a, D> {
         kind: TangentKind,
         trial: &mut Trial<D>,
     ) -> Result<(), AssemblyError> {
-        self.sweep(u, kind, trial, None)?;
+        self.pass(u, kind, trial, None)?;
         self.add_couplings(u, trial);
         Ok(())
     }
@@ -209,7 +207,7 @@ impl<'a, const D: usize> System<'a, D> {
             "the matrix belongs to this step"
         );
         matrix.symmetric = self.symmetric;
-        self.sweep(u, kind, trial, Some(&mut matrix.values))?;
+        self.pass(u, kind, trial, Some(&mut matrix.values))?;
         self.add_couplings(u, trial);
         for entry in &self.couplings {
             for axis in 0..D {

@@ -16,7 +16,8 @@ mod residual_history;
 
 pub use body::Body;
 pub use march::{
-    Accepted, MarchReport, MarchSettings, Observer, Outcome, Program, Standing, march, march_from,
+    Accepted, LoadPath, MarchReport, MarchSettings, MarchState, Observer, Outcome, march,
+    march_from,
 };
 pub use newton::{NewtonSettings, Workspace, step};
 pub use report::{NodalForces, PhaseTimes, StepError, StepFailure, StepReport};

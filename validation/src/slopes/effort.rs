@@ -11,7 +11,7 @@ use igimp_cases::table::Table;
 use super::section::Variant;
 use super::{Found, Slopes};
 use crate::oracle::{Oracle, OracleKind};
-use crate::study::{Run, Study};
+use crate::study::{RunRecord, Study};
 
 /// Shared strain must not make Newton's method worse.
 const AS_BBAR: Oracle = Oracle {
@@ -73,7 +73,7 @@ pub(super) fn report(study: &mut Study, slopes: &Slopes) -> Result<(), CaseError
             b.cuts,
             fails[1],
         );
-        let of = |run: &Run, fails| [run.steps, run.iterations, run.cuts, fails];
+        let of = |run: &RunRecord, fails| [run.steps, run.iterations, run.cuts, fails];
         let counts = [of(&a, fails[0]), of(&b, fails[1])];
         let mut row = vec![place as f64 + 1.0, f64::from(cells)];
         row.extend(counts.as_flattened().iter().map(|&count| count as f64));
@@ -81,7 +81,8 @@ pub(super) fn report(study: &mut Study, slopes: &Slopes) -> Result<(), CaseError
         shared.push(a);
         bbar.push(b);
     }
-    let sum = |name: &str, runs: &[Run]| Run::sum(name, &runs.iter().collect::<Vec<_>>());
+    let sum =
+        |name: &str, runs: &[RunRecord]| RunRecord::sum(name, &runs.iter().collect::<Vec<_>>());
     let (a, b) = (sum("shared strain, all slopes", &shared), sum("", &bbar));
     let _ = writeln!(
         note,
@@ -90,7 +91,7 @@ pub(super) fn report(study: &mut Study, slopes: &Slopes) -> Result<(), CaseError
     );
     // A search by gravity fails as often as its bracket has it, and a trial that fails is cut until it
     // cannot be cut further: the sums tell of the bracket too.
-    let in_a_step = |run: &Run| run.iterations as f64 / run.steps as f64;
+    let in_a_step = |run: &RunRecord| run.iterations as f64 / run.steps as f64;
     let corrections = in_a_step(&a) / in_a_step(&b);
     let run = study.run(a);
     study.check(
