@@ -21,7 +21,7 @@ use rayon::prelude::*;
 use crate::exact::cylinder::ThickCylinder;
 use crate::laboratory::{grid_of, run};
 use crate::oracle::{Oracle, OracleKind};
-use crate::study::{Level, Run, Study};
+use crate::study::{Level, RunRecord, Study};
 
 /// What the book says of the study.
 const ABOUT: &str = "A thick cylinder of nearly incompressible elastic-plastic soil is expanded from within by half its radius, and a cavity in soil without end to four times its radius. The pressure is held against the exact curve at finite strain; without B-bar it locks.";
@@ -85,7 +85,7 @@ impl Expansion {
     }
 
     /// Runs it; the table has radius, pressure and exact pressure.
-    fn run(&self) -> Result<(Run, Table), CaseError> {
+    fn run(&self) -> Result<(RunRecord, Table), CaseError> {
         let cell = self.exact.inner / self.cells as f64;
         let reach = self.exact.outer_at(self.radius(1.0)) + cell;
         let grid = grid_of(cell, [(reach / cell).ceil() as usize; 2])?;
@@ -98,13 +98,13 @@ impl Expansion {
             elasticity,
             self.exact.strength,
         )?);
-        let program = |from: f64, to: f64| {
-            Ok(StepConditions {
-                constraints: self.driven(&grid, self.radius(from), self.radius(to))?,
-                grid: grid.clone(),
-                loads: StepLoads::gravity([0.0; 2]),
-                laws: vec![Arc::clone(&law)],
-            })
+        let load_path = |from: f64, to: f64| {
+            StepConditions::new(
+                grid.clone(),
+                self.driven(&grid, self.radius(from), self.radius(to))?,
+                StepLoads::gravity([0.0; 2]),
+                vec![Arc::clone(&law)],
+            )
         };
         let header = ["inner_radius_[-]", "pressure_[s_u]", "exact_[s_u]"];
         let body_name = if self.to > 2.0 { "cavity" } else { "thick" };
@@ -132,7 +132,7 @@ impl Expansion {
             &mut body,
             &self.method,
             &settings,
-            &program,
+            &load_path,
             &mut observe,
         );
         Ok((run, curve))
@@ -244,7 +244,7 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
 fn thick_cylinder(
     study: &mut Study,
     job: &Expansion,
-    run: Run,
+    run: RunRecord,
     curve: Table,
 ) -> Result<Series, CaseError> {
     let run = study.run_to_end(run);
@@ -281,7 +281,7 @@ fn thick_cylinder(
 }
 
 /// The control: without B-bar the pressure is far too high wherever the run gets to.
-fn locked(study: &mut Study, run: Run, curve: &Table) -> Series {
+fn locked(study: &mut Study, run: RunRecord, curve: &Table) -> Series {
     let run = study.run(run);
     let highest = curve
         .rows
@@ -301,7 +301,12 @@ fn locked(study: &mut Study, run: Run, curve: &Table) -> Series {
 
 /// Checks the cavity. What soil without end adds beyond the model is known exactly: the motion does
 /// not depend on it.
-fn cavity(study: &mut Study, job: &Expansion, run: Run, curve: &Table) -> Result<(), CaseError> {
+fn cavity(
+    study: &mut Study,
+    job: &Expansion,
+    run: RunRecord,
+    curve: &Table,
+) -> Result<(), CaseError> {
     let run = study.run_to_end(run);
     for a in [2.0, 3.0, 4.0] {
         let beyond = job.exact.beyond(a);

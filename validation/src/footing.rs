@@ -17,7 +17,7 @@ use crate::oracle::{Oracle, OracleKind};
 use crate::pictures::{contours, scaled};
 use crate::reference::{footing_sequential_limit_analysis, interpolate};
 use crate::runs::{Computed, mesh, method, shipped_case};
-use crate::study::{Level, Run, Study};
+use crate::study::{Level, RunRecord, Study};
 
 /// What the book says of the study.
 const ABOUT: &str = "A rigid strip footing in undrained soil, pushed one width deep: resistance against penetration.";
@@ -212,7 +212,11 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
         .collect::<Result<Vec<_>, _>>()?;
     let sequential = footing_sequential_limit_analysis().points("w_over_B", "N");
     for (push, result) in pushes.iter().zip(&results) {
-        let run = study.run_to_end(Run::new(push.label.clone(), &result.report, result.elapsed));
+        let run = study.run_to_end(RunRecord::new(
+            push.label.clone(),
+            &result.report,
+            result.elapsed,
+        ));
         check(&mut study, push, run, result, &sequential);
         if !push.is_small() {
             study.newton(push.name, run)?;

@@ -60,7 +60,7 @@ const INPUT_OUTPUT: u8 = 4;
 #[derive(Debug, Parser)]
 #[command(name = "validate", version)]
 struct Arguments {
-    /// Run only these cases (may be repeated).
+    /// RunRecord only these cases (may be repeated).
     #[arg(long, value_enum, value_name = "CASE")]
     case: Vec<Case>,
     /// Coarse meshes and short runs: under a minute.

@@ -14,7 +14,7 @@ const EXIT_CODES: &str = "Exit codes: 0 done, references met; 1 a reference miss
 /// `igimp check slope.toml`, and run it with `igimp run slope.toml`.
 #[derive(Debug, Parser)]
 #[command(name = "igimp", version, after_help = EXIT_CODES)]
-pub(crate) struct Program {
+pub(crate) struct CommandLine {
     #[command(subcommand)]
     pub(crate) command: Command,
 }
@@ -28,11 +28,11 @@ pub(crate) enum Command {
     /// Print a case file completed with every default.
     Explain(CaseArguments),
     /// Run a case, or one task of a sweep.
-    Run(Run),
+    Run(RunArguments),
     /// Make the report of a results folder again.
     Report(Report),
     /// Run a parameter study.
-    Sweep(Sweep),
+    Sweep(SweepArguments),
     /// Gather the results of a parameter study in one table.
     Collect(Collect),
     /// Run the built-in cases and hold them against their references.
@@ -73,7 +73,7 @@ impl CaseArguments {
     }
 }
 
-impl Run {
+impl RunArguments {
     /// All that replaces values of the file.
     pub(crate) fn settings(&self) -> Vec<String> {
         with_meshes(&self.set, self.meshes)
@@ -89,7 +89,7 @@ fn with_meshes(set: &[String], meshes: Option<u8>) -> Vec<String> {
 // Each switch is its own flag on the command line.
 #[allow(clippy::struct_excessive_bools)]
 #[derive(Debug, Args)]
-pub(crate) struct Run {
+pub(crate) struct RunArguments {
     /// Case file; with --task a sweep file.
     pub(crate) case: PathBuf,
     /// Results folder; the one named in the case when not given.
@@ -128,7 +128,7 @@ pub(crate) struct Report {
 }
 
 #[derive(Debug, Args)]
-pub(crate) struct Sweep {
+pub(crate) struct SweepArguments {
     /// Sweep file.
     #[arg(value_name = "SWEEP")]
     pub(crate) file: PathBuf,
@@ -194,6 +194,6 @@ mod tests {
 
     #[test]
     fn the_command_line_makes_sense() {
-        Program::command().debug_assert();
+        CommandLine::command().debug_assert();
     }
 }

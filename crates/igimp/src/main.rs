@@ -20,11 +20,11 @@ use std::process::ExitCode;
 
 use clap::Parser;
 
-use crate::arguments::{Command, Program};
+use crate::arguments::{Command, CommandLine};
 use crate::error::{Exit, ProgramError};
 
 fn main() -> ExitCode {
-    let program = match Program::try_parse() {
+    let program = match CommandLine::try_parse() {
         Ok(program) => program,
         Err(error) => {
             // Help that nobody reads any more is no failure.

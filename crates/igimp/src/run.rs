@@ -7,12 +7,12 @@ use igimp_cases::estimate::watch::{exceeded, lacks_memory};
 use igimp_cases::run::{self as engine, Start, Target};
 use igimp_cases::sweep::{Ending, Sweep};
 
-use crate::arguments::Run;
+use crate::arguments::RunArguments;
 use crate::error::{Exit, ProgramError};
 use crate::progress::Progress;
 use crate::{cases, interrupt, output, verdict};
 
-pub(crate) fn run(arguments: &Run) -> Result<Exit, ProgramError> {
+pub(crate) fn run(arguments: &RunArguments) -> Result<Exit, ProgramError> {
     output::use_threads(arguments.threads);
     if let Some(number) = arguments.task {
         return task(arguments, number);
@@ -53,7 +53,7 @@ pub(crate) fn run(arguments: &Run) -> Result<Exit, ProgramError> {
 }
 
 /// Tells of a run that cannot go on, and how it can later if there is something to go on from.
-fn give_up(error: &ProgramError, folder: &Path, arguments: &Run) -> Exit {
+fn give_up(error: &ProgramError, folder: &Path, arguments: &RunArguments) -> Exit {
     output::complain(&error.render());
     let kept =
         std::fs::read_dir(folder.join("checkpoint")).is_ok_and(|mut saved| saved.next().is_some());
@@ -67,7 +67,7 @@ fn give_up(error: &ProgramError, folder: &Path, arguments: &Run) -> Exit {
 }
 
 /// One task of a sweep.
-fn task(arguments: &Run, number: usize) -> Result<Exit, ProgramError> {
+fn task(arguments: &RunArguments, number: usize) -> Result<Exit, ProgramError> {
     let sweep = Sweep::read_unchecked(&arguments.case)?;
     let task = sweep.task(number)?;
     if !arguments.quiet {
@@ -82,7 +82,7 @@ fn task(arguments: &Run, number: usize) -> Result<Exit, ProgramError> {
     tell(&run, &task.folder, arguments)
 }
 
-fn afresh_or_resume(arguments: &Run) -> Start {
+fn afresh_or_resume(arguments: &RunArguments) -> Start {
     if arguments.resume {
         Start::Resume
     } else {
@@ -91,7 +91,7 @@ fn afresh_or_resume(arguments: &Run) -> Start {
 }
 
 /// Says how a run ended.
-fn tell(run: &engine::Run, folder: &Path, arguments: &Run) -> Result<Exit, ProgramError> {
+fn tell(run: &engine::Run, folder: &Path, arguments: &RunArguments) -> Result<Exit, ProgramError> {
     let summary = &run.summary;
     let ending = Ending::of(summary);
     if arguments.quiet {
@@ -127,7 +127,7 @@ fn tell(run: &engine::Run, folder: &Path, arguments: &Run) -> Result<Exit, Progr
 }
 
 /// The command that goes on with an interrupted run.
-fn again(arguments: &Run) -> String {
+fn again(arguments: &RunArguments) -> String {
     let mut words = vec!["igimp".to_owned(), "run".to_owned()];
     words.push(quoted(&arguments.case.display().to_string()));
     if let Some(task) = arguments.task {
@@ -168,7 +168,7 @@ mod tests {
     use clap::Parser;
 
     use super::*;
-    use crate::arguments::{Command, Program};
+    use crate::arguments::{Command, CommandLine};
 
     #[test]
     fn the_way_on_can_be_pasted() {
@@ -184,7 +184,7 @@ mod tests {
             "my systems",
             "--quiet",
         ];
-        let Command::Run(arguments) = Program::parse_from(words).command else {
+        let Command::Run(arguments) = CommandLine::parse_from(words).command else {
             panic!("a run");
         };
         assert_eq!(

@@ -6,11 +6,11 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use igimp_cases::run::{Event, Start};
 use igimp_cases::sweep::{self, Ending, Task};
 
-use crate::arguments::{Collect, Sweep};
+use crate::arguments::{Collect, SweepArguments};
 use crate::error::{Exit, ProgramError};
 use crate::{interrupt, output, plain};
 
-pub(crate) fn sweep(arguments: &Sweep) -> Result<Exit, ProgramError> {
+pub(crate) fn sweep(arguments: &SweepArguments) -> Result<Exit, ProgramError> {
     let sweep = sweep::Sweep::read(&arguments.file)?;
     let width = sweep.tasks.len().to_string().len();
     let label = |task: &Task| format!("task {:>width$}/{}", task.number, sweep.tasks.len());
@@ -64,7 +64,7 @@ pub(crate) fn sweep(arguments: &Sweep) -> Result<Exit, ProgramError> {
 fn run_all(
     sweep: &sweep::Sweep,
     left: &[&Task],
-    arguments: &Sweep,
+    arguments: &SweepArguments,
     flag: &AtomicBool,
     label: &(impl Fn(&Task) -> String + Sync),
 ) -> Result<Vec<(usize, Exit)>, ProgramError> {

@@ -78,11 +78,11 @@ pub(super) fn one_mesh(
         last_resistance: 0.0,
         ends: HashMap::new(),
     };
-    let mut course = Course::begin(&mut session, target, start, before)?;
+    let mut stages = Stages::begin(&mut session, target, start, before)?;
     let size = session.summary.size;
     session.tell(&Event::Prepared { size: &size });
-    course.stages(&mut session, &initial)?;
-    course.finish(session, initial, clock)
+    stages.run(&mut session, &initial)?;
+    stages.finish(session, initial, clock)
 }
 
 /// Runs a case from its beginning and keeps what it finds in memory.
@@ -94,8 +94,8 @@ pub fn in_memory(case: &Case) -> Result<Run, CaseError> {
     run(case, None, Start::Afresh, &mut |_: &Event<'_>| {}, &never)
 }
 
-/// The course of a run through its stages.
-struct Course {
+/// The stages of a run, one after another.
+struct Stages {
     before: Before,
     expectation: Option<Expectation>,
     first: usize,
@@ -105,7 +105,7 @@ struct Course {
     failure: Option<Failure>,
 }
 
-impl Course {
+impl Stages {
     /// Opens the results folder and finds where the run begins.
     fn begin(
         session: &mut Session<'_>,
@@ -113,7 +113,7 @@ impl Course {
         start: Start,
         before: Before,
     ) -> Result<Self, CaseError> {
-        let mut course = Self {
+        let mut stages = Self {
             before,
             expectation: target.and_then(|target| target.expectation),
             first: 0,
@@ -123,7 +123,7 @@ impl Course {
             failure: None,
         };
         let Some(target) = target else {
-            return Ok(course);
+            return Ok(stages);
         };
         let case = session.model.case;
         if let Some(systems) = &target.systems {
@@ -146,21 +146,21 @@ impl Course {
             session.summary.warnings.clone_from(&left.warnings);
             session.summary.size.unknowns = left.unknowns;
             session.ends = output.ends(case, left.stages.len())?;
-            course.first = left.stages.len();
-            course.state = Some(left.state.clone());
-            course.left = Some(left);
+            stages.first = left.stages.len();
+            stages.state = Some(left.state.clone());
+            stages.left = Some(left);
         } else {
             output.model_picture(case)?;
         }
         session.output = Some(output);
         if let Some(systems) = &target.systems {
-            session.export = Some(Export::open(systems, course.first)?);
+            session.export = Some(Export::open(systems, stages.first)?);
         }
-        Ok(course)
+        Ok(stages)
     }
 
     /// Runs the stages from the first that is not done.
-    fn stages(&mut self, session: &mut Session<'_>, initial: &State) -> Result<(), CaseError> {
+    fn run(&mut self, session: &mut Session<'_>, initial: &State) -> Result<(), CaseError> {
         let case = session.model.case;
         for number in self.first..case.stages.len() {
             if session.interrupted() {

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use igimp_solver::Standing;
+use igimp_solver::MarchState;
 use serde::{Deserialize, Serialize};
 
 use super::state::{Controls, State};
@@ -15,8 +15,8 @@ pub(crate) struct Resumption {
     /// Controls at the beginning of the stage.
     pub(crate) from: Controls,
     /// Load factor reached, size of the next step, successes in a row.
-    #[serde(with = "standing")]
-    pub(crate) standing: Standing,
+    #[serde(with = "march_state", rename = "standing")]
+    pub(crate) march: MarchState,
     /// Resistance of the footing in the last step \[N/m\].
     pub(crate) resistance: f64,
     /// Drag of the next step \[1/s²\].
@@ -95,18 +95,18 @@ pub(super) fn notes_of(path: &Path, meta: &Meta) -> Result<Notes, CheckpointErro
     })
 }
 
-/// A standing as three numbers.
-mod standing {
-    use igimp_solver::Standing;
+/// The state of a march as three numbers.
+mod march_state {
+    use igimp_solver::MarchState;
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-    pub(super) fn serialize<S: Serializer>(of: &Standing, to: S) -> Result<S::Ok, S::Error> {
+    pub(super) fn serialize<S: Serializer>(of: &MarchState, to: S) -> Result<S::Ok, S::Error> {
         (of.at, of.size, of.successes).serialize(to)
     }
 
-    pub(super) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Standing, D::Error> {
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<MarchState, D::Error> {
         let (at, size, successes) = Deserialize::deserialize(from)?;
-        Ok(Standing {
+        Ok(MarchState {
             at,
             size,
             successes,

@@ -93,14 +93,12 @@ impl Output {
                 Err(damaged(format!("{name}/{array}.npy"), why))
             })?;
         }
-        if let Some(Resumption { standing, .. }) = &notes.resumption
-            && !(standing.size > 0.0
-                && standing.size.is_finite()
-                && (0.0..=1.0).contains(&standing.at))
+        if let Some(Resumption { march, .. }) = &notes.resumption
+            && !(march.size > 0.0 && march.size.is_finite() && (0.0..=1.0).contains(&march.at))
         {
             let why = format!(
                 "no march stands at {} with steps of {}",
-                standing.at, standing.size
+                march.at, march.size
             );
             return Err(damaged("meta.json".to_owned(), why).into());
         }
