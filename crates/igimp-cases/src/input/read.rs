@@ -16,6 +16,7 @@ use super::syntax::parse;
 use super::tree::{Node, Value};
 use crate::case::Case;
 use crate::mesh_study::plan;
+use crate::results::owner::Origin;
 
 /// Most bytes of a case file.
 const LARGEST: usize = 8 << 20;
@@ -26,6 +27,7 @@ pub struct CaseFile {
     case: Case,
     completed: Node,
     text: String,
+    origin: Origin,
     warnings: String,
     diagnostics: Vec<Diagnostic>,
 }
@@ -70,7 +72,11 @@ impl CaseFile {
         file.take(LARGEST as u64 + 1)
             .read_to_end(&mut bytes)
             .map_err(file_error)?;
-        Self::from_bytes(&name, bytes, overrides)
+        let file = Self::from_bytes(&name, bytes, overrides)?;
+        Ok(Self {
+            origin: Origin::File(path.to_owned()),
+            ..file
+        })
     }
 
     /// Parses the bytes of a file of this name.
@@ -126,6 +132,7 @@ impl CaseFile {
                 case,
                 completed,
                 text: text.to_owned(),
+                origin: Origin::Text(name.to_owned()),
                 warnings: problems.render(&sources),
                 diagnostics: problems.diagnostics(),
             }),
@@ -186,6 +193,11 @@ impl CaseFile {
             }
         }
         explain(&mesh)
+    }
+
+    /// Where it comes from.
+    pub fn origin(&self) -> &Origin {
+        &self.origin
     }
 
     /// The text of the file.

@@ -17,8 +17,9 @@ use crate::case::{Case, Every};
 use crate::error::CaseError;
 use crate::results::atomic::write_atomically;
 use crate::results::checkpoint::{self, Meta};
-use crate::results::folder::{Folder, write_summary};
+use crate::results::folder::{self, Folder, write_summary};
 use crate::results::frames::Frames;
+use crate::results::owner::Claim;
 use crate::results::pictures::{self, Shown};
 use crate::results::report;
 use crate::results::rows::RowWriter;
@@ -31,7 +32,7 @@ mod take_up;
 #[derive(Debug)]
 pub(crate) struct Output {
     folder: Folder,
-    fingerprint: String,
+    claim: Claim,
     every: Every,
     report: bool,
     checkpoint_every: usize,
@@ -68,15 +69,16 @@ impl Output {
         case: &Case,
         records: &Records,
     ) -> Result<Self, CaseError> {
-        let folder = Folder::afresh(&target.folder)?;
+        let folder = Folder::afresh(&target.folder, &target.claim(case))?;
         write_atomically(&folder.case(), &target.source)?;
         write_atomically(&folder.completed_case(), &target.completed)?;
-        Self::open(folder, case, records, None)
+        Self::open(folder, target.claim(case), case, records, None)
     }
 
     /// Opens the files anew, or after the rows that a checkpoint tells of.
     fn open(
         folder: Folder,
+        claim: Claim,
         case: &Case,
         records: &Records,
         notes: Option<&Notes>,
@@ -110,7 +112,7 @@ impl Output {
         let frames = Frames::open(&folder.paraview(), notes.map_or(0, |notes| notes.frames))?;
         Ok(Self {
             folder,
-            fingerprint: fingerprint::of_case(case),
+            claim,
             every: case.output.paraview,
             report: case.output.report,
             checkpoint_every: case.output.checkpoint_every,
@@ -395,6 +397,9 @@ impl Output {
         if self.report {
             report::write_report(self.folder.root())?;
         }
+        if !summary.interrupted {
+            folder::mark(self.folder.root(), &self.claim, true)?;
+        }
         Ok(())
     }
 
@@ -430,7 +435,7 @@ impl Output {
             path: self.folder.checkpoint(),
             source: source.into(),
         })?;
-        Ok(Meta::new(&self.fingerprint, data))
+        Ok(Meta::new(&self.claim.input, data))
     }
 
     /// Writes a checkpoint within a stage. It follows the rows that it counts on; what is in the

@@ -126,6 +126,7 @@ fn read(table: &DeTable<'_>, base: &Path) -> Result<Sweep, Problem> {
         .map(|(index, choice)| task(index + 1, &choice, &parameters, &folder))
         .collect();
     Ok(Sweep {
+        file: PathBuf::new(),
         case: base.join(case),
         folder,
         collect,

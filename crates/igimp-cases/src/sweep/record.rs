@@ -11,6 +11,7 @@ use sha2::{Digest, Sha256};
 use super::{Sweep, SweepError, Task};
 use crate::input::CaseFile;
 use crate::mesh_study::StudySummary;
+use crate::results::atomic::write_new;
 use crate::summary::{StageOutcome, Summary};
 
 /// How a task ended.
@@ -113,7 +114,7 @@ impl Record {
         let path = folder.join("task.json");
         let write = || -> std::io::Result<()> {
             std::fs::create_dir_all(folder)?;
-            std::fs::write(&path, serde_json::to_string_pretty(self)? + "\n")
+            write_new(&path, serde_json::to_string_pretty(self)? + "\n")
         };
         write().map_err(|source| SweepError::File {
             path: path.clone(),

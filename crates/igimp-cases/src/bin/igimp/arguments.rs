@@ -107,6 +107,9 @@ pub(crate) struct Run {
     /// Go on from the newest checkpoint in the results folder.
     #[arg(long)]
     pub(crate) resume: bool,
+    /// Begin afresh where a stopped run could go on, or another case has its results.
+    #[arg(long, conflicts_with_all = ["resume", "from_stage"])]
+    pub(crate) overwrite: bool,
     /// Begin with a stage, from the saved end of the one before it.
     #[arg(long, value_name = "NAME", conflicts_with = "resume")]
     pub(crate) from_stage: Option<String>,
@@ -138,6 +141,9 @@ pub(crate) struct Sweep {
     /// Threads to use in all; all cores when not given.
     #[arg(long, value_name = "N", value_parser = at_least_one)]
     pub(crate) threads: Option<usize>,
+    /// Begin tasks afresh that were stopped, and replace those of another sweep.
+    #[arg(long)]
+    pub(crate) overwrite: bool,
     /// List the tasks and their settings, and run none.
     #[arg(long)]
     pub(crate) list: bool,

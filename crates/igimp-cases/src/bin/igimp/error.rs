@@ -106,6 +106,9 @@ pub(crate) fn of_case(error: &CaseError) -> Exit {
 fn of_cause(error: &(dyn Error + 'static)) -> Exit {
     let mut link = Some(error);
     while let Some(error) = link {
+        if matches!(error.downcast_ref(), Some(CaseError::InUse { .. })) {
+            return Exit::InputOutput;
+        }
         if error.is::<std::io::Error>() || error.is::<csv::Error>() {
             return Exit::InputOutput;
         }

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use igimp_cases::estimate::Expectation;
 use igimp_cases::estimate::watch::{exceeded, lacks_memory};
+use igimp_cases::results::admission::Replace;
 use igimp_cases::run::{self as engine, Start, Target};
 use igimp_cases::sweep::{Ending, Sweep};
 
@@ -40,6 +41,7 @@ pub(crate) fn run(arguments: &Run) -> Result<Exit, ProgramError> {
     let target = Target {
         systems: arguments.export_matrix.clone(),
         expectation,
+        replace: replace(arguments.overwrite),
         ..Target::of(&file, &folder)
     };
     let flag = interrupt::watch();
@@ -76,10 +78,21 @@ fn task(arguments: &Run, number: usize) -> Result<Exit, ProgramError> {
     let flag = interrupt::watch();
     let mut progress = Progress::new(arguments.quiet);
     let start = afresh_or_resume(arguments);
-    let run = sweep.run_task(task, start, &mut progress, &flag);
+    let replace = replace(arguments.overwrite);
+    let _shared = sweep.enter(false, replace)?;
+    let run = sweep.run_task(task, (start, replace), &mut progress, &flag);
     progress.finish();
     let (run, _) = run?;
     tell(&run, &task.folder, arguments)
+}
+
+/// What may be replaced.
+pub(crate) fn replace(overwrite: bool) -> Replace {
+    if overwrite {
+        Replace::Everything
+    } else {
+        Replace::Finished
+    }
 }
 
 fn afresh_or_resume(arguments: &Run) -> Start {

@@ -3,11 +3,13 @@
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
+use igimp_cases::results::admission::Replace;
 use igimp_cases::run::{Event, Start};
 use igimp_cases::sweep::{self, Ending, Task};
 
 use crate::arguments::{Collect, Sweep};
 use crate::error::{Exit, ProgramError};
+use crate::run::replace;
 use crate::{interrupt, output, plain};
 
 pub(crate) fn sweep(arguments: &Sweep) -> Result<Exit, ProgramError> {
@@ -20,7 +22,8 @@ pub(crate) fn sweep(arguments: &Sweep) -> Result<Exit, ProgramError> {
         }
         return Ok(Exit::Done);
     }
-    output::writable(&sweep.folder)?;
+    let replace = replace(arguments.overwrite);
+    let _alone = sweep.enter(true, replace)?;
     let mut worst = Exit::Done;
     let mut left = Vec::new();
     for task in &sweep.tasks {
@@ -68,6 +71,7 @@ fn run_all(
     flag: &AtomicBool,
     label: &(impl Fn(&Task) -> String + Sync),
 ) -> Result<Vec<(usize, Exit)>, ProgramError> {
+    let replace = replace(arguments.overwrite);
     let jobs = arguments.jobs.min(left.len()).max(1);
     let threads = arguments.threads.unwrap_or_else(rayon::current_num_threads);
     let pools: Vec<rayon::ThreadPool> = (0..jobs)
@@ -90,7 +94,7 @@ fn run_all(
                     let Some(task) = left.get(next.fetch_add(1, Ordering::SeqCst)) else {
                         break;
                     };
-                    let exit = pool.install(|| run_one(sweep, task, flag, label));
+                    let exit = pool.install(|| run_one(sweep, task, replace, flag, label));
                     if let Ok(mut ends) = ends.lock() {
                         ends.push((task.number, exit));
                     }
@@ -105,11 +109,17 @@ fn run_all(
 fn run_one(
     sweep: &sweep::Sweep,
     task: &Task,
+    replace: Replace,
     flag: &AtomicBool,
     label: &impl Fn(&Task) -> String,
 ) -> Exit {
     let mut listener = |_: &Event<'_>| {};
-    let (end, exit) = match sweep.run_task(task, Start::Afresh, &mut listener, flag) {
+    let start = match replace {
+        Replace::Everything => Ok(Start::Afresh),
+        _ => sweep.start_of(task),
+    };
+    let run = start.and_then(|start| sweep.run_task(task, (start, replace), &mut listener, flag));
+    let (end, exit) = match run {
         Ok((run, ending)) => {
             let found: Vec<String> = run
                 .summary

@@ -29,7 +29,7 @@ use std::path::{Path, PathBuf};
 
 use igimp_solver::Body;
 
-use super::atomic::sync_folder;
+use super::atomic::{create, sync_folder};
 use crate::error::CaseError;
 
 mod arrays;
@@ -325,7 +325,7 @@ fn write_state(
     for (array, values) in arrays::of_body(body) {
         let path = checkpoint.join(array_file(name, array));
         let bytes = values.to_bytes();
-        let mut file = File::create(&path).map_err(at(&path))?;
+        let mut file = create(&path).map_err(at(&path))?;
         file.write_all(&bytes).map_err(at(&path))?;
         entry.note(array, &bytes);
         unsynced.push((path, file));

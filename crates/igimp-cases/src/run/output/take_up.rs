@@ -9,7 +9,8 @@ use crate::case::Case;
 use crate::error::CaseError;
 use crate::results::atomic::write_atomically;
 use crate::results::checkpoint::{self, CheckpointError};
-use crate::results::folder::Folder;
+use crate::results::folder::{self, Folder};
+use crate::results::owner::Claim;
 use crate::results::rows;
 use crate::run::Target;
 use crate::run::fingerprint;
@@ -36,7 +37,7 @@ impl Output {
         };
         let found = checkpoint::read(&path, Some(&fingerprint::of_case(case)))?;
         checkpoint::discard_after(&path)?;
-        Self::take_up(folder, case, records, &found)
+        Self::take_up(folder, target.claim(case), case, records, &found)
     }
 
     /// A results folder taken up at the beginning of a stage.
@@ -64,11 +65,12 @@ impl Output {
         checkpoint::discard_after(&path)?;
         write_atomically(&folder.case(), &target.source)?;
         write_atomically(&folder.completed_case(), &target.completed)?;
-        Self::take_up(folder, case, records, &found)
+        Self::take_up(folder, target.claim(case), case, records, &found)
     }
 
     fn take_up(
         folder: Folder,
+        claim: Claim,
         case: &Case,
         records: &mut Records,
         found: &checkpoint::Checkpoint,
@@ -132,7 +134,8 @@ impl Output {
             resumption: notes.resumption.clone(),
             search,
         };
-        let output = Self::open(folder, case, records, Some(&notes))?;
+        folder::mark(folder.root(), &claim, false)?;
+        let output = Self::open(folder, claim, case, records, Some(&notes))?;
         records.factor_of_safety = notes.factor_of_safety.unwrap_or(f64::NAN);
         for table in &mut records.curves {
             table.rows = rows::read(&output.folder.curves().join(csv(&table.name)))?.rows;
