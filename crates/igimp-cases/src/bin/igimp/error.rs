@@ -76,7 +76,10 @@ impl ProgramError {
         if self.is_closed_pipe() {
             return Exit::Done;
         }
-        of_cause(self)
+        match self {
+            Self::Case(error) | Self::Sweep(SweepError::Case(error)) => of_case(error),
+            other => of_cause(other),
+        }
     }
 
     /// The complete message.
@@ -97,18 +100,19 @@ impl ProgramError {
     }
 }
 
-/// The exit code of a mesh that could not be run.
+/// The exit code of a case that could not be run: a folder that somebody else writes into is a matter of
+/// files too.
 pub(crate) fn of_case(error: &CaseError) -> Exit {
-    of_cause(error)
+    match error {
+        CaseError::InUse { .. } => Exit::InputOutput,
+        other => of_cause(other),
+    }
 }
 
 /// Anything that comes from a file is input or output, the rest is bad input.
 fn of_cause(error: &(dyn Error + 'static)) -> Exit {
     let mut link = Some(error);
     while let Some(error) = link {
-        if matches!(error.downcast_ref(), Some(CaseError::InUse { .. })) {
-            return Exit::InputOutput;
-        }
         if error.is::<std::io::Error>() || error.is::<csv::Error>() {
             return Exit::InputOutput;
         }

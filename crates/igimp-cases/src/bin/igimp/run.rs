@@ -18,6 +18,7 @@ pub(crate) fn run(arguments: &Run) -> Result<Exit, ProgramError> {
     if let Some(number) = arguments.task {
         return task(arguments, number);
     }
+    let flag = interrupt::watch();
     let file = cases::read(&arguments.case, &arguments.settings())?;
     output::warn(&file.warnings());
     let mut case = file.case().clone();
@@ -44,7 +45,6 @@ pub(crate) fn run(arguments: &Run) -> Result<Exit, ProgramError> {
         replace: replace(arguments.overwrite),
         ..Target::of(&file, &folder)
     };
-    let flag = interrupt::watch();
     let mut progress = Progress::new(arguments.quiet);
     let run = engine::run(&case, Some(&target), start, &mut progress, &flag);
     progress.finish();
@@ -70,12 +70,12 @@ fn give_up(error: &ProgramError, folder: &Path, arguments: &Run) -> Exit {
 
 /// One task of a sweep.
 fn task(arguments: &Run, number: usize) -> Result<Exit, ProgramError> {
+    let flag = interrupt::watch();
     let sweep = Sweep::read_unchecked(&arguments.case)?;
     let task = sweep.task(number)?;
     if !arguments.quiet {
         output::say(&format!("task {number}: {}", task.label()))?;
     }
-    let flag = interrupt::watch();
     let mut progress = Progress::new(arguments.quiet);
     let start = afresh_or_resume(arguments);
     let replace = replace(arguments.overwrite);

@@ -13,6 +13,7 @@ use crate::run::replace;
 use crate::{interrupt, output, plain};
 
 pub(crate) fn sweep(arguments: &Sweep) -> Result<Exit, ProgramError> {
+    let flag = interrupt::watch();
     let sweep = sweep::Sweep::read(&arguments.file)?;
     let width = sweep.tasks.len().to_string().len();
     let label = |task: &Task| format!("task {:>width$}/{}", task.number, sweep.tasks.len());
@@ -40,7 +41,6 @@ pub(crate) fn sweep(arguments: &Sweep) -> Result<Exit, ProgramError> {
             sweep.tasks.len()
         ))?;
     }
-    let flag = interrupt::watch();
     let ends = run_all(&sweep, &left, arguments, &flag, &label)?;
     let interrupted = flag.load(Ordering::SeqCst);
     if interrupted {
