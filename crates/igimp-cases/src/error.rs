@@ -100,6 +100,19 @@ pub enum CaseError {
         /// The folder.
         path: PathBuf,
     },
+    /// The run cannot have the memory that it needs.
+    #[error(
+        "the run is thought to need {needed} of memory, and {limit} can be had, {by}; a larger cell, \
+         fewer points per cell or fewer threads need less"
+    )]
+    Memory {
+        /// What it is thought to need, in words.
+        needed: String,
+        /// What can be had, in words.
+        limit: String,
+        /// Who sets the limit.
+        by: &'static str,
+    },
     /// Another program writes into the folder for results.
     #[error(
         "another igimp writes into {}; wait until it has ended, or choose another folder for the results",

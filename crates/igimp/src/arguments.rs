@@ -56,7 +56,7 @@ pub(crate) struct New {
 
 #[derive(Debug, Args)]
 pub(crate) struct CaseArguments {
-    /// Case file.
+    /// Case file; - reads standard input.
     pub(crate) case: PathBuf,
     /// Replace a value of the file, as in materials.clay.cohesion="12 kPa" (may be repeated).
     #[arg(long, value_name = "KEY=VALUE")]
@@ -90,7 +90,7 @@ fn with_meshes(set: &[String], meshes: Option<u8>) -> Vec<String> {
 #[allow(clippy::struct_excessive_bools)]
 #[derive(Debug, Args)]
 pub(crate) struct Run {
-    /// Case file; with --task a sweep file.
+    /// Case file, - for standard input; with --task a sweep file.
     pub(crate) case: PathBuf,
     /// Results folder; the one named in the case when not given.
     #[arg(long, value_name = "DIR")]

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 
 use igimp_cases::CaseError;
 use igimp_cases::input::InputError;
+use igimp_cases::results::checkpoint::CheckpointError;
 use igimp_cases::sweep::{Ending, SweepError};
 use thiserror::Error;
 
@@ -95,16 +96,21 @@ impl ProgramError {
             }) => format!("error: {self}"),
             Self::Usage { what, help } if help.is_empty() => format!("error: {what}"),
             Self::Usage { what, help } => format!("error: {what}\n  help: {help}"),
+            Self::Case(CaseError::Checkpoint(CheckpointError::Damaged { .. })) => format!(
+                "{}\n  help: without that folder, --resume goes on from the one before it; --overwrite \
+                 begins afresh",
+                igimp_cases::chain(self)
+            ),
             _ => igimp_cases::chain(self),
         }
     }
 }
 
-/// The exit code of a case that could not be run: a folder that somebody else writes into is a matter of
-/// files too.
+/// The exit code of a case that could not be run: what the system does not give, a folder that somebody
+/// else writes into or memory, is told apart as files are.
 pub(crate) fn of_case(error: &CaseError) -> Exit {
     match error {
-        CaseError::InUse { .. } => Exit::InputOutput,
+        CaseError::InUse { .. } | CaseError::Memory { .. } => Exit::InputOutput,
         other => of_cause(other),
     }
 }

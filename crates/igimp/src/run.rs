@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use igimp_cases::estimate::Expectation;
+use igimp_cases::estimate::room::refuse_beyond;
 use igimp_cases::estimate::watch::{exceeded, lacks_memory};
 use igimp_cases::results::admission::Replace;
 use igimp_cases::run::{self as engine, Start, Target};
@@ -30,6 +31,7 @@ pub(crate) fn run(arguments: &Run) -> Result<Exit, ProgramError> {
         None => afresh_or_resume(arguments),
     };
     let folder = case.output.folder.clone();
+    refuse_beyond(&case)?;
     output::writable(&folder)?;
     // A run that goes on makes a part of the steps only.
     let expectation = match start {
@@ -45,7 +47,7 @@ pub(crate) fn run(arguments: &Run) -> Result<Exit, ProgramError> {
         replace: replace(arguments.overwrite),
         ..Target::of(&file, &folder)
     };
-    let mut progress = Progress::new(arguments.quiet);
+    let mut progress = Progress::new(arguments.quiet, &case);
     let run = engine::run(&case, Some(&target), start, &mut progress, &flag);
     progress.finish();
     match run {
@@ -76,7 +78,7 @@ fn task(arguments: &Run, number: usize) -> Result<Exit, ProgramError> {
     if !arguments.quiet {
         output::say(&format!("task {number}: {}", task.label()))?;
     }
-    let mut progress = Progress::new(arguments.quiet);
+    let mut progress = Progress::new(arguments.quiet, sweep.case_of(task)?.case());
     let start = afresh_or_resume(arguments);
     let replace = replace(arguments.overwrite);
     let _shared = sweep.enter(false, replace)?;
@@ -126,10 +128,10 @@ fn tell(run: &engine::Run, folder: &Path, arguments: &Run) -> Result<Exit, Progr
     for more in exceeded(summary) {
         output::complain(&format!("warning: {more}"));
     }
-    let mut exit = if run.failure.is_some() {
-        Exit::NotConverged
-    } else {
-        ending.into()
+    let mut exit = match &run.failure {
+        Some(failure) if failure.is_want_of_memory() => Exit::InputOutput,
+        Some(_) => Exit::NotConverged,
+        None => ending.into(),
     };
     // Of what went wrong on several meshes the worst counts; what the system refused is told apart.
     for error in &run.lost {

@@ -55,6 +55,7 @@ pub(crate) fn sweep(arguments: &Sweep) -> Result<Exit, ProgramError> {
     }
     let table = sweep::collect(&sweep);
     let path = table.write(&sweep.folder)?;
+    table.draw(&sweep.folder)?;
     output::say(&format!("{}table in {}", table.to_text(), path.display()))?;
     Ok(if interrupted {
         worst.max(Exit::NotConverged)
@@ -146,6 +147,7 @@ pub(crate) fn collect(arguments: &Collect) -> Result<Exit, ProgramError> {
     let sweep = sweep::Sweep::read_unchecked(&arguments.file)?;
     let table = sweep::collect(&sweep);
     let path = table.write(&sweep.folder)?;
+    table.draw(&sweep.folder)?;
     output::print(&format!("{}table in {}", table.to_text(), path.display()))?;
     for name in &table.unknown {
         output::complain(&format!(

@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use super::source::{Place, Source};
 use super::text::plural;
+use crate::printable::on_a_line;
 
 /// Whether the case can be run all the same.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -172,13 +173,9 @@ impl Problems {
     }
 }
 
-/// A text of a file in a message: control characters, which a terminal would obey, are replaced.
+/// A text of a file in a message, without what a terminal would obey.
 fn printable(text: String) -> String {
-    if text.contains(char::is_control) {
-        text.replace(char::is_control, "\u{fffd}")
-    } else {
-        text
-    }
+    on_a_line(&text).into_owned()
 }
 
 impl Problem {

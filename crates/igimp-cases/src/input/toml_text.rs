@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use super::spec::{Kind, Struct, Variants};
 use super::tree::{Node, Value};
+use crate::printable::is_odd;
 
 /// A key, quoted when it has to be.
 pub(super) fn key(key: &str) -> String {
@@ -25,7 +26,7 @@ pub(super) fn quoted(text: &str) -> String {
             '\\' => out.push_str("\\\\"),
             '\n' => out.push_str("\\n"),
             '\t' => out.push_str("\\t"),
-            c if c.is_control() => {
+            c if is_odd(c) => {
                 let _ = write!(out, "\\u{:04X}", u32::from(c));
             }
             c => out.push(c),

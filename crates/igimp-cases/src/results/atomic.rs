@@ -6,6 +6,8 @@ use std::fs::{self, File};
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
+use rayon::prelude::*;
+
 use crate::error::CaseError;
 
 /// Writes a file under a temporary name beside its place, hands it to the disk, and renames it.
@@ -23,6 +25,28 @@ pub fn write_atomically(path: &Path, bytes: impl AsRef<[u8]>) -> Result<(), Case
         sync_folder(folder).map_err(at(folder))?;
     }
     Ok(())
+}
+
+/// Writes a file under a temporary name beside its place and renames it, as [`write_atomically`] does, and
+/// leaves it to the system when the disk has it: whoever kills the program finds a whole file, whoever
+/// takes the power away may not.
+///
+/// # Errors
+/// [`CaseError::File`].
+pub fn write_whole(path: &Path, bytes: impl AsRef<[u8]>) -> Result<(), CaseError> {
+    let temporary = temporary_name(path);
+    write_new(&temporary, bytes).map_err(at(&temporary))?;
+    fs::rename(&temporary, path).map_err(at(path))
+}
+
+/// Waits until the disk has files, all at once: together they take little longer than one.
+pub(super) fn sync_together<E: Send>(
+    files: &[(PathBuf, File)],
+    at: impl Fn(&Path, io::Error) -> E + Sync,
+) -> Result<(), E> {
+    files
+        .par_iter()
+        .try_for_each(|(path, file)| file.sync_all().map_err(|error| at(path, error)))
 }
 
 /// `.NAME.tmp` beside the file.

@@ -4,7 +4,7 @@ use std::path::{Component, Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::atomic::{at, write_atomically};
+use super::atomic::{at, write_whole};
 use crate::error::CaseError;
 
 /// Where a case comes from.
@@ -94,7 +94,7 @@ impl Owner {
     /// [`CaseError::File`].
     pub fn write(&self, file: &Path) -> Result<(), CaseError> {
         let text = serde_json::to_string_pretty(self).map_err(|error| at(file)(error.into()))?;
-        write_atomically(file, text + "\n")
+        write_whole(file, text + "\n")
     }
 
     /// Whether both are runs of one case: of one file, which may have been edited, or of one input.

@@ -168,6 +168,9 @@ impl Course {
         } else {
             output.model_picture(case)?;
         }
+        for text in std::mem::take(&mut output.notes_for_user) {
+            session.tell(&Event::Warning { text: &text });
+        }
         session.output = Some(output);
         if let Some(systems) = &target.systems {
             session.export = Some(Export::open(systems, course.first)?);

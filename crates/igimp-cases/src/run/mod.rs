@@ -27,7 +27,8 @@ mod study;
 
 use std::path::PathBuf;
 
-use igimp_solver::{Accepted, Body, StepError, StepReport};
+use igimp_solver::linear::LinearSolverError;
+use igimp_solver::{Accepted, Body, StepError, StepFailure, StepReport};
 
 use crate::case::Case;
 use crate::error::CaseError;
@@ -125,6 +126,17 @@ pub trait Listener: Send {
 impl<F: FnMut(&Event<'_>) + Send> Listener for F {
     fn on_event(&mut self, event: &Event<'_>) {
         self(event);
+    }
+}
+
+impl Failure {
+    /// Whether the step failed because the system gave no more memory.
+    pub fn is_want_of_memory(&self) -> bool {
+        let failure = &*self.error.failure;
+        matches!(
+            failure,
+            StepFailure::Linear(LinearSolverError::OutOfMemory { .. })
+        )
     }
 }
 

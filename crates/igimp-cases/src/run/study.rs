@@ -269,9 +269,11 @@ fn write(case: &Case, root: &Path, summary: &mut Summary, clock: Instant) -> Res
     let begun = Instant::now();
     if let Some(found) = &summary.mesh_study {
         found.write_table(&root.join("mesh_study.csv"))?;
-        let drawn = pictures::mesh_pictures(root, summary)?;
-        let at = summary.figures.len().min(1);
-        summary.figures.splice(at..at, drawn);
+        if !case.output.figures.is_empty() {
+            let drawn = pictures::mesh_pictures(root, summary)?;
+            let at = summary.figures.len().min(1);
+            summary.figures.splice(at..at, drawn);
+        }
     }
     summary.output_seconds += begun.elapsed().as_secs_f64();
     summary.seconds = clock.elapsed().as_secs_f64();

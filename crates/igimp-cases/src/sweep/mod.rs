@@ -16,7 +16,9 @@
 //! its end in `task.json`. A task is done when it ran to a verdict with the case and settings that
 //! it has now. One that was stopped goes on where it was.
 
+mod chart;
 mod collect;
+mod columns;
 mod file;
 mod record;
 
@@ -27,7 +29,8 @@ use thiserror::Error;
 
 use crate::case::Case;
 use crate::error::CaseError;
-use crate::input::{CaseFile, InputError};
+use crate::estimate::room;
+use crate::input::{CaseFile, InputError, bytes};
 use crate::results::admission::{Replace, refuse_link};
 use crate::results::folder;
 use crate::results::lock::Lock;
@@ -38,6 +41,8 @@ pub use collect::{Collected, aligned, collect};
 pub(crate) use record::chain as on_one_line;
 pub use record::{Ending, Record};
 
+/// Most bytes of a sweep file.
+const LARGEST: u64 = 8 << 20;
 /// Says whose tasks a folder holds.
 const MARKER: &str = ".igimp-sweep";
 
@@ -146,7 +151,7 @@ impl Sweep {
     /// # Errors
     /// [`SweepError::File`] and [`SweepError::Invalid`].
     pub fn read_unchecked(path: &Path) -> Result<Self, SweepError> {
-        let text = std::fs::read_to_string(path).map_err(|source| SweepError::File {
+        let text = text_of(path).map_err(|source| SweepError::File {
             path: path.to_owned(),
             source,
         })?;
@@ -260,6 +265,7 @@ impl Sweep {
             replace,
             ..Target::of(&file, &task.folder)
         };
+        room::refuse_beyond(&case)?;
         refuse_link(&task.folder)?;
         let _entered = Entered::new(&case, &target, start)?;
         folder::claim(&task.folder)?;
@@ -268,6 +274,7 @@ impl Sweep {
         match run_entered(&case, Some(&target), start, listener, interrupt) {
             Ok(run) => {
                 record.ending = Ending::of(&run.summary);
+                record.message = record::message(&run);
                 record.write(&task.folder)?;
                 Ok((run, record.ending))
             }
@@ -280,6 +287,24 @@ impl Sweep {
             }
         }
     }
+}
+
+/// Whether a file states a sweep, well or not.
+pub fn is_sweep(path: &Path) -> bool {
+    text_of(path).is_ok_and(|text| {
+        let mut lines = text.lines().map(str::trim_start);
+        lines.any(|line| line.starts_with("igimp_sweep"))
+    })
+}
+
+/// The text of a sweep file.
+fn text_of(path: &Path) -> std::io::Result<String> {
+    let bytes = bytes::of_file(path, LARGEST)?;
+    if bytes.len() as u64 > LARGEST {
+        let text = format!("it has more than {} MB: is it a sweep file?", LARGEST >> 20);
+        return Err(std::io::Error::other(text));
+    }
+    String::from_utf8(bytes).map_err(|_| std::io::Error::other("it is not UTF-8 text"))
 }
 
 #[cfg(test)]
