@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use igimp_cases::CaseError;
 use igimp_cases::estimate::Expectation;
 use igimp_cases::estimate::room::refuse_beyond;
 use igimp_cases::estimate::watch::{exceeded, lacks_memory};
@@ -61,7 +62,8 @@ fn give_up(error: &ProgramError, folder: &Path, arguments: &Run) -> Exit {
     output::complain(&error.render());
     let kept =
         std::fs::read_dir(folder.join("checkpoint")).is_ok_and(|mut saved| saved.next().is_some());
-    if error.exit() == Exit::InputOutput && kept {
+    let entered = !matches!(error, ProgramError::Case(CaseError::InUse { .. }));
+    if error.exit() == Exit::InputOutput && kept && entered {
         output::complain(&format!(
             "what was computed is kept; to go on later: {}",
             again(arguments)

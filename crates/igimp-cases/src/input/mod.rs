@@ -34,7 +34,7 @@ mod spec;
 mod suggest;
 mod syntax;
 mod text;
-mod toml_text;
+pub(crate) mod toml_text;
 mod tree;
 mod units;
 mod value;
