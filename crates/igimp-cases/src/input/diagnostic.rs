@@ -28,7 +28,7 @@ pub(super) struct Problem {
 impl Problem {
     /// Adds a line of help.
     pub(super) fn help(&mut self, text: impl Into<String>) -> &mut Self {
-        self.help.push(printable(text.into()));
+        self.help.push(printable(&text.into()));
         self
     }
 }
@@ -104,7 +104,7 @@ impl Problems {
     }
 
     fn add(&mut self, severity: Severity, place: Option<Place>, message: String) -> &mut Problem {
-        let message = printable(message);
+        let message = printable(&message);
         let problem = Problem {
             severity,
             message,
@@ -174,8 +174,8 @@ impl Problems {
 }
 
 /// A text of a file in a message, without what a terminal would obey.
-fn printable(text: String) -> String {
-    on_a_line(&text).into_owned()
+fn printable(text: &str) -> String {
+    on_a_line(text).into_owned()
 }
 
 impl Problem {

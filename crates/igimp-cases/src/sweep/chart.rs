@@ -20,7 +20,7 @@ impl Collected {
     /// # Errors
     /// [`SweepError::Case`].
     pub fn draw(&self, folder: &Path) -> Result<Vec<PathBuf>, SweepError> {
-        let varies = |numbers: &Vec<f64>| numbers.iter().any(|x| *x != numbers[0]);
+        let varies = |numbers: &Vec<f64>| numbers.iter().any(|x| x.total_cmp(&numbers[0]).is_ne());
         let mut along = self.numbers.iter().enumerate();
         let Some((axis, x)) = along.find_map(|(k, numbers)| {
             let numbers = numbers.as_ref().filter(|numbers| varies(numbers))?;
