@@ -204,6 +204,7 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
         .map(|&cells| thick(cells, Method::igimp_bbar()))
         .collect();
     jobs.push(thick(8, Method::igimp()));
+    jobs.push(thick(8, Method::shared_strain()));
     if level > Level::Quick {
         jobs.push(Expansion {
             exact: CAVITY,
@@ -221,13 +222,13 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
     for (job, (run, curve)) in jobs.iter().zip(done) {
         if job.exact.outer > THICK.outer {
             cavity(&mut study, job, run, &curve)?;
-        } else if job.method.locking == Locking::BBar {
+        } else if job.method.locking == Locking::None {
+            shown.push(locked(&mut study, run, &curve));
+        } else {
             let series = thick_cylinder(&mut study, job, run, curve)?;
             if meshes.last() == Some(&job.cells) {
                 shown.push(series);
             }
-        } else {
-            shown.push(locked(&mut study, run, &curve));
         }
     }
     picture(&study, shown)?;

@@ -99,6 +99,7 @@ fn pushes(level: Level) -> Vec<Push> {
         overrides: overrides.concat(),
     };
     let stiff = || vec!["materials.clay.young=\"10 MPa\"".to_owned()];
+    let shared = || vec!["grid.locking=shared-strain".to_owned()];
     let smooth = || vec!["loads.footing.interface=\"smooth\"".to_owned()];
     let mut pushes = vec![
         of(
@@ -126,6 +127,13 @@ fn pushes(level: Level) -> Vec<Push> {
     if level >= Level::Default {
         pushes.extend([
             of(
+                "small_strain_shared_9",
+                "iGIMP + shared strain, rough, B/h = 9, E/s_u = 1e4",
+                Role::SmallStrain,
+                9,
+                &[stiff(), shared(), to(0.005, 20)],
+            ),
+            of(
                 "smooth_9",
                 "iGIMP + B-bar, smooth, B/h = 9",
                 Role::Shown,
@@ -145,6 +153,13 @@ fn pushes(level: Level) -> Vec<Push> {
                 Role::SmallStrain,
                 13,
                 &[stiff(), to(0.005, 20)],
+            ),
+            of(
+                "small_strain_shared_13",
+                "iGIMP + shared strain, rough, B/h = 13, E/s_u = 1e4",
+                Role::SmallStrain,
+                13,
+                &[stiff(), shared(), to(0.005, 20)],
             ),
         ]);
     }

@@ -93,6 +93,7 @@ pub(crate) fn study(out: &Path) -> Result<Study, CaseError> {
         Method::impm_bbar(),
         Method::igimp(),
         Method::igimp_bbar(),
+        Method::shared_strain(),
     ] {
         let (run, curve) = press(8, &method)?;
         let run = study.run_to_end(run);

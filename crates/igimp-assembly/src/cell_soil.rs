@@ -14,10 +14,14 @@ use crate::system::SharedLaw;
 /// \[-\].
 const SLIVER: f64 = 0.02;
 
-/// Share β of its own distortion that a particle keeps where plastic flow is associated \[-\].
-const OWN_ASSOCIATED: f64 = 0.02;
+/// Share β of its own distortion that a particle keeps where plastic flow is associated, on a given
+/// geometry \[-\].
+const OWN_GIVEN: f64 = 0.02;
 
-/// The same where it is not \[-\].
+/// The same on a moving one: what the mean does not see is held in every step \[-\].
+const OWN_MOVING: f64 = 0.1;
+
+/// The same where plastic flow is not associated \[-\].
 const OWN_NON_ASSOCIATED: f64 = 0.3;
 
 /// The soil of every cell, and the parts of every particle.
@@ -26,12 +30,12 @@ pub(crate) struct CellSoil<const D: usize> {
     parts: Vec<(Vec<u32>, Vec<CellPart<D>>)>,
     /// Whether a cell holds no more than a sliver, by cell.
     is_sliver: Vec<bool>,
-    /// Centroid X of the soil of a cell, from 0 to 1 in each direction, by cell \[-\].
-    centroid: Vec<[f64; D]>,
+    /// Where the tents of a cell give the gradients that its particles share, from 0 to 1 in each
+    /// direction, by cell: the centre X = 1/2, or the centroid of the soil \[-\].
+    shared_at: Vec<[f64; D]>,
     /// Share β of its own distortion that a particle keeps, by law \[-\].
     own_share: Vec<f64>,
     locking: Locking,
-    geometry: Geometry,
 }
 
 impl<const D: usize> CellSoil<D> {
@@ -68,41 +72,42 @@ impl<const D: usize> CellSoil<D> {
             })
             .collect::<Vec<Result<_, AssemblyError>>>();
         let parts = parts.into_iter().collect::<Result<Vec<_>, _>>()?;
+        let of_law = |law| own_share(law, method.geometry);
         let mut soil = Self {
             parts,
-            is_sliver: Vec::new(),
-            centroid: vec![[0.0; D]; grid.cell_count()],
-            own_share: laws.iter().map(own_share).collect(),
+            is_sliver: vec![false; grid.cell_count()],
+            shared_at: vec![[0.5; D]; grid.cell_count()],
+            own_share: laws.iter().map(of_law).collect(),
             locking: method.locking,
-            geometry: method.geometry,
         };
-        soil.fill(grid, particles);
+        if method.geometry == Geometry::Given {
+            soil.find_soil(grid, particles);
+        }
         Ok(soil)
     }
 
-    /// Sums volumes and first moments, in the order of the particles.
-    fn fill(&mut self, grid: &Grid<D>, particles: &Particles<D>) {
+    /// Finds slivers, and the centroid of the soil of every cell: sums of volumes and first moments in
+    /// the order of the particles.
+    fn find_soil(&mut self, grid: &Grid<D>, particles: &Particles<D>) {
         let mut volume = vec![0.0; grid.cell_count()];
+        let mut moment = vec![[0.0; D]; grid.cell_count()];
         for particle in 0..particles.len() {
             for part in of(&self.parts, particle) {
                 let cell = grid.cell_index(part.cell);
                 let own = part.share * particles.volume(particle);
                 volume[cell] += own;
                 for axis in 0..D {
-                    self.centroid[cell][axis] += own * part.middle[axis];
+                    moment[cell][axis] += own * part.middle[axis];
                 }
             }
         }
-        for (centroid, volume) in self.centroid.iter_mut().zip(&volume) {
-            *centroid = centroid.map(|moment| moment / volume);
+        for (cell, (volume, moment)) in volume.into_iter().zip(moment).enumerate() {
+            if volume > 0.0 && self.locking == Locking::SharedStrain {
+                self.shared_at[cell] = moment.map(|moment| moment / volume);
+            }
+            let size: f64 = grid.cell_size(grid.cell_place(cell)).iter().product();
+            self.is_sliver[cell] = volume < SLIVER * size;
         }
-        let size = |cell: usize| -> f64 { grid.cell_size(grid.cell_place(cell)).iter().product() };
-        let least = match self.geometry {
-            Geometry::Given => SLIVER,
-            Geometry::Moving => 0.0,
-        };
-        let sliver = |(cell, volume): (usize, &f64)| *volume < least * size(cell);
-        self.is_sliver = volume.iter().enumerate().map(sliver).collect();
     }
 
     /// Replaces `out` with the supports of a particle of law number `law` (theory, eq. 8b), nodes
@@ -128,8 +133,7 @@ impl<const D: usize> CellSoil<D> {
             let weight = part.share / whole;
             let shared_at = match self.locking {
                 Locking::None => part.middle,
-                Locking::BBar => [0.5; D],
-                Locking::SharedStrain => self.centroid[cell(part)],
+                Locking::BBar | Locking::SharedStrain => self.shared_at[cell(part)],
             };
             let own_tents = grid.tents(part.cell, part.middle);
             for (tent, shared) in own_tents.zip(grid.tents(part.cell, shared_at)) {
@@ -159,14 +163,13 @@ fn of<const D: usize>(parts: &[(Vec<u32>, Vec<CellPart<D>>)], particle: usize) -
 
 /// The share of its own distortion that a particle of a law keeps. Elastic soil keeps all of it: bending
 /// has to be resisted. In soil that yields the rest is shared, and what is kept holds modes that the
-/// mean does not see. Where flow is not associated equilibrium is not unique, and sharing less keeps
-/// Newton's method on its way.
-fn own_share(law: &SharedLaw) -> f64 {
-    if !law.yields() {
-        1.0
-    } else if law.has_symmetric_tangent() {
-        OWN_ASSOCIATED
-    } else {
-        OWN_NON_ASSOCIATED
+/// mean does not see; they add up from step to step where the body moves. Where flow is not associated
+/// equilibrium is not unique, and sharing less keeps Newton's method on its way.
+fn own_share(law: &SharedLaw, geometry: Geometry) -> f64 {
+    match geometry {
+        _ if !law.yields() => 1.0,
+        _ if !law.has_symmetric_tangent() => OWN_NON_ASSOCIATED,
+        Geometry::Given => OWN_GIVEN,
+        Geometry::Moving => OWN_MOVING,
     }
 }

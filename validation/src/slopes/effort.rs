@@ -7,20 +7,72 @@ use igimp_assembly::Locking;
 use igimp_cases::CaseError;
 use igimp_cases::check::Band;
 use igimp_cases::table::Table;
+use rayon::prelude::*;
 
-use super::section::Variant;
+use super::problems::Problem;
+use super::section::{Search, Variant};
 use super::{Found, Slopes};
 use crate::oracle::{Oracle, OracleKind};
+use crate::runs::Computed;
 use crate::study::{Run, Study};
 
 /// Shared strain must not make Newton's method worse.
 const AS_BBAR: Oracle = Oracle {
     kind: OracleKind::IndependentProgram,
     source: "B-bar on the same meshes",
-    locator: "the search of every slope, by the same bracket and steps",
+    locator: "the search of every slope on its coarser mesh, from a bracket of the same width around the factor found",
 };
 
-/// Counts both over the slopes that were run with both.
+/// Half the width of the bracket that both searches are given, around the factor that each found \[-\].
+const AROUND: f64 = 0.02;
+
+/// The searches of a slope with shared strain and with B-bar.
+struct Both {
+    slope: usize,
+    cells: u32,
+    found: [Found; 2],
+}
+
+/// Searches both ways, each from a bracket around its own factor of safety: how many trials fail then
+/// hangs on the width of the bracket, the same for both, and not on where a factor lies in it.
+fn searches(slopes: &Slopes) -> Result<Vec<Both>, CaseError> {
+    let both = |(slope, problem): (usize, &Problem)| {
+        let cells = problem.meshes[0];
+        let search = |locking| {
+            let variant = Variant {
+                cells,
+                locking,
+                associated: true,
+            };
+            let factor = slopes.of(slope, variant)?.factor();
+            let search = Search {
+                bracket: [factor - AROUND, factor + AROUND],
+                ..problem.search
+            };
+            let case = problem.section.case(variant, search);
+            Some(case.and_then(Computed::new).map(Found::of))
+        };
+        let found = [Locking::SharedStrain, Locking::BBar].map(search);
+        let [Some(shared), Some(bbar)] = found else {
+            return None;
+        };
+        Some(shared.and_then(|shared| {
+            Ok(Both {
+                slope,
+                cells,
+                found: [shared, bbar?],
+            })
+        }))
+    };
+    slopes
+        .problems
+        .par_iter()
+        .enumerate()
+        .filter_map(both)
+        .collect()
+}
+
+/// Counts both over the slopes.
 pub(super) fn report(study: &mut Study, slopes: &Slopes) -> Result<(), CaseError> {
     let mut table = Table::new(
         "effort",
@@ -40,66 +92,51 @@ pub(super) fn report(study: &mut Study, slopes: &Slopes) -> Result<(), CaseError
     let mut note = String::from(
         "effort: slope, mesh; shared strain: steps, corrections, cuts, failed trials; B-bar: the same\n",
     );
-    let [mut shared, mut bbar] = [const { Vec::new() }; 2];
-    let mut failed = [0, 0];
-    for (place, problem) in slopes.problems.iter().enumerate() {
-        let cells = problem.meshes[0];
-        let of = |locking| {
-            let variant = Variant {
-                cells,
-                locking,
-                associated: true,
-            };
-            slopes.of(place, variant)
-        };
-        let (Some(of_shared), Some(of_bbar)) = (of(Locking::SharedStrain), of(Locking::BBar))
-        else {
-            continue;
-        };
-        let both = [of_shared, of_bbar];
-        let [a, b] = both.map(|found| found.run(String::new()));
-        let fails = both.map(Found::failed_trials);
-        failed = [0, 1].map(|which| failed[which] + fails[which]);
+    let mut line = |name: &str, counts: [[usize; 4]; 2]| {
+        let [[s, c, u, f], [t, d, v, g]] = counts;
         let _ = writeln!(
             note,
-            "  {:>2} H/{cells:<3} {:>5} {:>6} {:>4} {:>4}; {:>5} {:>6} {:>4} {:>4}",
-            place + 1,
-            a.steps,
-            a.iterations,
-            a.cuts,
-            fails[0],
-            b.steps,
-            b.iterations,
-            b.cuts,
-            fails[1],
+            "  {name:<9} {s:>5} {c:>6} {u:>4} {f:>4}; {t:>5} {d:>6} {v:>4} {g:>4}"
         );
-        let of = |run: &Run, fails| [run.steps, run.iterations, run.cuts, fails];
-        let counts = [of(&a, fails[0]), of(&b, fails[1])];
-        let mut row = vec![place as f64 + 1.0, f64::from(cells)];
+    };
+    let mut runs = [const { Vec::new() }; 2];
+    let mut failed = [0, 0];
+    let of = |run: &Run, fails| [run.steps, run.iterations, run.cuts, fails];
+    for Both {
+        slope,
+        cells,
+        found,
+    } in searches(slopes)?
+    {
+        let own = found.each_ref().map(|found| found.run(String::new()));
+        let fails = found.each_ref().map(Found::failed_trials);
+        let counts = [of(&own[0], fails[0]), of(&own[1], fails[1])];
+        line(&format!("{:>2} H/{cells}", slope + 1), counts);
+        let mut row = vec![slope as f64 + 1.0, f64::from(cells)];
         row.extend(counts.as_flattened().iter().map(|&count| count as f64));
         table.push(row);
-        shared.push(a);
-        bbar.push(b);
+        for (which, run) in own.into_iter().enumerate() {
+            failed[which] += fails[which];
+            runs[which].push(run);
+        }
     }
     let sum = |name: &str, runs: &[Run]| Run::sum(name, &runs.iter().collect::<Vec<_>>());
-    let (a, b) = (sum("shared strain, all slopes", &shared), sum("", &bbar));
-    let _ = writeln!(
-        note,
-        "  all       {:>5} {:>6} {:>4} {:>4}; {:>5} {:>6} {:>4} {:>4}",
-        a.steps, a.iterations, a.cuts, failed[0], b.steps, b.iterations, b.cuts, failed[1],
-    );
-    // A search by gravity fails as often as its bracket has it, and a trial that fails is cut until it
-    // cannot be cut further: the sums tell of the bracket too.
-    let in_a_step = |run: &Run| run.iterations as f64 / run.steps as f64;
-    let corrections = in_a_step(&a) / in_a_step(&b);
-    let run = study.run(a);
-    study.check(
-        run,
-        "corrections in a step over those with B-bar [-]",
-        AS_BBAR.says(1.0),
-        Band::AtMost(1.15),
-        corrections,
-    );
+    let [shared, bbar] = [
+        sum("shared strain, all slopes", &runs[0]),
+        sum("", &runs[1]),
+    ];
+    line("all", [of(&shared, failed[0]), of(&bbar, failed[1])]);
+    let over = |count: fn(&Run) -> usize| count(&shared) as f64 / count(&bbar) as f64;
+    let corrections = over(|run| run.iterations);
+    let cuts = over(|run| run.cuts);
+    let run = study.run(shared);
+    let oracle = || AS_BBAR.says(1.0);
+    for (quantity, most, value) in [
+        ("corrections over those with B-bar [-]", 1.15, corrections),
+        ("cuts over those with B-bar [-]", 1.0, cuts),
+    ] {
+        study.check(run, quantity, oracle(), Band::AtMost(most), value);
+    }
     study.notes.push(note);
     table.write_csv(&study.folder)
 }
