@@ -1,5 +1,6 @@
 //! Problems found in a case file, collected and printed together in the order of the file.
 
+use std::borrow::Cow;
 use std::fmt::Write;
 use std::ops::Range;
 
@@ -28,7 +29,7 @@ pub(super) struct Problem {
 impl Problem {
     /// Adds a line of help.
     pub(super) fn help(&mut self, text: impl Into<String>) -> &mut Self {
-        self.help.push(printable(&text.into()));
+        self.help.push(printable(text.into()));
         self
     }
 }
@@ -104,7 +105,7 @@ impl Problems {
     }
 
     fn add(&mut self, severity: Severity, place: Option<Place>, message: String) -> &mut Problem {
-        let message = printable(&message);
+        let message = printable(message);
         let problem = Problem {
             severity,
             message,
@@ -174,8 +175,12 @@ impl Problems {
 }
 
 /// A text of a file in a message, without what a terminal would obey.
-fn printable(text: &str) -> String {
-    on_a_line(text).into_owned()
+fn printable(text: String) -> String {
+    let clean = match on_a_line(&text) {
+        Cow::Borrowed(_) => None,
+        Cow::Owned(clean) => Some(clean),
+    };
+    clean.unwrap_or(text)
 }
 
 impl Problem {

@@ -8,7 +8,7 @@ use crate::case::Case;
 use crate::error::CaseError;
 use crate::results::admission::{admit, refuse_links};
 use crate::results::checkpoint::CheckpointError;
-use crate::results::folder::{holds_checkpoints, owner, refuse_foreign};
+use crate::results::folder::{self, holds_checkpoints, owner, refuse_foreign};
 use crate::results::lock::Lock;
 use crate::results::owner::Owner;
 
@@ -18,10 +18,11 @@ pub fn can_go_on(case: &Case, root: &Path) -> bool {
     owner(root).as_ref().is_some_and(stopped) && holds_checkpoints(root)
 }
 
-/// A results folder that a run may write into, kept for it until this is dropped.
+/// A results folder that a run may write into, and that of its linear systems, kept for it until this is
+/// dropped.
 #[derive(Debug)]
 pub(crate) struct Entered {
-    _lock: Lock,
+    _locks: Vec<Lock>,
 }
 
 impl Entered {
@@ -35,7 +36,7 @@ impl Entered {
         let root = &target.folder;
         refuse_foreign(root)?;
         refuse_links(root)?;
-        let lock = Lock::alone(root)?;
+        let mut locks = vec![Lock::alone(root)?];
         let claim = target.claim(case);
         let goes_on = match start {
             Start::Afresh | Start::FromStage(0) => false,
@@ -49,6 +50,21 @@ impl Entered {
         {
             return Err(CheckpointError::OtherCase { path: root.clone() }.into());
         }
-        Ok(Self { _lock: lock })
+        if let Some(systems) = &target.systems {
+            refuse_foreign(systems)?;
+            // It may lie within the results folder, which is then no longer empty.
+            folder::claim(root)?;
+            if !is_same_folder(systems, root) {
+                locks.push(Lock::alone(systems)?);
+            }
+        }
+        Ok(Self { _locks: locks })
+    }
+}
+
+fn is_same_folder(a: &Path, b: &Path) -> bool {
+    match (a.canonicalize(), b.canonicalize()) {
+        (Ok(a), Ok(b)) => a == b,
+        _ => false,
     }
 }
