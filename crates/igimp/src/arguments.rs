@@ -56,7 +56,7 @@ pub(crate) struct New {
 
 #[derive(Debug, Args)]
 pub(crate) struct CaseArguments {
-    /// Case file.
+    /// Case file; - reads standard input.
     pub(crate) case: PathBuf,
     /// Replace a value of the file, as in materials.clay.cohesion="12 kPa" (may be repeated).
     #[arg(long, value_name = "KEY=VALUE")]
@@ -90,7 +90,7 @@ fn with_meshes(set: &[String], meshes: Option<u8>) -> Vec<String> {
 #[allow(clippy::struct_excessive_bools)]
 #[derive(Debug, Args)]
 pub(crate) struct RunArguments {
-    /// Case file; with --task a sweep file.
+    /// Case file, - for standard input; with --task a sweep file.
     pub(crate) case: PathBuf,
     /// Results folder; the one named in the case when not given.
     #[arg(long, value_name = "DIR")]
@@ -107,6 +107,9 @@ pub(crate) struct RunArguments {
     /// Go on from the newest checkpoint in the results folder.
     #[arg(long)]
     pub(crate) resume: bool,
+    /// Begin afresh where a stopped run could go on, or another case has its results.
+    #[arg(long, conflicts_with_all = ["resume", "from_stage"])]
+    pub(crate) overwrite: bool,
     /// Begin with a stage, from the saved end of the one before it.
     #[arg(long, value_name = "NAME", conflicts_with = "resume")]
     pub(crate) from_stage: Option<String>,
@@ -138,6 +141,9 @@ pub(crate) struct SweepArguments {
     /// Threads to use in all; all cores when not given.
     #[arg(long, value_name = "N", value_parser = at_least_one)]
     pub(crate) threads: Option<usize>,
+    /// Begin tasks afresh that were stopped, and replace those of another sweep.
+    #[arg(long)]
+    pub(crate) overwrite: bool,
     /// List the tasks and their settings, and run none.
     #[arg(long)]
     pub(crate) list: bool,

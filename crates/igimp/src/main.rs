@@ -15,10 +15,13 @@ mod sweep;
 mod template;
 mod validate;
 mod verdict;
+mod whole;
 
+use std::borrow::Cow;
 use std::process::ExitCode;
 
 use clap::Parser;
+use igimp_cases::printable::on_lines;
 
 use crate::arguments::{Command, CommandLine};
 use crate::error::{Exit, ProgramError};
@@ -27,8 +30,14 @@ fn main() -> ExitCode {
     let program = match CommandLine::try_parse() {
         Ok(program) => program,
         Err(error) => {
-            // Help that nobody reads any more is no failure.
-            let _ = error.print();
+            // Words of the command line are shown again in errors; help that nobody reads any more is no
+            // failure.
+            let plain = error.render().to_string();
+            if matches!(on_lines(&plain), Cow::Borrowed(_)) {
+                let _ = error.print();
+            } else {
+                output::complain(&plain);
+            }
             return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(Exit::BadInput as u8));
         }
     };

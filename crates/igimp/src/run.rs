@@ -2,8 +2,11 @@
 
 use std::path::Path;
 
+use igimp_cases::CaseError;
 use igimp_cases::estimate::Expectation;
+use igimp_cases::estimate::room::refuse_beyond;
 use igimp_cases::estimate::watch::{exceeded, lacks_memory};
+use igimp_cases::results::admission::Replace;
 use igimp_cases::run::{self as engine, Start, Target};
 use igimp_cases::sweep::{Ending, Sweep};
 
@@ -17,6 +20,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<Exit, ProgramError> {
     if let Some(number) = arguments.task {
         return task(arguments, number);
     }
+    let flag = interrupt::watch();
     let file = cases::read(&arguments.case, &arguments.settings())?;
     output::warn(&file.warnings());
     let mut case = file.case().clone();
@@ -28,6 +32,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<Exit, ProgramError> {
         None => afresh_or_resume(arguments),
     };
     let folder = case.output.folder.clone();
+    refuse_beyond(&case)?;
     output::writable(&folder)?;
     // A run that goes on makes a part of the steps only.
     let expectation = match start {
@@ -40,10 +45,10 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<Exit, ProgramError> {
     let target = Target {
         systems: arguments.export_matrix.clone(),
         expectation,
+        replace: replace(arguments.overwrite),
         ..Target::of(&file, &folder)
     };
-    let flag = interrupt::watch();
-    let mut progress = Progress::new(arguments.quiet);
+    let mut progress = Progress::new(arguments.quiet, &case);
     let run = engine::run(&case, Some(&target), start, &mut progress, &flag);
     progress.finish();
     match run {
@@ -57,7 +62,8 @@ fn give_up(error: &ProgramError, folder: &Path, arguments: &RunArguments) -> Exi
     output::complain(&error.render());
     let kept =
         std::fs::read_dir(folder.join("checkpoint")).is_ok_and(|mut saved| saved.next().is_some());
-    if error.exit() == Exit::InputOutput && kept {
+    let entered = !matches!(error, ProgramError::Case(CaseError::InUse { .. }));
+    if error.exit() == Exit::InputOutput && kept && entered {
         output::complain(&format!(
             "what was computed is kept; to go on later: {}",
             again(arguments)
@@ -68,18 +74,29 @@ fn give_up(error: &ProgramError, folder: &Path, arguments: &RunArguments) -> Exi
 
 /// One task of a sweep.
 fn task(arguments: &RunArguments, number: usize) -> Result<Exit, ProgramError> {
+    let flag = interrupt::watch();
     let sweep = Sweep::read_unchecked(&arguments.case)?;
     let task = sweep.task(number)?;
     if !arguments.quiet {
         output::say(&format!("task {number}: {}", task.label()))?;
     }
-    let flag = interrupt::watch();
-    let mut progress = Progress::new(arguments.quiet);
+    let mut progress = Progress::new(arguments.quiet, sweep.case_of(task)?.case());
     let start = afresh_or_resume(arguments);
-    let run = sweep.run_task(task, start, &mut progress, &flag);
+    let replace = replace(arguments.overwrite);
+    let _shared = sweep.enter(false, replace)?;
+    let run = sweep.run_task(task, (start, replace), &mut progress, &flag);
     progress.finish();
     let (run, _) = run?;
     tell(&run, &task.folder, arguments)
+}
+
+/// What may be replaced.
+pub(crate) fn replace(overwrite: bool) -> Replace {
+    if overwrite {
+        Replace::Everything
+    } else {
+        Replace::Finished
+    }
 }
 
 fn afresh_or_resume(arguments: &RunArguments) -> Start {
@@ -113,10 +130,10 @@ fn tell(run: &engine::Run, folder: &Path, arguments: &RunArguments) -> Result<Ex
     for more in exceeded(summary) {
         output::complain(&format!("warning: {more}"));
     }
-    let mut exit = if run.failure.is_some() {
-        Exit::NotConverged
-    } else {
-        ending.into()
+    let mut exit = match &run.failure {
+        Some(failure) if failure.is_want_of_memory() => Exit::InputOutput,
+        Some(_) => Exit::NotConverged,
+        None => ending.into(),
     };
     // Of what went wrong on several meshes the worst counts; what the system refused is told apart.
     for error in &run.lost {

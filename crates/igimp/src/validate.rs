@@ -3,6 +3,7 @@
 use igimp_cases::case::Case;
 use igimp_cases::estimate::estimate;
 use igimp_cases::input::CaseFile;
+use igimp_cases::results::admission::Replace;
 use igimp_cases::run::{self, Event, Start, Target};
 use igimp_cases::shipped::{SHIPPED, Shipped, find, nearest};
 use igimp_cases::sweep::Ending;
@@ -26,10 +27,10 @@ pub(crate) fn validate(arguments: &Validate) -> Result<Exit, ProgramError> {
             continue;
         }
         ran += 1;
-        let target = arguments
-            .out
-            .as_ref()
-            .map(|out| Target::of(&file, out.join(shipped.name)));
+        let target = arguments.out.as_ref().map(|out| Target {
+            replace: Replace::Stopped,
+            ..Target::of(&file, out.join(shipped.name))
+        });
         let mut case = file.case().clone();
         if let Some(target) = &target {
             case.output.folder.clone_from(&target.folder);

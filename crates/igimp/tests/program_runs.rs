@@ -248,13 +248,15 @@ fn a_sweep_runs_what_is_not_done_and_collects() {
     let table = std::fs::read_to_string(folder.0.join("sweep/results.csv")).unwrap();
     let lines: Vec<&str> = table.lines().collect();
     assert!(
-        lines[0].starts_with("task,materials.clay.young,end,settlement"),
+        lines[0].starts_with("task,materials.clay.young [MPa],end,settlement,message"),
         "{table}"
     );
+    assert!(lines[2].starts_with("2,20,reference missed,"), "{table}");
     assert!(
-        lines[2].starts_with("2,20 MPa,reference missed,"),
+        lines[2].contains("settlement is 1.769, expected 3.6"),
         "{table}"
     );
+    assert!(folder.has("sweep/results-settlement.svg"));
 }
 
 #[test]

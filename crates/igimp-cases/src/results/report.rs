@@ -34,7 +34,7 @@ pub fn write_report(folder: &Path) -> Result<PathBuf, CaseError> {
         path: path.clone(),
         source: std::io::Error::other(source),
     })?;
-    std::fs::write(&path, page).map_err(|source| CaseError::File {
+    super::atomic::write_new(&path, page).map_err(|source| CaseError::File {
         path: path.clone(),
         source,
     })?;

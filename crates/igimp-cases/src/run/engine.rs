@@ -4,6 +4,7 @@ use std::collections::HashMap;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
+use super::entry::Entered;
 use super::export::Export;
 use super::left::{Left, Resumption, Search};
 use super::memory::{self, Before};
@@ -29,11 +30,26 @@ use igimp_solver::StepError;
 /// came to its end.
 ///
 /// Want of equilibrium is a result ([`Run::failure`]), and so is an interruption: when `interrupt`
-/// becomes true the run ends after its step, with everything saved.
+/// becomes true the run ends after its step, with everything saved. Nobody else writes into the results
+/// folder meanwhile, and what is there is replaced as far as [`Target::replace`] allows.
 ///
 /// # Errors
 /// [`CaseError`] for a case that cannot be set up, and for files that cannot be written or read.
 pub fn run(
+    case: &Case,
+    target: Option<&Target>,
+    start: Start,
+    listener: &mut dyn Listener,
+    interrupt: &AtomicBool,
+) -> Result<Run, CaseError> {
+    let _entered = target
+        .map(|target| Entered::new(case, target, start))
+        .transpose()?;
+    run_entered(case, target, start, listener, interrupt)
+}
+
+/// Runs a case whose results folder was entered.
+pub(crate) fn run_entered(
     case: &Case,
     target: Option<&Target>,
     start: Start,
@@ -151,6 +167,9 @@ impl Stages {
             stages.left = Some(left);
         } else {
             output.model_picture(case)?;
+        }
+        for text in std::mem::take(&mut output.notes_for_user) {
+            session.tell(&Event::Warning { text: &text });
         }
         session.output = Some(output);
         if let Some(systems) = &target.systems {

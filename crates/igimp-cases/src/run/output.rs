@@ -15,10 +15,11 @@ use super::session::Taken;
 use super::state::{Controls, State};
 use crate::case::{Case, Every};
 use crate::error::CaseError;
-use crate::results::atomic::write_atomically;
+use crate::results::atomic::write_whole;
 use crate::results::checkpoint::{self, Meta};
-use crate::results::folder::{Folder, write_summary};
+use crate::results::folder::{self, Folder, write_summary};
 use crate::results::frames::Frames;
+use crate::results::owner::Claim;
 use crate::results::pictures::{self, Shown};
 use crate::results::report;
 use crate::results::rows::RowWriter;
@@ -31,7 +32,9 @@ mod take_up;
 #[derive(Debug)]
 pub(crate) struct Output {
     folder: Folder,
-    fingerprint: String,
+    claim: Claim,
+    /// Whether pictures are wanted.
+    draws: bool,
     every: Every,
     report: bool,
     checkpoint_every: usize,
@@ -48,6 +51,9 @@ pub(crate) struct Output {
     /// States of a search that are kept beside the stages: name, factor, state.
     kept: Vec<(String, f64, State)>,
     seconds: f64,
+    /// What was found when the run was taken up, to be told and not kept: a resumed run leaves the files
+    /// of one that was never stopped.
+    pub(crate) notes_for_user: Vec<String>,
 }
 
 /// Header of `convergence.csv`.
@@ -68,15 +74,16 @@ impl Output {
         case: &Case,
         records: &Records,
     ) -> Result<Self, CaseError> {
-        let folder = Folder::afresh(&target.folder)?;
-        write_atomically(&folder.case(), &target.source)?;
-        write_atomically(&folder.completed_case(), &target.completed)?;
-        Self::open(folder, case, records, None)
+        let folder = Folder::afresh(&target.folder, &target.claim(case))?;
+        write_whole(&folder.case(), &target.source)?;
+        write_whole(&folder.completed_case(), &target.completed)?;
+        Self::open(folder, target.claim(case), case, records, None)
     }
 
     /// Opens the files anew, or after the rows that a checkpoint tells of.
     fn open(
         folder: Folder,
+        claim: Claim,
         case: &Case,
         records: &Records,
         notes: Option<&Notes>,
@@ -110,7 +117,8 @@ impl Output {
         let frames = Frames::open(&folder.paraview(), notes.map_or(0, |notes| notes.frames))?;
         Ok(Self {
             folder,
-            fingerprint: fingerprint::of_case(case),
+            claim,
+            draws: !case.output.figures.is_empty(),
             every: case.output.paraview,
             report: case.output.report,
             checkpoint_every: case.output.checkpoint_every,
@@ -124,6 +132,7 @@ impl Output {
             factor_of_safety: notes.and_then(|notes| notes.factor_of_safety),
             kept: Vec::new(),
             seconds: 0.0,
+            notes_for_user: Vec::new(),
         })
     }
 
@@ -265,9 +274,11 @@ impl Output {
                 (Some(stable), Some(failed)) => Some(0.5 * (stable + failed)),
                 _ => None,
             };
-            let (root, title) = (self.folder.root(), &case.title);
-            let picture = pictures::safety_picture(root, title, &summary.name, safety)?;
-            self.figures.push(picture);
+            if self.draws {
+                let (root, title) = (self.folder.root(), &case.title);
+                let picture = pictures::safety_picture(root, title, &summary.name, safety)?;
+                self.figures.push(picture);
+            }
         }
         for (name, srf, kept) in std::mem::take(&mut self.kept) {
             if self.every != Every::Never {
@@ -285,15 +296,17 @@ impl Output {
             self.field_pictures(model, &Shown::end_of_stage(case, number), state)?;
         }
         let (root, title) = (self.folder.root(), &case.title);
-        let drawn = case
-            .sections
-            .par_iter()
-            .zip(sections)
-            .map(|(section, table)| {
-                pictures::section_pictures(root, title, section, &summary.name, table)
-            })
-            .collect::<Result<Vec<_>, _>>()?;
-        self.figures.extend(drawn.concat());
+        if self.draws {
+            let drawn = case
+                .sections
+                .par_iter()
+                .zip(sections)
+                .map(|(section, table)| {
+                    pictures::section_pictures(root, title, section, &summary.name, table)
+                })
+                .collect::<Result<Vec<_>, _>>()?;
+            self.figures.extend(drawn.concat());
+        }
         self.seconds += clock.elapsed().as_secs_f64();
         Ok(())
     }
@@ -361,6 +374,9 @@ impl Output {
 
     /// The picture of the set-up.
     pub(crate) fn model_picture(&mut self, case: &Case) -> Result<(), CaseError> {
+        if !self.draws {
+            return Ok(());
+        }
         let clock = Instant::now();
         let picture = pictures::model_picture(self.folder.root(), case)?;
         self.figures.push(picture);
@@ -381,12 +397,14 @@ impl Output {
         let at = figures.len().min(1);
         let (root, title) = (self.folder.root(), &case.title);
         let tolerance = Some(case.solver.tolerance);
-        let (histories, convergence) = rayon::join(
-            || histories(root, case, records),
-            || pictures::convergence_pictures(root, title, tolerance),
-        );
-        figures.splice(at..at, histories?);
-        figures.extend(convergence?);
+        if self.draws {
+            let (histories, convergence) = rayon::join(
+                || histories(root, case, records),
+                || pictures::convergence_pictures(root, title, tolerance),
+            );
+            figures.splice(at..at, histories?);
+            figures.extend(convergence?);
+        }
         summary.figures = figures;
         self.seconds += clock.elapsed().as_secs_f64();
         summary.seconds = begun.elapsed().as_secs_f64();
@@ -394,6 +412,9 @@ impl Output {
         self.write_summary(summary)?;
         if self.report {
             report::write_report(self.folder.root())?;
+        }
+        if !summary.interrupted {
+            folder::mark(self.folder.root(), &self.claim, true)?;
         }
         Ok(())
     }
@@ -430,7 +451,7 @@ impl Output {
             path: self.folder.checkpoint(),
             source: source.into(),
         })?;
-        Ok(Meta::new(&self.fingerprint, data))
+        Ok(Meta::new(&self.claim.input, data))
     }
 
     /// Writes a checkpoint within a stage. It follows the rows that it counts on; what is in the
@@ -443,11 +464,18 @@ impl Output {
     }
 
     /// Writes the checkpoint at the end of a stage, after its rows, to outlast a loss of power.
-    fn save_end(&self, stage: usize, body: &Body<2>, notes: &Notes) -> Result<(), CaseError> {
-        for writer in self.curves.iter().chain(&self.monitors) {
-            writer.sync()?;
-        }
-        self.convergence.sync()?;
+    fn save_end(&mut self, stage: usize, body: &Body<2>, notes: &Notes) -> Result<(), CaseError> {
+        let tables: Vec<&RowWriter> = self
+            .curves
+            .iter()
+            .chain(&self.monitors)
+            .chain([&self.convergence])
+            .collect();
+        let (rows, frames) = rayon::join(
+            || tables.par_iter().try_for_each(|table| table.sync()),
+            || self.frames.sync(),
+        );
+        rows.and(frames)?;
         let (folder, meta) = (self.folder.checkpoint(), self.meta(notes)?);
         checkpoint::write(
             &folder,

@@ -2,6 +2,8 @@
 
 mod loads;
 mod materials;
+
+pub(super) use materials::SYMBOLS;
 mod outputs;
 mod stages;
 

@@ -334,7 +334,7 @@ pub(in crate::input) static OUTPUT: Struct = Struct {
             "figures",
             Kind::List(&FIELD, 0, 13),
             "[\"displacement\", \"plastic_strain\", \"sigma_yy\"]",
-            "fields drawn at the end of every stage",
+            "fields drawn at the end of every stage; with none no picture is drawn at all",
         ),
         default(
             "report",

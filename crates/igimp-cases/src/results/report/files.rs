@@ -7,6 +7,7 @@ use base64::engine::general_purpose::STANDARD;
 use serde::Serialize;
 
 use super::rows::grouped;
+use crate::results::cells::text_of;
 use crate::results::pictures::{
     convergence_caption, convergence_plot, histories, stages_of, titled,
 };
@@ -202,7 +203,12 @@ fn table(folder: &Path, name: String) -> Option<FileView> {
         .ok()?;
     let columns: Vec<String> = reader
         .headers()
-        .map(|headers| headers.iter().map(str::to_owned).collect())
+        .map(|headers| {
+            headers
+                .iter()
+                .map(|name| text_of(name).to_owned())
+                .collect()
+        })
         .unwrap_or_default();
     let rows = reader.byte_records().take_while(Result::is_ok).count();
     Some(FileView {

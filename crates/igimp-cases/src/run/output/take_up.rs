@@ -7,9 +7,10 @@ use igimp_solver::Body;
 use super::{Output, csv};
 use crate::case::Case;
 use crate::error::CaseError;
-use crate::results::atomic::write_atomically;
+use crate::results::atomic::write_whole;
 use crate::results::checkpoint::{self, CheckpointError};
-use crate::results::folder::Folder;
+use crate::results::folder::{self, Folder};
+use crate::results::owner::Claim;
 use crate::results::rows;
 use crate::run::Target;
 use crate::run::fingerprint;
@@ -35,8 +36,13 @@ impl Output {
             return Ok((Self::create(target, case, records)?, None));
         };
         let found = checkpoint::read(&path, Some(&fingerprint::of_case(case)))?;
+        let passed_over = checkpoint::passed_over(&path)?;
         checkpoint::discard_after(&path)?;
-        Self::take_up(folder, case, records, &found)
+        let (mut output, left) = Self::take_up(folder, target.claim(case), case, records, &found)?;
+        let taken = path.file_name().unwrap_or_default().to_string_lossy();
+        let note = |error| format!("{error}; the run goes on from {taken}, the last whole one");
+        output.notes_for_user = passed_over.into_iter().map(note).collect();
+        Ok((output, left))
     }
 
     /// A results folder taken up at the beginning of a stage.
@@ -62,13 +68,14 @@ impl Output {
             return Err(CheckpointError::OtherCase { path }.into());
         }
         checkpoint::discard_after(&path)?;
-        write_atomically(&folder.case(), &target.source)?;
-        write_atomically(&folder.completed_case(), &target.completed)?;
-        Self::take_up(folder, case, records, &found)
+        write_whole(&folder.case(), &target.source)?;
+        write_whole(&folder.completed_case(), &target.completed)?;
+        Self::take_up(folder, target.claim(case), case, records, &found)
     }
 
     fn take_up(
         folder: Folder,
+        claim: Claim,
         case: &Case,
         records: &mut Records,
         found: &checkpoint::Checkpoint,
@@ -130,7 +137,8 @@ impl Output {
             resumption: notes.resumption.clone(),
             search,
         };
-        let output = Self::open(folder, case, records, Some(&notes))?;
+        folder::mark(folder.root(), &claim, false)?;
+        let output = Self::open(folder, claim, case, records, Some(&notes))?;
         records.factor_of_safety = notes.factor_of_safety.unwrap_or(f64::NAN);
         for table in &mut records.curves {
             table.rows = rows::read(&output.folder.curves().join(csv(&table.name)))?.rows;
