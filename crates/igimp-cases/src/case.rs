@@ -11,6 +11,7 @@ use std::sync::Arc;
 use igimp_assembly::{Geometry, Method, SharedLaw};
 use igimp_material::{Elasticity, HenckyElastic, MaterialError, MohrCoulomb, Tresca, VonMises};
 use igimp_solver::linear::SolverKind;
+use serde::{Deserialize, Serialize};
 
 pub use grid::{AxisSpec, GridSpec, MixedCells};
 
@@ -21,6 +22,8 @@ use crate::check::Band;
 pub struct Case {
     /// Title for reports and figures.
     pub title: String,
+    /// Whom and what it is for.
+    pub title_block: TitleBlock,
     /// Acceleration of gravity \[m/s²\], positive; it acts downwards.
     pub gravity: f64,
     /// Background grid.
@@ -65,6 +68,19 @@ impl Case {
             ..self.clone()
         }
     }
+}
+
+/// What stands in the head of a report beside its title. Nothing that is computed depends on it.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct TitleBlock {
+    /// Project.
+    pub project: Option<String>,
+    /// Client.
+    pub client: Option<String>,
+    /// Author.
+    pub author: Option<String>,
+    /// Revision.
+    pub revision: Option<String>,
 }
 
 /// A study of the mesh error: the case on its grid and on finer ones ([`mesh_study`]).

@@ -3,7 +3,8 @@
 use igimp_assembly::Particles;
 
 /// Particles sorted into square buckets, for finding neighbours.
-struct Buckets {
+#[derive(Clone, Debug)]
+pub(crate) struct Buckets {
     size: f64,
     lower: [f64; 2],
     columns: usize,
@@ -12,7 +13,8 @@ struct Buckets {
 }
 
 impl Buckets {
-    fn new(x: &[[f64; 2]], size: f64) -> Self {
+    /// Buckets of a size \[length\] for positions.
+    pub(crate) fn new(x: &[[f64; 2]], size: f64) -> Self {
         let (lower, upper) = crate::polygon::bounding_box(x);
         let count = |axis: usize| ((upper[axis] - lower[axis]) / size) as usize + 1;
         let (columns, rows) = (count(0), count(1));
@@ -35,7 +37,7 @@ impl Buckets {
     }
 
     /// Members of the bucket of a position and of the eight around it.
-    fn near(&self, position: &[f64; 2]) -> impl Iterator<Item = usize> + '_ {
+    pub(crate) fn near(&self, position: &[f64; 2]) -> impl Iterator<Item = usize> + '_ {
         let [i, j] = self.place(position);
         let (columns, rows) = (self.columns as i64, self.rows as i64);
         (j - 1..=j + 1)
@@ -46,6 +48,16 @@ impl Buckets {
                     .iter()
                     .copied()
             })
+    }
+}
+
+impl Buckets {
+    /// The nearest member among those near a position.
+    pub(crate) fn nearest(&self, x: &[[f64; 2]], position: &[f64; 2]) -> Option<usize> {
+        self.near(position)
+            .map(|member| (distance(&x[member], position), member))
+            .min_by(|a, b| a.0.total_cmp(&b.0))
+            .map(|(_, member)| member)
     }
 }
 

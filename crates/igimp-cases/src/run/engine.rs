@@ -17,7 +17,9 @@ use super::{checks, failure, initial, loading, processor, run_out, safety, secti
 use crate::case::{Case, StageKind};
 use crate::error::CaseError;
 use crate::estimate::Expectation;
+use crate::results::checkpoint::sha256;
 use crate::results::folder::{clear_meshes, refuse_foreign};
+use crate::results::setup;
 use crate::summary::{StageOutcome, StageSummary, Summary};
 use crate::table::Table;
 use igimp_solver::StepError;
@@ -71,6 +73,10 @@ pub(super) fn one_mesh(
         summary: Summary {
             program: format!("igimp {}", env!("CARGO_PKG_VERSION")),
             title: case.title.clone(),
+            title_block: case.title_block.clone(),
+            date: target.and_then(|target| target.date.clone()),
+            input_sha256: target.map(|target| sha256(target.completed.as_bytes())),
+            setup: setup::tables(case),
             method: case.method.label(),
             size: model.size(&initial.body),
             ..Summary::default()
@@ -227,6 +233,9 @@ impl Course {
         }
         summary.seconds = seconds_before + clock.elapsed().as_secs_f64();
         summary.largest_displacement = largest_displacement(&state.body.particles);
+        if let StageKind::Displacement { .. } = stage.kind {
+            summary.settlement = Some(state.controls.settlement);
+        }
         let step_error = match ended {
             Ended::Completed(reason) => {
                 (summary.outcome, summary.reason) = (StageOutcome::Completed, reason);

@@ -131,6 +131,7 @@ fn read(table: &DeTable<'_>, base: &Path) -> Result<Sweep, Problem> {
         collect,
         keys,
         tasks,
+        date: None,
     })
 }
 

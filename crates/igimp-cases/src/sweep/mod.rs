@@ -48,6 +48,8 @@ pub struct Sweep {
     pub keys: Vec<String>,
     /// Tasks in order; the first parameter changes slowest.
     pub tasks: Vec<Task>,
+    /// Day and time for the reports of its tasks; whoever runs them says it.
+    pub date: Option<String>,
 }
 
 /// One run of a study.
@@ -201,7 +203,10 @@ impl Sweep {
         record.write(&task.folder)?;
         let mut case: Case = file.case().clone();
         case.output.folder.clone_from(&task.folder);
-        let target = Target::of(&file, &task.folder);
+        let target = Target {
+            date: self.date.clone(),
+            ..Target::of(&file, &task.folder)
+        };
         match run::run(&case, Some(&target), start, listener, interrupt) {
             Ok(run) => {
                 record.ending = Ending::of(&run.summary);

@@ -7,7 +7,7 @@ use igimp_assembly::{Method, ParticleFields, Particles, SharedLaw};
 use igimp_cases::case::{
     BodyPart, Boundaries, Case, Curve, CurveAxis, Every, Field, FixedBox, GridSpec, Load, LoadKind,
     Material, MeshStudy, Monitor, Output, Quantity, Reference, ReferenceValues, Section, Side,
-    SolverSettings, Stage, StageKind, StopWhen, Strength,
+    SolverSettings, Stage, StageKind, StopWhen, Strength, TitleBlock,
 };
 use igimp_cases::results::pictures::{self, Shown};
 use igimp_cases::seed::fill_polygon;
@@ -51,6 +51,7 @@ pub(crate) fn case() -> Case {
     ];
     Case {
         title: "10 m cut slope, 1:1, c-φ soil on rock".into(),
+        title_block: TitleBlock::default(),
         gravity: 9.81,
         grid: GridSpec::equal([0.0, 0.0], [0.5, 0.5], [120, 44]),
         method: Method::default(),

@@ -10,7 +10,7 @@ use igimp_cases::sweep::{Ending, Sweep};
 use crate::arguments::Run;
 use crate::error::{Exit, ProgramError};
 use crate::progress::Progress;
-use crate::{cases, interrupt, output, verdict};
+use crate::{cases, clock, interrupt, output, verdict};
 
 pub(crate) fn run(arguments: &Run) -> Result<Exit, ProgramError> {
     output::use_threads(arguments.threads);
@@ -39,6 +39,7 @@ pub(crate) fn run(arguments: &Run) -> Result<Exit, ProgramError> {
     }
     let target = Target {
         systems: arguments.export_matrix.clone(),
+        date: clock::now()?,
         expectation,
         ..Target::of(&file, &folder)
     };
@@ -68,7 +69,10 @@ fn give_up(error: &ProgramError, folder: &Path, arguments: &Run) -> Exit {
 
 /// One task of a sweep.
 fn task(arguments: &Run, number: usize) -> Result<Exit, ProgramError> {
-    let sweep = Sweep::read_unchecked(&arguments.case)?;
+    let sweep = Sweep {
+        date: clock::now()?,
+        ..Sweep::read_unchecked(&arguments.case)?
+    };
     let task = sweep.task(number)?;
     if !arguments.quiet {
         output::say(&format!("task {number}: {}", task.label()))?;

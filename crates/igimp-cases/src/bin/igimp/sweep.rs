@@ -8,10 +8,13 @@ use igimp_cases::sweep::{self, Ending, Task};
 
 use crate::arguments::{Collect, Sweep};
 use crate::error::{Exit, ProgramError};
-use crate::{interrupt, output, plain};
+use crate::{clock, interrupt, output, plain};
 
 pub(crate) fn sweep(arguments: &Sweep) -> Result<Exit, ProgramError> {
-    let sweep = sweep::Sweep::read(&arguments.file)?;
+    let sweep = sweep::Sweep {
+        date: clock::now()?,
+        ..sweep::Sweep::read(&arguments.file)?
+    };
     let width = sweep.tasks.len().to_string().len();
     let label = |task: &Task| format!("task {:>width$}/{}", task.number, sweep.tasks.len());
     if arguments.list {

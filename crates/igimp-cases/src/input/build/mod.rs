@@ -26,7 +26,7 @@ use super::diagnostic::Problems;
 use super::names::Names;
 use super::schema::FORMAT;
 use super::tree::Node;
-use crate::case::Case;
+use crate::case::{Case, TitleBlock};
 
 use layers::Layers;
 pub(super) use quantities::QUANTITY_DOCS;
@@ -116,8 +116,15 @@ pub(super) fn build(tree: &mut Node, file: &Path, problems: &mut Problems) -> Op
     let mesh_study = study::mesh_study(tree);
 
     let case = tree.get("case")?;
+    let words = |key| case.text_at(key).map(str::to_owned);
     let case = Case {
         title: case.text_at("title")?.to_owned(),
+        title_block: TitleBlock {
+            project: words("project"),
+            client: words("client"),
+            author: words("author"),
+            revision: words("revision"),
+        },
         gravity: case.number_at("gravity")?,
         grid: grid?,
         method: method?,

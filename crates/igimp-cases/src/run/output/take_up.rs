@@ -36,6 +36,8 @@ impl Output {
         };
         let found = checkpoint::read(&path, Some(&fingerprint::of_case(case)))?;
         checkpoint::discard_after(&path)?;
+        write_atomically(&folder.case(), &target.source)?;
+        write_atomically(&folder.completed_case(), &target.completed)?;
         Self::take_up(folder, case, records, &found)
     }
 
