@@ -42,7 +42,7 @@ def arguments():
 
 def build():
     """Builds the programs in release mode; the folder of the build."""
-    command = ["cargo", "build", "--release", "--package", "igimp-cases"]
+    command = ["cargo", "build", "--release", "--package", "igimp"]
     command += ["--package", "igimp-benchmarks", "--bin", "igimp", "--bin", "linear"]
     subprocess.run(command, cwd=ROOT, check=True)
     command = ["cargo", "metadata", "--no-deps", "--format-version", "1"]

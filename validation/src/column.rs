@@ -6,8 +6,8 @@ use igimp_cases::CaseError;
 use igimp_cases::case::Case;
 use igimp_cases::check::Band;
 use igimp_cases::exact;
-use igimp_cases::figures::{Colour, CurvePlot, LineStyle, Scale, Series, SeriesStyle};
 use igimp_cases::table::Table;
+use igimp_figures::{Colour, CurvePlot, LineStyle, Scale, Series, SeriesStyle};
 use rayon::prelude::*;
 
 use crate::oracle::{Oracle, OracleKind};

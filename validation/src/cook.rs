@@ -11,11 +11,11 @@ use igimp_assembly::{
 };
 use igimp_cases::CaseError;
 use igimp_cases::check::{Band, short};
-use igimp_cases::figures::{
-    CurvePlot, LineStyle, ReferenceLine, ReferenceValue, Scale, Series, SeriesStyle,
-};
 use igimp_cases::seed::fill_polygon;
 use igimp_cases::table::Table;
+use igimp_figures::{
+    CurvePlot, LineStyle, ReferenceLine, ReferenceValue, Scale, Series, SeriesStyle,
+};
 use igimp_material::{Elasticity, HenckyElastic};
 use igimp_solver::{Accepted, Body, MarchSettings};
 use rayon::prelude::*;

@@ -10,9 +10,9 @@ use igimp_assembly::{
 };
 use igimp_cases::CaseError;
 use igimp_cases::check::Band;
-use igimp_cases::figures::{Colour, CurvePlot, ReferenceLine, ReferenceValue, Series};
 use igimp_cases::seed::fill_polygon;
 use igimp_cases::table::Table;
+use igimp_figures::{Colour, CurvePlot, ReferenceLine, ReferenceValue, Series};
 use igimp_material::{Elasticity, VonMises};
 use igimp_shape::Grid;
 use igimp_solver::{Accepted, Body, MarchSettings};

@@ -9,9 +9,9 @@ use igimp_assembly::{
 };
 use igimp_cases::CaseError;
 use igimp_cases::check::Band;
-use igimp_cases::figures::{Colour, CurvePlot, LineStyle, Scale, Series, SeriesStyle};
 use igimp_cases::seed::fill_polygon;
 use igimp_cases::table::Table;
+use igimp_figures::{Colour, CurvePlot, LineStyle, Scale, Series, SeriesStyle};
 use igimp_material::{Elasticity, HenckyElastic};
 use igimp_shape::{Axis, Grid};
 use igimp_solver::{Accepted, Body, MarchSettings};

@@ -5,12 +5,12 @@ use std::path::Path;
 use igimp_cases::CaseError;
 use igimp_cases::case::Case;
 use igimp_cases::check::Band;
-use igimp_cases::figures::{
+use igimp_cases::measure::{displacement_norm, eps_p_eq, sigma};
+use igimp_cases::table::Table;
+use igimp_figures::{
     Band as ShadedBand, Colour, ColourMap, CurvePlot, LineStyle, ReferenceLine, ReferenceValue,
     Series, SeriesStyle,
 };
-use igimp_cases::measure::{displacement_norm, eps_p_eq, sigma};
-use igimp_cases::table::Table;
 use rayon::prelude::*;
 
 use crate::oracle::{Oracle, OracleKind};

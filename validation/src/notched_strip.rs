@@ -11,8 +11,8 @@ use igimp_assembly::{
 };
 use igimp_cases::CaseError;
 use igimp_cases::check::Band;
-use igimp_cases::figures::{CurvePlot, ReferenceLine, ReferenceValue, Series};
 use igimp_cases::table::Table;
+use igimp_figures::{CurvePlot, ReferenceLine, ReferenceValue, Series};
 use igimp_material::{Elasticity, VonMises};
 use igimp_shape::{Axis, Grid, ShapeError};
 use igimp_solver::{Accepted, Body, MarchSettings};

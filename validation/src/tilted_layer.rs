@@ -10,10 +10,8 @@ use igimp_assembly::{
 };
 use igimp_cases::CaseError;
 use igimp_cases::check::Band;
-use igimp_cases::figures::{
-    CurvePlot, LineStyle, ReferenceLine, ReferenceValue, Series, SeriesStyle,
-};
 use igimp_cases::table::Table;
+use igimp_figures::{CurvePlot, LineStyle, ReferenceLine, ReferenceValue, Series, SeriesStyle};
 use igimp_material::{Elasticity, MohrCoulomb};
 use igimp_shape::{Axis, Grid};
 use igimp_solver::linear::SolverKind;

@@ -5,11 +5,11 @@ use std::path::Path;
 use igimp_cases::CaseError;
 use igimp_cases::case::{Case, Strength};
 use igimp_cases::check::Band;
-use igimp_cases::figures::{
-    ColourMap, CurvePlot, FieldPanel, Outline, OutlineStyle, ReferenceLine, ReferenceValue, Series,
-};
 use igimp_cases::measure::{along_line, displacement_norm, oscillation, sigma};
 use igimp_cases::table::Table;
+use igimp_figures::{
+    ColourMap, CurvePlot, FieldPanel, Outline, OutlineStyle, ReferenceLine, ReferenceValue, Series,
+};
 use igimp_solver::Outcome;
 use rayon::prelude::*;
 

@@ -8,10 +8,10 @@ use igimp_assembly::AssemblyError;
 use igimp_material::MaterialError;
 use igimp_shape::ShapeError;
 
-use crate::figures::FigureError;
 use crate::input::InputError;
 use crate::results::checkpoint::CheckpointError;
 use crate::results::npy::NpyError;
+use igimp_figures::FigureError;
 
 /// Errors of stating or running a case.
 #[derive(Debug, thiserror::Error)]

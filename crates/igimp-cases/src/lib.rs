@@ -9,7 +9,7 @@
 //! |---|---|
 //! | [`input`], [`case`], [`shipped`] | case files, the problem as data, the files that come with the program |
 //! | [`run`](mod@run), [`summary`] | the engine: stages, strength reduction, run-out, events as they happen; what a run says of itself |
-//! | [`results`], [`figures`], [`table`] | the results folder: ParaView, checkpoints, report; pictures; CSV |
+//! | [`results`], [`table`] | the results folder: ParaView, checkpoints, pictures, report; CSV |
 //! | [`check`], [`exact`], [`measure`] | bands, exact solutions, what is read off particles |
 //! | [`seed`], [`polygon`], [`estimate`] | particles from polygons; the size of a case before it runs |
 //! | [`sweep`] | many cases that differ in a few values |
@@ -28,7 +28,6 @@ pub mod case;
 pub mod check;
 pub mod estimate;
 pub mod exact;
-pub mod figures;
 pub mod input;
 pub mod measure;
 pub mod mesh_study;

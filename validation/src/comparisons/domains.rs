@@ -4,9 +4,9 @@
 use igimp_assembly::{DomainUpdate, Method};
 use igimp_cases::CaseError;
 use igimp_cases::check::Band;
-use igimp_cases::figures::{CurvePlot, LineStyle, Scale, Series, SeriesStyle};
 use igimp_cases::measure::oscillation;
 use igimp_cases::table::Table;
+use igimp_figures::{CurvePlot, LineStyle, Scale, Series, SeriesStyle};
 
 use crate::column::{self, ColumnResult};
 use crate::comparisons::benchmarks::{

@@ -2,8 +2,8 @@
 
 use igimp_cases::CaseError;
 use igimp_cases::check::Band;
-use igimp_cases::figures::{CurvePlot, LineStyle, Scale, Series, SeriesStyle};
 use igimp_cases::table::Table;
+use igimp_figures::{CurvePlot, LineStyle, Scale, Series, SeriesStyle};
 
 use crate::column::{self, ColumnResult};
 use crate::comparisons::benchmarks::{

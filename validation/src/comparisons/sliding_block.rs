@@ -4,8 +4,8 @@
 use igimp_assembly::{Method, SmallCuts};
 use igimp_cases::CaseError;
 use igimp_cases::check::Band;
-use igimp_cases::figures::{CurvePlot, LineStyle, Scale, Series, SeriesStyle};
 use igimp_cases::table::Table;
+use igimp_figures::{CurvePlot, LineStyle, Scale, Series, SeriesStyle};
 use rayon::prelude::*;
 
 use crate::comparisons::benchmarks::written;

@@ -12,8 +12,8 @@ use igimp_assembly::{
 };
 use igimp_cases::CaseError;
 use igimp_cases::check::Band;
-use igimp_cases::figures::{CurvePlot, LineStyle, Scale, Series, SeriesStyle};
 use igimp_cases::table::Table;
+use igimp_figures::{CurvePlot, LineStyle, Scale, Series, SeriesStyle};
 use igimp_material::{Elasticity, HenckyElastic};
 use igimp_shape::Grid;
 use igimp_solver::{Body, MarchSettings};

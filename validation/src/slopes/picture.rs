@@ -4,7 +4,7 @@ use std::path::Path;
 
 use igimp_assembly::Locking;
 use igimp_cases::CaseError;
-use igimp_cases::figures::{Band, CurvePlot, ReferenceLine, ReferenceValue, Series};
+use igimp_figures::{Band, CurvePlot, ReferenceLine, ReferenceValue, Series};
 
 use super::Known;
 use super::section::Variant;

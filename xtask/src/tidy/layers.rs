@@ -3,7 +3,7 @@
 use crate::metadata::{Metadata, Package};
 
 /// Crates of the project with those that they may depend on, for tests too.
-const LAYERS: [(&str, &[&str]); 9] = [
+const LAYERS: [(&str, &[&str]); 11] = [
     ("igimp-shape", &[]),
     ("igimp-material", &[]),
     ("igimp-assembly", &["igimp-shape", "igimp-material"]),
@@ -11,9 +11,20 @@ const LAYERS: [(&str, &[&str]); 9] = [
         "igimp-solver",
         &["igimp-shape", "igimp-material", "igimp-assembly"],
     ),
-    ("igimp-cases", BELOW_CASES),
-    ("igimp-benchmarks", ALL),
-    ("igimp-validation", ALL),
+    ("igimp-figures", &[]),
+    (
+        "igimp-cases",
+        &[
+            "igimp-shape",
+            "igimp-material",
+            "igimp-assembly",
+            "igimp-solver",
+            "igimp-figures",
+        ],
+    ),
+    ("igimp", LIBRARIES),
+    ("igimp-benchmarks", LIBRARIES),
+    ("igimp-validation", LIBRARIES),
     ("igimp-fuzz", &["igimp-cases"]),
     ("xtask", &[]),
 ];
@@ -26,11 +37,12 @@ pub(super) const BELOW_CASES: &[&str] = &[
     "igimp-solver",
 ];
 
-const ALL: &[&str] = &[
+const LIBRARIES: &[&str] = &[
     "igimp-shape",
     "igimp-material",
     "igimp-assembly",
     "igimp-solver",
+    "igimp-figures",
     "igimp-cases",
 ];
 
@@ -97,7 +109,7 @@ mod tests {
 
     type Row<'a> = (&'a str, bool, Option<&'a str>, &'a [&'a str]);
 
-    const SOUND: [Row<'_>; 10] = [
+    const SOUND: [Row<'_>; 12] = [
         ("igimp-shape", true, None, &["thiserror"]),
         ("igimp-material", true, None, &[]),
         (
@@ -107,7 +119,14 @@ mod tests {
             &["igimp-shape", "igimp-material"],
         ),
         ("igimp-solver", true, None, &["igimp-assembly"]),
-        ("igimp-cases", true, None, &["igimp-solver"]),
+        ("igimp-figures", true, None, &[]),
+        (
+            "igimp-cases",
+            true,
+            None,
+            &["igimp-solver", "igimp-figures"],
+        ),
+        ("igimp", true, None, &["igimp-cases"]),
         ("igimp-benchmarks", true, None, &["igimp-cases"]),
         ("igimp-validation", true, None, &["igimp-cases"]),
         ("igimp-fuzz", true, None, &["igimp-cases"]),
@@ -130,6 +149,10 @@ mod tests {
     fn a_link_upwards_or_sideways_is_found() {
         let found = problems(("igimp-shape", true, None, &["igimp-material"]));
         assert_eq!(found, ["igimp-shape must not depend on igimp-material"]);
+        let found = problems(("igimp-figures", true, None, &["igimp-solver"]));
+        assert_eq!(found, ["igimp-figures must not depend on igimp-solver"]);
+        let found = problems(("igimp-cases", true, None, &["igimp"]));
+        assert_eq!(found, ["igimp-cases must not depend on igimp"]);
         let found = problems(("xtask", true, None, &["igimp-shape"]));
         assert_eq!(found, ["xtask must not depend on igimp-shape"]);
     }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use igimp_benchmarks::BenchResult;
-use igimp_cases::figures::{CurvePlot, LineStyle, Scale, Series, SeriesStyle};
+use igimp_figures::{CurvePlot, LineStyle, Scale, Series, SeriesStyle};
 
 /// A quantity that grows with size.
 #[derive(Clone, Debug)]

@@ -158,7 +158,7 @@ impl Scale {
     }
 }
 
-/// What a field is, in words and signs, with the index marks of [`figures`](crate::figures).
+/// What a field is, in words and signs, with the index marks of [`figures`](igimp_figures).
 pub fn title(field: Field) -> &'static str {
     match field {
         Field::Displacement => "displacement |u|",

@@ -14,9 +14,9 @@ use super::footing::Footing;
 use super::state::{Controls, State};
 use crate::case::{Case, LoadKind, MixedCells, Side};
 use crate::error::CaseError;
-use crate::figures::{Outline, OutlineStyle};
 use crate::seed::fill_polygon;
 use crate::summary::ModelSize;
+use igimp_figures::{Outline, OutlineStyle};
 
 /// Acceleration of gravity that turns a unit weight into a density where the case has none.
 const STANDARD_GRAVITY: f64 = 9.81;

@@ -4,11 +4,11 @@ use std::path::Path;
 
 use super::{file_name, titled, write};
 use crate::error::CaseError;
-use crate::figures::{
+use crate::summary::FigureNote;
+use igimp_figures::{
     Colour, ColourMap, CurvePlot, LineStyle, ReferenceLine, ReferenceValue, Scale, Series,
     SeriesStyle,
 };
-use crate::summary::FigureNote;
 
 /// Most steps of a kind that are drawn; of more, as many are picked evenly.
 const MOST: usize = 40;

@@ -6,12 +6,12 @@ use super::{file_name, points, style, write};
 use crate::case::{Curve, Reference, ReferenceValues};
 use crate::check::short;
 use crate::error::CaseError;
-use crate::figures::{
-    Band, Colour, CurvePlot, LineStyle, ReferenceLine, ReferenceValue, Series, SeriesStyle,
-};
 use crate::results::fields::plain;
 use crate::summary::FigureNote;
 use crate::table::Table;
+use igimp_figures::{
+    Band, Colour, CurvePlot, LineStyle, ReferenceLine, ReferenceValue, Series, SeriesStyle,
+};
 
 /// The picture of a curve: the first two columns of its table over each other, with the reference
 /// as a line or as points and its tolerance as a band.

@@ -7,10 +7,10 @@ use igimp_assembly::{Particles, SharedLaw};
 use super::{file_name, sentence, titled, write};
 use crate::case::{Case, Field};
 use crate::error::CaseError;
-use crate::figures::{ColourMap, FieldPlot, Outline, OutlineStyle};
 use crate::measure::domains;
 use crate::results::fields::{self, Dimension, Scale};
 use crate::summary::FigureNote;
+use igimp_figures::{ColourMap, FieldPlot, Outline, OutlineStyle};
 
 /// A range this many times that of all but [`FEW`] of the values is cut to theirs.
 const OUTLYING: f64 = 2.5;

@@ -5,10 +5,10 @@ use std::path::Path;
 use super::{file_name, points, style, titled, write};
 use crate::case::{Field, Monitor, Section};
 use crate::error::CaseError;
-use crate::figures::{CurvePlot, ReferenceLine, ReferenceValue, Series};
 use crate::results::fields::{self, Dimension, Scale};
 use crate::summary::FigureNote;
 use crate::table::Table;
+use igimp_figures::{CurvePlot, ReferenceLine, ReferenceValue, Series};
 
 /// Most changes of stage that are marked in a history.
 const MOST_MARKS: usize = 12;

@@ -5,11 +5,11 @@ use std::path::Path;
 use super::{file_name, titled, write};
 use crate::check::short;
 use crate::error::CaseError;
-use crate::figures::{
-    Band, Colour, CurvePlot, LineStyle, ReferenceLine, ReferenceValue, Series, SeriesStyle,
-};
 use crate::mesh_study::{ResultKind, StudyResult, StudySummary};
 use crate::summary::{CheckRow, FigureNote, Summary};
+use igimp_figures::{
+    Band, Colour, CurvePlot, LineStyle, ReferenceLine, ReferenceValue, Series, SeriesStyle,
+};
 
 /// Room to either side of the meshes, as a share of the largest cells \[-\].
 const ROOM: f64 = 0.06;

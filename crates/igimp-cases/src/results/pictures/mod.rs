@@ -34,9 +34,9 @@ pub use model::model_picture;
 pub use safety::safety_picture;
 
 use crate::error::CaseError;
-use crate::figures::{Drawing, LineStyle, SeriesStyle};
 use crate::summary::FigureNote;
 use crate::table::Table;
+use igimp_figures::{Drawing, LineStyle, SeriesStyle};
 
 /// Folder of the pictures within a results folder.
 pub const FOLDER: &str = "figures";

@@ -7,9 +7,9 @@ use super::write;
 use crate::case::{AxisSpec, Case, GridSpec, LoadKind, Side};
 use crate::check::short;
 use crate::error::CaseError;
-use crate::figures::{FieldPlot, KeyEntry, KeySample, Outline, OutlineStyle};
 use crate::polygon::bounding_box;
 use crate::summary::FigureNote;
+use igimp_figures::{FieldPlot, KeyEntry, KeySample, Outline, OutlineStyle};
 
 /// More cells than this in a direction make grey of the grid lines.
 const MOST_LINES: usize = 160;

@@ -5,9 +5,9 @@ use std::path::Path;
 use super::{file_name, titled, write};
 use crate::check::short;
 use crate::error::CaseError;
-use crate::figures::{Band, Colour, CurvePlot, LineStyle, Scale, Series, SeriesStyle};
 use crate::results::fields::{Dimension, Scale as Unit};
 use crate::summary::{FigureNote, SafetySummary};
+use igimp_figures::{Band, Colour, CurvePlot, LineStyle, Scale, Series, SeriesStyle};
 
 /// Displacements that differ by more than this factor are drawn over a logarithmic axis.
 const WIDE: f64 = 50.0;

@@ -88,7 +88,7 @@ pub(crate) fn hold(page: &Path, text: &str, should_be: &str) {
         .unwrap_or(0);
     panic!(
         "{}:{}: this is no longer what the program says, which is\n  {}\n\
-         Write it anew with `INSTA_UPDATE=always cargo test -p igimp-cases --test book`.",
+         Write it anew with `INSTA_UPDATE=always cargo test -p igimp --test book`.",
         page.strip_prefix(root()).unwrap_or(page).display(),
         line + 1,
         should_be.lines().nth(line).unwrap_or_default()

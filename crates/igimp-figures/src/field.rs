@@ -65,7 +65,7 @@ pub struct KeyEntry {
 /// hairlines of the ground shine through between neighbours.
 ///
 /// ```no_run
-/// use igimp_cases::figures::{ColourMap, FieldPlot};
+/// use igimp_figures::{ColourMap, FieldPlot};
 /// let plot = FieldPlot {
 ///     title: "After the last step".into(),
 ///     domains: vec![vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]],
@@ -75,7 +75,7 @@ pub struct KeyEntry {
 ///     ..FieldPlot::default()
 /// };
 /// plot.write("results/slope/figures/mean-stress".as_ref())?;
-/// # Ok::<(), igimp_cases::figures::FigureError>(())
+/// # Ok::<(), igimp_figures::FigureError>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct FieldPlot {

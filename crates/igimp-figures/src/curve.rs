@@ -140,7 +140,7 @@ pub enum ReferenceValue {
 /// left out and counted in a note.
 ///
 /// ```no_run
-/// use igimp_cases::figures::{Band, CurvePlot, Series};
+/// use igimp_figures::{Band, CurvePlot, Series};
 /// let curve = vec![[0.0, 0.0], [5.0, 300.0], [20.0, 514.0]];
 /// let plot = CurvePlot {
 ///     title: "Strip footing".into(),
@@ -151,7 +151,7 @@ pub enum ReferenceValue {
 ///     ..CurvePlot::default()
 /// };
 /// plot.write("results/footing/figures/load-settlement".as_ref())?;
-/// # Ok::<(), igimp_cases::figures::FigureError>(())
+/// # Ok::<(), igimp_figures::FigureError>(())
 /// ```
 #[derive(Clone, Debug, Default)]
 pub struct CurvePlot {
