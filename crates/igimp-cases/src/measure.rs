@@ -87,33 +87,40 @@ pub fn oscillation(x: &[[f64; 2]], field: &[f64], radius: f64) -> f64 {
 /// The value at `at` of the plane fitted by least squares to the named particles, if they do not
 /// lie on a line.
 fn plane_at(x: &[[f64; 2]], field: &[f64], particles: &[usize], at: &[f64; 2]) -> Option<f64> {
+    let slope = plane(particles, |p| x[p], |p| field[p])?;
     let n = particles.len() as f64;
-    let mean = |value: &dyn Fn(usize) -> f64| {
-        particles
-            .iter()
-            .map(|&particle| value(particle))
-            .sum::<f64>()
-            / n
-    };
-    let centre = [mean(&|p| x[p][0]), mean(&|p| x[p][1])];
+    let mean = |of: &dyn Fn(usize) -> f64| particles.iter().map(|&p| of(p)).sum::<f64>() / n;
     let level = mean(&|p| field[p]);
-    let dx = |p: usize| x[p][0] - centre[0];
-    let dy = |p: usize| x[p][1] - centre[1];
+    let centre = [mean(&|p| x[p][0]), mean(&|p| x[p][1])];
+    Some(level + slope[0] * (at[0] - centre[0]) + slope[1] * (at[1] - centre[1]))
+}
+
+/// The slopes of the plane fitted by least squares to the values of the named particles at their
+/// places, if these do not lie on a line.
+pub(crate) fn plane(
+    particles: &[usize],
+    x: impl Fn(usize) -> [f64; 2],
+    field: impl Fn(usize) -> f64,
+) -> Option<[f64; 2]> {
+    let n = particles.len() as f64;
+    let mean = |of: &dyn Fn(usize) -> f64| particles.iter().map(|&p| of(p)).sum::<f64>() / n;
+    let centre = [mean(&|p| x(p)[0]), mean(&|p| x(p)[1])];
+    let dx = |p: usize| x(p)[0] - centre[0];
+    let dy = |p: usize| x(p)[1] - centre[1];
     let (xx, xy, yy) = (
         mean(&|p| dx(p) * dx(p)),
         mean(&|p| dx(p) * dy(p)),
         mean(&|p| dy(p) * dy(p)),
     );
-    let (xf, yf) = (mean(&|p| dx(p) * field[p]), mean(&|p| dy(p) * field[p]));
+    let (xf, yf) = (mean(&|p| dx(p) * field(p)), mean(&|p| dy(p) * field(p)));
     let determinant = xx * yy - xy * xy;
-    if determinant <= 1e-9 * xx * yy {
-        return None;
-    }
-    let slope = [
-        (xf * yy - yf * xy) / determinant,
-        (yf * xx - xf * xy) / determinant,
-    ];
-    Some(level + slope[0] * (at[0] - centre[0]) + slope[1] * (at[1] - centre[1]))
+    // Also false for no particles at all.
+    (determinant > 1e-9 * xx * yy).then(|| {
+        [
+            (xf * yy - yf * xy) / determinant,
+            (yf * xx - xf * xy) / determinant,
+        ]
+    })
 }
 
 /// The particle nearest to a position \[length\], within `reach` \[length\] of it.

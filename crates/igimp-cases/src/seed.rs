@@ -91,8 +91,8 @@ pub(crate) fn fill_in_pieces(
     for (area, centroid, polygon) in slivers {
         let distance =
             |seed: &ParticleSeed<2>| (seed.x[0] - centroid[0]).hypot(seed.x[1] - centroid[1]);
-        let nearest = (0..seeds.len())
-            .min_by(|&a, &b| distance(&seeds[a]).total_cmp(&distance(&seeds[b])));
+        let nearest =
+            (0..seeds.len()).min_by(|&a, &b| distance(&seeds[a]).total_cmp(&distance(&seeds[b])));
         if let Some(particle) = nearest {
             seeds[particle].volume += area;
             pieces.push(Piece { particle, polygon });
@@ -141,11 +141,17 @@ mod tests {
         let polygon = [[0.0, 0.0], [11.3, 0.0], [9.7, 1.1], [4.2, 4.6], [0.0, 4.6]];
         let (whole, _) = area_and_centroid(&polygon);
         let (seeds, pieces) = fill_in_pieces(&grid(), &polygon, 2, 1.0, 0).unwrap();
-        let area: f64 = pieces.iter().map(|piece| area_and_centroid(&piece.polygon).0).sum();
+        let area: f64 = pieces
+            .iter()
+            .map(|piece| area_and_centroid(&piece.polygon).0)
+            .sum();
         assert!((area - whole).abs() < 1e-12 * whole);
         let own = |particle: usize| {
-            let own = pieces.iter().filter(move |piece| piece.particle == particle);
-            own.map(|piece| area_and_centroid(&piece.polygon).0).sum::<f64>()
+            let own = pieces
+                .iter()
+                .filter(move |piece| piece.particle == particle);
+            own.map(|piece| area_and_centroid(&piece.polygon).0)
+                .sum::<f64>()
         };
         for (particle, seed) in seeds.iter().enumerate() {
             assert!((own(particle) - seed.volume).abs() < 1e-12, "{particle}");

@@ -40,7 +40,8 @@ pub(crate) fn now() -> Result<Option<String>, ProgramError> {
 /// A second since 1970-01-01 as a date of the Gregorian calendar.
 fn words(seconds: u64) -> String {
     let (mut days, second) = (seconds / 86_400, seconds % 86_400);
-    let leap = |year: u64| year.is_multiple_of(4) && !year.is_multiple_of(100) || year.is_multiple_of(400);
+    let leap =
+        |year: u64| year.is_multiple_of(4) && !year.is_multiple_of(100) || year.is_multiple_of(400);
     let mut year = 1970;
     loop {
         let length = 365 + u64::from(leap(year));
@@ -60,7 +61,10 @@ fn words(seconds: u64) -> String {
         month += 1;
     }
     let (hour, minute) = (second / 3600, second % 3600 / 60);
-    format!("{year:04}-{month:02}-{:02} {hour:02}:{minute:02} UTC", days + 1)
+    format!(
+        "{year:04}-{month:02}-{:02} {hour:02}:{minute:02} UTC",
+        days + 1
+    )
 }
 
 #[cfg(test)]

@@ -27,13 +27,10 @@ pub(crate) fn validate(arguments: &Validate) -> Result<Exit, ProgramError> {
             continue;
         }
         ran += 1;
-        let target = arguments
-            .out
-            .as_ref()
-            .map(|out| Target {
-                date: date.clone(),
-                ..Target::of(&file, out.join(shipped.name))
-            });
+        let target = arguments.out.as_ref().map(|out| Target {
+            date: date.clone(),
+            ..Target::of(&file, out.join(shipped.name))
+        });
         let mut case = file.case().clone();
         if let Some(target) = &target {
             case.output.folder.clone_from(&target.folder);

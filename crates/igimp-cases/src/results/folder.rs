@@ -6,7 +6,7 @@
 //! | `summary.json`, `report.html` | outcome, for programs and for people |
 //! | `case.toml`, `case.completed.toml` | the case as given, and with every default |
 //! | `convergence.csv` | residuals of all steps, accepted or cut |
-//! | `curves/`, `monitors/`, `sections/` | tables (`.csv`) |
+//! | `curves/`, `monitors/`, `sections/`, `slip_lines/` | tables (`.csv`) |
 //! | `figures/` | pictures (`.svg`, `.png`) |
 //! | `paraview/` | particles and grid (`.pvd`, `.vtu`) |
 //! | `checkpoint/`, `last-converged/` | states ([`checkpoint`]) |
@@ -39,7 +39,8 @@ const FILES: [&str; 5] = [
 ];
 /// Most meshes of a study of the mesh error.
 const MOST_MESHES: usize = 3;
-const TABLES: [&str; 3] = ["curves", "monitors", "sections"];
+const TABLES: [&str; 4] = ["curves", "monitors", "sections", SLIP_LINES];
+const SLIP_LINES: &str = "slip_lines";
 const FIGURES: &str = "figures";
 const PARAVIEW: &str = "paraview";
 const CHECKPOINT: &str = "checkpoint";
@@ -132,6 +133,11 @@ impl Folder {
     /// `monitors/`.
     pub fn monitors(&self) -> PathBuf {
         self.root.join("monitors")
+    }
+
+    /// `slip_lines/`.
+    pub fn slip_lines(&self) -> PathBuf {
+        self.root.join(SLIP_LINES)
     }
 
     /// `sections/`.
@@ -368,7 +374,8 @@ mod tests {
                 "figures",
                 "monitors",
                 "paraview",
-                "sections"
+                "sections",
+                "slip_lines"
             ]
         );
         assert_eq!(folder.root(), root);

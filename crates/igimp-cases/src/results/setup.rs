@@ -235,7 +235,9 @@ fn happens(case: &Case, stage: &Stage) -> String {
         }
         StageKind::RunOut(run_out) => {
             let by = match run_out.reduction {
-                Reduction::TimesFos(times) => format!("{} times the factor of safety", short(times)),
+                Reduction::TimesFos(times) => {
+                    format!("{} times the factor of safety", short(times))
+                }
                 Reduction::Factor(factor) => short(factor),
             };
             format!(
@@ -318,7 +320,11 @@ mod tests {
 
     fn of(name: &str) -> Vec<SetupTable> {
         let shipped = SHIPPED.iter().find(|case| case.name == name).unwrap();
-        tables(CaseFile::parse("case.toml", shipped.text, &[]).unwrap().case())
+        tables(
+            CaseFile::parse("case.toml", shipped.text, &[])
+                .unwrap()
+                .case(),
+        )
     }
 
     fn row(tables: &[SetupTable], title: &str, number: usize) -> String {
@@ -347,7 +353,13 @@ mod tests {
         for shipped in SHIPPED {
             for table in of(shipped.name) {
                 for row in &table.rows {
-                    assert_eq!(row.len(), table.header.len(), "{} of {}", table.title, shipped.name);
+                    assert_eq!(
+                        row.len(),
+                        table.header.len(),
+                        "{} of {}",
+                        table.title,
+                        shipped.name
+                    );
                 }
             }
         }

@@ -340,6 +340,8 @@ impl Course {
         };
         let rows = checks::at_end_of_stage(case, &session.records, &moment);
         session.summary.checks.extend(rows);
+        let rows = checks::of_sections(case, number, &tables);
+        session.summary.checks.extend(rows);
         if let Some(output) = &mut session.output {
             output.end_of_stage(session.model, number, state, summary, &tables)?;
         }

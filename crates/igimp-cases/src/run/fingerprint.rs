@@ -35,3 +35,19 @@ fn whole(case: &Case) -> Case {
         ..case.clone()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::estimate::tests::case;
+
+    /// GOAL: a run can be taken up after its report got another author, and not after another cohesion.
+    #[test]
+    fn the_head_of_the_report_is_no_input() {
+        let mut other = case();
+        other.title_block.author = Some("A. Engineer".into());
+        assert_eq!(of_case(&other), of_case(&case()));
+        other.materials[0].young *= 2.0;
+        assert_ne!(of_case(&other), of_case(&case()));
+    }
+}

@@ -159,15 +159,10 @@ pub(super) fn checks(summary: &Summary) -> Vec<CheckView> {
             Band::Relative(_) if share.is_finite() => format!("{:+.2} %", 100.0 * share),
             _ => String::new(),
         };
-        let about = [&check.case, &check.variant].map(|part| part.trim());
         CheckView {
             pass: row.pass,
             quantity: check.quantity.clone(),
-            about: about
-                .into_iter()
-                .filter(|part| !part.is_empty())
-                .collect::<Vec<_>>()
-                .join(", "),
+            about: check.variant.trim().to_owned(),
             measured: short(check.measured),
             expected: short(check.expected),
             band: check.band.to_string(),

@@ -1,10 +1,11 @@
 //! How a run is taken up again from its results folder.
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use igimp_solver::Body;
 
-use super::{Output, csv};
+use super::{BEFORE, Output, csv};
 use crate::case::Case;
 use crate::error::CaseError;
 use crate::results::atomic::write_atomically;
@@ -13,7 +14,7 @@ use crate::results::folder::Folder;
 use crate::results::rows;
 use crate::run::Target;
 use crate::run::fingerprint;
-use crate::run::left::{Left, Notes, Resumption, Search, end_of_stage, notes_of};
+use crate::run::left::{End, Left, Notes, Resumption, Search, end_of_stage, notes_of};
 use crate::run::records::Records;
 use crate::run::state::{Controls, State};
 
@@ -106,18 +107,27 @@ impl Output {
             );
             return Err(damaged("meta.json".to_owned(), why).into());
         }
-        let with_body = |name: &str, of: &Option<(f64, Controls)>| match of {
+        let with_body = |name: &str, before: &str, of: &Option<(f64, Controls)>| match of {
             Some((srf, controls)) => {
                 let controls = controls.clone();
-                body(name).map(|body| Some((*srf, State { body, controls })))
+                body(name).map(|own| {
+                    Some(End {
+                        srf: *srf,
+                        state: State {
+                            body: own,
+                            controls,
+                        },
+                        before: body(before).ok().map(Arc::new),
+                    })
+                })
             }
             None => Ok(None),
         };
         let search = match &notes.trials {
             Some(trials) => Some(Search {
                 trials: trials.clone(),
-                stable: with_body("stable", &notes.stable)?,
-                failed: with_body("failed", &notes.failed)?,
+                stable: with_body("stable", BEFORE[0], &notes.stable)?,
+                failed: with_body("failed", BEFORE[1], &notes.failed)?,
             }),
             None => None,
         };
@@ -134,6 +144,11 @@ impl Output {
             resumption: notes.resumption.clone(),
             search,
         };
+        // From a stage on, the checks may be others than they were.
+        if notes.peaks.len() == records.peaks.len() {
+            let peaks = notes.peaks.iter().map(|peak| peak.unwrap_or(f64::NAN));
+            records.peaks = peaks.collect();
+        }
         let output = Self::open(folder, case, records, Some(&notes))?;
         records.factor_of_safety = notes.factor_of_safety.unwrap_or(f64::NAN);
         for table in &mut records.curves {
