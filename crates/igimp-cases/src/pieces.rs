@@ -14,9 +14,9 @@ use crate::error::CaseError;
 use crate::polygon::Polygon;
 use crate::seed::{Piece, fill_in_pieces};
 
-/// Corners that neighbours carry further from their middle than so many sizes of a particle have
+/// Corners that a particle carries further from their middle than this share of its size have
 /// parted \[-\].
-const PARTED: f64 = 1.0;
+const PARTED: f64 = 0.75;
 /// Corners closer than this share of the smallest cell are one \[-\].
 const SAME: f64 = 1e-6;
 
@@ -135,13 +135,20 @@ impl Pieces {
             .collect();
         for corner in all() {
             let at = corner.carried(particles);
-            let [width, height] = particles.half_length0[corner.particle];
-            let reach = PARTED * 2.0 * width.max(height);
+            let reach = PARTED * size(particles, corner.particle);
             met[corner.place] = met[corner.place]
                 .filter(|middle| (middle[0] - at[0]).hypot(middle[1] - at[1]) <= reach);
         }
         met
     }
+}
+
+/// The sum of the two sides of a particle as F makes them, and no less than as they were.
+fn size(particles: &Particles<2>, particle: usize) -> f64 {
+    let f = particles.def_grad[particle];
+    let sides = particles.half_length0[particle].map(|half| 2.0 * half);
+    let side = |axis: usize| sides[axis] * f[0][axis].hypot(f[1][axis]).max(1.0);
+    side(0) + side(1)
 }
 
 fn moved(corners: &[Corner], met: &[Option<[f64; 2]>], particles: &Particles<2>) -> Polygon {

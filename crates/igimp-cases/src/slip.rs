@@ -142,7 +142,8 @@ impl Increment<'_> {
             let rigid = [u0[0] - turn * dy, u0[1] + turn * dx];
             (self.moved[p][0] - rigid[0]).powi(2) + (self.moved[p][1] - rigid[1]).powi(2)
         });
-        if !(rest <= NOT_RIGID * mean(&|p| length(p).powi(2))) {
+        let is_rigid = rest <= NOT_RIGID * mean(&|p| length(p).powi(2));
+        if !is_rigid {
             return None;
         }
         let (lower, upper) = crate::polygon::bounding_box(self.x);
@@ -206,7 +207,8 @@ impl Rays {
         let by_angle = step / radii[1].max(step);
         let count = |[from, to]: [f64; 2], step: f64| ((to - from) / step).ceil() + 1.0;
         let (rays, places) = (count(angles, by_angle), count(radii, step));
-        if !(rays <= MOST && places <= MOST) {
+        let few = rays <= MOST && places <= MOST;
+        if !few {
             return None;
         }
         let mut found = Self {

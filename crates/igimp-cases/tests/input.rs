@@ -875,6 +875,7 @@ fn messages_of_references() {
         section("of = \"tau_xy\"\ny = 1\nlabel = \"l\""),
         section("of = \"sigma_yy\"\nlabel = \"l\""),
         section("of = \"sigma_yy\"\ny = 1\nstage = \"nine\"\nlabel = \"l\""),
+        section("of = \"sigma_yy\"\ny = 1\nstage = \"factor of safety\"\nlabel = \"l\""),
         "[[checks]]\nname = \"f\"\nof = \"factor_of_safety\"\nat = \"peak\"\nat_least = 1.3\nsource = \"s\"\n[output]".to_owned(),
     ];
     let edits: Vec<[(&str, &str); 1]> =

@@ -20,7 +20,7 @@ pub(crate) fn now() -> Result<Option<String>, ProgramError> {
         return match seconds.filter(|&seconds| seconds < END) {
             Some(seconds) => Ok(Some(words(seconds))),
             None => Err(ProgramError::usage(
-                format!("{FIXED} is set to {given:?}"),
+                format!("{FIXED} is set to {:?}", given.to_string_lossy()),
                 "it takes seconds since 1970-01-01 as a whole number; unset it for the time of the clock",
             )),
         };

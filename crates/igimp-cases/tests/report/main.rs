@@ -151,7 +151,7 @@ fn a_report_can_be_handed_on() {
         "Revision B",
         "Date of the run 2026-03-01 14:05 UTC",
         "Input, SHA-256 c0ffee",
-        "Factor of safety 1.375\u{a0}…\u{a0}1.383 mesh error not known: igimp run --meshes 2 finds it",
+        "Factor of safety 1.375 … 1.383 mesh error not known: igimp run --meshes 2 finds it",
         "Peak resistance 512 kN/m",
         "Settlement 50 mm",
         "Checks met 1 of 2",

@@ -109,7 +109,12 @@ pub(super) fn build(tree: &mut Node, file: &Path, problems: &mut Problems) -> Op
     layers::check_stiffness(&layers, &stages, gravity, problems);
     let solver = outputs::solver(tree, &materials, problems);
     let monitors = outputs::monitors(tree, &site, problems);
-    let sections = outputs::sections(tree, (&names, file), &site, problems);
+    let about = outputs::About {
+        names: &names,
+        stages: &stages,
+        file,
+    };
+    let sections = outputs::sections(tree, &about, &site, problems);
     let curves = curves::curves(tree, &names, &loads, file, problems);
     let checks = checks::checks(tree, &names, &loads, &stages, problems);
     let output = outputs::output(tree, problems);

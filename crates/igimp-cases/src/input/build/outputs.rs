@@ -9,7 +9,7 @@ use super::quantities::fields;
 use super::site::Site;
 use crate::case::{
     Average, Every, Field, Material, Monitor, Output, Section, SectionReference, SolverSettings,
-    Strength,
+    Stage, StageKind, Strength,
 };
 use crate::input::diagnostic::Problems;
 use crate::input::text::{clip, point};
@@ -88,7 +88,7 @@ pub(super) fn monitors(tree: &Node, site: &Site, problems: &mut Problems) -> Vec
 /// The sections.
 pub(super) fn sections(
     tree: &Node,
-    (names, file): (&AllNames, &Path),
+    about: &About<'_>,
     site: &Site,
     problems: &mut Problems,
 ) -> Vec<Option<Section>> {
@@ -115,7 +115,7 @@ pub(super) fn sections(
             let references: Option<Vec<_>> = node
                 .items_at("references")
                 .iter()
-                .map(|node| section_reference(node, record.as_deref(), (names, file), problems))
+                .map(|node| section_reference(node, record.as_deref(), about, problems))
                 .collect();
             Some(Section {
                 name: node.text_at("name")?.to_owned(),
@@ -133,11 +133,18 @@ pub(super) fn sections(
         .collect()
 }
 
+/// What references of sections are read with.
+pub(super) struct About<'a> {
+    pub(super) names: &'a AllNames,
+    pub(super) stages: &'a [Option<Stage>],
+    pub(super) file: &'a Path,
+}
+
 /// A reference of a section that records these fields.
 fn section_reference(
     node: &Node,
     record: Option<&[Field]>,
-    (names, file): (&AllNames, &Path),
+    about: &About<'_>,
     problems: &mut Problems,
 ) -> Option<SectionReference> {
     let of = fields(std::slice::from_ref(node.get("of")?))?.pop()?;
@@ -152,8 +159,23 @@ fn section_reference(
         return None;
     }
     let who = "this reference looks at";
-    let stage = names.stages.find_optional(node, "stage", who, problems);
-    let reference = super::curves::reference(node, file, problems);
+    let stage = about
+        .names
+        .stages
+        .find_optional(node, "stage", who, problems);
+    let searches = |stage: &Stage| matches!(stage.kind, StageKind::StrengthReduction(_));
+    if let Ok(Some(number)) = stage
+        && about.stages[number].as_ref().is_some_and(searches)
+    {
+        problems
+            .error(
+                node.place_at("stage"),
+                "a strength reduction leaves the body as it found it, and no sections",
+            )
+            .help("name the stage before it");
+        return None;
+    }
+    let reference = super::curves::reference(node, about.file, problems);
     Some(SectionReference {
         of,
         stage: stage.ok()?,

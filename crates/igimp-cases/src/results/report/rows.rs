@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::verdict::on_safety;
 use crate::check::{Band, short};
+use crate::mesh_study::MeshSummary;
 use crate::results::fields::{Dimension, Scale};
 use crate::summary::{SafetySummary, StageOutcome, StageSummary, Summary};
 
@@ -39,7 +40,7 @@ pub(super) fn headline(summary: &Summary) -> Vec<Number> {
     };
     let mesh_error = match &summary.mesh_study {
         Some(study) => {
-            let shown = study.shown().map_or_else(String::new, |mesh| mesh.label());
+            let shown = study.shown().map_or_else(String::new, MeshSummary::label);
             format!("on the mesh {shown}; its error is that of the extrapolated value")
         }
         None => MESH_ERROR_UNKNOWN.to_owned(),
@@ -52,6 +53,8 @@ pub(super) fn headline(summary: &Summary) -> Vec<Number> {
             let value = format!("{from}\u{a0}…\u{a0}{to}");
             add(name, value, mesh_error.clone());
         }
+    }
+    for stage in &summary.stages {
         if let Some(peak) = stage.peak_resistance {
             let name = several(
                 |stage| stage.peak_resistance.is_some(),
