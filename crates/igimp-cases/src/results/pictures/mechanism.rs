@@ -157,12 +157,13 @@ fn window(particles: &Particles<2>, found: &Mechanism, most_shear: f64) -> [[f64
         .collect();
     let (all_lower, all_upper) = bounding_box(&particles.x);
     let (lower, upper) = bounding_box(&part);
-    let air = AIR * (upper[0] - lower[0]).max(upper[1] - lower[1]);
     let edge = particles
         .half_length0
         .iter()
         .flatten()
         .fold(0.0_f64, |a, &b| a.max(b));
+    // One particle alone takes some room too.
+    let air = (AIR * (upper[0] - lower[0]).max(upper[1] - lower[1])).max(2.0 * edge);
     [
         [0, 1].map(|k| (lower[k] - air).max(all_lower[k] - 2.0 * edge)),
         [0, 1].map(|k| (upper[k] + air).min(all_upper[k] + 2.0 * edge)),
