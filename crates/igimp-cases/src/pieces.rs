@@ -14,9 +14,9 @@ use crate::error::CaseError;
 use crate::polygon::Polygon;
 use crate::seed::{Piece, fill_in_pieces};
 
-/// Corners that a particle carries further from their middle than this share of its size have
+/// Corners that a particle carries further from their middle than so many times its size have
 /// parted \[-\].
-const PARTED: f64 = 0.75;
+const PARTED: f64 = 1.5;
 /// Corners closer than this share of the smallest cell are one \[-\].
 const SAME: f64 = 1e-6;
 

@@ -211,12 +211,12 @@ fn happens(case: &Case, stage: &Stage) -> String {
         names.join(", ")
     };
     match &stage.kind {
-        StageKind::Gravity { factor } => format!("gravity to {} times its value", short(*factor)),
+        StageKind::Gravity { factor } => format!("gravity to {}", times(*factor, "value")),
         StageKind::K0 => "stresses of level ground at rest (K₀), then equilibrium".to_owned(),
         StageKind::Load { loads, factor } => {
             let name = |&k: &usize| case.loads[k].name.as_str();
             let names: Vec<&str> = loads.iter().map(name).collect();
-            format!("{} to {} times its size", names.join(", "), short(*factor))
+            format!("{} to {}", names.join(", "), times(*factor, "size"))
         }
         StageKind::Displacement { load, settlement } => {
             let Load { name, .. } = &case.loads[*load];
@@ -245,6 +245,15 @@ fn happens(case: &Case, stage: &Stage) -> String {
                 materials(&run_out.materials)
             )
         }
+    }
+}
+
+/// A multiple in words.
+fn times(factor: f64, of: &str) -> String {
+    if (factor - 1.0).abs() < 1e-12 {
+        format!("its full {of}")
+    } else {
+        format!("{} times its {of}", short(factor))
     }
 }
 
@@ -344,6 +353,11 @@ mod tests {
             row(&tables, "Stages as planned", 1),
             "2 | factor of safety | search for the factor of safety to within 0.02, strength of clay reduced \
              step by step; on the geometry as it is | initial stresses | 10"
+        );
+        assert_eq!(
+            row(&tables, "Stages as planned", 0),
+            "1 | initial stresses | gravity to its full value; displacements count from its end on | \
+             undeformed, free of stress | 10"
         );
         assert!(!tables.iter().any(|table| table.title == "Loads"));
     }

@@ -81,6 +81,7 @@ pub(super) struct Notes {
     pub(super) figures: Vec<FigureNote>,
     pub(super) factor_of_safety: Option<f64>,
     /// By check: the peak so far.
+    #[serde(default)]
     pub(super) peaks: Vec<Option<f64>>,
     pub(super) curve_rows: Vec<usize>,
     pub(super) monitor_rows: Vec<usize>,
