@@ -3,6 +3,7 @@
 
 mod arguments;
 mod cases;
+mod clock;
 mod error;
 mod interrupt;
 mod output;

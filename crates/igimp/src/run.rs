@@ -13,7 +13,7 @@ use igimp_cases::sweep::{Ending, Sweep};
 use crate::arguments::RunArguments;
 use crate::error::{Exit, ProgramError};
 use crate::progress::Progress;
-use crate::{cases, interrupt, output, verdict};
+use crate::{cases, clock, interrupt, output, verdict};
 
 pub(crate) fn run(arguments: &RunArguments) -> Result<Exit, ProgramError> {
     output::use_threads(arguments.threads);
@@ -44,6 +44,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<Exit, ProgramError> {
     }
     let target = Target {
         systems: arguments.export_matrix.clone(),
+        date: clock::now()?,
         expectation,
         replace: replace(arguments.overwrite),
         ..Target::of(&file, &folder)
@@ -75,7 +76,10 @@ fn give_up(error: &ProgramError, folder: &Path, arguments: &RunArguments) -> Exi
 /// One task of a sweep.
 fn task(arguments: &RunArguments, number: usize) -> Result<Exit, ProgramError> {
     let flag = interrupt::watch();
-    let sweep = Sweep::read_unchecked(&arguments.case)?;
+    let sweep = Sweep {
+        date: clock::now()?,
+        ..Sweep::read_unchecked(&arguments.case)?
+    };
     let task = sweep.task(number)?;
     if !arguments.quiet {
         output::say(&format!("task {number}: {}", task.label()))?;

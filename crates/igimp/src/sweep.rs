@@ -10,11 +10,14 @@ use igimp_cases::sweep::{self, Ending, Task};
 use crate::arguments::{Collect, SweepArguments};
 use crate::error::{Exit, ProgramError};
 use crate::run::replace;
-use crate::{interrupt, output, plain};
+use crate::{clock, interrupt, output, plain};
 
 pub(crate) fn sweep(arguments: &SweepArguments) -> Result<Exit, ProgramError> {
     let flag = interrupt::watch();
-    let sweep = sweep::Sweep::read(&arguments.file)?;
+    let sweep = sweep::Sweep {
+        date: clock::now()?,
+        ..sweep::Sweep::read(&arguments.file)?
+    };
     let width = sweep.tasks.len().to_string().len();
     let label = |task: &Task| format!("task {:>width$}/{}", task.number, sweep.tasks.len());
     if arguments.list {

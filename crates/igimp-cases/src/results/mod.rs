@@ -18,6 +18,7 @@ pub mod pvd;
 pub mod regime;
 pub mod report;
 pub mod rows;
+pub mod setup;
 pub mod vtu;
 
 #[cfg(test)]

@@ -18,7 +18,9 @@ use super::{checks, failure, initial, loading, processor, run_out, safety, secti
 use crate::case::{Case, StageKind};
 use crate::error::CaseError;
 use crate::estimate::Expectation;
+use crate::results::checkpoint::sha256;
 use crate::results::folder::{clear_meshes, refuse_foreign};
+use crate::results::setup;
 use crate::summary::{StageOutcome, StageSummary, Summary};
 use crate::table::Table;
 use igimp_solver::StepError;
@@ -87,6 +89,10 @@ pub(super) fn one_mesh(
         summary: Summary {
             program: format!("igimp {}", env!("CARGO_PKG_VERSION")),
             title: case.title.clone(),
+            title_block: case.title_block.clone(),
+            date: target.and_then(|target| target.date.clone()),
+            input_sha256: target.map(|target| sha256(target.completed.as_bytes())),
+            setup: setup::tables(case),
             method: case.method.label(),
             size: model.size(&initial.body),
             ..Summary::default()
@@ -246,6 +252,9 @@ impl Stages {
         }
         summary.seconds = seconds_before + clock.elapsed().as_secs_f64();
         summary.largest_displacement = largest_displacement(&state.body.particles);
+        if let StageKind::Displacement { .. } = stage.kind {
+            summary.settlement = Some(state.controls.settlement);
+        }
         let step_error = match ended {
             Ended::Completed(reason) => {
                 (summary.outcome, summary.reason) = (StageOutcome::Completed, reason);
@@ -349,6 +358,8 @@ impl Stages {
             plastic_share: summary.plastic_share,
         };
         let rows = checks::at_end_of_stage(case, &session.records, &moment);
+        session.summary.checks.extend(rows);
+        let rows = checks::of_sections(case, number, &tables);
         session.summary.checks.extend(rows);
         if let Some(output) = &mut session.output {
             output.end_of_stage(session.model, number, state, summary, &tables)?;

@@ -1,8 +1,9 @@
 //! Where a run was left, as checkpoints tell it.
 
 use std::path::Path;
+use std::sync::Arc;
 
-use igimp_solver::MarchState;
+use igimp_solver::{Body, MarchState};
 use serde::{Deserialize, Serialize};
 
 use super::state::{Controls, State};
@@ -31,9 +32,20 @@ pub(crate) struct Search {
     /// Trials made.
     pub(crate) trials: Vec<TrialSummary>,
     /// Largest stable factor and its state.
-    pub(crate) stable: Option<(f64, State)>,
+    pub(crate) stable: Option<End>,
     /// Smallest failed factor and its last equilibrium.
-    pub(crate) failed: Option<(f64, State)>,
+    pub(crate) failed: Option<End>,
+}
+
+/// An end of the interval of a search.
+#[derive(Clone, Debug)]
+pub(crate) struct End {
+    /// Strength reduction factor \[-\].
+    pub(crate) srf: f64,
+    /// Its last equilibrium.
+    pub(crate) state: State,
+    /// The equilibrium before that, for the way in which the body moves.
+    pub(crate) before: Option<Arc<Body<2>>>,
 }
 
 /// Where a run was left.
@@ -68,6 +80,9 @@ pub(super) struct Notes {
     pub(super) unknowns: usize,
     pub(super) figures: Vec<FigureNote>,
     pub(super) factor_of_safety: Option<f64>,
+    /// By check: the peak so far.
+    #[serde(default)]
+    pub(super) peaks: Vec<Option<f64>>,
     pub(super) curve_rows: Vec<usize>,
     pub(super) monitor_rows: Vec<usize>,
     pub(super) convergence_rows: usize,

@@ -165,6 +165,8 @@ pub struct Target {
     ///
     /// [`linear_system`]: crate::results::linear_system
     pub systems: Option<PathBuf>,
+    /// Day and time of the run, for its report. The library reads no time of day: who starts a run says it.
+    pub date: Option<String>,
     /// What the run is thought to cost, to be kept beside what it did.
     pub expectation: Option<Expectation>,
     /// Of a study of the mesh error: the completed case of each mesh.
@@ -183,6 +185,7 @@ impl Target {
             source: file.source().to_owned(),
             completed: file.explain(),
             systems: None,
+            date: None,
             expectation: None,
             meshes: file.explain_meshes(),
             origin: file.origin().clone(),

@@ -6,13 +6,16 @@ mod interval;
 mod remarks;
 mod trial;
 
+use std::sync::Arc;
+
 use igimp_assembly::Geometry;
+use igimp_solver::Body;
 
 use self::criterion::{default_limit, height};
 use self::interval::next_factor;
 use self::remarks::{moving_mass, remarks};
 use super::Event;
-use super::left::Search;
+use super::left::{End, Search};
 use super::loading::begin;
 use super::model::Model;
 use super::session::{Ended, Path, Session, march_path};
@@ -60,10 +63,10 @@ struct Trials<'a> {
     /// What every trial begins with: that state, or undeformed bodies where gravity is raised anew.
     base: State,
     made: Vec<TrialSummary>,
-    /// The equilibrium at the largest stable factor, and that factor.
-    stable: Option<(f64, State)>,
-    /// The last equilibrium on the way to the smallest failed factor, and that factor.
-    failed: Option<(f64, State)>,
+    /// The largest stable factor, with its equilibrium.
+    stable: Option<End>,
+    /// The smallest failed factor, with the last equilibrium on the way to it.
+    failed: Option<End>,
 }
 
 impl<'a> Trials<'a> {
@@ -143,8 +146,8 @@ impl<'a> Trials<'a> {
             return None;
         }
         let [low, high] = self.reduction.bracket;
-        let stable = self.stable.as_ref().map(|(srf, _)| *srf);
-        let failed = self.failed.as_ref().map(|(srf, _)| *srf);
+        let stable = self.stable.as_ref().map(|end| end.srf);
+        let failed = self.failed.as_ref().map(|end| end.srf);
         // A march of the reduction ends at the last equilibrium, most likely just below the factor
         // of safety: the search goes on in small strides from there.
         let stride = match self.reduction.path {
@@ -171,7 +174,7 @@ impl<'a> Trials<'a> {
         srf: f64,
     ) -> Result<Option<Ended>, CaseError> {
         let listed = self.made.len() < self.reduction.factors.len();
-        let (mut state, from) = self.start(srf);
+        let (mut state, from, mut before) = self.start(srf);
         let to = self.end(srf);
         let settings = self.settings(session.model, &from, srf);
         let path = Path {
@@ -182,18 +185,21 @@ impl<'a> Trials<'a> {
             settings,
             left: None,
         };
-        let before = [summary.steps, summary.iterations, summary.cuts];
+        let effort = [summary.steps, summary.iterations, summary.cuts];
         let reduction = self.reduction;
         let limit = self.limit;
         let mut course: Vec<[f64; 2]> = Vec::new();
-        // The last equilibrium within the criterion: its factor and state.
-        let mut within: Option<(f64, State)> = None;
+        // The last equilibrium, and the last within the criterion.
+        let mut last = Arc::new(state.body.clone());
+        let mut within: Option<End> = None;
         let ended = march_path(
             session,
             &mut state,
             &path,
             summary,
             &mut |session, _, taken| {
+                let now = Arc::new(taken.accepted.body.clone());
+                before = Some(std::mem::replace(&mut last, now));
                 let particles = &taken.accepted.body.particles;
                 let displacement = session.displacement(reduction.monitor, particles);
                 let failed = limit.is_some_and(|limit| displacement > limit);
@@ -205,7 +211,11 @@ impl<'a> Trials<'a> {
                         body: taken.accepted.body.clone(),
                         controls: taken.controls.clone(),
                     };
-                    within = Some((taken.controls.srf[reduction.materials[0]], state));
+                    within = Some(End {
+                        srf: taken.controls.srf[reduction.materials[0]],
+                        state,
+                        before: before.clone(),
+                    });
                 }
                 Ok((failed && !listed).then(|| self.exceeded(session)))
             },
@@ -240,9 +250,9 @@ impl<'a> Trials<'a> {
             stable,
             reason,
             displacement,
-            steps: summary.steps - before[0],
-            iterations: summary.iterations - before[1],
-            cuts: summary.cuts - before[2],
+            steps: summary.steps - effort[0],
+            iterations: summary.iterations - effort[1],
+            cuts: summary.cuts - effort[2],
             course,
         };
         session.tell(&Event::Trial {
@@ -253,57 +263,56 @@ impl<'a> Trials<'a> {
         if listed && !matches!(ended, Ended::NotConverged(_)) {
             self.record(session, &state, summary.plastic_share)?;
         }
-        self.narrow(session, (srf, stable), state, within);
+        let end = End { srf, state, before };
+        self.narrow(session, stable, end, within);
         Ok(None)
     }
 
-    /// Where a trial begins: the stable state of the largest smaller factor, or the base.
-    fn start(&self, srf: f64) -> (State, Controls) {
+    /// Where a trial begins: the stable state of the largest smaller factor, or the base; with the
+    /// equilibrium before it.
+    fn start(&self, srf: f64) -> (State, Controls, Option<Arc<Body<2>>>) {
         match (self.reduction.path, &self.stable) {
-            (ReductionPath::Reduce, Some((stable, state))) if *stable <= srf => {
-                (state.clone(), state.controls.clone())
+            (ReductionPath::Reduce, Some(end)) if end.srf <= srf => {
+                let (state, before) = (end.state.clone(), end.before.clone());
+                let from = state.controls.clone();
+                (state, from, before)
             }
-            (ReductionPath::Reduce, _) => (self.base.clone(), self.found.controls.clone()),
+            (ReductionPath::Reduce, _) => (self.base.clone(), self.found.controls.clone(), None),
             (ReductionPath::Gravity, _) => {
                 let mut from = self.base.controls.clone();
                 for &material in &self.reduction.materials {
                     from.srf[material] = srf;
                 }
-                (self.base.clone(), from)
+                (self.base.clone(), from, None)
             }
         }
     }
 
     /// Takes a trial into the interval.
-    fn narrow(
-        &mut self,
-        session: &mut Session<'_>,
-        (srf, stable): (f64, bool),
-        state: State,
-        within: Option<(f64, State)>,
-    ) {
+    fn narrow(&mut self, session: &mut Session<'_>, stable: bool, end: End, within: Option<End>) {
         let below_failed =
-            |srf: f64, failed: &Option<(f64, State)>| failed.as_ref().is_none_or(|f| srf < f.0);
-        let mut candidates: Vec<(f64, State)> = within.into_iter().collect();
+            |srf: f64, failed: &Option<End>| failed.as_ref().is_none_or(|f| srf < f.srf);
+        let mut candidates: Vec<End> = within.into_iter().collect();
         if stable {
-            if !below_failed(srf, &self.failed) {
+            if !below_failed(end.srf, &self.failed) {
                 session.warn(format!(
-                    "the slope stands at SRF {srf:.4} though it failed at a smaller factor; \
-                     the factor of safety is that of the smallest factor that failed"
+                    "the slope stands at SRF {:.4} though it failed at a smaller factor; \
+                     the factor of safety is that of the smallest factor that failed",
+                    end.srf
                 ));
             }
-            candidates.push((srf, state));
-        } else if below_failed(srf, &self.failed) {
-            self.failed = Some((srf, state));
+            candidates.push(end);
+        } else if below_failed(end.srf, &self.failed) {
+            self.failed = Some(end);
         }
-        for (srf, state) in candidates {
-            let larger = self.stable.as_ref().is_none_or(|s| srf >= s.0);
-            if larger && below_failed(srf, &self.failed) {
-                self.stable = Some((srf, state));
+        for end in candidates {
+            let larger = self.stable.as_ref().is_none_or(|s| end.srf >= s.srf);
+            if larger && below_failed(end.srf, &self.failed) {
+                self.stable = Some(end);
             }
         }
-        if let (Some((stable, _)), Some((failed, _))) = (&self.stable, &self.failed)
-            && stable >= failed
+        if let (Some(stable), Some(failed)) = (&self.stable, &self.failed)
+            && stable.srf >= failed.srf
         {
             self.stable = None;
         }
@@ -311,7 +320,7 @@ impl<'a> Trials<'a> {
 
     /// A remark when the last standing state of a moving geometry is no longer the slope that was asked for.
     fn slid(&self, session: &Session<'_>) -> Option<String> {
-        let (srf, state) = self.stable.as_ref()?;
+        let End { srf, state, .. } = self.stable.as_ref()?;
         let particles = &state.body.particles;
         let moved = session.displacement(self.reduction.monitor, particles);
         let height = height(&self.base);
@@ -344,9 +353,9 @@ impl<'a> Trials<'a> {
         if self.limit.is_some() {
             criterion = format!("{criterion}, or {}", self.exceeded(session));
         }
-        let moving_mass = self.failed.as_ref().map(|(_, state)| moving_mass(state));
-        let stable = self.stable.as_ref().map(|(srf, _)| *srf);
-        let failed = self.failed.as_ref().map(|(srf, _)| *srf);
+        let moving_mass = self.failed.as_ref().map(|end| moving_mass(&end.state));
+        let stable = self.stable.as_ref().map(|end| end.srf);
+        let failed = self.failed.as_ref().map(|end| end.srf);
         let slid = self.slid(session);
         let safety = SafetySummary {
             stable,
@@ -365,14 +374,7 @@ impl<'a> Trials<'a> {
             _ => f64::NAN,
         };
         if let Some(output) = &mut session.output {
-            for (what, end) in [
-                ("last-stable", self.stable),
-                ("first-unstable", self.failed),
-            ] {
-                if let Some((srf, state)) = end {
-                    output.keep_end(self.number, what, srf, state);
-                }
-            }
+            output.keep_ends(self.stable, self.failed);
         }
         safety
     }

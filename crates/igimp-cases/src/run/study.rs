@@ -16,6 +16,7 @@ use crate::estimate::estimate;
 use crate::estimate::time::time_of_steps_taken;
 use crate::estimate::watch::side_by_side;
 use crate::mesh_study::{MeshSummary, StudySummary, check_rows, plan, study};
+use crate::results::checkpoint::sha256;
 use crate::results::folder::{self, mesh_name, write_atomically, write_summary};
 use crate::results::{pictures, report};
 use crate::summary::{Expected, Summary};
@@ -81,6 +82,7 @@ pub(super) fn run(
     summary.memory = None;
     summary.cpu_seconds = processor::seconds();
     if let Some(target) = target {
+        summary.input_sha256 = Some(sha256(target.completed.as_bytes()));
         write(case, &target.folder, summary, clock)?;
         if !summary.interrupted && run.lost.is_empty() {
             folder::mark(&target.folder, &target.claim(case), true)?;
@@ -104,6 +106,7 @@ fn of_mesh(target: &Target, number: usize) -> Target {
             .unwrap_or(&target.completed)
             .clone(),
         systems: target.systems.as_ref().map(|systems| systems.join(&name)),
+        date: target.date.clone(),
         expectation: None,
         meshes: Vec::new(),
         origin: target.origin.clone(),

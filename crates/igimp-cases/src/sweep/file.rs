@@ -133,6 +133,7 @@ fn read(table: &DeTable<'_>, base: &Path) -> Result<Sweep, Problem> {
         collect,
         keys,
         tasks,
+        date: None,
     })
 }
 

@@ -61,6 +61,8 @@ pub struct Sweep {
     pub keys: Vec<String>,
     /// Tasks in order; the first parameter changes slowest.
     pub tasks: Vec<Task>,
+    /// Day and time for the reports of its tasks; whoever runs them says it.
+    pub date: Option<String>,
 }
 
 /// One run of a study.
@@ -263,6 +265,7 @@ impl Sweep {
         let target = Target {
             origin: Origin::Part(self.file.clone(), format!("task {}", task.number)),
             replace,
+            date: self.date.clone(),
             ..Target::of(&file, &task.folder)
         };
         room::refuse_beyond(&case)?;

@@ -20,7 +20,8 @@ const SETTINGS: [&str; 6] = [
 ];
 
 /// What depends on the computer and the hour.
-const TIMES: [&str; 6] = [
+const TIMES: [&str; 7] = [
+    "date",
     "seconds",
     "output_seconds",
     "cpu_seconds",

@@ -69,7 +69,8 @@ fn a_new_folder_is_laid_out() {
             "figures",
             "monitors",
             "paraview",
-            "sections"
+            "sections",
+            "slip_lines"
         ]
     );
     assert_eq!(folder.root(), root);

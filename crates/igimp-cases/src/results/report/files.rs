@@ -42,7 +42,7 @@ struct Link {
 }
 
 /// The headings, with the beginnings of the names of the pictures below them.
-const GROUPS: [(&str, &str, &[&str]); 7] = [
+const GROUPS: [(&str, &str, &[&str]); 8] = [
     ("model", "Model", &["model"]),
     ("mesh-error", "Mesh error, pictures", &["mesh-study"]),
     ("curves", "Curves", &["curve", "safety"]),
@@ -51,10 +51,15 @@ const GROUPS: [(&str, &str, &[&str]); 7] = [
         "Monitors and sections",
         &["monitor", "section"],
     ),
+    ("mechanism", "Mechanism of failure", &["mechanism"]),
     ("fields", "Fields", &["field"]),
     ("pictures", "Further pictures", &[""]),
     ("convergence", "Convergence", &["convergence"]),
 ];
+
+/// Places of headings among them.
+const FURTHER: usize = 6;
+const CONVERGENCE: usize = 7;
 
 /// The pictures of the summary by kind, in its order, and plots of the convergence of every stage.
 pub(super) fn pictures(folder: &Path, summary: &Summary) -> Vec<Group> {
@@ -70,11 +75,11 @@ pub(super) fn pictures(folder: &Path, summary: &Summary) -> Vec<Group> {
                 .iter()
                 .any(|start| !start.is_empty() && name.starts_with(start))
         };
-        let place = GROUPS.iter().position(named).unwrap_or(5);
+        let place = GROUPS.iter().position(named).unwrap_or(FURTHER);
         groups[place].pictures.push(picture(folder, note));
     }
-    if groups[6].pictures.is_empty() {
-        groups[6].pictures = convergence(folder, summary);
+    if groups[CONVERGENCE].pictures.is_empty() {
+        groups[CONVERGENCE].pictures = convergence(folder, summary);
     }
     groups
         .into_iter()
@@ -157,7 +162,7 @@ pub(super) struct FileView {
 
 /// The tables, and the entry points of the other results.
 pub(super) fn tables(folder: &Path) -> Vec<FileView> {
-    let mut views: Vec<FileView> = ["curves", "monitors", "sections"]
+    let mut views: Vec<FileView> = ["curves", "monitors", "sections", "slip_lines"]
         .into_iter()
         .flat_map(|within| {
             names(&folder.join(within))

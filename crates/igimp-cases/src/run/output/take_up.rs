@@ -1,10 +1,11 @@
 //! How a run is taken up again from its results folder.
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use igimp_solver::Body;
 
-use super::{Output, csv};
+use super::{BEFORE, Output, csv};
 use crate::case::Case;
 use crate::error::CaseError;
 use crate::results::atomic::write_whole;
@@ -14,7 +15,7 @@ use crate::results::owner::Claim;
 use crate::results::rows;
 use crate::run::Target;
 use crate::run::fingerprint;
-use crate::run::left::{Left, Notes, Resumption, Search, end_of_stage, notes_of};
+use crate::run::left::{End, Left, Notes, Resumption, Search, end_of_stage, notes_of};
 use crate::run::records::Records;
 use crate::run::state::{Controls, State};
 
@@ -38,6 +39,8 @@ impl Output {
         let found = checkpoint::read(&path, Some(&fingerprint::of_case(case)))?;
         let passed_over = checkpoint::passed_over(&path)?;
         checkpoint::discard_after(&path)?;
+        write_whole(&folder.case(), &target.source)?;
+        write_whole(&folder.completed_case(), &target.completed)?;
         let (mut output, left) = Self::take_up(folder, target.claim(case), case, records, &found)?;
         let taken = path.file_name().unwrap_or_default().to_string_lossy();
         let note = |error| format!("{error}; the run goes on from {taken}, the last whole one");
@@ -109,18 +112,27 @@ impl Output {
             );
             return Err(damaged("meta.json".to_owned(), why).into());
         }
-        let with_body = |name: &str, of: &Option<(f64, Controls)>| match of {
+        let with_body = |name: &str, before: &str, of: &Option<(f64, Controls)>| match of {
             Some((srf, controls)) => {
                 let controls = controls.clone();
-                body(name).map(|body| Some((*srf, State { body, controls })))
+                body(name).map(|own| {
+                    Some(End {
+                        srf: *srf,
+                        state: State {
+                            body: own,
+                            controls,
+                        },
+                        before: body(before).ok().map(Arc::new),
+                    })
+                })
             }
             None => Ok(None),
         };
         let search = match &notes.trials {
             Some(trials) => Some(Search {
                 trials: trials.clone(),
-                stable: with_body("stable", &notes.stable)?,
-                failed: with_body("failed", &notes.failed)?,
+                stable: with_body("stable", BEFORE[0], &notes.stable)?,
+                failed: with_body("failed", BEFORE[1], &notes.failed)?,
             }),
             None => None,
         };
@@ -137,6 +149,11 @@ impl Output {
             resumption: notes.resumption.clone(),
             search,
         };
+        // From a stage on, the checks may be others than they were.
+        if notes.peaks.len() == records.peaks.len() {
+            let peaks = notes.peaks.iter().map(|peak| peak.unwrap_or(f64::NAN));
+            records.peaks = peaks.collect();
+        }
         folder::mark(folder.root(), &claim, false)?;
         let output = Self::open(folder, claim, case, records, Some(&notes))?;
         records.factor_of_safety = notes.factor_of_safety.unwrap_or(f64::NAN);
