@@ -15,6 +15,7 @@ mod sweep;
 mod template;
 mod validate;
 mod verdict;
+mod view;
 
 use std::process::ExitCode;
 
@@ -48,6 +49,7 @@ fn obey(command: &Command) -> Result<Exit, ProgramError> {
         Command::Explain(arguments) => cases::explain(arguments),
         Command::Run(arguments) => run::run(arguments),
         Command::Report(arguments) => report::report(arguments),
+        Command::View(arguments) => view::view(arguments),
         Command::Sweep(arguments) => sweep::sweep(arguments),
         Command::Collect(arguments) => sweep::collect(arguments),
         Command::Validate(arguments) => validate::validate(arguments),
