@@ -83,6 +83,7 @@ impl Results {
                 let trials = stage.safety.as_ref().map(|found| found.trials.len());
                 json!({
                     "name": stage.name,
+                    "search": trials.is_some(),
                     // The time of a frame counts steps, and the trials of a search.
                     "moments": trials.unwrap_or(stage.steps),
                     "rows": trials.map_or(stage.steps, |made| made.min(listed(case, number))),
@@ -122,7 +123,9 @@ impl Results {
         let name = decoded(encoded)?;
         let (path, kind) = SHOWN.iter().find_map(|&(folder, ending, kind)| {
             let mut names = self.names(folder, ending);
-            names.find(|(own, _)| *own == name).map(|(_, path)| (path, kind))
+            names
+                .find(|(own, _)| *own == name)
+                .map(|(_, path)| (path, kind))
         })?;
         let file = File::open(path).ok()?;
         let length = file.metadata().ok()?.len();
@@ -165,7 +168,10 @@ fn is_of_a_run(folder: &Path) -> bool {
 
 /// Number of factors that the case lists for a search, each of which is a row of the tables.
 fn listed(case: Option<&Case>, stage: usize) -> usize {
-    match case.and_then(|case| case.stages.get(stage)).map(|stage| &stage.kind) {
+    match case
+        .and_then(|case| case.stages.get(stage))
+        .map(|stage| &stage.kind)
+    {
         Some(StageKind::StrengthReduction(search)) => search.factors.len(),
         _ => 0,
     }
@@ -178,7 +184,11 @@ fn version(path: &Path) -> String {
     };
     let time = about.modified().ok();
     let since = time.and_then(|time| time.duration_since(UNIX_EPOCH).ok());
-    format!("{}-{}", about.len(), since.map_or(0, |since| since.as_nanos()))
+    format!(
+        "{}-{}",
+        about.len(),
+        since.map_or(0, |since| since.as_nanos())
+    )
 }
 
 /// A part of an address with its percent signs read once.

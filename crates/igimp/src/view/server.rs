@@ -112,8 +112,7 @@ impl Site {
             return Err(Status::MethodNotAllowed);
         }
         // A page of another host that found the port by a trick with names still sends its own.
-        let is_here =
-            ["127.0.0.1", "localhost"].map(|name| format!("{name}:{}", self.port));
+        let is_here = ["127.0.0.1", "localhost"].map(|name| format!("{name}:{}", self.port));
         if !is_here.contains(&request.host) {
             return Err(Status::Forbidden);
         }

@@ -53,6 +53,7 @@ class Chart {
     parent.append(this.card);
   }
 
+  // Points with the number of the line that they belong to.
   show(points) {
     this.points = points;
     const [width, height, left, right, top, bottom] = [330, 200, 52, 322, 8, 160];
@@ -73,8 +74,11 @@ class Chart {
     this.y = (y) => bottom - ((bottom - top) * (y - ys[0])) / (ys[1] - ys[0]);
     for (const x of ticksOf(...xs, 4)) drawn(this.svg, "text", { x: this.x(x), y: bottom + 15, "text-anchor": "middle" }, short(x));
     for (const y of ticksOf(...ys, 4)) drawn(this.svg, "text", { x: left - 5, y: this.y(y) + 4, "text-anchor": "end" }, short(y));
-    const line = points.filter((point) => point.every(Number.isFinite)).map(([x, y]) => `${this.x(x).toFixed(2)},${this.y(y).toFixed(2)}`);
-    drawn(this.svg, "polyline", { class: "curve", points: line.join(" ") });
+    for (const line of new Set(points.map((point) => point[2]))) {
+      const own = points.filter((point) => point[2] === line && point.every(Number.isFinite));
+      const places = own.map(([x, y]) => `${this.x(x).toFixed(2)},${this.y(y).toFixed(2)}`);
+      drawn(this.svg, "polyline", { class: "curve", points: places.join(" ") });
+    }
     this.cursor = drawn(this.svg, "g", { class: "cursor" });
     [this.top, this.bottom] = [top, bottom];
   }

@@ -50,9 +50,9 @@ class Frame {
   constructor(text) {
     const page = new DOMParser().parseFromString(text, "application/xml");
     this.cells = Number(page.querySelector("Piece").getAttribute("NumberOfCells"));
-    const arrays = (selector) => [...page.querySelectorAll(`${selector} > DataArray`)];
-    this.places = new Map(arrays("Points, Cells").map((own) => [own.getAttribute("Name"), own]));
-    this.data = new Map(arrays("CellData").map((own) => [own.getAttribute("Name"), own]));
+    const arrays = (selector) => new Map([...page.querySelectorAll(selector)].map((own) => [own.getAttribute("Name"), own]));
+    this.places = arrays("Points > DataArray, Cells > DataArray");
+    this.data = arrays("CellData > DataArray");
     this.known = new Map();
   }
 

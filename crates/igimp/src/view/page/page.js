@@ -15,12 +15,22 @@ async function fetched(name) {
   return answer.text();
 }
 
+// Moments of a stage that the time of frames counts. The last steps of a run-out, without drag, are
+// no rows of a monitor, and not counted.
+function momentsOf(k) {
+  const monitor = [...tables].find(([name]) => name.startsWith("monitors/"));
+  const rows = monitor ? monitor[1].rows.filter((row) => row[0] === k + 1) : [];
+  const { search, moments } = index.stages[k];
+  return search || rows.length === 0 ? moments : rows[rows.length - 1][1];
+}
+
 // The stage and the step (or trial) at a time, which counts steps and trials of the whole run.
 function momentOf(time) {
   let before = 0;
-  for (const [k, stage] of index.stages.entries()) {
-    if (time <= before + stage.moments) return { stage: k, step: time - before };
-    before += stage.moments;
+  for (const k of index.stages.keys()) {
+    const moments = momentsOf(k);
+    if (time <= before + moments) return { stage: k, step: time - before };
+    before += moments;
   }
   return { stage: index.stages.length, step: time - before };
 }
@@ -42,7 +52,8 @@ async function framesOf() {
   return sets.map((set, k) => {
     const time = Number(set.getAttribute("timestep"));
     const moment = momentOf(time);
-    const label = `Frame ${k + 1} of ${sets.length}: step ${time}, step ${moment.step} of stage ${moment.stage + 1} “${stageName(moment.stage)}”`;
+    const own = index.stages[moment.stage];
+    const label = `Frame ${k + 1} of ${sets.length}: stage ${moment.stage + 1} “${stageName(moment.stage)}”, ${own && own.search ? "trial" : "step"} ${moment.step}`;
     return entryOf(`paraview/${set.getAttribute("file")}`, label, { moment });
   });
 }
@@ -89,10 +100,13 @@ async function drawTables() {
     for (const [label, column] of columns) {
       const id = `${name} ${column}`;
       if (!charts.has(id)) {
-        const chart = new Chart(document.getElementById("curves"), title, [isMonitor ? "row of the table" : own.header[0], label]);
+        const head = isMonitor ? `${title}: ${plain(label)}` : title;
+        const chart = new Chart(document.getElementById("curves"), head, [isMonitor ? "row of the table" : own.header[0], label]);
         charts.set(id, { chart, name });
       }
-      charts.get(id).chart.show(own.rows.map((row, k) => [isMonitor ? k : row[0], row[column]]));
+      // The displacement may begin anew with a stage: lines of monitors do not cross from one to the next.
+      const part = (row) => (isMonitor ? row[0] : 0);
+      charts.get(id).chart.show(own.rows.map((row, k) => [isMonitor ? k : row[0], row[column], part(row)]));
     }
   }
   for (const [id, { chart, name }] of charts) {
@@ -127,8 +141,8 @@ function tell(text) {
 
 // What to say where there is no frame.
 function whyNone() {
-  if (index.never) return "This run writes no frames: its case says output.paraview = \"never\". With \"stage\", or { every = 5 } for every fifth step, as in igimp run CASE --set 'output.paraview={ every = 5 }', there will be some.";
-  return "There are no frames yet. The first is written at the end of a stage, or earlier with output.paraview = { every = 5 } in the case; this page takes it up by itself.";
+  if (index.never) return "This run writes no frames: its case says paraview = { every = \"never\" } in [output]. With every = \"stage\", or every = 5 for every fifth step, as in igimp run CASE --set 'output.paraview={ every = 5 }', there will be some.";
+  return "There are no frames yet. The first is written at the end of a stage, or after every fifth step with paraview = { every = 5 } in [output] of the case; this page takes it up by itself.";
 }
 
 async function look() {
@@ -138,10 +152,10 @@ async function look() {
       index = JSON.parse(text);
       document.getElementById("title").textContent = index.title || index.folder;
       document.title = `${index.title || index.folder} – igimp`;
+      await drawTables();
       const frames = await framesOf();
       tell(frames.length === 0 ? whyNone() : "");
       viewer.take(frames, statesOf());
-      await drawTables();
       look.last = text;
       if (asked.has("play")) viewer.play();
       asked.delete("play");

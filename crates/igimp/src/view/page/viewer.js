@@ -229,7 +229,7 @@ class Viewer {
     if (cell !== this.pointed) return;
     const [x, y] = this.soil.centre(cell);
     const value = this.values[cell];
-    const unit = this.field.whole ? "" : ` ${this.unit[1]}`;
+    const unit = ["", "-"].includes(this.unit[1]) ? "" : ` ${this.unit[1]}`;
     const read = short(this.field.whole ? value : value / this.unit[0]);
     found.textContent = `Particle ${number} at (${short(x)}, ${short(y)}) m: ${this.field.title} ${read}${unit}`;
     Object.assign(found.dataset, { particle: number, x, y, value });
