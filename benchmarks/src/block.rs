@@ -122,16 +122,16 @@ impl<const D: usize> Block<D> {
             .collect();
         Ok(Self {
             particles: Particles::new(&seeds(cells, h))?,
-            conditions: StepConditions {
+            conditions: StepConditions::new(
                 grid,
                 constraints,
-                loads: StepLoads {
+                StepLoads {
                     gravity,
                     factors: Vec::new(),
                     drag: 0.0,
                 },
-                laws: vec![law],
-            },
+                vec![law],
+            )?,
             method: Method::default(),
             u,
         })
@@ -165,14 +165,7 @@ impl<const D: usize> Block<D> {
     /// # Errors
     /// Never: the block has one law, and nodes that are free.
     pub fn system<'a>(&'a self, stencils: &'a Stencils<D>) -> Result<System<'a, D>, AssemblyError> {
-        System::new(
-            &self.particles,
-            stencils,
-            &self.conditions,
-            &self.method,
-            &[],
-            None,
-        )
+        System::new(&self.particles, stencils, &self.conditions, &self.method)
     }
 }
 

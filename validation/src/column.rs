@@ -13,7 +13,7 @@ use rayon::prelude::*;
 use crate::oracle::{Oracle, OracleKind};
 use crate::reference::column_stress_error;
 use crate::runs::{Computed, corners, mesh, method, shipped_case, unwatched};
-use crate::study::{Run, Study};
+use crate::study::{RunRecord, Study};
 
 /// What the book says of the study.
 const ABOUT: &str = "A column of soft soil one cell wide settles under its own weight. Mean stress error against the exact solution, under refinement: iGIMP converges with second order, iMPM does not.";
@@ -191,7 +191,7 @@ impl Series1D {
             .map(|&(method, cells)| {
                 let computed = Computed::new(case(cells, label, method)?)?;
                 let variant = format!("{}, {cells} cells, E = {label}", computed.method());
-                let run = Run::new(variant, &computed.report, computed.elapsed);
+                let run = RunRecord::new(variant, &computed.report, computed.elapsed);
                 Ok((ColumnResult::new(&computed), run))
             })
             .collect::<Result<Vec<_>, CaseError>>()?;

@@ -22,7 +22,7 @@ use rayon::prelude::*;
 
 use crate::laboratory::{grid_of, run};
 use crate::oracle::{Oracle, OracleKind};
-use crate::study::{Level, Run, Study};
+use crate::study::{Level, RunRecord, Study};
 
 /// What the book says of the study.
 const ABOUT: &str = "Cook's tapered panel in plane strain, clamped on the left and sheared on the right, at ν = 1/3, 0.49 and 0.4999. The rise of its corner under refinement: with B-bar it does not care about ν, without it locks.";
@@ -52,7 +52,7 @@ const TRACTION: f64 = 6.25;
 const SHARE: f64 = 1e-3;
 
 /// The upward displacement of the upper right corner in small strain \[length\].
-fn corner(poisson: f64, method: &Method, cells: usize) -> Result<(Run, f64), CaseError> {
+fn corner(poisson: f64, method: &Method, cells: usize) -> Result<(RunRecord, f64), CaseError> {
     let h = WIDTH / cells as f64;
     let top = (60.0 / h).round() as usize;
     let grid = grid_of(h, [cells + 1, top + 1])?;
@@ -69,16 +69,16 @@ fn corner(poisson: f64, method: &Method, cells: usize) -> Result<(Run, f64), Cas
         kinematics: Kinematics::SmallStrain,
         ..method.clone()
     };
-    let program = |_from: f64, to: f64| {
-        Ok(StepConditions {
-            grid: grid.clone(),
-            constraints: constraints.clone(),
-            loads: StepLoads {
+    let load_path = |_from: f64, to: f64| {
+        StepConditions::new(
+            grid.clone(),
+            constraints.clone(),
+            StepLoads {
                 factors: vec![to * SHARE],
                 ..StepLoads::gravity([0.0; 2])
             },
-            laws: vec![Arc::clone(&law)],
-        })
+            vec![Arc::clone(&law)],
+        )
     };
     let mut rise = f64::NAN;
     let mut observe = |accepted: &Accepted<'_, 2>| {
@@ -92,7 +92,7 @@ fn corner(poisson: f64, method: &Method, cells: usize) -> Result<(Run, f64), Cas
         &mut body,
         &method,
         &settings,
-        &program,
+        &load_path,
         &mut observe,
     );
     Ok((run, rise))
@@ -131,9 +131,9 @@ fn refine(
         .par_iter()
         .map(|&cells| corner(poisson, method, cells))
         .collect::<Result<Vec<_>, CaseError>>()?;
-    let runs: Vec<&Run> = solved.iter().map(|(run, _)| run).collect();
+    let runs: Vec<&RunRecord> = solved.iter().map(|(run, _)| run).collect();
     let variant = format!("{}, ν = {}", method.label(), short(poisson));
-    let run = study.run(Run::sum(variant, &runs));
+    let run = study.run(RunRecord::sum(variant, &runs));
     let points: Vec<[f64; 2]> = std::iter::zip(meshes, &solved)
         .map(|(&cells, &(_, rise))| [cells as f64, rise])
         .collect();

@@ -20,7 +20,7 @@ use rayon::prelude::*;
 use crate::exact::elastica::Cantilever;
 use crate::laboratory::run;
 use crate::oracle::{Oracle, OracleKind};
-use crate::study::{Level, Run, Study};
+use crate::study::{Level, RunRecord, Study};
 
 /// What the book says of the study.
 const ABOUT: &str = "A slender elastic cantilever is bent by a dead load at its end, up to P L²/EI = 5. The deflection against the exact beam with extension and shear, and its dependence on mesh, particles and number of steps: B-bar softens the beam by a little in every step in which particles cross cells.";
@@ -51,7 +51,7 @@ struct Bending {
 
 /// What became of a beam.
 struct Bent {
-    run: Run,
+    run: RunRecord,
     /// Load P L²/EI and deflection over length by step.
     curve: Vec<[f64; 2]>,
     /// How much of the change of volume that F shows is stored as elastic strain: the slope of the
@@ -88,16 +88,16 @@ impl Bending {
         let mut constraints = Constraints::free(&grid);
         constraints.fix_wall(&grid, 0, false, 0)?;
         constraints.fix_wall(&grid, 0, false, 1)?;
-        let program = |_from: f64, to: f64| {
-            Ok(StepConditions {
-                grid: grid.clone(),
-                constraints: constraints.clone(),
-                loads: StepLoads {
+        let load_path = |_from: f64, to: f64| {
+            StepConditions::new(
+                grid.clone(),
+                constraints.clone(),
+                StepLoads {
                     factors: vec![to],
                     ..StepLoads::gravity([0.0; 2])
                 },
-                laws: vec![Arc::clone(&law)],
-            })
+                vec![Arc::clone(&law)],
+            )
         };
         let mut curve = Vec::new();
         let mut observe = |accepted: &Accepted<'_, 2>| {
@@ -119,7 +119,7 @@ impl Bending {
             &mut body,
             &self.method,
             &settings,
-            &program,
+            &load_path,
             &mut observe,
         );
         let stored = stored_share(&body.particles);

@@ -17,7 +17,7 @@ use crate::oracle::{Oracle, OracleKind};
 use crate::pictures::{contours, scaled};
 use crate::reference::{footing_sequential_limit_analysis, interpolate};
 use crate::runs::{Computed, mesh, method, shipped_case};
-use crate::study::{Level, Run, Study};
+use crate::study::{Level, RunRecord, Study};
 
 /// What the book says of the study.
 const ABOUT: &str = "A rigid strip footing in undrained soil, pushed one width deep: resistance against penetration.";
@@ -63,6 +63,11 @@ impl Push {
         self.label.replace("s_u", "s_{u}")
     }
 
+    /// Whether it ends where the limit load of small strain is reached.
+    fn is_small(&self) -> bool {
+        matches!(self.role, Role::SmallStrain | Role::Shared)
+    }
+
     fn case(&self) -> Result<Case, CaseError> {
         let mut overrides = mesh(1.0 / f64::from(self.cells_per_width), [5.0, 6.0]);
         overrides.extend(self.overrides.clone());
@@ -74,6 +79,9 @@ impl Push {
 enum Role {
     /// Stiff soil, hardly any penetration.
     SmallStrain,
+    /// The same with shared strain, on two meshes: held nodes act as a width that grows by a share of a
+    /// cell.
+    Shared,
     /// To one width.
     Deep,
     /// Without B-bar: must be too stiff.
@@ -129,7 +137,7 @@ fn pushes(level: Level) -> Vec<Push> {
             of(
                 "small_strain_shared_9",
                 "iGIMP + shared strain, rough, B/h = 9, E/s_u = 1e4",
-                Role::SmallStrain,
+                Role::Shared,
                 9,
                 &[stiff(), shared(), to(0.005, 20)],
             ),
@@ -157,7 +165,7 @@ fn pushes(level: Level) -> Vec<Push> {
             of(
                 "small_strain_shared_13",
                 "iGIMP + shared strain, rough, B/h = 13, E/s_u = 1e4",
-                Role::SmallStrain,
+                Role::Shared,
                 13,
                 &[stiff(), shared(), to(0.005, 20)],
             ),
@@ -204,9 +212,13 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
         .collect::<Result<Vec<_>, _>>()?;
     let sequential = footing_sequential_limit_analysis().points("w_over_B", "N");
     for (push, result) in pushes.iter().zip(&results) {
-        let run = study.run_to_end(Run::new(push.label.clone(), &result.report, result.elapsed));
+        let run = study.run_to_end(RunRecord::new(
+            push.label.clone(),
+            &result.report,
+            result.elapsed,
+        ));
         check(&mut study, push, run, result, &sequential);
-        if push.role != Role::SmallStrain {
+        if !push.is_small() {
             study.newton(push.name, run)?;
         }
         let mut table = Table::new(
@@ -218,6 +230,7 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
         }
         study.table(table)?;
     }
+    extrapolated(&mut study, &pushes, &results);
     figures(&study, &pushes, &results)?;
     Ok(study)
 }
@@ -274,7 +287,28 @@ fn check(study: &mut Study, push: &Push, run: usize, result: &Computed, sequenti
             Band::AtLeast(1.3 * interpolate(sequential, 0.2)),
             resistance_at(0.2),
         ),
-        Role::Shown => {}
+        Role::Shared | Role::Shown => {}
+    }
+}
+
+/// The limit load with shared strain, extrapolated to no width of the cell.
+fn extrapolated(study: &mut Study, pushes: &[Push], results: &[Computed]) {
+    let both = pushes.iter().zip(results).enumerate();
+    let found: Vec<_> = both
+        .filter(|(_, (push, _))| push.role == Role::Shared)
+        .map(|(run, (push, result))| {
+            let size = 1.0 / f64::from(push.cells_per_width);
+            (run, size, interpolate(&resistance(result), 0.005))
+        })
+        .collect();
+    if let [(_, coarse, before), (run, fine, end)] = found[..] {
+        study.check(
+            run,
+            "N at small strain, B/h = 9 and 13 extrapolated to h = 0 [-]",
+            PRANDTL.says(2.0 + std::f64::consts::PI),
+            Band::Relative(0.015),
+            end + (end - before) * fine / (coarse - fine),
+        );
     }
 }
 
@@ -283,7 +317,7 @@ fn figures(study: &Study, pushes: &[Push], results: &[Computed]) -> Result<(), C
     let mut series: Vec<Series> = pushes
         .iter()
         .zip(results)
-        .filter(|(push, _)| push.role != Role::SmallStrain)
+        .filter(|(push, _)| !push.is_small())
         .map(|(push, result)| Series::line(push.legend(), resistance(result)))
         .collect();
     series.push(
@@ -311,7 +345,7 @@ fn figures(study: &Study, pushes: &[Push], results: &[Computed]) -> Result<(), C
     let small: Vec<Series> = pushes
         .iter()
         .zip(results)
-        .filter(|(push, _)| push.role == Role::SmallStrain)
+        .filter(|(push, _)| push.is_small())
         .map(|(push, result)| Series::line(push.legend(), resistance(result)))
         .collect();
     CurvePlot {

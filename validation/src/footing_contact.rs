@@ -20,7 +20,7 @@ use crate::oracle::{Oracle, OracleKind};
 use crate::pictures::{contours, scaled, with_outlines};
 use crate::reference::{footing_sequential_limit_analysis, interpolate};
 use crate::runs::{mesh, shipped_case};
-use crate::study::{Level, Run, Study};
+use crate::study::{Level, RunRecord, Study};
 
 /// What the book says of the study.
 const ABOUT: &str = "The same footing beyond 0.3 B: what the resistance becomes when the soil in the cell beside the shaft \
@@ -120,7 +120,7 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
         .map(Variant::run)
         .collect::<Result<Vec<_>, _>>()?;
     for (variant, pushed) in variants.iter().zip(&results) {
-        let run = Run::new(variant.label(), &pushed.report, pushed.elapsed);
+        let run = RunRecord::new(variant.label(), &pushed.report, pushed.elapsed);
         let run = study.run_to_end(run);
         check(&mut study, variant, run, pushed);
         study.table(table(variant, pushed))?;

@@ -165,7 +165,7 @@ pub(crate) fn push(
             settlement: reached(t),
             ..controls.clone()
         };
-        let program = |from: f64, to: f64| {
+        let load_path = |from: f64, to: f64| {
             let mut conditions = model.conditions(&at(from), &at(to), 0.0)?;
             conditions.laws.push(Arc::clone(&weak));
             Ok(conditions)
@@ -185,7 +185,7 @@ pub(crate) fn push(
         let part = march(
             &mut body,
             &case.method,
-            &program,
+            &load_path,
             &settings,
             &mut workspace,
             &mut record,

@@ -8,10 +8,10 @@ use igimp_assembly::{Method, ParticleSeed};
 use igimp_shape::{Axis, Grid, ShapeError};
 use igimp_solver::linear::SolverKind;
 use igimp_solver::{
-    Accepted, Body, MarchReport, MarchSettings, Observer, Program, Workspace, march,
+    Accepted, Body, LoadPath, MarchReport, MarchSettings, Observer, Workspace, march,
 };
 
-use crate::study::Run;
+use crate::study::RunRecord;
 
 /// A grid of equal cells from the origin, `cells[d]` along axis d, of size `cell` \[length\].
 pub(crate) fn grid_of<const D: usize>(cell: f64, cells: [usize; D]) -> Result<Grid<D>, ShapeError> {
@@ -65,13 +65,13 @@ pub(crate) fn run<const D: usize>(
     body: &mut Body<D>,
     method: &Method,
     settings: &MarchSettings,
-    program: &dyn Program<D>,
+    load_path: &dyn LoadPath<D>,
     observer: &mut dyn Observer<D>,
-) -> (Run, MarchReport) {
+) -> (RunRecord, MarchReport) {
     let clock = Instant::now();
     let mut workspace = Workspace::new(SolverKind::Auto.build());
-    let report = march(body, method, program, settings, &mut workspace, observer);
-    (Run::new(variant, &report, clock.elapsed()), report)
+    let report = march(body, method, load_path, settings, &mut workspace, observer);
+    (RunRecord::new(variant, &report, clock.elapsed()), report)
 }
 
 /// An observer that looks at nothing.

@@ -24,6 +24,7 @@ mod oracle;
 mod pictures;
 mod prism;
 mod reference;
+mod review;
 mod runs;
 mod slopes;
 mod snapshot;
@@ -41,6 +42,7 @@ use clap::{Parser, ValueEnum};
 use igimp_cases::CaseError;
 use rayon::prelude::*;
 
+use crate::review::Difference;
 use crate::study::{Level, Study};
 
 /// Exit codes; part of the contract with callers.
@@ -58,7 +60,7 @@ const INPUT_OUTPUT: u8 = 4;
 #[derive(Debug, Parser)]
 #[command(name = "validate", version)]
 struct Arguments {
-    /// Run only these cases (may be repeated).
+    /// RunRecord only these cases (may be repeated).
     #[arg(long, value_enum, value_name = "CASE")]
     case: Vec<Case>,
     /// Coarse meshes and short runs: under a minute.
@@ -70,6 +72,9 @@ struct Arguments {
     /// Rewrite the snapshots with today's results.
     #[arg(long)]
     accept: bool,
+    /// Accept what an earlier run left beside the snapshots, without running anything.
+    #[arg(long, exclusive = true)]
+    accept_left: bool,
     /// Rewrite the verification matrix in the book with today's results, at the full level.
     #[arg(long, requires = "full", conflicts_with = "case")]
     matrix: bool,
@@ -128,7 +133,12 @@ fn main() -> ExitCode {
     if arguments.accept && std::env::var_os("INSTA_UPDATE").is_none_or(|value| value != "always") {
         return again_with_update();
     }
-    match validate(&arguments) {
+    let ended = if arguments.accept_left {
+        accept_left()
+    } else {
+        validate(&arguments)
+    };
+    match ended {
         Ok(code) => ExitCode::from(code),
         Err(error) => {
             report_error(&error);
@@ -173,6 +183,20 @@ fn again_with_update() -> ExitCode {
             ExitCode::from(INPUT_OUTPUT)
         }
     }
+}
+
+/// Accepts what was left, and names it.
+fn accept_left() -> Result<u8, CaseError> {
+    let folder = review::snapshots();
+    let accepted = review::accept_left(&folder).map_err(|source| CaseError::File {
+        path: folder,
+        source,
+    })?;
+    for name in &accepted {
+        println!("accepted: {name}");
+    }
+    println!("{} snapshots accepted", accepted.len());
+    Ok(0)
 }
 
 /// Runs everything asked for and returns the exit code. A case that fails takes nothing from the
@@ -222,18 +246,19 @@ fn validate(arguments: &Arguments) -> Result<u8, CaseError> {
     studies.reverse();
     errors.reverse();
 
-    let mut missed = snapshot::compare(&studies);
+    let pictures = arguments.out.join("review");
+    clear(&pictures)?;
+    let mut missed = snapshot::compare(&studies, &pictures)?;
     table::write_summary(&studies, &missed, &arguments.out)?;
     if arguments.matrix && errors.is_empty() {
         matrix::write(&studies)?;
     }
     let all_cases = arguments.case.is_empty() && errors.is_empty();
     let drift = matrix::drift(&studies, level, all_cases)?;
-    missed.extend(
-        drift
-            .iter()
-            .map(|line| format!("verification matrix: {line}")),
-    );
+    missed.extend(drift.into_iter().map(|told| Difference {
+        name: "verification matrix".to_owned(),
+        told,
+    }));
     let code = print_report(&studies, &missed, arguments, clock.elapsed().as_secs_f64());
     for error in &errors {
         report_error(error);
@@ -241,8 +266,24 @@ fn validate(arguments: &Arguments) -> Result<u8, CaseError> {
     Ok(errors.first().map_or(code, exit_code))
 }
 
+/// Removes the pictures of an earlier comparison.
+fn clear(pictures: &Path) -> Result<(), CaseError> {
+    match std::fs::remove_dir_all(pictures) {
+        Err(source) if source.kind() != std::io::ErrorKind::NotFound => Err(CaseError::File {
+            path: pictures.to_path_buf(),
+            source,
+        }),
+        _ => Ok(()),
+    }
+}
+
 /// Prints notes, table and what was missed; returns the exit code.
-fn print_report(studies: &[Study], missed: &[String], arguments: &Arguments, seconds: f64) -> u8 {
+fn print_report(
+    studies: &[Study],
+    missed: &[Difference],
+    arguments: &Arguments,
+    seconds: f64,
+) -> u8 {
     for note in studies.iter().flat_map(|study| &study.notes) {
         println!("{note}\n");
     }
@@ -279,11 +320,15 @@ fn print_report(studies: &[Study], missed: &[String], arguments: &Arguments, sec
             );
         }
     }
-    for name in missed {
-        println!("differs: {name}");
+    for difference in missed {
+        println!("differs: {difference}");
     }
     if !missed.is_empty() {
-        println!("accept snapshots with --accept, the matrix with --full --matrix");
+        println!(
+            "old against new: {}; accept snapshots with `cargo insta review` or --accept-left, the \
+             matrix with --full --matrix; how: the book, page \"Reviewing a change of numbers\"",
+            arguments.out.join("review").display()
+        );
     }
     let unfinished: Vec<&String> = studies.iter().flat_map(|study| &study.unfinished).collect();
     for text in &unfinished {

@@ -289,7 +289,7 @@ mod tests {
 
     use super::*;
     use crate::oracle::Oracle;
-    use crate::study::Run;
+    use crate::study::RunRecord;
 
     const ORACLE: Oracle = Oracle {
         kind: OracleKind::Exact,
@@ -305,7 +305,7 @@ mod tests {
             steps: Vec::new(),
             failures: Vec::new(),
         };
-        let run = study.run(Run::new("h = 1 m", &report, Duration::ZERO));
+        let run = study.run(RunRecord::new("h = 1 m", &report, Duration::ZERO));
         study.check(
             run,
             "N [-]",

@@ -19,7 +19,7 @@ use crate::oracle::{Oracle, OracleKind};
 use crate::pictures::contours;
 use crate::reference::griffiths_lane;
 use crate::runs::{Computed, Trial, mesh, method, shipped_case};
-use crate::study::{Level, Run, Study};
+use crate::study::{Level, RunRecord, Study};
 
 /// What the book says of the study.
 const ABOUT: &str = "A 2:1 slope in drained soil, φ = 20°, ψ = 0: displacement against strength reduction factor, and the factor of safety.";
@@ -85,7 +85,7 @@ struct Found {
     /// Largest factor found stable, smallest found failed.
     interval: [Option<f64>; 2],
     /// The trials that the search added.
-    search: Run,
+    search: RunRecord,
 }
 
 /// The slope under full gravity at a reduced strength, or as far as it came.
@@ -93,7 +93,7 @@ struct State {
     trial: Trial,
     /// E δ_max / (γ H²), δ_max over particles \[-\].
     displacement: f64,
-    run: Run,
+    run: RunRecord,
 }
 
 impl Mesh {
@@ -133,7 +133,7 @@ impl Mesh {
                 let variant = format!("{}, SRF {:.2}", self.label, trial.summary.srf);
                 State {
                     displacement: trial.summary.displacement / scale,
-                    run: Run::new(variant, &trial.report, trial.elapsed),
+                    run: RunRecord::new(variant, &trial.report, trial.elapsed),
                     trial,
                 }
             })
@@ -143,7 +143,7 @@ impl Mesh {
             .map(|state| (state.trial.summary.clone(), state.displacement))
             .collect();
         let added: Vec<State> = made.drain(factors.len().min(made.len())..).collect();
-        let search = Run::sum(
+        let search = RunRecord::sum(
             format!("{}, search", self.label),
             &added.iter().map(|state| &state.run).collect::<Vec<_>>(),
         );

@@ -15,7 +15,7 @@ use igimp_solver::{Accepted, Body, MarchSettings};
 
 use crate::laboratory::run;
 use crate::oracle::{Oracle, OracleKind};
-use crate::study::{Run, Study};
+use crate::study::{RunRecord, Study};
 
 /// What the book says of the study.
 const ABOUT: &str = "A prism of nearly incompressible Tresca soil is pressed between smooth platens to half its height. The force is 2 s_u times the width that incompressibility gives, with every variant of the method: the state is uniform.";
@@ -28,7 +28,7 @@ const HOMOGENEOUS: Oracle = Oracle {
 /// Steps of a run.
 const STEPS: usize = 20;
 /// Presses half a prism of unit height and half-width.
-fn press(cells: usize, method: &Method) -> Result<(Run, Table), CaseError> {
+fn press(cells: usize, method: &Method) -> Result<(RunRecord, Table), CaseError> {
     let h = 1.0 / cells as f64;
     let height = |factor: f64| 1.0 - 0.5 * factor;
     let grid_at = |height: f64| -> Result<Grid<2>, igimp_shape::ShapeError> {
@@ -46,7 +46,7 @@ fn press(cells: usize, method: &Method) -> Result<(Run, Table), CaseError> {
         0,
     )?)?);
     let law: SharedLaw = Arc::new(Tresca::new(Elasticity::new(1000.0, 0.4999)?, 1.0)?);
-    let program = |from: f64, to: f64| {
+    let load_path = |from: f64, to: f64| {
         let grid = grid_at(height(from)).expect("the prism has a height");
         let mut constraints = Constraints::free(&grid);
         constraints.fix_wall(&grid, 0, false, 0)?;
@@ -55,12 +55,12 @@ fn press(cells: usize, method: &Method) -> Result<(Run, Table), CaseError> {
             let node = grid.node_index([column, cells]);
             constraints.prescribe(node, 1, height(to) - height(from))?;
         }
-        Ok(StepConditions {
+        StepConditions::new(
             grid,
             constraints,
-            loads: StepLoads::gravity([0.0; 2]),
-            laws: vec![Arc::clone(&law)],
-        })
+            StepLoads::gravity([0.0; 2]),
+            vec![Arc::clone(&law)],
+        )
     };
     let mut curve = Table::new("force", &["height_[-]", "force_[s_u]", "exact_[s_u]"]);
     let mut observe = |accepted: &Accepted<'_, 2>| {
@@ -79,7 +79,7 @@ fn press(cells: usize, method: &Method) -> Result<(Run, Table), CaseError> {
         &mut body,
         method,
         &settings,
-        &program,
+        &load_path,
         &mut observe,
     );
     Ok((run, curve))

@@ -3,9 +3,11 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
+use igimp_cases::CaseError;
 use insta::Comparator;
 use insta::internals::SnapshotContents;
 
+use crate::review::{self, Difference};
 use crate::study::Study;
 
 /// Largest relative difference of two numbers that count as equal \[-\].
@@ -17,21 +19,27 @@ const CONVERGED: f64 = 1e-9;
 /// Most rows of a curve in a snapshot.
 const ROWS: usize = 40;
 
-/// Compares studies with their snapshots; returns the names of those that differ. The differences
-/// are printed, and left beside the snapshots for review.
-pub(crate) fn compare(studies: &[Study]) -> Vec<String> {
+/// Compares studies with their snapshots and tells what differs. What is new is left beside the
+/// snapshots for review, and a picture of every curve that changed in a folder.
+///
+/// # Errors
+/// [`CaseError`] if a picture cannot be written.
+pub(crate) fn compare(studies: &[Study], pictures: &Path) -> Result<Vec<Difference>, CaseError> {
     let hook = std::panic::take_hook();
     std::panic::set_hook(Box::new(|_| {}));
-    let missed = studies.iter().flat_map(compare_study).collect();
+    let missed: Vec<_> = studies.iter().flat_map(compare_study).collect();
     std::panic::set_hook(hook);
-    missed
+    let folder = review::snapshots();
+    let told = |(name, text): &(String, String)| review::difference(&folder, name, text, pictures);
+    missed.iter().map(told).collect()
 }
 
-fn compare_study(study: &Study) -> Vec<String> {
+/// The names and texts that differ.
+fn compare_study(study: &Study) -> Vec<(String, String)> {
     let mut missed = Vec::new();
     let mut hold = |name: String, text: &str, comparator: Box<dyn Comparator>| {
         let mut settings = insta::Settings::clone_current();
-        settings.set_snapshot_path(Path::new(env!("CARGO_MANIFEST_DIR")).join("snapshots"));
+        settings.set_snapshot_path(review::snapshots());
         settings.set_prepend_module_to_snapshot(false);
         settings.set_omit_expression(true);
         settings.set_comparator(comparator);
@@ -41,7 +49,7 @@ fn compare_study(study: &Study) -> Vec<String> {
             }))
         });
         if compared.is_err() {
-            missed.push(name);
+            missed.push((name, text.to_owned()));
         }
     };
     for table in &study.tables {

@@ -37,7 +37,7 @@ pub(crate) enum Level {
 
 /// How one run went.
 #[derive(Clone, Debug, Serialize)]
-pub(crate) struct Run {
+pub(crate) struct RunRecord {
     /// Method, mesh and parameters.
     pub(crate) variant: String,
     /// How it ended.
@@ -62,7 +62,7 @@ pub(crate) struct Run {
     pub(crate) residuals: Vec<Vec<f64>>,
 }
 
-impl Run {
+impl RunRecord {
     /// Describes a march that took `elapsed`.
     pub(crate) fn new(variant: impl Into<String>, report: &MarchReport, elapsed: Duration) -> Self {
         let outcome = match &report.outcome {
@@ -169,7 +169,7 @@ pub(crate) struct Study {
     /// Where its files go.
     pub(crate) folder: PathBuf,
     /// The runs, and sums of runs.
-    pub(crate) runs: Vec<Run>,
+    pub(crate) runs: Vec<RunRecord>,
     /// The checks.
     pub(crate) rows: Vec<Row>,
     /// Tables that are held against snapshots.
@@ -208,14 +208,14 @@ impl Study {
     }
 
     /// Records a run and returns its index.
-    pub(crate) fn run(&mut self, run: Run) -> usize {
+    pub(crate) fn run(&mut self, run: RunRecord) -> usize {
         self.runs.push(run);
         self.runs.len() - 1
     }
 
     /// Records a run that has to reach its end, and returns its index. When it did not, the report
     /// says where and why.
-    pub(crate) fn run_to_end(&mut self, run: Run) -> usize {
+    pub(crate) fn run_to_end(&mut self, run: RunRecord) -> usize {
         if let Some(error) = &run.stopped_by {
             self.unfinished.push(not_converged(self.case, &run, error));
         }
@@ -326,7 +326,7 @@ fn history(residuals: &[Vec<f64>]) -> String {
 }
 
 /// What is known of a run that found no equilibrium.
-fn not_converged(case: &str, run: &Run, error: &StepError) -> String {
+fn not_converged(case: &str, run: &RunRecord, error: &StepError) -> String {
     let residuals: Vec<String> = error.residuals.iter().map(|r| format!("{r:.1e}")).collect();
     let worst = error.worst.map_or_else(String::new, |([x, y, _], axis)| {
         let axis = ["x", "y", "z"][axis];

@@ -6,6 +6,7 @@ use std::path::Path;
 use igimp_cases::CaseError;
 use igimp_cases::check::short;
 
+use crate::review::Difference;
 use crate::study::{Row, Study};
 
 /// The checks of all studies as aligned text, a table under the name of each study, and the sources
@@ -95,7 +96,7 @@ fn aligned(rows: &[Vec<String>]) -> String {
 /// Writes `summary.json`: every check and run.
 pub(crate) fn write_summary(
     studies: &[Study],
-    missed_snapshots: &[String],
+    missed_snapshots: &[Difference],
     out: &Path,
 ) -> Result<(), CaseError> {
     let cases: Vec<serde_json::Value> = studies
@@ -112,7 +113,7 @@ pub(crate) fn write_summary(
         "program": "igimp-validation",
         "version": env!("CARGO_PKG_VERSION"),
         "cases": cases,
-        "missed_snapshots": missed_snapshots,
+        "missed_snapshots": missed_snapshots.iter().map(ToString::to_string).collect::<Vec<_>>(),
     });
     let path = out.join("summary.json");
     let text = format!("{summary:#}\n");

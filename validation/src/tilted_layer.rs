@@ -19,7 +19,7 @@ use igimp_solver::{Accepted, Body, MarchReport, MarchSettings, Workspace, march}
 use rayon::prelude::*;
 
 use crate::oracle::{Oracle, OracleKind};
-use crate::study::{Level, Run, Study};
+use crate::study::{Level, RunRecord, Study};
 
 /// What the book says of the study.
 const ABOUT: &str = "The infinite slope: a layer of dry soil without cohesion, φ = 30°, is tilted between two smooth ends until it slides. It does at tan β = tan φ, once the layer is long enough for its ends not to matter.";
@@ -61,7 +61,7 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
     for (layer, slide) in layers.iter().zip(&slides) {
         let Layer { length, cells } = *layer;
         let name = format!("iGIMP + B-bar, L/d = {length}, h = d/{cells}");
-        let run = study.run(Run::new(name, &slide.report, slide.elapsed));
+        let run = study.run(RunRecord::new(name, &slide.report, slide.elapsed));
         // Below that the lower end holds the layer.
         if length >= 20 {
             let band = Band::Relative(if length >= 40 { 0.01 } else { 0.02 });
@@ -135,15 +135,15 @@ impl Layer {
                 .fix_wall(&grid, normal, upper, axis)
                 .expect("the walls are those of the grid");
         }
-        let program = |_: f64, to: f64| {
+        let load_path = |_: f64, to: f64| {
             let weight = UNIT_WEIGHT * (to / LEVEL_SHARE).min(1.0);
             let (sin, cos) = tilt(to).sin_cos();
-            Ok(StepConditions {
-                grid: grid.clone(),
-                constraints: supports.clone(),
-                loads: StepLoads::gravity([weight * sin, -weight * cos]),
-                laws: vec![law.clone()],
-            })
+            StepConditions::new(
+                grid.clone(),
+                supports.clone(),
+                StepLoads::gravity([weight * sin, -weight * cos]),
+                vec![law.clone()],
+            )
         };
         let middle = 2 * columns * (2 * rows - 1) + columns;
         // Displacement in the middle and tilt before the last step and after it.
@@ -151,12 +151,12 @@ impl Layer {
         let report = march(
             &mut body,
             &Method::igimp_bbar(),
-            &program,
+            &load_path,
             &MarchSettings::steps(100),
             &mut Workspace::new(SolverKind::Auto.build()),
             &mut |accepted: &Accepted<'_, 2>| {
                 let [x, y] = accepted.body.particles.displacement[middle];
-                last = [last[1], [x.hypot(y), tilt(accepted.standing.at)]];
+                last = [last[1], [x.hypot(y), tilt(accepted.state.at)]];
                 if last[1][0] > SLIDING {
                     ControlFlow::Break(())
                 } else {

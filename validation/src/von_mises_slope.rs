@@ -17,7 +17,7 @@ use crate::oracle::{Oracle, OracleKind};
 use crate::pictures::{contours, scaled, with_outlines};
 use crate::reference::slope_limit_load_bounds;
 use crate::runs::{Computed, corners, mesh, method, shipped_case, unwatched};
-use crate::study::{Level, Run, Study};
+use crate::study::{Level, RunRecord, Study};
 
 /// What the book says of the study.
 const ABOUT: &str = "A 45° slope in undrained soil: smoothness of stress in soft soil that crosses cells, and the collapse load of stiff soil, for the four variants of the method.";
@@ -72,7 +72,7 @@ fn smoothness(study: &mut Study) -> Result<(), CaseError> {
     let mut scores = Vec::new();
     for result in &results {
         let variant = format!("{}, h = 0.5 m, E = 1 MPa", result.method());
-        runs.push(study.run_to_end(Run::new(variant, &result.report, result.elapsed)));
+        runs.push(study.run_to_end(RunRecord::new(variant, &result.report, result.elapsed)));
         scores.push(roughness(result));
     }
     let quantity = "oscillation of σ_yy / (γH) [-]";
@@ -223,7 +223,7 @@ fn limit_load(study: &mut Study, level: Level) -> Result<(), CaseError> {
         let (depth, h) = (collapse.depth_factor, collapse.cell);
         let label = result.method();
         let variant = format!("{label}, D = {depth}, h = {h} m, E/c_u = 2222");
-        let run = study.run(Run::new(variant, &result.report, result.elapsed));
+        let run = study.run(RunRecord::new(variant, &result.report, result.elapsed));
         let [lower, upper] = bounds(depth);
         let measured = limit(result).unwrap_or(f64::INFINITY);
         let middle = 0.5 * (lower + upper);

@@ -13,7 +13,10 @@ pub(crate) fn run(arguments: &[String]) -> Result<u8, Failure> {
             .args(["run", "--release", "--package", "igimp-validation", "--"])
             .args(arguments),
     )?;
-    if arguments.iter().any(|argument| argument == "--accept") {
+    if arguments
+        .iter()
+        .any(|argument| argument.starts_with("--accept"))
+    {
         show_changes();
     }
     Ok(code)

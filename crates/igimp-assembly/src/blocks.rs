@@ -3,7 +3,6 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
-use std::sync::Arc;
 
 use igimp_shape::{Grid, Support};
 
@@ -52,14 +51,13 @@ struct NodePlace {
 
 impl<const D: usize> BlockTable<D> {
     /// Finds the coupled nodes, and with them the sparsity pattern. `extra` lists further coupled
-    /// pairs of nodes, both ways. A `previous` pattern is shared again when it still holds.
+    /// pairs of nodes, both ways.
     pub(crate) fn build(
         grid: &Grid<D>,
         stencils: &Stencils<D>,
         unknowns: &Unknowns<D>,
         extra: &[(usize, usize)],
-        previous: Option<&Arc<Pattern>>,
-    ) -> (Self, Arc<Pattern>) {
+    ) -> (Self, Pattern) {
         let apart = |&(a, b): &(usize, usize)| {
             let places = std::iter::zip(grid.node_place(a), grid.node_place(b));
             places.map(|(a, b)| a.abs_diff(b)).max().unwrap_or(0)
@@ -106,10 +104,7 @@ impl<const D: usize> BlockTable<D> {
         let wide = table.mark(grid, stencils, extra);
         let (starts, coupled) = table.number(grid, unknowns, near, &wide);
         let pattern = Pattern::new(blocks, starts, coupled, reach);
-        match previous {
-            Some(previous) if **previous == pattern => (table, Arc::clone(previous)),
-            _ => (table, Arc::new(pattern)),
-        }
+        (table, pattern)
     }
 
     /// Marks the coupled pairs. Particles that touch the same box of nodes couple the same pairs:
@@ -297,14 +292,14 @@ impl<const D: usize> BlockTable<D> {
 #[derive(Debug, Default)]
 pub(crate) struct Blocks {
     /// Supports whose components are all unknown.
-    runs: Vec<Run>,
+    stretches: Vec<Stretch>,
     /// Supports with some unknown components.
     partial: Vec<u16>,
 }
 
 /// Supports whose unknowns follow one another, and so do their values in every column.
 #[derive(Clone, Copy, Debug)]
-struct Run {
+struct Stretch {
     /// First support.
     first: u16,
     len: u16,
@@ -314,7 +309,7 @@ struct Run {
     block: u32,
 }
 
-impl Run {
+impl Stretch {
     fn supports(self) -> Range<usize> {
         usize::from(self.first)..usize::from(self.first + self.len)
     }
@@ -324,7 +319,7 @@ impl Blocks {
     /// Lists the blocks of a particle.
     #[inline]
     pub(crate) fn set<const D: usize>(&mut self, supports: &[Support<D>], table: &BlockTable<D>) {
-        self.runs.clear();
+        self.stretches.clear();
         self.partial.clear();
         let mut next = NONE;
         for (i, support) in supports.iter().enumerate() {
@@ -336,9 +331,9 @@ impl Blocks {
                 next = NONE;
                 continue;
             }
-            match self.runs.last_mut() {
-                Some(run) if node.first == next => run.len += 1,
-                _ => self.runs.push(Run {
+            match self.stretches.last_mut() {
+                Some(stretch) if node.first == next => stretch.len += 1,
+                _ => self.stretches.push(Stretch {
                     first: i as u16,
                     len: 1,
                     code: node.code,
@@ -359,7 +354,7 @@ impl Blocks {
         linearised: &mut Linearised<D>,
         (start, slice): (usize, &mut [f64]),
     ) {
-        for j in self.runs.iter().copied().flat_map(Run::supports) {
+        for j in self.stretches.iter().copied().flat_map(Stretch::supports) {
             let node = supports[j].node;
             let block = table.nodes[node].block as usize;
             let stored = pattern.values_of(block);
@@ -367,12 +362,15 @@ impl Blocks {
             let height = values.len() / D;
             let columns = linearised.columns(j);
             let offsets = table.offsets_of(node);
-            for run in &self.runs {
-                let (first, offset) = (usize::from(run.first) * D, offsets(run.code, run.block));
+            for stretch in &self.stretches {
+                let (first, offset) = (
+                    usize::from(stretch.first) * D,
+                    offsets(stretch.code, stretch.block),
+                );
                 for (c, column) in columns.iter().enumerate() {
                     let sums = &mut values[c * height + offset..];
                     let terms = &column[first..];
-                    match usize::from(run.len) * D {
+                    match usize::from(stretch.len) * D {
                         4 => add::<4>(sums, terms),
                         6 => add::<6>(sums, terms),
                         9 => add::<9>(sums, terms),
@@ -395,7 +393,7 @@ impl Blocks {
             let values = &mut slice[stored.start - start..stored.end - start];
             let columns = linearised.columns(j);
             let partial = self.partial.iter().map(|&i| usize::from(i));
-            let full = self.runs.iter().copied().flat_map(Run::supports);
+            let full = self.stretches.iter().copied().flat_map(Stretch::supports);
             for i in full.chain(partial) {
                 table.add_block(supports, [i, j], &columns, values);
             }
@@ -408,10 +406,10 @@ impl Blocks {
 fn add<const N: usize>(sums: &mut [f64], terms: &[f64]) {
     let sums = sums
         .first_chunk_mut::<N>()
-        .expect("a run ends within its column");
+        .expect("a stretch ends within its column");
     let terms = terms
         .first_chunk::<N>()
-        .expect("a run ends within the rows");
+        .expect("a stretch ends within the rows");
     for k in 0..N {
         sums[k] += terms[k];
     }

@@ -7,8 +7,8 @@ use rayon::prelude::*;
 use crate::error::AssemblyError;
 use crate::method::{Geometry, Locking, Method};
 use crate::particles::Particles;
-use crate::supports::{CHUNK, capped_half_length, merge_equal_nodes, padded};
-use crate::system::SharedLaw;
+use crate::step_conditions::SharedLaw;
+use crate::supports::{CHUNK, capped_half_length, merge_equal_nodes, off_grid};
 
 /// A cell that is filled to less than this share holds a sliver of soil that reached over its face
 /// \[-\].
@@ -59,13 +59,8 @@ impl<const D: usize> CellSoil<D> {
                 for particle in own {
                     let x = &particles.x[particle];
                     let half_length = capped_half_length(grid, x, particles.half_length[particle]);
-                    cell_parts(grid, &*method.basis, x, &half_length, &mut all).map_err(
-                        |source| AssemblyError::Shape {
-                            particle,
-                            position: padded(x),
-                            source,
-                        },
-                    )?;
+                    cell_parts(grid, &*method.basis, x, &half_length, &mut all)
+                        .map_err(|source| off_grid(particle, x, source))?;
                     first.push(all.len() as u32);
                 }
                 Ok((first, all))

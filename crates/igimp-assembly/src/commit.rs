@@ -11,7 +11,7 @@ use crate::particles::Particles;
 use crate::small::{congruence, determinant, identity, multiply, rotation, transpose};
 use crate::stencils::Stencils;
 use crate::supports::CHUNK;
-use crate::sweep::Trial;
+use crate::trial::Trial;
 
 impl<const D: usize> Particles<D> {
     /// Accepts a converged trial: x, F, b_e, σ, l_p and history become those at nodal step

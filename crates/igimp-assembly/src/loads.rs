@@ -3,10 +3,10 @@
 
 use igimp_shape::{Grid, Linear, Scratch, Support, supports};
 
-use crate::constraints::Constraints;
 use crate::dropped::shares_of_carried;
 use crate::error::AssemblyError;
 use crate::stencils::Stencils;
+use crate::step_conditions::StepConditions;
 use crate::supports::padded;
 use crate::unknowns::Unknowns;
 
@@ -112,27 +112,30 @@ impl<const D: usize> StepLoads<D> {
             drag: 0.0,
         }
     }
+
+    /// Refuses loads that are not finite, named with the axis or the load.
+    pub(crate) fn are_finite(&self) -> Result<(), AssemblyError> {
+        for (axis, gravity) in self.gravity.iter().enumerate() {
+            finite("gravity", axis, &[*gravity])?;
+        }
+        for (load, factor) in self.factors.iter().enumerate() {
+            finite("load factor", load, &[*factor])?;
+        }
+        finite("drag", 0, &[self.drag])
+    }
 }
 
-/// Refuses loads that are not finite, named with the axis, the load or the point.
-pub(crate) fn finite_loads<const D: usize>(
-    points: &[LoadPoint<D>],
-    loads: &StepLoads<D>,
-) -> Result<(), AssemblyError> {
-    let finite = |what, index, values: &[f64]| {
-        if values.iter().all(|value| value.is_finite()) {
-            Ok(())
-        } else {
-            Err(AssemblyError::NonFinite { what, index })
-        }
-    };
-    for (axis, gravity) in loads.gravity.iter().enumerate() {
-        finite("gravity", axis, &[*gravity])?;
+/// Refuses values that are not finite, named with what they are.
+fn finite(what: &'static str, index: usize, values: &[f64]) -> Result<(), AssemblyError> {
+    if values.iter().all(|value| value.is_finite()) {
+        Ok(())
+    } else {
+        Err(AssemblyError::NonFinite { what, index })
     }
-    for (load, factor) in loads.factors.iter().enumerate() {
-        finite("load factor", load, &[*factor])?;
-    }
-    finite("drag", 0, &[loads.drag])?;
+}
+
+/// Refuses loaded points that are not finite, named with their number.
+pub(crate) fn finite_points<const D: usize>(points: &[LoadPoint<D>]) -> Result<(), AssemblyError> {
     for (index, point) in points.iter().enumerate() {
         finite("position of a load point", index, &point.x)?;
         finite("force of a load point", index, &point.force)?;
@@ -140,19 +143,32 @@ pub(crate) fn finite_loads<const D: usize>(
     Ok(())
 }
 
-/// Nodal external force f_ext, by node \[force\]. What falls to dropped nodes is handed on: no force
-/// of a load point is lost.
-pub(crate) fn external_force<const D: usize>(
+/// The weight of the body, by node \[force\].
+pub(crate) fn weight<const D: usize>(
     grid: &Grid<D>,
     stencils: &Stencils<D>,
-    unknowns: &Unknowns<D>,
-    constraints: &Constraints<D>,
-    points: &[LoadPoint<D>],
     loads: &StepLoads<D>,
-) -> Result<Vec<[f64; D]>, AssemblyError> {
-    let mut f_ext: Vec<[f64; D]> = (0..grid.node_count())
+) -> Vec<[f64; D]> {
+    (0..grid.node_count())
         .map(|node| loads.gravity.map(|g| stencils.node_mass(node) * g))
-        .collect();
+        .collect()
+}
+
+/// Adds the force of loaded points to the nodal external force f_ext, by node \[force\]. What falls to
+/// dropped nodes is handed on: no force is lost.
+pub(crate) fn add_force_of_points<const D: usize>(
+    f_ext: &mut [[f64; D]],
+    points: &[LoadPoint<D>],
+    conditions: &StepConditions<D>,
+    stencils: &Stencils<D>,
+    unknowns: &Unknowns<D>,
+) -> Result<(), AssemblyError> {
+    let StepConditions {
+        grid,
+        constraints,
+        loads,
+        ..
+    } = conditions;
     for (index, point) in points.iter().enumerate() {
         let factor = loads.factors.get(point.load).copied().unwrap_or(0.0);
         if factor == 0.0 {
@@ -176,7 +192,7 @@ pub(crate) fn external_force<const D: usize>(
             }
         }
     }
-    Ok(f_ext)
+    Ok(())
 }
 
 /// Drag by node: force per step displacement \[force/length\]. Nodes without mass have none.

@@ -84,15 +84,16 @@ mod tests {
         let body = Particles::new(&seeds).unwrap();
         let law = igimp_material::Elasticity::new(1.0, 0.2).map(igimp_material::HenckyElastic::new);
         let law: SharedLaw = std::sync::Arc::new(law.unwrap());
-        let conditions = StepConditions {
-            constraints: Constraints::free(&grid),
-            grid,
-            loads: StepLoads::gravity([0.0; D]),
-            laws: vec![law],
-        };
+        let conditions = StepConditions::new(
+            grid.clone(),
+            Constraints::free(&grid),
+            StepLoads::gravity([0.0; D]),
+            vec![law],
+        )
+        .unwrap();
         let method = Method::igimp_bbar();
         let stencils = Stencils::build(&body, &method, &conditions).unwrap();
-        let system = System::new(&body, &stencils, &conditions, &method, &[], None).unwrap();
+        let system = System::new(&body, &stencils, &conditions, &method).unwrap();
         assert!(system.pattern().reach > SMALL_REACH);
         (system.table.places(), system.pattern().coupled.len())
     }

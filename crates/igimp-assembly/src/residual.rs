@@ -6,8 +6,8 @@ use rayon::prelude::*;
 use crate::error::AssemblyError;
 use crate::particles::Particles;
 use crate::stencils::Stencils;
+use crate::step_conditions::StepConditions;
 use crate::supports::CHUNK;
-use crate::system::StepConditions;
 use crate::unknowns::Unknowns;
 
 /// Size of the round-off in the strain of a particle \[-\].

@@ -10,9 +10,9 @@ use crate::error::AssemblyError;
 use crate::method::{Method, Remedy};
 use crate::particles::Particles;
 use crate::small_cuts::{cell_volume, masters_of_cuts};
+use crate::step_conditions::StepConditions;
 use crate::strips::{Strips, split};
 use crate::supports::{Supports, bounds};
-use crate::system::{SharedLaw, StepConditions};
 
 /// Basis values S, gradients ∇S and cell-averaged centre gradients ∇S̄ of all particles.
 ///
@@ -59,8 +59,7 @@ impl<const D: usize> Stencils<D> {
             laws,
             ..
         } = conditions;
-        constraints.belong_to(grid)?;
-        known_laws(particles, laws)?;
+        conditions.serve(particles)?;
         let mut supports = Supports::build(grid, particles, method, laws)?;
         let mut strips = Strips::build(grid, &supports);
         let mut shares = node_shares(grid, particles, &supports, &strips);
@@ -151,58 +150,6 @@ impl<const D: usize> Stencils<D> {
     /// Particles grouped by strips of node rows, for sums that are the same for any thread count.
     pub(crate) fn strips(&self) -> &Strips {
         &self.strips
-    }
-
-    /// The transpose: which particles touch each node.
-    pub fn transpose(&self, node_count: usize) -> Transpose {
-        let mut offsets = vec![0; node_count + 1];
-        for particle in 0..self.len() {
-            for support in self.of(particle) {
-                offsets[support.node + 1] += 1;
-            }
-        }
-        for node in 0..node_count {
-            offsets[node + 1] += offsets[node];
-        }
-        let mut cursor = offsets.clone();
-        let mut particles = vec![0; offsets[node_count]];
-        for particle in 0..self.len() {
-            for support in self.of(particle) {
-                particles[cursor[support.node]] = particle;
-                cursor[support.node] += 1;
-            }
-        }
-        Transpose { offsets, particles }
-    }
-}
-
-/// The particles that touch each node, ascending.
-#[derive(Clone, Debug)]
-pub struct Transpose {
-    offsets: Vec<usize>,
-    particles: Vec<usize>,
-}
-
-impl Transpose {
-    /// The particles that touch one node, ascending.
-    pub fn of(&self, node: usize) -> &[usize] {
-        &self.particles[self.offsets[node]..self.offsets[node + 1]]
-    }
-}
-
-/// Refuses particles whose law is not among those of the step.
-fn known_laws<const D: usize>(
-    particles: &Particles<D>,
-    laws: &[SharedLaw],
-) -> Result<(), AssemblyError> {
-    let unknown = |law: &usize| *law >= laws.len();
-    match particles.law.iter().position(unknown) {
-        Some(particle) => Err(AssemblyError::UnknownLaw {
-            particle,
-            law: particles.law[particle],
-            laws: laws.len(),
-        }),
-        None => Ok(()),
     }
 }
 

@@ -1,13 +1,13 @@
 //! The supports of all particles, frozen for one step.
 
-use igimp_shape::{Grid, Scratch, Support, supports};
+use igimp_shape::{Grid, Scratch, ShapeError, Support, supports};
 use rayon::prelude::*;
 
 use crate::cell_soil::CellSoil;
 use crate::error::AssemblyError;
 use crate::method::{Geometry, Locking, Method};
 use crate::particles::Particles;
-use crate::system::SharedLaw;
+use crate::step_conditions::SharedLaw;
 
 /// Particles that are handled together: fixed, so that results do not depend on the number of
 /// threads.
@@ -134,13 +134,8 @@ impl<const D: usize> Chunk<D> {
                 let x = particles.x[particle];
                 let half_length = capped_half_length(grid, &x, particles.half_length[particle]);
                 let basis = &*method.basis;
-                supports(grid, basis, &x, &half_length, &mut scratch, &mut own).map_err(
-                    |source| AssemblyError::Shape {
-                        particle,
-                        position: padded(&x),
-                        source,
-                    },
-                )?;
+                supports(grid, basis, &x, &half_length, &mut scratch, &mut own)
+                    .map_err(|source| off_grid(particle, &x, source))?;
                 if method.locking == Locking::None {
                     for support in &mut own {
                         support.grad_bar = support.grad;
@@ -209,6 +204,19 @@ pub(crate) fn capped_half_length<const D: usize>(
         }
     }
     half_length
+}
+
+/// What is said of a particle whose centre or domain has no place on the grid.
+pub(crate) fn off_grid<const D: usize>(
+    particle: usize,
+    x: &[f64; D],
+    source: ShapeError,
+) -> AssemblyError {
+    AssemblyError::Shape {
+        particle,
+        position: padded(x),
+        source,
+    }
 }
 
 /// A position with zeros beyond the dimension, for messages.

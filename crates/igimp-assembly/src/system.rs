@@ -2,39 +2,22 @@
 
 use std::sync::Arc;
 
-use igimp_material::{ConstitutiveModel, MaterialError, TangentKind};
-use igimp_shape::Grid;
+use igimp_material::{MaterialError, TangentKind};
 
 use crate::blocks::BlockTable;
-use crate::constraints::Constraints;
 use crate::error::AssemblyError;
 use crate::ghost::{Coupling, ghost_entries};
 use crate::kinematics::ParticleTrial;
 use crate::linearised::Linearised;
-use crate::loads::{LoadPoint, StepLoads, external_force, finite_loads, nodal_drag};
+use crate::loads::{LoadPoint, add_force_of_points, finite_points, nodal_drag, weight};
 use crate::matrix::{Pattern, TangentMatrix};
 use crate::method::{Kinematics, Method};
 use crate::particles::Particles;
 use crate::residual::{OutOfBalance, force_of_round_off};
 use crate::stencils::Stencils;
-use crate::sweep::Trial;
+use crate::step_conditions::StepConditions;
+use crate::trial::Trial;
 use crate::unknowns::Unknowns;
-
-/// A constitutive law that several bodies and threads share.
-pub type SharedLaw = Arc<dyn ConstitutiveModel>;
-
-/// What holds during one step, besides the particles.
-#[derive(Clone, Debug)]
-pub struct StepConditions<const D: usize> {
-    /// The background grid of this step.
-    pub grid: Grid<D>,
-    /// Prescribed step displacements.
-    pub constraints: Constraints<D>,
-    /// External force at the end of the step.
-    pub loads: StepLoads<D>,
-    /// Laws at the end of the step, as the particles number them.
-    pub laws: Vec<SharedLaw>,
-}
 
 /// One step's system of equations. Borrows the state at the step's start and never changes it.
 #[derive(Debug)]
@@ -57,21 +40,20 @@ pub struct System<'a, const D: usize> {
 }
 
 impl<'a, const D: usize> System<'a, D> {
-    /// Sets up the unknowns, the external force and the sparsity pattern of a step. A `previous`
-    /// pattern is shared again when it still holds.
+    /// Sets up the unknowns, the external force and the sparsity pattern of a step of a body that no
+    /// loaded points act on.
     ///
     /// # Errors
     /// [`AssemblyError::NoUnknowns`], [`AssemblyError::OtherGrid`] for constraints that were made for
-    /// another grid, a load point off the body, or
+    /// another grid, [`AssemblyError::UnknownLaw`] of a particle whose law is not there, or
     /// [`AssemblyError::NonFinite`] for loads and a ghost penalty that are not finite.
     pub fn new(
         particles: &'a Particles<D>,
         stencils: &'a Stencils<D>,
         conditions: &'a StepConditions<D>,
         method: &'a Method,
-        points: &[LoadPoint<D>],
-        previous: Option<&Arc<Pattern>>,
     ) -> Result<Self, AssemblyError> {
+        conditions.serve(particles)?;
         let mut used = vec![false; conditions.laws.len()];
         for &law in &particles.law {
             used[law] = true;
@@ -79,17 +61,12 @@ impl<'a, const D: usize> System<'a, D> {
         let symmetric = std::iter::zip(&conditions.laws, &used)
             .all(|(law, &used)| !used || law.has_symmetric_tangent());
         let grid = &conditions.grid;
-        conditions.constraints.belong_to(grid)?;
         let cuts = method.small_cuts;
-        finite_loads(points, &conditions.loads)?;
         if !cuts.ghost_penalty.is_finite() {
             let (what, index) = ("ghost penalty", 0);
             return Err(AssemblyError::NonFinite { what, index });
         }
         let unknowns = Unknowns::number(grid, stencils, &conditions.constraints, cuts.below)?;
-        let supports = &conditions.constraints;
-        let loads = &conditions.loads;
-        let f_ext = external_force(grid, stencils, &unknowns, supports, points, loads)?;
         let mut couplings = if cuts.ghost_penalty > 0.0 {
             let young = |p: usize| conditions.laws[particles.law[p]].elasticity().young();
             ghost_entries(grid, particles, stencils, young, cuts.ghost_penalty)
@@ -109,21 +86,48 @@ impl<'a, const D: usize> System<'a, D> {
             .iter()
             .map(|entry| (entry.column, entry.row))
             .collect();
-        let (table, pattern) = BlockTable::build(grid, stencils, &unknowns, &pairs, previous);
+        let (table, pattern) = BlockTable::build(grid, stencils, &unknowns, &pairs);
         Ok(Self {
             particles,
             stencils,
             conditions,
             method,
             unknowns,
-            f_ext,
+            f_ext: weight(grid, stencils, &conditions.loads),
             round_off: force_of_round_off(particles, stencils, conditions),
             couplings,
             first_drag,
             table,
-            pattern,
+            pattern: Arc::new(pattern),
             symmetric,
         })
+    }
+
+    /// The same with the forces of loaded points.
+    ///
+    /// # Errors
+    /// [`AssemblyError::LoadPoint`] or [`AssemblyError::UnsupportedLoad`] for a point off the body,
+    /// [`AssemblyError::NonFinite`] for one that is not finite.
+    pub fn with_load_points(mut self, points: &[LoadPoint<D>]) -> Result<Self, AssemblyError> {
+        finite_points(points)?;
+        add_force_of_points(
+            &mut self.f_ext,
+            points,
+            self.conditions,
+            self.stencils,
+            &self.unknowns,
+        )?;
+        Ok(self)
+    }
+
+    /// The same with an earlier pattern in place of its own, if they are equal: solvers keep their
+    /// symbolic work while they see the same one.
+    #[must_use]
+    pub fn sharing(mut self, earlier: Option<&Arc<Pattern>>) -> Self {
+        if let Some(earlier) = earlier.filter(|earlier| ***earlier == *self.pattern) {
+            self.pattern = Arc::clone(earlier);
+        }
+        self
     }
 
     /// The unknowns.
@@ -178,7 +182,7 @@ impl<'a, const D: usize> System<'a, D> {
         kind: TangentKind,
         trial: &mut Trial<D>,
     ) -> Result<(), AssemblyError> {
-        self.sweep(u, kind, trial, None)?;
+        self.pass(u, kind, trial, None)?;
         self.add_couplings(u, trial);
         Ok(())
     }
@@ -203,7 +207,7 @@ impl<'a, const D: usize> System<'a, D> {
             "the matrix belongs to this step"
         );
         matrix.symmetric = self.symmetric;
-        self.sweep(u, kind, trial, Some(&mut matrix.values))?;
+        self.pass(u, kind, trial, Some(&mut matrix.values))?;
         self.add_couplings(u, trial);
         for entry in &self.couplings {
             for axis in 0..D {

@@ -107,11 +107,6 @@ impl<const D: usize> Unknowns<D> {
         self.active[node]
     }
 
-    /// Number of active nodes.
-    pub fn active_nodes(&self) -> usize {
-        self.active.iter().filter(|&&active| active).count()
-    }
-
     /// Number of unknowns on nodes before `node`.
     pub(crate) fn before(&self, node: usize) -> usize {
         self.first[node] as usize

@@ -28,13 +28,13 @@ fn error_of_force<const D: usize>(method: &Method, cells: usize, count: usize) -
     // Stress and deformation from an earlier step.
     let stencils = build(&body);
     let earlier = displacements(&grid, 0.05, &mut random);
-    let trial = System::new(&body, &stencils, &conditions, method, &[], None)
+    let trial = System::new(&body, &stencils, &conditions, method)
         .and_then(|system| system.evaluate(&earlier, TangentKind::Consistent))
         .unwrap();
     body.commit(&stencils, method, &trial, &earlier);
 
     let stencils = build(&body);
-    let system = System::new(&body, &stencils, &conditions, method, &[], None).unwrap();
+    let system = System::new(&body, &stencils, &conditions, method).unwrap();
     let evaluate = |u: &[[f64; D]]| system.evaluate(u, TangentKind::Consistent).unwrap();
     let energy = |u: &[[f64; D]]| -> f64 {
         let trial = evaluate(u);

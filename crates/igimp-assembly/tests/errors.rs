@@ -5,7 +5,7 @@ mod common;
 use common::{Random, conditions, grid, laws, particles};
 use igimp_assembly::{
     AssemblyError, Constraints, LoadPoint, Method, ParticleSeed, Particles, Stencils,
-    StepConditions, System,
+    StepConditions, StepLoads, System,
 };
 use igimp_material::TangentKind;
 
@@ -94,8 +94,34 @@ fn everything_fixed() {
             conditions.constraints.prescribe(node, axis, 0.0).unwrap();
         }
     }
-    let error = System::new(&body, &stencils, &conditions, &method, &[], None).unwrap_err();
+    let error = System::new(&body, &stencils, &conditions, &method).unwrap_err();
     assert_eq!(error, AssemblyError::NoUnknowns);
+}
+
+#[test]
+fn conditions_that_are_not_finite() {
+    let step = conditions(&grid::<2>(4), &laws()[0].1);
+    let stated = |spoil: fn(&mut StepLoads<2>)| {
+        let mut loads = step.loads.clone();
+        spoil(&mut loads);
+        StepConditions::new(
+            step.grid.clone(),
+            step.constraints.clone(),
+            loads,
+            step.laws.clone(),
+        )
+        .unwrap_err()
+    };
+    let refused = |what, index| AssemblyError::NonFinite { what, index };
+    assert_eq!(
+        stated(|loads| loads.gravity[1] = f64::NAN),
+        refused("gravity", 1)
+    );
+    assert_eq!(
+        stated(|loads| loads.factors = vec![1.0, f64::INFINITY]),
+        refused("load factor", 1)
+    );
+    assert_eq!(stated(|loads| loads.drag = f64::NAN), refused("drag", 0));
 }
 
 /// Constraints of a smaller and of a larger grid, and of one with as many nodes in other rows.
@@ -117,15 +143,20 @@ fn constraints_of_another_grid_or_axis() {
         assert_eq!(foreign.fix_wall(&grid, 0, false, 0), Err(expected.clone()));
         assert_eq!(foreign, Constraints::free(&uniform(other)));
         let mut step = conditions(&grid, &laws()[0].1);
-        let other = StepConditions {
-            constraints: foreign.clone(),
-            ..step.clone()
-        };
+        let stated = StepConditions::new(
+            grid.clone(),
+            foreign.clone(),
+            step.loads.clone(),
+            step.laws.clone(),
+        );
+        assert_eq!(stated.unwrap_err(), expected);
+        let mut other = step.clone();
+        other.constraints = foreign.clone();
         let error = Stencils::build(&body, &method, &other).unwrap_err();
         assert_eq!(error, expected);
         let stencils = Stencils::build(&body, &method, &step).unwrap();
         step.constraints = foreign;
-        let error = System::new(&body, &stencils, &step, &method, &[], None).unwrap_err();
+        let error = System::new(&body, &stencils, &step, &method).unwrap_err();
         assert_eq!(error, expected);
         assert!(error.to_string().contains("[6, 4]"), "{error}");
     }
@@ -157,7 +188,10 @@ fn a_load_on_empty_cells() {
         force: [1.0, 0.0],
         load: 0,
     };
-    let error = System::new(&body, &stencils, &conditions, &method, &[point], None).unwrap_err();
+    let error = System::new(&body, &stencils, &conditions, &method)
+        .unwrap()
+        .with_load_points(&[point])
+        .unwrap_err();
     assert_eq!(
         error.to_string(),
         "load point 0 at [5.5, 5.5, 0.0] m acts on a part of the grid that holds no soil"
@@ -172,7 +206,7 @@ fn a_displacement_that_turns_a_particle_inside_out_or_is_not_a_number() {
     for (_, law) in laws() {
         let conditions = conditions(&grid, &law);
         let stencils = Stencils::build(&body, &method, &conditions).unwrap();
-        let system = System::new(&body, &stencils, &conditions, &method, &[], None).unwrap();
+        let system = System::new(&body, &stencils, &conditions, &method).unwrap();
         let folded: Vec<[f64; 2]> = (0..grid.node_count())
             .map(|node| [-2.0 * grid.node_position(node)[0], 0.0])
             .collect();
@@ -200,7 +234,10 @@ fn an_edge_load_keeps_resultant_and_moment() {
     conditions.loads.gravity = [0.0; 2];
     conditions.loads.factors = vec![2.0];
     let points = LoadPoint::along_edge([1.3, 4.1], [4.4, 3.7], [3.0, -5.0], 11, 0);
-    let system = System::new(&body, &stencils, &conditions, &method, &points, None).unwrap();
+    let system = System::new(&body, &stencils, &conditions, &method)
+        .unwrap()
+        .with_load_points(&points)
+        .unwrap();
     let length = 3.1_f64.hypot(0.4);
     let (mut force, mut moment) = ([0.0; 2], 0.0);
     for (node, f) in system.f_ext().iter().enumerate() {

@@ -21,12 +21,13 @@ fn grid() -> Grid<2> {
 
 fn conditions(law: usize) -> StepConditions<2> {
     let grid = grid();
-    StepConditions {
-        constraints: Constraints::free(&grid),
-        grid,
-        loads: StepLoads::gravity([0.0; 2]),
-        laws: vec![laws()[law].1.clone()],
-    }
+    StepConditions::new(
+        grid.clone(),
+        Constraints::free(&grid),
+        StepLoads::gravity([0.0; 2]),
+        vec![laws()[law].1.clone()],
+    )
+    .unwrap()
 }
 
 /// Quarter-cell particles from 2 to 5 along both axes, moved by `shift`.
@@ -78,8 +79,7 @@ fn two_half_steps_are_one_whole_step_and_nothing_moves() {
             let u = affine(&conditions.grid, part);
             for _ in 0..parts {
                 let stencils = Stencils::build(&body, &method, &conditions).unwrap();
-                let system =
-                    System::new(&body, &stencils, &conditions, &method, &[], None).unwrap();
+                let system = System::new(&body, &stencils, &conditions, &method).unwrap();
                 let trial = system.evaluate(&u, TangentKind::Consistent).unwrap();
                 body.commit(&stencils, &method, &trial, &u);
             }

@@ -45,7 +45,7 @@ fn uniform_gradient_is_exact<const D: usize>(cells: usize) {
             let body = particles(&grid, 0.0, &mut Random(1));
             let conditions = conditions(&grid, &law);
             let stencils = Stencils::build(&body, &method, &conditions).unwrap();
-            let system = System::new(&body, &stencils, &conditions, &method, &[], None).unwrap();
+            let system = System::new(&body, &stencils, &conditions, &method).unwrap();
             let u = affine(&grid, &f);
             let trial = system.evaluate(&u, TangentKind::Consistent).unwrap();
 
@@ -129,7 +129,7 @@ fn rotation_rotates_stress<const D: usize>(cells: usize) {
             let conditions = conditions(&grid, &law);
             let strain = common::displacements(&grid, 0.05, &mut random);
             let stencils = Stencils::build(&body, &method, &conditions).unwrap();
-            let system = System::new(&body, &stencils, &conditions, &method, &[], None).unwrap();
+            let system = System::new(&body, &stencils, &conditions, &method).unwrap();
             let trial = system.evaluate(&strain, TangentKind::Consistent).unwrap();
             body.commit(&stencils, &method, &trial, &strain);
             let before = body.clone();
@@ -142,7 +142,7 @@ fn rotation_rotates_stress<const D: usize>(cells: usize) {
             turn[1][0] = 1.0;
             let u = affine(&grid, &turn);
             let stencils = Stencils::build(&body, &method, &conditions).unwrap();
-            let system = System::new(&body, &stencils, &conditions, &method, &[], None).unwrap();
+            let system = System::new(&body, &stencils, &conditions, &method).unwrap();
             let trial = system.evaluate(&u, TangentKind::Consistent).unwrap();
             body.commit(&stencils, &method, &trial, &u);
             for particle in 0..body.len() {

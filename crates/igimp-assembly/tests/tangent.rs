@@ -21,7 +21,7 @@ fn tangent_error<const D: usize>(
 ) -> (f64, f64) {
     let conditions = conditions(grid, law);
     let stencils = Stencils::build(body, method, &conditions).unwrap();
-    let system = System::new(body, &stencils, &conditions, method, &[], None).unwrap();
+    let system = System::new(body, &stencils, &conditions, method).unwrap();
     let u = displacements(grid, 0.02, random);
     let (trial, matrix) = system.linearise(&u, TangentKind::Consistent).unwrap();
     let alone = system.evaluate(&u, TangentKind::Consistent).unwrap();
@@ -94,7 +94,7 @@ fn strained<const D: usize>(
     let mut body = particles(grid, 1.0, random);
     let conditions = conditions(grid, law);
     let stencils = Stencils::build(&body, method, &conditions).unwrap();
-    let system = System::new(&body, &stencils, &conditions, method, &[], None).unwrap();
+    let system = System::new(&body, &stencils, &conditions, method).unwrap();
     let u = displacements(grid, 0.05, random);
     let trial = system.evaluate(&u, TangentKind::Consistent).unwrap();
     body.commit(&stencils, method, &trial, &u);
@@ -155,7 +155,7 @@ fn small_strain_is_the_limit() {
         };
         let conditions = conditions(&grid, &law);
         let stencils = Stencils::build(&body, &method, &conditions).unwrap();
-        let system = System::new(&body, &stencils, &conditions, &method, &[], None).unwrap();
+        let system = System::new(&body, &stencils, &conditions, &method).unwrap();
         let still = vec![[0.0; 2]; grid.node_count()];
         let (_, matrix) = system.linearise(&still, TangentKind::Consistent).unwrap();
         matrix.values
@@ -180,7 +180,7 @@ fn force_of_prescribed_motion_is_the_derivative_along_it() {
         let body = strained(&grid, &law, &method, &mut random);
         let conditions = conditions(&grid, &law);
         let stencils = Stencils::build(&body, &method, &conditions).unwrap();
-        let system = System::new(&body, &stencils, &conditions, &method, &[], None).unwrap();
+        let system = System::new(&body, &stencils, &conditions, &method).unwrap();
         let u = displacements(&grid, 0.02, &mut random);
         let known = system
             .force_of_prescribed_motion(&u, TangentKind::Consistent)
@@ -222,7 +222,7 @@ fn elastic_tangent_is_symmetric_where_strength_fell() {
             let body = strained(&grid, &law, &method, &mut random);
             let conditions = conditions(&grid, &law.reduced(1.5).unwrap());
             let stencils = Stencils::build(&body, &method, &conditions).unwrap();
-            let system = System::new(&body, &stencils, &conditions, &method, &[], None).unwrap();
+            let system = System::new(&body, &stencils, &conditions, &method).unwrap();
             let (trial, matrix) = system.linearise(&still, TangentKind::Elastic).unwrap();
             let plastic = trial.particles.iter().filter(|own| own.regime.is_plastic());
             assert!(

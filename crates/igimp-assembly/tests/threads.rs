@@ -21,8 +21,7 @@ fn bits(threads: usize) -> Vec<u64> {
             for method in methods() {
                 let conditions = conditions(&grid, &law);
                 let stencils = Stencils::build(&body, &method, &conditions).unwrap();
-                let system =
-                    System::new(&body, &stencils, &conditions, &method, &[], None).unwrap();
+                let system = System::new(&body, &stencils, &conditions, &method).unwrap();
                 let (trial, matrix) = system.linearise(&u, TangentKind::Consistent).unwrap();
                 bits.extend(trial.f_int.iter().flatten().map(|value| value.to_bits()));
                 bits.extend(matrix.values.iter().map(|value| value.to_bits()));

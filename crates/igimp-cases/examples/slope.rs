@@ -4,6 +4,7 @@
 use std::error::Error;
 use std::sync::atomic::AtomicBool;
 
+use igimp_cases::results::admission::Replace;
 use igimp_cases::run::{Event, Start, Target, run};
 use igimp_cases::shipped::find;
 
@@ -11,7 +12,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     // `CaseFile::read(path, &overrides)` takes a file of your own in the same way.
     let shipped = find("slope").ok_or("there is no such case")?;
     let file = shipped.case_file(["grid.cell = 2 m", "stages.run-out.steps = 50"])?;
-    let target = Target::of(&file, std::env::temp_dir().join("igimp-slope"));
+    let target = Target {
+        // Results of another case, and of a run that was stopped, are otherwise refused.
+        replace: Replace::Everything,
+        ..Target::of(&file, std::env::temp_dir().join("igimp-slope"))
+    };
     let mut listener = |event: &Event<'_>| {
         if let Event::Trial { trial, .. } = event {
             println!("SRF {:.4}: {}", trial.srf, trial.reason);

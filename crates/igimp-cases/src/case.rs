@@ -11,6 +11,7 @@ use std::sync::Arc;
 use igimp_assembly::{Geometry, Method, SharedLaw};
 use igimp_material::{Elasticity, HenckyElastic, MaterialError, MohrCoulomb, Tresca, VonMises};
 use igimp_solver::linear::SolverKind;
+use serde::{Deserialize, Serialize};
 
 pub use grid::{AxisSpec, GridSpec, MixedCells};
 
@@ -21,6 +22,8 @@ use crate::check::Band;
 pub struct Case {
     /// Title for reports and figures.
     pub title: String,
+    /// Whom and what it is for.
+    pub title_block: TitleBlock,
     /// Acceleration of gravity \[m/s²\], positive; it acts downwards.
     pub gravity: f64,
     /// Background grid.
@@ -65,6 +68,19 @@ impl Case {
             ..self.clone()
         }
     }
+}
+
+/// What stands in the head of a report beside its title. Nothing that is computed depends on it.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct TitleBlock {
+    /// Project.
+    pub project: Option<String>,
+    /// Client.
+    pub client: Option<String>,
+    /// Author.
+    pub author: Option<String>,
+    /// Revision.
+    pub revision: Option<String>,
 }
 
 /// A study of the mesh error: the case on its grid and on finer ones ([`mesh_study`]).
@@ -417,6 +433,41 @@ pub struct Section {
     pub points: usize,
     /// What is read.
     pub record: Vec<Field>,
+    /// Of which particles.
+    pub average: Average,
+    /// What the values are held against.
+    pub references: Vec<SectionReference>,
+}
+
+impl Section {
+    /// What the values at the end of a stage are held against.
+    pub fn references_at(&self, case: &Case, stage: usize) -> Vec<&SectionReference> {
+        let read = |stage: &Stage| !matches!(stage.kind, StageKind::StrengthReduction(_));
+        let last = case.stages.iter().rposition(read);
+        let wanted = |reference: &&SectionReference| reference.stage.or(last) == Some(stage);
+        self.references.iter().filter(wanted).collect()
+    }
+}
+
+/// Of which particles a section reads its values.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Average {
+    /// The particle nearest to each place.
+    #[default]
+    None,
+    /// All particles of each cell that the line goes through, by volume.
+    Cell,
+}
+
+/// A reference for a field along a section.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SectionReference {
+    /// The field.
+    pub of: Field,
+    /// The stage at whose end it is read; none: the last that is read along sections.
+    pub stage: Option<usize>,
+    /// Values over the distance along the section \[m\], in SI units.
+    pub reference: Reference,
 }
 
 /// A field on particles, as it is printed: stress compression positive.
@@ -533,12 +584,14 @@ pub enum ReferenceValues {
 pub struct CaseCheck {
     /// Name.
     pub name: String,
-    /// What is measured, at the end of a stage.
+    /// What is measured.
     pub of: Quantity,
     /// It is divided by this \[SI units\].
     pub divide_by: f64,
     /// The stage; none: the last.
     pub stage: Option<usize>,
+    /// When in the stage.
+    pub at: CheckTime,
     /// Which value is held against it.
     pub value: CheckValue,
     /// Outside value \[SI units after division\].
@@ -547,6 +600,16 @@ pub struct CaseCheck {
     pub band: Band,
     /// Where the value comes from.
     pub source: String,
+}
+
+/// When in its stage a check looks at its quantity.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum CheckTime {
+    /// At the end.
+    #[default]
+    End,
+    /// When it was largest.
+    Peak,
 }
 
 /// Which value a check looks at.

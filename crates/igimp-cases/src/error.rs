@@ -100,6 +100,64 @@ pub enum CaseError {
         /// The folder.
         path: PathBuf,
     },
+    /// The run cannot have the memory that it needs.
+    #[error(
+        "the run is thought to need {needed} of memory, and {limit} can be had, {by}; a larger cell, \
+         fewer points per cell or fewer threads need less"
+    )]
+    Memory {
+        /// What it is thought to need, in words.
+        needed: String,
+        /// What can be had, in words.
+        limit: String,
+        /// Who sets the limit.
+        by: &'static str,
+    },
+    /// Another program writes into the folder for results.
+    #[error(
+        "another igimp writes into {}; wait until it has ended, or choose another folder for the results",
+        path.display()
+    )]
+    InUse {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// The folder for results holds those of another case.
+    #[error(
+        "{} holds results of {}: --out chooses another folder, --overwrite replaces them",
+        path.display(),
+        whose(case, title)
+    )]
+    OtherResults {
+        /// The folder.
+        path: PathBuf,
+        /// Where that case comes from, as seen from the folder; empty if it is not known.
+        case: String,
+        /// Its title.
+        title: String,
+    },
+    /// The folder for results holds a run that was stopped and can go on.
+    #[error(
+        "{} holds a run that was stopped and can go on{} --overwrite begins afresh, --out chooses \
+         another folder",
+        path.display(),
+        if *same_input { ": --resume goes on with it," } else { " with the input that it had:" }
+    )]
+    Unfinished {
+        /// The folder.
+        path: PathBuf,
+        /// Whether it was made of the same input, so that it can go on as it is.
+        same_input: bool,
+    },
+    /// A file or folder that is written is a link.
+    #[error(
+        "{} is a link that leads elsewhere; remove it, or choose another folder for the results",
+        path.display()
+    )]
+    Link {
+        /// The link.
+        path: PathBuf,
+    },
     /// A folder that should hold results of an earlier run does not.
     #[error("{} holds no results of igimp", path.display())]
     NoResults {
@@ -126,6 +184,15 @@ pub enum CaseError {
     /// The state of a run cannot be saved or taken up again.
     #[error(transparent)]
     Checkpoint(#[from] CheckpointError),
+}
+
+/// Another case in a message.
+fn whose(case: &str, title: &str) -> String {
+    match (case, title) {
+        ("", _) => "an input that is not known".to_owned(),
+        (case, "") => format!("another input, {case}"),
+        (case, title) => format!("another input, {case} (\"{title}\")"),
+    }
 }
 
 /// An error and its causes, a line each.

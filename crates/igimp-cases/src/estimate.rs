@@ -9,6 +9,7 @@
 //! since not all memory that is let go serves again. A search along the reduction of strength keeps
 //! several states.
 
+pub mod room;
 pub mod speed;
 pub mod time;
 pub mod watch;

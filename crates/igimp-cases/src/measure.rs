@@ -3,7 +3,8 @@
 use igimp_assembly::Particles;
 
 /// Particles sorted into square buckets, for finding neighbours.
-struct Buckets {
+#[derive(Clone, Debug)]
+pub(crate) struct Buckets {
     size: f64,
     lower: [f64; 2],
     columns: usize,
@@ -12,7 +13,8 @@ struct Buckets {
 }
 
 impl Buckets {
-    fn new(x: &[[f64; 2]], size: f64) -> Self {
+    /// Buckets of a size \[length\] for positions.
+    pub(crate) fn new(x: &[[f64; 2]], size: f64) -> Self {
         let (lower, upper) = crate::polygon::bounding_box(x);
         let count = |axis: usize| ((upper[axis] - lower[axis]) / size) as usize + 1;
         let (columns, rows) = (count(0), count(1));
@@ -35,7 +37,7 @@ impl Buckets {
     }
 
     /// Members of the bucket of a position and of the eight around it.
-    fn near(&self, position: &[f64; 2]) -> impl Iterator<Item = usize> + '_ {
+    pub(crate) fn near(&self, position: &[f64; 2]) -> impl Iterator<Item = usize> + '_ {
         let [i, j] = self.place(position);
         let (columns, rows) = (self.columns as i64, self.rows as i64);
         (j - 1..=j + 1)
@@ -46,6 +48,16 @@ impl Buckets {
                     .iter()
                     .copied()
             })
+    }
+}
+
+impl Buckets {
+    /// The nearest member among those near a position.
+    pub(crate) fn nearest(&self, x: &[[f64; 2]], position: &[f64; 2]) -> Option<usize> {
+        self.near(position)
+            .map(|member| (distance(&x[member], position), member))
+            .min_by(|a, b| a.0.total_cmp(&b.0))
+            .map(|(_, member)| member)
     }
 }
 
@@ -75,33 +87,40 @@ pub fn oscillation(x: &[[f64; 2]], field: &[f64], radius: f64) -> f64 {
 /// The value at `at` of the plane fitted by least squares to the named particles, if they do not
 /// lie on a line.
 fn plane_at(x: &[[f64; 2]], field: &[f64], particles: &[usize], at: &[f64; 2]) -> Option<f64> {
+    let slope = plane(particles, |p| x[p], |p| field[p])?;
     let n = particles.len() as f64;
-    let mean = |value: &dyn Fn(usize) -> f64| {
-        particles
-            .iter()
-            .map(|&particle| value(particle))
-            .sum::<f64>()
-            / n
-    };
-    let centre = [mean(&|p| x[p][0]), mean(&|p| x[p][1])];
+    let mean = |of: &dyn Fn(usize) -> f64| particles.iter().map(|&p| of(p)).sum::<f64>() / n;
     let level = mean(&|p| field[p]);
-    let dx = |p: usize| x[p][0] - centre[0];
-    let dy = |p: usize| x[p][1] - centre[1];
+    let centre = [mean(&|p| x[p][0]), mean(&|p| x[p][1])];
+    Some(level + slope[0] * (at[0] - centre[0]) + slope[1] * (at[1] - centre[1]))
+}
+
+/// The slopes of the plane fitted by least squares to the values of the named particles at their
+/// places, if these do not lie on a line.
+pub(crate) fn plane(
+    particles: &[usize],
+    x: impl Fn(usize) -> [f64; 2],
+    field: impl Fn(usize) -> f64,
+) -> Option<[f64; 2]> {
+    let n = particles.len() as f64;
+    let mean = |of: &dyn Fn(usize) -> f64| particles.iter().map(|&p| of(p)).sum::<f64>() / n;
+    let centre = [mean(&|p| x(p)[0]), mean(&|p| x(p)[1])];
+    let dx = |p: usize| x(p)[0] - centre[0];
+    let dy = |p: usize| x(p)[1] - centre[1];
     let (xx, xy, yy) = (
         mean(&|p| dx(p) * dx(p)),
         mean(&|p| dx(p) * dy(p)),
         mean(&|p| dy(p) * dy(p)),
     );
-    let (xf, yf) = (mean(&|p| dx(p) * field[p]), mean(&|p| dy(p) * field[p]));
+    let (xf, yf) = (mean(&|p| dx(p) * field(p)), mean(&|p| dy(p) * field(p)));
     let determinant = xx * yy - xy * xy;
-    if determinant <= 1e-9 * xx * yy {
-        return None;
-    }
-    let slope = [
-        (xf * yy - yf * xy) / determinant,
-        (yf * xx - xf * xy) / determinant,
-    ];
-    Some(level + slope[0] * (at[0] - centre[0]) + slope[1] * (at[1] - centre[1]))
+    // Also false for no particles at all.
+    (determinant > 1e-9 * xx * yy).then(|| {
+        [
+            (xf * yy - yf * xy) / determinant,
+            (yf * xx - xf * xy) / determinant,
+        ]
+    })
 }
 
 /// The particle nearest to a position \[length\], within `reach` \[length\] of it.

@@ -6,10 +6,19 @@ use igimp_assembly::ParticleSeed;
 use igimp_shape::Grid;
 
 use crate::error::CaseError;
-use crate::polygon::{area_and_centroid, bounding_box, clip_to_box};
+use crate::polygon::{Polygon, area_and_centroid, bounding_box, clip_to_box};
 
 /// Clipped parts smaller than this share of a whole part join the body's nearest particle \[-\].
 const SLIVER: f64 = 0.1;
+
+/// The part of a polygon within a part of a cell.
+#[derive(Clone, Debug)]
+pub(crate) struct Piece {
+    /// Place of its particle among those of the body.
+    pub(crate) particle: usize,
+    /// Its corners.
+    pub(crate) polygon: Polygon,
+}
 
 /// Fills a polygon with `per_direction`² particles per grid cell.
 ///
@@ -23,10 +32,24 @@ pub fn fill_polygon(
     density: f64,
     law: usize,
 ) -> Result<Vec<ParticleSeed<2>>, CaseError> {
+    let (seeds, _) = fill_in_pieces(grid, polygon, per_direction, density, law)?;
+    Ok(seeds)
+}
+
+/// The same, with the pieces of the polygon: one for each particle in their order, then the slivers,
+/// each with the particle that it joined. Together they are the polygon.
+pub(crate) fn fill_in_pieces(
+    grid: &Grid<2>,
+    polygon: &[[f64; 2]],
+    per_direction: usize,
+    density: f64,
+    law: usize,
+) -> Result<(Vec<ParticleSeed<2>>, Vec<Piece>), CaseError> {
     if let Some(&corner) = polygon.iter().find(|corner| !grid.contains(corner)) {
         return Err(CaseError::OutsideGrid { corner });
     }
     let mut seeds: Vec<ParticleSeed<2>> = Vec::new();
+    let mut pieces = Vec::new();
     let mut slivers = Vec::new();
     let (first, last) = cells_around(grid, polygon);
     let columns = last[0] + 1 - first[0];
@@ -42,9 +65,14 @@ pub fn fill_polygon(
                 std::array::from_fn(|axis| lower[axis] + step[axis] as f64 * size[axis]);
             let centre: [f64; 2] = std::array::from_fn(|axis| from[axis] + 0.5 * size[axis]);
             let to = std::array::from_fn(|axis| from[axis] + size[axis]);
-            let (signed, centroid) = area_and_centroid(&clip_to_box(polygon, from, to));
+            let clipped = clip_to_box(polygon, from, to);
+            let (signed, centroid) = area_and_centroid(&clipped);
             let (area, whole) = (signed.abs(), size[0] * size[1]);
             if area >= SLIVER * whole {
+                pieces.push(Piece {
+                    particle: seeds.len(),
+                    polygon: clipped,
+                });
                 seeds.push(ParticleSeed {
                     x: centre,
                     half_length: size.map(|size| 0.5 * size),
@@ -53,24 +81,24 @@ pub fn fill_polygon(
                     law,
                 });
             } else if area > 0.0 {
-                slivers.push((area, centroid));
+                slivers.push((area, centroid, clipped));
             }
         }
     }
     if seeds.is_empty() {
         return Err(CaseError::EmptyBody);
     }
-    for (area, centroid) in slivers {
+    for (area, centroid, polygon) in slivers {
         let distance =
             |seed: &ParticleSeed<2>| (seed.x[0] - centroid[0]).hypot(seed.x[1] - centroid[1]);
-        if let Some(nearest) = seeds
-            .iter_mut()
-            .min_by(|a, b| distance(a).total_cmp(&distance(b)))
-        {
-            nearest.volume += area;
+        let nearest =
+            (0..seeds.len()).min_by(|&a, &b| distance(&seeds[a]).total_cmp(&distance(&seeds[b])));
+        if let Some(particle) = nearest {
+            seeds[particle].volume += area;
+            pieces.push(Piece { particle, polygon });
         }
     }
-    Ok(seeds)
+    Ok((seeds, pieces))
 }
 
 /// The lowest and the highest cell that a polygon on the grid reaches into.
@@ -105,6 +133,28 @@ mod tests {
         for axis in 0..2 {
             let moment: f64 = seeds.iter().map(|seed| seed.volume * seed.x[axis]).sum();
             assert!((moment / volume - centroid[axis]).abs() < 5e-3);
+        }
+    }
+
+    #[test]
+    fn pieces_make_up_the_polygon() {
+        let polygon = [[0.0, 0.0], [11.3, 0.0], [9.7, 1.1], [4.2, 4.6], [0.0, 4.6]];
+        let (whole, _) = area_and_centroid(&polygon);
+        let (seeds, pieces) = fill_in_pieces(&grid(), &polygon, 2, 1.0, 0).unwrap();
+        let area: f64 = pieces
+            .iter()
+            .map(|piece| area_and_centroid(&piece.polygon).0)
+            .sum();
+        assert!((area - whole).abs() < 1e-12 * whole);
+        let own = |particle: usize| {
+            let own = pieces
+                .iter()
+                .filter(move |piece| piece.particle == particle);
+            own.map(|piece| area_and_centroid(&piece.polygon).0)
+                .sum::<f64>()
+        };
+        for (particle, seed) in seeds.iter().enumerate() {
+            assert!((own(particle) - seed.volume).abs() < 1e-12, "{particle}");
         }
     }
 

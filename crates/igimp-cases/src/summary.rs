@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::case::TitleBlock;
 use crate::check::{Check, or_not_a_number};
 use crate::mesh_study::StudySummary;
 
@@ -12,10 +13,22 @@ pub struct Summary {
     pub program: String,
     /// Title of the case.
     pub title: String,
+    /// Project, client, author and revision.
+    #[serde(default)]
+    pub title_block: TitleBlock,
+    /// Day and time of the run, as whoever started it said.
+    #[serde(default)]
+    pub date: Option<String>,
+    /// SHA-256 of `case.completed.toml`, the case with every default.
+    #[serde(default)]
+    pub input_sha256: Option<String>,
     /// Variant of the method.
     pub method: String,
     /// Size of the model.
     pub size: ModelSize,
+    /// The case in words: materials, bodies, supports, loads, stages.
+    #[serde(default)]
+    pub setup: Vec<SetupTable>,
     /// Stages in the order they ran.
     pub stages: Vec<StageSummary>,
     /// Checks of curves and results.
@@ -44,6 +57,17 @@ pub struct Summary {
     /// What a study of the mesh error found on all its meshes; stages and pictures are then those of
     /// the finest mesh that came to its end.
     pub mesh_study: Option<StudySummary>,
+}
+
+/// A table that tells a part of the case.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct SetupTable {
+    /// What it tells.
+    pub title: String,
+    /// Names of its columns, with units.
+    pub header: Vec<String>,
+    /// Rows, as text.
+    pub rows: Vec<Vec<String>>,
 }
 
 /// The estimate of a run ([`estimate`](mod@crate::estimate)).
@@ -135,6 +159,9 @@ pub struct StageSummary {
     pub ghost_steps: usize,
     /// Largest resistance of a footing that the stage pushed \[N/m\].
     pub peak_resistance: Option<f64>,
+    /// Settlement of that footing at the end \[m\].
+    #[serde(default)]
+    pub settlement: Option<f64>,
     /// What a strength reduction found.
     pub safety: Option<SafetySummary>,
 }

@@ -4,6 +4,8 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use crate::error::CaseError;
+use crate::results::atomic::create;
+use crate::results::cells::cell;
 
 /// A named table of numbers.
 #[derive(Clone, Debug, PartialEq)]
@@ -53,8 +55,8 @@ impl Table {
     pub fn write_csv(&self, folder: &Path) -> Result<(), CaseError> {
         let path = folder.join(format!("{}.csv", self.name));
         let write = || -> Result<(), csv::Error> {
-            let mut writer = csv::Writer::from_path(&path)?;
-            writer.write_record(&self.header)?;
+            let mut writer = csv::Writer::from_writer(create(&path)?);
+            writer.write_record(self.header.iter().map(|column| cell(column).into_owned()))?;
             for row in &self.rows {
                 writer.write_record(row.iter().map(|value| format!("{value:.9e}")))?;
             }

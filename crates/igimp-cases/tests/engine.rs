@@ -317,3 +317,108 @@ steps = 300
         assert!(radius < strength * (1.0 + 1e-9), "{radius}");
     }
 }
+
+/// GOAL: means over cells know no sawtooth, and a section is held against what it should show.
+/// ORACLE: the weight above, at the middle of the cells.
+#[test]
+fn sections_read_means_over_cells_and_are_held_against_references() {
+    let section = |average: &str| {
+        with(&format!(
+            r#"
+[[stages]]
+name = "rest"
+type = "k0"
+steps = 1
+[[sections]]
+name = "down"
+from = ["1.3 m", "5 m"]
+to = ["1.3 m", "2 m"]
+record = ["displacement", "sigma_yy"]
+average = "{average}"
+[[sections.references]]
+of = "sigma_yy"
+points = [[0.25, 4e3], [2.75, 44e3]]
+label = "weight above"
+tolerance = 0.001
+[[sections.references]]
+of = "sigma_yy"
+y = 50e3
+at = 1.0
+label = "something else"
+tolerance = 0.001
+"#
+        ))
+    };
+    let run = ran(&section("cell"));
+    let table = &run.sections[0];
+    assert_eq!(table.rows.len(), 6, "six cells of half a metre");
+    for row in &table.rows {
+        let [distance, x, weight] = [row[0], row[1], row[4]];
+        assert!((x - 1.25).abs() < 0.01, "{row:?}");
+        assert!((weight - 16e3 * distance).abs() < 2e-4 * 48e3, "{row:?}");
+    }
+    let told: Vec<_> = run
+        .summary
+        .checks
+        .iter()
+        .map(|row| (row.check.quantity.as_str(), row.pass))
+        .collect();
+    assert_eq!(
+        told,
+        [
+            ("down, sigma_yy at 0.25", true),
+            ("down, sigma_yy at 2.75", true),
+            ("down, sigma_yy at 1", false)
+        ]
+    );
+    let particles = ran(&section("none")).sections[0].rows.len();
+    assert_eq!(particles, 12, "two particles to a cell");
+}
+
+/// GOAL: a check may look at the most of a stage, as well as at its end.
+#[test]
+fn a_check_looks_at_the_peak_of_its_stage() {
+    let check = |name: &str, at: &str, band: &str| {
+        format!(
+            "[[checks]]\nname = \"{name}\"\nof = \"fill.factor\"\nstage = \"off\"\n\
+             at = \"{at}\"\n{band}\nsource = \"the stages\"\n"
+        )
+    };
+    let stages = format!(
+        r#"
+[[loads]]
+name = "fill"
+type = "pressure"
+from = ["0 m", "5 m"]
+to = ["4 m", "5 m"]
+pressure = "20 kPa"
+[[stages]]
+name = "rest"
+type = "k0"
+steps = 1
+[[stages]]
+name = "on"
+type = "load"
+load = "fill"
+factor = 0.8
+steps = 2
+[[stages]]
+name = "off"
+type = "load"
+load = "fill"
+factor = 0.2
+steps = 3
+{}{}"#,
+        check("most", "peak", "expected = 0.8\ntolerance = 1e-9"),
+        check("end", "end", "expected = 0.2\ntolerance = 1e-9")
+    );
+    let run = ran(&with(&stages));
+    let found: Vec<_> = run
+        .summary
+        .checks
+        .iter()
+        .map(|row| (row.check.measured, row.pass))
+        .collect();
+    assert_eq!(found.len(), 2);
+    assert!(found.iter().all(|&(_, pass)| pass), "{found:?}");
+}

@@ -844,3 +844,42 @@ fn matches(
 fn the_reference_has_every_table() {
     insta::assert_snapshot!(reference_markdown());
 }
+
+/// GOAL: whom a case is for reaches the case, changes nothing that is computed, and is explained.
+#[test]
+fn a_title_block_is_read() {
+    let block = "[case]\nproject = \"Bypass\"\nclient = \"Road authority\"\nauthor = \"A. Engineer\"\nrevision = \"B\"";
+    let text = edited(SLOPE.1, &[("[case]", block)]);
+    let file = CaseFile::parse(SLOPE.0, &text, &[]).unwrap();
+    let block = &file.case().title_block;
+    let read = [
+        &block.project,
+        &block.client,
+        &block.author,
+        &block.revision,
+    ];
+    let expected = ["Bypass", "Road authority", "A. Engineer", "B"];
+    assert_eq!(read.map(|text| text.as_deref().unwrap()), expected);
+    assert!(file.explain().contains("revision = \"B\""));
+}
+
+/// GOAL: what cannot be held against a reference is said with its place and a remedy.
+#[test]
+fn messages_of_references() {
+    let section = |reference: &str| {
+        format!(
+            "[[sections]]\nname = \"S\"\nfrom = [\"20 m\", \"2 m\"]\nto = [\"20 m\", \"15 m\"]\nrecord = [\"sigma_yy\"]\n[[sections.references]]\n{reference}\n[output]"
+        )
+    };
+    let cases = [
+        section("of = \"tau_xy\"\ny = 1\nlabel = \"l\""),
+        section("of = \"sigma_yy\"\nlabel = \"l\""),
+        section("of = \"sigma_yy\"\ny = 1\nstage = \"nine\"\nlabel = \"l\""),
+        section("of = \"sigma_yy\"\ny = 1\nstage = \"factor of safety\"\nlabel = \"l\""),
+        "[[checks]]\nname = \"f\"\nof = \"factor_of_safety\"\nat = \"peak\"\nat_least = 1.3\nsource = \"s\"\n[output]".to_owned(),
+    ];
+    let edits: Vec<[(&str, &str); 1]> =
+        cases.iter().map(|to| [("[output]", to.as_str())]).collect();
+    let edits: Vec<Edits<'_>> = edits.iter().map(|edit| &edit[..]).collect();
+    insta::assert_snapshot!(messages(SLOPE, &edits));
+}

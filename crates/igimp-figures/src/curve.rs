@@ -49,7 +49,8 @@ impl SeriesStyle {
 pub struct Series {
     /// Text in the legend; empty to leave the series out of it.
     pub label: String,
-    /// Points (x, y) in the units of the axes. A point that is not finite breaks the line.
+    /// Points (x, y) in the units of the axes. A point that is not finite breaks the line, and is counted
+    /// in a note unless neither of its coordinates is a number.
     pub points: Vec<[f64; 2]>,
     /// Line, markers, or both.
     pub style: SeriesStyle,

@@ -113,9 +113,10 @@ fn range(
     Ok(scale.range_of(values).unwrap_or(empty))
 }
 
-/// Number of points of the series that the axes cannot show.
+/// Number of points of the series that the axes cannot show; breaks that were asked for are none.
 pub(super) fn hidden_points(plot: &CurvePlot) -> usize {
     let points = plot.series.iter().flat_map(|series| &series.points);
+    let points = points.filter(|[x, y]| !(x.is_nan() && y.is_nan()));
     points.filter(|point| !shows(plot, point)).count()
 }
 

@@ -108,19 +108,12 @@ impl Layer<'_> {
 
     /// The visible part of a domain, a little enlarged.
     fn contour(&self, polygon: &[[f64; 2]]) -> Option<Contour> {
-        let points = self.places(polygon);
-        let count = points.len() as f64;
-        let centre: Point =
-            std::array::from_fn(|k| points.iter().map(|p| p[k]).sum::<f64>() / count);
-        let mut points: Vec<Point> = points
-            .into_iter()
-            .map(|p| std::array::from_fn(|k| p[k] + OVERLAP * (p[k] - centre[k]).signum()))
-            .collect();
+        let mut points = self.places(polygon);
         // All the same way round, or overlapping domains in one shape would cancel.
         if signed_area(&points) < 0.0 {
             points.reverse();
         }
-        let visible = self.frame.area.clip_polygon(&points);
+        let visible = self.frame.area.clip_polygon(&enlarged(&points));
         (visible.len() > 2).then_some(Contour::Closed(visible))
     }
 
@@ -163,6 +156,29 @@ impl Layer<'_> {
     }
 }
 
+/// A polygon whose sides are moved outwards by [`OVERLAP`]; sharp corners by three times that at most.
+fn enlarged(points: &[Point]) -> Vec<Point> {
+    let count = points.len();
+    // Outwards, seen along a side; no side, no direction.
+    let outwards = |k: usize| {
+        let (a, b) = (points[k % count], points[(k + 1) % count]);
+        let [dx, dy] = [b[0] - a[0], b[1] - a[1]];
+        let length = dx.hypot(dy);
+        (length > 0.0).then(|| [dy / length, -dx / length])
+    };
+    (0..count)
+        .map(|k| {
+            let before = (1..count).find_map(|back| outwards(k + count - back));
+            let after = (0..count).find_map(|on| outwards(k + on));
+            let (Some(m), Some(n)) = (before, after) else {
+                return points[k];
+            };
+            let share = OVERLAP / (1.0 + m[0] * n[0] + m[1] * n[1]).max(0.22);
+            [0, 1].map(|axis| points[k][axis] + share * (m[axis] + n[axis]))
+        })
+        .collect()
+}
+
 /// Area \[pt²\] of a polygon, positive for one way round and negative for the other.
 fn signed_area(points: &[Point]) -> f64 {
     let following = points.iter().cycle().skip(1);
@@ -176,6 +192,23 @@ fn signed_area(points: &[Point]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// GOAL: neighbours overlap along every side, however thin and slanted they are.
+    #[test]
+    fn sides_move_outwards() {
+        let square = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]];
+        let grown = enlarged(&square);
+        assert!((signed_area(&grown).abs() - 2.6 * 2.6).abs() < 1e-12);
+        let slanted = [[0.0, 0.0], [10.0, 10.0], [10.0, 11.0], [0.0, 1.0]];
+        for (k, corner) in enlarged(&slanted).iter().enumerate() {
+            // How far the corner lies from the line halfway between the long sides.
+            let across = (corner[1] - corner[0] - 0.5) / 2.0_f64.sqrt();
+            let half = 0.5 / 2.0_f64.sqrt() + OVERLAP;
+            let side = if k < 2 { -half } else { half };
+            assert!((across - side).abs() < 1e-9, "{k}: {across} for {side}");
+        }
+        assert_eq!(enlarged(&[[1.0, 1.0]; 4]), [[1.0, 1.0]; 4]);
+    }
 
     #[test]
     fn missing_values_and_places_are_counted() {

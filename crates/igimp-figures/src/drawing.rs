@@ -202,9 +202,18 @@ impl Drawing {
             let mut path = path_without_extension.as_os_str().to_owned();
             path.push(extension);
             let path = PathBuf::from(path);
-            std::fs::write(&path, bytes).map_err(|source| FigureError::Write { path, source })
+            write_new(&path, bytes).map_err(|source| FigureError::Write { path, source })
         };
         save(".svg", self.to_svg().as_bytes())?;
         save(".png", &self.to_png()?)
     }
+}
+
+/// Writes a new file. A link that has the name goes, and what it leads to stays as it is.
+fn write_new(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+    match std::fs::remove_file(path) {
+        Err(error) if error.kind() != std::io::ErrorKind::NotFound => return Err(error),
+        _ => {}
+    }
+    std::io::Write::write_all(&mut std::fs::File::create_new(path)?, bytes)
 }

@@ -29,6 +29,13 @@ pub enum OutlineStyle {
     Arrow,
     /// A dot at every point: a place that is watched.
     Point,
+    /// A thin dashed grey line: an edge where it was before.
+    Former,
+    /// A heavy line on a white ground: a line that was found.
+    Trace,
+    /// Small arrows, each from one point to the next, then from the third to the fourth, and so on:
+    /// directions and sizes.
+    Vectors,
 }
 
 /// A line over the field.

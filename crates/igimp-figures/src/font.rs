@@ -24,7 +24,7 @@ pub(super) const LINE_HEIGHT: f64 = 1.25;
 
 /// Part of a text on one level.
 #[derive(Debug, PartialEq)]
-pub(super) struct Run<'a> {
+pub(super) struct TextRun<'a> {
     pub(super) text: &'a str,
     /// Font size over that of the text.
     pub(super) scale: f64,
@@ -33,9 +33,9 @@ pub(super) struct Run<'a> {
 }
 
 /// Splits a text at its markup: `_{...}` is written low, `^{...}` high, both small.
-pub(super) fn runs(text: &str) -> Vec<Run<'_>> {
+pub(super) fn runs(text: &str) -> Vec<TextRun<'_>> {
     let mut runs = Vec::new();
-    let mut level = |text, scale, rise| runs.push(Run { text, scale, rise });
+    let mut level = |text, scale, rise| runs.push(TextRun { text, scale, rise });
     let mut rest = text;
     let next = |rest: &str| {
         let start = [rest.find("_{"), rest.find("^{")]

@@ -12,6 +12,9 @@ const ROLLER: (f64, f64) = (11.0, 2.4);
 /// Length and half-width \[pt\] of an arrow head.
 const HEAD: (f64, f64) = (8.0, 3.2);
 
+/// Length and half-width \[pt\] of the head of a small arrow.
+const SMALL_HEAD: (f64, f64) = (4.5, 1.8);
+
 /// Draws a line through `points` \[pt\] as far as it lies in `area`.
 pub(super) fn draw(drawing: &mut Drawing, area: &Rect, style: OutlineStyle, points: &[Point]) {
     let lines = || area.clip_polyline(points);
@@ -70,6 +73,23 @@ pub(super) fn draw(drawing: &mut Drawing, area: &Rect, style: OutlineStyle, poin
                 arrow(drawing, area, from, to);
             }
         }
+        OutlineStyle::Former => {
+            let (colour, width) = (Colour::FAINT_INK, 0.8);
+            let dash: &[f64] = &[3.0, 2.5];
+            drawing.stroke(
+                lines(),
+                Stroke {
+                    colour,
+                    width,
+                    dash,
+                },
+            );
+        }
+        OutlineStyle::Trace => {
+            drawing.stroke(lines(), Stroke::solid(Colour::WHITE, 4.2));
+            drawing.stroke(lines(), Stroke::solid(Colour::FAILURE, 2.2));
+        }
+        OutlineStyle::Vectors => vectors(drawing, area, points),
         OutlineStyle::Point => {
             let centres = points.iter().filter(|&&point| area.contains(point));
             let radius = 3.4;
@@ -119,6 +139,37 @@ fn arrow(drawing: &mut Drawing, area: &Rect, from: Point, to: Point) {
     drawing.fill(vec![Contour::Closed(head)], colour, 1.0);
 }
 
+/// Small arrows between pairs of points, as far as both lie in the area; heads grow with the arrows.
+fn vectors(drawing: &mut Drawing, area: &Rect, points: &[Point]) {
+    let (mut shafts, mut heads) = (Vec::new(), Vec::new());
+    for pair in points.chunks_exact(2) {
+        let (from, to) = (pair[0], pair[1]);
+        let length = (to[0] - from[0]).hypot(to[1] - from[1]);
+        if !(length > 0.0 && area.contains(from) && area.contains(to)) {
+            continue;
+        }
+        let [dx, dy] = [(to[0] - from[0]) / length, (to[1] - from[1]) / length];
+        let (long, wide) = (
+            length.min(SMALL_HEAD.0),
+            SMALL_HEAD.1 * length.min(SMALL_HEAD.0) / SMALL_HEAD.0,
+        );
+        let back = [to[0] - long * dx, to[1] - long * dy];
+        let side = |sign: f64| [back[0] - sign * wide * dy, back[1] + sign * wide * dx];
+        shafts.push(vec![from, back]);
+        heads.push(Contour::Closed(vec![to, side(1.0), side(-1.0)]));
+    }
+    if !heads.is_empty() {
+        // White around black stays visible on every colour.
+        drawing.stroke(shafts.clone(), Stroke::solid(Colour::WHITE, 2.0));
+        drawing.items.push(Item::Shape(Shape {
+            contours: heads,
+            fill: Some((Colour::INK, 1.0)),
+            stroke: Some(Stroke::solid(Colour::WHITE, 0.5)),
+        }));
+        drawing.stroke(shafts, Stroke::solid(Colour::INK, 0.8));
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -143,6 +194,9 @@ mod tests {
             OutlineStyle::Roller,
             OutlineStyle::Arrow,
             OutlineStyle::Point,
+            OutlineStyle::Former,
+            OutlineStyle::Trace,
+            OutlineStyle::Vectors,
         ] {
             let mut drawing = Drawing::new("");
             draw(&mut drawing, &area, style, &[[20.0, 20.0], [40.0, 20.0]]);

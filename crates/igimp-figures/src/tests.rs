@@ -340,3 +340,14 @@ fn a_panel_shares_range_and_bar() {
     assert_eq!(svg.matches(">Squares<").count(), 3);
     assert!(svg.contains(">10<"));
 }
+
+#[test]
+fn a_break_that_was_asked_for_is_no_hidden_point() {
+    let note = |point: [f64; 2]| {
+        let mut plot = curve();
+        plot.series[0].points.insert(1, point);
+        plot.draw().unwrap().to_svg().contains("points not shown")
+    };
+    assert!(!note([f64::NAN; 2]));
+    assert!(note([0.5, f64::NAN]));
+}

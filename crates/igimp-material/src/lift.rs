@@ -67,11 +67,6 @@ impl<const D: usize> Lifted<D> {
     pub fn b_e(&self) -> Tensor {
         elastic_left_cauchy_green::<D>(&self.eps_e, &self.frame)
     }
-
-    /// The elastic Hencky strain tensor $`\varepsilon_e`$.
-    pub fn eps_e_tensor(&self) -> Tensor {
-        compose::<D>(&self.eps_e, &self.frame)
-    }
 }
 
 /// Finite strain: the law at the trial elastic left Cauchy–Green tensor `b_e_trial`.

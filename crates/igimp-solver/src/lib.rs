@@ -8,15 +8,16 @@
 pub mod linear;
 
 mod body;
-mod course;
+mod corrector;
 mod march;
-mod named;
 mod newton;
+mod report;
+mod residual_history;
 
 pub use body::Body;
 pub use march::{
-    Accepted, MarchReport, MarchSettings, Observer, Outcome, Program, Standing, march, march_from,
+    Accepted, LoadPath, MarchReport, MarchSettings, MarchState, Observer, Outcome, march,
+    march_from,
 };
-pub use newton::{
-    NewtonSettings, NodalForces, PhaseTimes, StepError, StepFailure, StepReport, Workspace, step,
-};
+pub use newton::{NewtonSettings, Workspace, step};
+pub use report::{NodalForces, PhaseTimes, StepError, StepFailure, StepReport};

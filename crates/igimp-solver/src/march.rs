@@ -6,15 +6,14 @@ use std::ops::ControlFlow;
 use igimp_assembly::{AssemblyError, Method, StepConditions};
 
 use crate::body::Body;
-use crate::newton::{
-    NewtonSettings, NodalForces, PhaseTimes, StepError, StepFailure, StepReport, Workspace, step,
-};
+use crate::newton::{NewtonSettings, Workspace, step};
+use crate::report::{NodalForces, PhaseTimes, StepError, StepFailure, StepReport};
 
 /// Successes in a row after which a cut step grows again.
 const SUCCESSES_TO_GROW: usize = 2;
 
-/// What holds between two load factors. Closures are programs.
-pub trait Program<const D: usize> {
+/// What holds between two load factors. Closures are load paths.
+pub trait LoadPath<const D: usize> {
     /// Grid, constraints, loads and laws of the step from load factor `from` to `to`.
     ///
     /// # Errors
@@ -22,7 +21,7 @@ pub trait Program<const D: usize> {
     fn conditions(&self, from: f64, to: f64) -> Result<StepConditions<D>, AssemblyError>;
 }
 
-impl<const D: usize, F> Program<D> for F
+impl<const D: usize, F> LoadPath<D> for F
 where
     F: Fn(f64, f64) -> Result<StepConditions<D>, AssemblyError>,
 {
@@ -43,12 +42,12 @@ pub struct Accepted<'a, const D: usize> {
     /// Reactions and step displacements.
     pub forces: &'a NodalForces<D>,
     /// Where the march stands: with the body, all that [`march_from`] needs to go on.
-    pub standing: &'a Standing,
+    pub state: &'a MarchState,
 }
 
 /// Where a march stands between two steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Standing {
+pub struct MarchState {
     /// Load factor reached \[-\].
     pub at: f64,
     /// Size of the next step, in load factor \[-\].
@@ -57,7 +56,7 @@ pub struct Standing {
     pub successes: usize,
 }
 
-impl Standing {
+impl MarchState {
     /// The beginning of a march.
     pub fn start(settings: &MarchSettings) -> Self {
         Self {
@@ -177,22 +176,24 @@ impl MarchReport {
 pub fn march<const D: usize>(
     body: &mut Body<D>,
     method: &Method,
-    program: &dyn Program<D>,
+    load_path: &dyn LoadPath<D>,
     settings: &MarchSettings,
     workspace: &mut Workspace<D>,
     observer: &mut dyn Observer<D>,
 ) -> MarchReport {
-    let start = Standing::start(settings);
-    march_from(start, body, method, program, settings, workspace, observer)
+    let start = MarchState::start(settings);
+    march_from(
+        start, body, method, load_path, settings, workspace, observer,
+    )
 }
 
-/// Goes on with a march that was left at `standing`, with the body as it was then: the steps that
+/// Goes on with a march that was left at `state`, with the body as it was then: the steps that
 /// follow are the same to the bit. The report tells of these steps only.
 pub fn march_from<const D: usize>(
-    mut standing: Standing,
+    mut state: MarchState,
     body: &mut Body<D>,
     method: &Method,
-    program: &dyn Program<D>,
+    load_path: &dyn LoadPath<D>,
     settings: &MarchSettings,
     workspace: &mut Workspace<D>,
     observer: &mut dyn Observer<D>,
@@ -205,10 +206,10 @@ pub fn march_from<const D: usize>(
     let nominal = settings.nominal();
     let smallest = nominal * settings.cut_factor.powf(f64::from(settings.cuts) + 0.5);
     let mut cuts = 0;
-    while standing.at < 1.0 {
-        let at = standing.at;
-        let to = next_factor(at, standing.size, nominal);
-        let result = conditions_at(program, at, to).and_then(|conditions| {
+    while state.at < 1.0 {
+        let at = state.at;
+        let to = next_factor(at, state.size, nominal);
+        let result = conditions_at(load_path, at, to).and_then(|conditions| {
             step(
                 body,
                 method,
@@ -221,19 +222,19 @@ pub fn march_from<const D: usize>(
         });
         match result {
             Ok((conditions, step, forces)) => {
-                standing.at = to;
-                standing.successes += 1;
+                state.at = to;
+                state.successes += 1;
                 cuts = 0;
-                if standing.successes >= SUCCESSES_TO_GROW && standing.size < nominal {
-                    standing.size = (standing.size * settings.growth).min(nominal);
-                    standing.successes = 0;
+                if state.successes >= SUCCESSES_TO_GROW && state.size < nominal {
+                    state.size = (state.size * settings.growth).min(nominal);
+                    state.successes = 0;
                 }
                 let accepted = Accepted {
                     body,
                     conditions: &conditions,
                     report: &step,
                     forces: &forces,
-                    standing: &standing,
+                    state: &state,
                 };
                 let flow = observer.on_step(&accepted);
                 report.steps.push(step);
@@ -246,13 +247,13 @@ pub fn march_from<const D: usize>(
                 observer.on_cut(&error);
                 report.failures.push(error.clone());
                 // The last step may have been shorter than its size, so as to end on 1.
-                standing.size = settings.cut_factor * standing.size.min(1.0 - at);
-                standing.successes = 0;
+                state.size = settings.cut_factor * state.size.min(1.0 - at);
+                state.successes = 0;
                 cuts += 1;
-                let next = next_factor(at, standing.size, nominal);
+                let next = next_factor(at, state.size, nominal);
                 let is_a_cut = at < next && next < to;
                 if cuts > settings.cuts
-                    || standing.size < smallest
+                    || state.size < smallest
                     || !is_a_cut
                     || error.failure.leaves_grid()
                 {
@@ -285,11 +286,11 @@ fn next_factor(at: f64, size: f64, nominal: f64) -> f64 {
 }
 
 fn conditions_at<const D: usize>(
-    program: &dyn Program<D>,
+    load_path: &dyn LoadPath<D>,
     from: f64,
     to: f64,
 ) -> Result<StepConditions<D>, StepError> {
-    program.conditions(from, to).map_err(|source| StepError {
+    load_path.conditions(from, to).map_err(|source| StepError {
         from,
         to,
         residuals: Vec::new(),

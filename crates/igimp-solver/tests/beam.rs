@@ -45,21 +45,21 @@ fn bent(cells: usize, points: usize, steps: usize, method: &Method) -> (Body<2>,
     let mut constraints = Constraints::free(&grid);
     constraints.fix_wall(&grid, 0, false, 0).unwrap();
     constraints.fix_wall(&grid, 0, false, 1).unwrap();
-    let program = |_: f64, to: f64| {
-        Ok(StepConditions {
-            grid: grid.clone(),
-            constraints: constraints.clone(),
-            loads: StepLoads {
+    let load_path = |_: f64, to: f64| {
+        StepConditions::new(
+            grid.clone(),
+            constraints.clone(),
+            StepLoads {
                 factors: vec![to],
                 ..StepLoads::gravity([0.0; 2])
             },
-            laws: vec![Arc::clone(&law)],
-        })
+            vec![Arc::clone(&law)],
+        )
     };
     let report = march(
         &mut body,
         method,
-        &program,
+        &load_path,
         &MarchSettings::steps(steps),
         &mut workspace(),
         &mut |_: &Accepted<'_, 2>| ControlFlow::Continue(()),

@@ -188,7 +188,7 @@ fn a_fault_of_a_law_is_caught_in_its_pass_and_named() {
 fn a_march_goes_on_after_a_fault_that_passes() {
     let run = |own: &SharedLaw| {
         let (mut body, conditions) = with_law(own);
-        let program = |_: f64, to: f64| {
+        let load_path = |_: f64, to: f64| {
             let mut conditions = conditions.clone();
             conditions.loads.gravity[1] *= to;
             Ok(conditions)
@@ -200,7 +200,7 @@ fn a_march_goes_on_after_a_fault_that_passes() {
         let report = march(
             &mut body,
             &method,
-            &program,
+            &load_path,
             &settings,
             &mut workspace,
             &mut watch,

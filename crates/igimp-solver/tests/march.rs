@@ -19,10 +19,10 @@ use body_support::{
 use igimp_assembly::{AssemblyError, Constraints, Kinematics, Method, SharedLaw, StepConditions};
 use igimp_material::MaterialError;
 use igimp_solver::{
-    Accepted, Body, MarchReport, MarchSettings, Outcome, Standing, StepFailure, march, march_from,
+    Accepted, Body, MarchReport, MarchSettings, MarchState, Outcome, StepFailure, march, march_from,
 };
 
-/// A standing block and the program that raises its weight to `gravity`.
+/// A standing block and the load path that raises its weight to `gravity`.
 fn standing_block(
     law: &SharedLaw,
     gravity: f64,
@@ -31,24 +31,24 @@ fn standing_block(
     impl Fn(f64, f64) -> Result<StepConditions<2>, AssemblyError> + use<>,
 ) {
     let (body, full) = loaded(law, gravity);
-    let program = move |_: f64, to: f64| {
+    let load_path = move |_: f64, to: f64| {
         let mut conditions = full.clone();
         conditions.loads.gravity[1] *= to;
         Ok(conditions)
     };
-    (body, program)
+    (body, load_path)
 }
 
 /// Marches to the end, or to where it stops.
 fn run(
     body: &mut Body<2>,
-    program: &impl Fn(f64, f64) -> Result<StepConditions<2>, AssemblyError>,
+    load_path: &impl Fn(f64, f64) -> Result<StepConditions<2>, AssemblyError>,
     settings: &MarchSettings,
 ) -> MarchReport {
     march(
         body,
         &Method::default(),
-        program,
+        load_path,
         settings,
         &mut workspace(),
         &mut |_: &Accepted<'_, 2>| ControlFlow::Continue(()),
@@ -64,12 +64,12 @@ fn same(a: f64, b: f64) -> bool {
 #[test]
 fn uncut_steps_end_on_multiples_of_the_nominal_size() {
     for steps in [1, 3, 7, 10, 49] {
-        let (mut body, program) = standing_block(&elastic(), 0.1);
+        let (mut body, load_path) = standing_block(&elastic(), 0.1);
         let mut seen = Vec::new();
         let report = march(
             &mut body,
             &Method::default(),
-            &program,
+            &load_path,
             &MarchSettings::steps(steps),
             &mut workspace(),
             &mut |accepted: &Accepted<'_, 2>| {
@@ -102,9 +102,9 @@ fn uncut_steps_end_on_multiples_of_the_nominal_size() {
     }
 }
 
-/// Every attempt of a march whose program refuses steps that `fails` says: from, to, accepted.
+/// Every attempt of a march whose load path refuses steps that `fails` says: from, to, accepted.
 fn attempts(steps: usize, cuts: u32, fails: impl Fn(f64, f64) -> bool) -> Vec<(f64, f64, bool)> {
-    let (mut body, program) = standing_block(&elastic(), 0.1);
+    let (mut body, load_path) = standing_block(&elastic(), 0.1);
     let tried = RefCell::new(Vec::new());
     let refusing = |from: f64, to: f64| {
         let refused = fails(from, to);
@@ -112,7 +112,7 @@ fn attempts(steps: usize, cuts: u32, fails: impl Fn(f64, f64) -> bool) -> Vec<(f
         if refused {
             Err(AssemblyError::NoUnknowns)
         } else {
-            program(from, to)
+            load_path(from, to)
         }
     };
     let settings = MarchSettings {
@@ -239,13 +239,13 @@ fn a_shortened_last_step_is_halved_too() {
 #[test]
 fn a_step_that_is_cut_too_often_stops_the_march() {
     for cuts in [0, 1, 3] {
-        let (mut body, program) = standing_block(&elastic(), 0.1);
+        let (mut body, load_path) = standing_block(&elastic(), 0.1);
         let limit = 0.4;
         let refusing = |from: f64, to: f64| {
             if to > limit {
                 Err(AssemblyError::NoUnknowns)
             } else {
-                program(from, to)
+                load_path(from, to)
             }
         };
         let settings = MarchSettings {
@@ -295,8 +295,8 @@ fn the_cause_of_a_law_that_fails_is_kept() {
         above: 0.02,
         tangent_alone: false,
     });
-    let (mut body, program) = standing_block(&law, 2.0);
-    let report = run(&mut body, &program, &MarchSettings::steps(4));
+    let (mut body, load_path) = standing_block(&law, 2.0);
+    let report = run(&mut body, &load_path, &MarchSettings::steps(4));
     let Outcome::StepTooSmall {
         last_converged,
         cause,
@@ -331,7 +331,7 @@ fn the_cause_of_a_law_that_fails_is_kept() {
 fn leaving_the_grid_is_not_tried_again() {
     let grid = unit_grid([6, 6]);
     let mut body = block(&grid, [1, 1], [4, 4]);
-    let program = |from: f64, to: f64| {
+    let load_path = |from: f64, to: f64| {
         let mut constraints = Constraints::free(&grid);
         for node in 0..grid.node_count() {
             if grid.node_place(node)[1] as f64 <= 1.0 + 4.0 * from {
@@ -341,7 +341,7 @@ fn leaving_the_grid_is_not_tried_again() {
         }
         Ok(conditions(&grid, &constraints, &elastic(), 0.0))
     };
-    let report = run(&mut body, &program, &MarchSettings::steps(4));
+    let report = run(&mut body, &load_path, &MarchSettings::steps(4));
     assert!(
         matches!(&report.outcome, Outcome::StepTooSmall { last_converged, cause }
             if same(*last_converged, 0.5)
@@ -355,12 +355,12 @@ fn leaving_the_grid_is_not_tried_again() {
 /// An observer that breaks ends the march after that step; the step stays accepted.
 #[test]
 fn an_observer_ends_the_march() {
-    let (mut body, program) = standing_block(&elastic(), 0.1);
+    let (mut body, load_path) = standing_block(&elastic(), 0.1);
     let mut last = String::new();
     let report = march(
         &mut body,
         &Method::default(),
-        &program,
+        &load_path,
         &MarchSettings::steps(10),
         &mut workspace(),
         &mut |accepted: &Accepted<'_, 2>| {
@@ -389,12 +389,12 @@ fn an_observer_ends_the_march() {
 /// the strength; it stops later, as a block that slumps grows wider and lower.
 #[test]
 fn a_block_under_growing_weight_collapses() {
-    let (mut body, program) = standing_block(&von_mises(), 3.0);
+    let (mut body, load_path) = standing_block(&von_mises(), 3.0);
     let mut last = String::new();
     let report = march(
         &mut body,
         &Method::default(),
-        &program,
+        &load_path,
         &MarchSettings::steps(10),
         &mut workspace(),
         &mut |accepted: &Accepted<'_, 2>| {
@@ -433,12 +433,13 @@ fn bits_do_not_depend_on_the_number_of_threads() {
                 .unwrap();
             pool.install(|| {
                 let mut body = shifted_block(&grid, [0, 0], [12, 10], [0.15, 0.1]);
-                let program = |_: f64, to: f64| Ok(conditions(&grid, &constraints, &law, 0.3 * to));
+                let load_path =
+                    |_: f64, to: f64| Ok(conditions(&grid, &constraints, &law, 0.3 * to));
                 let mut forces = String::new();
                 let report = march(
                     &mut body,
                     &Method::default(),
-                    &program,
+                    &load_path,
                     &MarchSettings::steps(3),
                     &mut workspace(),
                     &mut |accepted: &Accepted<'_, 2>| {
@@ -465,13 +466,13 @@ fn bits_do_not_depend_on_the_number_of_threads() {
 /// the grid following its upper side, and the stress that total strain asks for.
 fn pressed_in(steps: usize, method: &Method) -> f64 {
     let height = |factor: f64| 4.0 * (1.0 - 0.4 * factor);
-    let program =
+    let load_path =
         |from: f64, to: f64| Ok(pressed(&elastic(), height(from), height(from) - height(to)));
     let (mut body, _) = confined(&elastic(), 0.0);
     let report = march(
         &mut body,
         method,
-        &program,
+        &load_path,
         &MarchSettings::steps(steps),
         &mut workspace(),
         &mut |_: &Accepted<'_, 2>| ControlFlow::Continue(()),
@@ -522,28 +523,28 @@ fn finite_strain_does_not_depend_on_the_path() {
 fn a_march_taken_up_again_is_the_same_march() {
     let law = von_mises();
     let settings = MarchSettings::steps(6);
-    let (start, program) = standing_block(&law, 1.2 * STRENGTH);
-    let mut left: Vec<(Standing, Body<2>)> = Vec::new();
+    let (start, load_path) = standing_block(&law, 1.2 * STRENGTH);
+    let mut left: Vec<(MarchState, Body<2>)> = Vec::new();
     let mut whole = start.clone();
     let report = march(
         &mut whole,
         &Method::default(),
-        &program,
+        &load_path,
         &settings,
         &mut workspace(),
         &mut |accepted: &Accepted<'_, 2>| {
-            left.push((*accepted.standing, accepted.body.clone()));
+            left.push((*accepted.state, accepted.body.clone()));
             ControlFlow::Continue(())
         },
     );
     assert!(left.len() > 2);
-    for (taken, (standing, body)) in left.iter().enumerate() {
+    for (taken, (state, body)) in left.iter().enumerate() {
         let mut body = body.clone();
         let rest = march_from(
-            *standing,
+            *state,
             &mut body,
             &Method::default(),
-            &program,
+            &load_path,
             &settings,
             &mut workspace(),
             &mut |_: &Accepted<'_, 2>| ControlFlow::Continue(()),

@@ -1,8 +1,8 @@
 //! GOAL: whatever pattern of steps fails, a march ends, stays within load factor 0 to 1, sizes its
 //! steps by the rule, and its report tells of every attempt once.
 //! BODY: a standing elastic block of 3 × 3 cells, whose steps all converge; failures are made by the
-//! program.
-//! ORACLE: the rule of step sizes, written out anew over the attempts that the program saw.
+//! load path.
+//! ORACLE: the rule of step sizes, written out anew over the attempts that the load path saw.
 
 mod body_support;
 
@@ -15,7 +15,7 @@ use igimp_solver::{Accepted, MarchReport, MarchSettings, Outcome, march};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
-/// An attempt that the program saw.
+/// An attempt that the load path saw.
 #[derive(Clone, Copy, Debug)]
 struct Attempt {
     from: f64,
@@ -86,7 +86,7 @@ struct Run {
 fn run(pattern: &Pattern, settings: &MarchSettings) -> Run {
     let (mut body, full) = loaded(&elastic(), 0.05);
     let attempts = RefCell::new(Vec::<Attempt>::new());
-    let program = |from: f64, to: f64| {
+    let load_path = |from: f64, to: f64| {
         let mut attempts = attempts.borrow_mut();
         let is_accepted = !pattern.fails(attempts.len(), from, to);
         attempts.push(Attempt {
@@ -108,7 +108,7 @@ fn run(pattern: &Pattern, settings: &MarchSettings) -> Run {
     let report = march(
         &mut body,
         &Method::default(),
-        &program,
+        &load_path,
         settings,
         &mut workspace(),
         &mut |accepted: &Accepted<'_, 2>| {

@@ -495,7 +495,7 @@ fn the_first_correction_uses_the_elastic_tangent() {
     .unwrap();
 
     let stencils = Stencils::build(&particles, &method, &weaker).unwrap();
-    let system = System::new(&particles, &stencils, &weaker, &method, &[], None).unwrap();
+    let system = System::new(&particles, &stencils, &weaker, &method).unwrap();
     let still = vec![[0.0; 2]; weaker.grid.node_count()];
     let tangent = |kind| system.linearise(&still, kind).unwrap().1.values;
     let used = matrices.lock().unwrap().clone();

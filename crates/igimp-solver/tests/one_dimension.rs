@@ -43,12 +43,13 @@ fn settled(law: &SharedLaw, method: &Method, cells: usize, gravity: f64) -> Body
     let (mut body, grid) = column(cells);
     let mut constraints = Constraints::free(&grid);
     constraints.fix_wall(&grid, 0, false, 0).unwrap();
-    let conditions = StepConditions {
+    let conditions = StepConditions::new(
         grid,
         constraints,
-        loads: StepLoads::gravity([-gravity]),
-        laws: vec![Arc::clone(law)],
-    };
+        StepLoads::gravity([-gravity]),
+        vec![Arc::clone(law)],
+    )
+    .unwrap();
     let (from_to, mut workspace) = ((0.0, 1.0), workspace());
     step(
         &mut body,

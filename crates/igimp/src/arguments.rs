@@ -14,7 +14,7 @@ const EXIT_CODES: &str = "Exit codes: 0 done, references met; 1 a reference miss
 /// `igimp check slope.toml`, and run it with `igimp run slope.toml`.
 #[derive(Debug, Parser)]
 #[command(name = "igimp", version, after_help = EXIT_CODES)]
-pub(crate) struct Program {
+pub(crate) struct CommandLine {
     #[command(subcommand)]
     pub(crate) command: Command,
 }
@@ -28,13 +28,13 @@ pub(crate) enum Command {
     /// Print a case file completed with every default.
     Explain(CaseArguments),
     /// Run a case, or one task of a sweep.
-    Run(Run),
+    Run(RunArguments),
     /// Make the report of a results folder again.
     Report(Report),
     /// Look at a results folder in the browser.
     View(View),
     /// Run a parameter study.
-    Sweep(Sweep),
+    Sweep(SweepArguments),
     /// Gather the results of a parameter study in one table.
     Collect(Collect),
     /// Run the built-in cases and hold them against their references.
@@ -58,7 +58,7 @@ pub(crate) struct New {
 
 #[derive(Debug, Args)]
 pub(crate) struct CaseArguments {
-    /// Case file.
+    /// Case file; - reads standard input.
     pub(crate) case: PathBuf,
     /// Replace a value of the file, as in materials.clay.cohesion="12 kPa" (may be repeated).
     #[arg(long, value_name = "KEY=VALUE")]
@@ -75,7 +75,7 @@ impl CaseArguments {
     }
 }
 
-impl Run {
+impl RunArguments {
     /// All that replaces values of the file.
     pub(crate) fn settings(&self) -> Vec<String> {
         with_meshes(&self.set, self.meshes)
@@ -91,8 +91,8 @@ fn with_meshes(set: &[String], meshes: Option<u8>) -> Vec<String> {
 // Each switch is its own flag on the command line.
 #[allow(clippy::struct_excessive_bools)]
 #[derive(Debug, Args)]
-pub(crate) struct Run {
-    /// Case file; with --task a sweep file.
+pub(crate) struct RunArguments {
+    /// Case file, - for standard input; with --task a sweep file.
     pub(crate) case: PathBuf,
     /// Results folder; the one named in the case when not given.
     #[arg(long, value_name = "DIR")]
@@ -109,6 +109,9 @@ pub(crate) struct Run {
     /// Go on from the newest checkpoint in the results folder.
     #[arg(long)]
     pub(crate) resume: bool,
+    /// Begin afresh where a stopped run could go on, or another case has its results.
+    #[arg(long, conflicts_with_all = ["resume", "from_stage"])]
+    pub(crate) overwrite: bool,
     /// Begin with a stage, from the saved end of the one before it.
     #[arg(long, value_name = "NAME", conflicts_with = "resume")]
     pub(crate) from_stage: Option<String>,
@@ -139,7 +142,7 @@ pub(crate) struct View {
 }
 
 #[derive(Debug, Args)]
-pub(crate) struct Sweep {
+pub(crate) struct SweepArguments {
     /// Sweep file.
     #[arg(value_name = "SWEEP")]
     pub(crate) file: PathBuf,
@@ -149,6 +152,9 @@ pub(crate) struct Sweep {
     /// Threads to use in all; all cores when not given.
     #[arg(long, value_name = "N", value_parser = at_least_one)]
     pub(crate) threads: Option<usize>,
+    /// Begin tasks afresh that were stopped, and replace those of another sweep.
+    #[arg(long)]
+    pub(crate) overwrite: bool,
     /// List the tasks and their settings, and run none.
     #[arg(long)]
     pub(crate) list: bool,
@@ -205,6 +211,6 @@ mod tests {
 
     #[test]
     fn the_command_line_makes_sense() {
-        Program::command().debug_assert();
+        CommandLine::command().debug_assert();
     }
 }

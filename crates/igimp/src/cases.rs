@@ -7,6 +7,8 @@ use igimp_cases::estimate::watch::side_by_side;
 use igimp_cases::estimate::{estimate, per_item, readable, time, together};
 use igimp_cases::input::CaseFile;
 use igimp_cases::mesh_study::plan;
+use igimp_cases::printable::on_a_line;
+use igimp_cases::sweep::is_sweep;
 
 use crate::arguments::CaseArguments;
 use crate::error::{Exit, ProgramError};
@@ -59,7 +61,7 @@ pub(crate) fn check(arguments: &CaseArguments) -> Result<Exit, ProgramError> {
     output::print(&format!(
         "{} is fine\n  {}\n\n{}\nstages\n{}{}",
         arguments.case.display(),
-        case.title,
+        on_a_line(&case.title),
         output::table(&rows),
         output::table(&stages),
         study(case, speed)?
@@ -110,17 +112,20 @@ fn round(bytes: f64) -> usize {
     ((bytes / unit).round() * unit) as usize
 }
 
+/// The name of a case that comes from standard input.
+const STANDARD_INPUT: &str = "-";
+
 /// Reads a case file; a sweep file is named as what it is.
 pub(crate) fn read(path: &std::path::Path, set: &[String]) -> Result<CaseFile, ProgramError> {
-    let is_sweep = |text: &str| {
-        let mut lines = text.lines().map(str::trim_start);
-        lines.any(|line| line.starts_with("igimp_sweep"))
-    };
-    if std::fs::read_to_string(path).is_ok_and(|text| is_sweep(&text)) {
+    if path == std::path::Path::new(STANDARD_INPUT) {
+        return Ok(CaseFile::read_from("stdin", std::io::stdin(), set)?);
+    }
+    let file = CaseFile::read(path, set);
+    if file.is_err() && is_sweep(path) {
         return Err(ProgramError::usage(
             format!("{} is a sweep, not a case", path.display()),
             format!("igimp sweep {0}, or igimp run {0} --task N", path.display()),
         ));
     }
-    Ok(CaseFile::read(path, set)?)
+    Ok(file?)
 }

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 
 use igimp_cases::CaseError;
 use igimp_cases::input::InputError;
+use igimp_cases::results::checkpoint::CheckpointError;
 use igimp_cases::sweep::{Ending, SweepError};
 use thiserror::Error;
 
@@ -76,7 +77,10 @@ impl ProgramError {
         if self.is_closed_pipe() {
             return Exit::Done;
         }
-        of_cause(self)
+        match self {
+            Self::Case(error) | Self::Sweep(SweepError::Case(error)) => of_case(error),
+            other => of_cause(other),
+        }
     }
 
     /// The complete message.
@@ -92,14 +96,23 @@ impl ProgramError {
             }) => format!("error: {self}"),
             Self::Usage { what, help } if help.is_empty() => format!("error: {what}"),
             Self::Usage { what, help } => format!("error: {what}\n  help: {help}"),
+            Self::Case(CaseError::Checkpoint(CheckpointError::Damaged { .. })) => format!(
+                "{}\n  help: without that folder, --resume goes on from the one before it; --overwrite \
+                 begins afresh",
+                igimp_cases::chain(self)
+            ),
             _ => igimp_cases::chain(self),
         }
     }
 }
 
-/// The exit code of a mesh that could not be run.
+/// The exit code of a case that could not be run: what the system does not give, a folder that somebody
+/// else writes into or memory, is told apart as files are.
 pub(crate) fn of_case(error: &CaseError) -> Exit {
-    of_cause(error)
+    match error {
+        CaseError::InUse { .. } | CaseError::Memory { .. } => Exit::InputOutput,
+        other => of_cause(other),
+    }
 }
 
 /// Anything that comes from a file is input or output, the rest is bad input.

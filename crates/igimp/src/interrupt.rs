@@ -1,22 +1,31 @@
-//! Ctrl-C: the first one lets the run end after its step, the second ends it at once.
+//! Ctrl-C, the request to end, and the terminal that is closed: the first signal lets the run end after
+//! its step, with everything saved; a later one ends it at once.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
 
 use crate::output;
 
 /// Exit code of a program that was interrupted, as shells have it: 128 + SIGINT.
 const AT_ONCE: i32 = 130;
+/// Signals so soon after the first belong to it: a terminal that is closed, and a system that is shut
+/// down, send several.
+const TOGETHER: Duration = Duration::from_millis(500);
 
-/// A flag that becomes true at Ctrl-C.
+/// A flag that becomes true at SIGINT, SIGTERM and SIGHUP.
 pub(crate) fn watch() -> Arc<AtomicBool> {
     let flag = Arc::new(AtomicBool::new(false));
     let raised = Arc::clone(&flag);
-    let handler = move || {
-        if raised.swap(true, Ordering::SeqCst) {
-            std::process::exit(AT_ONCE);
+    let mut first: Option<Instant> = None;
+    let handler = move || match first {
+        Some(first) if first.elapsed() > TOGETHER => std::process::exit(AT_ONCE),
+        Some(_) => {}
+        None => {
+            first = Some(Instant::now());
+            raised.store(true, Ordering::SeqCst);
+            output::complain("\nfinishing the step; press again to stop at once");
         }
-        output::complain("\nfinishing the step; press again to stop at once");
     };
     if let Err(error) = ctrlc::set_handler(handler) {
         output::complain(&format!(

@@ -3,6 +3,7 @@
 
 mod arguments;
 mod cases;
+mod clock;
 mod error;
 mod interrupt;
 mod output;
@@ -16,20 +17,29 @@ mod template;
 mod validate;
 mod verdict;
 mod view;
+mod whole;
 
+use std::borrow::Cow;
 use std::process::ExitCode;
 
 use clap::Parser;
+use igimp_cases::printable::on_lines;
 
-use crate::arguments::{Command, Program};
+use crate::arguments::{Command, CommandLine};
 use crate::error::{Exit, ProgramError};
 
 fn main() -> ExitCode {
-    let program = match Program::try_parse() {
+    let program = match CommandLine::try_parse() {
         Ok(program) => program,
         Err(error) => {
-            // Help that nobody reads any more is no failure.
-            let _ = error.print();
+            // Words of the command line are shown again in errors; help that nobody reads any more is no
+            // failure.
+            let plain = error.render().to_string();
+            if matches!(on_lines(&plain), Cow::Borrowed(_)) {
+                let _ = error.print();
+            } else {
+                output::complain(&plain);
+            }
             return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(Exit::BadInput as u8));
         }
     };

@@ -1,10 +1,12 @@
-//! Writing to the terminal. A reader that goes away never makes the program panic.
+//! Writing to the terminal. A reader that goes away never makes the program panic, and what a file says
+//! never commands the terminal.
 
 use std::fmt::Write as _;
 use std::io::{ErrorKind, Write};
 
 use igimp_cases::CaseError;
 use igimp_cases::case::Case;
+use igimp_cases::printable::on_lines;
 
 use crate::error::ProgramError;
 
@@ -16,7 +18,7 @@ pub(crate) fn print(text: &str) -> Result<(), ProgramError> {
     } else {
         "\n"
     };
-    write!(out, "{text}{end}")
+    write!(out, "{}{end}", on_lines(text))
         .and_then(|()| out.flush())
         .map_err(ProgramError::Output)
 }
@@ -33,7 +35,7 @@ pub(crate) fn say(text: &str) -> Result<(), ProgramError> {
 /// Prints an error, a warning or a note.
 pub(crate) fn complain(text: &str) {
     // There is nowhere left to tell that standard error is closed.
-    let _ = writeln!(std::io::stderr().lock(), "{}", text.trim_end());
+    let _ = writeln!(std::io::stderr().lock(), "{}", on_lines(text.trim_end()));
 }
 
 /// Prints the warnings of a case file, if there are any.

@@ -2,7 +2,7 @@
 
 use clap::CommandFactory;
 
-use crate::arguments::{Completions, Man, Program};
+use crate::arguments::{CommandLine, Completions, Man};
 use crate::error::{Exit, ProgramError};
 use crate::output;
 
@@ -13,7 +13,12 @@ pub(crate) fn schema() -> Result<Exit, ProgramError> {
 
 pub(crate) fn completions(arguments: &Completions) -> Result<Exit, ProgramError> {
     let mut text = Vec::new();
-    clap_complete::generate(arguments.shell, &mut Program::command(), "igimp", &mut text);
+    clap_complete::generate(
+        arguments.shell,
+        &mut CommandLine::command(),
+        "igimp",
+        &mut text,
+    );
     output::print(&String::from_utf8_lossy(&text))?;
     Ok(Exit::Done)
 }
@@ -26,12 +31,12 @@ pub(crate) fn man(arguments: &Man) -> Result<Exit, ProgramError> {
         };
         std::fs::create_dir_all(folder).map_err(file)?;
         // `help` is a command without a page of its own.
-        let command = Program::command().disable_help_subcommand(true);
+        let command = CommandLine::command().disable_help_subcommand(true);
         clap_mangen::generate_to(command, folder).map_err(file)?;
         return Ok(Exit::Done);
     }
     let mut text = Vec::new();
-    clap_mangen::Man::new(Program::command())
+    clap_mangen::Man::new(CommandLine::command())
         .render(&mut text)
         .map_err(ProgramError::Output)?;
     output::print(&String::from_utf8_lossy(&text))?;

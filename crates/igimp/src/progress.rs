@@ -1,15 +1,18 @@
-//! Shows a run as it goes: a bar on a terminal, lines elsewhere, nothing when quiet.
+//! Shows a run as it goes: a bar of the whole run on a terminal, lines elsewhere, nothing when quiet.
 
 use std::io::IsTerminal;
 use std::time::Duration;
 
+use igimp_cases::case::Case;
+use igimp_cases::printable::{on_a_line, on_lines};
 use igimp_cases::run::{Event, Listener};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::output;
 use crate::plain::{self, Lines};
+use crate::whole::Whole;
 
-/// Positions of the bar in a stage or trial.
+/// Positions of the bar.
 const LENGTH: u64 = 1000;
 const TEMPLATE: &str = "{prefix}  [{bar:24}] {percent:>3} %  {wide_msg} eta {eta}";
 
@@ -21,12 +24,12 @@ pub(crate) enum Progress {
     /// One line a step on standard output.
     Plain(Lines),
     /// A bar on standard error; the lines of stages and trials above it.
-    Bar(ProgressBar, Lines),
+    Bar(ProgressBar, Lines, Whole),
 }
 
 impl Progress {
     /// The way that suits where the output goes.
-    pub(crate) fn new(quiet: bool) -> Self {
+    pub(crate) fn new(quiet: bool, case: &Case) -> Self {
         if quiet {
             Self::Quiet
         } else if std::io::stdout().is_terminal() && std::io::stderr().is_terminal() {
@@ -35,7 +38,7 @@ impl Progress {
                 bar.set_style(style.progress_chars("=> "));
             }
             bar.enable_steady_tick(Duration::from_secs(1));
-            Self::Bar(bar, Lines::default())
+            Self::Bar(bar, Lines::default(), Whole::of(case))
         } else {
             Self::Plain(Lines::default())
         }
@@ -43,7 +46,7 @@ impl Progress {
 
     /// Takes the bar away, so that the verdict stands alone.
     pub(crate) fn finish(&self) {
-        if let Self::Bar(bar, _) = self {
+        if let Self::Bar(bar, ..) = self {
             bar.finish_and_clear();
         }
     }
@@ -59,7 +62,10 @@ impl Listener for Progress {
                     let _ = output::say(&line);
                 }
             }
-            Self::Bar(bar, lines) => show(bar, lines, event),
+            Self::Bar(bar, lines, whole) => {
+                show(bar, lines, event);
+                bar.set_position((whole.after(event) * LENGTH as f64) as u64);
+            }
         }
     }
 }
@@ -72,23 +78,25 @@ fn show(bar: &ProgressBar, lines: &mut Lines, event: &Event<'_>) {
             progress,
             report,
         } => {
-            bar.set_position((progress * LENGTH as f64) as u64);
-            bar.set_message(plain::step(*number, lines.steps, *progress, report));
+            let text = plain::step(*number, lines.steps, *progress, report);
+            bar.set_message(on_a_line(&text).into_owned());
         }
-        Event::Cut { error } => bar.set_message(format!("smaller step: {}", error.failure)),
+        Event::Cut { error } => {
+            let text = format!("smaller step: {}", error.failure);
+            bar.set_message(on_a_line(&text).into_owned());
+        }
         _ => {
             if let Some(line) = line {
-                bar.println(line);
+                bar.println(on_lines(&line));
             }
         }
     }
-    match event {
-        Event::StageStarted { name, .. } => {
-            bar.set_prefix((*name).to_owned());
-            bar.set_message("");
-            bar.reset();
-        }
-        Event::Trial { .. } => bar.reset(),
-        _ => {}
+    if let Event::StageStarted {
+        stage, of, name, ..
+    } = event
+    {
+        let text = format!("{}/{of} {name}", stage + 1);
+        bar.set_prefix(on_a_line(&text).into_owned());
+        bar.set_message("");
     }
 }

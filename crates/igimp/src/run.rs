@@ -2,21 +2,25 @@
 
 use std::path::Path;
 
+use igimp_cases::CaseError;
 use igimp_cases::estimate::Expectation;
+use igimp_cases::estimate::room::refuse_beyond;
 use igimp_cases::estimate::watch::{exceeded, lacks_memory};
+use igimp_cases::results::admission::Replace;
 use igimp_cases::run::{self as engine, Start, Target};
 use igimp_cases::sweep::{Ending, Sweep};
 
-use crate::arguments::Run;
+use crate::arguments::RunArguments;
 use crate::error::{Exit, ProgramError};
 use crate::progress::Progress;
-use crate::{cases, interrupt, output, verdict};
+use crate::{cases, clock, interrupt, output, verdict};
 
-pub(crate) fn run(arguments: &Run) -> Result<Exit, ProgramError> {
+pub(crate) fn run(arguments: &RunArguments) -> Result<Exit, ProgramError> {
     output::use_threads(arguments.threads);
     if let Some(number) = arguments.task {
         return task(arguments, number);
     }
+    let flag = interrupt::watch();
     let file = cases::read(&arguments.case, &arguments.settings())?;
     output::warn(&file.warnings());
     let mut case = file.case().clone();
@@ -28,6 +32,7 @@ pub(crate) fn run(arguments: &Run) -> Result<Exit, ProgramError> {
         None => afresh_or_resume(arguments),
     };
     let folder = case.output.folder.clone();
+    refuse_beyond(&case)?;
     output::writable(&folder)?;
     // A run that goes on makes a part of the steps only.
     let expectation = match start {
@@ -39,11 +44,12 @@ pub(crate) fn run(arguments: &Run) -> Result<Exit, ProgramError> {
     }
     let target = Target {
         systems: arguments.export_matrix.clone(),
+        date: clock::now()?,
         expectation,
+        replace: replace(arguments.overwrite),
         ..Target::of(&file, &folder)
     };
-    let flag = interrupt::watch();
-    let mut progress = Progress::new(arguments.quiet);
+    let mut progress = Progress::new(arguments.quiet, &case);
     let run = engine::run(&case, Some(&target), start, &mut progress, &flag);
     progress.finish();
     match run {
@@ -53,11 +59,12 @@ pub(crate) fn run(arguments: &Run) -> Result<Exit, ProgramError> {
 }
 
 /// Tells of a run that cannot go on, and how it can later if there is something to go on from.
-fn give_up(error: &ProgramError, folder: &Path, arguments: &Run) -> Exit {
+fn give_up(error: &ProgramError, folder: &Path, arguments: &RunArguments) -> Exit {
     output::complain(&error.render());
     let kept =
         std::fs::read_dir(folder.join("checkpoint")).is_ok_and(|mut saved| saved.next().is_some());
-    if error.exit() == Exit::InputOutput && kept {
+    let entered = !matches!(error, ProgramError::Case(CaseError::InUse { .. }));
+    if error.exit() == Exit::InputOutput && kept && entered {
         output::complain(&format!(
             "what was computed is kept; to go on later: {}",
             again(arguments)
@@ -67,22 +74,36 @@ fn give_up(error: &ProgramError, folder: &Path, arguments: &Run) -> Exit {
 }
 
 /// One task of a sweep.
-fn task(arguments: &Run, number: usize) -> Result<Exit, ProgramError> {
-    let sweep = Sweep::read_unchecked(&arguments.case)?;
+fn task(arguments: &RunArguments, number: usize) -> Result<Exit, ProgramError> {
+    let flag = interrupt::watch();
+    let sweep = Sweep {
+        date: clock::now()?,
+        ..Sweep::read_unchecked(&arguments.case)?
+    };
     let task = sweep.task(number)?;
     if !arguments.quiet {
         output::say(&format!("task {number}: {}", task.label()))?;
     }
-    let flag = interrupt::watch();
-    let mut progress = Progress::new(arguments.quiet);
+    let mut progress = Progress::new(arguments.quiet, sweep.case_of(task)?.case());
     let start = afresh_or_resume(arguments);
-    let run = sweep.run_task(task, start, &mut progress, &flag);
+    let replace = replace(arguments.overwrite);
+    let _shared = sweep.enter(false, replace)?;
+    let run = sweep.run_task(task, (start, replace), &mut progress, &flag);
     progress.finish();
     let (run, _) = run?;
     tell(&run, &task.folder, arguments)
 }
 
-fn afresh_or_resume(arguments: &Run) -> Start {
+/// What may be replaced.
+pub(crate) fn replace(overwrite: bool) -> Replace {
+    if overwrite {
+        Replace::Everything
+    } else {
+        Replace::Finished
+    }
+}
+
+fn afresh_or_resume(arguments: &RunArguments) -> Start {
     if arguments.resume {
         Start::Resume
     } else {
@@ -91,7 +112,7 @@ fn afresh_or_resume(arguments: &Run) -> Start {
 }
 
 /// Says how a run ended.
-fn tell(run: &engine::Run, folder: &Path, arguments: &Run) -> Result<Exit, ProgramError> {
+fn tell(run: &engine::Run, folder: &Path, arguments: &RunArguments) -> Result<Exit, ProgramError> {
     let summary = &run.summary;
     let ending = Ending::of(summary);
     if arguments.quiet {
@@ -113,10 +134,10 @@ fn tell(run: &engine::Run, folder: &Path, arguments: &Run) -> Result<Exit, Progr
     for more in exceeded(summary) {
         output::complain(&format!("warning: {more}"));
     }
-    let mut exit = if run.failure.is_some() {
-        Exit::NotConverged
-    } else {
-        ending.into()
+    let mut exit = match &run.failure {
+        Some(failure) if failure.is_want_of_memory() => Exit::InputOutput,
+        Some(_) => Exit::NotConverged,
+        None => ending.into(),
     };
     // Of what went wrong on several meshes the worst counts; what the system refused is told apart.
     for error in &run.lost {
@@ -127,7 +148,7 @@ fn tell(run: &engine::Run, folder: &Path, arguments: &Run) -> Result<Exit, Progr
 }
 
 /// The command that goes on with an interrupted run.
-fn again(arguments: &Run) -> String {
+fn again(arguments: &RunArguments) -> String {
     let mut words = vec!["igimp".to_owned(), "run".to_owned()];
     words.push(quoted(&arguments.case.display().to_string()));
     if let Some(task) = arguments.task {
@@ -168,7 +189,7 @@ mod tests {
     use clap::Parser;
 
     use super::*;
-    use crate::arguments::{Command, Program};
+    use crate::arguments::{Command, CommandLine};
 
     #[test]
     fn the_way_on_can_be_pasted() {
@@ -184,7 +205,7 @@ mod tests {
             "my systems",
             "--quiet",
         ];
-        let Command::Run(arguments) = Program::parse_from(words).command else {
+        let Command::Run(arguments) = CommandLine::parse_from(words).command else {
             panic!("a run");
         };
         assert_eq!(

@@ -3,15 +3,21 @@
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
+use igimp_cases::results::admission::Replace;
 use igimp_cases::run::{Event, Start};
 use igimp_cases::sweep::{self, Ending, Task};
 
-use crate::arguments::{Collect, Sweep};
+use crate::arguments::{Collect, SweepArguments};
 use crate::error::{Exit, ProgramError};
-use crate::{interrupt, output, plain};
+use crate::run::replace;
+use crate::{clock, interrupt, output, plain};
 
-pub(crate) fn sweep(arguments: &Sweep) -> Result<Exit, ProgramError> {
-    let sweep = sweep::Sweep::read(&arguments.file)?;
+pub(crate) fn sweep(arguments: &SweepArguments) -> Result<Exit, ProgramError> {
+    let flag = interrupt::watch();
+    let sweep = sweep::Sweep {
+        date: clock::now()?,
+        ..sweep::Sweep::read(&arguments.file)?
+    };
     let width = sweep.tasks.len().to_string().len();
     let label = |task: &Task| format!("task {:>width$}/{}", task.number, sweep.tasks.len());
     if arguments.list {
@@ -20,7 +26,8 @@ pub(crate) fn sweep(arguments: &Sweep) -> Result<Exit, ProgramError> {
         }
         return Ok(Exit::Done);
     }
-    output::writable(&sweep.folder)?;
+    let replace = replace(arguments.overwrite);
+    let _alone = sweep.enter(true, replace)?;
     let mut worst = Exit::Done;
     let mut left = Vec::new();
     for task in &sweep.tasks {
@@ -37,7 +44,6 @@ pub(crate) fn sweep(arguments: &Sweep) -> Result<Exit, ProgramError> {
             sweep.tasks.len()
         ))?;
     }
-    let flag = interrupt::watch();
     let ends = run_all(&sweep, &left, arguments, &flag, &label)?;
     let interrupted = flag.load(Ordering::SeqCst);
     if interrupted {
@@ -52,6 +58,7 @@ pub(crate) fn sweep(arguments: &Sweep) -> Result<Exit, ProgramError> {
     }
     let table = sweep::collect(&sweep);
     let path = table.write(&sweep.folder)?;
+    table.draw(&sweep.folder)?;
     output::say(&format!("{}table in {}", table.to_text(), path.display()))?;
     Ok(if interrupted {
         worst.max(Exit::NotConverged)
@@ -64,10 +71,11 @@ pub(crate) fn sweep(arguments: &Sweep) -> Result<Exit, ProgramError> {
 fn run_all(
     sweep: &sweep::Sweep,
     left: &[&Task],
-    arguments: &Sweep,
+    arguments: &SweepArguments,
     flag: &AtomicBool,
     label: &(impl Fn(&Task) -> String + Sync),
 ) -> Result<Vec<(usize, Exit)>, ProgramError> {
+    let replace = replace(arguments.overwrite);
     let jobs = arguments.jobs.min(left.len()).max(1);
     let threads = arguments.threads.unwrap_or_else(rayon::current_num_threads);
     let pools: Vec<rayon::ThreadPool> = (0..jobs)
@@ -90,7 +98,7 @@ fn run_all(
                     let Some(task) = left.get(next.fetch_add(1, Ordering::SeqCst)) else {
                         break;
                     };
-                    let exit = pool.install(|| run_one(sweep, task, flag, label));
+                    let exit = pool.install(|| run_one(sweep, task, replace, flag, label));
                     if let Ok(mut ends) = ends.lock() {
                         ends.push((task.number, exit));
                     }
@@ -105,11 +113,17 @@ fn run_all(
 fn run_one(
     sweep: &sweep::Sweep,
     task: &Task,
+    replace: Replace,
     flag: &AtomicBool,
     label: &impl Fn(&Task) -> String,
 ) -> Exit {
     let mut listener = |_: &Event<'_>| {};
-    let (end, exit) = match sweep.run_task(task, Start::Afresh, &mut listener, flag) {
+    let start = match replace {
+        Replace::Everything => Ok(Start::Afresh),
+        _ => sweep.start_of(task),
+    };
+    let run = start.and_then(|start| sweep.run_task(task, (start, replace), &mut listener, flag));
+    let (end, exit) = match run {
         Ok((run, ending)) => {
             let found: Vec<String> = run
                 .summary
@@ -136,6 +150,7 @@ pub(crate) fn collect(arguments: &Collect) -> Result<Exit, ProgramError> {
     let sweep = sweep::Sweep::read_unchecked(&arguments.file)?;
     let table = sweep::collect(&sweep);
     let path = table.write(&sweep.folder)?;
+    table.draw(&sweep.folder)?;
     output::print(&format!("{}table in {}", table.to_text(), path.display()))?;
     for name in &table.unknown {
         output::complain(&format!(

@@ -3,13 +3,14 @@
 use igimp_cases::case::Case;
 use igimp_cases::estimate::estimate;
 use igimp_cases::input::CaseFile;
+use igimp_cases::results::admission::Replace;
 use igimp_cases::run::{self, Event, Start, Target};
 use igimp_cases::shipped::{SHIPPED, Shipped, find, nearest};
 use igimp_cases::sweep::Ending;
 
 use crate::arguments::Validate;
 use crate::error::{Exit, ProgramError};
-use crate::{interrupt, output, verdict};
+use crate::{clock, interrupt, output, verdict};
 
 /// Steps times unknowns up to which a case counts as quick: seconds on any computer.
 const QUICK: f64 = 2e5;
@@ -18,6 +19,7 @@ pub(crate) fn validate(arguments: &Validate) -> Result<Exit, ProgramError> {
     output::use_threads(arguments.threads);
     let chosen = choose(&arguments.names)?;
     let flag = interrupt::watch();
+    let date = clock::now()?;
     let mut worst = Exit::Done;
     let (mut ran, mut met, mut missed) = (0, 0, 0);
     for shipped in chosen {
@@ -26,10 +28,11 @@ pub(crate) fn validate(arguments: &Validate) -> Result<Exit, ProgramError> {
             continue;
         }
         ran += 1;
-        let target = arguments
-            .out
-            .as_ref()
-            .map(|out| Target::of(&file, out.join(shipped.name)));
+        let target = arguments.out.as_ref().map(|out| Target {
+            replace: Replace::Stopped,
+            date: date.clone(),
+            ..Target::of(&file, out.join(shipped.name))
+        });
         let mut case = file.case().clone();
         if let Some(target) = &target {
             case.output.folder.clone_from(&target.folder);

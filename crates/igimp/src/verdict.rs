@@ -5,6 +5,7 @@ use std::path::Path;
 
 use igimp_cases::check::{count, short};
 use igimp_cases::mesh_study::{MeshSummary, StudySummary};
+use igimp_cases::printable::on_a_line;
 use igimp_cases::summary::{CheckRow, SafetySummary, Summary};
 
 use crate::output;
@@ -67,7 +68,7 @@ fn mesh_error(study: &StudySummary) -> String {
         .results
         .iter()
         .map(|result| {
-            let mut row = vec![result.name.clone()];
+            let mut row = vec![on_a_line(&result.name).into_owned()];
             row.extend(
                 study
                     .meshes
@@ -104,11 +105,11 @@ pub(crate) fn checks(rows: &[CheckRow]) -> String {
             let check = &row.check;
             vec![
                 if row.pass { "met" } else { "MISSED" }.to_owned(),
-                check.quantity.clone(),
+                on_a_line(&check.quantity).into_owned(),
                 short(check.measured),
                 format!("expected {}", short(check.expected)),
                 check.band.to_string(),
-                format!("({})", check.source),
+                format!("({})", on_a_line(&check.source)),
             ]
         })
         .collect();

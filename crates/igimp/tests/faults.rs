@@ -1,4 +1,4 @@
-//! GOAL: what users and machines do to a run costs time and no result: a kill at any moment, a full
+//! GOAL: what users and machines do to a run costs time and no result: a signal at any moment, a full
 //! disk, a folder that cannot be written, file times that make no sense, another number of threads.
 //! CASE: a coarse slope under gravity, its factor of safety, and its run-out.
 //! ORACLE: every byte of the same run left alone, times aside.
@@ -7,12 +7,12 @@ mod run_support;
 
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
-use std::process::Child;
+use std::process::{Child, Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant, SystemTime};
 
 use run_support::{Folder, differing};
 
-/// Kills in a test run; `IGIMP_KILLS` asks for more.
+/// Interruptions by a signal in a test run; `IGIMP_KILLS` asks for more.
 const KILLS: usize = 6;
 
 /// Random numbers in \[0, 1) (Vigna's splitmix64).
@@ -43,9 +43,39 @@ fn lives(child: &mut Child) -> bool {
     child.try_wait().unwrap().is_none()
 }
 
-/// Kills a run after a time, or at its next write of a checkpoint from then on; whether it was alive
-/// when it was killed.
-fn kill(child: &mut Child, after: Duration, at_write: Option<&Path>) -> bool {
+/// How a run is interrupted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Signal {
+    Kill,
+    Int,
+    Term,
+    Hup,
+}
+
+impl Signal {
+    fn send(self, child: &mut Child) {
+        let word = match self {
+            Self::Kill => return child.kill().unwrap(),
+            Self::Int => "-INT",
+            Self::Term => "-TERM",
+            Self::Hup => "-HUP",
+        };
+        // The process may have ended by itself meanwhile.
+        let _ = Command::new("kill")
+            .args([word, &child.id().to_string()])
+            .stderr(Stdio::null())
+            .status();
+    }
+}
+
+/// Interrupts a run after a time, or at its next write of a checkpoint from then on; whether it was
+/// alive then, and how it ended.
+fn interrupt(
+    child: &mut Child,
+    signal: Signal,
+    after: Duration,
+    at_write: Option<&Path>,
+) -> (bool, ExitStatus) {
     let clock = Instant::now();
     while clock.elapsed() < after && lives(child) {
         std::thread::sleep(Duration::from_micros(200));
@@ -56,41 +86,49 @@ fn kill(child: &mut Child, after: Duration, at_write: Option<&Path>) -> bool {
         }
     }
     let alive = lives(child);
-    child.kill().unwrap();
-    child.wait().unwrap();
-    alive
+    signal.send(child);
+    (alive, child.wait().unwrap())
 }
 
-#[test]
-fn a_run_killed_at_any_moment_ends_with_the_same_files() {
-    let folder = Folder::new("killed-run");
+/// Interrupts runs at random moments; all of them have to end with the files of one that was left alone.
+fn interrupted_runs_end_with_the_same_files(signal: Signal, least: usize) {
+    let folder = Folder::new(&format!("interrupted-{signal:?}"));
     let clock = Instant::now();
     let (code, said) = folder.end("whole", &[]);
     let mut whole = clock.elapsed();
     assert_eq!(code, Some(0), "{said}");
     let expected = folder.everything("whole");
     assert!(folder.tables("whole").len() >= 4, "{:?}", expected.keys());
-    let wanted = std::env::var("IGIMP_KILLS").map_or(KILLS, |kills| kills.parse().unwrap());
-    let mut random = Random(0x5EED);
+    let wanted = std::env::var("IGIMP_KILLS").map_or(least, |kills| kills.parse().unwrap());
+    let mut random = Random(0x5EED + signal as u64);
     let (mut kills, mut within_a_write, mut twice, mut runs) = (0, 0, 0, 0);
     while kills < wanted {
-        assert!(runs < 10 * wanted, "{kills} kills in {runs} runs");
-        let out = format!("killed-{runs}");
+        assert!(runs < 10 * wanted, "{kills} interruptions in {runs} runs");
+        let out = format!("interrupted-{runs}");
         let path = folder.0.join(&out);
         let mut hits = 0;
-        // Killed twice on its way: the second time while it goes on.
+        // Interrupted twice on its way: the second time while it goes on.
         for more in [&[][..], &["--resume"]] {
             let mut child = folder.run(&out, more).spawn().unwrap();
             let moment = whole.mul_f64(random.next());
             let at_write = (random.next() < 0.5).then_some(&*path);
             let clock = Instant::now();
-            let alive = kill(&mut child, moment, at_write);
+            let (alive, status) = interrupt(&mut child, signal, moment, at_write);
             if !alive && more.is_empty() {
                 // The computer has become quicker since the time of a whole run was taken.
                 whole = whole.min(clock.elapsed());
             }
             hits += usize::from(alive);
             within_a_write += usize::from(is_writing(&path));
+            if signal != Signal::Kill {
+                // No code: the signal came before the program had begun.
+                let code = status.code();
+                assert!(matches!(code, Some(0 | 3) | None), "run {runs}: {status}");
+                assert!(!is_writing(&path), "run {runs}: a checkpoint in part");
+                if code.is_none() {
+                    assert!(!path.join("convergence.csv").exists(), "run {runs}: killed");
+                }
+            }
         }
         runs += 1;
         kills += hits;
@@ -106,9 +144,36 @@ fn a_run_killed_at_any_moment_ends_with_the_same_files() {
         fs::remove_dir_all(&path).unwrap();
     }
     println!(
-        "{kills} kills of living processes in {runs} runs, {twice} runs killed twice, {within_a_write} \
-         kills within the writing of a checkpoint: all files equal"
+        "{signal:?}: {kills} interruptions of living processes in {runs} runs, {twice} runs interrupted \
+         twice, {within_a_write} within the writing of a checkpoint: all files equal"
     );
+}
+
+#[test]
+fn a_run_killed_at_any_moment_ends_with_the_same_files() {
+    interrupted_runs_end_with_the_same_files(Signal::Kill, KILLS);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_run_that_is_told_to_end_saves_and_goes_on_to_the_same_files() {
+    for signal in [Signal::Int, Signal::Term, Signal::Hup] {
+        interrupted_runs_end_with_the_same_files(signal, KILLS / 3);
+    }
+}
+
+/// A terminal that is closed sends its signal more than once.
+#[cfg(unix)]
+#[test]
+fn a_signal_that_comes_twice_at_once_does_not_keep_a_run_from_saving() {
+    let folder = Folder::new("twice");
+    let mut child = folder.run("out", &[]).spawn().unwrap();
+    while lives(&mut child) && !folder.0.join("out/checkpoint/stage-01-end").exists() {
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    Signal::Hup.send(&mut child);
+    Signal::Term.send(&mut child);
+    assert_eq!(child.wait().unwrap().code(), Some(3));
 }
 
 #[test]
@@ -216,7 +281,6 @@ fn file_times_that_make_no_sense_change_nothing() {
 /// output. `$0` is the program.
 #[cfg(target_os = "linux")]
 fn with_own_mounts(folder: &Folder, script: &str) -> Option<String> {
-    use std::process::Command;
     let unshared = |words: &[&str]| {
         let mut command = Command::new("unshare");
         command

@@ -103,7 +103,17 @@ fn the_completed_case_of_a_mesh_is_that_mesh() {
 fn the_program_tells_of_all_meshes() {
     let folder = Folder::new("meshes");
     let output = folder
-        .run("out", &["--meshes", "2", "--set", "output.report=true"])
+        .run(
+            "out",
+            &[
+                "--meshes",
+                "2",
+                "--set",
+                "output.report=true",
+                "--set",
+                "output.figures=[\"displacement\"]",
+            ],
+        )
         .stdout(std::process::Stdio::piped())
         .output()
         .unwrap();

@@ -248,13 +248,15 @@ fn a_sweep_runs_what_is_not_done_and_collects() {
     let table = std::fs::read_to_string(folder.0.join("sweep/results.csv")).unwrap();
     let lines: Vec<&str> = table.lines().collect();
     assert!(
-        lines[0].starts_with("task,materials.clay.young,end,settlement"),
+        lines[0].starts_with("task,materials.clay.young [MPa],end,settlement,message"),
         "{table}"
     );
+    assert!(lines[2].starts_with("2,20,reference missed,"), "{table}");
     assert!(
-        lines[2].starts_with("2,20 MPa,reference missed,"),
+        lines[2].contains("settlement is 1.769, expected 3.6"),
         "{table}"
     );
+    assert!(folder.has("sweep/results-settlement.svg"));
 }
 
 #[test]
@@ -309,4 +311,86 @@ fn a_full_disk_is_named_with_the_file() {
     assert_eq!(code, 4, "{out}{err}");
     assert!(err.contains("cannot access results/"), "{err}");
     assert!(err.contains("because: "), "{err}");
+}
+
+/// GOAL: the date stands in summary and report and can be set, as in reproducible builds; it changes
+/// nothing else, and nonsense is refused.
+#[test]
+fn the_date_of_a_run_can_be_set() {
+    let folder = Folder::new("date", &block(&check("3.6")));
+    let at = |seconds: &str, out: &str| {
+        Command::new(env!("CARGO_BIN_EXE_igimp"))
+            .args(["run", "case.toml", "--quiet", "--out", out])
+            .env("SOURCE_DATE_EPOCH", seconds)
+            .current_dir(&folder.0)
+            .output()
+            .unwrap()
+    };
+    for (seconds, out) in [("951782400", "a"), ("4107542400", "b")] {
+        let (code, _, err) = parts(&at(seconds, out));
+        assert_eq!(code, 0, "{err}");
+    }
+    let read = |path: &str| std::fs::read_to_string(folder.0.join(path)).unwrap();
+    assert!(read("a/report.html").contains("2000-02-29 00:00 UTC"));
+    let summary: serde_json::Value = serde_json::from_str(&read("b/summary.json")).unwrap();
+    assert_eq!(summary["date"], "2100-03-01 00:00 UTC");
+    assert_eq!(read("a/monitors/top.csv"), read("b/monitors/top.csv"));
+    let hash = summary["input_sha256"].as_str().unwrap();
+    let completed = std::fs::read(folder.0.join("b/case.completed.toml")).unwrap();
+    assert_eq!(hash, igimp_cases::results::checkpoint::sha256(&completed));
+    let (code, _, err) = parts(&at("yesterday", "c"));
+    assert_eq!(code, 2, "{err}");
+    assert!(
+        err.contains("SOURCE_DATE_EPOCH") && err.contains("seconds since 1970"),
+        "{err}"
+    );
+}
+
+/// GOAL: a search for a factor of safety leaves the line along which the slope begins to fail.
+#[test]
+fn a_search_leaves_its_slip_line() {
+    let slope = igimp_cases::shipped::find("slope").unwrap();
+    let folder = Folder::new("slip", slope.text);
+    let (code, out, err) = parts(&folder.igimp(&[
+        "run",
+        "case.toml",
+        "--out",
+        "results",
+        "--quiet",
+        "--set",
+        "stages.run-out.steps=1",
+        "--set",
+        "stages.run-out.stop_when={ displacement = \"1 mm\" }",
+        "--set",
+        "output.figures=[\"displacement\"]",
+    ]));
+    assert_eq!(code, 0, "{out}{err}");
+    let line = std::fs::read_to_string(folder.0.join("results/slip_lines/2-factor-of-safety.csv"))
+        .unwrap();
+    let points: Vec<[f64; 2]> = line
+        .lines()
+        .skip(1)
+        .map(|row| {
+            let mut numbers = row.split(',').map(|number| number.parse().unwrap());
+            [numbers.next().unwrap(), numbers.next().unwrap()]
+        })
+        .collect();
+    // From the ground behind the crest at (15, 20) to the toe at (25, 10), well within the slope.
+    let ends = [points[0], points[points.len() - 1]];
+    let [top, toe] = if ends[0][1] > ends[1][1] {
+        ends
+    } else {
+        [ends[1], ends[0]]
+    };
+    assert!(top[1] > 19.0 && (5.0..13.0).contains(&top[0]), "{top:?}");
+    assert!(
+        (toe[0] - 25.0).abs() < 1.5 && (toe[1] - 10.0).abs() < 1.0,
+        "{toe:?}"
+    );
+    assert!(
+        points
+            .windows(2)
+            .all(|p| (p[0][0] - p[1][0]).hypot(p[0][1] - p[1][1]) < 1.0)
+    );
+    assert!(folder.has("results/figures/mechanism-2-factor-of-safety.svg"));
 }

@@ -296,7 +296,10 @@ fn foreign_hosts_paths_and_methods_get_nothing() {
 
 #[test]
 fn folders_without_frames_and_of_several_runs_are_told_apart() {
-    let folder = Folder::with_results("folders", &["--set", "output.paraview={ every = \"never\" }"]);
+    let folder = Folder::with_results(
+        "folders",
+        &["--set", "output.paraview={ every = \"never\" }"],
+    );
     let view = View::of(&folder, "results");
     let index: serde_json::Value = serde_json::from_str(&view.get("index.json").2).unwrap();
     assert_eq!(index["never"], true);
@@ -424,7 +427,10 @@ fn the_page_says_how_to_get_frames() {
     let Some(browser) = browser() else {
         return;
     };
-    let folder = Folder::with_results("no-frames", &["--set", "output.paraview={ every = \"never\" }"]);
+    let folder = Folder::with_results(
+        "no-frames",
+        &["--set", "output.paraview={ every = \"never\" }"],
+    );
     let view = View::of(&folder, "results");
     let page = looked_at(browser, &folder, &view, "");
     assert!(page.contains("This run writes no frames"), "{page}");

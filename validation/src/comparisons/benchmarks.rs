@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use crate::footing;
 use crate::runs::{Computed, corners, mesh, shipped_case, unwatched};
-use crate::study::{Run, Study};
+use crate::study::{RunRecord, Study};
 
 /// One choice: what it changes in a case.
 pub(super) struct Variant {
@@ -106,7 +106,7 @@ impl<'a> Results<'a> {
     ) -> usize {
         let computed = self.at(variant, value);
         let name = format!("{}: {benchmark}", self.variants[variant].label);
-        study.run(Run::new(name, &computed.report, computed.elapsed))
+        study.run(RunRecord::new(name, &computed.report, computed.elapsed))
     }
 
     /// The result of a variant at a value.
@@ -319,6 +319,6 @@ impl Footings {
     pub(super) fn record(&self, study: &mut Study, push: &str, label: &str) -> usize {
         let computed = self.of(push);
         let name = format!("{label}: footing, B/h = 5");
-        study.run(Run::new(name, &computed.report, computed.elapsed))
+        study.run(RunRecord::new(name, &computed.report, computed.elapsed))
     }
 }

@@ -50,7 +50,7 @@ fn marched(
     body: &mut Body<2>,
     method: &Method,
     steps: usize,
-    program: impl Fn(f64, f64) -> Result<StepConditions<2>, AssemblyError>,
+    load_path: impl Fn(f64, f64) -> Result<StepConditions<2>, AssemblyError>,
     mut observer: impl FnMut(&Accepted<'_, 2>),
 ) -> (MarchReport, Duration) {
     let clock = Instant::now();
@@ -63,7 +63,7 @@ fn marched(
     let report = march(
         body,
         method,
-        &program,
+        &load_path,
         &settings,
         &mut workspace,
         &mut watch,
@@ -91,7 +91,7 @@ pub(super) fn turn(method: &Method, angle: f64, steps: usize) -> Result<Turned, 
     let laws = vec![law(YOUNG)?];
     let mut body = Body::new(Particles::new(&square([3.0; 2], 4.0, 8))?);
     let free = grid.node_index([5, 5]);
-    let program = |from: f64, to: f64| {
+    let load_path = |from: f64, to: f64| {
         let (sin, cos) = (angle * (to - from)).sin_cos();
         let mut constraints = Constraints::free(&grid);
         for node in (0..grid.node_count()).filter(|&node| node != free) {
@@ -104,14 +104,14 @@ pub(super) fn turn(method: &Method, angle: f64, steps: usize) -> Result<Turned, 
             constraints.prescribe(node, 0, u[0])?;
             constraints.prescribe(node, 1, u[1])?;
         }
-        Ok(StepConditions {
-            grid: grid.clone(),
+        StepConditions::new(
+            grid.clone(),
             constraints,
-            loads: StepLoads::gravity([0.0; 2]),
-            laws: laws.clone(),
-        })
+            StepLoads::gravity([0.0; 2]),
+            laws.clone(),
+        )
     };
-    let (report, elapsed) = marched(&mut body, method, steps, program, |_| {});
+    let (report, elapsed) = marched(&mut body, method, steps, load_path, |_| {});
     let particles = &body.particles;
     let stress = particles.sigma.iter().flatten().flatten();
     let domains = particles.half_length.iter().map(|l| 4.0 * l[0] * l[1]);
@@ -163,21 +163,21 @@ pub(super) fn settle(method: &Method, offset: f64, beside: Beside) -> Result<Set
     }
     let laws = vec![law(YOUNG)?, law(1e-3 * YOUNG)?];
     let mut body = Body::new(Particles::new(&seeds)?);
-    let program = |_: f64, to: f64| {
+    let load_path = |_: f64, to: f64| {
         let mut constraints = Constraints::free(&grid);
         constraints.fix_wall(&grid, 0, false, 0)?;
         constraints.fix_wall(&grid, 1, false, 1)?;
-        Ok(StepConditions {
-            grid: grid.clone(),
+        StepConditions::new(
+            grid.clone(),
             constraints,
-            loads: StepLoads::gravity([0.0, -to]),
-            laws: laws.clone(),
-        })
+            StepLoads::gravity([0.0, -to]),
+            laws.clone(),
+        )
     };
-    let condition = condition(&body, method, &program(0.0, 1.0)?)?;
+    let condition = condition(&body, method, &load_path(0.0, 1.0)?)?;
     let mut ratio = f64::NAN;
     let mut first = true;
-    let (report, _) = marched(&mut body, method, 5, program, |accepted| {
+    let (report, _) = marched(&mut body, method, 5, load_path, |accepted| {
         if std::mem::take(&mut first) {
             let nodes = largest(&accepted.forces.u);
             ratio = nodes / largest(&accepted.body.particles.displacement[..64]);
@@ -212,21 +212,21 @@ pub(super) fn let_down(
     let laws = vec![law(YOUNG)?];
     let mut body = Body::new(Particles::new(&square([0.0, 1.0], side, 8))?);
     let base = |node: usize| grid.node_place(node)[1] <= 1;
-    let program = |from: f64, to: f64| {
+    let load_path = |from: f64, to: f64| {
         let mut constraints = Constraints::free(&grid);
         constraints.fix_wall(&grid, 0, false, 0)?;
         for node in (0..grid.node_count()).filter(|&node| base(node)) {
             constraints.prescribe(node, 1, 0.25 * (from - to))?;
         }
-        Ok(StepConditions {
-            grid: grid.clone(),
+        StepConditions::new(
+            grid.clone(),
             constraints,
-            loads: StepLoads::gravity([0.0, -1.0]),
-            laws: laws.clone(),
-        })
+            StepLoads::gravity([0.0, -1.0]),
+            laws.clone(),
+        )
     };
     let mut force = f64::NAN;
-    let (report, elapsed) = marched(&mut body, method, 5, program, |accepted| {
+    let (report, elapsed) = marched(&mut body, method, 5, load_path, |accepted| {
         let reactions = accepted.forces.reactions.iter().enumerate();
         force = reactions
             .filter(|(node, _)| base(*node))
@@ -279,7 +279,7 @@ fn condition(
     conditions: &StepConditions<2>,
 ) -> Result<f64, CaseError> {
     let stencils = Stencils::build(&body.particles, method, conditions)?;
-    let system = System::new(&body.particles, &stencils, conditions, method, &[], None)?;
+    let system = System::new(&body.particles, &stencils, conditions, method)?;
     let still = vec![[0.0; 2]; conditions.grid.node_count()];
     let (_, matrix) = system.linearise(&still, TangentKind::Elastic)?;
     let n = matrix.pattern.unknowns();

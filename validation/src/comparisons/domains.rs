@@ -16,7 +16,7 @@ use crate::comparisons::block::turn;
 use crate::footing;
 use crate::oracle::{Oracle, OracleKind};
 use crate::runs::Computed;
-use crate::study::{Level, Run, Study};
+use crate::study::{Level, RunRecord, Study};
 
 /// The stress errors of the column.
 const COLUMN: Oracle = Oracle {
@@ -180,7 +180,7 @@ fn rotation(study: &mut Study) -> Result<(), CaseError> {
             row.push(turned.area);
             if (angle - 45.0).abs() < 1e-9 && k < 2 {
                 let name = format!("{}: rotation by 45°", VARIANTS[k].label);
-                let run = study.run(Run::new(name, &turned.report, turned.elapsed));
+                let run = study.run(RunRecord::new(name, &turned.report, turned.elapsed));
                 let quantity = "area of the domains / area of the body [-]";
                 let expected = RIGID_ROTATION.says(1.0);
                 if k == 0 {

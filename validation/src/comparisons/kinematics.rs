@@ -19,7 +19,7 @@ use crate::comparisons::block::{QUARTER, small_strain_turned, turn};
 use crate::footing;
 use crate::oracle::{Oracle, OracleKind};
 use crate::runs::Computed;
-use crate::study::{Run, Study};
+use crate::study::{RunRecord, Study};
 use crate::von_mises_slope::{BOUNDS, Collapse, bounds, limit, slope_to_collapse};
 
 /// The height in small strain, steps without end.
@@ -178,7 +178,7 @@ fn rotation(study: &mut Study) -> Result<(), CaseError> {
         }
         let quantity = "largest stress / E after 90° [-]";
         let name = format!("finite strain: rotation in {steps} steps");
-        let run = study.run(Run::new(name, &finite.report, finite.elapsed));
+        let run = study.run(RunRecord::new(name, &finite.report, finite.elapsed));
         study.check(
             run,
             quantity,
@@ -187,7 +187,7 @@ fn rotation(study: &mut Study) -> Result<(), CaseError> {
             finite.stress,
         );
         let name = format!("small strain: rotation in {steps} steps");
-        let run = study.run(Run::new(name, &small.report, small.elapsed));
+        let run = study.run(RunRecord::new(name, &small.report, small.elapsed));
         study.control(
             run,
             quantity,

@@ -12,7 +12,7 @@ use crate::comparisons::benchmarks::written;
 use crate::comparisons::block::{Beside, Settled, let_down, settle};
 use crate::comparisons::small_cuts::{DROPPED, NONE, REMEDIES, TIED, VARIANTS};
 use crate::oracle::{Oracle, OracleKind};
-use crate::study::{Run, Study};
+use crate::study::{RunRecord, Study};
 
 /// The force on the base of the block.
 const EQUILIBRIUM: Oracle = Oracle {
@@ -148,12 +148,12 @@ pub(super) fn sinking(study: &mut Study) -> Result<(), CaseError> {
                 most.max(error)
             }
         });
-        let runs: Vec<Run> = found
+        let runs: Vec<RunRecord> = found
             .iter()
-            .map(|(_, report, elapsed)| Run::new("", report, *elapsed))
+            .map(|(_, report, elapsed)| RunRecord::new("", report, *elapsed))
             .collect();
         let name = format!("{}: block let down, offsets 1e-6 to 1", variant.label);
-        let run = study.run(Run::sum(name, &runs.iter().collect::<Vec<_>>()));
+        let run = study.run(RunRecord::sum(name, &runs.iter().collect::<Vec<_>>()));
         let quantity = "force on the base / weight, largest error over all offsets [-]";
         let expected = EQUILIBRIUM.says(0.0);
         if k == TIED {

@@ -4,7 +4,7 @@ use igimp_cases::CaseError;
 use igimp_cases::input::CaseFile;
 
 use crate::runs::Computed;
-use crate::study::Run;
+use crate::study::RunRecord;
 
 /// Height of the lower soil, to the line of the grid below the boundary, and of the upper \[m\].
 const HEIGHTS: [f64; 2] = [8.0, 9.0];
@@ -60,7 +60,7 @@ impl Cells {
 impl Ground {
     /// Raises gravity; returns the run and the largest error of the vertical stress below the
     /// boundary and above it, in size, with its sign, over the weight above the boundary \[-\].
-    pub(super) fn settle(&self) -> Result<(Run, [f64; 2]), CaseError> {
+    pub(super) fn settle(&self) -> Result<(RunRecord, [f64; 2]), CaseError> {
         let level = HEIGHTS[0] + self.offset;
         let top = HEIGHTS[0] + HEIGHTS[1];
         let (fit, mixed) = match self.cells {
@@ -96,7 +96,7 @@ impl Ground {
             self.stiffness,
             self.cells.name()
         );
-        let run = Run::new(name, &computed.report, computed.elapsed);
+        let run = RunRecord::new(name, &computed.report, computed.elapsed);
         let particles = &computed.run.body.particles;
         let above = UNIT_WEIGHTS[1] * (top - level);
         let mut errors = [0.0_f64; 2];

@@ -11,7 +11,7 @@ use igimp_cases::table::Table;
 use rayon::prelude::*;
 
 use crate::oracle::{Oracle, OracleKind};
-use crate::study::{Run, Study};
+use crate::study::{RunRecord, Study};
 use level::{Cells, Ground};
 use sloping::{Way, patch};
 
@@ -70,8 +70,11 @@ fn level_ground(study: &mut Study) -> Result<(), CaseError> {
             let pairs = grounds.iter().zip(&found);
             pairs.filter(move |(ground, _)| ground.cells == cells)
         };
-        let runs: Vec<&Run> = own().map(|(_, (run, _))| run).collect();
-        let run = study.run_to_end(Run::sum(format!("level ground, {}", cells.name()), &runs));
+        let runs: Vec<&RunRecord> = own().map(|(_, (run, _))| run).collect();
+        let run = study.run_to_end(RunRecord::sum(
+            format!("level ground, {}", cells.name()),
+            &runs,
+        ));
         let mut table = Table::new(
             format!("level_ground_{}", cells.key()),
             &[
@@ -148,8 +151,8 @@ fn inclined(study: &mut Study) -> Result<(), CaseError> {
             let pairs = patches.iter().zip(&found);
             pairs.filter(move |(patch, _)| patch.2 == way)
         };
-        let runs: Vec<&Run> = own().map(|(_, (run, _))| run).collect();
-        let run = study.run_to_end(Run::sum(format!("inclined, {}", way.name()), &runs));
+        let runs: Vec<&RunRecord> = own().map(|(_, (run, _))| run).collect();
+        let run = study.run_to_end(RunRecord::sum(format!("inclined, {}", way.name()), &runs));
         let mut table = Table::new(
             format!("inclined_{}", way.key()),
             &[

@@ -18,7 +18,7 @@ use igimp_shape::Grid;
 use igimp_solver::{Body, MarchSettings};
 
 use crate::laboratory::{grid_of, run, unobserved};
-use crate::study::Run;
+use crate::study::RunRecord;
 
 /// Side of the block \[m\].
 const SIDE: f64 = 1.0;
@@ -136,7 +136,7 @@ pub(super) fn patch(
     stiffness: f64,
     cells: usize,
     way: Way,
-) -> Result<(Run, [f64; 4]), CaseError> {
+) -> Result<(RunRecord, [f64; 4]), CaseError> {
     let exact = Exact::new(slope, stiffness);
     let grid = grid_of(SIDE / cells as f64, [cells; 2])?;
     let polygons = halves(slope);
@@ -164,7 +164,7 @@ pub(super) fn patch(
     }
     let mut body = Body::new(Particles::new(&seeds)?);
     let last = cells;
-    let program = |from: f64, to: f64| {
+    let load_path = |from: f64, to: f64| {
         let mut constraints = Constraints::free(&grid);
         for node in 0..grid.node_count() {
             let place = grid.node_place(node);
@@ -175,12 +175,12 @@ pub(super) fn patch(
                 }
             }
         }
-        Ok(StepConditions {
-            grid: grid.clone(),
+        StepConditions::new(
+            grid.clone(),
             constraints,
-            loads: StepLoads::gravity([0.0; 2]),
-            laws: laws.clone(),
-        })
+            StepLoads::gravity([0.0; 2]),
+            laws.clone(),
+        )
     };
     let method = Method {
         kinematics: Kinematics::SmallStrain,
@@ -198,7 +198,7 @@ pub(super) fn patch(
         &mut body,
         &method,
         &settings,
-        &program,
+        &load_path,
         &mut unobserved,
     );
     Ok((run, errors(&exact, &grid, &shares, &body, way)))

@@ -23,7 +23,7 @@ use self::field::Field;
 use self::stress::Moduli;
 use crate::laboratory::{filled, grid_of, run, unobserved};
 use crate::oracle::{Oracle, OracleKind};
-use crate::study::{Level, Run, Study};
+use crate::study::{Level, RunRecord, Study};
 
 /// What the book says of the study.
 const ABOUT: &str = "A smooth field with stretches from 0.7 to 1.3 is prescribed by its own body force on the unit square and cube. Errors of displacement and stress under refinement, in one step and in ten: second order in displacement and first in stress until particles cross cells, where iMPM stalls and iGIMP goes on.";
@@ -122,7 +122,7 @@ fn solve<const D: usize>(
     method: &Method,
     cells: usize,
     steps: usize,
-) -> Result<(Run, Errors), CaseError> {
+) -> Result<(RunRecord, Errors), CaseError> {
     let grid = grid_of(1.0 / cells as f64, [cells; D])?;
     let elasticity = Elasticity::new(YOUNG, POISSON)?;
     let moduli = Moduli {
@@ -145,19 +145,19 @@ fn solve<const D: usize>(
         load_points,
     };
     let constraints = walls(&grid, field.rollers);
-    let program = |_from: f64, to: f64| {
+    let load_path = |_from: f64, to: f64| {
         let now = field.scaled(to);
         let forces: Vec<[f64; D]> = x0.iter().map(|x| now.body_force(x, moduli)).collect();
-        Ok(StepConditions {
-            grid: grid.clone(),
-            constraints: constraints.clone(),
-            loads: StepLoads {
+        StepConditions::new(
+            grid.clone(),
+            constraints.clone(),
+            StepLoads {
                 gravity: [0.0; D],
                 factors: forces.into_flattened(),
                 drag: 0.0,
             },
-            laws: vec![Arc::clone(&law)],
-        })
+            vec![Arc::clone(&law)],
+        )
     };
     let label = method.label();
     let variant = format!(
@@ -170,7 +170,7 @@ fn solve<const D: usize>(
         &mut body,
         method,
         &settings,
-        &program,
+        &load_path,
         &mut unobserved,
     );
     Ok((run, Errors::new(&body.particles, field, moduli)))
@@ -224,7 +224,7 @@ fn convergence<const D: usize>(
     }
     for index in 0..METHODS {
         let label = method(index).label();
-        let sum = Run::sum(
+        let sum = RunRecord::sum(
             format!("{label}, {D}D, {}, {}", field.name, in_steps(steps)),
             &runs[index].iter().collect::<Vec<_>>(),
         );

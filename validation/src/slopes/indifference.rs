@@ -12,7 +12,7 @@ use super::problems::Problem;
 use super::section::{Search, TOLERANCE, Variant};
 use crate::oracle::{Oracle, OracleKind};
 use crate::runs::Computed;
-use crate::study::{Run, Study};
+use crate::study::{RunRecord, Study};
 
 /// Elastic constants enter no limit load.
 const LIMIT_THEOREMS: Oracle = Oracle {
@@ -66,8 +66,8 @@ pub(super) fn report(study: &mut Study, problems: &[Problem]) -> Result<(), Case
         let factors = || found.iter().map(Found::factor);
         let least = factors().fold(f64::INFINITY, f64::min);
         let most = factors().fold(f64::NEG_INFINITY, f64::max);
-        let runs: Vec<Run> = found.iter().map(|found| found.run(String::new())).collect();
-        let run = Run::sum(format!("{SLOPE}, {what}"), &runs.iter().collect::<Vec<_>>());
+        let runs: Vec<RunRecord> = found.iter().map(|found| found.run(String::new())).collect();
+        let run = RunRecord::sum(format!("{SLOPE}, {what}"), &runs.iter().collect::<Vec<_>>());
         let run = study.run(run);
         study.check(
             run,

@@ -11,7 +11,7 @@ use igimp_cases::table::Table;
 use super::section::Variant;
 use super::{Found, Slopes};
 use crate::oracle::{Oracle, OracleKind};
-use crate::study::{Run, Study};
+use crate::study::{RunRecord, Study};
 
 /// What is extrapolated.
 const EXTRAPOLATED: &str = "factor of safety, extrapolated from two meshes [-]";
@@ -68,7 +68,7 @@ pub(super) fn report(study: &mut Study, slopes: &Slopes) -> Result<(), CaseError
             let flow = if associated { "" } else { ", ψ = 0" };
             let name = format!("{}{flow}, two meshes", problem.section.name);
             let both = [coarse, fine].map(|found| found.run(String::new()));
-            let both = Run::sum(name.clone(), &[&both[0], &both[1]]);
+            let both = RunRecord::sum(name.clone(), &[&both[0], &both[1]]);
             let run = study.run(both.clone());
             // ψ = 0 knows no bounds of its own.
             if associated {
@@ -105,7 +105,7 @@ pub(super) fn report(study: &mut Study, slopes: &Slopes) -> Result<(), CaseError
     }
     let counted = runs.len();
     let all = format!("all {counted} slopes with bounds");
-    let run = study.run(Run::sum(all, &runs.iter().collect::<Vec<_>>()));
+    let run = study.run(RunRecord::sum(all, &runs.iter().collect::<Vec<_>>()));
     study.check(
         run,
         "share of slopes whose bounds the uncertainty reaches [-]",

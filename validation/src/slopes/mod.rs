@@ -24,7 +24,7 @@ use crate::slopes::problems::{
     Asked, Opinion, Problem, drained, published, undrained, weak_layer_edges,
 };
 use crate::slopes::section::{Variant, YOUNG};
-use crate::study::{Level, Run, Study};
+use crate::study::{Level, RunRecord, Study};
 
 /// What the book says of the study.
 const ABOUT: &str = "Slopes of undrained and drained soil, homogeneous and in layers, whose factor of safety is bounded by limit analysis or published; the factor of safety of the given geometry is searched for on two meshes, with its mesh error, and every slope has a second opinion by hand calculation.";
@@ -65,12 +65,12 @@ impl Found {
     }
 
     /// All trials as one run.
-    fn run(&self, name: String) -> Run {
+    fn run(&self, name: String) -> RunRecord {
         let trials = self.computed.trials.iter();
-        let runs: Vec<Run> = trials
-            .map(|trial| Run::new("", &trial.report, trial.elapsed))
+        let runs: Vec<RunRecord> = trials
+            .map(|trial| RunRecord::new("", &trial.report, trial.elapsed))
             .collect();
-        Run::sum(name, &runs.iter().collect::<Vec<_>>())
+        RunRecord::sum(name, &runs.iter().collect::<Vec<_>>())
     }
 }
 

@@ -4,7 +4,8 @@
 use std::sync::Arc;
 
 use igimp_assembly::{
-    Constraints, Kinematics, Method, ParticleSeed, Particles, SharedLaw, StepConditions, StepLoads,
+    Constraints, Kinematics, Method, ParticleSeed, ParticleTrial, Particles, SharedLaw, Stencils,
+    StepConditions, StepLoads, Trial,
 };
 use igimp_material::{Elasticity, HenckyElastic, MohrCoulomb, Tresca, VonMises};
 use igimp_shape::{Axis, Grid};
@@ -143,14 +144,26 @@ pub fn conditions<const D: usize>(grid: &Grid<D>, law: &SharedLaw) -> StepCondit
     }
     let mut gravity = [0.0; D];
     gravity[D - 1] = -1.0;
-    StepConditions {
-        grid: grid.clone(),
+    StepConditions::new(
+        grid.clone(),
         constraints,
-        loads: StepLoads {
+        StepLoads {
             gravity,
             factors: Vec::new(),
             drag: 0.0,
         },
-        laws: vec![law.clone()],
-    }
+        vec![law.clone()],
+    )
+    .unwrap()
+}
+
+/// The particles of a trial as the body numbers them; `stencils` are those that it was made with.
+pub fn by_particle<'a, const D: usize>(
+    trial: &'a Trial<D>,
+    stencils: &Stencils<D>,
+) -> Vec<&'a ParticleTrial<D>> {
+    let mut slots: Vec<(u32, &ParticleTrial<D>)> =
+        std::iter::zip(stencils.order().iter().copied(), &trial.particles).collect();
+    slots.sort_by_key(|&(particle, _)| particle);
+    slots.into_iter().map(|(_, own)| own).collect()
 }

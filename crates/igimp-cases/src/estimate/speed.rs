@@ -78,15 +78,15 @@ fn kernels() -> Result<[Duration; 2], CaseError> {
         constraints.fix_wall(&grid, 1, false, axis)?;
     }
     let law = VonMises::from_undrained_strength(Elasticity::new(1e4, 0.3)?, 1.0)?;
-    let conditions = StepConditions {
+    let conditions = StepConditions::new(
         grid,
         constraints,
-        loads: StepLoads::gravity([0.0, -1.0]),
-        laws: vec![Arc::new(law) as SharedLaw],
-    };
+        StepLoads::gravity([0.0, -1.0]),
+        vec![Arc::new(law) as SharedLaw],
+    )?;
     let method = Method::default();
     let stencils = Stencils::build(&particles, &method, &conditions)?;
-    let system = System::new(&particles, &stencils, &conditions, &method, &[], None)?;
+    let system = System::new(&particles, &stencils, &conditions, &method)?;
     // A shear beyond yield, so that the laws have their work.
     let u: Vec<[f64; 2]> = (0..conditions.grid.node_count())
         .map(|node| [1e-3 * conditions.grid.node_position(node)[1], 0.0])

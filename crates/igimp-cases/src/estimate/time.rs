@@ -7,7 +7,8 @@
 //! stage. Pictures, checkpoints and rows come on top. The nanoseconds belong to the reference
 //! computer of [`Speed`], on one thread.
 //!
-//! A stage that ends when something happens (`stop_when`, a run-out that comes to rest) may take fewer
+//! A stage that ends when something happens (`stop_when`, a run-out that comes to rest, a search that
+//! closes in) may take fewer
 //! steps than it plans: the time is then an upper bound, and [`Time::open_ended`] says so.
 
 use serde::{Deserialize, Serialize};
@@ -62,6 +63,17 @@ pub fn time(case: &Case, size: &Estimate, speed: Speed) -> Time {
     }
 }
 
+/// The share of each stage in the corrections that a case plans \[-\].
+pub fn shares(case: &Case) -> Vec<f64> {
+    let corrections: Vec<f64> = case
+        .stages
+        .iter()
+        .map(|stage| planned(stage).corrections)
+        .collect();
+    let all: f64 = corrections.iter().sum();
+    corrections.iter().map(|own| own / all).collect()
+}
+
 /// The time by the same model of the steps and corrections that a run took \[s\]: what tells a computer
 /// that was slow from a case that took more steps than planned.
 ///
@@ -95,8 +107,9 @@ fn planned(stage: &Stage) -> Taken {
             let trials = search.factors.len() as f64 + halvings.min(TRIALS);
             match search.path {
                 ReductionPath::Gravity => (steps * trials, trials),
-                // A march of the reduction ends about half way of the bracket; small strides follow.
-                ReductionPath::Reduce => (0.5 * steps + 3.0, 4.0),
+                // A march of the reduction ends within the bracket, at its upper end at the latest; small
+                // strides follow.
+                ReductionPath::Reduce => (steps + 3.0, 4.0),
             }
         }
         _ => (steps, 0.0),
@@ -139,8 +152,10 @@ fn taken(stage: &StageSummary) -> Taken {
 /// Whether a stage may end before its steps are used up.
 fn is_open_ended(stage: &Stage) -> bool {
     let stop = &stage.stop_when;
-    matches!(stage.kind, StageKind::RunOut(_))
-        || stop.displacement.is_some()
+    matches!(
+        stage.kind,
+        StageKind::RunOut(_) | StageKind::StrengthReduction(_)
+    ) || stop.displacement.is_some()
         || stop.no_equilibrium
         || stop.load_grows_less_than.is_some()
 }

@@ -6,7 +6,7 @@ use toml::de::DeValue;
 
 use super::diagnostic::Problems;
 use super::names::check_name;
-use super::schema::{MOST_THINGS, ROOT};
+use super::schema::{MOST_THINGS, ROOT, SYMBOLS};
 use super::source::{Place, Source};
 use super::spec::{Field, Kind, Presence, Struct, Variants};
 use super::suggest::nearest;
@@ -225,7 +225,8 @@ impl Completer<'_> {
                 problem.help(help);
                 continue;
             }
-            let near = nearest(&entry.key, missing.clone())
+            let near = symbol(&entry.key, known)
+                .or_else(|| nearest(&entry.key, missing.clone()))
                 .or_else(|| nearest(&entry.key, known.to_vec()));
             if let Some(near) = near {
                 let near = known.iter().find(|key| **key == near).copied();
@@ -342,6 +343,14 @@ fn mark_as_default(node: &mut Node, place: Place) {
         }
         _ => {}
     }
+}
+
+/// The field of a material that goes by a symbol in books.
+fn symbol(word: &str, known: &[&'static str]) -> Option<&'static str> {
+    let word = word.to_lowercase();
+    let (_, keys) = SYMBOLS.iter().find(|(symbol, _)| *symbol == word)?;
+    let mut keys = keys.iter().copied();
+    keys.find(|key| known.contains(key))
 }
 
 /// The table of the file that has a key.

@@ -1,10 +1,12 @@
 //! Problems found in a case file, collected and printed together in the order of the file.
 
+use std::borrow::Cow;
 use std::fmt::Write;
 use std::ops::Range;
 
 use super::source::{Place, Source};
 use super::text::plural;
+use crate::printable::on_a_line;
 
 /// Whether the case can be run all the same.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -172,13 +174,13 @@ impl Problems {
     }
 }
 
-/// A text of a file in a message: control characters, which a terminal would obey, are replaced.
+/// A text of a file in a message, without what a terminal would obey.
 fn printable(text: String) -> String {
-    if text.contains(char::is_control) {
-        text.replace(char::is_control, "\u{fffd}")
-    } else {
-        text
-    }
+    let clean = match on_a_line(&text) {
+        Cow::Borrowed(_) => None,
+        Cow::Owned(clean) => Some(clean),
+    };
+    clean.unwrap_or(text)
 }
 
 impl Problem {

@@ -17,6 +17,7 @@
 //! ```
 
 mod build;
+pub(crate) mod bytes;
 mod complete;
 mod diagnostic;
 mod explain;
@@ -24,7 +25,7 @@ mod geometry;
 mod json_schema;
 mod names;
 mod overrides;
-mod quantity;
+pub(crate) mod quantity;
 mod read;
 mod reference;
 mod schema;
@@ -33,7 +34,7 @@ mod spec;
 mod suggest;
 mod syntax;
 mod text;
-mod toml_text;
+pub(crate) mod toml_text;
 mod tree;
 mod units;
 mod value;

@@ -187,7 +187,7 @@ fn clip(text: &str) -> String {
 }
 
 /// The number (or fraction) at the start of a text, and the rest.
-fn split(text: &str) -> Option<(f64, &str)> {
+pub(crate) fn split(text: &str) -> Option<(f64, &str)> {
     let (numerator, rest) = leading_number(text)?;
     let after = rest.trim_start();
     if let Some(below) = after.strip_prefix('/')

@@ -1,12 +1,12 @@
 //! Reads a case file.
 
-use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
 use super::build::build;
+use super::bytes;
 use super::complete::complete;
 use super::diagnostic::{Diagnostic, Problems};
 use super::explain::explain;
@@ -16,6 +16,7 @@ use super::syntax::parse;
 use super::tree::{Node, Value};
 use crate::case::Case;
 use crate::mesh_study::plan;
+use crate::results::owner::Origin;
 
 /// Most bytes of a case file.
 const LARGEST: usize = 8 << 20;
@@ -26,6 +27,7 @@ pub struct CaseFile {
     case: Case,
     completed: Node,
     text: String,
+    origin: Origin,
     warnings: String,
     diagnostics: Vec<Diagnostic>,
 }
@@ -60,17 +62,34 @@ impl CaseFile {
     /// # Errors
     /// [`InputError`].
     pub fn read(path: &Path, overrides: &[String]) -> Result<Self, InputError> {
-        let file_error = |source| InputError::File {
+        let bytes = bytes::of_file(path, LARGEST as u64).map_err(|source| InputError::File {
             path: path.to_owned(),
             source,
-        };
-        let name = path.display().to_string();
-        let mut bytes = Vec::new();
-        let file = File::open(path).map_err(file_error)?;
-        file.take(LARGEST as u64 + 1)
-            .read_to_end(&mut bytes)
-            .map_err(file_error)?;
-        Self::from_bytes(&name, bytes, overrides)
+        })?;
+        let file = Self::from_bytes(&path.display().to_string(), bytes, overrides)?;
+        Ok(Self {
+            origin: Origin::File(path.to_owned()),
+            ..file
+        })
+    }
+
+    /// Reads what comes from elsewhere, such as standard input, under a name.
+    ///
+    /// # Errors
+    /// [`InputError`].
+    pub fn read_from(
+        name: &str,
+        reader: impl Read,
+        overrides: &[String],
+    ) -> Result<Self, InputError> {
+        let bytes = bytes::of(reader, LARGEST as u64).map_err(|source| InputError::File {
+            path: name.into(),
+            source,
+        })?;
+        let file = Self::from_bytes(name, bytes, overrides)?;
+        // Its name is that of many cases; their titles tell them apart.
+        let origin = Origin::Text(format!("{name}: {}", file.case.title));
+        Ok(Self { origin, ..file })
     }
 
     /// Parses the bytes of a file of this name.
@@ -82,6 +101,9 @@ impl CaseFile {
         bytes: Vec<u8>,
         overrides: &[String],
     ) -> Result<Self, InputError> {
+        if bytes.len() > LARGEST {
+            return Err(too_large(name));
+        }
         match String::from_utf8(bytes) {
             Ok(text) => Self::parse(name, &text, overrides),
             Err(error) => {
@@ -104,9 +126,7 @@ impl CaseFile {
     pub fn parse(name: &str, text: &str, overrides: &[String]) -> Result<Self, InputError> {
         let mut problems = Problems::default();
         if text.len() > LARGEST {
-            let message = format!("this file has more than {} MB", LARGEST >> 20);
-            problems.error(None, message).help("is it a case file?");
-            return Err(invalid(&problems, &[Source::new(name, "", false)]));
+            return Err(too_large(name));
         }
         let mut sources = vec![Source::new(name, text, false)];
         let mut tree = parse(&sources[0], &mut problems);
@@ -126,6 +146,7 @@ impl CaseFile {
                 case,
                 completed,
                 text: text.to_owned(),
+                origin: Origin::Text(name.to_owned()),
                 warnings: problems.render(&sources),
                 diagnostics: problems.diagnostics(),
             }),
@@ -188,10 +209,22 @@ impl CaseFile {
         explain(&mesh)
     }
 
+    /// Where it comes from.
+    pub fn origin(&self) -> &Origin {
+        &self.origin
+    }
+
     /// The text of the file.
     pub fn source(&self) -> &str {
         &self.text
     }
+}
+
+fn too_large(name: &str) -> InputError {
+    let mut problems = Problems::default();
+    let message = format!("this file has more than {} MB", LARGEST >> 20);
+    problems.error(None, message).help("is it a case file?");
+    invalid(&problems, &[Source::new(name, "", false)])
 }
 
 fn invalid(problems: &Problems, sources: &[Source]) -> InputError {

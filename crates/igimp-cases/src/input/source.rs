@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use crate::printable::is_odd;
+
 /// A text with its name.
 #[derive(Clone, Debug)]
 pub(super) struct Source {
@@ -139,7 +141,7 @@ fn shown(text: &str) -> impl Iterator<Item = char> {
     text.chars().flat_map(|c| {
         let (c, times) = match c {
             '\t' => (' ', TAB),
-            c if c.is_control() => ('\u{fffd}', 1),
+            c if is_odd(c) => ('\u{fffd}', 1),
             c => (c, 1),
         };
         std::iter::repeat_n(c, times)

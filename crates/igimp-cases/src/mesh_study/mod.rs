@@ -19,6 +19,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::check::short;
 use crate::error::CaseError;
+use crate::results::atomic::create;
+use crate::results::cells::cell;
 use crate::summary::ModelSize;
 use crate::sweep::Ending;
 pub use estimate::{Computed, Estimate, Order, estimate};
@@ -63,10 +65,10 @@ impl StudySummary {
         header.extend(["extrapolated", "uncertainty", "order"].map(str::to_owned));
         let number = |value: Option<f64>| value.map_or_else(String::new, |v| format!("{v:.9e}"));
         let write = || -> Result<(), csv::Error> {
-            let mut writer = csv::Writer::from_path(path)?;
+            let mut writer = csv::Writer::from_writer(create(path)?);
             writer.write_record(&header)?;
             for result in &self.results {
-                let mut row = vec![result.name.clone()];
+                let mut row = vec![cell(&result.name).into_owned()];
                 row.extend(result.values.iter().map(|&value| number(value)));
                 row.extend(result.half_widths.iter().map(|&width| number(Some(width))));
                 row.push(number(result.estimate.map(|found| found.value)));

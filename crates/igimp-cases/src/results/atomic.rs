@@ -1,9 +1,12 @@
-//! Files that are there whole or not at all, also when the program is killed while it writes.
+//! Files that are there whole or not at all, also when the program is killed while it writes; and that
+//! are new: a link under a name that is written goes, and what it leads to stays as it is.
 
 use std::ffi::OsString;
 use std::fs::{self, File};
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
+
+use rayon::prelude::*;
 
 use crate::error::CaseError;
 
@@ -24,6 +27,28 @@ pub fn write_atomically(path: &Path, bytes: impl AsRef<[u8]>) -> Result<(), Case
     Ok(())
 }
 
+/// Writes a file under a temporary name beside its place and renames it, as [`write_atomically`] does, and
+/// leaves it to the system when the disk has it: whoever kills the program finds a whole file, whoever
+/// takes the power away may not.
+///
+/// # Errors
+/// [`CaseError::File`].
+pub fn write_whole(path: &Path, bytes: impl AsRef<[u8]>) -> Result<(), CaseError> {
+    let temporary = temporary_name(path);
+    write_new(&temporary, bytes).map_err(at(&temporary))?;
+    fs::rename(&temporary, path).map_err(at(path))
+}
+
+/// Waits until the disk has files, all at once: together they take little longer than one.
+pub(super) fn sync_together<E: Send>(
+    files: &[(PathBuf, File)],
+    at: impl Fn(&Path, io::Error) -> E + Sync,
+) -> Result<(), E> {
+    files
+        .par_iter()
+        .try_for_each(|(path, file)| file.sync_all().map_err(|error| at(path, error)))
+}
+
 /// `.NAME.tmp` beside the file.
 pub(super) fn temporary_name(path: &Path) -> PathBuf {
     let mut name = OsString::from(".");
@@ -32,9 +57,23 @@ pub(super) fn temporary_name(path: &Path) -> PathBuf {
     path.with_file_name(name)
 }
 
+/// A new, empty file; what had the name before is gone. Of a link, symbolic or hard, the name goes and
+/// never what it leads to.
+pub(crate) fn create(path: &Path) -> io::Result<File> {
+    match fs::remove_file(path) {
+        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),
+        _ => File::create_new(path),
+    }
+}
+
+/// Writes a new file, as [`create`] makes it, and leaves it to the system when the disk has it.
+pub(crate) fn write_new(path: &Path, bytes: impl AsRef<[u8]>) -> io::Result<()> {
+    create(path)?.write_all(bytes.as_ref())
+}
+
 /// Writes a file and waits until the disk has it.
 pub(super) fn write_synced(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let mut file = File::create(path)?;
+    let mut file = create(path)?;
     file.write_all(bytes)?;
     file.sync_all()
 }
@@ -77,6 +116,33 @@ mod tests {
         write_atomically(&path, "new").unwrap();
         assert_eq!(fs::read_to_string(&path).unwrap(), "new");
         assert_eq!(fs::read_dir(scratch.path()).unwrap().count(), 1);
+    }
+
+    /// GOAL: a name that is a link never leads a write to another file.
+    #[cfg(unix)]
+    #[test]
+    fn links_are_replaced_and_not_followed() {
+        let scratch = Scratch::new();
+        let (outside, path) = (scratch.path().join("outside"), scratch.path().join("name"));
+        for symbolic in [true, false] {
+            for write in [
+                |path: &Path| write_new(path, "ours").unwrap(),
+                |path: &Path| write_atomically(path, "ours").unwrap(),
+            ] {
+                fs::write(&outside, "the user's").unwrap();
+                for name in [&path, &temporary_name(&path)] {
+                    let _ = fs::remove_file(name);
+                    if symbolic {
+                        std::os::unix::fs::symlink(&outside, name).unwrap();
+                    } else {
+                        fs::hard_link(&outside, name).unwrap();
+                    }
+                }
+                write(&path);
+                assert_eq!(fs::read_to_string(&path).unwrap(), "ours");
+                assert_eq!(fs::read_to_string(&outside).unwrap(), "the user's");
+            }
+        }
     }
 
     #[test]

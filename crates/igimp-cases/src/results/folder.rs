@@ -6,27 +6,30 @@
 //! | `summary.json`, `report.html` | outcome, for programs and for people |
 //! | `case.toml`, `case.completed.toml` | the case as given, and with every default |
 //! | `convergence.csv` | residuals of all steps, accepted or cut |
-//! | `curves/`, `monitors/`, `sections/` | tables (`.csv`) |
+//! | `curves/`, `monitors/`, `sections/`, `slip_lines/` | tables (`.csv`) |
 //! | `figures/` | pictures (`.svg`, `.png`) |
 //! | `paraview/` | particles and grid (`.pvd`, `.vtu`) |
 //! | `checkpoint/`, `last-converged/` | states ([`checkpoint`]) |
 //! | `mesh-1/`, `mesh-2/`, … | of a study of the mesh error: a folder like this for each mesh |
 //! | `mesh_study.csv` | its results on all meshes |
-//! | `.igimp` | says that igimp made the folder |
+//! | `.igimp` | says that igimp made the folder, and for which case ([`owner`](super::owner)) |
+//! | `.igimp.lock` | keeps a second run out ([`lock`](super::lock)) |
 
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use super::admission::refuse_links;
 use super::atomic::{at, temporary_name};
-use super::{checkpoint, pvd};
+use super::owner::{Claim, Owner};
+use super::{checkpoint, lock, pvd};
 use crate::error::CaseError;
 use crate::summary::Summary;
 
 pub use super::atomic::write_atomically;
 
 const MARKER: &str = ".igimp";
-const MARKER_TEXT: &str = "igimp writes its results here; a further run replaces them.\n";
+const MARKER_TEXT: &str = "igimp writes its results here.\n";
 
 const SUMMARY: &str = "summary.json";
 const MESH_STUDY: &str = "mesh_study.csv";
@@ -39,10 +42,11 @@ const FILES: [&str; 5] = [
 ];
 /// Most meshes of a study of the mesh error.
 const MOST_MESHES: usize = 3;
-const TABLES: [&str; 3] = ["curves", "monitors", "sections"];
-const FIGURES: &str = "figures";
-const PARAVIEW: &str = "paraview";
-const CHECKPOINT: &str = "checkpoint";
+pub(super) const TABLES: [&str; 4] = ["curves", "monitors", "sections", SLIP_LINES];
+const SLIP_LINES: &str = "slip_lines";
+pub(super) const FIGURES: &str = "figures";
+pub(super) const PARAVIEW: &str = "paraview";
+pub(super) const CHECKPOINT: &str = "checkpoint";
 
 /// Name of the checkpoint beside the other results that a run without equilibrium leaves.
 pub const LAST_CONVERGED: &str = "last-converged";
@@ -61,23 +65,27 @@ impl Folder {
     ///
     /// # Errors
     /// [`CaseError::ForeignFolder`] for a folder that is not empty and was not written by igimp;
-    /// [`CaseError::File`], [`CaseError::Checkpoint`].
-    pub fn afresh(root: &Path) -> Result<Self, CaseError> {
+    /// [`CaseError::Link`], [`CaseError::File`], [`CaseError::Checkpoint`].
+    pub fn afresh(root: &Path, claim: &Claim) -> Result<Self, CaseError> {
         refuse_foreign(root)?;
+        refuse_links(root)?;
         if root.exists() {
             clear(root)?;
         }
+        mark(root, claim, false)?;
         Self::lay_out(root)
     }
 
     /// The folder of an earlier run, with all its results.
     ///
     /// # Errors
-    /// [`CaseError::NoResults`] if igimp wrote nothing there; [`CaseError::File`].
+    /// [`CaseError::NoResults`] if igimp wrote nothing there; [`CaseError::Link`],
+    /// [`CaseError::File`].
     pub fn open(root: &Path) -> Result<Self, CaseError> {
         if !is_ours(root) {
             return Err(CaseError::NoResults { path: root.into() });
         }
+        refuse_links(root)?;
         Self::lay_out(root)
     }
 
@@ -86,7 +94,6 @@ impl Folder {
             root: root.to_path_buf(),
         };
         fs::create_dir_all(root).map_err(at(root))?;
-        write_atomically(&root.join(MARKER), MARKER_TEXT)?;
         for name in TABLES.into_iter().chain([FIGURES, PARAVIEW, CHECKPOINT]) {
             let path = root.join(name);
             fs::create_dir_all(&path).map_err(at(&path))?;
@@ -134,6 +141,11 @@ impl Folder {
         self.root.join("monitors")
     }
 
+    /// `slip_lines/`.
+    pub fn slip_lines(&self) -> PathBuf {
+        self.root.join(SLIP_LINES)
+    }
+
     /// `sections/`.
     pub fn sections(&self) -> PathBuf {
         self.root.join("sections")
@@ -163,7 +175,46 @@ impl Folder {
 pub fn claim(root: &Path) -> Result<(), CaseError> {
     refuse_foreign(root)?;
     fs::create_dir_all(root).map_err(at(root))?;
-    write_atomically(&root.join(MARKER), MARKER_TEXT)
+    let marker = root.join(MARKER);
+    if marker.is_file() {
+        return Ok(());
+    }
+    write_atomically(&marker, MARKER_TEXT)
+}
+
+/// Says whose the results of a folder are, and whether their run came to its end; the folder is made.
+///
+/// # Errors
+/// [`CaseError::File`].
+pub fn mark(root: &Path, claim: &Claim, finished: bool) -> Result<(), CaseError> {
+    fs::create_dir_all(root).map_err(at(root))?;
+    Owner::of(claim, root, finished).write(&root.join(MARKER))
+}
+
+/// Who owns a folder of results, if it is known.
+pub fn owner(root: &Path) -> Option<Owner> {
+    Owner::read(&root.join(MARKER))
+}
+
+/// A results folder, and those of the meshes in it.
+pub(super) fn with_meshes(root: &Path) -> impl Iterator<Item = PathBuf> {
+    let meshes = (1..=MOST_MESHES).map(|number| root.join(mesh_name(number)));
+    std::iter::once(root.to_owned()).chain(meshes)
+}
+
+/// Whether there is a checkpoint to go on from, also one of a mesh.
+pub fn holds_checkpoints(root: &Path) -> bool {
+    with_meshes(root).any(|folder| checkpoint::any(&folder.join(CHECKPOINT)))
+}
+
+/// Whether there are results of a run, or of a mesh.
+pub(super) fn holds_results(root: &Path) -> bool {
+    holds_checkpoints(root)
+        || with_meshes(root).any(|folder| {
+            ["convergence.csv", SUMMARY]
+                .iter()
+                .any(|name| folder.join(name).exists())
+        })
 }
 
 /// Writes the `summary.json` of a results folder.
@@ -191,14 +242,16 @@ pub fn mesh_name(number: usize) -> String {
 ///
 /// # Errors
 /// [`CaseError::ForeignFolder`] for a folder that is not empty and was not written by igimp;
-/// [`CaseError::File`], [`CaseError::Checkpoint`].
-pub fn of_study(root: &Path, afresh: bool) -> Result<(), CaseError> {
-    claim(root)?;
+/// [`CaseError::Link`], [`CaseError::File`], [`CaseError::Checkpoint`].
+pub fn of_study(root: &Path, claim: &Claim, afresh: bool) -> Result<(), CaseError> {
+    refuse_foreign(root)?;
+    refuse_links(root)?;
+    fs::create_dir_all(root).map_err(at(root))?;
     if afresh {
         clear(root)?;
         clear_meshes(root)?;
     }
-    Ok(())
+    mark(root, claim, false)
 }
 
 /// Clears the folders of meshes that an earlier study left in a results folder: the files of our names,
@@ -213,7 +266,9 @@ pub fn clear_meshes(root: &Path) -> Result<(), CaseError> {
             continue;
         }
         clear(&mesh)?;
-        remove_files(&mesh, |name| [MARKER, "case.toml"].contains(&name))?;
+        remove_files(&mesh, |name| {
+            [MARKER, lock::NAME, "case.toml"].contains(&name)
+        })?;
         for name in TABLES
             .into_iter()
             .chain([FIGURES, PARAVIEW, CHECKPOINT, ""])
@@ -239,8 +294,14 @@ pub fn refuse_foreign(root: &Path) -> Result<(), CaseError> {
     Ok(())
 }
 
+/// Whether a folder is empty; the lock of a run that has not begun is nothing.
 fn is_empty(folder: &Path) -> Result<bool, CaseError> {
-    Ok(fs::read_dir(folder).map_err(at(folder))?.next().is_none())
+    for entry in fs::read_dir(folder).map_err(at(folder))? {
+        if entry.map_err(at(folder))?.file_name() != lock::NAME {
+            return Ok(false);
+        }
+    }
+    Ok(true)
 }
 
 /// Whether igimp wrote here: by the marker, or its temporary where a run was killed just then; by a
@@ -307,181 +368,4 @@ fn remove_files(folder: &Path, is_our_name: impl Fn(&str) -> bool) -> Result<(),
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::results::checkpoint::tests::{body, meta};
-    use crate::results::scratch::Scratch;
-
-    fn everything(folder: &Folder) {
-        for path in [
-            folder.summary(),
-            folder.report(),
-            folder.case(),
-            folder.completed_case(),
-            folder.convergence(),
-            folder.curves().join("a.csv"),
-            folder.monitors().join("b.csv"),
-            folder.monitors().join(".b.csv.tmp"),
-            folder.sections().join("c.csv"),
-            folder.figures().join("d.svg"),
-            folder.figures().join("d.png"),
-            folder.paraview().join("particles.pvd"),
-            folder.paraview().join("particles_0001.vtu"),
-            folder.paraview().join(".particles_0002.vtu.tmp"),
-            folder.paraview().join("grid.pvd"),
-            folder.paraview().join("grid_12345.vtu"),
-            folder.paraview().join("stage-02-last-stable.vtu"),
-            folder.paraview().join("stage-02-first-unstable.vtu"),
-        ] {
-            fs::write(path, "x").unwrap();
-        }
-        let states = [("current", &body(3))];
-        checkpoint::write(&folder.checkpoint(), "load-1", &states, &meta(), 1).unwrap();
-        checkpoint::write(folder.root(), LAST_CONVERGED, &states, &meta(), 1).unwrap();
-    }
-
-    fn files(folder: &Path) -> Vec<PathBuf> {
-        let mut found = Vec::new();
-        for entry in fs::read_dir(folder).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                found.extend(files(&path));
-            } else {
-                found.push(path);
-            }
-        }
-        found.sort();
-        found
-    }
-
-    #[test]
-    fn a_new_folder_is_laid_out() {
-        let scratch = Scratch::new();
-        let root = scratch.path().join("deep/results");
-        let folder = Folder::afresh(&root).unwrap();
-        assert_eq!(
-            scratch.names("deep/results"),
-            [
-                ".igimp",
-                "checkpoint",
-                "curves",
-                "figures",
-                "monitors",
-                "paraview",
-                "sections"
-            ]
-        );
-        assert_eq!(folder.root(), root);
-        assert!(Folder::open(&root).is_ok());
-    }
-
-    /// GOAL: a further run removes what the one before wrote and nothing of the user's.
-    #[test]
-    fn only_our_files_are_cleared() {
-        let scratch = Scratch::new();
-        let root = scratch.path().join("results");
-        let folder = Folder::afresh(&root).unwrap();
-        everything(&folder);
-        let notes = [
-            folder.root().join("notes.txt"),
-            folder.root().join("data/a.csv"),
-            folder.curves().join("plot.py"),
-            folder.figures().join("paper.pdf"),
-            folder.paraview().join("view.pvsm"),
-            folder.paraview().join("particles_mine.vtu"),
-            folder.paraview().join("other.pvd"),
-            folder.checkpoint().join("mine/x.npy"),
-        ];
-        for path in &notes {
-            fs::create_dir_all(path.parent().unwrap()).unwrap();
-            fs::write(path, "the user's").unwrap();
-        }
-        assert_eq!(Folder::afresh(&root).unwrap(), folder);
-        let mut expected = notes.to_vec();
-        expected.extend([folder.root().join(MARKER), folder.case()]);
-        expected.sort();
-        assert_eq!(files(&root), expected);
-    }
-
-    #[test]
-    fn a_resumed_run_finds_everything() {
-        let scratch = Scratch::new();
-        let folder = Folder::afresh(scratch.path()).unwrap();
-        everything(&folder);
-        let before = files(scratch.path());
-        assert_eq!(Folder::open(scratch.path()).unwrap(), folder);
-        assert_eq!(files(scratch.path()), before);
-    }
-
-    #[test]
-    fn the_folder_of_somebody_else_is_refused() {
-        let scratch = Scratch::new();
-        fs::write(scratch.path().join("case.toml"), "the user's").unwrap();
-        fs::write(scratch.path().join("summary.json"), r#"{"program": "x"}"#).unwrap();
-        let error = Folder::afresh(scratch.path()).unwrap_err();
-        insta::assert_snapshot!(
-            scratch.hide(&error),
-            @"DIR is not empty and was not written by igimp; choose another folder for the results"
-        );
-        let error = Folder::open(scratch.path()).unwrap_err();
-        insta::assert_snapshot!(scratch.hide(&error), @"DIR holds no results of igimp");
-        assert_eq!(scratch.names(""), ["case.toml", "summary.json"]);
-        let file = scratch.path().join("case.toml");
-        let error = Folder::afresh(&file).unwrap_err();
-        insta::assert_snapshot!(scratch.hide(&error), @"cannot access DIR/case.toml");
-    }
-
-    /// A run killed while it wrote the marker leaves a folder that the next run takes.
-    #[test]
-    fn a_folder_with_half_a_marker_is_ours() {
-        let scratch = Scratch::new();
-        let root = scratch.path().join("results");
-        fs::create_dir(&root).unwrap();
-        fs::write(temporary_name(&root.join(MARKER)), "igimp wri").unwrap();
-        Folder::open(&root).unwrap();
-        Folder::afresh(&root).unwrap();
-        assert!(!temporary_name(&root.join(MARKER)).exists());
-    }
-
-    #[test]
-    fn a_claimed_folder_may_hold_a_file_before_its_run() {
-        let scratch = Scratch::new();
-        let root = scratch.path().join("task-0001");
-        claim(&root).unwrap();
-        fs::write(root.join("task.json"), "{}").unwrap();
-        claim(&root).unwrap();
-        Folder::afresh(&root).unwrap();
-        assert!(root.join("task.json").exists());
-        let foreign = scratch.path().join("mine");
-        fs::create_dir(&foreign).unwrap();
-        fs::write(foreign.join("notes.txt"), "the user's").unwrap();
-        assert!(matches!(
-            claim(&foreign),
-            Err(CaseError::ForeignFolder { .. })
-        ));
-    }
-
-    #[test]
-    fn results_without_a_marker_are_known_by_summary_or_checkpoint() {
-        let scratch = Scratch::new();
-        let states = [("current", &body(2))];
-        checkpoint::write(
-            &scratch.path().join("a/checkpoint"),
-            "k0",
-            &states,
-            &meta(),
-            1,
-        )
-        .unwrap();
-        fs::create_dir(scratch.path().join("b")).unwrap();
-        fs::write(
-            scratch.path().join("b/summary.json"),
-            r#"{"program": "igimp 0.1.0"}"#,
-        )
-        .unwrap();
-        for name in ["a", "b"] {
-            Folder::afresh(&scratch.path().join(name)).unwrap();
-            assert!(scratch.names(&format!("{name}/checkpoint")).is_empty());
-        }
-    }
-}
+pub(super) mod tests;

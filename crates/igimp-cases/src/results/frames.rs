@@ -1,10 +1,12 @@
 //! What a run writes for ParaView: the particles and the grid, frame by frame.
 
+use std::fs::File;
 use std::path::{Path, PathBuf};
 
 use igimp_assembly::{Particles, SharedLaw};
 use igimp_shape::Grid;
 
+use super::atomic::{at, sync_folder, sync_together};
 use super::fields;
 use super::particles::{Extras, of_grid, of_particles};
 use super::pvd::{self, Collection};
@@ -17,6 +19,8 @@ pub struct Frames {
     folder: PathBuf,
     particles: Collection,
     grid: Collection,
+    /// Frames that the disk is known to have.
+    synced: usize,
 }
 
 impl Frames {
@@ -29,6 +33,7 @@ impl Frames {
             folder: folder.to_path_buf(),
             particles: Collection::resume(folder, pvd::PARTICLES, frames)?,
             grid: Collection::resume(folder, pvd::GRID, frames)?,
+            synced: frames,
         })
     }
 
@@ -58,6 +63,34 @@ impl Frames {
     ) -> Result<(), CaseError> {
         let path = self.folder.join(name).with_extension("vtu");
         with_extras(particles, laws, |cells| cells.write(&path))
+    }
+
+    /// Waits until the disk has every frame: before a checkpoint that counts on them.
+    ///
+    /// # Errors
+    /// [`CaseError::File`].
+    pub fn sync(&mut self) -> Result<(), CaseError> {
+        let new = |collection: &Collection| -> Vec<PathBuf> {
+            let frames = collection.frames()[self.synced..].iter();
+            let files = frames.map(|frame| self.folder.join(&frame.file));
+            files.chain([collection.path()]).collect()
+        };
+        if self.synced == self.len() {
+            return Ok(());
+        }
+        let open = |path: PathBuf| {
+            let file = File::open(&path).map_err(at(&path))?;
+            Ok((path, file))
+        };
+        let files = [new(&self.particles), new(&self.grid)].concat();
+        let files: Vec<_> = files
+            .into_iter()
+            .map(open)
+            .collect::<Result<_, CaseError>>()?;
+        sync_together(&files, |path, error| at(path)(error))?;
+        sync_folder(&self.folder).map_err(at(&self.folder))?;
+        self.synced = self.len();
+        Ok(())
     }
 
     /// Number of frames.

@@ -8,7 +8,7 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::atomic::{at, write_atomically};
+use super::atomic::{at, write_whole};
 use super::vtu::{UnstructuredGrid, escaped};
 use crate::error::CaseError;
 
@@ -124,7 +124,7 @@ impl Collection {
             );
         }
         text.push_str("</Collection>\n</VTKFile>\n");
-        write_atomically(&self.path(), text)
+        write_whole(&self.path(), text)
     }
 
     fn remove_later_frames(&self) -> Result<(), CaseError> {

@@ -12,7 +12,7 @@ use minijinja::{Environment, Value};
 use serde::Serialize;
 
 use crate::error::CaseError;
-use crate::summary::Summary;
+use crate::summary::{SetupTable, Summary};
 
 /// The page; values are escaped as they are filled in.
 const TEMPLATE: &str = include_str!("report.html");
@@ -34,7 +34,7 @@ pub fn write_report(folder: &Path) -> Result<PathBuf, CaseError> {
         path: path.clone(),
         source: std::io::Error::other(source),
     })?;
-    std::fs::write(&path, page).map_err(|source| CaseError::File {
+    super::atomic::write_new(&path, page).map_err(|source| CaseError::File {
         path: path.clone(),
         source,
     })?;
@@ -48,18 +48,22 @@ fn render(folder: &Path, summary: &Summary) -> Result<String, minijinja::Error> 
     let safety = rows::safety(summary);
     let study = summary.mesh_study.as_ref().map(meshes::view);
     let mut verdict = verdict::verdict(summary);
-    let mut numbers = rows::numbers(summary);
+    let mut numbers = rows::headline(summary);
     if let Some(study) = &summary.mesh_study {
         meshes::add_to(&mut verdict, study);
         numbers.splice(0..0, meshes::numbers(study));
     }
+    let (convergence, pictures): (Vec<_>, Vec<_>) = pictures
+        .into_iter()
+        .partition(|group| group.id == "convergence");
     let entries = contents(
         [
-            (true, "numbers", "Key numbers"),
+            (true, "numbers", "Results"),
             (study.is_some(), "meshes", "Mesh error"),
             (!summary.checks.is_empty(), "checks", "Checks"),
             (summary.failure.is_some(), "failure", "Want of equilibrium"),
             (!summary.warnings.is_empty(), "warnings", "Warnings"),
+            (!summary.setup.is_empty(), "setup", "The model"),
             (true, "stages", "Stages"),
             (!safety.is_empty(), "safety", "Factor of safety"),
         ],
@@ -67,6 +71,7 @@ fn render(folder: &Path, summary: &Summary) -> Result<String, minijinja::Error> 
         [
             (!tables.is_empty(), "tables", "Tables and files"),
             (!inputs.is_empty(), "input", "Input"),
+            (true, "effort", "How it was computed"),
         ],
     );
     let title = if summary.title.is_empty() {
@@ -80,7 +85,9 @@ fn render(folder: &Path, summary: &Summary) -> Result<String, minijinja::Error> 
         method: &summary.method,
         verdict,
         contents: entries,
+        head: rows::head(summary),
         numbers,
+        setup: &summary.setup,
         study,
         checks: rows::checks(summary),
         failure: summary.failure.as_deref(),
@@ -91,6 +98,8 @@ fn render(folder: &Path, summary: &Summary) -> Result<String, minijinja::Error> 
         pictures,
         tables,
         inputs,
+        effort: rows::effort(summary),
+        convergence,
     };
     let mut environment = Environment::new();
     environment.add_template("report.html", TEMPLATE)?;
@@ -107,7 +116,9 @@ struct Page<'a> {
     method: &'a str,
     verdict: verdict::Verdict,
     contents: Vec<Entry>,
+    head: Vec<rows::HeadView>,
     numbers: Vec<rows::Number>,
+    setup: &'a [SetupTable],
     study: Option<meshes::StudyView>,
     checks: Vec<rows::CheckView>,
     failure: Option<&'a str>,
@@ -118,6 +129,8 @@ struct Page<'a> {
     pictures: Vec<files::Group>,
     tables: Vec<files::FileView>,
     inputs: Vec<files::InputView>,
+    effort: Vec<rows::Number>,
+    convergence: Vec<files::Group>,
 }
 
 /// A line of the table of contents.

@@ -1,11 +1,12 @@
 //! Tables that grow by a row a step, on disk at once, and that a resumed run continues to the same
 //! bytes that an uninterrupted run writes.
 
-use std::fs::{File, OpenOptions};
-use std::io::{self, BufRead as _, BufReader, Write as _};
+use std::fs::{self, File};
+use std::io::{self, BufRead as _, BufReader, Read as _, Write as _};
 use std::path::{Path, PathBuf};
 
-use super::atomic::at;
+use super::atomic::{at, create, temporary_name};
+use super::cells::{cell, text_of};
 use crate::error::CaseError;
 use crate::table::Table;
 
@@ -24,7 +25,7 @@ impl RowWriter {
     /// # Errors
     /// [`CaseError::File`].
     pub fn create(path: &Path, header: &[String]) -> Result<Self, CaseError> {
-        let mut file = File::create(path).map_err(at(path))?;
+        let mut file = create(path).map_err(at(path))?;
         file.write_all(&text_line(path, header)?)
             .map_err(at(path))?;
         Ok(Self {
@@ -38,7 +39,8 @@ impl RowWriter {
     /// Goes on after the first `rows` rows of a file; what follows them is cut off, also a line
     /// that was written in part.
     ///
-    /// Without rows to keep the file is made anew.
+    /// The rows are kept in a new file: whoever holds a link to the old one keeps what it was. Without
+    /// rows to keep the file is made anew.
     ///
     /// # Errors
     /// [`CaseError::File`]; [`CaseError::Unusable`] when the file has another header or fewer rows.
@@ -50,11 +52,7 @@ impl RowWriter {
             path: path.to_path_buf(),
             why,
         };
-        let file = OpenOptions::new()
-            .read(true)
-            .write(true)
-            .open(path)
-            .map_err(at(path))?;
+        let file = File::open(path).map_err(at(path))?;
         let mut lines = Lines::new(&file);
         if lines.next_line().map_err(at(path))? != Some(&text_line(path, header)?[..]) {
             return Err(unusable("its header is not the one of this case".into()));
@@ -65,12 +63,9 @@ impl RowWriter {
             }
         }
         let end = lines.end;
-        file.set_len(end).map_err(at(path))?;
-        let mut file = file;
-        io::Seek::seek(&mut file, io::SeekFrom::Start(end)).map_err(at(path))?;
         Ok(Self {
             path: path.to_path_buf(),
-            file,
+            file: beginning(path, file, end).map_err(at(path))?,
             columns: header.len(),
             rows,
         })
@@ -145,7 +140,7 @@ pub fn read(path: &Path) -> Result<Table, CaseError> {
         .headers()
         .map_err(|error| unusable(error.to_string()))?
         .iter()
-        .map(str::to_owned)
+        .map(|entry| text_of(entry).to_owned())
         .collect();
     let rows = reader
         .records()
@@ -170,9 +165,20 @@ pub fn read(path: &Path) -> Result<Table, CaseError> {
     })
 }
 
+/// A new file with the first bytes of the one that has the name, in its place and open at its end.
+fn beginning(path: &Path, mut old: File, bytes: u64) -> io::Result<File> {
+    io::Seek::rewind(&mut old)?;
+    let temporary = temporary_name(path);
+    let mut file = create(&temporary)?;
+    io::copy(&mut old.take(bytes), &mut file)?;
+    file.sync_data()?;
+    fs::rename(&temporary, path)?;
+    Ok(file)
+}
+
 fn text_line(path: &Path, header: &[String]) -> Result<Vec<u8>, CaseError> {
     let mut line = csv::Writer::from_writer(Vec::new());
-    line.write_record(header)
+    line.write_record(header.iter().map(|entry| cell(entry).into_owned()))
         .map_err(|source| CaseError::Table {
             path: path.to_path_buf(),
             source,

@@ -15,7 +15,7 @@ use flate2::Compression;
 use flate2::write::ZlibEncoder;
 use rayon::prelude::*;
 
-use super::atomic::write_atomically;
+use super::atomic::write_whole;
 use super::npy::Values;
 use crate::error::CaseError;
 
@@ -123,7 +123,7 @@ impl UnstructuredGrid {
     /// If an array does not have as many tuples as there are points or cells, or if a cell names a
     /// point that is not there.
     pub fn write(&self, path: &Path) -> Result<(), CaseError> {
-        write_atomically(path, self.to_xml())
+        write_whole(path, self.to_xml())
     }
 
     /// The file as text.

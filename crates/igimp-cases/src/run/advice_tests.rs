@@ -6,7 +6,7 @@ use igimp_assembly::{Geometry, Locking};
 use super::*;
 use crate::case::{
     BodyPart, Boundaries, Every, GridSpec, MeshStudy, Output, Reduction, RunOut, SolverSettings,
-    StopWhen,
+    StopWhen, TitleBlock,
 };
 
 /// A slope of Mohr–Coulomb soil on elastic rock.
@@ -27,6 +27,7 @@ fn case(kind: StageKind) -> Case {
     };
     Case {
         title: String::new(),
+        title_block: TitleBlock::default(),
         gravity: 9.81,
         grid: GridSpec::equal([0.0, 0.0], [0.5, 0.5], [40, 40]),
         method: Method::default(),

@@ -1,8 +1,10 @@
 //! Holds what a run found against the references of its case.
 
 use super::records::{Moment, Records};
-use crate::case::{Case, Curve, Reference, ReferenceValues};
+use super::sections::BEFORE_FIELDS;
+use crate::case::{Case, CheckTime, Reference, ReferenceValues};
 use crate::check::{Band, Check};
+use crate::results::fields;
 use crate::summary::CheckRow;
 use crate::table::Table;
 
@@ -15,8 +17,13 @@ pub(crate) fn at_end_of_stage(
     let last = case.stages.len() - 1;
     case.checks
         .iter()
-        .filter(|check| check.stage.unwrap_or(last) == moment.stage)
-        .map(|check| {
+        .enumerate()
+        .filter(|(_, check)| check.stage.unwrap_or(last) == moment.stage)
+        .map(|(k, check)| {
+            let found = match check.at {
+                CheckTime::End => records.quantity(check.of, moment),
+                CheckTime::Peak => records.peaks[k],
+            };
             row(Check {
                 case: case.title.clone(),
                 variant: case.method.label(),
@@ -24,7 +31,7 @@ pub(crate) fn at_end_of_stage(
                 expected: check.expected,
                 source: check.source.clone(),
                 band: check.band,
-                measured: records.quantity(check.of, moment) / check.divide_by,
+                measured: found / check.divide_by,
             })
         })
         .collect()
@@ -34,25 +41,34 @@ pub(crate) fn at_end_of_stage(
 pub(crate) fn of_curves(case: &Case, tables: &[Table]) -> Vec<CheckRow> {
     let mut rows = Vec::new();
     for (curve, table) in case.curves.iter().zip(tables) {
-        let Some(reference) = &curve.reference else {
-            continue;
-        };
-        let Some(tolerance) = reference.tolerance else {
-            continue;
-        };
-        rows.extend(against(case, curve, table, reference, tolerance));
+        if let Some(reference) = &curve.reference {
+            rows.extend(against(case, &curve.name, &table.points(0, 1), reference));
+        }
     }
     rows
 }
 
-fn against(
-    case: &Case,
-    curve: &Curve,
-    table: &Table,
-    reference: &Reference,
-    tolerance: f64,
-) -> Vec<CheckRow> {
-    let points = table.points(0, 1);
+/// The checks of fields along sections at the end of a stage; `tables` are those of the sections.
+pub(crate) fn of_sections(case: &Case, stage: usize, tables: &[Table]) -> Vec<CheckRow> {
+    let mut rows = Vec::new();
+    for (section, table) in case.sections.iter().zip(tables) {
+        for held in section.references_at(case, stage) {
+            let Some(recorded) = section.record.iter().position(|&field| field == held.of) else {
+                continue;
+            };
+            let name = format!("{}, {}", section.name, fields::name(held.of));
+            let points = table.points(0, BEFORE_FIELDS + recorded);
+            rows.extend(against(case, &name, &points, &held.reference));
+        }
+    }
+    rows
+}
+
+/// Points held against a reference; nothing where it is drawn only.
+fn against(case: &Case, name: &str, points: &[[f64; 2]], reference: &Reference) -> Vec<CheckRow> {
+    let Some(tolerance) = reference.tolerance else {
+        return Vec::new();
+    };
     let check = |quantity: String, expected: f64, measured: f64| {
         row(Check {
             case: case.title.clone(),
@@ -64,19 +80,18 @@ fn against(
             measured,
         })
     };
-    let name = &curve.name;
     match &reference.values {
         ReferenceValues::Level { y, at: None } => {
             let last = points.last().map_or(f64::NAN, |point| point[1]);
             vec![check(format!("{name}, end"), *y, last)]
         }
         ReferenceValues::Level { y, at: Some(x) } => {
-            let measured = at(&points, *x).unwrap_or(f64::NAN);
+            let measured = at(points, *x).unwrap_or(f64::NAN);
             vec![check(format!("{name} at {x}"), *y, measured)]
         }
         ReferenceValues::Points(expected) => expected
             .iter()
-            .filter_map(|&[x, y]| Some(check(format!("{name} at {x}"), y, at(&points, x)?)))
+            .filter_map(|&[x, y]| Some(check(format!("{name} at {x}"), y, at(points, x)?)))
             .collect(),
     }
 }

@@ -4,6 +4,7 @@ use std::collections::HashMap;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
+use super::entry::Entered;
 use super::export::Export;
 use super::left::{Left, Resumption, Search};
 use super::memory::{self, Before};
@@ -17,7 +18,9 @@ use super::{checks, failure, initial, loading, processor, run_out, safety, secti
 use crate::case::{Case, StageKind};
 use crate::error::CaseError;
 use crate::estimate::Expectation;
+use crate::results::checkpoint::sha256;
 use crate::results::folder::{clear_meshes, refuse_foreign};
+use crate::results::setup;
 use crate::summary::{StageOutcome, StageSummary, Summary};
 use crate::table::Table;
 use igimp_solver::StepError;
@@ -29,11 +32,26 @@ use igimp_solver::StepError;
 /// came to its end.
 ///
 /// Want of equilibrium is a result ([`Run::failure`]), and so is an interruption: when `interrupt`
-/// becomes true the run ends after its step, with everything saved.
+/// becomes true the run ends after its step, with everything saved. Nobody else writes into the results
+/// folder meanwhile, and what is there is replaced as far as [`Target::replace`] allows.
 ///
 /// # Errors
 /// [`CaseError`] for a case that cannot be set up, and for files that cannot be written or read.
 pub fn run(
+    case: &Case,
+    target: Option<&Target>,
+    start: Start,
+    listener: &mut dyn Listener,
+    interrupt: &AtomicBool,
+) -> Result<Run, CaseError> {
+    let _entered = target
+        .map(|target| Entered::new(case, target, start))
+        .transpose()?;
+    run_entered(case, target, start, listener, interrupt)
+}
+
+/// Runs a case whose results folder was entered.
+pub(crate) fn run_entered(
     case: &Case,
     target: Option<&Target>,
     start: Start,
@@ -71,6 +89,10 @@ pub(super) fn one_mesh(
         summary: Summary {
             program: format!("igimp {}", env!("CARGO_PKG_VERSION")),
             title: case.title.clone(),
+            title_block: case.title_block.clone(),
+            date: target.and_then(|target| target.date.clone()),
+            input_sha256: target.map(|target| sha256(target.completed.as_bytes())),
+            setup: setup::tables(case),
             method: case.method.label(),
             size: model.size(&initial.body),
             ..Summary::default()
@@ -78,11 +100,11 @@ pub(super) fn one_mesh(
         last_resistance: 0.0,
         ends: HashMap::new(),
     };
-    let mut course = Course::begin(&mut session, target, start, before)?;
+    let mut stages = Stages::begin(&mut session, target, start, before)?;
     let size = session.summary.size;
     session.tell(&Event::Prepared { size: &size });
-    course.stages(&mut session, &initial)?;
-    course.finish(session, initial, clock)
+    stages.run(&mut session, &initial)?;
+    stages.finish(session, initial, clock)
 }
 
 /// Runs a case from its beginning and keeps what it finds in memory.
@@ -94,8 +116,8 @@ pub fn in_memory(case: &Case) -> Result<Run, CaseError> {
     run(case, None, Start::Afresh, &mut |_: &Event<'_>| {}, &never)
 }
 
-/// The course of a run through its stages.
-struct Course {
+/// The stages of a run, one after another.
+struct Stages {
     before: Before,
     expectation: Option<Expectation>,
     first: usize,
@@ -105,7 +127,7 @@ struct Course {
     failure: Option<Failure>,
 }
 
-impl Course {
+impl Stages {
     /// Opens the results folder and finds where the run begins.
     fn begin(
         session: &mut Session<'_>,
@@ -113,7 +135,7 @@ impl Course {
         start: Start,
         before: Before,
     ) -> Result<Self, CaseError> {
-        let mut course = Self {
+        let mut stages = Self {
             before,
             expectation: target.and_then(|target| target.expectation),
             first: 0,
@@ -123,7 +145,7 @@ impl Course {
             failure: None,
         };
         let Some(target) = target else {
-            return Ok(course);
+            return Ok(stages);
         };
         let case = session.model.case;
         if let Some(systems) = &target.systems {
@@ -146,21 +168,24 @@ impl Course {
             session.summary.warnings.clone_from(&left.warnings);
             session.summary.size.unknowns = left.unknowns;
             session.ends = output.ends(case, left.stages.len())?;
-            course.first = left.stages.len();
-            course.state = Some(left.state.clone());
-            course.left = Some(left);
+            stages.first = left.stages.len();
+            stages.state = Some(left.state.clone());
+            stages.left = Some(left);
         } else {
             output.model_picture(case)?;
         }
+        for text in std::mem::take(&mut output.notes_for_user) {
+            session.tell(&Event::Warning { text: &text });
+        }
         session.output = Some(output);
         if let Some(systems) = &target.systems {
-            session.export = Some(Export::open(systems, course.first)?);
+            session.export = Some(Export::open(systems, stages.first)?);
         }
-        Ok(course)
+        Ok(stages)
     }
 
     /// Runs the stages from the first that is not done.
-    fn stages(&mut self, session: &mut Session<'_>, initial: &State) -> Result<(), CaseError> {
+    fn run(&mut self, session: &mut Session<'_>, initial: &State) -> Result<(), CaseError> {
         let case = session.model.case;
         for number in self.first..case.stages.len() {
             if session.interrupted() {
@@ -227,6 +252,9 @@ impl Course {
         }
         summary.seconds = seconds_before + clock.elapsed().as_secs_f64();
         summary.largest_displacement = largest_displacement(&state.body.particles);
+        if let StageKind::Displacement { .. } = stage.kind {
+            summary.settlement = Some(state.controls.settlement);
+        }
         let step_error = match ended {
             Ended::Completed(reason) => {
                 (summary.outcome, summary.reason) = (StageOutcome::Completed, reason);
@@ -330,6 +358,8 @@ impl Course {
             plastic_share: summary.plastic_share,
         };
         let rows = checks::at_end_of_stage(case, &session.records, &moment);
+        session.summary.checks.extend(rows);
+        let rows = checks::of_sections(case, number, &tables);
         session.summary.checks.extend(rows);
         if let Some(output) = &mut session.output {
             output.end_of_stage(session.model, number, state, summary, &tables)?;

@@ -10,6 +10,7 @@ use igimp_assembly::StepConditions;
 use igimp_solver::linear::{LinearSolver, Record};
 
 use crate::error::CaseError;
+use crate::results::admission::refuse_link;
 use crate::results::atomic::at;
 use crate::results::folder::claim;
 use crate::results::linear_system::{About, LinearSystem, remove};
@@ -32,7 +33,11 @@ impl Export {
         claim(folder)?;
         for entry in std::fs::read_dir(folder).map_err(at(folder))? {
             let path = entry.map_err(at(folder))?.path();
-            if stage_of(&path).is_some_and(|stage| stage >= first) {
+            let Some(stage) = stage_of(&path) else {
+                continue;
+            };
+            refuse_link(&path)?;
+            if stage >= first {
                 remove(&path)?;
             }
         }

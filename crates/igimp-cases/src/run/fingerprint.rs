@@ -1,9 +1,9 @@
 //! Fingerprints of cases: a saved state is taken up only for the input that it came from.
 
-use crate::case::{Case, Every, Output};
+use crate::case::{Case, Every, Output, TitleBlock};
 use crate::results::checkpoint::sha256;
 
-/// Of everything but where and how often results are written.
+/// Of everything but where and how often results are written, and for whom.
 pub(crate) fn of_case(case: &Case) -> String {
     sha256(format!("{:?}", whole(case)).as_bytes())
 }
@@ -20,9 +20,10 @@ pub(crate) fn of_history(case: &Case, stages: usize) -> String {
     sha256(format!("{history:?}").as_bytes())
 }
 
-/// A case without what concerns its output alone.
+/// A case without what concerns its output and the head of its report alone.
 fn whole(case: &Case) -> Case {
     Case {
+        title_block: TitleBlock::default(),
         output: Output {
             folder: std::path::PathBuf::new(),
             paraview: Every::Never,
@@ -32,5 +33,21 @@ fn whole(case: &Case) -> Case {
             checkpoint_keep: 0,
         },
         ..case.clone()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::estimate::tests::case;
+
+    /// GOAL: a run can be taken up after its report got another author, and not after another cohesion.
+    #[test]
+    fn the_head_of_the_report_is_no_input() {
+        let mut other = case();
+        other.title_block.author = Some("A. Engineer".into());
+        assert_eq!(of_case(&other), of_case(&case()));
+        other.materials[0].young *= 2.0;
+        assert_ne!(of_case(&other), of_case(&case()));
     }
 }

@@ -1,8 +1,9 @@
 //! Where a run was left, as checkpoints tell it.
 
 use std::path::Path;
+use std::sync::Arc;
 
-use igimp_solver::Standing;
+use igimp_solver::{Body, MarchState};
 use serde::{Deserialize, Serialize};
 
 use super::state::{Controls, State};
@@ -15,8 +16,8 @@ pub(crate) struct Resumption {
     /// Controls at the beginning of the stage.
     pub(crate) from: Controls,
     /// Load factor reached, size of the next step, successes in a row.
-    #[serde(with = "standing")]
-    pub(crate) standing: Standing,
+    #[serde(with = "march_state", rename = "standing")]
+    pub(crate) march: MarchState,
     /// Resistance of the footing in the last step \[N/m\].
     pub(crate) resistance: f64,
     /// Drag of the next step \[1/s²\].
@@ -31,9 +32,20 @@ pub(crate) struct Search {
     /// Trials made.
     pub(crate) trials: Vec<TrialSummary>,
     /// Largest stable factor and its state.
-    pub(crate) stable: Option<(f64, State)>,
+    pub(crate) stable: Option<End>,
     /// Smallest failed factor and its last equilibrium.
-    pub(crate) failed: Option<(f64, State)>,
+    pub(crate) failed: Option<End>,
+}
+
+/// An end of the interval of a search.
+#[derive(Clone, Debug)]
+pub(crate) struct End {
+    /// Strength reduction factor \[-\].
+    pub(crate) srf: f64,
+    /// Its last equilibrium.
+    pub(crate) state: State,
+    /// The equilibrium before that, for the way in which the body moves.
+    pub(crate) before: Option<Arc<Body<2>>>,
 }
 
 /// Where a run was left.
@@ -68,6 +80,9 @@ pub(super) struct Notes {
     pub(super) unknowns: usize,
     pub(super) figures: Vec<FigureNote>,
     pub(super) factor_of_safety: Option<f64>,
+    /// By check: the peak so far.
+    #[serde(default)]
+    pub(super) peaks: Vec<Option<f64>>,
     pub(super) curve_rows: Vec<usize>,
     pub(super) monitor_rows: Vec<usize>,
     pub(super) convergence_rows: usize,
@@ -95,18 +110,18 @@ pub(super) fn notes_of(path: &Path, meta: &Meta) -> Result<Notes, CheckpointErro
     })
 }
 
-/// A standing as three numbers.
-mod standing {
-    use igimp_solver::Standing;
+/// The state of a march as three numbers.
+mod march_state {
+    use igimp_solver::MarchState;
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-    pub(super) fn serialize<S: Serializer>(of: &Standing, to: S) -> Result<S::Ok, S::Error> {
+    pub(super) fn serialize<S: Serializer>(of: &MarchState, to: S) -> Result<S::Ok, S::Error> {
         (of.at, of.size, of.successes).serialize(to)
     }
 
-    pub(super) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Standing, D::Error> {
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<MarchState, D::Error> {
         let (at, size, successes) = Deserialize::deserialize(from)?;
-        Ok(Standing {
+        Ok(MarchState {
             at,
             size,
             successes,

@@ -61,7 +61,7 @@ pub(crate) fn load(
             resistance = taken.resistance;
             let resumption = Resumption {
                 from: from.clone(),
-                standing: *taken.accepted.standing,
+                march: *taken.accepted.state,
                 resistance,
                 drag: 0.0,
                 end,

@@ -3,6 +3,7 @@
 pub mod advice;
 mod checks;
 mod engine;
+mod entry;
 mod export;
 mod failure;
 mod fingerprint;
@@ -26,15 +27,22 @@ mod study;
 
 use std::path::PathBuf;
 
-use igimp_solver::{Accepted, Body, StepError, StepReport};
+use igimp_solver::linear::LinearSolverError;
+use igimp_solver::{Accepted, Body, StepError, StepFailure, StepReport};
 
+use crate::case::Case;
 use crate::error::CaseError;
 use crate::estimate::Expectation;
 use crate::input::CaseFile;
+use crate::results::admission::Replace;
+use crate::results::owner::{Claim, Origin};
 use crate::summary::{ModelSize, StageSummary, Summary, TrialSummary};
 use crate::table::Table;
 
+pub(crate) use engine::run_entered;
 pub use engine::{in_memory, run};
+pub(crate) use entry::Entered;
+pub use entry::can_go_on;
 pub use message::worst_node;
 pub use model::Model;
 pub use state::{Controls, State};
@@ -121,6 +129,17 @@ impl<F: FnMut(&Event<'_>) + Send> Listener for F {
     }
 }
 
+impl Failure {
+    /// Whether the step failed because the system gave no more memory.
+    pub fn is_want_of_memory(&self) -> bool {
+        let failure = &*self.error.failure;
+        matches!(
+            failure,
+            StepFailure::Linear(LinearSolverError::OutOfMemory { .. })
+        )
+    }
+}
+
 /// Where a run begins.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Start {
@@ -146,10 +165,16 @@ pub struct Target {
     ///
     /// [`linear_system`]: crate::results::linear_system
     pub systems: Option<PathBuf>,
+    /// Day and time of the run, for its report. The library reads no time of day: who starts a run says it.
+    pub date: Option<String>,
     /// What the run is thought to cost, to be kept beside what it did.
     pub expectation: Option<Expectation>,
     /// Of a study of the mesh error: the completed case of each mesh.
     pub meshes: Vec<String>,
+    /// Where the case comes from: results of another one are not replaced unasked.
+    pub origin: Origin,
+    /// What the run may replace in its folder.
+    pub replace: Replace,
 }
 
 impl Target {
@@ -160,8 +185,22 @@ impl Target {
             source: file.source().to_owned(),
             completed: file.explain(),
             systems: None,
+            date: None,
             expectation: None,
             meshes: file.explain_meshes(),
+            origin: file.origin().clone(),
+            replace: Replace::default(),
+        }
+    }
+}
+
+impl Target {
+    /// What is known of a run of a case into this folder.
+    fn claim(&self, case: &Case) -> Claim {
+        Claim {
+            origin: self.origin.clone(),
+            title: case.title.clone(),
+            input: fingerprint::of_case(case),
         }
     }
 }

@@ -138,16 +138,16 @@ impl<'c> Model<'c> {
         if let Some(footing) = self.footing.as_ref().filter(|_| to.settlement > 0.0) {
             footing.push(&grid, &mut constraints, from.settlement - to.settlement)?;
         }
-        Ok(StepConditions {
+        StepConditions::new(
             grid,
             constraints,
-            loads: StepLoads {
+            StepLoads {
                 gravity: [0.0, -to.gravity * self.case.gravity],
                 factors: to.factors.clone(),
                 drag,
             },
-            laws: self.laws_reduced_by(&to.srf)?,
-        })
+            self.laws_reduced_by(&to.srf)?,
+        )
     }
 
     /// The laws at reduced strength; `srf` has a strength reduction factor for each \[-\].

@@ -1,6 +1,7 @@
 //! The results folder of a run: what is written, and when.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::Instant;
 
 use igimp_solver::Body;
@@ -8,18 +9,20 @@ use rayon::prelude::*;
 
 use super::Target;
 use super::fingerprint;
-use super::left::{Notes, Resumption, Search, end_of_stage};
+use super::left::{End, Notes, Resumption, Search, end_of_stage};
 use super::model::Model;
 use super::records::{Records, Rows};
 use super::session::Taken;
 use super::state::{Controls, State};
 use crate::case::{Case, Every};
 use crate::error::CaseError;
-use crate::results::atomic::write_atomically;
+use crate::pieces::Pieces;
+use crate::results::atomic::write_whole;
 use crate::results::checkpoint::{self, Meta};
-use crate::results::folder::{Folder, write_summary};
+use crate::results::folder::{self, Folder, write_summary};
 use crate::results::frames::Frames;
-use crate::results::pictures::{self, Shown};
+use crate::results::owner::Claim;
+use crate::results::pictures::{self, Canvas, Failing, Seen, Shown, mechanism};
 use crate::results::report;
 use crate::results::rows::RowWriter;
 use crate::summary::{FigureNote, StageSummary, Summary};
@@ -31,7 +34,9 @@ mod take_up;
 #[derive(Debug)]
 pub(crate) struct Output {
     folder: Folder,
-    fingerprint: String,
+    claim: Claim,
+    /// Whether pictures are wanted.
+    draws: bool,
     every: Every,
     report: bool,
     checkpoint_every: usize,
@@ -45,10 +50,20 @@ pub(crate) struct Output {
     steps: usize,
     /// Factor of safety found last, if any.
     factor_of_safety: Option<f64>,
-    /// States of a search that are kept beside the stages: name, factor, state.
-    kept: Vec<(String, f64, State)>,
+    /// By check: the peak of its quantity so far.
+    peaks: Vec<f64>,
+    /// States of a search that are kept beside the stages, by name.
+    kept: Vec<(&'static str, End)>,
+    /// The bodies in pieces, once a picture wants them.
+    pieces: Option<Arc<Pieces>>,
     seconds: f64,
+    /// What was found when the run was taken up, to be told and not kept: a resumed run leaves the files
+    /// of one that was never stopped.
+    pub(crate) notes_for_user: Vec<String>,
 }
+
+/// Names of the equilibria before those at the ends of a search, in a checkpoint.
+const BEFORE: [&str; 2] = ["before-stable", "before-failed"];
 
 /// Header of `convergence.csv`.
 const CONVERGENCE: [&str; 7] = [
@@ -68,15 +83,16 @@ impl Output {
         case: &Case,
         records: &Records,
     ) -> Result<Self, CaseError> {
-        let folder = Folder::afresh(&target.folder)?;
-        write_atomically(&folder.case(), &target.source)?;
-        write_atomically(&folder.completed_case(), &target.completed)?;
-        Self::open(folder, case, records, None)
+        let folder = Folder::afresh(&target.folder, &target.claim(case))?;
+        write_whole(&folder.case(), &target.source)?;
+        write_whole(&folder.completed_case(), &target.completed)?;
+        Self::open(folder, target.claim(case), case, records, None)
     }
 
     /// Opens the files anew, or after the rows that a checkpoint tells of.
     fn open(
         folder: Folder,
+        claim: Claim,
         case: &Case,
         records: &Records,
         notes: Option<&Notes>,
@@ -110,7 +126,8 @@ impl Output {
         let frames = Frames::open(&folder.paraview(), notes.map_or(0, |notes| notes.frames))?;
         Ok(Self {
             folder,
-            fingerprint: fingerprint::of_case(case),
+            claim,
+            draws: !case.output.figures.is_empty(),
             every: case.output.paraview,
             report: case.output.report,
             checkpoint_every: case.output.checkpoint_every,
@@ -122,14 +139,18 @@ impl Output {
             figures: notes.map_or_else(Vec::new, |notes| notes.figures.clone()),
             steps: notes.map_or(0, |notes| notes.steps),
             factor_of_safety: notes.and_then(|notes| notes.factor_of_safety),
+            peaks: records.peaks.clone(),
             kept: Vec::new(),
+            pieces: None,
             seconds: 0.0,
+            notes_for_user: Vec::new(),
         })
     }
 
     /// Appends the rows of a moment.
     pub(crate) fn write_rows(&mut self, rows: &Rows) -> Result<(), CaseError> {
         let clock = Instant::now();
+        self.peaks.clone_from(&rows.peaks);
         for (writer, row) in self.curves.iter_mut().zip(&rows.curves) {
             if let Some(row) = row {
                 writer.push(row)?;
@@ -211,9 +232,9 @@ impl Output {
     ) -> Result<(), CaseError> {
         let clock = Instant::now();
         self.steps += 1;
-        let controls_of = |end: &Option<(f64, State)>| {
+        let controls_of = |end: &Option<End>| {
             end.as_ref()
-                .map(|(srf, state)| (*srf, state.controls.clone()))
+                .map(|end| (end.srf, end.state.controls.clone()))
         };
         let notes = Notes {
             stage: Some(summary.clone()),
@@ -223,9 +244,13 @@ impl Output {
             ..self.notes(case, stage, run, &found.controls)
         };
         let mut states: Vec<(&str, &Body<2>)> = vec![("current", &found.body)];
-        for (name, end) in [("stable", &search.stable), ("failed", &search.failed)] {
-            if let Some((_, state)) = end {
-                states.push((name, &state.body));
+        for (name, before, end) in [
+            ("stable", BEFORE[0], &search.stable),
+            ("failed", BEFORE[1], &search.failed),
+        ] {
+            if let Some(end) = end {
+                states.push((name, &end.state.body));
+                states.extend(end.before.as_deref().map(|body| (before, body)));
             }
         }
         self.save(&states, &notes)?;
@@ -233,10 +258,13 @@ impl Output {
         Ok(())
     }
 
-    /// Keeps a state of a search, to be written at the end of its stage.
-    pub(crate) fn keep_end(&mut self, stage: usize, what: &str, srf: f64, state: State) {
-        self.kept
-            .push((format!("stage-{:02}-{what}", stage + 1), srf, state));
+    /// Keeps the ends of a search, to be written at the end of its stage.
+    pub(crate) fn keep_ends(&mut self, stable: Option<End>, failed: Option<End>) {
+        let named = [("last-stable", stable), ("first-unstable", failed)];
+        let there = named
+            .into_iter()
+            .filter_map(|(name, end)| Some((name, end?)));
+        self.kept = there.collect();
     }
 
     /// Sections, pictures and a frame of the state at the end of a stage.
@@ -265,35 +293,30 @@ impl Output {
                 (Some(stable), Some(failed)) => Some(0.5 * (stable + failed)),
                 _ => None,
             };
-            let (root, title) = (self.folder.root(), &case.title);
-            let picture = pictures::safety_picture(root, title, &summary.name, safety)?;
-            self.figures.push(picture);
-        }
-        for (name, srf, kept) in std::mem::take(&mut self.kept) {
-            if self.every != Every::Never {
-                let laws = model.laws_reduced_by(&kept.controls.srf)?;
-                self.frames.beside(&name, (&kept.body.particles, &laws))?;
+            if self.draws {
+                let (root, title) = (self.folder.root(), &case.title);
+                let picture = pictures::safety_picture(root, title, &summary.name, safety)?;
+                self.figures.push(picture);
             }
-            let shown = Shown {
-                title: format!("{}, SRF {srf:.4}", summary.name),
-                when: format!("in the {} state, SRF {srf:.4}", words(&name)),
-                name,
-            };
-            self.field_pictures(model, &shown, &kept)?;
         }
+        self.ends_of_search(model, number, summary)?;
         if summary.safety.is_none() {
-            self.field_pictures(model, &Shown::end_of_stage(case, number), state)?;
+            self.field_pictures(model, &Shown::end_of_stage(case, number), state, &[])?;
         }
         let (root, title) = (self.folder.root(), &case.title);
-        let drawn = case
-            .sections
-            .par_iter()
-            .zip(sections)
-            .map(|(section, table)| {
-                pictures::section_pictures(root, title, section, &summary.name, table)
-            })
-            .collect::<Result<Vec<_>, _>>()?;
-        self.figures.extend(drawn.concat());
+        if self.draws {
+            let drawn = case
+                .sections
+                .par_iter()
+                .zip(sections)
+                .map(|(section, table)| {
+                    let references = section.references_at(case, number);
+                    let stage = (summary.name.as_str(), &references[..]);
+                    pictures::section_pictures(root, title, section, stage, table)
+                })
+                .collect::<Result<Vec<_>, _>>()?;
+            self.figures.extend(drawn.concat());
+        }
         self.seconds += clock.elapsed().as_secs_f64();
         Ok(())
     }
@@ -336,24 +359,103 @@ impl Output {
         Ok(saved)
     }
 
-    /// The pictures of the fields that the case wants to see.
+    /// Frames and pictures of the states at the ends of a search, and of the way in which the body fails.
+    fn ends_of_search(
+        &mut self,
+        model: &Model<'_>,
+        number: usize,
+        summary: &StageSummary,
+    ) -> Result<(), CaseError> {
+        let kept = std::mem::take(&mut self.kept);
+        for (what, End { srf, state, .. }) in &kept {
+            let name = format!("stage-{:02}-{what}", number + 1);
+            if self.every != Every::Never {
+                let laws = model.laws_reduced_by(&state.controls.srf)?;
+                self.frames.beside(&name, (&state.body.particles, &laws))?;
+            }
+            let shown = Shown {
+                title: format!("{}, SRF {srf:.4}", summary.name),
+                when: format!("in the {} state, SRF {srf:.4}", what.replace('-', " ")),
+                name,
+            };
+            let others = kept.iter().filter(|(other, _)| other != what);
+            let others: Vec<&State> = others.map(|(_, end)| &end.state).collect();
+            self.field_pictures(model, &shown, state, &others)?;
+        }
+        // The state that failed has moved most; where no step led to it, the stable one tells.
+        for (what, end) in kept.iter().rev() {
+            let Some(before) = &end.before else { continue };
+            let failing = Failing {
+                stage: number,
+                srf: end.srf,
+                what,
+                before: &before.particles,
+                last: &end.state.body.particles,
+            };
+            let Some(found) = mechanism(&failing) else {
+                continue;
+            };
+            if let Some(table) = found.table(model.case, number) {
+                table.write_csv(&self.folder.slip_lines())?;
+            }
+            if !model.case.output.figures.is_empty() {
+                let pieces = self.pieces(model.case)?;
+                let canvas = Canvas {
+                    folder: self.folder.root(),
+                    case: model.case,
+                    pieces: &pieces,
+                };
+                let picture = pictures::mechanism_picture(&canvas, &failing, &found)?;
+                self.figures.push(picture);
+            }
+            break;
+        }
+        Ok(())
+    }
+
+    /// The bodies in pieces, cut once.
+    fn pieces(&mut self, case: &Case) -> Result<Arc<Pieces>, CaseError> {
+        let pieces = match &self.pieces {
+            Some(pieces) => Arc::clone(pieces),
+            None => Arc::new(Pieces::of(case)?),
+        };
+        self.pieces = Some(Arc::clone(&pieces));
+        Ok(pieces)
+    }
+
+    /// The pictures of the fields that the case wants to see, with the units and colours that suit the
+    /// state and the states that it is compared with.
     fn field_pictures(
         &mut self,
         model: &Model<'_>,
         shown: &Shown,
         state: &State,
+        compared: &[&State],
     ) -> Result<(), CaseError> {
-        let root = self.folder.root();
+        let wanted = &model.case.output.figures;
+        if wanted.is_empty() {
+            return Ok(());
+        }
+        let pieces = self.pieces(model.case)?;
+        let canvas = Canvas {
+            folder: self.folder.root(),
+            case: model.case,
+            pieces: &pieces,
+        };
         let laws = model.laws_reduced_by(&state.controls.srf)?;
         let own = (&state.body.particles, &laws[..]);
+        let reduced = compared
+            .iter()
+            .map(|state| model.laws_reduced_by(&state.controls.srf))
+            .collect::<Result<Vec<_>, _>>()?;
+        let compared: Vec<Seen<'_>> = std::iter::zip(compared, &reduced)
+            .map(|(state, laws)| (&state.body.particles, &laws[..]))
+            .collect();
         let footing = model.footing_outline(state.controls.settlement);
         let footing = footing.as_slice();
-        let drawn = model
-            .case
-            .output
-            .figures
+        let drawn = wanted
             .par_iter()
-            .map(|&field| pictures::field_picture(root, model.case, shown, field, own, footing))
+            .map(|&field| pictures::field_picture(&canvas, shown, field, own, &compared, footing))
             .collect::<Result<Vec<_>, _>>()?;
         self.figures.extend(drawn);
         Ok(())
@@ -361,6 +463,9 @@ impl Output {
 
     /// The picture of the set-up.
     pub(crate) fn model_picture(&mut self, case: &Case) -> Result<(), CaseError> {
+        if !self.draws {
+            return Ok(());
+        }
         let clock = Instant::now();
         let picture = pictures::model_picture(self.folder.root(), case)?;
         self.figures.push(picture);
@@ -381,12 +486,14 @@ impl Output {
         let at = figures.len().min(1);
         let (root, title) = (self.folder.root(), &case.title);
         let tolerance = Some(case.solver.tolerance);
-        let (histories, convergence) = rayon::join(
-            || histories(root, case, records),
-            || pictures::convergence_pictures(root, title, tolerance),
-        );
-        figures.splice(at..at, histories?);
-        figures.extend(convergence?);
+        if self.draws {
+            let (histories, convergence) = rayon::join(
+                || histories(root, case, records),
+                || pictures::convergence_pictures(root, title, tolerance),
+            );
+            figures.splice(at..at, histories?);
+            figures.extend(convergence?);
+        }
         summary.figures = figures;
         self.seconds += clock.elapsed().as_secs_f64();
         summary.seconds = begun.elapsed().as_secs_f64();
@@ -394,6 +501,9 @@ impl Output {
         self.write_summary(summary)?;
         if self.report {
             report::write_report(self.folder.root())?;
+        }
+        if !summary.interrupted {
+            folder::mark(self.folder.root(), &self.claim, true)?;
         }
         Ok(())
     }
@@ -411,6 +521,11 @@ impl Output {
             unknowns: run.size.unknowns,
             figures: self.figures.clone(),
             factor_of_safety: self.factor_of_safety,
+            peaks: self
+                .peaks
+                .iter()
+                .map(|&peak| Some(peak).filter(|peak| peak.is_finite()))
+                .collect(),
             curve_rows: self.curves.iter().map(RowWriter::len).collect(),
             monitor_rows: self.monitors.iter().map(RowWriter::len).collect(),
             convergence_rows: self.convergence.len(),
@@ -430,7 +545,7 @@ impl Output {
             path: self.folder.checkpoint(),
             source: source.into(),
         })?;
-        Ok(Meta::new(&self.fingerprint, data))
+        Ok(Meta::new(&self.claim.input, data))
     }
 
     /// Writes a checkpoint within a stage. It follows the rows that it counts on; what is in the
@@ -443,11 +558,18 @@ impl Output {
     }
 
     /// Writes the checkpoint at the end of a stage, after its rows, to outlast a loss of power.
-    fn save_end(&self, stage: usize, body: &Body<2>, notes: &Notes) -> Result<(), CaseError> {
-        for writer in self.curves.iter().chain(&self.monitors) {
-            writer.sync()?;
-        }
-        self.convergence.sync()?;
+    fn save_end(&mut self, stage: usize, body: &Body<2>, notes: &Notes) -> Result<(), CaseError> {
+        let tables: Vec<&RowWriter> = self
+            .curves
+            .iter()
+            .chain(&self.monitors)
+            .chain([&self.convergence])
+            .collect();
+        let (rows, frames) = rayon::join(
+            || tables.par_iter().try_for_each(|table| table.sync()),
+            || self.frames.sync(),
+        );
+        rows.and(frames)?;
         let (folder, meta) = (self.folder.checkpoint(), self.meta(notes)?);
         checkpoint::write(
             &folder,
@@ -468,7 +590,7 @@ fn histories(root: &Path, case: &Case, records: &Records) -> Result<Vec<FigureNo
         .map(|(curve, table)| Ok(vec![pictures::curve_picture(root, title, curve, table)?]));
     let monitors = (&case.monitors, &records.monitors)
         .into_par_iter()
-        .map(|(monitor, table)| pictures::monitor_pictures(root, title, monitor, table));
+        .map(|(monitor, table)| pictures::monitor_pictures(root, case, monitor, table));
     let drawn = curves.chain(monitors).collect::<Result<Vec<_>, _>>()?;
     Ok(drawn.concat())
 }
@@ -476,13 +598,4 @@ fn histories(root: &Path, case: &Case, records: &Records) -> Result<Vec<FigureNo
 /// File of a table.
 fn csv(name: &str) -> String {
     format!("{name}.csv")
-}
-
-/// `last-stable` or `first-unstable` in words, from the name of a kept state.
-fn words(name: &str) -> &'static str {
-    if name.ends_with("unstable") {
-        "first unstable"
-    } else {
-        "last stable"
-    }
 }

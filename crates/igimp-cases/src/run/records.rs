@@ -4,7 +4,7 @@ use igimp_assembly::{Particles, SharedLaw};
 
 use super::model::reduced;
 use super::state::Controls;
-use crate::case::{Case, Quantity};
+use crate::case::{Case, CheckTime, Quantity};
 use crate::error::CaseError;
 use crate::measure::nearest;
 use crate::results::fields;
@@ -54,6 +54,8 @@ pub(crate) struct Records {
     pub(crate) monitors: Vec<Table>,
     /// The particle that each monitor follows.
     pub(crate) watched: Vec<usize>,
+    /// By check of the case: the largest value of its quantity in its stage so far; not a number before.
+    pub(crate) peaks: Vec<f64>,
     /// Middle of the interval of the factor of safety found last \[-\].
     pub(crate) factor_of_safety: f64,
     laws: Vec<SharedLaw>,
@@ -95,6 +97,7 @@ impl Records {
             curves,
             monitors,
             watched,
+            peaks: vec![f64::NAN; case.checks.len()],
             factor_of_safety: f64::NAN,
             laws: laws.to_vec(),
         })
@@ -129,13 +132,26 @@ impl Records {
         }
     }
 
+    /// Takes a moment into the peaks of the checks that look for one in its stage.
+    fn raise_peaks(&mut self, case: &Case, moment: &Moment<'_>) {
+        let last = case.stages.len() - 1;
+        for (k, check) in case.checks.iter().enumerate() {
+            if check.at == CheckTime::Peak && check.stage.unwrap_or(last) == moment.stage {
+                // The larger of two, and the number where only one is one.
+                self.peaks[k] = self.peaks[k].max(self.quantity(check.of, moment));
+            }
+        }
+    }
+
     /// Records a moment: the rows for the curves and the monitors that it belongs to, which are
     /// also kept. The moment before a later stage belongs to the curves of that stage alone.
     pub(crate) fn record(&mut self, case: &Case, moment: &Moment<'_>) -> Rows {
         let reopens = moment.number == 0 && moment.stage > 0;
+        self.raise_peaks(case, moment);
         let mut rows = Rows {
             curves: vec![None; case.curves.len()],
             monitors: Vec::new(),
+            peaks: self.peaks.clone(),
         };
         for (k, curve) in case.curves.iter().enumerate() {
             let belongs = match curve.stage {
@@ -179,4 +195,6 @@ pub(crate) struct Rows {
     pub(crate) curves: Vec<Option<Vec<f64>>>,
     /// By monitor.
     pub(crate) monitors: Vec<Vec<f64>>,
+    /// By check: the peak so far.
+    pub(crate) peaks: Vec<f64>,
 }

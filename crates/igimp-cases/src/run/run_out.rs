@@ -87,7 +87,7 @@ pub(crate) fn run_out(
             let share = taken.accepted.report.drag_share;
             let resumption = Resumption {
                 from: to.clone(),
-                standing: *taken.accepted.standing,
+                march: *taken.accepted.state,
                 resistance: taken.resistance,
                 drag: drag.get(),
                 end: (share < run_out.at_rest).then(|| at_rest(summary.steps, share)),

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use igimp_assembly::{Geometry, Method, Particles};
 use igimp_solver::{
-    Accepted, MarchSettings, Observer, Outcome, Standing, StepError, StepReport, Workspace,
+    Accepted, MarchSettings, MarchState, Observer, Outcome, StepError, StepReport, Workspace,
     march_from,
 };
 
@@ -223,7 +223,7 @@ pub(crate) fn march_path(
     each: &mut dyn FnMut(&mut Session<'_>, &StageSummary, &Taken<'_>) -> Word,
 ) -> Result<Ended, CaseError> {
     let model = session.model;
-    let program = |from: f64, to: f64| {
+    let load_path = |from: f64, to: f64| {
         let (before, after) = (
             path.from.towards(path.to, from),
             path.from.towards(path.to, to),
@@ -234,14 +234,14 @@ pub(crate) fn march_path(
         };
         model.conditions_on(grid, (&before, &after), (path.drag)(from, to))
     };
-    let mut standing = Standing::start(&path.settings);
+    let mut march = MarchState::start(&path.settings);
     if let Some(left) = path.left {
-        standing = left.standing;
+        march = left.march;
         session.last_resistance = left.resistance;
     }
     if let Some(end) = path.left.and_then(|left| left.end.clone()) {
-        state.controls = path.from.towards(path.to, standing.at);
-        stage.reached = standing.at;
+        state.controls = path.from.towards(path.to, march.at);
+        stage.reached = march.at;
         return Ok(Ended::Stopped(end));
     }
     let mut workspace = session.workspace();
@@ -250,14 +250,14 @@ pub(crate) fn march_path(
         stage,
         path,
         each,
-        reached: standing.at,
+        reached: march.at,
         stopped: Ok(None),
     };
     let report = march_from(
-        standing,
+        march,
         &mut state.body,
         &path.method,
-        &program,
+        &load_path,
         &path.settings,
         &mut workspace,
         &mut watch,

@@ -16,6 +16,7 @@ use crate::estimate::estimate;
 use crate::estimate::time::time_of_steps_taken;
 use crate::estimate::watch::side_by_side;
 use crate::mesh_study::{MeshSummary, StudySummary, check_rows, plan, study};
+use crate::results::checkpoint::sha256;
 use crate::results::folder::{self, mesh_name, write_atomically, write_summary};
 use crate::results::{pictures, report};
 use crate::summary::{Expected, Summary};
@@ -32,7 +33,7 @@ pub(super) fn run(
     let clock = Instant::now();
     let meshes = plan::meshes(case);
     if let Some(target) = target {
-        folder::of_study(&target.folder, start == Start::Afresh)?;
+        folder::of_study(&target.folder, &target.claim(case), start == Start::Afresh)?;
         write_atomically(&target.folder.join("case.toml"), &target.source)?;
         write_atomically(
             &target.folder.join("case.completed.toml"),
@@ -81,7 +82,11 @@ pub(super) fn run(
     summary.memory = None;
     summary.cpu_seconds = processor::seconds();
     if let Some(target) = target {
+        summary.input_sha256 = Some(sha256(target.completed.as_bytes()));
         write(case, &target.folder, summary, clock)?;
+        if !summary.interrupted && run.lost.is_empty() {
+            folder::mark(&target.folder, &target.claim(case), true)?;
+        }
     } else {
         summary.figures.clear();
         summary.seconds = clock.elapsed().as_secs_f64();
@@ -101,8 +106,11 @@ fn of_mesh(target: &Target, number: usize) -> Target {
             .unwrap_or(&target.completed)
             .clone(),
         systems: target.systems.as_ref().map(|systems| systems.join(&name)),
+        date: target.date.clone(),
         expectation: None,
         meshes: Vec::new(),
+        origin: target.origin.clone(),
+        replace: target.replace,
     }
 }
 
@@ -264,9 +272,11 @@ fn write(case: &Case, root: &Path, summary: &mut Summary, clock: Instant) -> Res
     let begun = Instant::now();
     if let Some(found) = &summary.mesh_study {
         found.write_table(&root.join("mesh_study.csv"))?;
-        let drawn = pictures::mesh_pictures(root, summary)?;
-        let at = summary.figures.len().min(1);
-        summary.figures.splice(at..at, drawn);
+        if !case.output.figures.is_empty() {
+            let drawn = pictures::mesh_pictures(root, summary)?;
+            let at = summary.figures.len().min(1);
+            summary.figures.splice(at..at, drawn);
+        }
     }
     summary.output_seconds += begun.elapsed().as_secs_f64();
     summary.seconds = clock.elapsed().as_secs_f64();

@@ -3,17 +3,23 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
+use super::columns::{Column, column};
 use super::{Record, Sweep, SweepError, Task};
 use crate::check::short;
+use crate::printable::on_a_line;
+use crate::results::atomic::create;
+use crate::results::cells::cell;
 use crate::summary::Summary;
 
 /// The table of a study.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Collected {
-    /// Column headers: task, parameters, end, results.
+    /// Column headers: task, parameters, end, results, message.
     pub header: Vec<String>,
     /// A row a task, as text; empty cells are not known.
     pub rows: Vec<Vec<String>>,
+    /// Of each parameter the numbers of its rows, if its values are numbers or quantities.
+    pub numbers: Vec<Option<Vec<f64>>>,
     /// Tasks without results.
     pub missing: Vec<usize>,
     /// Names asked for that no task has.
@@ -39,11 +45,18 @@ pub fn collect(sweep: &Sweep) -> Collected {
         .filter(|&name| found.iter().any(Option::is_some) && !columns.iter().any(|c| is(c, name)))
         .cloned()
         .collect();
+    let parameters: Vec<Column> = std::iter::zip(&sweep.keys, 0..)
+        .map(|(key, k)| {
+            let values = sweep.tasks.iter().map(|task| task.values[k].as_str());
+            column(key, &values.collect::<Vec<_>>())
+        })
+        .collect();
     let rows = sweep
         .tasks
         .iter()
         .zip(&found)
-        .map(|(task, found)| row(task, found.as_deref(), &columns))
+        .enumerate()
+        .map(|(place, (task, found))| row(place, task, &parameters, found.as_deref(), &columns))
         .collect();
     let missing = sweep
         .tasks
@@ -53,12 +66,14 @@ pub fn collect(sweep: &Sweep) -> Collected {
         .map(|(task, _)| task.number)
         .collect();
     let mut header = vec!["task".to_owned()];
-    header.extend(sweep.keys.iter().cloned());
+    header.extend(parameters.iter().map(|one| one.header.clone()));
     header.push("end".to_owned());
     header.extend(columns);
+    header.push("message".to_owned());
     Collected {
         header,
         rows,
+        numbers: parameters.into_iter().map(|one| one.numbers).collect(),
         missing,
         unknown,
     }
@@ -76,10 +91,9 @@ impl Collected {
         })?;
         let path = folder.join("results.csv");
         let write = || -> Result<(), csv::Error> {
-            let mut writer = csv::Writer::from_path(&path)?;
-            writer.write_record(&self.header)?;
-            for row in &self.rows {
-                writer.write_record(row)?;
+            let mut writer = csv::Writer::from_writer(create(&path)?);
+            for row in std::iter::once(&self.header).chain(&self.rows) {
+                writer.write_record(row.iter().map(|text| cell(text).into_owned()))?;
             }
             Ok(writer.flush()?)
         };
@@ -90,14 +104,23 @@ impl Collected {
         Ok(path)
     }
 
-    /// The table as aligned text, numbers with four digits.
+    /// The table as aligned text, numbers with four digits; messages only if there are any.
     pub fn to_text(&self) -> String {
-        let cell = |text: &String| {
+        let shown = |text: &String| {
             let number = text.parse::<f64>().ok().filter(|_| text.len() > 6);
-            number.map_or_else(|| text.clone(), short)
+            number.map_or_else(|| on_a_line(text).into_owned(), short)
         };
         let mut lines = vec![self.header.clone()];
-        lines.extend(self.rows.iter().map(|row| row.iter().map(cell).collect()));
+        lines.extend(self.rows.iter().map(|row| row.iter().map(shown).collect()));
+        if self
+            .rows
+            .iter()
+            .all(|row| row.last().is_some_and(String::is_empty))
+        {
+            for line in &mut lines {
+                line.pop();
+            }
+        }
         aligned(&lines)
     }
 }
@@ -122,21 +145,27 @@ pub fn aligned(lines: &[Vec<String>]) -> String {
     text
 }
 
-fn row(task: &Task, found: Option<&[(String, f64)]>, columns: &[String]) -> Vec<String> {
-    let end = Record::read(&task.folder)
-        .map_or_else(|| "missing".to_owned(), |record| record.ending.to_string());
-    let mut row = vec![task.number.to_string()];
-    row.extend(
-        task.values
-            .iter()
-            .map(|value| value.trim_matches('"').to_owned()),
+fn row(
+    place: usize,
+    task: &Task,
+    parameters: &[Column],
+    found: Option<&[(String, f64)]>,
+    columns: &[String],
+) -> Vec<String> {
+    let record = Record::read(&task.folder);
+    let (end, message) = record.map_or_else(
+        || ("missing".to_owned(), String::new()),
+        |record| (record.ending.to_string(), record.message),
     );
+    let mut row = vec![task.number.to_string()];
+    row.extend(parameters.iter().map(|one| one.cells[place].clone()));
     row.push(end);
     row.extend(columns.iter().map(|column| {
         found
             .and_then(|found| found.iter().find(|(name, _)| name == column))
             .map_or_else(String::new, |(_, value)| value.to_string())
     }));
+    row.push(message);
     row
 }
 

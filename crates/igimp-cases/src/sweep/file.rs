@@ -7,6 +7,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::{Sweep, SweepError, Task};
+use crate::input::toml_text::{self, quoted};
 use crate::shipped::closest;
 
 /// Most tasks of a study; more are a slip of the keyboard.
@@ -126,11 +127,13 @@ fn read(table: &DeTable<'_>, base: &Path) -> Result<Sweep, Problem> {
         .map(|(index, choice)| task(index + 1, &choice, &parameters, &folder))
         .collect();
     Ok(Sweep {
+        file: PathBuf::new(),
         case: base.join(case),
         folder,
         collect,
         keys,
         tasks,
+        date: None,
     })
 }
 
@@ -223,7 +226,7 @@ fn flatten(
                     // A path in quotes, "grid.cell", is as good as grid.cell.
                     key.get_ref().to_string()
                 } else {
-                    format!("{prefix}.{}", part(key.get_ref()))
+                    format!("{prefix}.{}", toml_text::key(key.get_ref()))
                 };
                 flatten(&key, inner, out)?;
             }
@@ -250,21 +253,11 @@ fn flatten(
     }
 }
 
-/// A part of a key, in quotes where it needs them.
-fn part(name: &str) -> String {
-    let bare = |letter: char| letter.is_ascii_alphanumeric() || letter == '_' || letter == '-';
-    if !name.is_empty() && name.chars().all(bare) {
-        name.to_owned()
-    } else {
-        toml::Value::from(name).to_string()
-    }
-}
-
 /// A value as it is written in TOML, on one line.
 fn as_toml(value: &DeValue<'_>) -> String {
     let list = |items: Vec<String>| items.join(", ");
     match value {
-        DeValue::String(text) => toml::Value::from(text.as_ref()).to_string(),
+        DeValue::String(text) => quoted(text),
         DeValue::Integer(number) => number.to_string(),
         DeValue::Float(number) => number.to_string(),
         DeValue::Boolean(flag) => flag.to_string(),

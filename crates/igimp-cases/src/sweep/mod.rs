@@ -14,9 +14,11 @@
 //!
 //! Tasks are numbered from 1; task 1 writes into `results/sweep/task-0001/`, with its settings and
 //! its end in `task.json`. A task is done when it ran to a verdict with the case and settings that
-//! it has now.
+//! it has now. One that was stopped goes on where it was.
 
+mod chart;
 mod collect;
+mod columns;
 mod file;
 mod record;
 
@@ -27,17 +29,28 @@ use thiserror::Error;
 
 use crate::case::Case;
 use crate::error::CaseError;
-use crate::input::{CaseFile, InputError};
+use crate::estimate::room;
+use crate::input::{CaseFile, InputError, bytes};
+use crate::results::admission::{Replace, refuse_link};
 use crate::results::folder;
-use crate::run::{self, Listener, Run, Start, Target};
+use crate::results::lock::Lock;
+use crate::results::owner::{Claim, Origin, Owner};
+use crate::run::{self, Entered, Listener, Run, Start, Target, run_entered};
 
 pub use collect::{Collected, aligned, collect};
 pub(crate) use record::chain as on_one_line;
 pub use record::{Ending, Record};
 
+/// Most bytes of a sweep file.
+const LARGEST: u64 = 8 << 20;
+/// Says whose tasks a folder holds.
+const MARKER: &str = ".igimp-sweep";
+
 /// A parameter study that was read, with every task's case checked.
 #[derive(Clone, Debug)]
 pub struct Sweep {
+    /// The sweep file.
+    pub file: PathBuf,
     /// The case file.
     pub case: PathBuf,
     /// Folder of all tasks.
@@ -48,6 +61,8 @@ pub struct Sweep {
     pub keys: Vec<String>,
     /// Tasks in order; the first parameter changes slowest.
     pub tasks: Vec<Task>,
+    /// Day and time for the reports of its tasks; whoever runs them says it.
+    pub date: Option<String>,
 }
 
 /// One run of a study.
@@ -138,12 +153,16 @@ impl Sweep {
     /// # Errors
     /// [`SweepError::File`] and [`SweepError::Invalid`].
     pub fn read_unchecked(path: &Path) -> Result<Self, SweepError> {
-        let text = std::fs::read_to_string(path).map_err(|source| SweepError::File {
+        let text = text_of(path).map_err(|source| SweepError::File {
             path: path.to_owned(),
             source,
         })?;
         let base = path.parent().unwrap_or(Path::new(""));
-        file::parse(&path.display().to_string(), &text, base)
+        let sweep = file::parse(&path.display().to_string(), &text, base)?;
+        Ok(Self {
+            file: path.to_owned(),
+            ..sweep
+        })
     }
 
     /// A task by its number, from 1.
@@ -172,6 +191,51 @@ impl Sweep {
         })
     }
 
+    /// Enters the folder of all tasks: alone, for all of them, or together with those who run one each.
+    ///
+    /// # Errors
+    /// [`CaseError::InUse`] when another program runs tasks there; [`CaseError::OtherResults`] when they
+    /// are those of another sweep file and not to be replaced; [`CaseError::Link`],
+    /// [`CaseError::File`].
+    pub fn enter(&self, alone: bool, replace: Replace) -> Result<Lock, CaseError> {
+        let root = &self.folder;
+        let lock = if alone { Lock::alone } else { Lock::shared }(root)?;
+        let claim = Claim {
+            origin: Origin::File(self.file.clone()),
+            title: String::new(),
+            input: String::new(),
+        };
+        let (marker, own) = (root.join(MARKER), Owner::of(&claim, root, false));
+        match Owner::read(&marker).filter(|found| found.case != own.case) {
+            Some(found) if replace != Replace::Everything && self.holds_tasks() => {
+                Err(CaseError::OtherResults {
+                    path: root.clone(),
+                    case: found.case,
+                    title: String::new(),
+                })
+            }
+            _ => own.write(&marker).map(|()| lock),
+        }
+    }
+
+    fn holds_tasks(&self) -> bool {
+        let mut tasks = self.tasks.iter();
+        tasks.any(|task| Record::read(&task.folder).is_some())
+    }
+
+    /// Where a task that was not done begins: where it was stopped, if it can go on from there.
+    ///
+    /// # Errors
+    /// [`SweepError::Task`].
+    pub fn start_of(&self, task: &Task) -> Result<Start, SweepError> {
+        let file = self.case_of(task)?;
+        Ok(if run::can_go_on(file.case(), &task.folder) {
+            Start::Resume
+        } else {
+            Start::Afresh
+        })
+    }
+
     /// How a task ended, if it ran to a verdict with the case and settings that it has now.
     ///
     /// # Errors
@@ -191,20 +255,29 @@ impl Sweep {
     pub fn run_task(
         &self,
         task: &Task,
-        start: Start,
+        (start, replace): (Start, Replace),
         listener: &mut dyn Listener,
         interrupt: &AtomicBool,
     ) -> Result<(Run, Ending), SweepError> {
         let file = self.case_of(task)?;
-        let mut record = Record::new(self, task, &file);
-        folder::claim(&task.folder)?;
-        record.write(&task.folder)?;
         let mut case: Case = file.case().clone();
         case.output.folder.clone_from(&task.folder);
-        let target = Target::of(&file, &task.folder);
-        match run::run(&case, Some(&target), start, listener, interrupt) {
+        let target = Target {
+            origin: Origin::Part(self.file.clone(), format!("task {}", task.number)),
+            replace,
+            date: self.date.clone(),
+            ..Target::of(&file, &task.folder)
+        };
+        room::refuse_beyond(&case)?;
+        refuse_link(&task.folder)?;
+        let _entered = Entered::new(&case, &target, start)?;
+        folder::claim(&task.folder)?;
+        let mut record = Record::new(self, task, &file);
+        record.write(&task.folder)?;
+        match run_entered(&case, Some(&target), start, listener, interrupt) {
             Ok(run) => {
                 record.ending = Ending::of(&run.summary);
+                record.message = record::message(&run);
                 record.write(&task.folder)?;
                 Ok((run, record.ending))
             }
@@ -217,6 +290,24 @@ impl Sweep {
             }
         }
     }
+}
+
+/// Whether a file states a sweep, well or not.
+pub fn is_sweep(path: &Path) -> bool {
+    text_of(path).is_ok_and(|text| {
+        let mut lines = text.lines().map(str::trim_start);
+        lines.any(|line| line.starts_with("igimp_sweep"))
+    })
+}
+
+/// The text of a sweep file.
+fn text_of(path: &Path) -> std::io::Result<String> {
+    let bytes = bytes::of_file(path, LARGEST)?;
+    if bytes.len() as u64 > LARGEST {
+        let text = format!("it has more than {} MB: is it a sweep file?", LARGEST >> 20);
+        return Err(std::io::Error::other(text));
+    }
+    String::from_utf8(bytes).map_err(|_| std::io::Error::other("it is not UTF-8 text"))
 }
 
 #[cfg(test)]

@@ -9,8 +9,11 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use super::{Sweep, SweepError, Task};
+use crate::check::short;
 use crate::input::CaseFile;
 use crate::mesh_study::StudySummary;
+use crate::results::atomic::write_new;
+use crate::run::Run;
 use crate::summary::{StageOutcome, Summary};
 
 /// How a task ended.
@@ -83,7 +86,7 @@ pub struct Record {
     pub fingerprint: String,
     /// How it ended.
     pub ending: Ending,
-    /// Why it failed; empty otherwise.
+    /// Why it failed or found no equilibrium, or which references it missed; empty otherwise.
     pub message: String,
 }
 
@@ -113,7 +116,7 @@ impl Record {
         let path = folder.join("task.json");
         let write = || -> std::io::Result<()> {
             std::fs::create_dir_all(folder)?;
-            std::fs::write(&path, serde_json::to_string_pretty(self)? + "\n")
+            write_new(&path, serde_json::to_string_pretty(self)? + "\n")
         };
         write().map_err(|source| SweepError::File {
             path: path.clone(),
@@ -129,6 +132,30 @@ pub(super) fn fingerprint(file: &CaseFile) -> String {
         let _ = write!(text, "{byte:02x}");
     }
     text
+}
+
+/// Why a run is not what was wanted, on one line; empty when it is.
+pub(super) fn message(run: &Run) -> String {
+    let summary = &run.summary;
+    if let Some(error) = run.lost.first() {
+        return chain(error);
+    }
+    if let Some(failure) = &summary.failure {
+        return failure.lines().next().unwrap_or_default().to_owned();
+    }
+    let missed = summary.checks.iter().filter(|row| !row.pass);
+    let missed: Vec<String> = missed
+        .map(|row| {
+            let check = &row.check;
+            let (measured, band) = (short(check.measured), check.band);
+            format!(
+                "{} is {measured}, expected {} {band}",
+                check.quantity,
+                short(check.expected)
+            )
+        })
+        .collect();
+    missed.join("; ")
 }
 
 /// An error and its causes on one line.

@@ -174,16 +174,48 @@ fn the_table_has_what_is_there() {
             "factor_of_safety",
             "factor_of_safety: stable",
             "factor_of_safety: failed",
-            "srf: u [m]"
+            "srf: u [m]",
+            "message"
         ]
     );
-    assert_eq!(table.rows[0][..4], ["1", "20 deg", "8 kPa", "done"]);
+    assert_eq!(
+        table.header[1..3],
+        [
+            "materials.clay.friction [deg]",
+            "materials.clay.cohesion [kPa]"
+        ]
+    );
+    assert_eq!(table.rows[0][..4], ["1", "20", "8", "done"]);
     assert!((table.rows[1][4].parse::<f64>().unwrap() - 1.3).abs() < 1e-12);
     assert_eq!(table.rows[1][7], "0.5");
     assert_eq!(table.missing, [3, 4, 5, 6]);
     assert_eq!(table.unknown, ["none"]);
     let path = table.write(&scratch.0).unwrap();
     assert_eq!(std::fs::read_to_string(path).unwrap().lines().count(), 7);
+    assert!(!table.to_text().contains("message"));
+    // Both tasks have the first friction: the result varies with the cohesion alone.
+    assert!(table.draw(&scratch.0).unwrap().is_empty());
+    let third = &sweep.tasks[3].folder;
+    std::fs::create_dir_all(third).unwrap();
+    let text = serde_json::to_string(&summary(1.5)).unwrap();
+    std::fs::write(third.join("summary.json"), text).unwrap();
+    let failed = Record {
+        ending: Ending::Failed,
+        message: "=the disk is full".into(),
+        ..Record::default()
+    };
+    failed.write(&sweep.tasks[1].folder).unwrap();
+    let table = collect(&sweep);
+    let path = table.write(&scratch.0).unwrap();
+    assert!(
+        std::fs::read_to_string(path)
+            .unwrap()
+            .contains("'=the disk is full")
+    );
+    assert!(table.to_text().contains("  =the disk is full"));
+    let drawn = table.draw(&scratch.0).unwrap();
+    assert_eq!(drawn, [scratch.0.join("results-factor_of_safety")]);
+    assert!(scratch.0.join("results-factor_of_safety.svg").exists());
 
     sweep.collect.clear();
     assert!(collect(&sweep).header.contains(&"top".to_owned()));

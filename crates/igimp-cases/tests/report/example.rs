@@ -5,11 +5,12 @@ use std::path::{Path, PathBuf};
 use igimp_assembly::Geometry;
 use igimp_assembly::{Method, ParticleFields, Particles, SharedLaw};
 use igimp_cases::case::{
-    BodyPart, Boundaries, Case, Curve, CurveAxis, Every, Field, FixedBox, GridSpec, Load, LoadKind,
-    Material, MeshStudy, Monitor, Output, Quantity, Reference, ReferenceValues, Section, Side,
-    SolverSettings, Stage, StageKind, StopWhen, Strength,
+    Average, BodyPart, Boundaries, Case, Curve, CurveAxis, Every, Field, FixedBox, GridSpec, Load,
+    LoadKind, Material, MeshStudy, Monitor, Output, Quantity, Reference, ReferenceValues, Section,
+    Side, SolverSettings, Stage, StageKind, StopWhen, Strength, TitleBlock,
 };
-use igimp_cases::results::pictures::{self, Shown};
+use igimp_cases::pieces::Pieces;
+use igimp_cases::results::pictures::{self, Canvas, Shown};
 use igimp_cases::seed::fill_polygon;
 use igimp_cases::summary::{FigureNote, Summary};
 
@@ -51,6 +52,7 @@ pub(crate) fn case() -> Case {
     ];
     Case {
         title: "10 m cut slope, 1:1, c-φ soil on rock".into(),
+        title_block: TitleBlock::default(),
         gravity: 9.81,
         grid: GridSpec::equal([0.0, 0.0], [0.5, 0.5], [120, 44]),
         method: Method::default(),
@@ -176,6 +178,8 @@ fn section(name: &str, from: [f64; 2], to: [f64; 2]) -> Section {
         to,
         points: 30,
         record: vec![Field::SigmaXx, Field::SigmaYy, Field::Q, Field::Utilisation],
+        average: Average::None,
+        references: Vec::new(),
     }
 }
 
@@ -255,14 +259,20 @@ pub(crate) fn draw(folder: &Path, case: &Case) -> Vec<FigureNote> {
     );
     for monitor in &case.monitors {
         let table = findings::monitor_table(monitor);
-        notes.extend(pictures::monitor_pictures(folder, title, monitor, &table).unwrap());
+        notes.extend(pictures::monitor_pictures(folder, case, monitor, &table).unwrap());
     }
     for section in &case.sections {
         let table = findings::section_table(section);
-        let stage = "surcharge";
+        let stage = ("surcharge", &[][..]);
         notes.extend(pictures::section_pictures(folder, title, section, stage, &table).unwrap());
     }
     let (particles, laws) = particles(case);
+    let pieces = Pieces::of(case).unwrap();
+    let canvas = Canvas {
+        folder,
+        case,
+        pieces: &pieces,
+    };
     for field in [
         Field::Displacement,
         Field::SigmaYy,
@@ -271,17 +281,8 @@ pub(crate) fn draw(folder: &Path, case: &Case) -> Vec<FigureNote> {
         Field::Utilisation,
     ] {
         let state = (&particles, laws.as_slice());
-        notes.push(
-            pictures::field_picture(
-                folder,
-                case,
-                &Shown::end_of_stage(case, 1),
-                field,
-                state,
-                &[],
-            )
-            .unwrap(),
-        );
+        let shown = Shown::end_of_stage(case, 1);
+        notes.push(pictures::field_picture(&canvas, &shown, field, state, &[], &[]).unwrap());
     }
     notes
 }

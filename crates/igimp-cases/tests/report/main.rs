@@ -6,11 +6,14 @@ mod findings;
 
 use std::path::Path;
 
+use igimp_assembly::Particles;
 use igimp_cases::CaseError;
-use igimp_cases::case::{Field, ReferenceValues};
-use igimp_cases::results::pictures::{self, Shown};
+use igimp_cases::case::{Field, ReferenceValues, TitleBlock};
+use igimp_cases::pieces::Pieces;
+use igimp_cases::results::pictures::{self, Canvas, Shown};
 use igimp_cases::results::report::write_report;
-use igimp_cases::summary::{FigureNote, SafetySummary, StageOutcome, Summary};
+use igimp_cases::results::setup;
+use igimp_cases::summary::{FigureNote, SafetySummary, SetupTable, StageOutcome, Summary};
 use igimp_cases::table::Table;
 
 fn page(folder: &Path) -> String {
@@ -104,15 +107,70 @@ fn a_run_makes_a_whole_page() {
         "id=\"model\"",
         "id=\"curves\"",
         "id=\"fields\"",
-        "id=\"convergence\"",
         "id=\"tables\"",
         "id=\"input\"",
+        "id=\"effort\"",
+        "id=\"convergence\"",
     ];
     let places: Vec<_> = order.iter().map(|id| page.find(id).unwrap()).collect();
     assert!(places.is_sorted(), "{places:?}");
     assert!(
         page.contains("<td class=\"n\">31</td>"),
         "rows of the curve are counted"
+    );
+}
+
+/// GOAL: whom it is for, when and of what it was made stands in the head; what an engineer asks for
+/// stands before what the computer did; the model is told in tables.
+#[test]
+fn a_report_can_be_handed_on() {
+    let folder = example::folder("handed-on");
+    let case = example::case();
+    let mut summary = Summary {
+        title_block: TitleBlock {
+            project: Some("Bypass B12".into()),
+            client: Some("Road Authority".into()),
+            author: Some("A. Engineer".into()),
+            revision: Some("B".into()),
+        },
+        date: Some("2026-03-01 14:05 UTC".into()),
+        input_sha256: Some("c0ffee".into()),
+        setup: setup::tables(&case),
+        ..findings::summary()
+    };
+    summary.stages[1].peak_resistance = Some(512e3);
+    summary.stages[1].settlement = Some(0.05);
+    example::write(&folder, &summary);
+    let page = page(&folder);
+    assert_stands_alone(&page);
+    let text = words(&page);
+    for expected in [
+        "Project Bypass B12",
+        "Client Road Authority",
+        "Author A. Engineer",
+        "Revision B",
+        "Date of the run 2026-03-01 14:05 UTC",
+        "Input, SHA-256 c0ffee",
+        "Factor of safety 1.375 … 1.383 mesh error not known: igimp run --meshes 2 finds it",
+        "Peak resistance 512 kN/m",
+        "Settlement 50 mm",
+        "Checks met 1 of 2",
+        "c = 10 kPa, φ = 20°, ψ = 0°",
+        "rigid footing, rough",
+        "anchor fixed",
+    ] {
+        assert!(text.contains(expected), "{expected} is missing in {text}");
+    }
+    let place = |what: &str| {
+        text.find(what)
+            .unwrap_or_else(|| panic!("{what} is missing"))
+    };
+    assert!(place("Factor of safety 1.375") < place("Newton iterations"));
+    assert!(place("Materials Material") < place("Newton iterations"));
+    // Nothing is folded away that a printer would then leave out.
+    assert_eq!(
+        page.matches("<details").count(),
+        page.matches("<details open").count()
     );
 }
 
@@ -124,6 +182,12 @@ fn everything_is_escaped() {
     summary.title = nasty.into();
     summary.method = nasty.into();
     summary.program = nasty.into();
+    summary.title_block.project = Some(nasty.into());
+    summary.setup = vec![SetupTable {
+        title: nasty.into(),
+        header: vec![nasty.into()],
+        rows: vec![vec![nasty.into()]],
+    }];
     summary.warnings = vec![nasty.into()];
     for stage in &mut summary.stages {
         (stage.name, stage.kind, stage.reason) = (nasty.into(), nasty.into(), nasty.into());
@@ -240,14 +304,14 @@ fn empty_tables_make_empty_pictures() {
     }
     let (monitor, section) = (&case.monitors[0], &case.sections[0]);
     assert!(
-        pictures::monitor_pictures(&folder, "", monitor, &empty(&[]))
+        pictures::monitor_pictures(&folder, &case, monitor, &empty(&[]))
             .unwrap()
             .is_empty()
     );
     let mut table = findings::monitor_table(monitor);
     table.rows.clear();
     assert_eq!(
-        pictures::monitor_pictures(&folder, "", monitor, &table)
+        pictures::monitor_pictures(&folder, &case, monitor, &table)
             .unwrap()
             .len(),
         2
@@ -255,7 +319,7 @@ fn empty_tables_make_empty_pictures() {
     let mut table = findings::section_table(section);
     table.rows.clear();
     assert_eq!(
-        pictures::section_pictures(&folder, "", section, "s", &table)
+        pictures::section_pictures(&folder, "", section, ("s", &[]), &table)
             .unwrap()
             .len(),
         2
@@ -316,31 +380,67 @@ fn every_field_has_a_picture() {
     case.bodies.truncate(1);
     case.bodies[0].per_direction = 1;
     let (particles, laws) = example::particles(&case);
+    let pieces = Pieces::of(&case).unwrap();
+    let canvas = Canvas {
+        folder: &folder,
+        case: &case,
+        pieces: &pieces,
+    };
+    let state = (&particles, laws.as_slice());
     for field in igimp_cases::results::fields::ALL {
-        let state = (&particles, laws.as_slice());
-        let note = pictures::field_picture(
-            &folder,
-            &case,
-            &Shown::end_of_stage(&case, 0),
-            field,
-            state,
-            &[],
-        )
-        .unwrap();
+        let shown = Shown::end_of_stage(&case, 0);
+        let note = pictures::field_picture(&canvas, &shown, field, state, &[], &[]).unwrap();
         assert!(
             folder.join(format!("{}.svg", note.file)).exists(),
             "{field:?}"
         );
     }
-    let state = (&particles, laws.as_slice());
-    let beyond = pictures::field_picture(
-        &folder,
-        &case,
-        &Shown::end_of_stage(&case, 9),
-        Field::P,
-        state,
-        &[],
-    )
-    .unwrap();
+    let shown = Shown::end_of_stage(&case, 9);
+    let beyond = pictures::field_picture(&canvas, &shown, Field::P, state, &[], &[]).unwrap();
     assert_eq!(beyond.file, "figures/field-10-x-p");
+}
+
+/// GOAL: pictures that stand side by side have one unit and one colour bar.
+#[test]
+fn compared_states_share_unit_and_colours() {
+    let folder = example::folder("compared");
+    let mut case = example::case();
+    case.bodies.truncate(1);
+    case.bodies[0].per_direction = 1;
+    let (large, laws) = example::particles(&case);
+    let mut fields = (*large).clone();
+    for displacement in &mut fields.displacement {
+        *displacement = displacement.map(|d| 0.01 * d);
+    }
+    let small = Particles::from_fields(fields).unwrap();
+    let pieces = Pieces::of(&case).unwrap();
+    let canvas = Canvas {
+        folder: &folder,
+        case: &case,
+        pieces: &pieces,
+    };
+    let bar = |name: &str, own: &Particles<2>, compared: &[&Particles<2>]| {
+        let shown = Shown {
+            name: name.into(),
+            title: String::new(),
+            when: String::new(),
+        };
+        let compared: Vec<_> = compared.iter().map(|&other| (other, &laws[..])).collect();
+        let own = (own, &laws[..]);
+        let note =
+            pictures::field_picture(&canvas, &shown, Field::Displacement, own, &compared, &[]);
+        let path = folder.join(format!("{}.svg", note.unwrap().file));
+        let svg = std::fs::read_to_string(path).unwrap();
+        // Numbers and label of the colour bar stand to the right of the plot.
+        let words = svg
+            .split("<text ")
+            .filter(|text| text.contains("|u|") || text.contains("x=\"59"));
+        words.map(str::to_owned).collect::<Vec<_>>()
+    };
+    let alone = bar("alone", &small, &[]);
+    let first = bar("first", &small, &[&large]);
+    let second = bar("second", &large, &[&small]);
+    assert!(alone.iter().any(|text| text.contains("[mm]")), "{alone:?}");
+    assert!(first.iter().any(|text| text.contains("[m]")), "{first:?}");
+    assert_eq!(first, second);
 }

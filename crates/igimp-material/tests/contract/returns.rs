@@ -214,3 +214,24 @@ fn permutation_error(entry: &Entry, strain: &Principal) -> (f64, f64) {
     }
     most
 }
+
+/// GOAL: a law yields if and only if it has a yield surface. Where it says so, some trial stress lies
+/// beyond the surface and is returned; where not, f is −∞ everywhere and nothing is ever returned.
+#[test]
+fn a_law_that_yields_has_a_yield_surface() {
+    for entry in all() {
+        let mut random = Random(3);
+        let (mut is_beyond, mut is_returned) = (false, false);
+        for _ in 0..2_000 {
+            let strain = entry.any(&mut random);
+            let trial = entry.law.elasticity().stress(&strain);
+            let excess = entry.law.yield_function(&trial, &HISTORY);
+            is_beyond |= excess > 0.0;
+            is_returned |= answer(&entry, &strain).regime.is_plastic();
+            let has_surface = excess > f64::NEG_INFINITY;
+            assert_eq!(has_surface, entry.law.yields(), "{}", entry.label);
+        }
+        let yields = (entry.law.yields(), entry.law.yields());
+        assert_eq!((is_beyond, is_returned), yields, "{}", entry.label);
+    }
+}

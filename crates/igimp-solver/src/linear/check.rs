@@ -96,17 +96,17 @@ pub(super) fn mirrored(pattern: &Pattern) -> Result<Vec<u32>, LinearSolverError>
 
 /// What one look at the values of a matrix tells, in memory that is used again.
 #[derive(Default)]
-pub(super) struct Sweep {
+pub(super) struct Inspection {
     /// Diagonal entries, by unknown.
     pub(super) diagonal: Vec<f64>,
     /// Whether a row has an entry that is not zero.
     filled: Vec<bool>,
 }
 
-impl Sweep {
+impl Inspection {
     /// Checks that a matrix has finite values, as many as its pattern stores, and no zero row or
     /// column; takes its diagonal.
-    pub(super) fn over(&mut self, matrix: &TangentMatrix) -> Result<(), LinearSolverError> {
+    pub(super) fn inspect(&mut self, matrix: &TangentMatrix) -> Result<(), LinearSolverError> {
         let pattern = &*matrix.pattern;
         length("the matrix", matrix.values.len(), pattern.stored())?;
         self.diagonal.clear();

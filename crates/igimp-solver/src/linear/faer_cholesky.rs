@@ -17,7 +17,7 @@ use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Par, Side, Spec};
 use igimp_assembly::{CompressedColumns, Pattern, TangentMatrix};
 
-use super::check::Sweep;
+use super::check::Inspection;
 use super::refine::{Accuracy, Refinement};
 use super::{LinearSolver, LinearSolverError, NestedDissection, SolveReport, check};
 
@@ -28,7 +28,7 @@ pub struct FaerCholesky {
     analyses: usize,
     analysis: Option<Analysis>,
     factors: Vec<f64>,
-    sweep: Sweep,
+    inspection: Inspection,
     refinement: Refinement,
     factored: bool,
 }
@@ -82,13 +82,13 @@ impl LinearSolver for FaerCholesky {
         if !matrix.symmetric {
             return Err(LinearSolverError::NotSymmetric);
         }
-        self.sweep.over(matrix)?;
+        self.inspection.inspect(matrix)?;
         let analysis = self
             .analysis
             .as_mut()
             .ok_or(LinearSolverError::NotFactored)?;
         self.factors.resize(analysis.symbolic.len_val(), 0.0);
-        analysis.factor(matrix, &self.sweep.diagonal, &mut self.factors)?;
+        analysis.factor(matrix, &self.inspection.diagonal, &mut self.factors)?;
         self.factored = true;
         Ok(())
     }

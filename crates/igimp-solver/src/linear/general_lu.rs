@@ -13,7 +13,7 @@ use faer::sparse::linalg::lu::{self, LuRef, LuSymbolicParams, NumericLu, Symboli
 use faer::{Conj, MatMut, Par, Spec};
 use igimp_assembly::{CompressedColumns, Pattern, TangentMatrix};
 
-use super::check::Sweep;
+use super::check::Inspection;
 use super::faer_cholesky::symbolic_view;
 use super::refine::{Accuracy, Refinement, probe};
 use super::{LinearSolver, LinearSolverError, SolveReport, check};
@@ -25,7 +25,7 @@ pub struct GeneralLu {
     analyses: usize,
     analysis: Option<Analysis>,
     numeric: NumericLu<usize, f64>,
-    sweep: Sweep,
+    inspection: Inspection,
     refinement: Refinement,
     factored: bool,
 }
@@ -122,7 +122,7 @@ impl LinearSolver for GeneralLu {
     fn factor(&mut self, matrix: &TangentMatrix) -> Result<(), LinearSolverError> {
         self.analyse(&matrix.pattern)?;
         self.factored = false;
-        self.sweep.over(matrix)?;
+        self.inspection.inspect(matrix)?;
         let analysis = self
             .analysis
             .as_mut()

@@ -10,7 +10,7 @@ use nalgebra::DMatrixViewMut;
 use nalgebra_sparse::factorization::{CscCholesky, CscSymbolicCholesky};
 use nalgebra_sparse::pattern::SparsityPattern;
 
-use super::check::Sweep;
+use super::check::Inspection;
 use super::refine::{Accuracy, Refinement};
 use super::{LinearSolver, LinearSolverError, NestedDissection, SolveReport, check};
 
@@ -21,7 +21,7 @@ pub struct NalgebraCholesky {
     analyses: usize,
     analysis: Option<Analysis>,
     factors: Option<CscCholesky<f64>>,
-    sweep: Sweep,
+    inspection: Inspection,
     refinement: Refinement,
 }
 
@@ -69,7 +69,7 @@ impl LinearSolver for NalgebraCholesky {
         if !matrix.symmetric {
             return Err(LinearSolverError::NotSymmetric);
         }
-        self.sweep.over(matrix)?;
+        self.inspection.inspect(matrix)?;
         let analysis = self
             .analysis
             .as_ref()
@@ -88,7 +88,7 @@ impl LinearSolver for NalgebraCholesky {
             .map(|&start| lower.values().get(start));
         let pivots = analysis.order.iter().zip(roots.flatten());
         check::sound_pivots(
-            &self.sweep.diagonal,
+            &self.inspection.diagonal,
             pivots.map(|(&unknown, root)| (unknown, root * root)),
         )?;
         self.factors = Some(factors);

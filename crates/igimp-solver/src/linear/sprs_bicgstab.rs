@@ -10,7 +10,7 @@ use igimp_assembly::{CompressedColumns, Pattern, TangentMatrix};
 use sprs::linalg::bicgstab::BiCGSTAB;
 use sprs::{CsMat, CsVec};
 
-use super::check::Sweep;
+use super::check::Inspection;
 use super::refine::{max_norm, relative_residual_of};
 use super::{Accuracy, LinearSolver, LinearSolverError, SolveReport, check};
 
@@ -23,7 +23,7 @@ pub struct SprsBiCgStab {
     max_iterations: usize,
     analyses: usize,
     pattern: Option<Arc<Pattern>>,
-    sweep: Sweep,
+    inspection: Inspection,
     system: Option<Scaled>,
 }
 
@@ -47,7 +47,7 @@ impl SprsBiCgStab {
             max_iterations: 20_000,
             analyses: 0,
             pattern: None,
-            sweep: Sweep::default(),
+            inspection: Inspection::default(),
             system: None,
         }
     }
@@ -71,8 +71,8 @@ impl LinearSolver for SprsBiCgStab {
     fn factor(&mut self, matrix: &TangentMatrix) -> Result<(), LinearSolverError> {
         self.analyse(&matrix.pattern)?;
         self.system = None;
-        self.sweep.over(matrix)?;
-        self.system = Some(Scaled::new(matrix, &self.sweep.diagonal));
+        self.inspection.inspect(matrix)?;
+        self.system = Some(Scaled::new(matrix, &self.inspection.diagonal));
         Ok(())
     }
 

@@ -154,16 +154,17 @@ pub(crate) fn conditions(
     law: &SharedLaw,
     gravity: f64,
 ) -> StepConditions<2> {
-    StepConditions {
-        grid: grid.clone(),
-        constraints: constraints.clone(),
-        loads: StepLoads {
+    StepConditions::new(
+        grid.clone(),
+        constraints.clone(),
+        StepLoads {
             gravity: [0.0, -gravity],
             factors: Vec::new(),
             drag: 0.0,
         },
-        laws: vec![Arc::clone(law)],
-    }
+        vec![Arc::clone(law)],
+    )
+    .unwrap()
 }
 
 /// A block that stands off the lines of the grid, under a weight that makes part of it yield.

@@ -20,7 +20,8 @@ const SETTINGS: [&str; 6] = [
 ];
 
 /// What depends on the computer and the hour.
-const TIMES: [&str; 6] = [
+const TIMES: [&str; 7] = [
+    "date",
     "seconds",
     "output_seconds",
     "cpu_seconds",
@@ -77,14 +78,16 @@ impl Folder {
 
     /// Every file of a results folder by its path there: tables, pictures, frames, the arrays of the
     /// ends of stages, and the summary without its times. What is saved within a stage is not there:
-    /// it depends on where a run was taken up.
+    /// it depends on where a run was taken up; nor is what says whose the folder is, as seen from it.
     pub(crate) fn everything(&self, out: &str) -> BTreeMap<PathBuf, Vec<u8>> {
         let root = self.0.join(out);
         let mut files = BTreeMap::new();
         collect(&root, &root, &mut files);
         files.retain(|path, _| {
             let text = path.to_string_lossy();
-            !text.contains("checkpoint/step-") && !text.ends_with("meta.json")
+            !text.contains("checkpoint/step-")
+                && !text.ends_with("meta.json")
+                && !text.starts_with(".igimp")
         });
         for (path, bytes) in &mut files {
             if path.ends_with("summary.json") {

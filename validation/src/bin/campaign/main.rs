@@ -55,7 +55,7 @@ struct Arguments {
     /// Seed of the random slopes.
     #[arg(long, value_name = "S", default_value_t = 2026)]
     seed: u64,
-    /// Run this slope only and print its case file.
+    /// RunRecord this slope only and print its case file.
     #[arg(long, value_name = "NUMBER")]
     only: Option<u64>,
     /// Cells per width of the footing, odd.

@@ -2,7 +2,7 @@
 
 use super::AllNames;
 use super::quantities::{divisor, quantity};
-use crate::case::{CaseCheck, CheckValue, Load, Quantity, Stage, StageKind};
+use crate::case::{CaseCheck, CheckTime, CheckValue, Load, Quantity, Stage, StageKind};
 use crate::check::Band;
 use crate::input::diagnostic::Problems;
 use crate::input::text::clip;
@@ -28,6 +28,11 @@ pub(super) fn checks(
             let stage = names.stages.find_optional(node, "stage", &who, problems);
             let stage = match (stage, of) {
                 (Ok(stage), Some(Quantity::FactorOfSafety)) => {
+                    if node.text_at("at") == Some("peak") {
+                        problems
+                            .error(node.place_at("at"), "a factor of safety has no peak")
+                            .help("leave `at` out: it is known at the end of its stage");
+                    }
                     search(node, stage, stages, problems).map(Some)
                 }
                 (stage, _) => stage,
@@ -39,6 +44,10 @@ pub(super) fn checks(
                 of: of?,
                 divide_by: divide_by?,
                 stage: stage.ok()?,
+                at: match node.text_at("at")? {
+                    "peak" => CheckTime::Peak,
+                    _ => CheckTime::End,
+                },
                 value: match node.text_at("value")? {
                     "extrapolated" => CheckValue::Extrapolated,
                     _ => CheckValue::Computed,

@@ -65,7 +65,8 @@ fn axis(
     })
 }
 
-fn reference(node: &Node, file: &Path, problems: &mut Problems) -> Option<Reference> {
+/// A reference for a curve, or for a field along a section.
+pub(super) fn reference(node: &Node, file: &Path, problems: &mut Problems) -> Option<Reference> {
     let forms: Vec<&str> = ["y", "points", "file"]
         .into_iter()
         .filter(|form| node.get(form).is_some())

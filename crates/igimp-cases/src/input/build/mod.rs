@@ -26,7 +26,7 @@ use super::diagnostic::Problems;
 use super::names::Names;
 use super::schema::FORMAT;
 use super::tree::Node;
-use crate::case::Case;
+use crate::case::{Case, TitleBlock};
 
 use layers::Layers;
 pub(super) use quantities::QUANTITY_DOCS;
@@ -109,15 +109,27 @@ pub(super) fn build(tree: &mut Node, file: &Path, problems: &mut Problems) -> Op
     layers::check_stiffness(&layers, &stages, gravity, problems);
     let solver = outputs::solver(tree, &materials, problems);
     let monitors = outputs::monitors(tree, &site, problems);
-    let sections = outputs::sections(tree, &site, problems);
+    let about = outputs::About {
+        names: &names,
+        stages: &stages,
+        file,
+    };
+    let sections = outputs::sections(tree, &about, &site, problems);
     let curves = curves::curves(tree, &names, &loads, file, problems);
     let checks = checks::checks(tree, &names, &loads, &stages, problems);
     let output = outputs::output(tree, problems);
     let mesh_study = study::mesh_study(tree);
 
     let case = tree.get("case")?;
+    let words = |key| case.text_at(key).map(str::to_owned);
     let case = Case {
         title: case.text_at("title")?.to_owned(),
+        title_block: TitleBlock {
+            project: words("project"),
+            client: words("client"),
+            author: words("author"),
+            revision: words("revision"),
+        },
         gravity: case.number_at("gravity")?,
         grid: grid?,
         method: method?,

@@ -1,12 +1,16 @@
 //! Solver, monitors, sections and output.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use igimp_solver::linear::SolverKind;
 
+use super::AllNames;
 use super::quantities::fields;
 use super::site::Site;
-use crate::case::{Every, Material, Monitor, Output, Section, SolverSettings, Strength};
+use crate::case::{
+    Average, Every, Field, Material, Monitor, Output, Section, SectionReference, SolverSettings,
+    Stage, StageKind, Strength,
+};
 use crate::input::diagnostic::Problems;
 use crate::input::text::{clip, point};
 use crate::input::tree::Node;
@@ -82,7 +86,12 @@ pub(super) fn monitors(tree: &Node, site: &Site, problems: &mut Problems) -> Vec
 }
 
 /// The sections.
-pub(super) fn sections(tree: &Node, site: &Site, problems: &mut Problems) -> Vec<Option<Section>> {
+pub(super) fn sections(
+    tree: &Node,
+    about: &About<'_>,
+    site: &Site,
+    problems: &mut Problems,
+) -> Vec<Option<Section>> {
     let items = tree.items_at("sections").iter();
     items
         .map(|node| {
@@ -102,15 +111,76 @@ pub(super) fn sections(tree: &Node, site: &Site, problems: &mut Problems) -> Vec
                     .warning(node.place_at("from"), "this section meets no body")
                     .help("it will hold no values");
             }
+            let record = fields(node.items_at("record"));
+            let references: Option<Vec<_>> = node
+                .items_at("references")
+                .iter()
+                .map(|node| section_reference(node, record.as_deref(), about, problems))
+                .collect();
             Some(Section {
                 name: node.text_at("name")?.to_owned(),
                 from,
                 to,
                 points: node.count_at("points")?,
-                record: fields(node.items_at("record"))?,
+                record: record?,
+                average: match node.text_at("average")? {
+                    "cell" => Average::Cell,
+                    _ => Average::None,
+                },
+                references: references?,
             })
         })
         .collect()
+}
+
+/// What references of sections are read with.
+pub(super) struct About<'a> {
+    pub(super) names: &'a AllNames,
+    pub(super) stages: &'a [Option<Stage>],
+    pub(super) file: &'a Path,
+}
+
+/// A reference of a section that records these fields.
+fn section_reference(
+    node: &Node,
+    record: Option<&[Field]>,
+    about: &About<'_>,
+    problems: &mut Problems,
+) -> Option<SectionReference> {
+    let of = fields(std::slice::from_ref(node.get("of")?))?.pop()?;
+    if record.is_some_and(|record| !record.contains(&of)) {
+        let name = node.text_at("of")?;
+        problems
+            .error(
+                node.place_at("of"),
+                format!("the section does not record `{name}`"),
+            )
+            .help(format!("add \"{name}\" to its `record`"));
+        return None;
+    }
+    let who = "this reference looks at";
+    let stage = about
+        .names
+        .stages
+        .find_optional(node, "stage", who, problems);
+    let searches = |stage: &Stage| matches!(stage.kind, StageKind::StrengthReduction(_));
+    if let Ok(Some(number)) = stage
+        && about.stages[number].as_ref().is_some_and(searches)
+    {
+        problems
+            .error(
+                node.place_at("stage"),
+                "a strength reduction leaves the body as it found it, and no sections",
+            )
+            .help("name the stage before it");
+        return None;
+    }
+    let reference = super::curves::reference(node, about.file, problems);
+    Some(SectionReference {
+        of,
+        stage: stage.ok()?,
+        reference: reference?,
+    })
 }
 
 /// What is written, and where.

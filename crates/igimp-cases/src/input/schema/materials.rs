@@ -5,6 +5,30 @@ use crate::input::spec::{
     Choice, Field, Kind, Range, Variant, Variants, choice, default, optional, required,
 };
 
+/// What books call a field, and its keys here: of these the one that the material has is meant.
+pub(in crate::input) static SYMBOLS: [(&str, &[&str]); 20] = [
+    ("gamma", &["unit_weight"]),
+    ("γ", &["unit_weight"]),
+    ("weight", &["unit_weight"]),
+    ("e", &["young"]),
+    ("modulus", &["young"]),
+    ("youngs_modulus", &["young"]),
+    ("nu", &["poisson"]),
+    ("ν", &["poisson"]),
+    ("c", &["cohesion", "cu"]),
+    ("c'", &["cohesion"]),
+    ("c_u", &["cu"]),
+    ("su", &["cu"]),
+    ("s_u", &["cu"]),
+    ("phi", &["friction"]),
+    ("phi'", &["friction"]),
+    ("φ", &["friction"]),
+    ("friction_angle", &["friction"]),
+    ("psi", &["dilation"]),
+    ("ψ", &["dilation"]),
+    ("dilatancy", &["dilation"]),
+];
+
 const CU: Field = required(
     "cu",
     Kind::Quantity(Stress, Range::Positive),

@@ -2,6 +2,8 @@
 
 mod loads;
 mod materials;
+
+pub(super) use materials::SYMBOLS;
 mod outputs;
 mod stages;
 
@@ -132,6 +134,30 @@ static CASE: Struct = Struct {
             Kind::Text,
             "\"My slope\"",
             "for reports and figures",
+        ),
+        optional(
+            "project",
+            Kind::Text,
+            "not in the report",
+            "project, for the head of the report",
+        ),
+        optional(
+            "client",
+            Kind::Text,
+            "not in the report",
+            "client, for the head of the report",
+        ),
+        optional(
+            "author",
+            Kind::Text,
+            "not in the report",
+            "author, for the head of the report",
+        ),
+        optional(
+            "revision",
+            Kind::Text,
+            "not in the report",
+            "revision, for the head of the report",
         ),
         default(
             "analysis",

@@ -121,8 +121,82 @@ pub(in crate::input) static SECTION: Kind = Kind::Table(&Struct {
             "[\"sigma_xx\", \"sigma_yy\", \"tau_xy\"]",
             "what is written",
         ),
+        default(
+            "average",
+            Kind::Choice(&AVERAGES),
+            "\"none\"",
+            "of which particles values are read",
+        ),
+        default(
+            "references",
+            Kind::List(&SECTION_REFERENCE, 0, 100),
+            "[]",
+            "what the values are held against",
+        ),
     ],
 });
+
+static AVERAGES: [Choice; 2] = [
+    choice("none", "the particle nearest to each place"),
+    choice(
+        "cell",
+        "all particles of each cell that the line goes through, by volume: smooths the sawtooth within cells",
+    ),
+];
+
+static SECTION_REFERENCE: Kind = Kind::Table(&Struct {
+    doc: "A reference for a section: `y`, `points` or `file`, over the distance along the section in m, in SI units.",
+    fields: &[
+        required(
+            "of",
+            FIELD_NAME,
+            "\"sigma_yy\"",
+            "the field, one of `record`",
+        ),
+        stage(
+            "the last that is read along sections",
+            "the stage at whose end it is read",
+        ),
+        optional(
+            "y",
+            NUMBER_OF_PLOT,
+            "another form is given",
+            "a value of the field",
+        ),
+        optional(
+            "at",
+            NUMBER_OF_PLOT,
+            "the end of the section",
+            "distance at which `y` is compared",
+        ),
+        optional(
+            "points",
+            Kind::List(&PAIR, 1, MANY),
+            "another form is given",
+            "points [distance, value]; the section is held against each that it spans",
+        ),
+        optional(
+            "file",
+            Kind::Text,
+            "another form is given",
+            "CSV file with a header and two columns, beside the case file",
+        ),
+        required(
+            "label",
+            Kind::Text,
+            "\"weight of the soil above\"",
+            "label with the source",
+        ),
+        optional(
+            "tolerance",
+            Kind::Number(Range::Positive),
+            "drawn only, not checked",
+            "accepted relative deviation",
+        ),
+    ],
+});
+
+const FIELD_NAME: Kind = Kind::Choice(&FIELDS);
 
 static NUMBER: Kind = Kind::Number(Range::Any);
 static PAIR: Kind = Kind::List(&NUMBER, 2, 2);
@@ -237,7 +311,7 @@ pub(in crate::input) static CHECK: Kind = Kind::Table(&Struct {
             "of",
             Kind::Reference("quantity"),
             "\"factor_of_safety\"",
-            "the quantity, at the end of a stage",
+            "the quantity, of a stage",
         ),
         default(
             "divide_by",
@@ -249,6 +323,7 @@ pub(in crate::input) static CHECK: Kind = Kind::Table(&Struct {
             "the last; for a factor of safety the last strength reduction",
             "the stage",
         ),
+        default("at", Kind::Choice(&MOMENTS), "\"end\"", "when in the stage"),
         optional(
             "expected",
             Kind::AnyQuantity,
@@ -294,6 +369,11 @@ pub(in crate::input) static CHECK: Kind = Kind::Table(&Struct {
     ],
 });
 
+static MOMENTS: [Choice; 2] = [
+    choice("end", "at its end"),
+    choice("peak", "when the quantity was largest"),
+];
+
 static VALUES: [Choice; 2] = [
     choice(
         "computed",
@@ -334,7 +414,7 @@ pub(in crate::input) static OUTPUT: Struct = Struct {
             "figures",
             Kind::List(&FIELD, 0, 13),
             "[\"displacement\", \"plastic_strain\", \"sigma_yy\"]",
-            "fields drawn at the end of every stage",
+            "fields drawn at the end of every stage; with none no picture is drawn at all",
         ),
         default(
             "report",

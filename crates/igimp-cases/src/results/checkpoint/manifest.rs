@@ -12,6 +12,7 @@ use serde_json::Value;
 use sha2::{Digest as _, Sha256};
 
 use super::error::{CheckpointError, at};
+use crate::results::atomic::create;
 
 /// Version of the layout; another one is not read.
 pub const FORMAT_VERSION: u64 = 2;
@@ -141,7 +142,7 @@ impl Manifest {
     pub(super) fn write(&self, checkpoint: &Path) -> Result<(PathBuf, File), CheckpointError> {
         let path = checkpoint.join(FILE);
         let write = || {
-            let mut file = File::create(&path)?;
+            let mut file = create(&path)?;
             file.write_all(&self.to_bytes()?)?;
             Ok(file)
         };

@@ -28,8 +28,9 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use igimp_solver::Body;
+use rayon::prelude::*;
 
-use super::atomic::sync_folder;
+use super::atomic::{create, sync_folder, sync_together};
 use crate::error::CaseError;
 
 mod arrays;
@@ -125,13 +126,12 @@ fn write_to_last(
         .collect::<Result<_, _>>()?;
     unsynced.push(Manifest::new(name, sequence, meta, entries).write(&temporary)?);
     if lasts == Lasts::PowerLoss {
-        for (path, file) in unsynced {
-            file.sync_all().map_err(at(&path))?;
-        }
+        sync_together(&unsynced, |path, error| at(path)(error))?;
         let folders = states.iter().map(|(state, _)| temporary.join(state));
-        for folder in folders.chain([temporary.clone()]) {
-            sync_folder(&folder).map_err(at(&folder))?;
-        }
+        let folders: Vec<PathBuf> = folders.chain([temporary.clone()]).collect();
+        folders
+            .par_iter()
+            .try_for_each(|folder| sync_folder(folder).map_err(at(folder)))?;
     }
     let path = folder.join(name);
     put_in_place(&temporary, &path)?;
@@ -151,6 +151,24 @@ pub fn newest(folder: &Path) -> Result<Option<PathBuf>, CheckpointError> {
     let mut found = list(folder)?;
     found.sort_by_key(|found| std::cmp::Reverse(found.sequence()));
     first_whole(found)
+}
+
+/// What is wrong with the checkpoints that were written after the given one, or whose time of writing
+/// cannot be read: [`newest`] passes over them.
+///
+/// # Errors
+/// [`CheckpointError`] when the given one cannot be read.
+pub fn passed_over(path: &Path) -> Result<Vec<CheckpointError>, CheckpointError> {
+    let sequence = Manifest::read(path)?.sequence;
+    let folder = path.parent().unwrap_or(Path::new("."));
+    let errors = list(folder)?.into_iter().filter_map(|found| {
+        let is_later = found.manifest.is_err() || found.sequence() > sequence;
+        let manifest = is_later.then_some(found.manifest)?;
+        manifest
+            .and_then(|manifest| load(&found.path, manifest))
+            .err()
+    });
+    Ok(errors.collect())
 }
 
 /// The checkpoint of a name, or the one that was being replaced under that name when the program
@@ -325,7 +343,7 @@ fn write_state(
     for (array, values) in arrays::of_body(body) {
         let path = checkpoint.join(array_file(name, array));
         let bytes = values.to_bytes();
-        let mut file = File::create(&path).map_err(at(&path))?;
+        let mut file = create(&path).map_err(at(&path))?;
         file.write_all(&bytes).map_err(at(&path))?;
         entry.note(array, &bytes);
         unsynced.push((path, file));

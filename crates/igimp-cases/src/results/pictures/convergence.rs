@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::{file_name, titled, write};
 use crate::error::CaseError;
+use crate::results::cells::text_of;
 use crate::summary::FigureNote;
 use igimp_figures::{
     Colour, ColourMap, CurvePlot, LineStyle, ReferenceLine, ReferenceValue, Scale, Series,
@@ -67,7 +68,7 @@ pub fn histories(path: &Path) -> Result<Vec<History>, CaseError> {
             continue;
         };
         let accepted = matches!(cell(6), "true" | "1" | "yes");
-        let attempt = [0, 1, 2, 3].map(|k| cell(k).to_owned());
+        let attempt = [0, 1, 2, 3].map(|k| text_of(cell(k)).to_owned());
         let iteration = cell(4).parse::<f64>().ok();
         let goes_on = found.last().is_some_and(|history| {
             let last = history.residuals.last().map_or(-1.0, |point| point[0]);

@@ -7,13 +7,13 @@ use igimp_assembly::{Particles, SharedLaw};
 use super::{file_name, sentence, titled, write};
 use crate::case::{Case, Field};
 use crate::error::CaseError;
-use crate::measure::domains;
-use crate::results::fields::{self, Dimension, Scale};
+use crate::pieces::Pieces;
+use crate::results::fields::{self, Scale};
 use crate::summary::FigureNote;
 use igimp_figures::{ColourMap, FieldPlot, Outline, OutlineStyle};
 
 /// A range this many times that of all but [`FEW`] of the values is cut to theirs.
-const OUTLYING: f64 = 2.5;
+const OUTLYING: f64 = 1.2;
 /// Share of values at either end that may lie beyond the colour bar.
 const FEW: f64 = 0.005;
 
@@ -40,47 +40,83 @@ impl Shown {
     }
 }
 
-/// The picture of a field in a state: filled particle domains, the outlines of the undeformed
-/// bodies, and further `outlines`, such as a footing where it stands.
+/// What the pictures of a run have in common.
+#[derive(Clone, Copy, Debug)]
+pub struct Canvas<'a> {
+    /// The results folder.
+    pub folder: &'a Path,
+    /// The case.
+    pub case: &'a Case,
+    /// Its bodies in pieces.
+    pub pieces: &'a Pieces,
+}
+
+/// Particles, and the laws that they refer to.
+pub type Seen<'a> = (&'a Particles<2>, &'a [SharedLaw]);
+
+/// The picture of a field in a state: the bodies in pieces, coloured by their particles, their edges as
+/// they moved and as they were, and further `outlines`, such as a footing where it stands.
+///
+/// Unit and colours are those of the state and of the states that it is `compared` with.
 ///
 /// # Errors
 /// [`CaseError::File`] and [`CaseError::Figure`].
 pub fn field_picture(
-    folder: &Path,
-    case: &Case,
+    canvas: &Canvas<'_>,
     shown: &Shown,
     field: Field,
-    (particles, laws): (&Particles<2>, &[SharedLaw]),
+    (particles, laws): Seen<'_>,
+    compared: &[Seen<'_>],
     outlines: &[Outline],
 ) -> Result<FigureNote, CaseError> {
+    let case = canvas.case;
     let values = fields::values(field, particles, laws);
-    let scale = Scale::of(fields::dimension(field), values.iter().copied());
-    let values = scale.apply(&values);
-    let (map, range) = colours(field, &values);
+    let mut all = values.clone();
+    for (particles, laws) in compared {
+        all.extend(fields::values(field, particles, laws));
+    }
+    let scale = Scale::of(fields::dimension(field), all.iter().copied());
+    let colours = Colours::of(field, &scale.apply(&all));
+    let (domains, whose) = canvas.pieces.now(particles);
     let plot = FieldPlot {
         title: titled(&case.title, &shown.title),
-        domains: domains(particles),
-        values,
-        label: fields::label(field, scale),
-        range,
-        map,
-        outlines: body_outlines(case)
+        domains,
+        values: whose.iter().map(|&k| values[k] / scale.divide_by).collect(),
+        label: fields::label(field, scale) + colours.told(),
+        range: colours.range,
+        map: colours.map,
+        outlines: edges(canvas, particles)
+            .into_iter()
             .chain(outlines.iter().cloned())
             .collect(),
         ..FieldPlot::default()
     };
-    let cut = if range.is_some() && matches!(fields::dimension(field), Dimension::Stress) {
-        "; the bar leaves out the outermost half percent of the values at either end"
-    } else {
+    let same = if compared.is_empty() {
         ""
+    } else {
+        " Colours and unit are the same in both states of the search."
     };
     let caption = format!(
-        "{} {}{cut}. Lines: the bodies before they moved.",
+        "{} {}. Lines: the edges of the bodies; dashed: before they moved.{same}",
         sentence(&fields::plain(fields::title(field))),
         shown.when,
     );
     let name = format!("field-{}-{}", shown.name, fields::name(field));
-    write(folder, &name, &plot.draw()?, caption)
+    write(canvas.folder, &name, &plot.draw()?, caption)
+}
+
+/// The edges of the bodies as they were, and as the particles carry them.
+pub(super) fn edges(canvas: &Canvas<'_>, particles: &Particles<2>) -> Vec<Outline> {
+    let former = body_outlines(canvas.case).map(|outline| Outline {
+        style: OutlineStyle::Former,
+        ..outline
+    });
+    let moved = canvas.pieces.edges(particles).into_iter();
+    let moved = moved.map(|points| Outline {
+        points,
+        style: OutlineStyle::Edge,
+    });
+    former.chain(moved).collect()
 }
 
 /// The edges of the undeformed bodies.
@@ -96,32 +132,88 @@ pub(super) fn body_outlines(case: &Case) -> impl Iterator<Item = Outline> {
     })
 }
 
-/// Colour map and range of a field: from zero where the field has no sign, about zero where both
-/// signs matter, without a few values that would hide the others.
-fn colours(field: Field, values: &[f64]) -> (ColourMap, Option<(f64, f64)>) {
-    let mut sorted: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
-    sorted.sort_by(f64::total_cmp);
-    let (Some(&low), Some(&high)) = (sorted.first(), sorted.last()) else {
-        return (ColourMap::Sequential, None);
-    };
-    let signed = matches!(
-        field,
-        Field::DisplacementX | Field::DisplacementY | Field::TauXy
-    );
-    if signed && -low.min(0.0) > 0.1 * high && high.max(0.0) > -0.1 * low {
-        return (ColourMap::Diverging, None);
-    }
-    match field {
-        Field::Utilisation => (ColourMap::Sequential, Some((0.0, 1.0))),
-        Field::PlasticStrain | Field::Displacement => {
-            let top = if high > 0.0 { high } else { 1.0 };
-            (ColourMap::Sequential, Some((0.0, top)))
+/// How values become colours.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Colours {
+    map: ColourMap,
+    range: Option<(f64, f64)>,
+    /// Whether the range leaves out the outermost values at its low and at its high end.
+    cut: (bool, bool),
+}
+
+impl Colours {
+    /// From zero where a field has no sign, about zero where both signs matter, without the few values
+    /// that would pale all others.
+    fn of(field: Field, values: &[f64]) -> Self {
+        let mut sorted: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
+        sorted.sort_by(f64::total_cmp);
+        let whole = Self {
+            map: ColourMap::Sequential,
+            range: None,
+            cut: (false, false),
+        };
+        let (Some(&low), Some(&high)) = (sorted.first(), sorted.last()) else {
+            return whole;
+        };
+        let at = |share: f64| sorted[(share * (sorted.len() - 1) as f64).round() as usize];
+        let (inner_low, inner_high) = (at(FEW), at(1.0 - FEW));
+        let signed = matches!(
+            field,
+            Field::DisplacementX | Field::DisplacementY | Field::TauXy
+        );
+        if signed && -low.min(0.0) > 0.1 * high && high.max(0.0) > -0.1 * low {
+            let (reach, inner) = (
+                low.abs().max(high.abs()),
+                inner_low.abs().max(inner_high.abs()),
+            );
+            let cut = inner > 0.0 && reach > OUTLYING * inner;
+            return Self {
+                map: ColourMap::Diverging,
+                range: cut.then_some((-inner, inner)),
+                cut: (cut && low < -inner, cut && high > inner),
+            };
         }
-        _ => {
-            let at = |share: f64| sorted[(share * (sorted.len() - 1) as f64).round() as usize];
-            let inner = (at(FEW), at(1.0 - FEW));
-            let cut = high - low > OUTLYING * (inner.1 - inner.0) && inner.0 < inner.1;
-            (ColourMap::Sequential, cut.then_some(inner))
+        match field {
+            Field::Utilisation => Self {
+                range: Some((0.0, 1.0)),
+                ..whole
+            },
+            Field::PlasticStrain | Field::Displacement => {
+                let cut = inner_high > 0.0 && high > OUTLYING * inner_high;
+                let top = if cut { inner_high } else { high };
+                Self {
+                    range: Some((0.0, if top > 0.0 { top } else { 1.0 })),
+                    cut: (false, cut),
+                    ..whole
+                }
+            }
+            _ => {
+                let width = inner_high - inner_low;
+                let cut = (
+                    inner_low - low > (OUTLYING - 1.0) * width,
+                    high - inner_high > (OUTLYING - 1.0) * width,
+                );
+                let range = (
+                    if cut.0 { inner_low } else { low },
+                    if cut.1 { inner_high } else { high },
+                );
+                let some = width > 0.0 && (cut.0 || cut.1);
+                Self {
+                    range: some.then_some(range),
+                    cut: (some && cut.0, some && cut.1),
+                    ..whole
+                }
+            }
+        }
+    }
+
+    /// What the colour bar says of values beyond it.
+    fn told(&self) -> &'static str {
+        match self.cut {
+            (false, false) => "",
+            (true, false) => "; bar from 0.5 % of the particles",
+            (false, true) => "; bar to 99.5 % of the particles",
+            (true, true) => "; bar from 0.5 to 99.5 % of the particles",
         }
     }
 }
@@ -133,23 +225,40 @@ mod tests {
     #[test]
     fn colours_follow_the_signs_of_a_field() {
         let both = [-3.0, 0.0, 2.0];
-        let map = |field, values: &[f64]| colours(field, values).0;
+        let map = |field, values: &[f64]| Colours::of(field, values).map;
         assert_eq!(map(Field::TauXy, &both), ColourMap::Diverging);
         assert_eq!(map(Field::TauXy, &[1.0, 2.0]), ColourMap::Sequential);
         assert_eq!(map(Field::SigmaYy, &both), ColourMap::Sequential);
-        assert_eq!(colours(Field::Utilisation, &both).1, Some((0.0, 1.0)));
-        assert_eq!(colours(Field::PlasticStrain, &[0.0]).1, Some((0.0, 1.0)));
-        assert_eq!(
-            colours(Field::P, &[f64::NAN]),
-            (ColourMap::Sequential, None)
-        );
+        let range = |field, values: &[f64]| Colours::of(field, values).range;
+        assert_eq!(range(Field::Utilisation, &both), Some((0.0, 1.0)));
+        assert_eq!(range(Field::PlasticStrain, &[0.0]), Some((0.0, 1.0)));
+        assert_eq!(range(Field::P, &[f64::NAN]), None);
     }
 
+    /// GOAL: a single particle neither pales a field nor goes unsaid, whatever the field.
     #[test]
     fn a_few_wild_values_do_not_hide_the_others() {
         let mut values: Vec<f64> = (0..1000).map(f64::from).collect();
-        assert_eq!(colours(Field::SigmaYy, &values).1, None);
+        for field in fields::ALL {
+            assert_eq!(Colours::of(field, &values).told(), "", "{field:?}");
+        }
         values[500] = 1e6;
-        assert_eq!(colours(Field::SigmaYy, &values).1, Some((5.0, 995.0)));
+        let of = |field| Colours::of(field, &values);
+        let stress = of(Field::SigmaYy);
+        assert_eq!(
+            (stress.range, stress.cut),
+            (Some((0.0, 995.0)), (false, true))
+        );
+        assert!(stress.told().contains("99.5 %"));
+        for field in [Field::Displacement, Field::PlasticStrain] {
+            assert_eq!(
+                (of(field).range, of(field).cut),
+                (Some((0.0, 995.0)), (false, true))
+            );
+        }
+        values[400] = -1e6;
+        let shear = Colours::of(Field::TauXy, &values);
+        assert_eq!((shear.map, shear.cut), (ColourMap::Diverging, (true, true)));
+        assert_eq!(shear.range, Some((-995.0, 995.0)));
     }
 }

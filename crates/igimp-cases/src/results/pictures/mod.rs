@@ -7,6 +7,7 @@
 //! | [`safety_picture`] | `safety-STAGE` |
 //! | [`monitor_pictures`] | `monitor-NAME-KIND` |
 //! | [`section_pictures`] | `section-NAME-KIND` |
+//! | [`mechanism_picture`] | `mechanism-STAGE` |
 //! | [`field_picture`] | `field-STAGE-FIELD` |
 //! | [`convergence_pictures`] | `convergence-STAGE` |
 //! | [`mesh_pictures`] | `mesh-study-NUMBER-RESULT` |
@@ -18,6 +19,7 @@ mod convergence;
 mod curve;
 mod field;
 mod histories;
+mod mechanism;
 mod meshes;
 mod model;
 mod safety;
@@ -27,8 +29,9 @@ use std::path::Path;
 pub use convergence::{History, convergence_pictures, convergence_plot, histories};
 pub(super) use convergence::{convergence_caption, stages_of};
 pub use curve::curve_picture;
-pub use field::{Shown, field_picture};
+pub use field::{Canvas, Seen, Shown, field_picture};
 pub use histories::{monitor_pictures, section_pictures};
+pub use mechanism::{Failing, Mechanism, mechanism, mechanism_picture};
 pub use meshes::mesh_pictures;
 pub use model::model_picture;
 pub use safety::safety_picture;

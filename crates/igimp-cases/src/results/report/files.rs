@@ -7,6 +7,7 @@ use base64::engine::general_purpose::STANDARD;
 use serde::Serialize;
 
 use super::rows::grouped;
+use crate::results::cells::text_of;
 use crate::results::pictures::{
     convergence_caption, convergence_plot, histories, stages_of, titled,
 };
@@ -41,7 +42,7 @@ struct Link {
 }
 
 /// The headings, with the beginnings of the names of the pictures below them.
-const GROUPS: [(&str, &str, &[&str]); 7] = [
+const GROUPS: [(&str, &str, &[&str]); 8] = [
     ("model", "Model", &["model"]),
     ("mesh-error", "Mesh error, pictures", &["mesh-study"]),
     ("curves", "Curves", &["curve", "safety"]),
@@ -50,10 +51,15 @@ const GROUPS: [(&str, &str, &[&str]); 7] = [
         "Monitors and sections",
         &["monitor", "section"],
     ),
+    ("mechanism", "Mechanism of failure", &["mechanism"]),
     ("fields", "Fields", &["field"]),
     ("pictures", "Further pictures", &[""]),
     ("convergence", "Convergence", &["convergence"]),
 ];
+
+/// Places of headings among them.
+const FURTHER: usize = 6;
+const CONVERGENCE: usize = 7;
 
 /// The pictures of the summary by kind, in its order, and plots of the convergence of every stage.
 pub(super) fn pictures(folder: &Path, summary: &Summary) -> Vec<Group> {
@@ -69,11 +75,11 @@ pub(super) fn pictures(folder: &Path, summary: &Summary) -> Vec<Group> {
                 .iter()
                 .any(|start| !start.is_empty() && name.starts_with(start))
         };
-        let place = GROUPS.iter().position(named).unwrap_or(5);
+        let place = GROUPS.iter().position(named).unwrap_or(FURTHER);
         groups[place].pictures.push(picture(folder, note));
     }
-    if groups[6].pictures.is_empty() {
-        groups[6].pictures = convergence(folder, summary);
+    if groups[CONVERGENCE].pictures.is_empty() {
+        groups[CONVERGENCE].pictures = convergence(folder, summary);
     }
     groups
         .into_iter()
@@ -156,7 +162,7 @@ pub(super) struct FileView {
 
 /// The tables, and the entry points of the other results.
 pub(super) fn tables(folder: &Path) -> Vec<FileView> {
-    let mut views: Vec<FileView> = ["curves", "monitors", "sections"]
+    let mut views: Vec<FileView> = ["curves", "monitors", "sections", "slip_lines"]
         .into_iter()
         .flat_map(|within| {
             names(&folder.join(within))
@@ -202,7 +208,12 @@ fn table(folder: &Path, name: String) -> Option<FileView> {
         .ok()?;
     let columns: Vec<String> = reader
         .headers()
-        .map(|headers| headers.iter().map(str::to_owned).collect())
+        .map(|headers| {
+            headers
+                .iter()
+                .map(|name| text_of(name).to_owned())
+                .collect()
+        })
         .unwrap_or_default();
     let rows = reader.byte_records().take_while(Result::is_ok).count();
     Some(FileView {

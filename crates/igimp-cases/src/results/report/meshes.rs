@@ -60,8 +60,12 @@ pub(super) fn numbers(study: &StudySummary) -> Vec<Number> {
             ResultKind::LimitLoad => "Limit load, extrapolated",
             ResultKind::Check => return None,
         };
-        let value = result.estimate?.sentence();
-        Some(Number { name, value })
+        let found = result.estimate?;
+        Some(Number {
+            name: name.to_owned(),
+            value: found.sentence(),
+            note: format!("with its mesh error, order {}", found.order.sentence()),
+        })
     };
     study.results.iter().filter_map(own).collect()
 }

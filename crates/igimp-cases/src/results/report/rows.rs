@@ -4,37 +4,94 @@ use serde::Serialize;
 
 use super::verdict::on_safety;
 use crate::check::{Band, short};
+use crate::mesh_study::MeshSummary;
 use crate::results::fields::{Dimension, Scale};
 use crate::summary::{SafetySummary, StageOutcome, StageSummary, Summary};
 
 /// The phases of a stage, in the order of [`StageSummary::phases`].
 pub(super) const PHASES: [&str; 5] = ["set-up", "assembly", "factorisation", "solution", "commit"];
 
+/// What is said of a result whose mesh error nobody asked for.
+const MESH_ERROR_UNKNOWN: &str = "mesh error not known: igimp run --meshes 2 finds it";
+
 /// Stands for what is not a number.
 pub(super) const UNKNOWN: &str = "–";
 
-/// A number with its name.
+/// A number with its name, and what a reader has to know of it.
 #[derive(Serialize)]
 pub(super) struct Number {
-    pub(super) name: &'static str,
+    pub(super) name: String,
     pub(super) value: String,
+    pub(super) note: String,
 }
 
-/// The numbers that are looked for first.
-pub(super) fn numbers(summary: &Summary) -> Vec<Number> {
+/// What an engineer looks for first: factors of safety, resistances, displacements, checks.
+pub(super) fn headline(summary: &Summary) -> Vec<Number> {
     let mut numbers = Vec::new();
-    let mut add = |name, value: String| numbers.push(Number { name, value });
-    let stages = &summary.stages;
-    for safety in stages.iter().filter_map(|stage| stage.safety.as_ref()) {
-        let bound = |factor: Option<f64>| factor.map_or_else(|| "?".to_owned(), short);
-        let (from, to) = (bound(safety.stable), bound(safety.failed));
-        add("Factor of safety", format!("{from}\u{a0}…\u{a0}{to}"));
+    let mut add = |name: String, value: String, note: String| {
+        numbers.push(Number { name, value, note });
+    };
+    let several = |has: fn(&StageSummary) -> bool, stage: &StageSummary, name: &str| {
+        if summary.stages.iter().filter(|stage| has(stage)).count() > 1 {
+            format!("{name}, {}", stage.name)
+        } else {
+            name.to_owned()
+        }
+    };
+    let mesh_error = match &summary.mesh_study {
+        Some(study) => {
+            let shown = study.shown().map_or_else(String::new, MeshSummary::label);
+            format!("on the mesh {shown}; its error is that of the extrapolated value")
+        }
+        None => MESH_ERROR_UNKNOWN.to_owned(),
+    };
+    for stage in &summary.stages {
+        if let Some(safety) = &stage.safety {
+            let bound = |factor: Option<f64>| factor.map_or_else(|| "?".to_owned(), short);
+            let (from, to) = (bound(safety.stable), bound(safety.failed));
+            let name = several(|stage| stage.safety.is_some(), stage, "Factor of safety");
+            let value = format!("{from}\u{a0}…\u{a0}{to}");
+            add(name, value, mesh_error.clone());
+        }
     }
-    let size = &summary.size;
-    if let Some(last) = stages.last() {
-        let displacement = length(last.largest_displacement);
-        add("Largest displacement, last stage", displacement);
+    for stage in &summary.stages {
+        if let Some(peak) = stage.peak_resistance {
+            let name = several(
+                |stage| stage.peak_resistance.is_some(),
+                stage,
+                "Peak resistance",
+            );
+            add(name, quantity(peak, "N/m"), mesh_error.clone());
+        }
+        if let Some(settlement) = stage.settlement {
+            let name = several(|stage| stage.settlement.is_some(), stage, "Settlement");
+            let note = format!("of the footing, at the end of “{}”", stage.name);
+            add(name, length(settlement), note);
+        }
     }
+    let moved = |stage: &&StageSummary| stage.safety.is_none();
+    if let Some(stage) = summary.stages.iter().rev().find(moved) {
+        let note = format!("of all particles, at the end of “{}”", stage.name);
+        let value = length(stage.largest_displacement);
+        add("Largest displacement".to_owned(), value, note);
+    }
+    if !summary.checks.is_empty() {
+        let met = summary.checks.iter().filter(|row| row.pass).count();
+        let value = format!("{met} of {}", summary.checks.len());
+        let note = "against references from outside".to_owned();
+        add("Checks met".to_owned(), value, note);
+    }
+    numbers
+}
+
+/// What the answer cost.
+pub(super) fn effort(summary: &Summary) -> Vec<Number> {
+    let mut numbers = Vec::new();
+    let mut add = |name: &str, value: String| {
+        let (name, note) = (name.to_owned(), String::new());
+        numbers.push(Number { name, value, note });
+    };
+    let (stages, size) = (&summary.stages, &summary.size);
     let sum = |of: fn(&StageSummary) -> usize| grouped(stages.iter().map(of).sum());
     add("Steps", sum(|stage| stage.steps));
     add("Newton iterations", sum(|stage| stage.iterations));
@@ -51,6 +108,37 @@ pub(super) fn numbers(summary: &Summary) -> Vec<Number> {
         add("Most memory", format!("{memory:.0} MiB"));
     }
     numbers
+}
+
+/// An entry of the head of the report.
+#[derive(Serialize)]
+pub(super) struct HeadView {
+    name: &'static str,
+    value: String,
+    /// Whether the value is a long code.
+    code: bool,
+}
+
+/// Project, client, author, revision, date, and what the results were made from and with.
+pub(super) fn head(summary: &Summary) -> Vec<HeadView> {
+    let block = &summary.title_block;
+    let entries = [
+        ("Project", &block.project, false),
+        ("Client", &block.client, false),
+        ("Author", &block.author, false),
+        ("Revision", &block.revision, false),
+        ("Date of the run", &summary.date, false),
+        ("Input, SHA-256", &summary.input_sha256, true),
+    ];
+    let program = Some(summary.program.clone()).filter(|program| !program.is_empty());
+    entries
+        .into_iter()
+        .chain([("Program", &program, false)])
+        .filter_map(|(name, value, code)| {
+            let value = value.clone()?;
+            Some(HeadView { name, value, code })
+        })
+        .collect()
 }
 
 /// A check.
@@ -74,15 +162,10 @@ pub(super) fn checks(summary: &Summary) -> Vec<CheckView> {
             Band::Relative(_) if share.is_finite() => format!("{:+.2} %", 100.0 * share),
             _ => String::new(),
         };
-        let about = [&check.case, &check.variant].map(|part| part.trim());
         CheckView {
             pass: row.pass,
             quantity: check.quantity.clone(),
-            about: about
-                .into_iter()
-                .filter(|part| !part.is_empty())
-                .collect::<Vec<_>>()
-                .join(", "),
+            about: check.variant.trim().to_owned(),
             measured: short(check.measured),
             expected: short(check.expected),
             band: check.band.to_string(),

@@ -1,19 +1,21 @@
 //! How a run is taken up again from its results folder.
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use igimp_solver::Body;
 
-use super::{Output, csv};
+use super::{BEFORE, Output, csv};
 use crate::case::Case;
 use crate::error::CaseError;
-use crate::results::atomic::write_atomically;
+use crate::results::atomic::write_whole;
 use crate::results::checkpoint::{self, CheckpointError};
-use crate::results::folder::Folder;
+use crate::results::folder::{self, Folder};
+use crate::results::owner::Claim;
 use crate::results::rows;
 use crate::run::Target;
 use crate::run::fingerprint;
-use crate::run::left::{Left, Notes, Resumption, Search, end_of_stage, notes_of};
+use crate::run::left::{End, Left, Notes, Resumption, Search, end_of_stage, notes_of};
 use crate::run::records::Records;
 use crate::run::state::{Controls, State};
 
@@ -35,8 +37,15 @@ impl Output {
             return Ok((Self::create(target, case, records)?, None));
         };
         let found = checkpoint::read(&path, Some(&fingerprint::of_case(case)))?;
+        let passed_over = checkpoint::passed_over(&path)?;
         checkpoint::discard_after(&path)?;
-        Self::take_up(folder, case, records, &found)
+        write_whole(&folder.case(), &target.source)?;
+        write_whole(&folder.completed_case(), &target.completed)?;
+        let (mut output, left) = Self::take_up(folder, target.claim(case), case, records, &found)?;
+        let taken = path.file_name().unwrap_or_default().to_string_lossy();
+        let note = |error| format!("{error}; the run goes on from {taken}, the last whole one");
+        output.notes_for_user = passed_over.into_iter().map(note).collect();
+        Ok((output, left))
     }
 
     /// A results folder taken up at the beginning of a stage.
@@ -62,13 +71,14 @@ impl Output {
             return Err(CheckpointError::OtherCase { path }.into());
         }
         checkpoint::discard_after(&path)?;
-        write_atomically(&folder.case(), &target.source)?;
-        write_atomically(&folder.completed_case(), &target.completed)?;
-        Self::take_up(folder, case, records, &found)
+        write_whole(&folder.case(), &target.source)?;
+        write_whole(&folder.completed_case(), &target.completed)?;
+        Self::take_up(folder, target.claim(case), case, records, &found)
     }
 
     fn take_up(
         folder: Folder,
+        claim: Claim,
         case: &Case,
         records: &mut Records,
         found: &checkpoint::Checkpoint,
@@ -93,29 +103,36 @@ impl Output {
                 Err(damaged(format!("{name}/{array}.npy"), why))
             })?;
         }
-        if let Some(Resumption { standing, .. }) = &notes.resumption
-            && !(standing.size > 0.0
-                && standing.size.is_finite()
-                && (0.0..=1.0).contains(&standing.at))
+        if let Some(Resumption { march, .. }) = &notes.resumption
+            && !(march.size > 0.0 && march.size.is_finite() && (0.0..=1.0).contains(&march.at))
         {
             let why = format!(
                 "no march stands at {} with steps of {}",
-                standing.at, standing.size
+                march.at, march.size
             );
             return Err(damaged("meta.json".to_owned(), why).into());
         }
-        let with_body = |name: &str, of: &Option<(f64, Controls)>| match of {
+        let with_body = |name: &str, before: &str, of: &Option<(f64, Controls)>| match of {
             Some((srf, controls)) => {
                 let controls = controls.clone();
-                body(name).map(|body| Some((*srf, State { body, controls })))
+                body(name).map(|own| {
+                    Some(End {
+                        srf: *srf,
+                        state: State {
+                            body: own,
+                            controls,
+                        },
+                        before: body(before).ok().map(Arc::new),
+                    })
+                })
             }
             None => Ok(None),
         };
         let search = match &notes.trials {
             Some(trials) => Some(Search {
                 trials: trials.clone(),
-                stable: with_body("stable", &notes.stable)?,
-                failed: with_body("failed", &notes.failed)?,
+                stable: with_body("stable", BEFORE[0], &notes.stable)?,
+                failed: with_body("failed", BEFORE[1], &notes.failed)?,
             }),
             None => None,
         };
@@ -132,7 +149,13 @@ impl Output {
             resumption: notes.resumption.clone(),
             search,
         };
-        let output = Self::open(folder, case, records, Some(&notes))?;
+        // From a stage on, the checks may be others than they were.
+        if notes.peaks.len() == records.peaks.len() {
+            let peaks = notes.peaks.iter().map(|peak| peak.unwrap_or(f64::NAN));
+            records.peaks = peaks.collect();
+        }
+        folder::mark(folder.root(), &claim, false)?;
+        let output = Self::open(folder, claim, case, records, Some(&notes))?;
         records.factor_of_safety = notes.factor_of_safety.unwrap_or(f64::NAN);
         for table in &mut records.curves {
             table.rows = rows::read(&output.folder.curves().join(csv(&table.name)))?.rows;

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use igimp_assembly::{Pattern, TangentMatrix};
 
-use super::super::check::{self, Sweep};
+use super::super::check::{self, Inspection};
 use super::super::refine::{Accuracy, Refinement, probe};
 use super::super::{GeneralLu, LinearSolver, LinearSolverError, SolveReport};
 use super::cholesky::{Cholesky, CholeskyFactors};
@@ -30,15 +30,15 @@ pub(super) struct Engine {
     pub(super) plan: Option<Plan>,
     factors: Factors,
     scaling: Scaling,
-    sweep: Sweep,
+    inspection: Inspection,
     workshop: Workshop,
     vectors: Vectors,
     refinement: Refinement,
-    factored: Option<Method>,
+    factored: Option<Factorisation>,
 }
 
 /// What there are factors of.
-enum Method {
+enum Factorisation {
     Cholesky,
     Lu,
     /// Takes over from the own factors where they fail.
@@ -74,7 +74,7 @@ impl Engine {
     fn prepare(&mut self, matrix: &TangentMatrix) -> Result<(), LinearSolverError> {
         self.analyse(&matrix.pattern)?;
         self.factored = None;
-        self.sweep.over(matrix)
+        self.inspection.inspect(matrix)
     }
 
     /// Factorises a symmetric positive definite matrix.
@@ -86,10 +86,10 @@ impl Engine {
         let plan = self.plan.as_ref().ok_or(LinearSolverError::NotFactored)?;
         let kernel = Cholesky {
             matrix,
-            diagonal: &self.sweep.diagonal,
+            diagonal: &self.inspection.diagonal,
         };
         self.factors.compute(plan, &kernel, &self.workshop)?;
-        self.factored = Some(Method::Cholesky);
+        self.factored = Some(Factorisation::Cholesky);
         Ok(())
     }
 
@@ -97,7 +97,7 @@ impl Engine {
     /// side shows here and not later whether the matrix is singular.
     pub(super) fn factor_lu(&mut self, matrix: &TangentMatrix) -> Result<(), LinearSolverError> {
         self.prepare(matrix)?;
-        self.scaling.fit(matrix, &self.sweep.diagonal);
+        self.scaling.fit(matrix, &self.inspection.diagonal);
         let plan = self.plan.as_ref().ok_or(LinearSolverError::NotFactored)?;
         let kernel = Lu {
             matrix,
@@ -109,7 +109,7 @@ impl Engine {
             .record
             .first_replaced
             .map(|position| plan.unknown_at(position));
-        self.factored = Some(Method::Lu);
+        self.factored = Some(Factorisation::Lu);
         if suspect.is_some() {
             let unknowns = matrix.pattern.unknowns();
             let probed = probe(unknowns, suspect, |rhs, x| self.solve_own(matrix, rhs, x));
@@ -134,15 +134,15 @@ impl Engine {
         }
         match &mut self.factored {
             None => return Err(LinearSolverError::NotFactored),
-            Some(Method::General(general)) => return general.solve(matrix, rhs, solution),
-            Some(Method::Cholesky | Method::Lu) => {}
+            Some(Factorisation::General(general)) => return general.solve(matrix, rhs, solution),
+            Some(Factorisation::Cholesky | Factorisation::Lu) => {}
         }
         match self.solve_own(matrix, rhs, solution) {
             Err(cause) if self.blames_pivots(&cause) => self.fall_back(matrix, cause)?,
             other => return other,
         }
         match &mut self.factored {
-            Some(Method::General(general)) => general.solve(matrix, rhs, solution),
+            Some(Factorisation::General(general)) => general.solve(matrix, rhs, solution),
             _ => Err(LinearSolverError::NotFactored),
         }
     }
@@ -157,7 +157,7 @@ impl Engine {
         let plan = self.plan.as_ref().ok_or(LinearSolverError::NotFactored)?;
         let (factors, workshop) = (&self.factors, &self.workshop);
         let (vectors, scale) = (&mut self.vectors, &self.scaling.scale[..]);
-        let by_cholesky = matches!(self.factored, Some(Method::Cholesky));
+        let by_cholesky = matches!(self.factored, Some(Factorisation::Cholesky));
         let mut failure = Ok(());
         let refined = self
             .refinement
@@ -205,7 +205,7 @@ impl Engine {
         let mut general = GeneralLu::with_accuracy(self.accuracy);
         match (general.factor(matrix), cause) {
             (Ok(()), _) => {
-                self.factored = Some(Method::General(Box::new(general)));
+                self.factored = Some(Factorisation::General(Box::new(general)));
                 Ok(())
             }
             (

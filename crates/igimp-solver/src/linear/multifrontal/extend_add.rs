@@ -1,4 +1,4 @@
-//! Adding what a child contributes to the front of its parent, run by run.
+//! Adding what a child contributes to the front of its parent, stretch by stretch.
 //!
 //! I. S. Duff & J. K. Reid, *The multifrontal solution of indefinite sparse symmetric linear
 //! systems*, ACM Trans. Math. Softw. 9 (1983).
@@ -7,7 +7,7 @@ use super::plan::{Front, Plan};
 
 /// Consecutive border unknowns of a child that are consecutive in the parent.
 #[derive(Clone, Copy)]
-struct Run {
+struct Stretch {
     /// First of them in the border of the child.
     source: usize,
     /// First of them among the pivots or in the border of the parent.
@@ -15,13 +15,13 @@ struct Run {
     len: usize,
 }
 
-/// Where the border of a child lies in its parent: first runs among the pivots, then in the border.
+/// Where the border of a child lies in its parent: first stretches among the pivots, then in the border.
 #[derive(Default)]
 pub(super) struct BorderMap {
     /// Unknowns of the border of the child.
     rows: usize,
-    runs: Vec<Run>,
-    pivot_runs: usize,
+    stretches: Vec<Stretch>,
+    pivot_stretches: usize,
 }
 
 /// A block stored by columns with so many rows.
@@ -35,8 +35,8 @@ impl BorderMap {
     /// of its border nodes, by rank.
     pub(super) fn set(&mut self, plan: &Plan, child: &Front, parent: &Front, local: &[u32]) {
         self.rows = child.border;
-        self.runs.clear();
-        self.pivot_runs = 0;
+        self.stretches.clear();
+        self.pivot_stretches = 0;
         let mut source = 0;
         for &rank in plan.rows(child) {
             let positions = plan.positions_of(rank);
@@ -47,24 +47,26 @@ impl BorderMap {
             } else {
                 local[rank as usize] as usize
             };
-            let begins = among_pivots || self.runs.len() > self.pivot_runs;
-            match self.runs.last_mut() {
-                Some(run) if begins && run.target + run.len == target => run.len += len,
-                _ => self.runs.push(Run {
+            let begins = among_pivots || self.stretches.len() > self.pivot_stretches;
+            match self.stretches.last_mut() {
+                Some(stretch) if begins && stretch.target + stretch.len == target => {
+                    stretch.len += len;
+                }
+                _ => self.stretches.push(Stretch {
                     source,
                     target,
                     len,
                 }),
             }
             if among_pivots {
-                self.pivot_runs = self.runs.len();
+                self.pivot_stretches = self.stretches.len();
             }
             source += len;
         }
     }
 
-    fn parts(&self) -> (&[Run], &[Run]) {
-        self.runs.split_at(self.pivot_runs)
+    fn parts(&self) -> (&[Stretch], &[Stretch]) {
+        self.stretches.split_at(self.pivot_stretches)
     }
 
     /// Adds the rows of the child's columns among the pivots.
@@ -73,8 +75,8 @@ impl BorderMap {
         for columns in into_pivots {
             for k in 0..columns.len {
                 let source = &child[(columns.source + k) * self.rows..][..self.rows];
-                add_runs(pivots.column(columns.target + k), source, into_pivots);
-                add_runs(lower.column(columns.target + k), source, into_border);
+                add_stretches(pivots.column(columns.target + k), source, into_pivots);
+                add_stretches(lower.column(columns.target + k), source, into_border);
             }
         }
     }
@@ -86,9 +88,9 @@ impl BorderMap {
             for k in 0..columns.len {
                 let source = &child[(columns.source + k) * self.rows..][..self.rows];
                 let target = pivots.column(columns.target + k);
-                add_run(target, source, columns.from(k));
-                add_runs(target, source, &into_pivots[index + 1..]);
-                add_runs(lower.column(columns.target + k), source, into_border);
+                add_stretch(target, source, columns.from(k));
+                add_stretches(target, source, &into_pivots[index + 1..]);
+                add_stretches(lower.column(columns.target + k), source, into_border);
             }
         }
     }
@@ -111,7 +113,7 @@ impl BorderMap {
         for columns in into_border {
             for k in 0..columns.len {
                 let source = &child[(columns.source + k) * self.rows..][..self.rows];
-                add_runs(contribution.column(columns.target + k), source, into_border);
+                add_stretches(contribution.column(columns.target + k), source, into_border);
             }
         }
     }
@@ -123,15 +125,15 @@ impl BorderMap {
             for k in 0..columns.len {
                 let source = &child[(columns.source + k) * self.rows..][..self.rows];
                 let target = contribution.column(columns.target + k);
-                add_run(target, source, columns.from(k));
-                add_runs(target, source, &into_border[index + 1..]);
+                add_stretch(target, source, columns.from(k));
+                add_stretches(target, source, &into_border[index + 1..]);
             }
         }
     }
 }
 
-impl Run {
-    /// What is left of a run without its first `k` unknowns.
+impl Stretch {
+    /// What is left of a stretch without its first `k` unknowns.
     fn from(&self, k: usize) -> Self {
         Self {
             source: self.source + k,
@@ -147,16 +149,16 @@ impl Block<'_> {
     }
 }
 
-/// Adds runs of `source` where they belong in `target`.
-fn add_runs(target: &mut [f64], source: &[f64], runs: &[Run]) {
-    for &run in runs {
-        add_run(target, source, run);
+/// Adds stretches of `source` where they belong in `target`.
+fn add_stretches(target: &mut [f64], source: &[f64], stretches: &[Stretch]) {
+    for &stretch in stretches {
+        add_stretch(target, source, stretch);
     }
 }
 
-fn add_run(target: &mut [f64], source: &[f64], run: Run) {
-    let into = &mut target[run.target..run.target + run.len];
-    let from = &source[run.source..run.source + run.len];
+fn add_stretch(target: &mut [f64], source: &[f64], stretch: Stretch) {
+    let into = &mut target[stretch.target..stretch.target + stretch.len];
+    let from = &source[stretch.source..stretch.source + stretch.len];
     for (into, &value) in into.iter_mut().zip(from) {
         *into += value;
     }

@@ -1,9 +1,11 @@
-//! The course of the residual within one step: when to give up, when a correction went too far, and
+//! The residuals of one step so far: when to give up, when a correction went too far, and
 //! when factors serve once more.
 
 use igimp_assembly::OutOfBalance;
+use igimp_shape::Grid;
 
-use crate::newton::{NewtonSettings, StepFailure};
+use crate::newton::NewtonSettings;
+use crate::report::{StepFailure, padded};
 
 /// Growth of the residual in one correction above which half the correction is tried \[-\]. Of the
 /// steps that find equilibrium by whole corrections, one in a hundred goes beyond.
@@ -15,20 +17,20 @@ const HARDLY_FULL: f64 = 0.01;
 /// Iterations without a new smallest residual after which a step is given up.
 const STAGNATION: usize = 8;
 
-/// The course of the residual within one step.
+/// The residuals of one step so far.
 #[derive(Default)]
-pub(crate) struct Course {
+pub(crate) struct ResidualHistory {
     /// Relative out-of-balance norms \[-\].
     pub(crate) residuals: Vec<f64>,
     /// Node and axis of the largest out-of-balance force.
-    pub(crate) worst: Option<(usize, usize)>,
+    worst: Option<(usize, usize)>,
     /// How full the cells are around the node at which a system was singular \[-\].
     pub(crate) fill_of_singular: Option<f64>,
     best: f64,
     best_iteration: usize,
 }
 
-impl Course {
+impl ResidualHistory {
     /// Records a residual; an error when the iteration should not go on.
     pub(crate) fn record(
         &mut self,
@@ -53,10 +55,16 @@ impl Course {
             Ok(())
         }
     }
+
+    /// Position \[length\] and axis of the largest out-of-balance force.
+    pub(crate) fn worst<const D: usize>(&self, grid: &Grid<D>) -> Option<([f64; 3], usize)> {
+        self.worst
+            .map(|(node, axis)| (padded(&grid.node_position(node)), axis))
+    }
 }
 
 /// When a system is singular for want of soil.
-impl Course {
+impl ResidualHistory {
     /// Whether a node that hardly touches soil left the system singular: the strains of one or two
     /// particles, seen by their gradients alone, cannot hold it.
     pub(crate) fn is_weakly_held(&self) -> bool {
@@ -65,7 +73,7 @@ impl Course {
 }
 
 /// When a correction went too far.
-impl Course {
+impl ResidualHistory {
     /// Whether the residual after a correction is so much larger than before it that the consistent
     /// tangent told nothing of the way there, as where many particles change their regime at once. The
     /// first correction, which the elastic tangent makes, may raise it.
@@ -84,7 +92,7 @@ impl Course {
 /// With quadratic convergence, r₊ = C r², the same factors used again leave about 2 C r r₊ (Kelley
 /// 1995, section 5.4). Where that is well below the tolerance, a new tangent and its factorisation
 /// would be wasted on digits that nobody asked for.
-impl Course {
+impl ResidualHistory {
     /// Whether they serve for the residual at hand.
     pub(crate) fn factors_suffice(&self, tolerance: f64) -> bool {
         match self.residuals[..] {

@@ -11,31 +11,16 @@ use crate::blocks::Blocks;
 use crate::error::AssemblyError;
 use crate::kinematics::{Linearisation, ParticleState, ParticleTrial, evaluate};
 use crate::linearised::Linearised;
-use crate::stencils::Stencils;
 use crate::strips::split;
 use crate::system::System;
 
 /// All particles at a trial displacement. Its memory is used again from one trial to the next.
 #[derive(Clone, Debug, Default)]
 pub struct Trial<const D: usize> {
-    /// The particles in the order of [`Stencils::order`].
+    /// The particles in the order of [`Stencils::order`](crate::Stencils::order).
     pub particles: Vec<ParticleTrial<D>>,
     /// Internal force by node, ghost penalty and drag included \[force\].
     pub f_int: Vec<[f64; D]>,
-}
-
-impl<const D: usize> Trial<D> {
-    /// The particles as the body numbers them; `stencils` are those that the trial was made with.
-    pub fn by_particle(&self, stencils: &Stencils<D>) -> Vec<&ParticleTrial<D>> {
-        let mut slots = vec![0; self.particles.len()];
-        for (slot, &particle) in stencils.order().iter().enumerate() {
-            slots[particle as usize] = slot;
-        }
-        slots
-            .into_iter()
-            .map(|slot| &self.particles[slot])
-            .collect()
-    }
 }
 
 /// Scratch of one task.
@@ -45,8 +30,8 @@ pub(crate) struct Scratch<const D: usize> {
     pub(crate) blocks: Blocks,
 }
 
-/// The part of a sweep that belongs to one strip.
-struct Strip<'a, const D: usize> {
+/// The part of a pass that belongs to one strip.
+struct StripTask<'a, const D: usize> {
     slots: Range<usize>,
     particles: &'a mut [ParticleTrial<D>],
     first_node: usize,
@@ -58,7 +43,7 @@ struct Strip<'a, const D: usize> {
 impl<const D: usize> System<'_, D> {
     /// Sets `trial`, and the stored `values` of the tangent if any, to nodal step displacements
     /// `u`.
-    pub(crate) fn sweep(
+    pub(crate) fn pass(
         &self,
         u: &[[f64; D]],
         kind: TangentKind,
@@ -87,8 +72,8 @@ impl<const D: usize> System<'_, D> {
             let f_int = split(&mut trial.f_int, nodes.clone());
             let particles = split(&mut trial.particles, slots);
             let parts = strips.zip(particles).zip(f_int).zip(values);
-            let tasks: Vec<Strip<'_, D>> = parts
-                .map(|((((nodes, slots), particles), f_int), values)| Strip {
+            let tasks: Vec<StripTask<'_, D>> = parts
+                .map(|((((nodes, slots), particles), f_int), values)| StripTask {
                     slots: slots.clone(),
                     particles,
                     first_node: nodes.start,
@@ -99,7 +84,7 @@ impl<const D: usize> System<'_, D> {
             let failures: Vec<Option<(usize, AssemblyError)>> = tasks
                 .into_par_iter()
                 .map_init(Scratch::default, |scratch, strip| {
-                    self.sweep_strip(u, kind, strip, scratch).err()
+                    self.pass_strip(u, kind, strip, scratch).err()
                 })
                 .collect();
             let failures = failures.into_iter().flatten();
@@ -112,11 +97,11 @@ impl<const D: usize> System<'_, D> {
 
     /// The particles of one strip; the particle that fails and why.
     #[inline]
-    fn sweep_strip(
+    fn pass_strip(
         &self,
         u: &[[f64; D]],
         kind: TangentKind,
-        mut strip: Strip<'_, D>,
+        mut strip: StripTask<'_, D>,
         scratch: &mut Scratch<D>,
     ) -> Result<(), (usize, AssemblyError)> {
         let order = &self.stencils.order()[strip.slots];

@@ -1,0 +1,72 @@
+//! What holds during one step, besides the particles.
+
+use std::sync::Arc;
+
+use igimp_material::ConstitutiveModel;
+use igimp_shape::Grid;
+
+use crate::constraints::Constraints;
+use crate::error::AssemblyError;
+use crate::loads::StepLoads;
+use crate::particles::Particles;
+
+/// A constitutive law that several bodies and threads share.
+pub type SharedLaw = Arc<dyn ConstitutiveModel>;
+
+/// What holds during one step, besides the particles.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct StepConditions<const D: usize> {
+    /// The background grid of this step.
+    pub grid: Grid<D>,
+    /// Prescribed step displacements.
+    pub constraints: Constraints<D>,
+    /// External force at the end of the step.
+    pub loads: StepLoads<D>,
+    /// Laws at the end of the step, as the particles number them.
+    pub laws: Vec<SharedLaw>,
+}
+
+impl<const D: usize> StepConditions<D> {
+    /// Conditions that agree with one another.
+    ///
+    /// # Errors
+    /// [`AssemblyError::OtherGrid`] for constraints that were made for another grid,
+    /// [`AssemblyError::NonFinite`] for loads that are not finite.
+    pub fn new(
+        grid: Grid<D>,
+        constraints: Constraints<D>,
+        loads: StepLoads<D>,
+        laws: Vec<SharedLaw>,
+    ) -> Result<Self, AssemblyError> {
+        let conditions = Self {
+            grid,
+            constraints,
+            loads,
+            laws,
+        };
+        conditions.agree()?;
+        Ok(conditions)
+    }
+
+    /// Refuses conditions that do not agree.
+    fn agree(&self) -> Result<(), AssemblyError> {
+        self.constraints.belong_to(&self.grid)?;
+        self.loads.are_finite()
+    }
+
+    /// Refuses conditions that do not agree, for a field may have been changed since they were made,
+    /// and particles whose law is not among them.
+    pub(crate) fn serve(&self, particles: &Particles<D>) -> Result<(), AssemblyError> {
+        self.agree()?;
+        let laws = self.laws.len();
+        match particles.law.iter().position(|&law| law >= laws) {
+            Some(particle) => Err(AssemblyError::UnknownLaw {
+                particle,
+                law: particles.law[particle],
+                laws,
+            }),
+            None => Ok(()),
+        }
+    }
+}

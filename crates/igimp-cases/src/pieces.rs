@@ -1,0 +1,291 @@
+//! The bodies as they are drawn: pieces that tile them, carried and deformed by their particles.
+//!
+//! A particle stands for the part of its body within its part of a cell. That piece is cut by the edges
+//! of the body as it was seeded, and moves with the particle: a corner X goes to
+//! x_p + F_p (X − X_p) (theory, eq. 41). Corners that neighbours share meet in the middle of where these
+//! carry them, so that soil has no gaps; where it parts they go their own ways.
+
+use std::collections::HashMap;
+
+use igimp_assembly::Particles;
+
+use crate::case::Case;
+use crate::error::CaseError;
+use crate::polygon::Polygon;
+use crate::seed::{Piece, fill_in_pieces};
+
+/// Corners that a particle carries further from their middle than so many times its size have
+/// parted \[-\].
+const PARTED: f64 = 1.5;
+/// Corners closer than this share of the smallest cell are one \[-\].
+const SAME: f64 = 1e-6;
+
+/// A corner of a piece.
+#[derive(Clone, Copy, Debug)]
+struct Corner {
+    particle: usize,
+    /// Its place seen from the particle's, before both moved.
+    offset: [f64; 2],
+    /// Number of the place, which it may share with corners of other pieces.
+    place: usize,
+}
+
+impl Corner {
+    fn carried(&self, particles: &Particles<2>) -> [f64; 2] {
+        let (x, f) = (
+            particles.x[self.particle],
+            particles.def_grad[self.particle],
+        );
+        let [dx, dy] = self.offset;
+        [0, 1].map(|a| x[a] + f[a][0] * dx + f[a][1] * dy)
+    }
+}
+
+/// The pieces of all bodies of a case, and their edges.
+#[derive(Clone, Debug)]
+pub struct Pieces {
+    particles: Vec<usize>,
+    corners: Vec<Vec<Corner>>,
+    places: usize,
+    /// Closed lines; the first corner stands at the end once more.
+    edges: Vec<Vec<Corner>>,
+}
+
+impl Pieces {
+    /// Cuts the bodies of a case as they are seeded.
+    ///
+    /// # Errors
+    /// [`CaseError`] for bodies that cannot be seeded.
+    pub fn of(case: &Case) -> Result<Self, CaseError> {
+        let grid = case.grid.grid()?;
+        let [width, height] = case.grid.smallest_cell();
+        let near = SAME * width.min(height);
+        let mut numbers: HashMap<[i64; 2], usize> = HashMap::new();
+        let mut all = Self {
+            particles: Vec::new(),
+            corners: Vec::new(),
+            places: 0,
+            edges: Vec::new(),
+        };
+        let mut first = 0;
+        for body in &case.bodies {
+            let (seeds, pieces) = fill_in_pieces(&grid, &body.polygon, body.per_direction, 0.0, 0)?;
+            let own = all.corners.len();
+            for Piece { particle, polygon } in pieces {
+                let mut corners: Vec<Corner> = Vec::with_capacity(polygon.len());
+                for at in polygon {
+                    let next = numbers.len();
+                    let place = *numbers
+                        .entry(at.map(|x| (x / near).round() as i64))
+                        .or_insert(next);
+                    if corners.last().is_none_or(|last| last.place != place) {
+                        corners.push(Corner {
+                            particle: first + particle,
+                            offset: [0, 1].map(|axis| at[axis] - seeds[particle].x[axis]),
+                            place,
+                        });
+                    }
+                }
+                all.particles.push(first + particle);
+                all.corners.push(corners);
+            }
+            all.edges.extend(outline(&all.corners[own..]));
+            first += seeds.len();
+        }
+        all.places = numbers.len();
+        Ok(all)
+    }
+
+    /// The pieces as the particles of the case carry them, each with its particle.
+    ///
+    /// # Panics
+    /// If there are fewer particles than the case has.
+    pub fn now(&self, particles: &Particles<2>) -> (Vec<Polygon>, &[usize]) {
+        let met = self.met(particles);
+        let polygons = self
+            .corners
+            .iter()
+            .map(|corners| moved(corners, &met, particles));
+        (polygons.collect(), &self.particles)
+    }
+
+    /// The edges of the bodies as the particles carry them, closed lines.
+    ///
+    /// # Panics
+    /// If there are fewer particles than the case has.
+    pub fn edges(&self, particles: &Particles<2>) -> Vec<Polygon> {
+        let met = self.met(particles);
+        let lines = self.edges.iter().map(|edge| moved(edge, &met, particles));
+        lines.collect()
+    }
+
+    /// By place: where its corners meet, if they have not parted.
+    fn met(&self, particles: &Particles<2>) -> Vec<Option<[f64; 2]>> {
+        let all = || self.corners.iter().flatten();
+        let mut sums = vec![([0.0; 2], 0.0); self.places];
+        for corner in all() {
+            let (sum, count) = &mut sums[corner.place];
+            let at = corner.carried(particles);
+            *sum = [sum[0] + at[0], sum[1] + at[1]];
+            *count += 1.0;
+        }
+        let mut met: Vec<Option<[f64; 2]>> = sums
+            .into_iter()
+            .map(|(sum, count)| Some(sum.map(|sum| sum / count)))
+            .collect();
+        for corner in all() {
+            let at = corner.carried(particles);
+            let reach = PARTED * size(particles, corner.particle);
+            met[corner.place] = met[corner.place]
+                .filter(|middle| (middle[0] - at[0]).hypot(middle[1] - at[1]) <= reach);
+        }
+        met
+    }
+}
+
+/// The sum of the two sides of a particle as F makes them, and no less than as they were.
+fn size(particles: &Particles<2>, particle: usize) -> f64 {
+    let f = particles.def_grad[particle];
+    let sides = particles.half_length0[particle].map(|half| 2.0 * half);
+    let side = |axis: usize| sides[axis] * f[0][axis].hypot(f[1][axis]).max(1.0);
+    side(0) + side(1)
+}
+
+fn moved(corners: &[Corner], met: &[Option<[f64; 2]>], particles: &Particles<2>) -> Polygon {
+    let now = |corner: &Corner| met[corner.place].unwrap_or_else(|| corner.carried(particles));
+    corners.iter().map(now).collect()
+}
+
+/// The closed lines around pieces: sides that no other piece goes along the other way.
+fn outline(pieces: &[Vec<Corner>]) -> Vec<Vec<Corner>> {
+    let sides = || {
+        pieces.iter().flat_map(|corners| {
+            (0..corners.len()).map(move |k| [corners[k], corners[(k + 1) % corners.len()]])
+        })
+    };
+    let mut ways: HashMap<[usize; 2], usize> = HashMap::new();
+    for [from, to] in sides() {
+        *ways.entry([from.place, to.place]).or_default() += 1;
+    }
+    let mut ahead: HashMap<usize, Vec<[Corner; 2]>> = HashMap::new();
+    let mut starts = Vec::new();
+    for side in sides() {
+        let [from, to] = side.map(|corner| corner.place);
+        if from != to && !ways.contains_key(&[to, from]) {
+            ahead.entry(from).or_default().push(side);
+            starts.push(from);
+        }
+    }
+    let mut lines = Vec::new();
+    for start in starts {
+        let mut line: Vec<Corner> = Vec::new();
+        let mut at = start;
+        while let Some([from, to]) = ahead.get_mut(&at).and_then(Vec::pop) {
+            line.push(from);
+            at = to.place;
+            if at == start {
+                line.push(to);
+                break;
+            }
+        }
+        if line.len() > 2 {
+            lines.push(line);
+        }
+    }
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use igimp_assembly::ParticleFields;
+
+    use super::*;
+    use crate::estimate::tests::case;
+    use crate::polygon::area_and_centroid;
+    use crate::run::Model;
+
+    fn slope() -> Case {
+        let mut case = case();
+        case.bodies[0].polygon = vec![[0.0, 0.0], [3.0, 0.0], [1.3, 1.7], [0.0, 1.7]];
+        case
+    }
+
+    fn area(polygons: &[Polygon]) -> f64 {
+        polygons
+            .iter()
+            .map(|polygon| area_and_centroid(polygon).0)
+            .sum()
+    }
+
+    /// GOAL: a slope is drawn along its line: the pieces of bodies at rest are the bodies.
+    #[test]
+    fn bodies_at_rest_are_drawn_as_they_are() {
+        let case = slope();
+        let particles = Model::new(&case).unwrap().1.body.particles;
+        let pieces = Pieces::of(&case).unwrap();
+        let whole = area_and_centroid(&case.bodies[0].polygon).0;
+        assert!((area(&pieces.now(&particles).0) - whole).abs() < 1e-12 * whole);
+        let inside = |&[x, y]: &[f64; 2]| y <= 1.7 + 1e-12 && x + y <= 3.0 + 1e-12;
+        assert!(pieces.now(&particles).0.iter().flatten().all(inside));
+        let edges = pieces.edges(&particles);
+        assert!((area(&edges) - whole).abs() < 1e-12 * whole);
+    }
+
+    /// GOAL: neighbours that deform differently leave no gaps, soil that parts is not drawn as joined.
+    #[test]
+    fn neighbours_meet_and_parted_soil_does_not() {
+        let case = slope();
+        let start = Model::new(&case).unwrap().1.body.particles;
+        let pieces = Pieces::of(&case).unwrap();
+        let with = |moved: &dyn Fn([f64; 2]) -> [f64; 2]| {
+            let mut fields: ParticleFields<2> = (*start).clone();
+            for x in &mut fields.x {
+                *x = moved(*x);
+            }
+            Particles::from_fields(fields).unwrap()
+        };
+        // Particles move apart by a fifth of their size and do not know of it.
+        let spread = with(&|[x, y]| [1.2 * x, y]);
+        let polygons = pieces.now(&spread).0;
+        let edges = pieces.edges(&spread);
+        assert_eq!(edges.len(), 1);
+        assert!((area(&polygons) - area(&edges)).abs() < 1e-12 * area(&edges));
+        let parted = with(&|[x, y]| [if x > 1.0 { x + 5.0 } else { x }, y]);
+        let across = |polygon: &Polygon| {
+            let [low, high] = polygon
+                .iter()
+                .fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], p| {
+                    [a.min(p[0]), b.max(p[0])]
+                });
+            high - low
+        };
+        assert!(
+            pieces
+                .now(&parted)
+                .0
+                .iter()
+                .all(|polygon| across(polygon) < 0.3)
+        );
+    }
+
+    /// GOAL: soil in one motion has neither gaps nor combs: under simple shear and a turn the pieces
+    /// tile the moved body.
+    #[test]
+    fn one_motion_leaves_no_gaps() {
+        let case = slope();
+        let particles = Model::new(&case).unwrap().1.body.particles;
+        let f = [[0.8, 1.1], [-0.5, 1.4]];
+        let moved = |[x, y]: [f64; 2]| [0, 1].map(|a| 5.0 + f[a][0] * x + f[a][1] * y);
+        let mut fields: ParticleFields<2> = (*particles).clone();
+        for particle in 0..fields.x.len() {
+            fields.x[particle] = moved(fields.x[particle]);
+            fields.def_grad[particle] = f;
+        }
+        let particles = Particles::from_fields(fields).unwrap();
+        let pieces = Pieces::of(&case).unwrap();
+        let outline: Polygon = case.bodies[0].polygon.iter().map(|&x| moved(x)).collect();
+        let whole = area_and_centroid(&outline).0;
+        assert!((area(&pieces.now(&particles).0) - whole).abs() < 1e-12 * whole);
+        assert!((area(&pieces.edges(&particles)) - whole).abs() < 1e-12 * whole);
+    }
+}

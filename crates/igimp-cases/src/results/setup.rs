@@ -1,0 +1,381 @@
+//! The case in words and numbers, as tables for a reader who has no case file before him.
+
+use igimp_assembly::Geometry;
+
+use crate::case::{
+    AxisSpec, Boundaries, Case, Load, LoadKind, Material, Reduction, ReductionPath, Side, Stage,
+    StageKind, StopWhen, Strength,
+};
+use crate::check::short;
+use crate::summary::SetupTable;
+
+/// Stands for what a row does not have.
+const NONE: &str = "–";
+/// Most corners of a body that are listed one by one.
+const MOST_CORNERS: usize = 24;
+
+/// Materials, bodies, supports, loads, stages and grid of a case.
+pub fn tables(case: &Case) -> Vec<SetupTable> {
+    [
+        materials(case),
+        bodies(case),
+        supports(&case.boundaries),
+        loads(case),
+        stages(case),
+        grid(case),
+    ]
+    .into_iter()
+    .filter(|table| !table.rows.is_empty())
+    .collect()
+}
+
+fn table(title: &str, header: &[&str], rows: Vec<Vec<String>>) -> SetupTable {
+    SetupTable {
+        title: title.to_owned(),
+        header: header.iter().map(|&name| name.to_owned()).collect(),
+        rows,
+    }
+}
+
+fn materials(case: &Case) -> SetupTable {
+    let header = [
+        "Material",
+        "Law",
+        "Unit weight [kN/m³]",
+        "E [MPa]",
+        "ν [−]",
+        "Strength",
+        "K₀ [−]",
+    ];
+    table(
+        "Materials",
+        &header,
+        case.materials.iter().map(material).collect(),
+    )
+}
+
+fn material(material: &Material) -> Vec<String> {
+    let (law, strength) = match material.strength {
+        Strength::Elastic => ("elastic", "no limit".to_owned()),
+        Strength::VonMises { undrained_strength } => ("von Mises", undrained(undrained_strength)),
+        Strength::Tresca { undrained_strength } => ("Tresca", undrained(undrained_strength)),
+        Strength::MohrCoulomb {
+            cohesion,
+            friction_angle,
+            dilation_angle,
+            tension_cutoff,
+        } => {
+            let degrees = |angle: f64| short(angle.to_degrees());
+            let cutoff = tension_cutoff.map_or_else(String::new, |limit| {
+                format!(", tension up to {}", kilo(limit, "Pa"))
+            });
+            let strength = format!(
+                "c = {}, φ = {}°, ψ = {}°{cutoff}",
+                kilo(cohesion, "Pa"),
+                degrees(friction_angle),
+                degrees(dilation_angle)
+            );
+            ("Mohr–Coulomb", strength)
+        }
+    };
+    vec![
+        material.name.clone(),
+        law.to_owned(),
+        short(material.unit_weight / 1e3),
+        short(material.young / 1e6),
+        short(material.poisson),
+        strength,
+        material.k0.map_or_else(|| NONE.to_owned(), short),
+    ]
+}
+
+fn undrained(strength: f64) -> String {
+    format!("c_u = {}", kilo(strength, "Pa"))
+}
+
+fn bodies(case: &Case) -> SetupTable {
+    let rows = case.bodies.iter().map(|body| {
+        let corners: Vec<String> = body.polygon.iter().map(|&corner| point(corner)).collect();
+        let corners = if corners.len() > MOST_CORNERS {
+            format!("{} corners", corners.len())
+        } else {
+            corners.join(" ")
+        };
+        let per_cell = body.per_direction * body.per_direction;
+        vec![
+            body.name.clone(),
+            case.materials[body.material].name.clone(),
+            corners,
+            per_cell.to_string(),
+        ]
+    });
+    let header = ["Body", "Material", "Corners [m]", "Particles per cell"];
+    table("Bodies", &header, rows.collect())
+}
+
+fn supports(boundaries: &Boundaries) -> SetupTable {
+    let sides = [
+        ("left side", boundaries.left, "held across"),
+        ("right side", boundaries.right, "held across"),
+        ("bottom", boundaries.bottom, "held upright"),
+        ("top", boundaries.top, "held upright"),
+    ];
+    let mut rows: Vec<Vec<String>> = sides
+        .into_iter()
+        .map(|(name, side, roller)| {
+            let held = match side {
+                Side::Free => "free",
+                Side::Roller => roller,
+                Side::Fixed => "fixed",
+            };
+            vec![name.to_owned(), held.to_owned(), "the grid's".to_owned()]
+        })
+        .collect();
+    for held in &boundaries.boxes {
+        let how = match held.fix {
+            [true, true] => "fixed",
+            [true, false] => "held across",
+            [false, true] => "held upright",
+            [false, false] => "free",
+        };
+        let place = format!("{} to {}", point(held.lower), point(held.upper));
+        rows.push(vec![held.name.clone(), how.to_owned(), place]);
+    }
+    table("Supports", &["Support", "Held", "Place [m]"], rows)
+}
+
+fn loads(case: &Case) -> SetupTable {
+    let rows = case.loads.iter().map(|load| {
+        let (kind, place, size) = match load.kind {
+            LoadKind::RigidFooting {
+                from,
+                to,
+                rough,
+                reaction_factor,
+            } => {
+                let kind = if rough {
+                    "rigid footing, rough"
+                } else {
+                    "rigid footing, smooth"
+                };
+                let size = if (reaction_factor - 1.0).abs() > 0.0 {
+                    format!("its reaction is told times {}", short(reaction_factor))
+                } else {
+                    NONE.to_owned()
+                };
+                (kind, line(from, to), size)
+            }
+            LoadKind::Pressure { from, to, traction } => {
+                ("pressure", line(from, to), components(traction, "Pa"))
+            }
+            LoadKind::Point { at, force } => ("force", point(at), components(force, "N/m")),
+        };
+        vec![load.name.clone(), kind.to_owned(), place, size]
+    });
+    let header = ["Load", "Kind", "Place [m]", "Size at factor 1 (x, y)"];
+    table("Loads", &header, rows.collect())
+}
+
+fn stages(case: &Case) -> SetupTable {
+    let rows = case.stages.iter().enumerate().map(|(number, stage)| {
+        let from = stage.start_from.map_or_else(
+            || "undeformed, free of stress".to_owned(),
+            |from| case.stages[from].name.clone(),
+        );
+        let mut what = vec![happens(case, stage)];
+        if stage.geometry == Geometry::Given {
+            what.push("on the geometry as it is".to_owned());
+        }
+        what.extend(ends(case, &stage.stop_when));
+        if stage.reset_displacements {
+            what.push("displacements count from its end on".to_owned());
+        }
+        vec![
+            (number + 1).to_string(),
+            stage.name.clone(),
+            what.join("; "),
+            from,
+            stage.steps.to_string(),
+        ]
+    });
+    let header = ["", "Stage", "What happens", "Starts from", "Steps"];
+    table("Stages as planned", &header, rows.collect())
+}
+
+fn happens(case: &Case, stage: &Stage) -> String {
+    let materials = |which: &[usize]| {
+        let names: Vec<&str> = which
+            .iter()
+            .map(|&k| case.materials[k].name.as_str())
+            .collect();
+        names.join(", ")
+    };
+    match &stage.kind {
+        StageKind::Gravity { factor } => format!("gravity to {}", times(*factor, "value")),
+        StageKind::K0 => "stresses of level ground at rest (K₀), then equilibrium".to_owned(),
+        StageKind::Load { loads, factor } => {
+            let name = |&k: &usize| case.loads[k].name.as_str();
+            let names: Vec<&str> = loads.iter().map(name).collect();
+            format!("{} to {}", names.join(", "), times(*factor, "size"))
+        }
+        StageKind::Displacement { load, settlement } => {
+            let Load { name, .. } = &case.loads[*load];
+            format!("{name} pushed down by {} m", short(*settlement))
+        }
+        StageKind::StrengthReduction(reduction) => {
+            let path = match reduction.path {
+                ReductionPath::Reduce => "step by step",
+                ReductionPath::Gravity => "with gravity raised anew",
+            };
+            format!(
+                "search for the factor of safety to within {}, strength of {} reduced {path}",
+                short(reduction.tolerance),
+                materials(&reduction.materials)
+            )
+        }
+        StageKind::RunOut(run_out) => {
+            let by = match run_out.reduction {
+                Reduction::TimesFos(times) => {
+                    format!("{} times the factor of safety", short(times))
+                }
+                Reduction::Factor(factor) => short(factor),
+            };
+            format!(
+                "motion until rest, strength of {} divided by {by}",
+                materials(&run_out.materials)
+            )
+        }
+    }
+}
+
+/// A multiple in words.
+fn times(factor: f64, of: &str) -> String {
+    if (factor - 1.0).abs() < 1e-12 {
+        format!("its full {of}")
+    } else {
+        format!("{} times its {of}", short(factor))
+    }
+}
+
+/// The conditions that end a stage early.
+fn ends(case: &Case, stop: &StopWhen) -> Vec<String> {
+    let mut words = Vec::new();
+    if let Some(limit) = stop.displacement {
+        let whose = stop.monitor.map_or_else(
+            || "the largest displacement".to_owned(),
+            |monitor| format!("the displacement of {}", case.monitors[monitor].name),
+        );
+        words.push(format!("ends when {whose} is {} m", short(limit)));
+    }
+    if stop.no_equilibrium {
+        words.push("ends for want of equilibrium".to_owned());
+    }
+    if let Some(share) = stop.load_grows_less_than {
+        let share = short(100.0 * share);
+        words.push(format!(
+            "ends when the load grows by less than {share} % in a step"
+        ));
+    }
+    words
+}
+
+fn grid(case: &Case) -> SetupTable {
+    let cells = |axis: &AxisSpec| {
+        let [smallest, largest] = axis.extremes();
+        match axis {
+            AxisSpec::Equal { cell, .. } => short(*cell),
+            AxisSpec::Lines(_) => format!("{} to {}", short(smallest), short(largest)),
+        }
+    };
+    let (lower, upper, count) = (case.grid.lower(), case.grid.upper(), case.grid.cells());
+    let row = |axis: usize, name: &str| {
+        vec![
+            name.to_owned(),
+            format!("{} to {}", short(lower[axis]), short(upper[axis])),
+            cells(&case.grid.axes[axis]),
+            count[axis].to_string(),
+        ]
+    };
+    let header = ["Grid", "Extent [m]", "Cell [m]", "Cells"];
+    table(
+        "Background grid",
+        &header,
+        vec![row(0, "x, level"), row(1, "y, upright")],
+    )
+}
+
+fn point([x, y]: [f64; 2]) -> String {
+    format!("({}, {})", short(x), short(y))
+}
+
+fn line(from: [f64; 2], to: [f64; 2]) -> String {
+    format!("{} to {}", point(from), point(to))
+}
+
+/// A size with k before its unit.
+fn kilo(value: f64, unit: &str) -> String {
+    format!("{} k{unit}", short(value / 1e3))
+}
+
+fn components([x, y]: [f64; 2], unit: &str) -> String {
+    format!("{}, {} k{unit}", short(x / 1e3), short(y / 1e3))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::input::CaseFile;
+    use crate::shipped::SHIPPED;
+
+    fn of(name: &str) -> Vec<SetupTable> {
+        let shipped = SHIPPED.iter().find(|case| case.name == name).unwrap();
+        tables(
+            CaseFile::parse("case.toml", shipped.text, &[])
+                .unwrap()
+                .case(),
+        )
+    }
+
+    fn row(tables: &[SetupTable], title: &str, number: usize) -> String {
+        let table = tables.iter().find(|table| table.title == title).unwrap();
+        table.rows[number].join(" | ")
+    }
+
+    #[test]
+    fn a_slope_is_told_in_words() {
+        let tables = of("slope");
+        assert_eq!(
+            row(&tables, "Materials", 0),
+            "clay | Mohr–Coulomb | 20 | 20 | 0.3 | c = 20 kPa, φ = 20°, ψ = 0° | –"
+        );
+        assert_eq!(row(&tables, "Supports", 2), "bottom | fixed | the grid's");
+        assert_eq!(
+            row(&tables, "Stages as planned", 1),
+            "2 | factor of safety | search for the factor of safety to within 0.02, strength of clay reduced \
+             step by step; on the geometry as it is | initial stresses | 10"
+        );
+        assert_eq!(
+            row(&tables, "Stages as planned", 0),
+            "1 | initial stresses | gravity to its full value; displacements count from its end on | \
+             undeformed, free of stress | 10"
+        );
+        assert!(!tables.iter().any(|table| table.title == "Loads"));
+    }
+
+    #[test]
+    fn every_shipped_case_makes_whole_tables() {
+        for shipped in SHIPPED {
+            for table in of(shipped.name) {
+                for row in &table.rows {
+                    assert_eq!(
+                        row.len(),
+                        table.header.len(),
+                        "{} of {}",
+                        table.title,
+                        shipped.name
+                    );
+                }
+            }
+        }
+    }
+}

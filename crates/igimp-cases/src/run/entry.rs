@@ -1,0 +1,70 @@
+//! The way into a results folder: locked, and asked whether what it holds may be replaced, before
+//! anything is touched.
+
+use std::path::Path;
+
+use super::{Start, Target, fingerprint};
+use crate::case::Case;
+use crate::error::CaseError;
+use crate::results::admission::{admit, refuse_links};
+use crate::results::checkpoint::CheckpointError;
+use crate::results::folder::{self, holds_checkpoints, owner, refuse_foreign};
+use crate::results::lock::Lock;
+use crate::results::owner::Owner;
+
+/// Whether a folder holds a run of this very input that was stopped and can go on.
+pub fn can_go_on(case: &Case, root: &Path) -> bool {
+    let stopped = |owner: &Owner| !owner.finished && owner.input == fingerprint::of_case(case);
+    owner(root).as_ref().is_some_and(stopped) && holds_checkpoints(root)
+}
+
+/// A results folder that a run may write into, and that of its linear systems, kept for it until this is
+/// dropped.
+#[derive(Debug)]
+pub(crate) struct Entered {
+    _locks: Vec<Lock>,
+}
+
+impl Entered {
+    /// Enters the folder of a run.
+    ///
+    /// # Errors
+    /// [`CaseError::InUse`], [`CaseError::ForeignFolder`], [`CaseError::Link`],
+    /// [`CaseError::OtherResults`], [`CaseError::Unfinished`]; [`CheckpointError::OtherCase`] for
+    /// checkpoints of other input to go on from.
+    pub(crate) fn new(case: &Case, target: &Target, start: Start) -> Result<Self, CaseError> {
+        let root = &target.folder;
+        refuse_foreign(root)?;
+        refuse_links(root)?;
+        let mut locks = vec![Lock::alone(root)?];
+        let claim = target.claim(case);
+        let goes_on = match start {
+            Start::Afresh | Start::FromStage(0) => false,
+            Start::Resume => holds_checkpoints(root),
+            Start::FromStage(_) => true,
+        };
+        if !goes_on {
+            admit(root, &claim, target.replace)?;
+        } else if start == Start::Resume
+            && owner(root).is_some_and(|owner| owner.input != claim.input)
+        {
+            return Err(CheckpointError::OtherCase { path: root.clone() }.into());
+        }
+        if let Some(systems) = &target.systems {
+            refuse_foreign(systems)?;
+            // It may lie within the results folder, which is then no longer empty.
+            folder::claim(root)?;
+            if !is_same_folder(systems, root) {
+                locks.push(Lock::alone(systems)?);
+            }
+        }
+        Ok(Self { _locks: locks })
+    }
+}
+
+fn is_same_folder(a: &Path, b: &Path) -> bool {
+    match (a.canonicalize(), b.canonicalize()) {
+        (Ok(a), Ok(b)) => a == b,
+        _ => false,
+    }
+}

@@ -1,0 +1,37 @@
+//! The displacement at which a body counts as failed when the case states none.
+
+use igimp_assembly::Geometry;
+
+use crate::case::Stage;
+use crate::run::model::Model;
+use crate::run::state::State;
+
+/// The displacement γH²/E at which a body of moving geometry counts as failed when the case states none
+/// \[m\] (theory, eq. 32a), with means over the volume: the mean unit weight and the mean of 1/E. None on
+/// a given geometry, which needs none, and for bodies without weight.
+pub(super) fn default_limit(model: &Model<'_>, stage: &Stage, state: &State) -> Option<f64> {
+    if stage.geometry == Geometry::Given {
+        return None;
+    }
+    let particles = &state.body.particles;
+    let weight = particles.mass.iter().sum::<f64>() * model.case.gravity;
+    let volume: f64 = particles.volume0.iter().sum();
+    let soft: f64 = particles
+        .law
+        .iter()
+        .zip(&particles.volume0)
+        .map(|(&law, volume)| volume / model.laws[law].elasticity().young())
+        .sum();
+    let limit = weight / volume * height(state).powi(2) * soft / volume;
+    (limit > 0.0).then_some(limit)
+}
+
+/// Height of the bodies \[m\].
+pub(super) fn height(state: &State) -> f64 {
+    let particles = &state.body.particles;
+    let levels = || {
+        let edges = particles.x.iter().zip(&particles.half_length);
+        edges.flat_map(|(x, half_length)| [x[1] - half_length[1], x[1] + half_length[1]])
+    };
+    levels().fold(f64::NEG_INFINITY, f64::max) - levels().fold(f64::INFINITY, f64::min)
+}

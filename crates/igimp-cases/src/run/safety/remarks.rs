@@ -1,0 +1,72 @@
+//! What a reader has to know about an interval.
+
+use super::at_full_strength;
+use crate::case::StrengthReduction;
+use crate::check::short;
+use crate::run::records::largest_displacement;
+use crate::run::state::State;
+use crate::summary::SafetySummary;
+
+/// A particle moves when its displacement exceeds this share of the largest \[-\].
+const MOVING: f64 = 0.1;
+
+/// A moving share of the mass below this is called local \[-\].
+const LOCAL: f64 = 0.02;
+
+/// What a reader has to know about an interval.
+pub(super) fn remarks(safety: &SafetySummary, reduction: &StrengthReduction) -> Vec<String> {
+    let mut remarks = Vec::new();
+    let [low, high] = reduction.bracket;
+    if safety
+        .trials
+        .iter()
+        .any(|trial| at_full_strength(trial) && !trial.stable)
+    {
+        remarks.push(
+            "the body does not stand at full strength (SRF 1): the factor of safety is below 1, or \
+             the start of the search is not in equilibrium"
+                .to_owned(),
+        );
+    }
+    match (safety.stable, safety.failed) {
+        (Some(stable), None) => remarks.push(format!(
+            "the slope still stands at SRF {stable:.4}, the largest factor tried"
+        )),
+        (None, Some(failed)) => remarks.push(format!(
+            "the slope fails even at SRF {failed:.4}, the smallest factor tried"
+        )),
+        (Some(stable), Some(failed)) if failed <= low || stable >= high => remarks.push(format!(
+            "the factor of safety lies outside the bracket [{low}, {high}], which was widened"
+        )),
+        _ => {}
+    }
+    if let Some(share) = safety.moving_mass.filter(|&share| share < LOCAL) {
+        remarks.push(format!(
+            "only {} % of the mass moves at failure: this is a local failure; leave its material \
+             out with `materials`, or give it a little cohesion, to find that of the whole slope",
+            short(100.0 * share)
+        ));
+    }
+    remarks
+}
+
+/// The share of the mass that moves by more than a tenth of the largest displacement \[-\]; of the
+/// volume where nothing has a weight.
+pub(super) fn moving_mass(state: &State) -> f64 {
+    let particles = &state.body.particles;
+    let limit = MOVING * largest_displacement(particles);
+    let weighs = particles.mass.iter().any(|&mass| mass > 0.0);
+    let share = if weighs {
+        &particles.mass
+    } else {
+        &particles.volume0
+    };
+    let moving: f64 = particles
+        .displacement
+        .iter()
+        .zip(share)
+        .filter(|(d, _)| d[0].hypot(d[1]) > limit)
+        .map(|(_, share)| share)
+        .sum();
+    moving / share.iter().sum::<f64>()
+}

@@ -1,0 +1,245 @@
+//! The corrections of one step: the tangent matrix and its factors, used once more where that serves,
+//! the time that they take, and names for what a linear solver knows by its index only.
+
+use std::time::{Duration, Instant};
+
+use igimp_assembly::{AssemblyError, OutOfBalance, Stencils, System, TangentMatrix, Trial};
+use igimp_material::TangentKind;
+use igimp_shape::Grid;
+
+use crate::linear::{LinearSolver, LinearSolverError};
+use crate::newton::{NewtonSettings, Workspace};
+use crate::report::{PhaseTimes, StepFailure, padded};
+use crate::residual_history::ResidualHistory;
+
+/// How often a correction is halved.
+const MOST_HALVINGS: u32 = 4;
+
+/// What makes the corrections of one step.
+///
+/// The first one uses the elastic tangent, all others the consistent tangent; the last one may use that
+/// of the correction before. One that turns a particle inside out, or raises the residual manyfold, is
+/// halved.
+pub(crate) struct Corrector<'s, 'w, const D: usize> {
+    system: &'s System<'s, D>,
+    stencils: &'s Stencils<D>,
+    grid: &'s Grid<D>,
+    settings: &'s NewtonSettings,
+    solver: &'w mut dyn LinearSolver,
+    matrix: &'w mut TangentMatrix,
+    du: &'w mut Vec<f64>,
+    history: &'w mut ResidualHistory,
+    /// Whether the matrix is the tangent at u, or that before the last correction.
+    is_current: bool,
+    /// The particles at u.
+    pub(crate) trial: &'w mut Trial<D>,
+    /// Number of corrections so far.
+    pub(crate) iterations: usize,
+    /// Time spent so far.
+    pub(crate) times: PhaseTimes,
+}
+
+impl<'s, 'w, const D: usize> Corrector<'s, 'w, D> {
+    /// One in the memory of a workspace. `set_up` is the time that system and stencils took.
+    pub(crate) fn new(
+        (system, stencils): (&'s System<'s, D>, &'s Stencils<D>),
+        grid: &'s Grid<D>,
+        settings: &'s NewtonSettings,
+        workspace: &'w mut Workspace<D>,
+        history: &'w mut ResidualHistory,
+        set_up: Duration,
+    ) -> Self {
+        let Workspace {
+            solver,
+            matrix,
+            trial,
+            du,
+        } = workspace;
+        let earlier = matrix.take();
+        Self {
+            system,
+            stencils,
+            grid,
+            settings,
+            solver: &mut **solver,
+            matrix: matrix.insert(system.matrix_from(earlier)),
+            du,
+            history,
+            is_current: true,
+            trial,
+            iterations: 0,
+            times: PhaseTimes {
+                set_up,
+                ..PhaseTimes::default()
+            },
+        }
+    }
+
+    /// The start of the step, where nothing moves yet: trial, elastic tangent and residual.
+    pub(crate) fn start(&mut self, still: &[[f64; D]]) -> Result<OutOfBalance, StepFailure> {
+        timed(&mut self.times.assembly, || {
+            self.system
+                .linearise_into(still, TangentKind::Elastic, self.trial, self.matrix)
+        })?;
+        let residual = self.system.out_of_balance(self.trial)?;
+        self.history.record(&residual, self.settings)?;
+        Ok(residual)
+    }
+
+    /// The correction du by unknown \[length\] that the residual at `u` asks for.
+    pub(crate) fn solve(
+        &mut self,
+        residual: &OutOfBalance,
+        u: &[[f64; D]],
+    ) -> Result<&[f64], StepFailure> {
+        let iterations = self.iterations;
+        if iterations == self.settings.max_iterations {
+            return Err(StepFailure::MaxIterations { iterations });
+        }
+        if !self.is_current && !self.history.factors_suffice(self.settings.tolerance) {
+            timed(&mut self.times.assembly, || {
+                self.system
+                    .linearise_into(u, TangentKind::Consistent, self.trial, self.matrix)
+            })?;
+            self.is_current = true;
+        }
+        if self.is_current {
+            timed(&mut self.times.factor, || self.solver.factor(self.matrix)).map_err(|error| {
+                self.history.fill_of_singular = self.fill_of_singular(&error);
+                self.named(error, u)
+            })?;
+        }
+        self.du.resize(residual.force.len(), 0.0);
+        timed(&mut self.times.solve, || {
+            self.solver.solve(self.matrix, &residual.force, self.du)
+        })
+        .map_err(|error| self.named(error, u))?;
+        if let Some(unknown) = self.du.iter().position(|du| !du.is_finite()) {
+            return Err(self.not_finite("correction", unknown));
+        }
+        self.iterations += 1;
+        Ok(self.du)
+    }
+
+    /// Trial and residual at `u`, to which the last correction was added, with the tangent unless the
+    /// factors at hand will probably serve once more. A correction that goes too far is halved: one
+    /// that turns a particle inside out, or raises the residual manyfold.
+    pub(crate) fn linearise(
+        &mut self,
+        u: &mut [[f64; D]],
+        residual: &mut OutOfBalance,
+    ) -> Result<(), StepFailure> {
+        self.is_current = !self.history.factors_will_suffice(self.settings.tolerance);
+        let clock = Instant::now();
+        let mut halvings = 0;
+        let evaluated = loop {
+            let evaluated = self.evaluate(u, residual);
+            let too_far = match &evaluated {
+                Ok(()) => self.history.overshoots(residual),
+                Err(error) => error.is_too_far(),
+            };
+            if !too_far || halvings == MOST_HALVINGS {
+                break evaluated;
+            }
+            self.take_back_half(u, halvings);
+            halvings += 1;
+        };
+        self.times.assembly += clock.elapsed();
+        evaluated?;
+        self.history.record(residual, self.settings)
+    }
+
+    /// Trial and residual at `u`, with the tangent if the matrix is to be that.
+    fn evaluate(
+        &mut self,
+        u: &[[f64; D]],
+        residual: &mut OutOfBalance,
+    ) -> Result<(), AssemblyError> {
+        let kind = TangentKind::Consistent;
+        if self.is_current {
+            self.system
+                .linearise_into(u, kind, self.trial, self.matrix)?;
+        } else {
+            self.system.evaluate_into(u, kind, self.trial)?;
+        }
+        self.system.update_out_of_balance(residual, self.trial)
+    }
+
+    /// Takes back half of what is left of a correction in `u`. `du` is the correction itself, or what
+    /// was taken back last.
+    fn take_back_half(&mut self, u: &mut [[f64; D]], halvings: u32) {
+        let share = if halvings == 0 { -0.5 } else { 0.5 };
+        for component in self.du.iter_mut() {
+            *component *= share;
+        }
+        self.system.add_correction(u, self.du);
+    }
+}
+
+/// Names for what fails.
+impl<const D: usize> Corrector<'_, '_, D> {
+    /// The failure of the linear solver at `u` with a name for what is not finite: the particle whose
+    /// tangent it is, or the node.
+    fn named(&self, error: LinearSolverError, u: &[[f64; D]]) -> StepFailure {
+        match error {
+            LinearSolverError::NonFinite { what: "matrix", .. } => self
+                .finite_tangents(u)
+                .map_or_else(StepFailure::from, |()| error.into()),
+            LinearSolverError::NonFinite { what, index } => {
+                let what = if what == "solution" {
+                    "correction"
+                } else {
+                    what
+                };
+                self.not_finite(what, index)
+            }
+            other => other.into(),
+        }
+    }
+
+    /// Looks for a particle whose tangent is not finite: at `u`, or at the start of the step, to which
+    /// the first matrix belongs.
+    fn finite_tangents(&self, u: &[[f64; D]]) -> Result<(), AssemblyError> {
+        if self.iterations == 0 {
+            let still = vec![[0.0; D]; self.grid.node_count()];
+            self.system.finite_tangents(&still, TangentKind::Elastic)
+        } else {
+            self.system.finite_tangents(u, TangentKind::Consistent)
+        }
+    }
+
+    /// The failure that names the node of an unknown.
+    fn not_finite(&self, what: &'static str, unknown: usize) -> StepFailure {
+        self.system.unknowns().place(unknown).map_or_else(
+            || {
+                let index = unknown;
+                LinearSolverError::NonFinite { what, index }.into()
+            },
+            |(node, axis)| StepFailure::NotFinite {
+                what,
+                position: padded(&self.grid.node_position(node)),
+                axis,
+            },
+        )
+    }
+
+    /// How full the cells are around the node that a singular system names \[-\].
+    fn fill_of_singular(&self, error: &LinearSolverError) -> Option<f64> {
+        let LinearSolverError::Singular {
+            unknown: Some(unknown),
+        } = error
+        else {
+            return None;
+        };
+        let (node, _) = self.system.unknowns().place(*unknown)?;
+        Some(self.stencils.node_fill(self.grid, node))
+    }
+}
+
+/// Runs a phase and adds its time.
+fn timed<T>(total: &mut Duration, phase: impl FnOnce() -> T) -> T {
+    let clock = Instant::now();
+    let result = phase();
+    *total += clock.elapsed();
+    result
+}

@@ -1,0 +1,176 @@
+//! What a step reports: the equilibrium that it reached, or why there is none.
+
+use std::time::Duration;
+
+use igimp_assembly::AssemblyError;
+use thiserror::Error;
+
+use crate::linear::LinearSolverError;
+
+/// Why a step found no equilibrium.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum StepFailure {
+    /// The corrections ran out.
+    #[error("not converged after {iterations} corrections")]
+    MaxIterations {
+        /// How many were made.
+        iterations: usize,
+    },
+    /// The residual grew far beyond its smallest value.
+    #[error("the residual diverges")]
+    Diverged,
+    /// The residual found no new smallest value for many corrections.
+    #[error("the residual stagnates")]
+    Stagnated,
+    /// Converged, but a particle would be carried off the background grid.
+    #[error("particle {particle} would leave the background grid at {position:?} m")]
+    LeavesGrid {
+        /// Number of the particle, from 0.
+        particle: usize,
+        /// Where it would go \[length\], axes beyond the dimension 0.
+        position: [f64; 3],
+    },
+    /// Converged, but a load point would be carried off the background grid.
+    #[error("load point {point} would leave the background grid at {position:?} m")]
+    LoadPointLeavesGrid {
+        /// Number of the point, from 0.
+        point: usize,
+        /// Where it would go \[length\], axes beyond the dimension 0.
+        position: [f64; 3],
+    },
+    /// A number of the linear system that must be finite is not.
+    #[error("the {what} at {position:?} m, axis {axis}, is not finite")]
+    NotFinite {
+        /// `"right-hand side"` or `"correction"`.
+        what: &'static str,
+        /// Place of the node \[length\], axes beyond the dimension 0.
+        position: [f64; 3],
+        /// The component, from 0.
+        axis: usize,
+    },
+    /// The equations could not be formed.
+    #[error("the equations could not be formed")]
+    Assembly(#[from] AssemblyError),
+    /// The linear system could not be solved.
+    #[error("the linear system could not be solved")]
+    Linear(#[from] LinearSolverError),
+}
+
+impl StepFailure {
+    /// Whether the failure speaks for want of equilibrium, as past a limit load: the equations were
+    /// there and Newton's method found no solution near. A particle that leaves the grid, a law that
+    /// cannot answer or memory that runs out tell nothing of the load that a body carries.
+    pub fn is_want_of_equilibrium(&self) -> bool {
+        match self {
+            Self::MaxIterations { .. } | Self::Diverged | Self::Stagnated => true,
+            Self::LeavesGrid { .. } | Self::LoadPointLeavesGrid { .. } | Self::NotFinite { .. } => {
+                false
+            }
+            Self::Assembly(error) => error.is_too_far(),
+            Self::Linear(error) => matches!(
+                error,
+                LinearSolverError::Singular { .. }
+                    | LinearSolverError::NotPositiveDefinite { .. }
+                    | LinearSolverError::Inaccurate { .. }
+            ),
+        }
+    }
+
+    /// Whether something was to be carried off the grid: a smaller step only puts that off.
+    pub(crate) fn leaves_grid(&self) -> bool {
+        matches!(
+            self,
+            Self::LeavesGrid { .. } | Self::LoadPointLeavesGrid { .. }
+        )
+    }
+}
+
+/// A step that was not accepted, with what is known of it.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[error("no equilibrium between load factors {from} and {to}")]
+pub struct StepError {
+    /// Load factor at the start \[-\].
+    pub from: f64,
+    /// Load factor tried \[-\].
+    pub to: f64,
+    /// Relative out-of-balance norm before each correction \[-\].
+    pub residuals: Vec<f64>,
+    /// Position \[length\] and axis of the largest out-of-balance force.
+    pub worst: Option<([f64; 3], usize)>,
+    /// Why.
+    #[source]
+    pub failure: Box<StepFailure>,
+}
+
+/// Time spent in the phases of a step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PhaseTimes {
+    /// Stencils, unknowns, external force, pattern.
+    pub set_up: Duration,
+    /// Passes over the particles: stress, internal force, tangent matrix; residual.
+    pub assembly: Duration,
+    /// Factorisation of the tangent matrices, with the analysis of their patterns.
+    pub factor: Duration,
+    /// Solution of the linear systems.
+    pub solve: Duration,
+    /// Writing the accepted state.
+    pub commit: Duration,
+}
+
+impl PhaseTimes {
+    /// Adds another step's times.
+    pub fn add(&mut self, other: &Self) {
+        self.set_up += other.set_up;
+        self.assembly += other.assembly;
+        self.factor += other.factor;
+        self.solve += other.solve;
+        self.commit += other.commit;
+    }
+}
+
+/// An accepted step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StepReport {
+    /// Load factor at the start \[-\].
+    pub from: f64,
+    /// Load factor reached \[-\].
+    pub to: f64,
+    /// Number of corrections.
+    pub iterations: usize,
+    /// Relative out-of-balance norm before each correction and at the end \[-\].
+    pub residuals: Vec<f64>,
+    /// Whether the step was accepted above the tolerance because its residual is nothing but
+    /// round-off of the internal force.
+    pub at_round_off: bool,
+    /// Number of unknowns.
+    pub unknowns: usize,
+    /// Share of particles that returned to the yield surface \[-\].
+    pub plastic_share: f64,
+    /// Share of the load that dropped nodes take without a support \[-\].
+    pub false_support: f64,
+    /// The ghost penalty that the step was given because a node that hardly touches soil left its
+    /// system singular; zero in a step that did without \[-\].
+    pub ghost_penalty: f64,
+    /// Position \[length\] and axis of the largest out-of-balance force that was left.
+    pub worst: Option<([f64; 3], usize)>,
+    /// Share of the external force that drag against motion carries; zero in equilibrium \[-\].
+    pub drag_share: f64,
+    /// Time spent.
+    pub times: PhaseTimes,
+}
+
+/// Forces of an accepted step, by node of its grid.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NodalForces<const D: usize> {
+    /// Reaction f_int − f_ext where displacement is prescribed, zero elsewhere \[force\].
+    pub reactions: Vec<[f64; D]>,
+    /// Step displacement \[length\].
+    pub u: Vec<[f64; D]>,
+}
+
+/// A position with zeros beyond the dimension, for messages.
+pub(crate) fn padded<const D: usize>(x: &[f64; D]) -> [f64; 3] {
+    let mut out = [0.0; 3];
+    out[..D].copy_from_slice(x);
+    out
+}

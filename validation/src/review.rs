@@ -1,0 +1,282 @@
+//! What changed since the snapshots were accepted: for every curve the largest change and where it is,
+//! and a picture of old against new; and how what a run left is accepted.
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use igimp_cases::CaseError;
+use igimp_cases::check::short;
+use igimp_figures::{CurvePlot, LineStyle, Series, SeriesStyle};
+
+/// Most panels of one picture.
+const PANELS: usize = 4;
+
+/// A snapshot that today's results differ from.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Difference {
+    /// Name of the snapshot, or of the line of the matrix.
+    pub(crate) name: String,
+    /// What differs, in words.
+    pub(crate) told: String,
+}
+
+impl std::fmt::Display for Difference {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}: {}", self.name, self.told)
+    }
+}
+
+/// Where snapshots are.
+pub(crate) fn snapshots() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("snapshots")
+}
+
+/// The text of a snapshot that was accepted, without its head.
+pub(crate) fn accepted(folder: &Path, name: &str) -> Option<String> {
+    let text = fs::read_to_string(folder.join(format!("{name}.snap"))).ok()?;
+    let text = text.replace("\r\n", "\n");
+    let rest = text.strip_prefix("---\n")?;
+    let (_, contents) = rest.split_once("\n---\n")?;
+    Some(contents.to_owned())
+}
+
+/// Columns of numbers under a line of names, as snapshots hold them.
+struct Columns {
+    names: Vec<String>,
+    rows: Vec<Vec<f64>>,
+}
+
+impl Columns {
+    fn read(text: &str) -> Option<Self> {
+        let mut lines = text.lines();
+        let names: Vec<String> = lines
+            .next()?
+            .split_whitespace()
+            .map(str::to_owned)
+            .collect();
+        let rows = lines
+            .filter(|line| !line.trim().is_empty())
+            .map(|line| {
+                line.split_whitespace()
+                    .map(|token| token.parse().ok())
+                    .collect()
+            })
+            .collect::<Option<Vec<Vec<f64>>>>()?;
+        rows.iter()
+            .all(|row| row.len() == names.len())
+            .then_some(Self { names, rows })
+    }
+
+    fn points(&self, column: usize) -> Vec<[f64; 2]> {
+        let points = self.rows.iter().map(|row| [row[0], row[column]]);
+        points.filter(|p| p.iter().all(|v| v.is_finite())).collect()
+    }
+}
+
+/// A name of a column as it is said: underscores stand for spaces there.
+fn said(name: &str) -> String {
+    name.replace('_', " ")
+}
+
+/// What differs between two texts of a curve, in words: its largest change, as a share of the largest
+/// value of its column.
+fn largest_change(old: &str, new: &str) -> Option<String> {
+    let (old, new) = (Columns::read(old)?, Columns::read(new)?);
+    if old.names != new.names {
+        let [old, new] = [&old, &new].map(|of| of.names.join(", "));
+        return Some(format!("columns {new} for {old}"));
+    }
+    if old.rows.len() != new.rows.len() {
+        return Some(format!("{} rows for {}", new.rows.len(), old.rows.len()));
+    }
+    let mut largest: Option<(f64, usize, usize)> = None;
+    for column in 0..old.names.len() {
+        let values = old.rows.iter().map(|row| row[column].abs());
+        let scale = values.filter(|v| v.is_finite()).fold(0.0, f64::max);
+        for (row, (a, b)) in old.rows.iter().zip(&new.rows).enumerate() {
+            let (a, b) = (a[column], b[column]);
+            let same = a.total_cmp(&b).is_eq();
+            let change = match (a - b).abs() / scale {
+                _ if same => 0.0,
+                change if change.is_finite() => change,
+                _ => f64::INFINITY,
+            };
+            if change > largest.map_or(0.0, |(largest, ..)| largest) {
+                largest = Some((change, row, column));
+            }
+        }
+    }
+    let (change, row, column) = largest?;
+    let share = if change.is_finite() {
+        format!(", {} % of its largest value", short(100.0 * change))
+    } else {
+        String::new()
+    };
+    Some(format!(
+        "{} {} for {} at {} = {}{share}",
+        said(&old.names[column]),
+        short(new.rows[row][column]),
+        short(old.rows[row][column]),
+        said(&old.names[0]),
+        short(old.rows[row][0]),
+    ))
+}
+
+/// The first line that differs, in words.
+fn first_change(old: &str, new: &str) -> String {
+    let (mut old, mut new) = (old.trim_end().lines(), new.trim_end().lines());
+    let mut number = 0;
+    loop {
+        number += 1;
+        match (old.next(), new.next()) {
+            (Some(a), Some(b)) if a.split_whitespace().eq(b.split_whitespace()) => {}
+            (Some(a), Some(b)) => return format!("line {number}: \"{b}\" for \"{a}\""),
+            (Some(_), None) => return format!("ends before line {number}"),
+            (None, Some(_)) => return format!("goes on in line {number}"),
+            (None, None) => return "differs in its head".to_owned(),
+        }
+    }
+}
+
+/// Tells how a text differs from the snapshot of its name; draws both if they are curves.
+///
+/// # Errors
+/// [`CaseError`] if the picture cannot be written.
+pub(crate) fn difference(
+    folder: &Path,
+    name: &str,
+    new: &str,
+    out: &Path,
+) -> Result<Difference, CaseError> {
+    let told = match accepted(folder, name) {
+        None => "new; there is no snapshot of that name".to_owned(),
+        Some(old) => {
+            draw(name, &old, new, &out.join(name))?;
+            largest_change(&old, new).unwrap_or_else(|| first_change(&old, new))
+        }
+    };
+    Ok(Difference {
+        name: name.to_owned(),
+        told,
+    })
+}
+
+/// Old against new, a picture for each column that differs, as many as [`PANELS`].
+fn draw(name: &str, old: &str, new: &str, path: &Path) -> Result<(), CaseError> {
+    let (Some(old), Some(new)) = (Columns::read(old), Columns::read(new)) else {
+        return Ok(());
+    };
+    let columns = old.names.len().min(new.names.len());
+    let differs = |&column: &usize| old.points(column) != new.points(column);
+    let changed: Vec<usize> = (1..columns).filter(differs).take(PANELS).collect();
+    for &column in &changed {
+        let file = match changed.len() {
+            1 => path.to_path_buf(),
+            _ => PathBuf::from(format!("{}__{column}", path.display())),
+        };
+        CurvePlot {
+            title: name.to_owned(),
+            x_label: said(&new.names[0]),
+            y_label: said(&new.names[column]),
+            series: vec![
+                Series::line("now", new.points(column)),
+                Series::new(
+                    "accepted",
+                    old.points(column),
+                    SeriesStyle::Line(LineStyle::Dashed),
+                ),
+            ],
+            ..CurvePlot::default()
+        }
+        .write(&file)?;
+    }
+    Ok(())
+}
+
+/// Accepts what earlier runs left beside the snapshots, as `cargo insta accept` does; returns the names.
+///
+/// # Errors
+/// What the file system says.
+pub(crate) fn accept_left(folder: &Path) -> io::Result<Vec<String>> {
+    let mut names = Vec::new();
+    for entry in fs::read_dir(folder)? {
+        let left = entry?.path();
+        let Some(name) = left
+            .file_name()
+            .and_then(|name| name.to_str()?.strip_suffix(".snap.new"))
+        else {
+            continue;
+        };
+        let text = fs::read_to_string(&left)?;
+        // Where an assertion stands in the source is no part of a snapshot.
+        let kept: Vec<&str> = text
+            .lines()
+            .filter(|line| !line.starts_with("assertion_line:"))
+            .collect();
+        fs::write(folder.join(format!("{name}.snap")), kept.join("\n") + "\n")?;
+        fs::remove_file(&left)?;
+        names.push(name.to_owned());
+    }
+    names.sort();
+    Ok(names)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const OLD: &str = "w/B_[-]  N_[-]\n 0.0  0.0\n 0.1  4.0\n 0.2  5.0\n";
+
+    #[test]
+    fn a_curve_is_named_with_its_largest_change_and_its_place() {
+        let new = OLD.replace("4.0", "4.1").replace("5.0", "5.05");
+        assert_eq!(
+            largest_change(OLD, &new).unwrap(),
+            "N [-] 4.1 for 4 at w/B [-] = 0.1, 2 % of its largest value"
+        );
+        assert_eq!(
+            largest_change(OLD, "w/B_[-]  N_[-]\n 0.0 0.0\n").unwrap(),
+            "1 rows for 3"
+        );
+        let lost = OLD.replace("4.0", "NaN");
+        let told = largest_change(OLD, &lost).unwrap();
+        assert!(
+            told.starts_with("N [-] NaN for 4 at w/B [-] = 0.1"),
+            "{told}"
+        );
+    }
+
+    #[test]
+    fn what_is_no_curve_is_told_by_its_first_line() {
+        assert_eq!(
+            first_change("a\nsteps 10\n", "a\nsteps 12\n"),
+            "line 2: \"steps 12\" for \"steps 10\""
+        );
+        assert_eq!(first_change("a\nb\n", "a\n"), "ends before line 2");
+    }
+
+    #[test]
+    fn what_was_left_is_accepted_once() {
+        let folder = std::env::temp_dir().join(format!("igimp-left-{}", std::process::id()));
+        fs::create_dir_all(&folder).unwrap();
+        let head = "---\nsource: validation/src/snapshot.rs\n";
+        fs::write(folder.join("curve.snap"), format!("{head}---\n{OLD}")).unwrap();
+        let new = OLD.replace("4.0", "4.1");
+        fs::write(
+            folder.join("curve.snap.new"),
+            format!("{head}assertion_line: 7\n---\n{new}"),
+        )
+        .unwrap();
+        assert_eq!(accepted(&folder, "curve").unwrap(), OLD);
+        let found = difference(&folder, "curve", &new, &folder).unwrap();
+        assert!(found.told.contains("4.1 for 4"), "{found}");
+        assert!(folder.join("curve.svg").exists());
+        assert_eq!(accept_left(&folder).unwrap(), ["curve"]);
+        assert_eq!(accepted(&folder, "curve").unwrap(), new);
+        let text = fs::read_to_string(folder.join("curve.snap")).unwrap();
+        assert_eq!(text, format!("{head}---\n{new}"));
+        assert!(accept_left(&folder).unwrap().is_empty());
+        fs::remove_dir_all(&folder).unwrap();
+    }
+}
