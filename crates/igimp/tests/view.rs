@@ -146,7 +146,14 @@ fn the_page_and_the_results_are_served() {
             || page.matches("http://").count()
                 == page.matches("http://www.w3.org/2000/svg").count()
     );
-    let left = ["NONCE", "/* style.css */", "/* maps */", "/* page.js */"];
+    let left = [
+        "NONCE",
+        "/* style.css */",
+        "/* viewer.js */",
+        "<!-- soil.html -->",
+        "/* viewer.css */",
+        "/* page.js */",
+    ];
     assert!(left.iter().all(|mark| !page.contains(mark)));
     for header in [
         "Content-Security-Policy: default-src 'none'; connect-src 'self'",

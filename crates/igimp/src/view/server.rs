@@ -5,7 +5,7 @@ use std::io;
 use std::net::{Ipv4Addr, TcpListener, TcpStream};
 use std::sync::Arc;
 
-use igimp_figures::ColourMap;
+use igimp_cases::results::viewer;
 
 use super::http::{self, Body, Request, Status};
 use super::results::Results;
@@ -16,12 +16,11 @@ const WORKERS: usize = 8;
 
 /// The page; its parts take the place of the comments that name them.
 const PAGE: &str = include_str!("page/page.html");
-const PARTS: [(&str, &str); 6] = [
+const PARTS: [(&str, &str); 5] = [
+    ("<!-- soil.html -->", viewer::SECTION),
+    ("/* viewer.css */", viewer::STYLE),
     ("/* style.css */", include_str!("page/style.css")),
-    ("/* frame.js */", include_str!("page/frame.js")),
-    ("/* soil.js */", include_str!("page/soil.js")),
     ("/* curves.js */", include_str!("page/curves.js")),
-    ("/* viewer.js */", include_str!("page/viewer.js")),
     ("/* page.js */", include_str!("page/page.js")),
 ];
 
@@ -155,7 +154,7 @@ fn page() -> Option<Answer> {
     for (mark, part) in PARTS {
         text = text.replace(mark, part);
     }
-    text = text.replace("/* maps */", &maps());
+    text = text.replace("/* viewer.js */", &viewer::script());
     let policy = format!(
         "default-src 'none'; connect-src 'self'; img-src data:; script-src 'nonce-{nonce}'; \
          style-src 'nonce-{nonce}'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
@@ -165,19 +164,6 @@ fn page() -> Option<Answer> {
         policy: Some(policy),
         body: Body::Text(text),
     })
-}
-
-/// The colour maps of pictures, as the script has them: colours from the low end to the high end.
-fn maps() -> String {
-    let colours = |map: ColourMap| -> Vec<[u8; 3]> {
-        (0..=10).map(|k| map.at(f64::from(k) / 10.0).0).collect()
-    };
-    let maps = serde_json::json!({
-        "viridis": colours(ColourMap::Sequential),
-        "diverging": colours(ColourMap::Diverging),
-        "grey": [[245, 245, 245], [20, 20, 20]],
-    });
-    format!("const MAPS = {maps};")
 }
 
 /// 128 random bits in hexadecimal digits.
