@@ -356,14 +356,20 @@ fn browser() -> Option<&'static str> {
     found
 }
 
-/// The page as it stands after some seconds, opened with wishes.
+/// The page of a view as it stands after some seconds, opened with wishes.
 fn looked_at(browser: &str, folder: &Folder, view: &View, wishes: &str) -> String {
+    dumped(browser, folder, &format!("{}#{wishes}", view.address()), 15)
+}
+
+/// A page as it stands after so many seconds of its own clock, which does not wait for pauses.
+fn dumped(browser: &str, folder: &Folder, address: &str, seconds: u32) -> String {
     let profile = folder.0.join("profile");
     let output = Command::new(browser)
         .args(["--headless", "--no-sandbox", "--disable-gpu", "--dump-dom"])
-        .args(["--virtual-time-budget=15000", "--window-size=390,900"])
+        .arg(format!("--virtual-time-budget={seconds}000"))
+        .arg("--window-size=390,900")
         .arg(format!("--user-data-dir={}", profile.display()))
-        .arg(format!("{}#{wishes}", view.address()))
+        .arg(address)
         .output()
         .unwrap();
     String::from_utf8_lossy(&output.stdout).into_owned()
@@ -429,6 +435,35 @@ fn the_page_works_in_a_browser() {
     assert!((value - number(3, 3)).abs() <= 1e-6 * number(3, 3));
 }
 
+/// GOAL: frames that come while the page is looked at are taken up.
+#[test]
+fn the_page_follows_a_run() {
+    let Some(browser) = browser() else {
+        return;
+    };
+    let folder = Folder::with_results("live", &[]);
+    let view = View::of(&folder, "results");
+    let frames = folder.0.join("results/paraview");
+    let page = std::thread::scope(|scope| {
+        // A thousand questions for new frames, which take longer than the pause below.
+        let page = scope.spawn(|| dumped(browser, &folder, &view.address(), 2000));
+        std::thread::sleep(Duration::from_millis(1500));
+        std::fs::copy(
+            frames.join("particles_0001.vtu"),
+            frames.join("particles_0005.vtu"),
+        )
+        .unwrap();
+        let collection = frames.join("particles.pvd");
+        let text = std::fs::read_to_string(&collection).unwrap();
+        let line = "<DataSet timestep=\"4\" group=\"\" part=\"0\" file=\"particles_0005.vtu\"/>\n";
+        let text = text.replace("</Collection>", &format!("{line}</Collection>"));
+        std::fs::write(collection, text).unwrap();
+        page.join().unwrap()
+    });
+    let label = attribute(&page, "slider", "aria-valuetext");
+    assert!(label.starts_with("Frame 5 of 5"), "{label}");
+}
+
 #[test]
 fn the_page_says_how_to_get_frames() {
     let Some(browser) = browser() else {
@@ -445,4 +480,34 @@ fn the_page_says_how_to_get_frames() {
         page.contains("class=\"curve\""),
         "the curves are there all the same"
     );
+}
+
+/// GOAL: a report holds its last frame, unless that is too large or would break the page.
+#[test]
+fn a_report_holds_the_last_frame() {
+    let folder = Folder::with_results("report", &[]);
+    let results = folder.0.join("results");
+    let report = || {
+        assert!(folder.igimp(&["report", "results"]).status.success());
+        std::fs::read_to_string(results.join("report.html")).unwrap()
+    };
+    let frame = results.join("paraview/particles_0004.vtu");
+    let text = std::fs::read_to_string(&frame).unwrap();
+    assert!(report().contains(&format!(">{text}</script>")));
+    if let Some(browser) = browser() {
+        let address = format!("file://{}#soil", results.join("report.html").display());
+        let page = dumped(browser, &folder, &address, 15);
+        assert!(page.contains("<p id=\"bar-label\" class=\"soft\">displacement length [mm]</p>"));
+        let (_, ticks) = page.split_once("id=\"ticks\">").unwrap();
+        assert!(ticks.starts_with("<span>"), "the scale was drawn");
+    }
+    std::fs::write(&frame, format!("{text}</SCRIPT><script>alert(1)</script>")).unwrap();
+    assert!(!report().contains("alert"));
+    std::fs::write(&frame, " ".repeat(3_100_000)).unwrap();
+    let page = report();
+    assert!(page.contains("The last frame has 3.1 MB, too much for this page"));
+    assert!(page.len() < 1_000_000, "{}", page.len());
+    std::fs::remove_file(&frame).unwrap();
+    std::os::unix::fs::symlink(folder.0.join("case.toml"), &frame).unwrap();
+    assert!(!report().contains("Last frame"));
 }

@@ -202,7 +202,11 @@ class Viewer {
     part.bar.style.background = `linear-gradient(to right, ${colours.filter((_, k) => k % 8 === 0 || k === LEVELS - 1).join(", ")})`;
     const count = field.whole ? Math.min(high - low, 8) : 4;
     const shares = high > low ? Array.from({ length: count + 1 }, (_, k) => k / count) : [0.5];
-    const tick = (share) => (field.whole ? Math.round(low + share * (high - low)) : (low + share * (high - low)) / this.unit[0]);
+    const tick = (share) => {
+      const value = low + share * (high - low);
+      if (field.whole) return Math.round(value);
+      return Math.abs(value) < 1e-4 * Math.max(-low, high) ? 0 : value / this.unit[0];
+    };
     part.ticks.replaceChildren(...shares.map((share) => Object.assign(document.createElement("span"), { textContent: Number.isFinite(low) ? short(tick(share)) : "–" })));
     part["bar-label"].textContent = `${field.title}${this.unit[1] ? ` [${this.unit[1]}]` : ""}${field.rest}`;
     part.when.textContent = this.shownEntry.label;
