@@ -1,14 +1,22 @@
 // Frames: VTK's XML format as igimp writes it. Arrays stand in the text in base64, compressed by zlib in
 // blocks; an array is unpacked when it is first asked for.
 
+// Whole numbers of eight bytes, as far as they are exact.
+function ofEightBytes(bytes) {
+  const halves = new Uint32Array(bytes.buffer);
+  const numbers = new Float64Array(halves.length / 2);
+  for (let k = 0; k < numbers.length; k += 1) numbers[k] = halves[2 * k] + 4294967296 * halves[2 * k + 1];
+  return numbers;
+}
+
+// Numbers of the bytes of an array, little-endian as browsers are.
 const READERS = {
-  Float64: (view, at) => view.getFloat64(at, true),
-  Int64: (view, at) => Number(view.getBigInt64(at, true)),
-  UInt64: (view, at) => Number(view.getBigUint64(at, true)),
-  Int32: (view, at) => view.getInt32(at, true),
-  UInt8: (view, at) => view.getUint8(at),
+  Float64: (bytes) => new Float64Array(bytes.buffer),
+  Int64: ofEightBytes,
+  UInt64: ofEightBytes,
+  Int32: (bytes) => Float64Array.from(new Int32Array(bytes.buffer)),
+  UInt8: (bytes) => Float64Array.from(bytes),
 };
-const BYTES = { Float64: 8, Int64: 8, UInt64: 8, Int32: 4, UInt8: 1 };
 
 function fromBase64(text) {
   const letters = atob(text);
@@ -24,19 +32,15 @@ async function inflated(bytes) {
 
 // Number of blocks, their size, size of a smaller last one, compressed size of each; then the blocks.
 async function unpacked(text) {
-  const view = (bytes) => new DataView(bytes.buffer);
-  const number = (bytes, k) => Number(view(bytes).getBigUint64(8 * k, true));
-  const blocks = number(fromBase64(text.slice(0, 12)), 0);
+  const blocks = ofEightBytes(fromBase64(text.slice(0, 12)).slice(0, 8))[0];
   const length = 4 * Math.ceil((8 * (3 + blocks)) / 3);
-  const header = fromBase64(text.slice(0, length));
+  const sizes = ofEightBytes(fromBase64(text.slice(0, length))).subarray(3);
   const data = fromBase64(text.slice(length));
-  const parts = [];
   let start = 0;
-  for (let k = 0; k < blocks; k += 1) {
-    const end = start + number(header, 3 + k);
-    parts.push(await inflated(data.subarray(start, end)));
-    start = end;
-  }
+  const parts = await Promise.all([...sizes].map((size) => {
+    start += size;
+    return inflated(data.subarray(start - size, start));
+  }));
   const whole = new Uint8Array(parts.reduce((sum, part) => sum + part.length, 0));
   let at = 0;
   for (const part of parts) {
@@ -64,10 +68,7 @@ class Frame {
 
   static async unpack(element) {
     if (element.getAttribute("format") !== "binary") return new Float64Array(0);
-    const type = element.getAttribute("type");
-    const bytes = await unpacked(element.textContent.trim());
-    const view = new DataView(bytes.buffer);
-    return Float64Array.from({ length: bytes.length / BYTES[type] }, (_, k) => READERS[type](view, BYTES[type] * k));
+    return READERS[element.getAttribute("type")](await unpacked(element.textContent.trim()));
   }
 
   // The four corners of each cell, x and y in turn: eight numbers a cell.
@@ -114,10 +115,12 @@ class Frame {
     const numbers = await this.numbers(this.data.get(field.array));
     const { components, component } = field;
     if (components === 1) return numbers;
-    return Float64Array.from({ length: this.cells }, (_, cell) => {
+    const values = new Float64Array(this.cells);
+    for (let cell = 0; cell < this.cells; cell += 1) {
       const at = cell * components;
-      return component < 0 ? Math.hypot(...numbers.subarray(at, at + components)) : numbers[at + component];
-    });
+      values[cell] = component < 0 ? Math.hypot(numbers[at], numbers[at + 1], numbers[at + 2]) : numbers[at + component];
+    }
+    return values;
   }
 
   // The number of a cell's particle.
