@@ -31,6 +31,8 @@ pub(crate) enum Command {
     Run(RunArguments),
     /// Make the report of a results folder again.
     Report(Report),
+    /// Look at a results folder in the browser.
+    View(View),
     /// Run a parameter study.
     Sweep(SweepArguments),
     /// Gather the results of a parameter study in one table.
@@ -128,6 +130,15 @@ pub(crate) struct RunArguments {
 pub(crate) struct Report {
     /// Results folder.
     pub(crate) folder: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct View {
+    /// Results folder; its run may still be going on.
+    pub(crate) folder: PathBuf,
+    /// Print the address, and open no browser.
+    #[arg(long)]
+    pub(crate) no_open: bool,
 }
 
 #[derive(Debug, Args)]

@@ -16,6 +16,7 @@ mod sweep;
 mod template;
 mod validate;
 mod verdict;
+mod view;
 mod whole;
 
 use std::borrow::Cow;
@@ -58,6 +59,7 @@ fn obey(command: &Command) -> Result<Exit, ProgramError> {
         Command::Explain(arguments) => cases::explain(arguments),
         Command::Run(arguments) => run::run(arguments),
         Command::Report(arguments) => report::report(arguments),
+        Command::View(arguments) => view::view(arguments),
         Command::Sweep(arguments) => sweep::sweep(arguments),
         Command::Collect(arguments) => sweep::collect(arguments),
         Command::Validate(arguments) => validate::validate(arguments),

@@ -19,6 +19,7 @@ pub mod regime;
 pub mod report;
 pub mod rows;
 pub mod setup;
+pub mod viewer;
 pub mod vtu;
 
 #[cfg(test)]

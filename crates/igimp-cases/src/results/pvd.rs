@@ -141,6 +141,12 @@ impl Collection {
     }
 }
 
+/// The file of the last frame of a collection, if it can be read.
+pub(super) fn last(folder: &Path, stem: &str) -> Option<String> {
+    let text = fs::read_to_string(folder.join(format!("{stem}.pvd"))).ok()?;
+    parse(&text)?.pop().map(|frame| frame.file)
+}
+
 /// The frames of a collection as [`Collection::write`] writes it, a line each.
 fn parse(text: &str) -> Option<Vec<Frame>> {
     if !text.contains("type=\"Collection\"") || !text.trim_end().ends_with("</VTKFile>") {

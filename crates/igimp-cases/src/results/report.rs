@@ -11,6 +11,7 @@ use minijinja::value::Serde;
 use minijinja::{Environment, Value};
 use serde::Serialize;
 
+use super::viewer::{LastFrame, last_frame};
 use crate::error::CaseError;
 use crate::summary::{SetupTable, Summary};
 
@@ -56,6 +57,7 @@ fn render(folder: &Path, summary: &Summary) -> Result<String, minijinja::Error> 
     let (convergence, pictures): (Vec<_>, Vec<_>) = pictures
         .into_iter()
         .partition(|group| group.id == "convergence");
+    let last_frame = last_frame(folder);
     let entries = contents(
         [
             (true, "numbers", "Results"),
@@ -69,6 +71,7 @@ fn render(folder: &Path, summary: &Summary) -> Result<String, minijinja::Error> 
         ],
         &pictures,
         [
+            (last_frame.is_some(), "frame", "Last frame"),
             (!tables.is_empty(), "tables", "Tables and files"),
             (!inputs.is_empty(), "input", "Input"),
             (true, "effort", "How it was computed"),
@@ -100,6 +103,7 @@ fn render(folder: &Path, summary: &Summary) -> Result<String, minijinja::Error> 
         inputs,
         effort: rows::effort(summary),
         convergence,
+        last_frame,
     };
     let mut environment = Environment::new();
     environment.add_template("report.html", TEMPLATE)?;
@@ -131,6 +135,7 @@ struct Page<'a> {
     inputs: Vec<files::InputView>,
     effort: Vec<rows::Number>,
     convergence: Vec<files::Group>,
+    last_frame: Option<LastFrame>,
 }
 
 /// A line of the table of contents.

@@ -1,0 +1,39 @@
+//! `igimp view`: a results folder in the browser, by a small server on the loopback address.
+//!
+//! The address holds a random port and a random token. Nothing is ever written, nothing but the page
+//! and the tables and frames of the folder is given away, and that only to who knows the token and
+//! asks this computer by its own name.
+
+mod browser;
+mod http;
+mod results;
+mod server;
+
+use std::sync::mpsc;
+
+use crate::arguments::View;
+use crate::error::{Exit, ProgramError};
+use crate::output;
+
+use results::Results;
+use server::Server;
+
+pub(crate) fn view(arguments: &View) -> Result<Exit, ProgramError> {
+    let results = Results::open(&arguments.folder)?;
+    let (interrupt, interrupted) = mpsc::channel();
+    ctrlc::set_handler(move || {
+        // The receiver is gone only when the program ends anyway.
+        let _ = interrupt.send(());
+    })
+    .map_err(|error| ProgramError::usage(format!("cannot wait for Ctrl-C: {error}"), ""))?;
+    let server = Server::bind(results)?;
+    let address = server.address();
+    server.start()?;
+    output::say(&format!("{address}\nCtrl-C ends the view"))?;
+    if !arguments.no_open {
+        browser::open(&address);
+    }
+    // The handler keeps its end for as long as the program lasts.
+    let _ = interrupted.recv();
+    Ok(Exit::Done)
+}

@@ -1,0 +1,169 @@
+// The page of `igimp view`: asks for what is new, and puts frames and curves side by side.
+
+// Time between two questions for new frames [ms].
+const PAUSE = 2000;
+
+const asked = new URLSearchParams(location.hash.slice(1));
+const charts = new Map();
+const tables = new Map();
+let index = null;
+let current = null;
+
+async function fetched(name) {
+  const answer = await fetch(name.split("/").map(encodeURIComponent).join("/"), { cache: "no-store" });
+  if (!answer.ok) throw new Error(`${name}: ${answer.status}`);
+  return answer.text();
+}
+
+// Moments of a stage that the time of frames counts. The last steps of a run-out, without drag, are
+// no rows of a monitor, and not counted.
+function momentsOf(k) {
+  const monitor = [...tables].find(([name]) => name.startsWith("monitors/"));
+  const rows = monitor ? monitor[1].rows.filter((row) => row[0] === k + 1) : [];
+  const { search, moments } = index.stages[k];
+  return search || rows.length === 0 ? moments : rows[rows.length - 1][1];
+}
+
+// The stage and the step (or trial) at a time, which counts steps and trials of the whole run.
+function momentOf(time) {
+  let before = 0;
+  for (const k of index.stages.keys()) {
+    const moments = momentsOf(k);
+    if (time <= before + moments) return { stage: k, step: time - before };
+    before += moments;
+  }
+  return { stage: index.stages.length, step: time - before };
+}
+
+function stageName(k) {
+  const own = index.stages[k];
+  return own ? own.name : index.planned[k] || "";
+}
+
+function entryOf(name, label, more) {
+  return { name, label, key: `${name} ${index.files[name]}`, load: () => fetched(name), ...more };
+}
+
+async function framesOf() {
+  const collection = "paraview/particles.pvd";
+  if (!index.files[collection]) return [];
+  const page = new DOMParser().parseFromString(await fetched(collection), "application/xml");
+  const sets = [...page.querySelectorAll("DataSet")].filter((set) => index.files[`paraview/${set.getAttribute("file")}`]);
+  return sets.map((set, k) => {
+    const time = Number(set.getAttribute("timestep"));
+    const moment = momentOf(time);
+    const own = index.stages[moment.stage];
+    const label = `Frame ${k + 1} of ${sets.length}: stage ${moment.stage + 1} “${stageName(moment.stage)}”, ${own && own.search ? "trial" : "step"} ${moment.step}`;
+    return entryOf(`paraview/${set.getAttribute("file")}`, label, { moment });
+  });
+}
+
+function statesOf() {
+  const what = { "last-stable": "last stable state", "first-unstable": "first unstable state" };
+  return Object.keys(index.files).map((name) => {
+    const found = /^paraview\/stage-(\d+)-(last-stable|first-unstable)\.vtu$/.exec(name);
+    if (!found) return null;
+    const stage = Number(found[1]) - 1;
+    return entryOf(name, `${stageName(stage)}: ${what[found[2]]}`, { moment: { stage, step: Infinity } });
+  }).filter(Boolean).sort((a, b) => b.name.localeCompare(a.name));
+}
+
+// The row of a table that belongs to a moment; those of monitors say which it is.
+function rowOf(name, own, moment) {
+  const upTo = (rows, holds) => rows.reduce((last, row, k) => (holds(row) ? k : last), -1);
+  const isReached = (row) => row[0] < moment.stage + 1 || (row[0] === moment.stage + 1 && row[1] <= moment.step);
+  if (name.startsWith("monitors/")) return upTo(own.rows, isReached);
+  const only = index.stage_of_curve[name];
+  if (only !== null && only !== undefined) return only === moment.stage ? Math.min(moment.step, own.rows.length - 1) : -1;
+  // Curves of all stages have the rows of monitors.
+  const monitor = [...tables].find(([other]) => other.startsWith("monitors/"));
+  if (monitor) return upTo(monitor[1].rows, isReached);
+  const before = index.stages.slice(0, moment.stage).reduce((sum, stage) => sum + stage.rows, 0);
+  return Math.min(before + moment.step, own.rows.length - 1);
+}
+
+function pointCharts() {
+  if (!current) return;
+  for (const { chart, name } of charts.values()) chart.point(rowOf(name, tables.get(name), current.moment));
+}
+
+async function drawTables() {
+  const names = Object.keys(index.files).filter((name) => name.endsWith(".csv"));
+  for (const name of names) {
+    const known = tables.get(name);
+    if (known && known.version === index.files[name]) continue;
+    const own = { ...table(await fetched(name)), version: index.files[name] };
+    tables.set(name, own);
+    const isMonitor = name.startsWith("monitors/");
+    const title = name.replace(/^.*?\//, "").replace(/\.csv$/, "");
+    const columns = isMonitor ? own.header.slice(3).map((label, k) => [label, k + 3]) : [[own.header[1], 1]];
+    for (const [label, column] of columns) {
+      const id = `${name} ${column}`;
+      if (!charts.has(id)) {
+        const head = isMonitor ? `${title}: ${plain(label)}` : title;
+        const chart = new Chart(document.getElementById("curves"), head, [isMonitor ? "row of the table" : own.header[0], label]);
+        charts.set(id, { chart, name });
+      }
+      // The displacement may begin anew with a stage: lines of monitors do not cross from one to the next.
+      const part = (row) => (isMonitor ? row[0] : 0);
+      charts.get(id).chart.show(own.rows.map((row, k) => [isMonitor ? k : row[0], row[column], part(row)]));
+    }
+  }
+  for (const [id, { chart, name }] of charts) {
+    if (names.includes(name)) continue;
+    chart.card.remove();
+    charts.delete(id);
+    tables.delete(name);
+  }
+  pointCharts();
+}
+
+const viewer = new Viewer(
+  {
+    frame: Number(asked.get("frame")),
+    field: asked.get("field"),
+    hover: asked.has("hover") ? asked.get("hover").split(",").map(Number) : null,
+  },
+  (entry, field, frame) => {
+    current = entry;
+    pointCharts();
+    const isLast = frame === viewer.frames.length;
+    const kept = new URLSearchParams({ ...(isLast ? {} : { frame }), field: field.key });
+    history.replaceState(null, "", `#${kept}`);
+  },
+);
+
+function tell(text) {
+  const message = document.getElementById("message");
+  message.hidden = text === "";
+  message.textContent = text;
+}
+
+// What to say where there is no frame.
+function whyNone() {
+  if (index.never) return "This run writes no frames: its case says paraview = { every = \"never\" } in [output]. With every = \"stage\", or every = 5 for every fifth step, as in igimp run CASE --set 'output.paraview={ every = 5 }', there will be some.";
+  return "There are no frames yet. The first is written at the end of a stage, or after every fifth step with paraview = { every = 5 } in [output] of the case; this page takes it up by itself.";
+}
+
+async function look() {
+  try {
+    const text = await fetched("index.json");
+    if (look.last !== text) {
+      index = JSON.parse(text);
+      document.getElementById("title").textContent = index.title || index.folder;
+      document.title = `${index.title || index.folder} – igimp`;
+      await drawTables();
+      const frames = await framesOf();
+      tell(frames.length === 0 ? whyNone() : "");
+      viewer.take(frames, statesOf());
+      look.last = text;
+      if (asked.has("play")) viewer.play();
+      asked.delete("play");
+    } else if (viewer.frames.length > 0) tell("");
+  } catch (error) {
+    tell(error instanceof TypeError ? "The program that serves this page has ended; igimp view starts it again." : `Something cannot be read: ${error.message}`);
+  }
+  setTimeout(look, PAUSE);
+}
+
+look();

@@ -1,0 +1,223 @@
+//! What a results folder has to show, and nothing else of it.
+
+use std::fs::{self, File};
+use std::path::{Path, PathBuf};
+use std::time::UNIX_EPOCH;
+
+use igimp_cases::case::{Case, Every, StageKind};
+use igimp_cases::input::CaseFile;
+use igimp_cases::summary::Summary;
+use serde_json::{Value, json};
+
+use crate::error::ProgramError;
+
+/// Folders whose files are shown, by ending, and how they are called in HTTP.
+const SHOWN: [(&str, &str, &str); 4] = [
+    ("paraview", "pvd", "application/xml"),
+    ("paraview", "vtu", "application/xml"),
+    ("curves", "csv", "text/csv; charset=utf-8"),
+    ("monitors", "csv", "text/csv; charset=utf-8"),
+];
+
+/// Most folders that a message lists.
+const MOST_LISTED: usize = 12;
+
+/// Largest summary that is read \[bytes\].
+const LARGEST_SUMMARY: u64 = 64 << 20;
+
+/// A folder of results, by its path without links.
+#[derive(Debug)]
+pub(super) struct Results {
+    root: PathBuf,
+}
+
+impl Results {
+    /// The results of one run; of several runs in a folder the message tells which there are.
+    pub(super) fn open(folder: &Path) -> Result<Self, ProgramError> {
+        let access = |source| ProgramError::File {
+            path: folder.to_owned(),
+            source,
+        };
+        let root = fs::canonicalize(folder).map_err(access)?;
+        if is_of_a_run(&root) {
+            return Ok(Self { root });
+        }
+        let mut inside: Vec<PathBuf> = fs::read_dir(&root)
+            .map_err(access)?
+            .filter_map(|entry| Some(entry.ok()?.file_name()))
+            .filter(|name| is_of_a_run(&root.join(name)))
+            .map(|name| folder.join(name))
+            .collect();
+        inside.sort();
+        let shown = folder.display();
+        if inside.is_empty() {
+            return Err(ProgramError::usage(
+                format!("there are no results of a run in {shown}"),
+                "give the folder that `igimp run` names in its last line",
+            ));
+        }
+        let more = inside.len().saturating_sub(MOST_LISTED);
+        let mut lines: Vec<String> = inside
+            .iter()
+            .take(MOST_LISTED)
+            .map(|path| format!("\n    igimp view {}", path.display()))
+            .collect();
+        if more > 0 {
+            lines.push(format!("\n    and {more} more"));
+        }
+        Err(ProgramError::usage(
+            format!("{shown} holds the results of several runs"),
+            format!("look at one of them:{}", lines.concat()),
+        ))
+    }
+
+    /// What the page needs to know before it asks for files, as JSON: the case, its stages so far, and
+    /// every file with a text that changes when the file does.
+    pub(super) fn index(&self) -> String {
+        let summary = self.summary();
+        let case = CaseFile::read(&self.root.join("case.completed.toml"), &[]).ok();
+        let case = case.as_ref().map(CaseFile::case);
+        let title = case.map_or("", |case| &case.title);
+        let stages: Vec<Value> = std::iter::zip(0.., summary.iter().flat_map(|own| &own.stages))
+            .map(|(number, stage)| {
+                let trials = stage.safety.as_ref().map(|found| found.trials.len());
+                json!({
+                    "name": stage.name,
+                    "search": trials.is_some(),
+                    // The time of a frame counts steps, and the trials of a search.
+                    "moments": trials.unwrap_or(stage.steps),
+                    "rows": trials.map_or(stage.steps, |made| made.min(listed(case, number))),
+                })
+            })
+            .collect();
+        let planned: Vec<&str> = case
+            .iter()
+            .flat_map(|case| &case.stages)
+            .map(|stage| &*stage.name)
+            .collect();
+        let recorded: serde_json::Map<String, Value> = case
+            .iter()
+            .flat_map(|case| &case.curves)
+            .map(|curve| (format!("curves/{}.csv", curve.name), json!(curve.stage)))
+            .collect();
+        let files: serde_json::Map<String, Value> = SHOWN
+            .iter()
+            .flat_map(|(folder, ending, _)| self.names(folder, ending))
+            .map(|(name, path)| (name, json!(version(&path))))
+            .collect();
+        json!({
+            "title": title,
+            "folder": self.root.file_name().map(|name| name.to_string_lossy()),
+            "stages": stages,
+            "planned": planned,
+            "stage_of_curve": recorded,
+            "never": case.is_some_and(|case| case.output.paraview == Every::Never),
+            "files": files,
+        })
+        .to_string()
+    }
+
+    /// A file by its name in an address, with its length and kind; nothing for names that are not
+    /// found by looking into the folders that are shown.
+    pub(super) fn file(&self, encoded: &str) -> Option<(File, u64, &'static str)> {
+        let name = decoded(encoded)?;
+        let (path, kind) = SHOWN.iter().find_map(|&(folder, ending, kind)| {
+            let mut names = self.names(folder, ending);
+            names
+                .find(|(own, _)| *own == name)
+                .map(|(_, path)| (path, kind))
+        })?;
+        let file = File::open(path).ok()?;
+        let length = file.metadata().ok()?.len();
+        Some((file, length, kind))
+    }
+
+    /// The files of a folder with an ending: plain files that stand there themselves, no links.
+    fn names(
+        &self,
+        folder: &'static str,
+        ending: &'static str,
+    ) -> impl Iterator<Item = (String, PathBuf)> {
+        let entries = fs::read_dir(self.root.join(folder)).into_iter().flatten();
+        entries.filter_map(move |entry| {
+            let path = entry.ok()?.path();
+            let name = path.file_name()?.to_str()?;
+            let is_shown = !name.starts_with('.')
+                && path.extension().is_some_and(|own| own == ending)
+                // The same for any link on the way, also that of the folder.
+                && fs::canonicalize(&path).is_ok_and(|real| real == path)
+                && path.is_file();
+            is_shown.then(|| (format!("{folder}/{name}"), path.clone()))
+        })
+    }
+
+    fn summary(&self) -> Option<Summary> {
+        let path = self.root.join("summary.json");
+        let about = fs::symlink_metadata(&path).ok()?;
+        if !about.is_file() || about.len() > LARGEST_SUMMARY {
+            return None;
+        }
+        serde_json::from_slice(&fs::read(path).ok()?).ok()
+    }
+}
+
+/// Whether a run laid out its results here.
+fn is_of_a_run(folder: &Path) -> bool {
+    folder.join("paraview").is_dir()
+}
+
+/// Number of factors that the case lists for a search, each of which is a row of the tables.
+fn listed(case: Option<&Case>, stage: usize) -> usize {
+    match case
+        .and_then(|case| case.stages.get(stage))
+        .map(|stage| &stage.kind)
+    {
+        Some(StageKind::StrengthReduction(search)) => search.factors.len(),
+        _ => 0,
+    }
+}
+
+/// A text that changes when a file does.
+fn version(path: &Path) -> String {
+    let Ok(about) = fs::metadata(path) else {
+        return String::new();
+    };
+    let time = about.modified().ok();
+    let since = time.and_then(|time| time.duration_since(UNIX_EPOCH).ok());
+    format!(
+        "{}-{}",
+        about.len(),
+        since.map_or(0, |since| since.as_nanos())
+    )
+}
+
+/// A part of an address with its percent signs read once.
+fn decoded(encoded: &str) -> Option<String> {
+    let mut bytes = Vec::with_capacity(encoded.len());
+    let mut rest = encoded.as_bytes();
+    while let Some((&first, after)) = rest.split_first() {
+        rest = after;
+        if first != b'%' {
+            bytes.push(first);
+            continue;
+        }
+        let digits = std::str::from_utf8(rest.get(..2)?).ok()?;
+        bytes.push(u8::from_str_radix(digits, 16).ok()?);
+        rest = &rest[2..];
+    }
+    String::from_utf8(bytes).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn percent_signs_are_read_once() {
+        assert_eq!(decoded("a%20b%C3%BC").as_deref(), Some("a bü"));
+        assert_eq!(decoded("%252e").as_deref(), Some("%2e"));
+        for wrong in ["%", "%2", "%zz", "%ff"] {
+            assert_eq!(decoded(wrong), None, "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,513 @@
+//! GOAL: `igimp view` shows a results folder to the browser of this computer, and nothing of it to
+//! anybody else.
+//! ORACLE: the tables of the run. The page itself is tried in a headless browser where there is one.
+#![cfg(unix)]
+
+use std::io::{BufRead as _, BufReader, Read as _, Write as _};
+use std::net::TcpStream;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Output, Stdio};
+use std::time::Duration;
+
+/// Elastic soil under its own weight, a frame a step.
+const BLOCK: &str = "igimp = 1\n[case]\ntitle = \"a <b>block</b>\"\ngravity = \"9.81 m/s2\"\n\
+    [grid]\ncell = \"0.5 m\"\ndomain = { x = [\"0 m\", \"2 m\"], y = [\"0 m\", \"4 m\"] }\n\
+    [materials.clay]\nmodel = \"elastic\"\nunit_weight = \"18 kN/m3\"\n\
+    young = \"10 MPa\"\npoisson = 0.0\n\
+    [[bodies]]\nname = \"block\"\nmaterial = \"clay\"\npoints_per_cell = 4\n\
+    polygon = [[\"0 m\", \"0 m\"], [\"2 m\", \"0 m\"], [\"2 m\", \"2 m\"], [\"0 m\", \"2 m\"]]\n\
+    [boundaries]\nleft = \"roller\"\nright = \"roller\"\nbottom = \"fixed\"\n\
+    [[stages]]\nname = \"own weight\"\ntype = \"gravity\"\nsteps = 3\n\
+    [[monitors]]\nname = \"top ü\"\npoint = [\"1 m\", \"2 m\"]\nrecord = [\"displacement\", \"sigma_yy\"]\n\
+    [[curves]]\nname = \"settlement\"\nx = { of = \"step\", label = \"step [-]\" }\n\
+    y = { of = \"top ü.displacement\", label = \"u [m]\" }\n\
+    [output]\nfolder = \"results\"\nparaview = { every = 1 }\nfigures = []\n";
+
+/// A folder of its own for a test, gone when dropped.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("igimp-view-{name}-{}", std::process::id()));
+        let _ = std::fs::remove_dir_all(&path);
+        std::fs::create_dir_all(&path).unwrap();
+        std::fs::write(path.join("case.toml"), BLOCK).unwrap();
+        Self(path)
+    }
+
+    fn with_results(name: &str, more: &[&str]) -> Self {
+        let folder = Self::new(name);
+        let mut words = vec!["run", "case.toml", "--quiet", "--threads", "1"];
+        words.extend(more);
+        let run = folder.igimp(&words);
+        let said = String::from_utf8_lossy(&run.stderr).into_owned();
+        assert!(run.status.success(), "{said}");
+        folder
+    }
+
+    fn igimp(&self, words: &[&str]) -> Output {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_igimp"));
+        command.args(words).current_dir(&self.0).output().unwrap()
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+/// A view that goes on until it is dropped.
+struct View {
+    program: Child,
+    port: u16,
+    token: String,
+}
+
+impl View {
+    fn of(folder: &Folder, results: &str) -> Self {
+        let mut program = Command::new(env!("CARGO_BIN_EXE_igimp"))
+            .args(["view", results, "--no-open"])
+            .current_dir(&folder.0)
+            .stdout(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let mut line = String::new();
+        let mut said = BufReader::new(program.stdout.take().unwrap());
+        said.read_line(&mut line).unwrap();
+        let rest = line.trim().strip_prefix("http://127.0.0.1:").unwrap();
+        let (port, rest) = rest.split_once('/').unwrap();
+        Self {
+            port: port.parse().unwrap(),
+            token: rest.strip_suffix('/').unwrap().to_owned(),
+            program,
+        }
+    }
+
+    fn address(&self) -> String {
+        format!("http://127.0.0.1:{}/{}/", self.port, self.token)
+    }
+
+    /// The whole response to bytes as they are; nothing where the connection was just cut.
+    fn send(&self, bytes: &[u8]) -> String {
+        let mut stream = TcpStream::connect(("127.0.0.1", self.port)).unwrap();
+        stream
+            .set_read_timeout(Some(Duration::from_secs(30)))
+            .unwrap();
+        let _ = stream.write_all(bytes);
+        let mut text = Vec::new();
+        let _ = stream.read_to_end(&mut text);
+        String::from_utf8(text).unwrap()
+    }
+
+    /// The status, the headers and the body of a request.
+    fn ask(&self, method: &str, path: &str, host: &str) -> (u16, String, String) {
+        let request = format!("{method} {path} HTTP/1.1\r\nHost: {host}\r\n\r\n");
+        let response = self.send(request.as_bytes());
+        let (head, body) = response.split_once("\r\n\r\n").unwrap();
+        let status = head.split(' ').nth(1).unwrap().parse().unwrap();
+        (status, head.to_owned(), body.to_owned())
+    }
+
+    /// A file inside the address of the page.
+    fn get(&self, name: &str) -> (u16, String, String) {
+        let host = format!("127.0.0.1:{}", self.port);
+        self.ask("GET", &format!("/{}/{name}", self.token), &host)
+    }
+
+    /// Interrupts the view as Ctrl-C does; its exit code.
+    fn interrupt(mut self) -> Option<i32> {
+        let id = self.program.id().to_string();
+        let sent = Command::new("kill").args(["-INT", &id]).status();
+        assert!(sent.unwrap().success());
+        self.program.wait().unwrap().code()
+    }
+}
+
+impl Drop for View {
+    fn drop(&mut self) {
+        let _ = self.program.kill();
+        let _ = self.program.wait();
+    }
+}
+
+#[test]
+fn the_page_and_the_results_are_served() {
+    let folder = Folder::with_results("serves", &[]);
+    let view = View::of(&folder, "results");
+    let (status, head, page) = view.get("");
+    assert_eq!(status, 200);
+    assert!(
+        page.contains("<canvas") && page.contains("class Viewer"),
+        "{page}"
+    );
+    assert!(
+        !page.contains("http://")
+            || page.matches("http://").count()
+                == page.matches("http://www.w3.org/2000/svg").count()
+    );
+    let left = [
+        "NONCE",
+        "/* style.css */",
+        "/* viewer.js */",
+        "<!-- soil.html -->",
+        "/* viewer.css */",
+        "/* page.js */",
+    ];
+    assert!(left.iter().all(|mark| !page.contains(mark)));
+    for header in [
+        "Content-Security-Policy: default-src 'none'; connect-src 'self'",
+        "X-Content-Type-Options: nosniff",
+        "Cache-Control: no-store",
+        "Referrer-Policy: no-referrer",
+    ] {
+        assert!(head.contains(header), "{head}");
+    }
+    let (status, _, index) = view.get("index.json");
+    assert_eq!(status, 200);
+    let index: serde_json::Value = serde_json::from_str(&index).unwrap();
+    assert_eq!(index["title"], "a <b>block</b>");
+    assert_eq!(index["stages"][0]["moments"], 3);
+    assert_eq!(
+        index["stage_of_curve"]["curves/settlement.csv"],
+        serde_json::Value::Null
+    );
+    let files = index["files"].as_object().unwrap();
+    assert!(files.contains_key("monitors/top ü.csv"), "{files:?}");
+    // Every file that is named is given whole, and the same as on the disk.
+    for name in files.keys() {
+        let address = name.replace(' ', "%20").replace('ü', "%C3%BC");
+        let (status, _, text) = view.get(&address);
+        assert_eq!(status, 200, "{name}");
+        let disk = std::fs::read_to_string(folder.0.join("results").join(name)).unwrap();
+        assert!(text == disk, "{name}");
+    }
+    let localhost = format!("localhost:{}", view.port);
+    let path = format!("/{}/curves/settlement.csv", view.token);
+    let (status, head, body) = view.ask("HEAD", &path, &localhost);
+    assert_eq!((status, body.as_str()), (200, ""));
+    assert!(head.contains("Content-Length: ") && !head.contains("Content-Length: 0"));
+    // A frame that comes while the page is looked at.
+    let frames = folder.0.join("results/paraview");
+    std::fs::copy(
+        frames.join("particles_0001.vtu"),
+        frames.join("particles_0099.vtu"),
+    )
+    .unwrap();
+    assert!(view.get("index.json").2.contains("particles_0099.vtu"));
+    assert_eq!(view.interrupt(), Some(0));
+}
+
+/// GOAL: no way leads to anything but the files that are shown; what is refused has no body.
+#[test]
+fn foreign_hosts_paths_and_methods_get_nothing() {
+    let folder = Folder::with_results("refuses", &[]);
+    std::fs::write(folder.0.join("secret.csv"), "secret").unwrap();
+    let results = folder.0.join("results");
+    std::fs::write(results.join("curves/notes.txt"), "secret").unwrap();
+    std::fs::write(results.join("curves/.hidden.csv"), "secret").unwrap();
+    let link = |to: &Path, name: &str| std::os::unix::fs::symlink(to, results.join(name)).unwrap();
+    link(&folder.0.join("secret.csv"), "curves/link.csv");
+    let _ = std::fs::rename(results.join("monitors"), folder.0.join("elsewhere"));
+    link(&folder.0.join("elsewhere"), "monitors");
+    let pipe = Command::new("mkfifo")
+        .arg(results.join("curves/pipe.csv"))
+        .status();
+    assert!(pipe.unwrap().success());
+    let view = View::of(&folder, "results");
+    let own = format!("127.0.0.1:{}", view.port);
+    let nothing = |(status, head, body): (u16, String, String), wanted: u16, what: &str| {
+        assert_eq!((status, body.as_str()), (wanted, ""), "{what}");
+        assert!(head.contains("Content-Length: 0"), "{what}: {head}");
+    };
+    let token = &view.token;
+    let wrong = format!("/{}/", "0".repeat(token.len()));
+    for path in [
+        "/",
+        "/index.json",
+        "/favicon.ico",
+        "//",
+        &wrong,
+        &format!("/{token}"),
+        &format!("/{}/", &token[1..]),
+    ] {
+        nothing(view.ask("GET", path, &own), 404, path);
+    }
+    for name in [
+        "../secret.csv",
+        "curves/../../secret.csv",
+        "curves/..%2f..%2fsecret.csv",
+        "curves/%2e%2e/%2e%2e/secret.csv",
+        "curves/%252e%252e/secret.csv",
+        "curves/..%5c..%5csecret.csv",
+        "curves//settlement.csv",
+        "curves/./settlement.csv",
+        "curves/settlement.csv%00",
+        "curves/settlement.csv?x",
+        "curves/link.csv",
+        "curves/notes.txt",
+        "curves/.hidden.csv",
+        "curves/pipe.csv",
+        "curves/",
+        "curves",
+        "monitors/top%20%C3%BC.csv",
+        "case.toml",
+        "summary.json",
+        ".igimp",
+        "checkpoint/stage-01-end/meta.json",
+        "/etc/passwd",
+        "%2fetc%2fpasswd",
+        "%",
+    ] {
+        nothing(view.get(name), 404, name);
+    }
+    let absolute = view.ask("GET", &format!("{}index.json", view.address()), &own);
+    nothing(absolute, 400, "a request to a proxy");
+    let page = format!("/{token}/");
+    for host in [
+        "example.com".to_owned(),
+        format!("example.com:{}", view.port),
+        format!("127.0.0.1.example.com:{}", view.port),
+        "127.0.0.1".to_owned(),
+        "127.0.0.1:1".to_owned(),
+        format!("[::1]:{}", view.port),
+    ] {
+        nothing(view.ask("GET", &page, &host), 403, &host);
+    }
+    for method in ["POST", "PUT", "DELETE", "OPTIONS", "TRACE", "get"] {
+        nothing(view.ask(method, &page, &own), 405, method);
+    }
+    let two = format!("GET {page} HTTP/1.1\r\nHost: {own}\r\nHost: {own}\r\n\r\n");
+    for request in [
+        &*two,
+        &format!("GET {page} HTTP/1.1\r\n\r\n"),
+        "nonsense\r\n\r\n",
+    ] {
+        let response = view.send(request.as_bytes());
+        assert!(response.starts_with("HTTP/1.1 400 "), "{response}");
+    }
+    let long = format!(
+        "GET /{} HTTP/1.1\r\nHost: {own}\r\n\r\n",
+        "a".repeat(1 << 20)
+    );
+    let response = view.send(long.as_bytes());
+    assert!(!response.contains("200 OK"));
+    // Slow clients, more than are served at a time, are cut off and leave room for others.
+    let idle: Vec<TcpStream> = (0..12)
+        .map(|_| TcpStream::connect(("127.0.0.1", view.port)).unwrap())
+        .collect();
+    assert_eq!(view.get("").0, 200);
+    drop(idle);
+    assert_eq!(view.interrupt(), Some(0));
+}
+
+#[test]
+fn folders_without_frames_and_of_several_runs_are_told_apart() {
+    let folder = Folder::with_results(
+        "folders",
+        &["--set", "output.paraview={ every = \"never\" }"],
+    );
+    let view = View::of(&folder, "results");
+    let index: serde_json::Value = serde_json::from_str(&view.get("index.json").2).unwrap();
+    assert_eq!(index["never"], true);
+    drop(view);
+    let said = |words: &[&str]| {
+        let output = folder.igimp(words);
+        let text = String::from_utf8(output.stderr).unwrap();
+        (output.status.code().unwrap(), text)
+    };
+    std::fs::create_dir_all(folder.0.join("study")).unwrap();
+    for name in ["mesh-2", "mesh-1"] {
+        let words = [
+            "run",
+            "case.toml",
+            "--quiet",
+            "--out",
+            &format!("study/{name}"),
+        ];
+        assert!(folder.igimp(&words).status.success());
+    }
+    insta::assert_snapshot!(said(&["view", "study"]).1, @r"
+    error: study holds the results of several runs
+      help: look at one of them:
+        igimp view study/mesh-1
+        igimp view study/mesh-2
+    ");
+    std::fs::create_dir_all(folder.0.join("empty")).unwrap();
+    let (code, text) = said(&["view", "empty"]);
+    assert_eq!(code, 2);
+    insta::assert_snapshot!(text, @r"
+    error: there are no results of a run in empty
+      help: give the folder that `igimp run` names in its last line
+    ");
+    assert_eq!(said(&["view", "none"]).0, 4);
+}
+
+/// A browser without a window, if one is installed.
+fn browser() -> Option<&'static str> {
+    let names = ["chromium", "chromium-browser", "google-chrome"];
+    let found = names.into_iter().find(|name| {
+        let version = Command::new(name).arg("--version").output();
+        version.is_ok_and(|output| output.status.success())
+    });
+    if found.is_none() {
+        println!("skipped: there is no chromium");
+    }
+    found
+}
+
+/// The page of a view as it stands after some seconds, opened with wishes.
+fn looked_at(browser: &str, folder: &Folder, view: &View, wishes: &str) -> String {
+    dumped(browser, folder, &format!("{}#{wishes}", view.address()), 15)
+}
+
+/// A page as it stands after so many seconds of its own clock, which does not wait for pauses.
+fn dumped(browser: &str, folder: &Folder, address: &str, seconds: u32) -> String {
+    let profile = folder.0.join("profile");
+    let output = Command::new(browser)
+        .args(["--headless", "--no-sandbox", "--disable-gpu", "--dump-dom"])
+        .arg(format!("--virtual-time-budget={seconds}000"))
+        .arg("--window-size=390,900")
+        .arg(format!("--user-data-dir={}", profile.display()))
+        .arg(address)
+        .output()
+        .unwrap();
+    String::from_utf8_lossy(&output.stdout).into_owned()
+}
+
+/// An attribute of the element with an id.
+fn attribute(page: &str, id: &str, name: &str) -> String {
+    let (before, after) = page.split_once(&format!("id=\"{id}\"")).unwrap();
+    let start = before.rfind('<').unwrap();
+    let end = after.find('>').unwrap();
+    let tag = format!("{}{}", &before[start..], &after[..end]);
+    let (_, value) = tag
+        .split_once(&format!(" {name}=\""))
+        .unwrap_or_else(|| panic!("no {name} in {tag}"));
+    value.split_once('"').unwrap().0.to_owned()
+}
+
+/// GOAL: the page loads, the slider moves, and the value under the pointer is that of the table.
+#[test]
+fn the_page_works_in_a_browser() {
+    let Some(browser) = browser() else {
+        return;
+    };
+    let folder = Folder::with_results("browser", &[]);
+    let table = std::fs::read_to_string(folder.0.join("results/monitors/top ü.csv")).unwrap();
+    let number = |row: usize, column: usize| -> f64 {
+        let line = table.lines().nth(row + 1).unwrap();
+        line.split(',').nth(column).unwrap().parse().unwrap()
+    };
+    let view = View::of(&folder, "results");
+    // The monitor follows the particle next to (1, 2); compression is positive in tables alone.
+    let fields = [
+        ("displacement%20[m],%20length", 3, 1.0),
+        ("sigma%20[Pa],%20tension%20%2B,%20yy", 4, -1.0),
+    ];
+    for frame in 1..=3 {
+        for (field, column, sign) in fields {
+            let wishes = format!("frame={frame}&field={field}&hover=0.9,1.85");
+            let page = looked_at(browser, &folder, &view, &wishes);
+            let value: f64 = attribute(&page, "found", "data-value").parse().unwrap();
+            let expected = sign * number(frame, column);
+            assert!(
+                (value - expected).abs() <= 1e-6 * expected.abs(),
+                "frame {frame}, {field}: {value} for {expected}"
+            );
+            let label = attribute(&page, "slider", "aria-valuetext");
+            assert_eq!(
+                label,
+                format!("Frame {frame} of 4: stage 1 “own weight”, step {frame}")
+            );
+            assert!(
+                page.contains("a &lt;b&gt;block&lt;/b&gt;"),
+                "the title is text"
+            );
+            // The cursor of curve and monitor is on the row of the frame.
+            assert_eq!(page.matches(&format!("data-row=\"{frame}\"")).count(), 3);
+        }
+    }
+    // Played from the first frame to the last, with the particle that was pointed at.
+    let page = looked_at(browser, &folder, &view, "frame=1&hover=0.9,1.85&play=1");
+    assert!(attribute(&page, "slider", "aria-valuetext").starts_with("Frame 4 of 4"));
+    let value: f64 = attribute(&page, "found", "data-value").parse().unwrap();
+    assert!((value - number(3, 3)).abs() <= 1e-6 * number(3, 3));
+}
+
+/// GOAL: frames that come while the page is looked at are taken up.
+#[test]
+fn the_page_follows_a_run() {
+    let Some(browser) = browser() else {
+        return;
+    };
+    let folder = Folder::with_results("live", &[]);
+    let view = View::of(&folder, "results");
+    let frames = folder.0.join("results/paraview");
+    let page = std::thread::scope(|scope| {
+        // A thousand questions for new frames, which take longer than the pause below.
+        let page = scope.spawn(|| dumped(browser, &folder, &view.address(), 2000));
+        std::thread::sleep(Duration::from_millis(1500));
+        std::fs::copy(
+            frames.join("particles_0001.vtu"),
+            frames.join("particles_0005.vtu"),
+        )
+        .unwrap();
+        let collection = frames.join("particles.pvd");
+        let text = std::fs::read_to_string(&collection).unwrap();
+        let line = "<DataSet timestep=\"4\" group=\"\" part=\"0\" file=\"particles_0005.vtu\"/>\n";
+        let text = text.replace("</Collection>", &format!("{line}</Collection>"));
+        std::fs::write(collection, text).unwrap();
+        page.join().unwrap()
+    });
+    let label = attribute(&page, "slider", "aria-valuetext");
+    assert!(label.starts_with("Frame 5 of 5"), "{label}");
+}
+
+#[test]
+fn the_page_says_how_to_get_frames() {
+    let Some(browser) = browser() else {
+        return;
+    };
+    let folder = Folder::with_results(
+        "no-frames",
+        &["--set", "output.paraview={ every = \"never\" }"],
+    );
+    let view = View::of(&folder, "results");
+    let page = looked_at(browser, &folder, &view, "");
+    assert!(page.contains("This run writes no frames"), "{page}");
+    assert!(
+        page.contains("class=\"curve\""),
+        "the curves are there all the same"
+    );
+}
+
+/// GOAL: a report holds its last frame, unless that is too large or would break the page.
+#[test]
+fn a_report_holds_the_last_frame() {
+    let folder = Folder::with_results("report", &[]);
+    let results = folder.0.join("results");
+    let report = || {
+        assert!(folder.igimp(&["report", "results"]).status.success());
+        std::fs::read_to_string(results.join("report.html")).unwrap()
+    };
+    let frame = results.join("paraview/particles_0004.vtu");
+    let text = std::fs::read_to_string(&frame).unwrap();
+    assert!(report().contains(&format!(">{text}</script>")));
+    if let Some(browser) = browser() {
+        let address = format!("file://{}#soil", results.join("report.html").display());
+        let page = dumped(browser, &folder, &address, 15);
+        assert!(page.contains("<p id=\"bar-label\" class=\"soft\">displacement length [mm]</p>"));
+        let (_, ticks) = page.split_once("id=\"ticks\">").unwrap();
+        assert!(ticks.starts_with("<span>"), "the scale was drawn");
+    }
+    std::fs::write(&frame, format!("{text}</SCRIPT><script>alert(1)</script>")).unwrap();
+    assert!(!report().contains("alert"));
+    std::fs::write(&frame, " ".repeat(3_100_000)).unwrap();
+    let page = report();
+    assert!(page.contains("The last frame has 3.1 MB, too much for this page"));
+    assert!(page.len() < 1_000_000, "{}", page.len());
+    std::fs::remove_file(&frame).unwrap();
+    std::os::unix::fs::symlink(folder.0.join("case.toml"), &frame).unwrap();
+    assert!(!report().contains("Last frame"));
+}
