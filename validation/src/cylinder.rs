@@ -268,7 +268,8 @@ fn thick_cylinder(
         mean_deviation(&curve),
     );
     if job.cells == 16 {
-        study.newton("thick_16", run)?;
+        let name = curve.name.replace("pressure_", "");
+        study.newton(&name, run)?;
     }
     let label = format!("{}, a_{{0}}/h = {}", job.method.label(), job.cells);
     let shown = curve.points(0, 1).into_iter().step_by(4).collect();

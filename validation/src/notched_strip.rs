@@ -133,12 +133,9 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
         .map(|&cells| (cells, Method::igimp_bbar()))
         .collect();
     jobs.push((4, Method::igimp()));
-    let finest = meshes.len().min(3);
-    jobs.extend(
-        meshes[finest - 2..finest]
-            .iter()
-            .map(|&cells| (cells, Method::shared_strain())),
-    );
+    if level > Level::Quick {
+        jobs.extend([4, 8].map(|cells| (cells, Method::shared_strain())));
+    }
     let done = jobs
         .par_iter()
         .map(|(cells, method)| pull(*cells, method))
