@@ -97,6 +97,21 @@ class Soil {
     pen.closePath();
   }
 
+  // Fills a cell and a little more, over the seams that smooth edges leave between neighbours. Each by
+  // itself: a path of many cells takes browsers very long.
+  fill(pen, place, cell) {
+    const [c, at] = [this.corner, 8 * cell];
+    if (c[at] === c[at + 6] && c[at + 1] === c[at + 3] && c[at + 2] === c[at + 4] && c[at + 5] === c[at + 7]) {
+      const [x, y] = [place.left + place.scale * c[at], place.top - place.scale * c[at + 5]];
+      pen.fillRect(x - 0.35, y - 0.35, place.scale * (c[at + 2] - c[at]) + 0.7, place.scale * (c[at + 5] - c[at + 1]) + 0.7);
+      return;
+    }
+    pen.beginPath();
+    this.trace(pen, place, cell);
+    pen.fill();
+    pen.stroke();
+  }
+
   cells(pen, place) {
     const last = this.colours.length - 1;
     const [low, high] = this.range;
@@ -111,11 +126,7 @@ class Soil {
       if (own.length === 0) return;
       pen.fillStyle = this.colours[level] || "#a8a8a8";
       pen.strokeStyle = pen.fillStyle;
-      pen.beginPath();
-      for (const cell of own) this.trace(pen, place, cell);
-      pen.fill();
-      // Over the seams that smooth edges leave between neighbours.
-      pen.stroke();
+      for (const cell of own) this.fill(pen, place, cell);
     });
     if (this.marked >= 0) {
       pen.strokeStyle = cssColour("--cursor");
