@@ -13,7 +13,7 @@
 //! | `mesh-1/`, `mesh-2/`, … | of a study of the mesh error: a folder like this for each mesh |
 //! | `mesh_study.csv` | its results on all meshes |
 //! | `.igimp` | says that igimp made the folder, and for which case ([`owner`](super::owner)) |
-//! | `.igimp.lock` | keeps a second run out ([`lock`](super::lock)) |
+//! | `.igimp.lock` | keeps a second run out ([`lock`]) |
 
 use std::fs;
 use std::io;
