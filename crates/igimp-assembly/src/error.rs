@@ -104,6 +104,16 @@ pub enum AssemblyError {
         /// A principal elastic Hencky strain \[-\].
         strain: f64,
     },
+    /// A particle would be carried into a rigid body.
+    #[error("particle {particle} would be carried into rigid body {body} at {position:?} m")]
+    Swallowed {
+        /// Number of the particle, from 0.
+        particle: usize,
+        /// Number of the body, from 0.
+        body: usize,
+        /// Where its centre would be \[length\], axes beyond the dimension 0.
+        position: [f64; 3],
+    },
     /// A constraint names a node that the grid does not have.
     #[error("a constraint names node {node}, but the grid has {nodes} nodes (numbered from 0)")]
     UnknownNode {

@@ -5,27 +5,21 @@
 
 use igimp_shape::Grid;
 
+use crate::couplings::{Coupling, Couplings};
 use crate::particles::Particles;
 use crate::stencils::Stencils;
 
-/// A coupling of two nodes, or of a node to its place, that acts on each displacement component
-/// alike.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Coupling {
-    pub(crate) row: usize,
-    pub(crate) column: usize,
-    /// Stiffness \[force/length\].
-    pub(crate) stiffness: f64,
-}
-
-/// The entries of the ghost stiffness for factor `gamma`; `young` gives each particle's modulus.
-pub(crate) fn ghost_entries<const D: usize>(
+/// The ghost stiffness for factor `gamma`, none for 0; `young` gives each particle's modulus.
+pub(crate) fn ghost_penalty<const D: usize>(
     grid: &Grid<D>,
     particles: &Particles<D>,
     stencils: &Stencils<D>,
     young: impl Fn(usize) -> f64,
     gamma: f64,
-) -> Vec<Coupling> {
+) -> Couplings {
+    if gamma <= 0.0 {
+        return Couplings(Vec::new());
+    }
     let cells = Cells::gather(grid, particles, stencils, young);
     let mut entries = Vec::new();
     for cell in 0..grid.cell_count() {
@@ -49,7 +43,7 @@ pub(crate) fn ghost_entries<const D: usize>(
         entry.row = stencils.master(entry.row);
         entry.column = stencils.master(entry.column);
     }
-    entries
+    Couplings(entries)
 }
 
 /// Which cells hold soil, and how stiff it is.

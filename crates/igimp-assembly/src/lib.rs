@@ -8,9 +8,11 @@
 //! Nothing here iterates, cuts a step, reads a file or prints.
 
 mod blocks;
+mod border;
 mod cell_soil;
 mod commit;
 mod constraints;
+mod couplings;
 mod dropped;
 mod error;
 mod ghost;
@@ -19,9 +21,11 @@ mod linearised;
 mod loads;
 mod matrix;
 mod method;
+mod nodal_forces;
 mod particles;
 mod reach;
 mod residual;
+mod rigid;
 mod small;
 mod small_cuts;
 mod stencils;
@@ -32,6 +36,7 @@ mod system;
 mod trial;
 mod unknowns;
 
+pub use border::Border;
 pub use constraints::Constraints;
 pub use error::AssemblyError;
 pub use kinematics::ParticleTrial;
@@ -40,6 +45,10 @@ pub use matrix::{CompressedColumns, NodeBlock, Pattern, TangentMatrix};
 pub use method::{DomainUpdate, Geometry, Kinematics, Locking, Method, Remedy, SmallCuts};
 pub use particles::{ParticleFields, ParticleSeed, Particles};
 pub use residual::OutOfBalance;
+pub use rigid::{
+    ContactNode, ContactState, Drive, Interface, Penalty, Pose, RigidBody, RigidMotion, Shear,
+    Surface, SurfaceError, Tension,
+};
 pub use stencils::Stencils;
 pub use step_conditions::{SharedLaw, StepConditions};
 pub use system::System;

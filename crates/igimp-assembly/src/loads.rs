@@ -3,6 +3,7 @@
 
 use igimp_shape::{Grid, Linear, Scratch, Support, supports};
 
+use crate::couplings::{Coupling, Couplings};
 use crate::dropped::shares_of_carried;
 use crate::error::AssemblyError;
 use crate::stencils::Stencils;
@@ -200,9 +201,12 @@ pub(crate) fn nodal_drag<const D: usize>(
     grid: &Grid<D>,
     stencils: &Stencils<D>,
     drag: f64,
-) -> Vec<(usize, f64)> {
-    (0..grid.node_count())
-        .map(|node| (node, drag * stencils.node_mass(node)))
-        .filter(|&(_, drag)| drag > 0.0)
-        .collect()
+) -> Couplings {
+    let nodes = 0..grid.node_count();
+    let own = nodes.map(|node| Coupling {
+        row: node,
+        column: node,
+        stiffness: drag * stencils.node_mass(node),
+    });
+    Couplings(own.filter(|own| own.stiffness > 0.0).collect())
 }

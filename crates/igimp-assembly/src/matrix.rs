@@ -7,6 +7,8 @@ use std::sync::Arc;
 use nalgebra_sparse::CscMatrix;
 use nalgebra_sparse::pattern::SparsityPattern;
 
+use crate::border::Border;
+
 /// The unknowns that one grid node contributes: consecutive rows and columns of the matrix.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NodeBlock {
@@ -145,15 +147,18 @@ impl Pattern {
     }
 }
 
-/// Tangent matrix K = ∂f_int/∂u over the unknowns \[force/length\].
+/// Tangent matrix K = ∂f_int/∂u over the unknowns of the grid \[force/length\], with the border of rigid
+/// bodies.
 #[derive(Clone, Debug)]
 pub struct TangentMatrix {
     /// The pattern, shared with solvers so that they can tell whether symbolic work still holds.
     pub pattern: Arc<Pattern>,
     /// Stored values \[force/length\], in the order that [`Pattern`] describes.
     pub values: Vec<f64>,
-    /// Whether the laws present make K symmetric (associated flow everywhere).
+    /// Whether K is symmetric: associated flow everywhere, no interface that slips by friction.
     pub symmetric: bool,
+    /// What belongs to rigid bodies.
+    pub border: Border,
 }
 
 impl TangentMatrix {
@@ -164,6 +169,7 @@ impl TangentMatrix {
             pattern,
             values,
             symmetric,
+            border: Border::default(),
         }
     }
 

@@ -9,6 +9,7 @@ use crate::constraints::Constraints;
 use crate::error::AssemblyError;
 use crate::loads::StepLoads;
 use crate::particles::Particles;
+use crate::rigid::RigidMotion;
 
 /// A constitutive law that several bodies and threads share.
 pub type SharedLaw = Arc<dyn ConstitutiveModel>;
@@ -25,6 +26,8 @@ pub struct StepConditions<const D: usize> {
     pub loads: StepLoads<D>,
     /// Laws at the end of the step, as the particles number them.
     pub laws: Vec<SharedLaw>,
+    /// How rigid bodies move, in their order; one that is not listed is held.
+    pub motions: Vec<RigidMotion<D>>,
 }
 
 impl<const D: usize> StepConditions<D> {
@@ -44,14 +47,29 @@ impl<const D: usize> StepConditions<D> {
             constraints,
             loads,
             laws,
+            motions: Vec::new(),
         };
         conditions.agree()?;
         Ok(conditions)
     }
 
+    /// The same with rigid bodies that move, in their order.
+    ///
+    /// # Errors
+    /// [`AssemblyError::NonFinite`] for a motion that is not finite.
+    pub fn with_motions(mut self, motions: Vec<RigidMotion<D>>) -> Result<Self, AssemblyError> {
+        self.motions = motions;
+        self.agree()?;
+        Ok(self)
+    }
+
     /// Refuses conditions that do not agree.
     fn agree(&self) -> Result<(), AssemblyError> {
         self.constraints.belong_to(&self.grid)?;
+        if let Some(index) = self.motions.iter().position(|motion| !motion.is_finite()) {
+            let what = "motion of a rigid body";
+            return Err(AssemblyError::NonFinite { what, index });
+        }
         self.loads.are_finite()
     }
 

@@ -5,15 +5,19 @@ use std::sync::Arc;
 use igimp_material::{MaterialError, TangentKind};
 
 use crate::blocks::BlockTable;
+use crate::border::Border;
+use crate::couplings::Couplings;
 use crate::error::AssemblyError;
-use crate::ghost::{Coupling, ghost_entries};
+use crate::ghost::ghost_penalty;
 use crate::kinematics::ParticleTrial;
 use crate::linearised::Linearised;
 use crate::loads::{LoadPoint, add_force_of_points, finite_points, nodal_drag, weight};
 use crate::matrix::{Pattern, TangentMatrix};
 use crate::method::{Kinematics, Method};
+use crate::nodal_forces::NodalForces;
 use crate::particles::Particles;
 use crate::residual::{OutOfBalance, force_of_round_off};
+use crate::rigid::{Contact, Drive, NODES_PER_BODY, RigidBody, RigidMotion, rotations};
 use crate::stencils::Stencils;
 use crate::step_conditions::StepConditions;
 use crate::trial::Trial;
@@ -28,12 +32,13 @@ pub struct System<'a, const D: usize> {
     pub(crate) method: &'a Method,
     pub(crate) unknowns: Unknowns<D>,
     f_ext: Vec<[f64; D]>,
+    /// By node that stands for the motion of a rigid body.
+    motions: Vec<[Drive; D]>,
     /// ‖f_int‖ of strains that are round-off \[force\].
     round_off: f64,
-    /// Ghost penalty and drag: forces proportional to step displacements.
-    couplings: Vec<Coupling>,
-    /// Where the drag begins among the couplings.
-    first_drag: usize,
+    /// Ghost penalty and drag.
+    couplings: [Couplings; 2],
+    contact: Contact<'a, D>,
     pub(crate) table: BlockTable<D>,
     pub(crate) pattern: Arc<Pattern>,
     symmetric: bool,
@@ -53,6 +58,20 @@ impl<'a, const D: usize> System<'a, D> {
         conditions: &'a StepConditions<D>,
         method: &'a Method,
     ) -> Result<Self, AssemblyError> {
+        Self::with_rigid_bodies(particles, &[], stencils, conditions, method)
+    }
+
+    /// The same for a body that rigid bodies touch.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn with_rigid_bodies(
+        particles: &'a Particles<D>,
+        bodies: &'a [RigidBody<D>],
+        stencils: &'a Stencils<D>,
+        conditions: &'a StepConditions<D>,
+        method: &'a Method,
+    ) -> Result<Self, AssemblyError> {
         conditions.serve(particles)?;
         let mut used = vec![false; conditions.laws.len()];
         for &law in &particles.law {
@@ -66,26 +85,29 @@ impl<'a, const D: usize> System<'a, D> {
             let (what, index) = ("ghost penalty", 0);
             return Err(AssemblyError::NonFinite { what, index });
         }
-        let unknowns = Unknowns::number(grid, stencils, &conditions.constraints, cuts.below)?;
-        let mut couplings = if cuts.ghost_penalty > 0.0 {
-            let young = |p: usize| conditions.laws[particles.law[p]].elasticity().young();
-            ghost_entries(grid, particles, stencils, young, cuts.ghost_penalty)
-        } else {
-            Vec::new()
-        };
-        let first_drag = couplings.len();
-        if conditions.loads.drag > 0.0 {
-            let drag = nodal_drag(grid, stencils, conditions.loads.drag);
-            couplings.extend(drag.into_iter().map(|(node, stiffness)| Coupling {
-                row: node,
-                column: node,
-                stiffness,
-            }));
-        }
-        let pairs: Vec<_> = couplings
+        let motions = nodal_motions(bodies, conditions);
+        let free: Vec<[bool; D]> = motions
             .iter()
-            .map(|entry| (entry.column, entry.row))
+            .map(|motion| motion.map(|drive| matches!(drive, Drive::Loaded(_))))
             .collect();
+        let constraints = &conditions.constraints;
+        let unknowns = Unknowns::number(grid, stencils, constraints, cuts.below, &free)?;
+        let young = |p: usize| conditions.laws[particles.law[p]].elasticity().young();
+        let couplings = [
+            ghost_penalty(grid, particles, stencils, young, cuts.ghost_penalty),
+            nodal_drag(grid, stencils, conditions.loads.drag),
+        ];
+        let contact = Contact::find(bodies, particles, stencils, conditions, &unknowns);
+        let forces = beside_particles(&couplings, &contact);
+        let pairs: Vec<_> = forces.iter().flat_map(|force| force.pairs()).collect();
+        let symmetric = symmetric && forces.iter().all(|force| force.is_symmetric());
+        let mut f_ext = weight(grid, stencils, &conditions.loads);
+        f_ext.extend(motions.iter().map(|motion| {
+            motion.map(|drive| match drive {
+                Drive::Loaded(force) => force,
+                Drive::Moved(_) => 0.0,
+            })
+        }));
         let (table, pattern) = BlockTable::build(grid, stencils, &unknowns, &pairs);
         Ok(Self {
             particles,
@@ -93,10 +115,11 @@ impl<'a, const D: usize> System<'a, D> {
             conditions,
             method,
             unknowns,
-            f_ext: weight(grid, stencils, &conditions.loads),
+            f_ext,
             round_off: force_of_round_off(particles, stencils, conditions),
             couplings,
-            first_drag,
+            contact,
+            motions,
             table,
             pattern: Arc::new(pattern),
             symmetric,
@@ -166,7 +189,7 @@ impl<'a, const D: usize> System<'a, D> {
         kind: TangentKind,
     ) -> Result<(Trial<D>, TangentMatrix), AssemblyError> {
         let mut trial = Trial::default();
-        let mut matrix = TangentMatrix::zeros(Arc::clone(&self.pattern), self.symmetric);
+        let mut matrix = self.matrix_from(None);
         self.linearise_into(u, kind, &mut trial, &mut matrix)?;
         Ok((trial, matrix))
     }
@@ -183,7 +206,9 @@ impl<'a, const D: usize> System<'a, D> {
         trial: &mut Trial<D>,
     ) -> Result<(), AssemblyError> {
         self.pass(u, kind, trial, None)?;
-        self.add_couplings(u, trial);
+        for force in self.forces() {
+            force.add(u, &mut trial.f_int, None);
+        }
         Ok(())
     }
 
@@ -208,21 +233,25 @@ impl<'a, const D: usize> System<'a, D> {
         );
         matrix.symmetric = self.symmetric;
         self.pass(u, kind, trial, Some(&mut matrix.values))?;
-        self.add_couplings(u, trial);
-        for entry in &self.couplings {
-            for axis in 0..D {
-                if let (Some(row), Some(column)) = (
-                    self.unknowns.index(entry.row, axis),
-                    self.unknowns.index(entry.column, axis),
-                ) {
-                    let component = column - self.unknowns.before(entry.column);
-                    let rank = row - self.unknowns.before(entry.row);
-                    let place = self
-                        .table
-                        .value(&self.pattern, entry.column, component, entry.row);
-                    matrix.values[place + rank] += entry.stiffness;
+        let of_grid = self.unknowns.of_grid();
+        matrix.border = Border::zeros(self.unknowns.len() - of_grid, of_grid);
+        let TangentMatrix { values, border, .. } = matrix;
+        let mut add_block = |row: usize, column: usize, block: &[[f64; D]; D]| {
+            for (b, column_unknown) in self.unknowns.of(column) {
+                for (a, row_unknown) in self.unknowns.of(row) {
+                    if row_unknown < of_grid && column_unknown < of_grid {
+                        let component = column_unknown - self.unknowns.before(column);
+                        let rank = row_unknown - self.unknowns.before(row);
+                        let place = self.table.value(&self.pattern, column, component, row);
+                        values[place + rank] += block[a][b];
+                    } else {
+                        border.add(of_grid, row_unknown, column_unknown, block[a][b]);
+                    }
                 }
             }
+        };
+        for force in self.forces() {
+            force.add(u, &mut trial.f_int, Some(&mut add_block));
         }
         Ok(())
     }
@@ -236,15 +265,7 @@ impl<'a, const D: usize> System<'a, D> {
             pattern: Arc::clone(&self.pattern),
             values,
             symmetric: self.symmetric,
-        }
-    }
-
-    /// Adds ghost penalty and drag to the internal force of a trial.
-    fn add_couplings(&self, u: &[[f64; D]], trial: &mut Trial<D>) {
-        for entry in &self.couplings {
-            for axis in 0..D {
-                trial.f_int[entry.row][axis] += entry.stiffness * u[entry.column][axis];
-            }
+            border: Border::default(),
         }
     }
 
@@ -289,7 +310,7 @@ impl<'a, const D: usize> System<'a, D> {
         let (mut held, mut unheld) = (0.0, 0.0);
         for (node, reaction) in reactions.iter().enumerate() {
             for axis in 0..D {
-                match self.conditions.constraints.of(node, axis) {
+                match self.prescribed(node, axis) {
                     Some(_) => held += reaction[axis].abs(),
                     None => unheld += reaction[axis].abs(),
                 }
@@ -307,9 +328,10 @@ impl<'a, const D: usize> System<'a, D> {
     /// of the load that motion carries \[-\].
     pub fn drag_share(&self, u: &[[f64; D]]) -> f64 {
         let mut drag = 0.0;
-        for coupling in &self.couplings[self.first_drag..] {
-            for component in u[coupling.row] {
-                drag += (coupling.stiffness * component).powi(2);
+        for (node, u) in u.iter().enumerate().take(self.conditions.grid.node_count()) {
+            let stiffness = self.conditions.loads.drag * self.stencils.node_mass(node);
+            for component in u {
+                drag += (stiffness * component).powi(2);
             }
         }
         let external: f64 = self.f_ext.iter().flatten().map(|force| force * force).sum();
@@ -332,9 +354,11 @@ impl<'a, const D: usize> System<'a, D> {
         kind: TangentKind,
     ) -> Result<Vec<f64>, AssemblyError> {
         let mut force = vec![0.0; self.unknowns.len()];
-        let constraints = &self.conditions.constraints;
         let moves = |node: usize| {
-            (0..D).any(|axis| constraints.of(node, axis).is_some_and(|value| value != 0.0))
+            (0..D).any(|axis| {
+                self.prescribed(node, axis)
+                    .is_some_and(|value| value != 0.0)
+            })
         };
         let mut trial = ParticleTrial::at_rest();
         let mut linearised = Linearised::default();
@@ -355,18 +379,23 @@ impl<'a, const D: usize> System<'a, D> {
                 for (i, row) in supports.iter().enumerate() {
                     for (a, unknown) in self.unknowns.of(row.node) {
                         for c in 0..D {
-                            let value = constraints.of(column.node, c).unwrap_or(0.0);
+                            let value = self.prescribed(column.node, c).unwrap_or(0.0);
                             force[unknown] += columns[c][i * D + a] * value;
                         }
                     }
                 }
             }
         }
-        for entry in &self.couplings {
-            for (axis, unknown) in self.unknowns.of(entry.row) {
-                let value = constraints.of(entry.column, axis).unwrap_or(0.0);
-                force[unknown] += entry.stiffness * value;
+        let mut add_block = |row: usize, column: usize, block: &[[f64; D]; D]| {
+            for (a, unknown) in self.unknowns.of(row) {
+                for (b, entry) in block[a].iter().enumerate() {
+                    force[unknown] += entry * self.prescribed(column, b).unwrap_or(0.0);
+                }
             }
+        };
+        let mut unused = vec![[0.0; D]; u.len()];
+        for own in self.forces() {
+            own.add(u, &mut unused, Some(&mut add_block));
         }
         Ok(force)
     }
@@ -392,13 +421,62 @@ impl<'a, const D: usize> System<'a, D> {
 
     /// Nodal step displacements that carry the prescribed motion and zeros elsewhere \[length\].
     pub fn prescribed_motion(&self) -> Vec<[f64; D]> {
-        (0..self.conditions.grid.node_count())
-            .map(|node| {
-                std::array::from_fn(|axis| {
-                    self.conditions.constraints.of(node, axis).unwrap_or(0.0)
-                })
-            })
+        (0..self.node_count())
+            .map(|node| std::array::from_fn(|axis| self.prescribed(node, axis).unwrap_or(0.0)))
             .collect()
+    }
+
+    /// Number of nodes: those of the grid, and two behind them for the motion of each rigid body.
+    pub fn node_count(&self) -> usize {
+        self.conditions.grid.node_count() + self.motions.len()
+    }
+
+    /// Where a node stands \[length\]; one that stands for a rigid body at its reference point.
+    pub fn node_position(&self, node: usize) -> [f64; D] {
+        let of_grid = self.conditions.grid.node_count();
+        match node.checked_sub(of_grid) {
+            Some(beyond) => self.contact.origin(beyond / NODES_PER_BODY),
+            None => self.conditions.grid.node_position(node),
+        }
+    }
+
+    /// Whether any node or body is made to move.
+    pub fn prescribes_motion(&self) -> bool {
+        let moves = |drive: &Drive| matches!(drive, Drive::Moved(by) if *by != 0.0);
+        self.conditions.constraints.prescribe_motion() || self.motions.iter().flatten().any(moves)
+    }
+
+    /// The prescribed step displacement of a node along an axis \[length\], if any. The rotation of a body
+    /// counts as the displacement at a distance of its size.
+    fn prescribed(&self, node: usize, axis: usize) -> Option<f64> {
+        let of_grid = self.conditions.grid.node_count();
+        let Some(beyond) = node.checked_sub(of_grid) else {
+            return self.conditions.constraints.of(node, axis);
+        };
+        match self.motions[beyond][axis] {
+            Drive::Moved(by) => Some(by),
+            Drive::Loaded(_) => None,
+        }
+    }
+
+    /// The rigid bodies as an accepted step leaves them, at nodal step displacements `u` \[length\].
+    ///
+    /// # Errors
+    /// [`AssemblyError::Swallowed`] for a particle whose centre would be within a body.
+    pub fn bodies_at(&self, u: &[[f64; D]]) -> Result<Vec<RigidBody<D>>, AssemblyError> {
+        let Self {
+            particles,
+            stencils,
+            method,
+            ..
+        } = self;
+        self.contact
+            .accepted(u, particles, stencils, method.geometry)
+    }
+
+    /// The forces beside those of particles.
+    fn forces(&self) -> [&dyn NodalForces<D>; 3] {
+        beside_particles(&self.couplings, &self.contact)
     }
 
     /// Adds a correction `du` by unknown to nodal displacements `u` \[length\]; tied nodes follow their
@@ -424,4 +502,33 @@ impl<'a, const D: usize> System<'a, D> {
             Kinematics::SmallStrain => self.particles.volume(particle),
         }
     }
+}
+
+/// Ghost penalty, drag and contact, in the order in which they are summed.
+fn beside_particles<'s, const D: usize>(
+    [ghost, drag]: &'s [Couplings; 2],
+    contact: &'s Contact<'_, D>,
+) -> [&'s dyn NodalForces<D>; 3] {
+    [ghost, drag, contact]
+}
+
+/// What drives the nodes that stand for rigid bodies: two for each, displacement and rotation, the
+/// latter in lengths: times the size of the body, and moments divided by it.
+fn nodal_motions<const D: usize>(
+    bodies: &[RigidBody<D>],
+    conditions: &StepConditions<D>,
+) -> Vec<[Drive; D]> {
+    let mut motions = Vec::with_capacity(NODES_PER_BODY * bodies.len());
+    for (index, body) in bodies.iter().enumerate() {
+        let held = RigidMotion::held();
+        let motion = conditions.motions.get(index).unwrap_or(&held);
+        let size = body.surface.size();
+        motions.push(motion.displacement);
+        motions.push(std::array::from_fn(|axis| match motion.rotation[axis] {
+            _ if axis >= rotations(D) => Drive::Moved(0.0),
+            Drive::Moved(angle) => Drive::Moved(angle * size),
+            Drive::Loaded(moment) => Drive::Loaded(moment / size),
+        }));
+    }
+    motions
 }

@@ -10,7 +10,8 @@ use crate::stencils::Stencils;
 /// Marks a degree of freedom without an unknown.
 const NONE: u32 = u32::MAX;
 
-/// The unknowns of a step: free degrees of freedom of active nodes, nodes ascending.
+/// The unknowns of a step: free degrees of freedom of active nodes, nodes ascending, and then those of
+/// rigid bodies.
 #[derive(Clone, Debug)]
 pub struct Unknowns<const D: usize> {
     /// Number of unknowns on nodes before each node; length nodes + 1.
@@ -21,12 +22,15 @@ pub struct Unknowns<const D: usize> {
     blocks_before: Vec<u32>,
     /// Active nodes: with volume, not dropped as a small cut.
     active: Vec<bool>,
+    /// Unknowns of the grid; those of rigid bodies follow.
+    of_grid: usize,
     len: usize,
 }
 
 impl<const D: usize> Unknowns<D> {
     /// Numbers the unknowns. Nodes whose volume is below `drop_below` of their cells' volume are
-    /// dropped: their displacement is zero. (Tied nodes carry no volume any more.)
+    /// dropped: their displacement is zero. (Tied nodes carry no volume any more.) Behind the nodes of the
+    /// grid stand those of rigid bodies, each with its free components.
     ///
     /// # Errors
     /// [`AssemblyError::NoUnknowns`].
@@ -35,10 +39,12 @@ impl<const D: usize> Unknowns<D> {
         stencils: &Stencils<D>,
         constraints: &Constraints<D>,
         drop_below: f64,
+        of_bodies: &[[bool; D]],
     ) -> Result<Self, AssemblyError> {
         let nodes = grid.node_count();
-        let mut first = Vec::with_capacity(nodes + 1);
-        let mut rank = vec![[NONE; D]; nodes];
+        let all = nodes + of_bodies.len();
+        let mut first = Vec::with_capacity(all + 1);
+        let mut rank = vec![[NONE; D]; all];
         let mut active = vec![false; nodes];
         let mut blocks_before = Vec::with_capacity(nodes + 1);
         let mut blocks = 0;
@@ -61,16 +67,27 @@ impl<const D: usize> Unknowns<D> {
             len += own;
             blocks += u32::from(own > 0);
         }
-        first.push(len);
         blocks_before.push(blocks);
         if len == 0 {
             return Err(AssemblyError::NoUnknowns);
         }
+        let of_grid = len as usize;
+        for (free, rank) in of_bodies.iter().zip(&mut rank[nodes..]) {
+            first.push(len);
+            let mut own = 0;
+            for axis in (0..D).filter(|&axis| free[axis]) {
+                rank[axis] = own;
+                own += 1;
+            }
+            len += own;
+        }
+        first.push(len);
         Ok(Self {
             first,
             rank,
             blocks_before,
             active,
+            of_grid,
             len: len as usize,
         })
     }
@@ -78,6 +95,11 @@ impl<const D: usize> Unknowns<D> {
     /// Number of unknowns.
     pub fn len(&self) -> usize {
         self.len
+    }
+
+    /// Number of unknowns of the grid; those of rigid bodies follow.
+    pub fn of_grid(&self) -> usize {
+        self.of_grid
     }
 
     /// Whether there is no unknown: never, by construction.

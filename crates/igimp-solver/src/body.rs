@@ -1,6 +1,6 @@
-//! What a step changes: the particles and the points that carry loads.
+//! What a step changes: the particles, the points that carry loads, and rigid bodies.
 
-use igimp_assembly::{LoadPoint, Particles};
+use igimp_assembly::{LoadPoint, Particles, RigidBody};
 
 /// The state that marches from one equilibrium to the next.
 #[derive(Clone, Debug)]
@@ -9,6 +9,8 @@ pub struct Body<const D: usize> {
     pub particles: Particles<D>,
     /// Loaded points, carried along by the soil.
     pub load_points: Vec<LoadPoint<D>>,
+    /// Rigid bodies that the soil may touch.
+    pub rigid: Vec<RigidBody<D>>,
 }
 
 impl<const D: usize> Body<D> {
@@ -17,6 +19,7 @@ impl<const D: usize> Body<D> {
         Self {
             particles,
             load_points: Vec::new(),
+            rigid: Vec::new(),
         }
     }
 }

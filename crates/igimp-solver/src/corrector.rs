@@ -7,7 +7,7 @@ use igimp_assembly::{AssemblyError, OutOfBalance, Stencils, System, TangentMatri
 use igimp_material::TangentKind;
 use igimp_shape::Grid;
 
-use crate::linear::{LinearSolver, LinearSolverError};
+use crate::linear::{Bordered, LinearSolver, LinearSolverError};
 use crate::newton::{NewtonSettings, Workspace};
 use crate::report::{PhaseTimes, StepFailure, padded};
 use crate::residual_history::ResidualHistory;
@@ -29,6 +29,8 @@ pub(crate) struct Corrector<'s, 'w, const D: usize> {
     matrix: &'w mut TangentMatrix,
     du: &'w mut Vec<f64>,
     history: &'w mut ResidualHistory,
+    /// The unknowns of rigid bodies in the matrix factorised last.
+    bordered: Bordered,
     /// Whether the matrix is the tangent at u, or that before the last correction.
     is_current: bool,
     /// The particles at u.
@@ -65,6 +67,7 @@ impl<'s, 'w, const D: usize> Corrector<'s, 'w, D> {
             matrix: matrix.insert(system.matrix_from(earlier)),
             du,
             history,
+            bordered: Bordered::default(),
             is_current: true,
             trial,
             iterations: 0,
@@ -108,10 +111,15 @@ impl<'s, 'w, const D: usize> Corrector<'s, 'w, D> {
                 self.history.fill_of_singular = self.fill_of_singular(&error);
                 self.named(error, u)
             })?;
+            self.bordered = timed(&mut self.times.solve, || {
+                Bordered::factor(self.solver, self.matrix)
+            })
+            .map_err(|error| self.named(error, u))?;
         }
         self.du.resize(residual.force.len(), 0.0);
         timed(&mut self.times.solve, || {
-            self.solver.solve(self.matrix, &residual.force, self.du)
+            self.bordered
+                .solve(self.solver, self.matrix, &residual.force, self.du)
         })
         .map_err(|error| self.named(error, u))?;
         if let Some(unknown) = self.du.iter().position(|du| !du.is_finite()) {
@@ -201,7 +209,7 @@ impl<const D: usize> Corrector<'_, '_, D> {
     /// the first matrix belongs.
     fn finite_tangents(&self, u: &[[f64; D]]) -> Result<(), AssemblyError> {
         if self.iterations == 0 {
-            let still = vec![[0.0; D]; self.grid.node_count()];
+            let still = vec![[0.0; D]; self.system.node_count()];
             self.system.finite_tangents(&still, TangentKind::Elastic)
         } else {
             self.system.finite_tangents(u, TangentKind::Consistent)
@@ -217,7 +225,7 @@ impl<const D: usize> Corrector<'_, '_, D> {
             },
             |(node, axis)| StepFailure::NotFinite {
                 what,
-                position: padded(&self.grid.node_position(node)),
+                position: padded(&self.system.node_position(node)),
                 axis,
             },
         )

@@ -157,16 +157,17 @@ fn equilibrium<const D: usize>(
     let grid = &conditions.grid;
     let clock = Instant::now();
     let stencils = Stencils::build(&body.particles, method, conditions)?;
-    let system = System::new(&body.particles, &stencils, conditions, method)?
+    let bodies = &body.rigid;
+    let system = System::with_rigid_bodies(&body.particles, bodies, &stencils, conditions, method)?
         .with_load_points(&body.load_points)?
         .sharing(workspace.pattern());
     let set_up = clock.elapsed();
     let of_step = (&system, &stencils);
     let mut corrector = Corrector::new(of_step, grid, settings, workspace, history, set_up);
 
-    let mut u = vec![[0.0; D]; grid.node_count()];
+    let mut u = vec![[0.0; D]; system.node_count()];
     let mut residual = corrector.start(&u)?;
-    if conditions.constraints.prescribe_motion() {
+    if system.prescribes_motion() {
         carry_prescribed_motion(&system, &mut residual, &mut u)?;
     }
     while !converged(&residual, settings.tolerance) {
@@ -188,7 +189,9 @@ fn equilibrium<const D: usize>(
     let false_support = system.false_support(&reactions);
     let drag_share = system.drag_share(&u);
     let plastic_share = plastic_share(trial);
+    let rigid = system.bodies_at(&u)?;
     body.load_points = load_points;
+    body.rigid = rigid;
     body.particles.commit(&stencils, method, trial, &u);
     times.commit = clock.elapsed();
     let report = StepReport {

@@ -58,7 +58,9 @@ impl ResidualHistory {
 
     /// Position \[length\] and axis of the largest out-of-balance force.
     pub(crate) fn worst<const D: usize>(&self, grid: &Grid<D>) -> Option<([f64; 3], usize)> {
+        // A node beyond those of the grid stands for a rigid body, which has no one place.
         self.worst
+            .filter(|&(node, _)| node < grid.node_count())
             .map(|(node, axis)| (padded(&grid.node_position(node)), axis))
     }
 }

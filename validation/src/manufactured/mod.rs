@@ -143,6 +143,7 @@ fn solve<const D: usize>(
     let mut body = Body {
         particles,
         load_points,
+        rigid: Vec::new(),
     };
     let constraints = walls(&grid, field.rollers);
     let load_path = |_from: f64, to: f64| {

@@ -14,7 +14,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use igimp_assembly::{Constraints, NodeBlock, Pattern, TangentMatrix};
+use igimp_assembly::{Border, Constraints, NodeBlock, Pattern, TangentMatrix};
 use igimp_shape::Grid;
 use igimp_solver::linear::SolvedSystem;
 use serde::{Deserialize, Serialize};
@@ -174,6 +174,7 @@ impl LinearSystem {
             pattern: Arc::new(pattern),
             values: self.values.clone(),
             symmetric: self.about.symmetric,
+            border: Border::default(),
         })
     }
 

@@ -14,6 +14,7 @@
 //! refined where that helps. The multifrontal solvers use the threads of the current `rayon` pool, the
 //! others one; the same input gives the same bits on any number of threads.
 
+mod bordered;
 mod check;
 mod error;
 mod faer_cholesky;
@@ -30,6 +31,7 @@ use std::sync::Arc;
 
 use igimp_assembly::{Pattern, TangentMatrix};
 
+pub(crate) use bordered::Bordered;
 pub use error::LinearSolverError;
 pub use faer_cholesky::FaerCholesky;
 pub use general_lu::GeneralLu;

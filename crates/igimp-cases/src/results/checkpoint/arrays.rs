@@ -132,6 +132,7 @@ pub(super) fn to_body(
     Ok(Body {
         particles,
         load_points,
+        rigid: Vec::new(),
     })
 }
 

@@ -1,0 +1,359 @@
+//! Contact between soil and rigid bodies over one step: what touches, and the forces that it makes
+//! (theory, eqs. 43 to 48).
+
+use std::collections::BTreeMap;
+
+use igimp_shape::Grid;
+
+use super::face::Face;
+use super::interface::{Shear, Tension};
+use super::motion::rotations;
+use super::row::{Functional, Row};
+use super::surface::cross;
+use super::{ContactNode, ContactState, NODES_PER_BODY, RigidBody};
+use crate::error::AssemblyError;
+use crate::method::Geometry;
+use crate::nodal_forces::NodalForces;
+use crate::particles::Particles;
+use crate::stencils::Stencils;
+use crate::step_conditions::StepConditions;
+use crate::supports::padded;
+use crate::unknowns::Unknowns;
+
+/// Contact of one step, with directions and weights frozen at its start.
+#[derive(Debug)]
+pub(crate) struct Contact<'a, const D: usize> {
+    bodies: &'a [RigidBody<D>],
+    rows: Vec<Row<D>>,
+    /// Bodies with the particles near them.
+    near: Vec<(usize, usize)>,
+    /// The first of the nodes that stand for bodies.
+    first_node: usize,
+}
+
+/// What is summed at a knot.
+#[derive(Default)]
+struct Sums<const D: usize> {
+    area: f64,
+    gap: f64,
+    young: f64,
+    adhesion: f64,
+    cell: f64,
+    opening: BTreeMap<usize, [f64; D]>,
+    slip: [BTreeMap<usize, [f64; D]>; 2],
+}
+
+impl<'a, const D: usize> Contact<'a, D> {
+    /// Finds what touches at the start of a step.
+    pub(crate) fn find(
+        bodies: &'a [RigidBody<D>],
+        particles: &Particles<D>,
+        stencils: &Stencils<D>,
+        conditions: &StepConditions<D>,
+        unknowns: &Unknowns<D>,
+    ) -> Self {
+        let first_node = conditions.grid.node_count();
+        let mut contact = Self {
+            bodies,
+            rows: Vec::new(),
+            near: Vec::new(),
+            first_node,
+        };
+        for body in 0..bodies.len() {
+            contact.find_of(body, particles, stencils, conditions, unknowns);
+        }
+        contact
+    }
+
+    fn find_of(
+        &mut self,
+        index: usize,
+        particles: &Particles<D>,
+        stencils: &Stencils<D>,
+        conditions: &StepConditions<D>,
+        unknowns: &Unknowns<D>,
+    ) {
+        let grid = &conditions.grid;
+        let body = &self.bodies[index];
+        let (surface, pose) = (&*body.surface, &body.pose);
+        let (lower, upper) = surface.bounds();
+        let tents = surface.tents();
+        let mut knots: BTreeMap<usize, Sums<D>> = BTreeMap::new();
+        for particle in 0..particles.len() {
+            let (x, half) = (&particles.x[particle], &particles.half_length[particle]);
+            let margin = 2.0 * half.iter().sum::<f64>();
+            let own = pose.into_body(x);
+            if (0..D).any(|a| own[a] < lower[a] - margin || own[a] > upper[a] + margin) {
+                continue;
+            }
+            let mut is_near = false;
+            for side in 0..surface.side_count() {
+                let Some(face) = Face::of(body, side, x, half) else {
+                    continue;
+                };
+                let interface = &body.interfaces[side];
+                let law = particles.law[particle];
+                let young = conditions.laws[law].elasticity().young();
+                let adhesion = match &interface.shear {
+                    Shear::Limited { adhesion, .. } => adhesion.get(law).copied().unwrap_or(0.0),
+                    _ => 0.0,
+                };
+                is_near = true;
+                for point in face.points(body, grid) {
+                    let Some((shares, cell)) = shares_at(grid, stencils, unknowns, &point.x) else {
+                        continue;
+                    };
+                    for (knot, tent) in point.knots {
+                        let weight = point.area * tent;
+                        if weight <= 0.0 {
+                            continue;
+                        }
+                        let sums = knots.entry(knot).or_default();
+                        sums.area += weight;
+                        sums.gap += weight * face.gap;
+                        sums.young += weight * young;
+                        sums.adhesion += weight * adhesion;
+                        sums.cell += weight * cell;
+                        let body_node = self.first_node + NODES_PER_BODY * index;
+                        let of_body = |direction: &[f64; D]| {
+                            rigid_shares(body, &point.x, direction, body_node)
+                        };
+                        let normal = &face.normal;
+                        add(&mut sums.opening, weight, normal, &shares, of_body(normal));
+                        for k in 0..D - 1 {
+                            let tangent = &face.tangents[k];
+                            let own = of_body(tangent);
+                            add(&mut sums.slip[k], weight, tangent, &shares, own);
+                        }
+                    }
+                }
+            }
+            if is_near {
+                self.near.push((index, particle));
+            }
+        }
+        for (knot, sums) in knots {
+            let mean = |sum: f64| sum / sums.area;
+            let functional = |sum: &BTreeMap<usize, [f64; D]>| -> Functional<D> {
+                let terms = sum.iter();
+                terms
+                    .map(|(&node, share)| (node, share.map(mean)))
+                    .collect()
+            };
+            let mut before = body.contact.knots[knot];
+            // Soil that comes near is as far off as it stands, and touches if it overlaps; from then on the
+            // gap follows its motion.
+            let is_new = before.area == 0.0;
+            let gap = if is_new {
+                mean(sums.gap).max(0.0)
+            } else {
+                before.gap
+            };
+            before.is_closed |= is_new && gap == 0.0;
+            self.rows.push(Row {
+                body: index,
+                knot,
+                area: sums.area.min(tents[knot]),
+                gap,
+                cell: mean(sums.cell),
+                young: mean(sums.young),
+                adhesion: mean(sums.adhesion),
+                opening: functional(&sums.opening),
+                slip: [functional(&sums.slip[0]), functional(&sums.slip[1])],
+                before,
+            });
+        }
+    }
+
+    /// The reference point of a body \[length\].
+    pub(crate) fn origin(&self, body: usize) -> [f64; D] {
+        self.bodies[body].pose.origin
+    }
+
+    /// What contact leaves behind when nodal step displacements `u` are accepted: the bodies at their
+    /// new places. On a given geometry they stay.
+    pub(crate) fn accepted(
+        &self,
+        u: &[[f64; D]],
+        particles: &Particles<D>,
+        stencils: &Stencils<D>,
+        geometry: Geometry,
+    ) -> Result<Vec<RigidBody<D>>, AssemblyError> {
+        let mut moved: Vec<RigidBody<D>> = self.bodies.to_vec();
+        for (index, body) in moved.iter_mut().enumerate() {
+            let node = self.first_node + NODES_PER_BODY * index;
+            let mut rotation = [0.0; 3];
+            for (k, angle) in rotation.iter_mut().enumerate().take(rotations(D)) {
+                *angle = u[node + 1][k] / body.surface.size();
+            }
+            body.pose = body.pose.moved(&u[node], &rotation);
+            let knots = body.contact.knots.len();
+            body.contact = ContactState::none(knots);
+            for (own, before) in body
+                .contact
+                .knots
+                .iter_mut()
+                .zip(&self.bodies[index].contact.knots)
+            {
+                own.is_broken = before.is_broken;
+            }
+        }
+        for row in &self.rows {
+            let body = &self.bodies[row.body];
+            let side = body.surface.side_of(row.knot);
+            let traction = row.traction(&body.interfaces[side], &body.penalty, u);
+            let bonded = body.interfaces[side].tension != Tension::None;
+            let is_broken = row.before.is_broken || traction.breaks;
+            let gap = row.gap_at(u);
+            let is_closed = traction.pressure > 0.0
+                || (bonded && !is_broken && (row.before.is_closed || gap <= 0.0));
+            moved[row.body].contact.knots[row.knot] = ContactNode {
+                pressure: traction.pressure,
+                shear: if is_closed { traction.shear } else { [0.0; 2] },
+                area: row.area,
+                gap,
+                is_closed,
+                slips: traction.slips && is_closed,
+                is_broken,
+            };
+        }
+        for &(body, particle) in &self.near {
+            let mut x = particles.x[particle];
+            for support in stencils.of(particle) {
+                for axis in 0..D {
+                    x[axis] += support.value * u[support.node][axis];
+                }
+            }
+            if moved[body].distance(&x) < 0.0 {
+                return Err(AssemblyError::Swallowed {
+                    particle,
+                    body,
+                    position: padded(&x),
+                });
+            }
+        }
+        if geometry == Geometry::Given {
+            for (body, before) in moved.iter_mut().zip(self.bodies) {
+                body.pose = before.pose.clone();
+            }
+        }
+        Ok(moved)
+    }
+}
+
+impl<const D: usize> NodalForces<D> for Contact<'_, D> {
+    fn pairs(&self) -> Vec<(usize, usize)> {
+        let mut pairs = Vec::new();
+        for row in &self.rows {
+            let nodes: Vec<usize> = row
+                .opening
+                .iter()
+                .map(|&(node, _)| node)
+                .filter(|&node| node < self.first_node)
+                .collect();
+            for &a in &nodes {
+                pairs.extend(nodes.iter().map(|&b| (a, b)));
+            }
+        }
+        pairs
+    }
+
+    fn is_symmetric(&self) -> bool {
+        let interfaces = self.bodies.iter().flat_map(|body| &body.interfaces);
+        interfaces
+            .into_iter()
+            .all(|interface| interface.is_symmetric())
+    }
+
+    fn add(
+        &self,
+        u: &[[f64; D]],
+        f: &mut [[f64; D]],
+        mut blocks: Option<&mut dyn FnMut(usize, usize, &[[f64; D]; D])>,
+    ) {
+        for row in &self.rows {
+            let body = &self.bodies[row.body];
+            let interface = &body.interfaces[body.surface.side_of(row.knot)];
+            let traction = row.traction(interface, &body.penalty, u);
+            match &mut blocks {
+                Some(blocks) => row.add(&traction, f, Some(&mut **blocks)),
+                None => row.add(&traction, f, None),
+            }
+        }
+    }
+}
+
+/// The tent functions at a point, on nodes that carry soil, as shares that sum to one, and the size of the cell \[length\]. None where
+/// no node carries soil.
+fn shares_at<const D: usize>(
+    grid: &Grid<D>,
+    stencils: &Stencils<D>,
+    unknowns: &Unknowns<D>,
+    x: &[f64; D],
+) -> Option<(Vec<(usize, f64)>, f64)> {
+    let cell = grid.cell_at(x)?;
+    let size = grid.cell_size(cell);
+    let node = grid.node_position(grid.node_index(cell));
+    let within = std::array::from_fn(|a| (x[a] - node[a]) / size[a]);
+    let mut shares: Vec<(usize, f64)> = Vec::with_capacity(1 << D);
+    let mut sum = 0.0;
+    for (node, share, _) in grid.tents(cell, within) {
+        let node = stencils.master(node);
+        if share > 1e-9 && unknowns.is_active(node) {
+            shares.push((node, share));
+            sum += share;
+        }
+    }
+    if shares.is_empty() {
+        return None;
+    }
+    for (_, share) in &mut shares {
+        *share /= sum;
+    }
+    let smallest = size.into_iter().fold(f64::INFINITY, f64::min);
+    Some((shares, smallest))
+}
+
+/// Minus the displacement of a body at a point in a direction: shares of its two nodes.
+fn rigid_shares<const D: usize>(
+    body: &RigidBody<D>,
+    x: &[f64; D],
+    direction: &[f64; D],
+    node: usize,
+) -> [(usize, [f64; D]); 2] {
+    let arm: [f64; D] = std::array::from_fn(|a| x[a] - body.pose.origin[a]);
+    let size = body.surface.size();
+    let mut turning = [0.0; D];
+    if D == 2 {
+        turning[0] = -(arm[0] * direction[1] - arm[1] * direction[0]) / size;
+    } else {
+        let (r, n) = (padded(&arm), padded(direction));
+        let moment = cross(&r, &n);
+        for a in 0..D {
+            turning[a] = -moment[a] / size;
+        }
+    }
+    [(node, direction.map(|n| -n)), (node + 1, turning)]
+}
+
+/// Adds a weight times the relative displacement along a direction to a sum.
+fn add<const D: usize>(
+    sum: &mut BTreeMap<usize, [f64; D]>,
+    weight: f64,
+    direction: &[f64; D],
+    shares: &[(usize, f64)],
+    of_body: [(usize, [f64; D]); 2],
+) {
+    for &(node, share) in shares {
+        let own = sum.entry(node).or_insert([0.0; D]);
+        for axis in 0..D {
+            own[axis] += weight * share * direction[axis];
+        }
+    }
+    for (node, share) in of_body {
+        let own = sum.entry(node).or_insert([0.0; D]);
+        for axis in 0..D {
+            own[axis] += weight * share[axis];
+        }
+    }
+}

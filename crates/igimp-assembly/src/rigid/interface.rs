@@ -1,0 +1,102 @@
+//! What the sides of a rigid body are like.
+
+/// An interface between a rigid body and soil.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Interface {
+    /// What it carries along the surface.
+    pub shear: Shear,
+    /// What it carries when soil is pulled off.
+    pub tension: Tension,
+}
+
+impl Interface {
+    /// No shear, no tension.
+    pub fn smooth() -> Self {
+        Self {
+            shear: Shear::Smooth,
+            tension: Tension::None,
+        }
+    }
+
+    /// Soil that touches sticks, and leaves freely.
+    pub fn rough() -> Self {
+        Self {
+            shear: Shear::Rough,
+            tension: Tension::None,
+        }
+    }
+
+    /// Friction with coefficient μ \[-\], no tension.
+    pub fn friction(coefficient: f64) -> Self {
+        Self {
+            shear: Shear::Limited {
+                adhesion: Vec::new(),
+                friction: coefficient,
+            },
+            tension: Tension::None,
+        }
+    }
+
+    /// The same that soil cannot leave.
+    #[must_use]
+    pub fn bonded(self) -> Self {
+        Self {
+            tension: Tension::Bonded,
+            ..self
+        }
+    }
+
+    /// Whether its tangent is symmetric: friction that slips follows the pressure and is followed by
+    /// nothing.
+    pub(crate) fn is_symmetric(&self) -> bool {
+        !matches!(self.shear, Shear::Limited { friction, .. } if friction > 0.0)
+    }
+}
+
+/// What an interface carries along the surface.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Shear {
+    /// Nothing.
+    Smooth,
+    /// Whatever the soil can, while it touches.
+    Rough,
+    /// Adhesion a while the soil touches, and friction: |τ| ≤ a + μ p.
+    Limited {
+        /// Adhesion by law of the soil that touches \[stress\]; none for laws beyond the list.
+        adhesion: Vec<f64>,
+        /// Coefficient of friction μ \[-\].
+        friction: f64,
+    },
+}
+
+/// What an interface carries when soil is pulled off.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Tension {
+    /// Nothing: it lets go.
+    None,
+    /// Anything: soil that touched never leaves.
+    Bonded,
+    /// So much \[stress\]; where it is reached the bond is broken for good.
+    Limit(f64),
+}
+
+/// Stiffness of contact (theory, eq. 46).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Penalty {
+    /// Normal stiffness per area in units of E/h \[-\].
+    pub stiffness: f64,
+    /// Penetration over which contact closes, in cells \[-\].
+    pub smoothing: f64,
+    /// Tangential stiffness over normal stiffness \[-\].
+    pub tangential: f64,
+}
+
+impl Default for Penalty {
+    fn default() -> Self {
+        Self {
+            stiffness: 30.0,
+            smoothing: 1e-2,
+            tangential: 0.5,
+        }
+    }
+}

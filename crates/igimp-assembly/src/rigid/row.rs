@@ -1,0 +1,187 @@
+//! Contact at one knot of a surface: the mean gap and the mean slip around it as linear functions of
+//! the step's displacements, and what they cause.
+
+use super::interface::{Shear, Tension};
+use super::{ContactNode, Interface, Penalty};
+
+/// A linear function of nodal displacements.
+pub(crate) type Functional<const D: usize> = Vec<(usize, [f64; D])>;
+
+/// Contact at one knot of a surface.
+#[derive(Clone, Debug)]
+pub(crate) struct Row<const D: usize> {
+    /// The body and the knot.
+    pub(crate) body: usize,
+    pub(crate) knot: usize,
+    /// Area that soil covers \[length^(D-1)\].
+    pub(crate) area: f64,
+    /// Mean gap at the step's start \[length\].
+    pub(crate) gap: f64,
+    /// Size of the cells \[length\].
+    pub(crate) cell: f64,
+    /// Young's modulus of the soil \[stress\].
+    pub(crate) young: f64,
+    /// Adhesion of the soil that touches \[stress\].
+    pub(crate) adhesion: f64,
+    /// Opening of the mean gap.
+    pub(crate) opening: Functional<D>,
+    /// Slip of the soil along the tangents.
+    pub(crate) slip: [Functional<D>; 2],
+    /// As the last step left it.
+    pub(crate) before: ContactNode,
+}
+
+/// Traction at a knot with its derivatives by gap and slip.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Traction {
+    /// Pressure, positive when pressed \[stress\].
+    pub(crate) pressure: f64,
+    /// Shear on the soil \[stress\].
+    pub(crate) shear: [f64; 2],
+    /// ∂p/∂g \[stress/length\].
+    pub(crate) by_gap: f64,
+    /// ∂τ/∂g \[stress/length\].
+    pub(crate) shear_by_gap: [f64; 2],
+    /// ∂τ/∂s \[stress/length\].
+    pub(crate) shear_by_slip: [[f64; 2]; 2],
+    pub(crate) slips: bool,
+    pub(crate) breaks: bool,
+}
+
+impl<const D: usize> Row<D> {
+    /// The mean gap after nodal step displacements `u`.
+    pub(crate) fn gap_at(&self, u: &[[f64; D]]) -> f64 {
+        self.gap + value(&self.opening, u)
+    }
+
+    /// Traction at nodal step displacements `u` (theory, eqs. 46 to 48).
+    pub(crate) fn traction(
+        &self,
+        interface: &Interface,
+        penalty: &Penalty,
+        u: &[[f64; D]],
+    ) -> Traction {
+        let stiffness = penalty.stiffness * self.young / self.cell;
+        let gap = self.gap_at(u);
+        let holds = !self.before.is_broken && self.before.is_closed;
+        let mut out = Traction::default();
+        match interface.tension {
+            Tension::Bonded if holds || gap < 0.0 => {
+                out.pressure = -stiffness * gap;
+                out.by_gap = -stiffness;
+            }
+            Tension::Limit(limit) if holds && -stiffness * gap > -limit => {
+                out.pressure = -stiffness * gap;
+                out.by_gap = -stiffness;
+            }
+            Tension::Limit(limit) if holds => {
+                out.pressure = -limit;
+                out.breaks = true;
+            }
+            _ => {
+                let smoothing = penalty.smoothing * self.cell;
+                (out.pressure, out.by_gap) = if gap >= 0.0 {
+                    (0.0, 0.0)
+                } else if gap > -smoothing {
+                    (
+                        0.5 * stiffness * gap * gap / smoothing,
+                        stiffness * gap / smoothing,
+                    )
+                } else {
+                    (stiffness * (-gap - 0.5 * smoothing), -stiffness)
+                };
+            }
+        }
+        let held = penalty.tangential * stiffness;
+        let slip: [f64; 2] = [0, 1].map(|k| value(&self.slip[k], u));
+        let trial = [0, 1].map(|k| self.before.shear[k] - held * slip[k]);
+        match &interface.shear {
+            Shear::Smooth => {}
+            Shear::Rough if self.before.is_closed => {
+                out.shear = trial;
+                out.shear_by_slip = [[-held, 0.0], [0.0, -held]];
+            }
+            Shear::Rough => {}
+            Shear::Limited { friction, .. } => {
+                let adhesion = if self.before.is_closed {
+                    self.adhesion
+                } else {
+                    0.0
+                };
+                let limit = adhesion + friction * out.pressure.max(0.0);
+                let size = trial[0].hypot(trial[1]);
+                if size <= limit {
+                    out.shear = trial;
+                    out.shear_by_slip = [[-held, 0.0], [0.0, -held]];
+                } else {
+                    let along = trial.map(|t| t / size);
+                    out.slips = true;
+                    out.shear = along.map(|a| limit * a);
+                    if out.pressure > 0.0 {
+                        out.shear_by_gap = along.map(|a| friction * out.by_gap * a);
+                    }
+                    for k in 0..2 {
+                        for l in 0..2 {
+                            let across = f64::from(u8::from(k == l)) - along[k] * along[l];
+                            out.shear_by_slip[k][l] = -held * limit / size * across;
+                        }
+                    }
+                }
+            }
+        }
+        out
+    }
+
+    /// Adds the internal force at nodal step displacements `u`, −A (p ∂g/∂u + τ ∂s/∂u), and hands its
+    /// derivative on by blocks of nodes (row, column).
+    pub(crate) fn add(
+        &self,
+        traction: &Traction,
+        f: &mut [[f64; D]],
+        blocks: Option<&mut dyn FnMut(usize, usize, &[[f64; D]; D])>,
+    ) {
+        let tangents = D - 1;
+        add(&self.opening, -self.area * traction.pressure, f);
+        for k in 0..tangents {
+            add(&self.slip[k], -self.area * traction.shear[k], f);
+        }
+        let Some(blocks) = blocks else {
+            return;
+        };
+        let mut outer = |a: &Functional<D>, b: &Functional<D>, factor: f64| {
+            if factor == 0.0 {
+                return;
+            }
+            for (row, left) in a {
+                for (column, right) in b {
+                    blocks(*row, *column, &left.map(|l| right.map(|r| factor * l * r)));
+                }
+            }
+        };
+        outer(&self.opening, &self.opening, -self.area * traction.by_gap);
+        for k in 0..tangents {
+            let by_gap = -self.area * traction.shear_by_gap[k];
+            outer(&self.slip[k], &self.opening, by_gap);
+            for l in 0..tangents {
+                let by_slip = -self.area * traction.shear_by_slip[k][l];
+                outer(&self.slip[k], &self.slip[l], by_slip);
+            }
+        }
+    }
+}
+
+/// The value of a linear function of nodal displacements.
+pub(crate) fn value<const D: usize>(function: &Functional<D>, u: &[[f64; D]]) -> f64 {
+    let terms = function.iter();
+    terms
+        .map(|(node, share)| (0..D).map(|axis| share[axis] * u[*node][axis]).sum::<f64>())
+        .sum()
+}
+
+fn add<const D: usize>(function: &Functional<D>, factor: f64, f: &mut [[f64; D]]) {
+    for (node, share) in function {
+        for axis in 0..D {
+            f[*node][axis] += factor * share[axis];
+        }
+    }
+}

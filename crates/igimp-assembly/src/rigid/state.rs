@@ -1,0 +1,37 @@
+//! What contact leaves behind from step to step.
+
+/// What contact has left behind on a rigid body.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ContactState {
+    /// The knots of the surface, in its order.
+    pub knots: Vec<ContactNode>,
+}
+
+impl ContactState {
+    /// Nothing touches.
+    pub(crate) fn none(knots: usize) -> Self {
+        Self {
+            knots: vec![ContactNode::default(); knots],
+        }
+    }
+}
+
+/// Contact at one knot of the surface.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ContactNode {
+    /// Contact pressure, positive when pressed \[stress\].
+    pub pressure: f64,
+    /// Shear on the soil along the tangents of the surface; one component in the plane \[stress\].
+    pub shear: [f64; 2],
+    /// Area that soil covers of what belongs to the knot \[length^(D-1)\].
+    pub area: f64,
+    /// Mean gap, summed over the motion of the soil since it came near; negative in penetration
+    /// \[length\].
+    pub gap: f64,
+    /// Whether soil touches.
+    pub is_closed: bool,
+    /// Whether soil slips.
+    pub slips: bool,
+    /// Whether a bond was broken.
+    pub is_broken: bool,
+}

@@ -1,0 +1,126 @@
+//! Systems with a border: the unknowns of rigid bodies, eliminated last (theory, eq. 49).
+
+use igimp_assembly::{Border, TangentMatrix};
+
+use super::{LinearSolver, LinearSolverError};
+
+/// The Schur complement of the unknowns of rigid bodies, S = K_bb − K_bg K_gg⁻¹ K_gb, with what it is
+/// made of.
+#[derive(Debug, Default)]
+pub(crate) struct Bordered {
+    /// K_gg⁻¹ K_gb by unknown of a body.
+    carried: Vec<Vec<f64>>,
+    /// S by rows.
+    schur: Vec<Vec<f64>>,
+}
+
+impl Bordered {
+    /// Eliminates the grid from the border of the matrix that the solver factorised last.
+    pub(crate) fn factor(
+        solver: &mut dyn LinearSolver,
+        matrix: &TangentMatrix,
+    ) -> Result<Self, LinearSolverError> {
+        let Border {
+            columns,
+            rows,
+            corner,
+        } = &matrix.border;
+        let mut carried = Vec::with_capacity(columns.len());
+        for column in columns {
+            let mut own = vec![0.0; column.len()];
+            solver.solve(matrix, column, &mut own)?;
+            carried.push(own);
+        }
+        let mut schur = corner.clone();
+        for (entries, row) in schur.iter_mut().zip(rows) {
+            for (entry, own) in entries.iter_mut().zip(&carried) {
+                *entry -= product(row, own);
+            }
+        }
+        Ok(Self { carried, schur })
+    }
+
+    /// Solves for all unknowns: those of the grid first, those of the bodies behind them.
+    pub(crate) fn solve(
+        &self,
+        solver: &mut dyn LinearSolver,
+        matrix: &TangentMatrix,
+        rhs: &[f64],
+        solution: &mut [f64],
+    ) -> Result<(), LinearSolverError> {
+        let of_grid = rhs.len() - self.schur.len();
+        let (of_soil, of_bodies) = solution.split_at_mut(of_grid);
+        solver.solve(matrix, &rhs[..of_grid], of_soil)?;
+        let rows = &matrix.border.rows;
+        let left: Vec<f64> = rhs[of_grid..]
+            .iter()
+            .zip(rows)
+            .map(|(force, row)| force - product(row, of_soil))
+            .collect();
+        let motion =
+            eliminate(self.schur.clone(), left).map_err(|unknown| LinearSolverError::Singular {
+                unknown: Some(of_grid + unknown),
+            })?;
+        for (carried, by) in self.carried.iter().zip(&motion) {
+            for (own, share) in of_soil.iter_mut().zip(carried) {
+                *own -= by * share;
+            }
+        }
+        of_bodies.copy_from_slice(&motion);
+        Ok(())
+    }
+}
+
+fn product(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// Solves a small dense system by elimination with row pivots; the unknown without a pivot if there is
+/// one.
+fn eliminate(mut rows: Vec<Vec<f64>>, mut rhs: Vec<f64>) -> Result<Vec<f64>, usize> {
+    let n = rhs.len();
+    let sizes: Vec<f64> = rows
+        .iter()
+        .map(|row| {
+            row.iter()
+                .fold(0.0, |size: f64, entry| size.max(entry.abs()))
+        })
+        .collect();
+    for k in 0..n {
+        let pivot = (k..n)
+            .max_by(|&a, &b| rows[a][k].abs().total_cmp(&rows[b][k].abs()))
+            .unwrap_or(k);
+        rows.swap(k, pivot);
+        rhs.swap(k, pivot);
+        let size = rows[k][k].abs();
+        if size.is_nan() || size <= 1e-14 * sizes.iter().copied().fold(0.0, f64::max) {
+            return Err(k);
+        }
+        for i in k + 1..n {
+            let factor = rows[i][k] / rows[k][k];
+            let (above, below) = rows.split_at_mut(i);
+            for (entry, own) in below[0][k..].iter_mut().zip(&above[k][k..]) {
+                *entry -= factor * own;
+            }
+            rhs[i] -= factor * rhs[k];
+        }
+    }
+    for k in (0..n).rev() {
+        let known: f64 = (k + 1..n).map(|j| rows[k][j] * rhs[j]).sum();
+        rhs[k] = (rhs[k] - known) / rows[k][k];
+    }
+    Ok(rhs)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_small_system_is_solved_and_a_singular_one_named() {
+        let rows = vec![vec![0.0, 2.0], vec![4.0, 1.0]];
+        assert_eq!(eliminate(rows, vec![4.0, 6.0]), Ok(vec![1.0, 2.0]));
+        let rows = vec![vec![1.0, 2.0], vec![2.0, 4.0]];
+        assert_eq!(eliminate(rows, vec![1.0, 1.0]), Err(1));
+    }
+}
