@@ -321,6 +321,9 @@ impl Stages {
         session.summary.stages.push(summary);
         if goes_on && stage.reset_displacements {
             state.body.particles.reset_displacements();
+            for own in &mut state.controls.rigid {
+                own.track.displacement = [0.0; 3];
+            }
         }
         if goes_on {
             session.ends.insert(number, state.clone());
@@ -353,6 +356,7 @@ impl Stages {
             number: summary.steps,
             progress: summary.reached,
             particles: &state.body.particles,
+            rigid: &state.body.rigid,
             controls: &state.controls,
             resistance,
             plastic_share: summary.plastic_share,
@@ -425,7 +429,8 @@ fn dispatch(
         StageKind::Gravity { .. }
         | StageKind::K0
         | StageKind::Load { .. }
-        | StageKind::Displacement { .. } => {
+        | StageKind::Displacement { .. }
+        | StageKind::Rigid(_) => {
             loading::load(session, state, number, summary, resumption)
         }
         StageKind::StrengthReduction(reduction) => {
@@ -452,6 +457,7 @@ fn kind(kind: &StageKind) -> &'static str {
         StageKind::K0 => "k0",
         StageKind::Load { .. } => "load",
         StageKind::Displacement { .. } => "displacement",
+        StageKind::Rigid(_) => "rigid",
         StageKind::StrengthReduction(_) => "strength-reduction",
         StageKind::RunOut(_) => "run-out",
     }

@@ -282,7 +282,7 @@ impl Output {
             table.write_csv(&self.folder.sections())?;
         }
         if self.every != Every::Never {
-            let grid = model.grid(state.controls.settlement)?;
+            let grid = model.grid(model.lowered(&state.controls))?;
             let laws = model.laws_reduced_by(&state.controls.srf)?;
             // The time of a frame is the number of steps and trials so far.
             self.frames

@@ -1,8 +1,9 @@
 //! What a run records: curves and the histories at monitors, one row per recorded moment.
 
-use igimp_assembly::{Particles, SharedLaw};
+use igimp_assembly::{Particles, RigidBody, SharedLaw};
 
 use super::model::reduced;
+use super::rigid;
 use super::state::Controls;
 use crate::case::{Case, CheckTime, Quantity};
 use crate::error::CaseError;
@@ -21,6 +22,8 @@ pub(crate) struct Moment<'a> {
     pub(crate) progress: f64,
     /// The particles.
     pub(crate) particles: &'a Particles<2>,
+    /// The rigid bodies that are there.
+    pub(crate) rigid: &'a [RigidBody<2>],
     /// What acts on them.
     pub(crate) controls: &'a Controls,
     /// Resistance of the footing \[N/m\].
@@ -109,11 +112,12 @@ impl Records {
     }
 
     /// A quantity of a moment, in SI units.
-    pub(crate) fn quantity(&self, of: Quantity, moment: &Moment<'_>) -> f64 {
+    pub(crate) fn quantity(&self, case: &Case, of: Quantity, moment: &Moment<'_>) -> f64 {
         let controls = moment.controls;
         match of {
             Quantity::Settlement(_) => controls.settlement,
             Quantity::Reaction(_) => moment.resistance,
+            Quantity::Rigid(body, of) => rigid::quantity(case, controls, moment.rigid, body, of),
             Quantity::LoadFactor(load) => controls.factors[load],
             Quantity::Monitor(monitor, field) => {
                 let particle = self.watched[monitor];
@@ -138,7 +142,7 @@ impl Records {
         for (k, check) in case.checks.iter().enumerate() {
             if check.at == CheckTime::Peak && check.stage.unwrap_or(last) == moment.stage {
                 // The larger of two, and the number where only one is one.
-                self.peaks[k] = self.peaks[k].max(self.quantity(check.of, moment));
+                self.peaks[k] = self.peaks[k].max(self.quantity(case, check.of, moment));
             }
         }
     }
@@ -162,7 +166,7 @@ impl Records {
                 continue;
             }
             let row = [&curve.x, &curve.y]
-                .map(|axis| self.quantity(axis.of, moment) / axis.divide_by)
+                .map(|axis| self.quantity(case, axis.of, moment) / axis.divide_by)
                 .to_vec();
             self.curves[k].push(row.clone());
             rows.curves[k] = Some(row);

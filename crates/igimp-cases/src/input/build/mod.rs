@@ -137,6 +137,7 @@ pub(super) fn build(tree: &mut Node, file: &Path, problems: &mut Problems) -> Op
         bodies: all(bodies)?,
         boundaries: boundaries?,
         loads: all(loads)?,
+        rigid: Vec::new(),
         stages: all(stages)?,
         solver: solver?,
         monitors: all(monitors)?,
