@@ -167,7 +167,7 @@ impl Stages {
             session.summary.checks.clone_from(&left.checks);
             session.summary.warnings.clone_from(&left.warnings);
             session.summary.size.unknowns = left.unknowns;
-            session.ends = output.ends(case, left.stages.len())?;
+            session.ends = output.ends(case, &session.records, left.stages.len())?;
             stages.first = left.stages.len();
             stages.state = Some(left.state.clone());
             stages.left = Some(left);

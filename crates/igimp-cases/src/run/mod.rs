@@ -21,6 +21,7 @@ mod records;
 mod rigid;
 mod run_out;
 mod safety;
+mod saved_body;
 mod sections;
 mod session;
 mod state;

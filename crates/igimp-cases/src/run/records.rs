@@ -55,6 +55,8 @@ pub(crate) struct Records {
     pub(crate) curves: Vec<Table>,
     /// By monitor of the case.
     pub(crate) monitors: Vec<Table>,
+    /// By rigid body of the case.
+    pub(crate) rigid: Vec<Table>,
     /// The particle that each monitor follows.
     pub(crate) watched: Vec<usize>,
     /// By check of the case: the largest value of its quantity in its stage so far; not a number before.
@@ -89,6 +91,7 @@ impl Records {
                 }
             })
             .collect();
+        let rigid = case.rigid.iter().map(|part| rigid::table(&part.name));
         let watched = case
             .monitors
             .iter()
@@ -99,11 +102,17 @@ impl Records {
         Ok(Self {
             curves,
             monitors,
+            rigid: rigid.collect(),
             watched,
             peaks: vec![f64::NAN; case.checks.len()],
             factor_of_safety: f64::NAN,
             laws: laws.to_vec(),
         })
+    }
+
+    /// How many laws particles number.
+    pub(crate) fn law_count(&self) -> usize {
+        self.laws.len()
     }
 
     /// The laws at the strength that acts; full strength where none can be made of it.
@@ -155,6 +164,7 @@ impl Records {
         let mut rows = Rows {
             curves: vec![None; case.curves.len()],
             monitors: Vec::new(),
+            rigid: vec![None; case.rigid.len()],
             peaks: self.peaks.clone(),
         };
         for (k, curve) in case.curves.iter().enumerate() {
@@ -188,6 +198,11 @@ impl Records {
             self.monitors[k].push(row.clone());
             rows.monitors.push(row);
         }
+        for body in moment.controls.placed().filter(|_| !reopens) {
+            let row = rigid::row(case, moment, body);
+            self.rigid[body].push(row.clone());
+            rows.rigid[body] = Some(row);
+        }
         rows
     }
 }
@@ -199,6 +214,8 @@ pub(crate) struct Rows {
     pub(crate) curves: Vec<Option<Vec<f64>>>,
     /// By monitor.
     pub(crate) monitors: Vec<Vec<f64>>,
+    /// By rigid body; none where it is not there.
+    pub(crate) rigid: Vec<Option<Vec<f64>>>,
     /// By check: the peak so far.
     pub(crate) peaks: Vec<f64>,
 }

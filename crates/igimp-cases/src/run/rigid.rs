@@ -6,6 +6,7 @@ use igimp_assembly::{
 use igimp_solver::Accepted;
 
 use super::model::Model;
+use super::records::Moment;
 use super::state::{Controls, RigidTrack, State};
 use crate::case::{
     Adhesion, Case, RigidDrive, RigidInterface, RigidMove, RigidPart, RigidQuantity, RigidShape,
@@ -13,6 +14,7 @@ use crate::case::{
 };
 use crate::check::short;
 use crate::error::CaseError;
+use crate::table::Table;
 
 /// Distance of the knots of a surface, in cells.
 const KNOT_SPACING: f64 = 2.0;
@@ -286,6 +288,48 @@ pub(crate) fn quantity(
         RigidQuantity::Closed => knots().filter(|knot| knot.is_closed).count() as f64,
         RigidQuantity::Slipping => knots().filter(|knot| knot.slips).count() as f64,
     }
+}
+
+/// What is recorded of a rigid body.
+const RECORDED: [(&str, RigidQuantity); 11] = [
+    ("displacement_x_[m]", RigidQuantity::X),
+    ("displacement_y_[m]", RigidQuantity::Y),
+    ("rotation_[rad]", RigidQuantity::Rotation),
+    ("force_x_[N/m]", RigidQuantity::ForceX),
+    ("force_y_[N/m]", RigidQuantity::ForceY),
+    ("moment_[N m/m]", RigidQuantity::Moment),
+    ("contact_width_[m]", RigidQuantity::ContactWidth),
+    ("penetration_[cells]", RigidQuantity::Penetration),
+    ("closed_[-]", RigidQuantity::Closed),
+    ("slipping_[-]", RigidQuantity::Slipping),
+    ("resistance_down_+_[N/m]", RigidQuantity::Resistance),
+];
+
+/// An empty history of a rigid body.
+pub(crate) fn table(name: &str) -> Table {
+    let place = ["stage", "step", "progress_[-]", "x_[m]", "y_[m]"];
+    let header = place.into_iter().chain(RECORDED.map(|(label, _)| label));
+    Table {
+        name: name.to_owned(),
+        header: header.map(str::to_owned).collect(),
+        rows: Vec::new(),
+    }
+}
+
+/// The row of a rigid body that is there.
+pub(crate) fn row(case: &Case, moment: &Moment<'_>, index: usize) -> Vec<f64> {
+    let (controls, bodies) = (moment.controls, moment.rigid);
+    let slot = controls.placed().take_while(|&k| k < index).count();
+    let [x, y] = bodies[slot].pose.origin;
+    let place = [
+        moment.stage as f64 + 1.0,
+        moment.number as f64,
+        moment.progress,
+        x,
+        y,
+    ];
+    let numbers = RECORDED.map(|(_, of)| quantity(case, controls, bodies, index, of));
+    place.into_iter().chain(numbers).collect()
 }
 
 /// The body that soil has gone into further than the case allows, and how far as a share of the cell.
