@@ -16,7 +16,8 @@ use serde::{Deserialize, Serialize};
 
 pub use grid::{AxisSpec, GridSpec, MixedCells};
 pub use rigid::{
-    Adhesion, RigidDrive, RigidInterface, RigidMove, RigidPart, RigidQuantity, RigidShape, RigidShear,
+    Adhesion, RigidDrive, RigidInterface, RigidMove, RigidPart, RigidQuantity, RigidShape,
+    RigidShear,
 };
 
 use crate::check::Band;

@@ -3,9 +3,8 @@
 use igimp_assembly::Geometry;
 
 use crate::case::{
-    AxisSpec, Boundaries, Case, Load, LoadKind, Material, Reduction, ReductionPath, RigidDrive, RigidMove, Side,
-    Stage,
-    StageKind, StopWhen, Strength,
+    AxisSpec, Boundaries, Case, Load, LoadKind, Material, Reduction, ReductionPath, RigidDrive,
+    RigidMove, Side, Stage, StageKind, StopWhen, Strength,
 };
 use crate::check::short;
 use crate::summary::SetupTable;

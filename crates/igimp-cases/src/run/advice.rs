@@ -5,7 +5,7 @@ use igimp_assembly::{AssemblyError, Locking};
 use igimp_solver::linear::LinearSolverError;
 use igimp_solver::{StepError, StepFailure};
 
-use crate::case::{Case, Material, Side, Stage, StageKind, Strength};
+use crate::case::{Case, Material, RigidDrive, Side, Stage, StageKind, Strength};
 use crate::check::short;
 use crate::polygon::{area_and_centroid, clip_to_box};
 
@@ -241,10 +241,16 @@ fn collapse(case: &Case, stage: &Stage) -> Vec<String> {
         StageKind::StrengthReduction(_) => {
             vec!["a lower bracket: this is probably collapse at the first factor".to_owned()]
         }
-        StageKind::Rigid(_) => vec![format!(
-            "a displacement in place of a force in stage \"{}\": this is probably collapse under it",
-            stage.name
-        )],
+        StageKind::Rigid(moves) => {
+            let mut drives = moves.iter().flat_map(|own| own.drives).flatten();
+            let is_loaded =
+                drives.any(|drive| matches!(drive, RigidDrive::Force(force) if force != 0.0));
+            let name = &stage.name;
+            let instead = format!(
+                "a displacement in place of a force in stage \"{name}\": this is probably collapse under it"
+            );
+            is_loaded.then_some(instead).into_iter().collect()
+        }
         StageKind::RunOut(_) => Vec::new(),
     }
 }

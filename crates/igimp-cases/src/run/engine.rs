@@ -430,9 +430,7 @@ fn dispatch(
         | StageKind::K0
         | StageKind::Load { .. }
         | StageKind::Displacement { .. }
-        | StageKind::Rigid(_) => {
-            loading::load(session, state, number, summary, resumption)
-        }
+        | StageKind::Rigid(_) => loading::load(session, state, number, summary, resumption),
         StageKind::StrengthReduction(reduction) => {
             safety::reduce_strength(session, state, number, reduction, summary, search)
         }

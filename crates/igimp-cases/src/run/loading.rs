@@ -2,8 +2,8 @@
 //! settlement, level ground.
 
 use super::left::Resumption;
-use super::rigid;
 use super::records::Moment;
+use super::rigid;
 use super::session::{Ended, Path, Session, Taken, march_path};
 use super::state::{Controls, State};
 use crate::case::{RigidDrive, Stage, StageKind};

@@ -80,7 +80,8 @@ impl<'c> Model<'c> {
         let mut controls = Controls::none(case.loads.len(), case.materials.len(), case.rigid.len());
         for (index, part) in case.rigid.iter().enumerate() {
             if part.from_start {
-                body.rigid.push(super::rigid::made(case, index, model.laws.len())?);
+                body.rigid
+                    .push(super::rigid::made(case, index, model.laws.len())?);
                 controls.rigid[index].placed = true;
             }
         }

@@ -136,8 +136,7 @@ pub(crate) fn tracks(
         let track = &mut tracks[index];
         for k in 0..3 {
             track.displacement[k] += by[k];
-            track.force[k] =
-                own.loaded[k].unwrap_or(part.force_factor * reaction[k] - weight[k]);
+            track.force[k] = own.loaded[k].unwrap_or(part.force_factor * reaction[k] - weight[k]);
         }
         track.lowered = part.reference[1] - body.pose.origin[1];
     }
@@ -171,11 +170,7 @@ pub(crate) fn begin(
 }
 
 /// Puts a rigid body where it starts, or by as much lower as the soil beneath it settled.
-fn place(
-    model: &Model<'_>,
-    state: &mut State,
-    index: usize,
-) -> Result<Option<String>, CaseError> {
+fn place(model: &Model<'_>, state: &mut State, index: usize) -> Result<Option<String>, CaseError> {
     let case = model.case;
     let part = &case.rigid[index];
     let mut body = made(case, index, model.laws.len())?;
@@ -206,7 +201,10 @@ fn gap_below(part: &RigidPart, particles: &Particles<2>) -> f64 {
     let corners = part.outline(0);
     let mut least = f64::INFINITY;
     for (x, half) in std::iter::zip(&particles.x, &particles.half_length) {
-        let (left, right) = ((x[0] - half[0]).max(lower[0]), (x[0] + half[0]).min(upper[0]));
+        let (left, right) = (
+            (x[0] - half[0]).max(lower[0]),
+            (x[0] + half[0]).min(upper[0]),
+        );
         if right - left <= 1e-6 * half[0] {
             continue;
         }

@@ -332,9 +332,7 @@ impl Watch<'_, '_> {
             progress: report.to,
             report,
         });
-        if let Some((body, share)) =
-            rigid::too_deep(model.case, &controls, &accepted.body.rigid)
-        {
+        if let Some((body, share)) = rigid::too_deep(model.case, &controls, &accepted.body.rigid) {
             return Ok(Some(Stop::Failed(Box::new(StepError {
                 from: report.from,
                 to: report.to,

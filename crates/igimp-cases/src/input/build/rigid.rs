@@ -98,7 +98,12 @@ fn shape(node: &Node, name: &str, site: &Site, problems: &mut Problems) -> Optio
             if right - left <= site.round_off || top - bottom <= site.round_off {
                 return flat(node.place_at("to"));
             }
-            RigidShape::Polygon(vec![[left, bottom], [right, bottom], [right, top], [left, top]])
+            RigidShape::Polygon(vec![
+                [left, bottom],
+                [right, bottom],
+                [right, top],
+                [left, top],
+            ])
         }
         "circle" => RigidShape::Circle {
             centre: node.pair_at("centre")?,
@@ -117,8 +122,7 @@ fn shape(node: &Node, name: &str, site: &Site, problems: &mut Problems) -> Optio
             RigidShape::Polygon(vec![from, to, behind(to), behind(from)])
         }
         _ => {
-            let corners: Option<Vec<_>> =
-                node.items_at("corners").iter().map(Node::pair).collect();
+            let corners: Option<Vec<_>> = node.items_at("corners").iter().map(Node::pair).collect();
             let corners = distinct(&corners?, site.round_off);
             if corners.len() < 3 {
                 return flat(node.place_at("corners"));
@@ -193,7 +197,10 @@ fn shear(value: &Node, around: &Around<'_>, problems: &mut Problems) -> Option<R
     let friction = match (number("friction")?, number("angle")?) {
         (Some(_), Some(_)) => {
             problems
-                .error(value.place_at("angle"), "both `friction` and `angle` are given")
+                .error(
+                    value.place_at("angle"),
+                    "both `friction` and `angle` are given",
+                )
                 .help("keep one of them");
             return None;
         }
@@ -314,9 +321,15 @@ fn in_grid(node: &Node, part: &RigidPart, frame: &Frame, problems: &mut Problems
             problems
                 .error(
                     node.place_at("grid_follows"),
-                    format!("no row of the grid lies at y = {} m, its lowest place", number(level)),
+                    format!(
+                        "no row of the grid lies at y = {} m, its lowest place",
+                        number(level)
+                    ),
                 )
-                .help(format!("add lines = {{ y = [\"{} m\"] }} to [grid]", number(level)));
+                .help(format!(
+                    "add lines = {{ y = [\"{} m\"] }} to [grid]",
+                    number(level)
+                ));
         }
     }
 }
@@ -370,14 +383,15 @@ fn beside_soil(node: &Node, part: &RigidPart, site: &Site, problems: &mut Proble
                     point(at)
                 ),
             )
-            .help("leave its place free in the polygons of [[bodies]], or let it start beside them");
+            .help(
+                "leave its place free in the polygons of [[bodies]], or let it start beside them",
+            );
     }
 }
 
 /// Refuses a second thing that the grid would follow.
 fn follow_once(nodes: &[Node], around: &Around<'_>, problems: &mut Problems) {
-    let is_footing =
-        |load: &Load| matches!(load.kind, LoadKind::RigidFooting { .. });
+    let is_footing = |load: &Load| matches!(load.kind, LoadKind::RigidFooting { .. });
     let mut is_taken = around.loads.iter().flatten().any(is_footing);
     for node in nodes {
         if node.flag_at("grid_follows") == Some(true) && std::mem::replace(&mut is_taken, true) {
@@ -402,8 +416,8 @@ pub(super) fn stage(
     let mut is_right = true;
     for own in node.items_at("bodies") {
         let who = format!("stage `{name}` moves");
-        let Some(body) = (own.get("body"))
-            .and_then(|value| context.names.rigid.find(value, &who, problems))
+        let Some(body) =
+            (own.get("body")).and_then(|value| context.names.rigid.find(value, &who, problems))
         else {
             is_right = false;
             continue;
@@ -455,7 +469,10 @@ pub(super) fn check_use(tree: &Node, names: &AllNames, problems: &mut Problems) 
         .flat_map(|stage| stage.items_at("bodies"))
         .filter_map(|own| own.text_at("body"))
         .collect();
-    if moved.iter().any(|name| names.rigid.position(name).is_none()) {
+    if moved
+        .iter()
+        .any(|name| names.rigid.position(name).is_none())
+    {
         return;
     }
     for node in tree.items_at("rigid") {

@@ -229,7 +229,12 @@ const fn force(key: &'static str, doc: &'static str) -> Field {
 pub(super) static MOVE: Kind = Kind::Table(&Struct {
     doc: "How a rigid body moves in a stage. What is not mentioned goes on as before: held, or under its force.",
     fields: &[
-        required("body", Kind::Reference("rigid body"), "\"footing\"", "which"),
+        required(
+            "body",
+            Kind::Reference("rigid body"),
+            "\"footing\"",
+            "which",
+        ),
         by("x", "further displacement in x"),
         by("y", "further displacement in y, negative downwards"),
         optional(

@@ -196,13 +196,14 @@ impl Output {
                 let controls = notes.controls;
                 let saved = notes.rigid.get(&name).map_or(&[][..], Vec::as_slice);
                 let laws = records.law_count();
-                body.rigid = saved_body::taken_up(case, laws, &controls, saved)?.map_err(|why| {
-                    CheckpointError::Damaged {
-                        path,
-                        file: "meta.json".to_owned(),
-                        why,
-                    }
-                })?;
+                body.rigid =
+                    saved_body::taken_up(case, laws, &controls, saved)?.map_err(|why| {
+                        CheckpointError::Damaged {
+                            path,
+                            file: "meta.json".to_owned(),
+                            why,
+                        }
+                    })?;
                 ends.insert(number, State { body, controls });
             }
         }
