@@ -63,7 +63,7 @@ fn a_checkpoint_of_another_case_is_refused() {
 #[test]
 fn rigid_bodies_are_taken_up_where_they_stood() {
     let folder = Folder::new("two-bodies");
-    let case = include_str!("run_support/two_bodies.toml");
+    let case = include_str!("../../igimp-cases/tests/data/two_bodies.toml");
     fs::write(folder.0.join("two_bodies.toml"), case).unwrap();
     let run = |more: &[&str]| {
         let mut command = Command::new(env!("CARGO_BIN_EXE_igimp"));

@@ -276,7 +276,9 @@ pub(crate) fn quantity(
         RigidQuantity::Moment => track.force[2],
         RigidQuantity::ContactWidth => {
             let closed = knots().filter(|knot| knot.is_closed);
-            closed.map(|knot| knot.area).sum()
+            closed
+                .map(|knot| knot.area)
+                .fold(0.0, |sum, area| sum + area)
         }
         RigidQuantity::Penetration => {
             let closed = knots().filter(|knot| knot.is_closed);
