@@ -25,8 +25,8 @@ const HENCKY: Oracle = Oracle {
 const YOUNG: f64 = 1e6;
 /// Height at the start and at the end \[m\].
 const HEIGHT: [f64; 2] = [0.8, 0.6];
-/// Size of the cells \[m\].
-const CELL: f64 = 0.1;
+/// Size of the cells \[m\]: the surface is never so close above a line of the grid that nodes are tied.
+const CELL: f64 = 0.8 / 7.0;
 
 /// What a push found.
 struct Pressed {
@@ -41,7 +41,7 @@ struct Pressed {
 /// Presses the column with so stiff a contact.
 fn press(stiffness: f64) -> Result<Pressed, CaseError> {
     let x = (0..=2).map(|k| CELL * f64::from(k)).collect();
-    let y = (0..=8).map(|k| CELL * f64::from(k)).collect();
+    let y = (0..=7).map(|k| CELL * f64::from(k)).collect();
     let ground = Ground::new(x, y, 2, 2)?;
     let mut body = Body::new(Particles::new(&ground.seeds)?);
     let corners = [[-0.3, 0.0], [0.3, 0.0], [0.3, 0.1], [-0.3, 0.1]];

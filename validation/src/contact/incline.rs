@@ -15,8 +15,8 @@ use igimp_material::{Elasticity, HenckyElastic};
 use igimp_shape::{Axis, Grid};
 use igimp_solver::{Accepted, Body, MarchSettings};
 
-use super::{Ground, force, graded, polygon, weightless};
-use crate::laboratory::{run, unobserved};
+use super::{force, polygon, weightless};
+use crate::laboratory::{filled, grid_of, run, unobserved};
 use crate::oracle::{Oracle, OracleKind};
 use crate::study::{RunRecord, Study};
 
@@ -97,13 +97,19 @@ fn turned(shift: f64) -> Result<(RunRecord, [f64; 2]), CaseError> {
     Ok((run, [reached / FRICTION, tangent(failed) / FRICTION]))
 }
 
-/// A plate of width 1 under a constant force that is pushed over ground by `push`; H over μ V + a B.
+/// A block of width 1 that stands fast, under a wide plate that a constant force presses while it is pushed
+/// sideways; H over μ V + a B.
 fn pushed(friction: f64, adhesion: f64, offset: f64) -> Result<(RunRecord, f64), CaseError> {
     let h = 0.125;
-    let lines = graded(h, [-1.0, 1.0], [-1.0, 1.0], 1.0);
-    let ground = Ground::new(lines, graded(h, [-0.5, 0.0], [-0.5, 0.0], 1.0), 3, 2)?;
-    let mut body = Body::new(Particles::new(&ground.seeds)?);
-    let corners = [[-0.5, 0.0], [0.5, 0.0], [0.5, 0.2], [-0.5, 0.2]];
+    let grid = Grid::new([Axis::uniform(-1.0, h, 16)?, Axis::uniform(-0.5, h, 7)?]);
+    let block = grid_of(h, [8, 4])?;
+    let mut seeds = filled(&block, 2);
+    for seed in &mut seeds {
+        seed.x[0] += offset * h - 0.5;
+        seed.x[1] -= 0.5;
+    }
+    let mut body = Body::new(Particles::new(&seeds)?);
+    let corners = [[-0.9, 0.0], [0.9, 0.0], [0.9, 0.2], [-0.9, 0.2]];
     let interface = Interface {
         shear: Shear::Limited {
             adhesion: vec![adhesion],
@@ -111,16 +117,18 @@ fn pushed(friction: f64, adhesion: f64, offset: f64) -> Result<(RunRecord, f64),
         },
         tension: Tension::None,
     };
-    body.rigid = vec![polygon(&corners, 2.0 * h, &interface, [offset * h, 0.0])];
+    body.rigid = vec![polygon(&corners, 2.0 * h, &interface, [0.0; 2])];
     let law: SharedLaw = Arc::new(HenckyElastic::new(Elasticity::new(1e4, 0.3)?));
-    let constraints = ground.held()?;
+    let mut constraints = Constraints::free(&grid);
+    constraints.fix_wall(&grid, 1, false, 0)?;
+    constraints.fix_wall(&grid, 1, false, 1)?;
     let pressed = 10.0;
     let load_path = |from: f64, to: f64| {
         let mut motion = RigidMotion::displaced([0.0, -1e-4]);
         if from > 0.0 {
             motion.displacement = [Drive::Moved((to - from) * 0.02), Drive::Loaded(-pressed)];
         }
-        weightless(&ground.grid, &constraints, &law, motion)
+        weightless(&grid, &constraints, &law, motion)
     };
     let mut found = f64::NAN;
     let mut observe = |accepted: &Accepted<'_, 2>| {

@@ -73,12 +73,8 @@ impl Push {
         )?;
         let mut body = Body::new(Particles::new(&ground.seeds)?);
         let e = self.eccentricity;
-        let corners = [
-            [-0.5 - e, 0.0],
-            [0.5 - e, 0.0],
-            [0.5 - e, 0.3],
-            [-0.5 - e, 0.3],
-        ];
+        // A surface strip: its back rises so flat that only the base touches.
+        let corners = [[-0.5 - e, 0.0], [0.5 - e, 0.0], [-e, 0.2]];
         let interface = if self.rough {
             Interface::rough()
         } else {
