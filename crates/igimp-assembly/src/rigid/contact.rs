@@ -113,7 +113,8 @@ impl<'a, const D: usize> Contact<'a, D> {
                 };
                 is_near = true;
                 for point in face.points(body, grid) {
-                    let Some((shares, cell)) = shares_at(grid, stencils, unknowns, &point.x) else {
+                    let Some((shares, place, cell)) = shares_at(grid, stencils, unknowns, &point.x)
+                    else {
                         continue;
                     };
                     for (knot, tent) in point.knots {
@@ -128,9 +129,8 @@ impl<'a, const D: usize> Contact<'a, D> {
                         sums.adhesion += weight * adhesion;
                         sums.cell += weight * cell;
                         let body_node = self.first_node + NODES_PER_BODY * index;
-                        let of_body = |direction: &[f64; D]| {
-                            rigid_shares(body, &point.x, direction, body_node)
-                        };
+                        let of_body =
+                            |direction: &[f64; D]| rigid_shares(body, &place, direction, body_node);
                         let normal = &face.normal;
                         add(&mut sums.opening, weight, normal, &shares, of_body(normal));
                         for k in 0..D - 1 {
@@ -307,14 +307,16 @@ impl<const D: usize> NodalForces<D> for Contact<'_, D> {
     }
 }
 
-/// The tent functions at a point, on nodes that carry soil, as shares that sum to one, and the size of the cell \[length\]. None where
-/// no node carries soil.
+/// The tent functions at a point, on nodes that carry soil, as shares that sum to one, the place that they
+/// stand for (the point itself if all of its nodes carry soil) and the size of the cell \[length\]. Seen from
+/// that place a rotation of body and soil together opens no gap, and moments balance. None where no node
+/// carries soil.
 fn shares_at<const D: usize>(
     grid: &Grid<D>,
     stencils: &Stencils<D>,
     unknowns: &Unknowns<D>,
     x: &[f64; D],
-) -> Option<(Vec<(usize, f64)>, f64)> {
+) -> Option<(Vec<(usize, f64)>, [f64; D], f64)> {
     let cell = grid.cell_at(x)?;
     let size = grid.cell_size(cell);
     let node = grid.node_position(grid.node_index(cell));
@@ -331,11 +333,16 @@ fn shares_at<const D: usize>(
     if shares.is_empty() {
         return None;
     }
-    for (_, share) in &mut shares {
+    let mut place = [0.0; D];
+    for (node, share) in &mut shares {
         *share /= sum;
+        let own = grid.node_position(*node);
+        for axis in 0..D {
+            place[axis] += *share * own[axis];
+        }
     }
     let smallest = size.into_iter().fold(f64::INFINITY, f64::min);
-    Some((shares, smallest))
+    Some((shares, place, smallest))
 }
 
 /// Minus the displacement of a body at a point in a direction: shares of its two nodes.
