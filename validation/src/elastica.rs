@@ -82,6 +82,7 @@ impl Bending {
                 force: [0.0, -self.load],
                 load: 0,
             }],
+            rigid: Vec::new(),
         };
         let elasticity = Elasticity::new(12.0 * LENGTH * LENGTH, 0.0)?;
         let law: SharedLaw = Arc::new(HenckyElastic::new(elasticity));

@@ -6,6 +6,7 @@
 
 mod column;
 mod comparisons;
+mod contact;
 mod cook;
 mod cylinder;
 mod elastica;
@@ -103,6 +104,13 @@ enum Case {
     TiltedLayer,
     Layers,
     FootingContact,
+    ContactColumn,
+    ContactIncline,
+    ContactPatch,
+    ContactHertz,
+    ContactPunch,
+    ContactStrip,
+    ContactWedge,
     Comparisons,
 }
 
@@ -123,6 +131,13 @@ impl Case {
             Self::TiltedLayer => tilted_layer::study(level, out),
             Self::Layers => layers::study(out),
             Self::FootingContact => footing_contact::study(level, out),
+            Self::ContactColumn => contact::column::study(out),
+            Self::ContactIncline => contact::incline::study(out),
+            Self::ContactPatch => contact::patch::study(level, out),
+            Self::ContactHertz => contact::hertz::study(level, out),
+            Self::ContactPunch => contact::punch::study(level, out),
+            Self::ContactStrip => contact::strip::study(level, out),
+            Self::ContactWedge => contact::wedge::study(level, out),
             Self::Comparisons => comparisons::study(level, out),
         }
     }

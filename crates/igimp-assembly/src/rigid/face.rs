@@ -4,6 +4,7 @@ use igimp_shape::Grid;
 
 use super::RigidBody;
 use super::surface::dot;
+use crate::small::identity;
 
 /// Abscissa of the two-point rule of Gauss on (−1, 1).
 const GAUSS: f64 = 0.577_350_269_189_625_8;
@@ -17,8 +18,10 @@ pub(crate) struct Face<const D: usize> {
     pub(crate) normal: [f64; D],
     /// Tangents in space; one in the plane, two in space.
     pub(crate) tangents: [[f64; D]; 2],
-    /// Half of its extent along each \[length\].
-    pub(crate) half: [f64; 2],
+    /// The directions in which it is laid out, those of the particle's domain as far as they lie in the
+    /// surface, and half of its extent along each \[length\].
+    along: [[f64; D]; 2],
+    half: [f64; 2],
     /// From the surface to the face \[length\].
     pub(crate) gap: f64,
 }
@@ -52,14 +55,28 @@ impl<const D: usize> Face<D> {
         if nearest.height <= 0.0 || gap > thickness {
             return None;
         }
-        let tangents = tangents(&normal, &pose.turn);
+        let along = tangents(&normal, &identity());
+        let half = along.map(|along| reach(&along));
+        // In space the domain seen along the normal is a hexagon, as large as its sides seen so.
+        let seen: f64 = (0..D)
+            .map(|a| {
+                let others = (0..D).filter(|&b| b != a).map(|b| half_length[b]);
+                normal[a].abs() * others.product::<f64>()
+            })
+            .sum();
+        let share = if D == 3 {
+            (seen / (half[0] * half[1])).sqrt()
+        } else {
+            1.0
+        };
         Some(Self {
             middle: std::array::from_fn(|a| centre[a] - thickness * normal[a]),
             gap,
-            half: tangents.map(|tangent| reach(&tangent)),
+            along,
+            half: half.map(|half| share * half),
             side,
             normal,
-            tangents,
+            tangents: tangents(&normal, &pose.turn),
         })
     }
 
@@ -67,16 +84,17 @@ impl<const D: usize> Face<D> {
     /// cut it. Beyond the end of a side there are none.
     pub(crate) fn points(&self, body: &RigidBody<D>, grid: &Grid<D>) -> Vec<FacePoint<D>> {
         let (surface, pose) = (&*body.surface, &body.pose);
+        let knots = surface.knots();
         let mut rules = [vec![(0.0, 1.0)], vec![(0.0, 1.0)]];
         for (k, rule) in rules.iter_mut().enumerate().take(D - 1) {
-            let (tangent, half) = (self.tangents[k], self.half[k]);
+            let (tangent, half) = (self.along[k], self.half[k]);
             let mut cuts = vec![-half, half];
             for axis in (0..D).filter(|&axis| tangent[axis].abs() > 1e-6) {
                 let lines = grid.axes[axis].nodes().iter();
                 cuts.extend(lines.map(|line| (line - self.middle[axis]) / tangent[axis]));
             }
-            cuts.extend(surface.knots().map(|(knot, _)| {
-                let place = pose.into_space(&knot);
+            cuts.extend(knots.iter().map(|(knot, _)| {
+                let place = pose.into_space(knot);
                 let arm: [f64; D] = std::array::from_fn(|a| place[a] - self.middle[a]);
                 dot(&arm, &tangent)
             }));
@@ -94,7 +112,7 @@ impl<const D: usize> Face<D> {
         for &(s, along) in &rules[0] {
             for &(t, across) in &rules[1] {
                 let x: [f64; D] = std::array::from_fn(|a| {
-                    self.middle[a] + s * self.tangents[0][a] + t * self.tangents[1][a]
+                    self.middle[a] + s * self.along[0][a] + t * self.along[1][a]
                 });
                 let own = surface.nearest(&pose.into_body(&x), self.side);
                 if !own.is_beyond {
@@ -111,7 +129,7 @@ impl<const D: usize> Face<D> {
 }
 
 /// Tangents of a surface: in the plane the normal turned by a right angle, anticlockwise; in space two
-/// that turn with the body.
+/// that turn with a frame.
 fn tangents<const D: usize>(normal: &[f64; D], turn: &[[f64; D]; D]) -> [[f64; D]; 2] {
     let mut out = [[0.0; D]; 2];
     if D == 2 {

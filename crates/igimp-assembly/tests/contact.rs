@@ -1,0 +1,561 @@
+//! GOAL: contact with rigid bodies has the tangent of its force, acts on body and soil alike, and has the
+//! same bits on any number of threads; poses and surfaces know their distances.
+//! BODY: particles at random places under a tilted body, in the plane and in space.
+//! ORACLE: central differences, balance of force and moment, closed forms of distances.
+
+mod common;
+
+use std::f64::consts::FRAC_PI_4;
+
+use common::{Random, displacements, grid, laws, particles};
+use igimp_assembly::{
+    Constraints, ContactNode, Drive, Interface, Method, Particles, Pose, RigidBody, RigidMotion,
+    SharedLaw, Shear, Stencils, StepConditions, StepLoads, Surface, System, TangentMatrix, Tension,
+};
+use igimp_material::TangentKind;
+use igimp_shape::Grid;
+
+/// Corners of a box about the origin.
+fn corners(half: [f64; 3]) -> Vec<[f64; 3]> {
+    let corner = |k: usize| {
+        std::array::from_fn(|axis| {
+            if k >> axis & 1 == 0 {
+                -half[axis]
+            } else {
+                half[axis]
+            }
+        })
+    };
+    (0..8).map(corner).collect()
+}
+
+/// Two triangles on each side of a box, anticlockwise from outside.
+const BOX: [([usize; 3], usize); 12] = [
+    ([0, 4, 6], 0),
+    ([0, 6, 2], 0),
+    ([1, 3, 7], 1),
+    ([1, 7, 5], 1),
+    ([0, 1, 5], 2),
+    ([0, 5, 4], 2),
+    ([2, 6, 7], 3),
+    ([2, 7, 3], 3),
+    ([0, 2, 3], 4),
+    ([0, 3, 1], 4),
+    ([4, 5, 7], 5),
+    ([4, 7, 6], 5),
+];
+
+fn rectangle(half: [f64; 2], spacing: f64) -> Surface<2> {
+    let [x, y] = half;
+    Surface::polygon(&[[-x, -y], [x, -y], [x, y], [-x, y]], spacing).unwrap()
+}
+
+fn block(half: [f64; 3]) -> Surface<3> {
+    Surface::triangles(&corners(half), &BOX).unwrap()
+}
+
+fn with_shear(shear: Shear) -> Interface {
+    Interface {
+        shear,
+        tension: Tension::None,
+    }
+}
+
+/// Interfaces by name, with whether their tangent is symmetric.
+fn interfaces() -> Vec<(&'static str, Interface, bool)> {
+    let limited = |adhesion: f64, friction| {
+        let adhesion = vec![adhesion];
+        with_shear(Shear::Limited { adhesion, friction })
+    };
+    vec![
+        ("smooth", Interface::smooth(), true),
+        ("rough", Interface::rough(), true),
+        ("bonded", Interface::rough().bonded(), true),
+        ("adhesion", limited(1.0, 0.0), true),
+        ("friction", limited(0.5, 0.4), false),
+        (
+            "tension up to a limit",
+            Interface {
+                tension: Tension::Limit(2.0),
+                ..Interface::rough()
+            },
+            true,
+        ),
+    ]
+}
+
+/// A body above the upper side of the particles of [`particles`], slightly turned, with a past at every
+/// knot; and how all of its components are free.
+fn above<const D: usize>(
+    grid: &Grid<D>,
+    surface: Surface<D>,
+    interface: &Interface,
+    depth: f64,
+    random: &mut Random,
+) -> (RigidBody<D>, RigidMotion<D>) {
+    let axis = &grid.axes[D - 1];
+    let top = axis.nodes()[axis.cell_count() - 1];
+    let upper = surface.bounds().1[D - 1];
+    let mut origin: [f64; D] = std::array::from_fn(|axis| {
+        let nodes = grid.axes[axis].nodes();
+        0.5 * (nodes[0] + nodes[nodes.len() - 1])
+    });
+    origin[D - 1] = top + upper - depth;
+    let sides = vec![interface.clone(); surface.side_count()];
+    let mut body = RigidBody::new(surface, sides, origin);
+    let turn = if D == 2 {
+        [0.02, 0.0, 0.0]
+    } else {
+        [0.02, 0.01, 0.0]
+    };
+    body.penalty.smoothing = 0.03;
+    body.pose = body.pose.moved(&[0.0; D], &turn);
+    for knot in &mut body.contact.knots {
+        let second = if D == 3 {
+            0.5 * random.symmetric()
+        } else {
+            0.0
+        };
+        *knot = ContactNode {
+            pressure: 1.0,
+            shear: [0.5 * random.symmetric(), second],
+            area: 1.0,
+            gap: 0.1 * random.symmetric(),
+            is_closed: true,
+            slips: false,
+            is_broken: false,
+        };
+    }
+    let mut rotation = [Drive::Moved(0.0); 3];
+    for drive in rotation.iter_mut().take(D * (D - 1) / 2) {
+        *drive = Drive::Loaded(0.1);
+    }
+    let motion = RigidMotion {
+        displacement: [Drive::Loaded(-0.3); D],
+        rotation,
+    };
+    (body, motion)
+}
+
+fn conditions<const D: usize>(
+    grid: &Grid<D>,
+    law: &SharedLaw,
+    motion: RigidMotion<D>,
+) -> StepConditions<D> {
+    StepConditions::new(
+        grid.clone(),
+        Constraints::free(grid),
+        StepLoads::gravity([0.0; D]),
+        vec![law.clone()],
+    )
+    .and_then(|conditions| conditions.with_motions(vec![motion]))
+    .unwrap()
+}
+
+/// Nodal displacements at random, those of the two nodes of the body at the end.
+fn moved<const D: usize>(grid: &Grid<D>, random: &mut Random) -> Vec<[f64; D]> {
+    let mut u = displacements(grid, 0.02, random);
+    let rotations = D * (D - 1) / 2;
+    u.push(std::array::from_fn(|_| 0.01 * random.symmetric()));
+    u.push(std::array::from_fn(|axis| {
+        if axis < rotations {
+            0.01 * random.symmetric()
+        } else {
+            0.0
+        }
+    }));
+    u
+}
+
+/// All of the tangent, border included, by rows.
+fn dense(matrix: &TangentMatrix) -> Vec<Vec<f64>> {
+    let of_grid = matrix.pattern.unknowns();
+    let border = &matrix.border;
+    let all = of_grid + border.len();
+    let mut rows = vec![vec![0.0; all]; all];
+    for (row, column, value) in matrix.to_csc().triplet_iter() {
+        rows[row][column] = *value;
+    }
+    for k in 0..border.len() {
+        for unknown in 0..of_grid {
+            rows[unknown][of_grid + k] = border.columns[k][unknown];
+            rows[of_grid + k][unknown] = border.rows[k][unknown];
+        }
+        rows[of_grid + k][of_grid..].copy_from_slice(&border.corner[k]);
+    }
+    rows
+}
+
+/// Which kinds of contact a trial met: open, closing, closed, slipping.
+#[derive(Default)]
+struct Met {
+    open: usize,
+    closing: usize,
+    closed: usize,
+    slips: usize,
+}
+
+/// Largest difference between tangent and differences over some columns and all of those of the
+/// body, and the asymmetry, both relative to the largest entry of these columns.
+fn tangent_error<const D: usize>(
+    grid: &Grid<D>,
+    soil: &Particles<D>,
+    (body, motion): (RigidBody<D>, RigidMotion<D>),
+    u: &[[f64; D]],
+    met: &mut Met,
+    every: usize,
+) -> (f64, f64) {
+    let (_, law) = laws().remove(0);
+    let method = Method::igimp_bbar();
+    let conditions = conditions(grid, &law, motion);
+    let stencils = Stencils::build(soil, &method, &conditions).unwrap();
+    let bodies = [body];
+    let system = System::with_rigid_bodies(soil, &bodies, &stencils, &conditions, &method).unwrap();
+    for knot in &system.bodies_at(u).unwrap()[0].contact.knots {
+        if knot.area > 0.0 {
+            met.open += usize::from(knot.gap >= 0.0);
+            met.closing += usize::from(knot.gap < 0.0 && knot.gap > -0.03);
+            met.closed += usize::from(knot.gap <= -0.045);
+            met.slips += usize::from(knot.slips);
+        }
+    }
+    let (trial, matrix) = system.linearise(u, TangentKind::Consistent).unwrap();
+    let alone = system.evaluate(u, TangentKind::Consistent).unwrap();
+    assert_eq!(trial.f_int, alone.f_int, "with and without the tangent");
+    let rows = dense(&matrix);
+    let unknowns = system.unknowns();
+    assert_eq!(rows.len(), unknowns.len());
+    let (mut error, mut largest) = (0.0_f64, 0.0_f64);
+    for column in 0..unknowns.len() {
+        if column < unknowns.of_grid() && column % every != 0 {
+            continue;
+        }
+        let (node, axis) = unknowns.place(column).unwrap();
+        let d = 1e-6;
+        let force = |sign: f64| {
+            let mut u = u.to_vec();
+            u[node][axis] += sign * d;
+            system.evaluate(&u, TangentKind::Consistent).unwrap().f_int
+        };
+        let (plus, minus) = (force(1.0), force(-1.0));
+        for (row, entries) in rows.iter().enumerate() {
+            let (node, axis) = unknowns.place(row).unwrap();
+            let difference = (plus[node][axis] - minus[node][axis]) / (2.0 * d);
+            largest = largest.max(difference.abs());
+            error = error.max((difference - entries[column]).abs());
+        }
+    }
+    let asymmetry = (0..rows.len())
+        .flat_map(|i| (0..i).map(move |j| (i, j)))
+        .map(|(i, j)| (rows[i][j] - rows[j][i]).abs())
+        .fold(0.0, f64::max);
+    (error / largest, asymmetry / largest)
+}
+
+fn tangent_of<const D: usize>(surface: &Surface<D>, cells: usize, every: usize) {
+    let grid = grid::<D>(cells);
+    let mut random = Random(31);
+    let soil = particles(&grid, 0.0, &mut random);
+    for (name, interface, symmetric) in interfaces() {
+        let mut met = Met::default();
+        for depth in [0.0, 0.02, 0.04, 0.06, 0.08] {
+            let body = above(&grid, surface.clone(), &interface, depth, &mut random);
+            let u = moved(&grid, &mut random);
+            let (error, asymmetry) = tangent_error(&grid, &soil, body, &u, &mut met, every);
+            assert!(error < 1e-7, "{name}, depth {depth}: {error:e}");
+            assert!(
+                !symmetric || asymmetry < 1e-12,
+                "{name}: asymmetry {asymmetry:e}"
+            );
+        }
+        let Met {
+            open,
+            closing,
+            closed,
+            slips,
+        } = met;
+        let is_bonded = name == "bonded";
+        assert!(open > 0 && closed > 0, "{name}: {open} {closed}");
+        assert!(is_bonded || closing > 0, "{name}: {closing}");
+        let may_slip = name == "adhesion" || name == "friction";
+        assert_eq!(slips > 0, may_slip, "{name}: {slips}");
+    }
+}
+
+#[test]
+fn tangent_in_the_plane() {
+    let half_width = 0.5 * (grid::<2>(6).bounds().1[0] - 2.5);
+    tangent_of(&rectangle([half_width, 1.0], 0.7), 6, 3);
+    tangent_of(&Surface::circle(6.0, 0.6).unwrap(), 6, 3);
+}
+
+#[test]
+fn tangent_in_space() {
+    let half = 0.5 * (grid::<3>(4).bounds().1[0] - 2.5);
+    tangent_of(&block([half, half, 1.0]), 4, 40);
+}
+
+/// Force and moment that contact alone makes at the nodes of the grid and at those of the body.
+fn balance<const D: usize>(surface: &Surface<D>, cells: usize) {
+    let grid = grid::<D>(cells);
+    let mut random = Random(5);
+    let soil = particles(&grid, 0.0, &mut random);
+    let (_, law) = laws().remove(0);
+    let method = Method::igimp_bbar();
+    for (name, interface, _) in interfaces() {
+        let (body, motion) = above(&grid, surface.clone(), &interface, 0.03, &mut random);
+        let (size, origin) = (surface.size(), body.pose.origin);
+        let conditions = conditions(&grid, &law, motion);
+        let stencils = Stencils::build(&soil, &method, &conditions).unwrap();
+        let u = moved(&grid, &mut random);
+        let force = |bodies: &[RigidBody<D>]| {
+            System::with_rigid_bodies(&soil, bodies, &stencils, &conditions, &method)
+                .and_then(|system| system.evaluate(&u, TangentKind::Consistent))
+                .unwrap()
+                .f_int
+        };
+        let (with, without) = (force(&[body]), force(&[]));
+        let nodes = grid.node_count();
+        let mut sum = with[nodes];
+        let mut moment: [f64; 3] = std::array::from_fn(|k| {
+            let own = if k < D { with[nodes + 1][k] } else { 0.0 };
+            size * own
+        });
+        let mut scale = 0.0_f64;
+        for node in 0..nodes {
+            let x = grid.node_position(node);
+            let own: [f64; D] = std::array::from_fn(|a| with[node][a] - without[node][a]);
+            let (mut arm, mut push) = ([0.0; 3], [0.0; 3]);
+            for axis in 0..D {
+                sum[axis] += own[axis];
+                scale += own[axis].abs();
+                (arm[axis], push[axis]) = (x[axis] - origin[axis], own[axis]);
+            }
+            if D == 2 {
+                moment[0] += arm[0] * push[1] - arm[1] * push[0];
+            } else {
+                for (k, moment) in moment.iter_mut().enumerate() {
+                    let (a, b) = ((k + 1) % 3, (k + 2) % 3);
+                    *moment += arm[a] * push[b] - arm[b] * push[a];
+                }
+            }
+        }
+        assert!(scale > 1.0, "{name}: nothing touches");
+        for left in sum {
+            assert!(left.abs() < 1e-12 * scale, "{name}: force {left:e}");
+        }
+        for left in moment {
+            assert!(left.abs() < 1e-12 * scale * size, "{name}: moment {left:e}");
+        }
+    }
+}
+
+/// Contact takes from the body what it gives to the soil, moments included.
+#[test]
+fn action_is_reaction() {
+    let half_width = 0.5 * (grid::<2>(6).bounds().1[0] - 2.5);
+    balance(&rectangle([half_width, 1.0], 0.7), 6);
+    balance(&Surface::circle(6.0, 0.6).unwrap(), 6);
+    let half = 0.5 * (grid::<3>(4).bounds().1[0] - 2.5);
+    balance(&block([half, half, 1.0]), 4);
+}
+
+#[test]
+fn bits_are_equal_for_one_two_and_seven_threads() {
+    let grid = grid::<2>(24);
+    let width = 0.5 * (grid.bounds().1[0] - 2.5);
+    let bits = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        pool.unwrap().install(|| {
+            let mut random = Random(17);
+            let soil = particles(&grid, 1.0, &mut random);
+            let mut bits = Vec::new();
+            for (_, interface, _) in interfaces() {
+                let surface = rectangle([width, 1.0], 2.0);
+                let (body, motion) = above(&grid, surface, &interface, 0.1, &mut random);
+                let bodies = [body];
+                let (_, law) = laws().remove(2);
+                let method = Method::shared_strain();
+                let conditions = conditions(&grid, &law, motion);
+                let stencils = Stencils::build(&soil, &method, &conditions).unwrap();
+                let system =
+                    System::with_rigid_bodies(&soil, &bodies, &stencils, &conditions, &method)
+                        .unwrap();
+                let u = moved(&grid, &mut random);
+                let (trial, matrix) = system.linearise(&u, TangentKind::Consistent).unwrap();
+                let border = &matrix.border;
+                let values = trial.f_int.as_flattened().iter().chain(&matrix.values);
+                let values = values.chain(border.columns.iter().flatten());
+                let values = values.chain(border.rows.iter().flatten());
+                let values = values.chain(border.corner.iter().flatten());
+                bits.extend(values.map(|value| value.to_bits()));
+                for knot in &system.bodies_at(&u).unwrap()[0].contact.knots {
+                    bits.extend([knot.pressure, knot.shear[0], knot.gap].map(f64::to_bits));
+                }
+            }
+            bits
+        })
+    };
+    let one = bits(1);
+    assert!(one.len() > 50_000);
+    assert_eq!(one, bits(2));
+    assert_eq!(one, bits(7));
+}
+
+/// Distance of a point to a segment.
+fn to_segment(x: [f64; 2], a: [f64; 2], b: [f64; 2]) -> f64 {
+    let (along, arm) = ([b[0] - a[0], b[1] - a[1]], [x[0] - a[0], x[1] - a[1]]);
+    let t = (arm[0] * along[0] + arm[1] * along[1]) / (along[0].powi(2) + along[1].powi(2));
+    let t = t.clamp(0.0, 1.0);
+    (arm[0] - t * along[0]).hypot(arm[1] - t * along[1])
+}
+
+/// The distance to a polygon that is not convex, either way round, is that to its nearest edge, with the
+/// sign of the number of edges that a ray crosses.
+#[test]
+fn distance_to_a_polygon() {
+    let ell = [
+        [0.0, 0.0],
+        [3.0, 0.0],
+        [3.0, 1.0],
+        [1.0, 1.0],
+        [1.0, 2.5],
+        [0.0, 2.5],
+    ];
+    let mut turned = ell;
+    turned.reverse();
+    let mut random = Random(3);
+    for corners in [ell, turned] {
+        let surface = Surface::polygon(&corners, 0.4).unwrap();
+        let sides = vec![Interface::smooth(); surface.side_count()];
+        let mut body = RigidBody::new(surface, sides, [0.5, -0.7]);
+        body.pose = body.pose.moved(&[0.1, 0.3], &[0.7, 0.0, 0.0]);
+        for _ in 0..400 {
+            let x = [
+                1.5 + 3.0 * random.symmetric(),
+                1.2 + 3.0 * random.symmetric(),
+            ];
+            let edges = || (0..6).map(|k| (corners[k], corners[(k + 1) % 6]));
+            let least = edges()
+                .map(|(a, b)| to_segment(x, a, b))
+                .fold(f64::INFINITY, f64::min);
+            let crossed = edges()
+                .filter(|(a, b)| (a[1] > x[1]) != (b[1] > x[1]))
+                .filter(|(a, b)| x[0] < a[0] + (x[1] - a[1]) / (b[1] - a[1]) * (b[0] - a[0]))
+                .count();
+            let expected = if crossed % 2 == 1 { -least } else { least };
+            let found = body.distance(&body.pose.into_space(&x));
+            assert!(
+                (found - expected).abs() < 1e-12,
+                "{x:?}: {found} {expected}"
+            );
+        }
+    }
+}
+
+#[test]
+fn distance_to_a_circle() {
+    let surface = Surface::circle(0.8, 0.1).unwrap();
+    let body = RigidBody::new(surface, vec![Interface::smooth()], [0.3, -0.2]);
+    let mut random = Random(4);
+    for _ in 0..100 {
+        let x = [2.0 * random.symmetric(), 2.0 * random.symmetric()];
+        let expected = (x[0] - 0.3).hypot(x[1] + 0.2) - 0.8;
+        assert!((body.distance(&x) - expected).abs() < 1e-12);
+    }
+}
+
+/// The distance to a turned box: outside that to the box of its half-lengths, inside to the nearest side.
+#[test]
+fn distance_to_a_box() {
+    let half = [1.0, 0.5, 0.75];
+    let mut body = RigidBody::new(block(half), vec![Interface::smooth(); 6], [1.0, 2.0, 3.0]);
+    body.pose = body.pose.moved(&[0.0; 3], &[0.3, -0.5, 0.9]);
+    let mut random = Random(6);
+    let mut within = 0;
+    for _ in 0..400 {
+        let x: [f64; 3] = std::array::from_fn(|_| 1.6 * random.symmetric());
+        let beyond: [f64; 3] = std::array::from_fn(|a| x[a].abs() - half[a]);
+        let outside = beyond
+            .map(|b| b.max(0.0).powi(2))
+            .iter()
+            .sum::<f64>()
+            .sqrt();
+        let inside = beyond
+            .into_iter()
+            .fold(f64::NEG_INFINITY, f64::max)
+            .min(0.0);
+        within += usize::from(inside < 0.0);
+        let found = body.distance(&body.pose.into_space(&x));
+        assert!((found - outside - inside).abs() < 1e-12, "{x:?}: {found}");
+    }
+    assert!(within > 20);
+}
+
+/// The distance to a tetrahedron: inside the height above the nearest side; outside at least that, and
+/// exactly that above the middle of a side and beyond a corner.
+#[test]
+fn distance_to_a_tetrahedron() {
+    let corners = [
+        [1.0, 1.0, 1.0],
+        [1.0, -1.0, -1.0],
+        [-1.0, 1.0, -1.0],
+        [-1.0, -1.0, 1.0],
+    ];
+    let sides = [
+        ([0, 1, 2], 0),
+        ([0, 3, 1], 1),
+        ([0, 2, 3], 2),
+        ([1, 3, 2], 3),
+    ];
+    let surface = Surface::triangles(&corners, &sides).unwrap();
+    let body = RigidBody::new(surface, vec![Interface::smooth(); 4], [0.0; 3]);
+    let root = 3.0_f64.sqrt();
+    // Its insphere has radius 1/√3, and the normals of its sides point away from its corners.
+    let height = |x: &[f64; 3]| {
+        let above =
+            |corner: &[f64; 3]| -(0..3).map(|a| corner[a] * x[a]).sum::<f64>() / root - 1.0 / root;
+        corners.iter().map(above).fold(f64::NEG_INFINITY, f64::max)
+    };
+    let mut random = Random(8);
+    for _ in 0..400 {
+        let x: [f64; 3] = std::array::from_fn(|_| 1.2 * random.symmetric());
+        let (found, height) = (body.distance(&x), height(&x));
+        if height < 0.0 {
+            assert!((found - height).abs() < 1e-12, "{x:?}: {found} {height}");
+        } else {
+            assert!(found > height - 1e-12, "{x:?}: {found} {height}");
+        }
+    }
+    for corner in corners {
+        for far in [0.1, 1.0, 3.0] {
+            let beyond = corner.map(|c| c * (1.0 + far));
+            assert!((body.distance(&beyond) - far * root).abs() < 1e-12);
+            let opposite = corner.map(|c| -c * (1.0 / 3.0 + far));
+            assert!((body.distance(&opposite) - far * root).abs() < 1e-12);
+        }
+    }
+}
+
+/// Turning there and back, about any axis, and turning in parts about one axis.
+#[test]
+fn poses_turn_rigidly() {
+    let start = Pose::<3>::at([1.0, -2.0, 0.5]);
+    let rotation = [0.4, -0.3, 0.8];
+    let once = start.moved(&[0.0; 3], &rotation);
+    let half = rotation.map(|angle| 0.5 * angle);
+    let twice = start.moved(&[0.0; 3], &half).moved(&[0.0; 3], &half);
+    let back = once.moved(&[0.0; 3], &rotation.map(|angle| -angle));
+    let points = [[1.0, 0.0, 0.0], [0.2, -0.7, 1.5]];
+    for x in points {
+        for axis in 0..3 {
+            assert!((once.into_space(&x)[axis] - twice.into_space(&x)[axis]).abs() < 1e-14);
+            assert!((back.into_space(&x)[axis] - start.into_space(&x)[axis]).abs() < 1e-14);
+            assert!((once.into_body(&once.into_space(&x))[axis] - x[axis]).abs() < 1e-14);
+        }
+    }
+    let plane = Pose::<2>::at([0.0; 2]).moved(&[1.0, 0.0], &[FRAC_PI_4, 0.0, 0.0]);
+    let [x, y] = plane.direction(&[1.0, 1.0]);
+    assert!(x.abs() < 1e-15 && (y - 2.0_f64.sqrt()).abs() < 1e-15);
+    assert!((plane.angle[0] - FRAC_PI_4).abs() < 1e-15);
+}
