@@ -78,6 +78,18 @@ impl<const D: usize> Particles<D> {
             });
     }
 
+    /// Moves particles of an accepted step, such as those that stand too close to a rigid body; nothing
+    /// but their place changes.
+    pub fn put_back(&mut self, by: &[(usize, [f64; D])]) {
+        let fields = self.fields_mut();
+        for (particle, way) in by {
+            for axis in 0..D {
+                fields.x[*particle][axis] += way[axis];
+                fields.displacement[*particle][axis] += way[axis];
+            }
+        }
+    }
+
     /// The first particle that nodal step displacements `u` would carry off the grid, with its
     /// new position \[length\].
     pub fn leaving(

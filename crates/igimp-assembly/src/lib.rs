@@ -46,8 +46,8 @@ pub use method::{DomainUpdate, Geometry, Kinematics, Locking, Method, Remedy, Sm
 pub use particles::{ParticleFields, ParticleSeed, Particles};
 pub use residual::OutOfBalance;
 pub use rigid::{
-    ContactNode, ContactState, Drive, Interface, Penalty, Pose, RigidBody, RigidMotion, Shear,
-    Surface, SurfaceError, Tension,
+    AcceptedContact, ContactNode, ContactState, Drive, Interface, Penalty, Pose, RigidBody,
+    RigidMotion, Shear, Surface, SurfaceError, Tension,
 };
 pub use stencils::Stencils;
 pub use step_conditions::{SharedLaw, StepConditions};

@@ -17,7 +17,9 @@ use crate::method::{Kinematics, Method};
 use crate::nodal_forces::NodalForces;
 use crate::particles::Particles;
 use crate::residual::{OutOfBalance, force_of_round_off};
-use crate::rigid::{Contact, Drive, NODES_PER_BODY, RigidBody, RigidMotion, rotations};
+use crate::rigid::{
+    AcceptedContact, Contact, Drive, NODES_PER_BODY, RigidBody, RigidMotion, rotations,
+};
 use crate::stencils::Stencils;
 use crate::step_conditions::StepConditions;
 use crate::trial::Trial;
@@ -463,7 +465,7 @@ impl<'a, const D: usize> System<'a, D> {
     ///
     /// # Errors
     /// [`AssemblyError::Swallowed`] for a particle whose centre would be within a body.
-    pub fn bodies_at(&self, u: &[[f64; D]]) -> Result<Vec<RigidBody<D>>, AssemblyError> {
+    pub fn bodies_at(&self, u: &[[f64; D]]) -> Result<AcceptedContact<D>, AssemblyError> {
         let Self {
             particles,
             stencils,

@@ -189,10 +189,11 @@ fn equilibrium<const D: usize>(
     let false_support = system.false_support(&reactions);
     let drag_share = system.drag_share(&u);
     let plastic_share = plastic_share(trial);
-    let rigid = system.bodies_at(&u)?;
+    let contact = system.bodies_at(&u)?;
     body.load_points = load_points;
-    body.rigid = rigid;
+    body.rigid = contact.bodies;
     body.particles.commit(&stencils, method, trial, &u);
+    body.particles.put_back(&contact.put_back);
     times.commit = clock.elapsed();
     let report = StepReport {
         from: attempt.from,

@@ -20,6 +20,9 @@ use crate::step_conditions::StepConditions;
 use crate::supports::padded;
 use crate::unknowns::Unknowns;
 
+/// The centre of a particle stands at least so far off a body, in half-lengths as seeded \[-\].
+const LEAST_HEIGHT: f64 = 0.5;
+
 /// Contact of one step, with directions and weights frozen at its start.
 #[derive(Debug)]
 pub(crate) struct Contact<'a, const D: usize> {
@@ -29,6 +32,16 @@ pub(crate) struct Contact<'a, const D: usize> {
     near: Vec<(usize, usize)>,
     /// The first of the nodes that stand for bodies.
     first_node: usize,
+}
+
+/// Rigid bodies and the soil near them as an accepted step leaves them.
+#[derive(Clone, Debug, Default)]
+pub struct AcceptedContact<const D: usize> {
+    /// The bodies.
+    pub bodies: Vec<RigidBody<D>>,
+    /// Particles that stand too close to a body, with the way back \[length\]: contact holds the mean around
+    /// a knot, and lets single particles creep across the surface.
+    pub put_back: Vec<(usize, [f64; D])>,
 }
 
 /// What is summed at a knot.
@@ -144,24 +157,25 @@ impl<'a, const D: usize> Contact<'a, D> {
             // Soil that comes near is as far off as it stands, and touches if it overlaps; from then on the
             // gap follows its motion.
             let is_new = before.area == 0.0;
-            let gap = if is_new {
-                mean(sums.gap).max(0.0)
-            } else {
-                before.gap
-            };
-            before.is_closed |= is_new && gap == 0.0;
-            self.rows.push(Row {
+            if is_new {
+                before.gap = mean(sums.gap).max(0.0);
+                before.is_closed = before.gap == 0.0;
+            }
+            let mut row = Row {
                 body: index,
                 knot,
                 area: sums.area.min(tents[knot]),
-                gap,
+                gap: before.gap,
                 cell: mean(sums.cell),
                 young: mean(sums.young),
                 adhesion: mean(sums.adhesion),
                 opening: functional(&sums.opening),
                 slip: [functional(&sums.slip[0]), functional(&sums.slip[1])],
                 before,
-            });
+            };
+            let interface = &body.interfaces[surface.side_of(knot)];
+            row.carry_force(interface, &body.penalty);
+            self.rows.push(row);
         }
     }
 
@@ -178,7 +192,7 @@ impl<'a, const D: usize> Contact<'a, D> {
         particles: &Particles<D>,
         stencils: &Stencils<D>,
         geometry: Geometry,
-    ) -> Result<Vec<RigidBody<D>>, AssemblyError> {
+    ) -> Result<AcceptedContact<D>, AssemblyError> {
         let mut moved: Vec<RigidBody<D>> = self.bodies.to_vec();
         for (index, body) in moved.iter_mut().enumerate() {
             let node = self.first_node + NODES_PER_BODY * index;
@@ -217,6 +231,7 @@ impl<'a, const D: usize> Contact<'a, D> {
                 is_broken,
             };
         }
+        let mut put_back = Vec::new();
         for &(body, particle) in &self.near {
             let mut x = particles.x[particle];
             for support in stencils.of(particle) {
@@ -224,12 +239,18 @@ impl<'a, const D: usize> Contact<'a, D> {
                     x[axis] += support.value * u[support.node][axis];
                 }
             }
-            if moved[body].distance(&x) < 0.0 {
+            let seeded = particles.half_length0[particle];
+            let least = LEAST_HEIGHT * seeded.into_iter().fold(f64::INFINITY, f64::min);
+            let (distance, normal) = moved[body].nearest(&x);
+            if distance < -2.0 * least {
                 return Err(AssemblyError::Swallowed {
                     particle,
                     body,
                     position: padded(&x),
                 });
+            }
+            if distance < least && geometry == Geometry::Moving {
+                put_back.push((particle, normal.map(|n| (least - distance) * n)));
             }
         }
         if geometry == Geometry::Given {
@@ -237,7 +258,10 @@ impl<'a, const D: usize> Contact<'a, D> {
                 body.pose = before.pose.clone();
             }
         }
-        Ok(moved)
+        Ok(AcceptedContact {
+            bodies: moved,
+            put_back,
+        })
     }
 }
 

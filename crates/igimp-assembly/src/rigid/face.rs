@@ -84,6 +84,7 @@ impl<const D: usize> Face<D> {
     /// cut it. Beyond the end of a side there are none.
     pub(crate) fn points(&self, body: &RigidBody<D>, grid: &Grid<D>) -> Vec<FacePoint<D>> {
         let (surface, pose) = (&*body.surface, &body.pose);
+        let knots = surface.knots();
         let mut rules = [vec![(0.0, 1.0)], vec![(0.0, 1.0)]];
         for (k, rule) in rules.iter_mut().enumerate().take(D - 1) {
             let (tangent, half) = (self.along[k], self.half[k]);
@@ -92,8 +93,8 @@ impl<const D: usize> Face<D> {
                 let lines = grid.axes[axis].nodes().iter();
                 cuts.extend(lines.map(|line| (line - self.middle[axis]) / tangent[axis]));
             }
-            cuts.extend(surface.knots().map(|(knot, _)| {
-                let place = pose.into_space(&knot);
+            cuts.extend(knots.iter().map(|(knot, _)| {
+                let place = pose.into_space(knot);
                 let arm: [f64; D] = std::array::from_fn(|a| place[a] - self.middle[a]);
                 dot(&arm, &tangent)
             }));

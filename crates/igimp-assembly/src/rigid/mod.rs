@@ -19,6 +19,8 @@ pub use pose::Pose;
 pub use state::{ContactNode, ContactState};
 pub use surface::{Surface, SurfaceError};
 
+pub use contact::AcceptedContact;
+
 pub(crate) use contact::Contact;
 pub(crate) use motion::rotations;
 
@@ -64,8 +66,15 @@ impl<const D: usize> RigidBody<D> {
         }
     }
 
+    /// Signed distance of a point \[length\] in space to the surface, negative within the body, and the
+    /// direction in which it grows.
+    pub(crate) fn nearest(&self, x: &[f64; D]) -> (f64, [f64; D]) {
+        let (distance, normal) = self.surface.distance(&self.pose.into_body(x));
+        (distance, self.pose.direction(&normal))
+    }
+
     /// Signed distance of a point \[length\] in space to the surface, negative within the body.
     pub fn distance(&self, x: &[f64; D]) -> f64 {
-        self.surface.distance(&self.pose.into_body(x))
+        self.nearest(x).0
     }
 }

@@ -4,6 +4,9 @@
 use super::interface::{Shear, Tension};
 use super::{ContactNode, Interface, Penalty};
 
+/// Traction grows at most so much from step to step where soil covers less and less of a knot \[-\].
+const MOST_GROWTH: f64 = 2.0;
+
 /// A linear function of nodal displacements.
 pub(crate) type Functional<const D: usize> = Vec<(usize, [f64; D])>;
 
@@ -49,6 +52,28 @@ pub(crate) struct Traction {
 }
 
 impl<const D: usize> Row<D> {
+    /// Begins the step with the force that the last one left, on the area that is covered now: soil that
+    /// flows along a side hands its place on to other soil.
+    pub(crate) fn carry_force(&mut self, interface: &Interface, penalty: &Penalty) {
+        if self.before.area == 0.0 || !self.before.is_closed {
+            return;
+        }
+        let growth = (self.before.area / self.area).min(MOST_GROWTH);
+        self.before.pressure *= growth;
+        self.before.shear = self.before.shear.map(|shear| growth * shear);
+        let stiffness = penalty.stiffness * self.young / self.cell;
+        let smoothing = penalty.smoothing * self.cell;
+        let pressure = self.before.pressure;
+        let holds = interface.tension != Tension::None && !self.before.is_broken;
+        self.gap = if holds {
+            -pressure / stiffness
+        } else if pressure > 0.5 * stiffness * smoothing {
+            -pressure / stiffness - 0.5 * smoothing
+        } else {
+            -(2.0 * pressure.max(0.0) * smoothing / stiffness).sqrt()
+        };
+    }
+
     /// The mean gap after nodal step displacements `u`.
     pub(crate) fn gap_at(&self, u: &[[f64; D]]) -> f64 {
         self.gap + value(&self.opening, u)

@@ -8,6 +8,14 @@ pub enum SurfaceError {
     /// Too few corners, or corners that coincide.
     #[error("a rigid body needs at least three different corners")]
     TooFewCorners,
+    /// Its edges are rounded so much that a side is used up.
+    #[error("with edges rounded by {rounding} m nothing is left of side {side}")]
+    RoundedAway {
+        /// The side, from 0.
+        side: usize,
+        /// The radius \[length\].
+        rounding: f64,
+    },
     /// A number that is not finite, or a size that is not positive.
     #[error("{what} must be positive and finite, but is {value}")]
     NotPositive {
@@ -27,12 +35,14 @@ struct Facet<const D: usize> {
     normal: [f64; D],
 }
 
-/// The surface of a rigid body in its own frame: facets between knots, around which contact is
-/// averaged.
+/// The surface of a rigid body in its own frame: a core of facets between knots, and all points as far
+/// from it as its edges are rounded. Contact is averaged around the knots (theory, eq. 45).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Surface<const D: usize> {
     knots: Vec<[f64; D]>,
     facets: Vec<Facet<D>>,
+    /// Radius of its edges \[length\].
+    rounding: f64,
     /// The radius, if the surface is round about the origin of the frame.
     radius: Option<f64>,
     sides: usize,
@@ -54,12 +64,18 @@ pub(crate) struct Nearest<const D: usize> {
 }
 
 impl Surface<2> {
-    /// A polygon with corners in order, either way round \[length\], with knots about `spacing` apart
-    /// \[length\]. Its sides are numbered by the corner that they begin with.
+    /// A polygon with corners in order, either way round \[length\], its corners rounded by a radius
+    /// \[length\], with knots about `spacing` apart \[length\]. Its sides are numbered by the corner that they
+    /// begin with. The roundings carry nothing: a grid cannot hold the soil of two sides apart in the cell
+    /// of an edge.
     ///
     /// # Errors
     /// [`SurfaceError`].
-    pub fn polygon(corners: &[[f64; 2]], spacing: f64) -> Result<Self, SurfaceError> {
+    pub fn polygon(
+        corners: &[[f64; 2]],
+        rounding: f64,
+        spacing: f64,
+    ) -> Result<Self, SurfaceError> {
         positive("the distance of knots", spacing)?;
         let n = corners.len();
         let side = |k: usize| {
@@ -81,19 +97,30 @@ impl Surface<2> {
             let length = sense * x.hypot(y);
             [y / length, -x / length]
         };
+        let core = |k: usize| {
+            let (before, after) = (outward((k + n - 1) % n), outward(k % n));
+            let share = rounding / (1.0 + dot(&before, &after));
+            let corner = corners[k % n];
+            [0, 1].map(|axis| corner[axis] - share * (before[axis] + after[axis]))
+        };
         let mut surface = Self {
             knots: Vec::new(),
             facets: Vec::new(),
+            rounding,
             radius: None,
             sides: n,
             side_of: Vec::new(),
         };
         for k in 0..n {
-            let (a, along) = (corners[k], side(k));
-            let parts = (norm(&along) / spacing).round().max(1.0) as usize;
+            let (a, b) = (core(k), core(k + 1));
+            let along = [b[0] - a[0], b[1] - a[1]];
+            if dot(&along, &side(k)) <= 0.0 {
+                return Err(SurfaceError::RoundedAway { side: k, rounding });
+            }
+            let shares = shares_along(norm(&along), spacing);
+            let parts = shares.len() - 1;
             let first = surface.knots.len();
-            for part in 0..=parts {
-                let share = part as f64 / parts as f64;
+            for share in shares {
                 surface
                     .knots
                     .push([0, 1].map(|axis| a[axis] + share * along[axis]));
@@ -132,6 +159,7 @@ impl Surface<2> {
                     normal: at(part as f64 + 0.5),
                 })
                 .collect(),
+            rounding: 0.0,
             radius: Some(radius),
             sides: 1,
             side_of: vec![0; parts],
@@ -153,6 +181,7 @@ impl Surface<3> {
         let mut surface = Self {
             knots: Vec::new(),
             facets: Vec::new(),
+            rounding: 0.0,
             radius: None,
             sides: sides.unwrap_or(0),
             side_of: Vec::new(),
@@ -201,10 +230,22 @@ impl<const D: usize> Surface<D> {
         self.knots.len()
     }
 
-    /// The knots with their sides, in the frame of the body \[length\].
-    pub fn knots(&self) -> impl Iterator<Item = ([f64; D], usize)> + '_ {
-        let knots = self.knots.iter().copied();
-        knots.zip(self.side_of.iter().copied())
+    /// The knots on the surface with their sides, in the frame of the body \[length\].
+    pub fn knots(&self) -> Vec<([f64; D], usize)> {
+        let mut knots = vec![([0.0; D], 0); self.knots.len()];
+        for facet in &self.facets {
+            for &knot in &facet.knots {
+                let core = self.knots[knot];
+                let place = std::array::from_fn(|a| core[a] + self.rounding * facet.normal[a]);
+                knots[knot] = (place, facet.side);
+            }
+        }
+        knots
+    }
+
+    /// Radius of the edges \[length\].
+    pub fn rounding(&self) -> f64 {
+        self.rounding
     }
 
     /// Its extent in the frame of the body: lower and upper corner \[length\].
@@ -212,8 +253,8 @@ impl<const D: usize> Surface<D> {
         let mut bounds = ([f64::INFINITY; D], [f64::NEG_INFINITY; D]);
         for knot in &self.knots {
             for axis in 0..D {
-                bounds.0[axis] = bounds.0[axis].min(knot[axis]);
-                bounds.1[axis] = bounds.1[axis].max(knot[axis]);
+                bounds.0[axis] = bounds.0[axis].min(knot[axis] - self.rounding);
+                bounds.1[axis] = bounds.1[axis].max(knot[axis] + self.rounding);
             }
         }
         bounds
@@ -247,22 +288,35 @@ impl<const D: usize> Surface<D> {
         areas
     }
 
-    /// Signed distance of a point in the frame of the body, negative within it \[length\].
-    pub(crate) fn distance(&self, x: &[f64; D]) -> f64 {
+    /// Signed distance of a point in the frame of the body, negative within it \[length\], and the direction
+    /// in which it grows.
+    pub(crate) fn distance(&self, x: &[f64; D]) -> (f64, [f64; D]) {
         if let Some(radius) = self.radius {
-            return norm(x) - radius;
+            let length = norm(x);
+            let normal = x.map(|x| x / length.max(f64::MIN_POSITIVE));
+            return (length - radius, normal);
         }
         // On an edge of two facets the sign is that of the one that the point stands higher above.
-        let (mut least, mut height) = (f64::INFINITY, 0.0_f64);
+        let mut best: Option<(f64, f64, [f64; D], &Facet<D>)> = None;
         for facet in &self.facets {
             let (arm, ..) = self.above(facet, x);
-            let (length, own) = (norm(&arm), dot(&arm, &facet.normal));
-            let tie = (length - least).abs() <= 1e-9 * length;
-            if (tie && own.abs() > height.abs()) || (!tie && length < least) {
-                (least, height) = (length.min(least), own);
+            let (length, height) = (norm(&arm), dot(&arm, &facet.normal));
+            let nearer = best.as_ref().is_none_or(|(least, own, ..)| {
+                let tie = (length - least).abs() <= 1e-9 * length;
+                (tie && height.abs() > own.abs()) || (!tie && length < *least)
+            });
+            if nearer {
+                best = Some((length, height, arm, facet));
             }
         }
-        if height < 0.0 { -least } else { least }
+        let (length, height, arm, facet) = best.expect("a surface has facets");
+        if height < 0.0 {
+            (-length - self.rounding, facet.normal)
+        } else if length > 0.0 {
+            (length - self.rounding, arm.map(|a| a / length))
+        } else {
+            (-self.rounding, facet.normal)
+        }
     }
 
     /// The place of a side that is nearest to a point, both in the frame of the body.
@@ -293,7 +347,7 @@ impl<const D: usize> Surface<D> {
                 }
             }
             None => Nearest {
-                height: dot(&arm, &facet.normal),
+                height: dot(&arm, &facet.normal) - self.rounding,
                 normal: facet.normal,
                 knots,
                 is_beyond,
@@ -308,6 +362,14 @@ impl<const D: usize> Surface<D> {
         let (shares, is_beyond) = closest(x, &corners);
         (minus(x, &combine(&corners, &shares)), shares, is_beyond)
     }
+}
+
+/// Knots along a side, as shares of its length: equally far apart, save for the first and the last space,
+/// which are twice as wide.
+fn shares_along(length: f64, spacing: f64) -> Vec<f64> {
+    let parts = (length / spacing).round().max(1.0) as usize;
+    let inner = (0..=parts).filter(|&part| parts < 4 || (part != 1 && part + 1 != parts));
+    inner.map(|part| part as f64 / parts as f64).collect()
 }
 
 /// Shares of the corners of a facet in its place nearest to a point, and whether the point lies beyond
