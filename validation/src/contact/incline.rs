@@ -101,12 +101,12 @@ fn turned(shift: f64) -> Result<(RunRecord, [f64; 2]), CaseError> {
 /// sideways; H over μ V + a B.
 fn pushed(friction: f64, adhesion: f64, offset: f64) -> Result<(RunRecord, f64), CaseError> {
     let h = 0.125;
-    let grid = Grid::new([Axis::uniform(-1.0, h, 16)?, Axis::uniform(-0.5, h, 7)?]);
-    let block = grid_of(h, [8, 4])?;
+    let grid = Grid::new([Axis::uniform(-1.0, h, 16)?, Axis::uniform(-0.25, h, 5)?]);
+    let block = grid_of(h, [8, 2])?;
     let mut seeds = filled(&block, 2);
     for seed in &mut seeds {
         seed.x[0] += offset * h - 0.5;
-        seed.x[1] -= 0.5;
+        seed.x[1] -= 0.25;
     }
     let mut body = Body::new(Particles::new(&seeds)?);
     let corners = [[-0.9, 0.0], [0.9, 0.0], [0.9, 0.2], [-0.9, 0.2]];

@@ -63,11 +63,13 @@ fn square(offset: f64) -> Result<(RunRecord, [f64; 2]), CaseError> {
         let motion = RigidMotion::displaced([0.0, -0.04 * (to - from)]);
         weightless(&grid, &constraints, &law, motion)
     };
+    let mut settings = MarchSettings::steps(4);
+    settings.newton.tolerance = 1e-12;
     let (run, _) = run(
         format!("{offset} h off the lines of the grid"),
         &mut body,
         &Method::igimp(),
-        &MarchSettings::steps(4),
+        &settings,
         &load_path,
         &mut unobserved,
     );

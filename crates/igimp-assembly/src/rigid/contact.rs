@@ -1,5 +1,5 @@
 //! Contact between soil and rigid bodies over one step: what touches, and the forces that it makes
-//! (theory, eqs. 43 to 48).
+//! (theory, eqs. 45 to 48).
 
 use std::collections::BTreeMap;
 
