@@ -160,6 +160,9 @@ impl<'a, const D: usize> Contact<'a, D> {
             if is_new {
                 before.gap = mean(sums.gap).max(0.0);
                 before.is_closed = before.gap == 0.0;
+            } else if !before.is_closed && sums.area > before.area {
+                // More of the soil around the knot has come near, the last of it from further off.
+                before.gap = before.gap.max(mean(sums.gap));
             }
             let mut row = Row {
                 body: index,
