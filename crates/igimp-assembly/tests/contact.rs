@@ -47,7 +47,7 @@ const BOX: [([usize; 3], usize); 12] = [
 
 fn rectangle(half: [f64; 2], spacing: f64) -> Surface<2> {
     let [x, y] = half;
-    Surface::polygon(&[[-x, -y], [x, -y], [x, y], [-x, y]], spacing).unwrap()
+    Surface::polygon(&[[-x, -y], [x, -y], [x, y], [-x, y]], 0.0, spacing).unwrap()
 }
 
 fn block(half: [f64; 3]) -> Surface<3> {
@@ -117,11 +117,11 @@ fn above<const D: usize>(
             0.0
         };
         *knot = ContactNode {
-            pressure: 1.0,
+            pressure: 60.0 * (1.0 + random.symmetric()),
             shear: [0.5 * random.symmetric(), second],
             area: 1.0,
             gap: 0.1 * random.symmetric(),
-            is_closed: true,
+            is_closed: random.symmetric() > -0.4,
             slips: false,
             is_broken: false,
         };
@@ -211,7 +211,7 @@ fn tangent_error<const D: usize>(
     let stencils = Stencils::build(soil, &method, &conditions).unwrap();
     let bodies = [body];
     let system = System::with_rigid_bodies(soil, &bodies, &stencils, &conditions, &method).unwrap();
-    for knot in &system.bodies_at(u).unwrap()[0].contact.knots {
+    for knot in &system.bodies_at(u).unwrap().bodies[0].contact.knots {
         if knot.area > 0.0 {
             met.open += usize::from(knot.gap >= 0.0);
             met.closing += usize::from(knot.gap < 0.0 && knot.gap > -0.03);
@@ -389,7 +389,7 @@ fn bits_are_equal_for_one_two_and_seven_threads() {
                 let values = values.chain(border.rows.iter().flatten());
                 let values = values.chain(border.corner.iter().flatten());
                 bits.extend(values.map(|value| value.to_bits()));
-                for knot in &system.bodies_at(&u).unwrap()[0].contact.knots {
+                for knot in &system.bodies_at(&u).unwrap().bodies[0].contact.knots {
                     bits.extend([knot.pressure, knot.shear[0], knot.gap].map(f64::to_bits));
                 }
             }
@@ -426,7 +426,7 @@ fn distance_to_a_polygon() {
     turned.reverse();
     let mut random = Random(3);
     for corners in [ell, turned] {
-        let surface = Surface::polygon(&corners, 0.4).unwrap();
+        let surface = Surface::polygon(&corners, 0.0, 0.4).unwrap();
         let sides = vec![Interface::smooth(); surface.side_count()];
         let mut body = RigidBody::new(surface, sides, [0.5, -0.7]);
         body.pose = body.pose.moved(&[0.1, 0.3], &[0.7, 0.0, 0.0]);
@@ -450,6 +450,22 @@ fn distance_to_a_polygon() {
                 "{x:?}: {found} {expected}"
             );
         }
+    }
+}
+
+/// The distance to a rectangle with rounded corners is that to its core, less the radius.
+#[test]
+fn distance_to_a_rounded_rectangle() {
+    let corners = [[-1.0, -0.5], [1.0, -0.5], [1.0, 0.5], [-1.0, 0.5]];
+    let surface = Surface::polygon(&corners, 0.2, 0.3).unwrap();
+    let body = RigidBody::new(surface, vec![Interface::smooth(); 4], [0.0; 2]);
+    let mut random = Random(9);
+    for _ in 0..400 {
+        let x = [1.6 * random.symmetric(), 1.1 * random.symmetric()];
+        let beyond = [x[0].abs() - 0.8, x[1].abs() - 0.3];
+        let outside = beyond[0].max(0.0).hypot(beyond[1].max(0.0));
+        let expected = outside + beyond[0].max(beyond[1]).min(0.0) - 0.2;
+        assert!((body.distance(&x) - expected).abs() < 1e-12, "{x:?}");
     }
 }
 

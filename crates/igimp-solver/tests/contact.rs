@@ -153,7 +153,7 @@ fn under_a_plate(interface: &Interface) -> (Body<2>, StepConditions<2>) {
     let grid = unit_cells([10, 6]);
     let mut body = Body::new(soil([2, 0], [8, 3]));
     let corners = [[-2.0, 0.0], [2.0, 0.0], [2.0, 1.0], [-2.0, 1.0]];
-    let surface = Surface::polygon(&corners, 1.0).unwrap();
+    let surface = Surface::polygon(&corners, 0.0, 1.0).unwrap();
     let sides = vec![interface.clone(); 4];
     body.rigid = vec![RigidBody::new(surface, sides, [5.0, 3.0])];
     let mut constraints = Constraints::free(&grid);
