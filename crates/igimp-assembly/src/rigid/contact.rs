@@ -161,6 +161,9 @@ impl<'a, const D: usize> Contact<'a, D> {
                 let bonds = interface.tension != Tension::None && !before.is_broken;
                 before.gap = if bonds { 0.0 } else { mean(sums.gap).max(0.0) };
                 before.is_closed = before.gap == 0.0;
+            } else if !before.is_closed && sums.area > before.area {
+                // More of the soil around the knot has come near, the last of it from further off.
+                before.gap = before.gap.max(mean(sums.gap));
             }
             let mut row = Row {
                 body: index,
