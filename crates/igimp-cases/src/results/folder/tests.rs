@@ -69,6 +69,7 @@ fn a_new_folder_is_laid_out() {
             "figures",
             "monitors",
             "paraview",
+            "rigid",
             "sections",
             "slip_lines"
         ]
