@@ -41,6 +41,9 @@ const YOUNG: f64 = 1e4;
 /// Settlement of the load point at the end over the width \[-\].
 const SETTLEMENT: f64 = 0.01;
 
+/// Settlement of the first step, which brings strip and soil together before the strip may tilt \[-\].
+const TOUCH: f64 = 1e-5;
+
 /// Lower and upper bound of V/(B s_u) by eccentricity over width, rough and smooth.
 const TABLE: [(f64, [f64; 2], [f64; 2]); 4] = [
     (0.0, [5.1056, 5.1674], [5.0808, 5.1491]),
@@ -85,8 +88,9 @@ impl Push {
         let constraints = ground.held()?;
         let load_path = |from: f64, to: f64| {
             let down = SETTLEMENT * (to - from);
-            let mut motion = RigidMotion::displaced([0.0, -down]);
+            let mut motion = RigidMotion::displaced([0.0, -TOUCH]);
             if from > 0.0 {
+                motion = RigidMotion::displaced([0.0, -down]);
                 match self.sideways {
                     Some(ratio) => motion.displacement[0] = Drive::Moved(ratio * down),
                     None => motion.rotation[0] = Drive::Loaded(0.0),
@@ -166,7 +170,7 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
                 });
             }
         }
-        for ratio in [0.25, 0.5, 1.0, 2.0] {
+        for ratio in [1.5, 2.0, 3.0] {
             jobs.push(Push {
                 eccentricity: 0.0,
                 rough: true,
