@@ -15,6 +15,9 @@ use igimp_assembly::{
 use igimp_material::TangentKind;
 use igimp_shape::Grid;
 
+/// Stiffness of contact per area on cells of unit size: ten times Young's modulus of the soil.
+const STIFFNESS: f64 = 1000.0;
+
 /// Corners of a box about the origin.
 fn corners(half: [f64; 3]) -> Vec<[f64; 3]> {
     let corner = |k: usize| {
@@ -116,12 +119,27 @@ fn above<const D: usize>(
         } else {
             0.0
         };
+        // Pressure that goes with a gap about so wide: contact begins with the force of the step before.
+        let gap = 0.1 * random.symmetric();
+        let bonded = interface.tension != Tension::None;
         *knot = ContactNode {
+<<<<<<< HEAD
             pressure: 60.0 * (1.0 + random.symmetric()),
             shear: [0.5 * random.symmetric(), second],
             area: 1.0,
             gap: 0.1 * random.symmetric(),
             is_closed: random.symmetric() > -0.4,
+=======
+            pressure: if bonded || gap < 0.0 {
+                -gap * STIFFNESS
+            } else {
+                0.0
+            },
+            shear: [0.5 * random.symmetric(), second],
+            area: 1.0,
+            gap,
+            is_closed: bonded || gap < 0.0,
+>>>>>>> main
             slips: false,
             is_broken: false,
         };
@@ -258,7 +276,7 @@ fn tangent_of<const D: usize>(surface: &Surface<D>, cells: usize, every: usize) 
     let soil = particles(&grid, 0.0, &mut random);
     for (name, interface, symmetric) in interfaces() {
         let mut met = Met::default();
-        for depth in [0.0, 0.02, 0.04, 0.06, 0.08] {
+        for depth in (0..16).map(|k| 0.005 * f64::from(k)) {
             let body = above(&grid, surface.clone(), &interface, depth, &mut random);
             let u = moved(&grid, &mut random);
             let (error, asymmetry) = tangent_error(&grid, &soil, body, &u, &mut met, every);

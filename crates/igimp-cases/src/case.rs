@@ -4,6 +4,7 @@
 //! strain, per metre run). The second axis points up; gravity acts along its negative direction.
 
 mod grid;
+mod rigid;
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -14,6 +15,10 @@ use igimp_solver::linear::SolverKind;
 use serde::{Deserialize, Serialize};
 
 pub use grid::{AxisSpec, GridSpec, MixedCells};
+pub use rigid::{
+    Adhesion, RigidDrive, RigidInterface, RigidMove, RigidPart, RigidQuantity, RigidShape,
+    RigidShear,
+};
 
 use crate::check::Band;
 
@@ -38,6 +43,8 @@ pub struct Case {
     pub boundaries: Boundaries,
     /// Loads; stages name them by index.
     pub loads: Vec<Load>,
+    /// Rigid bodies; stages name them by index.
+    pub rigid: Vec<RigidPart>,
     /// What happens, in order.
     pub stages: Vec<Stage>,
     /// Newton, step cutting, linear solver.
@@ -313,6 +320,8 @@ pub enum StageKind {
         /// Further settlement \[m\].
         settlement: f64,
     },
+    /// Moves and loads rigid bodies.
+    Rigid(Vec<RigidMove>),
     /// Searches for the factor of safety. The body is left as it was found.
     StrengthReduction(StrengthReduction),
     /// Lets the slope of reduced strength move until it rests.
@@ -508,6 +517,8 @@ pub enum Quantity {
     Settlement(usize),
     /// Resistance of a rigid footing times its reaction factor, compression positive \[N/m\].
     Reaction(usize),
+    /// A number of a rigid body.
+    Rigid(usize, RigidQuantity),
     /// Factor on a load \[-\].
     LoadFactor(usize),
     /// A field at a monitor.

@@ -4,7 +4,7 @@ use std::error::Error;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-use igimp_assembly::AssemblyError;
+use igimp_assembly::{AssemblyError, SurfaceError};
 use igimp_material::MaterialError;
 use igimp_shape::ShapeError;
 
@@ -36,6 +36,15 @@ pub enum CaseError {
     FootingOffGrid {
         /// Its level \[length\].
         level: f64,
+    },
+    /// A rigid body cannot be made.
+    #[error("the rigid body `{name}` cannot be made")]
+    RigidBody {
+        /// Its name.
+        name: String,
+        /// What is wrong with its surface.
+        #[source]
+        source: SurfaceError,
     },
     /// The initial stress of level ground is beyond the strength.
     #[error(

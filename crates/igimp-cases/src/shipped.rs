@@ -55,6 +55,12 @@ shipped! {
     "embankment": "embankment in three lifts on layered ground that was at rest",
     "k0_ground": "level ground at rest, held against the exact stresses",
     "cantilever": "elastic cantilever bent far, held against beam theory",
+    "contact_footing": "strip footing that the soil can leave, pushed into undrained clay and pulled out",
+    "eccentric_footing": "strip footing under an eccentric load, free to tilt and slide",
+    "pipe": "pipe pushed half its diameter into undrained clay",
+    "wall": "smooth wall moved away from sand and into it: active and passive pressure",
+    "plate_anchor": "plate anchor pulled up through undrained clay, with a gap below it",
+    "wedge": "smooth wedge pushed into undrained clay",
     "block": "block of clay that loses its strength and spreads until it rests",
 }
 

@@ -38,6 +38,14 @@ pub enum StepFailure {
         /// Where it would go \[length\], axes beyond the dimension 0.
         position: [f64; 3],
     },
+    /// Converged, but soil has gone too far into a rigid body.
+    #[error("soil has gone {share} of a cell into rigid body {body}")]
+    TooDeep {
+        /// Number of the body, from 0.
+        body: usize,
+        /// How far, as a share of the cell \[-\].
+        share: f64,
+    },
     /// A number of the linear system that must be finite is not.
     #[error("the {what} at {position:?} m, axis {axis}, is not finite")]
     NotFinite {
@@ -63,9 +71,10 @@ impl StepFailure {
     pub fn is_want_of_equilibrium(&self) -> bool {
         match self {
             Self::MaxIterations { .. } | Self::Diverged | Self::Stagnated => true,
-            Self::LeavesGrid { .. } | Self::LoadPointLeavesGrid { .. } | Self::NotFinite { .. } => {
-                false
-            }
+            Self::LeavesGrid { .. }
+            | Self::LoadPointLeavesGrid { .. }
+            | Self::TooDeep { .. }
+            | Self::NotFinite { .. } => false,
             Self::Assembly(error) => error.is_too_far(),
             Self::Linear(error) => matches!(
                 error,

@@ -116,7 +116,10 @@ fn pressed_by_a_box(angle: f64, push: f64) -> (Body<3>, NodalForces<3>, StepRepo
         &Method::igimp(),
         &conditions,
         (0.0, 1.0),
-        &NewtonSettings::default(),
+        &NewtonSettings {
+            tolerance: 1e-12,
+            ..NewtonSettings::default()
+        },
         &mut workspace(),
     )
     .unwrap();

@@ -62,6 +62,7 @@ pub(crate) fn kind(stage: &igimp_cases::case::Stage) -> &'static str {
         StageKind::K0 => "k0",
         StageKind::Load { .. } => "load",
         StageKind::Displacement { .. } => "displacement",
+        StageKind::Rigid(_) => "rigid",
         StageKind::StrengthReduction(_) => "strength-reduction",
         StageKind::RunOut(_) => "run-out",
     }

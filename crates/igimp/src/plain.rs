@@ -314,6 +314,7 @@ mod tests {
                 factors: Vec::new(),
                 settlement: 0.0,
                 srf: Vec::new(),
+                rigid: Vec::new(),
             },
         };
         let events = [

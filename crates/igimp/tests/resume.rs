@@ -5,7 +5,9 @@
 
 mod run_support;
 
-use std::path::PathBuf;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
 
 use run_support::{Folder, differing};
 
@@ -54,4 +56,54 @@ fn a_checkpoint_of_another_case_is_refused() {
     ];
     let (code, said) = folder.end("out", &other);
     assert_eq!(code, Some(0), "{said}");
+}
+
+/// GOAL: rigid bodies go on where they stood, with what contact left behind: from any step of their
+/// stages the run ends with the same files.
+#[test]
+fn rigid_bodies_are_taken_up_where_they_stood() {
+    let folder = Folder::new("two-bodies");
+    let case = include_str!("../../igimp-cases/tests/data/two_bodies.toml");
+    fs::write(folder.0.join("two_bodies.toml"), case).unwrap();
+    let run = |more: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_igimp"));
+        command.args(["run", "two_bodies.toml", "--out", "out", "--quiet"]);
+        let output = command.args(more).current_dir(&folder.0).output().unwrap();
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(0), "{said}");
+    };
+    run(&[]);
+    let expected = folder.everything("out");
+    assert!(expected.contains_key(Path::new("rigid/footing.csv")));
+    let checkpoints = folder.0.join("out/checkpoint");
+    for last in [4, 6, 7, 10, 13] {
+        for found in fs::read_dir(&checkpoints).unwrap() {
+            let path = found.unwrap().path();
+            let name = path.file_name().unwrap().to_str().unwrap();
+            let step = name.strip_prefix("step-").map(|step| step.parse::<i32>());
+            let is_later = match step {
+                Some(step) => step.unwrap() > last,
+                None => name == "stage-03-end" || (name == "stage-02-end" && last < 6),
+            };
+            if is_later {
+                fs::remove_dir_all(&path).unwrap();
+            }
+        }
+        run(&["--resume"]);
+        let found = folder.everything("out");
+        assert_eq!(
+            differing(&expected, &found),
+            Vec::<PathBuf>::new(),
+            "{last}"
+        );
+    }
+    for stage in ["seat", "load"] {
+        run(&["--from-stage", stage]);
+        let found = folder.everything("out");
+        assert_eq!(
+            differing(&expected, &found),
+            Vec::<PathBuf>::new(),
+            "{stage}"
+        );
+    }
 }

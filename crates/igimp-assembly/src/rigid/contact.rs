@@ -1,5 +1,5 @@
 //! Contact between soil and rigid bodies over one step: what touches, and the forces that it makes
-//! (theory, eqs. 43 to 48).
+//! (theory, eqs. 45 to 48).
 
 use std::collections::BTreeMap;
 
@@ -155,10 +155,11 @@ impl<'a, const D: usize> Contact<'a, D> {
             };
             let mut before = body.contact.knots[knot];
             // Soil that comes near is as far off as it stands, and touches if it overlaps; from then on the
-            // gap follows its motion.
-            let is_new = before.area == 0.0;
-            if is_new {
-                before.gap = mean(sums.gap).max(0.0);
+            // gap follows its motion. Where it is bonded it touches at once.
+            let interface = &body.interfaces[surface.side_of(knot)];
+            if before.area == 0.0 {
+                let bonds = interface.tension != Tension::None && !before.is_broken;
+                before.gap = if bonds { 0.0 } else { mean(sums.gap).max(0.0) };
                 before.is_closed = before.gap == 0.0;
             } else if !before.is_closed && sums.area > before.area {
                 // More of the soil around the knot has come near, the last of it from further off.
@@ -176,7 +177,6 @@ impl<'a, const D: usize> Contact<'a, D> {
                 slip: [functional(&sums.slip[0]), functional(&sums.slip[1])],
                 before,
             };
-            let interface = &body.interfaces[surface.side_of(knot)];
             row.carry_force(interface, &body.penalty);
             self.rows.push(row);
         }

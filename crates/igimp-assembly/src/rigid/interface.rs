@@ -94,8 +94,8 @@ pub struct Penalty {
 impl Default for Penalty {
     fn default() -> Self {
         Self {
-            stiffness: 30.0,
-            smoothing: 1e-2,
+            stiffness: 10.0,
+            smoothing: 2e-2,
             tangential: 0.5,
         }
     }

@@ -52,8 +52,8 @@ pub(crate) struct Traction {
 }
 
 impl<const D: usize> Row<D> {
-    /// Begins the step with the force that the last one left, on the area that is covered now: soil that
-    /// flows along a side hands its place on to other soil.
+    /// Begins the step with the force that the last one left, on the area that is covered now (theory, eq.
+    /// 50): soil that flows along a side hands its place on to other soil.
     pub(crate) fn carry_force(&mut self, interface: &Interface, penalty: &Penalty) {
         if self.before.area == 0.0 || !self.before.is_closed {
             return;

@@ -151,6 +151,7 @@ impl Names {
 /// `bodies`, `materials`.
 fn plural_of(noun: &str) -> String {
     match noun {
+        "rigid body" => "rigid bodies".to_owned(),
         "body" => "bodies".to_owned(),
         "box" => "boxes".to_owned(),
         noun => format!("{noun}s"),

@@ -15,6 +15,8 @@ pub enum Dimension {
     Acceleration,
     /// Force per metre run, in plane strain \[N/m\].
     ForcePerLength,
+    /// Moment per metre run, in plane strain \[N m/m\].
+    MomentPerLength,
     /// Mass per volume \[kg/m³\]; no key takes one, it is known to say so.
     MassDensity,
     /// Force \[N\]; no key takes one, it is known to say so.
@@ -33,6 +35,7 @@ impl Dimension {
             Self::Angle => "an angle",
             Self::Acceleration => "an acceleration",
             Self::ForcePerLength => "a force per length",
+            Self::MomentPerLength => "a moment per length",
             Self::MassDensity => "a mass density",
             Self::Force => "a force",
             Self::Area => "an area",
@@ -48,6 +51,7 @@ impl Dimension {
             Self::Angle => "deg",
             Self::Acceleration => "m/s2",
             Self::ForcePerLength => "kN/m",
+            Self::MomentPerLength => "kNm/m",
             Self::MassDensity => "kg/m3",
             Self::Force => "kN",
             Self::Area => "m2",
@@ -63,6 +67,7 @@ impl Dimension {
             Self::Angle => "rad",
             Self::Acceleration => "m/s2",
             Self::ForcePerLength => "N/m",
+            Self::MomentPerLength => "Nm/m",
             Self::MassDensity => "kg/m3",
             Self::Force => "N",
             Self::Area => "m2",
@@ -78,6 +83,7 @@ impl Dimension {
             Self::Angle => "30 deg",
             Self::Acceleration => "9.81 m/s2",
             Self::ForcePerLength => "100 kN/m",
+            Self::MomentPerLength => "50 kNm/m",
             Self::MassDensity => "2000 kg/m3",
             Self::Force => "100 kN",
             Self::Area => "2 m2",
@@ -172,7 +178,7 @@ const fn degrees(symbol: &'static str) -> Unit {
     }
 }
 
-static UNITS: [Unit; 41] = [
+static UNITS: [Unit; 44] = [
     ten("m", Dimension::Length, 0),
     ten("mm", Dimension::Length, -3),
     ten("cm", Dimension::Length, -2),
@@ -201,6 +207,9 @@ static UNITS: [Unit; 41] = [
     ten("kN/m", Dimension::ForcePerLength, 3),
     ten("N/m", Dimension::ForcePerLength, 0),
     ten("MN/m", Dimension::ForcePerLength, 6),
+    ten("kNm/m", Dimension::MomentPerLength, 3),
+    ten("Nm/m", Dimension::MomentPerLength, 0),
+    ten("MNm/m", Dimension::MomentPerLength, 6),
     ten("kg/m3", Dimension::MassDensity, 0),
     ten("t/m3", Dimension::MassDensity, 3),
     ten("Mg/m3", Dimension::MassDensity, 3),

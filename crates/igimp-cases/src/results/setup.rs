@@ -3,8 +3,8 @@
 use igimp_assembly::Geometry;
 
 use crate::case::{
-    AxisSpec, Boundaries, Case, Load, LoadKind, Material, Reduction, ReductionPath, Side, Stage,
-    StageKind, StopWhen, Strength,
+    AxisSpec, Boundaries, Case, Load, LoadKind, Material, Reduction, ReductionPath, RigidDrive,
+    RigidMove, Side, Stage, StageKind, StopWhen, Strength,
 };
 use crate::check::short;
 use crate::summary::SetupTable;
@@ -222,6 +222,10 @@ fn happens(case: &Case, stage: &Stage) -> String {
             let Load { name, .. } = &case.loads[*load];
             format!("{name} pushed down by {} m", short(*settlement))
         }
+        StageKind::Rigid(moves) => {
+            let told: Vec<String> = moves.iter().map(|own| moves_in_words(case, own)).collect();
+            told.join("; ")
+        }
         StageKind::StrengthReduction(reduction) => {
             let path = match reduction.path {
                 ReductionPath::Reduce => "step by step",
@@ -245,6 +249,32 @@ fn happens(case: &Case, stage: &Stage) -> String {
                 materials(&run_out.materials)
             )
         }
+    }
+}
+
+/// What a stage does to a rigid body, in words.
+fn moves_in_words(case: &Case, own: &RigidMove) -> String {
+    let parts: Vec<String> = std::iter::zip(["x", "y", "rotation"], own.drives)
+        .filter_map(|(name, drive)| {
+            let (unit, of) = match name {
+                "rotation" => ("rad", "moment"),
+                _ => ("m", "force"),
+            };
+            Some(match drive? {
+                RigidDrive::By(by) => format!("{name} by {} {unit}", short(by)),
+                RigidDrive::Force(0.0) => format!("{name} free"),
+                RigidDrive::Force(force) => {
+                    let unit = if of == "force" { "kN/m" } else { "kN m/m" };
+                    format!("{of} in {name} to {} {unit}", short(1e-3 * force))
+                }
+            })
+        })
+        .collect();
+    let name = &case.rigid[own.body].name;
+    if parts.is_empty() {
+        format!("{name} held")
+    } else {
+        format!("{name}: {}", parts.join(", "))
     }
 }
 

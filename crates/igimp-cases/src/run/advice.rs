@@ -5,7 +5,7 @@ use igimp_assembly::{AssemblyError, Locking};
 use igimp_solver::linear::LinearSolverError;
 use igimp_solver::{StepError, StepFailure};
 
-use crate::case::{Case, Material, Side, Stage, StageKind, Strength};
+use crate::case::{Case, Material, RigidDrive, Side, Stage, StageKind, Strength};
 use crate::check::short;
 use crate::polygon::{area_and_centroid, clip_to_box};
 
@@ -49,6 +49,7 @@ pub fn advice(
         ) if yielding => no_equilibrium(case, stage, error, near_worst),
         StepFailure::Assembly(assembly) => unformed(case, stage, assembly),
         StepFailure::Linear(linear) => unsolved(case, linear),
+        StepFailure::TooDeep { body, .. } => too_deep(case, stage, *body),
         StepFailure::NotFinite { .. } => vec![more_steps(stage), finer_cell(case)],
         StepFailure::MaxIterations { .. } | StepFailure::Diverged | StepFailure::Stagnated => {
             no_equilibrium(case, stage, error, near_worst)
@@ -117,6 +118,27 @@ fn off_grid(case: &Case, stage: &Stage, position: [f64; 3]) -> Vec<String> {
     out
 }
 
+/// Soil went too far into a rigid body.
+fn too_deep(case: &Case, stage: &Stage, body: usize) -> Vec<String> {
+    let Some(part) = case.rigid.get(body) else {
+        return vec![more_steps(stage)];
+    };
+    let (name, stiffness, most) = (&part.name, part.stiffness, part.most_penetration);
+    vec![
+        format!(
+            "stiffness = {} of the rigid body \"{name}\" (now {})",
+            short(2.0 * stiffness),
+            short(stiffness)
+        ),
+        finer_cell(case),
+        format!(
+            "most_penetration = {} of the rigid body \"{name}\" (now {}), if so much is no matter",
+            short(2.0 * most),
+            short(most)
+        ),
+    ]
+}
+
 fn unformed(case: &Case, stage: &Stage, error: &AssemblyError) -> Vec<String> {
     match error {
         AssemblyError::Shape { position, .. } => off_grid(case, stage, *position),
@@ -134,6 +156,16 @@ fn unformed(case: &Case, stage: &Stage, error: &AssemblyError) -> Vec<String> {
         | AssemblyError::Material { .. } => {
             vec![more_steps(stage), finer_cell(case)]
         }
+        AssemblyError::Swallowed { position, .. } => vec![
+            more_steps(stage),
+            format!(
+                "a finer cell near ({}, {}) m, where soil is caught by a rigid body: {}",
+                short(position[0]),
+                short(position[1]),
+                finer_cell(case)
+            ),
+            "a corner of the rigid body that is less sharp".to_owned(),
+        ],
         _ => vec![more_steps(stage)],
     }
 }
@@ -208,6 +240,16 @@ fn collapse(case: &Case, stage: &Stage) -> Vec<String> {
         )],
         StageKind::StrengthReduction(_) => {
             vec!["a lower bracket: this is probably collapse at the first factor".to_owned()]
+        }
+        StageKind::Rigid(moves) => {
+            let mut drives = moves.iter().flat_map(|own| own.drives).flatten();
+            let is_loaded =
+                drives.any(|drive| matches!(drive, RigidDrive::Force(force) if force != 0.0));
+            let name = &stage.name;
+            let instead = format!(
+                "a displacement in place of a force in stage \"{name}\": this is probably collapse under it"
+            );
+            is_loaded.then_some(instead).into_iter().collect()
         }
         StageKind::RunOut(_) => Vec::new(),
     }

@@ -49,6 +49,7 @@ fn case(kind: StageKind) -> Case {
             ..Boundaries::default()
         },
         loads: Vec::new(),
+        rigid: Vec::new(),
         stages: vec![Stage {
             name: "first".into(),
             kind,

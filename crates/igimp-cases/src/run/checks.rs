@@ -21,7 +21,7 @@ pub(crate) fn at_end_of_stage(
         .filter(|(_, check)| check.stage.unwrap_or(last) == moment.stage)
         .map(|(k, check)| {
             let found = match check.at {
-                CheckTime::End => records.quantity(check.of, moment),
+                CheckTime::End => records.quantity(case, check.of, moment),
                 CheckTime::Peak => records.peaks[k],
             };
             row(Check {

@@ -167,7 +167,7 @@ impl Stages {
             session.summary.checks.clone_from(&left.checks);
             session.summary.warnings.clone_from(&left.warnings);
             session.summary.size.unknowns = left.unknowns;
-            session.ends = output.ends(case, left.stages.len())?;
+            session.ends = output.ends(case, &session.records, left.stages.len())?;
             stages.first = left.stages.len();
             stages.state = Some(left.state.clone());
             stages.left = Some(left);
@@ -321,6 +321,9 @@ impl Stages {
         session.summary.stages.push(summary);
         if goes_on && stage.reset_displacements {
             state.body.particles.reset_displacements();
+            for own in &mut state.controls.rigid {
+                own.track.displacement = [0.0; 3];
+            }
         }
         if goes_on {
             session.ends.insert(number, state.clone());
@@ -353,6 +356,7 @@ impl Stages {
             number: summary.steps,
             progress: summary.reached,
             particles: &state.body.particles,
+            rigid: &state.body.rigid,
             controls: &state.controls,
             resistance,
             plastic_share: summary.plastic_share,
@@ -425,9 +429,8 @@ fn dispatch(
         StageKind::Gravity { .. }
         | StageKind::K0
         | StageKind::Load { .. }
-        | StageKind::Displacement { .. } => {
-            loading::load(session, state, number, summary, resumption)
-        }
+        | StageKind::Displacement { .. }
+        | StageKind::Rigid(_) => loading::load(session, state, number, summary, resumption),
         StageKind::StrengthReduction(reduction) => {
             safety::reduce_strength(session, state, number, reduction, summary, search)
         }
@@ -452,6 +455,7 @@ fn kind(kind: &StageKind) -> &'static str {
         StageKind::K0 => "k0",
         StageKind::Load { .. } => "load",
         StageKind::Displacement { .. } => "displacement",
+        StageKind::Rigid(_) => "rigid",
         StageKind::StrengthReduction(_) => "strength-reduction",
         StageKind::RunOut(_) => "run-out",
     }

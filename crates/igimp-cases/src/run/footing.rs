@@ -21,6 +21,40 @@ pub(crate) struct Footing {
     reaction_factor: f64,
 }
 
+/// The rigid body of a case that the rows of the grid follow, and the row of nodes at its lowest place.
+pub(crate) fn followed(case: &Case) -> Result<Option<(usize, usize)>, CaseError> {
+    let mut followed = case.rigid.iter().enumerate();
+    let Some((index, part)) = followed.find(|(_, part)| part.grid_follows) else {
+        return Ok(None);
+    };
+    let level = part.bounds().0[1];
+    let row = case.grid.axes[1].place(level);
+    if (row - row.round()).abs() > 1e-6 || row.round() < 1.0 {
+        return Err(CaseError::FootingOffGrid { level });
+    }
+    Ok(Some((index, row.round() as usize)))
+}
+
+/// The rows of the grid when what stood on a row of nodes has gone down by w \[m\], with rows added on top
+/// for those that sank.
+pub(crate) fn rows(spec: &AxisSpec, base: usize, w: f64) -> Result<Axis, ShapeError> {
+    let lower = spec.lower();
+    let depth = spec.rise(base);
+    let rows = spec.cells() + (w / spec.last_cell()).ceil() as usize;
+    let nodes = (0..=rows)
+        .map(|row| {
+            let y0 = spec.rise(row);
+            lower
+                + if row <= base {
+                    y0 * (depth - w) / depth
+                } else {
+                    y0 - w
+                }
+        })
+        .collect();
+    Axis::from_nodes(nodes)
+}
+
 impl Footing {
     /// The footing of a case, if it has one.
     pub(crate) fn of(case: &Case) -> Result<Option<Self>, CaseError> {
@@ -54,23 +88,9 @@ impl Footing {
         }))
     }
 
-    /// The rows of the grid at a settlement w \[m\], with rows added on top for those that sank.
-    pub(crate) fn rows(&self, spec: &AxisSpec, w: f64) -> Result<Axis, ShapeError> {
-        let lower = spec.lower();
-        let depth = spec.rise(self.row);
-        let rows = spec.cells() + (w / spec.last_cell()).ceil() as usize;
-        let nodes = (0..=rows)
-            .map(|row| {
-                let y0 = spec.rise(row);
-                lower
-                    + if row <= self.row {
-                        y0 * (depth - w) / depth
-                    } else {
-                        y0 - w
-                    }
-            })
-            .collect();
-        Axis::from_nodes(nodes)
+    /// Row of nodes of the base.
+    pub(crate) fn row(&self) -> usize {
+        self.row
     }
 
     /// Whether a node belongs to the footing; `Some(true)` on its base.

@@ -1,11 +1,13 @@
 //! Where a run was left, as checkpoints tell it.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
 use igimp_solver::{Body, MarchState};
 use serde::{Deserialize, Serialize};
 
+use super::saved_body::SavedBody;
 use super::state::{Controls, State};
 use crate::results::checkpoint::{CheckpointError, Meta};
 use crate::summary::{CheckRow, FigureNote, StageSummary, TrialSummary};
@@ -70,7 +72,7 @@ pub(crate) struct Left {
 }
 
 /// A checkpoint's own words, beside its bodies.
-#[derive(Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Notes {
     /// Fingerprint of all that the stages so far depend on.
     pub(super) history: String,
@@ -85,6 +87,9 @@ pub(super) struct Notes {
     pub(super) peaks: Vec<Option<f64>>,
     pub(super) curve_rows: Vec<usize>,
     pub(super) monitor_rows: Vec<usize>,
+    pub(super) rigid_rows: Vec<usize>,
+    /// The rigid bodies of each state, by its name.
+    pub(super) rigid: BTreeMap<String, Vec<SavedBody>>,
     pub(super) convergence_rows: usize,
     pub(super) frames: usize,
     pub(super) steps: usize,

@@ -3,9 +3,10 @@
 
 use super::left::Resumption;
 use super::records::Moment;
+use super::rigid;
 use super::session::{Ended, Path, Session, Taken, march_path};
 use super::state::{Controls, State};
-use crate::case::{Stage, StageKind};
+use crate::case::{RigidDrive, Stage, StageKind};
 use crate::check::short;
 use crate::error::CaseError;
 use crate::summary::StageSummary;
@@ -21,6 +22,18 @@ pub(crate) fn target(stage: &Stage, start: &Controls) -> Controls {
             }
         }
         StageKind::Displacement { settlement, .. } => end.settlement += settlement,
+        StageKind::Rigid(moves) => {
+            for own in moves {
+                let body = &mut end.rigid[own.body];
+                for (k, drive) in own.drives.iter().enumerate() {
+                    match drive {
+                        Some(RigidDrive::By(by)) => body.moved[k] += by,
+                        Some(RigidDrive::Force(force)) => body.loaded[k] = Some(*force),
+                        None => {}
+                    }
+                }
+            }
+        }
         StageKind::K0 | StageKind::StrengthReduction(_) | StageKind::RunOut(_) => {}
     }
     end
@@ -36,6 +49,11 @@ pub(crate) fn load(
 ) -> Result<Ended, CaseError> {
     let model = session.model;
     let stage = &model.case.stages[number];
+    if let (StageKind::Rigid(moves), None) = (&stage.kind, resumption) {
+        for text in rigid::begin(model, state, moves)? {
+            session.warn(text);
+        }
+    }
     let from = resumption.map_or_else(|| state.controls.clone(), |left| left.from.clone());
     let to = target(stage, &from);
     let mut resistance = resumption.map_or(0.0, |left| left.resistance);
@@ -86,6 +104,7 @@ pub(crate) fn begin(
         number: 0,
         progress: 0.0,
         particles: &state.body.particles,
+        rigid: &state.body.rigid,
         controls: &state.controls,
         resistance: 0.0,
         plastic_share: 0.0,

@@ -30,12 +30,13 @@ pub fn worst_node(worst: Option<([f64; 3], usize)>) -> Option<String> {
 
 fn render(failure: &Failure) -> String {
     let error = &failure.error;
+    let went_wrong = match &*error.failure {
+        StepFailure::TooDeep { .. } => "is not to be trusted".to_owned(),
+        _ => format!("did not converge ({})", cuts(failure)),
+    };
     let mut text = format!(
-        "error: stage \"{}\", step {} of {} did not converge ({})\n",
-        failure.stage,
-        failure.step,
-        failure.steps,
-        cuts(failure)
+        "error: stage \"{}\", step {} of {} {went_wrong}\n",
+        failure.stage, failure.step, failure.steps,
     );
     let mut row = |name: &str, value: &str| {
         let _ = writeln!(text, "  {name:<17}  {value}");

@@ -18,8 +18,10 @@ mod model;
 mod output;
 mod processor;
 mod records;
+mod rigid;
 mod run_out;
 mod safety;
+mod saved_body;
 mod sections;
 mod session;
 mod state;
@@ -45,7 +47,8 @@ pub(crate) use entry::Entered;
 pub use entry::can_go_on;
 pub use message::worst_node;
 pub use model::Model;
-pub use state::{Controls, State};
+pub use rigid::outlines as rigid_outlines;
+pub use state::{Controls, RigidControls, RigidTrack, State};
 
 /// Why a stage ended that reached its end.
 pub const REACHED_ITS_END: &str = "reached its end";

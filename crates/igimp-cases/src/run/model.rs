@@ -10,7 +10,7 @@ use igimp_shape::{Grid, ShapeError};
 use igimp_solver::linear::LinearSolver;
 use igimp_solver::{Body, MarchSettings, NewtonSettings};
 
-use super::footing::Footing;
+use super::footing::{self, Footing};
 use super::state::{Controls, State};
 use crate::case::{Case, LoadKind, MixedCells, Side};
 use crate::error::CaseError;
@@ -33,6 +33,8 @@ pub struct Model<'c> {
     /// for every cell whose soils share a mean stiffness.
     pub laws: Vec<SharedLaw>,
     footing: Option<Footing>,
+    /// The rigid body that the rows of the grid follow, and the row of its lowest side.
+    followed: Option<(usize, usize)>,
 }
 
 impl<'c> Model<'c> {
@@ -50,6 +52,7 @@ impl<'c> Model<'c> {
             case,
             laws,
             footing: Footing::of(case)?,
+            followed: footing::followed(case)?,
         };
         let grid = model.grid(0.0)?;
         let gravity = if case.gravity > 0.0 {
@@ -74,7 +77,14 @@ impl<'c> Model<'c> {
         }
         let mut body = Body::new(Particles::new(&seeds)?);
         body.load_points = load_points(case);
-        let controls = Controls::none(case.loads.len(), case.materials.len());
+        let mut controls = Controls::none(case.loads.len(), case.materials.len(), case.rigid.len());
+        for (index, part) in case.rigid.iter().enumerate() {
+            if part.from_start {
+                body.rigid
+                    .push(super::rigid::made(case, index, model.laws.len())?);
+                controls.rigid[index].placed = true;
+            }
+        }
         Ok((model, State { body, controls }))
     }
 
@@ -98,18 +108,26 @@ impl<'c> Model<'c> {
         }
     }
 
-    /// The background grid when the footing has settled so far \[m\].
+    /// How far what the grid follows has gone down \[m\]: a rigid footing, or a rigid body.
+    pub fn lowered(&self, controls: &Controls) -> f64 {
+        match self.followed {
+            Some((body, _)) => controls.rigid[body].track.lowered,
+            None => controls.settlement,
+        }
+    }
+
+    /// The background grid when what it follows has gone down so far \[m\].
     ///
     /// # Errors
     /// [`ShapeError`] for cells that make no grid.
-    pub fn grid(&self, settlement: f64) -> Result<Grid<2>, ShapeError> {
+    pub fn grid(&self, lowered: f64) -> Result<Grid<2>, ShapeError> {
         let [x, y] = &self.case.grid.axes;
-        match &self.footing {
-            Some(footing) if settlement > 0.0 => {
-                Ok(Grid::new([x.axis()?, footing.rows(y, settlement)?]))
-            }
-            _ => self.case.grid.grid(),
-        }
+        let row = match (&self.footing, self.followed) {
+            (Some(footing), _) if lowered > 0.0 => footing.row(),
+            (None, Some((_, row))) if lowered != 0.0 => row,
+            _ => return self.case.grid.grid(),
+        };
+        Ok(Grid::new([x.axis()?, footing::rows(y, row, lowered)?]))
     }
 
     /// What holds during a step between two controls, with so much `drag` \[1/s²\], on the grid of the
@@ -123,7 +141,7 @@ impl<'c> Model<'c> {
         to: &Controls,
         drag: f64,
     ) -> Result<StepConditions<2>, AssemblyError> {
-        self.conditions_on(self.grid(from.settlement), (from, to), drag)
+        self.conditions_on(self.grid(self.lowered(from)), (from, to), drag)
     }
 
     /// The same on another grid.
@@ -147,7 +165,8 @@ impl<'c> Model<'c> {
                 drag,
             },
             self.laws_reduced_by(&to.srf)?,
-        )
+        )?
+        .with_motions(super::rigid::motions(self.case, from, to))
     }
 
     /// The laws at reduced strength; `srf` has a strength reduction factor for each \[-\].

@@ -1,5 +1,6 @@
 //! The results folder of a run: what is written, and when.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
@@ -12,6 +13,7 @@ use super::fingerprint;
 use super::left::{End, Notes, Resumption, Search, end_of_stage};
 use super::model::Model;
 use super::records::{Records, Rows};
+use super::saved_body;
 use super::session::Taken;
 use super::state::{Controls, State};
 use crate::case::{Case, Every};
@@ -43,6 +45,7 @@ pub(crate) struct Output {
     checkpoint_keep: usize,
     curves: Vec<RowWriter>,
     monitors: Vec<RowWriter>,
+    rigid: Vec<RowWriter>,
     convergence: RowWriter,
     frames: Frames,
     figures: Vec<FigureNote>,
@@ -118,6 +121,12 @@ impl Output {
                 open(path, &table.header, rows(|notes| &notes.monitor_rows, k))
             })
             .collect::<Result<_, _>>()?;
+        let rigid = std::iter::zip(&records.rigid, 0..)
+            .map(|(table, k)| {
+                let path = folder.rigid().join(csv(&table.name));
+                open(path, &table.header, rows(|notes| &notes.rigid_rows, k))
+            })
+            .collect::<Result<_, _>>()?;
         let convergence = open(
             folder.convergence(),
             &CONVERGENCE.map(str::to_owned),
@@ -134,6 +143,7 @@ impl Output {
             checkpoint_keep: case.output.checkpoint_keep,
             curves,
             monitors,
+            rigid,
             convergence,
             frames,
             figures: notes.map_or_else(Vec::new, |notes| notes.figures.clone()),
@@ -158,6 +168,11 @@ impl Output {
         }
         for (writer, row) in self.monitors.iter_mut().zip(&rows.monitors) {
             writer.push(row)?;
+        }
+        for (writer, row) in self.rigid.iter_mut().zip(&rows.rigid) {
+            if let Some(row) = row {
+                writer.push(row)?;
+            }
         }
         self.seconds += clock.elapsed().as_secs_f64();
         Ok(())
@@ -282,7 +297,7 @@ impl Output {
             table.write_csv(&self.folder.sections())?;
         }
         if self.every != Every::Never {
-            let grid = model.grid(state.controls.settlement)?;
+            let grid = model.grid(model.lowered(&state.controls))?;
             let laws = model.laws_reduced_by(&state.controls.srf)?;
             // The time of a frame is the number of steps and trials so far.
             self.frames
@@ -348,8 +363,8 @@ impl Output {
         let clock = Instant::now();
         let notes = self.notes(case, number, run, &state.controls);
         let folder = self.folder.root().to_path_buf();
-        let meta = self.meta(&notes)?;
         let states = [("current", &state.body)];
+        let meta = self.meta(&notes, &states)?;
         let saved = checkpoint::write(&folder, "last-converged", &states, &meta, 1)?;
         self.seconds += clock.elapsed().as_secs_f64();
         let mut saved = vec![saved, self.folder.convergence()];
@@ -528,6 +543,8 @@ impl Output {
                 .collect(),
             curve_rows: self.curves.iter().map(RowWriter::len).collect(),
             monitor_rows: self.monitors.iter().map(RowWriter::len).collect(),
+            rigid_rows: self.rigid.iter().map(RowWriter::len).collect(),
+            rigid: BTreeMap::new(),
             convergence_rows: self.convergence.len(),
             frames: self.frames.len(),
             steps: self.steps,
@@ -540,7 +557,13 @@ impl Output {
         }
     }
 
-    fn meta(&self, notes: &Notes) -> Result<Meta, CaseError> {
+    fn meta(&self, notes: &Notes, states: &[(&str, &Body<2>)]) -> Result<Meta, CaseError> {
+        let with_bodies = states.iter().filter(|(_, body)| !body.rigid.is_empty());
+        let saved = with_bodies.map(|(name, body)| ((*name).to_owned(), saved_body::all(body)));
+        let notes = Notes {
+            rigid: saved.collect(),
+            ..notes.clone()
+        };
         let data = serde_json::to_value(notes).map_err(|source| CaseError::File {
             path: self.folder.checkpoint(),
             source: source.into(),
@@ -552,7 +575,7 @@ impl Output {
     /// hands of the system outlasts a kill.
     fn save(&self, states: &[(&str, &Body<2>)], notes: &Notes) -> Result<(), CaseError> {
         let name = format!("step-{:06}", self.steps);
-        let (folder, meta) = (self.folder.checkpoint(), self.meta(notes)?);
+        let (folder, meta) = (self.folder.checkpoint(), self.meta(notes, states)?);
         checkpoint::write_quickly(&folder, &name, states, &meta, self.checkpoint_keep)?;
         Ok(())
     }
@@ -563,6 +586,7 @@ impl Output {
             .curves
             .iter()
             .chain(&self.monitors)
+            .chain(&self.rigid)
             .chain([&self.convergence])
             .collect();
         let (rows, frames) = rayon::join(
@@ -570,14 +594,9 @@ impl Output {
             || self.frames.sync(),
         );
         rows.and(frames)?;
-        let (folder, meta) = (self.folder.checkpoint(), self.meta(notes)?);
-        checkpoint::write(
-            &folder,
-            &end_of_stage(stage),
-            &[("current", body)],
-            &meta,
-            1,
-        )?;
+        let states = [("current", body)];
+        let (folder, meta) = (self.folder.checkpoint(), self.meta(notes, &states)?);
+        checkpoint::write(&folder, &end_of_stage(stage), &states, &meta, 1)?;
         Ok(())
     }
 }

@@ -1,8 +1,9 @@
 //! What a run records: curves and the histories at monitors, one row per recorded moment.
 
-use igimp_assembly::{Particles, SharedLaw};
+use igimp_assembly::{Particles, RigidBody, SharedLaw};
 
 use super::model::reduced;
+use super::rigid;
 use super::state::Controls;
 use crate::case::{Case, CheckTime, Quantity};
 use crate::error::CaseError;
@@ -21,6 +22,8 @@ pub(crate) struct Moment<'a> {
     pub(crate) progress: f64,
     /// The particles.
     pub(crate) particles: &'a Particles<2>,
+    /// The rigid bodies that are there.
+    pub(crate) rigid: &'a [RigidBody<2>],
     /// What acts on them.
     pub(crate) controls: &'a Controls,
     /// Resistance of the footing \[N/m\].
@@ -52,6 +55,8 @@ pub(crate) struct Records {
     pub(crate) curves: Vec<Table>,
     /// By monitor of the case.
     pub(crate) monitors: Vec<Table>,
+    /// By rigid body of the case.
+    pub(crate) rigid: Vec<Table>,
     /// The particle that each monitor follows.
     pub(crate) watched: Vec<usize>,
     /// By check of the case: the largest value of its quantity in its stage so far; not a number before.
@@ -86,6 +91,7 @@ impl Records {
                 }
             })
             .collect();
+        let rigid = case.rigid.iter().map(|part| rigid::table(&part.name));
         let watched = case
             .monitors
             .iter()
@@ -96,11 +102,17 @@ impl Records {
         Ok(Self {
             curves,
             monitors,
+            rigid: rigid.collect(),
             watched,
             peaks: vec![f64::NAN; case.checks.len()],
             factor_of_safety: f64::NAN,
             laws: laws.to_vec(),
         })
+    }
+
+    /// How many laws particles number.
+    pub(crate) fn law_count(&self) -> usize {
+        self.laws.len()
     }
 
     /// The laws at the strength that acts; full strength where none can be made of it.
@@ -109,11 +121,12 @@ impl Records {
     }
 
     /// A quantity of a moment, in SI units.
-    pub(crate) fn quantity(&self, of: Quantity, moment: &Moment<'_>) -> f64 {
+    pub(crate) fn quantity(&self, case: &Case, of: Quantity, moment: &Moment<'_>) -> f64 {
         let controls = moment.controls;
         match of {
             Quantity::Settlement(_) => controls.settlement,
             Quantity::Reaction(_) => moment.resistance,
+            Quantity::Rigid(body, of) => rigid::quantity(case, controls, moment.rigid, body, of),
             Quantity::LoadFactor(load) => controls.factors[load],
             Quantity::Monitor(monitor, field) => {
                 let particle = self.watched[monitor];
@@ -138,7 +151,7 @@ impl Records {
         for (k, check) in case.checks.iter().enumerate() {
             if check.at == CheckTime::Peak && check.stage.unwrap_or(last) == moment.stage {
                 // The larger of two, and the number where only one is one.
-                self.peaks[k] = self.peaks[k].max(self.quantity(check.of, moment));
+                self.peaks[k] = self.peaks[k].max(self.quantity(case, check.of, moment));
             }
         }
     }
@@ -151,6 +164,7 @@ impl Records {
         let mut rows = Rows {
             curves: vec![None; case.curves.len()],
             monitors: Vec::new(),
+            rigid: vec![None; case.rigid.len()],
             peaks: self.peaks.clone(),
         };
         for (k, curve) in case.curves.iter().enumerate() {
@@ -162,7 +176,7 @@ impl Records {
                 continue;
             }
             let row = [&curve.x, &curve.y]
-                .map(|axis| self.quantity(axis.of, moment) / axis.divide_by)
+                .map(|axis| self.quantity(case, axis.of, moment) / axis.divide_by)
                 .to_vec();
             self.curves[k].push(row.clone());
             rows.curves[k] = Some(row);
@@ -184,6 +198,11 @@ impl Records {
             self.monitors[k].push(row.clone());
             rows.monitors.push(row);
         }
+        for body in moment.controls.placed().filter(|_| !reopens) {
+            let row = rigid::row(case, moment, body);
+            self.rigid[body].push(row.clone());
+            rows.rigid[body] = Some(row);
+        }
         rows
     }
 }
@@ -195,6 +214,8 @@ pub(crate) struct Rows {
     pub(crate) curves: Vec<Option<Vec<f64>>>,
     /// By monitor.
     pub(crate) monitors: Vec<Vec<f64>>,
+    /// By rigid body; none where it is not there.
+    pub(crate) rigid: Vec<Option<Vec<f64>>>,
     /// By check: the peak so far.
     pub(crate) peaks: Vec<f64>,
 }

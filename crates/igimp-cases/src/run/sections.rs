@@ -36,7 +36,7 @@ pub(crate) fn read(
     let particles = &state.body.particles;
     let laws = model.laws_reduced_by(&state.controls.srf)?;
     let grid = model
-        .grid(state.controls.settlement)
+        .grid(model.lowered(&state.controls))
         .map_err(|source| AssemblyError::Grid { source })?;
     let mut cells: Option<Cells> = None;
     let tables = case

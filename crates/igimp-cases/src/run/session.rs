@@ -1,13 +1,14 @@
 //! What passes from stage to stage of a run: model, listener, records and results folder.
 
+use std::cell::RefCell;
 use std::collections::HashMap;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use igimp_assembly::{Geometry, Method, Particles};
 use igimp_solver::{
-    Accepted, MarchSettings, MarchState, Observer, Outcome, StepError, StepReport, Workspace,
-    march_from,
+    Accepted, MarchSettings, MarchState, Observer, Outcome, StepError, StepFailure, StepReport,
+    Workspace, march_from,
 };
 
 use super::export::Export;
@@ -15,7 +16,8 @@ use super::left::Resumption;
 use super::model::Model;
 use super::output::Output;
 use super::records::{Moment, Records, largest_displacement};
-use super::state::{Controls, State};
+use super::rigid;
+use super::state::{Controls, RigidTrack, State};
 use super::{Event, Listener, REACHED_ITS_END};
 use crate::check::short;
 use crate::error::CaseError;
@@ -190,6 +192,7 @@ impl<'a> Taken<'a> {
             number,
             progress: self.accepted.report.to,
             particles: &self.accepted.body.particles,
+            rigid: &self.accepted.body.rigid,
             controls: self.controls,
             resistance: self.resistance,
             plastic_share: self.accepted.report.plastic_share,
@@ -223,15 +226,17 @@ pub(crate) fn march_path(
     each: &mut dyn FnMut(&mut Session<'_>, &StageSummary, &Taken<'_>) -> Word,
 ) -> Result<Ended, CaseError> {
     let model = session.model;
+    let tracks = RefCell::new(state.controls.tracks());
+    let at = |reached: f64| {
+        let controls = path.from.towards(path.to, reached);
+        controls.with_tracks(&tracks.borrow())
+    };
     let load_path = |from: f64, to: f64| {
-        let (before, after) = (
-            path.from.towards(path.to, from),
-            path.from.towards(path.to, to),
-        );
-        let grid = match path.method.geometry {
-            Geometry::Moving => model.grid(before.settlement),
-            Geometry::Given => model.grid(path.from.settlement),
-        };
+        let (before, after) = (at(from), at(to));
+        let grid = model.grid(model.lowered(match path.method.geometry {
+            Geometry::Moving => &before,
+            Geometry::Given => path.from,
+        }));
         model.conditions_on(grid, (&before, &after), (path.drag)(from, to))
     };
     let mut march = MarchState::start(&path.settings);
@@ -240,7 +245,7 @@ pub(crate) fn march_path(
         session.last_resistance = left.resistance;
     }
     if let Some(end) = path.left.and_then(|left| left.end.clone()) {
-        state.controls = path.from.towards(path.to, march.at);
+        state.controls = at(march.at);
         stage.reached = march.at;
         return Ok(Ended::Stopped(end));
     }
@@ -250,6 +255,7 @@ pub(crate) fn march_path(
         stage,
         path,
         each,
+        tracks: &tracks,
         reached: march.at,
         stopped: Ok(None),
     };
@@ -263,11 +269,12 @@ pub(crate) fn march_path(
         &mut watch,
     );
     let (reached, stopped) = (watch.reached, watch.stopped);
-    state.controls = path.from.towards(path.to, reached);
+    state.controls = at(reached);
     stage.reached = reached;
     let reason = stopped?;
     Ok(match (report.outcome, reason) {
         (Outcome::StepTooSmall { cause, .. }, _) => Ended::NotConverged(cause),
+        (_, Some(Stop::Failed(error))) => Ended::NotConverged(*error),
         (_, Some(Stop::Stage(reason))) => Ended::Stopped(reason),
         (Outcome::Stopped { .. }, Some(Stop::User) | None) => Ended::Interrupted,
         (Outcome::Completed, _) => Ended::Completed(REACHED_ITS_END.to_owned()),
@@ -276,6 +283,7 @@ pub(crate) fn march_path(
 
 enum Stop {
     Stage(String),
+    Failed(Box<StepError>),
     User,
 }
 
@@ -285,6 +293,8 @@ struct Watch<'w, 's> {
     stage: &'w mut StageSummary,
     path: &'w Path<'w>,
     each: &'w mut dyn FnMut(&mut Session<'_>, &StageSummary, &Taken<'_>) -> Word,
+    /// What the rigid bodies did so far.
+    tracks: &'w RefCell<Vec<RigidTrack>>,
     reached: f64,
     stopped: Result<Option<Stop>, CaseError>,
 }
@@ -298,9 +308,13 @@ impl Watch<'_, '_> {
         if let Some(export) = &mut self.session.export {
             export.accepted(accepted.conditions, &self.session.summary, self.stage);
         }
-        let controls = self.path.from.towards(self.path.to, report.to);
-        let grid = &accepted.conditions.grid;
         let model = self.session.model;
+        let mut controls = self.path.from.towards(self.path.to, report.to);
+        controls = controls.with_tracks(&self.tracks.borrow());
+        let tracks = rigid::tracks(model.case, &controls, accepted);
+        controls = controls.with_tracks(&tracks);
+        self.tracks.replace(tracks);
+        let grid = &accepted.conditions.grid;
         let taken = Taken {
             accepted,
             controls: &controls,
@@ -318,6 +332,15 @@ impl Watch<'_, '_> {
             progress: report.to,
             report,
         });
+        if let Some((body, share)) = rigid::too_deep(model.case, &controls, &accepted.body.rigid) {
+            return Ok(Some(Stop::Failed(Box::new(StepError {
+                from: report.from,
+                to: report.to,
+                residuals: report.residuals.clone(),
+                worst: None,
+                failure: Box::new(StepFailure::TooDeep { body, share }),
+            }))));
+        }
         Ok(match reason {
             Some(reason) => Some(Stop::Stage(reason)),
             None if self.session.interrupted() && report.to < 1.0 => Some(Stop::User),

@@ -14,29 +14,98 @@ pub struct Controls {
     pub settlement: f64,
     /// Strength reduction factor by material \[-\].
     pub srf: Vec<f64>,
+    /// By rigid body of the case.
+    pub rigid: Vec<RigidControls>,
+}
+
+/// What acts on a rigid body, and where that brought it. Components: x, y, rotation (anticlockwise).
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct RigidControls {
+    /// Whether it is there.
+    pub placed: bool,
+    /// How far each component was moved by prescription so far \[m, rad\].
+    pub moved: [f64; 3],
+    /// The force \[N/m\] or moment \[N\] on the whole body of each component that is not held.
+    pub loaded: [Option<f64>; 3],
+    /// What it did so far.
+    pub track: RigidTrack,
+}
+
+/// What a rigid body did so far.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct RigidTrack {
+    /// Displacement of the reference point \[m\] and rotation \[rad\] since it was placed, or since
+    /// displacements were reset.
+    pub displacement: [f64; 3],
+    /// Force \[N/m\] and moment about the reference point \[N\] on the whole body from outside.
+    pub force: [f64; 3],
+    /// How far the reference point stands below where the case has it \[m\].
+    pub lowered: f64,
+}
+
+impl RigidControls {
+    fn towards(&self, end: &Self, t: f64) -> Self {
+        let each = std::array::from_fn::<_, 3, _>;
+        Self {
+            placed: end.placed,
+            moved: each(|k| between(self.moved[k], end.moved[k], t)),
+            loaded: std::array::from_fn(|k| {
+                let to = end.loaded[k]?;
+                Some(between(self.loaded[k].unwrap_or(to), to, t))
+            }),
+            track: self.track,
+        }
+    }
+}
+
+fn between(a: f64, b: f64, t: f64) -> f64 {
+    if t >= 1.0 { b } else { a + t * (b - a) }
 }
 
 impl Controls {
     /// Nothing acts, and strength is whole.
-    pub(crate) fn none(loads: usize, materials: usize) -> Self {
+    pub(crate) fn none(loads: usize, materials: usize, rigid: usize) -> Self {
         Self {
             gravity: 0.0,
             factors: vec![0.0; loads],
             settlement: 0.0,
             srf: vec![1.0; materials],
+            rigid: vec![RigidControls::default(); rigid],
         }
     }
 
     /// The controls a share `t` of the way to `end`.
     pub(crate) fn towards(&self, end: &Self, t: f64) -> Self {
-        let between = |a: f64, b: f64| if t >= 1.0 { b } else { a + t * (b - a) };
-        let all = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| between(*a, *b)).collect();
+        let all = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| between(*a, *b, t)).collect();
         Self {
-            gravity: between(self.gravity, end.gravity),
+            gravity: between(self.gravity, end.gravity, t),
             factors: all(&self.factors, &end.factors),
-            settlement: between(self.settlement, end.settlement),
+            settlement: between(self.settlement, end.settlement, t),
             srf: all(&self.srf, &end.srf),
+            rigid: std::iter::zip(&self.rigid, &end.rigid)
+                .map(|(own, end)| own.towards(end, t))
+                .collect(),
         }
+    }
+
+    /// The rigid bodies that are there, in the order in which the state has them.
+    pub fn placed(&self) -> impl Iterator<Item = usize> + '_ {
+        let bodies = self.rigid.iter().enumerate();
+        bodies.filter(|(_, own)| own.placed).map(|(body, _)| body)
+    }
+
+    /// What the rigid bodies did so far.
+    pub(crate) fn tracks(&self) -> Vec<RigidTrack> {
+        self.rigid.iter().map(|own| own.track).collect()
+    }
+
+    /// The same with other tracks.
+    #[must_use]
+    pub(crate) fn with_tracks(mut self, tracks: &[RigidTrack]) -> Self {
+        for (own, track) in self.rigid.iter_mut().zip(tracks) {
+            own.track = *track;
+        }
+        self
     }
 
     /// The largest strength reduction factor of any material \[-\].
@@ -54,7 +123,7 @@ impl Controls {
 /// A body and what acted on it last.
 #[derive(Clone, Debug)]
 pub struct State {
-    /// The body.
+    /// The body. Of the rigid bodies of the case it has those that are there ([`Controls::placed`]).
     pub body: Body<2>,
     /// What acts on it.
     pub controls: Controls,

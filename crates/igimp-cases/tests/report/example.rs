@@ -78,6 +78,7 @@ pub(crate) fn case() -> Case {
             }],
         },
         loads: loads(),
+        rigid: Vec::new(),
         stages: vec![
             stage("initial stresses", StageKind::Gravity { factor: 1.0 }),
             stage(

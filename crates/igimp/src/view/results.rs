@@ -12,11 +12,12 @@ use serde_json::{Value, json};
 use crate::error::ProgramError;
 
 /// Folders whose files are shown, by ending, and how they are called in HTTP.
-const SHOWN: [(&str, &str, &str); 4] = [
+const SHOWN: [(&str, &str, &str); 5] = [
     ("paraview", "pvd", "application/xml"),
     ("paraview", "vtu", "application/xml"),
     ("curves", "csv", "text/csv; charset=utf-8"),
     ("monitors", "csv", "text/csv; charset=utf-8"),
+    ("rigid", "csv", "text/csv; charset=utf-8"),
 ];
 
 /// Most folders that a message lists.

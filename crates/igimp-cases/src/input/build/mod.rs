@@ -15,6 +15,7 @@ mod loads;
 mod materials;
 mod outputs;
 mod quantities;
+mod rigid;
 mod safety;
 mod site;
 mod stages;
@@ -37,6 +38,7 @@ struct AllNames {
     materials: Names,
     bodies: Names,
     loads: Names,
+    rigid: Names,
     stages: Names,
     monitors: Names,
 }
@@ -60,6 +62,7 @@ impl AllNames {
             materials: Names::new("material", materials, problems),
             bodies: Names::of_list("body", tree.get("bodies"), problems),
             loads: Names::of_list("load", tree.get("loads"), problems),
+            rigid: Names::of_list("rigid body", tree.get("rigid"), problems),
             stages: Names::of_list("stage", tree.get("stages"), problems),
             monitors: Names::of_list("monitor", tree.get("monitors"), problems),
         }
@@ -95,6 +98,13 @@ pub(super) fn build(tree: &mut Node, file: &Path, problems: &mut Problems) -> Op
     };
     layers::check(&layers, problems);
     let loads = loads::loads(tree, &site, problems);
+    let around = rigid::Around {
+        site: &site,
+        materials: &materials,
+        loads: &loads,
+    };
+    let rigid = rigid::rigid(tree, &around, problems);
+    rigid::check_use(tree, &names, problems);
     let context = stages::Context {
         tree,
         names: &names,
@@ -137,6 +147,7 @@ pub(super) fn build(tree: &mut Node, file: &Path, problems: &mut Problems) -> Op
         bodies: all(bodies)?,
         boundaries: boundaries?,
         loads: all(loads)?,
+        rigid: all(rigid)?,
         stages: all(stages)?,
         solver: solver?,
         monitors: all(monitors)?,

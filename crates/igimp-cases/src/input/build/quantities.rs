@@ -1,7 +1,7 @@
 //! The quantities that curves and checks name, such as `footing.reaction`.
 
 use super::AllNames;
-use crate::case::{Field, Load, LoadKind, Quantity};
+use crate::case::{Field, Load, LoadKind, Quantity, RigidQuantity};
 use crate::input::diagnostic::Problems;
 use crate::input::suggest::nearest;
 use crate::input::text::{clip, row};
@@ -22,6 +22,25 @@ const FIELDS: [(&str, Field, &str); 13] = [
     ("q", Field::Q, "Pa"),
     ("plastic_strain", Field::PlasticStrain, "-"),
     ("utilisation", Field::Utilisation, "-"),
+];
+
+/// What the names of quantities of rigid bodies begin with.
+const RIGID_PREFIX: &str = "rigid.";
+
+/// Quantities of a rigid body.
+const RIGID: [(&str, RigidQuantity, &str); 12] = [
+    ("x", RigidQuantity::X, "m"),
+    ("y", RigidQuantity::Y, "m"),
+    ("settlement", RigidQuantity::Settlement, "m"),
+    ("rotation", RigidQuantity::Rotation, "rad"),
+    ("force_x", RigidQuantity::ForceX, "N/m"),
+    ("force_y", RigidQuantity::ForceY, "N/m"),
+    ("resistance", RigidQuantity::Resistance, "N/m"),
+    ("moment", RigidQuantity::Moment, "N m/m"),
+    ("contact_width", RigidQuantity::ContactWidth, "m"),
+    ("penetration", RigidQuantity::Penetration, "-"),
+    ("closed", RigidQuantity::Closed, "-"),
+    ("slipping", RigidQuantity::Slipping, "-"),
 ];
 
 /// Quantities of the whole model.
@@ -61,6 +80,10 @@ pub(super) fn unit_of(name: &str) -> &'static str {
     match name.rsplit_once('.').map_or("", |(_, last)| last) {
         "settlement" => "m",
         "reaction" => "N/m",
+        last if name.starts_with(RIGID_PREFIX) => RIGID
+            .iter()
+            .find(|(known, ..)| *known == last)
+            .map_or("-", |(_, _, unit)| unit),
         last => FIELDS
             .iter()
             .find(|(known, ..)| *known == last)
@@ -80,6 +103,12 @@ pub(super) fn quantity(
         return Some(*quantity);
     }
     if let Some((owner, what)) = name.rsplit_once('.') {
+        let body = owner.strip_prefix(RIGID_PREFIX);
+        let body = body.and_then(|body| names.rigid.position(body));
+        let of_body = RIGID.iter().find(|(known, ..)| *known == what);
+        if let (Some(body), Some((_, quantity, _))) = (body, of_body) {
+            return Some(Quantity::Rigid(body, *quantity));
+        }
         let monitor = names.monitors.position(owner);
         if let (Some(monitor), Some(field)) = (monitor, field(what)) {
             return Some(Quantity::Monitor(monitor, field));
@@ -128,6 +157,10 @@ fn known(names: &AllNames, loads: &[Option<Load>]) -> Vec<String> {
             _ => known.push(format!("{}.factor", load.name)),
         }
     }
+    for body in names.rigid.known() {
+        let of_body = RIGID.iter();
+        known.extend(of_body.map(|(what, ..)| format!("{RIGID_PREFIX}{body}.{what}")));
+    }
     known.extend(GLOBAL.iter().map(|(name, ..)| (*name).to_owned()));
     for monitor in names.monitors.known() {
         known.extend(
@@ -162,11 +195,33 @@ pub(super) fn divisor(table: &Node, problems: &mut Problems) -> Option<f64> {
 }
 
 /// Quantities and what they mean, for the reference.
-pub(in crate::input) const QUANTITY_DOCS: [(&str, &str); 11] = [
+pub(in crate::input) const QUANTITY_DOCS: [(&str, &str); 18] = [
     ("FOOTING.settlement", "settlement of a rigid footing [m]"),
     (
         "FOOTING.reaction",
         "resistance of a rigid footing times its reaction_factor [N/m]",
+    ),
+    (
+        "rigid.BODY.x, rigid.BODY.y",
+        "displacement of the reference point of a rigid body [m]",
+    ),
+    ("rigid.BODY.settlement", "the same downwards [m]"),
+    ("rigid.BODY.rotation", "its rotation, anticlockwise [rad]"),
+    (
+        "rigid.BODY.force_x, rigid.BODY.force_y",
+        "force on the whole body from outside, beside its weight [N/m]; resistance is -force_y",
+    ),
+    (
+        "rigid.BODY.moment",
+        "moment on it from outside about its reference point, anticlockwise [N m/m]",
+    ),
+    (
+        "rigid.BODY.contact_width",
+        "length of its sides that soil touches [m]",
+    ),
+    (
+        "rigid.BODY.penetration, .closed, .slipping",
+        "largest penetration as a share of the cell; points of its sides that soil touches, and slips along [-]",
     ),
     ("LOAD.factor", "factor on a pressure or point load [-]"),
     (

@@ -78,6 +78,14 @@ pub(super) fn strength_reduction(
             )
             .help("put a stage of type gravity before it, or write path = \"gravity\"");
     }
+    if path == ReductionPath::Gravity && !context.tree.items_at("rigid").is_empty() {
+        problems
+            .error(
+                node.place_at("path"),
+                "gravity is raised on undeformed bodies, where rigid bodies stand elsewhere",
+            )
+            .help("write path = \"reduce\"");
+    }
     let bracket = node.pair_at("bracket")?;
     if bracket[0] >= bracket[1] {
         problems

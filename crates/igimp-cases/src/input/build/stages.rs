@@ -75,6 +75,7 @@ fn stage(
         }
         "load" => load(context, node, &name, problems),
         "displacement" => displacement(context, node, &name, problems),
+        "rigid" => super::rigid::stage(context, node, &name, problems),
         "strength-reduction" => strength_reduction(context, index, node, &name, problems)
             .map(StageKind::StrengthReduction),
         _ => run_out(context, index, node, &name, problems).map(StageKind::RunOut),

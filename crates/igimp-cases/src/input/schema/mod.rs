@@ -5,6 +5,7 @@ mod materials;
 
 pub(super) use materials::SYMBOLS;
 mod outputs;
+mod rigid;
 mod stages;
 
 use super::quantity::Dimension::{Acceleration, Length};
@@ -74,6 +75,12 @@ pub(super) static ROOT: Struct = Struct {
             Kind::List(&loads::LOAD, 0, MOST_THINGS),
             "[]",
             "loads that stages apply",
+        ),
+        default(
+            "rigid",
+            Kind::List(&rigid::RIGID, 0, MOST_THINGS),
+            "[]",
+            "rigid bodies that soil touches",
         ),
         required(
             "stages",

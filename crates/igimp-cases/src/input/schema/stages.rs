@@ -87,6 +87,19 @@ pub(in crate::input) static STAGE: Kind = Kind::Variants(&Variants {
             ],
         },
         Variant {
+            name: "rigid",
+            doc: "Moves and loads rigid bodies; one that was not there yet is placed first.",
+            fields: &[
+                required(
+                    "bodies",
+                    Kind::List(&super::rigid::MOVE, 1, MOST_THINGS),
+                    "[{ body = \"footing\", y = \"-0.2 m\" }]",
+                    "the bodies, and how they move",
+                ),
+                geometry("\"moving\""),
+            ],
+        },
+        Variant {
             name: "strength-reduction",
             doc: "Searches for the factor of safety; the body is left as it was found.",
             fields: &[

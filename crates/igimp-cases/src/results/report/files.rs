@@ -162,7 +162,7 @@ pub(super) struct FileView {
 
 /// The tables, and the entry points of the other results.
 pub(super) fn tables(folder: &Path) -> Vec<FileView> {
-    let mut views: Vec<FileView> = ["curves", "monitors", "sections", "slip_lines"]
+    let mut views: Vec<FileView> = ["curves", "monitors", "rigid", "sections", "slip_lines"]
         .into_iter()
         .flat_map(|within| {
             names(&folder.join(within))

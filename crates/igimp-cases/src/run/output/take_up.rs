@@ -17,6 +17,7 @@ use crate::run::Target;
 use crate::run::fingerprint;
 use crate::run::left::{End, Left, Notes, Resumption, Search, end_of_stage, notes_of};
 use crate::run::records::Records;
+use crate::run::saved_body;
 use crate::run::state::{Controls, State};
 
 impl Output {
@@ -90,13 +91,16 @@ impl Output {
             file,
             why,
         };
-        let body = |name: &str| {
-            found
-                .states
-                .iter()
-                .find(|(state, _)| state == name)
-                .map(|(_, body)| body.clone())
-                .ok_or_else(|| damaged(name.to_owned(), "the state is missing".to_owned()))
+        let laws = records.law_count();
+        let body = |name: &str, controls: &Controls| -> Result<Body<2>, CaseError> {
+            let states = &mut found.states.iter();
+            let own = states.find(|(state, _)| state == name);
+            let missing = || damaged(name.to_owned(), "the state is missing".to_owned());
+            let mut body = own.map(|(_, body)| body.clone()).ok_or_else(missing)?;
+            let saved = notes.rigid.get(name).map_or(&[][..], Vec::as_slice);
+            body.rigid = saved_body::taken_up(case, laws, controls, saved)?
+                .map_err(|why| damaged("meta.json".to_owned(), why))?;
+            Ok(body)
         };
         for (name, body) in &found.states {
             unfit(case, body).map_or(Ok(()), |(array, why)| {
@@ -115,14 +119,12 @@ impl Output {
         let with_body = |name: &str, before: &str, of: &Option<(f64, Controls)>| match of {
             Some((srf, controls)) => {
                 let controls = controls.clone();
-                body(name).map(|own| {
+                let before = body(before, &controls).ok().map(Arc::new);
+                body(name, &controls).map(|body| {
                     Some(End {
                         srf: *srf,
-                        state: State {
-                            body: own,
-                            controls,
-                        },
-                        before: body(before).ok().map(Arc::new),
+                        state: State { body, controls },
+                        before,
                     })
                 })
             }
@@ -143,7 +145,7 @@ impl Output {
             unknowns: notes.unknowns,
             stage: notes.stage.clone(),
             state: State {
-                body: body("current")?,
+                body: body("current", &notes.controls)?,
                 controls: notes.controls.clone(),
             },
             resumption: notes.resumption.clone(),
@@ -163,6 +165,9 @@ impl Output {
         for table in &mut records.monitors {
             table.rows = rows::read(&output.folder.monitors().join(csv(&table.name)))?.rows;
         }
+        for table in &mut records.rigid {
+            table.rows = rows::read(&output.folder.rigid().join(csv(&table.name)))?.rows;
+        }
         Ok((output, Some(left)))
     }
 
@@ -170,6 +175,7 @@ impl Output {
     pub(crate) fn ends(
         &self,
         case: &Case,
+        records: &Records,
         stages: usize,
     ) -> Result<HashMap<usize, State>, CaseError> {
         let mut ends = HashMap::new();
@@ -186,8 +192,18 @@ impl Output {
             };
             let found = checkpoint::read(&path, None)?;
             let notes = notes_of(&path, &found.meta)?;
-            if let Some((_, body)) = found.states.into_iter().next() {
+            if let Some((name, mut body)) = found.states.into_iter().next() {
                 let controls = notes.controls;
+                let saved = notes.rigid.get(&name).map_or(&[][..], Vec::as_slice);
+                let laws = records.law_count();
+                body.rigid =
+                    saved_body::taken_up(case, laws, &controls, saved)?.map_err(|why| {
+                        CheckpointError::Damaged {
+                            path,
+                            file: "meta.json".to_owned(),
+                            why,
+                        }
+                    })?;
                 ends.insert(number, State { body, controls });
             }
         }

@@ -79,6 +79,7 @@ impl Trials<'_> {
             number: self.made.len(),
             progress: 1.0,
             particles: &state.body.particles,
+            rigid: &state.body.rigid,
             controls: &state.controls,
             resistance: 0.0,
             plastic_share,

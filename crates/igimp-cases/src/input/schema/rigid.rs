@@ -1,0 +1,270 @@
+//! Rigid bodies that soil touches, and how stages move them.
+
+use super::{A_LENGTH, LENGTH, MANY, MOST_THINGS, POINT};
+use crate::input::quantity::Dimension::{Angle, ForcePerLength, Length, MomentPerLength, Stress};
+use crate::input::spec::{
+    Choice, Field, Kind, Range, Struct, Variant, Variants, choice, default, optional, required,
+};
+
+static CORNER: Kind = Kind::List(&LENGTH, 2, 2);
+
+const INTERFACE: Kind = Kind::Either(&[Kind::Choice(&INTERFACES), Kind::Table(&LIMITED)]);
+
+static INTERFACES: [Choice; 2] = [
+    choice("smooth", "soil slides along without shear"),
+    choice("rough", "soil sticks while it touches"),
+];
+
+static LIMITED: Struct = Struct {
+    doc: "Shear along an interface up to adhesion and friction.",
+    fields: &[
+        optional(
+            "friction",
+            Kind::Number(Range::NotNegative),
+            "`angle` says it, or there is none",
+            "coefficient of friction",
+        ),
+        optional(
+            "angle",
+            Kind::Quantity(Angle, Range::NotNegative),
+            "`friction` says it, or there is none",
+            "angle of friction",
+        ),
+        optional(
+            "adhesion",
+            Kind::Quantity(Stress, Range::NotNegative),
+            "`adhesion_share` says it, or there is none",
+            "shear that is carried without pressure, while soil touches",
+        ),
+        optional(
+            "adhesion_share",
+            Kind::Number(Range::NotNegative),
+            "`adhesion` says it, or there is none",
+            "the same as a share of the undrained strength, or the cohesion, of the soil that touches",
+        ),
+    ],
+};
+
+static TENSIONS: [Choice; 2] = [
+    choice("none", "soil that is pulled lets go"),
+    choice("bonded", "soil that touched never lets go"),
+];
+
+static SIDE_NAMES: [Choice; 5] = [
+    choice("bottom", "lower side of a rectangle"),
+    choice("right", "right side of a rectangle"),
+    choice("top", "upper side of a rectangle"),
+    choice("left", "left side of a rectangle"),
+    choice("face", "the side of a wall from `from` to `to`"),
+];
+
+static SIDE: Kind = Kind::Table(&Struct {
+    doc: "A side of a rigid body that is unlike the others.",
+    fields: &[
+        required(
+            "side",
+            Kind::Either(&[Kind::Integer(1, MANY as i64), Kind::Choice(&SIDE_NAMES)]),
+            "\"bottom\"",
+            "which: by name, or by the number of the corner that it begins with, from 1",
+        ),
+        optional("interface", INTERFACE, "that of the body", "along the side"),
+        optional(
+            "tension",
+            Kind::Choice(&TENSIONS),
+            "that of the body",
+            "when soil is pulled off",
+        ),
+        optional(
+            "tension_limit",
+            Kind::Quantity(Stress, Range::Positive),
+            "that of the body",
+            "tension at which the side lets go for good",
+        ),
+    ],
+});
+
+const FROM_START: Field = default(
+    "from_start",
+    Kind::Flag,
+    "false",
+    "whether it is there from the start, held, rather than from the first stage that names it",
+);
+
+/// A rigid body, by type of shape.
+pub(in crate::input) static RIGID: Kind = Kind::Variants(&Variants {
+    doc: "A rigid body that soil touches, slides along and leaves.",
+    tag: "type",
+    tag_doc: "shape",
+    before: &[required("name", Kind::Name, "\"footing\"", "name")],
+    cases: &[
+        Variant {
+            name: "rectangle",
+            doc: "A level rectangle. Its sides are bottom, right, top, left.",
+            fields: &[
+                required("from", POINT, "[\"0 m\", \"5 m\"]", "one corner"),
+                required("to", POINT, "[\"1 m\", \"6 m\"]", "the opposite corner"),
+            ],
+        },
+        Variant {
+            name: "polygon",
+            doc: "A polygon. Its sides are numbered from 1 by the corners that they begin with.",
+            fields: &[required(
+                "corners",
+                Kind::List(&CORNER, 3, MANY),
+                "[[\"0 m\", \"5 m\"], [\"1 m\", \"7 m\"], [\"-1 m\", \"7 m\"]]",
+                "corners in order, either way round",
+            )],
+        },
+        Variant {
+            name: "circle",
+            doc: "A circle: a pipe, a bar, a pile in section. It has one side.",
+            fields: &[
+                required("centre", POINT, "[\"0 m\", \"5.5 m\"]", "centre"),
+                required(
+                    "radius",
+                    Kind::Quantity(Length, Range::Positive),
+                    "\"0.5 m\"",
+                    "radius",
+                ),
+            ],
+        },
+        Variant {
+            name: "wall",
+            doc: "A wall by its face. It lies to the left of the way from one end to the other.",
+            fields: &[
+                required("from", POINT, "[\"0 m\", \"0 m\"]", "one end of the face"),
+                required("to", POINT, "[\"0 m\", \"5 m\"]", "the other end"),
+                required(
+                    "thickness",
+                    Kind::Quantity(Length, Range::Positive),
+                    "\"1 m\"",
+                    "thickness",
+                ),
+            ],
+        },
+    ],
+    after: &[
+        optional(
+            "reference",
+            POINT,
+            "the middle of the base of a rectangle, of the face of a wall, of the extent of others",
+            "point that displacement and forces are told of; a circle has its centre",
+        ),
+        default("interface", INTERFACE, "\"rough\"", "along all its sides"),
+        default(
+            "tension",
+            Kind::Choice(&TENSIONS),
+            "\"none\"",
+            "when soil is pulled off",
+        ),
+        optional(
+            "tension_limit",
+            Kind::Quantity(Stress, Range::Positive),
+            "as `tension` says",
+            "tension at which a side lets go for good",
+        ),
+        default(
+            "sides",
+            Kind::List(&SIDE, 0, MOST_THINGS),
+            "[]",
+            "sides that are unlike the others",
+        ),
+        default(
+            "weight",
+            Kind::Quantity(ForcePerLength, Range::NotNegative),
+            "\"0 kN/m\"",
+            "own weight of the whole body, at its reference point; acts with gravity",
+        ),
+        default(
+            "force_factor",
+            Kind::Number(Range::Positive),
+            "1",
+            "whole body over the part that is modelled, 2 for half a body: forces are those of the whole",
+        ),
+        FROM_START,
+        default(
+            "grid_follows",
+            Kind::Flag,
+            "false",
+            "whether the rows of the grid go down with it; its lowest place lies on a row",
+        ),
+        default(
+            "rounding",
+            Kind::Number(Range::NotNegative),
+            "0.5",
+            "radius of its corners in cells; soil slips off a rounding, which carries nothing",
+        ),
+        default(
+            "stiffness",
+            Kind::Number(Range::Positive),
+            "30",
+            "stiffness of contact, in Young's moduli per cell",
+        ),
+        default(
+            "most_penetration",
+            Kind::Number(Range::Positive),
+            "0.1",
+            "penetration that ends the run, as a share of the cell",
+        ),
+    ],
+});
+
+static COMPONENTS: [Choice; 3] = [
+    choice("x", "displacement in x"),
+    choice("y", "displacement in y"),
+    choice("rotation", "rotation"),
+];
+static COMPONENT: Kind = Kind::Choice(&COMPONENTS);
+
+/// A length that a body moves by.
+const fn by(key: &'static str, doc: &'static str) -> Field {
+    optional(key, A_LENGTH, "as before; held at first", doc)
+}
+
+/// A force that a body is given.
+const fn force(key: &'static str, doc: &'static str) -> Field {
+    optional(
+        key,
+        Kind::Quantity(ForcePerLength, Range::Any),
+        "as before",
+        doc,
+    )
+}
+
+/// How a stage moves a rigid body.
+pub(super) static MOVE: Kind = Kind::Table(&Struct {
+    doc: "How a rigid body moves in a stage. What is not mentioned goes on as before: held, or under its force.",
+    fields: &[
+        required(
+            "body",
+            Kind::Reference("rigid body"),
+            "\"footing\"",
+            "which",
+        ),
+        by("x", "further displacement in x"),
+        by("y", "further displacement in y, negative downwards"),
+        optional(
+            "rotation",
+            Kind::Quantity(Angle, Range::Any),
+            "as before; held at first",
+            "further rotation, anticlockwise",
+        ),
+        force("force_x", "force on it in x at the end of the stage"),
+        force(
+            "force_y",
+            "force on it in y at the end of the stage, negative downwards, beside its weight",
+        ),
+        optional(
+            "moment",
+            Kind::Quantity(MomentPerLength, Range::Any),
+            "as before",
+            "moment on it about its reference point at the end of the stage, anticlockwise",
+        ),
+        default(
+            "free",
+            Kind::List(&COMPONENT, 0, 3),
+            "[]",
+            "components that no force and no moment holds by the end of the stage",
+        ),
+    ],
+});

@@ -1,0 +1,248 @@
+//! Rigid bodies in case files and runs: what is refused and why, and that bodies do what stages say.
+
+use std::fmt::Write;
+
+use igimp_cases::case::{RigidDrive, RigidShape, StageKind};
+use igimp_cases::input::CaseFile;
+use igimp_cases::run::{Run, in_memory};
+
+const TEXT: &str = include_str!("data/two_bodies.toml");
+const PIPE: &str = "type = \"circle\"\ncentre = [\"4.5 m\", \"2.4 m\"]\nradius = \"0.4 m\"";
+const MOVE: &str = "y = \"-2 mm\" }";
+
+fn edited(edits: &[(&str, &str)]) -> String {
+    edits.iter().fold(TEXT.to_owned(), |text, (from, to)| {
+        assert!(text.contains(from), "`{from}` is not in the file");
+        text.replacen(from, to, 1)
+    })
+}
+
+fn parsed(edits: &[(&str, &str)]) -> CaseFile {
+    CaseFile::parse("two_bodies.toml", &edited(edits), &[])
+        .unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// What is said of the file after an edit.
+fn messages(edits: &[(&str, &str)]) -> String {
+    let mut out = String::new();
+    for edit in edits {
+        let _ = writeln!(out, "## {:?} -> {:?}", edit.0, edit.1);
+        let result = CaseFile::parse("two_bodies.toml", &edited(&[*edit]), &[]);
+        let said = match result {
+            Ok(file) if file.warnings().is_empty() => "(nothing)\n".to_owned(),
+            Ok(file) => file.warnings(),
+            Err(error) => error.to_string(),
+        };
+        let _ = writeln!(out, "{said}");
+    }
+    out
+}
+
+#[test]
+fn bodies_that_make_no_sense() {
+    insta::assert_snapshot!(messages(&[
+        ("[\"2.1 m\", \"2.6 m\"]", "[\"0.9 m\", \"2.6 m\"]"),
+        ("[\"2.1 m\", \"2.6 m\"]", "[\"2.1 m\", \"2.4 m\"]"),
+        ("[\"0.9 m\", \"2 m\"]", "[\"0.9 m\", \"1.9 m\"]"),
+        (
+            "centre = [\"4.5 m\", \"2.4 m\"]",
+            "centre = [\"4.5 m\", \"9 m\"]"
+        ),
+        (
+            "radius = \"0.4 m\"",
+            "radius = \"0.4 m\"\nreference = [\"4 m\", \"2 m\"]"
+        ),
+        ("radius = \"0.4 m\"", "radius = \"0.2 m\""),
+        (
+            PIPE,
+            "type = \"polygon\"\ncorners = [[\"4 m\", \"2 m\"], [\"5 m\", \"3 m\"], [\"5 m\", \"2 m\"], [\"4 m\", \"3 m\"]]"
+        ),
+        (
+            PIPE,
+            "type = \"wall\"\nfrom = [\"4 m\", \"2 m\"]\nto = [\"4 m\", \"2 m\"]\nthickness = \"1 m\""
+        ),
+        ("friction = 0.3", "friction = 0.3, angle = \"20 deg\""),
+        ("friction = 0.3", "angle = \"95 deg\""),
+        (
+            "adhesion_share = 0.5",
+            "adhesion_share = 0.5, adhesion = \"1 kPa\""
+        ),
+        ("weight = \"2 kN/m\"", "interface = \"sticky\""),
+        (
+            "weight = \"2 kN/m\"",
+            "tension = \"bonded\"\ntension_limit = \"1 kPa\""
+        ),
+        ("weight = \"2 kN/m\"", "sides = [{ side = \"face\" }]"),
+        ("weight = \"2 kN/m\"", "sides = [{ side = 5 }]"),
+        ("model = \"tresca\"", "model = \"elastic\" #"),
+        ("name = \"footing\"", "name = \"pipe\""),
+    ]));
+}
+
+#[test]
+fn grids_that_cannot_follow() {
+    insta::assert_snapshot!(messages(&[
+        (
+            "from = [\"0.9 m\", \"2 m\"]",
+            "grid_follows = true\nfrom = [\"0.9 m\", \"2.1 m\"]"
+        ),
+        (
+            "radius = \"0.4 m\"",
+            "radius = \"0.4 m\"\ngrid_follows = true\n[[rigid]]\nname = \"other\"\ntype = \"rectangle\"\nfrom = [\"2.5 m\", \"2 m\"]\nto = [\"3.5 m\", \"3 m\"]\ngrid_follows = true",
+        ),
+    ]));
+}
+
+#[test]
+fn stages_that_make_no_sense() {
+    insta::assert_snapshot!(messages(&[
+        (MOVE, "y = \"-2 mm\", force_y = \"1 kN/m\" }"),
+        (MOVE, "y = \"-2 mm\", free = [\"y\"] }"),
+        (MOVE, "moment = \"1 kNm/m\", free = [\"rotation\"] }"),
+        (MOVE, "y = \"-2 mm\" }, { body = \"footing\" }"),
+        (MOVE, "y = \"-2 kN\" }"),
+        (MOVE, "z = \"-2 mm\" }"),
+        ("body = \"footing\", y", "body = \"foting\", y"),
+        (
+            "bodies = [{ body = \"footing\", y = \"-2 mm\" }]",
+            "bodies = []"
+        ),
+        ("{ body = \"pipe\", y = \"-20 mm\" },", ""),
+        (
+            "[output]",
+            "[[stages]]\nname = \"safety\"\ntype = \"strength-reduction\"\npath = \"gravity\"\n[output]",
+        ),
+        (
+            "[output]",
+            "[[curves]]\nname = \"c\"\nx = { of = \"step\" }\ny = { of = \"rigid.footing.force\" }\n[output]",
+        ),
+    ]));
+}
+
+#[test]
+fn a_file_states_its_bodies() {
+    let file = parsed(&[]);
+    let [pipe, footing] = &file.case().rigid[..] else {
+        panic!("two bodies");
+    };
+    assert!(matches!(pipe.shape, RigidShape::Circle { .. }));
+    assert_eq!(
+        pipe.reference.map(f64::to_bits),
+        [4.5, 2.4].map(f64::to_bits)
+    );
+    assert_eq!(footing.interfaces.len(), 4);
+    assert!((footing.reference[0] - 1.5).abs() + (footing.reference[1] - 2.0).abs() < 1e-12);
+    let StageKind::Rigid(moves) = &file.case().stages[2].kind else {
+        panic!("a stage of bodies");
+    };
+    let free = Some(RigidDrive::Force(0.0));
+    assert_eq!((moves.len(), moves[0].drives[0]), (2, free));
+    // The completed file states the same case.
+    let again = CaseFile::parse("again", &file.explain(), &[]).unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!(
+        format!("{:?}", again.case().rigid),
+        format!("{:?}", file.case().rigid)
+    );
+    assert_eq!(again.case().stages, file.case().stages);
+}
+
+/// A column of a curve at its end.
+fn ends(run: &Run, curve: &str) -> [f64; 2] {
+    let table = run.curves.iter().find(|table| table.name == curve);
+    *table.unwrap().points(0, 1).last().unwrap()
+}
+
+fn curve(of: &str) -> String {
+    format!(
+        "[[curves]]\nname = \"{}\"\nx = {{ of = \"step\" }}\ny = {{ of = \"rigid.{of}\" }}\n",
+        of.replace(['.', '_'], " ")
+    )
+}
+
+/// GOAL: forces are those that the stage asked for, what was prescribed is where it was moved to, and a
+/// body that was set down touches at once.
+#[test]
+fn bodies_end_where_their_stages_say() {
+    let quantities = [
+        "footing.force_x",
+        "footing.force_y",
+        "footing.resistance",
+        "footing.moment",
+        "footing.contact_width",
+        "footing.closed",
+        "footing.rotation",
+        "pipe.settlement",
+        "pipe.resistance",
+        "pipe.penetration",
+    ];
+    let curves: String = quantities.map(curve).concat();
+    let file = parsed(&[("[output]", &format!("{curves}[output]"))]);
+    let run = in_memory(file.case()).unwrap();
+    assert!(run.failure.is_none(), "{:?}", run.failure);
+    let end = |of: &str| ends(&run, &of.replace(['.', '_'], " "))[1];
+    let near = |value: f64, expected: f64| {
+        assert!(
+            (value - expected).abs() <= 1e-9 * expected.abs().max(1.0),
+            "{value} {expected}"
+        );
+    };
+    near(end("footing.force_x"), 0.0);
+    near(end("footing.force_y"), -50e3);
+    near(end("footing.resistance"), 50e3);
+    near(end("footing.moment"), 5e3);
+    // Half a cell at each corner is rounded, and carries nothing.
+    near(end("footing.contact_width"), 1.2 - 0.25);
+    near(end("pipe.settlement"), 20e-3);
+    assert!(end("footing.rotation") > 0.0 && end("pipe.resistance") > 0.0);
+    assert!((0.0..0.1).contains(&end("pipe.penetration")));
+    let told = &run.summary.warnings;
+    assert_eq!(told.len(), 2, "{told:?}");
+    assert!(
+        told.iter().all(|text| text.contains("was set down by")),
+        "{told:?}"
+    );
+    // It was pressed in at once: the gap that settlement left was closed.
+    let table = run
+        .curves
+        .iter()
+        .find(|table| table.name == "footing resistance")
+        .unwrap();
+    let first = table.points(0, 1)[4][1];
+    assert!(first > 1e3, "{first}");
+}
+
+/// GOAL: soil that went too far into a body ends the run with what may help.
+#[test]
+fn too_deep_a_penetration_ends_the_run() {
+    let file = parsed(&[("weight = \"2 kN/m\"", "most_penetration = 1e-3")]);
+    let run = in_memory(file.case()).unwrap();
+    let text = run.failure.unwrap().to_string();
+    assert!(text.contains("is not to be trusted"), "{text}");
+    assert!(
+        text.contains("stiffness = 60 of the rigid body \"footing\" (now 30)"),
+        "{text}"
+    );
+}
+
+/// GOAL: a grid that follows a body keeps a row at its base, with the same forces as one that does not to
+/// within what the grid is worth.
+#[test]
+fn rows_follow_a_body() {
+    let resist = curve("footing.resistance");
+    let pushed = |follows: &str| {
+        let file = parsed(&[
+            ("weight = \"2 kN/m\"", follows),
+            ("{ body = \"pipe\", y = \"-20 mm\" },", ""),
+            (
+                "force_y = \"-50 kN/m\", moment = \"5 kNm/m\", free = [\"x\"]",
+                "y = \"-20 mm\"",
+            ),
+            ("[output]", &format!("{resist}[output]")),
+        ]);
+        let run = in_memory(file.case()).unwrap();
+        assert!(run.failure.is_none(), "{:?}", run.failure);
+        ends(&run, "footing resistance")[1]
+    };
+    let (free, followed) = (pushed("weight = \"0 kN/m\""), pushed("grid_follows = true"));
+    assert!((free / followed - 1.0).abs() < 0.1, "{free} {followed}");
+}
