@@ -123,13 +123,6 @@ fn above<const D: usize>(
         let gap = 0.1 * random.symmetric();
         let bonded = interface.tension != Tension::None;
         *knot = ContactNode {
-<<<<<<< HEAD
-            pressure: 60.0 * (1.0 + random.symmetric()),
-            shear: [0.5 * random.symmetric(), second],
-            area: 1.0,
-            gap: 0.1 * random.symmetric(),
-            is_closed: random.symmetric() > -0.4,
-=======
             pressure: if bonded || gap < 0.0 {
                 -gap * STIFFNESS
             } else {
@@ -139,7 +132,6 @@ fn above<const D: usize>(
             area: 1.0,
             gap,
             is_closed: bonded || gap < 0.0,
->>>>>>> main
             slips: false,
             is_broken: false,
         };
