@@ -119,7 +119,7 @@ fn pushed(friction: f64, adhesion: f64, offset: f64) -> Result<(RunRecord, f64),
         },
         tension: Tension::None,
     };
-    body.rigid = vec![polygon(&corners, 2.0 * h, &interface, [0.0; 2])];
+    body.rigid = vec![polygon(&corners, h, &interface, [0.0; 2])];
     let law: SharedLaw = Arc::new(HenckyElastic::new(Elasticity::new(1e4, 0.3)?));
     let mut constraints = Constraints::free(&grid);
     constraints.fix_wall(&grid, 1, false, 0)?;

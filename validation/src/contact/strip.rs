@@ -78,7 +78,7 @@ impl Push {
         } else {
             Interface::smooth()
         };
-        body.rigid = vec![polygon(&corners, 2.0 * h, &interface, [e, 0.0])];
+        body.rigid = vec![polygon(&corners, h, &interface, [e, 0.0])];
         let law: SharedLaw = Arc::new(Tresca::new(Elasticity::new(YOUNG, 0.49)?, 1.0)?);
         let constraints = ground.held()?;
         let load_path = |from: f64, to: f64| {

@@ -98,7 +98,7 @@ fn push(degrees: f64, cells: usize) -> Result<(RunRecord, Table), CaseError> {
     let wedge = {
         let tall = 2.5 * DEPTH;
         let corners = [[0.0, 0.0], [tall * beta.tan(), tall], [0.0, tall]];
-        polygon(&corners, 2.0 * h, &Interface::smooth(), [0.0, -DEPTH])
+        polygon(&corners, h, &Interface::smooth(), [0.0, -DEPTH])
     };
     // A particle that stands in the wedge would be none of its business.
     let mut seeds = fill_polygon(&grid, &field.soil(wide, deep), 3, 1.0, 0)?;
