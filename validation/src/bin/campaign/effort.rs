@@ -60,11 +60,7 @@ fn cause(failure: &StepFailure) -> &'static str {
         StepFailure::LeavesGrid { .. } | StepFailure::LoadPointLeavesGrid { .. } => {
             "leaves the grid"
         }
-<<<<<<< HEAD
         StepFailure::TooDeep { .. } => "penetrates too deep",
-=======
-        StepFailure::TooDeep { .. } => "too deep in a rigid body",
->>>>>>> contact-mechanics
         StepFailure::NotFinite { .. } => "not finite",
         StepFailure::Assembly(AssemblyError::Inverted { .. }) => "particle inverted",
         StepFailure::Assembly(AssemblyError::Material { .. }) => "law fails",
