@@ -15,6 +15,8 @@ pub struct RigidPart {
     pub interfaces: Vec<RigidInterface>,
     /// Normal stiffness of contact in units of E/h \[-\].
     pub stiffness: f64,
+    /// Radius of its corners as a share of the cell \[-\]; a rounding carries nothing.
+    pub rounding: f64,
     /// Own weight of the whole body, which acts at the reference point with gravity \[N/m\].
     pub weight: f64,
     /// The whole body over the part that is modelled, 2 for half a body \[-\]: forces that stages state

@@ -32,8 +32,7 @@ pub(crate) fn cell_near(case: &Case, part: &RigidPart) -> f64 {
 /// A rigid body of a case where it starts, among so many laws: one for each material, again and again.
 pub(crate) fn made(case: &Case, index: usize, laws: usize) -> Result<RigidBody<2>, CaseError> {
     let part = &case.rigid[index];
-    let spacing = KNOT_SPACING * cell_near(case, part);
-    let surface = surface(part, spacing).map_err(|source| CaseError::RigidBody {
+    let surface = surface(part, cell_near(case, part)).map_err(|source| CaseError::RigidBody {
         name: part.name.clone(),
         source,
     })?;
@@ -44,14 +43,14 @@ pub(crate) fn made(case: &Case, index: usize, laws: usize) -> Result<RigidBody<2
     Ok(body)
 }
 
-fn surface(part: &RigidPart, spacing: f64) -> Result<Surface<2>, SurfaceError> {
+fn surface(part: &RigidPart, cell: f64) -> Result<Surface<2>, SurfaceError> {
     match &part.shape {
         RigidShape::Polygon(corners) => {
             let [x, y] = part.reference;
             let own: Vec<_> = corners.iter().map(|at| [at[0] - x, at[1] - y]).collect();
-            Surface::polygon(&own, spacing)
+            Surface::polygon(&own, part.rounding * cell, KNOT_SPACING * cell)
         }
-        RigidShape::Circle { radius, .. } => Surface::circle(*radius, spacing),
+        RigidShape::Circle { radius, .. } => Surface::circle(*radius, cell),
     }
 }
 

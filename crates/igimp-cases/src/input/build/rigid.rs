@@ -1,6 +1,6 @@
 //! Rigid bodies: their shapes, what their sides are like, and whether they have a place.
 
-use igimp_assembly::Tension;
+use igimp_assembly::{Surface, SurfaceError, Tension};
 
 use super::AllNames;
 use super::grid::Frame;
@@ -72,6 +72,7 @@ fn part(node: &Node, around: &Around<'_>, problems: &mut Problems) -> Option<Rig
         shape,
         interfaces: interfaces?,
         stiffness: node.number_at("stiffness")?,
+        rounding: node.number_at("rounding")?,
         weight: node.number_at("weight")?,
         force_factor: node.number_at("force_factor")?,
         grid_follows: node.flag_at("grid_follows")?,
@@ -313,6 +314,21 @@ fn in_grid(node: &Node, part: &RigidPart, frame: &Frame, problems: &mut Problems
                 "make it {} m thick, or the cells there smaller",
                 number(LEAST_CELLS * cell)
             ));
+    }
+    if let RigidShape::Polygon(corners) = &part.shape
+        && let Err(SurfaceError::RoundedAway { side, rounding }) =
+            Surface::polygon(corners, part.rounding * cell, LEAST_CELLS * cell)
+    {
+        problems
+            .error(
+                node.place_at("rounding"),
+                format!(
+                    "with corners rounded by {} m nothing is left of side {} of the rigid body `{name}`",
+                    number(rounding),
+                    side + 1
+                ),
+            )
+            .help("a smaller rounding, smaller cells there, or a longer side");
     }
     let level = lower[1];
     if part.grid_follows {

@@ -189,6 +189,12 @@ pub(in crate::input) static RIGID: Kind = Kind::Variants(&Variants {
             "whether the rows of the grid go down with it; its lowest place lies on a row",
         ),
         default(
+            "rounding",
+            Kind::Number(Range::NotNegative),
+            "0.5",
+            "radius of its corners in cells; soil slips off a rounding, which carries nothing",
+        ),
+        default(
             "stiffness",
             Kind::Number(Range::Positive),
             "30",
