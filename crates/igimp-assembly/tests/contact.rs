@@ -463,6 +463,22 @@ fn distance_to_a_polygon() {
     }
 }
 
+/// The distance to a rectangle with rounded corners is that to its core, less the radius.
+#[test]
+fn distance_to_a_rounded_rectangle() {
+    let corners = [[-1.0, -0.5], [1.0, -0.5], [1.0, 0.5], [-1.0, 0.5]];
+    let surface = Surface::polygon(&corners, 0.2, 0.3).unwrap();
+    let body = RigidBody::new(surface, vec![Interface::smooth(); 4], [0.0; 2]);
+    let mut random = Random(9);
+    for _ in 0..400 {
+        let x = [1.6 * random.symmetric(), 1.1 * random.symmetric()];
+        let beyond = [x[0].abs() - 0.8, x[1].abs() - 0.3];
+        let outside = beyond[0].max(0.0).hypot(beyond[1].max(0.0));
+        let expected = outside + beyond[0].max(beyond[1]).min(0.0) - 0.2;
+        assert!((body.distance(&x) - expected).abs() < 1e-12, "{x:?}");
+    }
+}
+
 #[test]
 fn distance_to_a_circle() {
     let surface = Surface::circle(0.8, 0.1).unwrap();

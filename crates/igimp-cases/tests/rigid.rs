@@ -190,7 +190,8 @@ fn bodies_end_where_their_stages_say() {
     near(end("footing.force_y"), -50e3);
     near(end("footing.resistance"), 50e3);
     near(end("footing.moment"), 5e3);
-    near(end("footing.contact_width"), 1.2);
+    // Half a cell at each corner is rounded, and carries nothing.
+    near(end("footing.contact_width"), 1.2 - 0.25);
     near(end("pipe.settlement"), 20e-3);
     assert!(end("footing.rotation") > 0.0 && end("pipe.resistance") > 0.0);
     assert!((0.0..0.1).contains(&end("pipe.penetration")));

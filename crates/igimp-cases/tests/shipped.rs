@@ -309,3 +309,53 @@ fn block_slumps_until_it_rests() {
     between(ran.measured("height on the axis at rest"), 1.7, 2.6);
     between(ran.virtual_work(1.0), 0.98, 1.02);
 }
+
+#[test]
+fn contact_footing_lets_go() {
+    let ran = ran(
+        "contact_footing",
+        &["grid.cell=0.2 m", "stages.0.steps=20", "stages.1.steps=4"],
+    );
+    assert_eq!(ran.outcomes(), [Completed; 2]);
+    between(ran.measured("resistance N after it was pulled"), -0.05, 0.05);
+    let highest = ran.curve("resistance").iter().map(|p| p[1]);
+    between(highest.fold(0.0, f64::max), 4.0, 7.5);
+}
+
+#[test]
+fn eccentric_footing_carries_less_and_lifts_off() {
+    let ran = ran("eccentric_footing", &[]);
+    assert_eq!(ran.outcomes(), [Completed; 2]);
+    assert!(ran.meets_its_checks());
+    between(ran.end_of("contact width"), 0.5, 0.8);
+}
+
+#[test]
+fn pipe_meets_the_fit_at_shallow_depth() {
+    let ran = ran("pipe", &["stages.0.bodies.0.y=-0.1 m", "stages.0.steps=20"]);
+    assert_eq!(ran.outcomes(), [Completed]);
+    // 7.1 (w/D)^0.33; limit analysis without the lip has 2.96 to 3.10.
+    between(ran.end_of("resistance"), 2.8, 3.7);
+}
+
+#[test]
+fn wall_is_between_active_and_passive_pressure() {
+    let ran = ran("wall", &["grid.cell=0.5 m", "rigid.0.thickness=1 m"]);
+    assert_eq!(ran.outcomes(), [Completed; 3]);
+    between(ran.measured("active pressure"), 0.26, 0.40);
+    between(ran.measured("passive pressure"), 2.4, 3.6);
+}
+
+#[test]
+fn plate_anchor_leaves_a_gap() {
+    let ran = ran("plate_anchor", &[]);
+    assert_eq!(ran.outcomes(), [Completed]);
+    assert!(ran.meets_its_checks());
+}
+
+#[test]
+fn wedge_meets_more_resistance_with_depth() {
+    let ran = ran("wedge", &["stages.0.bodies.0.y=-0.15 m", "stages.0.steps=30"]);
+    assert_eq!(ran.outcomes(), [Completed]);
+    between(ran.end_of("resistance"), 0.3, 1.5);
+}

@@ -45,8 +45,8 @@ struct Cylinder {
     sideways: f64,
 }
 
-/// What was found at the end: force and tangential force, half-width and largest pressure fitted to
-/// Hertz's pressure, and the share of friction that the middle takes.
+/// What was found at the end: tangential and vertical force, half-width and largest pressure of the
+/// profile, and the share of friction that the middle takes.
 struct Found {
     run: RunRecord,
     force: [f64; 2],
@@ -143,22 +143,27 @@ impl Cylinder {
     }
 }
 
-/// Half-width and largest pressure of the ellipse p² = p₀² (1 − x²/b²) through a profile, by least squares
-/// over the part with at least a third of the largest pressure.
+/// Half-width and largest pressure of Hertz's ellipse with the second moment of a profile and with its
+/// squares: ∫ p x² = P b²/4, and p² = p₀² (1 − x²/b²) by least squares over the part with at least a third
+/// of the largest pressure.
 fn fitted(profile: &[[f64; 3]]) -> [f64; 2] {
     let most = profile.iter().fold(0.0, |most: f64, own| most.max(own[1]));
+    let (mut sum, mut moment) = (0.0, 0.0);
     let (mut n, mut sx, mut sy, mut sxx, mut sxy) = (0.0, 0.0, 0.0, 0.0, 0.0);
-    for own in profile.iter().filter(|own| own[1] > most / 3.0) {
-        let (x, y) = (own[0] * own[0], own[1] * own[1]);
-        n += 1.0;
-        sx += x;
-        sy += y;
-        sxx += x * x;
-        sxy += x * y;
+    for [x, p, _] in profile {
+        sum += p;
+        moment += p * x * x;
+        if *p > most / 3.0 {
+            let (x, y) = (x * x, p * p);
+            n += 1.0;
+            sx += x;
+            sy += y;
+            sxx += x * x;
+            sxy += x * y;
+        }
     }
     let slope = (n * sxy - sx * sy) / (n * sxx - sx * sx);
-    let square = (sy - slope * sx) / n;
-    [(square / -slope).sqrt(), square.sqrt()]
+    [2.0 * (moment / sum).sqrt(), ((sy - slope * sx) / n).sqrt()]
 }
 
 /// Runs the study.
@@ -239,7 +244,7 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
             cells: 16,
             poisson: 0.4999,
             interface: Interface::friction(friction),
-            sideways: 1.5e-3,
+            sideways: 5e-4,
         }
         .press()?;
         let run = study.run_to_end(found.run);

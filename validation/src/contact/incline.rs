@@ -34,9 +34,10 @@ const PUSHED: Oracle = Oracle {
 };
 /// Coefficient of friction \[-\].
 const FRICTION: f64 = 0.4;
-/// Load factor at which the block is let go on the floor, and at which gravity begins to turn on.
+/// Load factor at which gravity begins to turn, and at which it turns more slowly.
 const SET_DOWN: f64 = 0.1;
-/// tan β over μ where gravity begins to turn on, and at the end \[-\].
+const NEAR: f64 = 0.4;
+/// tan β over μ where gravity turns more slowly, and at the end \[-\].
 const TURN: [f64; 2] = [0.9, 1.1];
 
 /// A block of 2 × 0.5 on a floor, `shift` to the right of a line of the grid, while gravity turns; tan β
@@ -56,8 +57,9 @@ fn turned(shift: f64) -> Result<(RunRecord, [f64; 2]), CaseError> {
     )];
     let law: SharedLaw = Arc::new(HenckyElastic::new(Elasticity::new(1e4, 0.3)?));
     let tangent = |factor: f64| {
-        let share = ((factor - SET_DOWN) / (1.0 - SET_DOWN)).max(0.0);
-        FRICTION * (TURN[0] + share * (TURN[1] - TURN[0]))
+        let share = |from: f64, to: f64| ((factor - from) / (to - from)).clamp(0.0, 1.0);
+        let [most, end] = TURN;
+        FRICTION * (most * share(SET_DOWN, NEAR) + (end - most) * share(NEAR, 1.0))
     };
     let load_path = |from: f64, to: f64| {
         let mut constraints = Constraints::free(&grid);

@@ -81,7 +81,7 @@ pub(crate) fn polygon(
     interface: &Interface,
     origin: [f64; 2],
 ) -> RigidBody<2> {
-    let surface = Surface::polygon(corners, 0.0, 0.5 * spacing).expect("the outline has corners");
+    let surface = Surface::polygon(corners, 0.0, spacing).expect("the outline has corners");
     let sides = vec![interface.clone(); surface.side_count()];
     RigidBody::new(surface, sides, origin)
 }
@@ -106,10 +106,11 @@ pub(crate) fn force(accepted: &Accepted<'_, 2>) -> [f64; 2] {
 /// The knots of the first body that soil touches: place in space and what contact left there.
 pub(crate) fn closed(bodies: &[RigidBody<2>]) -> Vec<([f64; 2], ContactNode)> {
     let body = &bodies[0];
-    let knots = body.surface.knots().into_iter().zip(&body.contact.knots);
+    let knots = body.surface.knots();
+    let knots = knots.iter().zip(&body.contact.knots);
     knots
         .filter(|(_, knot)| knot.is_closed)
-        .map(|((place, _), knot)| (body.pose.into_space(&place), *knot))
+        .map(|((place, _), knot)| (body.pose.into_space(place), *knot))
         .collect()
 }
 

@@ -89,7 +89,7 @@ fn push(eccentricity: f64, cells: usize) -> Result<Found, CaseError> {
     );
     let punch = &body.rigid[0];
     let base = || {
-        let knots = punch.surface.knots().zip(&punch.contact.knots);
+        let knots = punch.surface.knots().into_iter().zip(&punch.contact.knots);
         knots.filter(|((place, _), _)| place[1] == 0.0)
     };
     let width = base()

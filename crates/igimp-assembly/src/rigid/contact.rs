@@ -155,11 +155,15 @@ impl<'a, const D: usize> Contact<'a, D> {
             };
             let mut before = body.contact.knots[knot];
             // Soil that comes near is as far off as it stands, and touches if it overlaps; from then on the
-            // gap follows its motion.
-            let is_new = before.area == 0.0;
-            if is_new {
-                before.gap = mean(sums.gap).max(0.0);
+            // gap follows its motion. Where it is bonded it touches at once.
+            let interface = &body.interfaces[surface.side_of(knot)];
+            if before.area == 0.0 {
+                let bonds = interface.tension != Tension::None && !before.is_broken;
+                before.gap = if bonds { 0.0 } else { mean(sums.gap).max(0.0) };
                 before.is_closed = before.gap == 0.0;
+            } else if !before.is_closed && sums.area > before.area {
+                // More of the soil around the knot has come near, the last of it from further off.
+                before.gap = before.gap.max(mean(sums.gap));
             }
             let mut row = Row {
                 body: index,
@@ -173,7 +177,6 @@ impl<'a, const D: usize> Contact<'a, D> {
                 slip: [functional(&sums.slip[0]), functional(&sums.slip[1])],
                 before,
             };
-            let interface = &body.interfaces[surface.side_of(knot)];
             row.carry_force(interface, &body.penalty);
             self.rows.push(row);
         }
