@@ -317,9 +317,14 @@ fn contact_footing_lets_go() {
         &["grid.cell=0.2 m", "stages.0.steps=20", "stages.1.steps=4"],
     );
     assert_eq!(ran.outcomes(), [Completed; 2]);
-    between(ran.measured("resistance N after it was pulled"), -0.05, 0.05);
-    let highest = ran.curve("resistance").iter().map(|p| p[1]);
-    between(highest.fold(0.0, f64::max), 4.0, 7.5);
+    between(
+        ran.measured("resistance N after it was pulled"),
+        -0.05,
+        0.05,
+    );
+    let curve = ran.curve("resistance");
+    let highest = curve.iter().map(|p| p[1]).fold(0.0, f64::max);
+    between(highest, 4.0, 7.5);
 }
 
 #[test]
@@ -355,7 +360,10 @@ fn plate_anchor_leaves_a_gap() {
 
 #[test]
 fn wedge_meets_more_resistance_with_depth() {
-    let ran = ran("wedge", &["stages.0.bodies.0.y=-0.15 m", "stages.0.steps=30"]);
+    let ran = ran(
+        "wedge",
+        &["stages.0.bodies.0.y=-0.15 m", "stages.0.steps=30"],
+    );
     assert_eq!(ran.outcomes(), [Completed]);
     between(ran.end_of("resistance"), 0.3, 1.5);
 }

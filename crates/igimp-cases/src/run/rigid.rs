@@ -16,8 +16,6 @@ use crate::check::short;
 use crate::error::CaseError;
 use crate::table::Table;
 
-/// Distance of the knots of a surface, in cells.
-const KNOT_SPACING: f64 = 2.0;
 /// A body is not set down by less than this share of a cell \[-\].
 const LEAST_SHIFT: f64 = 1e-9;
 
@@ -48,7 +46,7 @@ fn surface(part: &RigidPart, cell: f64) -> Result<Surface<2>, SurfaceError> {
         RigidShape::Polygon(corners) => {
             let [x, y] = part.reference;
             let own: Vec<_> = corners.iter().map(|at| [at[0] - x, at[1] - y]).collect();
-            Surface::polygon(&own, part.rounding * cell, KNOT_SPACING * cell)
+            Surface::polygon(&own, part.rounding * cell, cell)
         }
         RigidShape::Circle { radius, .. } => Surface::circle(*radius, cell),
     }
