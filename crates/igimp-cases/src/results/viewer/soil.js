@@ -166,6 +166,7 @@ class Soil {
       if (!goesOn) pen.moveTo(x0, y0);
       pen.lineTo(x1, y1);
     }
+    this.canvas.dataset.lines = lines.length / 4;
     pen.fillStyle = cssColour("--line");
     pen.strokeStyle = cssColour("--soft");
     pen.lineWidth = 1.5;
