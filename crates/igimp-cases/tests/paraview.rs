@@ -6,11 +6,13 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use igimp_assembly::{ParticleFields, Particles};
+use igimp_assembly::{Interface, ParticleFields, Particles, RigidBody, Surface};
+use igimp_cases::case::{RigidInterface, RigidPart, RigidShape, RigidShear};
 use igimp_cases::results::checkpoint::{self, Meta};
 use igimp_cases::results::npy::{Array, Values};
 use igimp_cases::results::particles::{Extras, of_grid, of_particles};
-use igimp_cases::results::pvd::{Collection, GRID, PARTICLES};
+use igimp_cases::results::pvd::{Collection, GRID, PARTICLES, RIGID};
+use igimp_cases::results::rigid::{Standing, lines};
 use igimp_cases::results::vtu::{CellKind, DataArray, UnstructuredGrid};
 use igimp_material::{History, Regime};
 use igimp_shape::{Axis, Grid};
@@ -139,6 +141,41 @@ fn axis(cells: usize) -> Axis {
     Axis::uniform(-1.0, 0.5, cells).unwrap()
 }
 
+/// A rectangle of 2 m by 1 m whose corners are rounded, turned and pressed against something.
+fn rectangle() -> (RigidPart, RigidBody<2>) {
+    let corners = [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]];
+    let interface = RigidInterface {
+        shear: RigidShear::Rough,
+        tension: igimp_assembly::Tension::None,
+    };
+    let part = RigidPart {
+        name: "plate".into(),
+        shape: RigidShape::Polygon(corners.to_vec()),
+        reference: [1.0, 0.0],
+        interfaces: vec![interface; 4],
+        stiffness: 10.0,
+        rounding: 0.5,
+        weight: 0.0,
+        force_factor: 1.0,
+        grid_follows: false,
+        from_start: false,
+        most_penetration: 0.1,
+    };
+    let own = corners.map(|[x, y]| [x - 1.0, y]);
+    let surface = Surface::polygon(&own, 0.1, 0.4).unwrap();
+    let mut body = RigidBody::new(surface, vec![Interface::rough(); 4], [1.0, 0.0]);
+    body.pose = body.pose.moved(&[0.5, -0.25], &[0.3, 0.0, 0.0]);
+    for (k, knot) in body.contact.knots.iter_mut().enumerate().take(4) {
+        knot.pressure = 1e3 * (k as f64 + 1.0);
+        knot.shear = [-0.5 * knot.pressure, 0.0];
+        knot.area = 0.1;
+        knot.gap = -1e-3;
+        knot.is_closed = true;
+        knot.slips = k == 0;
+    }
+    (part, body)
+}
+
 #[test]
 fn vtk_pyvista_and_meshio_read_what_is_written() {
     let folder = folder("paraview");
@@ -181,6 +218,16 @@ fn vtk_pyvista_and_meshio_read_what_is_written() {
     add(&mut of_background, 1e-12, &cells, 30.0 * 20.0);
     let cells = of_grid(&Grid::new([axis(3), axis(2), axis(4)]), None);
     add(&mut of_background, 0.1, &cells, 3.0);
+    let (part, body) = rectangle();
+    let plate = lines(&[Standing {
+        index: 0,
+        part: &part,
+        body: &body,
+    }]);
+    let mut of_bodies = Collection::create(&folder, RIGID).unwrap();
+    // The outline as the case has it, corners included: 2 (2 + 1) metres around.
+    add(&mut of_bodies, 1.0, &plate, 6.0);
+    let of_plate = plate.cell_count();
     let nothing = UnstructuredGrid {
         points: Vec::new(),
         kind: CellKind::Quad,
@@ -203,10 +250,56 @@ fn vtk_pyvista_and_meshio_read_what_is_written() {
                 "cells": [4, 2500, 4096, 64],
             },
             "grid.pvd": { "times": [1e-12, 0.1], "cells": [2400, 24] },
+            "rigid.pvd": { "times": [1.0], "cells": [of_plate] },
         },
     });
     fs::write(folder.join("expected.json"), expected.to_string()).unwrap();
     run_script("read_vtu.py", "vtk, pyvista, meshio", &folder);
+}
+
+/// GOAL: what soil does to a body points into it, and along it where the soil slips.
+/// ORACLE: pressure p and shear −p/2 on the soil along the base of a plate turned by 0.3: the body feels
+/// p upwards and p/2 to its right.
+#[test]
+fn tractions_turn_with_the_body() {
+    let (part, body) = rectangle();
+    let standing = Standing {
+        index: 0,
+        part: &part,
+        body: &body,
+    };
+    let grid = lines(&[standing]);
+    let of = |name: &str| {
+        let mut arrays = grid.point_data.iter();
+        match arrays.find(|array| array.name() == name).unwrap().values() {
+            Values::F64(values) => values.clone(),
+            other => panic!("{other:?}"),
+        }
+    };
+    let (pressure, traction) = (
+        of("contact pressure [Pa], compression +"),
+        of("traction on body [Pa]"),
+    );
+    // The first point is a corner, which carries nothing.
+    let pressures = [pressure[0], pressure[1], pressure[2]];
+    assert_eq!(
+        pressures.map(f64::to_bits),
+        [0.0, 1e3, 2e3].map(f64::to_bits)
+    );
+    let (sin, cos) = 0.3_f64.sin_cos();
+    for k in [1, 2] {
+        let p = pressure[k];
+        let expected = [-p * sin + 0.5 * p * cos, p * cos + 0.5 * p * sin];
+        for axis in 0..2 {
+            assert!((traction[3 * k + axis] - expected[axis]).abs() < 1e-9 * p);
+        }
+    }
+    let table = standing.table("plate__1-push".into());
+    let along: Vec<f64> = table.rows.iter().take(2).map(|row| row[1]).collect();
+    assert!(
+        (along[0] - 0.1).abs() < 1e-12 && along[1] > along[0],
+        "{along:?}"
+    );
 }
 
 #[test]

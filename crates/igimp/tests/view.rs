@@ -435,6 +435,33 @@ fn the_page_works_in_a_browser() {
     assert!((value - number(3, 3)).abs() <= 1e-6 * number(3, 3));
 }
 
+/// GOAL: rigid bodies are drawn as their frames have them, with their histories beside; tables of contact
+/// along their sides are no histories.
+#[test]
+fn rigid_bodies_are_drawn_where_they_stand() {
+    let Some(browser) = browser() else {
+        return;
+    };
+    let folder = Folder::new("bodies");
+    let case = include_str!("../../igimp-cases/tests/data/two_bodies.toml");
+    std::fs::write(folder.0.join("case.toml"), case).unwrap();
+    let run = folder.igimp(&["run", "case.toml", "--quiet", "--out", "results"]);
+    assert!(run.status.success());
+    let view = View::of(&folder, "results");
+    for frame in [1, 2, 3] {
+        let name = format!("results/paraview/rigid_{frame:04}.vtu");
+        let text = std::fs::read_to_string(folder.0.join(name)).unwrap();
+        let page = looked_at(browser, &folder, &view, &format!("frame={frame}"));
+        let lines = attribute(&page, "canvas", "data-lines");
+        assert!(
+            text.contains(&format!("NumberOfCells=\"{lines}\"")),
+            "{lines}"
+        );
+        assert_eq!(lines == "0", frame == 1);
+        assert!(page.contains("footing: ") && !page.contains("__3-load"));
+    }
+}
+
 /// GOAL: frames that come while the page is looked at are taken up.
 #[test]
 fn the_page_follows_a_run() {

@@ -1,4 +1,4 @@
-//! What a run writes for ParaView: the particles and the grid, frame by frame.
+//! What a run writes for ParaView: the particles, the grid and rigid bodies, frame by frame.
 
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -10,6 +10,7 @@ use super::atomic::{at, sync_folder, sync_together};
 use super::fields;
 use super::particles::{Extras, of_grid, of_particles};
 use super::pvd::{self, Collection};
+use super::rigid::{Standing, lines};
 use crate::case::Field;
 use crate::error::CaseError;
 
@@ -19,17 +20,22 @@ pub struct Frames {
     folder: PathBuf,
     particles: Collection,
     grid: Collection,
+    /// Of a case with rigid bodies.
+    rigid: Option<Collection>,
     /// Frames that the disk is known to have.
     synced: usize,
 }
 
 impl Frames {
-    /// Goes on after the first `frames` frames of a folder that exists; 0 begins anew.
+    /// Goes on after the first `frames` frames of a folder that exists; 0 begins anew. Rigid bodies have
+    /// frames in cases that have some.
     ///
     /// # Errors
     /// [`CaseError::Unusable`], [`CaseError::File`].
-    pub fn open(folder: &Path, frames: usize) -> Result<Self, CaseError> {
+    pub fn open(folder: &Path, frames: usize, has_rigid: bool) -> Result<Self, CaseError> {
+        let rigid = has_rigid.then(|| Collection::resume(folder, pvd::RIGID, frames));
         Ok(Self {
+            rigid: rigid.transpose()?,
             folder: folder.to_path_buf(),
             particles: Collection::resume(folder, pvd::PARTICLES, frames)?,
             grid: Collection::resume(folder, pvd::GRID, frames)?,
@@ -46,13 +52,17 @@ impl Frames {
         time: f64,
         (particles, laws): (&Particles<2>, &[SharedLaw]),
         grid: &Grid<2>,
+        rigid: &[Standing<'_>],
     ) -> Result<(), CaseError> {
         with_extras(particles, laws, |cells| self.particles.add(time, &cells))?;
         self.grid.add(time, &of_grid(grid, None))?;
+        if let Some(collection) = &mut self.rigid {
+            collection.add(time, &lines(rigid))?;
+        }
         Ok(())
     }
 
-    /// Writes particles beside the frames, as `NAME.vtu`.
+    /// Writes particles beside the frames, as `NAME.vtu`, and rigid bodies as `NAME-rigid.vtu`.
     ///
     /// # Errors
     /// [`CaseError::File`].
@@ -60,7 +70,12 @@ impl Frames {
         &self,
         name: &str,
         (particles, laws): (&Particles<2>, &[SharedLaw]),
+        rigid: &[Standing<'_>],
     ) -> Result<(), CaseError> {
+        if self.rigid.is_some() {
+            let name = format!("{name}{}.vtu", pvd::OF_BODIES);
+            lines(rigid).write(&self.folder.join(name))?;
+        }
         let path = self.folder.join(name).with_extension("vtu");
         with_extras(particles, laws, |cells| cells.write(&path))
     }
@@ -82,9 +97,9 @@ impl Frames {
             let file = File::open(&path).map_err(at(&path))?;
             Ok((path, file))
         };
-        let files = [new(&self.particles), new(&self.grid)].concat();
-        let files: Vec<_> = files
-            .into_iter()
+        let collections = [&self.particles, &self.grid].into_iter().chain(&self.rigid);
+        let files: Vec<_> = collections
+            .flat_map(new)
             .map(open)
             .collect::<Result<_, CaseError>>()?;
         sync_together(&files, |path, error| at(path)(error))?;

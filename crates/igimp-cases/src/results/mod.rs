@@ -17,6 +17,7 @@ pub mod pictures;
 pub mod pvd;
 pub mod regime;
 pub mod report;
+pub mod rigid;
 pub mod rows;
 pub mod setup;
 pub mod viewer;

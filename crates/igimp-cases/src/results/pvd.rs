@@ -18,6 +18,12 @@ pub const PARTICLES: &str = "particles";
 /// Name of the frames of the background grid.
 pub const GRID: &str = "grid";
 
+/// Name of the frames of rigid bodies.
+pub const RIGID: &str = "rigid";
+
+/// Behind the name of a state that is written beside the frames, for its rigid bodies.
+pub(super) const OF_BODIES: &str = "-rigid";
+
 /// A `.pvd` file and its frames.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Collection {
@@ -36,7 +42,7 @@ pub struct Frame {
 }
 
 impl Collection {
-    /// An empty collection in a folder that exists, usually of [`PARTICLES`] or [`GRID`].
+    /// An empty collection in a folder that exists, usually of [`PARTICLES`], [`GRID`] or [`RIGID`].
     ///
     /// # Errors
     /// [`CaseError::File`].
@@ -173,9 +179,9 @@ fn attribute<'a>(tag: &'a str, name: &str) -> Option<&'a str> {
 }
 
 /// Whether a file of `paraview/` has a name that a run gives: `STEM.pvd`, `STEM_0001.vtu`, and the states
-/// of a search, `stage-02-last-stable.vtu`.
+/// of a search, `stage-02-last-stable.vtu` and `stage-02-last-stable-rigid.vtu`.
 pub(super) fn is_our_name(name: &str) -> bool {
-    let is_frame = [PARTICLES, GRID]
+    let is_frame = [PARTICLES, GRID, RIGID]
         .iter()
         .any(|stem| name.strip_prefix(stem) == Some(".pvd") || frame_number(name, stem).is_some());
     is_frame || is_state_of_a_search(name)
@@ -190,7 +196,10 @@ fn is_state_of_a_search(name: &str) -> bool {
         .is_some_and(|(digits, what)| {
             digits.len() >= 2
                 && digits.bytes().all(|byte| byte.is_ascii_digit())
-                && matches!(what, "last-stable" | "first-unstable")
+                && matches!(
+                    what.strip_suffix(OF_BODIES).unwrap_or(what),
+                    "last-stable" | "first-unstable"
+                )
         })
 }
 

@@ -1,10 +1,11 @@
 //! The case in words and numbers, as tables for a reader who has no case file before him.
 
-use igimp_assembly::Geometry;
+use igimp_assembly::{Geometry, Tension};
 
 use crate::case::{
-    AxisSpec, Boundaries, Case, Load, LoadKind, Material, Reduction, ReductionPath, RigidDrive,
-    RigidMove, Side, Stage, StageKind, StopWhen, Strength,
+    Adhesion, AxisSpec, Boundaries, Case, Load, LoadKind, Material, Reduction, ReductionPath,
+    RigidDrive, RigidMove, RigidPart, RigidShape, RigidShear, Side, Stage, StageKind, StopWhen,
+    Strength,
 };
 use crate::check::short;
 use crate::summary::SetupTable;
@@ -14,11 +15,12 @@ const NONE: &str = "–";
 /// Most corners of a body that are listed one by one.
 const MOST_CORNERS: usize = 24;
 
-/// Materials, bodies, supports, loads, stages and grid of a case.
+/// Materials, bodies, rigid bodies, supports, loads, stages and grid of a case.
 pub fn tables(case: &Case) -> Vec<SetupTable> {
     [
         materials(case),
         bodies(case),
+        rigid_bodies(case),
         supports(&case.boundaries),
         loads(case),
         stages(case),
@@ -95,12 +97,7 @@ fn undrained(strength: f64) -> String {
 
 fn bodies(case: &Case) -> SetupTable {
     let rows = case.bodies.iter().map(|body| {
-        let corners: Vec<String> = body.polygon.iter().map(|&corner| point(corner)).collect();
-        let corners = if corners.len() > MOST_CORNERS {
-            format!("{} corners", corners.len())
-        } else {
-            corners.join(" ")
-        };
+        let corners = corners(&body.polygon);
         let per_cell = body.per_direction * body.per_direction;
         vec![
             body.name.clone(),
@@ -111,6 +108,126 @@ fn bodies(case: &Case) -> SetupTable {
     });
     let header = ["Body", "Material", "Corners [m]", "Particles per cell"];
     table("Bodies", &header, rows.collect())
+}
+
+/// Corners one by one, or how many there are.
+fn corners(polygon: &[[f64; 2]]) -> String {
+    if polygon.len() > MOST_CORNERS {
+        return format!("{} corners", polygon.len());
+    }
+    let all: Vec<String> = polygon.iter().map(|&corner| point(corner)).collect();
+    all.join(" ")
+}
+
+fn rigid_bodies(case: &Case) -> SetupTable {
+    let header = [
+        "Rigid body",
+        "Shape [m]",
+        "Size [m]",
+        "Reference point [m]",
+        "Interface",
+        "Tension",
+        "Weight [kN/m]",
+        "Moved in stages",
+    ];
+    let rows = case.rigid.iter().enumerate();
+    let rows = rows.map(|(index, part)| rigid_body(case, index, part));
+    table("Rigid bodies", &header, rows.collect())
+}
+
+fn rigid_body(case: &Case, index: usize, part: &RigidPart) -> Vec<String> {
+    let (shape, size) = match &part.shape {
+        RigidShape::Polygon(own) => {
+            let (lower, upper) = part.bounds();
+            let [width, height] = [0, 1].map(|axis| short(upper[axis] - lower[axis]));
+            (corners(own), format!("{width} × {height}"))
+        }
+        RigidShape::Circle { centre, radius } => (
+            format!("circle about {}", point(*centre)),
+            format!("radius {}", short(*radius)),
+        ),
+    };
+    let shear = |side: usize| shear(part.interfaces[side].shear);
+    let tension = |side: usize| tension(part.interfaces[side].tension);
+    let weight = if (part.force_factor - 1.0).abs() > 0.0 {
+        let factor = short(part.force_factor);
+        format!(
+            "{}; forces are those modelled times {factor}",
+            short(part.weight / 1e3)
+        )
+    } else {
+        short(part.weight / 1e3)
+    };
+    let mut moved = Vec::new();
+    if part.from_start {
+        moved.push("there from the start".to_owned());
+    }
+    for stage in &case.stages {
+        let StageKind::Rigid(moves) = &stage.kind else {
+            continue;
+        };
+        for own in moves.iter().filter(|own| own.body == index) {
+            moved.push(format!("{}: {}", stage.name, drives_in_words(own)));
+        }
+    }
+    let sides = part.interfaces.len();
+    vec![
+        part.name.clone(),
+        shape,
+        size,
+        point(part.reference),
+        by_side(sides, shear),
+        by_side(sides, tension),
+        weight,
+        moved.join("; "),
+    ]
+}
+
+/// What all sides have in common, or what each has, numbered from 1.
+fn by_side(sides: usize, of: impl Fn(usize) -> String) -> String {
+    let each: Vec<String> = (0..sides).map(of).collect();
+    match each.split_first() {
+        Some((first, others)) if others.iter().all(|own| own == first) => first.clone(),
+        _ => {
+            let numbered = std::iter::zip(1.., &each);
+            let numbered = numbered.map(|(side, own)| format!("side {side} {own}"));
+            numbered.collect::<Vec<_>>().join(", ")
+        }
+    }
+}
+
+fn shear(of: RigidShear) -> String {
+    match of {
+        RigidShear::Smooth => "smooth".to_owned(),
+        RigidShear::Rough => "rough".to_owned(),
+        RigidShear::Limited { friction, adhesion } => {
+            let friction = (friction > 0.0).then(|| format!("friction {}", short(friction)));
+            let adhesion = match adhesion {
+                Adhesion::Stress(stress) if stress > 0.0 => {
+                    Some(format!("adhesion {}", kilo(stress, "Pa")))
+                }
+                Adhesion::Share(share) if share > 0.0 => Some(format!(
+                    "adhesion {} of the strength of the soil",
+                    short(share)
+                )),
+                _ => None,
+            };
+            let parts: Vec<String> = friction.into_iter().chain(adhesion).collect();
+            if parts.is_empty() {
+                "smooth".to_owned()
+            } else {
+                parts.join(" and ")
+            }
+        }
+    }
+}
+
+fn tension(of: Tension) -> String {
+    match of {
+        Tension::None => "none".to_owned(),
+        Tension::Bonded => "bonded".to_owned(),
+        Tension::Limit(stress) => format!("up to {}", kilo(stress, "Pa")),
+    }
 }
 
 fn supports(boundaries: &Boundaries) -> SetupTable {
@@ -254,27 +371,30 @@ fn happens(case: &Case, stage: &Stage) -> String {
 
 /// What a stage does to a rigid body, in words.
 fn moves_in_words(case: &Case, own: &RigidMove) -> String {
+    let name = &case.rigid[own.body].name;
+    format!("{name}: {}", drives_in_words(own))
+}
+
+/// What drives the components of the motion of a rigid body in a stage, in words.
+fn drives_in_words(own: &RigidMove) -> String {
     let parts: Vec<String> = std::iter::zip(["x", "y", "rotation"], own.drives)
         .filter_map(|(name, drive)| {
-            let (unit, of) = match name {
-                "rotation" => ("rad", "moment"),
-                _ => ("m", "force"),
-            };
+            let turns = name == "rotation";
             Some(match drive? {
-                RigidDrive::By(by) => format!("{name} by {} {unit}", short(by)),
+                RigidDrive::By(by) if turns => format!("rotation by {} rad", short(by)),
+                RigidDrive::By(by) => format!("{name} by {} m", short(by)),
                 RigidDrive::Force(0.0) => format!("{name} free"),
-                RigidDrive::Force(force) => {
-                    let unit = if of == "force" { "kN/m" } else { "kN m/m" };
-                    format!("{of} in {name} to {} {unit}", short(1e-3 * force))
+                RigidDrive::Force(moment) if turns => {
+                    format!("moment to {}", kilo(moment, "N m/m"))
                 }
+                RigidDrive::Force(force) => format!("force in {name} to {}", kilo(force, "N/m")),
             })
         })
         .collect();
-    let name = &case.rigid[own.body].name;
     if parts.is_empty() {
-        format!("{name} held")
+        "held".to_owned()
     } else {
-        format!("{name}: {}", parts.join(", "))
+        parts.join(", ")
     }
 }
 
@@ -390,6 +510,34 @@ mod tests {
              undeformed, free of stress | 10"
         );
         assert!(!tables.iter().any(|table| table.title == "Loads"));
+    }
+
+    #[test]
+    fn rigid_bodies_are_told_in_words() {
+        let tables = of("contact_footing");
+        assert_eq!(
+            row(&tables, "Rigid bodies", 0),
+            "footing | (-0.5, 2) (0.5, 2) (0.5, 3) (-0.5, 3) | 1 × 1 | (0, 2) | rough | none | \
+             0; forces are those modelled times 2 | push: y by -0.2 m; pull: y by 0.05 m"
+        );
+        let text = include_str!("../../tests/data/two_bodies.toml").replacen(
+            "weight = \"2 kN/m\"",
+            "weight = \"2 kN/m\"\ntension_limit = \"3 kPa\"\nsides = [{ side = \"bottom\", interface = \"smooth\" }]",
+            1,
+        );
+        let file = CaseFile::parse("case.toml", &text, &[]).unwrap();
+        let tables = super::tables(file.case());
+        assert_eq!(
+            row(&tables, "Rigid bodies", 0),
+            "pipe | circle about (4.5, 2.4) | radius 0.4 | (4.5, 2.4) | \
+             friction 0.3 and adhesion 0.5 of the strength of the soil | none | 0 | load: y by -0.02 m"
+        );
+        assert_eq!(
+            row(&tables, "Rigid bodies", 1),
+            "footing | (0.9, 2) (2.1, 2) (2.1, 2.6) (0.9, 2.6) | 1.2 × 0.6 | (1.5, 2) | \
+             side 1 smooth, side 2 rough, side 3 rough, side 4 rough | up to 3 kPa | 2 | \
+             seat: y by -0.002 m; load: x free, force in y to -50 kN/m, moment to 5 kN m/m"
+        );
     }
 
     #[test]

@@ -53,13 +53,15 @@ pub(super) struct LastFrame {
     script: String,
     /// The file; none if it is too large for a page.
     data: Option<String>,
+    /// The rigid bodies of that frame, where the case has some.
+    bodies: Option<String>,
     /// What it is called.
     label: String,
     /// Its size in words.
     size: String,
 }
 
-/// The last frame of particles, if there is one that can be read.
+/// The last frame of particles, if there is one that can be read, and of rigid bodies.
 pub(super) fn last_frame(folder: &Path) -> Option<LastFrame> {
     let folder = folder.join("paraview");
     let file = pvd::last(&folder, pvd::PARTICLES)?;
@@ -69,22 +71,30 @@ pub(super) fn last_frame(folder: &Path) -> Option<LastFrame> {
         return None;
     }
     let data = if about.len() <= LARGEST_FRAME {
-        // Numbers in base64 end no script; a file that somebody changed might.
-        let text = fs::read_to_string(&path).ok()?;
-        let lower = text.to_ascii_lowercase();
-        if lower.contains("</script") || lower.contains("<!--") {
-            return None;
-        }
-        Some(text)
+        Some(harmless(&path)?)
     } else {
         None
     };
+    let bodies = pvd::last(&folder, pvd::RIGID).and_then(|file| harmless(&folder.join(file)));
     Some(LastFrame {
         section: SECTION,
         style: STYLE,
         script: script() + "\n" + include_str!("viewer/last.js"),
         data,
+        bodies,
         label: file,
         size: format!("{:.1} MB", about.len() as f64 / 1e6),
     })
+}
+
+/// The text of a frame. Numbers in base64 end no script; a file that somebody changed might.
+fn harmless(path: &Path) -> Option<String> {
+    let about = fs::symlink_metadata(path).ok()?;
+    if !about.is_file() || about.len() > LARGEST_FRAME {
+        return None;
+    }
+    let text = fs::read_to_string(path).ok()?;
+    let lower = text.to_ascii_lowercase();
+    let ends = lower.contains("</script") || lower.contains("<!--");
+    (!ends).then_some(text)
 }

@@ -15,6 +15,7 @@ mod memory;
 mod message;
 mod mixed_cells;
 mod model;
+mod outlines;
 mod output;
 mod processor;
 mod records;

@@ -16,7 +16,6 @@ use crate::case::{Case, LoadKind, MixedCells, Side};
 use crate::error::CaseError;
 use crate::seed::fill_polygon;
 use crate::summary::ModelSize;
-use igimp_figures::{Outline, OutlineStyle};
 
 /// Acceleration of gravity that turns a unit weight into a density where the case has none.
 const STANDARD_GRAVITY: f64 = 9.81;
@@ -182,22 +181,6 @@ impl<'c> Model<'c> {
         self.footing
             .as_ref()
             .map_or(0.0, |footing| footing.resistance(grid, reactions))
-    }
-
-    /// The footing where it stands, as a block two cells high, for pictures.
-    pub(crate) fn footing_outline(&self, settlement: f64) -> Option<Outline> {
-        self.case.loads.iter().find_map(|load| match load.kind {
-            LoadKind::RigidFooting { from, to, .. } if settlement > 0.0 => {
-                let base = from[1] - settlement;
-                let top = from[1].max(base + 2.0 * self.case.grid.axes[1].cell_at(from[1]));
-                let corners = [[from[0], base], [to[0], base], [to[0], top], [from[0], top]];
-                Some(Outline {
-                    points: corners.to_vec(),
-                    style: OutlineStyle::Block,
-                })
-            }
-            _ => None,
-        })
     }
 
     fn supports(&self, grid: &Grid<2>) -> Result<Constraints<2>, AssemblyError> {

@@ -12,8 +12,10 @@ use super::Target;
 use super::fingerprint;
 use super::left::{End, Notes, Resumption, Search, end_of_stage};
 use super::model::Model;
+use super::outlines;
 use super::records::{Records, Rows};
 use super::saved_body;
+use super::sections;
 use super::session::Taken;
 use super::state::{Controls, State};
 use crate::case::{Case, Every};
@@ -132,7 +134,11 @@ impl Output {
             &CONVERGENCE.map(str::to_owned),
             notes.map_or(0, |notes| notes.convergence_rows),
         )?;
-        let frames = Frames::open(&folder.paraview(), notes.map_or(0, |notes| notes.frames))?;
+        let frames = Frames::open(
+            &folder.paraview(),
+            notes.map_or(0, |notes| notes.frames),
+            !case.rigid.is_empty(),
+        )?;
         Ok(Self {
             folder,
             claim,
@@ -220,7 +226,9 @@ impl Output {
         {
             let conditions = &taken.accepted.conditions;
             let own = (&body.particles, &conditions.laws[..]);
-            self.frames.add(self.steps as f64, own, &conditions.grid)?;
+            let rigid = outlines::standing(model.case, taken.controls, &body.rigid);
+            self.frames
+                .add(self.steps as f64, own, &conditions.grid, &rigid)?;
         }
         let due = self.checkpoint_every > 0 && summary.steps.is_multiple_of(self.checkpoint_every);
         if due || taken.interrupted {
@@ -296,12 +304,19 @@ impl Output {
         for table in sections {
             table.write_csv(&self.folder.sections())?;
         }
+        let standing = outlines::standing(case, &state.controls, &state.body.rigid);
+        if summary.safety.is_none() {
+            for body in &standing {
+                let name = format!("{}__{}", body.part.name, sections::stage_name(case, number));
+                body.table(name).write_csv(&self.folder.rigid())?;
+            }
+        }
         if self.every != Every::Never {
             let grid = model.grid(model.lowered(&state.controls))?;
             let laws = model.laws_reduced_by(&state.controls.srf)?;
             // The time of a frame is the number of steps and trials so far.
-            self.frames
-                .add(self.steps as f64, (&state.body.particles, &laws), &grid)?;
+            let own = (&state.body.particles, &laws[..]);
+            self.frames.add(self.steps as f64, own, &grid, &standing)?;
         }
         if let Some(safety) = &summary.safety {
             self.factor_of_safety = match (safety.stable, safety.failed) {
@@ -386,7 +401,9 @@ impl Output {
             let name = format!("stage-{:02}-{what}", number + 1);
             if self.every != Every::Never {
                 let laws = model.laws_reduced_by(&state.controls.srf)?;
-                self.frames.beside(&name, (&state.body.particles, &laws))?;
+                let rigid = outlines::standing(model.case, &state.controls, &state.body.rigid);
+                self.frames
+                    .beside(&name, (&state.body.particles, &laws), &rigid)?;
             }
             let shown = Shown {
                 title: format!("{}, SRF {srf:.4}", summary.name),
@@ -420,7 +437,8 @@ impl Output {
                     case: model.case,
                     pieces: &pieces,
                 };
-                let picture = pictures::mechanism_picture(&canvas, &failing, &found)?;
+                let rigid = outlines::of_state(model, &end.state);
+                let picture = pictures::mechanism_picture(&canvas, &failing, &found, &rigid)?;
                 self.figures.push(picture);
             }
             break;
@@ -466,11 +484,10 @@ impl Output {
         let compared: Vec<Seen<'_>> = std::iter::zip(compared, &reduced)
             .map(|(state, laws)| (&state.body.particles, &laws[..]))
             .collect();
-        let footing = model.footing_outline(state.controls.settlement);
-        let footing = footing.as_slice();
+        let rigid = outlines::of_state(model, state);
         let drawn = wanted
             .par_iter()
-            .map(|&field| pictures::field_picture(&canvas, shown, field, own, &compared, footing))
+            .map(|&field| pictures::field_picture(&canvas, shown, field, own, &compared, &rigid))
             .collect::<Result<Vec<_>, _>>()?;
         self.figures.extend(drawn);
         Ok(())

@@ -14,7 +14,7 @@ use crate::results::pictures::file_name;
 use crate::table::Table;
 
 /// Number and name of a stage as part of a file name.
-fn stage_name(case: &Case, stage: usize) -> String {
+pub(super) fn stage_name(case: &Case, stage: usize) -> String {
     format!("{}-{}", stage + 1, file_name(&case.stages[stage].name))
 }
 

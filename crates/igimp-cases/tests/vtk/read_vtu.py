@@ -31,7 +31,7 @@ def compare(what, found, expected):
 def compare_numbers(what, found, expected):
     found = np.asarray(found, dtype=float)
     expected = np.asarray(expected, dtype=float).reshape(found.shape)
-    assert np.array_equal(found, expected), f"{what}: the numbers differ"
+    assert np.array_equal(found, expected, equal_nan=True), f"{what}: the numbers differ"
 
 
 def check_array(what, array, expected):
@@ -61,7 +61,7 @@ def check_with_vtk(path, expected):
         quality = vtk.vtkCellSizeFilter()
         quality.SetInputData(grid)
         quality.Update()
-        measure = "Volume" if expected["cell_type"] == 12 else "Area"
+        measure = {3: "Length", 9: "Area", 12: "Volume"}[expected["cell_type"]]
         sizes = vtk_to_numpy(quality.GetOutput().GetCellData().GetArray(measure))
         assert np.all(sizes > 0), f"{path.name}: a cell is turned inside out"
         assert np.isclose(sizes.sum(), expected["size"], rtol=1e-9), "size of all cells"
@@ -92,7 +92,7 @@ def check_with_meshio(path, expected):
     compare("cells", sum(len(block.data) for block in mesh.cells), expected["cells"])
     for array in expected["point_data"]:
         compare_numbers(array["name"], mesh.point_data[array["name"]], array["values"])
-    kind = {9: "quad", 12: "hexahedron"}[expected["cell_type"]]
+    kind = {3: "line", 9: "quad", 12: "hexahedron"}[expected["cell_type"]]
     compare("cell blocks", [block.type for block in mesh.cells], [kind])
     compare_numbers("connectivity", mesh.cells[0].data.ravel(), expected["connectivity"])
     for array in expected["cell_data"]:

@@ -24,6 +24,7 @@ pub(crate) fn everything(folder: &Folder) {
         folder.monitors().join("b.csv"),
         folder.monitors().join(".b.csv.tmp"),
         folder.sections().join("c.csv"),
+        folder.rigid().join("footing__1-push.csv"),
         folder.figures().join("d.svg"),
         folder.figures().join("d.png"),
         folder.paraview().join("particles.pvd"),
@@ -31,7 +32,10 @@ pub(crate) fn everything(folder: &Folder) {
         folder.paraview().join(".particles_0002.vtu.tmp"),
         folder.paraview().join("grid.pvd"),
         folder.paraview().join("grid_12345.vtu"),
+        folder.paraview().join("rigid.pvd"),
+        folder.paraview().join("rigid_0001.vtu"),
         folder.paraview().join("stage-02-last-stable.vtu"),
+        folder.paraview().join("stage-02-last-stable-rigid.vtu"),
         folder.paraview().join("stage-02-first-unstable.vtu"),
     ] {
         fs::write(path, "x").unwrap();

@@ -55,7 +55,7 @@ pub struct Canvas<'a> {
 pub type Seen<'a> = (&'a Particles<2>, &'a [SharedLaw]);
 
 /// The picture of a field in a state: the bodies in pieces, coloured by their particles, their edges as
-/// they moved and as they were, and further `outlines`, such as a footing where it stands.
+/// they moved and as they were, and further `outlines`, such as rigid bodies where they stand.
 ///
 /// Unit and colours are those of the state and of the states that it is `compared` with.
 ///

@@ -84,7 +84,7 @@ impl Mechanism {
     }
 }
 
-/// The picture of a mechanism.
+/// The picture of a mechanism, with what is `rigid` where it stands.
 ///
 /// # Errors
 /// [`CaseError::File`] and [`CaseError::Figure`].
@@ -92,6 +92,7 @@ pub fn mechanism_picture(
     canvas: &Canvas<'_>,
     failing: &Failing<'_>,
     found: &Mechanism,
+    rigid: &[Outline],
 ) -> Result<FigureNote, CaseError> {
     let stage = &canvas.case.stages[failing.stage].name;
     let (domains, whose) = canvas.pieces.now(failing.last);
@@ -107,6 +108,7 @@ pub fn mechanism_picture(
     let most = if most > 0.0 { most } else { 1.0 };
     let window = window(failing.last, found, most);
     let mut outlines = edges(canvas, failing.last);
+    outlines.extend_from_slice(rigid);
     outlines.push(arrows(failing.last, found, &window));
     let mut told = "; no line of shear stands out".to_owned();
     if let Some(line) = &found.line {

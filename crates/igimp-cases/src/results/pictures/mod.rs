@@ -22,6 +22,7 @@ mod histories;
 mod mechanism;
 mod meshes;
 mod model;
+pub(crate) mod rigid;
 mod safety;
 
 use std::path::Path;

@@ -1,8 +1,9 @@
-//! The set-up of a model: materials, grid, supports, loads, sections and monitors.
+//! The set-up of a model: materials, grid, rigid bodies, supports, loads, sections and monitors.
 
 use std::path::Path;
 
 use super::field::body_outlines;
+use super::rigid::{POINTS_OF_CIRCLE, block};
 use super::write;
 use crate::case::{AxisSpec, Case, GridSpec, LoadKind, Side};
 use crate::check::short;
@@ -28,8 +29,13 @@ pub fn model_picture(folder: &Path, case: &Case) -> Result<FigureNote, CaseError
     let lines = if has_lines(grid) { "" } else { " (not drawn)" };
     let [columns, rows] = grid.cells();
     let [width, height] = grid.axes.each_ref().map(sizes);
+    let rigid = if case.rigid.is_empty() {
+        ""
+    } else {
+        "rigid bodies where they start, "
+    };
     let caption = format!(
-        "The model: {columns} × {rows} cells of {width} × {height}{lines}, bodies by material, supports and loads.",
+        "The model: {columns} × {rows} cells of {width} × {height}{lines}, bodies by material, {rigid}supports and loads.",
     );
     write(folder, "model", &plot.draw()?, caption)
 }
@@ -60,6 +66,7 @@ fn plot(case: &Case) -> FieldPlot {
         plot.outlines.extend(grid_lines(&case.grid));
     }
     plot.outlines.extend(body_outlines(case));
+    add_rigid_bodies(&mut plot, case);
     add_supports(&mut plot, case);
     let reach = add_loads(&mut plot, case, ARROW * size);
     for section in &case.sections {
@@ -83,7 +90,7 @@ fn plot(case: &Case) -> FieldPlot {
         Some((low - AIR * size, high + AIR * size))
     };
     (plot.x_range, plot.y_range) = (range(0), range(1));
-    add_symbols_to_key(&mut plot);
+    add_symbols_to_key(&mut plot, !case.rigid.is_empty());
     plot
 }
 
@@ -120,6 +127,18 @@ fn grid_lines(grid: &GridSpec) -> impl Iterator<Item = Outline> {
         }
     };
     (0..2).flat_map(move |axis| grid.axes[axis].lines().map(move |at| line(axis, at)))
+}
+
+/// Rigid bodies where they start, with their names.
+fn add_rigid_bodies(plot: &mut FieldPlot, case: &Case) {
+    for part in &case.rigid {
+        if let Some(outline) = block(case, &part.outline(POINTS_OF_CIRCLE)) {
+            let (lower, upper) = bounding_box(&outline.points);
+            let middle = [0, 1].map(|axis| 0.5 * (lower[axis] + upper[axis]));
+            plot.labels.push((middle, part.name.clone()));
+            plot.outlines.push(outline);
+        }
+    }
 }
 
 /// Sides counter-clockwise, so that their symbols stand outside; boxes clockwise, symbols within.
@@ -229,11 +248,16 @@ fn add_loads(plot: &mut FieldPlot, case: &Case, length: f64) -> Vec<[f64; 2]> {
 }
 
 /// Names for the symbols that are in the picture.
-fn add_symbols_to_key(plot: &mut FieldPlot) {
+fn add_symbols_to_key(plot: &mut FieldPlot, has_bodies: bool) {
+    let block = if has_bodies {
+        "rigid body"
+    } else {
+        "rigid footing"
+    };
     for (style, label) in [
         (OutlineStyle::Fixed, "held in both directions"),
         (OutlineStyle::Roller, "held across"),
-        (OutlineStyle::Block, "rigid footing"),
+        (OutlineStyle::Block, block),
         (OutlineStyle::Arrow, "load"),
         (OutlineStyle::Section, "section"),
         (OutlineStyle::Point, "monitor"),

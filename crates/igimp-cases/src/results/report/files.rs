@@ -174,7 +174,8 @@ pub(super) fn tables(folder: &Path) -> Vec<FileView> {
         .collect();
     for (name, about) in [
         ("paraview/particles.pvd", "particles for ParaView"),
-        ("paraview/grid.vtu", "background grid for ParaView"),
+        ("paraview/grid.pvd", "background grid for ParaView"),
+        ("paraview/rigid.pvd", "rigid bodies for ParaView"),
         ("summary.json", "everything that this report says"),
     ] {
         if folder.join(name).exists() {

@@ -85,6 +85,19 @@ class Frame {
     return this.corner;
   }
 
+  // The ends of each line of a frame of rigid bodies, x and y in turn: four numbers a line, around one body
+  // after another.
+  async lines() {
+    const points = await this.numbers(this.places.get("Points"));
+    const connectivity = await this.numbers(this.places.get("connectivity"));
+    const ends = new Float64Array(4 * this.cells);
+    for (let k = 0; k < 2 * this.cells; k += 1) {
+      ends[2 * k] = points[3 * connectivity[k]];
+      ends[2 * k + 1] = points[3 * connectivity[k] + 1];
+    }
+    return ends;
+  }
+
   // Every field that can be shown: arrays of one number, components, lengths of vectors.
   fields() {
     const fields = [];

@@ -1,4 +1,7 @@
-// The body on a canvas: cells in the colour of their value, axes in metres, zoom, and the cell under a point.
+// The body on a canvas: cells in the colour of their value, rigid bodies, axes in metres, zoom, and the cell under a point.
+
+// Of rigid bodies so much is in sight beside the soil, as a share of its larger side.
+const BESIDE = 0.12;
 
 const MARGIN = { left: 46, right: 8, top: 8, bottom: 26 };
 
@@ -21,6 +24,7 @@ class Soil {
   constructor(canvas) {
     this.canvas = canvas;
     this.corner = new Float64Array(0);
+    this.lines = [];
     this.values = new Float64Array(0);
     this.range = [0, 1];
     this.colours = [];
@@ -43,9 +47,23 @@ class Soil {
     this.paint();
   }
 
+  // What has been seen of the soil, and what of the rigid bodies is close to it.
+  withBodies() {
+    const [x0, y0, x1, y1] = this.extent;
+    const [low, high] = [[x0, y0], [x1, y1]];
+    const beside = BESIDE * Math.max(x1 - x0, y1 - y0);
+    this.lines.forEach((value, k) => {
+      const axis = k % 2;
+      const [least, most] = axis === 0 ? [x0, x1] : [y0, y1];
+      low[axis] = Math.min(low[axis], Math.max(value, least - beside));
+      high[axis] = Math.max(high[axis], Math.min(value, most + beside));
+    });
+    return [...low, ...high];
+  }
+
   // Size in CSS pixels, and the scale that brings what is in sight into it.
   layout() {
-    const [x0, y0, x1, y1] = this.extent;
+    const [x0, y0, x1, y1] = this.withBodies();
     const width = this.canvas.clientWidth;
     const inner = Math.max(width - MARGIN.left - MARGIN.right, 50);
     const tall = (inner * (y1 - y0)) / (x1 - x0);
@@ -83,6 +101,7 @@ class Soil {
     pen.rect(MARGIN.left, MARGIN.top, place.width - MARGIN.left - MARGIN.right, place.height - MARGIN.top - MARGIN.bottom);
     pen.clip();
     this.cells(pen, place);
+    this.bodies(pen, place);
     pen.restore();
     this.axes(pen, place);
   }
@@ -135,6 +154,24 @@ class Soil {
       this.trace(pen, place, this.marked);
       pen.stroke();
     }
+  }
+
+  // Rigid bodies: a line goes on from the one before it, or begins another body.
+  bodies(pen, place) {
+    const { lines } = this;
+    pen.beginPath();
+    for (let at = 0; at < lines.length; at += 4) {
+      const [x0, y0, x1, y1] = [0, 1, 2, 3].map((k) => (k % 2 === 0 ? place.left + place.scale * lines[at + k] : place.top - place.scale * lines[at + k]));
+      const goesOn = at > 0 && lines[at] === lines[at - 2] && lines[at + 1] === lines[at - 1];
+      if (!goesOn) pen.moveTo(x0, y0);
+      pen.lineTo(x1, y1);
+    }
+    this.canvas.dataset.lines = lines.length / 4;
+    pen.fillStyle = cssColour("--line");
+    pen.strokeStyle = cssColour("--soft");
+    pen.lineWidth = 1.5;
+    pen.fill();
+    pen.stroke();
   }
 
   axes(pen, place) {

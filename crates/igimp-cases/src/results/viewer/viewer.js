@@ -30,7 +30,8 @@ class Viewer {
     this.listen();
   }
 
-  // Takes up frames: each with a key that names its content, a label and a way to load its text. Who
+  // Takes up frames: each with a key that names its content, a label and a way to load its text, and that of
+  // its rigid bodies where there are some. Who
   // looks at the last frame goes on to look at the last.
   take(frames, states) {
     const { slider } = this.part;
@@ -121,9 +122,15 @@ class Viewer {
     return state || this.frames[Number(this.part.slider.value) - 1];
   }
 
+  // A frame, with its rigid bodies where there are some.
+  static async read(entry) {
+    const [soil, bodies] = await Promise.all([entry.load(), entry.bodies ? entry.bodies() : null]);
+    return Object.assign(new Frame(soil), { bodies: bodies && new Frame(bodies) });
+  }
+
   // A frame as a promise; those looked at last are kept.
   frame(entry) {
-    const found = this.loaded.get(entry.key) || entry.load().then((text) => new Frame(text));
+    const found = this.loaded.get(entry.key) || Viewer.read(entry);
     this.loaded.delete(entry.key);
     this.loaded.set(entry.key, found);
     found.catch(() => this.loaded.delete(entry.key));
@@ -151,10 +158,11 @@ class Viewer {
       const frame = await this.frame(entry);
       const field = this.choose(frame.fields());
       const [corner, values] = [await frame.corners(), await frame.values(field)];
+      const lines = frame.bodies ? await frame.bodies.lines() : [];
       this.ranges.set(this.named(entry, field), rangeOf(values));
       if (turn !== this.turn) return;
       Object.assign(this, { shown: frame, values, field, shownEntry: entry });
-      this.soil.corner = corner;
+      Object.assign(this.soil, { corner, lines });
       this.paint();
       await this.describe();
       this.changed(entry, field, Number(this.part.slider.value));

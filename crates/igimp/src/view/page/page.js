@@ -3,6 +3,11 @@
 // Time between two questions for new frames [ms].
 const PAUSE = 2000;
 
+// Tables with a row for every step that say which step it is: of monitors and of rigid bodies.
+const isHistory = (name) => /^(monitors|rigid)\//.test(name);
+// Tables of contact along the sides of a rigid body at the end of a stage.
+const isContact = (name) => /^rigid\/.+__\d+-.+\.csv$/.test(name);
+
 const asked = new URLSearchParams(location.hash.slice(1));
 const charts = new Map();
 const tables = new Map();
@@ -40,8 +45,14 @@ function stageName(k) {
   return own ? own.name : index.planned[k] || "";
 }
 
+// The way to load the rigid bodies of a frame, where there are some.
+function bodiesOf(name) {
+  const own = name.includes("particles_") ? name.replace("particles_", "rigid_") : name.replace(".vtu", "-rigid.vtu");
+  return index.files[own] ? () => fetched(own) : null;
+}
+
 function entryOf(name, label, more) {
-  return { name, label, key: `${name} ${index.files[name]}`, load: () => fetched(name), ...more };
+  return { name, bodies: bodiesOf(name), label, key: `${name} ${index.files[name]}`, load: () => fetched(name), ...more };
 }
 
 async function framesOf() {
@@ -72,7 +83,7 @@ function statesOf() {
 function rowOf(name, own, moment) {
   const upTo = (rows, holds) => rows.reduce((last, row, k) => (holds(row) ? k : last), -1);
   const isReached = (row) => row[0] < moment.stage + 1 || (row[0] === moment.stage + 1 && row[1] <= moment.step);
-  if (name.startsWith("monitors/")) return upTo(own.rows, isReached);
+  if (isHistory(name)) return upTo(own.rows, isReached);
   const only = index.stage_of_curve[name];
   if (only !== null && only !== undefined) return only === moment.stage ? Math.min(moment.step, own.rows.length - 1) : -1;
   // Curves of all stages have the rows of monitors.
@@ -88,25 +99,24 @@ function pointCharts() {
 }
 
 async function drawTables() {
-  const names = Object.keys(index.files).filter((name) => name.endsWith(".csv"));
+  const names = Object.keys(index.files).filter((name) => name.endsWith(".csv") && !isContact(name));
   for (const name of names) {
     const known = tables.get(name);
     if (known && known.version === index.files[name]) continue;
     const own = { ...table(await fetched(name)), version: index.files[name] };
     tables.set(name, own);
-    const isMonitor = name.startsWith("monitors/");
     const title = name.replace(/^.*?\//, "").replace(/\.csv$/, "");
-    const columns = isMonitor ? own.header.slice(3).map((label, k) => [label, k + 3]) : [[own.header[1], 1]];
+    const columns = isHistory(name) ? own.header.slice(3).map((label, k) => [label, k + 3]) : [[own.header[1], 1]];
     for (const [label, column] of columns) {
       const id = `${name} ${column}`;
       if (!charts.has(id)) {
-        const head = isMonitor ? `${title}: ${plain(label)}` : title;
-        const chart = new Chart(document.getElementById("curves"), head, [isMonitor ? "row of the table" : own.header[0], label]);
+        const head = isHistory(name) ? `${title}: ${plain(label)}` : title;
+        const chart = new Chart(document.getElementById("curves"), head, [isHistory(name) ? "row of the table" : own.header[0], label]);
         charts.set(id, { chart, name });
       }
-      // The displacement may begin anew with a stage: lines of monitors do not cross from one to the next.
-      const part = (row) => (isMonitor ? row[0] : 0);
-      charts.get(id).chart.show(own.rows.map((row, k) => [isMonitor ? k : row[0], row[column], part(row)]));
+      // The displacement may begin anew with a stage: lines of histories do not cross from one to the next.
+      const part = (row) => (isHistory(name) ? row[0] : 0);
+      charts.get(id).chart.show(own.rows.map((row, k) => [isHistory(name) ? k : row[0], row[column], part(row)]));
     }
   }
   for (const [id, { chart, name }] of charts) {
