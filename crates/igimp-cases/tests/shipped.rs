@@ -362,7 +362,11 @@ fn plate_anchor_leaves_a_gap() {
 fn wedge_meets_more_resistance_with_depth() {
     let ran = ran(
         "wedge",
-        &["stages.0.bodies.0.y=-0.15 m", "stages.0.steps=30"],
+        &[
+            "bodies.0.points_per_cell=4",
+            "stages.0.bodies.0.y=-0.2 m",
+            "stages.0.steps=40",
+        ],
     );
     assert_eq!(ran.outcomes(), [Completed]);
     between(ran.end_of("resistance"), 0.3, 1.5);

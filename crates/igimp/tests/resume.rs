@@ -80,7 +80,7 @@ fn rigid_bodies_are_taken_up_where_they_stood() {
         for found in fs::read_dir(&checkpoints).unwrap() {
             let path = found.unwrap().path();
             let name = path.file_name().unwrap().to_str().unwrap();
-            let step = name.strip_prefix("step-").map(|step| step.parse::<i32>());
+            let step = name.strip_prefix("step-").map(str::parse::<i32>);
             let is_later = match step {
                 Some(step) => step.unwrap() > last,
                 None => name == "stage-03-end" || (name == "stage-02-end" && last < 6),

@@ -45,12 +45,7 @@ fn press(stiffness: f64) -> Result<Pressed, CaseError> {
     let ground = Ground::new(x, y, 2, 2)?;
     let mut body = Body::new(Particles::new(&ground.seeds)?);
     let corners = [[-0.3, 0.0], [0.3, 0.0], [0.3, 0.1], [-0.3, 0.1]];
-    let mut plate = polygon(
-        &corners,
-        2.0 * CELL,
-        &Interface::smooth(),
-        [CELL, HEIGHT[0]],
-    );
+    let mut plate = polygon(&corners, CELL, &Interface::smooth(), [CELL, HEIGHT[0]]);
     plate.penalty.stiffness = stiffness;
     body.rigid = vec![plate];
     let mut constraints = Constraints::free(&ground.grid);

@@ -102,7 +102,7 @@ fn turned(angle: f64, cells: usize) -> Result<(RunRecord, [f64; 2]), CaseError> 
     let seeds = fill_polygon(&grid, &outline, 3, 1.0, 0)?;
     let mut body = Body::new(Particles::new(&seeds)?);
     let corners = [[-2.0, 0.0], [2.0, 0.0], [2.0, 0.5], [-2.0, 0.5]];
-    let mut plate = polygon(&corners, 2.0 * h, &Interface::smooth(), [0.0, 0.5]);
+    let mut plate = polygon(&corners, h, &Interface::smooth(), [0.0, 0.5]);
     plate.pose = plate.pose.moved(&[0.0; 2], &[angle, 0.0, 0.0]);
     body.rigid = vec![plate];
     let strain = 1e-3;

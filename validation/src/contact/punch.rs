@@ -56,7 +56,7 @@ fn push(eccentricity: f64, cells: usize) -> Result<Found, CaseError> {
     let mut body = Body::new(Particles::new(&ground.seeds)?);
     let (left, right) = (-0.5 - eccentricity, 0.5 - eccentricity);
     let corners = [[left, 0.0], [right, 0.0], [right, 0.2], [left, 0.2]];
-    let mut punch = polygon(&corners, 2.0 * h, &Interface::smooth(), [eccentricity, 0.0]);
+    let mut punch = polygon(&corners, h, &Interface::smooth(), [eccentricity, 0.0]);
     punch.penalty = Penalty {
         stiffness: 100.0,
         smoothing: 1e-4,

@@ -148,13 +148,14 @@ fn reference(node: &Node, shape: &RigidShape) -> [f64; 2] {
     let middle = |a: [f64; 2], b: [f64; 2]| [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
     match shape {
         RigidShape::Circle { centre, .. } => *centre,
-        RigidShape::Polygon(corners) => match node.text_at("type") {
-            Some("rectangle" | "wall") => middle(corners[0], corners[1]),
-            _ => {
+        RigidShape::Polygon(corners) => {
+            if let Some("rectangle" | "wall") = node.text_at("type") {
+                middle(corners[0], corners[1])
+            } else {
                 let (lower, upper) = crate::polygon::bounding_box(corners);
                 middle(lower, upper)
             }
-        },
+        }
     }
 }
 
@@ -207,7 +208,7 @@ fn shear(value: &Node, around: &Around<'_>, problems: &mut Problems) -> Option<R
         }
         (friction, angle) => friction.or(angle.map(f64::tan)).unwrap_or(0.0),
     };
-    if friction < 0.0 || friction > 1e3 {
+    if !(0.0..=1e3).contains(&friction) {
         problems.error(
             value.place_at("angle"),
             "an angle of friction is less than 90 deg",
