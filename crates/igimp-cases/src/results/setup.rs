@@ -524,7 +524,7 @@ mod tests {
         assert_eq!(
             row(&tables, "Rigid bodies", 0),
             "pipe | circle about (4.5, 2.4) | radius 0.4 | (4.5, 2.4) | \
-             friction 0.3 and adhesion 0.5 of the strength of the soil | none | 0 | load: y by -0.02 m"
+             friction 0.3 and adhesion 0.5 of the strength of the soil | none | 0 | load: y by -0.05 m"
         );
         assert_eq!(
             row(&tables, "Rigid bodies", 1),
