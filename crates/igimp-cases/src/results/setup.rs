@@ -514,15 +514,9 @@ mod tests {
 
     #[test]
     fn rigid_bodies_are_told_in_words() {
-        let tables = of("contact_footing");
-        assert_eq!(
-            row(&tables, "Rigid bodies", 0),
-            "footing | (-0.5, 2) (0.5, 2) (0.5, 3) (-0.5, 3) | 1 × 1 | (0, 2) | rough | none | \
-             0; forces are those modelled times 2 | push: y by -0.2 m; pull: y by 0.05 m"
-        );
         let text = include_str!("../../tests/data/two_bodies.toml").replacen(
             "weight = \"2 kN/m\"",
-            "weight = \"2 kN/m\"\ntension_limit = \"3 kPa\"\nsides = [{ side = \"bottom\", interface = \"smooth\" }]",
+            "weight = \"2 kN/m\"\nforce_factor = 2\ntension_limit = \"3 kPa\"\nsides = [{ side = \"bottom\", interface = \"smooth\" }]",
             1,
         );
         let file = CaseFile::parse("case.toml", &text, &[]).unwrap();
@@ -530,13 +524,14 @@ mod tests {
         assert_eq!(
             row(&tables, "Rigid bodies", 0),
             "pipe | circle about (4.5, 2.4) | radius 0.4 | (4.5, 2.4) | \
-             friction 0.3 and adhesion 0.5 of the strength of the soil | none | 0 | load: y by -0.02 m"
+             friction 0.3 and adhesion 0.5 of the strength of the soil | none | 0 | load: y by -0.05 m"
         );
         assert_eq!(
             row(&tables, "Rigid bodies", 1),
             "footing | (0.9, 2) (2.1, 2) (2.1, 2.6) (0.9, 2.6) | 1.2 × 0.6 | (1.5, 2) | \
-             side 1 smooth, side 2 rough, side 3 rough, side 4 rough | up to 3 kPa | 2 | \
-             seat: y by -0.002 m; load: x free, force in y to -50 kN/m, moment to 5 kN m/m"
+             side 1 smooth, side 2 rough, side 3 rough, side 4 rough | up to 3 kPa | \
+             2; forces are those modelled times 2 | \
+             seat: y by -2.000e-3 m; load: x free, force in y to -50 kN/m, moment to 5 kN m/m"
         );
     }
 
