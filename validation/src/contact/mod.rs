@@ -1,6 +1,7 @@
 //! Contact with rigid bodies, below the case files: problems with exact answers and with bounds.
 
 pub(crate) mod column;
+pub(crate) mod footing;
 pub(crate) mod hertz;
 pub(crate) mod incline;
 pub(crate) mod patch;

@@ -60,7 +60,7 @@ fn cause(failure: &StepFailure) -> &'static str {
         StepFailure::LeavesGrid { .. } | StepFailure::LoadPointLeavesGrid { .. } => {
             "leaves the grid"
         }
-        StepFailure::TooDeep { .. } => "too deep in a rigid body",
+        StepFailure::TooDeep { .. } => "penetrates too deep",
         StepFailure::NotFinite { .. } => "not finite",
         StepFailure::Assembly(AssemblyError::Inverted { .. }) => "particle inverted",
         StepFailure::Assembly(AssemblyError::Material { .. }) => "law fails",
