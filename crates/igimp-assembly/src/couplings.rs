@@ -1,7 +1,7 @@
 //! Forces that are proportional to step displacements and act on each component alike: ghost penalty
 //! (theory, eq. 28) and drag.
 
-use crate::nodal_forces::NodalForces;
+use crate::nodal_forces::{AddBlock, NodalForces};
 
 /// A coupling of two nodes, or of a node to its place, that acts on each displacement component
 /// alike.
@@ -27,12 +27,7 @@ impl<const D: usize> NodalForces<D> for Couplings {
         true
     }
 
-    fn add(
-        &self,
-        u: &[[f64; D]],
-        f: &mut [[f64; D]],
-        blocks: Option<&mut dyn FnMut(usize, usize, &[[f64; D]; D])>,
-    ) {
+    fn add(&self, u: &[[f64; D]], f: &mut [[f64; D]], blocks: Option<&mut AddBlock<'_, D>>) {
         for entry in &self.0 {
             for axis in 0..D {
                 f[entry.row][axis] += entry.stiffness * u[entry.column][axis];

@@ -1,5 +1,8 @@
 //! Forces at nodes beside those of particles: the one seam for ghost penalty, drag and contact.
 
+/// Takes a block of the tangent: row, column, ∂f/∂u \[force/length\].
+pub(crate) type AddBlock<'b, const D: usize> = dyn FnMut(usize, usize, &[[f64; D]; D]) + 'b;
+
 /// Force and stiffness at nodes beside those of particles.
 pub(crate) trait NodalForces<const D: usize>: std::fmt::Debug + Send + Sync {
     /// Pairs of nodes of the grid that it couples, both ways.
@@ -10,10 +13,5 @@ pub(crate) trait NodalForces<const D: usize>: std::fmt::Debug + Send + Sync {
 
     /// Adds the internal force at nodal step displacements `u` \[length\] to `f` \[force\], and hands its
     /// derivative on in blocks of nodes: row, column, ∂f/∂u \[force/length\].
-    fn add(
-        &self,
-        u: &[[f64; D]],
-        f: &mut [[f64; D]],
-        blocks: Option<&mut dyn FnMut(usize, usize, &[[f64; D]; D])>,
-    );
+    fn add(&self, u: &[[f64; D]], f: &mut [[f64; D]], blocks: Option<&mut AddBlock<'_, D>>);
 }

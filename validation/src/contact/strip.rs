@@ -134,7 +134,7 @@ impl Push {
     fn bounds(&self) -> (Expected, Band) {
         let row = TABLE
             .iter()
-            .find(|row| row.0 == self.eccentricity)
+            .find(|row| row.0.total_cmp(&self.eccentricity).is_eq())
             .expect("the eccentricity is in the table");
         let [lower, upper] = if self.rough { row.1 } else { row.2 };
         let band = Band::Between(0.98 * lower, 1.02 * upper);

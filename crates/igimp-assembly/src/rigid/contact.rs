@@ -6,14 +6,14 @@ use std::collections::BTreeMap;
 use igimp_shape::Grid;
 
 use super::face::Face;
-use super::interface::{Shear, Tension};
+use super::interface::{Interface, Shear, Tension};
 use super::motion::rotations;
 use super::row::{Functional, Row};
 use super::surface::cross;
 use super::{ContactNode, ContactState, NODES_PER_BODY, RigidBody};
 use crate::error::AssemblyError;
 use crate::method::Geometry;
-use crate::nodal_forces::NodalForces;
+use crate::nodal_forces::{AddBlock, NodalForces};
 use crate::particles::Particles;
 use crate::stencils::Stencils;
 use crate::step_conditions::StepConditions;
@@ -22,6 +22,9 @@ use crate::unknowns::Unknowns;
 
 /// The centre of a particle stands at least so far off a body, in half-lengths as seeded \[-\].
 const LEAST_HEIGHT: f64 = 0.5;
+
+/// A node with a smaller share of a point has none: round-off on a line of the grid \[-\].
+const LEAST_SHARE: f64 = 1e-9;
 
 /// Contact of one step, with directions and weights frozen at its start.
 #[derive(Debug)]
@@ -113,7 +116,11 @@ impl<'a, const D: usize> Contact<'a, D> {
                 };
                 is_near = true;
                 for point in face.points(body, grid) {
-                    let Some((shares, place, cell)) = shares_at(grid, stencils, unknowns, &point.x)
+                    let Some(SoilPoint {
+                        shares,
+                        place,
+                        cell,
+                    }) = soil_at(grid, stencils, unknowns, &point.x)
                     else {
                         continue;
                     };
@@ -287,17 +294,10 @@ impl<const D: usize> NodalForces<D> for Contact<'_, D> {
 
     fn is_symmetric(&self) -> bool {
         let interfaces = self.bodies.iter().flat_map(|body| &body.interfaces);
-        interfaces
-            .into_iter()
-            .all(|interface| interface.is_symmetric())
+        interfaces.into_iter().all(Interface::is_symmetric)
     }
 
-    fn add(
-        &self,
-        u: &[[f64; D]],
-        f: &mut [[f64; D]],
-        mut blocks: Option<&mut dyn FnMut(usize, usize, &[[f64; D]; D])>,
-    ) {
+    fn add(&self, u: &[[f64; D]], f: &mut [[f64; D]], mut blocks: Option<&mut AddBlock<'_, D>>) {
         for row in &self.rows {
             let body = &self.bodies[row.body];
             let interface = &body.interfaces[body.surface.side_of(row.knot)];
@@ -310,16 +310,24 @@ impl<const D: usize> NodalForces<D> for Contact<'_, D> {
     }
 }
 
-/// The tent functions at a point, on nodes that carry soil, as shares that sum to one, the place that they
-/// stand for (the point itself if all of its nodes carry soil) and the size of the cell \[length\]. Seen from
-/// that place a rotation of body and soil together opens no gap, and moments balance. None where no node
-/// carries soil.
-fn shares_at<const D: usize>(
+/// The soil's displacement at a point, as shares of nodes that carry soil.
+struct SoilPoint<const D: usize> {
+    /// They sum to one.
+    shares: Vec<(usize, f64)>,
+    /// The place that the shares stand for, the point itself if all of its nodes carry soil. Seen from there
+    /// a rotation of body and soil together opens no gap, and moments balance \[length\].
+    place: [f64; D],
+    /// Size of the cell \[length\].
+    cell: f64,
+}
+
+/// The soil at a point by the tent functions; none where no node carries soil.
+fn soil_at<const D: usize>(
     grid: &Grid<D>,
     stencils: &Stencils<D>,
     unknowns: &Unknowns<D>,
     x: &[f64; D],
-) -> Option<(Vec<(usize, f64)>, [f64; D], f64)> {
+) -> Option<SoilPoint<D>> {
     let cell = grid.cell_at(x)?;
     let size = grid.cell_size(cell);
     let node = grid.node_position(grid.node_index(cell));
@@ -328,7 +336,7 @@ fn shares_at<const D: usize>(
     let mut sum = 0.0;
     for (node, share, _) in grid.tents(cell, within) {
         let node = stencils.master(node);
-        if share > 1e-9 && unknowns.is_active(node) {
+        if share > LEAST_SHARE && unknowns.is_active(node) {
             shares.push((node, share));
             sum += share;
         }
@@ -344,8 +352,11 @@ fn shares_at<const D: usize>(
             place[axis] += *share * own[axis];
         }
     }
-    let smallest = size.into_iter().fold(f64::INFINITY, f64::min);
-    Some((shares, place, smallest))
+    Some(SoilPoint {
+        shares,
+        place,
+        cell: size.into_iter().fold(f64::INFINITY, f64::min),
+    })
 }
 
 /// Minus the displacement of a body at a point in a direction: shares of its two nodes.

@@ -3,6 +3,7 @@
 
 use super::interface::{Shear, Tension};
 use super::{ContactNode, Interface, Penalty};
+use crate::nodal_forces::AddBlock;
 
 /// Traction grows at most so much from step to step where soil covers less and less of a knot \[-\].
 const MOST_GROWTH: f64 = 2.0;
@@ -121,12 +122,11 @@ impl<const D: usize> Row<D> {
         let slip: [f64; 2] = [0, 1].map(|k| value(&self.slip[k], u));
         let trial = [0, 1].map(|k| self.before.shear[k] - held * slip[k]);
         match &interface.shear {
-            Shear::Smooth => {}
             Shear::Rough if self.before.is_closed => {
                 out.shear = trial;
                 out.shear_by_slip = [[-held, 0.0], [0.0, -held]];
             }
-            Shear::Rough => {}
+            Shear::Smooth | Shear::Rough => {}
             Shear::Limited { friction, .. } => {
                 let adhesion = if self.before.is_closed {
                     self.adhesion
@@ -163,7 +163,7 @@ impl<const D: usize> Row<D> {
         &self,
         traction: &Traction,
         f: &mut [[f64; D]],
-        blocks: Option<&mut dyn FnMut(usize, usize, &[[f64; D]; D])>,
+        blocks: Option<&mut AddBlock<'_, D>>,
     ) {
         let tangents = D - 1;
         add(&self.opening, -self.area * traction.pressure, f);
