@@ -242,7 +242,7 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
             order,
         );
     }
-    study.table(errors)?;
+    errors.write_csv(&study.folder)?;
     if level > Level::Quick {
         let friction = 0.5;
         let found = Cylinder {

@@ -172,7 +172,7 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
         let order = (first[1] / end[1]).ln() / (end[0] / first[0]).ln();
         let quantity = format!("order of the root mean square of stress at {degrees}° [-]");
         study.check(last, quantity, ORDER.says(0.5), Band::AtLeast(0.4), order);
-        study.table(errors)?;
+        errors.write_csv(&study.folder)?;
     }
     Ok(study)
 }
