@@ -135,7 +135,7 @@ impl Case {
             Self::ContactFooting => contact::footing::study(level, out),
             Self::ContactColumn => contact::column::study(out),
             Self::ContactIncline => contact::incline::study(out),
-            Self::ContactPatch => contact::patch::study(level, out),
+            Self::ContactPatch => contact::patch::study(out),
             Self::ContactHertz => contact::hertz::study(level, out),
             Self::ContactPunch => contact::punch::study(level, out),
             Self::ContactStrip => contact::strip::study(level, out),

@@ -17,7 +17,7 @@ use igimp_solver::{Body, MarchSettings};
 use super::{polygon, weightless};
 use crate::laboratory::{run, unobserved};
 use crate::oracle::{Oracle, OracleKind};
-use crate::study::{Level, RunRecord, Study};
+use crate::study::{RunRecord, Study};
 
 /// What the book says of the study.
 const ABOUT: &str = "A smooth plate presses an elastic block evenly. With its surface anywhere in its cell the stress is exact; below a plate that is turned against the grid, the stepped edge of the particles leaves an error that falls with the cell.";
@@ -141,7 +141,7 @@ fn turned(angle: f64, cells: usize) -> Result<(RunRecord, [f64; 2]), CaseError> 
 }
 
 /// Runs the study.
-pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
+pub(crate) fn study(out: &Path) -> Result<Study, CaseError> {
     let mut study = Study::new("contact-patch", ABOUT, out)?;
     for offset in [0.0, 0.2, 0.37, 0.5, 0.62, 0.81] {
         let (record, [stress, pressure]) = square(offset)?;
@@ -152,11 +152,7 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
         let quantity = "largest deviation of contact pressure [-]";
         study.check(run, quantity, none, Band::AtMost(1e-9), pressure);
     }
-    let meshes: &[usize] = match level {
-        Level::Quick => &[8, 16],
-        Level::Default => &[8, 16, 32],
-        Level::Full => &[8, 16, 32, 64],
-    };
+    let meshes: &[usize] = &[8, 16, 32];
     for degrees in [15.0_f64, 30.0, 42.0] {
         let mut errors = Table::new(
             format!("turned_by_{degrees}_degrees"),
