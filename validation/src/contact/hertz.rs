@@ -166,6 +166,29 @@ fn fitted(profile: &[[f64; 3]]) -> [f64; 2] {
     [2.0 * (moment / sum).sqrt(), ((sy - slope * sx) / n).sqrt()]
 }
 
+/// Tells the errors of all meshes, and checks their order.
+fn refinement(study: &mut Study, third: usize, rows: &[Vec<f64>]) {
+    for row in rows {
+        study.notes.push(format!(
+            "contact-hertz, b/h ≈ {:.0}: b is off by {:.2} %, p₀ by {:.2} %",
+            row[0],
+            100.0 * row[1],
+            100.0 * row[2]
+        ));
+    }
+    // On a fourth mesh the error has changed its sign, and tells no order.
+    if let [first, _, end, ..] = rows {
+        let order = (first[1] / end[1]).abs().ln() / (end[0] / first[0]).ln();
+        study.check(
+            third,
+            "order of the error of b over the first three meshes [-]",
+            HERTZ.says(1.0),
+            Band::AtLeast(1.0),
+            order,
+        );
+    }
+}
+
 /// Runs the study.
 pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
     let mut study = Study::new("contact-hertz", ABOUT, out)?;
@@ -225,26 +248,7 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
         }
         study.table(profile)?;
     }
-    let rows = errors.rows.clone();
-    for row in &rows {
-        study.notes.push(format!(
-            "contact-hertz, b/h ≈ {:.0}: b is off by {:.2} %, p₀ by {:.2} %",
-            row[0],
-            100.0 * row[1],
-            100.0 * row[2]
-        ));
-    }
-    // On a fourth mesh the error has changed its sign, and tells no order.
-    if let [first, _, end, ..] = &rows[..] {
-        let order = (first[1] / end[1]).abs().ln() / (end[0] / first[0]).ln();
-        study.check(
-            third,
-            "order of the error of b over the first three meshes [-]",
-            HERTZ.says(1.0),
-            Band::AtLeast(1.0),
-            order,
-        );
-    }
+    refinement(&mut study, third, &errors.rows);
     errors.write_csv(&study.folder)?;
     if level > Level::Quick {
         let friction = 0.5;
