@@ -10,7 +10,8 @@ use std::f64::consts::FRAC_PI_4;
 use common::{Random, displacements, grid, laws, particles};
 use igimp_assembly::{
     Constraints, ContactNode, Drive, Interface, Method, Particles, Pose, RigidBody, RigidMotion,
-    SharedLaw, Shear, Stencils, StepConditions, StepLoads, Surface, System, TangentMatrix, Tension,
+    SharedLaw, Shear, Stencils, StepConditions, StepLoads, Surface, SurfaceError, System,
+    TangentMatrix, Tension,
 };
 use igimp_material::TangentKind;
 use igimp_shape::Grid;
@@ -477,6 +478,18 @@ fn distance_to_a_rounded_rectangle() {
         let expected = outside + beyond[0].max(beyond[1]).min(0.0) - 0.2;
         assert!((body.distance(&x) - expected).abs() < 1e-12, "{x:?}");
     }
+}
+
+/// A surface that would have knots without end is refused before any is made.
+#[test]
+fn endless_surfaces_are_refused() {
+    for far in [1e9, 1e300, f64::MAX, f64::INFINITY] {
+        let corners = [[0.0, 0.0], [far, 0.0], [0.0, 1.0]];
+        let refused = Surface::polygon(&corners, 0.0, 0.1).unwrap_err();
+        assert!(matches!(refused, SurfaceError::TooLong { .. }), "{refused}");
+        assert!(Surface::circle(far, 0.1).is_err());
+    }
+    assert!(Surface::polygon(&[[0.0, 0.0], [1e3, 0.0], [0.0, 1.0]], 0.0, 0.1).is_ok());
 }
 
 #[test]

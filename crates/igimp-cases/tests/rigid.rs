@@ -53,6 +53,7 @@ fn bodies_that_make_no_sense() {
             "radius = \"0.4 m\"\nreference = [\"4 m\", \"2 m\"]"
         ),
         ("radius = \"0.4 m\"", "radius = \"0.2 m\""),
+        ("[\"2.1 m\", \"2.6 m\"]", "[\"2.1 m\", \"1e9 m\"]"),
         (
             PIPE,
             "type = \"polygon\"\ncorners = [[\"4 m\", \"2 m\"], [\"5 m\", \"3 m\"], [\"5 m\", \"2 m\"], [\"4 m\", \"3 m\"]]"

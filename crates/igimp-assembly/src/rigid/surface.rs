@@ -2,6 +2,9 @@
 
 use thiserror::Error;
 
+/// The largest number of knots of a surface in the plane.
+const MOST_KNOTS: u32 = 1_000_000;
+
 /// What makes no surface.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum SurfaceError {
@@ -15,6 +18,14 @@ pub enum SurfaceError {
         side: usize,
         /// The radius \[length\].
         rounding: f64,
+    },
+    /// More knots than contact is ever averaged around.
+    #[error("it is {length} m around, more than {MOST_KNOTS} cells of {spacing} m")]
+    TooLong {
+        /// How long its sides are in all \[length\].
+        length: f64,
+        /// The distance of knots \[length\].
+        spacing: f64,
     },
     /// A number that is not finite, or a size that is not positive.
     #[error("{what} must be positive and finite, but is {value}")]
@@ -85,6 +96,7 @@ impl Surface<2> {
         if n < 3 || (0..n).any(|k| norm(&side(k)) <= 0.0) {
             return Err(SurfaceError::TooFewCorners);
         }
+        countable((0..n).map(|k| norm(&side(k))).sum(), spacing)?;
         let area: f64 = (0..n)
             .map(|k| {
                 let (a, b) = (corners[k], corners[(k + 1) % n]);
@@ -138,11 +150,12 @@ impl Surface<2> {
     /// A circle about the origin of the body's frame, with knots about `spacing` apart \[length\].
     ///
     /// # Errors
-    /// [`SurfaceError::NotPositive`].
+    /// [`SurfaceError::NotPositive`], [`SurfaceError::TooLong`].
     pub fn circle(radius: f64, spacing: f64) -> Result<Self, SurfaceError> {
         positive("the radius", radius)?;
         positive("the distance of knots", spacing)?;
         let around = std::f64::consts::TAU;
+        countable(around * radius, spacing)?;
         let parts = (around * radius / spacing).round().max(8.0) as usize;
         let at = |part: f64| {
             let (sin, cos) = (around * part / parts as f64).sin_cos();
@@ -428,6 +441,15 @@ fn positive(what: &'static str, value: f64) -> Result<(), SurfaceError> {
         Ok(())
     } else {
         Err(SurfaceError::NotPositive { what, value })
+    }
+}
+
+/// Refuses more knots than a surface may have; so does a length that is no number.
+fn countable(length: f64, spacing: f64) -> Result<(), SurfaceError> {
+    if length <= f64::from(MOST_KNOTS) * spacing {
+        Ok(())
+    } else {
+        Err(SurfaceError::TooLong { length, spacing })
     }
 }
 

@@ -1,6 +1,6 @@
 //! Rigid bodies that soil touches, and how stages move them.
 
-use igimp_assembly::Tension;
+use igimp_assembly::{Surface, SurfaceError, Tension};
 
 /// A rigid body that soil touches, slides along and leaves.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,6 +42,21 @@ impl RigidPart {
                     [centre[0] + radius * cos, centre[1] + radius * sin]
                 })
                 .collect(),
+        }
+    }
+
+    /// Its surface about the reference point, in cells of a size \[m\].
+    ///
+    /// # Errors
+    /// [`SurfaceError`].
+    pub fn surface(&self, cell: f64) -> Result<Surface<2>, SurfaceError> {
+        match &self.shape {
+            RigidShape::Polygon(corners) => {
+                let [x, y] = self.reference;
+                let own: Vec<_> = corners.iter().map(|at| [at[0] - x, at[1] - y]).collect();
+                Surface::polygon(&own, self.rounding * cell, cell)
+            }
+            RigidShape::Circle { radius, .. } => Surface::circle(*radius, cell),
         }
     }
 

@@ -1,8 +1,6 @@
 //! Rigid bodies of a case as the solver has them: made, placed, moved, and what they did.
 
-use igimp_assembly::{
-    Drive, Interface, Particles, RigidBody, RigidMotion, Shear, Surface, SurfaceError,
-};
+use igimp_assembly::{Drive, Interface, Particles, RigidBody, RigidMotion, Shear};
 use igimp_solver::Accepted;
 
 use super::model::Model;
@@ -30,26 +28,17 @@ pub(crate) fn cell_near(case: &Case, part: &RigidPart) -> f64 {
 /// A rigid body of a case where it starts, among so many laws: one for each material, again and again.
 pub(crate) fn made(case: &Case, index: usize, laws: usize) -> Result<RigidBody<2>, CaseError> {
     let part = &case.rigid[index];
-    let surface = surface(part, cell_near(case, part)).map_err(|source| CaseError::RigidBody {
-        name: part.name.clone(),
-        source,
-    })?;
+    let surface = part
+        .surface(cell_near(case, part))
+        .map_err(|source| CaseError::RigidBody {
+            name: part.name.clone(),
+            source,
+        })?;
     let interfaces = part.interfaces.iter();
     let interfaces = interfaces.map(|own| interface(case, own, laws)).collect();
     let mut body = RigidBody::new(surface, interfaces, part.reference);
     body.penalty.stiffness = part.stiffness;
     Ok(body)
-}
-
-fn surface(part: &RigidPart, cell: f64) -> Result<Surface<2>, SurfaceError> {
-    match &part.shape {
-        RigidShape::Polygon(corners) => {
-            let [x, y] = part.reference;
-            let own: Vec<_> = corners.iter().map(|at| [at[0] - x, at[1] - y]).collect();
-            Surface::polygon(&own, part.rounding * cell, cell)
-        }
-        RigidShape::Circle { radius, .. } => Surface::circle(*radius, cell),
-    }
 }
 
 fn interface(case: &Case, of: &RigidInterface, laws: usize) -> Interface {

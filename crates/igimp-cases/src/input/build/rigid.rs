@@ -1,6 +1,6 @@
 //! Rigid bodies: their shapes, what their sides are like, and whether they have a place.
 
-use igimp_assembly::{Surface, SurfaceError, Tension};
+use igimp_assembly::{SurfaceError, Tension};
 
 use super::AllNames;
 use super::grid::Frame;
@@ -316,20 +316,28 @@ fn in_grid(node: &Node, part: &RigidPart, frame: &Frame, problems: &mut Problems
                 number(LEAST_CELLS * cell)
             ));
     }
-    if let RigidShape::Polygon(corners) = &part.shape
-        && let Err(SurfaceError::RoundedAway { side, rounding }) =
-            Surface::polygon(corners, part.rounding * cell, LEAST_CELLS * cell)
-    {
-        problems
-            .error(
-                node.place_at("rounding"),
-                format!(
-                    "with corners rounded by {} m nothing is left of side {} of the rigid body `{name}`",
-                    number(rounding),
-                    side + 1
-                ),
-            )
-            .help("a smaller rounding, smaller cells there, or a longer side");
+    match part.surface(cell) {
+        Ok(_) => {}
+        Err(SurfaceError::RoundedAway { side, rounding }) => {
+            problems
+                .error(
+                    node.place_at("rounding"),
+                    format!(
+                        "with corners rounded by {} m nothing is left of side {} of the rigid body `{name}`",
+                        number(rounding),
+                        side + 1
+                    ),
+                )
+                .help("a smaller rounding, smaller cells there, or a longer side");
+        }
+        Err(error) => {
+            problems
+                .error(
+                    node.place_at("name"),
+                    format!("the rigid body `{name}` cannot be made: {error}"),
+                )
+                .help("soil is only within the domain: the body need not reach far beyond it");
+        }
     }
     let level = lower[1];
     if part.grid_follows {
