@@ -1,26 +1,21 @@
-//! A strip on Tresca soil at small strain: eccentric load that lets the base lift off, and vertical with
-//! horizontal load.
+//! A strip on Tresca soil at small strain: edges anywhere in their cell, eccentric load that lets the base
+//! lift off, and vertical with horizontal load.
+
+mod push;
 
 use std::f64::consts::PI;
-use std::ops::ControlFlow;
 use std::path::Path;
-use std::sync::Arc;
 
-use igimp_assembly::{Drive, Interface, Method, Particles, RigidMotion, SharedLaw};
 use igimp_cases::CaseError;
 use igimp_cases::check::Band;
-use igimp_cases::table::Table;
-use igimp_material::{Elasticity, Tresca};
-use igimp_solver::{Accepted, Body, MarchSettings};
 use rayon::prelude::*;
 
-use super::{Ground, force, graded, polygon, weightless};
-use crate::laboratory::run;
+use self::push::{Load, Push, Scheme};
 use crate::oracle::{Expected, Oracle, OracleKind};
 use crate::study::{Level, RunRecord, Study};
 
 /// What the book says of the study.
-const ABOUT: &str = "A rigid strip on weightless Tresca soil with E/s_u = 10⁴, free to tilt under an eccentric load and free to lift off, and pushed at an angle. Limit loads are held against bounds of limit analysis; those of the pushes are told beside Green's envelope.";
+const ABOUT: &str = "A rigid strip on weightless Tresca soil, on the given geometry: pushed down with its edges anywhere in their cell, under an eccentric load, free to tilt and to lift off, and at an angle. Shared strain with sharp edges is held against limit analysis mesh by mesh, B-bar with edges rounded by half a cell, as case files have it, by two meshes.";
 const BOUNDS: Oracle = Oracle {
     kind: OracleKind::LimitAnalysis,
     source: "finite-element limit analysis of a strip with eccentric load, no tension on its base",
@@ -31,119 +26,25 @@ const PRANDTL: Oracle = Oracle {
     source: "Prandtl 1920",
     locator: "V/(B s_u) = 2 + π",
 };
-/// Young's modulus over undrained strength \[-\].
-const YOUNG: f64 = 1e4;
-/// Settlement of the load point at the end over the width \[-\].
-const SETTLEMENT: f64 = 0.01;
+const GREEN: Oracle = Oracle {
+    kind: OracleKind::Exact,
+    source: "Green 1954",
+    locator: "V/(B s_u) = 1 + π/2 + arccos η + √(1 − η²), η = H/(B s_u) ≤ 1",
+};
 
-/// Settlement of the first step, which brings strip and soil together before the strip may tilt \[-\].
-const TOUCH: f64 = 1e-5;
+/// Where the edges stand in their cell \[-\].
+const PLACES: [f64; 5] = [0.0, 0.2, 0.4, 0.6, 0.8];
+/// Sideways motion over settlement \[-\].
+const RATIOS: [f64; 3] = [1.5, 2.0, 3.0];
+/// Cells over the width on two meshes that are extrapolated.
+const MESHES: [usize; 2] = [9, 17];
 
 /// Lower and upper bound of V/(B s_u) by eccentricity over width, rough and smooth.
-const TABLE: [(f64, [f64; 2], [f64; 2]); 4] = [
-    (0.0, [5.1056, 5.1674], [5.0808, 5.1491]),
+const TABLE: [(f64, [f64; 2], [f64; 2]); 3] = [
     (0.1, [4.1771, 4.2443], [4.0542, 4.1311]),
     (0.2, [3.1353, 3.1975], [3.0242, 3.1026]),
     (0.4, [1.0382, 1.1019], [0.9749, 1.0447]),
 ];
-
-/// One push of a strip of unit width.
-#[derive(Clone, Debug)]
-struct Push {
-    eccentricity: f64,
-    rough: bool,
-    /// Sideways motion over settlement \[-\]; the strip is then held upright.
-    sideways: Option<f64>,
-    cells: usize,
-}
-
-impl Push {
-    /// V/(B s_u) and H/(B s_u) by step.
-    fn run(&self) -> Result<(RunRecord, Table), CaseError> {
-        let h = 1.0 / self.cells as f64;
-        // With an odd number of cells the edges stand in the middle of cells.
-        let reach = 14.0_f64.max(1.5 * self.cells as f64).ceil() * h;
-        let ground = Ground::new(
-            graded(h, [-reach, reach], [-3.5, 3.5], 1.15),
-            graded(h, [-0.9, 0.0], [-2.5, 0.0], 1.15),
-            3,
-            2,
-        )?;
-        let mut body = Body::new(Particles::new(&ground.seeds)?);
-        let e = self.eccentricity;
-        // A surface strip: its back rises so flat that only the base touches.
-        let corners = [[-0.5 - e, 0.0], [0.5 - e, 0.0], [-e, 0.2]];
-        let interface = if self.rough {
-            Interface::rough()
-        } else {
-            Interface::smooth()
-        };
-        body.rigid = vec![polygon(&corners, h, &interface, [e, 0.0])];
-        let law: SharedLaw = Arc::new(Tresca::new(Elasticity::new(YOUNG, 0.49)?, 1.0)?);
-        let constraints = ground.held()?;
-        let load_path = |from: f64, to: f64| {
-            let down = SETTLEMENT * (to - from);
-            let mut motion = RigidMotion::displaced([0.0, -TOUCH]);
-            if from > 0.0 {
-                motion = RigidMotion::displaced([0.0, -down]);
-                match self.sideways {
-                    Some(ratio) => motion.displacement[0] = Drive::Moved(ratio * down),
-                    None => motion.rotation[0] = Drive::Loaded(0.0),
-                }
-            }
-            weightless(&ground.grid, &constraints, &law, motion)
-        };
-        let kind = if self.rough { "rough" } else { "smooth" };
-        let name = match self.sideways {
-            Some(ratio) => format!("probe_{ratio}_{}", self.cells),
-            None => format!("eccentric_{e}_{kind}_{}", self.cells),
-        };
-        let mut curve = Table::new(name, &["settlement_over_B_[-]", "V_[B s_u]", "H_[B s_u]"]);
-        let mut observe = |accepted: &Accepted<'_, 2>| {
-            let [horizontal, vertical] = force(accepted);
-            curve.push(vec![
-                SETTLEMENT * accepted.report.to,
-                -vertical,
-                horizontal.abs(),
-            ]);
-            ControlFlow::Continue(())
-        };
-        let variant = match self.sideways {
-            Some(ratio) => format!("rough, pushed {ratio}:1 sideways, B/h = {}", self.cells),
-            None => format!("{kind}, e = {e} B, B/h = {}", self.cells),
-        };
-        let (run, _) = run(
-            variant,
-            &mut body,
-            &Method::shared_strain(),
-            &MarchSettings::steps(20),
-            &load_path,
-            &mut observe,
-        );
-        Ok((run, curve))
-    }
-
-    /// Whether its limit load is held against the bounds. With an eccentric load one mesh lies within them
-    /// and the other beyond; a rough strip that is probed sideways slides at about (B + h) s_u.
-    fn is_claimed(&self) -> bool {
-        self.sideways.is_none() && self.eccentricity == 0.0
-    }
-
-    /// What is known of V/(B s_u), and the band: 2 % beyond the bounds.
-    fn bounds(&self) -> (Expected, Band) {
-        let row = TABLE
-            .iter()
-            .find(|row| row.0.total_cmp(&self.eccentricity).is_eq())
-            .expect("the eccentricity is in the table");
-        let [lower, upper] = if self.rough { row.1 } else { row.2 };
-        let band = Band::Between(0.98 * lower, 1.02 * upper);
-        if self.eccentricity == 0.0 {
-            (PRANDTL.says(2.0 + PI), band)
-        } else {
-            (BOUNDS.says(0.5 * (lower + upper)), band)
-        }
-    }
-}
 
 /// V/(B s_u) of a rough strip under inclined load at H/(B s_u) (Green 1954).
 fn green(eta: f64) -> f64 {
@@ -151,65 +52,180 @@ fn green(eta: f64) -> f64 {
     1.0 + 0.5 * PI + eta.acos() + (1.0 - eta * eta).sqrt()
 }
 
+/// How much larger than Green's the load `[V, H]` is, along the ray from no load \[-\].
+fn over_green([vertical, horizontal]: [f64; 2]) -> f64 {
+    let lies_within = |share: f64| {
+        let eta = horizontal / share;
+        eta <= 1.0 && vertical / share <= green(eta)
+    };
+    let (mut low, mut high) = (1e-3, 1e3);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if lies_within(middle) {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    0.5 * (low + high)
+}
+
+/// The pushes of a level; those of a lower one are among them.
+fn pushes(level: Level) -> Vec<Push> {
+    let mut pushes = Vec::new();
+    let mut push = |scheme, load, rough, cells| {
+        pushes.push(Push {
+            scheme,
+            load,
+            rough,
+            cells,
+        });
+    };
+    let meshes: &[usize] = match level {
+        Level::Quick | Level::Default => &MESHES[..1],
+        Level::Full => &MESHES,
+    };
+    for rough in [false, true] {
+        for place in PLACES {
+            if level == Level::Quick && place != 0.0 {
+                continue;
+            }
+            for &cells in meshes {
+                push(Scheme::Sharp, Load::Centric { place }, rough, cells);
+            }
+            if level != Level::Quick {
+                for cells in MESHES {
+                    push(Scheme::Rounded, Load::Centric { place }, rough, cells);
+                }
+            }
+        }
+        for (e, ..) in TABLE {
+            push(Scheme::Sharp, Load::Eccentric(e), rough, MESHES[0]);
+            if level == Level::Full && e < 0.3 {
+                for cells in MESHES {
+                    push(Scheme::Rounded, Load::Eccentric(e), rough, cells);
+                }
+            }
+        }
+    }
+    if level != Level::Quick {
+        push(Scheme::Rounded, Load::Sideways, true, MESHES[0]);
+    }
+    if level == Level::Full {
+        for ratio in RATIOS {
+            for cells in MESHES {
+                push(Scheme::Rounded, Load::Inclined(ratio), true, cells);
+            }
+        }
+    }
+    pushes
+}
+
+/// What is known of a push: the quantity, its value, the band on one mesh if it is claimed there, and that of
+/// two meshes extrapolated.
+fn known(push: &Push) -> (&'static str, Expected, Option<Band>, Band) {
+    let is_sharp = push.scheme == Scheme::Sharp;
+    match push.load {
+        Load::Centric { .. } => {
+            // Half a cell at each edge of a smooth strip is missed by more on nine cells.
+            let is_claimed = is_sharp || push.rough || push.cells > MESHES[0];
+            let band = is_claimed.then_some(Band::Relative(0.05));
+            let expected = PRANDTL.says(2.0 + PI);
+            ("V/(B s_u)", expected, band, Band::Relative(0.015))
+        }
+        Load::Eccentric(e) => {
+            let row = TABLE.iter().find(|row| row.0.total_cmp(&e).is_eq());
+            let row = row.expect("the eccentricity is in the table");
+            let [lower, upper] = if push.rough { row.1 } else { row.2 };
+            let band = Band::Between(0.98 * lower, 1.02 * upper);
+            let is_claimed = is_sharp || push.cells > MESHES[0];
+            let expected = BOUNDS.says(0.5 * (lower + upper));
+            ("V/(B s_u)", expected, is_claimed.then_some(band), band)
+        }
+        Load::Inclined(_) => {
+            let expected = GREEN.says(1.0);
+            ("(V, H) over Green's", expected, None, Band::Relative(0.03))
+        }
+        Load::Sideways => {
+            let band = Band::Relative(0.03);
+            ("H/(B s_u)", GREEN.says(1.0), Some(band), band)
+        }
+    }
+}
+
+/// The number that is held against what is known, from V/(B s_u) and H/(B s_u).
+fn measured(push: &Push, at_end: [f64; 2]) -> f64 {
+    match push.load {
+        Load::Centric { .. } | Load::Eccentric(_) => at_end[0],
+        Load::Inclined(_) => over_green(at_end),
+        Load::Sideways => at_end[1],
+    }
+}
+
 /// Runs the study.
 pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
     let mut study = Study::new("contact-strip", ABOUT, out)?;
-    let meshes: &[usize] = match level {
-        Level::Quick | Level::Default => &[9],
-        Level::Full => &[9, 17],
-    };
-    let mut jobs = Vec::new();
-    for &cells in meshes {
-        for (eccentricity, ..) in TABLE {
-            for rough in [false, true] {
-                jobs.push(Push {
-                    eccentricity,
-                    rough,
-                    sideways: None,
-                    cells,
-                });
-            }
-        }
-        for ratio in [1.5, 2.0, 3.0] {
-            jobs.push(Push {
-                eccentricity: 0.0,
-                rough: true,
-                sideways: Some(ratio),
-                cells,
-            });
-        }
-    }
-    let done = jobs
+    let pushes = pushes(level);
+    let done = pushes
         .par_iter()
         .map(Push::run)
         .collect::<Result<Vec<_>, CaseError>>()?;
-    for (job, (record, curve)) in jobs.iter().zip(done) {
-        let run = if job.is_claimed() {
-            study.run_to_end(record)
-        } else {
-            study.run(record)
-        };
-        let [vertical, horizontal] = curve
-            .rows
-            .last()
-            .map_or([f64::NAN; 2], |row| [row[1], row[2]]);
-        let (expected, band) = job.bounds();
-        if job.is_claimed() {
-            study.check(run, "V/(B s_u) at the end [-]", expected, band, vertical);
-        } else {
-            // Told, and not claimed.
-            let RunRecord {
-                variant, outcome, ..
-            } = &study.runs[run];
-            let known = match job.sideways {
-                Some(_) => format!("Green {:.3}", green(horizontal)),
-                None => format!("bounds' mean {:.3}", expected.value),
-            };
-            study.notes.push(format!(
-                "contact-strip, {variant}: V/(B s_u) = {vertical:.3} at H/(B s_u) = {horizontal:.3}, {known}; {outcome}"
-            ));
-        }
+    let mut ends: Vec<[f64; 2]> = Vec::new();
+    for (k, (push, (record, curve))) in pushes.iter().zip(done).enumerate() {
         curve.write_csv(&study.folder)?;
+        let last = curve.rows.last();
+        let end = last.map_or([f64::NAN; 2], |row| [row[1], row[2]]);
+        ends.push(end);
+        let (quantity, expected, band, extrapolated) = known(push);
+        // All of them have to reach their end: those that are only told are extrapolated.
+        let run = study.run_to_end(record);
+        match band {
+            Some(band) => study.check(
+                run,
+                format!("{quantity} at the end [-]"),
+                expected,
+                band,
+                measured(push, end),
+            ),
+            None => tell(&mut study, run, push, end),
+        }
+        let Some(coarse) = k.checked_sub(1).map(|coarse| (&pushes[coarse], ends[coarse])) else {
+            continue;
+        };
+        let is_pair = Push {
+            cells: push.cells,
+            ..*coarse.0
+        } == *push;
+        if is_pair {
+            let [a, b] = [coarse.0.cells, push.cells].map(|cells| cells as f64);
+            let limit = [0, 1].map(|k| end[k] + (end[k] - coarse.1[k]) * a / (b - a));
+            study.check(
+                run,
+                format!(
+                    "{quantity} extrapolated from B/h = {} and {} [-]",
+                    MESHES[0], MESHES[1]
+                ),
+                expected,
+                extrapolated,
+                measured(push, limit),
+            );
+        }
     }
     Ok(study)
+}
+
+/// Tells of a push that is not claimed on its mesh.
+fn tell(study: &mut Study, run: usize, push: &Push, end: [f64; 2]) {
+    let RunRecord {
+        variant, outcome, ..
+    } = &study.runs[run];
+    let (quantity, expected, ..) = known(push);
+    let share = measured(push, end) / expected.value - 1.0;
+    let note = format!(
+        "contact-strip, {variant}: V/(B s_u) = {:.3}, H/(B s_u) = {:.3}, {quantity} off by {:+.1} %; {outcome}",
+        end[0],
+        end[1],
+        100.0 * share
+    );
+    study.notes.push(note);
 }
