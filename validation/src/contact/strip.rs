@@ -189,7 +189,10 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
             ),
             None => tell(&mut study, run, push, end),
         }
-        let Some(coarse) = k.checked_sub(1).map(|coarse| (&pushes[coarse], ends[coarse])) else {
+        let Some(coarse) = k
+            .checked_sub(1)
+            .map(|coarse| (&pushes[coarse], ends[coarse]))
+        else {
             continue;
         };
         let is_pair = Push {

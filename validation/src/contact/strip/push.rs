@@ -19,7 +19,7 @@ use crate::study::RunRecord;
 const YOUNG: f64 = 1e4;
 /// Settlement at the end and at the start over the width \[-\]. In between it grows by the same factor from step
 /// to step: strip and soil come together softly, and an eccentric strip tilts from the first steps on.
-const SETTLEMENT: [f64; 2] = [1e-5, 4e-3];
+const SETTLEMENT: [f64; 2] = [1e-5, 3e-3];
 const STEPS: usize = 24;
 /// Vertical load under which the strip is pushed sideways over B s_u \[-\].
 const LIGHT: f64 = 1.0;
@@ -31,15 +31,6 @@ pub(super) enum Scheme {
     Sharp,
     /// B-bar, and half a cell at each edge carries nothing, as case files have it if nothing else is said.
     Rounded,
-}
-
-impl Scheme {
-    fn name(self) -> &'static str {
-        match self {
-            Self::Sharp => "shared strain, sharp edges",
-            Self::Rounded => "B-bar, edges rounded by half a cell",
-        }
-    }
 }
 
 /// What is done to the strip.
@@ -68,23 +59,18 @@ pub(super) struct Push {
 impl Push {
     /// What it is called.
     pub(super) fn variant(&self) -> String {
-        format!(
-            "{}, {}, B/h = {}",
-            self.without_mesh(),
-            self.scheme.name(),
-            self.cells
-        )
-    }
-
-    /// What it is called on two meshes.
-    pub(super) fn without_mesh(&self) -> String {
         let kind = if self.rough { "rough" } else { "smooth" };
-        match self.load {
-            Load::Centric { place } => format!("{kind}, edge {place} of a cell beyond a node"),
-            Load::Eccentric(e) => format!("{kind}, e = {e} B"),
-            Load::Inclined(ratio) => format!("{kind}, pushed {ratio}:1 sideways"),
-            Load::Sideways => format!("{kind}, pushed sideways"),
-        }
+        let load = match self.load {
+            Load::Centric { place } => format!("edge {place} of a cell beyond a node"),
+            Load::Eccentric(e) => format!("e = {e} B"),
+            Load::Inclined(ratio) => format!("pushed {ratio}:1 sideways"),
+            Load::Sideways => "pushed sideways".to_owned(),
+        };
+        let scheme = match self.scheme {
+            Scheme::Sharp => "shared strain, sharp edges",
+            Scheme::Rounded => "B-bar, edges rounded by half a cell",
+        };
+        format!("{kind}, {load}, {scheme}, B/h = {}", self.cells)
     }
 
     fn file_name(&self) -> String {
@@ -123,27 +109,23 @@ impl Push {
     }
 
     /// The strip: a body much higher than its base settles, with smooth sides.
-    fn strip(&self) -> Result<RigidBody<2>, CaseError> {
+    fn strip(&self) -> RigidBody<2> {
         let h = 1.0 / self.cells as f64;
-        let (e, rounding) = match (self.load, self.scheme) {
-            (Load::Eccentric(e), Scheme::Sharp) => (e, 0.0),
-            (Load::Eccentric(e), Scheme::Rounded) => (e, 0.5),
-            (_, Scheme::Sharp) => (0.0, 0.0),
-            (_, Scheme::Rounded) => (0.0, 0.5),
+        let e = match self.load {
+            Load::Eccentric(e) => e,
+            _ => 0.0,
         };
-        let corners = [
-            [-0.5 - e, 0.0],
-            [0.5 - e, 0.0],
-            [0.5 - e, 1.0],
-            [-0.5 - e, 1.0],
-        ];
-        let surface =
-            Surface::polygon(&corners, rounding * h, h).expect("the outline has corners");
+        let rounding = match self.scheme {
+            Scheme::Sharp => 0.0,
+            Scheme::Rounded => 0.5,
+        };
+        let corners = [[-0.5, 0.0], [0.5, 0.0], [0.5, 1.0], [-0.5, 1.0]].map(|[x, y]| [x - e, y]);
+        let surface = Surface::polygon(&corners, rounding * h, h).expect("the outline has corners");
         let mut sides = vec![Interface::smooth(); surface.side_count()];
         if self.rough {
             sides[0] = Interface::rough();
         }
-        Ok(RigidBody::new(surface, sides, [e, 0.0]))
+        RigidBody::new(surface, sides, [e, 0.0])
     }
 
     /// How it moves between two settlements over the width, the first of which is 0 in the first step.
@@ -176,7 +158,7 @@ impl Push {
         let rows = graded(h, [-(0.9 / h).round() * h, 0.0], [-2.5, 0.0], 1.15);
         let ground = Ground::new(self.columns(), rows, 3, 2)?;
         let mut body = Body::new(Particles::new(&ground.seeds)?);
-        body.rigid = vec![self.strip()?];
+        body.rigid = vec![self.strip()];
         let law: SharedLaw = Arc::new(Tresca::new(Elasticity::new(YOUNG, 0.49)?, 1.0)?);
         let constraints = ground.held()?;
         let settlement = |at: f64| {
@@ -211,9 +193,8 @@ impl Push {
         };
         method.geometry = Geometry::Given;
         let settings = MarchSettings::steps(STEPS);
-        let variant = self.variant();
         let (run, _) = run(
-            variant,
+            self.variant(),
             &mut body,
             &method,
             &settings,
