@@ -58,7 +58,7 @@ impl End {
             Self::NoEquilibrium => "no equilibrium",
             Self::Moved => "displacement limit",
             Self::Early => "no equilibrium before the planned end",
-            Self::OtherFailure => "other failure (soil left the grid)",
+            Self::OtherFailure => "other failure (soil left the grid, went too far into a body)",
             Self::Completed => "reached its end",
             Self::Budget => "budget used up",
             Self::Hangs => "hangs",
@@ -116,10 +116,13 @@ impl Watched {
         Self::disorderly(End::Refused, chain(error), 0.0)
     }
 
-    /// Whether the run kept what every run has to keep: it ended, with a reason, and accepted no
-    /// step above the tolerance that is not at round-off.
+    /// Whether the run kept what every run has to keep: it ended, with a reason, accepted no step above the
+    /// tolerance that is not at round-off, and carried no soil into a rigid body.
     pub(crate) fn is_sound(&self) -> bool {
-        self.end.is_orderly() && !self.reason.is_empty() && self.effort.violations.is_empty()
+        self.end.is_orderly()
+            && !self.reason.is_empty()
+            && self.effort.violations.is_empty()
+            && self.effort.contact.is_empty()
     }
 }
 
