@@ -457,7 +457,8 @@ fn combine<const D: usize>(corners: &[[f64; D]; D], shares: &[f64; D]) -> [f64; 
     std::array::from_fn(|axis| (0..D).map(|k| shares[k] * corners[k][axis]).sum())
 }
 
-fn minus<const D: usize>(a: &[f64; D], b: &[f64; D]) -> [f64; D] {
+/// The difference of two vectors.
+pub(crate) fn minus<const D: usize>(a: &[f64; D], b: &[f64; D]) -> [f64; D] {
     std::array::from_fn(|axis| a[axis] - b[axis])
 }
 

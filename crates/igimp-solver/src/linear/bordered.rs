@@ -2,7 +2,8 @@
 
 use igimp_assembly::{Border, TangentMatrix};
 
-use super::{LinearSolver, LinearSolverError};
+use super::refine::max_norm;
+use super::{Accuracy, LinearSolver, LinearSolverError};
 
 /// The Schur complement of the unknowns of rigid bodies, S = K_bb − K_bg K_gg⁻¹ K_gb, with what it is
 /// made of.
@@ -40,8 +41,51 @@ impl Bordered {
         Ok(Self { carried, schur })
     }
 
-    /// Solves for all unknowns: those of the grid first, those of the bodies behind them.
+    /// Solves for all unknowns: those of the grid first, those of the bodies behind them. As for the grid alone,
+    /// the solution is checked against the whole matrix, and refined once where that helps.
     pub(crate) fn solve(
+        &self,
+        solver: &mut dyn LinearSolver,
+        matrix: &TangentMatrix,
+        rhs: &[f64],
+        solution: &mut [f64],
+    ) -> Result<(), LinearSolverError> {
+        self.solve_once(solver, matrix, rhs, solution)?;
+        if self.schur.is_empty() {
+            return Ok(());
+        }
+        let Accuracy {
+            target, tolerance, ..
+        } = Accuracy::default();
+        let scale = max_norm(rhs);
+        let mut residual = vec![0.0; rhs.len()];
+        let mut error = residual_of(matrix, rhs, solution, &mut residual) / scale;
+        if scale == 0.0 || error <= target {
+            return Ok(());
+        }
+        let mut refined = vec![0.0; rhs.len()];
+        self.solve_once(solver, matrix, &residual, &mut refined)?;
+        for (own, first) in refined.iter_mut().zip(&*solution) {
+            *own += first;
+        }
+        let own = residual_of(matrix, rhs, &refined, &mut residual) / scale;
+        if own < error {
+            solution.copy_from_slice(&refined);
+            error = own;
+        }
+        // Written so that what is not a number does not pass.
+        if error <= tolerance {
+            Ok(())
+        } else {
+            Err(LinearSolverError::Inaccurate {
+                relative_residual: error,
+                tolerance,
+            })
+        }
+    }
+
+    /// The same without the check.
+    fn solve_once(
         &self,
         solver: &mut dyn LinearSolver,
         matrix: &TangentMatrix,
@@ -68,6 +112,35 @@ impl Bordered {
         }
         of_bodies.copy_from_slice(&motion);
         Ok(())
+    }
+}
+
+/// The largest entry of b − K x over all unknowns, which is left in `residual`; infinite where it is not a
+/// number.
+fn residual_of(matrix: &TangentMatrix, rhs: &[f64], x: &[f64], residual: &mut [f64]) -> f64 {
+    let Border {
+        columns,
+        rows,
+        corner,
+    } = &matrix.border;
+    let (of_soil, of_bodies) = x.split_at(x.len() - corner.len());
+    let (soil, bodies) = residual.split_at_mut(of_soil.len());
+    matrix.multiply(of_soil, soil);
+    for (column, by) in columns.iter().zip(of_bodies) {
+        for (own, entry) in soil.iter_mut().zip(column) {
+            *own += by * entry;
+        }
+    }
+    for (own, (row, entries)) in bodies.iter_mut().zip(rows.iter().zip(corner)) {
+        *own = product(row, of_soil) + product(entries, of_bodies);
+    }
+    for (own, rhs) in residual.iter_mut().zip(rhs) {
+        *own = rhs - *own;
+    }
+    if residual.iter().all(|own| own.is_finite()) {
+        max_norm(residual)
+    } else {
+        f64::INFINITY
     }
 }
 

@@ -67,10 +67,11 @@ fn cause(failure: &StepFailure) -> &'static str {
             "leaves the grid"
         }
         StepFailure::TooDeep { .. } => "penetrates too deep",
+        StepFailure::Swallowed { .. } => "soil caught by a body",
+        StepFailure::NotHeld { .. } => "nothing holds a body",
         StepFailure::NotFinite { .. } => "not finite",
         StepFailure::Assembly(AssemblyError::Inverted { .. }) => "particle inverted",
         StepFailure::Assembly(AssemblyError::Material { .. }) => "law fails",
-        StepFailure::Assembly(AssemblyError::Swallowed { .. }) => "soil caught by a body",
         StepFailure::Assembly(_) => "no equations",
         StepFailure::Linear(
             LinearSolverError::Singular { .. } | LinearSolverError::NotPositiveDefinite { .. },
@@ -140,7 +141,9 @@ impl<'c> Follower<'c> {
         self.bodies(accepted);
         let effort = &mut self.effort;
         // A ghost penalty holds soil beside what the particles and the bodies carry.
-        let again = self.before.as_ref().filter(|_| report.ghost_penalty == 0.0);
+        let again = self.before.as_ref().filter(|before| {
+            report.ghost_penalty == 0.0 && before.rigid.len() == accepted.body.rigid.len()
+        });
         if let Some(again) = again.and_then(|before| equilibrium(self.case, before, accepted)) {
             effort.rechecked += 1;
             let allowed = if report.at_round_off {
@@ -174,6 +177,8 @@ impl<'c> Follower<'c> {
         let there = there.filter(|(part, _)| all || part.from_start);
         let own: Vec<&Outline> = there.map(|(_, outline)| outline).collect();
         let before = self.before.as_ref();
+        // Bodies that came in with this step have no way behind them.
+        let before = before.filter(|before| before.rigid.len() == after.rigid.len());
         let before = before.map(|before| (&before.particles, &before.rigid[..]));
         let found = reach(&own, before, (&after.particles, &after.rigid));
         let effort = &mut self.effort;
