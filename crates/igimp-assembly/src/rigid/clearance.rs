@@ -29,7 +29,7 @@ struct Extent<'a, const D: usize> {
 impl<'a, const D: usize> Extent<'a, D> {
     fn all(bodies: &'a [RigidBody<D>]) -> Vec<Self> {
         let of = |body: &'a RigidBody<D>| {
-            let (lower, upper) = body.surface.bounds();
+            let (lower, upper) = body.surface.extent();
             Self { body, lower, upper }
         };
         bodies.iter().map(of).collect()

@@ -116,9 +116,11 @@ pub(crate) fn equilibrium(
         }
     }
     let reference: f64 = f64::sqrt(external) + f64::sqrt(reaction);
+    // Where nothing acts, nothing is out of balance.
+    let share = |force: f64| if force == 0.0 { 0.0 } else { force / reference };
     Some(Equilibrium {
-        residual: f64::sqrt(free) / reference,
-        round_off: f64::sqrt(round_off) / reference,
+        residual: share(f64::sqrt(free)),
+        round_off: share(f64::sqrt(round_off)),
     })
 }
 

@@ -58,7 +58,7 @@ impl End {
             Self::NoEquilibrium => "no equilibrium",
             Self::Moved => "displacement limit",
             Self::Early => "no equilibrium before the planned end",
-            Self::OtherFailure => "other failure (soil left the grid, went too far into a body)",
+            Self::OtherFailure => "other failure",
             Self::Completed => "reached its end",
             Self::Budget => "budget used up",
             Self::Hangs => "hangs",
