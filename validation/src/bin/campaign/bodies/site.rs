@@ -69,11 +69,15 @@ impl Site {
         let (low, high) = (face(-1.5 * h), face(self.surface[0] + 2.0 * h));
         let back = h * random.uniform(2.2, 3.0);
         self.has_wall = true;
-        let polygon = &mut self.polygons[0];
-        let (toe, top) = (face(0.0), face(self.surface[0]));
-        // The surface is level where the wall stands.
-        polygon[0] = toe;
-        polygon[3] = top;
+        // The surface is level where a wall stands.
+        let level = self.surface[0];
+        self.surface[1] = level;
+        self.polygons[0] = vec![
+            face(0.0),
+            [self.width(), 0.0],
+            [self.width(), level],
+            face(level),
+        ];
         Shape::Corners(vec![
             low,
             high,
