@@ -80,6 +80,8 @@ pub(crate) struct Watched {
     pub(crate) end: End,
     /// In the words of the run.
     pub(crate) reason: String,
+    /// Name of the last stage that began.
+    pub(crate) stage: String,
     /// The step that decided the end, if it did so by not being accepted.
     pub(crate) cut: Option<Cut>,
     /// Steps and corrections.
@@ -101,6 +103,7 @@ impl Watched {
         Self {
             end,
             reason,
+            stage: String::new(),
             cut: None,
             effort: Effort::default(),
             reached: 0.0,
@@ -227,6 +230,7 @@ fn follow(case: &Case, budget: Budget, interrupt: &AtomicBool) -> Watched {
         (StageOutcome::Stopped, None) | (_, Some(_)) => (End::Moved, None),
         (StageOutcome::Completed, None) => (End::Completed, None),
     };
+    let name = stage.name;
     let safety = stage.safety;
     let reason = match &safety {
         Some(safety) if stage.outcome == StageOutcome::Completed => safety
@@ -240,6 +244,7 @@ fn follow(case: &Case, budget: Budget, interrupt: &AtomicBool) -> Watched {
     Watched {
         end,
         reason,
+        stage: name,
         cut,
         effort: watch.follower.effort,
         reached: stage.reached,

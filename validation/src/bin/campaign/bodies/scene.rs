@@ -75,6 +75,8 @@ pub(crate) struct Scene {
     pub(crate) has_weight: bool,
     /// The bodies.
     pub(crate) parts: Vec<Part>,
+    /// Names of the stages in which a body has a force or is free.
+    pub(crate) loaded: Vec<&'static str>,
     text: String,
 }
 
@@ -104,13 +106,15 @@ impl Scene {
         for (slot, part) in parts.iter().enumerate() {
             text.push_str(&table(slot, part));
         }
-        text.push_str(&stages(&parts, cell, has_weight, random));
+        let (stages, loaded) = stages(&parts, cell, has_weight, random);
+        text.push_str(&stages);
         Self {
             number,
             law,
             stiffness,
             has_weight,
             parts,
+            loaded,
             text,
         }
     }
@@ -275,8 +279,15 @@ fn table(slot: usize, part: &Part) -> String {
     )
 }
 
-fn stages(parts: &[Part], cell: f64, has_weight: bool, random: &mut Random) -> String {
+/// The stages, and those in which a body has a force or is free.
+fn stages(
+    parts: &[Part],
+    cell: f64,
+    has_weight: bool,
+    random: &mut Random,
+) -> (String, Vec<&'static str>) {
     let mut text = String::new();
+    let mut with_forces = Vec::new();
     if has_weight {
         text.push_str("\n[[stages]]\nname = \"weight\"\ntype = \"gravity\"\nsteps = 5\n");
     }
@@ -313,10 +324,13 @@ fn stages(parts: &[Part], cell: f64, has_weight: bool, random: &mut Random) -> S
                 text
             })
             .collect();
+        if is_loaded {
+            with_forces.push(name);
+        }
         let goes_on = is_loaded && random.chance(0.5);
         text.push_str(&stage(name, random.integer(6, 12), &moves, goes_on));
     }
-    text
+    (text, with_forces)
 }
 
 fn stage(name: &str, steps: usize, moves: &[String], goes_on: bool) -> String {

@@ -12,7 +12,7 @@ const LAWS: [Law; 4] = [Law::Tresca, Law::VonMises, Law::MohrCoulomb, Law::Elast
 /// One row a scene.
 pub(crate) fn csv(runs: &[(Scene, Watched)]) -> String {
     let mut text = format!(
-        "number,bodies,law,e_over_c,has_weight,particles,nearest_half_lengths,soil_in_bodies,{EFFORT}\n"
+        "number,bodies,law,e_over_c,has_weight,stage,has_forces,particles,nearest_half_lengths,soil_in_bodies,{EFFORT}\n"
     );
     for (scene, watched) in runs {
         let bodies = scene.parts.iter();
@@ -21,12 +21,14 @@ pub(crate) fn csv(runs: &[(Scene, Watched)]) -> String {
             .collect();
         let _ = writeln!(
             text,
-            "{},{},{},{:.1},{},{},{:.4},{},{}",
+            "{},{},{},{:.1},{},{},{},{},{:.4},{},{}",
             scene.number,
             bodies.join(" + "),
             scene.law.label(),
             scene.stiffness,
             scene.has_weight,
+            watched.stage,
+            is_loaded(scene, watched),
             watched.particles,
             watched.effort.nearest.unwrap_or(f64::NAN),
             watched.effort.contact.len(),
@@ -55,6 +57,15 @@ pub(crate) fn markdown(runs: &[(Scene, Watched)], seed: u64) -> String {
         kinds.join(", ")
     );
     text.push_str(&ends(runs));
+    let early = |(_, run): &&(Scene, Watched)| run.end == End::Early;
+    let under = |(scene, run): &&(Scene, Watched)| is_loaded(scene, run);
+    let _ = writeln!(
+        text,
+        "Of the {} runs without equilibrium before the planned end, {} ended in a stage in which a body has a force \
+         or is free.\n",
+        runs.iter().filter(early).count(),
+        runs.iter().filter(early).filter(under).count(),
+    );
     text.push_str(&causes(&watched));
     text.push_str(&effort(&watched));
     text.push_str(&invariants(&watched));
@@ -70,6 +81,11 @@ pub(crate) fn markdown(runs: &[(Scene, Watched)], seed: u64) -> String {
         runs.len(),
     );
     text
+}
+
+/// Whether the last stage of a run gave a body a force, or left it free.
+fn is_loaded(scene: &Scene, watched: &Watched) -> bool {
+    scene.loaded.contains(&watched.stage.as_str())
 }
 
 fn ends(runs: &[(Scene, Watched)]) -> String {
