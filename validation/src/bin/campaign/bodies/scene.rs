@@ -324,7 +324,8 @@ fn stages(
                 text
             })
             .collect();
-        if is_loaded {
+        // What a stage does not mention keeps its force.
+        if is_loaded || !with_forces.is_empty() {
             with_forces.push(name);
         }
         let goes_on = is_loaded && random.chance(0.5);
