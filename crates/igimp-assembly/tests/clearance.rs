@@ -32,7 +32,7 @@ fn body(corners: &[[f64; 2]]) -> RigidBody<2> {
     let surface = Surface::polygon(corners, 0.0, 1.0).unwrap();
     let sides = vec![Interface::smooth(); corners.len()];
     let mut body = RigidBody::new(surface, sides, [0.0; 2]);
-    body.name = "anchor".to_owned();
+    "anchor".clone_into(&mut body.name);
     body
 }
 

@@ -220,7 +220,7 @@ fn soil_lets_go_and_carries_again() {
 fn a_plate_that_nothing_holds_is_named() {
     let attempt = |lifted: f64, motion: &RigidMotion<2>| {
         let (mut body, conditions) = under_a_plate(&Interface::smooth());
-        body.rigid[0].name = "plate".to_owned();
+        "plate".clone_into(&mut body.rigid[0].name);
         body.rigid[0].pose.origin[1] += lifted;
         advance(&mut body, &conditions, RigidMotion::displaced([0.0, -0.05]));
         let conditions = conditions.with_motions(vec![motion.clone()]).unwrap();
