@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use crate::kinematics::ParticleTrial;
 use crate::method::{DomainUpdate, Geometry, Kinematics, Method};
 use crate::particles::Particles;
+use crate::rigid::{RigidBody, seeded_too_close};
 use crate::small::{congruence, determinant, identity, multiply, rotation, transpose};
 use crate::stencils::Stencils;
 use crate::supports::CHUNK;
@@ -76,6 +77,17 @@ impl<const D: usize> Particles<D> {
                 *history = own.history;
                 *regime = own.regime;
             });
+    }
+
+    /// Moves particles that stand too close to rigid bodies, or within them, off these, as [`System::bodies_at`]
+    /// does after a step: for bodies that are put where a side cuts the parts of cells that soil is seeded in.
+    /// Nothing but their place changes. How many were moved.
+    ///
+    /// [`System::bodies_at`]: crate::System::bodies_at
+    pub fn clear_of(&mut self, bodies: &[RigidBody<D>]) -> usize {
+        let ways = seeded_too_close(bodies, self);
+        self.put_back(&ways);
+        ways.len()
     }
 
     /// Moves particles of an accepted step, such as those that stand too close to a rigid body; nothing

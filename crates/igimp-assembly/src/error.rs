@@ -104,14 +104,19 @@ pub enum AssemblyError {
         /// A principal elastic Hencky strain \[-\].
         strain: f64,
     },
-    /// A particle would be carried into a rigid body.
-    #[error("particle {particle} would be carried into rigid body {body} at {position:?} m")]
+    /// A particle would be carried into a rigid body, or through it.
+    #[error(
+        "particle {particle} would be carried {depth:.2} of its half-length into the rigid body \
+             \"{body}\" on its way to {position:?} m"
+    )]
     Swallowed {
         /// Number of the particle, from 0.
         particle: usize,
-        /// Number of the body, from 0.
-        body: usize,
-        /// Where its centre would be \[length\], axes beyond the dimension 0.
+        /// Name of the body.
+        body: String,
+        /// How deep, in half-lengths of the particle as seeded \[-\].
+        depth: f64,
+        /// Where its centre would be in the end \[length\], axes beyond the dimension 0.
         position: [f64; 3],
     },
     /// A constraint names a node that the grid does not have.

@@ -143,7 +143,7 @@ impl<const D: usize> Stencils<D> {
     }
 
     /// The node that a node moves with: itself unless it is tied.
-    pub(crate) fn master(&self, node: usize) -> usize {
+    pub fn master(&self, node: usize) -> usize {
         self.masters.get(&node).copied().unwrap_or(node)
     }
 

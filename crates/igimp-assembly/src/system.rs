@@ -437,7 +437,7 @@ impl<'a, const D: usize> System<'a, D> {
     pub fn node_position(&self, node: usize) -> [f64; D] {
         let of_grid = self.conditions.grid.node_count();
         match node.checked_sub(of_grid) {
-            Some(beyond) => self.contact.origin(beyond / NODES_PER_BODY),
+            Some(beyond) => self.contact.body(beyond / NODES_PER_BODY).pose.origin,
             None => self.conditions.grid.node_position(node),
         }
     }
@@ -461,10 +461,24 @@ impl<'a, const D: usize> System<'a, D> {
         }
     }
 
-    /// The rigid bodies as an accepted step leaves them, at nodal step displacements `u` \[length\].
+    /// The rigid body that a node stands for, with the component of its motion along an axis: displacements
+    /// along the axes, then rotations; and whether any soil can touch it in this step.
+    pub fn rigid_body_of(&self, node: usize, axis: usize) -> Option<(&RigidBody<D>, usize, bool)> {
+        let beyond = node.checked_sub(self.conditions.grid.node_count())?;
+        let index = beyond / NODES_PER_BODY;
+        let component = axis + D * (beyond % NODES_PER_BODY);
+        let touches = self.contact.may_touch(index);
+        Some((self.contact.body(index), component, touches))
+    }
+
+    /// What a step with nodal step displacements `u` \[length\] leaves of contact when it is accepted: the
+    /// bodies at their new places, and the way back of particles whose centres came closer to one than half
+    /// of their seeded half-length, for [`Particles::put_back`]. All particles are looked at, with
+    /// the way that they took. On a given geometry nothing moves, and none is put back.
     ///
     /// # Errors
-    /// [`AssemblyError::Swallowed`] for a particle whose centre would be within a body.
+    /// [`AssemblyError::Swallowed`] for a particle whose centre would be in a body deeper than its seeded
+    /// half-length, or was so on its way.
     pub fn bodies_at(&self, u: &[[f64; D]]) -> Result<AcceptedContact<D>, AssemblyError> {
         let Self {
             particles,

@@ -19,43 +19,13 @@ use igimp_shape::Grid;
 /// Stiffness of contact per area on cells of unit size: ten times Young's modulus of the soil.
 const STIFFNESS: f64 = 1000.0;
 
-/// Corners of a box about the origin.
-fn corners(half: [f64; 3]) -> Vec<[f64; 3]> {
-    let corner = |k: usize| {
-        std::array::from_fn(|axis| {
-            if k >> axis & 1 == 0 {
-                -half[axis]
-            } else {
-                half[axis]
-            }
-        })
-    };
-    (0..8).map(corner).collect()
-}
-
-/// Two triangles on each side of a box, anticlockwise from outside.
-const BOX: [([usize; 3], usize); 12] = [
-    ([0, 4, 6], 0),
-    ([0, 6, 2], 0),
-    ([1, 3, 7], 1),
-    ([1, 7, 5], 1),
-    ([0, 1, 5], 2),
-    ([0, 5, 4], 2),
-    ([2, 6, 7], 3),
-    ([2, 7, 3], 3),
-    ([0, 2, 3], 4),
-    ([0, 3, 1], 4),
-    ([4, 5, 7], 5),
-    ([4, 7, 6], 5),
-];
-
 fn rectangle(half: [f64; 2], spacing: f64) -> Surface<2> {
     let [x, y] = half;
     Surface::polygon(&[[-x, -y], [x, -y], [x, y], [-x, y]], 0.0, spacing).unwrap()
 }
 
 fn block(half: [f64; 3]) -> Surface<3> {
-    Surface::triangles(&corners(half), &BOX).unwrap()
+    Surface::cuboid(half).unwrap()
 }
 
 fn with_shear(shear: Shear) -> Interface {

@@ -110,6 +110,10 @@ fn stages_that_make_no_sense() {
         ),
         ("{ body = \"pipe\", y = \"-50 mm\" },", ""),
         (
+            "steps = 8\n",
+            "steps = 8\nstop_when = { load_grows_less_than = 0.01 }\n",
+        ),
+        (
             "[output]",
             "[[stages]]\nname = \"safety\"\ntype = \"strength-reduction\"\npath = \"gravity\"\n[output]",
         ),
@@ -223,6 +227,67 @@ fn too_deep_a_penetration_ends_the_run() {
         text.contains("stiffness = 60 of the rigid body \"footing\" (now 30)"),
         "{text}"
     );
+}
+
+/// GOAL: the failure says where soil went too far, and in which body.
+#[test]
+fn a_failure_names_the_body_and_the_place() {
+    let file = parsed(&[("weight = \"2 kN/m\"", "most_penetration = 1e-3")]);
+    let text = in_memory(file.case()).unwrap().failure.unwrap().to_string();
+    assert!(
+        text.contains("into the rigid body \"footing\" at ["),
+        "{text}"
+    );
+}
+
+/// GOAL: a body that has a force, or is free, while no soil touches it ends with what to do about it.
+#[test]
+fn a_body_that_nothing_holds_ends_the_run_with_a_remedy() {
+    let file = parsed(&[
+        (
+            "centre = [\"4.5 m\", \"2.4 m\"]",
+            "centre = [\"4.5 m\", \"2.5 m\"]",
+        ),
+        ("y = \"-50 mm\" }", "force_y = \"-5 kN/m\" }"),
+    ]);
+    let run = in_memory(file.case()).unwrap();
+    let text = run.failure.unwrap().to_string();
+    assert!(
+        text.contains("nothing holds the rigid body \"pipe\" in its displacement in y"),
+        "{text}"
+    );
+    assert!(
+        text.contains("a stage before \"load\" that moves it until soil touches it: bodies = [{ body = \"pipe\", y"),
+        "{text}"
+    );
+    assert_eq!(run.summary.stages.len(), 3);
+}
+
+/// GOAL: a block that is let go onto friction in one step ends in equilibrium under its forces, or with a
+/// reason, however large the step.
+#[test]
+fn a_block_is_let_go_onto_friction_in_one_step() {
+    for (sideways, holds) in [("2 kN/m", true), ("30 kN/m", false)] {
+        let file = parsed(&[
+            (
+                "type = \"rectangle\"",
+                "type = \"rectangle\"\ninterface = { friction = 0.3 }",
+            ),
+            (
+                "force_y = \"-50 kN/m\", moment = \"5 kNm/m\", free = [\"x\"]",
+                &format!("force_x = \"{sideways}\", force_y = \"-50 kN/m\", free = [\"rotation\"]"),
+            ),
+            ("steps = 8", "steps = 1"),
+        ]);
+        let run = in_memory(file.case()).unwrap();
+        let last = run.summary.stages.last().unwrap();
+        assert_eq!(run.failure.is_none(), holds, "{sideways}: {}", last.reason);
+        if !holds {
+            // It slips when the force aside is 0.3 of that which presses it.
+            assert!((0.05..1.0).contains(&last.reached), "{}", last.reached);
+            assert!(last.cuts > 0 && !last.reason.is_empty());
+        }
+    }
 }
 
 /// GOAL: a grid that follows a body keeps a row at its base, with the same forces as one that does not to

@@ -9,7 +9,7 @@ use igimp_shape::Grid;
 
 use crate::linear::{Bordered, LinearSolver, LinearSolverError};
 use crate::newton::{NewtonSettings, Workspace};
-use crate::report::{PhaseTimes, StepFailure, padded};
+use crate::report::{Component, PhaseTimes, StepFailure, padded};
 use crate::residual_history::ResidualHistory;
 
 /// How often a correction is halved.
@@ -201,8 +201,25 @@ impl<const D: usize> Corrector<'_, '_, D> {
                 };
                 self.not_finite(what, index)
             }
+            LinearSolverError::Singular {
+                unknown: Some(unknown),
+            } => self.not_held(unknown).unwrap_or_else(|| error.into()),
             other => other.into(),
         }
+    }
+
+    /// The failure that names the rigid body of an unknown, if it is that of one.
+    fn not_held(&self, unknown: usize) -> Option<StepFailure> {
+        let (node, axis) = self.system.unknowns().place(unknown)?;
+        let (body, component, touches) = self.system.rigid_body_of(node, axis)?;
+        Some(StepFailure::NotHeld {
+            body: body.name.clone(),
+            component: match component.checked_sub(D) {
+                None => Component::Displacement(component),
+                Some(rotation) => Component::Rotation(rotation),
+            },
+            touches,
+        })
     }
 
     /// Looks for a particle whose tangent is not finite: at `u`, or at the start of the step, to which

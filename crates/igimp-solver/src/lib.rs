@@ -20,4 +20,4 @@ pub use march::{
     march_from,
 };
 pub use newton::{NewtonSettings, Workspace, step};
-pub use report::{NodalForces, PhaseTimes, StepError, StepFailure, StepReport};
+pub use report::{Component, NodalForces, PhaseTimes, StepError, StepFailure, StepReport};

@@ -7,6 +7,27 @@ use thiserror::Error;
 
 use crate::linear::LinearSolverError;
 
+/// A component of the motion of a rigid body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Component {
+    /// Displacement along an axis.
+    Displacement(usize),
+    /// Rotation, in the plane or about an axis.
+    Rotation(usize),
+}
+
+impl Component {
+    /// In messages.
+    fn name(self) -> &'static str {
+        match self {
+            Self::Displacement(0) => "displacement in x",
+            Self::Displacement(1) => "displacement in y",
+            Self::Displacement(_) => "displacement in z",
+            Self::Rotation(_) => "rotation",
+        }
+    }
+}
+
 /// Why a step found no equilibrium.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum StepFailure {
@@ -38,13 +59,44 @@ pub enum StepFailure {
         /// Where it would go \[length\], axes beyond the dimension 0.
         position: [f64; 3],
     },
+    /// Converged, but a particle would be carried into a rigid body, or through it.
+    #[error(
+        "particle {particle} would be carried {depth:.2} of its half-length into the rigid body \
+             \"{body}\" on its way to {position:?} m"
+    )]
+    Swallowed {
+        /// Number of the particle, from 0.
+        particle: usize,
+        /// Name of the body.
+        body: String,
+        /// How deep, in half-lengths of the particle as seeded \[-\].
+        depth: f64,
+        /// Where it would be in the end \[length\], axes beyond the dimension 0.
+        position: [f64; 3],
+    },
     /// Converged, but soil has gone too far into a rigid body.
-    #[error("soil has gone {share} of a cell into rigid body {body}")]
+    #[error("soil has gone {share:.3} of a cell into the rigid body \"{body}\" at {position:?} m")]
     TooDeep {
-        /// Number of the body, from 0.
-        body: usize,
+        /// Name of the body.
+        body: String,
         /// How far, as a share of the cell \[-\].
         share: f64,
+        /// Where it is deepest \[length\], axes beyond the dimension 0.
+        position: [f64; 3],
+    },
+    /// A rigid body is free to move, and nothing holds it.
+    #[error(
+        "nothing holds the rigid body \"{body}\" in its {}: {}",
+        component.name(),
+        if *touches { "the soil around it gives no resistance" } else { "no soil is near it" }
+    )]
+    NotHeld {
+        /// Name of the body.
+        body: String,
+        /// What nothing holds.
+        component: Component,
+        /// Whether soil is near enough to touch it.
+        touches: bool,
     },
     /// A number of the linear system that must be finite is not.
     #[error("the {what} at {position:?} m, axis {axis}, is not finite")]
@@ -70,9 +122,13 @@ impl StepFailure {
     /// cannot answer or memory that runs out tell nothing of the load that a body carries.
     pub fn is_want_of_equilibrium(&self) -> bool {
         match self {
-            Self::MaxIterations { .. } | Self::Diverged | Self::Stagnated => true,
+            Self::MaxIterations { .. }
+            | Self::Diverged
+            | Self::Stagnated
+            | Self::NotHeld { .. } => true,
             Self::LeavesGrid { .. }
             | Self::LoadPointLeavesGrid { .. }
+            | Self::Swallowed { .. }
             | Self::TooDeep { .. }
             | Self::NotFinite { .. } => false,
             Self::Assembly(error) => error.is_too_far(),

@@ -13,7 +13,7 @@ use igimp_assembly::{
 };
 use igimp_material::{Elasticity, HenckyElastic};
 use igimp_shape::{Axis, Grid};
-use igimp_solver::{Body, NewtonSettings, NodalForces, StepReport, step};
+use igimp_solver::{Body, Component, NewtonSettings, NodalForces, StepFailure, StepReport, step};
 
 /// Young's modulus \[stress\].
 const YOUNG: f64 = 100.0;
@@ -45,35 +45,6 @@ fn unit_cells<const D: usize>(cells: [usize; D]) -> Grid<D> {
     Grid::new(cells.map(|cells| Axis::uniform(0.0, 1.0, cells).unwrap()))
 }
 
-/// A box of triangles about the origin.
-fn box_of(half: [f64; 3]) -> Surface<3> {
-    let corner = |k: usize| {
-        std::array::from_fn(|axis| {
-            if k >> axis & 1 == 0 {
-                -half[axis]
-            } else {
-                half[axis]
-            }
-        })
-    };
-    let corners: Vec<[f64; 3]> = (0..8).map(corner).collect();
-    let triangles = [
-        ([0, 4, 6], 0),
-        ([0, 6, 2], 0),
-        ([1, 3, 7], 1),
-        ([1, 7, 5], 1),
-        ([0, 1, 5], 2),
-        ([0, 5, 4], 2),
-        ([2, 6, 7], 3),
-        ([2, 7, 3], 3),
-        ([0, 2, 3], 4),
-        ([0, 3, 1], 4),
-        ([4, 5, 7], 5),
-        ([4, 7, 6], 5),
-    ];
-    Surface::triangles(&corners, &triangles).unwrap()
-}
-
 /// The true stress of soil without lateral strain that is pressed from height 3 to that which a
 /// penetration leaves of a push \[stress\].
 fn uniform(push: f64, penetration: f64) -> f64 {
@@ -86,7 +57,7 @@ fn pressed_by_a_box(angle: f64, push: f64) -> (Body<3>, NodalForces<3>, StepRepo
     let grid = unit_cells([6, 6, 5]);
     let mut body = Body::new(soil([1, 1, 0], [5, 5, 3]));
     let top = RigidBody::new(
-        box_of([4.0, 4.0, 0.5]),
+        Surface::cuboid([4.0, 4.0, 0.5]).unwrap(),
         vec![Interface::smooth(); 6],
         [3.0, 3.0, 3.5],
     );
@@ -241,6 +212,46 @@ fn soil_lets_go_and_carries_again() {
     let (_, again) = advance(&mut body, &conditions, back);
     let second = of_body(&again);
     assert!((second / first - 1.0).abs() < 0.01, "{first} {second}");
+}
+
+/// A plate that is loaded while no soil touches it, or free to slide on a smooth base: the failure names what
+/// nothing holds.
+#[test]
+fn a_plate_that_nothing_holds_is_named() {
+    let attempt = |lifted: f64, motion: &RigidMotion<2>| {
+        let (mut body, conditions) = under_a_plate(&Interface::smooth());
+        "plate".clone_into(&mut body.rigid[0].name);
+        body.rigid[0].pose.origin[1] += lifted;
+        advance(&mut body, &conditions, RigidMotion::displaced([0.0, -0.05]));
+        let conditions = conditions.with_motions(vec![motion.clone()]).unwrap();
+        let failed = step(
+            &mut body,
+            &Method::igimp_bbar(),
+            &conditions,
+            (0.0, 1.0),
+            &NewtonSettings::default(),
+            &mut workspace(),
+        );
+        *failed.unwrap_err().failure
+    };
+    let held = RigidMotion::held();
+    let mut loaded = held.clone();
+    loaded.displacement[1] = Drive::Loaded(-20.0);
+    let mut free = held;
+    free.displacement[0] = Drive::Loaded(0.0);
+    for (lifted, motion, component, touches) in [
+        (2.0, loaded, Component::Displacement(1), false),
+        (0.0, free, Component::Displacement(0), true),
+    ] {
+        let failure = attempt(lifted, &motion);
+        let body = "plate".to_owned();
+        let expected = StepFailure::NotHeld {
+            body,
+            component,
+            touches,
+        };
+        assert_eq!(failure, expected);
+    }
 }
 
 /// A bonded plate pulls as it pushes.

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 
 use igimp_shape::Grid;
 
+use super::clearance::put_back;
 use super::face::Face;
 use super::interface::{Interface, Shear, Tension};
 use super::motion::rotations;
@@ -20,9 +21,6 @@ use crate::step_conditions::StepConditions;
 use crate::supports::padded;
 use crate::unknowns::Unknowns;
 
-/// The centre of a particle stands at least so far off a body, in half-lengths as seeded \[-\].
-const LEAST_HEIGHT: f64 = 0.5;
-
 /// A node with a smaller share of a point has none: round-off on a line of the grid \[-\].
 const LEAST_SHARE: f64 = 1e-9;
 
@@ -31,8 +29,6 @@ const LEAST_SHARE: f64 = 1e-9;
 pub(crate) struct Contact<'a, const D: usize> {
     bodies: &'a [RigidBody<D>],
     rows: Vec<Row<D>>,
-    /// Bodies with the particles near them.
-    near: Vec<(usize, usize)>,
     /// The first of the nodes that stand for bodies.
     first_node: usize,
 }
@@ -72,7 +68,6 @@ impl<'a, const D: usize> Contact<'a, D> {
         let mut contact = Self {
             bodies,
             rows: Vec::new(),
-            near: Vec::new(),
             first_node,
         };
         for body in 0..bodies.len() {
@@ -94,6 +89,11 @@ impl<'a, const D: usize> Contact<'a, D> {
         let (surface, pose) = (&*body.surface, &body.pose);
         let (lower, upper) = surface.bounds();
         let tents = surface.tents();
+        let places: Vec<[f64; D]> = surface
+            .knots()
+            .iter()
+            .map(|(knot, _)| pose.into_space(knot))
+            .collect();
         let mut knots: BTreeMap<usize, Sums<D>> = BTreeMap::new();
         for particle in 0..particles.len() {
             let (x, half) = (&particles.x[particle], &particles.half_length[particle]);
@@ -102,7 +102,6 @@ impl<'a, const D: usize> Contact<'a, D> {
             if (0..D).any(|a| own[a] < lower[a] - margin || own[a] > upper[a] + margin) {
                 continue;
             }
-            let mut is_near = false;
             for side in 0..surface.side_count() {
                 let Some(face) = Face::of(body, side, x, half) else {
                     continue;
@@ -114,8 +113,7 @@ impl<'a, const D: usize> Contact<'a, D> {
                     Shear::Limited { adhesion, .. } => adhesion.get(law).copied().unwrap_or(0.0),
                     _ => 0.0,
                 };
-                is_near = true;
-                for point in face.points(body, grid) {
+                for point in face.points(body, &places, grid) {
                     let Some(SoilPoint {
                         shares,
                         place,
@@ -147,9 +145,6 @@ impl<'a, const D: usize> Contact<'a, D> {
                         }
                     }
                 }
-            }
-            if is_near {
-                self.near.push((index, particle));
             }
         }
         for (knot, sums) in knots {
@@ -189,9 +184,14 @@ impl<'a, const D: usize> Contact<'a, D> {
         }
     }
 
-    /// The reference point of a body \[length\].
-    pub(crate) fn origin(&self, body: usize) -> [f64; D] {
-        self.bodies[body].pose.origin
+    /// A body.
+    pub(crate) fn body(&self, index: usize) -> &RigidBody<D> {
+        &self.bodies[index]
+    }
+
+    /// Whether any soil can touch a body in this step.
+    pub(crate) fn may_touch(&self, index: usize) -> bool {
+        self.rows.iter().any(|row| row.body == index)
     }
 
     /// What contact leaves behind when nodal step displacements `u` are accepted: the bodies at their
@@ -241,33 +241,25 @@ impl<'a, const D: usize> Contact<'a, D> {
                 is_broken,
             };
         }
-        let mut put_back = Vec::new();
-        for &(body, particle) in &self.near {
+        // On a given geometry nothing goes anywhere.
+        if geometry == Geometry::Given {
+            for (body, before) in moved.iter_mut().zip(self.bodies) {
+                body.pose = before.pose.clone();
+            }
+            return Ok(AcceptedContact {
+                bodies: moved,
+                put_back: Vec::new(),
+            });
+        }
+        let put_back = put_back(self.bodies, &moved, particles, |particle| {
             let mut x = particles.x[particle];
             for support in stencils.of(particle) {
                 for axis in 0..D {
                     x[axis] += support.value * u[support.node][axis];
                 }
             }
-            let seeded = particles.half_length0[particle];
-            let least = LEAST_HEIGHT * seeded.into_iter().fold(f64::INFINITY, f64::min);
-            let (distance, normal) = moved[body].nearest(&x);
-            if distance < -2.0 * least {
-                return Err(AssemblyError::Swallowed {
-                    particle,
-                    body,
-                    position: padded(&x),
-                });
-            }
-            if distance < least && geometry == Geometry::Moving {
-                put_back.push((particle, normal.map(|n| (least - distance) * n)));
-            }
-        }
-        if geometry == Geometry::Given {
-            for (body, before) in moved.iter_mut().zip(self.bodies) {
-                body.pose = before.pose.clone();
-            }
-        }
+            x
+        })?;
         Ok(AcceptedContact {
             bodies: moved,
             put_back,

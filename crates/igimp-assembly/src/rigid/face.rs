@@ -81,10 +81,14 @@ impl<const D: usize> Face<D> {
     }
 
     /// Its points of integration: two between any two lines of the grid and knots of the surface that
-    /// cut it. Beyond the end of a side there are none.
-    pub(crate) fn points(&self, body: &RigidBody<D>, grid: &Grid<D>) -> Vec<FacePoint<D>> {
+    /// cut it. Beyond the end of a side there are none. `knots` are those of the surface in space \[length\].
+    pub(crate) fn points(
+        &self,
+        body: &RigidBody<D>,
+        knots: &[[f64; D]],
+        grid: &Grid<D>,
+    ) -> Vec<FacePoint<D>> {
         let (surface, pose) = (&*body.surface, &body.pose);
-        let knots = surface.knots();
         let mut rules = [vec![(0.0, 1.0)], vec![(0.0, 1.0)]];
         for (k, rule) in rules.iter_mut().enumerate().take(D - 1) {
             let (tangent, half) = (self.along[k], self.half[k]);
@@ -93,8 +97,7 @@ impl<const D: usize> Face<D> {
                 let lines = grid.axes[axis].nodes().iter();
                 cuts.extend(lines.map(|line| (line - self.middle[axis]) / tangent[axis]));
             }
-            cuts.extend(knots.iter().map(|(knot, _)| {
-                let place = pose.into_space(knot);
+            cuts.extend(knots.iter().map(|place| {
                 let arm: [f64; D] = std::array::from_fn(|a| place[a] - self.middle[a]);
                 dot(&arm, &tangent)
             }));

@@ -4,6 +4,7 @@
 //! How it moves in a step is data ([`RigidMotion`]); what the soil makes of it is found with the
 //! displacements of the nodes.
 
+mod clearance;
 mod contact;
 mod face;
 mod interface;
@@ -21,6 +22,7 @@ pub use surface::{Surface, SurfaceError};
 
 pub use contact::AcceptedContact;
 
+pub(crate) use clearance::seeded_too_close;
 pub(crate) use contact::Contact;
 pub(crate) use motion::rotations;
 
@@ -33,6 +35,8 @@ pub(crate) const NODES_PER_BODY: usize = 2;
 /// A rigid body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RigidBody<const D: usize> {
+    /// What messages call it.
+    pub name: String,
     /// Its surface, in the frame of the body.
     pub surface: Arc<Surface<D>>,
     /// What its sides are like, in the order of the sides of the surface.
@@ -58,6 +62,7 @@ impl<const D: usize> RigidBody<D> {
             "every side has an interface"
         );
         Self {
+            name: "unnamed".to_owned(),
             contact: ContactState::none(surface.knot_count()),
             surface: Arc::new(surface),
             interfaces,

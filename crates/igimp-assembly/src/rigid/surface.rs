@@ -227,6 +227,38 @@ impl Surface<3> {
     }
 }
 
+impl Surface<3> {
+    /// A box about the origin, from its half-lengths \[length\]. Its sides look down and up the first axis, then
+    /// the second, then the third.
+    ///
+    /// # Errors
+    /// [`SurfaceError::TooFewCorners`] for a box without volume.
+    pub fn cuboid(half: [f64; 3]) -> Result<Self, SurfaceError> {
+        let corner = |k: usize| {
+            std::array::from_fn(|axis| match k >> axis & 1 {
+                0 => -half[axis],
+                _ => half[axis],
+            })
+        };
+        let corners: Vec<[f64; 3]> = (0..8).map(corner).collect();
+        let triangles = [
+            ([0, 4, 6], 0),
+            ([0, 6, 2], 0),
+            ([1, 3, 7], 1),
+            ([1, 7, 5], 1),
+            ([0, 1, 5], 2),
+            ([0, 5, 4], 2),
+            ([2, 6, 7], 3),
+            ([2, 7, 3], 3),
+            ([0, 2, 3], 4),
+            ([0, 3, 1], 4),
+            ([4, 5, 7], 5),
+            ([4, 7, 6], 5),
+        ];
+        Self::triangles(&corners, &triangles)
+    }
+}
+
 impl<const D: usize> Surface<D> {
     /// How many sides have an interface of their own.
     pub fn side_count(&self) -> usize {
@@ -271,6 +303,13 @@ impl<const D: usize> Surface<D> {
             }
         }
         bounds
+    }
+
+    /// What holds all of it in the frame of the body: lower and upper corner \[length\]. The knots of a circle
+    /// need not lie at its outermost places.
+    pub(crate) fn extent(&self) -> ([f64; D], [f64; D]) {
+        self.radius
+            .map_or_else(|| self.bounds(), |radius| ([-radius; D], [radius; D]))
     }
 
     /// A length of the body: that of the diagonal of its extent \[length\].
@@ -457,7 +496,8 @@ fn combine<const D: usize>(corners: &[[f64; D]; D], shares: &[f64; D]) -> [f64; 
     std::array::from_fn(|axis| (0..D).map(|k| shares[k] * corners[k][axis]).sum())
 }
 
-fn minus<const D: usize>(a: &[f64; D], b: &[f64; D]) -> [f64; D] {
+/// The difference of two vectors.
+pub(crate) fn minus<const D: usize>(a: &[f64; D], b: &[f64; D]) -> [f64; D] {
     std::array::from_fn(|axis| a[axis] - b[axis])
 }
 

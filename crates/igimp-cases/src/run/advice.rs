@@ -3,7 +3,7 @@
 
 use igimp_assembly::{AssemblyError, Locking};
 use igimp_solver::linear::LinearSolverError;
-use igimp_solver::{StepError, StepFailure};
+use igimp_solver::{Component, StepError, StepFailure};
 
 use crate::case::{Case, Material, RigidDrive, Side, Stage, StageKind, Strength};
 use crate::check::short;
@@ -49,7 +49,13 @@ pub fn advice(
         ) if yielding => no_equilibrium(case, stage, error, near_worst),
         StepFailure::Assembly(assembly) => unformed(case, stage, assembly),
         StepFailure::Linear(linear) => unsolved(case, linear),
-        StepFailure::TooDeep { body, .. } => too_deep(case, stage, *body),
+        StepFailure::TooDeep { body, .. } => too_deep(case, stage, body),
+        StepFailure::Swallowed { body, position, .. } => swallowed(case, stage, body, *position),
+        StepFailure::NotHeld {
+            body,
+            component,
+            touches,
+        } => not_held(stage, body, *component, *touches),
         StepFailure::NotFinite { .. } => vec![more_steps(stage), finer_cell(case)],
         StepFailure::MaxIterations { .. } | StepFailure::Diverged | StepFailure::Stagnated => {
             no_equilibrium(case, stage, error, near_worst)
@@ -119,8 +125,8 @@ fn off_grid(case: &Case, stage: &Stage, position: [f64; 3]) -> Vec<String> {
 }
 
 /// Soil went too far into a rigid body.
-fn too_deep(case: &Case, stage: &Stage, body: usize) -> Vec<String> {
-    let Some(part) = case.rigid.get(body) else {
+fn too_deep(case: &Case, stage: &Stage, body: &str) -> Vec<String> {
+    let Some(part) = case.rigid.iter().find(|part| part.name == body) else {
         return vec![more_steps(stage)];
     };
     let (name, stiffness, most) = (&part.name, part.stiffness, part.most_penetration);
@@ -136,6 +142,49 @@ fn too_deep(case: &Case, stage: &Stage, body: usize) -> Vec<String> {
             short(2.0 * most),
             short(most)
         ),
+    ]
+}
+
+/// A particle would get into a rigid body, or through it.
+fn swallowed(case: &Case, stage: &Stage, body: &str, [x, y, _]: [f64; 3]) -> Vec<String> {
+    vec![
+        more_steps(stage),
+        format!(
+            "a finer cell near ({}, {}) m, where the rigid body \"{body}\" catches soil: {}",
+            short(x),
+            short(y),
+            finer_cell(case)
+        ),
+        format!("a greater rounding of the rigid body \"{body}\", or corners that are less sharp"),
+    ]
+}
+
+/// A rigid body that is free, or has a force, where nothing holds it.
+fn not_held(stage: &Stage, body: &str, component: Component, touches: bool) -> Vec<String> {
+    let name = &stage.name;
+    let (key, by, force) = match component {
+        Component::Displacement(0) => ("x", "0 m", "force_x"),
+        Component::Displacement(_) => ("y", "0 m", "force_y"),
+        Component::Rotation(_) => ("rotation", "0 deg", "moment"),
+    };
+    let hold = format!(
+        "{key} = \"{by}\" for it in stage \"{name}\", in place of {force} or free: that holds it"
+    );
+    if touches {
+        return vec![
+            hold,
+            format!(
+                "a stage before \"{name}\" that presses it on: bodies = [{{ body = \"{body}\", y = \"-1 mm\" }}]"
+            ),
+            "an interface with friction or adhesion, if it slides".to_owned(),
+        ];
+    }
+    vec![
+        format!(
+            "a stage before \"{name}\" that moves it until soil touches it: bodies = [{{ body = \"{body}\", \
+             y = \"-1 mm\" }}]"
+        ),
+        hold,
     ]
 }
 
@@ -156,16 +205,6 @@ fn unformed(case: &Case, stage: &Stage, error: &AssemblyError) -> Vec<String> {
         | AssemblyError::Material { .. } => {
             vec![more_steps(stage), finer_cell(case)]
         }
-        AssemblyError::Swallowed { position, .. } => vec![
-            more_steps(stage),
-            format!(
-                "a finer cell near ({}, {}) m, where soil is caught by a rigid body: {}",
-                short(position[0]),
-                short(position[1]),
-                finer_cell(case)
-            ),
-            "a corner of the rigid body that is less sharp".to_owned(),
-        ],
         _ => vec![more_steps(stage)],
     }
 }

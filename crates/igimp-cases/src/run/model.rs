@@ -34,6 +34,8 @@ pub struct Model<'c> {
     footing: Option<Footing>,
     /// The rigid body that the rows of the grid follow, and the row of its lowest side.
     followed: Option<(usize, usize)>,
+    /// How far each rigid body stands above the soil beneath it as the case has both \[m\].
+    pub(crate) gaps: Vec<f64>,
 }
 
 impl<'c> Model<'c> {
@@ -52,6 +54,7 @@ impl<'c> Model<'c> {
             laws,
             footing: Footing::of(case)?,
             followed: footing::followed(case)?,
+            gaps: Vec::new(),
         };
         let grid = model.grid(0.0)?;
         let gravity = if case.gravity > 0.0 {
@@ -84,6 +87,11 @@ impl<'c> Model<'c> {
                 controls.rigid[index].placed = true;
             }
         }
+        if body.particles.clear_of(&body.rigid) > 0 {
+            body.particles.reset_displacements();
+        }
+        let below = |part| super::rigid::gap_below(part, &body.particles);
+        model.gaps = case.rigid.iter().map(below).collect();
         Ok((model, State { body, controls }))
     }
 

@@ -1,7 +1,7 @@
 //! Rigid bodies of a case as the solver has them: made, placed, moved, and what they did.
 
 use igimp_assembly::{Drive, Interface, Particles, RigidBody, RigidMotion, Shear};
-use igimp_solver::Accepted;
+use igimp_solver::{Accepted, StepFailure};
 
 use super::model::Model;
 use super::records::Moment;
@@ -37,6 +37,7 @@ pub(crate) fn made(case: &Case, index: usize, laws: usize) -> Result<RigidBody<2
     let interfaces = part.interfaces.iter();
     let interfaces = interfaces.map(|own| interface(case, own, laws)).collect();
     let mut body = RigidBody::new(surface, interfaces, part.reference);
+    body.name.clone_from(&part.name);
     body.penalty.stiffness = part.stiffness;
     Ok(body)
 }
@@ -160,8 +161,7 @@ fn place(model: &Model<'_>, state: &mut State, index: usize) -> Result<Option<St
     let case = model.case;
     let part = &case.rigid[index];
     let mut body = made(case, index, model.laws.len())?;
-    let settled = gap_below(part, &state.body.particles)
-        - gap_below(part, &Model::new(case)?.1.body.particles);
+    let settled = gap_below(part, &state.body.particles) - model.gaps[index];
     let is_shifted = settled.is_finite() && settled.abs() > LEAST_SHIFT * cell_near(case, part);
     if is_shifted {
         body.pose.origin[1] -= settled;
@@ -170,6 +170,7 @@ fn place(model: &Model<'_>, state: &mut State, index: usize) -> Result<Option<St
     let slot = state.controls.placed().take_while(|&k| k < index).count();
     state.body.rigid.insert(slot, body);
     state.controls.rigid[index].placed = true;
+    state.body.particles.clear_of(&state.body.rigid);
     let way = if settled > 0.0 { "down" } else { "up" };
     Ok(is_shifted.then(|| {
         format!(
@@ -182,7 +183,7 @@ fn place(model: &Model<'_>, state: &mut State, index: usize) -> Result<Option<St
 
 /// The smallest vertical distance from soil up to a body where it starts \[m\]; infinite where no soil
 /// lies beneath it.
-fn gap_below(part: &RigidPart, particles: &Particles<2>) -> f64 {
+pub(crate) fn gap_below(part: &RigidPart, particles: &Particles<2>) -> f64 {
     let (lower, upper) = part.bounds();
     let corners = part.outline(0);
     let mut least = f64::INFINITY;
@@ -318,15 +319,24 @@ pub(crate) fn row(case: &Case, moment: &Moment<'_>, index: usize) -> Vec<f64> {
     place.into_iter().chain(numbers).collect()
 }
 
-/// The body that soil has gone into further than the case allows, and how far as a share of the cell.
+/// The failure of a step that left soil further in a body than the case allows.
 pub(crate) fn too_deep(
     case: &Case,
     controls: &Controls,
     bodies: &[RigidBody<2>],
-) -> Option<(usize, f64)> {
-    controls.placed().find_map(|index| {
+) -> Option<StepFailure> {
+    std::iter::zip(controls.placed(), bodies).find_map(|(index, body)| {
+        let part = &case.rigid[index];
         let share = quantity(case, controls, bodies, index, RigidQuantity::Penetration);
-        (share > case.rigid[index].most_penetration).then_some((index, share))
+        let places = body.surface.knots();
+        let closed = std::iter::zip(&body.contact.knots, places).filter(|(own, _)| own.is_closed);
+        let (_, (deepest, _)) = closed.min_by(|(a, _), (b, _)| a.gap.total_cmp(&b.gap))?;
+        let [x, y] = body.pose.into_space(&deepest);
+        (share > part.most_penetration).then(|| StepFailure::TooDeep {
+            body: part.name.clone(),
+            share,
+            position: [x, y, 0.0],
+        })
     })
 }
 

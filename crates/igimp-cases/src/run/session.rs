@@ -7,8 +7,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use igimp_assembly::{Geometry, Method, Particles};
 use igimp_solver::{
-    Accepted, MarchSettings, MarchState, Observer, Outcome, StepError, StepFailure, StepReport,
-    Workspace, march_from,
+    Accepted, MarchSettings, MarchState, Observer, Outcome, StepError, StepReport, Workspace,
+    march_from,
 };
 
 use super::export::Export;
@@ -332,13 +332,13 @@ impl Watch<'_, '_> {
             progress: report.to,
             report,
         });
-        if let Some((body, share)) = rigid::too_deep(model.case, &controls, &accepted.body.rigid) {
+        if let Some(failure) = rigid::too_deep(model.case, &controls, &accepted.body.rigid) {
             return Ok(Some(Stop::Failed(Box::new(StepError {
                 from: report.from,
                 to: report.to,
                 residuals: report.residuals.clone(),
                 worst: None,
-                failure: Box::new(StepFailure::TooDeep { body, share }),
+                failure: Box::new(failure),
             }))));
         }
         Ok(match reason {

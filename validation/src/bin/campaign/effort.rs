@@ -1,11 +1,13 @@
 //! What a run costs and whether its steps were accepted rightly, gathered from its events.
 
-use igimp_assembly::{AssemblyError, Particles};
+use igimp_assembly::AssemblyError;
 use igimp_cases::case::Case;
 use igimp_cases::run::{Event, Model};
 use igimp_solver::linear::LinearSolverError;
-use igimp_solver::{Accepted, StepError, StepFailure, StepReport};
+use igimp_solver::{Accepted, Body, StepError, StepFailure, StepReport};
 
+use crate::bodies::outline::Outline;
+use crate::bodies::through::{outlines, reach, wrong_traction};
 use crate::recheck::equilibrium;
 
 /// Round-off of the sums of a recheck, relative to the external force \[-\].
@@ -30,6 +32,10 @@ pub(crate) struct Effort {
     pub(crate) last_cut: Option<Cut>,
     /// Share of particles that yielded in the last accepted step \[-\].
     pub(crate) plastic_share: f64,
+    /// The smallest distance of a particle's centre from a rigid body, in half-lengths as seeded \[-\].
+    pub(crate) nearest: Option<f64>,
+    /// Particles in or through rigid bodies, and traction that these cannot carry, in words.
+    pub(crate) contact: Vec<String>,
 }
 
 /// A step that was not accepted.
@@ -61,6 +67,8 @@ fn cause(failure: &StepFailure) -> &'static str {
             "leaves the grid"
         }
         StepFailure::TooDeep { .. } => "penetrates too deep",
+        StepFailure::Swallowed { .. } => "soil caught by a body",
+        StepFailure::NotHeld { .. } => "nothing holds a body",
         StepFailure::NotFinite { .. } => "not finite",
         StepFailure::Assembly(AssemblyError::Inverted { .. }) => "particle inverted",
         StepFailure::Assembly(AssemblyError::Material { .. }) => "law fails",
@@ -76,8 +84,10 @@ fn cause(failure: &StepFailure) -> &'static str {
 /// Follows a run.
 pub(crate) struct Follower<'c> {
     case: &'c Case,
-    /// The particles before the next step, where they are known.
-    before: Option<Particles<2>>,
+    /// The body before the next step, where it is known.
+    before: Option<Body<2>>,
+    /// Of the rigid bodies of the case.
+    outlines: Vec<Outline>,
     /// What was gathered.
     pub(crate) effort: Effort,
 }
@@ -88,7 +98,8 @@ impl<'c> Follower<'c> {
         let initial = Model::new(case).ok();
         Self {
             case,
-            before: initial.map(|(_, state)| state.body.particles),
+            before: initial.map(|(_, state)| state.body),
+            outlines: outlines(case),
             effort: Effort::default(),
         }
     }
@@ -127,7 +138,12 @@ impl<'c> Follower<'c> {
             );
             effort.violations.push(at(report, &text));
         }
-        let again = self.before.as_ref();
+        self.bodies(accepted);
+        let effort = &mut self.effort;
+        // A ghost penalty holds soil beside what the particles and the bodies carry.
+        let again = self.before.as_ref().filter(|before| {
+            report.ghost_penalty == 0.0 && before.rigid.len() == accepted.body.rigid.len()
+        });
         if let Some(again) = again.and_then(|before| equilibrium(self.case, before, accepted)) {
             effort.rechecked += 1;
             let allowed = if report.at_round_off {
@@ -146,7 +162,37 @@ impl<'c> Follower<'c> {
                 effort.violations.push(at(report, &text));
             }
         }
-        self.before = Some(accepted.body.particles.clone());
+        self.before = Some(accepted.body.clone());
+    }
+
+    /// Looks at the rigid bodies of a step.
+    fn bodies(&mut self, accepted: &Accepted<'_, 2>) {
+        let after = accepted.body;
+        if after.rigid.is_empty() {
+            return;
+        }
+        // The first stage of bodies names all of them; before it there are those that are there from the start.
+        let all = after.rigid.len() == self.outlines.len();
+        let there = std::iter::zip(&self.case.rigid, &self.outlines);
+        let there = there.filter(|(part, _)| all || part.from_start);
+        let own: Vec<&Outline> = there.map(|(_, outline)| outline).collect();
+        let before = self.before.as_ref();
+        // Bodies that came in with this step have no way behind them.
+        let before = before.filter(|before| before.rigid.len() == after.rigid.len());
+        let before = before.map(|before| (&before.particles, &before.rigid[..]));
+        let found = reach(&own, before, (&after.particles, &after.rigid));
+        let effort = &mut self.effort;
+        effort.nearest = match (effort.nearest, found.nearest) {
+            (Some(a), Some(b)) => Some(a.min(b)),
+            (a, b) => a.or(b),
+        };
+        let wrong = found
+            .violations
+            .into_iter()
+            .chain(wrong_traction(&after.rigid));
+        effort
+            .contact
+            .extend(wrong.map(|text| at(accepted.report, &text)));
     }
 }
 

@@ -1,7 +1,9 @@
-//! Hard numerics: random slopes run to collapse, and footings pushed one width deep. Every run has
-//! to end with a reason, without a panic, in time, and without a step that was accepted above the
-//! tolerance and is not at round-off. `cargo xtask campaign` calls this program.
+//! Hard numerics: random slopes run to collapse, footings pushed one width deep, and random rigid bodies in
+//! soil. Every run has to end with a reason, without a panic, in time, without a step that was accepted above
+//! the tolerance and is not at round-off, and without soil in a rigid body. `cargo xtask campaign` calls this
+//! program.
 
+mod bodies;
 mod bound;
 mod distribution;
 mod effort;
@@ -23,6 +25,7 @@ use clap::{Parser, ValueEnum};
 use igimp_cases::input::CaseFile;
 use igimp_cases::{CaseError, chain};
 
+use crate::bodies::Scene;
 use crate::footing::Footing;
 use crate::slope::Slope;
 use crate::watch::{Budget, End, Watched, watch};
@@ -39,23 +42,33 @@ const BUDGET: Budget = Budget {
     grace: Duration::from_secs(120),
 };
 
-/// Runs random slopes to collapse and pushes footings deep, and watches how they end.
+/// What a run of random bodies may take.
+const SMALL_BUDGET: Budget = Budget {
+    corrections: 5_000,
+    time: Duration::from_secs(120),
+    grace: Duration::from_secs(60),
+};
+
+/// Runs random slopes to collapse, pushes footings deep and random bodies about, and watches how they end.
 ///
 /// Exit codes: 0 every run kept to what is asked; 1 one did not; 2 bad input; 4 a file could not
 /// be written.
 #[derive(Debug, Parser)]
 #[command(name = "campaign", version)]
 struct Arguments {
-    /// What to run; both when not given.
+    /// What to run; all when not given.
     #[arg(value_enum)]
     part: Option<Part>,
     /// Number of random slopes.
     #[arg(long, value_name = "N", default_value_t = 100)]
     runs: u64,
-    /// Seed of the random slopes.
+    /// Number of scenes with random bodies.
+    #[arg(long, value_name = "N", default_value_t = 50)]
+    scenes: u64,
+    /// Seed of the random slopes and bodies.
     #[arg(long, value_name = "S", default_value_t = 2026)]
     seed: u64,
-    /// RunRecord this slope only and print its case file.
+    /// Run this slope or scene only and print its case file.
     #[arg(long, value_name = "NUMBER")]
     only: Option<u64>,
     /// Cells per width of the footing, odd.
@@ -78,6 +91,8 @@ enum Part {
     Slopes,
     /// Footings to one width.
     Footings,
+    /// Random rigid bodies in soil.
+    Bodies,
 }
 
 fn main() -> ExitCode {
@@ -103,59 +118,94 @@ fn campaign(arguments: &Arguments) -> Result<u8, CaseError> {
         path: arguments.out.clone(),
         source,
     })?;
+    let runs_part = |part| arguments.part.is_none_or(|only| only == part);
     let mut sound = true;
-    if arguments.part != Some(Part::Footings) {
-        let numbers = match arguments.only {
-            Some(number) => number..=number,
-            None => 1..=arguments.runs,
-        };
-        let runs: Vec<(Slope, Watched)> = numbers
-            .map(|number| {
-                let slope = Slope::random(arguments.seed, number);
-                if arguments.only.is_some() {
-                    println!("{}", slope.case_file());
-                }
-                let watched = run_slope(&slope);
-                eprintln!("slope {number}: {}", line(&watched));
-                (slope, watched)
-            })
-            .collect();
-        sound &= runs.iter().all(|(_, watched)| watched.is_sound());
-        let csv = tables::slopes_csv(&runs);
-        let markdown = tables::slopes(&runs, arguments.seed);
-        report(arguments, "slopes", &csv, &markdown)?;
+    if runs_part(Part::Slopes) {
+        sound &= slopes(arguments)?;
     }
-    if arguments.part != Some(Part::Slopes) {
-        let runs: Vec<(Footing, Watched)> = Footing::all(arguments.cells)
-            .into_iter()
-            .map(|footing| {
-                let watched = match footing.case() {
-                    Ok(case) => watch(case, BUDGET),
-                    Err(error) => Watched::refused(&error),
-                };
-                let Footing {
-                    stiffness, poisson, ..
-                } = footing;
-                eprintln!(
-                    "footing E/s_u {stiffness}, nu {poisson}: {}",
-                    line(&watched)
-                );
-                (footing, watched)
-            })
-            .collect();
-        sound &= runs.iter().all(|(_, watched)| watched.is_sound());
-        let csv = tables::footings_csv(&runs);
-        let markdown = tables::footings(&runs);
-        report(arguments, "footings", &csv, &markdown)?;
+    if runs_part(Part::Footings) {
+        sound &= footings(arguments)?;
+    }
+    if runs_part(Part::Bodies) {
+        sound &= scenes(arguments)?;
     }
     Ok(if sound { 0 } else { BROKEN })
 }
 
-/// Runs a slope under watch.
-fn run_slope(slope: &Slope) -> Watched {
-    let name = format!("slope-{}.toml", slope.number);
-    match CaseFile::parse(&name, &slope.case_file(), &[]) {
-        Ok(file) => watch(file.into_case(), BUDGET),
+/// The numbers of random runs.
+fn numbers(arguments: &Arguments, runs: u64) -> std::ops::RangeInclusive<u64> {
+    match arguments.only {
+        Some(number) => number..=number,
+        None => 1..=runs,
+    }
+}
+
+fn slopes(arguments: &Arguments) -> Result<bool, CaseError> {
+    let runs: Vec<(Slope, Watched)> = numbers(arguments, arguments.runs)
+        .map(|number| {
+            let slope = Slope::random(arguments.seed, number);
+            if arguments.only.is_some() {
+                println!("{}", slope.case_file());
+            }
+            let name = format!("slope-{number}.toml");
+            let watched = run_text(&name, &slope.case_file(), BUDGET);
+            eprintln!("slope {number}: {}", line(&watched));
+            (slope, watched)
+        })
+        .collect();
+    let csv = tables::slopes_csv(&runs);
+    let markdown = tables::slopes(&runs, arguments.seed);
+    report(arguments, "slopes", &csv, &markdown)?;
+    Ok(runs.iter().all(|(_, watched)| watched.is_sound()))
+}
+
+fn footings(arguments: &Arguments) -> Result<bool, CaseError> {
+    let runs: Vec<(Footing, Watched)> = Footing::all(arguments.cells)
+        .into_iter()
+        .map(|footing| {
+            let watched = match footing.case() {
+                Ok(case) => watch(case, BUDGET),
+                Err(error) => Watched::refused(&error),
+            };
+            let Footing {
+                stiffness, poisson, ..
+            } = footing;
+            eprintln!(
+                "footing E/s_u {stiffness}, nu {poisson}: {}",
+                line(&watched)
+            );
+            (footing, watched)
+        })
+        .collect();
+    let csv = tables::footings_csv(&runs);
+    let markdown = tables::footings(&runs);
+    report(arguments, "footings", &csv, &markdown)?;
+    Ok(runs.iter().all(|(_, watched)| watched.is_sound()))
+}
+
+fn scenes(arguments: &Arguments) -> Result<bool, CaseError> {
+    let runs: Vec<(Scene, Watched)> = numbers(arguments, arguments.scenes)
+        .map(|number| {
+            let scene = Scene::random(arguments.seed, number);
+            if arguments.only.is_some() {
+                println!("{}", scene.case_file());
+            }
+            let name = format!("bodies-{number}.toml");
+            let watched = run_text(&name, scene.case_file(), SMALL_BUDGET);
+            eprintln!("bodies {number}: {}", line(&watched));
+            (scene, watched)
+        })
+        .collect();
+    let csv = bodies::table::csv(&runs);
+    let markdown = bodies::table::markdown(&runs, arguments.seed);
+    report(arguments, "bodies", &csv, &markdown)?;
+    Ok(runs.iter().all(|(_, watched)| watched.is_sound()))
+}
+
+/// Runs a case file under watch.
+fn run_text(name: &str, text: &str, budget: Budget) -> Watched {
+    match CaseFile::parse(name, text, &[]) {
+        Ok(file) => watch(file.into_case(), budget),
         Err(error) => Watched::refused(&error),
     }
 }
@@ -176,7 +226,7 @@ fn line(watched: &Watched) -> String {
     if watched.end == End::Budget || !watched.end.is_orderly() {
         text.push_str("  <-- ended by the watch");
     }
-    for violation in effort.violations.iter().take(3) {
+    for violation in effort.violations.iter().chain(&effort.contact).take(3) {
         text.push_str("\n    ");
         text.push_str(violation);
     }

@@ -2,11 +2,14 @@
 //! the particles carry now, on the grid and with the displacements of the step.
 //!
 //! Nothing of the residual of the step is used: the nodal force is summed here from
-//! $`\sigma \det F`$ of the accepted particles (theory, eq. 16), and so is the weight.
+//! $`\sigma \det F`$ of the accepted particles (theory, eq. 16), and so is the weight. Rigid bodies act by
+//! the traction that the step left on them, and are in equilibrium themselves.
 
-use igimp_assembly::{Particles, Stencils};
+use igimp_assembly::{Drive, Stencils};
 use igimp_cases::case::Case;
-use igimp_solver::Accepted;
+use igimp_solver::{Accepted, Body};
+
+use crate::bodies::forces::{Begun, forces};
 
 /// Size of the round-off in the strain of a particle \[-\].
 const STRAIN_ROUND_OFF: f64 = 8.0 * f64::EPSILON;
@@ -20,15 +23,16 @@ pub(crate) struct Equilibrium {
     pub(crate) round_off: f64,
 }
 
-/// Computes the equilibrium of a step again, from the particles before it and what it accepted.
+/// Computes the equilibrium of a step again, from the body before it and what it accepted.
 /// `None` if the particles have no place on the grid.
 pub(crate) fn equilibrium(
     case: &Case,
-    before: &Particles<2>,
+    body: &Body<2>,
     accepted: &Accepted<'_, 2>,
 ) -> Option<Equilibrium> {
     let conditions = accepted.conditions;
     let (grid, u) = (&conditions.grid, &accepted.forces.u);
+    let before = &body.particles;
     let after = &accepted.body.particles;
     let stencils = Stencils::build(before, &case.method, conditions).ok()?;
     let mut f_int = vec![[0.0; 2]; grid.node_count()];
@@ -68,6 +72,14 @@ pub(crate) fn equilibrium(
         let noise = STRAIN_ROUND_OFF * modulus * before.volume(particle);
         round_off += noise * noise * slopes;
     }
+    let begun = Begun {
+        particles: before,
+        rigid: &body.rigid,
+        stencils: &stencils,
+        conditions,
+        below: case.method.small_cuts.below,
+    };
+    let of_bodies = forces(&begun, &accepted.body.rigid, u);
     let [dx, dy] = case.grid.smallest_cell();
     let (mut free, mut reaction, mut external) = (0.0, 0.0, 0.0);
     for node in 0..grid.node_count() {
@@ -75,7 +87,7 @@ pub(crate) fn equilibrium(
         let is_held = stencils.node_volume(node) < case.method.small_cuts.below * dx * dy
             && u[node].iter().all(|component| component.abs() == 0.0);
         for a in 0..2 {
-            let difference: f64 = f_ext[node][a] - f_int[node][a];
+            let difference: f64 = f_ext[node][a] - f_int[node][a] + of_bodies[node][a];
             external += f_ext[node][a] * f_ext[node][a];
             if is_held || conditions.constraints.of(node, a).is_some() {
                 reaction += difference * difference;
@@ -84,10 +96,31 @@ pub(crate) fn equilibrium(
             }
         }
     }
+    for (slot, rigid) in body.rigid.iter().enumerate() {
+        let motion = &conditions.motions[slot];
+        let [x, y] = motion.displacement;
+        let first = grid.node_count() + 2 * slot;
+        let size = rigid.surface.size();
+        for (drive, unit, force) in [
+            (x, 1.0, of_bodies[first][0]),
+            (y, 1.0, of_bodies[first][1]),
+            (motion.rotation[0], size, of_bodies[first + 1][0]),
+        ] {
+            match drive {
+                Drive::Moved(_) => reaction += force * force,
+                Drive::Loaded(load) => {
+                    free += (load / unit + force).powi(2);
+                    external += (load / unit).powi(2);
+                }
+            }
+        }
+    }
     let reference: f64 = f64::sqrt(external) + f64::sqrt(reaction);
+    // Where nothing acts, nothing is out of balance.
+    let share = |force: f64| if force == 0.0 { 0.0 } else { force / reference };
     Some(Equilibrium {
-        residual: f64::sqrt(free) / reference,
-        round_off: f64::sqrt(round_off) / reference,
+        residual: share(f64::sqrt(free)),
+        round_off: share(f64::sqrt(round_off)),
     })
 }
 

@@ -17,11 +17,11 @@ const ALL_BUT_CONVERGED: f64 = 1e-6;
 const CLASSES: [f64; 4] = [1e2, 1e3, 1e4, 1e5];
 
 /// Columns of effort.
-const EFFORT: &str = "end,cause,closest_residual,plastic_share,steps,cuts,corrections_median,\
+pub(crate) const EFFORT: &str = "end,cause,closest_residual,plastic_share,steps,cuts,corrections_median,\
     corrections_90,corrections_max,at_round_off,worst_at_round_off,rechecked,violations,seconds,\
     reason";
 
-fn effort_csv(watched: &Watched) -> String {
+pub(crate) fn effort_csv(watched: &Watched) -> String {
     let effort = &watched.effort;
     let [median, ninety, most] = spread(&corrections(watched));
     format!(
@@ -128,7 +128,7 @@ fn ends(runs: &[(Slope, Watched)]) -> String {
     text + "\n"
 }
 
-fn causes(runs: &[&Watched]) -> String {
+pub(crate) fn causes(runs: &[&Watched]) -> String {
     let mut counts: BTreeMap<&str, [usize; 2]> = BTreeMap::new();
     for cut in runs.iter().filter_map(|watched| watched.cut) {
         let [all, close] = counts.entry(cut.cause).or_default();
@@ -147,7 +147,7 @@ fn causes(runs: &[&Watched]) -> String {
 }
 
 /// Median, 90 % and largest of what runs take.
-fn effort(runs: &[&Watched]) -> String {
+pub(crate) fn effort(runs: &[&Watched]) -> String {
     let each =
         |of: &dyn Fn(&Watched) -> f64| -> Vec<f64> { runs.iter().map(|run| of(run)).collect() };
     let all: Vec<f64> = runs.iter().flat_map(|run| corrections(run)).collect();
@@ -211,7 +211,7 @@ fn by_stiffness(runs: &[(Slope, Watched)]) -> String {
 }
 
 /// What every run has to keep, and how many did not.
-fn invariants(runs: &[&Watched]) -> String {
+pub(crate) fn invariants(runs: &[&Watched]) -> String {
     let count = |of: &dyn Fn(&Watched) -> bool| runs.iter().filter(|run| of(run)).count();
     let sum = |of: &dyn Fn(&Watched) -> usize| runs.iter().map(|run| of(run)).sum::<usize>();
     format!(

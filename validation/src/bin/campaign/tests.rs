@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use igimp_cases::input::CaseFile;
 
+use crate::bodies::Scene;
 use crate::footing::{Footing, depth_reached, resistance_at};
 use crate::slope::{Drive, Slope};
 use crate::watch::{Budget, End, Watched, watch};
@@ -91,4 +92,20 @@ fn slopes_are_those_of_their_seed() {
     assert_eq!(a.case_file(), b.case_file());
     assert_ne!(a.case_file(), Slope::random(7, 4).case_file());
     assert_ne!(a.case_file(), Slope::random(8, 3).case_file());
+}
+
+/// GOAL: bodies of several kinds in soil end with a reason, and keep soil out.
+/// ORACLE: equilibrium with the traction on the bodies, and distances from their outlines, both computed again.
+#[test]
+fn a_few_bodies_keep_soil_out() {
+    for number in [3, 6, 11, 23] {
+        let scene = Scene::random(2026, number);
+        let file = CaseFile::parse("bodies.toml", scene.case_file(), &[]);
+        let watched = watch(file.expect("the scene is a case").into_case(), BUDGET);
+        assert!(watched.is_sound(), "{number}: {watched:?}");
+        assert!(watched.effort.rechecked > 0, "{number}");
+        assert!(watched.effort.nearest.is_some_and(|nearest| nearest > 0.49));
+    }
+    let (a, b) = (Scene::random(7, 3), Scene::random(7, 3));
+    assert_eq!(a.case_file(), b.case_file());
 }

@@ -58,7 +58,7 @@ impl End {
             Self::NoEquilibrium => "no equilibrium",
             Self::Moved => "displacement limit",
             Self::Early => "no equilibrium before the planned end",
-            Self::OtherFailure => "other failure (soil left the grid)",
+            Self::OtherFailure => "other failure",
             Self::Completed => "reached its end",
             Self::Budget => "budget used up",
             Self::Hangs => "hangs",
@@ -80,6 +80,8 @@ pub(crate) struct Watched {
     pub(crate) end: End,
     /// In the words of the run.
     pub(crate) reason: String,
+    /// Name of the last stage that began.
+    pub(crate) stage: String,
     /// The step that decided the end, if it did so by not being accepted.
     pub(crate) cut: Option<Cut>,
     /// Steps and corrections.
@@ -101,6 +103,7 @@ impl Watched {
         Self {
             end,
             reason,
+            stage: String::new(),
             cut: None,
             effort: Effort::default(),
             reached: 0.0,
@@ -116,10 +119,13 @@ impl Watched {
         Self::disorderly(End::Refused, chain(error), 0.0)
     }
 
-    /// Whether the run kept what every run has to keep: it ended, with a reason, and accepted no
-    /// step above the tolerance that is not at round-off.
+    /// Whether the run kept what every run has to keep: it ended, with a reason, accepted no step above the
+    /// tolerance that is not at round-off, and carried no soil into a rigid body.
     pub(crate) fn is_sound(&self) -> bool {
-        self.end.is_orderly() && !self.reason.is_empty() && self.effort.violations.is_empty()
+        self.end.is_orderly()
+            && !self.reason.is_empty()
+            && self.effort.violations.is_empty()
+            && self.effort.contact.is_empty()
     }
 }
 
@@ -224,6 +230,7 @@ fn follow(case: &Case, budget: Budget, interrupt: &AtomicBool) -> Watched {
         (StageOutcome::Stopped, None) | (_, Some(_)) => (End::Moved, None),
         (StageOutcome::Completed, None) => (End::Completed, None),
     };
+    let name = stage.name;
     let safety = stage.safety;
     let reason = match &safety {
         Some(safety) if stage.outcome == StageOutcome::Completed => safety
@@ -237,6 +244,7 @@ fn follow(case: &Case, budget: Budget, interrupt: &AtomicBool) -> Watched {
     Watched {
         end,
         reason,
+        stage: name,
         cut,
         effort: watch.follower.effort,
         reached: stage.reached,

@@ -158,7 +158,11 @@ fn stop_when(
                 table.place_at("load_grows_less_than"),
                 format!("a stage of type {kind} has no footing whose load grows"),
             )
-            .help("it is for stages of type displacement");
+            .help(if kind == "rigid" {
+                "end the stage by displacement = \"0.1 m\", and read the resistance from a curve of `rigid.NAME.resistance`"
+            } else {
+                "it is for stages of type displacement"
+            });
     }
     if kind == "strength-reduction" && displacement.is_some() {
         problems

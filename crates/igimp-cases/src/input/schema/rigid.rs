@@ -50,6 +50,19 @@ static TENSIONS: [Choice; 2] = [
     choice("bonded", "soil that touched never lets go"),
 ];
 
+const TENSION: Kind = Kind::Choice(&TENSIONS);
+const TENSION_DOC: &str = "when soil is pulled off";
+
+/// The limit of tension of a body or a side, with what holds where none is given.
+const fn tension_limit(without: &'static str) -> Field {
+    optional(
+        "tension_limit",
+        Kind::Quantity(Stress, Range::Positive),
+        without,
+        "tension at which a side lets go for good",
+    )
+}
+
 static SIDE_NAMES: [Choice; 5] = [
     choice("bottom", "lower side of a rectangle"),
     choice("right", "right side of a rectangle"),
@@ -68,18 +81,8 @@ static SIDE: Kind = Kind::Table(&Struct {
             "which: by name, or by the number of the corner that it begins with, from 1",
         ),
         optional("interface", INTERFACE, "that of the body", "along the side"),
-        optional(
-            "tension",
-            Kind::Choice(&TENSIONS),
-            "that of the body",
-            "when soil is pulled off",
-        ),
-        optional(
-            "tension_limit",
-            Kind::Quantity(Stress, Range::Positive),
-            "that of the body",
-            "tension at which the side lets go for good",
-        ),
+        optional("tension", TENSION, "that of the body", TENSION_DOC),
+        tension_limit("that of the body"),
     ],
 });
 
@@ -151,18 +154,8 @@ pub(in crate::input) static RIGID: Kind = Kind::Variants(&Variants {
             "point that displacement and forces are told of; a circle has its centre",
         ),
         default("interface", INTERFACE, "\"rough\"", "along all its sides"),
-        default(
-            "tension",
-            Kind::Choice(&TENSIONS),
-            "\"none\"",
-            "when soil is pulled off",
-        ),
-        optional(
-            "tension_limit",
-            Kind::Quantity(Stress, Range::Positive),
-            "as `tension` says",
-            "tension at which a side lets go for good",
-        ),
+        default("tension", TENSION, "\"none\"", TENSION_DOC),
+        tension_limit("as `tension` says"),
         default(
             "sides",
             Kind::List(&SIDE, 0, MOST_THINGS),

@@ -1,0 +1,334 @@
+//! What rigid bodies do to the nodes of the grid in an accepted step, computed again from the traction
+//! that the step left at the knots (theory, eqs. 45 and 48), from outlines, poses and particles: nothing
+//! of the code of contact is used, but the places of the knots.
+
+use std::collections::BTreeMap;
+
+use igimp_assembly::{Particles, RigidBody, Shear, Stencils, StepConditions, Tension};
+
+use super::outline::in_frame;
+
+/// Abscissa of the rule of Gauss with two points.
+const GAUSS: f64 = 0.577_350_269_189_625_8;
+
+/// A step as it began.
+pub(crate) struct Begun<'a> {
+    pub(crate) particles: &'a Particles<2>,
+    pub(crate) rigid: &'a [RigidBody<2>],
+    pub(crate) stencils: &'a Stencils<2>,
+    pub(crate) conditions: &'a StepConditions<2>,
+    /// Share of its cells below which a node has no unknowns \[-\].
+    pub(crate) below: f64,
+}
+
+/// What is averaged around a knot.
+#[derive(Default)]
+struct Around {
+    area: f64,
+    gap: f64,
+    young: f64,
+    adhesion: f64,
+    cell: f64,
+    /// Opening and slip by node.
+    opening: BTreeMap<usize, [f64; 2]>,
+    slip: BTreeMap<usize, [f64; 2]>,
+}
+
+/// A side as a segment between its first and last knot, in the frame of the body; of a circle one between
+/// two knots.
+struct Side {
+    /// Which of the body's sides.
+    number: usize,
+    knots: Vec<(usize, [f64; 2])>,
+    /// Out of the body; none if it is that of a circle, which points away from its centre.
+    normal: Option<[f64; 2]>,
+}
+
+/// The force of bodies at each node, those that stand for bodies behind those of the grid: minus the
+/// internal force of contact \[N/m\]. `after` are the bodies that the step left, `u` its displacements.
+pub(crate) fn forces(begun: &Begun<'_>, after: &[RigidBody<2>], u: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let grid_nodes = begun.conditions.grid.node_count();
+    let mut out = vec![[0.0; 2]; grid_nodes + 2 * after.len()];
+    for (slot, body) in begun.rigid.iter().enumerate() {
+        let around = around_knots(begun, slot, body);
+        let left = &after[slot].contact.knots;
+        let tents = tents(&sides(body), left.len());
+        let knots = body.surface.knots();
+        for (knot, sums) in around {
+            let area = sums.area.min(tents[knot]);
+            let (own, side) = (&left[knot], knots[knot].1);
+            let shear = if own.is_closed {
+                own.shear[0]
+            } else {
+                shear_by_law(body, (knot, side), &sums, area, u)
+            };
+            for (factor, by_node) in [(own.pressure, &sums.opening), (shear, &sums.slip)] {
+                for (&node, share) in by_node {
+                    for axis in 0..2 {
+                        out[node][axis] += area * factor * share[axis] / sums.area;
+                    }
+                }
+            }
+        }
+    }
+    out
+}
+
+/// Shear at a knot that soil touched when the step began and has left at its end (theory, eqs. 47, 50).
+fn shear_by_law(
+    body: &RigidBody<2>,
+    (knot, side): (usize, usize),
+    sums: &Around,
+    area: f64,
+    u: &[[f64; 2]],
+) -> f64 {
+    let before = &body.contact.knots[knot];
+    let bonds = body.interfaces[side].tension != Tension::None && !before.is_broken;
+    let touched = if before.area == 0.0 {
+        bonds || sums.gap <= 0.0
+    } else {
+        before.is_closed
+    };
+    let limit = match &body.interfaces[side].shear {
+        Shear::Rough if touched => f64::INFINITY,
+        Shear::Limited { .. } if touched => sums.adhesion / sums.area,
+        _ => return 0.0,
+    };
+    let growth = (before.area / area).min(2.0);
+    let stiffness = body.penalty.tangential * body.penalty.stiffness * sums.young / sums.cell;
+    let slip: f64 = sums
+        .slip
+        .iter()
+        .map(|(&node, share)| (share[0] * u[node][0] + share[1] * u[node][1]) / sums.area)
+        .sum();
+    (growth * before.shear[0] - stiffness * slip).clamp(-limit, limit)
+}
+
+/// The sides of a body between its knots.
+fn sides(body: &RigidBody<2>) -> Vec<Side> {
+    let all = body.surface.knots();
+    let count = body.surface.side_count();
+    let of = |number: usize| {
+        let own = all
+            .iter()
+            .enumerate()
+            .filter(move |(_, knot)| knot.1 == number);
+        own.map(|(index, knot)| (index, knot.0)).collect::<Vec<_>>()
+    };
+    if count == 1 {
+        let knots = of(0);
+        let next = knots.iter().cycle().skip(1);
+        return std::iter::zip(&knots, next)
+            .map(|(a, b)| Side {
+                number: 0,
+                knots: vec![*a, *b],
+                normal: None,
+            })
+            .collect();
+    }
+    // The sense in which the corners run.
+    let ring = all.iter().map(|knot| knot.0);
+    let next = all.iter().map(|knot| knot.0).cycle().skip(1);
+    let area: f64 = std::iter::zip(ring, next)
+        .map(|(a, b)| a[0] * b[1] - a[1] * b[0])
+        .sum();
+    (0..count)
+        .map(|number| {
+            let knots = of(number);
+            let (a, b) = (knots[0].1, knots[knots.len() - 1].1);
+            let (dx, dy) = (b[0] - a[0], b[1] - a[1]);
+            let length = area.signum() * dx.hypot(dy);
+            Side {
+                number,
+                knots,
+                normal: Some([dy / length, -dx / length]),
+            }
+        })
+        .collect()
+}
+
+/// ∫ψ dA over the sides by knot.
+fn tents(sides: &[Side], count: usize) -> Vec<f64> {
+    let mut out = vec![0.0; count];
+    for side in sides {
+        for pair in side.knots.windows(2) {
+            let [(i, a), (j, b)] = [pair[0], pair[1]];
+            let half = 0.5 * (b[0] - a[0]).hypot(b[1] - a[1]);
+            out[i] += half;
+            out[j] += half;
+        }
+    }
+    out
+}
+
+/// Shares of knots at a place of the surface in the frame of the body; none beyond the end of the side.
+fn shares(sides: &[Side], number: usize, x: [f64; 2]) -> Option<[(usize, f64); 2]> {
+    let mut best: Option<(f64, [(usize, f64); 2])> = None;
+    let mut is_on = false;
+    for side in sides.iter().filter(|side| side.number == number) {
+        for pair in side.knots.windows(2) {
+            let [(i, a), (j, b)] = [pair[0], pair[1]];
+            let (dx, dy) = (b[0] - a[0], b[1] - a[1]);
+            let t = ((x[0] - a[0]) * dx + (x[1] - a[1]) * dy) / (dx * dx + dy * dy);
+            is_on |= side.normal.is_none() || (-1e-9..=1.0 + 1e-9).contains(&t);
+            let t = t.clamp(0.0, 1.0);
+            let distance = (x[0] - a[0] - t * dx).hypot(x[1] - a[1] - t * dy);
+            if best.is_none_or(|(least, _)| distance < least) {
+                best = Some((distance, [(i, 1.0 - t), (j, t)]));
+            }
+        }
+    }
+    best.filter(|_| is_on).map(|(_, shares)| shares)
+}
+
+fn around_knots(begun: &Begun<'_>, slot: usize, body: &RigidBody<2>) -> BTreeMap<usize, Around> {
+    let Begun {
+        particles,
+        conditions,
+        ..
+    } = begun;
+    let sides = sides(body);
+    let mut out: BTreeMap<usize, Around> = BTreeMap::new();
+    let turned = |v: [f64; 2]| {
+        let turn = &body.pose.turn;
+        [0, 1].map(|a| turn[a][0] * v[0] + turn[a][1] * v[1])
+    };
+    let radius = body.surface.bounds().1[0];
+    for particle in 0..particles.len() {
+        let (x, half) = (particles.x[particle], particles.half_length[particle]);
+        let own = in_frame(&body.pose, x);
+        // All segments of a circle are one side.
+        let faces: Vec<(usize, f64, [f64; 2])> = if sides[0].normal.is_none() {
+            let length = own[0].hypot(own[1]);
+            vec![(0, length - radius, turned(own.map(|x| x / length)))]
+        } else {
+            let of = sides.iter().filter_map(|side| {
+                let (normal, at) = (side.normal?, side.knots[0].1);
+                let height = normal[0] * (own[0] - at[0]) + normal[1] * (own[1] - at[1]);
+                Some((side.number, height, turned(normal)))
+            });
+            of.collect()
+        };
+        for (number, height, normal) in faces {
+            let thickness = half[0] * normal[0].abs() + half[1] * normal[1].abs();
+            if height <= 0.0 || height > 2.0 * thickness {
+                continue;
+            }
+            let law = particles.law[particle];
+            let young = conditions.laws[law].elasticity().young();
+            let adhesion = match &body.interfaces[number].shear {
+                Shear::Limited { adhesion, .. } => adhesion.get(law).copied().unwrap_or(0.0),
+                _ => 0.0,
+            };
+            let tangent = [-normal[1], normal[0]];
+            let reach = half[0] * tangent[0].abs() + half[1] * tangent[1].abs();
+            let middle = [0, 1].map(|a| x[a] - thickness * normal[a]);
+            for (at, length) in points(begun, body, middle, (tangent, reach)) {
+                let Some(knots) = shares(&sides, number, in_frame(&body.pose, at)) else {
+                    continue;
+                };
+                let Some((nodes, place, cell)) = soil(begun, at) else {
+                    continue;
+                };
+                for (knot, tent) in knots.into_iter().filter(|(_, tent)| *tent > 0.0) {
+                    let weight = length * tent;
+                    let sums = out.entry(knot).or_default();
+                    sums.area += weight;
+                    sums.gap += weight * (height - thickness);
+                    sums.young += weight * young;
+                    sums.adhesion += weight * adhesion;
+                    sums.cell += weight * cell;
+                    let first = conditions.grid.node_count() + 2 * slot;
+                    let arm = [
+                        place[0] - body.pose.origin[0],
+                        place[1] - body.pose.origin[1],
+                    ];
+                    for (direction, by_node) in
+                        [(normal, &mut sums.opening), (tangent, &mut sums.slip)]
+                    {
+                        let mut add = |node: usize, by: [f64; 2]| {
+                            let own = by_node.entry(node).or_insert([0.0; 2]);
+                            own[0] += weight * by[0];
+                            own[1] += weight * by[1];
+                        };
+                        for &(node, share) in &nodes {
+                            add(node, direction.map(|n| share * n));
+                        }
+                        let moment = arm[0] * direction[1] - arm[1] * direction[0];
+                        add(first, direction.map(|n| -n));
+                        add(first + 1, [-moment / body.surface.size(), 0.0]);
+                    }
+                }
+            }
+        }
+    }
+    out
+}
+
+/// Points of integration on a face with the lengths that they stand for: two between any two lines of the
+/// grid and knots.
+fn points(
+    begun: &Begun<'_>,
+    body: &RigidBody<2>,
+    middle: [f64; 2],
+    (tangent, reach): ([f64; 2], f64),
+) -> Vec<([f64; 2], f64)> {
+    let mut cuts = vec![-reach, reach];
+    for axis in (0..2).filter(|&axis| tangent[axis].abs() > 1e-6) {
+        let lines = begun.conditions.grid.axes[axis].nodes().iter();
+        cuts.extend(lines.map(|line| (line - middle[axis]) / tangent[axis]));
+    }
+    cuts.extend(body.surface.knots().iter().map(|(knot, _)| {
+        let at = body.pose.into_space(knot);
+        (at[0] - middle[0]) * tangent[0] + (at[1] - middle[1]) * tangent[1]
+    }));
+    cuts.retain(|cut| cut.abs() <= reach);
+    cuts.sort_by(f64::total_cmp);
+    let pieces = cuts
+        .windows(2)
+        .filter(|pair| pair[1] - pair[0] > 2e-9 * reach);
+    pieces
+        .flat_map(|pair| {
+            let (centre, half) = (0.5 * (pair[0] + pair[1]), 0.5 * (pair[1] - pair[0]));
+            [-GAUSS, GAUSS].map(|place| {
+                let s = centre + place * half;
+                ([0, 1].map(|a| middle[a] + s * tangent[a]), half)
+            })
+        })
+        .collect()
+}
+
+/// Nodes that carry the soil at a point with their shares, the place that these stand for, and the size of
+/// the cell.
+type Soil = (Vec<(usize, f64)>, [f64; 2], f64);
+
+fn soil(begun: &Begun<'_>, x: [f64; 2]) -> Option<Soil> {
+    let grid = &begun.conditions.grid;
+    let cell = grid.cell_at(&x)?;
+    let size = grid.cell_size(cell);
+    let corner = grid.node_position(grid.node_index(cell));
+    let within = [0, 1].map(|a| (x[a] - corner[a]) / size[a]);
+    let mut nodes = Vec::new();
+    for (i, j) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
+        let tent = |k: usize, t: f64| if k == 0 { 1.0 - t } else { t };
+        let share = tent(i, within[0]) * tent(j, within[1]);
+        let node = begun
+            .stencils
+            .master(grid.node_index([cell[0] + i, cell[1] + j]));
+        let fill = begun.stencils.node_fill(grid, node);
+        if share > 1e-9 && fill > 0.0 && fill >= begun.below {
+            nodes.push((node, share));
+        }
+    }
+    let sum: f64 = nodes.iter().map(|(_, share)| share).sum();
+    if nodes.is_empty() {
+        return None;
+    }
+    let mut place = [0.0; 2];
+    for (node, share) in &mut nodes {
+        *share /= sum;
+        let at = grid.node_position(*node);
+        place = [0, 1].map(|a| place[a] + *share * at[a]);
+    }
+    Some((nodes, place, size[0].min(size[1])))
+}
