@@ -22,7 +22,7 @@ use crate::oracle::{Oracle, OracleKind};
 use crate::study::{Level, RunRecord, Study};
 
 /// What the book says of the study.
-const ABOUT: &str = "A smooth rigid wedge that stands in weightless Tresca soil with E/s_u = 300, with the lip that it has thrown up, is pushed deeper by a fifth (in full also by a half). The motion is self-similar: force and height of the lip over the depth, and the pressure, stay those of Hill, Lee and Tupper. Half of the wedge is modelled, with knots of contact two cells apart, a ghost penalty of 0.001, and no support on those nodes of the axis of symmetry that stand in the wedge: they belong to soil beside it that has left the axis. With the support the same run must miss.";
+const ABOUT: &str = "A smooth rigid wedge that stands in weightless Tresca soil with E/s_u = 300, with the lip that it has thrown up, is pushed deeper by a fifth (in full also by a half). The motion is self-similar: force and height of the lip over the depth, and the pressure, stay those of Hill, Lee and Tupper. The height is thrice that of the centroid of the soil above the old ground, as of a triangle; the highest soil is told beside it. Half of the wedge is modelled, with knots of contact two cells apart, a ghost penalty of 0.001, and no support on those nodes of the axis of symmetry that stand in the wedge: they belong to soil beside it that has left the axis. With the support the same run must miss.";
 const HILL: Oracle = Oracle {
     kind: OracleKind::Exact,
     source: "Hill, Lee and Tupper 1947, indentation by a smooth wedge",
@@ -176,8 +176,24 @@ impl Wedge {
     }
 }
 
+/// Height of the lip as of a triangle upon the old ground: three times that of the centroid of the soil above
+/// it, as far as the lip reaches \[length\]. The highest particle stands for a point at the wedge alone.
+fn lip(particles: &Particles<2>, reach: f64) -> f64 {
+    let (mut volume, mut moment) = (0.0, 0.0);
+    for p in 0..particles.len() {
+        let ([x, y], half) = (particles.x[p], particles.half_length[p][1]);
+        let (bottom, top) = ((y - half).max(0.0), y + half);
+        if x < reach && top > bottom {
+            let share = particles.volume(p) * (top - bottom) / (2.0 * half);
+            volume += share;
+            moment += share * 0.5 * (top + bottom);
+        }
+    }
+    3.0 * moment / volume
+}
+
 /// Pushes a wedge from unit depth on, with the lip that it has thrown up by then; by step: depth, P/(s_u c),
-/// P over the face up to the lip, height of the lip over depth, length and pressure of the knots that touch.
+/// P over the face up to the lip, height of the lip over depth, length and pressure of the knots that touch, the highest soil.
 fn push(wedge: Wedge) -> Result<(RunRecord, Table), CaseError> {
     let (grid, field) = (wedge.grid()?, wedge.field());
     let wide = grid.axes[0].end();
@@ -205,16 +221,19 @@ fn push(wedge: Wedge) -> Result<(RunRecord, Table), CaseError> {
         &[
             "depth_[-]",
             "P_[s_u c]",
-            "p_[2 s_u]",
-            "contact_[c]",
+            "p_to_lip_[2 s_u]",
             "lip_[c]",
+            "knots_touching_[c]",
+            "p_of_knots_[2 s_u]",
+            "highest_soil_[c]",
         ],
     );
     let mut observe = |accepted: &Accepted<'_, 2>| {
         let depth = DEPTH + wedge.push * accepted.report.to;
         let particles = &accepted.body.particles;
+        let lip = lip(particles, field.foot() * depth);
         let tops = (0..particles.len()).map(|p| particles.x[p][1] + particles.half_length[p][1]);
-        let lip = tops.fold(0.0, f64::max);
+        let highest = tops.fold(0.0, f64::max);
         let knots = closed(&accepted.body.rigid);
         let length: f64 = knots.iter().map(|(_, knot)| knot.area).sum();
         let pressed: f64 = knots
@@ -230,6 +249,7 @@ fn push(wedge: Wedge) -> Result<(RunRecord, Table), CaseError> {
             lip / depth,
             length / depth,
             0.5 * pressed / length,
+            highest / depth,
         ]);
         ControlFlow::Continue(())
     };
@@ -244,15 +264,6 @@ fn push(wedge: Wedge) -> Result<(RunRecord, Table), CaseError> {
         &mut observe,
     );
     Ok((run, curve))
-}
-
-/// Rise of the highest soil from the first step on, over the push.
-fn rise(curve: &Table) -> f64 {
-    let at = |row: &Vec<f64>| (row[0], row[0] * row[3]);
-    match (curve.rows.first(), curve.rows.last()) {
-        (Some(first), Some(last)) => (at(last).1 - at(first).1) / (at(last).0 - at(first).0),
-        _ => f64::NAN,
-    }
 }
 
 /// What is run at a level.
@@ -300,19 +311,19 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
             let quantity = "pressure P over the face up to the lip / 2 s_u, the same mean [-]";
             let expected = HILL.says(1.0 + field.fan);
             study.check(run, quantity, expected, band, mean(2));
-            let quantity = "height of the lip / c, the same mean [-]";
+            let quantity = "height of the lip / c, from its centroid, the same mean [-]";
             let band = Band::Relative(0.05);
             study.check(run, quantity, HILL.says(field.lip()), band, mean(3));
         }
-        // Knots that the last soil of the lip covers close by turns: a length to the nearest knot or two.
+        // Knots close one by one as the lip grows, and a particle is a rough measure of its edge.
         study.notes.push(format!(
-            "contact-wedge, {}: the knots that touch cover {:.3} c of the face, exact {:.3}, at a mean pressure of {:.3} times 2 s_u, exact {:.3}; the highest soil rose by {:.3} of the push, exact {:.3}",
+            "contact-wedge, {}: the knots that touch cover {:.3} c of the face, exact {:.3}, at a mean pressure of {:.3} times 2 s_u, exact {:.3}; the highest soil stands at {:.4} c, the top of the lip is {:.4} c",
             wedge.name(),
             mean(4),
             field.contact,
             mean(5),
             1.0 + field.fan,
-            rise(&curve),
+            mean(6),
             field.lip(),
         ));
         curve.write_csv(&study.folder)?;
