@@ -383,5 +383,5 @@ fn wedge_meets_more_resistance_with_depth() {
         ],
     );
     assert_eq!(ran.outcomes(), [Completed]);
-    between(ran.end_of("resistance"), 0.3, 1.5);
+    between(ran.end_of("resistance"), 1.4, 1.8);
 }
