@@ -23,8 +23,8 @@ use crate::study::{RunRecord, Study};
 
 /// Young's modulus over undrained strength \[-\].
 const YOUNG: f64 = 1e3;
-/// Stiffness of contact in units of E/h where adhesion limits the shear: with the usual 10 steps are cut
-/// ten times as often, and the force is the same to 0.2 % \[-\].
+/// Stiffness of contact in units of E/h where adhesion limits the shear: with the usual 10 a strip on
+/// nine cells is cut six times as often, and its force is the same to 0.1 % \[-\].
 const SOFT: f64 = 1.0;
 
 /// A body of unit width in half of the soil around it, x ≥ 0.

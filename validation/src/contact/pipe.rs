@@ -57,8 +57,8 @@ fn circle(cells: usize, top: f64, interface: Interface, reach: [f64; 2]) -> Buri
         }
         inner.extend(arc((2.0 * top.min(0.0)).asin()));
     }
-    // Soil that sticks without a bond has to be carried along: on a given geometry knots that open never
-    // close again.
+    // Soil that sticks without a bond is carried along: one diameter deep it bears a sixth less on a given
+    // geometry.
     let moves = interface.shear == Shear::Rough && interface.tension == Tension::None;
     Buried {
         variant: String::new(),
