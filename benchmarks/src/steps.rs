@@ -59,7 +59,7 @@ impl Setting {
             Self::mohr_coulomb_slope("mohr-coulomb-slope", 0.5),
             Self {
                 name: "footing",
-                case: "footing",
+                case: "footing_bonded",
                 grid: None,
                 srf: 1.0,
                 step: Step::Of(2, 40),

@@ -71,7 +71,7 @@ impl Variant {
         let young = f64::from(self.stiffness) * STRENGTH;
         overrides.push(format!("materials.clay.young=\"{young} Pa\""));
         push(
-            &shipped_case("footing", overrides)?,
+            &shipped_case("footing_bonded", overrides)?,
             self.depth,
             self.steps,
             self.beside,

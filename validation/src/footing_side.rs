@@ -283,7 +283,7 @@ mod tests {
         let stage = "stages.push to one width";
         overrides.push(format!("{stage}.settlement=\"0.2 m\""));
         overrides.push(format!("{stage}.steps=4"));
-        shipped_case("footing", overrides).unwrap()
+        shipped_case("footing_bonded", overrides).unwrap()
     }
 
     /// GOAL: soil that sticks is pushed as in a run of the case. ORACLE: that run.

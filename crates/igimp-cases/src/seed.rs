@@ -11,6 +11,9 @@ use crate::polygon::{Polygon, area_and_centroid, bounding_box, clip_to_box};
 /// Clipped parts smaller than this share of a whole part join the body's nearest particle \[-\].
 const SLIVER: f64 = 0.1;
 
+/// A corner may lie off the grid by so much of the grid: lines are multiples of a rounded cell \[-\].
+const ROUND_OFF: f64 = 1e-9;
+
 /// The part of a polygon within a part of a cell.
 #[derive(Clone, Debug)]
 pub(crate) struct Piece {
@@ -45,7 +48,13 @@ pub(crate) fn fill_in_pieces(
     density: f64,
     law: usize,
 ) -> Result<(Vec<ParticleSeed<2>>, Vec<Piece>), CaseError> {
-    if let Some(&corner) = polygon.iter().find(|corner| !grid.contains(corner)) {
+    let is_off = |corner: &&[f64; 2]| {
+        std::iter::zip(&grid.axes, *corner).any(|(axis, &x)| {
+            let slack = ROUND_OFF * (axis.end() - axis.start());
+            x.is_nan() || x < axis.start() - slack || x > axis.end() + slack
+        })
+    };
+    if let Some(&corner) = polygon.iter().find(is_off) {
         return Err(CaseError::OutsideGrid { corner });
     }
     let mut seeds: Vec<ParticleSeed<2>> = Vec::new();
@@ -174,6 +183,19 @@ mod tests {
             assert!((seeds[0].x[axis] - quarter).abs() < 1e-15);
             assert!((seeds[0].half_length[axis] - quarter).abs() < 1e-15);
         }
+    }
+
+    /// 68 cells of the number nearest to 2/27 end before the number nearest to 136/27.
+    #[test]
+    fn the_end_of_the_domain_may_be_rounded() {
+        let axis = || Axis::uniform(0.0, 2.0 / 27.0, 68).unwrap();
+        let (grid, end) = (Grid::new([axis(), axis()]), 136.0 / 27.0);
+        assert!(axis().end() < end);
+        let block = [[0.0, 0.0], [end, 0.0], [end, end], [0.0, end]];
+        let seeds = fill_polygon(&grid, &block, 2, 1.0, 0).unwrap();
+        let volume: f64 = seeds.iter().map(|seed| seed.volume).sum();
+        assert_eq!(seeds.len(), 4 * 68 * 68);
+        assert!((volume - end * end).abs() < 1e-12 * volume, "{volume}");
     }
 
     #[test]

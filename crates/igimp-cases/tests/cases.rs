@@ -75,7 +75,7 @@ fn nonsense_is_refused_with_its_reason() {
         }
     });
     assert!(dilation.contains("dilation_angle"), "{dilation}");
-    let off = refused("footing", &|case| {
+    let off = refused("footing_bonded", &|case| {
         if let LoadKind::RigidFooting { from, .. } = &mut case.loads[0].kind {
             from[1] = 4.95;
         }

@@ -155,6 +155,20 @@ fn footing_follows_limit_analysis_at_first() {
     let ran = ran(
         "footing",
         &[
+            "grid.cell=0.21 m",
+            "stages.0.bodies=[{ body = \"footing\", y = \"-0.2 m\" }]",
+            "stages.0.steps=14",
+        ],
+    );
+    assert_eq!(ran.outcomes(), [Completed]);
+    between(ran.end_of("resistance"), 5.1, 6.1);
+}
+
+#[test]
+fn bonded_footing_follows_limit_analysis_at_first() {
+    let ran = ran(
+        "footing_bonded",
+        &[
             "grid.cell=0.2 m",
             "stages.0.settlement=0.2 m",
             "stages.0.steps=14",

@@ -261,7 +261,7 @@ impl Footings {
             .map(|&(name, cells, steps, change)| {
                 let mut overrides = mesh(1.0 / f64::from(cells), [5.0, 6.0]);
                 overrides.extend(footing::to(1.0, steps));
-                let mut case = shipped_case("footing", overrides)?;
+                let mut case = shipped_case("footing_bonded", overrides)?;
                 change(&mut case);
                 Ok((name, Computed::new(case)?))
             })

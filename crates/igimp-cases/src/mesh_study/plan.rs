@@ -1,24 +1,27 @@
 //! The meshes of a study, and what keeps them meshes of one problem.
 
-use crate::case::{Case, LoadKind};
+use crate::case::{Case, LoadKind, RigidPart, RigidShape};
 use crate::check::short;
 
 /// Into how many parts each mesh cuts the cells of the case, in each direction.
 const HALVES: [usize; 3] = [1, 2, 4];
-/// The same where a footing's edge lies in the middle of a cell: it stays there.
+/// The same where the edge of a footing or body lies in the middle of a cell: it stays there.
 const ODD: [usize; 3] = [1, 3, 5];
 /// Places closer than this share of a cell are the same \[-\].
 const NEAR: f64 = 1e-6;
 
 /// Into how many parts the meshes of a case's study cut its cells in each direction, from 1.
 ///
-/// 1, 2, 4; but 1, 3, 5 with a rigid footing whose edge lies in the middle of a cell. The footing holds
-/// the nodes below it, and acts about half a cell wider than they reach: only with its edges at the
-/// same place within a cell are the meshes those of one footing.
+/// 1, 2, 4; but 1, 3, 5 with a rigid footing or body whose edge lies in the middle of a cell. The footing
+/// holds the nodes below it, and acts about half a cell wider than they reach; a body ties the soil that
+/// shares a cell with its side: only with edges at the same place within a cell are the meshes those of
+/// one body.
 pub fn refinements(case: &Case) -> Vec<usize> {
+    let sides = case.rigid.iter().flat_map(|part| upright_sides(case, part));
     let mid_cell = footing_ends(case)
-        .iter()
-        .any(|&end| (offset(case, end) - 0.5).abs() < NEAR);
+        .into_iter()
+        .chain(sides)
+        .any(|end| (offset(case, end) - 0.5).abs() < NEAR);
     let parts = if mid_cell { ODD } else { HALVES };
     parts[..case.mesh_study.meshes.clamp(1, parts.len())].to_vec()
 }
@@ -48,18 +51,32 @@ pub fn differences(case: &Case) -> Vec<String> {
         return Vec::new();
     };
     let mut told = Vec::new();
-    for end in footing_ends(case) {
+    let keeps_its_place = |end: f64| {
         let share = offset(case, end);
-        let kept = parts.iter().all(|&parts| {
+        parts.iter().all(|&parts| {
             let finer = (share * parts as f64).rem_euclid(1.0);
             (finer - share).abs() < NEAR || (finer - share).abs() > 1.0 - NEAR
-        });
-        if !kept {
+        })
+    };
+    for end in footing_ends(case) {
+        if !keeps_its_place(end) {
             told.push(format!(
                 "the edge of the footing at x = {} m has another place in its cell on every mesh: the \
                  meshes are those of footings of different width",
                 short(end)
             ));
+        }
+    }
+    for part in &case.rigid {
+        for end in upright_sides(case, part) {
+            if !keeps_its_place(end) {
+                told.push(format!(
+                    "the side of the rigid body `{}` at x = {} m has another place in its cell on every \
+                     mesh: it acts wider or narrower by another share of the cell on each",
+                    part.name,
+                    short(end)
+                ));
+            }
         }
     }
     for held in &case.boundaries.boxes {
@@ -90,12 +107,30 @@ fn footing_ends(case: &Case) -> Vec<f64> {
             ends.extend([from[0], to[0]]);
         }
     }
-    let columns = case.grid.cells()[0] as f64;
-    ends.retain(|&end| {
-        let place = place(case, 0, end);
-        place > NEAR && place < columns - NEAR
-    });
+    ends.retain(|&end| is_within(case, end));
     ends
+}
+
+/// The upright sides of a rigid body that stand within the grid \[m\].
+fn upright_sides(case: &Case, part: &RigidPart) -> Vec<f64> {
+    let RigidShape::Polygon(corners) = &part.shape else {
+        return Vec::new();
+    };
+    let next = corners.iter().cycle().skip(1);
+    let sides = std::iter::zip(corners, next);
+    let mut ends: Vec<f64> = sides
+        .filter(|(a, b)| place(case, 0, a[0]) - place(case, 0, b[0]) == 0.0)
+        .map(|(a, _)| a[0])
+        .collect();
+    ends.retain(|&end| is_within(case, end));
+    ends
+}
+
+/// Whether an x lies between the sides of the grid.
+fn is_within(case: &Case, x: f64) -> bool {
+    let columns = case.grid.cells()[0] as f64;
+    let place = place(case, 0, x);
+    place > NEAR && place < columns - NEAR
 }
 
 /// Where a coordinate lies, in cells from the lower side.
@@ -168,6 +203,27 @@ mod tests {
         assert!(differences(&on_line).is_empty());
         let odd = study(Some([0.0, 0.6]));
         assert_eq!(differences(&odd).len(), 1);
+    }
+
+    /// GOAL: so does a side of a rigid body; one elsewhere is told, once for each side within the grid.
+    #[test]
+    fn the_sides_of_a_body_keep_their_place() {
+        let with = |cell: &str, side: &str| {
+            let shipped = crate::shipped::find("contact_footing").unwrap();
+            let overrides = [
+                format!("grid.cell=\"{cell}\""),
+                format!("rigid.footing.to=[\"{side}\", \"3 m\"]"),
+                "mesh_study.meshes=3".to_owned(),
+            ];
+            shipped.case_file(overrides).unwrap().into_case()
+        };
+        let mid_cell = with("1/9 m", "0.5 m");
+        assert_eq!(refinements(&mid_cell), [1, 3, 5]);
+        assert!(differences(&mid_cell).is_empty());
+        assert!(differences(&with("0.1 m", "0.5 m")).is_empty());
+        let told = differences(&with("0.1 m", "0.475 m"));
+        assert_eq!(told.len(), 1);
+        assert!(told[0].contains("`footing` at x = 0.475 m"), "{}", told[0]);
     }
 
     #[test]

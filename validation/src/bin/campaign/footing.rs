@@ -47,7 +47,7 @@ impl Footing {
     /// # Panics
     /// If the case is not shipped: it is part of the program.
     pub(crate) fn case(&self) -> Result<Case, CaseError> {
-        let shipped = shipped::find("footing").expect("the footing is shipped");
+        let shipped = shipped::find("footing_bonded").expect("the footing is shipped");
         let overrides = [
             format!("grid.cell=\"1/{} m\"", self.cells_per_width),
             format!("materials.clay.young=\"{} kPa\"", self.stiffness),
