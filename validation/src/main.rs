@@ -112,6 +112,10 @@ enum Case {
     ContactPunch,
     ContactStrip,
     ContactWedge,
+    ContactEmbedded,
+    ContactPipe,
+    ContactAnchor,
+    ContactWall,
     Comparisons,
 }
 
@@ -140,6 +144,10 @@ impl Case {
             Self::ContactPunch => contact::punch::study(level, out),
             Self::ContactStrip => contact::strip::study(level, out),
             Self::ContactWedge => contact::wedge::study(level, out),
+            Self::ContactEmbedded => contact::embedded::study(level, out),
+            Self::ContactPipe => contact::pipe::study(level, out),
+            Self::ContactAnchor => contact::anchor::study(level, out),
+            Self::ContactWall => contact::wall::study(level, out),
             Self::Comparisons => comparisons::study(level, out),
         }
     }

@@ -1,12 +1,17 @@
 //! Contact with rigid bodies, below the case files: problems with exact answers and with bounds.
 
+pub(crate) mod anchor;
+pub(crate) mod buried;
 pub(crate) mod column;
+pub(crate) mod embedded;
 pub(crate) mod footing;
 pub(crate) mod hertz;
 pub(crate) mod incline;
 pub(crate) mod patch;
+pub(crate) mod pipe;
 pub(crate) mod punch;
 pub(crate) mod strip;
+pub(crate) mod wall;
 pub(crate) mod wedge;
 
 use igimp_assembly::{
@@ -45,13 +50,18 @@ impl Ground {
 
     /// Walls that hold the sides sideways and the bottom in both directions.
     pub(crate) fn held(&self) -> Result<Constraints<2>, CaseError> {
-        let mut constraints = Constraints::free(&self.grid);
-        constraints.fix_wall(&self.grid, 0, false, 0)?;
-        constraints.fix_wall(&self.grid, 0, true, 0)?;
-        constraints.fix_wall(&self.grid, 1, false, 0)?;
-        constraints.fix_wall(&self.grid, 1, false, 1)?;
-        Ok(constraints)
+        held(&self.grid)
     }
+}
+
+/// Walls of a grid that hold the sides sideways and the bottom in both directions.
+pub(crate) fn held(grid: &Grid<2>) -> Result<Constraints<2>, CaseError> {
+    let mut constraints = Constraints::free(grid);
+    constraints.fix_wall(grid, 0, false, 0)?;
+    constraints.fix_wall(grid, 0, true, 0)?;
+    constraints.fix_wall(grid, 1, false, 0)?;
+    constraints.fix_wall(grid, 1, false, 1)?;
+    Ok(constraints)
 }
 
 /// Lines of a grid `h` apart between `fine`, and from there to `ends` in cells that grow.
