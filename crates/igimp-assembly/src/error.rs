@@ -104,21 +104,6 @@ pub enum AssemblyError {
         /// A principal elastic Hencky strain \[-\].
         strain: f64,
     },
-    /// A particle would be carried into a rigid body, or through it.
-    #[error(
-        "particle {particle} would be carried {depth:.2} of its half-length into the rigid body \
-             \"{body}\" on its way to {position:?} m"
-    )]
-    Swallowed {
-        /// Number of the particle, from 0.
-        particle: usize,
-        /// Name of the body.
-        body: String,
-        /// How deep, in half-lengths of the particle as seeded \[-\].
-        depth: f64,
-        /// Where its centre would be in the end \[length\], axes beyond the dimension 0.
-        position: [f64; 3],
-    },
     /// A constraint names a node that the grid does not have.
     #[error("a constraint names node {node}, but the grid has {nodes} nodes (numbered from 0)")]
     UnknownNode {

@@ -47,7 +47,7 @@ pub use particles::{ParticleFields, ParticleSeed, Particles};
 pub use residual::OutOfBalance;
 pub use rigid::{
     AcceptedContact, ContactNode, ContactState, Drive, Interface, Penalty, Pose, RigidBody,
-    RigidMotion, Shear, Surface, SurfaceError, Tension,
+    RigidMotion, Shear, Surface, SurfaceError, Swallowed, Tension,
 };
 pub use stencils::Stencils;
 pub use step_conditions::{SharedLaw, StepConditions};

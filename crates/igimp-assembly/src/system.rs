@@ -18,7 +18,7 @@ use crate::nodal_forces::NodalForces;
 use crate::particles::Particles;
 use crate::residual::{OutOfBalance, force_of_round_off};
 use crate::rigid::{
-    AcceptedContact, Contact, Drive, NODES_PER_BODY, RigidBody, RigidMotion, rotations,
+    AcceptedContact, Contact, Drive, NODES_PER_BODY, RigidBody, RigidMotion, Swallowed, rotations,
 };
 use crate::stencils::Stencils;
 use crate::step_conditions::StepConditions;
@@ -477,9 +477,9 @@ impl<'a, const D: usize> System<'a, D> {
     /// the way that they took. On a given geometry nothing moves, and none is put back.
     ///
     /// # Errors
-    /// [`AssemblyError::Swallowed`] for a particle whose centre would be in a body deeper than its seeded
+    /// [`Swallowed`] for a particle whose centre would be in a body deeper than its seeded
     /// half-length, or was so on its way.
-    pub fn bodies_at(&self, u: &[[f64; D]]) -> Result<AcceptedContact<D>, AssemblyError> {
+    pub fn bodies_at(&self, u: &[[f64; D]]) -> Result<AcceptedContact<D>, Swallowed> {
         let Self {
             particles,
             stencils,

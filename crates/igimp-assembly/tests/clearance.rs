@@ -7,8 +7,8 @@ mod common;
 
 use common::laws;
 use igimp_assembly::{
-    AcceptedContact, AssemblyError, Constraints, Geometry, Interface, Method, ParticleSeed,
-    Particles, RigidBody, RigidMotion, Stencils, StepConditions, StepLoads, Surface, System,
+    AcceptedContact, Constraints, Geometry, Interface, Method, ParticleSeed, Particles, RigidBody,
+    RigidMotion, Stencils, StepConditions, StepLoads, Surface, Swallowed, System,
 };
 use igimp_shape::{Axis, Grid};
 
@@ -37,7 +37,7 @@ fn body(corners: &[[f64; 2]]) -> RigidBody<2> {
 }
 
 /// What a step leaves that lifts the soil by so much below a body from height 4 to 6.
-fn lifted(by: f64, geometry: Geometry) -> Result<AcceptedContact<2>, AssemblyError> {
+fn lifted(by: f64, geometry: Geometry) -> Result<AcceptedContact<2>, Swallowed> {
     let grid = Grid::new([12, 10].map(|cells| Axis::uniform(0.0, 1.0, cells).unwrap()));
     let places = (0..24 * 6).map(|k| [k % 24, k / 24].map(|k| HALF + 2.0 * HALF * f64::from(k)));
     let soil = particles(places);
@@ -76,7 +76,7 @@ fn soil_that_jumps_into_a_body_is_caught() {
     // Into the body, and through it.
     for (by, least) in [(1.6, 1.4), (6.0, 2.8)] {
         match lifted(by, Geometry::Moving) {
-            Err(AssemblyError::Swallowed {
+            Err(Swallowed {
                 body,
                 depth,
                 position,

@@ -189,7 +189,7 @@ fn equilibrium<const D: usize>(
     let false_support = system.false_support(&reactions);
     let drag_share = system.drag_share(&u);
     let plastic_share = plastic_share(trial);
-    let contact = system.bodies_at(&u).map_err(caught)?;
+    let contact = system.bodies_at(&u)?;
     body.load_points = load_points;
     body.rigid = contact.bodies;
     body.particles.commit(&stencils, method, trial, &u);
@@ -210,24 +210,6 @@ fn equilibrium<const D: usize>(
         times,
     };
     Ok((report, NodalForces { reactions, u }))
-}
-
-/// The failure of a step that would carry soil into a rigid body.
-fn caught(error: AssemblyError) -> StepFailure {
-    match error {
-        AssemblyError::Swallowed {
-            particle,
-            body,
-            depth,
-            position,
-        } => StepFailure::Swallowed {
-            particle,
-            body,
-            depth,
-            position,
-        },
-        other => other.into(),
-    }
 }
 
 /// Share of particles that returned to the yield surface \[-\].

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use igimp_assembly::AssemblyError;
+use igimp_assembly::{AssemblyError, Swallowed};
 use thiserror::Error;
 
 use crate::linear::LinearSolverError;
@@ -60,20 +60,8 @@ pub enum StepFailure {
         position: [f64; 3],
     },
     /// Converged, but a particle would be carried into a rigid body, or through it.
-    #[error(
-        "particle {particle} would be carried {depth:.2} of its half-length into the rigid body \
-             \"{body}\" on its way to {position:?} m"
-    )]
-    Swallowed {
-        /// Number of the particle, from 0.
-        particle: usize,
-        /// Name of the body.
-        body: String,
-        /// How deep, in half-lengths of the particle as seeded \[-\].
-        depth: f64,
-        /// Where it would be in the end \[length\], axes beyond the dimension 0.
-        position: [f64; 3],
-    },
+    #[error(transparent)]
+    Swallowed(#[from] Swallowed),
     /// Converged, but soil has gone too far into a rigid body.
     #[error("soil has gone {share:.3} of a cell into the rigid body \"{body}\" at {position:?} m")]
     TooDeep {
@@ -128,7 +116,7 @@ impl StepFailure {
             | Self::NotHeld { .. } => true,
             Self::LeavesGrid { .. }
             | Self::LoadPointLeavesGrid { .. }
-            | Self::Swallowed { .. }
+            | Self::Swallowed(_)
             | Self::TooDeep { .. }
             | Self::NotFinite { .. } => false,
             Self::Assembly(error) => error.is_too_far(),

@@ -228,10 +228,13 @@ fn tell(study: &mut Study, run: usize, push: &Push, end: [f64; 2]) {
     } = &study.runs[run];
     let (quantity, expected, ..) = known(push);
     let share = measured(push, end) / expected.value - 1.0;
+    let loads = match push.load {
+        // V is given there.
+        Load::Sideways => format!("H/(B s_u) = {:.3}", end[1]),
+        _ => format!("V/(B s_u) = {:.3}, H/(B s_u) = {:.3}", end[0], end[1]),
+    };
     let note = format!(
-        "contact-strip, {variant}: V/(B s_u) = {:.3}, H/(B s_u) = {:.3}, {quantity} off by {:+.1} %; {outcome}",
-        end[0],
-        end[1],
+        "contact-strip, {variant}: {loads}, {quantity} off by {:+.1} %; {outcome}",
         100.0 * share
     );
     study.notes.push(note);

@@ -1,9 +1,10 @@
 //! How close particles may come to rigid bodies (theory, after eq. 50): contact holds the mean around a
 //! knot, and single particles creep across a surface.
 
+use thiserror::Error;
+
 use super::RigidBody;
 use super::surface::{minus, norm};
-use crate::error::AssemblyError;
 use crate::particles::Particles;
 use crate::supports::padded;
 
@@ -18,6 +19,23 @@ const MOST_PASSES: usize = 20;
 
 /// What is missing to the least height after the first pass is round-off, as a share of it \[-\].
 const ROUND_OFF: f64 = 1e-9;
+
+/// A particle would be carried into a rigid body, or through it.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[error(
+    "particle {particle} would be carried {depth:.2} of its half-length into the rigid body \
+     \"{body}\" on its way to {position:?} m"
+)]
+pub struct Swallowed {
+    /// Number of the particle, from 0.
+    pub particle: usize,
+    /// Name of the body.
+    pub body: String,
+    /// How deep, in half-lengths of the particle as seeded \[-\].
+    pub depth: f64,
+    /// Where its centre would be in the end \[length\], axes beyond the dimension 0.
+    pub position: [f64; 3],
+}
 
 /// A body with its extent in its own frame \[length\].
 struct Extent<'a, const D: usize> {
@@ -51,13 +69,13 @@ pub(crate) type WaysOff<const D: usize> = Vec<(usize, [f64; D])>;
 /// `place` and bodies from `before` to `after`.
 ///
 /// # Errors
-/// [`AssemblyError::Swallowed`] for the first particle that it would carry into a body, or through it.
+/// [`Swallowed`] for the first particle that it would carry into a body, or through it.
 pub(crate) fn put_back<const D: usize>(
     before: &[RigidBody<D>],
     after: &[RigidBody<D>],
     particles: &Particles<D>,
     place: impl Fn(usize) -> [f64; D],
-) -> Result<WaysOff<D>, AssemblyError> {
+) -> Result<WaysOff<D>, Swallowed> {
     let mut out = Vec::new();
     if after.is_empty() {
         return Ok(out);
@@ -70,7 +88,7 @@ pub(crate) fn put_back<const D: usize>(
             let from = old.pose.into_body(&particles.x[particle]);
             let depth = deepest(extent, &from, &x, half);
             if depth > MOST_DEPTH * half {
-                return Err(AssemblyError::Swallowed {
+                return Err(Swallowed {
                     particle,
                     body: extent.body.name.clone(),
                     depth: depth / half,

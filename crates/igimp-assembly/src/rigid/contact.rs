@@ -5,14 +5,13 @@ use std::collections::BTreeMap;
 
 use igimp_shape::Grid;
 
-use super::clearance::put_back;
+use super::clearance::{Swallowed, put_back};
 use super::face::Face;
 use super::interface::{Interface, Shear, Tension};
 use super::motion::rotations;
 use super::row::{Functional, Row};
 use super::surface::cross;
 use super::{ContactNode, ContactState, NODES_PER_BODY, RigidBody};
-use crate::error::AssemblyError;
 use crate::method::Geometry;
 use crate::nodal_forces::{AddBlock, NodalForces};
 use crate::particles::Particles;
@@ -202,7 +201,7 @@ impl<'a, const D: usize> Contact<'a, D> {
         particles: &Particles<D>,
         stencils: &Stencils<D>,
         geometry: Geometry,
-    ) -> Result<AcceptedContact<D>, AssemblyError> {
+    ) -> Result<AcceptedContact<D>, Swallowed> {
         let mut moved: Vec<RigidBody<D>> = self.bodies.to_vec();
         for (index, body) in moved.iter_mut().enumerate() {
             let node = self.first_node + NODES_PER_BODY * index;

@@ -22,6 +22,7 @@ pub use surface::{Surface, SurfaceError};
 
 pub use contact::AcceptedContact;
 
+pub use clearance::Swallowed;
 pub(crate) use clearance::seeded_too_close;
 pub(crate) use contact::Contact;
 pub(crate) use motion::rotations;

@@ -119,7 +119,7 @@ fn upright_sides(case: &Case, part: &RigidPart) -> Vec<f64> {
     let next = corners.iter().cycle().skip(1);
     let sides = std::iter::zip(corners, next);
     let mut ends: Vec<f64> = sides
-        .filter(|(a, b)| place(case, 0, a[0]) - place(case, 0, b[0]) == 0.0)
+        .filter(|(a, b)| (place(case, 0, a[0]) - place(case, 0, b[0])).abs() < NEAR)
         .map(|(a, _)| a[0])
         .collect();
     ends.retain(|&end| is_within(case, end));

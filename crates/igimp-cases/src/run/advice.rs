@@ -1,7 +1,7 @@
 //! What may help after a step without equilibrium, in the words of the case file, most promising
 //! first. Every rule looks at the failure and at the case, and says nothing when it is of no use.
 
-use igimp_assembly::{AssemblyError, Locking};
+use igimp_assembly::{AssemblyError, Locking, Swallowed};
 use igimp_solver::linear::LinearSolverError;
 use igimp_solver::{Component, StepError, StepFailure};
 
@@ -50,7 +50,9 @@ pub fn advice(
         StepFailure::Assembly(assembly) => unformed(case, stage, assembly),
         StepFailure::Linear(linear) => unsolved(case, linear),
         StepFailure::TooDeep { body, .. } => too_deep(case, stage, body),
-        StepFailure::Swallowed { body, position, .. } => swallowed(case, stage, body, *position),
+        StepFailure::Swallowed(Swallowed { body, position, .. }) => {
+            swallowed(case, stage, body, *position)
+        }
         StepFailure::NotHeld {
             body,
             component,

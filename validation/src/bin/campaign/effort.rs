@@ -67,7 +67,7 @@ fn cause(failure: &StepFailure) -> &'static str {
             "leaves the grid"
         }
         StepFailure::TooDeep { .. } => "penetrates too deep",
-        StepFailure::Swallowed { .. } => "soil caught by a body",
+        StepFailure::Swallowed(_) => "soil caught by a body",
         StepFailure::NotHeld { .. } => "nothing holds a body",
         StepFailure::NotFinite { .. } => "not finite",
         StepFailure::Assembly(AssemblyError::Inverted { .. }) => "particle inverted",
