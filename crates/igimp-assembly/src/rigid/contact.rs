@@ -108,9 +108,18 @@ impl<'a, const D: usize> Contact<'a, D> {
                 };
                 let interface = &body.interfaces[side];
                 let law = particles.law[particle];
-                let young = conditions.laws[law].elasticity().young();
+                let young = particles.young(particle, &conditions.laws);
                 let adhesion = match &interface.shear {
-                    Shear::Limited { adhesion, .. } => adhesion.get(law).copied().unwrap_or(0.0),
+                    Shear::Limited {
+                        adhesion, varies, ..
+                    } => {
+                        let adhesion = adhesion.get(law).copied().unwrap_or(0.0);
+                        if *varies {
+                            adhesion * particles.ratios[particle].strength
+                        } else {
+                            adhesion
+                        }
+                    }
                     _ => 0.0,
                 };
                 for point in face.points(body, &places, grid) {

@@ -31,6 +31,7 @@ impl Interface {
         Self {
             shear: Shear::Limited {
                 adhesion: Vec::new(),
+                varies: false,
                 friction: coefficient,
             },
             tension: Tension::None,
@@ -64,6 +65,8 @@ pub enum Shear {
     Limited {
         /// Adhesion by law of the soil that touches \[stress\]; none for laws beyond the list.
         adhesion: Vec<f64>,
+        /// Whether adhesion is a share of the strength of the soil, and varies with it from particle to particle.
+        varies: bool,
         /// Coefficient of friction μ \[-\].
         friction: f64,
     },

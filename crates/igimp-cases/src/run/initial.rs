@@ -2,6 +2,7 @@
 //! and 37).
 
 use igimp_assembly::Particles;
+use igimp_material::ConstitutiveModel;
 
 use super::model::Model;
 use super::state::State;
@@ -23,16 +24,21 @@ pub(crate) fn level_ground(model: &Model<'_>, state: &mut State) -> Result<(), C
             .k0
             .unwrap_or(material.poisson / (1.0 - material.poisson));
         let sigma = [k0 * vertical, vertical, k0 * vertical];
-        let law = &model.laws[fields.law[particle]];
-        let excess = law.yield_function(&sigma, &fields.history[particle]);
-        if excess > 1e-9 * law.stress_scale(&sigma) {
+        let answer = |law: &dyn ConstitutiveModel| {
+            let excess = law.yield_function(&sigma, &fields.history[particle]);
+            (excess <= 1e-9 * law.stress_scale(&sigma)).then(|| law.elasticity().strain(&sigma))
+        };
+        let strain = state
+            .body
+            .particles
+            .ask_law(particle, &model.laws, answer)?;
+        let Some(strain) = strain else {
             return Err(CaseError::InitialStress {
                 material: material.name.clone(),
                 position: x,
                 k0,
             });
-        }
-        let strain = law.elasticity().strain(&sigma);
+        };
         for axis in 0..3 {
             fields.sigma[particle][axis][axis] = sigma[axis];
             fields.b_e[particle][axis][axis] = (2.0 * strain[axis]).exp();

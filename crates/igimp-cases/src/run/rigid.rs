@@ -54,6 +54,7 @@ fn interface(case: &Case, of: &RigidInterface, laws: usize) -> Interface {
             let by_material: Vec<f64> = by_material.collect();
             Shear::Limited {
                 adhesion: by_material.into_iter().cycle().take(laws).collect(),
+                varies: matches!(adhesion, Adhesion::Share(_)),
                 friction,
             }
         }

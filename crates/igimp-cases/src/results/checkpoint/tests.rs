@@ -1,5 +1,5 @@
 use igimp_assembly::{LoadPoint, ParticleFields, Particles};
-use igimp_material::{History, Regime};
+use igimp_material::{History, Ratios, Regime};
 use serde_json::json;
 
 use super::*;
@@ -32,6 +32,12 @@ pub(in crate::results) fn body(n: usize) -> Body<2> {
         volume0: by_particle(&|k| number(k, 28).abs()),
         mass: by_particle(&|k| number(k, 29).abs()),
         law: (0..n).map(|k| k % 3).collect(),
+        ratios: (0..n)
+            .map(|k| Ratios {
+                strength: number(k, 44).abs(),
+                stiffness: 1.0 / 3.0,
+            })
+            .collect(),
         history: (0..n)
             .map(|k| History {
                 eps_p_eq: number(k, 30),
