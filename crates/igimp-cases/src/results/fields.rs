@@ -229,7 +229,7 @@ pub const ALL: [Field; 13] = [
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::case::{Material, Strength};
+    use crate::case::{Material, Profiles, Strength};
     use igimp_assembly::{ParticleFields, ParticleSeed};
     use igimp_material::History;
 
@@ -241,6 +241,7 @@ mod tests {
             poisson: 0.3,
             strength,
             k0: None,
+            profiles: Profiles::default(),
         };
         material.law().unwrap()
     }
