@@ -147,14 +147,13 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
         ],
     );
     for (pair, computed) in std::iter::zip(pushes.chunks(2), results.chunks(2)) {
-        let mut loads = [f64::NAN; 2];
-        for (load, (push, result)) in loads.iter_mut().zip(std::iter::zip(pair, computed)) {
+        let mut coarse = f64::NAN;
+        for (push, result) in std::iter::zip(pair, computed) {
             let record = RunRecord::new(push.label(), &result.report, result.elapsed);
             let run = study.run_to_end(record);
             let points = result.curve("resistance").points(0, 1);
             let end = points.last().map_or(f64::NAN, |point| point[1]);
             let before = points.iter().rev().nth(points.len() / 10);
-            *load = end;
             study.check(
                 run,
                 "growth of V in the last tenth of the push [-]",
@@ -172,7 +171,7 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
                 upper,
             ]);
             if push.cells == push.ground.cells[1] {
-                let [coarse, fine] = push.ground.cells.map(|cells| 1.0 / f64::from(cells));
+                let [wide, narrow] = push.ground.cells.map(|cells| 1.0 / f64::from(cells));
                 study.check(
                     run,
                     format!(
@@ -181,9 +180,10 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
                     ),
                     BOUNDS.says(0.5 * (lower + upper)),
                     Band::Between(0.98 * lower, 1.02 * upper),
-                    loads[1] + (loads[1] - loads[0]) * fine / (coarse - fine),
+                    end + (end - coarse) * narrow / (wide - narrow),
                 );
             }
+            coarse = end;
         }
     }
     table.write_csv(&study.folder)?;
