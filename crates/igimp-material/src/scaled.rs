@@ -84,7 +84,7 @@ impl<L: Deref<Target = dyn ConstitutiveModel>> ScaledLaw<L> {
     }
 
     /// The history that the other law is given.
-    fn unscaled_history(&self, history: &History) -> History {
+    fn unscaled_history(&self, history: History) -> History {
         History {
             eps_p_eq: history.eps_p_eq * self.strain_ratio(),
         }
@@ -112,7 +112,7 @@ where
         let trial = eps_e_trial.map(|strain| strain * ratio);
         let answer = self
             .law
-            .return_map(&trial, &self.unscaled_history(history))?;
+            .return_map(&trial, &self.unscaled_history(*history))?;
         let Ratios {
             strength,
             stiffness,
@@ -130,7 +130,7 @@ where
     }
 
     fn yield_function(&self, tau: &Principal, history: &History) -> f64 {
-        let history = self.unscaled_history(history);
+        let history = self.unscaled_history(*history);
         self.ratios.strength * self.law.yield_function(&self.unscaled(tau), &history)
     }
 
@@ -139,7 +139,7 @@ where
     }
 
     fn utilisation(&self, tau: &Principal, history: &History) -> f64 {
-        let history = self.unscaled_history(history);
+        let history = self.unscaled_history(*history);
         self.law.utilisation(&self.unscaled(tau), &history)
     }
 

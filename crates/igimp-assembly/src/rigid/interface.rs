@@ -1,5 +1,7 @@
 //! What the sides of a rigid body are like.
 
+use igimp_material::Ratios;
+
 /// An interface between a rigid body and soil.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Interface {
@@ -44,6 +46,22 @@ impl Interface {
         Self {
             tension: Tension::Bonded,
             ..self
+        }
+    }
+
+    /// Adhesion where soil of a law touches, at the ratios of that soil to its law \[stress\].
+    pub(crate) fn adhesion(&self, law: usize, ratios: Ratios) -> f64 {
+        let Shear::Limited {
+            adhesion, varies, ..
+        } = &self.shear
+        else {
+            return 0.0;
+        };
+        let adhesion = adhesion.get(law).copied().unwrap_or(0.0);
+        if *varies {
+            adhesion * ratios.strength
+        } else {
+            adhesion
         }
     }
 
