@@ -289,7 +289,7 @@ fn check(study: &mut Study, push: &Push, run: usize, result: &Computed, sequenti
             // The bond of the side, which contact does not have.
             study.control(
                 run,
-                "N at 1.0 B [-]",
+                "N at 1.0 B, more than without the bond [-]",
                 SEQUENTIAL.says(interpolate(sequential, 1.0)),
                 Band::AtLeast(1.1 * interpolate(sequential, 1.0)),
                 resistance_at(1.0),

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use body_support::workspace;
 use igimp_assembly::{
     Constraints, Drive, Interface, Method, ParticleSeed, Particles, RigidBody, RigidMotion,
-    SharedLaw, StepConditions, StepLoads, Surface,
+    SharedLaw, Shear, StepConditions, StepLoads, Surface, Tension,
 };
 use igimp_material::{Elasticity, HenckyElastic};
 use igimp_shape::{Axis, Grid};
@@ -212,6 +212,29 @@ fn soil_lets_go_and_carries_again() {
     let (_, again) = advance(&mut body, &conditions, back);
     let second = of_body(&again);
     assert!((second / first - 1.0).abs() < 0.01, "{first} {second}");
+}
+
+/// What carries no shear takes the way of a smooth plate, step by step and correction by correction.
+#[test]
+fn friction_of_nothing_is_smooth() {
+    let without = Interface {
+        shear: Shear::Limited {
+            adhesion: Vec::new(),
+            friction: 0.0,
+        },
+        tension: Tension::None,
+    };
+    let pushed = |interface: &Interface| {
+        let (mut body, conditions) = under_a_plate(interface);
+        let down = [0.0, -0.1];
+        let along = [0.1, -0.02];
+        [down, along].map(|motion| {
+            let motion = RigidMotion::displaced(motion);
+            let (report, forces) = advance(&mut body, &conditions, motion);
+            (report.residuals, forces.reactions)
+        })
+    };
+    assert_eq!(pushed(&without), pushed(&Interface::smooth()));
 }
 
 /// A plate that is loaded while no soil touches it, or free to slide on a smooth base: the failure names what

@@ -140,7 +140,7 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
             let [found, expected] = mean(&curve, &sequential, depth);
             if push.has_edge_mid_cell() {
                 study.notes.push(format!(
-                    "contact-footing, B/h = {cells}, edge mid-cell: N around {depth} B is {found:.2}, {:+.1} % (±3 % are asked of the extrapolation)",
+                    "contact-footing, B/h = {cells}, edge mid-cell: N around {depth} B is {found:.2}, {:+.1} %; the extrapolation is checked",
                     100.0 * (found / expected - 1.0)
                 ));
             } else {

@@ -8,6 +8,10 @@ use crate::nodal_forces::AddBlock;
 /// Traction grows at most so much from step to step where soil covers less and less of a knot \[-\].
 const MOST_GROWTH: f64 = 2.0;
 
+/// Shear this near to its limit still sticks: what slipped in the last step begins the next one with the
+/// tangent of sticking, whatever round-off says \[-\].
+const ON_THE_LIMIT: f64 = 1e-12;
+
 /// A linear function of nodal displacements.
 pub(crate) type Functional<const D: usize> = Vec<(usize, [f64; D])>;
 
@@ -135,7 +139,9 @@ impl<const D: usize> Row<D> {
                 };
                 let limit = adhesion + friction * out.pressure.max(0.0);
                 let size = trial[0].hypot(trial[1]);
-                if size <= limit {
+                if limit <= 0.0 {
+                    out.slips = true;
+                } else if size <= (1.0 + ON_THE_LIMIT) * limit {
                     out.shear = trial;
                     out.shear_by_slip = [[-held, 0.0], [0.0, -held]];
                 } else {
