@@ -256,6 +256,7 @@ fn without(fields: &ParticleFields<2>, marked: &[bool]) -> ParticleFields<2> {
         volume0: keep(&fields.volume0, marked),
         mass: keep(&fields.mass, marked),
         law: keep(&fields.law, marked),
+        ratios: keep(&fields.ratios, marked),
         history: keep(&fields.history, marked),
         regime: keep(&fields.regime, marked),
     }

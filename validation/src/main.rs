@@ -29,6 +29,7 @@ mod review;
 mod runs;
 mod slopes;
 mod snapshot;
+mod strength_profile;
 mod study;
 mod table;
 mod tilted_layer;
@@ -103,6 +104,7 @@ enum Case {
     Slopes,
     TiltedLayer,
     Layers,
+    StrengthProfile,
     FootingContact,
     ContactFooting,
     ContactColumn,
@@ -135,6 +137,7 @@ impl Case {
             Self::Slopes => slopes::study(level, out),
             Self::TiltedLayer => tilted_layer::study(level, out),
             Self::Layers => layers::study(out),
+            Self::StrengthProfile => strength_profile::study(level, out),
             Self::FootingContact => footing_contact::study(level, out),
             Self::ContactFooting => contact::footing::study(level, out),
             Self::ContactColumn => contact::column::study(out),

@@ -3,10 +3,13 @@
 
 use std::ops::Deref;
 
-use igimp_material::{History, Regime, Tensor};
+use igimp_material::{
+    ConstitutiveModel, History, MaterialError, Ratios, Regime, ScaledLaw, Tensor,
+};
 
 use crate::error::AssemblyError;
 use crate::small::{determinant, identity};
+use crate::step_conditions::SharedLaw;
 
 /// What is known of a particle before the first step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,6 +49,8 @@ pub struct ParticleFields<const D: usize> {
     pub mass: Vec<f64>,
     /// Index of the constitutive law.
     pub law: Vec<usize>,
+    /// Strength and stiffness over those of the law \[-\].
+    pub ratios: Vec<Ratios>,
     /// History of the law.
     pub history: Vec<History>,
     /// Where the last return to the yield surface ended.
@@ -97,6 +102,7 @@ impl<const D: usize> Particles<D> {
                     .map(|seed| seed.volume * seed.density)
                     .collect(),
                 law: seeds.iter().map(|seed| seed.law).collect(),
+                ratios: vec![Ratios::ONE; n],
                 history: vec![History::default(); n],
                 regime: vec![Regime::Elastic; n],
             },
@@ -127,6 +133,7 @@ impl<const D: usize> Particles<D> {
             fields.volume0.len(),
             fields.mass.len(),
             fields.law.len(),
+            fields.ratios.len(),
             fields.history.len(),
             fields.regime.len(),
         ];
@@ -136,6 +143,55 @@ impl<const D: usize> Particles<D> {
         );
         (0..n).try_for_each(|particle| validate_state(particle, &fields))?;
         Ok(Self { fields })
+    }
+
+    /// The particles as seeded with strength and stiffness that are multiples of those of their laws, one entry per
+    /// particle. They carry them from then on.
+    ///
+    /// # Errors
+    /// [`AssemblyError::InvalidParticle`] for the first ratio that is not positive and finite.
+    ///
+    /// # Panics
+    /// If there are more or fewer entries than particles.
+    pub fn with_ratios(self, ratios: Vec<Ratios>) -> Result<Self, AssemblyError> {
+        Self::from_fields(ParticleFields {
+            ratios,
+            ..self.fields
+        })
+    }
+
+    /// Asks the law of a particle at the strength and stiffness of that particle (theory, eq. 19b); `laws` are those
+    /// that particles name. Where both ratios are 1 this is the law itself.
+    ///
+    /// # Errors
+    /// [`MaterialError::InvalidParameter`] for a stiffness beyond the numbers.
+    ///
+    /// # Panics
+    /// If there is no such particle, or not its law.
+    #[inline]
+    pub fn ask_law<T>(
+        &self,
+        particle: usize,
+        laws: &[SharedLaw],
+        ask: impl FnOnce(&dyn ConstitutiveModel) -> T,
+    ) -> Result<T, MaterialError> {
+        let law = &*laws[self.fields.law[particle]];
+        let ratios = self.fields.ratios[particle];
+        if ratios.are_one() {
+            Ok(ask(law))
+        } else {
+            Ok(ask(&ScaledLaw::new(law, ratios)?))
+        }
+    }
+
+    /// Young's modulus of a particle \[force/length²\], `laws` being those that particles name.
+    ///
+    /// # Panics
+    /// If there is no such particle, or not its law.
+    #[inline]
+    pub fn young(&self, particle: usize, laws: &[SharedLaw]) -> f64 {
+        let young = laws[self.fields.law[particle]].elasticity().young();
+        young * self.fields.ratios[particle].stiffness
     }
 
     /// Number of particles.
@@ -204,6 +260,11 @@ fn validate_state<const D: usize>(
     )?;
     hold("volume0", &[fields.volume0[particle]], Range::Positive)?;
     hold("mass", &[fields.mass[particle]], Range::NotNegative)?;
+    let Ratios {
+        strength,
+        stiffness,
+    } = fields.ratios[particle];
+    hold("ratios", &[strength, stiffness], Range::Positive)?;
     hold(
         "eps_p_eq",
         &[fields.history[particle].eps_p_eq],

@@ -94,7 +94,7 @@ impl<'a, const D: usize> System<'a, D> {
             .collect();
         let constraints = &conditions.constraints;
         let unknowns = Unknowns::number(grid, stencils, constraints, cuts.below, &free)?;
-        let young = |p: usize| conditions.laws[particles.law[p]].elasticity().young();
+        let young = |particle: usize| particles.young(particle, &conditions.laws);
         let couplings = [
             ghost_penalty(grid, particles, stencils, young, cuts.ghost_penalty),
             nodal_drag(grid, stencils, conditions.loads.drag),

@@ -4,7 +4,7 @@
 
 use std::ops::Range;
 
-use igimp_material::TangentKind;
+use igimp_material::{ConstitutiveModel, TangentKind};
 use rayon::prelude::*;
 
 use crate::blocks::Blocks;
@@ -139,14 +139,19 @@ impl<const D: usize> System<'_, D> {
         kind: TangentKind,
         trial: &mut ParticleTrial<D>,
     ) -> Result<Linearisation<D>, AssemblyError> {
-        let state = ParticleState {
-            particle,
-            b_e: &self.particles.b_e[particle],
-            history: &self.particles.history[particle],
-            law: &*self.conditions.laws[self.particles.law[particle]],
-        };
         let supports = self.stencils.of(particle);
-        evaluate(state, supports, u, self.method, kind, trial)
+        let evaluated = |law: &dyn ConstitutiveModel| {
+            let state = ParticleState {
+                particle,
+                b_e: &self.particles.b_e[particle],
+                history: &self.particles.history[particle],
+                law,
+            };
+            evaluate(state, supports, u, self.method, kind, trial)
+        };
+        self.particles
+            .ask_law(particle, &self.conditions.laws, evaluated)
+            .map_err(|source| AssemblyError::Material { particle, source })?
     }
 
     /// The stored values of the columns of some nodes.

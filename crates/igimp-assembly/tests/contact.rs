@@ -39,7 +39,11 @@ fn with_shear(shear: Shear) -> Interface {
 fn interfaces() -> Vec<(&'static str, Interface, bool)> {
     let limited = |adhesion: f64, friction| {
         let adhesion = vec![adhesion];
-        with_shear(Shear::Limited { adhesion, friction })
+        with_shear(Shear::Limited {
+            adhesion,
+            varies: false,
+            friction,
+        })
     };
     vec![
         ("smooth", Interface::smooth(), true),

@@ -4,6 +4,7 @@
 //! strain, per metre run). The second axis points up; gravity acts along its negative direction.
 
 mod grid;
+mod profile;
 mod rigid;
 
 use std::path::PathBuf;
@@ -15,6 +16,7 @@ use igimp_solver::linear::SolverKind;
 use serde::{Deserialize, Serialize};
 
 pub use grid::{AxisSpec, GridSpec, MixedCells};
+pub use profile::{LEAST_STRENGTH, Profile, Profiles};
 pub use rigid::{
     Adhesion, RigidDrive, RigidInterface, RigidMove, RigidPart, RigidQuantity, RigidShape,
     RigidShear,
@@ -105,7 +107,7 @@ impl Default for MeshStudy {
     }
 }
 
-/// A material.
+/// A material. Where a property varies with the level, its constant is the greatest value in the soil.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
     /// Name.
@@ -120,6 +122,8 @@ pub struct Material {
     pub strength: Strength,
     /// Coefficient of earth pressure at rest K₀ \[-\], if the material states one.
     pub k0: Option<f64>,
+    /// What varies with the level.
+    pub profiles: Profiles,
 }
 
 /// The strength of a material.
@@ -151,7 +155,7 @@ pub enum Strength {
 }
 
 impl Material {
-    /// The constitutive law.
+    /// The constitutive law; where strength or stiffness vary, that of the greatest, of which particles have multiples.
     ///
     /// # Errors
     /// [`MaterialError::InvalidParameter`].

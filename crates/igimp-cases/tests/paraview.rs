@@ -14,7 +14,7 @@ use igimp_cases::results::particles::{Extras, of_grid, of_particles};
 use igimp_cases::results::pvd::{Collection, GRID, PARTICLES, RIGID};
 use igimp_cases::results::rigid::{Standing, lines};
 use igimp_cases::results::vtu::{CellKind, DataArray, UnstructuredGrid};
-use igimp_material::{History, Regime};
+use igimp_material::{History, Ratios, Regime};
 use igimp_shape::{Axis, Grid};
 use igimp_solver::Body;
 use serde_json::{Value, json};
@@ -91,6 +91,7 @@ fn particles<const D: usize>(side: usize) -> Particles<D> {
         volume0: vec![1.0; n],
         mass: vec![2.0; n],
         law: (0..n).map(|k| k % 4).collect(),
+        ratios: vec![Ratios::ONE; n],
         history: (0..n)
             .map(|k| History {
                 eps_p_eq: number(k, 50).abs(),

@@ -53,6 +53,14 @@ impl Elasticity {
         })
     }
 
+    /// The same Poisson's ratio with Young's modulus times `ratio` \[-\].
+    ///
+    /// # Errors
+    /// [`MaterialError::InvalidParameter`] unless the product is positive and finite.
+    pub fn scaled(&self, ratio: f64) -> Result<Self, MaterialError> {
+        Self::new(self.young * ratio, self.poisson)
+    }
+
     /// Young's modulus E \[stress\].
     pub fn young(&self) -> f64 {
         self.young

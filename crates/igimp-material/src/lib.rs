@@ -9,6 +9,7 @@
 //! | linear Hencky elasticity | [`Elasticity`] |
 //! | the seam | [`ConstitutiveModel`], [`ReturnMap`], [`History`], [`Regime`] |
 //! | laws | [`HenckyElastic`], [`VonMises`], [`Tresca`], [`MohrCoulomb`] |
+//! | soil whose strength and stiffness vary | [`Ratios`], [`ScaledLaw`] |
 //! | from principal space to tensors | [`lift_finite`], [`lift_small`], [`Lifted`], [`SpatialTangent`] |
 //! | what can go wrong | [`MaterialError`] |
 //!
@@ -62,6 +63,7 @@ mod lift;
 mod mohr_coulomb;
 mod principal;
 mod pyramid;
+mod scaled;
 mod spatial;
 mod surface;
 mod tresca;
@@ -77,6 +79,7 @@ pub use lift::{
 };
 pub use mohr_coulomb::MohrCoulomb;
 pub use principal::{Principal, Tensor};
+pub use scaled::{Ratios, ScaledLaw};
 pub use spatial::SpatialTangent;
 pub use tresca::Tresca;
 pub use von_mises::VonMises;

@@ -58,12 +58,26 @@ fn a_checkpoint_of_another_case_is_refused() {
     assert_eq!(code, Some(0), "{said}");
 }
 
-/// GOAL: rigid bodies go on where they stood, with what contact left behind: from any step of their
-/// stages the run ends with the same files.
+/// GOAL: rigid bodies go on where they stood, with what contact left behind, on soil whose strength and stiffness
+/// vary: from any step of their stages the run ends with the same files.
 #[test]
 fn rigid_bodies_are_taken_up_where_they_stood() {
     let folder = Folder::new("two-bodies");
     let case = include_str!("../../igimp-cases/tests/data/two_bodies.toml");
+    let varied = [
+        (
+            "cu = \"20 kPa\"",
+            "cu = { at_top = \"18 kPa\", gradient = \"3 kPa/m\" }",
+        ),
+        (
+            "young = \"6 MPa\"",
+            "young = { levels = [\"0 m\", \"2 m\"], values = [\"7 MPa\", \"5 MPa\"] }",
+        ),
+    ];
+    let case = varied.iter().fold(case.to_owned(), |case, (from, to)| {
+        assert!(case.contains(from), "{from}");
+        case.replacen(from, to, 1)
+    });
     fs::write(folder.0.join("two_bodies.toml"), case).unwrap();
     let run = |more: &[&str]| {
         let mut command = Command::new(env!("CARGO_BIN_EXE_igimp"));

@@ -76,6 +76,7 @@ pub(crate) fn adhesive(share: f64) -> Interface {
     Interface {
         shear: Shear::Limited {
             adhesion: vec![share],
+            varies: false,
             friction: 0.0,
         },
         ..Interface::smooth()

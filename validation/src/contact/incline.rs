@@ -115,6 +115,7 @@ fn pushed(friction: f64, adhesion: f64, offset: f64) -> Result<(RunRecord, f64),
     let interface = Interface {
         shear: Shear::Limited {
             adhesion: vec![adhesion],
+            varies: false,
             friction,
         },
         tension: Tension::None,

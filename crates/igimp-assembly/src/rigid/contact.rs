@@ -7,7 +7,7 @@ use igimp_shape::Grid;
 
 use super::clearance::{Swallowed, put_back};
 use super::face::Face;
-use super::interface::{Interface, Shear, Tension};
+use super::interface::{Interface, Tension};
 use super::motion::rotations;
 use super::row::{Functional, Row};
 use super::surface::cross;
@@ -107,11 +107,8 @@ impl<'a, const D: usize> Contact<'a, D> {
                 };
                 let interface = &body.interfaces[side];
                 let law = particles.law[particle];
-                let young = conditions.laws[law].elasticity().young();
-                let adhesion = match &interface.shear {
-                    Shear::Limited { adhesion, .. } => adhesion.get(law).copied().unwrap_or(0.0),
-                    _ => 0.0,
-                };
+                let young = particles.young(particle, &conditions.laws);
+                let adhesion = interface.adhesion(law, particles.ratios[particle]);
                 for point in face.points(body, &places, grid) {
                     let Some(SoilPoint {
                         shares,

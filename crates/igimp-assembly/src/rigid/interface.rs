@@ -1,5 +1,7 @@
 //! What the sides of a rigid body are like.
 
+use igimp_material::Ratios;
+
 /// An interface between a rigid body and soil.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Interface {
@@ -31,6 +33,7 @@ impl Interface {
         Self {
             shear: Shear::Limited {
                 adhesion: Vec::new(),
+                varies: false,
                 friction: coefficient,
             },
             tension: Tension::None,
@@ -43,6 +46,22 @@ impl Interface {
         Self {
             tension: Tension::Bonded,
             ..self
+        }
+    }
+
+    /// Adhesion where soil of a law touches, at the ratios of that soil to its law \[stress\].
+    pub(crate) fn adhesion(&self, law: usize, ratios: Ratios) -> f64 {
+        let Shear::Limited {
+            adhesion, varies, ..
+        } = &self.shear
+        else {
+            return 0.0;
+        };
+        let adhesion = adhesion.get(law).copied().unwrap_or(0.0);
+        if *varies {
+            adhesion * ratios.strength
+        } else {
+            adhesion
         }
     }
 
@@ -64,6 +83,8 @@ pub enum Shear {
     Limited {
         /// Adhesion by law of the soil that touches \[stress\]; none for laws beyond the list.
         adhesion: Vec<f64>,
+        /// Whether adhesion is a share of the strength of the soil, and varies with it from particle to particle.
+        varies: bool,
         /// Coefficient of friction μ \[-\].
         friction: f64,
     },

@@ -11,13 +11,16 @@ use super::tree::{Node, Value, from_value};
 /// A decimal number or a fraction, as a regular expression.
 const NUMBER: &str = r"[-+]?([0-9_]+\.?[0-9_]*|\.[0-9_]+)([eE][-+]?[0-9]+)?";
 /// Dimensions that keys take.
-const DIMENSIONS: [Dimension; 6] = [
+const DIMENSIONS: [Dimension; 9] = [
     Dimension::Length,
     Dimension::Stress,
     Dimension::UnitWeight,
+    Dimension::StressGradient,
+    Dimension::UnitWeightGradient,
     Dimension::Angle,
     Dimension::Acceleration,
     Dimension::ForcePerLength,
+    Dimension::MomentPerLength,
 ];
 
 /// JSON Schema (draft 2020-12) of a case file.

@@ -70,9 +70,12 @@ fn units(out: &mut String) {
         Dimension::Length,
         Dimension::Stress,
         Dimension::UnitWeight,
+        Dimension::StressGradient,
+        Dimension::UnitWeightGradient,
         Dimension::Angle,
         Dimension::Acceleration,
         Dimension::ForcePerLength,
+        Dimension::MomentPerLength,
     ] {
         let units: Vec<_> = dimension.units().map(|unit| format!("`{unit}`")).collect();
         let _ = writeln!(out, "| {} | {} |", bare(dimension), units.join(" "));

@@ -9,6 +9,10 @@ pub enum Dimension {
     Stress,
     /// Weight per volume \[N/m³\].
     UnitWeight,
+    /// Growth of a stress with depth \[Pa/m\].
+    StressGradient,
+    /// Growth of a unit weight with depth \[N/m³ per m\].
+    UnitWeightGradient,
     /// Angle \[rad\].
     Angle,
     /// Acceleration \[m/s²\].
@@ -32,6 +36,8 @@ impl Dimension {
             Self::Length => "a length",
             Self::Stress => "a stress",
             Self::UnitWeight => "a unit weight",
+            Self::StressGradient => "a stress per depth",
+            Self::UnitWeightGradient => "a unit weight per depth",
             Self::Angle => "an angle",
             Self::Acceleration => "an acceleration",
             Self::ForcePerLength => "a force per length",
@@ -48,6 +54,8 @@ impl Dimension {
             Self::Length => "m",
             Self::Stress => "kPa",
             Self::UnitWeight => "kN/m3",
+            Self::StressGradient => "kPa/m",
+            Self::UnitWeightGradient => "kN/m3/m",
             Self::Angle => "deg",
             Self::Acceleration => "m/s2",
             Self::ForcePerLength => "kN/m",
@@ -64,6 +72,8 @@ impl Dimension {
             Self::Length => "m",
             Self::Stress => "Pa",
             Self::UnitWeight => "N/m3",
+            Self::StressGradient => "Pa/m",
+            Self::UnitWeightGradient => "N/m3/m",
             Self::Angle => "rad",
             Self::Acceleration => "m/s2",
             Self::ForcePerLength => "N/m",
@@ -80,6 +90,8 @@ impl Dimension {
             Self::Length => "2 m",
             Self::Stress => "25 kPa",
             Self::UnitWeight => "18 kN/m3",
+            Self::StressGradient => "1.5 kPa/m",
+            Self::UnitWeightGradient => "0.2 kN/m3/m",
             Self::Angle => "30 deg",
             Self::Acceleration => "9.81 m/s2",
             Self::ForcePerLength => "100 kN/m",
@@ -178,7 +190,7 @@ const fn degrees(symbol: &'static str) -> Unit {
     }
 }
 
-static UNITS: [Unit; 44] = [
+static UNITS: [Unit; 51] = [
     ten("m", Dimension::Length, 0),
     ten("mm", Dimension::Length, -3),
     ten("cm", Dimension::Length, -2),
@@ -196,6 +208,13 @@ static UNITS: [Unit; 44] = [
     ten("kN/m3", Dimension::UnitWeight, 3),
     ten("N/m3", Dimension::UnitWeight, 0),
     ten("MN/m3", Dimension::UnitWeight, 6),
+    ten("kPa/m", Dimension::StressGradient, 3),
+    ten("Pa/m", Dimension::StressGradient, 0),
+    ten("MPa/m", Dimension::StressGradient, 6),
+    ten("kN/m2/m", Dimension::StressGradient, 3),
+    ten("kN/m3/m", Dimension::UnitWeightGradient, 3),
+    ten("N/m3/m", Dimension::UnitWeightGradient, 0),
+    ten("kN/m4", Dimension::UnitWeightGradient, 3),
     degrees("deg"),
     degrees("°"),
     degrees("degree"),

@@ -1,7 +1,7 @@
 //! The fields of a case on the particles of a body, in the printed sign: compression positive.
 
 use igimp_assembly::{Particles, SharedLaw};
-use igimp_material::{Tensor, principal_values};
+use igimp_material::{ConstitutiveModel, Tensor, principal_values};
 
 use crate::case::Field;
 
@@ -58,10 +58,13 @@ pub(super) fn deviatoric_stress(sigma: &Tensor) -> f64 {
 /// The stress is that of the law, C ½ ln b_e: Kirchhoff stress with finite strain, Cauchy stress
 /// with small strain.
 fn utilisation(particles: &Particles<2>, particle: usize, laws: &[SharedLaw]) -> Option<f64> {
-    let law = laws.get(particles.law[particle])?;
+    laws.get(particles.law[particle])?;
     let eps_e = principal_values::<2>(&particles.b_e[particle]).map(|b| 0.5 * b.ln());
-    let tau = law.elasticity().stress(&eps_e);
-    Some(law.utilisation(&tau, &particles.history[particle]))
+    let share = |law: &dyn ConstitutiveModel| {
+        let tau = law.elasticity().stress(&eps_e);
+        law.utilisation(&tau, &particles.history[particle])
+    };
+    particles.ask_law(particle, laws, share).ok()
 }
 
 /// What kind of number a field is: fields of a kind share an axis.
@@ -226,7 +229,7 @@ pub const ALL: [Field; 13] = [
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::case::{Material, Strength};
+    use crate::case::{Material, Profiles, Strength};
     use igimp_assembly::{ParticleFields, ParticleSeed};
     use igimp_material::History;
 
@@ -238,6 +241,7 @@ mod tests {
             poisson: 0.3,
             strength,
             k0: None,
+            profiles: Profiles::default(),
         };
         material.law().unwrap()
     }

@@ -3,9 +3,9 @@
 use igimp_assembly::{Geometry, Tension};
 
 use crate::case::{
-    Adhesion, AxisSpec, Boundaries, Case, Load, LoadKind, Material, Reduction, ReductionPath,
-    RigidDrive, RigidMove, RigidPart, RigidShape, RigidShear, Side, Stage, StageKind, StopWhen,
-    Strength,
+    Adhesion, AxisSpec, Boundaries, Case, Load, LoadKind, Material, Profile, Reduction,
+    ReductionPath, RigidDrive, RigidMove, RigidPart, RigidShape, RigidShear, Side, Stage,
+    StageKind, StopWhen, Strength,
 };
 use crate::check::short;
 use crate::summary::SetupTable;
@@ -57,15 +57,24 @@ fn materials(case: &Case) -> SetupTable {
 }
 
 fn material(material: &Material) -> Vec<String> {
+    let own = &material.profiles;
+    let cohesive = || match &own.strength {
+        Some(profile) => in_words(profile, 1e3, " kPa"),
+        None => kilo(material.cohesive(), "Pa"),
+    };
+    let or_constant = |profile: &Option<Profile>, constant: f64, scale: f64| match profile {
+        Some(profile) => in_words(profile, scale, ""),
+        None => short(constant / scale),
+    };
     let (law, strength) = match material.strength {
         Strength::Elastic => ("elastic", "no limit".to_owned()),
-        Strength::VonMises { undrained_strength } => ("von Mises", undrained(undrained_strength)),
-        Strength::Tresca { undrained_strength } => ("Tresca", undrained(undrained_strength)),
+        Strength::VonMises { .. } => ("von Mises", format!("c_u = {}", cohesive())),
+        Strength::Tresca { .. } => ("Tresca", format!("c_u = {}", cohesive())),
         Strength::MohrCoulomb {
-            cohesion,
             friction_angle,
             dilation_angle,
             tension_cutoff,
+            ..
         } => {
             let degrees = |angle: f64| short(angle.to_degrees());
             let cutoff = tension_cutoff.map_or_else(String::new, |limit| {
@@ -73,7 +82,7 @@ fn material(material: &Material) -> Vec<String> {
             });
             let strength = format!(
                 "c = {}, φ = {}°, ψ = {}°{cutoff}",
-                kilo(cohesion, "Pa"),
+                cohesive(),
                 degrees(friction_angle),
                 degrees(dilation_angle)
             );
@@ -83,16 +92,50 @@ fn material(material: &Material) -> Vec<String> {
     vec![
         material.name.clone(),
         law.to_owned(),
-        short(material.unit_weight / 1e3),
-        short(material.young / 1e6),
+        or_constant(&own.unit_weight, material.unit_weight, 1e3),
+        or_constant(&own.young, material.young, 1e6),
         short(material.poisson),
         strength,
         material.k0.map_or_else(|| NONE.to_owned(), short),
     ]
 }
 
-fn undrained(strength: f64) -> String {
-    format!("c_u = {}", kilo(strength, "Pa"))
+/// Most rows of a profile that are told one by one.
+const MOST_ROWS: usize = 6;
+
+/// A profile in words, its values divided by `scale`.
+fn in_words(profile: &Profile, scale: f64, unit: &str) -> String {
+    match profile {
+        Profile::Gradient {
+            from,
+            at_top,
+            gradient,
+        } => format!(
+            "{}{unit} down to y = {} m, {}{unit} per metre {} below",
+            short(at_top / scale),
+            short(*from),
+            short(gradient.abs() / scale),
+            if *gradient < 0.0 { "less" } else { "more" }
+        ),
+        Profile::Table(rows) if rows.len() <= MOST_ROWS => {
+            let row = |[level, value]: &[f64; 2]| {
+                format!("{}{unit} at y = {} m", short(value / scale), short(*level))
+            };
+            let rows: Vec<String> = rows.iter().rev().map(row).collect();
+            rows.join(", ")
+        }
+        Profile::Table(rows) => {
+            let ([low, deepest], [high, highest]) = (rows[0], rows[rows.len() - 1]);
+            format!(
+                "{}{unit} at y = {} m to {}{unit} at y = {} m by a table of {} levels",
+                short(highest / scale),
+                short(high),
+                short(deepest / scale),
+                short(low),
+                rows.len()
+            )
+        }
+    }
 }
 
 fn bodies(case: &Case) -> SetupTable {

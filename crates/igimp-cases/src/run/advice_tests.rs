@@ -5,8 +5,8 @@ use igimp_assembly::{Geometry, Locking};
 
 use super::*;
 use crate::case::{
-    BodyPart, Boundaries, Every, GridSpec, MeshStudy, Output, Reduction, RunOut, SolverSettings,
-    StopWhen, TitleBlock,
+    BodyPart, Boundaries, Every, GridSpec, MeshStudy, Output, Profiles, Reduction, RunOut,
+    SolverSettings, StopWhen, TitleBlock,
 };
 
 /// A slope of Mohr–Coulomb soil on elastic rock.
@@ -18,6 +18,7 @@ fn case(kind: StageKind) -> Case {
         poisson: 0.3,
         strength,
         k0: None,
+        profiles: Profiles::default(),
     };
     let body = |name: &str, material, lower, upper| BodyPart {
         name: name.into(),

@@ -2,6 +2,7 @@
 //! and 37).
 
 use igimp_assembly::Particles;
+use igimp_material::ConstitutiveModel;
 
 use super::model::Model;
 use super::state::State;
@@ -23,16 +24,21 @@ pub(crate) fn level_ground(model: &Model<'_>, state: &mut State) -> Result<(), C
             .k0
             .unwrap_or(material.poisson / (1.0 - material.poisson));
         let sigma = [k0 * vertical, vertical, k0 * vertical];
-        let law = &model.laws[fields.law[particle]];
-        let excess = law.yield_function(&sigma, &fields.history[particle]);
-        if excess > 1e-9 * law.stress_scale(&sigma) {
+        let answer = |law: &dyn ConstitutiveModel| {
+            let excess = law.yield_function(&sigma, &fields.history[particle]);
+            (excess <= 1e-9 * law.stress_scale(&sigma)).then(|| law.elasticity().strain(&sigma))
+        };
+        let strain = state
+            .body
+            .particles
+            .ask_law(particle, &model.laws, answer)?;
+        let Some(strain) = strain else {
             return Err(CaseError::InitialStress {
                 material: material.name.clone(),
                 position: x,
                 k0,
             });
-        }
-        let strain = law.elasticity().strain(&sigma);
+        };
         for axis in 0..3 {
             fields.sigma[particle][axis][axis] = sigma[axis];
             fields.b_e[particle][axis][axis] = (2.0 * strain[axis]).exp();
@@ -48,36 +54,52 @@ fn weight_above(model: &Model<'_>, x: &[f64; 2]) -> f64 {
     let case = model.case;
     case.bodies
         .iter()
-        .map(|part| length_above(&part.polygon, x) * case.materials[part.material].unit_weight)
+        .map(|part| {
+            let material = &case.materials[part.material];
+            match &material.profiles.unit_weight {
+                None => sum_above(&part.polygon, x, |level| level) * material.unit_weight,
+                Some(own) => sum_above(&part.polygon, x, |level| own.integral(x[1], level)),
+            }
+        })
         .sum()
 }
 
-/// Length of the vertical ray upwards from a point that lies within a polygon \[m\].
-fn length_above(polygon: &[[f64; 2]], x: &[f64; 2]) -> f64 {
-    let mut length = 0.0;
+/// The growth of a quantity that rises with the level along the part of the vertical ray upwards from a point that
+/// lies within a polygon: with the level itself, the length \[m\].
+fn sum_above(polygon: &[[f64; 2]], x: &[f64; 2], quantity: impl Fn(f64) -> f64) -> f64 {
+    let mut sum = 0.0;
     for (k, p) in polygon.iter().enumerate() {
         let q = polygon[(k + 1) % polygon.len()];
         if (p[0] <= x[0]) == (q[0] <= x[0]) {
             continue;
         }
         let t = (x[0] - p[0]) / (q[0] - p[0]);
-        let crossing = (p[1] + t * (q[1] - p[1])).max(x[1]);
-        length += if q[0] < p[0] { crossing } else { -crossing };
+        let crossing = quantity((p[1] + t * (q[1] - p[1])).max(x[1]));
+        sum += if q[0] < p[0] { crossing } else { -crossing };
     }
-    length.abs()
+    sum.abs()
 }
 
 #[cfg(test)]
 mod tests {
-    use super::length_above;
+    use super::sum_above;
+    use crate::case::Profile;
 
     #[test]
     fn the_ray_counts_what_lies_above() {
+        let length_above = |ring: &[[f64; 2]], x: &[f64; 2]| sum_above(ring, x, |level| level);
         let ring = [[0.0, 0.0], [4.0, 0.0], [4.0, 5.0], [0.0, 5.0]];
         assert!((length_above(&ring, &[1.0, 2.0]) - 3.0).abs() < 1e-15);
         assert!((length_above(&ring, &[1.0, -2.0]) - 5.0).abs() < 1e-15);
         assert!(length_above(&ring, &[1.0, 6.0]).abs() < 1e-15);
         let clockwise: Vec<[f64; 2]> = ring.iter().rev().copied().collect();
         assert!((length_above(&clockwise, &[1.0, 2.0]) - 3.0).abs() < 1e-15);
+        let denser = Profile::Gradient {
+            from: 4.0,
+            at_top: 18.0,
+            gradient: 0.5,
+        };
+        let weight = sum_above(&ring, &[1.0, 2.0], |level| denser.integral(2.0, level));
+        assert!((weight - (18.0 + 2.0 * 18.5)).abs() < 1e-12);
     }
 }

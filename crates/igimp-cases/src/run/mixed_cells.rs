@@ -1,6 +1,7 @@
 //! One stiffness for the particles of a cell that several soils share (theory, eq. 37b).
 
 use igimp_assembly::{ParticleSeed, SharedLaw};
+use igimp_material::Ratios;
 use igimp_shape::Grid;
 
 use crate::case::{Case, Material};
@@ -17,9 +18,10 @@ struct Share {
     compliance: [f64; 2],
 }
 
-/// Bulk and shear modulus of a material \[Pa\].
-fn moduli(material: &Material) -> [f64; 2] {
+/// Bulk and shear modulus of a material at a ratio of stiffness \[Pa\].
+fn moduli(material: &Material, ratios: Ratios) -> [f64; 2] {
     let Material { young, poisson, .. } = *material;
+    let young = young * ratios.stiffness;
     [
         young / (3.0 * (1.0 - 2.0 * poisson)),
         young / (2.0 * (1.0 + poisson)),
@@ -27,19 +29,20 @@ fn moduli(material: &Material) -> [f64; 2] {
 }
 
 /// Gives the particles of cells with several soils the inverse of the mean compliance of their cell, by
-/// volume, in bulk and in shear. Strength stays that of their own soil.
+/// volume, in bulk and in shear. Strength stays that of their own soil. `ratios` are those of each particle to its
+/// material; that of stiffness becomes 1 where the law is that of the cell.
 ///
 /// Each such cell appends a law for every material: the material of a law is its number modulo the number
 /// of materials.
 pub(super) fn share_stiffness(
     case: &Case,
     grid: &Grid<2>,
-    seeds: &mut [ParticleSeed<2>],
+    (seeds, ratios): (&mut [ParticleSeed<2>], &mut [Ratios]),
     laws: &mut Vec<SharedLaw>,
 ) -> Result<(), CaseError> {
     let cell_of = |seed: &ParticleSeed<2>| grid.cell_at(&seed.x).map(|cell| grid.cell_index(cell));
     let mut shares: Vec<Option<Share>> = vec![None; grid.cell_count()];
-    for seed in &*seeds {
+    for (seed, ratios) in std::iter::zip(&*seeds, &*ratios) {
         let Some(cell) = cell_of(seed) else { continue };
         let share = shares[cell].get_or_insert(Share {
             material: seed.law,
@@ -49,7 +52,7 @@ pub(super) fn share_stiffness(
         });
         share.is_mixed |= share.material != seed.law;
         share.volume += seed.volume;
-        let moduli = moduli(&case.materials[seed.law]);
+        let moduli = moduli(&case.materials[seed.law], *ratios);
         for (sum, modulus) in share.compliance.iter_mut().zip(moduli) {
             *sum += seed.volume / modulus;
         }
@@ -70,9 +73,10 @@ pub(super) fn share_stiffness(
             laws.push(shared.law()?);
         }
     }
-    for seed in seeds {
+    for (seed, ratios) in std::iter::zip(seeds, ratios) {
         if let Some(first) = cell_of(seed).and_then(|cell| first_laws[cell]) {
             seed.law += first;
+            ratios.stiffness = 1.0;
         }
     }
     Ok(())

@@ -3,9 +3,10 @@
 use std::sync::Arc;
 
 use igimp_assembly::{
-    AssemblyError, Constraints, Geometry, LoadPoint, Method, Particles, SharedLaw, StepConditions,
-    StepLoads,
+    AssemblyError, Constraints, Geometry, LoadPoint, Method, ParticleSeed, Particles, SharedLaw,
+    StepConditions, StepLoads,
 };
+use igimp_material::Ratios;
 use igimp_shape::{Grid, ShapeError};
 use igimp_solver::linear::LinearSolver;
 use igimp_solver::{Body, MarchSettings, NewtonSettings};
@@ -64,20 +65,24 @@ impl<'c> Model<'c> {
         };
         let mut seeds = Vec::new();
         for part in &case.bodies {
-            let density = case.materials[part.material].unit_weight / gravity;
+            let material = &case.materials[part.material];
+            let density = material.unit_weight / gravity;
             let parts = part.per_direction;
-            seeds.extend(fill_polygon(
-                &grid,
-                &part.polygon,
-                parts,
-                density,
-                part.material,
-            )?);
+            let mut own = fill_polygon(&grid, &part.polygon, parts, density, part.material)?;
+            if material.profiles.unit_weight.is_some() {
+                for seed in &mut own {
+                    seed.density = material.unit_weight_at(seed.x[1]) / gravity;
+                }
+            }
+            seeds.extend(own);
         }
+        let ratios = |seed: &ParticleSeed<2>| case.materials[seed.law].ratios_at(seed.x[1]);
+        let mut ratios: Vec<Ratios> = seeds.iter().map(ratios).collect();
         if case.grid.mixed_cells == MixedCells::Mean {
-            super::mixed_cells::share_stiffness(case, &grid, &mut seeds, &mut model.laws)?;
+            let parts = (&mut seeds[..], &mut ratios[..]);
+            super::mixed_cells::share_stiffness(case, &grid, parts, &mut model.laws)?;
         }
-        let mut body = Body::new(Particles::new(&seeds)?);
+        let mut body = Body::new(Particles::new(&seeds)?.with_ratios(ratios)?);
         body.load_points = load_points(case);
         let mut controls = Controls::none(case.loads.len(), case.materials.len(), case.rigid.len());
         for (index, part) in case.rigid.iter().enumerate() {

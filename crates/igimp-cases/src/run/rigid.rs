@@ -8,7 +8,7 @@ use super::records::Moment;
 use super::state::{Controls, RigidTrack, State};
 use crate::case::{
     Adhesion, Case, RigidDrive, RigidInterface, RigidMove, RigidPart, RigidQuantity, RigidShape,
-    RigidShear, Strength,
+    RigidShear,
 };
 use crate::check::short;
 use crate::error::CaseError;
@@ -49,11 +49,12 @@ fn interface(case: &Case, of: &RigidInterface, laws: usize) -> Interface {
         RigidShear::Limited { friction, adhesion } => {
             let by_material = case.materials.iter().map(|material| match adhesion {
                 Adhesion::Stress(stress) => stress,
-                Adhesion::Share(share) => share * cohesive(material.strength),
+                Adhesion::Share(share) => share * material.cohesive(),
             });
             let by_material: Vec<f64> = by_material.collect();
             Shear::Limited {
                 adhesion: by_material.into_iter().cycle().take(laws).collect(),
+                varies: matches!(adhesion, Adhesion::Share(_)),
                 friction,
             }
         }
@@ -61,17 +62,6 @@ fn interface(case: &Case, of: &RigidInterface, laws: usize) -> Interface {
     Interface {
         shear,
         tension: of.tension,
-    }
-}
-
-/// Undrained strength or cohesion \[Pa\]; zero for a material that has neither.
-fn cohesive(strength: Strength) -> f64 {
-    match strength {
-        Strength::VonMises { undrained_strength } | Strength::Tresca { undrained_strength } => {
-            undrained_strength
-        }
-        Strength::MohrCoulomb { cohesion, .. } => cohesion,
-        Strength::Elastic => 0.0,
     }
 }
 

@@ -6,8 +6,8 @@ use igimp_assembly::Geometry;
 use igimp_assembly::{Method, ParticleFields, Particles, SharedLaw};
 use igimp_cases::case::{
     Average, BodyPart, Boundaries, Case, Curve, CurveAxis, Every, Field, FixedBox, GridSpec, Load,
-    LoadKind, Material, MeshStudy, Monitor, Output, Quantity, Reference, ReferenceValues, Section,
-    Side, SolverSettings, Stage, StageKind, StopWhen, Strength, TitleBlock,
+    LoadKind, Material, MeshStudy, Monitor, Output, Profiles, Quantity, Reference, ReferenceValues,
+    Section, Side, SolverSettings, Stage, StageKind, StopWhen, Strength, TitleBlock,
 };
 use igimp_cases::pieces::Pieces;
 use igimp_cases::results::pictures::{self, Canvas, Shown};
@@ -130,6 +130,7 @@ fn materials() -> Vec<Material> {
             tension_cutoff: None,
         },
         k0: None,
+        profiles: Profiles::default(),
     };
     let rock = Material {
         name: "rock".into(),

@@ -10,6 +10,7 @@
 //! | `close_eigenvalues` | the same where principal values are equal or nearly so |
 //! | `random_laws` | the same for laws with random parameters |
 //! | `reduction` | strength reduction and limits between laws |
+//! | `scaled` | laws at ratios of strength and stiffness |
 //! | `utilisation` | the share of the strength that a stress mobilises |
 //! | `refusals` | what is not accepted, and the words for it |
 //!
@@ -25,6 +26,7 @@ mod random_laws;
 mod reduction;
 mod refusals;
 mod returns;
+mod scaled;
 mod tangents;
 mod tensors;
 mod utilisation;

@@ -52,10 +52,10 @@ fn complete<T>(parts: &[Option<T>]) -> Option<Vec<&T>> {
     parts.iter().map(Option::as_ref).collect()
 }
 
-/// The modulus of compression without lateral strain.
-fn constrained(material: &Material) -> f64 {
+/// The modulus of compression without lateral strain at a level.
+fn constrained(material: &Material, level: f64) -> f64 {
     let nu = material.poisson;
-    material.young * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu))
+    material.young_at(level) * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu))
 }
 
 /// Boundaries within cells and gaps; tells which bodies touch a stiffer one, or one of their own
@@ -95,7 +95,8 @@ fn check_pairs(
                     )
                     .help("bodies closer than a cell stick all the same: let them share the edge");
             }
-            let moduli = [a, b].map(|body| constrained(materials[body.material]));
+            let level = pieces.first().map_or(0.0, |piece| piece.middle[1]);
+            let moduli = [a, b].map(|body| constrained(materials[body.material], level));
             let mut touching = pieces
                 .iter()
                 .filter(|piece| piece.distance <= layers.site.round_off)
@@ -316,7 +317,9 @@ pub(super) fn check_stiffness(
         let Some(lowest) = own.map(|body| levels(body)[0]).reduce(f64::min) else {
             continue;
         };
-        let ratio = material.unit_weight * (top - lowest) / material.young;
+        let middle = 0.5 * (top + lowest);
+        let (weight, young) = (material.unit_weight_at(middle), material.young_at(middle));
+        let ratio = weight * (top - lowest) / young;
         let place = file
             .and_then(|file| file.get(&material.name))
             .map(|node| node.place_at("young"));
@@ -330,7 +333,7 @@ pub(super) fn check_stiffness(
                 .help("its weight changes the shape of the ground, and the factor of safety is that of the new shape")
                 .help(format!(
                     "a factor of safety hardly depends on young: from {} kPa on the shape stays",
-                    short(1e-3 * material.young * ratio / SOFT)
+                    short(1e-3 * young * ratio / SOFT)
                 ));
         } else if ratio > 0.0 && ratio < STIFF {
             problems
@@ -344,7 +347,7 @@ pub(super) fn check_stiffness(
                 .help("its strains are so small that round-off shows in the residual")
                 .help(format!(
                     "young of {} kPa or less is stiff enough for any soil or rock",
-                    short(1e-3 * material.young * ratio / STIFF)
+                    short(1e-3 * young * ratio / STIFF)
                 ));
         }
     }

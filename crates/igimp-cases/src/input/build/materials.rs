@@ -1,20 +1,41 @@
 //! Materials and the limits of their parameters.
 
-use crate::case::{Material, Strength};
+use super::profiles::{Extent, Property, Terms, property};
+use crate::case::{BodyPart, Material, Profile, Profiles, Strength};
 use crate::input::diagnostic::Problems;
 use crate::input::text::{clip, number};
 use crate::input::tree::{Entry, Node, Wrong};
 
+/// What may be said of a strength, of Young's modulus and of a unit weight that vary.
+const STRENGTH: Terms = Terms {
+    may_vanish: true,
+    may_be_nothing: false,
+    unit: "Pa",
+};
+const YOUNG: Terms = Terms {
+    may_vanish: false,
+    ..STRENGTH
+};
+const UNIT_WEIGHT: Terms = Terms {
+    may_vanish: true,
+    may_be_nothing: true,
+    unit: "N/m3",
+};
+
 /// The materials in the order of the file.
-pub(super) fn materials(tree: &Node, problems: &mut Problems) -> Vec<Option<Material>> {
+pub(super) fn materials(
+    tree: &Node,
+    bodies: &[Option<BodyPart>],
+    problems: &mut Problems,
+) -> Vec<Option<Material>> {
     let entries = tree.get("materials").map_or(&[][..], Node::entries);
-    entries
-        .iter()
-        .map(|entry| material(entry, problems))
+    let numbered = entries.iter().enumerate();
+    numbered
+        .map(|(index, entry)| material(entry, Extent::of(&entry.key, index, bodies), problems))
         .collect()
 }
 
-fn material(entry: &Entry, problems: &mut Problems) -> Option<Material> {
+fn material(entry: &Entry, extent: Extent<'_>, problems: &mut Problems) -> Option<Material> {
     let (name, node) = (&entry.key, &entry.node);
     let before = problems.errors();
     let poisson = node.number_at("poisson");
@@ -30,25 +51,40 @@ fn material(entry: &Entry, problems: &mut Problems) -> Option<Material> {
                 .help("the tangent is badly conditioned; 0.49 to 0.495 is close enough");
         }
     }
+    let mut given = |key, terms| property(node, key, extent, terms, problems);
+    let young = given("young", YOUNG);
+    let unit_weight = given("unit_weight", UNIT_WEIGHT);
+    let cohesive = match node.text_at("model") {
+        Some("von-mises" | "tresca") => given("cu", STRENGTH),
+        Some("mohr-coulomb") => given("cohesion", STRENGTH),
+        _ => None,
+    };
+    let undrained = cohesive.as_ref().map(|own| own.constant);
     let strength = match node.text_at("model") {
         Some("elastic") => Some(Strength::Elastic),
-        Some("von-mises") => node
-            .number_at("cu")
-            .map(|undrained_strength| Strength::VonMises { undrained_strength }),
-        Some("tresca") => node
-            .number_at("cu")
-            .map(|undrained_strength| Strength::Tresca { undrained_strength }),
-        Some("mohr-coulomb") => mohr_coulomb(name, node, problems),
+        Some("von-mises") => {
+            undrained.map(|undrained_strength| Strength::VonMises { undrained_strength })
+        }
+        Some("tresca") => {
+            undrained.map(|undrained_strength| Strength::Tresca { undrained_strength })
+        }
+        Some("mohr-coulomb") => mohr_coulomb(name, node, cohesive.as_ref(), problems),
         _ => None,
     };
     let k0 = k0(node, strength, problems);
+    let profile = |own: &Option<Property>| -> Option<Profile> { own.as_ref()?.profile.clone() };
     let material = Material {
         name: name.clone(),
-        unit_weight: node.number_at("unit_weight")?,
-        young: node.number_at("young")?,
+        unit_weight: unit_weight.as_ref()?.constant,
+        young: young.as_ref()?.constant,
         poisson: poisson?,
         strength: strength?,
         k0: k0.ok()?,
+        profiles: Profiles {
+            strength: profile(&cohesive),
+            young: profile(&young),
+            unit_weight: profile(&unit_weight),
+        },
     };
     if problems.errors() == before
         && let Err(error) = material.law()
@@ -59,8 +95,13 @@ fn material(entry: &Entry, problems: &mut Problems) -> Option<Material> {
     Some(material)
 }
 
-fn mohr_coulomb(name: &str, node: &Node, problems: &mut Problems) -> Option<Strength> {
-    let cohesion = node.number_at("cohesion");
+fn mohr_coulomb(
+    name: &str,
+    node: &Node,
+    cohesive: Option<&Property>,
+    problems: &mut Problems,
+) -> Option<Strength> {
+    let cohesion = cohesive.map(|own| own.constant);
     let friction = node.number_at("friction");
     let dilation = node.number_at("dilation");
     if let Some(friction) = friction
@@ -102,6 +143,16 @@ fn mohr_coulomb(name: &str, node: &Node, problems: &mut Problems) -> Option<Stre
         }
     }
     let tension_cutoff = node.optional_number("tension_cutoff").ok()?;
+    let cohesion_varies = cohesive.is_some_and(|own| own.profile.is_some());
+    if cohesion_varies && tension_cutoff.is_some_and(|limit| limit > 0.0) {
+        problems
+            .error(
+                node.place_at("tension_cutoff"),
+                "a constant tension cut-off does not go with a cohesion that varies",
+            )
+            .help("tension_cutoff = \"0 kPa\", or leave it out: cohesion / tan(friction) limits tension");
+        return None;
+    }
     if let (Some(cohesion), Some(friction), Some(cutoff)) = (cohesion, friction, tension_cutoff) {
         let apex = cohesion / friction.tan();
         if friction > 0.0 && cutoff > apex * (1.0 + 1e-12) {

@@ -14,6 +14,7 @@ mod lines;
 mod loads;
 mod materials;
 mod outputs;
+mod profiles;
 mod quantities;
 mod rigid;
 mod safety;
@@ -80,8 +81,8 @@ pub(super) fn build(tree: &mut Node, file: &Path, problems: &mut Problems) -> Op
 
     let mut frame = grid::frame(tree, problems);
     let method = grid::method(tree);
-    let materials = materials::materials(tree, problems);
     let bodies = bodies::bodies(tree, &names, problems);
+    let materials = materials::materials(tree, &bodies, problems);
     let grid = grid::grid(tree, frame.as_ref(), &bodies, problems);
     if let (Some(frame), Some(grid)) = (&mut frame, &grid) {
         frame.axes.clone_from(&grid.axes);

@@ -1,8 +1,11 @@
 //! Materials.
 
-use crate::input::quantity::Dimension::{Angle, Stress, UnitWeight};
+use super::{A_LENGTH, LENGTH, MANY};
+use crate::input::quantity::Dimension::{
+    Angle, Stress, StressGradient, UnitWeight, UnitWeightGradient,
+};
 use crate::input::spec::{
-    Choice, Field, Kind, Range, Variant, Variants, choice, default, optional, required,
+    Choice, Field, Kind, Range, Struct, Variant, Variants, choice, default, optional, required,
 };
 
 /// What books call a field, and its keys here: of these the one that the material has is meant.
@@ -29,9 +32,80 @@ pub(in crate::input) static SYMBOLS: [(&str, &[&str]); 20] = [
     ("dilatancy", &["dilation"]),
 ];
 
+static A_STRESS: Kind = Kind::Quantity(Stress, Range::NotNegative);
+static A_UNIT_WEIGHT: Kind = Kind::Quantity(UnitWeight, Range::NotNegative);
+
+/// The keys of a property that varies with the level.
+const fn profile(top: Kind, gradient: Kind, values: &'static Kind) -> [Field; 5] {
+    [
+        optional(
+            "at_top",
+            top,
+            "`levels` and `values` say it",
+            "value at the level `from` and above",
+        ),
+        optional(
+            "gradient",
+            gradient,
+            "`levels` and `values` say it",
+            "growth with depth below `from`",
+        ),
+        optional(
+            "from",
+            A_LENGTH,
+            "the highest soil of the material",
+            "level y where the growth begins",
+        ),
+        optional(
+            "levels",
+            Kind::List(&LENGTH, 2, MANY),
+            "`at_top` and `gradient` say it",
+            "levels y, all upwards or all downwards",
+        ),
+        optional(
+            "values",
+            Kind::List(values, 2, MANY),
+            "`at_top` and `gradient` say it",
+            "values there; linear between the levels, constant beyond",
+        ),
+    ]
+}
+
+static STRESS_PROFILE: Struct = Struct {
+    doc: "A stress that varies with the level: `at_top` and `gradient`, or `levels` and `values`. Soil carries what it \
+          has where it starts. A strength may be zero somewhere, and counts as a millionth of the greatest there.",
+    fields: &profile(
+        Kind::Quantity(Stress, Range::NotNegative),
+        Kind::Quantity(StressGradient, Range::Any),
+        &A_STRESS,
+    ),
+};
+
+static UNIT_WEIGHT_PROFILE: Struct = Struct {
+    doc: "A unit weight that varies with the level, stated alike.",
+    fields: &profile(
+        Kind::Quantity(UnitWeight, Range::NotNegative),
+        Kind::Quantity(UnitWeightGradient, Range::Any),
+        &A_UNIT_WEIGHT,
+    ),
+};
+
+static POSITIVE_STRESS: [Kind; 2] = [
+    Kind::Quantity(Stress, Range::Positive),
+    Kind::Table(&STRESS_PROFILE),
+];
+static COHESION: [Kind; 2] = [
+    Kind::Quantity(Stress, Range::NotNegative),
+    Kind::Table(&STRESS_PROFILE),
+];
+static WEIGHT: [Kind; 2] = [
+    Kind::Quantity(UnitWeight, Range::NotNegative),
+    Kind::Table(&UNIT_WEIGHT_PROFILE),
+];
+
 const CU: Field = required(
     "cu",
-    Kind::Quantity(Stress, Range::Positive),
+    Kind::Either(&POSITIVE_STRESS),
     "\"50 kPa\"",
     "undrained shear strength in plane strain",
 );
@@ -64,7 +138,7 @@ pub(in crate::input) static MATERIAL: Variants = Variants {
             fields: &[
                 required(
                     "cohesion",
-                    Kind::Quantity(Stress, Range::NotNegative),
+                    Kind::Either(&COHESION),
                     "\"10 kPa\"",
                     "cohesion c",
                 ),
@@ -84,7 +158,7 @@ pub(in crate::input) static MATERIAL: Variants = Variants {
                     "tension_cutoff",
                     Kind::Quantity(Stress, Range::NotNegative),
                     "the apex of the cone limits tension",
-                    "largest tensile stress",
+                    "largest tensile stress; zero or missing where cohesion varies",
                 ),
             ],
         },
@@ -92,13 +166,13 @@ pub(in crate::input) static MATERIAL: Variants = Variants {
     after: &[
         required(
             "unit_weight",
-            Kind::Quantity(UnitWeight, Range::NotNegative),
+            Kind::Either(&WEIGHT),
             "\"18 kN/m3\"",
             "unit weight",
         ),
         required(
             "young",
-            Kind::Quantity(Stress, Range::Positive),
+            Kind::Either(&POSITIVE_STRESS),
             "\"20 MPa\"",
             "Young's modulus",
         ),

@@ -1,7 +1,7 @@
 //! A body as named arrays of numbers, and back.
 
 use igimp_assembly::{AssemblyError, LoadPoint, ParticleFields, Particles};
-use igimp_material::History;
+use igimp_material::{History, Ratios};
 use igimp_solver::Body;
 
 use crate::results::npy::{Array, Values};
@@ -20,6 +20,7 @@ pub(super) fn of_body(body: &Body<2>) -> Vec<(&'static str, Array)> {
         volume0,
         mass,
         law,
+        ratios,
         history,
         regime,
     } = &*body.particles;
@@ -30,6 +31,10 @@ pub(super) fn of_body(body: &Body<2>) -> Vec<(&'static str, Array)> {
         .map(|History { eps_p_eq }| *eps_p_eq)
         .collect();
     let regime = regime.iter().map(|&regime| regime::code(regime)).collect();
+    let ratios: Vec<_> = ratios
+        .iter()
+        .map(|own| [own.strength, own.stiffness])
+        .collect();
     let points: Vec<_> = body.load_points.iter().map(|point| point.x).collect();
     let forces: Vec<_> = body.load_points.iter().map(|point| point.force).collect();
     let loads = body.load_points.iter().map(|point| point.load as u64);
@@ -45,6 +50,7 @@ pub(super) fn of_body(body: &Body<2>) -> Vec<(&'static str, Array)> {
         ("volume0", scalars(volume0)),
         ("mass", scalars(mass)),
         ("law", Array::new(&[n], Values::U64(law))),
+        ("ratios", vectors(&ratios)),
         ("eps_p_eq", scalars(&eps_p_eq)),
         ("regime", Array::new(&[n], Values::U8(regime))),
         ("load_point_x", vectors(&points)),
@@ -105,6 +111,13 @@ pub(super) fn to_body(
         volume0: reals("volume0", &[n])?,
         mass: reals("mass", &[n])?,
         law: indices("law", n)?,
+        ratios: vectors("ratios", n)?
+            .into_iter()
+            .map(|[strength, stiffness]| Ratios {
+                strength,
+                stiffness,
+            })
+            .collect(),
         history: reals("eps_p_eq", &[n])?
             .into_iter()
             .map(|eps_p_eq| History { eps_p_eq })

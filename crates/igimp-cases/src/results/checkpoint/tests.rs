@@ -1,5 +1,5 @@
 use igimp_assembly::{LoadPoint, ParticleFields, Particles};
-use igimp_material::{History, Regime};
+use igimp_material::{History, Ratios, Regime};
 use serde_json::json;
 
 use super::*;
@@ -32,6 +32,12 @@ pub(in crate::results) fn body(n: usize) -> Body<2> {
         volume0: by_particle(&|k| number(k, 28).abs()),
         mass: by_particle(&|k| number(k, 29).abs()),
         law: (0..n).map(|k| k % 3).collect(),
+        ratios: (0..n)
+            .map(|k| Ratios {
+                strength: number(k, 44).abs(),
+                stiffness: 1.0 / 3.0,
+            })
+            .collect(),
         history: (0..n)
             .map(|k| History {
                 eps_p_eq: number(k, 30),
@@ -100,7 +106,7 @@ fn in_memory_and_on_disk_are_the_same() {
     let states = [("current", &current), ("stable", &stable)];
     let path = write(scratch.path(), "a", &states, &meta(), 1).unwrap();
     let files = to_files("a", 1, &states, &meta()).unwrap();
-    assert_eq!(files.len(), 31);
+    assert_eq!(files.len(), 33);
     for (file, bytes) in &files {
         assert_eq!(&fs::read(path.join(file)).unwrap(), bytes, "{file}");
     }
@@ -248,7 +254,7 @@ fn every_damage_is_noticed() {
         .unwrap()
         .map(|entry| entry.unwrap().path())
         .collect();
-    assert_eq!(arrays.len(), 15);
+    assert_eq!(arrays.len(), 16);
     for array in arrays {
         let whole = fs::read(&array).unwrap();
         let mut flipped = whole.clone();

@@ -16,11 +16,8 @@ pub(super) fn default_limit(model: &Model<'_>, stage: &Stage, state: &State) -> 
     let particles = &state.body.particles;
     let weight = particles.mass.iter().sum::<f64>() * model.case.gravity;
     let volume: f64 = particles.volume0.iter().sum();
-    let soft: f64 = particles
-        .law
-        .iter()
-        .zip(&particles.volume0)
-        .map(|(&law, volume)| volume / model.laws[law].elasticity().young())
+    let soft: f64 = (particles.volume0.iter().enumerate())
+        .map(|(particle, volume)| volume / particles.young(particle, &model.laws))
         .sum();
     let limit = weight / volume * height(state).powi(2) * soft / volume;
     (limit > 0.0).then_some(limit)

@@ -215,7 +215,7 @@ fn around_knots(begun: &Begun<'_>, slot: usize, body: &RigidBody<2>) -> BTreeMap
                 continue;
             }
             let law = particles.law[particle];
-            let young = conditions.laws[law].elasticity().young();
+            let young = particles.young(particle, &conditions.laws);
             let adhesion = match &body.interfaces[number].shear {
                 Shear::Limited { adhesion, .. } => adhesion.get(law).copied().unwrap_or(0.0),
                 _ => 0.0,

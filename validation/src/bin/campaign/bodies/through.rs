@@ -92,7 +92,9 @@ pub(crate) fn wrong_traction(bodies: &[RigidBody<2>]) -> Vec<String> {
             let most = match &interface.shear {
                 Shear::Smooth => 0.0,
                 Shear::Rough => f64::INFINITY,
-                Shear::Limited { adhesion, friction } => {
+                Shear::Limited {
+                    adhesion, friction, ..
+                } => {
                     let adhesion = adhesion.iter().copied().fold(0.0, f64::max);
                     adhesion + friction * knot.pressure.max(0.0)
                 }

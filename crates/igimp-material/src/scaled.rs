@@ -1,0 +1,161 @@
+//! Laws of soil whose strength and stiffness vary in space, as multiples of those of one law (theory, eq. 19b).
+
+use std::fmt::Debug;
+use std::ops::Deref;
+use std::sync::Arc;
+
+use crate::principal::Principal;
+use crate::{ConstitutiveModel, Elasticity, History, MaterialError, ReturnMap};
+
+/// Strength and stiffness of a piece of soil over those of its material.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ratios {
+    /// Every strength that is a stress (undrained strength, cohesion, yield stress, tension cut-off) over that of
+    /// the material \[-\]. Positive; angles stay.
+    pub strength: f64,
+    /// Young's modulus over that of the material \[-\]. Positive; Poisson's ratio stays.
+    pub stiffness: f64,
+}
+
+impl Ratios {
+    /// Soil that is as its material.
+    pub const ONE: Self = Self {
+        strength: 1.0,
+        stiffness: 1.0,
+    };
+
+    /// Whether the soil is as its material.
+    #[inline]
+    pub fn are_one(&self) -> bool {
+        *self == Self::ONE
+    }
+}
+
+impl Default for Ratios {
+    fn default() -> Self {
+        Self::ONE
+    }
+}
+
+/// A law with strength and stiffness that are multiples of those of another, without making that one anew.
+///
+/// With s the ratio of strength and e that of stiffness, the answer to a trial strain ε is that of the other law to
+/// ε e/s, with stress times s, tangent times e and plastic strain times s/e: what the law with those parameters answers.
+///
+/// ```
+/// use igimp_material::{ConstitutiveModel, Elasticity, History, Ratios, ScaledLaw, Tresca};
+///
+/// let tresca = Tresca::new(Elasticity::new(100.0, 0.3)?, 1.0)?;
+/// let law: &dyn ConstitutiveModel = &tresca;
+/// let scaled = ScaledLaw::new(law, Ratios { strength: 3.0, stiffness: 2.0 })?;
+/// let answer = scaled.return_map(&[0.1, 0.0, -0.1], &History::default())?;
+/// assert!((answer.tau[0] - answer.tau[2] - 6.0).abs() < 1e-12);
+/// # Ok::<(), igimp_material::MaterialError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct ScaledLaw<L> {
+    law: L,
+    elasticity: Elasticity,
+    ratios: Ratios,
+}
+
+impl<L: Deref<Target = dyn ConstitutiveModel>> ScaledLaw<L> {
+    /// The `law` at these ratios.
+    ///
+    /// # Errors
+    /// [`MaterialError::InvalidParameter`] unless both are positive and finite.
+    pub fn new(law: L, ratios: Ratios) -> Result<Self, MaterialError> {
+        crate::error::positive("strength ratio", ratios.strength)?;
+        Ok(Self {
+            elasticity: law.elasticity().scaled(ratios.stiffness)?,
+            law,
+            ratios,
+        })
+    }
+
+    /// The stress of the other law that answers to one of this.
+    fn unscaled(&self, tau: &Principal) -> Principal {
+        tau.map(|component| component / self.ratios.strength)
+    }
+
+    /// Strain of the other law over that of this one, e/s.
+    fn strain_ratio(&self) -> f64 {
+        self.ratios.stiffness / self.ratios.strength
+    }
+
+    /// The history that the other law is given.
+    fn unscaled_history(&self, history: History) -> History {
+        History {
+            eps_p_eq: history.eps_p_eq * self.strain_ratio(),
+        }
+    }
+}
+
+impl<L> ConstitutiveModel for ScaledLaw<L>
+where
+    L: Deref<Target = dyn ConstitutiveModel> + Send + Sync + Debug,
+{
+    fn name(&self) -> &'static str {
+        self.law.name()
+    }
+
+    fn elasticity(&self) -> &Elasticity {
+        &self.elasticity
+    }
+
+    fn return_map(
+        &self,
+        eps_e_trial: &Principal,
+        history: &History,
+    ) -> Result<ReturnMap, MaterialError> {
+        let ratio = self.strain_ratio();
+        let trial = eps_e_trial.map(|strain| strain * ratio);
+        let answer = self
+            .law
+            .return_map(&trial, &self.unscaled_history(*history))?;
+        let Ratios {
+            strength,
+            stiffness,
+        } = self.ratios;
+        let delta_eps_p = answer.delta_eps_p.map(|strain| strain / ratio);
+        Ok(ReturnMap {
+            tau: answer.tau.map(|component| component * strength),
+            tangent: answer
+                .tangent
+                .map(|row| row.map(|modulus| modulus * stiffness)),
+            delta_eps_p,
+            history: history.after(&delta_eps_p),
+            regime: answer.regime,
+        })
+    }
+
+    fn yield_function(&self, tau: &Principal, history: &History) -> f64 {
+        let history = self.unscaled_history(*history);
+        self.ratios.strength * self.law.yield_function(&self.unscaled(tau), &history)
+    }
+
+    fn stress_scale(&self, tau: &Principal) -> f64 {
+        self.ratios.strength * self.law.stress_scale(&self.unscaled(tau))
+    }
+
+    fn utilisation(&self, tau: &Principal, history: &History) -> f64 {
+        let history = self.unscaled_history(*history);
+        self.law.utilisation(&self.unscaled(tau), &history)
+    }
+
+    fn yields(&self) -> bool {
+        self.law.yields()
+    }
+
+    fn has_symmetric_tangent(&self) -> bool {
+        self.law.has_symmetric_tangent()
+    }
+
+    fn reduced(&self, srf: f64) -> Result<Arc<dyn ConstitutiveModel>, MaterialError> {
+        Ok(Arc::new(ScaledLaw {
+            law: self.law.reduced(srf)?,
+            elasticity: self.elasticity,
+            ratios: self.ratios,
+        }))
+    }
+}
