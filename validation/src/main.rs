@@ -24,6 +24,7 @@ mod notched_strip;
 mod oracle;
 mod pictures;
 mod prism;
+mod pseudo_static;
 mod reference;
 mod review;
 mod runs;
@@ -103,6 +104,7 @@ enum Case {
     Elastica,
     Slopes,
     TiltedLayer,
+    PseudoStatic,
     Layers,
     StrengthProfile,
     FootingContact,
@@ -135,6 +137,7 @@ impl Case {
             Self::Prism => prism::study(out),
             Self::Elastica => elastica::study(level, out),
             Self::Slopes => slopes::study(level, out),
+            Self::PseudoStatic => pseudo_static::study(level, out),
             Self::TiltedLayer => tilted_layer::study(level, out),
             Self::Layers => layers::study(out),
             Self::StrengthProfile => strength_profile::study(level, out),

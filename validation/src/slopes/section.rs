@@ -43,6 +43,8 @@ pub(crate) struct Section {
     pub(crate) height: f64,
     /// Unit weight γ of all layers \[kN/m³\].
     pub(crate) unit_weight: f64,
+    /// Pseudo-static force to the right, down the slope, over the weight \[-\].
+    pub(crate) horizontal: f64,
     /// The surface from the left side to the right one \[m\].
     pub(crate) surface: Vec<[f64; 2]>,
     /// Level of the base \[m\].
@@ -124,6 +126,7 @@ impl Section {
             name: name.to_owned(),
             height,
             unit_weight,
+            horizontal: 0.0,
             surface,
             base: 0.0,
             layers: vec![layer],
@@ -194,8 +197,12 @@ impl Section {
             Locking::SharedStrain => "shared-strain",
         };
         let (weight, path) = match path {
-            Path::Reduce => (WEIGHT, "reduce"),
-            Path::Gravity => ("", "gravity"),
+            Path::Reduce if self.horizontal != 0.0 => (
+                format!("{WEIGHT}\nhorizontal = {}", self.horizontal),
+                "reduce",
+            ),
+            Path::Reduce => (WEIGHT.to_owned(), "reduce"),
+            Path::Gravity => (String::new(), "gravity"),
         };
         let cell = self.height / f64::from(cells);
         let ([left, right], top) = (self.sides(), self.top() + cell);

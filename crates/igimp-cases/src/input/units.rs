@@ -214,7 +214,11 @@ const fn customary(
     };
     let mut left = power;
     while left != 0 {
-        let (over, under) = if left > 0 { length } else { (length.1, length.0) };
+        let (over, under) = if left > 0 {
+            length
+        } else {
+            (length.1, length.0)
+        };
         (above, below) = (above * over, below * under);
         left -= left.signum();
     }

@@ -1,5 +1,7 @@
 //! The case in words and numbers, as tables for a reader who has no case file before him.
 
+use std::fmt::Write as _;
+
 use igimp_assembly::{Geometry, Tension};
 
 use crate::case::{
@@ -371,7 +373,23 @@ fn happens(case: &Case, stage: &Stage) -> String {
         names.join(", ")
     };
     match &stage.kind {
-        StageKind::Gravity { factor } => format!("gravity to {}", times(*factor, "value")),
+        StageKind::Gravity {
+            factor,
+            horizontal,
+            vertical,
+        } => {
+            let mut told = format!("gravity to {}", times(*factor, "value"));
+            for (share, whither) in [(horizontal, "to the right"), (vertical, "upwards")] {
+                if let Some(share) = share {
+                    let _ = write!(
+                        told,
+                        ", pseudo-static force of {} % of the weight {whither}",
+                        short(100.0 * share)
+                    );
+                }
+            }
+            told
+        }
         StageKind::K0 => "stresses of level ground at rest (K₀), then equilibrium".to_owned(),
         StageKind::Load { loads, factor } => {
             let name = |&k: &usize| case.loads[k].name.as_str();

@@ -15,7 +15,16 @@ use crate::summary::StageSummary;
 pub(crate) fn target(stage: &Stage, start: &Controls) -> Controls {
     let mut end = start.clone();
     match &stage.kind {
-        StageKind::Gravity { factor } => end.gravity = *factor,
+        StageKind::Gravity {
+            factor,
+            horizontal,
+            vertical,
+        } => {
+            end.gravity = *factor;
+            for (own, stated) in end.acceleration.iter_mut().zip([horizontal, vertical]) {
+                *own = stated.unwrap_or(*own);
+            }
+        }
         StageKind::Load { loads, factor } => {
             for &load in loads {
                 end.factors[load] = *factor;

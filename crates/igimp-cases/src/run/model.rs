@@ -172,7 +172,7 @@ impl<'c> Model<'c> {
             grid,
             constraints,
             StepLoads {
-                gravity: [0.0, -to.gravity * self.case.gravity],
+                gravity: to.body_force().map(|share| share * self.case.gravity),
                 factors: to.factors.clone(),
                 drag,
             },
