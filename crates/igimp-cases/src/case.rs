@@ -5,6 +5,7 @@
 
 mod grid;
 mod profile;
+mod raster;
 mod rigid;
 mod water;
 
@@ -18,6 +19,7 @@ use serde::{Deserialize, Serialize};
 
 pub use grid::{AxisSpec, GridSpec, MixedCells};
 pub use profile::{LEAST_STRENGTH, Profile, Profiles};
+pub use raster::Raster;
 pub use rigid::{
     Adhesion, RigidDrive, RigidInterface, RigidMove, RigidPart, RigidQuantity, RigidShape,
     RigidShear,

@@ -1,7 +1,9 @@
 //! A number over the plane, by points on the lines of a grid.
 
+use crate::input::contains;
+
 /// Values where upright and level lines cross; between them it is linear along both, and beyond the outermost lines
-/// constant (theory, eq. 19c).
+/// constant (theory, eq. 19e).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Raster {
     /// Upright lines, ascending \[m\].
@@ -26,35 +28,41 @@ impl Raster {
         lower + up * (upper - lower)
     }
 
-    /// The integral along an upright line from one level up to another.
-    pub fn integral(&self, x: f64, lower: f64, upper: f64) -> f64 {
-        if upper < lower {
-            return -self.integral(x, upper, lower);
+    /// Places within a polygon among which the least and the greatest value are: crossings of lines, corners, and where
+    /// lines cross edges.
+    pub(crate) fn places_in(&self, polygon: &[[f64; 2]]) -> Vec<[f64; 2]> {
+        let mut places = polygon.to_vec();
+        for (k, p) in polygon.iter().enumerate() {
+            let q = polygon[(k + 1) % polygon.len()];
+            for (axis, lines) in [&self.x, &self.y].into_iter().enumerate() {
+                let way = q[axis] - p[axis];
+                let shares = lines.iter().map(|line| (line - p[axis]) / way);
+                let within = shares.filter(|t| *t > 0.0 && *t < 1.0);
+                places.extend(within.map(|t| [0, 1].map(|axis| p[axis] + t * (q[axis] - p[axis]))));
+            }
         }
-        let within = self.y.iter().copied();
-        let mut ends: Vec<f64> = within.filter(|y| lower < *y && *y < upper).collect();
-        ends.insert(0, lower);
-        ends.push(upper);
-        ends.windows(2)
-            .map(|pair| (pair[1] - pair[0]) * 0.5 * (self.at([x, pair[0]]) + self.at([x, pair[1]])))
-            .sum()
+        let crossings = self
+            .y
+            .iter()
+            .flat_map(|&y| self.x.iter().map(move |&x| [x, y]));
+        places.extend(crossings.filter(|at| contains(polygon, *at)));
+        places
     }
 
-    /// The places of the least and of the greatest value in a box.
-    pub fn extremes(&self, lower: [f64; 2], upper: [f64; 2]) -> [[f64; 2]; 2] {
-        let lines = |all: &[f64], k: usize| -> Vec<f64> {
-            let within = all.iter().copied();
-            let within = within.filter(|at| lower[k] < *at && *at < upper[k]);
-            within.chain([lower[k], upper[k]]).collect()
+    /// How far a place lies beyond the outermost lines, in spacings of the lines there \[-\].
+    pub(crate) fn beyond(&self, place: [f64; 2]) -> f64 {
+        let along = |lines: &[f64], at: f64| {
+            let count = lines.len();
+            if count < 2 {
+                return 0.0;
+            }
+            let before = (lines[0] - at) / (lines[1] - lines[0]);
+            let after = (at - lines[count - 1]) / (lines[count - 1] - lines[count - 2]);
+            before.max(after)
         };
-        // Within a cell of the raster both extremes are at its corners.
-        let (xs, ys) = (lines(&self.x, 0), lines(&self.y, 1));
-        let places = || ys.iter().flat_map(|&y| xs.iter().map(move |&x| [x, y]));
-        let by_value = |a: &[f64; 2], b: &[f64; 2]| self.at(*a).total_cmp(&self.at(*b));
-        [
-            places().min_by(by_value).unwrap_or(lower),
-            places().max_by(by_value).unwrap_or(upper),
-        ]
+        along(&self.x, place[0])
+            .max(along(&self.y, place[1]))
+            .max(0.0)
     }
 }
 
@@ -86,15 +94,20 @@ mod tests {
             .collect();
         let raster = Raster { x, y, values };
         for at in [[0.0, -2.0], [0.3, -1.0], [1.0, 0.5], [3.9, 0.7], [4.0, 1.0]] {
-            assert!((raster.at(at) - exact(at[0], at[1])).abs() < 1e-14, "{at:?}");
+            assert!(
+                (raster.at(at) - exact(at[0], at[1])).abs() < 1e-14,
+                "{at:?}"
+            );
         }
         assert!((raster.at([-1.0, 7.0]) - exact(0.0, 1.0)).abs() < 1e-14);
         assert!((raster.at([9.0, -7.0]) - exact(4.0, -2.0)).abs() < 1e-14);
-        let sum = raster.integral(2.0, -1.0, 0.8);
-        assert!((sum - (7.0 * 1.8)).abs() < 1e-12, "{sum}");
-        assert!((raster.integral(2.0, 0.8, -1.0) + sum).abs() < 1e-15);
-        let [least, most] = raster.extremes([0.5, -1.0], [3.0, 0.9]);
-        assert!((raster.at(least) - exact(0.5, 0.9)).abs() < 1e-12, "{least:?}");
-        assert!((raster.at(most) - exact(3.0, 0.9)).abs() < 1e-12, "{most:?}");
+        let ring = [[0.5, -1.0], [3.0, -1.0], [3.0, 0.9], [0.5, 0.9]];
+        let values = raster.places_in(&ring).into_iter().map(|at| raster.at(at));
+        let (least, most) = values.fold((f64::MAX, f64::MIN), |(a, b), v| (a.min(v), b.max(v)));
+        assert!((least - exact(0.5, 0.9)).abs() < 1e-12, "{least}");
+        assert!((most - exact(3.0, 0.9)).abs() < 1e-12, "{most}");
+        assert!(raster.beyond([2.0, 0.0]) <= 0.0);
+        assert!((raster.beyond([5.5, 0.0]) - 0.5).abs() < 1e-15);
+        assert!((raster.beyond([0.0, -4.5]) - 1.0).abs() < 1e-15);
     }
 }

@@ -40,6 +40,8 @@ mod tree;
 mod units;
 mod value;
 
+pub(crate) use geometry::contains;
+
 pub use diagnostic::{Diagnostic, DiagnosticPlace};
 pub use json_schema::json_schema;
 pub use quantity::{Dimension, Quantity, QuantityError};

@@ -119,6 +119,18 @@ fn in_words(profile: &Profile, scale: f64, unit: &str) -> String {
             short(gradient.abs() / scale),
             if *gradient < 0.0 { "less" } else { "more" }
         ),
+        Profile::Raster(raster) => {
+            let values = raster.values.iter().flatten().copied();
+            let least = values.clone().fold(f64::INFINITY, f64::min);
+            let greatest = values.fold(f64::NEG_INFINITY, f64::max);
+            format!(
+                "{}{unit} to {}{unit} by a raster of {} by {} points",
+                short(least / scale),
+                short(greatest / scale),
+                raster.x.len(),
+                raster.y.len()
+            )
+        }
         Profile::Table(rows) if rows.len() <= MOST_ROWS => {
             let row = |[level, value]: &[f64; 2]| {
                 format!("{}{unit} at y = {} m", short(value / scale), short(*level))

@@ -46,7 +46,14 @@ pub(super) fn columns(text: &str, names: &[&str]) -> Result<Columns, Trouble> {
 
 /// Adds a row.
 fn row((text, line): (&str, usize), names: &[&str], found: &mut Columns) -> Result<(), Trouble> {
-    let numbers: Option<Vec<f64>> = text.split(',').map(bare).map(number).collect();
+    let cells = || text.split(',').map(bare);
+    if cells().count() == names.len() && cells().any(str::is_empty) {
+        return Err(Trouble::new(
+            format_args!("line {line}, `{}`, has a hole", clip(text, 40)),
+            format_args!("every row has all of {}", names.join(", ")),
+        ));
+    }
+    let numbers: Option<Vec<f64>> = cells().map(number).collect();
     let numbers = numbers.filter(|numbers| numbers.len() == names.len());
     let Some(numbers) = numbers else {
         return Err(Trouble::new(

@@ -1,4 +1,5 @@
-//! What a case file takes from files beside it, put into its tree: polygons and layer lines from CSV and DXF.
+//! What a case file takes from files beside it, put into its tree: polygons and layer lines from CSV and
+//! DXF, properties of materials from CSV.
 //!
 //! From then on the tree carries the points themselves, each with its unit: what is built, explained and fingerprinted
 //! does not depend on the files any more.
@@ -6,6 +7,7 @@
 mod columns;
 mod dxf;
 mod outline;
+mod raster;
 
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
@@ -22,6 +24,12 @@ const LARGEST: u64 = 32 << 20;
 /// Puts what files hold into the tree of the case file of this name.
 pub(super) fn read(tree: &mut Node, case: &Path, problems: &mut Problems) {
     let folder = case.parent().unwrap_or(Path::new(""));
+    let materials = tree.get_mut("materials").and_then(Node::entries_mut);
+    for material in materials.into_iter().flatten() {
+        for property in material.node.entries_mut().into_iter().flatten() {
+            raster::resolve(&mut property.node, &property.key, folder, problems);
+        }
+    }
     if let Some(bodies) = tree.get_mut("bodies") {
         for body in bodies.items_mut() {
             if let Some(polygon) = body.get_mut("polygon") {
@@ -90,21 +98,20 @@ pub(super) fn text_of(path: &Path, most: u64) -> Result<String, String> {
     Ok(text.strip_prefix('\u{feff}').unwrap_or(&text).to_owned())
 }
 
-/// The unit of what a file holds: that of a key, or of the header of a column; both have to agree.
+/// The unit of a column: that of a key of the case file, `(key, value)`, or of its header; both have to agree.
 fn unit_of(
-    key: Option<&str>,
-    header: Option<&str>,
+    (key, stated): (&str, Option<&str>),
+    (column, header): (&str, Option<&str>),
     dimension: Dimension,
-    whose: &str,
 ) -> Result<String, Trouble> {
     let example = dimension.usual_unit();
-    let unit = match (key, header) {
-        (Some(key), Some(header)) if key.trim() != header.trim() => {
+    let unit = match (stated, header) {
+        (Some(stated), Some(header)) if stated.trim() != header.trim() => {
             return Err(Trouble::new(
                 format_args!(
-                    "{whose} are in `{}` by its header, and in `{}` by the case file",
+                    "its {column} is in `{}` by its header, and in `{}` by the case file",
                     clip(header, 20),
-                    clip(key, 20)
+                    clip(stated, 20)
                 ),
                 "keep one of them",
             ));
@@ -112,9 +119,9 @@ fn unit_of(
         (Some(unit), _) | (None, Some(unit)) => unit.trim(),
         (None, None) => {
             return Err(Trouble::new(
-                format_args!("nothing says in which unit {whose} are"),
+                format_args!("nothing says in which unit its {column} is"),
                 format_args!(
-                    "write it into the header of the column, as in `x [{example}]`, or beside the file, as in unit = \"{example}\""
+                    "write it into the header of the column, as in `{column} [{example}]`, or beside the file, as in {key} = \"{example}\""
                 ),
             ));
         }

@@ -141,7 +141,7 @@ fn points(file: &Named, table: &Node, closed: bool) -> Result<Vec<Node>, Trouble
                 "add unit = \"m\", or what it is drawn in",
             ));
         }
-        let unit = unit_of(unit, None, Dimension::Length, "its lengths")?;
+        let unit = unit_of(("unit", unit), ("x", None), Dimension::Length)?;
         (points, [unit.clone(), unit])
     } else {
         if layer.is_some() {
@@ -151,9 +151,11 @@ fn points(file: &Named, table: &Node, closed: bool) -> Result<Vec<Node>, Trouble
             ));
         }
         let found = columns(&text, &["x", "y"])?;
-        let unit_of =
-            |k: usize, whose| unit_of(unit, found.units[k].as_deref(), Dimension::Length, whose);
-        let units = [unit_of(0, "its x")?, unit_of(1, "its y")?];
+        let unit_of = |k: usize, column| {
+            let header = found.units[k].as_deref();
+            unit_of(("unit", unit), (column, header), Dimension::Length)
+        };
+        let units = [unit_of(0, "x")?, unit_of(1, "y")?];
         let points = found.rows.iter().map(|row| [row[0], row[1]]);
         (points.collect(), units)
     };
