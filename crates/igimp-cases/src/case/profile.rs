@@ -61,14 +61,14 @@ impl Profile {
 
     /// The places of the least and of the greatest value within polygons; none without polygons.
     pub fn extremes(&self, polygons: &[&[[f64; 2]]]) -> Option<[[f64; 2]; 2]> {
-        let places = polygons.iter().flat_map(|polygon| match self {
-            Self::Raster(raster) => raster.places_in(polygon),
-            _ => {
-                let (lower, upper) = bounding_box(polygon);
-                let kinks = self.kinks().into_iter().map(|level| [lower[0], level]);
-                let within = kinks.filter(|at| lower[1] <= at[1] && at[1] <= upper[1]);
-                within.chain([lower, upper]).collect()
+        let places = polygons.iter().flat_map(|polygon| {
+            if let Self::Raster(raster) = self {
+                return raster.places_in(polygon);
             }
+            let (lower, upper) = bounding_box(polygon);
+            let kinks = self.kinks().into_iter().map(|level| [lower[0], level]);
+            let within = kinks.filter(|at| lower[1] <= at[1] && at[1] <= upper[1]);
+            within.chain([lower, upper]).collect()
         });
         let places: Vec<[f64; 2]> = places.collect();
         let by_value = |a: &[f64; 2], b: &[f64; 2]| self.at(*a).total_cmp(&self.at(*b));
