@@ -3,6 +3,7 @@
 //!
 //! The drawings in `tests/data/drawings` were written by ezdxf 1.4 (R2000 and R12).
 
+use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -239,7 +240,7 @@ fn what_cannot_be_read_is_named() {
         r#"{ file = "binary.dxf", layer = "sand", unit = "m" }"#,
         r#"{ top = { file = "r2000.dxf", layer = "clay", unit = "m" }, bottom = [["0 m", "0 m"], ["60 m", "0 m"]] }"#,
     ] {
-        out += &format!("## {polygon}\n{}\n", folder.said(polygon));
+        let _ = writeln!(out, "## {polygon}\n{}", folder.said(polygon));
     }
     insta::assert_snapshot!(out);
 }

@@ -1,5 +1,6 @@
 //! Properties of materials by points in the plane: what is read, what particles are given, and what is refused and why.
 
+use std::fmt::Write as _;
 use std::fs;
 use std::path::PathBuf;
 
@@ -85,7 +86,8 @@ fn raster(header: &str, xs: &[f64], ys: &[f64], [length, value]: [f64; 2]) -> St
     let mut text = format!("{header}\n");
     for &x in xs {
         for &y in ys {
-            text += &format!("{},{},{}\n", x * length, y * length, exact([x, y]) * value);
+            let value = exact([x, y]) * value;
+            let _ = writeln!(text, "{},{},{value}", x * length, y * length);
         }
     }
     text
@@ -176,7 +178,9 @@ fn what_makes_no_raster_is_named() {
         ],
     );
     let mut out = String::new();
-    let mut tell = |cu: &str| out += &format!("## {cu}\n{}\n", folder.said(cu));
+    let mut tell = |cu: &str| {
+        let _ = writeln!(out, "## {cu}\n{}", folder.said(cu));
+    };
     tell(r#"{ raster = "plain.csv", unit = "kPa" }"#);
     tell(r#"{ raster = "plain.csv", length_unit = "m" }"#);
     tell(r#"{ raster = "plain.csv", length_unit = "m", unit = "kN/m3" }"#);
