@@ -196,25 +196,44 @@ fn slopes(study: &mut Study, level: Level) -> Result<(), CaseError> {
         &[10]
     };
     let mut sought = Vec::new();
-    for section in [undrained, drained] {
+    for (slope, section) in [undrained, drained].into_iter().enumerate() {
         let section = Section {
             horizontal: 0.1,
             ..section
         };
-        sought.extend(meshes.iter().map(|&cells| (section.clone(), cells)));
+        sought.extend(
+            meshes
+                .iter()
+                .map(|&cells| (slope, section.clone(), cells, SEARCH)),
+        );
+        let by_gravity = Search {
+            path: section::Path::Gravity,
+            steps: 5,
+            ..SEARCH
+        };
+        sought.push((slope, section, meshes[0], by_gravity));
     }
     let found = (sought.par_iter())
-        .map(|(section, cells)| Computed::new(section.case(variant(*cells), SEARCH)?))
+        .map(|(_, section, cells, search)| Computed::new(section.case(variant(*cells), *search)?))
         .collect::<Result<Vec<_>, _>>()?;
     let mut table = Table::new(
         "factors",
-        &["slope", "cells_over_H", "upper_bound_[-]", "F_[-]"],
+        &[
+            "slope",
+            "cells_over_H",
+            "by_gravity",
+            "upper_bound_[-]",
+            "F_[-]",
+        ],
     );
-    for (k, ((section, cells), computed)) in sought.iter().zip(&found).enumerate() {
+    for ((slope, section, cells, search), computed) in sought.iter().zip(&found) {
         let bound = rotation::upper_bound(section);
+        let by_gravity = search.path == section::Path::Gravity;
         let name = format!(
-            "{}, k = {}, h = H/{cells}",
-            section.name, section.horizontal
+            "{}, k = {}, h = H/{cells}{}",
+            section.name,
+            section.horizontal,
+            if by_gravity { ", by gravity" } else { "" }
         );
         let run = study.run(record(name, computed));
         let value = factor(computed);
@@ -226,8 +245,13 @@ fn slopes(study: &mut Study, level: Level) -> Result<(), CaseError> {
             Band::Between((1.0 - BLOCKS) * bound, (1.0 + above) * bound),
             value,
         );
-        let slope = (k / meshes.len() + 1) as f64;
-        table.push(vec![slope, f64::from(*cells), bound, value]);
+        table.push(vec![
+            *slope as f64 + 1.0,
+            f64::from(*cells),
+            f64::from(u8::from(by_gravity)),
+            bound,
+            value,
+        ]);
     }
     table.write_csv(&study.folder)
 }

@@ -199,13 +199,19 @@ impl Section {
             Locking::BBar => "b-bar",
             Locking::SharedStrain => "shared-strain",
         };
-        let (weight, path) = match path {
-            Path::Reduce if self.horizontal != 0.0 => (
-                format!("{WEIGHT}\nhorizontal = {}", self.horizontal),
-                "reduce",
-            ),
-            Path::Reduce => (WEIGHT.to_owned(), "reduce"),
-            Path::Gravity => (String::new(), "gravity"),
+        let push = if self.horizontal == 0.0 {
+            String::new()
+        } else {
+            format!("\nhorizontal = {}", self.horizontal)
+        };
+        // Gravity is raised anew, but a push is what a stage has left.
+        let weight = match path {
+            Path::Gravity if push.is_empty() => String::new(),
+            Path::Reduce | Path::Gravity => format!("{WEIGHT}{push}"),
+        };
+        let path = match path {
+            Path::Reduce => "reduce",
+            Path::Gravity => "gravity",
         };
         let cell = self.height / f64::from(cells);
         let ([left, right], top) = (self.sides(), self.top() + cell);

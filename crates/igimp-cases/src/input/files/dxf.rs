@@ -340,4 +340,20 @@ mod tests {
         assert_eq!(found.points, [[0.0, 2.0], [1.0, 2.0]]);
         assert!(!found.is_closed);
     }
+
+    /// GOAL: a damaged drawing is read or refused, and nothing else.
+    #[test]
+    fn damaged_drawings_do_no_harm() {
+        let whole = include_str!("../../../tests/data/drawings/r12.dxf");
+        for at in (0..whole.len()).filter(|&at| whole.is_char_boundary(at)) {
+            let (before, after) = whole.split_at(at);
+            let rest = after.get(1..).unwrap_or_default();
+            for damage in ["", "9", "-", "\n", " ", "x", "1e999", "\0", "é"] {
+                for layer in [None, Some("clay"), Some("sand")] {
+                    let _ = line_on(&format!("{before}{damage}{rest}"), layer);
+                    let _ = line_on(before, layer);
+                }
+            }
+        }
+    }
 }
