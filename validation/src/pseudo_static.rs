@@ -63,7 +63,7 @@ struct Layer {
 }
 
 impl Layer {
-    /// F of the infinite layer \[-\].
+    /// F of the infinite layer (theory, eq. 37e) \[-\].
     fn factor(&self) -> f64 {
         let [horizontal, vertical] = self.force;
         (1.0 - vertical) * 30_f64.to_radians().tan() / horizontal
