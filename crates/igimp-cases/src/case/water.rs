@@ -1,5 +1,15 @@
 //! Water in the ground: conditions that stages move between, and what materials do with it.
 
+use super::Case;
+
+impl Case {
+    /// Whether there is water in pores, given or held by undrained soil: only then do total and effective stress differ.
+    pub fn has_pore_water(&self) -> bool {
+        let holds = |drainage: Drainage| matches!(drainage, Drainage::Undrained { .. });
+        !self.water.is_empty() || self.materials.iter().any(|own| holds(own.drainage))
+    }
+}
+
 /// A condition of the water, under a name that stages call it by.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WaterCondition {

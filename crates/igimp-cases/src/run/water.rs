@@ -150,7 +150,7 @@ impl Source {
 }
 
 /// The level of a line at x, constant beyond its ends.
-fn on_line(points: &[[f64; 2]], x: f64) -> f64 {
+pub(crate) fn on_line(points: &[[f64; 2]], x: f64) -> f64 {
     let after = points.partition_point(|point| point[0] <= x);
     match (after.checked_sub(1).map(|k| points[k]), points.get(after)) {
         (Some(from), Some(to)) => from[1] + (to[1] - from[1]) * (x - from[0]) / (to[0] - from[0]),
