@@ -177,9 +177,10 @@ impl Pieces {
             .map(|(sum, count)| Some(sum.map(|sum| sum / count)))
             .collect();
         for (corner, at) in all() {
-            let reach = PARTED * there.place_of(corner.particle).map_or(0.0, |place| {
-                size(there.particles, place)
-            });
+            let reach = PARTED
+                * there
+                    .place_of(corner.particle)
+                    .map_or(0.0, |place| size(there.particles, place));
             met[corner.place] = met[corner.place]
                 .filter(|middle| (middle[0] - at[0]).hypot(middle[1] - at[1]) <= reach);
         }

@@ -376,7 +376,10 @@ mod tests {
             assert_eq!(of(&wet), of(&dry), "{field:?}");
         }
         let of = |field| value(field, &wet, 0, &laws).to_bits();
-        assert_eq!([of(Field::U), of(Field::UExcess)], [20e3_f64, -10e3].map(f64::to_bits));
+        assert_eq!(
+            [of(Field::U), of(Field::UExcess)],
+            [20e3_f64, -10e3].map(f64::to_bits)
+        );
     }
 
     #[test]

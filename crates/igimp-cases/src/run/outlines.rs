@@ -30,11 +30,16 @@ fn water_tables(model: &Model<'_>, state: &State) -> Vec<Outline> {
     let Some(condition) = state.controls.water.and_then(|k| case.water.get(k)) else {
         return Vec::new();
     };
-    let bodies: HashSet<usize> = particles.number.iter().map(|&own| model.seeded.body[own]).collect();
+    let bodies: HashSet<usize> = particles
+        .number
+        .iter()
+        .map(|&own| model.seeded.body[own])
+        .collect();
     let ends = std::iter::zip(&particles.x, &particles.half_length);
-    let ends = ends.fold([f64::INFINITY, f64::NEG_INFINITY], |[left, right], (x, half)| {
-        [left.min(x[0] - half[0]), right.max(x[0] + half[0])]
-    });
+    let ends = ends.fold(
+        [f64::INFINITY, f64::NEG_INFINITY],
+        |[left, right], (x, half)| [left.min(x[0] - half[0]), right.max(x[0] + half[0])],
+    );
     water::tables(case, condition, |body| bodies.contains(&body), ends)
 }
 

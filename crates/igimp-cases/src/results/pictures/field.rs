@@ -110,10 +110,12 @@ pub fn field_picture(
 pub(super) fn edges(canvas: &Canvas<'_>, particles: &Particles<2>) -> Vec<Outline> {
     let there = canvas.pieces.there(particles);
     let former = std::iter::zip(body_outlines(canvas.case), there);
-    let former = former.filter(|(_, there)| *there).map(|(outline, _)| Outline {
-        style: OutlineStyle::Former,
-        ..outline
-    });
+    let former = former
+        .filter(|(_, there)| *there)
+        .map(|(outline, _)| Outline {
+            style: OutlineStyle::Former,
+            ..outline
+        });
     let moved = canvas.pieces.edges(particles).into_iter();
     let moved = moved.map(|points| Outline {
         points,

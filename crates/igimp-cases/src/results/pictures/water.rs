@@ -20,7 +20,8 @@ pub(crate) fn tables(
         (source, [lower[0].max(ends[0]), upper[0].min(ends[1])])
     });
     let all = std::iter::once((&condition.source, ends)).chain(own);
-    all.filter_map(|(source, ends)| table(source, ends)).collect()
+    all.filter_map(|(source, ends)| table(source, ends))
+        .collect()
 }
 
 /// A water table between two places.
@@ -32,7 +33,9 @@ fn table(source: &PoreSource, [left, right]: [f64; 2]) -> Option<Outline> {
         return None;
     }
     let at = |x: f64| [x, on_line(line, x)];
-    let between = line.iter().filter(|point| left < point[0] && point[0] < right);
+    let between = line
+        .iter()
+        .filter(|point| left < point[0] && point[0] < right);
     let points = std::iter::once(at(left)).chain(between.copied());
     Some(Outline {
         points: points.chain([at(right)]).collect(),
