@@ -33,11 +33,11 @@ pub enum OutlineStyle {
     Former,
     /// A heavy line on a white ground: a line that was found.
     Trace,
+    /// A blue line: a water table.
+    Water,
     /// Small arrows, each from one point to the next, then from the third to the fourth, and so on:
     /// directions and sizes.
     Vectors,
-    /// A thin blue line on a white ground with a triangle that stands on its tip: a water table.
-    Water,
 }
 
 /// A line over the field.

@@ -93,12 +93,13 @@ pub(super) fn draw(drawing: &mut Drawing, area: &Rect, style: OutlineStyle, poin
             drawing.stroke(lines(), Stroke::solid(Colour::WHITE, 4.2));
             drawing.stroke(lines(), Stroke::solid(Colour::FAILURE, 2.2));
         }
-        OutlineStyle::Vectors => vectors(drawing, area, points),
         OutlineStyle::Water => {
+            // White below blue stays visible on every colour.
             drawing.stroke(lines(), Stroke::solid(Colour::WHITE, 2.4));
             drawing.stroke(lines(), Stroke::solid(Colour::WATER, 1.1));
             water_mark(drawing, &lines());
         }
+        OutlineStyle::Vectors => vectors(drawing, area, points),
         OutlineStyle::Point => {
             let centres = points.iter().filter(|&&point| area.contains(point));
             let radius = 3.4;
@@ -116,7 +117,9 @@ pub(super) fn draw(drawing: &mut Drawing, area: &Rect, style: OutlineStyle, poin
 fn water_mark(drawing: &mut Drawing, lines: &[Vec<Point>]) {
     let length = |line: &[Point]| -> f64 {
         let parts = line.windows(2);
-        parts.map(|p| (p[1][0] - p[0][0]).hypot(p[1][1] - p[0][1])).sum()
+        parts
+            .map(|p| (p[1][0] - p[0][0]).hypot(p[1][1] - p[0][1]))
+            .sum()
     };
     let longest = lines.iter().max_by(|a, b| length(a).total_cmp(&length(b)));
     let Some(line) = longest.filter(|line| length(line) > 0.0) else {
@@ -238,8 +241,8 @@ mod tests {
             OutlineStyle::Point,
             OutlineStyle::Former,
             OutlineStyle::Trace,
-            OutlineStyle::Vectors,
             OutlineStyle::Water,
+            OutlineStyle::Vectors,
         ] {
             let mut drawing = Drawing::new("");
             draw(&mut drawing, &area, style, &[[20.0, 20.0], [40.0, 20.0]]);

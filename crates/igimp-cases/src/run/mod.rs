@@ -54,7 +54,6 @@ pub use message::worst_node;
 pub use model::Model;
 pub use rigid::outlines as rigid_outlines;
 pub use state::{Controls, RigidControls, RigidTrack, State};
-pub(crate) use water::on_line;
 
 /// Why a stage ended that reached its end.
 pub const REACHED_ITS_END: &str = "reached its end";

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::field::body_outlines;
 use super::rigid::{POINTS_OF_CIRCLE, block};
-use super::{water, write};
+use super::write;
 use crate::case::{AxisSpec, Case, GridSpec, LoadKind, Side};
 use crate::check::short;
 use crate::error::CaseError;
@@ -67,12 +67,6 @@ fn plot(case: &Case) -> FieldPlot {
     }
     plot.outlines.extend(body_outlines(case));
     add_rigid_bodies(&mut plot, case);
-    if let Some(condition) = case.water.first() {
-        let ends = [case.grid.lower()[0], case.grid.upper()[0]];
-        let there = |body: usize| case.bodies[body].from_start;
-        plot.outlines
-            .extend(water::tables(case, condition, there, ends));
-    }
     add_supports(&mut plot, case);
     let reach = add_loads(&mut plot, case, ARROW * size);
     for section in &case.sections {
@@ -264,7 +258,6 @@ fn add_symbols_to_key(plot: &mut FieldPlot, has_bodies: bool) {
         (OutlineStyle::Fixed, "held in both directions"),
         (OutlineStyle::Roller, "held across"),
         (OutlineStyle::Block, block),
-        (OutlineStyle::Water, "water table at the start"),
         (OutlineStyle::Arrow, "load"),
         (OutlineStyle::Section, "section"),
         (OutlineStyle::Point, "monitor"),

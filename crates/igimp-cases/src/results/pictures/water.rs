@@ -2,9 +2,8 @@
 
 use igimp_figures::{Outline, OutlineStyle};
 
-use crate::case::{Case, PoreSource, WaterCondition};
+use crate::case::{Case, PoreSource, WaterCondition, table_level};
 use crate::polygon::bounding_box;
-use crate::run::on_line;
 
 /// The water tables of a condition between two places along x \[m\]; bodies that are there and have a table of their own show
 /// it over their width.
@@ -32,7 +31,7 @@ fn table(source: &PoreSource, [left, right]: [f64; 2]) -> Option<Outline> {
     if line.is_empty() || right <= left {
         return None;
     }
-    let at = |x: f64| [x, on_line(line, x)];
+    let at = |x: f64| [x, table_level(line, x)];
     let between = line
         .iter()
         .filter(|point| left < point[0] && point[0] < right);
