@@ -276,6 +276,38 @@ mod tests {
         assert!((area(&edges) - whole).abs() < 1e-12 * whole);
     }
 
+    /// GOAL: bodies that were taken away, or are not yet there, are not drawn, and the others by their own particles.
+    #[test]
+    fn only_what_is_there_is_drawn() {
+        let mut case = slope();
+        let mut hill = case.bodies[0].clone();
+        hill.polygon = vec![[0.0, 1.7], [1.3, 1.7], [0.8, 2.4], [0.0, 2.4]];
+        let area_of_hill = area_and_centroid(&hill.polygon).0;
+        case.bodies.push(hill);
+        let (model, state) = Model::new(&case).unwrap();
+        let all = state.body.particles;
+        let of_hill = |particle: usize| model.seeded.body[all.number[particle]] == 1;
+        let pieces = Pieces::of(&case).unwrap();
+        assert_eq!(pieces.there(&all), [true, true]);
+        let left = all.keeping(of_hill).unwrap();
+        assert_eq!(pieces.there(&left), [false, true]);
+        let (polygons, whose) = pieces.now(&left);
+        assert!(whose.iter().all(|&place| place < left.len()));
+        assert!((area(&polygons) - area_of_hill).abs() < 1e-12 * area_of_hill);
+        assert!((area(&pieces.edges(&left)) - area_of_hill).abs() < 1e-12 * area_of_hill);
+        // The same particles in another order are the same picture.
+        let below = all.keeping(|particle| !of_hill(particle)).unwrap();
+        let turned = left.joined_by(&below);
+        assert_eq!(pieces.edges(&turned), pieces.edges(&all));
+        let drawn = |particles: &Particles<2>| {
+            let (polygons, whose) = pieces.now(particles);
+            std::iter::zip(polygons, whose)
+                .map(|(piece, place)| (piece, particles.number[place]))
+                .collect::<Vec<_>>()
+        };
+        assert_eq!(drawn(&turned), drawn(&all));
+    }
+
     /// GOAL: neighbours that deform differently leave no gaps, soil that parts is not drawn as joined.
     #[test]
     fn neighbours_meet_and_parted_soil_does_not() {

@@ -94,7 +94,7 @@ name = "crest"
 x = { of = "step", label = "step" }
 y = { of = "crest.displacement_y", label = "u_y" }
 [output]
-figures = ["displacement", "sigma_eff_yy", "u", "u_excess"]
+figures = ["displacement", "sigma_yy", "sigma_eff_yy", "u", "u_excess"]
 report = true
 paraview = { every = 1 }
 checkpoint = { every = 1, keep = 2 }
@@ -397,7 +397,7 @@ fn shows_what_is_there(folder: &Path) {
         from.split('"').next().unwrap().parse::<usize>().unwrap()
     };
     let frames = read("paraview/particles.pvd").matches("<DataSet").count();
-    let counts: Vec<usize> = (0..)
+    let counts: Vec<usize> = (1..)
         .map_while(|k| {
             let path = folder.join(format!("paraview/particles_{k:04}.vtu"));
             path.exists().then(|| cells(k))
@@ -414,7 +414,7 @@ fn shows_what_is_there(folder: &Path) {
     let mut different = counts.clone();
     different.dedup();
     assert_eq!(different, [end(1), end(2), end(3), end(4)]);
-    let last = read(&format!("paraview/particles_{:04}.vtu", frames - 1));
+    let last = read(&format!("paraview/particles_{frames:04}.vtu"));
     for name in ["sigma", "sigma_eff"] {
         assert!(
             last.contains(&format!("Name=\"{name} [Pa], tension +\"")),
@@ -435,7 +435,7 @@ fn shows_what_is_there(folder: &Path) {
         (3, "upper-lift"),
         (4, "slice-away"),
     ] {
-        for field in ["displacement", "sigma_eff_yy", "u", "u_excess"] {
+        for field in ["displacement", "sigma_yy", "sigma_eff_yy", "u", "u_excess"] {
             let picture = read(&format!("figures/field-{stage}-{name}-{field}.svg"));
             assert!(picture.contains(water), "{name} {field}");
         }
@@ -447,7 +447,13 @@ fn shows_what_is_there(folder: &Path) {
         "{summary}"
     );
     let report = read("report.html");
-    assert!(report.contains("Largest pore pressure") && report.contains("Excess pore pressure"));
+    for told in [
+        "Largest pore pressure",
+        "Excess pore pressure",
+        "Total vertical stress",
+    ] {
+        assert!(report.contains(told), "{told}");
+    }
     let table = read("monitors/crest.csv");
     assert!(
         table.lines().nth(1).unwrap().ends_with("NaN,NaN"),

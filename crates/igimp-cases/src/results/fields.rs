@@ -116,6 +116,14 @@ pub fn dimension(field: Field) -> Dimension {
     }
 }
 
+/// Whether a field is one of total stress that has a counterpart of effective stress.
+pub(super) fn is_total(field: Field) -> bool {
+    matches!(
+        field,
+        Field::SigmaXx | Field::SigmaYy | Field::SigmaZz | Field::P
+    )
+}
+
 /// The name of a field in case files.
 pub fn name(field: Field) -> &'static str {
     match field {

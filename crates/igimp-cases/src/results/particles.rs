@@ -217,7 +217,7 @@ mod tests {
             pore_water: false,
         };
         let grid = of_particles(particles, &extras);
-        let sigma = &particles.sigma[0];
+        let sigma = &particles.total_stress(0);
         let Values::F64(written) = values(&grid, "sigma [Pa], tension +") else {
             panic!()
         };

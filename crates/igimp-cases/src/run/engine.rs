@@ -154,9 +154,9 @@ impl Stages {
         };
         let case = session.model.case;
         let Some(target) = target else {
-            pores::dilatant(case)
-                .into_iter()
-                .for_each(|text| session.warn(text));
+            for text in pores::dilatant(case) {
+                session.warn(text);
+            }
             return Ok(stages);
         };
         if let Some(systems) = &target.systems {
@@ -184,9 +184,9 @@ impl Stages {
             stages.left = Some(left);
         } else {
             output.model_picture(case)?;
-            pores::dilatant(case)
-                .into_iter()
-                .for_each(|text| session.warn(text));
+            for text in pores::dilatant(case) {
+                session.warn(text);
+            }
         }
         for text in std::mem::take(&mut output.notes_for_user) {
             session.tell(&Event::Warning { text: &text });

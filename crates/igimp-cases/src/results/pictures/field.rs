@@ -78,11 +78,16 @@ pub fn field_picture(
     let scale = Scale::of(fields::dimension(field), all.iter().copied());
     let colours = Colours::of(field, &scale.apply(&all));
     let (domains, whose) = canvas.pieces.now(particles);
+    let total = if case.has_pore_water() && fields::is_total(field) {
+        "total "
+    } else {
+        ""
+    };
     let plot = FieldPlot {
         title: titled(&case.title, &shown.title),
         domains,
         values: whose.iter().map(|&k| values[k] / scale.divide_by).collect(),
-        label: fields::label(field, scale) + colours.told(),
+        label: format!("{total}{}{}", fields::label(field, scale), colours.told()),
         range: colours.range,
         map: colours.map,
         outlines: edges(canvas, particles)
@@ -98,7 +103,7 @@ pub fn field_picture(
     };
     let caption = format!(
         "{} {}. Lines: the edges of the bodies; dashed: before they moved{}.{same}",
-        sentence(&fields::plain(fields::title(field))),
+        sentence(&format!("{total}{}", fields::plain(fields::title(field)))),
         shown.when,
         water::told(outlines),
     );
