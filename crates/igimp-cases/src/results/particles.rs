@@ -252,7 +252,7 @@ mod tests {
             ]
         );
         assert_eq!(values(&grid, "regime"), Values::I32(vec![0, 4, 9, 0, 4]));
-        assert_eq!(values(&grid, "particle"), Values::I32(vec![0, 1, 2, 3, 4]));
+        assert_eq!(values(&grid, "particle"), Values::I32(vec![1, 3, 5, 7, 9]));
     }
 
     #[test]
