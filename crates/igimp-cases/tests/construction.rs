@@ -366,7 +366,7 @@ fn a_run_is_taken_up_within_a_construction_stage() {
     assert_done(&run.summary);
     let expected = everything(&whole);
     let stopped = folder("stopped");
-    for steps in [1, 2, 4, 6] {
+    for steps in [2, 4, 6] {
         let stage = written(&case, &stopped, Start::Afresh, Some(steps));
         assert!(stage.summary.interrupted, "{steps}");
         let end = written(&case, &stopped, Start::Resume, None);
@@ -377,14 +377,8 @@ fn a_run_is_taken_up_within_a_construction_stage() {
             &format!("after {steps} steps"),
         );
     }
-    for stage in [1, 3] {
-        written(&case, &stopped, Start::FromStage(stage), None);
-        assert_equal(
-            &expected,
-            &everything(&stopped),
-            &format!("from stage {stage}"),
-        );
-    }
+    written(&case, &stopped, Start::FromStage(3), None);
+    assert_equal(&expected, &everything(&stopped), "from the last stage");
     shows_what_is_there(&whole);
 }
 
