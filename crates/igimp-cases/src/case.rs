@@ -22,6 +22,7 @@ pub use rigid::{
     Adhesion, RigidDrive, RigidInterface, RigidMove, RigidPart, RigidQuantity, RigidShape,
     RigidShear,
 };
+pub(crate) use water::table_level;
 pub use water::{Construction, Drainage, PoreSource, WaterCondition};
 
 use crate::check::Band;

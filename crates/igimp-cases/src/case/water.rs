@@ -26,6 +26,16 @@ pub enum PoreSource {
     Ratio(f64),
 }
 
+/// The level of a line at a place, level beyond its ends \[m\].
+pub(crate) fn table_level(points: &[[f64; 2]], x: f64) -> f64 {
+    let after = points.partition_point(|point| point[0] <= x);
+    match (after.checked_sub(1).map(|k| points[k]), points.get(after)) {
+        (Some(from), Some(to)) => from[1] + (to[1] - from[1]) * (x - from[0]) / (to[0] - from[0]),
+        (Some(only), None) | (None, Some(&only)) => only[1],
+        (None, None) => f64::NEG_INFINITY,
+    }
+}
+
 /// What a material does with the water in its pores.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Drainage {
