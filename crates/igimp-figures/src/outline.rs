@@ -89,6 +89,7 @@ pub(super) fn draw(drawing: &mut Drawing, area: &Rect, style: OutlineStyle, poin
             drawing.stroke(lines(), Stroke::solid(Colour::WHITE, 4.2));
             drawing.stroke(lines(), Stroke::solid(Colour::FAILURE, 2.2));
         }
+        OutlineStyle::Water => drawing.stroke(lines(), Stroke::solid(Colour::CURVE, 1.6)),
         OutlineStyle::Vectors => vectors(drawing, area, points),
         OutlineStyle::Point => {
             let centres = points.iter().filter(|&&point| area.contains(point));
@@ -196,6 +197,7 @@ mod tests {
             OutlineStyle::Point,
             OutlineStyle::Former,
             OutlineStyle::Trace,
+            OutlineStyle::Water,
             OutlineStyle::Vectors,
         ] {
             let mut drawing = Drawing::new("");

@@ -209,7 +209,10 @@ fn k0(context: &Context<'_>, index: usize, node: &Node, problems: &mut Problems)
     for (index, material) in context.materials.iter().enumerate() {
         let Some(material) = material else { continue };
         let needs = material.strength != Strength::Elastic && material.k0.is_none();
-        if needs && context.is_used(index) {
+        let start = &context.sequence.start;
+        let bodies = std::iter::zip(&start.present, &start.material);
+        let is_there = |(present, own): (&bool, &Option<usize>)| *present && *own == Some(index);
+        if needs && bodies.clone().any(is_there) {
             let entries = context.tree.get("materials").map_or(&[][..], Node::entries);
             let at = entries.get(index).map_or(place, |entry| entry.node.place);
             problems
