@@ -34,6 +34,7 @@ mod study;
 mod table;
 mod tilted_layer;
 mod von_mises_slope;
+mod water;
 
 use std::error::Error;
 use std::path::{Path, PathBuf};
@@ -105,6 +106,7 @@ enum Case {
     TiltedLayer,
     Layers,
     StrengthProfile,
+    Water,
     FootingContact,
     ContactFooting,
     ContactColumn,
@@ -138,6 +140,7 @@ impl Case {
             Self::TiltedLayer => tilted_layer::study(level, out),
             Self::Layers => layers::study(out),
             Self::StrengthProfile => strength_profile::study(level, out),
+            Self::Water => water::study(level, out),
             Self::FootingContact => footing_contact::study(level, out),
             Self::ContactFooting => contact::footing::study(level, out),
             Self::ContactColumn => contact::column::study(out),
