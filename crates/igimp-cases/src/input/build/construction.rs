@@ -1,7 +1,7 @@
 //! Construction stages: what they may do to what is there.
 
 use super::stages::Context;
-use crate::case::{Construction, LoadKind, StageKind};
+use crate::case::{Construction, Drainage, LoadKind, StageKind};
 use crate::input::diagnostic::Problems;
 use crate::input::text::{clip, row};
 use crate::input::tree::Node;
@@ -272,5 +272,53 @@ pub(super) fn load_is_held(
                 ),
             )
             .help("place the body before, in a stage of type construction");
+    }
+}
+
+/// Refuses cases that begin without soil; warns of undrained soil whose own weight comes on, and of stiffness that is shared
+/// between soils that come and go.
+pub(super) fn check(context: &Context<'_>, problems: &mut Problems) {
+    let start = &context.sequence.start;
+    if !start.present.is_empty() && !start.present.contains(&true) {
+        problems
+            .error(
+                context.tree.place_at("bodies"),
+                "no body is there from the start: stages place them all",
+            )
+            .help("leave one body, the ground, out of `place`");
+    }
+    let bodies = std::iter::zip(&start.present, &start.material);
+    let mut there = bodies.filter_map(|(present, material)| material.filter(|_| *present));
+    let is_undrained = |material: usize| {
+        let own = context.materials.get(material).and_then(Option::as_ref);
+        own.is_some_and(|own| matches!(own.drainage, Drainage::Undrained { .. }))
+    };
+    if let Some(first) = context.stage_nodes().first()
+        && first.text_at("type") == Some("gravity")
+        && first.flag_at("drained") == Some(false)
+        && there.any(is_undrained)
+    {
+        problems
+            .warning(
+                first.place_at("type"),
+                "the weight of undrained soil comes on while no water leaves: its water carries most of it",
+            )
+            .help("for ground that has stood for long write drained = true in this stage");
+    }
+    let changes = |stage: &&Node| {
+        let mut keys = ["place", "remove", "materials"].into_iter();
+        stage.text_at("type") == Some("construction")
+            && keys.any(|key| !stage.items_at(key).is_empty())
+    };
+    if let Some(grid) = context.tree.get("grid")
+        && grid.text_at("mixed_cells") == Some("mean")
+        && context.stage_nodes().iter().any(|stage| changes(&stage))
+    {
+        problems
+            .warning(
+                grid.place_at("mixed_cells"),
+                "cells that several soils share keep the mean stiffness of all of them, whichever are there",
+            )
+            .help("let grid lines follow the bodies that come and go, and write mixed_cells = \"own\"");
     }
 }

@@ -111,6 +111,8 @@ pub(super) fn build(tree: &mut Node, file: &Path, problems: &mut Problems) -> Op
         site: &site,
         materials: &materials,
         loads: &loads,
+        tree,
+        sequence: &sequence,
     };
     let rigid = rigid::rigid(tree, &around, problems);
     rigid::check_use(tree, &names, problems);
@@ -135,6 +137,7 @@ pub(super) fn build(tree: &mut Node, file: &Path, problems: &mut Problems) -> Op
     };
     let stages = stages::stages(&context, problems);
     stages::check_use(&context, problems);
+    construction::check(&context, problems);
     let gravity = tree.get("case").and_then(|case| case.number_at("gravity"));
     layers::check_stiffness(&layers, &stages, gravity, problems);
     let solver = outputs::solver(tree, &materials, problems);
