@@ -35,7 +35,10 @@ pub(super) fn stage(
     if own == Construction::default() && node.get("place").is_some_and(|place| !place.is_invalid())
     {
         problems
-            .error(node.place_at("type"), format!("stage `{name}` changes nothing"))
+            .error(
+                node.place_at("type"),
+                format!("stage `{name}` changes nothing"),
+            )
             .help("write place, remove, materials, water or dissipate");
     }
     if problems.errors() == errors {
@@ -125,7 +128,10 @@ fn comes_and_goes(
             problems
                 .error(
                     value.place,
-                    format!("the body `{}` is placed and taken away in one stage", shown(body)),
+                    format!(
+                        "the body `{}` is placed and taken away in one stage",
+                        shown(body)
+                    ),
                 )
                 .help("write two stages, or draw two bodies");
         } else if before.present[body] {
@@ -159,7 +165,10 @@ fn comes_and_goes(
         if own.remove.contains(&body) {
             problems.error(
                 value.place,
-                format!("the body `{}` is changed and taken away in one stage", shown(body)),
+                format!(
+                    "the body `{}` is changed and taken away in one stage",
+                    shown(body)
+                ),
             );
         } else if !before.present[body] && !own.place.contains(&body) {
             missing(value, body, problems);

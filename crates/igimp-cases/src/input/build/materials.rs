@@ -145,10 +145,13 @@ fn drainage(
         problems
             .error(
                 node.place_at(first),
-                format!("`{first}` is for undrained soil, and this material is {}", match kind {
-                    "total" => "one of total stress",
-                    _ => "drained",
-                }),
+                format!(
+                    "`{first}` is for undrained soil, and this material is {}",
+                    match kind {
+                        "total" => "one of total stress",
+                        _ => "drained",
+                    }
+                ),
             )
             .help("write drainage = \"undrained\", or remove it");
         return None;

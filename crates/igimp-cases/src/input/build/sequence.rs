@@ -32,7 +32,10 @@ impl Sequence {
     pub(super) fn new(tree: &Node, names: &AllNames, bodies: &[Option<BodyPart>]) -> Self {
         let later = placed(tree);
         let items = tree.items_at("bodies").iter();
-        let is_there = |node: &Node| node.text_at("name").is_none_or(|name| !later.contains(&name));
+        let is_there = |node: &Node| {
+            node.text_at("name")
+                .is_none_or(|name| !later.contains(&name))
+        };
         let start = Scene {
             present: items.map(is_there).collect(),
             material: bodies
@@ -50,7 +53,9 @@ impl Sequence {
             let stated = node.text_at("start_from");
             let from = stated.and_then(|name| names.stages.position(name));
             let from = from.filter(|from| *from < index);
-            let mut scene = from.map_or(&sequence.start, |from| &sequence.ends[from]).clone();
+            let mut scene = from
+                .map_or(&sequence.start, |from| &sequence.ends[from])
+                .clone();
             if node.text_at("type") == Some("construction") {
                 for (key, is_there) in [("place", true), ("remove", false)] {
                     let named = node.items_at(key).iter().filter_map(Node::text);
@@ -94,7 +99,8 @@ impl Sequence {
 
     /// Whether two bodies are there at the same time.
     pub(super) fn are_together(&self, a: usize, b: usize) -> bool {
-        self.scenes().any(|scene| scene.present[a] && scene.present[b])
+        self.scenes()
+            .any(|scene| scene.present[a] && scene.present[b])
     }
 
     /// What is there when a condition of the water is first in force; at the start if it never is.

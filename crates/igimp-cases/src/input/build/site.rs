@@ -144,9 +144,8 @@ impl Site {
     fn uncovered(&self) -> Vec<[[f64; 2]; 2]> {
         let lift = 1e-3 * self.cell();
         let mut edges = Vec::new();
-        let is_there = |body: usize| {
-            self.scenes.is_empty() || self.scenes.iter().any(|scene| scene[body])
-        };
+        let is_there =
+            |body: usize| self.scenes.is_empty() || self.scenes.iter().any(|scene| scene[body]);
         let bodies = self.polygons.iter().enumerate();
         let tops = bodies.filter(|(body, _)| is_there(*body));
         let tops = tops.flat_map(|(body, polygon)| {

@@ -49,7 +49,12 @@ impl Context<'_> {
     /// Whether a material is that of a body.
     pub(super) fn is_used(&self, material: usize) -> bool {
         let mut scenes = self.sequence.scenes();
-        scenes.any(|scene| scene.material.iter().any(|own| own.is_none_or(|own| own == material)))
+        scenes.any(|scene| {
+            scene
+                .material
+                .iter()
+                .any(|own| own.is_none_or(|own| own == material))
+        })
     }
 }
 
@@ -148,9 +153,13 @@ fn stop_when(
     let monitor = context.monitor(table, name, problems).ok()?;
     let displacement = table.optional_number("displacement").ok()?;
     let load_grows_less_than = table.optional_number("load_grows_less_than").ok()?;
-    if kind == "construction" && table.written {
+    let ends = table.entries().iter();
+    let mut ends = ends.filter(|end| end.node.written && end.node.flag() != Some(false));
+    if kind == "construction"
+        && let Some(end) = ends.next()
+    {
         problems
-            .error(table.place, "a construction stage has no early end")
+            .error(end.key_place, "a construction stage has no early end")
             .help("what holds the ground as the stage begins must all be let go: remove stop_when")
             .help("a stage that finds no equilibrium says how far it came");
     }

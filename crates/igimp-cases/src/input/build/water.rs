@@ -51,7 +51,8 @@ pub(super) fn conditions(
     let case = around.tree.get("case");
     let is_wet = |condition: &WaterCondition| {
         let own = condition.bodies.iter().map(|(_, own)| own);
-        own.chain([&condition.source]).any(|own| *own != PoreSource::Dry)
+        own.chain([&condition.source])
+            .any(|own| *own != PoreSource::Dry)
     };
     if let (Some(0.0), Some(index)) = (
         case.and_then(|case| case.number_at("gravity")),
@@ -131,7 +132,10 @@ fn form(
         }
         [one] => Some(one),
         [.., last] => {
-            let message = format!("{who} has several sources of pressure: {}", given.join(", "));
+            let message = format!(
+                "{who} has several sources of pressure: {}",
+                given.join(", ")
+            );
             problems
                 .error(node.place_at(last), message)
                 .help("keep one of them; bodies = [{ body = \"clay\", level = \"20 m\" }] gives a body its own");
@@ -169,9 +173,14 @@ fn source_of(node: &Node, form: &str, who: &str, problems: &mut Problems) -> Opt
                 problems
                     .error(
                         value.place,
-                        format!("r_u is {}, but the pressure is a share of the weight above", number(ratio)),
+                        format!(
+                            "r_u is {}, but the pressure is a share of the weight above",
+                            number(ratio)
+                        ),
                     )
-                    .help("r_u lies from 0, dry, to 1; half of it is about water up to the surface");
+                    .help(
+                        "r_u lies from 0, dry, to 1; half of it is about water up to the surface",
+                    );
                 return None;
             }
             PoreSource::Ratio(ratio)
@@ -188,7 +197,10 @@ fn drawdown(
     who: &str,
     problems: &mut Problems,
 ) -> Option<PoreSource> {
-    let (inside, outside) = (node.optional_number("inside"), node.optional_number("outside"));
+    let (inside, outside) = (
+        node.optional_number("inside"),
+        node.optional_number("outside"),
+    );
     let (inside, outside) = (inside.ok()?, outside.ok()?);
     let (Some(inside), Some(outside)) = (inside, outside) else {
         let (has, lacks) = if inside.is_some() {
@@ -197,7 +209,10 @@ fn drawdown(
             ("outside", "inside")
         };
         problems
-            .error(node.place_at(has), format!("{who} has `{has}` without `{lacks}`"))
+            .error(
+                node.place_at(has),
+                format!("{who} has `{has}` without `{lacks}`"),
+            )
             .help("inside is the level within the ground, outside that of the free water beside it")
             .help("for one level everywhere write level = \"24 m\"");
         return None;
@@ -256,6 +271,12 @@ pub(super) fn check(
         if end != sequence.before(index) {
             checker.scene(end, Some(index), problems);
         }
+    }
+    let mut called = around.tree.items_at("stages").iter();
+    let is_slip = |name: &str| around.names.water.position(name).is_none();
+    if called.any(|stage| stage.text_at("water").is_some_and(is_slip)) {
+        // A name that is not defined may be a slip for one that is not used.
+        return;
     }
     for (index, node) in around.tree.items_at("water").iter().enumerate() {
         let is_used = sequence.scenes().any(|scene| scene.water == Some(index));
@@ -352,13 +373,17 @@ impl Checker<'_> {
             let Some(part) = part.as_ref().filter(|_| scene.present[body]) else {
                 continue;
             };
-            let material = scene.material[body].and_then(|k| Some((k, around.materials[k].as_ref()?)));
+            let material =
+                scene.material[body].and_then(|k| Some((k, around.materials[k].as_ref()?)));
             let Some((number, material)) =
                 material.filter(|(_, material)| material.drainage == Drainage::Total)
             else {
                 continue;
             };
-            let own = condition.bodies.iter().position(|(named, _)| *named == body);
+            let own = condition
+                .bodies
+                .iter()
+                .position(|(named, _)| *named == body);
             if let Some(own) = own
                 && condition.bodies[own].1 != PoreSource::Dry
             {
@@ -419,12 +444,7 @@ fn when(tree: &Node, node: &Node, stage: Option<usize>) -> (Place, String) {
     )
 }
 
-fn above_ground(
-    above: Above,
-    place: Place,
-    (who, when): (&str, &str),
-    problems: &mut Problems,
-) {
+fn above_ground(above: Above, place: Place, (who, when): (&str, &str), problems: &mut Problems) {
     problems
         .error(
             place,

@@ -204,7 +204,14 @@ pub(in crate::input) static STAGE: Kind = Kind::Variants(&Variants {
 
 static CONSTRUCTION: [Field; 6] = {
     let [place, remove, materials, water, dissipate] = water::CONSTRUCTION;
-    [place, remove, materials, water, dissipate, geometry("\"moving\"")]
+    [
+        place,
+        remove,
+        materials,
+        water,
+        dissipate,
+        geometry("\"moving\""),
+    ]
 };
 
 static LOAD_NAME: Kind = Kind::Reference("load");

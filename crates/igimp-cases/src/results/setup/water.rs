@@ -31,9 +31,9 @@ fn condition(case: &Case, index: usize, own: &WaterCondition) -> Vec<String> {
     let bodies: Vec<String> = bodies
         .map(|(body, own)| format!("{}: {}", case.bodies[*body].name, source(own)))
         .collect();
-    let calls = case.stages.iter().filter(|stage| {
-        matches!(&stage.kind, StageKind::Construction(own) if own.water == Some(index))
-    });
+    let calls = case.stages.iter().filter(
+        |stage| matches!(&stage.kind, StageKind::Construction(own) if own.water == Some(index)),
+    );
     let start = (index == 0).then(|| "from the start".to_owned());
     let calls = calls.map(|stage| format!("from stage {} on", stage.name));
     let force: Vec<String> = start.into_iter().chain(calls).collect();
@@ -82,6 +82,10 @@ pub(super) fn soils(case: &Case) -> SetupTable {
         let saturated = own.saturated.unwrap_or(own.unit_weight);
         vec![own.name.clone(), short(saturated / 1e3), drainage]
     });
-    let header = ["Material", "Unit weight below the table [kN/m³]", "Drainage"];
+    let header = [
+        "Material",
+        "Unit weight below the table [kN/m³]",
+        "Drainage",
+    ];
     table("Soil and water", &header, rows.collect())
 }
