@@ -6,22 +6,22 @@ use crate::input::spec::{Field, Kind, Range, Struct, default, derived, optional,
 const LEVEL: Field = optional(
     "level",
     A_LENGTH,
-    "stated otherwise",
+    "another key says it",
     "level of a table that is level everywhere",
 );
 const LINE: Field = optional(
     "line",
     Kind::List(&CORNER, 2, MANY),
-    "stated otherwise",
+    "another key says it",
     "points of the water table from left to right; it is level beyond its ends",
 );
 const RATIO: Field = optional(
     "r_u",
     Kind::Number(Range::Any),
-    "stated otherwise",
+    "another key says it",
     "pore pressure as a share of the weight of the ground above, from 0 to 1",
 );
-const DRY: Field = optional("dry", Kind::Flag, "stated otherwise", "no pore pressure");
+const DRY: Field = optional("dry", Kind::Flag, "another key says it", "no pore pressure");
 
 static OWN: Kind = Kind::Table(&Struct {
     doc: "A body with a pore pressure of its own: one of `level`, `line`, `r_u` and `dry`.",
@@ -45,13 +45,13 @@ pub(super) static WATER: Kind = Kind::Table(&Struct {
         optional(
             "inside",
             A_LENGTH,
-            "stated otherwise",
+            "another key says it",
             "level of the table within the ground, with `outside`: drawdown; where the ground lies lower, the table follows it",
         ),
         optional(
             "outside",
             A_LENGTH,
-            "stated otherwise",
+            "another key says it",
             "level of the free water outside, with `inside`",
         ),
         RATIO,
