@@ -104,6 +104,7 @@ pub(super) fn build(tree: &mut Node, file: &Path, problems: &mut Problems) -> Op
         bodies: &bodies,
         materials: &materials,
         site: &site,
+        sequence: &sequence,
     };
     layers::check(&layers, problems);
     let loads = loads::loads(tree, &site, problems);

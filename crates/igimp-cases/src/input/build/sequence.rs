@@ -2,6 +2,8 @@
 //!
 //! What a stage names wrongly changes nothing here; it is reported where the stage is built.
 
+use std::rc::Rc;
+
 use super::AllNames;
 use crate::case::BodyPart;
 use crate::input::tree::Node;
@@ -21,9 +23,9 @@ pub(super) struct Scene {
 #[derive(Debug)]
 pub(super) struct Sequence {
     /// Before the first stage.
-    pub(super) start: Scene,
+    pub(super) start: Rc<Scene>,
     /// At the end of each stage.
-    pub(super) ends: Vec<Scene>,
+    pub(super) ends: Vec<Rc<Scene>>,
     /// What each stage starts from; none: from the start.
     from: Vec<Option<usize>>,
 }
@@ -45,7 +47,7 @@ impl Sequence {
             water: (!tree.items_at("water").is_empty()).then_some(0),
         };
         let mut sequence = Self {
-            start,
+            start: Rc::new(start),
             ends: Vec::new(),
             from: Vec::new(),
         };
@@ -53,10 +55,10 @@ impl Sequence {
             let stated = node.text_at("start_from");
             let from = stated.and_then(|name| names.stages.position(name));
             let from = from.filter(|from| *from < index);
-            let mut scene = from
-                .map_or(&sequence.start, |from| &sequence.ends[from])
-                .clone();
+            let before = from.map_or(&sequence.start, |from| &sequence.ends[from]);
+            let mut shared = Rc::clone(before);
             if node.text_at("type") == Some("construction") {
+                let scene = Rc::make_mut(&mut shared);
                 for (key, is_there) in [("place", true), ("remove", false)] {
                     let named = node.items_at(key).iter().filter_map(Node::text);
                     for body in named.filter_map(|name| names.bodies.position(name)) {
@@ -76,14 +78,14 @@ impl Sequence {
                 let water = water.and_then(|name| names.water.position(name));
                 scene.water = water.or(scene.water);
             }
-            sequence.ends.push(scene);
+            sequence.ends.push(shared);
             sequence.from.push(from);
         }
         sequence
     }
 
     /// What a stage starts from.
-    pub(super) fn before(&self, stage: usize) -> &Scene {
+    pub(super) fn before(&self, stage: usize) -> &Rc<Scene> {
         self.from[stage].map_or(&self.start, |from| &self.ends[from])
     }
 
@@ -94,7 +96,8 @@ impl Sequence {
 
     /// All scenes.
     pub(super) fn scenes(&self) -> impl Iterator<Item = &Scene> {
-        std::iter::once(&self.start).chain(&self.ends)
+        let all = std::iter::once(&self.start).chain(&self.ends);
+        all.map(|scene| &**scene)
     }
 
     /// Whether two bodies are there at the same time.
