@@ -29,6 +29,7 @@ mod review;
 mod runs;
 mod slopes;
 mod snapshot;
+mod stages;
 mod strength_profile;
 mod study;
 mod table;
@@ -107,6 +108,7 @@ enum Case {
     Layers,
     StrengthProfile,
     Water,
+    Stages,
     FootingContact,
     ContactFooting,
     ContactColumn,
@@ -141,6 +143,7 @@ impl Case {
             Self::Layers => layers::study(out),
             Self::StrengthProfile => strength_profile::study(level, out),
             Self::Water => water::study(level, out),
+            Self::Stages => stages::study(level, out),
             Self::FootingContact => footing_contact::study(level, out),
             Self::ContactFooting => contact::footing::study(level, out),
             Self::ContactColumn => contact::column::study(out),
