@@ -257,6 +257,7 @@ fn water_that_makes_no_sense() {
             "body = \"top\", dry = true",
             "body = \"top\", level = \"9 m\""
         )],
+        &[("level = \"7 m\"", "level = \"-1 m\"")],
         &[("level = \"7 m\"", "r_u = 1.5")],
         &[("r_u = 0.25", "r_u = -0.25")],
         &[("level = \"7 m\"", "level = \"7 m\"\nr_u = 0.2")],

@@ -155,17 +155,11 @@ pub(super) fn build(tree: &mut Node, file: &Path, problems: &mut Problems) -> Op
     let mesh_study = study::mesh_study(tree);
 
     let case = tree.get("case")?;
-    let words = |key| case.text_at(key).map(str::to_owned);
     let case = Case {
         water_unit_weight: case.number_at("water_unit_weight")?,
         water: all(water)?,
         title: case.text_at("title")?.to_owned(),
-        title_block: TitleBlock {
-            project: words("project"),
-            client: words("client"),
-            author: words("author"),
-            revision: words("revision"),
-        },
+        title_block: title_block(case),
         gravity: case.number_at("gravity")?,
         grid: grid?,
         method: method?,
@@ -186,6 +180,17 @@ pub(super) fn build(tree: &mut Node, file: &Path, problems: &mut Problems) -> Op
     let case = case.refined(tree.get("grid")?.count_at("refine")?);
     study::check(tree, &case, problems);
     Some(case)
+}
+
+/// The head of the report.
+fn title_block(case: &Node) -> TitleBlock {
+    let words = |key| case.text_at(key).map(str::to_owned);
+    TitleBlock {
+        project: words("project"),
+        client: words("client"),
+        author: words("author"),
+        revision: words("revision"),
+    }
 }
 
 fn all<T>(parts: Vec<Option<T>>) -> Option<Vec<T>> {

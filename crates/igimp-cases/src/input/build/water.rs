@@ -265,6 +265,7 @@ pub(super) fn check(
         conditions,
         surfaces: HashMap::new(),
         seen: Vec::new(),
+        told: Vec::new(),
     };
     checker.scene(&sequence.start, None, problems);
     for (index, end) in sequence.ends.iter().enumerate() {
@@ -298,6 +299,8 @@ struct Checker<'a> {
     surfaces: HashMap<Vec<bool>, Surface>,
     /// Conditions that have been found wrong: of each one place is enough.
     seen: Vec<usize>,
+    /// Materials whose friction by total stress has been told.
+    told: Vec<usize>,
 }
 
 impl Checker<'_> {
@@ -354,6 +357,17 @@ impl Checker<'_> {
                 }
             }
         }
+        let bodies = std::iter::zip(around.bodies, &scene.present);
+        let mut there = bodies.filter_map(|(part, present)| part.as_ref().filter(|_| *present));
+        let is_table = matches!(condition.source, PoreSource::Table(_));
+        if is_table && !there.any(|part| is_wet(&condition.source, part)) {
+            problems
+                .warning(
+                    place,
+                    format!("{who} lies below all bodies, and wets none{when}"),
+                )
+                .help("write dry = true if that is meant");
+        }
         self.materials(scene, condition, (node, &who), problems);
         if problems.errors() > before {
             self.seen.push(index);
@@ -362,7 +376,7 @@ impl Checker<'_> {
 
     /// Checks what the condition does to the materials of the bodies that are there.
     fn materials(
-        &self,
+        &mut self,
         scene: &Scene,
         condition: &WaterCondition,
         (node, who): (&Node, &str),
@@ -403,7 +417,9 @@ impl Checker<'_> {
                 material.strength,
                 Strength::MohrCoulomb { friction_angle, .. } if friction_angle > 0.0
             );
-            if has_friction && own.is_none() && is_wet(&condition.source, part) {
+            let is_wet = || own.is_none() && is_wet(&condition.source, part);
+            if has_friction && !self.told.contains(&number) && is_wet() {
+                self.told.push(number);
                 let entries = around.tree.get("materials").map_or(&[][..], Node::entries);
                 let place = entries
                     .get(number)
