@@ -1,5 +1,33 @@
 //! Water in the ground: conditions that stages move between, and what materials do with it.
 
+use super::{Case, StageKind};
+
+impl Case {
+    /// By body: whether it is there at the end of a stage, by index.
+    pub fn bodies_after(&self, stage: usize) -> Vec<bool> {
+        let stage = &self.stages[stage];
+        let mut there = match stage.start_from {
+            Some(from) => self.bodies_after(from),
+            None => self.bodies.iter().map(|body| body.from_start).collect(),
+        };
+        if let StageKind::Construction(own) = &stage.kind {
+            for &body in &own.place {
+                there[body] = true;
+            }
+            for &body in &own.remove {
+                there[body] = false;
+            }
+        }
+        there
+    }
+
+    /// Whether there is water in pores, given or held by undrained soil: only then do total and effective stress differ.
+    pub fn has_pore_water(&self) -> bool {
+        let holds = |drainage: Drainage| matches!(drainage, Drainage::Undrained { .. });
+        !self.water.is_empty() || self.materials.iter().any(|own| holds(own.drainage))
+    }
+}
+
 /// A condition of the water, under a name that stages call it by.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WaterCondition {
