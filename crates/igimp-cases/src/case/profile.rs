@@ -1,15 +1,77 @@
-//! Properties of a material that vary with the level.
+//! Properties of a material that vary with the level, with the depth below the surface, or with the stress there.
 
 use igimp_material::Ratios;
 
-use super::{Material, Strength};
+use super::{Ground, Material, Strength};
 
 /// The least strength of a profile over its greatest \[-\]: soil without any would be no soil.
 pub const LEAST_STRENGTH: f64 = 1e-6;
 
-/// A property over the level y, in SI units.
+/// A property that varies from place to place, in SI units.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Profile {
+    /// With the level y.
+    Level(Variation),
+    /// With the depth below the surface, straight down: the level is then minus the depth.
+    Depth(Variation),
+    /// An undrained strength that is a share of the vertical effective stress.
+    StressShare(Box<StressShare>),
+}
+
+/// An undrained strength s_u = S σ′_v0 OCR^m (theory, eq. 36b).
+#[derive(Clone, Debug, PartialEq)]
+pub struct StressShare {
+    /// S \[-\].
+    pub ratio: f64,
+    /// The ratio of overconsolidation; where it varies its greatest in the soil \[-\].
+    pub ocr: f64,
+    /// How it varies, if it does.
+    pub ocr_profile: Option<Profile>,
+    /// m \[-\].
+    pub exponent: f64,
+    /// Strength is no less \[Pa\].
+    pub at_least: f64,
+    /// Level of the water that stood in the ground as it consolidated \[m\], if any did.
+    pub water_level: Option<f64>,
+}
+
+impl StressShare {
+    /// The strength at a place \[Pa\].
+    fn at(&self, place: [f64; 2], ground: &Ground<'_>) -> f64 {
+        let ocr = (self.ocr_profile.as_ref()).map_or(self.ocr, |own| own.at(place, ground));
+        let stress = ground.effective_stress(place, self.water_level);
+        (self.ratio * stress * ocr.powf(self.exponent)).max(self.at_least)
+    }
+}
+
+impl Profile {
+    /// The value at a place.
+    pub fn at(&self, place: [f64; 2], ground: &Ground<'_>) -> f64 {
+        match self {
+            Self::Level(variation) => variation.at(place[1]),
+            Self::Depth(variation) => variation.at(-ground.depth(place)),
+            Self::StressShare(share) => share.at(place, ground),
+        }
+    }
+
+    /// The integral from a place up to a level; of a share of the stress, none is asked for, that of its value at the
+    /// place.
+    pub(super) fn integral(&self, place: [f64; 2], level: f64, ground: &Ground<'_>) -> f64 {
+        let [x, y] = place;
+        match self {
+            Self::Level(variation) => variation.integral(y, level),
+            Self::Depth(variation) => {
+                let surface = ground.surface(x).unwrap_or(y);
+                variation.integral(y - surface, level - surface)
+            }
+            Self::StressShare(share) => share.at(place, ground) * (level - y),
+        }
+    }
+}
+
+/// A property over the level y, in SI units.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Variation {
     /// Constant down to a level, linear in depth below it.
     Gradient {
         /// Level where it begins to change \[m\].
@@ -23,7 +85,7 @@ pub enum Profile {
     Table(Vec<[f64; 2]>),
 }
 
-impl Profile {
+impl Variation {
     /// The value at a level.
     pub fn at(&self, level: f64) -> f64 {
         match self {
@@ -81,13 +143,15 @@ impl Profile {
     }
 }
 
-/// What of a material varies with the level; what does not is the constant of the material.
+/// What of a material varies; what does not is the constant of the material.
 ///
 /// Where something varies, the constant of the material is the greatest value in its soil.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Profiles {
     /// Undrained strength or cohesion \[Pa\].
     pub strength: Option<Profile>,
+    /// tan φ \[-\].
+    pub friction: Option<Profile>,
     /// Young's modulus \[Pa\].
     pub young: Option<Profile>,
     /// Unit weight \[N/m³\].
@@ -106,31 +170,42 @@ impl Material {
         }
     }
 
-    /// Whether anything varies with the level.
+    /// Whether anything varies.
     pub fn varies(&self) -> bool {
         self.profiles != Profiles::default()
     }
 
-    /// Strength and stiffness at a level over the constants of the material \[-\].
-    pub fn ratios_at(&self, level: f64) -> Ratios {
+    /// Strength, friction and stiffness at a place over the constants of the material \[-\].
+    pub fn ratios_at(&self, place: [f64; 2], ground: &Ground<'_>) -> Ratios {
+        let Profiles {
+            strength,
+            friction,
+            young,
+            unit_weight: _,
+        } = &self.profiles;
         let over = |profile: &Option<Profile>, greatest: f64, least: f64| {
-            let ratio = |own: &Profile| (own.at(level) / greatest).max(least);
+            let ratio = |own: &Profile| (own.at(place, ground) / greatest).max(least);
             profile.as_ref().map_or(1.0, ratio)
         };
+        let tan_friction = match self.strength {
+            Strength::MohrCoulomb { friction_angle, .. } => friction_angle.tan(),
+            _ => 1.0,
+        };
         Ratios {
-            strength: over(&self.profiles.strength, self.cohesive(), LEAST_STRENGTH),
-            stiffness: over(&self.profiles.young, self.young, 0.0),
+            strength: over(strength, self.cohesive(), LEAST_STRENGTH),
+            friction: over(friction, tan_friction, 0.0),
+            stiffness: over(young, self.young, 0.0),
         }
     }
 
-    /// Young's modulus at a level \[Pa\].
-    pub fn young_at(&self, level: f64) -> f64 {
-        (self.profiles.young.as_ref()).map_or(self.young, |own| own.at(level))
+    /// Young's modulus at a place \[Pa\].
+    pub fn young_at(&self, place: [f64; 2], ground: &Ground<'_>) -> f64 {
+        (self.profiles.young.as_ref()).map_or(self.young, |own| own.at(place, ground))
     }
 
-    /// Unit weight at a level \[N/m³\].
-    pub fn unit_weight_at(&self, level: f64) -> f64 {
-        (self.profiles.unit_weight.as_ref()).map_or(self.unit_weight, |own| own.at(level))
+    /// Unit weight at a place \[N/m³\].
+    pub fn unit_weight_at(&self, place: [f64; 2], ground: &Ground<'_>) -> f64 {
+        (self.profiles.unit_weight.as_ref()).map_or(self.unit_weight, |own| own.at(place, ground))
     }
 }
 
@@ -140,12 +215,12 @@ mod tests {
 
     #[test]
     fn profiles_are_linear_between_their_levels_and_constant_beyond() {
-        let growing = Profile::Gradient {
+        let growing = Variation::Gradient {
             from: 5.0,
             at_top: 10.0,
             gradient: 2.0,
         };
-        let table = Profile::Table(vec![[0.0, 20.0], [3.0, 14.0], [5.0, 10.0]]);
+        let table = Variation::Table(vec![[0.0, 20.0], [3.0, 14.0], [5.0, 10.0]]);
         for level in [-1.0, 0.0, 1.3, 3.0, 4.5, 5.0, 7.0] {
             assert!((growing.at(level) - 10.0 - 2.0 * (5.0 - level).max(0.0)).abs() < 1e-14);
             let clamped = f64::clamp(level, 0.0, 5.0);
@@ -159,7 +234,7 @@ mod tests {
         assert!((table.integral(-1.0, 6.0) - (20.0 + 75.0 + 10.0)).abs() < 1e-12);
         let [least, greatest] = growing.extremes(1.0, 6.0);
         assert!(least >= 5.0 && (greatest - 1.0).abs() < 1e-15);
-        let bulge = Profile::Table(vec![[0.0, 1.0], [1.0, 5.0], [2.0, 0.5]]);
+        let bulge = Variation::Table(vec![[0.0, 1.0], [1.0, 5.0], [2.0, 0.5]]);
         let [least, greatest] = bulge.extremes(0.2, 1.5);
         assert!((least - 0.2).abs() < 1e-15 && (greatest - 1.0).abs() < 1e-15);
     }

@@ -1,8 +1,8 @@
-//! Properties of materials that vary with the level.
+//! Properties of materials that vary with the level, with the depth or with the stress.
 
-use crate::case::{BodyPart, Profile};
+use crate::case::{BodyPart, Ground, Profile, StressShare, Variation};
 use crate::input::diagnostic::Problems;
-use crate::input::text::{clip, number};
+use crate::input::text::{clip, number, point};
 use crate::input::tree::{Node, Wrong};
 use crate::polygon::bounding_box;
 
@@ -18,35 +18,81 @@ pub(super) struct Property {
 #[derive(Clone, Copy)]
 pub(super) struct Extent<'a> {
     pub(super) name: &'a str,
-    /// The lowest and the highest level \[m\]; none: no body is of this material.
-    levels: Option<[f64; 2]>,
+    pub(super) material: usize,
+    pub(super) bodies: &'a [Option<BodyPart>],
+    pub(super) ground: &'a Ground<'a>,
 }
 
 impl<'a> Extent<'a> {
-    /// That of the material of a number.
-    pub(super) fn of(name: &'a str, material: usize, bodies: &[Option<BodyPart>]) -> Self {
-        let own = bodies.iter().flatten();
-        let own = own.filter(|body| body.material == material);
-        let levels = own.map(|body| {
-            let (lower, upper) = bounding_box(&body.polygon);
+    /// The polygons of the material.
+    fn polygons(&self) -> impl Iterator<Item = &'a [[f64; 2]]> {
+        let material = self.material;
+        let own = self.bodies.iter().flatten();
+        own.filter(move |body| body.material == material)
+            .map(|body| &body.polygon[..])
+    }
+
+    /// Its lowest and its highest level \[m\]; none: no body is of this material.
+    fn levels(&self) -> Option<[f64; 2]> {
+        let levels = self.polygons().map(|polygon| {
+            let (lower, upper) = bounding_box(polygon);
             [lower[1], upper[1]]
         });
-        Self {
-            name,
-            levels: levels.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]),
+        levels.reduce(union)
+    }
+
+    /// Its least and its greatest depth \[m\], to the micrometre.
+    fn depths(&self) -> Option<[f64; 2]> {
+        let depths = self
+            .polygons()
+            .filter_map(|polygon| self.ground.depths(polygon));
+        let depths = depths.reduce(union)?;
+        Some(depths.map(|depth| (depth * 1e6).round() / 1e6))
+    }
+
+    /// Places all over its soil.
+    fn places(&self) -> Vec<[f64; 2]> {
+        let edges = self.polygons().map(|polygon| self.ground.corners(polygon));
+        let mut places: Vec<[f64; 2]> = edges.flatten().collect();
+        let ends = places.clone();
+        for pair in ends.windows(2).filter(|pair| pair[0][0] == pair[1][0]) {
+            places.extend((1..PARTS).map(|k| {
+                let share = f64::from(k) / f64::from(PARTS);
+                [pair[0][0], pair[0][1] + share * (pair[1][1] - pair[0][1])]
+            }));
         }
+        places
     }
 }
 
-/// What a profile must be in the soil, with the unit that messages print.
+/// Parts of an upright line through soil at whose ends a stress is looked at.
+const PARTS: u32 = 32;
+/// A usual stress \[Pa\], for a strength that no soil has.
+const USUAL_STRESS: f64 = 1e5;
+
+fn union(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+    [a[0].min(b[0]), a[1].max(b[1])]
+}
+
+/// What a property must be in the soil, and how it is read and printed.
 #[derive(Clone, Copy)]
 pub(super) struct Terms {
     /// Whether it may be zero somewhere.
     pub(super) may_vanish: bool,
     /// Whether it may be zero everywhere.
     pub(super) may_be_nothing: bool,
-    /// k before this unit.
-    pub(super) unit: &'static str,
+    /// What is kept of a number as read.
+    pub(super) kept: fn(f64) -> f64,
+    /// What was kept, with its unit.
+    pub(super) printed: fn(f64) -> String,
+    /// The forms of a table that says how it varies.
+    pub(super) forms: &'static str,
+}
+
+/// A value with the words for its place.
+struct Extreme {
+    value: f64,
+    place: String,
 }
 
 /// The property of a key: a quantity, or a table that says how it varies.
@@ -60,68 +106,196 @@ pub(super) fn property(
     let value = node.get(key)?;
     if let Some(constant) = value.number() {
         return Some(Property {
-            constant,
+            constant: (terms.kept)(constant),
             profile: None,
         });
     }
     if value.is_invalid() {
         return None;
     }
-    let profile = stated(value, key, extent, problems).ok()?;
-    let [lower, upper] = extent.levels.unwrap_or_else(|| match &profile {
-        Profile::Gradient { from, .. } => [*from; 2],
-        Profile::Table(rows) => [rows[0][0], rows[rows.len() - 1][0]],
-    });
-    let [least, greatest] = profile.extremes(lower, upper);
-    let constant = profile.at(greatest);
+    let profile = stated(value, key, extent, terms, problems).ok()?;
+    let [least, greatest] = extremes(&profile, extent);
     let name = clip(extent.name, 40);
-    let in_words = |level: f64| {
+    let place = match &profile {
+        Profile::StressShare(_) => value.place_at("ratio"),
+        Profile::Level(Variation::Gradient { .. }) | Profile::Depth(Variation::Gradient { .. }) => {
+            value.place_at("gradient")
+        }
+        Profile::Level(Variation::Table(_)) | Profile::Depth(Variation::Table(_)) => {
+            value.place_at("values")
+        }
+    };
+    let told = || {
         format!(
-            "{} k{} at y = {} m",
-            number(profile.at(level) / 1e3),
-            terms.unit,
-            number(level)
+            "`{key}` is {} {}, in the soil of `{name}`",
+            (terms.printed)(least.value),
+            least.place
         )
     };
-    let place = match profile {
-        Profile::Gradient { .. } => value.place_at("gradient"),
-        Profile::Table(_) => value.place_at("values"),
-    };
-    if !constant.is_finite() || profile.at(least) < 0.0 {
+    if !greatest.value.is_finite() || least.value < 0.0 {
         problems
-            .error(
-                place,
-                format!("`{key}` is {}, in the soil of `{name}`", in_words(least)),
-            )
+            .error(place, told())
             .help("a smaller gradient, or `levels` and `values` that stay positive");
         return None;
     }
-    if profile.at(least) == 0.0 && !terms.may_vanish {
+    if least.value == 0.0 && !terms.may_vanish {
         problems
-            .error(
-                place,
-                format!("`{key}` is {}, in the soil of `{name}`", in_words(least)),
-            )
+            .error(place, told())
             .help("it must be positive wherever there is soil");
         return None;
     }
-    if constant == 0.0 && !terms.may_be_nothing {
-        problems
-            .error(
-                place,
-                format!("`{key}` is zero in all the soil of `{name}`"),
-            )
-            .help(format!(
+    if greatest.value == 0.0 && !terms.may_be_nothing {
+        let [lower, upper] = extent.levels().unwrap_or_default();
+        let problem = problems.error(
+            place,
+            format!("`{key}` is zero in all the soil of `{name}`"),
+        );
+        match &profile {
+            Profile::StressShare(_) => problem.help(
+                "no effective stress: is there a unit weight, and is `water_level` as high as meant?",
+            ),
+            _ => problem.help(format!(
                 "its soil lies from y = {} m to {} m: give it a value there",
                 number(lower),
                 number(upper)
-            ));
+            )),
+        };
         return None;
     }
     Some(Property {
-        constant,
+        constant: greatest.value,
         profile: Some(profile),
     })
+}
+
+/// The least and the greatest value in the soil of a material.
+fn extremes(profile: &Profile, extent: Extent<'_>) -> [Extreme; 2] {
+    let of = |variation: &Variation, range: Option<[f64; 2]>, words: &dyn Fn(f64) -> String| {
+        let [lower, upper] = range.unwrap_or_else(|| match variation {
+            Variation::Gradient { from, .. } => [*from; 2],
+            Variation::Table(rows) => [rows[0][0], rows[rows.len() - 1][0]],
+        });
+        variation.extremes(lower, upper).map(|level| Extreme {
+            value: variation.at(level),
+            place: words(level),
+        })
+    };
+    match profile {
+        Profile::Level(variation) => of(variation, extent.levels(), &|level| {
+            format!("at y = {} m", number(level))
+        }),
+        Profile::Depth(variation) => {
+            let levels = extent.depths().map(|[least, most]| [-most, 0.0 - least]);
+            of(variation, levels, &|level| {
+                format!("at a depth of {} m", number(0.0 - level))
+            })
+        }
+        Profile::StressShare(share) => {
+            let places = extent.places();
+            let values = places.iter().map(|place| Extreme {
+                value: profile.at(*place, extent.ground),
+                place: format!("at {}", point(*place)),
+            });
+            let unused = || Extreme {
+                value: share.at_least.max(share.ratio * USUAL_STRESS),
+                place: String::new(),
+            };
+            let mut values: Vec<Extreme> = values.collect();
+            values.sort_by(|a, b| a.value.total_cmp(&b.value));
+            let greatest = values.pop().unwrap_or_else(unused);
+            let least = values.into_iter().next().unwrap_or_else(unused);
+            [least, greatest]
+        }
+    }
+}
+
+/// A form of a table that says how a property varies: the key that tells it, those that it needs beside it, and those
+/// that it may have.
+struct Form {
+    key: &'static str,
+    needs: &'static [&'static str],
+    may_have: &'static [&'static str],
+}
+
+const FORMS: [Form; 5] = [
+    Form {
+        key: "at_top",
+        needs: &["gradient"],
+        may_have: &["from"],
+    },
+    Form {
+        key: "at_surface",
+        needs: &["gradient"],
+        may_have: &[],
+    },
+    Form {
+        key: "levels",
+        needs: &["values"],
+        may_have: &[],
+    },
+    Form {
+        key: "depths",
+        needs: &["values"],
+        may_have: &[],
+    },
+    Form {
+        key: "ratio",
+        needs: &[],
+        may_have: &["ocr", "exponent", "at_least", "water_level"],
+    },
+];
+
+/// The form of a table; reports a table of several or of none.
+fn form(
+    value: &Node,
+    key: &str,
+    terms: Terms,
+    problems: &mut Problems,
+) -> Result<&'static Form, Wrong> {
+    let has = |key: &&'static str| value.get(key).is_some();
+    let lacks = |missing: &str, problems: &mut Problems| {
+        problems
+            .error(value.place, format!("`{key}` has no `{missing}`"))
+            .help(format!("write {}", terms.forms));
+        Wrong
+    };
+    let Some(form) = FORMS.iter().find(|form| has(&form.key)) else {
+        let of_others = |form: &&Form| form.needs.iter().chain(form.may_have).any(|key| has(key));
+        let meant = FORMS
+            .iter()
+            .find(of_others)
+            .map_or("levels", |form| form.key);
+        let has_gradients = terms.forms.contains("at_top");
+        let is_empty = value.entries().is_empty();
+        return Err(lacks(
+            if is_empty && has_gradients {
+                "at_top"
+            } else {
+                meant
+            },
+            problems,
+        ));
+    };
+    let own =
+        |key: &str| form.key == key || form.needs.contains(&key) || form.may_have.contains(&key);
+    let keys = FORMS.iter().flat_map(|form| {
+        std::iter::once(&form.key)
+            .chain(form.needs)
+            .chain(form.may_have)
+    });
+    if let Some(other) = keys.into_iter().find(|key| !own(key) && has(key)) {
+        problems
+            .error(
+                value.place_at(other),
+                format!("`{key}` is stated by `{}` and by `{other}`", form.key),
+            )
+            .help(format!("keep one of {}", terms.forms));
+        return Err(Wrong);
+    }
+    match form.needs.iter().find(|key| !has(key)) {
+        Some(missing) => Err(lacks(missing, problems)),
+        None => Ok(form),
+    }
 }
 
 /// The profile that a table states.
@@ -129,65 +303,101 @@ fn stated(
     value: &Node,
     key: &str,
     extent: Extent<'_>,
+    terms: Terms,
     problems: &mut Problems,
 ) -> Result<Profile, Wrong> {
-    let by_gradient = ["at_top", "gradient", "from"];
-    let by_levels = ["levels", "values"];
-    let has = |keys: &[&'static str]| keys.iter().copied().find(|key| value.get(key).is_some());
-    let (first, other) = (has(&by_gradient), has(&by_levels));
-    if let (Some(first), Some(other)) = (first, other) {
-        problems
-            .error(
-                value.place_at(other),
-                format!("`{key}` is stated by `{first}` and by `{other}`"),
-            )
-            .help("keep at_top and gradient, or levels and values");
-        return Err(Wrong);
-    }
-    let needed = if other.is_some() {
-        by_levels
-    } else {
-        ["at_top", "gradient"]
-    };
-    for needed in needed {
-        if value.get(needed).is_none() {
-            problems
-                .error(value.place, format!("`{key}` has no `{needed}`"))
-                .help(
-                    "write { at_top = ..., gradient = ... }, or { levels = [...], values = [...] }",
-                );
-            return Err(Wrong);
+    let form = form(value, key, terms, problems)?;
+    match form.key {
+        "ratio" => Ok(Profile::StressShare(Box::new(share(
+            value, extent, problems,
+        )?))),
+        "levels" => Ok(Profile::Level(table(value, key, form, terms, problems)?)),
+        "depths" => Ok(Profile::Depth(table(value, key, form, terms, problems)?)),
+        top => {
+            let from = match (top, value.optional_number("from")?, extent.levels()) {
+                ("at_surface", ..) => 0.0,
+                (_, Some(from), _) => from,
+                (_, None, levels) => levels.map_or(0.0, |[_, upper]| upper),
+            };
+            let variation = Variation::Gradient {
+                from,
+                at_top: value.number_at(top).ok_or(Wrong)?,
+                gradient: value.number_at("gradient").ok_or(Wrong)?,
+            };
+            Ok(match top {
+                "at_surface" => Profile::Depth(variation),
+                _ => Profile::Level(variation),
+            })
         }
     }
-    if other.is_some() {
-        return table(value, key, problems);
-    }
-    let top = extent.levels.map_or(0.0, |[_, upper]| upper);
-    Ok(Profile::Gradient {
-        from: value.optional_number("from")?.unwrap_or(top),
-        at_top: value.number_at("at_top").ok_or(Wrong)?,
-        gradient: value.number_at("gradient").ok_or(Wrong)?,
+}
+
+/// What is said of a ratio of overconsolidation.
+const OCR: Terms = Terms {
+    may_vanish: false,
+    may_be_nothing: false,
+    kept: |value| value,
+    printed: number,
+    forms: TABLES,
+};
+/// The forms of properties that have no gradient.
+pub(super) const TABLES: &str =
+    "{ levels = [...], values = [...] }, or { depths = [...], values = [...] }";
+
+fn share(value: &Node, extent: Extent<'_>, problems: &mut Problems) -> Result<StressShare, Wrong> {
+    let (ocr, ocr_profile) = match value.get("ocr") {
+        None => (1.0, None),
+        Some(_) => {
+            let own = property(value, "ocr", extent, OCR, problems).ok_or(Wrong)?;
+            (own.constant, own.profile)
+        }
+    };
+    Ok(StressShare {
+        ratio: value.number_at("ratio").ok_or(Wrong)?,
+        ocr,
+        ocr_profile,
+        exponent: value.optional_number("exponent")?.unwrap_or(0.8),
+        at_least: value.optional_number("at_least")?.unwrap_or(0.0),
+        water_level: value.optional_number("water_level")?,
     })
 }
 
-fn table(value: &Node, key: &str, problems: &mut Problems) -> Result<Profile, Wrong> {
+fn table(
+    value: &Node,
+    key: &str,
+    form: &Form,
+    terms: Terms,
+    problems: &mut Problems,
+) -> Result<Variation, Wrong> {
     let numbers = |list: &'static str| -> Result<Vec<f64>, Wrong> {
         let list = value.get(list).filter(|list| !list.is_invalid());
         let items = list.ok_or(Wrong)?.items().iter();
         items.map(|item| item.number().ok_or(Wrong)).collect()
     };
-    let (levels, values) = (numbers("levels")?, numbers("values")?);
+    let places = form.key;
+    let (levels, values) = (numbers(places)?, numbers("values")?);
     if levels.len() != values.len() {
         problems
             .error(
                 value.place_at("values"),
                 format!(
-                    "`{key}` has {} levels and {} values",
+                    "`{key}` has {} {places} and {} values",
                     levels.len(),
                     values.len()
                 ),
             )
-            .help("one value for each level");
+            .help("one value for each of them");
+        return Err(Wrong);
+    }
+    if places == "depths"
+        && let Some(at) = levels.iter().position(|depth| *depth < 0.0)
+    {
+        problems
+            .error(
+                value.items_at(places)[at].place,
+                format!("a depth of `{key}` is {} m", number(levels[at])),
+            )
+            .help("depths are positive downwards from the surface");
         return Err(Wrong);
     }
     let goes_up = levels.first() < levels.last();
@@ -197,24 +407,23 @@ fn table(value: &Node, key: &str, problems: &mut Problems) -> Result<Profile, Wr
             .is_none_or(|order| order.is_lt() != goes_up || order.is_eq())
     });
     if let Some(at) = wrong {
-        let place = value.items_at("levels")[at + 1].place;
+        let place = value.items_at(places)[at + 1].place;
         problems
             .error(
                 place,
                 format!(
-                    "the levels of `{key}` go up and down: {} m after {} m",
+                    "the {places} of `{key}` go up and down: {} m after {} m",
                     number(levels[at + 1]),
                     number(levels[at])
                 ),
             )
-            .help("write them all upwards or all downwards, each once; a jump needs two levels close together");
+            .help(format!("write them all upwards or all downwards, each once; a jump needs two {places} close together"));
         return Err(Wrong);
     }
+    let sign = if places == "depths" { -1.0 } else { 1.0 };
     let mut rows: Vec<[f64; 2]> = std::iter::zip(levels, values)
-        .map(|(level, value)| [level, value])
+        .map(|(level, value)| [sign * level, (terms.kept)(value)])
         .collect();
-    if !goes_up {
-        rows.reverse();
-    }
-    Ok(Profile::Table(rows))
+    rows.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    Ok(Variation::Table(rows))
 }

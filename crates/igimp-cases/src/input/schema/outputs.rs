@@ -64,7 +64,7 @@ static LINEAR_SOLVERS: [Choice; 7] = [
 ];
 
 /// Fields on particles.
-static FIELDS: [Choice; 13] = [
+static FIELDS: [Choice; 16] = [
     choice("displacement", "length of the displacement [m]"),
     choice("displacement_x", "displacement in x [m]"),
     choice("displacement_y", "displacement in y [m]"),
@@ -81,6 +81,15 @@ static FIELDS: [Choice; 13] = [
     choice("q", "deviatoric stress [Pa]"),
     choice("plastic_strain", "accumulated plastic strain invariant [-]"),
     choice("utilisation", "share of the strength that is mobilised [-]"),
+    choice(
+        "strength",
+        "undrained strength or cohesion that soil carries, reduced where strength is [Pa]",
+    ),
+    choice(
+        "friction",
+        "angle of friction that soil carries, reduced where strength is [rad]",
+    ),
+    choice("young", "Young's modulus that soil carries [Pa]"),
 ];
 static FIELD: Kind = Kind::Choice(&FIELDS);
 
@@ -96,7 +105,7 @@ pub(in crate::input) static MONITOR: Kind = Kind::Table(&Struct {
         ),
         default(
             "record",
-            Kind::List(&FIELD, 1, 13),
+            Kind::List(&FIELD, 1, 16),
             "[\"displacement\"]",
             "what is recorded",
         ),
@@ -117,7 +126,7 @@ pub(in crate::input) static SECTION: Kind = Kind::Table(&Struct {
         ),
         default(
             "record",
-            Kind::List(&FIELD, 1, 13),
+            Kind::List(&FIELD, 1, 16),
             "[\"sigma_xx\", \"sigma_yy\", \"tau_xy\"]",
             "what is written",
         ),
@@ -412,7 +421,7 @@ pub(in crate::input) static OUTPUT: Struct = Struct {
         ),
         default(
             "figures",
-            Kind::List(&FIELD, 0, 13),
+            Kind::List(&FIELD, 0, 16),
             "[\"displacement\", \"plastic_strain\", \"sigma_yy\"]",
             "fields drawn at the end of every stage; with none no picture is drawn at all",
         ),

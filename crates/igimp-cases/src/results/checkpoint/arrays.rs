@@ -33,7 +33,7 @@ pub(super) fn of_body(body: &Body<2>) -> Vec<(&'static str, Array)> {
     let regime = regime.iter().map(|&regime| regime::code(regime)).collect();
     let ratios: Vec<_> = ratios
         .iter()
-        .map(|own| [own.strength, own.stiffness])
+        .map(|own| [own.strength, own.friction, own.stiffness])
         .collect();
     let points: Vec<_> = body.load_points.iter().map(|point| point.x).collect();
     let forces: Vec<_> = body.load_points.iter().map(|point| point.force).collect();
@@ -50,7 +50,10 @@ pub(super) fn of_body(body: &Body<2>) -> Vec<(&'static str, Array)> {
         ("volume0", scalars(volume0)),
         ("mass", scalars(mass)),
         ("law", Array::new(&[n], Values::U64(law))),
-        ("ratios", vectors(&ratios)),
+        (
+            "ratios",
+            Array::new(&[n, 3], Values::F64(ratios.into_flattened())),
+        ),
         ("eps_p_eq", scalars(&eps_p_eq)),
         ("regime", Array::new(&[n], Values::U8(regime))),
         ("load_point_x", vectors(&points)),
@@ -111,10 +114,11 @@ pub(super) fn to_body(
         volume0: reals("volume0", &[n])?,
         mass: reals("mass", &[n])?,
         law: indices("law", n)?,
-        ratios: vectors("ratios", n)?
+        ratios: rows::<3>(&reals("ratios", &[n, 3])?)
             .into_iter()
-            .map(|[strength, stiffness]| Ratios {
+            .map(|[strength, friction, stiffness]| Ratios {
                 strength,
+                friction,
                 stiffness,
             })
             .collect(),
