@@ -27,6 +27,7 @@ mod prism;
 mod reference;
 mod review;
 mod runs;
+mod slope_profile;
 mod slopes;
 mod snapshot;
 mod strength_profile;
@@ -105,6 +106,7 @@ enum Case {
     TiltedLayer,
     Layers,
     StrengthProfile,
+    SlopeProfile,
     FootingContact,
     ContactFooting,
     ContactColumn,
@@ -138,6 +140,7 @@ impl Case {
             Self::TiltedLayer => tilted_layer::study(level, out),
             Self::Layers => layers::study(out),
             Self::StrengthProfile => strength_profile::study(level, out),
+            Self::SlopeProfile => slope_profile::study(level, out),
             Self::FootingContact => footing_contact::study(level, out),
             Self::ContactFooting => contact::footing::study(level, out),
             Self::ContactColumn => contact::column::study(out),

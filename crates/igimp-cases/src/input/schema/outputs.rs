@@ -83,12 +83,9 @@ static FIELDS: [Choice; 16] = [
     choice("utilisation", "share of the strength that is mobilised [-]"),
     choice(
         "strength",
-        "undrained strength or cohesion that soil carries, reduced where strength is [Pa]",
+        "undrained strength or cohesion that soil carries [Pa]",
     ),
-    choice(
-        "friction",
-        "angle of friction that soil carries, reduced where strength is [rad]",
-    ),
+    choice("friction", "angle of friction that soil carries [rad]"),
     choice("young", "Young's modulus that soil carries [Pa]"),
 ];
 static FIELD: Kind = Kind::Choice(&FIELDS);
