@@ -30,11 +30,13 @@ mod runs;
 mod slope_profile;
 mod slopes;
 mod snapshot;
+mod stages;
 mod strength_profile;
 mod study;
 mod table;
 mod tilted_layer;
 mod von_mises_slope;
+mod water;
 
 use std::error::Error;
 use std::path::{Path, PathBuf};
@@ -107,6 +109,8 @@ enum Case {
     Layers,
     StrengthProfile,
     SlopeProfile,
+    Water,
+    Stages,
     FootingContact,
     ContactFooting,
     ContactColumn,
@@ -141,6 +145,8 @@ impl Case {
             Self::Layers => layers::study(out),
             Self::StrengthProfile => strength_profile::study(level, out),
             Self::SlopeProfile => slope_profile::study(level, out),
+            Self::Water => water::study(level, out),
+            Self::Stages => stages::study(level, out),
             Self::FootingContact => footing_contact::study(level, out),
             Self::ContactFooting => contact::footing::study(level, out),
             Self::ContactColumn => contact::column::study(out),

@@ -9,6 +9,7 @@ use crate::constraints::Constraints;
 use crate::error::AssemblyError;
 use crate::loads::StepLoads;
 use crate::particles::Particles;
+use crate::pore_water::{HeldForces, Water};
 use crate::rigid::RigidMotion;
 
 /// A constitutive law that several bodies and threads share.
@@ -28,6 +29,10 @@ pub struct StepConditions<const D: usize> {
     pub laws: Vec<SharedLaw>,
     /// How rigid bodies move, in their order; one that is not listed is held.
     pub motions: Vec<RigidMotion<D>>,
+    /// Water in the pores at the end of the step.
+    pub water: Water<D>,
+    /// What still holds the body where a change has put it out of balance.
+    pub held: Option<HeldForces<D>>,
 }
 
 impl<const D: usize> StepConditions<D> {
@@ -48,6 +53,8 @@ impl<const D: usize> StepConditions<D> {
             loads,
             laws,
             motions: Vec::new(),
+            water: Water::default(),
+            held: None,
         };
         conditions.agree()?;
         Ok(conditions)
@@ -63,6 +70,26 @@ impl<const D: usize> StepConditions<D> {
         Ok(self)
     }
 
+    /// The same with water in the pores.
+    ///
+    /// # Errors
+    /// [`AssemblyError::NonFinite`] for water that is not finite.
+    pub fn with_water(mut self, water: Water<D>) -> Result<Self, AssemblyError> {
+        self.water = water;
+        self.agree()?;
+        Ok(self)
+    }
+
+    /// The same with forces that hold the body; they belong to the nodes of its grid.
+    ///
+    /// # Errors
+    /// [`AssemblyError::NonFinite`] for a force that is not finite, or forces of another number of nodes.
+    pub fn held_by(mut self, held: Option<HeldForces<D>>) -> Result<Self, AssemblyError> {
+        self.held = held;
+        self.agree()?;
+        Ok(self)
+    }
+
     /// Refuses conditions that do not agree.
     fn agree(&self) -> Result<(), AssemblyError> {
         self.constraints.belong_to(&self.grid)?;
@@ -70,6 +97,16 @@ impl<const D: usize> StepConditions<D> {
             let what = "motion of a rigid body";
             return Err(AssemblyError::NonFinite { what, index });
         }
+        if let Some(held) = &self.held {
+            let bad = |force: &[f64; D]| !force.iter().all(|own| (own * held.share).is_finite());
+            let nodes = self.grid.node_count();
+            let other = (held.forces.len() != nodes).then_some(nodes);
+            if let Some(index) = other.or_else(|| held.forces.iter().position(bad)) {
+                let what = "force that holds the body at node";
+                return Err(AssemblyError::NonFinite { what, index });
+            }
+        }
+        self.water.is_finite()?;
         self.loads.are_finite()
     }
 

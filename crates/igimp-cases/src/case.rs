@@ -7,6 +7,7 @@ mod grid;
 mod ground;
 mod profile;
 mod rigid;
+mod water;
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -18,11 +19,13 @@ use serde::{Deserialize, Serialize};
 
 pub use grid::{AxisSpec, GridSpec, MixedCells};
 pub use ground::Ground;
+pub(crate) use ground::on_line;
 pub use profile::{LEAST_STRENGTH, Profile, Profiles, StressShare, Variation};
 pub use rigid::{
     Adhesion, RigidDrive, RigidInterface, RigidMove, RigidPart, RigidQuantity, RigidShape,
     RigidShear,
 };
+pub use water::{Construction, Drainage, PoreSource, WaterCondition};
 
 use crate::check::Band;
 
@@ -39,6 +42,10 @@ pub struct Case {
     pub grid: GridSpec,
     /// Variant of the method.
     pub method: Method,
+    /// Unit weight of water \[N/m³\].
+    pub water_unit_weight: f64,
+    /// Conditions of the water; stages name them by index. The first holds from the start; without any all is dry.
+    pub water: Vec<WaterCondition>,
     /// Materials; bodies name them by index.
     pub materials: Vec<Material>,
     /// Bodies.
@@ -126,6 +133,10 @@ pub struct Material {
     pub k0: Option<f64>,
     /// What varies from place to place.
     pub profiles: Profiles,
+    /// Unit weight below the water table \[N/m³\]; none: that above.
+    pub saturated: Option<f64>,
+    /// What it does with water.
+    pub drainage: Drainage,
 }
 
 /// The strength of a material.
@@ -198,6 +209,8 @@ pub struct BodyPart {
     pub per_direction: usize,
     /// Corners in order, either way round \[m\].
     pub polygon: Vec<[f64; 2]>,
+    /// Whether it is there from the start, rather than from the stage that places it.
+    pub from_start: bool,
 }
 
 /// What a side of the grid does to the soil that reaches it.
@@ -300,6 +313,8 @@ pub struct Stage {
     pub reset_displacements: bool,
     /// Conditions that end the stage early.
     pub stop_when: StopWhen,
+    /// Whether all soil drains while it lasts: no excess pore pressure comes or goes.
+    pub drained: bool,
 }
 
 /// Kinds of stages.
@@ -328,6 +343,8 @@ pub enum StageKind {
     },
     /// Moves and loads rigid bodies.
     Rigid(Vec<RigidMove>),
+    /// Places and removes bodies, changes materials and water.
+    Construction(Construction),
     /// Searches for the factor of safety. The body is left as it was found.
     StrengthReduction(StrengthReduction),
     /// Lets the slope of reduced strength move until it rests.

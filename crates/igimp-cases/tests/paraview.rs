@@ -91,6 +91,9 @@ fn particles<const D: usize>(side: usize) -> Particles<D> {
         volume0: vec![1.0; n],
         mass: vec![2.0; n],
         law: (0..n).map(|k| k % 4).collect(),
+        number: (0..n).collect(),
+        pore_pressure: vec![0.0; n],
+        excess: vec![0.0; n],
         ratios: vec![Ratios::ONE; n],
         history: (0..n)
             .map(|k| History {

@@ -315,6 +315,8 @@ mod tests {
                 settlement: 0.0,
                 srf: Vec::new(),
                 rigid: Vec::new(),
+                water: None,
+                drained: false,
             },
         };
         let events = [

@@ -1,95 +1,140 @@
 //! The ground as a case draws it: its surface, and what its weight is at a place.
 
-use super::{BodyPart, Case, Material, Profile};
+use super::{BodyPart, Case, Material, PoreSource, Profile};
 
-/// Unit weight of water \[N/m³\].
+/// Unit weight of the water of a stated level \[N/m³\].
 const WATER: f64 = 9.81e3;
 
-/// The bodies that are there at the start, with the unit weights of their materials.
+/// The bodies that are there at the start, as they are drawn, with the unit weights of their materials.
 #[derive(Clone, Debug, Default)]
-pub struct Ground<'a> {
-    layers: Vec<Layer<'a>>,
+pub struct Ground {
+    layers: Vec<Layer>,
+    /// The water at the start, and its unit weight \[N/m³\].
+    water: Option<(PoreSource, f64)>,
 }
 
 /// A body.
-#[derive(Clone, Debug)]
-struct Layer<'a> {
-    polygon: &'a [[f64; 2]],
+#[derive(Clone, Debug, Default)]
+struct Layer {
+    polygon: Vec<[f64; 2]>,
     unit_weight: f64,
     /// Where the unit weight varies.
-    profile: Option<&'a Profile>,
+    profile: Option<Profile>,
+    /// By how much soil is heavier below the water table \[N/m³\].
+    added: f64,
 }
 
 impl Case {
     /// The ground of the case.
-    pub fn ground(&self) -> Ground<'_> {
+    pub fn ground(&self) -> Ground {
         let bodies = self.bodies.iter();
-        Ground::new(bodies.map(|body| (body, &self.materials[body.material])))
+        let ground = Ground::new(bodies.map(|body| (body, &self.materials[body.material])));
+        let first = self.water.first();
+        Ground {
+            water: first.map(|condition| (condition.source.clone(), self.water_unit_weight)),
+            ..ground
+        }
     }
 }
 
-impl<'a> Ground<'a> {
-    /// The ground of bodies and their materials.
-    pub fn new(bodies: impl Iterator<Item = (&'a BodyPart, &'a Material)>) -> Self {
-        let bodies = bodies.map(|(body, material)| {
-            let profile = material.profiles.unit_weight.as_ref();
-            (&body.polygon[..], material.unit_weight, profile)
-        });
-        Self::of_polygons(bodies)
-    }
-
-    /// The ground of polygons \[m\], each with its unit weight \[N/m³\] and how that varies, if it does.
-    pub fn of_polygons(
-        polygons: impl Iterator<Item = (&'a [[f64; 2]], f64, Option<&'a Profile>)>,
-    ) -> Self {
-        let layers = polygons.map(|(polygon, unit_weight, profile)| Layer {
-            polygon,
-            unit_weight,
-            profile,
+impl Ground {
+    /// The ground of those of some bodies that are there from the start, with their materials, without water.
+    pub fn new<'a>(bodies: impl Iterator<Item = (&'a BodyPart, &'a Material)>) -> Self {
+        let from_start = bodies.filter(|(body, _)| body.from_start);
+        let layers = from_start.map(|(body, material)| Layer {
+            polygon: body.polygon.clone(),
+            unit_weight: material.unit_weight,
+            profile: material.profiles.unit_weight.clone(),
+            added: material.added_by_water(),
         });
         Self {
             layers: layers.collect(),
+            water: None,
+        }
+    }
+
+    /// The ground of polygons \[m\], each with its unit weight \[N/m³\] and how that varies, if it does.
+    pub fn of_polygons<'a>(
+        polygons: impl Iterator<Item = (&'a [[f64; 2]], f64, Option<&'a Profile>)>,
+    ) -> Self {
+        let layers = polygons.map(|(polygon, unit_weight, profile)| Layer {
+            polygon: polygon.to_vec(),
+            unit_weight,
+            profile: profile.cloned(),
+            added: 0.0,
+        });
+        Self {
+            layers: layers.collect(),
+            water: None,
         }
     }
 
     /// The level of the surface: the highest soil on a vertical line \[m\], if there is any.
     pub fn surface(&self, x: f64) -> Option<f64> {
-        let layers = self.layers.iter();
-        let tops = layers.flat_map(|layer| crossings(layer.polygon, x).map(|(level, _)| level));
+        let tops = self.layers.iter().flat_map(|layer| {
+            edges(&layer.polygon).filter_map(move |[p, q]| {
+                let [left, right] = [p[0].min(q[0]), p[0].max(q[0])];
+                if x < left || x > right {
+                    return None;
+                }
+                if right > left {
+                    let t = (x - p[0]) / (q[0] - p[0]);
+                    Some(p[1] + t * (q[1] - p[1]))
+                } else {
+                    Some(p[1].max(q[1]))
+                }
+            })
+        });
         tops.reduce(f64::max)
     }
 
-    /// How far a place lies below the surface, straight down \[m\]; 0 where there is no soil.
+    /// How far a place lies below the surface, straight down \[m\]; 0 above it.
     pub fn depth(&self, place: [f64; 2]) -> f64 {
-        self.surface(place[0])
-            .map_or(0.0, |surface| surface - place[1])
+        let surface = self.surface(place[0]).unwrap_or(place[1]);
+        (surface - place[1]).max(0.0)
     }
 
     /// The weight of the soil above a place per area \[Pa\] (theory, eq. 36).
     pub fn weight_above(&self, place: [f64; 2]) -> f64 {
         let layers = self.layers.iter();
         layers
-            .map(|layer| match layer.profile {
-                None => sum_above(layer.polygon, place, |level| level) * layer.unit_weight,
-                Some(own) => sum_above(layer.polygon, place, |level| {
+            .map(|layer| match &layer.profile {
+                None => sum_above(&layer.polygon, place, |level| level) * layer.unit_weight,
+                Some(own) => sum_above(&layer.polygon, place, |level| {
                     own.integral(place, level, self)
                 }),
             })
             .sum()
     }
 
-    /// The pressure of water at rest in the ground, beyond that of water that stands on it \[Pa\].
-    fn pore_pressure(&self, place: [f64; 2], water_level: Option<f64>) -> f64 {
-        let surface = self.surface(place[0]).unwrap_or(place[1]);
-        water_level.map_or(0.0, |level| {
-            WATER * (level.min(surface) - place[1]).max(0.0)
-        })
+    /// What a water table at a level adds to the weight above a place \[Pa\].
+    pub fn added_above(&self, place: [f64; 2], table: f64) -> f64 {
+        let wet = |layer: &Layer| sum_above(&layer.polygon, place, |level| level.min(table));
+        self.layers
+            .iter()
+            .map(|layer| wet(layer) * layer.added)
+            .sum()
     }
 
-    /// The vertical effective stress σ′_v0 of level ground at a place, compression positive \[Pa\]: the weight of the
-    /// soil above it less the pressure of water that stands to a level \[m\] (theory, eq. 36a). Not below zero.
+    /// The vertical effective stress σ′_v0 of level ground at a place, compression positive \[Pa\] (theory, eq. 36a): the
+    /// weight above less the pressure of water at rest, that of a level \[m\] or else of the water at the start. What
+    /// stands on the surface presses on it as much as it adds to the pressure below. Not below zero.
     pub fn effective_stress(&self, place: [f64; 2], water_level: Option<f64>) -> f64 {
-        (self.weight_above(place) - self.pore_pressure(place, water_level)).max(0.0)
+        let weight = self.weight_above(place);
+        let surface = self.surface(place[0]).unwrap_or(place[1]);
+        let below = |table: f64, unit_weight: f64| {
+            let pressure = unit_weight * (table.min(surface) - place[1]).max(0.0);
+            self.added_above(place, table) - pressure
+        };
+        let by_water = match (water_level, &self.water) {
+            (Some(level), _) => below(level, WATER),
+            (None, Some((PoreSource::Table(points), unit_weight))) => {
+                below(on_line(points, place[0]), *unit_weight)
+            }
+            (None, Some((PoreSource::Ratio(ratio), _))) => -ratio * weight,
+            (None, Some((PoreSource::Dry, _)) | None) => 0.0,
+        };
+        (weight + by_water).max(0.0)
     }
 
     /// The least and the greatest depth of the soil of a polygon \[m\].
@@ -105,7 +150,7 @@ impl<'a> Ground<'a> {
     /// Places within a polygon between which depths are linear: on its edges, hardly beside the corners of all
     /// polygons, as the surface may step there.
     pub fn corners(&self, polygon: &[[f64; 2]]) -> Vec<[f64; 2]> {
-        let all = self.layers.iter().flat_map(|layer| layer.polygon);
+        let all = self.layers.iter().flat_map(|layer| &layer.polygon);
         let mut sides: Vec<f64> = all.chain(polygon).map(|corner| corner[0]).collect();
         sides.sort_by(f64::total_cmp);
         let strips = sides.windows(2).filter(|pair| pair[0] < pair[1]);
@@ -122,11 +167,23 @@ impl<'a> Ground<'a> {
 /// Share of the distance of two corners at which a place counts as beside them \[-\].
 const BESIDE: f64 = 1e-9;
 
+/// The level of a line at x, constant beyond its ends.
+pub(crate) fn on_line(points: &[[f64; 2]], x: f64) -> f64 {
+    let after = points.partition_point(|point| point[0] <= x);
+    match (after.checked_sub(1).map(|k| points[k]), points.get(after)) {
+        (Some(from), Some(to)) => from[1] + (to[1] - from[1]) * (x - from[0]) / (to[0] - from[0]),
+        (Some(only), None) | (None, Some(&only)) => only[1],
+        (None, None) => f64::NEG_INFINITY,
+    }
+}
+
+fn edges(polygon: &[[f64; 2]]) -> impl Iterator<Item = [[f64; 2]; 2]> + '_ {
+    (0..polygon.len()).map(|k| [polygon[k], polygon[(k + 1) % polygon.len()]])
+}
+
 /// Where the upright line at x crosses the edges of a polygon, and whether the edge goes to the left.
 fn crossings(polygon: &[[f64; 2]], x: f64) -> impl Iterator<Item = (f64, bool)> {
-    let next = polygon.iter().cycle().skip(1);
-    let edges = std::iter::zip(polygon, next);
-    edges.filter_map(move |(p, q)| {
+    edges(polygon).filter_map(move |[p, q]| {
         if (p[0] <= x) == (q[0] <= x) {
             return None;
         }

@@ -37,7 +37,7 @@ pub struct StressShare {
 
 impl StressShare {
     /// The strength at a place \[Pa\].
-    fn at(&self, place: [f64; 2], ground: &Ground<'_>) -> f64 {
+    fn at(&self, place: [f64; 2], ground: &Ground) -> f64 {
         let ocr = (self.ocr_profile.as_ref()).map_or(self.ocr, |own| own.at(place, ground));
         let stress = ground.effective_stress(place, self.water_level);
         (self.ratio * stress * ocr.powf(self.exponent)).max(self.at_least)
@@ -46,7 +46,7 @@ impl StressShare {
 
 impl Profile {
     /// The value at a place.
-    pub fn at(&self, place: [f64; 2], ground: &Ground<'_>) -> f64 {
+    pub fn at(&self, place: [f64; 2], ground: &Ground) -> f64 {
         match self {
             Self::Level(variation) => variation.at(place[1]),
             Self::Depth(variation) => variation.at(-ground.depth(place)),
@@ -56,7 +56,7 @@ impl Profile {
 
     /// The integral from a place up to a level; of a share of the stress, none is asked for, that of its value at the
     /// place.
-    pub(super) fn integral(&self, place: [f64; 2], level: f64, ground: &Ground<'_>) -> f64 {
+    pub(super) fn integral(&self, place: [f64; 2], level: f64, ground: &Ground) -> f64 {
         let [x, y] = place;
         match self {
             Self::Level(variation) => variation.integral(y, level),
@@ -176,7 +176,7 @@ impl Material {
     }
 
     /// Strength, friction and stiffness at a place over the constants of the material \[-\].
-    pub fn ratios_at(&self, place: [f64; 2], ground: &Ground<'_>) -> Ratios {
+    pub fn ratios_at(&self, place: [f64; 2], ground: &Ground) -> Ratios {
         let Profiles {
             strength,
             friction,
@@ -199,12 +199,18 @@ impl Material {
     }
 
     /// Young's modulus at a place \[Pa\].
-    pub fn young_at(&self, place: [f64; 2], ground: &Ground<'_>) -> f64 {
+    pub fn young_at(&self, place: [f64; 2], ground: &Ground) -> f64 {
         (self.profiles.young.as_ref()).map_or(self.young, |own| own.at(place, ground))
     }
 
+    /// By how much it is heavier below the water table \[N/m³\].
+    pub fn added_by_water(&self) -> f64 {
+        self.saturated
+            .map_or(0.0, |saturated| saturated - self.unit_weight)
+    }
+
     /// Unit weight at a place \[N/m³\].
-    pub fn unit_weight_at(&self, place: [f64; 2], ground: &Ground<'_>) -> f64 {
+    pub fn unit_weight_at(&self, place: [f64; 2], ground: &Ground) -> f64 {
         (self.profiles.unit_weight.as_ref()).map_or(self.unit_weight, |own| own.at(place, ground))
     }
 }

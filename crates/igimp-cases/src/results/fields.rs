@@ -282,6 +282,8 @@ mod tests {
             strength,
             k0: None,
             profiles: Profiles::default(),
+            saturated: None,
+            drainage: crate::case::Drainage::Drained,
         };
         material.law().unwrap()
     }

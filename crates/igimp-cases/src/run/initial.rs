@@ -10,17 +10,22 @@ use crate::error::CaseError;
 
 /// Sets the stresses of level ground under full gravity in an undeformed body.
 ///
-/// The vertical stress is the weight of the ground above a particle, layer by layer; the
-/// horizontal ones are K₀ times that. The elastic strain follows from the stress, so that the
+/// The vertical stress is the weight of the ground above a particle, layer by layer, less the pressure of water in the
+/// pores where the law speaks of effective stress; the horizontal ones are K₀ times that. The elastic strain follows from the stress, so that the
 /// state is what the law would have returned; deformation counts from here.
 pub(crate) fn level_ground(model: &Model<'_>, state: &mut State) -> Result<(), CaseError> {
     let case = model.case;
     let ground = case.ground();
+    let water = state.controls.water.and_then(|k| model.ground_water(k));
     let mut fields = (*state.body.particles).clone();
     for particle in 0..fields.x.len() {
         let x = fields.x[particle];
-        let vertical = -ground.weight_above(x);
         let material = &case.materials[fields.law[particle] % case.materials.len()];
+        let number = fields.number[particle];
+        let vertical = match &water {
+            None => -ground.weight_above(x),
+            Some(water) => water.effective_weight(&ground, number, material, &x),
+        };
         let k0 = material
             .k0
             .unwrap_or(material.poisson / (1.0 - material.poisson));

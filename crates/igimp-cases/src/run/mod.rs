@@ -2,6 +2,7 @@
 
 pub mod advice;
 mod checks;
+mod construction;
 mod engine;
 mod entry;
 mod export;
@@ -27,6 +28,7 @@ mod sections;
 mod session;
 mod state;
 mod study;
+mod water;
 
 use std::path::PathBuf;
 

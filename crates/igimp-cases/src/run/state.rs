@@ -16,6 +16,10 @@ pub struct Controls {
     pub srf: Vec<f64>,
     /// By rigid body of the case.
     pub rigid: Vec<RigidControls>,
+    /// The condition of the water, by index; none: dry.
+    pub water: Option<usize>,
+    /// Whether all soil drains, so that no excess pore pressure comes or goes.
+    pub drained: bool,
 }
 
 /// What acts on a rigid body, and where that brought it. Components: x, y, rotation (anticlockwise).
@@ -71,6 +75,8 @@ impl Controls {
             settlement: 0.0,
             srf: vec![1.0; materials],
             rigid: vec![RigidControls::default(); rigid],
+            water: None,
+            drained: false,
         }
     }
 
@@ -85,6 +91,8 @@ impl Controls {
             rigid: std::iter::zip(&self.rigid, &end.rigid)
                 .map(|(own, end)| own.towards(end, t))
                 .collect(),
+            water: end.water,
+            drained: end.drained,
         }
     }
 

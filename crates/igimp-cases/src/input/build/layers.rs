@@ -54,12 +54,12 @@ fn complete<T>(parts: &[Option<T>]) -> Option<Vec<&T>> {
 }
 
 /// The ground of bodies and materials.
-fn ground_of<'a>(bodies: &[&'a BodyPart], materials: &[&'a Material]) -> Ground<'a> {
+fn ground_of<'a>(bodies: &[&'a BodyPart], materials: &[&'a Material]) -> Ground {
     Ground::new(bodies.iter().map(|body| (*body, materials[body.material])))
 }
 
 /// The modulus of compression without lateral strain at a place.
-fn constrained(material: &Material, place: [f64; 2], ground: &Ground<'_>) -> f64 {
+fn constrained(material: &Material, place: [f64; 2], ground: &Ground) -> f64 {
     let nu = material.poisson;
     material.young_at(place, ground) * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu))
 }
@@ -69,7 +69,7 @@ fn constrained(material: &Material, place: [f64; 2], ground: &Ground<'_>) -> f64
 fn check_pairs(
     layers: &Layers<'_>,
     frame: &Frame,
-    (bodies, materials, ground): (&[&BodyPart], &[&Material], &Ground<'_>),
+    (bodies, materials, ground): (&[&BodyPart], &[&Material], &Ground),
     problems: &mut Problems,
 ) -> Vec<Neighbours> {
     let [width, height] = frame.axes.each_ref().map(|axis| axis.extremes()[0]);

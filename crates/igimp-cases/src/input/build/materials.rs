@@ -132,6 +132,8 @@ fn material(
         problems,
     );
     let material = Material {
+        saturated: None,
+        drainage: crate::case::Drainage::Drained,
         name: name.clone(),
         unit_weight: unit_weight?.constant,
         young: young.as_ref()?.constant,

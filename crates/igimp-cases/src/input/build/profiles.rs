@@ -20,7 +20,7 @@ pub(super) struct Extent<'a> {
     pub(super) name: &'a str,
     pub(super) material: usize,
     pub(super) bodies: &'a [Option<BodyPart>],
-    pub(super) ground: &'a Ground<'a>,
+    pub(super) ground: &'a Ground,
 }
 
 impl<'a> Extent<'a> {

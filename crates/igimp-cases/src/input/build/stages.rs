@@ -83,6 +83,7 @@ fn stage(
     let start_from = start_from(context, index, node, &name, problems);
     let stop_when = stop_when(context, node, &name, problems);
     Some(Stage {
+        drained: false,
         name: node.text_at("name")?.to_owned(),
         kind: kind?,
         steps: node.count_at("steps")?,
