@@ -243,6 +243,15 @@ mod tests {
         assert!((stress(4.5) - (30e3 - 0.5 * 9.81e3)).abs() < 1e-9);
         assert!((stress(100.0) - (30e3 - 2.0 * 9.81e3)).abs() < 1e-9);
         assert!((stress(0.0) - 30e3).abs() < 1e-9);
+        let wet = |source| Ground {
+            water: Some((source, 10e3)),
+            ..ground.clone()
+        };
+        let table = wet(PoreSource::Table(vec![[0.0, 6.0], [6.0, 3.0]]));
+        let stress = table.effective_stress([3.0, 4.0], None);
+        assert!((stress - (30e3 - 0.5 * 10e3)).abs() < 1e-9);
+        let share = wet(PoreSource::Ratio(0.4));
+        assert!((share.effective_stress([3.0, 4.0], None) - 18e3).abs() < 1e-9);
         let [least, greatest] = ground.depths(&RING).unwrap();
         assert!(
             least.abs() < 1e-6 && (greatest - 7.0).abs() < 1e-6,

@@ -119,9 +119,12 @@ fn in_words(profile: &Profile, printed: impl Fn(f64) -> String, unit: &str) -> S
         Profile::Depth(variation) => (variation, true),
         Profile::StressShare(share) => return share_in_words(share),
     };
-    let place = |level: f64| match is_by_depth {
-        false => format!("at y = {} m", short(level)),
-        true => format!("at a depth of {} m", short(0.0 - level)),
+    let place = |level: f64| {
+        if is_by_depth {
+            format!("at a depth of {} m", short(0.0 - level))
+        } else {
+            format!("at y = {} m", short(level))
+        }
     };
     match variation {
         Variation::Gradient {
@@ -129,9 +132,10 @@ fn in_words(profile: &Profile, printed: impl Fn(f64) -> String, unit: &str) -> S
             at_top,
             gradient,
         } => {
-            let place = match is_by_depth {
-                false => format!("down to y = {} m", short(*from)),
-                true => "at the surface".to_owned(),
+            let place = if is_by_depth {
+                "at the surface".to_owned()
+            } else {
+                format!("down to y = {} m", short(*from))
             };
             format!(
                 "{}{unit} {place}, {}{unit} per metre {} below",
@@ -172,9 +176,11 @@ fn share_in_words(share: &StressShare) -> String {
     } else {
         format!(" OCR^{}, OCR = {ocr}", short(share.exponent))
     };
-    let least = (share.at_least > 0.0)
-        .then(|| format!(", at least {}", kilo(share.at_least, "Pa")))
-        .unwrap_or_default();
+    let least = if share.at_least > 0.0 {
+        format!(", at least {}", kilo(share.at_least, "Pa"))
+    } else {
+        String::new()
+    };
     let water = share.water_level.map_or_else(String::new, |level| {
         format!(", water at rest to y = {} m", short(level))
     });

@@ -55,7 +55,10 @@ impl<'a> Extent<'a> {
         let edges = self.polygons().map(|polygon| self.ground.corners(polygon));
         let mut places: Vec<[f64; 2]> = edges.flatten().collect();
         let ends = places.clone();
-        for pair in ends.windows(2).filter(|pair| pair[0][0] == pair[1][0]) {
+        for pair in ends
+            .windows(2)
+            .filter(|pair| pair[0][0].total_cmp(&pair[1][0]).is_eq())
+        {
             places.extend((1..PARTS).map(|k| {
                 let share = f64::from(k) / f64::from(PARTS);
                 [pair[0][0], pair[0][1] + share * (pair[1][1] - pair[0][1])]
@@ -260,7 +263,7 @@ fn form(
         Wrong
     };
     let Some(form) = FORMS.iter().find(|form| has(&form.key)) else {
-        let of_others = |form: &&Form| form.needs.iter().chain(form.may_have).any(|key| has(key));
+        let of_others = |form: &&Form| form.needs.iter().chain(form.may_have).any(has);
         let meant = FORMS
             .iter()
             .find(of_others)
@@ -345,12 +348,11 @@ pub(super) const TABLES: &str =
     "{ levels = [...], values = [...] }, or { depths = [...], values = [...] }";
 
 fn share(value: &Node, extent: Extent<'_>, problems: &mut Problems) -> Result<StressShare, Wrong> {
-    let (ocr, ocr_profile) = match value.get("ocr") {
-        None => (1.0, None),
-        Some(_) => {
-            let own = property(value, "ocr", extent, OCR, problems).ok_or(Wrong)?;
-            (own.constant, own.profile)
-        }
+    let (ocr, ocr_profile) = if value.get("ocr").is_some() {
+        let own = property(value, "ocr", extent, OCR, problems).ok_or(Wrong)?;
+        (own.constant, own.profile)
+    } else {
+        (1.0, None)
     };
     Ok(StressShare {
         ratio: value.number_at("ratio").ok_or(Wrong)?,

@@ -142,7 +142,7 @@ static STRENGTH_PROFILE: Struct = Struct {
             optional(
                 "water_level",
                 A_LENGTH,
-                "no water: buoyant unit weights say the same",
+                "the first condition of the water, or none",
                 "level y of water at rest when the ground consolidated, with `ratio`; 9.81 kN/m3",
             ),
         ]
