@@ -33,6 +33,8 @@ pub enum OutlineStyle {
     Former,
     /// A heavy line on a white ground: a line that was found.
     Trace,
+    /// A blue line: a water table.
+    Water,
     /// Small arrows, each from one point to the next, then from the third to the fourth, and so on:
     /// directions and sizes.
     Vectors,

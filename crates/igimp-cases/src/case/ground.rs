@@ -1,6 +1,6 @@
 //! The ground as a case draws it: its surface, and what its weight is at a place.
 
-use super::{BodyPart, Case, Material, PoreSource, Profile};
+use super::{BodyPart, Case, Material, PoreSource, Profile, table_level};
 
 /// Unit weight of the water of a stated level \[N/m³\].
 const WATER: f64 = 9.81e3;
@@ -129,7 +129,7 @@ impl Ground {
         let by_water = match (water_level, &self.water) {
             (Some(level), _) => below(level, WATER),
             (None, Some((PoreSource::Table(points), unit_weight))) => {
-                below(on_line(points, place[0]), *unit_weight)
+                below(table_level(points, place[0]), *unit_weight)
             }
             (None, Some((PoreSource::Ratio(ratio), _))) => -ratio * weight,
             (None, Some((PoreSource::Dry, _)) | None) => 0.0,
@@ -166,16 +166,6 @@ impl Ground {
 
 /// Share of the distance of two corners at which a place counts as beside them \[-\].
 const BESIDE: f64 = 1e-9;
-
-/// The level of a line at x, constant beyond its ends.
-pub(crate) fn on_line(points: &[[f64; 2]], x: f64) -> f64 {
-    let after = points.partition_point(|point| point[0] <= x);
-    match (after.checked_sub(1).map(|k| points[k]), points.get(after)) {
-        (Some(from), Some(to)) => from[1] + (to[1] - from[1]) * (x - from[0]) / (to[0] - from[0]),
-        (Some(only), None) | (None, Some(&only)) => only[1],
-        (None, None) => f64::NEG_INFINITY,
-    }
-}
 
 fn edges(polygon: &[[f64; 2]]) -> impl Iterator<Item = [[f64; 2]; 2]> + '_ {
     (0..polygon.len()).map(|k| [polygon[k], polygon[(k + 1) % polygon.len()]])

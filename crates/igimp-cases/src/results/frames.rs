@@ -11,7 +11,8 @@ use super::fields;
 use super::particles::{Extras, of_grid, of_particles};
 use super::pvd::{self, Collection};
 use super::rigid::{Standing, lines};
-use crate::case::Field;
+use super::vtu::UnstructuredGrid;
+use crate::case::{Case, Field};
 use crate::error::CaseError;
 
 /// The frames of a run.
@@ -22,20 +23,24 @@ pub struct Frames {
     grid: Collection,
     /// Of a case with rigid bodies.
     rigid: Option<Collection>,
+    /// Whether there is pore water to write of.
+    pore_water: bool,
     /// Frames that the disk is known to have.
     synced: usize,
 }
 
 impl Frames {
     /// Goes on after the first `frames` frames of a folder that exists; 0 begins anew. Rigid bodies have
-    /// frames in cases that have some.
+    /// frames in cases that have some, and effective stress and pore pressure are written where there is water.
     ///
     /// # Errors
     /// [`CaseError::Unusable`], [`CaseError::File`].
-    pub fn open(folder: &Path, frames: usize, has_rigid: bool) -> Result<Self, CaseError> {
+    pub fn open(folder: &Path, frames: usize, case: &Case) -> Result<Self, CaseError> {
+        let has_rigid = !case.rigid.is_empty();
         let rigid = has_rigid.then(|| Collection::resume(folder, pvd::RIGID, frames));
         Ok(Self {
             rigid: rigid.transpose()?,
+            pore_water: case.has_pore_water(),
             folder: folder.to_path_buf(),
             particles: Collection::resume(folder, pvd::PARTICLES, frames)?,
             grid: Collection::resume(folder, pvd::GRID, frames)?,
@@ -54,7 +59,8 @@ impl Frames {
         grid: &Grid<2>,
         rigid: &[Standing<'_>],
     ) -> Result<(), CaseError> {
-        with_extras(particles, laws, |cells| self.particles.add(time, &cells))?;
+        let cells = self.cells(particles, laws);
+        self.particles.add(time, &cells)?;
         self.grid.add(time, &of_grid(grid, None))?;
         if let Some(collection) = &mut self.rigid {
             collection.add(time, &lines(rigid))?;
@@ -77,7 +83,19 @@ impl Frames {
             lines(rigid).write(&self.folder.join(name))?;
         }
         let path = self.folder.join(name).with_extension("vtu");
-        with_extras(particles, laws, |cells| cells.write(&path))
+        self.cells(particles, laws).write(&path)
+    }
+
+    fn cells(&self, particles: &Particles<2>, laws: &[SharedLaw]) -> UnstructuredGrid {
+        let utilisation = fields::values(Field::Utilisation, particles, laws);
+        let carried = carried(particles, laws);
+        let extras = Extras {
+            utilisation: Some(&utilisation),
+            carried: &carried,
+            def_grad: true,
+            pore_water: self.pore_water,
+        };
+        of_particles(particles, &extras)
     }
 
     /// Waits until the disk has every frame: before a checkpoint that counts on them.
@@ -118,22 +136,6 @@ impl Frames {
         self.particles.frames().is_empty()
     }
 }
-
-fn with_extras<T>(
-    particles: &Particles<2>,
-    laws: &[SharedLaw],
-    write: impl FnOnce(super::vtu::UnstructuredGrid) -> T,
-) -> T {
-    let utilisation = fields::values(Field::Utilisation, particles, laws);
-    let carried = carried(particles, laws);
-    let extras = Extras {
-        utilisation: Some(&utilisation),
-        carried: &carried,
-        def_grad: true,
-    };
-    write(of_particles(particles, &extras))
-}
-
 /// Strength and stiffness of the particles, where they are not those of the materials everywhere.
 fn carried(particles: &Particles<2>, laws: &[SharedLaw]) -> Vec<(&'static str, Vec<f64>)> {
     let varies = particles.ratios.iter().any(|ratios| !ratios.are_one());

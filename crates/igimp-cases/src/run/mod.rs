@@ -18,6 +18,7 @@ mod mixed_cells;
 mod model;
 mod outlines;
 mod output;
+mod pores;
 mod processor;
 mod records;
 mod rigid;

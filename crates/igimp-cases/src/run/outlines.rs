@@ -1,4 +1,7 @@
-//! What is rigid where it stands, for pictures and tables: rigid bodies, and a rigid footing.
+//! What pictures show beside the soil: rigid bodies and a rigid footing where they stand, and water tables. For tables the
+//! rigid bodies that are there.
+
+use std::collections::HashSet;
 
 use igimp_assembly::RigidBody;
 use igimp_figures::{Outline, OutlineStyle};
@@ -8,15 +11,36 @@ use super::rigid;
 use super::state::{Controls, State};
 use crate::case::{Case, LoadKind};
 use crate::results::pictures::rigid::{POINTS_OF_CIRCLE, block};
+use crate::results::pictures::water;
 use crate::results::rigid::Standing;
 
-/// The outlines of everything rigid in a state, as far as it lies within the grid.
+/// The outlines of everything rigid in a state, as far as it lies within the grid, and of the water tables that act.
 pub(crate) fn of_state(model: &Model<'_>, state: &State) -> Vec<Outline> {
     let case = model.case;
+    let water = water_tables(model, state);
     let bodies = rigid::outlines(case, state, POINTS_OF_CIRCLE);
     let bodies = bodies.filter_map(|(_, outline)| block(case, &outline));
     let footing = footing(case, state.controls.settlement);
-    footing.into_iter().chain(bodies).collect()
+    footing.into_iter().chain(bodies).chain(water).collect()
+}
+
+/// The water tables that act, as far as there is soil.
+fn water_tables(model: &Model<'_>, state: &State) -> Vec<Outline> {
+    let (case, particles) = (model.case, &state.body.particles);
+    let Some(condition) = state.controls.water.and_then(|k| case.water.get(k)) else {
+        return Vec::new();
+    };
+    let bodies: HashSet<usize> = particles
+        .number
+        .iter()
+        .map(|&own| model.seeded.body[own])
+        .collect();
+    let ends = std::iter::zip(&particles.x, &particles.half_length);
+    let ends = ends.fold(
+        [f64::INFINITY, f64::NEG_INFINITY],
+        |[left, right], (x, half)| [left.min(x[0] - half[0]), right.max(x[0] + half[0])],
+    );
+    water::tables(case, condition, |body| bodies.contains(&body), ends)
 }
 
 /// The rigid bodies that are there under controls.

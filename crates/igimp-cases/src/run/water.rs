@@ -4,8 +4,7 @@ use std::sync::Arc;
 
 use igimp_assembly::{PoreSite, PoreState, PoreWater};
 
-use crate::case::on_line;
-use crate::case::{Case, Drainage, Ground, Material, PoreSource, WaterCondition};
+use crate::case::{Case, Drainage, Ground, Material, PoreSource, WaterCondition, table_level};
 
 /// Points and weights of Gauss, three on −1 to 1.
 const ALONG: [(f64, f64); 3] = [
@@ -81,7 +80,7 @@ impl Source {
     fn top(&self, x: f64) -> f64 {
         match self {
             Self::Dry => f64::NEG_INFINITY,
-            Self::Table { points, .. } => on_line(points, x),
+            Self::Table { points, .. } => table_level(points, x),
             Self::Ratio { ground, .. } => ground.surface(x).unwrap_or(f64::NEG_INFINITY),
         }
     }
@@ -93,7 +92,7 @@ impl Source {
             Self::Table {
                 points,
                 unit_weight,
-            } => unit_weight * (on_line(points, x) - y),
+            } => unit_weight * (table_level(points, x) - y),
             Self::Ratio { ratio, ground } => ratio * ground.weight_above([x, y]),
         }
     }
