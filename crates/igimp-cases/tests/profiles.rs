@@ -72,6 +72,7 @@ fn case(edits: &[(&str, &str)]) -> Case {
 }
 
 #[test]
+#[expect(clippy::too_many_lines, reason = "a list of slips")]
 fn profiles_that_make_no_sense() {
     let mut out = String::new();
     for cohesion in [
