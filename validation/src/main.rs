@@ -28,6 +28,7 @@ mod pseudo_static;
 mod reference;
 mod review;
 mod runs;
+mod slope_profile;
 mod slopes;
 mod snapshot;
 mod stages;
@@ -109,6 +110,7 @@ enum Case {
     PseudoStatic,
     Layers,
     StrengthProfile,
+    SlopeProfile,
     Water,
     Stages,
     FootingContact,
@@ -145,6 +147,7 @@ impl Case {
             Self::TiltedLayer => tilted_layer::study(level, out),
             Self::Layers => layers::study(out),
             Self::StrengthProfile => strength_profile::study(level, out),
+            Self::SlopeProfile => slope_profile::study(level, out),
             Self::Water => water::study(level, out),
             Self::Stages => stages::study(level, out),
             Self::FootingContact => footing_contact::study(level, out),

@@ -56,7 +56,7 @@ pub struct ParticleFields<const D: usize> {
     pub number: Vec<usize>,
     /// Index of the constitutive law.
     pub law: Vec<usize>,
-    /// Strength and stiffness over those of the law \[-\].
+    /// Strength, friction and stiffness over those of the law \[-\].
     pub ratios: Vec<Ratios>,
     /// History of the law.
     pub history: Vec<History>,
@@ -158,11 +158,12 @@ impl<const D: usize> Particles<D> {
         Ok(Self { fields })
     }
 
-    /// The particles as seeded with strength and stiffness that are multiples of those of their laws, one entry per
-    /// particle. They carry them from then on.
+    /// The particles as seeded with strength, friction and stiffness that are multiples of those of their laws, one
+    /// entry per particle. They carry them from then on.
     ///
     /// # Errors
-    /// [`AssemblyError::InvalidParticle`] for the first ratio that is not positive and finite.
+    /// [`AssemblyError::InvalidParticle`] for the first ratio that is not finite or not positive; one of friction may be
+    /// zero.
     ///
     /// # Panics
     /// If there are more or fewer entries than particles.
@@ -173,11 +174,12 @@ impl<const D: usize> Particles<D> {
         })
     }
 
-    /// Asks the law of a particle at the strength and stiffness of that particle (theory, eq. 19b); `laws` are those
-    /// that particles name. Where both ratios are 1 this is the law itself.
+    /// Asks the law of a particle at the strength, friction and stiffness of that particle (theory, eq. 19b); `laws`
+    /// are those that particles name. Where all ratios are 1 this is the law itself; a law with friction of its own is
+    /// made for the asking.
     ///
     /// # Errors
-    /// [`MaterialError::InvalidParameter`] for a stiffness beyond the numbers.
+    /// [`MaterialError::InvalidParameter`] for a stiffness beyond the numbers, and for friction and cohesion of zero.
     ///
     /// # Panics
     /// If there is no such particle, or not its law.
@@ -188,13 +190,18 @@ impl<const D: usize> Particles<D> {
         laws: &[SharedLaw],
         ask: impl FnOnce(&dyn ConstitutiveModel) -> T,
     ) -> Result<T, MaterialError> {
-        let law = &*laws[self.fields.law[particle]];
+        let law: &dyn ConstitutiveModel = &*laws[self.fields.law[particle]];
         let ratios = self.fields.ratios[particle];
         if ratios.are_one() {
-            Ok(ask(law))
-        } else {
-            Ok(ask(&ScaledLaw::new(law, ratios)?))
+            return Ok(ask(law));
         }
+        let at_friction = if ratios.has_friction_of_its_own() {
+            law.at_friction(ratios.friction)?
+        } else {
+            None
+        };
+        let law = at_friction.as_deref().unwrap_or(law);
+        Ok(ask(&ScaledLaw::new(law, ratios)?))
     }
 
     /// Young's modulus of a particle \[force/length²\], `laws` being those that particles name.
@@ -361,9 +368,11 @@ fn validate_state<const D: usize>(
     hold("excess", &[fields.excess[particle]], Range::Finite)?;
     let Ratios {
         strength,
+        friction,
         stiffness,
     } = fields.ratios[particle];
     hold("ratios", &[strength, stiffness], Range::Positive)?;
+    hold("ratios", &[friction], Range::NotNegative)?;
     hold(
         "eps_p_eq",
         &[fields.history[particle].eps_p_eq],

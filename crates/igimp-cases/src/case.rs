@@ -4,6 +4,7 @@
 //! strain, per metre run). The second axis points up; gravity acts along its negative direction.
 
 mod grid;
+mod ground;
 mod profile;
 mod raster;
 mod rigid;
@@ -18,7 +19,8 @@ use igimp_solver::linear::SolverKind;
 use serde::{Deserialize, Serialize};
 
 pub use grid::{AxisSpec, GridSpec, MixedCells};
-pub use profile::{LEAST_STRENGTH, Profile, Profiles};
+pub use ground::Ground;
+pub use profile::{LEAST_STRENGTH, Profile, Profiles, StressShare, Variation};
 pub use raster::Raster;
 pub use rigid::{
     Adhesion, RigidDrive, RigidInterface, RigidMove, RigidPart, RigidQuantity, RigidShape,
@@ -116,7 +118,7 @@ impl Default for MeshStudy {
     }
 }
 
-/// A material. Where a property varies with the level, its constant is the greatest value in the soil.
+/// A material. Where a property varies, its constant is the greatest value in the soil.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
     /// Name.
@@ -131,7 +133,7 @@ pub struct Material {
     pub strength: Strength,
     /// Coefficient of earth pressure at rest K₀ \[-\], if the material states one.
     pub k0: Option<f64>,
-    /// What varies with the level.
+    /// What varies from place to place.
     pub profiles: Profiles,
     /// Unit weight below the water table \[N/m³\]; none: that above.
     pub saturated: Option<f64>,
@@ -168,7 +170,7 @@ pub enum Strength {
 }
 
 impl Material {
-    /// The constitutive law; where strength or stiffness vary, that of the greatest, of which particles have multiples.
+    /// The constitutive law; where strength, friction or stiffness vary, that of the greatest, of which particles have multiples.
     ///
     /// # Errors
     /// [`MaterialError::InvalidParameter`].
@@ -547,6 +549,12 @@ pub enum Field {
     PlasticStrain,
     /// Share of the strength that is mobilised \[-\].
     Utilisation,
+    /// Undrained strength or cohesion \[Pa\]; none of soil without a strength limit.
+    Strength,
+    /// Angle of friction \[rad\]; none of soil without a strength limit.
+    Friction,
+    /// Young's modulus \[Pa\].
+    Young,
 }
 
 /// A number that every step has.

@@ -3,9 +3,9 @@
 
 use std::fmt::Write;
 
-use igimp_cases::case::{Case, Profile};
+use igimp_cases::case::{Case, Field, Variation};
 use igimp_cases::input::CaseFile;
-use igimp_cases::results::setup;
+use igimp_cases::results::{fields, setup};
 use igimp_cases::run::Model;
 use igimp_cases::run::in_memory;
 
@@ -53,6 +53,17 @@ fn edited(edits: &[(&str, &str)]) -> String {
     })
 }
 
+/// The same ground of Tresca soil of one unit weight.
+fn undrained(cu: &str) -> String {
+    let weight = "{ levels = [\"5 m\", \"3 m\", \"0 m\"], values = [\"16 kN/m3\", \"18 kN/m3\", \"18 kN/m3\"] }";
+    edited(&[
+        ("mohr-coulomb", "tresca"),
+        ("friction = \"20 deg\"\n", ""),
+        (&format!("cohesion = {COHESION}"), &format!("cu = {cu}")),
+        (weight, "\"18 kN/m3\""),
+    ])
+}
+
 fn case(edits: &[(&str, &str)]) -> Case {
     CaseFile::parse("ground.toml", &edited(edits), &[])
         .unwrap_or_else(|error| panic!("{error}"))
@@ -61,6 +72,7 @@ fn case(edits: &[(&str, &str)]) -> Case {
 }
 
 #[test]
+#[expect(clippy::too_many_lines, reason = "a list of slips")]
 fn profiles_that_make_no_sense() {
     let mut out = String::new();
     for cohesion in [
@@ -81,6 +93,15 @@ fn profiles_that_make_no_sense() {
         "{ levels = [\"5 m\", \"0 m\"], values = [\"1 kPa\", \"-2 kPa\"] }",
         "{ levels = [\"5 m\"], values = [\"1 kPa\"] }",
         "{ depth = \"5 m\" }",
+        "{ at_surface = \"8 kPa\", gradient = \"-2 kPa/m\" }",
+        "{ at_surface = \"8 kPa\", gradient = \"2 kPa/m\", from = \"4 m\" }",
+        "{ at_surface = \"8 kPa\" }",
+        "{ at_top = \"8 kPa\", at_surface = \"8 kPa\", gradient = \"2 kPa/m\" }",
+        "{ depths = [\"0 m\", \"-2 m\"], values = [\"1 kPa\", \"2 kPa\"] }",
+        "{ depths = [\"0 m\", \"2 m\", \"1 m\"], values = [\"1 kPa\", \"2 kPa\", \"2 kPa\"] }",
+        "{ depths = [\"1 m\", \"2 m\"] }",
+        "{ values = [\"1 kPa\", \"2 kPa\"] }",
+        "{ ratio = 0.2 }",
         "[\"1 kPa\", \"2 kPa\"]",
     ] {
         let _ = writeln!(out, "## cohesion = {cohesion}");
@@ -110,6 +131,56 @@ fn profiles_that_make_no_sense() {
             CaseFile::parse("ground.toml", &text, &[]).unwrap_err()
         );
     }
+    for (friction, others) in [
+        ("{ at_top = \"20 deg\", gradient = \"1 kPa/m\" }", ""),
+        (
+            "{ depths = [\"0 m\", \"2 m\"], values = [\"20 deg\", \"95 deg\"] }",
+            "",
+        ),
+        (
+            "{ levels = [\"5 m\", \"0 m\"], values = [\"20 deg\", \"30 deg\"] }",
+            "dilation = \"31 deg\"",
+        ),
+        (
+            "{ levels = [\"5 m\", \"0 m\"], values = [\"20 deg\", \"30 deg\"] }",
+            "k0 = \"jaky\"",
+        ),
+        ("{ }", ""),
+    ] {
+        let _ = writeln!(out, "## friction = {friction} {others}");
+        let text = edited(&[
+            (
+                "friction = \"20 deg\"",
+                &format!("friction = {friction}\n{others}"),
+            ),
+            (
+                "k0 = 0.5",
+                if others.contains("k0") {
+                    ""
+                } else {
+                    "k0 = 0.5"
+                },
+            ),
+        ]);
+        let error = CaseFile::parse("ground.toml", &text, &[]).unwrap_err();
+        let _ = writeln!(out, "{error}");
+    }
+    for cu in [
+        "{ ratio = 0.22, at_top = \"8 kPa\" }",
+        "{ ocr = 2 }",
+        "{ ratio = 0 }",
+        "{ ratio = 0.22, ocr = { levels = [\"5 m\", \"0 m\"], values = [2] } }",
+        "{ ratio = 0.22, ocr = { levels = [\"5 m\", \"0 m\"], values = [2, 0] } }",
+        "{ ratio = 0.22, water_level = \"5 kPa\" }",
+    ] {
+        let _ = writeln!(out, "## cu = {cu}");
+        let error = CaseFile::parse("ground.toml", &undrained(cu), &[]).unwrap_err();
+        let _ = writeln!(out, "{error}");
+    }
+    let _ = writeln!(out, "## cu = a share of no stress");
+    let weightless = undrained("{ ratio = 0.22 }").replace("\"18 kN/m3\"", "\"0 kN/m3\"");
+    let error = CaseFile::parse("ground.toml", &weightless, &[]).unwrap_err();
+    let _ = writeln!(out, "{error}");
     insta::assert_snapshot!(out);
 }
 
@@ -161,9 +232,9 @@ fn ground_at_rest_carries_a_weight_that_varies() {
     let case = case(&[]);
     let run = in_memory(&case).unwrap();
     let particles = &run.body.particles;
-    let weight = Profile::Table(vec![[0.0, 18e3], [3.0, 18e3], [5.0, 16e3]]);
+    let weight = Variation::Table(vec![[0.0, 18e3], [3.0, 18e3], [5.0, 16e3]]);
     for particle in 0..particles.len() {
-        let above = weight.integral(particles.x[particle], 5.0);
+        let above = weight.integral(particles.x[particle][1], 5.0);
         let sigma = &particles.sigma[particle];
         assert!(
             (sigma[1][1] + above).abs() < 1e-3 * 88e3,
@@ -195,5 +266,99 @@ fn profiles_are_told_in_words() {
         materials.rows[0].join(" | "),
         "clay | Mohr–Coulomb | 16 at y = 5 m, 18 at y = 3 m, 18 at y = 0 m | 6 down to y = 4 m, 1.5 per metre more below | \
          0.3 | c = 0 kPa down to y = 5 m, 2 kPa per metre more below, φ = 20°, ψ = 0° | 0.5"
+    );
+}
+
+/// A slope of the same material on a bench of another.
+const SLOPE: &str = "[[bodies]]
+name = \"slope\"
+material = \"clay\"
+polygon = [[\"0 m\", \"1 m\"], [\"2 m\", \"1 m\"], [\"2 m\", \"3 m\"], [\"0 m\", \"5 m\"]]
+
+[[bodies]]
+name = \"bench\"
+material = \"clay\"
+polygon = [[\"0 m\", \"0 m\"], [\"2 m\", \"0 m\"], [\"2 m\", \"1 m\"], [\"0 m\", \"1 m\"]]
+";
+
+fn on_a_slope(text: &str) -> Case {
+    let (head, tail) = text.split_once("[[bodies]]").unwrap();
+    let (_, stages) = tail.split_once("[[stages]]").unwrap();
+    let stages = stages.replace("k0", "gravity");
+    let text = format!("{head}{SLOPE}\n[[stages]]{stages}");
+    let file = CaseFile::parse("slope.toml", &text, &[]);
+    file.unwrap_or_else(|error| panic!("{error}"))
+        .case()
+        .clone()
+}
+
+/// The strength that every particle carries, with its place.
+fn carried(case: &Case, field: Field) -> Vec<([f64; 2], f64)> {
+    let (model, state) = Model::new(case).unwrap();
+    let particles = &state.body.particles;
+    let values = fields::values(field, particles, &model.laws);
+    std::iter::zip(particles.x.iter().copied(), values).collect()
+}
+
+/// GOAL: depth is measured straight down from the highest soil of the case, whatever body a particle is of.
+#[test]
+fn depth_goes_down_from_the_surface() {
+    let by_gradient = "{ at_surface = \"1 kPa\", gradient = \"2 kPa/m\" }";
+    let by_table = "{ depths = [\"0 m\", \"9 m\"], values = [\"1 kPa\", \"19 kPa\"] }";
+    for cohesion in [by_gradient, by_table] {
+        let case = on_a_slope(&edited(&[(COHESION, cohesion)]));
+        for ([x, y], strength) in carried(&case, Field::Strength) {
+            let expected = 1e3 + 2e3 * (5.0 - x - y);
+            assert!(
+                (strength - expected).abs() < 1e-6,
+                "{strength} at ({x}, {y})"
+            );
+        }
+        assert!((case.materials[0].cohesive() - 11e3).abs() < 1e-6);
+    }
+}
+
+/// GOAL: friction that varies is carried by particles, linear in its tangent, and reduced with all strength.
+#[test]
+fn friction_varies_from_place_to_place() {
+    let friction = "{ levels = [\"5 m\", \"0 m\"], values = [\"20 deg\", \"35 deg\"] }";
+    let case = case(&[("\"20 deg\"", friction)]);
+    let [top, base] = [20.0, 35.0].map(|angle: f64| angle.to_radians().tan());
+    for ([_, y], angle) in carried(&case, Field::Friction) {
+        let expected = base + (top - base) * y / 5.0;
+        assert!((angle.tan() - expected).abs() < 1e-12);
+    }
+    let run = in_memory(&case).unwrap();
+    assert!(
+        run.body
+            .particles
+            .sigma
+            .iter()
+            .all(|sigma| sigma[1][1] < 0.0)
+    );
+}
+
+/// GOAL: undrained strength is the stated share of the vertical effective stress.
+/// ORACLE: s_u = S σ′_v0 OCR^m, σ′_v0 from the weight straight above less the water that stands in it.
+#[test]
+fn strength_may_be_a_share_of_the_effective_stress() {
+    let share = "{ ratio = 0.22, ocr = { depths = [\"1 m\", \"3 m\"], values = [4, 2] }, exponent = 0.7, \
+                 at_least = \"2 kPa\", water_level = \"3 m\" }";
+    let case = on_a_slope(&undrained(share));
+    for ([x, y], strength) in carried(&case, Field::Strength) {
+        let depth = 5.0 - x - y;
+        let ocr = 4.0 - (depth - 1.0).clamp(0.0, 2.0);
+        let water = 9.81e3 * (f64::min(3.0, 5.0 - x) - y).max(0.0);
+        let expected = 0.22 * (18e3 * depth - water) * ocr.powf(0.7);
+        assert!(
+            (strength - expected.max(2e3)).abs() < 1e-6,
+            "{strength} for {expected} at ({x}, {y})"
+        );
+    }
+    let of_table = setup::tables(&case);
+    let materials = of_table.iter().find(|table| table.title == "Materials");
+    assert_eq!(
+        materials.unwrap().rows[0][5],
+        "c_u = 0.22 σ′_v0 OCR^0.7, OCR = 4 at a depth of 1 m, 2 at a depth of 3 m, at least 2 kPa, water at rest to y = 3 m"
     );
 }

@@ -64,6 +64,15 @@ impl Regime {
     }
 }
 
+/// What soil carries in shear under no pressure, and how it grows with pressure.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShearStrength {
+    /// Undrained strength c_u in plane strain, or cohesion c \[stress\].
+    pub cohesive: f64,
+    /// Angle of friction φ \[rad\].
+    pub friction_angle: f64,
+}
+
 /// The answer of a law to a trial strain, in the order of its principal values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReturnMap {
@@ -127,6 +136,11 @@ pub trait ConstitutiveModel: Send + Sync + Debug {
     /// limit on tension plays no part. Each law states the ratio.
     fn utilisation(&self, tau: &Principal, history: &History) -> f64;
 
+    /// The shear strength, for those who look at it; none for a law without a limit.
+    fn shear_strength(&self) -> Option<ShearStrength> {
+        None
+    }
+
     /// Whether the law has a yield surface: locking of plastic flow concerns no other.
     fn yields(&self) -> bool {
         true
@@ -134,6 +148,15 @@ pub trait ConstitutiveModel: Send + Sync + Debug {
 
     /// Whether consistent tangents are symmetric, which is so when the flow is associated.
     fn has_symmetric_tangent(&self) -> bool;
+
+    /// The law with tan φ times a ratio \[-\]; none for a law without friction, which knows no other.
+    ///
+    /// # Errors
+    /// [`MaterialError::InvalidParameter`] for a negative ratio, one that is not finite, and one that leaves no strength.
+    fn at_friction(&self, ratio: f64) -> Result<Option<Arc<dyn ConstitutiveModel>>, MaterialError> {
+        let _ = ratio;
+        Ok(None)
+    }
 
     /// The law with its strength divided by the reduction factor `srf`: cohesion, undrained
     /// strength, yield stress, tension cut-off and tan φ. Elasticity stays; the dilation angle

@@ -10,7 +10,9 @@ use std::sync::Arc;
 
 use crate::error::{positive, required};
 use crate::pyramid::{Pyramid, Strength};
-use crate::{ConstitutiveModel, Elasticity, History, MaterialError, Principal, ReturnMap};
+use crate::{
+    ConstitutiveModel, Elasticity, History, MaterialError, Principal, ReturnMap, ShearStrength,
+};
 
 /// Elastic and perfectly plastic with the yield function
 ///
@@ -199,12 +201,37 @@ impl ConstitutiveModel for MohrCoulomb {
         self.pyramid.utilisation(tau)
     }
 
+    fn shear_strength(&self) -> Option<ShearStrength> {
+        Some(ShearStrength {
+            cohesive: self.cohesion,
+            friction_angle: self.friction_angle,
+        })
+    }
+
     #[expect(
         clippy::float_cmp,
         reason = "flow is associated only where the angles are the same"
     )]
     fn has_symmetric_tangent(&self) -> bool {
         self.dilation_angle == self.friction_angle
+    }
+
+    /// ψ stays but never exceeds the new φ; c and the cut-off stay.
+    fn at_friction(&self, ratio: f64) -> Result<Option<Arc<dyn ConstitutiveModel>>, MaterialError> {
+        required(
+            "friction ratio",
+            ratio,
+            ratio >= 0.0,
+            "finite and not negative",
+        )?;
+        let friction_angle = (self.friction_angle.tan() * ratio).atan();
+        Ok(Some(Arc::new(Self::build(
+            *self.elasticity(),
+            self.cohesion,
+            friction_angle,
+            self.dilation_angle.min(friction_angle),
+            self.tension_cutoff,
+        )?)))
     }
 
     /// Divides c, tan φ and the cut-off by `srf`; ψ stays but never exceeds the reduced φ.

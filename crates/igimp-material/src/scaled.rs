@@ -5,14 +5,17 @@ use std::ops::Deref;
 use std::sync::Arc;
 
 use crate::principal::Principal;
-use crate::{ConstitutiveModel, Elasticity, History, MaterialError, ReturnMap};
+use crate::{ConstitutiveModel, Elasticity, History, MaterialError, ReturnMap, ShearStrength};
 
-/// Strength and stiffness of a piece of soil over those of its material.
+/// Strength, friction and stiffness of a piece of soil over those of its material.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ratios {
     /// Every strength that is a stress (undrained strength, cohesion, yield stress, tension cut-off) over that of
     /// the material \[-\]. Positive; angles stay.
     pub strength: f64,
+    /// tan φ over that of the material \[-\]. Not negative; ψ stays but never exceeds φ. Laws without friction know
+    /// none.
+    pub friction: f64,
     /// Young's modulus over that of the material \[-\]. Positive; Poisson's ratio stays.
     pub stiffness: f64,
 }
@@ -21,8 +24,15 @@ impl Ratios {
     /// Soil that is as its material.
     pub const ONE: Self = Self {
         strength: 1.0,
+        friction: 1.0,
         stiffness: 1.0,
     };
+
+    /// Whether friction is not that of the material.
+    #[inline]
+    pub fn has_friction_of_its_own(&self) -> bool {
+        self.friction.total_cmp(&1.0).is_ne()
+    }
 
     /// Whether the soil is as its material.
     #[inline]
@@ -47,7 +57,7 @@ impl Default for Ratios {
 ///
 /// let tresca = Tresca::new(Elasticity::new(100.0, 0.3)?, 1.0)?;
 /// let law: &dyn ConstitutiveModel = &tresca;
-/// let scaled = ScaledLaw::new(law, Ratios { strength: 3.0, stiffness: 2.0 })?;
+/// let scaled = ScaledLaw::new(law, Ratios { strength: 3.0, stiffness: 2.0, ..Ratios::ONE })?;
 /// let answer = scaled.return_map(&[0.1, 0.0, -0.1], &History::default())?;
 /// assert!((answer.tau[0] - answer.tau[2] - 6.0).abs() < 1e-12);
 /// # Ok::<(), igimp_material::MaterialError>(())
@@ -60,7 +70,8 @@ pub struct ScaledLaw<L> {
 }
 
 impl<L: Deref<Target = dyn ConstitutiveModel>> ScaledLaw<L> {
-    /// The `law` at these ratios.
+    /// The `law` at these ratios; that of friction is not asked for, and belongs to the law
+    /// ([`ConstitutiveModel::at_friction`]).
     ///
     /// # Errors
     /// [`MaterialError::InvalidParameter`] unless both are positive and finite.
@@ -116,6 +127,7 @@ where
         let Ratios {
             strength,
             stiffness,
+            ..
         } = self.ratios;
         let delta_eps_p = answer.delta_eps_p.map(|strain| strain / ratio);
         Ok(ReturnMap {
@@ -143,12 +155,31 @@ where
         self.law.utilisation(&self.unscaled(tau), &history)
     }
 
+    fn shear_strength(&self) -> Option<ShearStrength> {
+        let own = self.law.shear_strength()?;
+        Some(ShearStrength {
+            cohesive: self.ratios.strength * own.cohesive,
+            ..own
+        })
+    }
+
     fn yields(&self) -> bool {
         self.law.yields()
     }
 
     fn has_symmetric_tangent(&self) -> bool {
         self.law.has_symmetric_tangent()
+    }
+
+    fn at_friction(&self, ratio: f64) -> Result<Option<Arc<dyn ConstitutiveModel>>, MaterialError> {
+        let Some(law) = self.law.at_friction(ratio)? else {
+            return Ok(None);
+        };
+        Ok(Some(Arc::new(ScaledLaw {
+            law,
+            elasticity: self.elasticity,
+            ratios: self.ratios,
+        })))
     }
 
     fn reduced(&self, srf: f64) -> Result<Arc<dyn ConstitutiveModel>, MaterialError> {

@@ -5,7 +5,9 @@ use std::sync::Arc;
 
 use crate::error::positive;
 use crate::pyramid::{Pyramid, Strength};
-use crate::{ConstitutiveModel, Elasticity, History, MaterialError, Principal, ReturnMap};
+use crate::{
+    ConstitutiveModel, Elasticity, History, MaterialError, Principal, ReturnMap, ShearStrength,
+};
 
 /// Elastic and perfectly plastic with associated flow and the yield function
 /// $`f = \sigma_1 - \sigma_3 - 2 c_u`$, $`\sigma_1 \ge \sigma_2 \ge \sigma_3`$.
@@ -73,6 +75,13 @@ impl ConstitutiveModel for Tresca {
     /// $`(\sigma_1 - \sigma_3) / (2 c_u)`$.
     fn utilisation(&self, tau: &Principal, _history: &History) -> f64 {
         self.pyramid.utilisation(tau)
+    }
+
+    fn shear_strength(&self) -> Option<ShearStrength> {
+        Some(ShearStrength {
+            cohesive: self.undrained_strength,
+            friction_angle: 0.0,
+        })
     }
 
     fn has_symmetric_tangent(&self) -> bool {

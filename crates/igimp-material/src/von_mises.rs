@@ -7,7 +7,10 @@ use std::sync::Arc;
 use crate::error::positive;
 use crate::law::{ON_SURFACE, mobilised, trial_stress};
 use crate::principal::{deviator, deviator_norm, largest, mean};
-use crate::{ConstitutiveModel, Elasticity, History, MaterialError, Principal, Regime, ReturnMap};
+use crate::{
+    ConstitutiveModel, Elasticity, History, MaterialError, Principal, Regime, ReturnMap,
+    ShearStrength,
+};
 
 /// Elastic and perfectly plastic with associated flow and the yield function
 /// $`f = q - q_y,\ q = \sqrt{3/2}\,\lVert s\rVert`$.
@@ -113,6 +116,13 @@ impl ConstitutiveModel for VonMises {
     fn utilisation(&self, tau: &Principal, _history: &History) -> f64 {
         let q = deviator_norm(&deviator(tau));
         mobilised(q, self.yield_stress, self.stress_scale(tau))
+    }
+
+    fn shear_strength(&self) -> Option<ShearStrength> {
+        Some(ShearStrength {
+            cohesive: self.yield_stress / 3.0_f64.sqrt(),
+            friction_angle: 0.0,
+        })
     }
 
     fn has_symmetric_tangent(&self) -> bool {

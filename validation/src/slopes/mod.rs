@@ -50,11 +50,11 @@ pub(crate) struct Found {
 }
 
 impl Found {
-    fn factor(&self) -> f64 {
+    pub(crate) fn factor(&self) -> f64 {
         0.5 * (self.interval[0] + self.interval[1])
     }
 
-    fn half_width(&self) -> f64 {
+    pub(crate) fn half_width(&self) -> f64 {
         0.5 * (self.interval[1] - self.interval[0])
     }
 
@@ -65,7 +65,7 @@ impl Found {
     }
 
     /// All trials as one run.
-    fn run(&self, name: String) -> RunRecord {
+    pub(crate) fn run(&self, name: String) -> RunRecord {
         let trials = self.computed.trials.iter();
         let runs: Vec<RunRecord> = trials
             .map(|trial| RunRecord::new("", &trial.report, trial.elapsed))
@@ -183,7 +183,7 @@ impl Problem {
 }
 
 impl Found {
-    fn of(computed: Computed) -> Self {
+    pub(crate) fn of(computed: Computed) -> Self {
         let safety = computed.safety();
         let end = |which: fn(&_) -> Option<f64>| safety.and_then(which).unwrap_or(f64::NAN);
         Self {

@@ -183,6 +183,19 @@ impl Section {
     /// # Errors
     /// If the section states no case.
     pub(crate) fn case(&self, variant: Variant, search: Search) -> Result<Case, CaseError> {
+        self.case_with(variant, search, &[])
+    }
+
+    /// The same, changed by overrides such as `materials.soil-0.poisson=0.45`; soils have the numbers of their layers.
+    ///
+    /// # Errors
+    /// If the section states no case.
+    pub(crate) fn case_with(
+        &self,
+        variant: Variant,
+        search: Search,
+        overrides: &[String],
+    ) -> Result<Case, CaseError> {
         let Variant {
             cells,
             locking,
@@ -280,7 +293,7 @@ impl Section {
                 corners(polygon),
             );
         }
-        Ok(CaseFile::parse(&self.name, &text, &[])?.into_case())
+        Ok(CaseFile::parse(&self.name, &text, overrides)?.into_case())
     }
 }
 

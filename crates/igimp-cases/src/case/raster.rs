@@ -28,6 +28,23 @@ impl Raster {
         lower + up * (upper - lower)
     }
 
+    /// The integral from a place straight up to a level.
+    pub(crate) fn integral(&self, [x, lower]: [f64; 2], upper: f64) -> f64 {
+        if upper < lower {
+            return -self.integral([x, upper], lower);
+        }
+        let mut ends = vec![lower];
+        ends.extend(
+            self.y
+                .iter()
+                .filter(|level| lower < **level && **level < upper),
+        );
+        ends.push(upper);
+        ends.windows(2)
+            .map(|pair| (pair[1] - pair[0]) * 0.5 * (self.at([x, pair[0]]) + self.at([x, pair[1]])))
+            .sum()
+    }
+
     /// Places within a polygon among which the least and the greatest value are: crossings of lines, corners, and where
     /// lines cross edges.
     pub(crate) fn places_in(&self, polygon: &[[f64; 2]]) -> Vec<[f64; 2]> {

@@ -4,7 +4,7 @@
 //! two are the same numbers. Shear stress, deviatoric stress, plastic strain and mobilised strength are those of the law.
 
 use igimp_assembly::{Particles, SharedLaw};
-use igimp_material::{ConstitutiveModel, Tensor, principal_values};
+use igimp_material::{ConstitutiveModel, ShearStrength, Tensor, principal_values};
 
 use crate::case::Field;
 
@@ -47,7 +47,26 @@ pub fn value(field: Field, particles: &Particles<2>, particle: usize, laws: &[Sh
         Field::Q => deviatoric_stress(effective),
         Field::PlasticStrain => particles.history[particle].eps_p_eq,
         Field::Utilisation => utilisation(particles, particle, laws).unwrap_or(f64::NAN),
+        Field::Strength => {
+            shear_strength(particles, particle, laws).map_or(f64::NAN, |s| s.cohesive)
+        }
+        Field::Friction => {
+            shear_strength(particles, particle, laws).map_or(f64::NAN, |s| s.friction_angle)
+        }
+        Field::Young if particles.law[particle] < laws.len() => particles.young(particle, laws),
+        Field::Young => f64::NAN,
     }
+}
+
+/// The strength that a particle carries, that of `laws` at its ratios; none for soil without a limit.
+fn shear_strength(
+    particles: &Particles<2>,
+    particle: usize,
+    laws: &[SharedLaw],
+) -> Option<ShearStrength> {
+    laws.get(particles.law[particle])?;
+    let asked = particles.ask_law(particle, laws, |law| law.shear_strength());
+    asked.ok().flatten()
 }
 
 /// p = −tr σ/3.
@@ -90,6 +109,8 @@ pub enum Dimension {
     Strain,
     /// A share \[-\].
     Share,
+    /// An angle \[rad\].
+    Angle,
 }
 
 /// The dimension of a field.
@@ -110,9 +131,12 @@ pub fn dimension(field: Field) -> Dimension {
         | Field::PEff
         | Field::U
         | Field::UExcess
-        | Field::Q => Dimension::Stress,
+        | Field::Q
+        | Field::Strength
+        | Field::Young => Dimension::Stress,
         Field::PlasticStrain => Dimension::Strain,
         Field::Utilisation => Dimension::Share,
+        Field::Friction => Dimension::Angle,
     }
 }
 
@@ -146,6 +170,9 @@ pub fn name(field: Field) -> &'static str {
         Field::Q => "q",
         Field::PlasticStrain => "plastic_strain",
         Field::Utilisation => "utilisation",
+        Field::Strength => "strength",
+        Field::Friction => "friction",
+        Field::Young => "young",
     }
 }
 
@@ -154,8 +181,11 @@ pub fn header(field: Field) -> String {
     let name = name(field);
     match dimension(field) {
         Dimension::Displacement | Dimension::Position => format!("{name}_[m]"),
-        Dimension::Stress if field == Field::Q => format!("{name}_[Pa]"),
+        Dimension::Stress if matches!(field, Field::Q | Field::Strength | Field::Young) => {
+            format!("{name}_[Pa]")
+        }
         Dimension::Stress => format!("{name}_[Pa]_compression_+"),
+        Dimension::Angle => format!("{name}_[rad]"),
         Dimension::Strain | Dimension::Share => format!("{name}_[-]"),
     }
 }
@@ -171,7 +201,7 @@ pub struct Scale {
 
 impl Scale {
     /// The unit that keeps the largest of the values (not counting those that are not finite)
-    /// within about 1 and 1000: Pa, kPa or MPa for stresses, mm or m for displacements.
+    /// within about 1 and 1000: Pa, kPa or MPa for stresses, mm or m for displacements; degrees for angles.
     pub fn of(dimension: Dimension, values: impl IntoIterator<Item = f64>) -> Self {
         let largest = values
             .into_iter()
@@ -184,6 +214,7 @@ impl Scale {
             Dimension::Stress if largest >= 500.0 || largest == 0.0 => (1e3, "kPa"),
             Dimension::Stress => (1.0, "Pa"),
             Dimension::Strain | Dimension::Share => (1.0, "−"),
+            Dimension::Angle => (1.0_f64.to_radians(), "°"),
         };
         Self { divide_by, unit }
     }
@@ -216,6 +247,9 @@ pub fn title(field: Field) -> &'static str {
         Field::Q => "deviatoric stress q",
         Field::PlasticStrain => "plastic strain ε_{p}",
         Field::Utilisation => "share of the shear strength",
+        Field::Strength => "undrained strength or cohesion",
+        Field::Friction => "angle of friction φ",
+        Field::Young => "Young's modulus E",
     }
 }
 
@@ -250,7 +284,7 @@ pub fn plain(text: &str) -> String {
 }
 
 /// Every field.
-pub const ALL: [Field; 19] = [
+pub const ALL: [Field; 22] = [
     Field::Displacement,
     Field::DisplacementX,
     Field::DisplacementY,
@@ -270,6 +304,9 @@ pub const ALL: [Field; 19] = [
     Field::Q,
     Field::PlasticStrain,
     Field::Utilisation,
+    Field::Strength,
+    Field::Friction,
+    Field::Young,
 ];
 
 #[cfg(test)]
@@ -277,7 +314,7 @@ mod tests {
     use super::*;
     use crate::case::{Material, Profiles, Strength};
     use igimp_assembly::{ParticleFields, ParticleSeed};
-    use igimp_material::History;
+    use igimp_material::{History, Ratios};
 
     fn law(strength: Strength) -> SharedLaw {
         let material = Material {
@@ -344,6 +381,9 @@ mod tests {
             (Field::Q, (2800e6_f64 + 3.0 * 225e6).sqrt()),
             (Field::PlasticStrain, 0.2),
             (Field::Utilisation, 0.75),
+            (Field::Strength, 40e3),
+            (Field::Friction, 0.0),
+            (Field::Young, 1e7),
         ];
         for (field, expected) in cases {
             let found = first(field);
@@ -397,6 +437,8 @@ mod tests {
             values(Field::Utilisation, &particles(&laws), &laws)
         };
         assert!(expected(Strength::Elastic)[0].abs() < 1e-15);
+        let elastic = [law(Strength::Elastic)];
+        assert!(values(Field::Strength, &particles(&elastic), &elastic)[0].is_nan());
         let share = expected(Strength::VonMises {
             undrained_strength: 60e3,
         });
@@ -413,6 +455,29 @@ mod tests {
         assert!((share[0] - 30e3 / strength).abs() < 1e-9);
     }
 
+    /// GOAL: the strength that is shown is that of the law that acts, at the ratios of the particle.
+    #[test]
+    fn strength_is_that_which_a_particle_carries() {
+        let laws = [law(Strength::MohrCoulomb {
+            cohesion: 5e3,
+            friction_angle: 0.5,
+            dilation_angle: 0.0,
+            tension_cutoff: None,
+        })];
+        let half = Ratios {
+            strength: 0.5,
+            friction: 0.5,
+            stiffness: 0.25,
+        };
+        let particles = particles(&laws).with_ratios(vec![half; 2]).unwrap();
+        let reduced = [laws[0].reduced(2.0).unwrap()];
+        let first = |field, laws| values(field, &particles, laws)[0];
+        assert!((first(Field::Strength, &laws) - 2.5e3).abs() < 1e-9);
+        assert!((first(Field::Strength, &reduced) - 1.25e3).abs() < 1e-9);
+        assert!((first(Field::Friction, &reduced).tan() - 0.25 * 0.5_f64.tan()).abs() < 1e-12);
+        assert!((first(Field::Young, &laws) - 2.5e6).abs() < 1e-6);
+    }
+
     #[test]
     fn every_field_has_its_own_name_and_header() {
         for (k, &field) in ALL.iter().enumerate() {
@@ -423,6 +488,8 @@ mod tests {
         assert_eq!(header(Field::SigmaYy), "sigma_yy_[Pa]_compression_+");
         assert_eq!(header(Field::Displacement), "displacement_[m]");
         assert_eq!(header(Field::Utilisation), "utilisation_[-]");
+        assert_eq!(header(Field::Strength), "strength_[Pa]");
+        assert_eq!(header(Field::Friction), "friction_[rad]");
     }
 
     #[test]

@@ -88,8 +88,10 @@ impl Frames {
 
     fn cells(&self, particles: &Particles<2>, laws: &[SharedLaw]) -> UnstructuredGrid {
         let utilisation = fields::values(Field::Utilisation, particles, laws);
+        let carried = carried(particles, laws);
         let extras = Extras {
             utilisation: Some(&utilisation),
+            carried: &carried,
             def_grad: true,
             pore_water: self.pore_water,
         };
@@ -133,4 +135,17 @@ impl Frames {
     pub fn is_empty(&self) -> bool {
         self.particles.frames().is_empty()
     }
+}
+/// Strength and stiffness of the particles, where they are not those of the materials everywhere.
+fn carried(particles: &Particles<2>, laws: &[SharedLaw]) -> Vec<(&'static str, Vec<f64>)> {
+    let varies = particles.ratios.iter().any(|ratios| !ratios.are_one());
+    let arrays = [
+        ("strength [Pa]", Field::Strength),
+        ("friction angle [rad]", Field::Friction),
+        ("Young's modulus [Pa]", Field::Young),
+    ];
+    let arrays = arrays.into_iter().filter(|_| varies);
+    arrays
+        .map(|(name, field)| (name, fields::values(field, particles, laws)))
+        .collect()
 }

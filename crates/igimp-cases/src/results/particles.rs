@@ -14,6 +14,8 @@ use super::vtu::{CellKind, DataArray, UnstructuredGrid, padded};
 pub struct Extras<'a> {
     /// Utilisation of the strength by particle \[-\].
     pub utilisation: Option<&'a [f64]>,
+    /// What particles carry of their material, by the names of the arrays.
+    pub carried: &'a [(&'static str, Vec<f64>)],
     /// Whether the deformation gradient is written.
     pub def_grad: bool,
     /// Whether effective stress and pore pressure are written beside total stress.
@@ -28,7 +30,7 @@ pub struct Extras<'a> {
 /// and mass; with pore water effective stress σ′, p′, pore pressure u and its excess besides.
 ///
 /// # Panics
-/// If the utilisation is not given for every particle.
+/// If the utilisation, or what particles carry, is not given for every particle.
 pub fn of_particles<const D: usize>(
     particles: &Particles<D>,
     extras: &Extras<'_>,
@@ -91,6 +93,10 @@ pub fn of_particles<const D: usize>(
     if let Some(utilisation) = extras.utilisation {
         assert_eq!(utilisation.len(), n, "every particle has a utilisation");
         cell_data.push(DataArray::scalars("utilisation [-]", utilisation.to_vec()));
+    }
+    for (name, values) in extras.carried {
+        assert_eq!(values.len(), n, "every particle has `{name}`");
+        cell_data.push(DataArray::scalars(*name, values.clone()));
     }
     if extras.def_grad {
         cell_data.push(DataArray::tensors(
@@ -185,6 +191,7 @@ mod tests {
     fn a_domain_is_a_hexahedron_in_space() {
         let extras = Extras {
             utilisation: Some(&[0.75]),
+            carried: &[("strength [Pa]", vec![5e3])],
             def_grad: true,
             pore_water: false,
         };
@@ -195,6 +202,7 @@ mod tests {
         assert_eq!(grid.points[3], [0.5, 1.25, 0.875]);
         assert_eq!(grid.points[6], [1.5, 1.25, 1.125]);
         assert_eq!(values(&grid, "utilisation [-]"), Values::F64(vec![0.75]));
+        assert_eq!(values(&grid, "strength [Pa]"), Values::F64(vec![5e3]));
         assert_eq!(values(&grid, "volume [m3]"), Values::F64(vec![2.0]));
     }
 
@@ -213,6 +221,7 @@ mod tests {
         let particles = &body.particles;
         let extras = Extras {
             utilisation: None,
+            carried: &[],
             def_grad: true,
             pore_water: false,
         };

@@ -9,7 +9,7 @@ use igimp_assembly::{Geometry, Tension};
 use crate::case::{
     Adhesion, AxisSpec, Boundaries, Case, Construction, Load, LoadKind, Material, Profile,
     Reduction, ReductionPath, RigidDrive, RigidMove, RigidPart, RigidShape, RigidShear, Side,
-    Stage, StageKind, StopWhen, Strength,
+    Stage, StageKind, StopWhen, Strength, StressShare, Variation,
 };
 use crate::check::short;
 use crate::summary::SetupTable;
@@ -65,11 +65,11 @@ fn materials(case: &Case) -> SetupTable {
 fn material(material: &Material) -> Vec<String> {
     let own = &material.profiles;
     let cohesive = || match &own.strength {
-        Some(profile) => in_words(profile, 1e3, " kPa"),
+        Some(profile) => in_words(profile, over(1e3), " kPa"),
         None => kilo(material.cohesive(), "Pa"),
     };
     let or_constant = |profile: &Option<Profile>, constant: f64, scale: f64| match profile {
-        Some(profile) => in_words(profile, scale, ""),
+        Some(profile) => in_words(profile, over(scale), ""),
         None => short(constant / scale),
     };
     let (law, strength) = match material.strength {
@@ -83,13 +83,17 @@ fn material(material: &Material) -> Vec<String> {
             ..
         } => {
             let degrees = |angle: f64| short(angle.to_degrees());
+            let friction = own.friction.as_ref().map_or_else(
+                || format!("{}°", degrees(friction_angle)),
+                |profile| in_words(profile, |tangent| degrees(tangent.atan()), "°"),
+            );
             let cutoff = tension_cutoff.map_or_else(String::new, |limit| {
                 format!(", tension up to {}", kilo(limit, "Pa"))
             });
             let strength = format!(
-                "c = {}, φ = {}°, ψ = {}°{cutoff}",
+                "c = {}, φ = {}, ψ = {}°{cutoff}",
                 cohesive(),
-                degrees(friction_angle),
+                friction,
                 degrees(dilation_angle)
             );
             ("Mohr–Coulomb", strength)
@@ -109,51 +113,96 @@ fn material(material: &Material) -> Vec<String> {
 /// Most rows of a profile that are told one by one.
 const MOST_ROWS: usize = 6;
 
-/// A profile in words, its values divided by `scale`.
-fn in_words(profile: &Profile, scale: f64, unit: &str) -> String {
-    match profile {
-        Profile::Gradient {
-            from,
-            at_top,
-            gradient,
-        } => format!(
-            "{}{unit} down to y = {} m, {}{unit} per metre {} below",
-            short(at_top / scale),
-            short(*from),
-            short(gradient.abs() / scale),
-            if *gradient < 0.0 { "less" } else { "more" }
-        ),
+/// Prints a value divided by a scale.
+fn over(scale: f64) -> impl Fn(f64) -> String {
+    move |value| short(value / scale)
+}
+
+/// A profile in words, its values as they are `printed` before a unit.
+fn in_words(profile: &Profile, printed: impl Fn(f64) -> String, unit: &str) -> String {
+    let (variation, is_by_depth) = match profile {
+        Profile::Level(variation) => (variation, false),
+        Profile::Depth(variation) => (variation, true),
+        Profile::StressShare(share) => return share_in_words(share),
         Profile::Raster(raster) => {
             let values = raster.values.iter().flatten().copied();
             let least = values.clone().fold(f64::INFINITY, f64::min);
             let greatest = values.fold(f64::NEG_INFINITY, f64::max);
-            format!(
+            return format!(
                 "{}{unit} to {}{unit} by a raster of {} by {} points",
-                short(least / scale),
-                short(greatest / scale),
+                printed(least),
+                printed(greatest),
                 raster.x.len(),
                 raster.y.len()
+            );
+        }
+    };
+    let place = |level: f64| {
+        if is_by_depth {
+            format!("at a depth of {} m", short(0.0 - level))
+        } else {
+            format!("at y = {} m", short(level))
+        }
+    };
+    match variation {
+        Variation::Gradient {
+            from,
+            at_top,
+            gradient,
+        } => {
+            let place = if is_by_depth {
+                "at the surface".to_owned()
+            } else {
+                format!("down to y = {} m", short(*from))
+            };
+            format!(
+                "{}{unit} {place}, {}{unit} per metre {} below",
+                printed(*at_top),
+                printed(gradient.abs()),
+                if *gradient < 0.0 { "less" } else { "more" }
             )
         }
-        Profile::Table(rows) if rows.len() <= MOST_ROWS => {
-            let row = |[level, value]: &[f64; 2]| {
-                format!("{}{unit} at y = {} m", short(value / scale), short(*level))
-            };
+        Variation::Table(rows) if rows.len() <= MOST_ROWS => {
+            let row =
+                |[level, value]: &[f64; 2]| format!("{}{unit} {}", printed(*value), place(*level));
             let rows: Vec<String> = rows.iter().rev().map(row).collect();
             rows.join(", ")
         }
-        Profile::Table(rows) => {
+        Variation::Table(rows) => {
             let ([low, deepest], [high, highest]) = (rows[0], rows[rows.len() - 1]);
             format!(
-                "{}{unit} at y = {} m to {}{unit} at y = {} m by a table of {} levels",
-                short(highest / scale),
-                short(high),
-                short(deepest / scale),
-                short(low),
-                rows.len()
+                "{}{unit} {} to {}{unit} {} by a table of {} {}",
+                printed(highest),
+                place(high),
+                printed(deepest),
+                place(low),
+                rows.len(),
+                if is_by_depth { "depths" } else { "levels" }
             )
         }
     }
+}
+
+/// A strength that follows the stress, in words.
+fn share_in_words(share: &StressShare) -> String {
+    let ocr = match &share.ocr_profile {
+        Some(profile) => in_words(profile, short, ""),
+        None => short(share.ocr),
+    };
+    let consolidated = if share.ocr_profile.is_none() && share.ocr.total_cmp(&1.0).is_eq() {
+        String::new()
+    } else {
+        format!(" OCR^{}, OCR = {ocr}", short(share.exponent))
+    };
+    let least = if share.at_least > 0.0 {
+        format!(", at least {}", kilo(share.at_least, "Pa"))
+    } else {
+        String::new()
+    };
+    let water = share.water_level.map_or_else(String::new, |level| {
+        format!(", water at rest to y = {} m", short(level))
+    });
+    format!("{} σ′_v0{consolidated}{least}{water}", short(share.ratio))
 }
 
 fn bodies(case: &Case) -> SetupTable {

@@ -335,10 +335,14 @@ fn tension(material: &Material) -> Option<String> {
     let name = &material.name;
     let apex = cohesion / friction_angle.tan();
     match tension_cutoff {
-        _ if material.profiles.strength.is_some() => Some(match tension_cutoff {
-            None => format!("tension_cutoff = \"0 kPa\" in \"{name}\", which comes apart there"),
-            Some(_) => format!("more cohesion in \"{name}\", which comes apart there"),
-        }),
+        _ if material.profiles.strength.is_some() || material.profiles.friction.is_some() => {
+            Some(match tension_cutoff {
+                None => {
+                    format!("tension_cutoff = \"0 kPa\" in \"{name}\", which comes apart there")
+                }
+                Some(_) => format!("more cohesion in \"{name}\", which comes apart there"),
+            })
+        }
         Some(0.0) => Some(format!("tension_cutoff > 0 in \"{name}\"")),
         Some(_) => Some(format!(
             "more cohesion in \"{name}\", which comes apart there"

@@ -14,7 +14,7 @@ use super::loading::let_go;
 use super::model::{Model, STANDARD_GRAVITY};
 use super::session::{Ended, Session};
 use super::state::State;
-use crate::case::{Construction, StageKind};
+use crate::case::{Construction, Ground, StageKind};
 use crate::check::short;
 use crate::error::CaseError;
 use crate::summary::StageSummary;
@@ -71,13 +71,14 @@ fn changed(model: &Model<'_>, start: &State, own: &Construction) -> Result<State
     }
     let mut fields = (*state.body.particles).clone();
     let materials = case.materials.len();
+    let ground = case.ground();
     for particle in 0..fields.x.len() {
         let body = model.seeded.body[fields.number[particle]];
         let new = own.materials.iter().find(|(of, _)| *of == body);
         if let Some(&(_, material)) = new {
             let law = fields.law[particle];
             fields.law[particle] = law - law % materials + material;
-            become_soil_of(model, &mut fields, particle, material)?;
+            become_soil_of((model, &ground), &mut fields, particle, material)?;
         }
         if own.dissipate {
             fields.excess[particle] = 0.0;
@@ -90,7 +91,7 @@ fn changed(model: &Model<'_>, start: &State, own: &Construction) -> Result<State
 
 /// Gives a particle weight, strength and stiffness of a material; its stress stays.
 fn become_soil_of(
-    model: &Model<'_>,
+    (model, ground): (&Model<'_>, &Ground),
     fields: &mut ParticleFields<2>,
     particle: usize,
     material: usize,
@@ -105,13 +106,13 @@ fn become_soil_of(
     let soil = &case.materials[material];
     let before = model.laws[fields.law[particle]].elasticity().young();
     let shared = (before / soil.young - 1.0).abs() > 1e-12;
-    let mut ratios = soil.ratios_at(place);
+    let mut ratios = soil.ratios_at(place, ground);
     if shared {
         // In cells of several soils all have one stiffness, that of the cell.
         ratios.stiffness = 1.0;
     }
     fields.ratios[particle] = ratios;
-    fields.mass[particle] = fields.volume0[particle] * soil.unit_weight_at(place) / gravity;
+    fields.mass[particle] = fields.volume0[particle] * soil.unit_weight_at(place, ground) / gravity;
     let [[a, b], [c, d]] = fields.def_grad[particle];
     let tau = fields.sigma[particle].map(|row| row.map(|stress| stress * (a * d - b * c)));
     let law = ScaledLaw::new(&*model.laws[fields.law[particle]], ratios)?;

@@ -4,7 +4,6 @@
 use igimp_assembly::{Particles, PoreSite, PoreWater as _};
 use igimp_material::ConstitutiveModel;
 
-use super::ground::Ground;
 use super::model::Model;
 use super::state::State;
 use crate::error::CaseError;
@@ -16,7 +15,7 @@ use crate::error::CaseError;
 /// state is what the law would have returned; deformation counts from here.
 pub(crate) fn level_ground(model: &Model<'_>, state: &mut State) -> Result<(), CaseError> {
     let case = model.case;
-    let ground = Ground::of(case);
+    let ground = case.ground();
     let water = state.controls.water.and_then(|k| model.ground_water(k));
     let mut fields = (*state.body.particles).clone();
     for particle in 0..fields.x.len() {
@@ -24,7 +23,7 @@ pub(crate) fn level_ground(model: &Model<'_>, state: &mut State) -> Result<(), C
         let material = &case.materials[fields.law[particle] % case.materials.len()];
         let number = fields.number[particle];
         let vertical = match &water {
-            None => -ground.weight_above(&x),
+            None => -ground.weight_above(x),
             Some(water) => water.effective_weight(&ground, number, material, &x),
         };
         let k0 = material

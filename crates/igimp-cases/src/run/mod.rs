@@ -9,7 +9,6 @@ mod export;
 mod failure;
 mod fingerprint;
 mod footing;
-mod ground;
 mod initial;
 mod left;
 mod loading;

@@ -73,6 +73,7 @@ impl<'c> Model<'c> {
         } else {
             STANDARD_GRAVITY
         };
+        let ground = case.ground();
         let mut seeds = Vec::new();
         let mut seeded = Seeded::default();
         for (body, part) in case.bodies.iter().enumerate() {
@@ -82,13 +83,13 @@ impl<'c> Model<'c> {
             let mut own = fill_polygon(&grid, &part.polygon, parts, density, part.material)?;
             if material.profiles.unit_weight.is_some() {
                 for seed in &mut own {
-                    seed.density = material.unit_weight_at(seed.x) / gravity;
+                    seed.density = material.unit_weight_at(seed.x, &ground) / gravity;
                 }
             }
             seeded.body.extend(own.iter().map(|_| body));
             seeds.extend(own);
         }
-        let ratios = |seed: &ParticleSeed<2>| case.materials[seed.law].ratios_at(seed.x);
+        let ratios = |seed: &ParticleSeed<2>| case.materials[seed.law].ratios_at(seed.x, &ground);
         let mut ratios: Vec<Ratios> = seeds.iter().map(ratios).collect();
         if case.grid.mixed_cells == MixedCells::Mean {
             let parts = (&mut seeds[..], &mut ratios[..]);

@@ -4,8 +4,7 @@ use std::sync::Arc;
 
 use igimp_assembly::{PoreSite, PoreState, PoreWater};
 
-use super::ground::Ground;
-use crate::case::{Case, Drainage, Material, PoreSource, WaterCondition, table_level};
+use crate::case::{Case, Drainage, Ground, Material, PoreSource, WaterCondition, table_level};
 
 /// Points and weights of Gauss, three on −1 to 1.
 const ALONG: [(f64, f64); 3] = [
@@ -72,7 +71,7 @@ impl Source {
             },
             PoreSource::Ratio(ratio) => Self::Ratio {
                 ratio: *ratio,
-                ground: Ground::of(case),
+                ground: case.ground(),
             },
         }
     }
@@ -94,7 +93,7 @@ impl Source {
                 points,
                 unit_weight,
             } => unit_weight * (table_level(points, x) - y),
-            Self::Ratio { ratio, ground } => ratio * ground.weight_above(&[x, y]),
+            Self::Ratio { ratio, ground } => ratio * ground.weight_above([x, y]),
         }
     }
 
@@ -184,7 +183,7 @@ impl GroundWater {
         };
         let surface = ground.surface(x[0]).unwrap_or(x[1]);
         let pond = self.reference.at(&[x[0], surface]);
-        let total = ground.weight_above(x) + ground.added_above(x, table) + pond;
+        let total = ground.weight_above(*x) + ground.added_above(*x, table) + pond;
         let pores = match material.drainage {
             Drainage::Total => 0.0,
             _ => own.unwrap_or(&self.reference).at(x),

@@ -44,6 +44,7 @@ fn pairs() -> impl Iterator<Item = (Ratios, ScaledLaw<Law>, Law)> {
         let ratios = Ratios {
             strength,
             stiffness,
+            ..Ratios::ONE
         };
         std::iter::zip(laws(1.0, 1.0), laws(strength, stiffness))
             .map(move |(law, made)| (ratios, ScaledLaw::new(law, ratios).unwrap(), made))
@@ -181,10 +182,61 @@ fn ratios_that_are_no_ratios_are_refused() {
         let ratios = Ratios {
             strength,
             stiffness,
+            ..Ratios::ONE
         };
         assert!(
             ScaledLaw::new(Arc::clone(&law), ratios).is_err(),
             "{ratios:?}"
         );
     }
+}
+
+/// GOAL: friction at a ratio is the law made with that friction, whatever else varies, and reduced as such; strength
+/// reduction and ratios change places.
+/// BAND: 1e-12 of stiffness and stress, as above.
+#[test]
+fn friction_at_a_ratio_is_the_law_with_that_friction() {
+    let elasticity = Elasticity::new(100.0, 0.3).unwrap();
+    let make = |cohesion: f64, friction: f64, dilation: f64| {
+        MohrCoulomb::new(elasticity, cohesion, friction.atan(), dilation).unwrap()
+    };
+    let mut random = Random(43);
+    for (ratio, s) in [(0.5, 1.0), (1.3, 0.4), (0.0, 2.0)] {
+        let steepest = make(1.3, 0.8, 0.4);
+        let own = (0.8_f64 * ratio).atan();
+        let made = make(1.3 * s, 0.8 * ratio, own.min(0.4));
+        let ratios = Ratios {
+            strength: s,
+            ..Ratios::ONE
+        };
+        let at: Law = steepest.at_friction(ratio).unwrap().unwrap();
+        let scaled = ScaledLaw::new(at, ratios).unwrap();
+        let strength = scaled.shear_strength().unwrap();
+        assert!(close(strength.friction_angle, own, 1.0) && close(strength.cohesive, 1.3 * s, 1.0));
+        let weaker: Law = steepest.reduced(1.7).unwrap();
+        let weaker = ScaledLaw::new(weaker.at_friction(ratio).unwrap().unwrap(), ratios).unwrap();
+        let both = [
+            (
+                &scaled as &dyn ConstitutiveModel,
+                made.reduced(1.0).unwrap(),
+            ),
+            (&weaker, made.reduced(1.7).unwrap()),
+        ];
+        for (law, expected) in both {
+            for k in 0..400 {
+                let size = [1e-3, 1e-2, 0.1, 0.5][k % 4];
+                let strain: Principal = random.values(size);
+                let history = History::default();
+                let one = law.return_map(&strain, &history).unwrap();
+                let other = expected.return_map(&strain, &history).unwrap();
+                for a in 0..3 {
+                    assert!(close(one.tau[a], other.tau[a], 300.0 * size), "{ratio} {s}");
+                }
+            }
+        }
+    }
+    assert!(make(1.0, 0.5, 0.0).at_friction(-0.1).is_err());
+    assert!(make(0.0, 0.5, 0.0).at_friction(0.0).is_err());
+    let tresca = Tresca::new(elasticity, 1.0).unwrap();
+    assert!(tresca.at_friction(0.5).unwrap().is_none());
 }

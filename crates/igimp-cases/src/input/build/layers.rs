@@ -4,7 +4,7 @@
 use super::grid::Frame;
 use super::sequence::Sequence;
 use super::site::Site;
-use crate::case::{BodyPart, Material, Stage, StageKind, Strength};
+use crate::case::{BodyPart, Ground, Material, Stage, StageKind, Strength};
 use crate::check::short;
 use crate::input::diagnostic::Problems;
 use crate::input::geometry::{contains, facing, largest_run};
@@ -47,7 +47,8 @@ pub(super) fn check(layers: &Layers<'_>, problems: &mut Problems) {
     else {
         return;
     };
-    let neighbours = check_pairs(layers, frame, &bodies, &materials, problems);
+    let ground = ground_of(&bodies, &materials);
+    let neighbours = check_pairs(layers, frame, (&bodies, &materials, &ground), problems);
     check_thickness(layers, frame, &bodies, &neighbours, problems);
 }
 
@@ -55,10 +56,15 @@ fn complete<T>(parts: &[Option<T>]) -> Option<Vec<&T>> {
     parts.iter().map(Option::as_ref).collect()
 }
 
+/// The ground of bodies and materials.
+fn ground_of<'a>(bodies: &[&'a BodyPart], materials: &[&'a Material]) -> Ground {
+    Ground::new(bodies.iter().map(|body| (*body, materials[body.material])))
+}
+
 /// The modulus of compression without lateral strain at a place.
-fn constrained(material: &Material, place: [f64; 2]) -> f64 {
+fn constrained(material: &Material, place: [f64; 2], ground: &Ground) -> f64 {
     let nu = material.poisson;
-    material.young_at(place) * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu))
+    material.young_at(place, ground) * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu))
 }
 
 /// Boundaries within cells and gaps; tells which bodies touch a stiffer one, or one of their own
@@ -66,8 +72,7 @@ fn constrained(material: &Material, place: [f64; 2]) -> f64 {
 fn check_pairs(
     layers: &Layers<'_>,
     frame: &Frame,
-    bodies: &[&BodyPart],
-    materials: &[&Material],
+    (bodies, materials, ground): (&[&BodyPart], &[&Material], &Ground),
     problems: &mut Problems,
 ) -> Vec<Neighbours> {
     let [width, height] = frame.axes.each_ref().map(|axis| axis.extremes()[0]);
@@ -102,7 +107,7 @@ fn check_pairs(
                     .help("bodies closer than a cell stick all the same: let them share the edge");
             }
             let middle = pieces.first().map_or([0.0; 2], |piece| piece.middle);
-            let moduli = [a, b].map(|body| constrained(materials[body.material], middle));
+            let moduli = [a, b].map(|body| constrained(materials[body.material], middle, ground));
             let mut touching = pieces
                 .iter()
                 .filter(|piece| piece.distance <= layers.site.round_off)
@@ -309,6 +314,7 @@ pub(super) fn check_stiffness(
     if !raises || gravity.is_none_or(|gravity| gravity <= 0.0) {
         return;
     }
+    let ground = ground_of(&bodies, &materials);
     let levels = |body: &BodyPart| {
         let (lower, upper) = bounding_box(&body.polygon);
         [lower[1], upper[1]]
@@ -319,14 +325,15 @@ pub(super) fn check_stiffness(
         .fold(f64::MIN, f64::max);
     let file = layers.tree.get("materials");
     for (index, material) in materials.iter().enumerate() {
-        let own = || bodies.iter().filter(|body| body.material == index);
-        let lowest = own().map(|body| levels(body)[0]).reduce(f64::min);
-        let (Some(lowest), Some(first)) = (lowest, own().next()) else {
+        let own = bodies.iter().filter(|body| body.material == index);
+        let Some(body) = own.min_by(|a, b| levels(a)[0].total_cmp(&levels(b)[0])) else {
             continue;
         };
-        let (left, right) = bounding_box(&first.polygon);
-        let middle = [0.5 * (left[0] + right[0]), 0.5 * (top + lowest)];
-        let (weight, young) = (material.unit_weight_at(middle), material.young_at(middle));
+        let lowest = levels(body)[0];
+        let (lower, upper) = bounding_box(&body.polygon);
+        let middle = [0.5 * (lower[0] + upper[0]), 0.5 * (top + lowest)];
+        let weight = material.unit_weight_at(middle, &ground);
+        let young = material.young_at(middle, &ground);
         let ratio = weight * (top - lowest) / young;
         let place = file
             .and_then(|file| file.get(&material.name))

@@ -1,25 +1,38 @@
 //! Materials and the limits of their parameters.
 
-use super::profiles::{Extent, Property, Terms, property};
-use crate::case::{BodyPart, Drainage, Material, Profile, Profiles, Strength};
+use super::profiles::{Extent, Property, TABLES, Terms, property};
+use crate::case::{BodyPart, Drainage, Ground, Material, Profile, Profiles, Strength};
 use crate::input::diagnostic::Problems;
 use crate::input::text::{clip, number};
 use crate::input::tree::{Entry, Node, Wrong};
 
-/// What may be said of a strength, of Young's modulus and of a unit weight that vary.
+/// What may be said of a strength, of Young's modulus, of a unit weight and of friction that vary.
 const STRENGTH: Terms = Terms {
     may_vanish: true,
     may_be_nothing: false,
-    unit: "Pa",
+    kept: |value| value,
+    printed: |value| format!("{} kPa", number(value / 1e3)),
+    forms: "{ at_top = ..., gradient = ... }, { at_surface = ..., gradient = ... }, { levels = [...], values = [...] }, or { raster = ... }",
+};
+const UNDRAINED: Terms = Terms {
+    forms: "{ at_top = ..., gradient = ... }, { at_surface = ..., gradient = ... }, { levels = [...], values = [...] }, { raster = ... }, or { ratio = ..., ocr = ... }",
+    ..STRENGTH
 };
 const YOUNG: Terms = Terms {
     may_vanish: false,
     ..STRENGTH
 };
 const UNIT_WEIGHT: Terms = Terms {
+    may_be_nothing: true,
+    printed: |value| format!("{} kN/m3", number(value / 1e3)),
+    ..STRENGTH
+};
+const FRICTION: Terms = Terms {
     may_vanish: true,
     may_be_nothing: true,
-    unit: "N/m3",
+    kept: f64::tan,
+    printed: |value| format!("{} deg", number(value.atan().to_degrees())),
+    forms: TABLES,
 };
 
 /// The materials in the order of the file.
@@ -29,13 +42,46 @@ pub(super) fn materials(
     problems: &mut Problems,
 ) -> Vec<Option<Material>> {
     let entries = tree.get("materials").map_or(&[][..], Node::entries);
-    let numbered = entries.iter().enumerate();
-    numbered
-        .map(|(index, entry)| material(entry, Extent::of(&entry.key, index, bodies), problems))
+    let outlines = bodies.iter().flatten();
+    let surface = Ground::of_polygons(outlines.map(|body| (&body.polygon[..], 0.0, None)));
+    let weights: Vec<Option<Property>> = entries
+        .iter()
+        .enumerate()
+        .map(|(material, entry)| {
+            let extent = Extent {
+                name: &entry.key,
+                material,
+                bodies,
+                ground: &surface,
+            };
+            property(&entry.node, "unit_weight", extent, UNIT_WEIGHT, problems)
+        })
+        .collect();
+    let with_weights = bodies.iter().flatten().filter_map(|body| {
+        let weight = weights.get(body.material)?.as_ref()?;
+        Some((&body.polygon[..], weight.constant, weight.profile.as_ref()))
+    });
+    let ground = Ground::of_polygons(with_weights);
+    std::iter::zip(entries, &weights)
+        .enumerate()
+        .map(|(index, (entry, weight))| {
+            let extent = Extent {
+                name: &entry.key,
+                material: index,
+                bodies,
+                ground: &ground,
+            };
+            material(entry, weight.as_ref(), extent, problems)
+        })
         .collect()
 }
 
-fn material(entry: &Entry, extent: Extent<'_>, problems: &mut Problems) -> Option<Material> {
+fn material(
+    entry: &Entry,
+    unit_weight: Option<&Property>,
+    extent: Extent<'_>,
+    problems: &mut Problems,
+) -> Option<Material> {
     let (name, node) = (&entry.key, &entry.node);
     let before = problems.errors();
     let poisson = node.number_at("poisson");
@@ -53,11 +99,16 @@ fn material(entry: &Entry, extent: Extent<'_>, problems: &mut Problems) -> Optio
     }
     let mut given = |key, terms| property(node, key, extent, terms, problems);
     let young = given("young", YOUNG);
-    let unit_weight = given("unit_weight", UNIT_WEIGHT);
     let cohesive = match node.text_at("model") {
-        Some("von-mises" | "tresca") => given("cu", STRENGTH),
+        Some("von-mises" | "tresca") => given("cu", UNDRAINED),
         Some("mohr-coulomb") => given("cohesion", STRENGTH),
         _ => None,
+    };
+    let is_frictional = node.text_at("model") == Some("mohr-coulomb");
+    let friction = if is_frictional {
+        friction(node, extent, problems)
+    } else {
+        None
     };
     let undrained = cohesive.as_ref().map(|own| own.constant);
     let strength = match node.text_at("model") {
@@ -68,27 +119,35 @@ fn material(entry: &Entry, extent: Extent<'_>, problems: &mut Problems) -> Optio
         Some("tresca") => {
             undrained.map(|undrained_strength| Strength::Tresca { undrained_strength })
         }
-        Some("mohr-coulomb") => mohr_coulomb(name, node, cohesive.as_ref(), problems),
+        Some("mohr-coulomb") => {
+            mohr_coulomb(name, node, [cohesive.as_ref(), friction.as_ref()], problems)
+        }
         _ => None,
     };
-    let k0 = k0(node, strength, problems);
-    let saturated = saturated(name, node, unit_weight.as_ref(), problems);
+    let profile = |own: Option<&Property>| -> Option<Profile> { own?.profile.clone() };
+    let k0 = k0(
+        node,
+        strength,
+        profile(friction.as_ref()).is_some(),
+        problems,
+    );
+    let saturated = saturated(name, node, unit_weight, problems);
     let young_constant = young.as_ref().map(|own| own.constant);
     let drainage = drainage(node, young_constant, strength, problems);
-    let profile = |own: &Option<Property>| -> Option<Profile> { own.as_ref()?.profile.clone() };
     let material = Material {
         saturated: saturated.ok()?,
         drainage: drainage?,
         name: name.clone(),
-        unit_weight: unit_weight.as_ref()?.constant,
+        unit_weight: unit_weight?.constant,
         young: young.as_ref()?.constant,
         poisson: poisson?,
         strength: strength?,
         k0: k0.ok()?,
         profiles: Profiles {
-            strength: profile(&cohesive),
-            young: profile(&young),
-            unit_weight: profile(&unit_weight),
+            strength: profile(cohesive.as_ref()),
+            friction: profile(friction.as_ref()),
+            young: profile(young.as_ref()),
+            unit_weight: profile(unit_weight),
         },
     };
     if problems.errors() == before
@@ -98,6 +157,24 @@ fn material(entry: &Entry, extent: Extent<'_>, problems: &mut Problems) -> Optio
         problems.error(node.place, message);
     }
     Some(material)
+}
+
+/// tan φ, where the angle is one.
+fn friction(node: &Node, extent: Extent<'_>, problems: &mut Problems) -> Option<Property> {
+    let value = node.get("friction")?;
+    let angles = std::iter::once(value).chain(value.items_at("values"));
+    for angle in angles {
+        if angle
+            .number()
+            .is_some_and(|angle| angle.to_degrees() > 89.999_999)
+        {
+            problems
+                .error(angle.place, "the friction angle must be below 90 deg")
+                .help("soils have 15 deg to 45 deg");
+            return None;
+        }
+    }
+    property(node, "friction", extent, FRICTION, problems)
 }
 
 /// The unit weight below a water table, if the material states one.
@@ -213,25 +290,19 @@ fn drainage(
 fn mohr_coulomb(
     name: &str,
     node: &Node,
-    cohesive: Option<&Property>,
+    [cohesive, friction]: [Option<&Property>; 2],
     problems: &mut Problems,
 ) -> Option<Strength> {
     let cohesion = cohesive.map(|own| own.constant);
-    let friction = node.number_at("friction");
+    let friction_varies = friction.is_some_and(|own| own.profile.is_some());
+    // An angle that is stated is kept to the last bit.
+    let friction = friction.and_then(|own| match own.profile {
+        None => node.number_at("friction"),
+        Some(_) => Some(own.constant.atan()),
+    });
     let dilation = node.number_at("dilation");
-    if let Some(friction) = friction
-        && friction.to_degrees() > 89.999_999
-    {
-        problems
-            .error(
-                node.place_at("friction"),
-                "the friction angle must be below 90 deg",
-            )
-            .help("soils have 15 deg to 45 deg");
-        return None;
-    }
     if let (Some(friction), Some(dilation)) = (friction, dilation)
-        && dilation > friction
+        && dilation > friction * (1.0 + if friction_varies { 1e-12 } else { 0.0 })
     {
         problems
             .error(
@@ -243,6 +314,18 @@ fn mohr_coulomb(
     if let (Some(cohesion), Some(friction)) = (cohesion, friction)
         && cohesion == 0.0
     {
+        if vanishes(node) {
+            problems
+                .error(
+                    node.place_at("friction"),
+                    format!(
+                        "`{}` has no strength where friction is zero",
+                        clip(name, 40)
+                    ),
+                )
+                .help("a small cohesion, like cohesion = \"0.1 kPa\"");
+            return None;
+        }
         let (place, name) = (node.place_at("cohesion"), clip(name, 40));
         if friction == 0.0 {
             problems
@@ -285,20 +368,38 @@ fn mohr_coulomb(
     Some(Strength::MohrCoulomb {
         cohesion: cohesion?,
         friction_angle: friction?,
-        dilation_angle: dilation?,
+        dilation_angle: dilation?.min(friction?),
         tension_cutoff,
     })
+}
+
+/// Whether a table of friction has a zero.
+fn vanishes(node: &Node) -> bool {
+    let table = node
+        .get("friction")
+        .map_or(&[][..], |own| own.items_at("values"));
+    table.iter().any(|angle| angle.number() == Some(0.0))
 }
 
 /// K₀ of a material, if it states one.
 fn k0(
     node: &Node,
     strength: Option<Strength>,
+    friction_varies: bool,
     problems: &mut Problems,
 ) -> Result<Option<f64>, Wrong> {
     let is_jaky = node.text_at("k0").is_some();
     match strength {
         _ if !is_jaky => node.optional_number("k0"),
+        Some(Strength::MohrCoulomb { .. }) if friction_varies => {
+            problems
+                .error(
+                    node.place_at("k0"),
+                    "k0 = \"jaky\" needs one friction angle, and friction varies here",
+                )
+                .help("write a number, like k0 = 0.5");
+            Err(Wrong)
+        }
         Some(Strength::MohrCoulomb { friction_angle, .. }) => Ok(Some(1.0 - friction_angle.sin())),
         None => Err(Wrong),
         Some(_) => {

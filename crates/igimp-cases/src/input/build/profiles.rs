@@ -1,6 +1,6 @@
-//! Properties of materials that vary with the level, or from place to place.
+//! Properties of materials that vary with the level, with the depth, with the stress or in the plane.
 
-use crate::case::{BodyPart, Profile, Raster};
+use crate::case::{BodyPart, Ground, Profile, Raster, StressShare, Variation};
 use crate::input::diagnostic::Problems;
 use crate::input::text::{clip, number, point};
 use crate::input::tree::{Node, Wrong};
@@ -18,44 +18,84 @@ pub(super) struct Property {
 #[derive(Clone, Copy)]
 pub(super) struct Extent<'a> {
     pub(super) name: &'a str,
-    material: usize,
-    bodies: &'a [Option<BodyPart>],
+    pub(super) material: usize,
+    pub(super) bodies: &'a [Option<BodyPart>],
+    pub(super) ground: &'a Ground,
 }
 
 impl<'a> Extent<'a> {
-    /// That of the material of a number.
-    pub(super) fn of(name: &'a str, material: usize, bodies: &'a [Option<BodyPart>]) -> Self {
-        Self {
-            name,
-            material,
-            bodies,
-        }
-    }
-
-    /// The polygons of its bodies.
-    fn polygons(&self) -> Vec<&'a [[f64; 2]]> {
+    /// The polygons of the material.
+    fn polygons(&self) -> impl Iterator<Item = &'a [[f64; 2]]> {
+        let material = self.material;
         let own = self.bodies.iter().flatten();
-        let own = own.filter(|body| body.material == self.material);
-        own.map(|body| &body.polygon[..]).collect()
+        own.filter(move |body| body.material == material)
+            .map(|body| &body.polygon[..])
     }
 
-    /// The lowest and the highest level \[m\]; none: no body is of this material.
+    /// Its lowest and its highest level \[m\]; none: no body is of this material.
     fn levels(&self) -> Option<[f64; 2]> {
-        let boxes = self.polygons().into_iter().map(bounding_box);
-        let levels = boxes.map(|(lower, upper)| [lower[1], upper[1]]);
-        levels.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
+        let levels = self.polygons().map(|polygon| {
+            let (lower, upper) = bounding_box(polygon);
+            [lower[1], upper[1]]
+        });
+        levels.reduce(union)
+    }
+
+    /// Its least and its greatest depth \[m\], to the micrometre.
+    fn depths(&self) -> Option<[f64; 2]> {
+        let depths = self
+            .polygons()
+            .filter_map(|polygon| self.ground.depths(polygon));
+        let depths = depths.reduce(union)?;
+        Some(depths.map(|depth| (depth * 1e6).round() / 1e6))
+    }
+
+    /// Places all over its soil.
+    fn places(&self) -> Vec<[f64; 2]> {
+        let edges = self.polygons().map(|polygon| self.ground.corners(polygon));
+        let mut places: Vec<[f64; 2]> = edges.flatten().collect();
+        let ends = places.clone();
+        for pair in ends
+            .windows(2)
+            .filter(|pair| pair[0][0].total_cmp(&pair[1][0]).is_eq())
+        {
+            places.extend((1..PARTS).map(|k| {
+                let share = f64::from(k) / f64::from(PARTS);
+                [pair[0][0], pair[0][1] + share * (pair[1][1] - pair[0][1])]
+            }));
+        }
+        places
     }
 }
 
-/// What a profile must be in the soil, with the unit that messages print.
+/// Parts of an upright line through soil at whose ends a stress is looked at.
+const PARTS: u32 = 32;
+/// A usual stress \[Pa\], for a strength that no soil has.
+const USUAL_STRESS: f64 = 1e5;
+
+fn union(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+    [a[0].min(b[0]), a[1].max(b[1])]
+}
+
+/// What a property must be in the soil, and how it is read and printed.
 #[derive(Clone, Copy)]
 pub(super) struct Terms {
     /// Whether it may be zero somewhere.
     pub(super) may_vanish: bool,
     /// Whether it may be zero everywhere.
     pub(super) may_be_nothing: bool,
-    /// k before this unit.
-    pub(super) unit: &'static str,
+    /// What is kept of a number as read.
+    pub(super) kept: fn(f64) -> f64,
+    /// What was kept, with its unit.
+    pub(super) printed: fn(f64) -> String,
+    /// The forms of a table that says how it varies.
+    pub(super) forms: &'static str,
+}
+
+/// A value with the words for its place.
+struct Extreme {
+    value: f64,
+    place: String,
 }
 
 /// The property of a key: a quantity, or a table that says how it varies.
@@ -69,75 +109,221 @@ pub(super) fn property(
     let value = node.get(key)?;
     if let Some(constant) = value.number() {
         return Some(Property {
-            constant,
+            constant: (terms.kept)(constant),
             profile: None,
         });
     }
     if value.is_invalid() {
         return None;
     }
-    let profile = stated(value, key, extent, problems).ok()?;
-    let [least, greatest] = profile.extremes(&extent.polygons()).unwrap_or_else(|| {
-        // No soil: where the profile itself is told.
-        match &profile {
-            Profile::Gradient { from, .. } => [[0.0, *from]; 2],
-            Profile::Table(rows) => [rows[0][0], rows[rows.len() - 1][0]].map(|y| [0.0, y]),
-            Profile::Raster(raster) => [[raster.x[0], raster.y[0]]; 2],
-        }
-    });
-    let constant = profile.at(greatest);
+    let profile = stated(value, key, extent, terms, problems).ok()?;
+    let [least, greatest] = extremes(&profile, extent);
     let name = clip(extent.name, 40);
-    let in_words = |at: [f64; 2]| {
-        let value = format!("{} k{}", number(profile.at(at) / 1e3), terms.unit);
-        match profile {
-            Profile::Raster(_) => format!("{value} at {}", point(at)),
-            _ => format!("{value} at y = {} m", number(at[1])),
+    let place = match &profile {
+        Profile::StressShare(_) => value.place_at("ratio"),
+        Profile::Raster(_) => value.place_at("rows"),
+        Profile::Level(Variation::Gradient { .. }) | Profile::Depth(Variation::Gradient { .. }) => {
+            value.place_at("gradient")
+        }
+        Profile::Level(Variation::Table(_)) | Profile::Depth(Variation::Table(_)) => {
+            value.place_at("values")
         }
     };
-    let place = match profile {
-        Profile::Gradient { .. } => value.place_at("gradient"),
-        Profile::Table(_) => value.place_at("values"),
-        Profile::Raster(_) => value.place_at("rows"),
+    let told = || {
+        format!(
+            "`{key}` is {} {}, in the soil of `{name}`",
+            (terms.printed)(least.value),
+            least.place
+        )
     };
-    if !constant.is_finite() || profile.at(least) < 0.0 {
-        problems
-            .error(
-                place,
-                format!("`{key}` is {}, in the soil of `{name}`", in_words(least)),
-            )
-            .help(match profile {
-                Profile::Raster(_) => "points that are positive wherever there is soil",
-                _ => "a smaller gradient, or `levels` and `values` that stay positive",
-            });
+    if !greatest.value.is_finite() || least.value < 0.0 {
+        problems.error(place, told()).help(match &profile {
+            Profile::Raster(_) => "points that are positive wherever there is soil",
+            _ => "a smaller gradient, or `levels` and `values` that stay positive",
+        });
         return None;
     }
-    if profile.at(least) == 0.0 && !terms.may_vanish {
+    if least.value == 0.0 && !terms.may_vanish {
         problems
-            .error(
-                place,
-                format!("`{key}` is {}, in the soil of `{name}`", in_words(least)),
-            )
+            .error(place, told())
             .help("it must be positive wherever there is soil");
         return None;
     }
-    if constant == 0.0 && !terms.may_be_nothing {
-        let [lower, upper] = extent.levels().unwrap_or([0.0; 2]);
-        problems
-            .error(
-                place,
-                format!("`{key}` is zero in all the soil of `{name}`"),
-            )
-            .help(format!(
+    if greatest.value == 0.0 && !terms.may_be_nothing {
+        let [lower, upper] = extent.levels().unwrap_or_default();
+        let problem = problems.error(
+            place,
+            format!("`{key}` is zero in all the soil of `{name}`"),
+        );
+        match &profile {
+            Profile::StressShare(_) => problem.help(
+                "no effective stress: is there a unit weight, and is `water_level` as high as meant?",
+            ),
+            _ => problem.help(format!(
                 "its soil lies from y = {} m to {} m: give it a value there",
                 number(lower),
                 number(upper)
-            ));
+            )),
+        };
         return None;
     }
     Some(Property {
-        constant,
+        constant: greatest.value,
         profile: Some(profile),
     })
+}
+
+/// The least and the greatest value in the soil of a material.
+fn extremes(profile: &Profile, extent: Extent<'_>) -> [Extreme; 2] {
+    let of = |variation: &Variation, range: Option<[f64; 2]>, words: &dyn Fn(f64) -> String| {
+        let [lower, upper] = range.unwrap_or_else(|| match variation {
+            Variation::Gradient { from, .. } => [*from; 2],
+            Variation::Table(rows) => [rows[0][0], rows[rows.len() - 1][0]],
+        });
+        variation.extremes(lower, upper).map(|level| Extreme {
+            value: variation.at(level),
+            place: words(level),
+        })
+    };
+    match profile {
+        Profile::Level(variation) => of(variation, extent.levels(), &|level| {
+            format!("at y = {} m", number(level))
+        }),
+        Profile::Depth(variation) => {
+            let levels = extent.depths().map(|[least, most]| [-most, 0.0 - least]);
+            of(variation, levels, &|level| {
+                format!("at a depth of {} m", number(0.0 - level))
+            })
+        }
+        Profile::Raster(raster) => {
+            let mut places: Vec<[f64; 2]> = extent
+                .polygons()
+                .flat_map(|polygon| raster.places_in(polygon))
+                .collect();
+            // No soil: where the raster begins.
+            places.push(
+                places
+                    .first()
+                    .copied()
+                    .unwrap_or([raster.x[0], raster.y[0]]),
+            );
+            places.sort_by(|a, b| raster.at(*a).total_cmp(&raster.at(*b)));
+            [places[0], places[places.len() - 1]].map(|place| Extreme {
+                value: raster.at(place),
+                place: format!("at {}", point(place)),
+            })
+        }
+        Profile::StressShare(share) => {
+            let places = extent.places();
+            let values = places.iter().map(|place| Extreme {
+                value: profile.at(*place, extent.ground),
+                place: format!("at {}", point(*place)),
+            });
+            let unused = || Extreme {
+                value: share.at_least.max(share.ratio * USUAL_STRESS),
+                place: String::new(),
+            };
+            let mut values: Vec<Extreme> = values.collect();
+            values.sort_by(|a, b| a.value.total_cmp(&b.value));
+            let greatest = values.pop().unwrap_or_else(unused);
+            let least = values.into_iter().next().unwrap_or_else(unused);
+            [least, greatest]
+        }
+    }
+}
+
+/// A form of a table that says how a property varies: the key that tells it, those that it needs beside it, and those
+/// that it may have.
+struct Form {
+    key: &'static str,
+    needs: &'static [&'static str],
+    may_have: &'static [&'static str],
+}
+
+const FORMS: [Form; 6] = [
+    Form {
+        key: "at_top",
+        needs: &["gradient"],
+        may_have: &["from"],
+    },
+    Form {
+        key: "at_surface",
+        needs: &["gradient"],
+        may_have: &[],
+    },
+    Form {
+        key: "levels",
+        needs: &["values"],
+        may_have: &[],
+    },
+    Form {
+        key: "depths",
+        needs: &["values"],
+        may_have: &[],
+    },
+    Form {
+        key: "ratio",
+        needs: &[],
+        may_have: &["ocr", "exponent", "at_least", "water_level"],
+    },
+    Form {
+        key: "rows",
+        needs: &["x", "y"],
+        may_have: &[],
+    },
+];
+
+/// The form of a table; reports a table of several or of none.
+fn form(
+    value: &Node,
+    key: &str,
+    terms: Terms,
+    problems: &mut Problems,
+) -> Result<&'static Form, Wrong> {
+    let has = |key: &&'static str| value.get(key).is_some();
+    let lacks = |missing: &str, problems: &mut Problems| {
+        problems
+            .error(value.place, format!("`{key}` has no `{missing}`"))
+            .help(format!("write {}", terms.forms));
+        Wrong
+    };
+    let Some(form) = FORMS.iter().find(|form| has(&form.key)) else {
+        let of_others = |form: &&Form| form.needs.iter().chain(form.may_have).any(has);
+        let meant = FORMS
+            .iter()
+            .find(of_others)
+            .map_or("levels", |form| form.key);
+        let has_gradients = terms.forms.contains("at_top");
+        let is_empty = value.entries().is_empty();
+        return Err(lacks(
+            if is_empty && has_gradients {
+                "at_top"
+            } else {
+                meant
+            },
+            problems,
+        ));
+    };
+    let own =
+        |key: &str| form.key == key || form.needs.contains(&key) || form.may_have.contains(&key);
+    let keys = FORMS.iter().flat_map(|form| {
+        std::iter::once(&form.key)
+            .chain(form.needs)
+            .chain(form.may_have)
+    });
+    if let Some(other) = keys.into_iter().find(|key| !own(key) && has(key)) {
+        problems
+            .error(
+                value.place_at(other),
+                format!("`{key}` is stated by `{}` and by `{other}`", form.key),
+            )
+            .help(format!("keep one of {}", terms.forms));
+        return Err(Wrong);
+    }
+    match form.needs.iter().find(|key| !has(key)) {
+        Some(missing) => Err(lacks(missing, problems)),
+        None => Ok(form),
+    }
 }
 
 /// The profile that a table states.
@@ -145,51 +331,62 @@ fn stated(
     value: &Node,
     key: &str,
     extent: Extent<'_>,
+    terms: Terms,
     problems: &mut Problems,
 ) -> Result<Profile, Wrong> {
-    let by_gradient = ["at_top", "gradient", "from"];
-    let by_levels = ["levels", "values"];
-    let in_plane = ["x", "y", "rows"];
-    let has = |keys: &[&'static str]| keys.iter().copied().find(|key| value.get(key).is_some());
-    let (first, other) = (has(&by_gradient), has(&by_levels));
-    let plane = has(&in_plane);
-    let forms = [first, other, plane].into_iter().flatten();
-    let mut forms = forms.collect::<Vec<_>>().into_iter();
-    if let (Some(first), Some(other)) = (forms.next(), forms.next()) {
-        problems
-            .error(
-                value.place_at(other),
-                format!("`{key}` is stated by `{first}` and by `{other}`"),
-            )
-            .help("keep at_top and gradient, or levels and values, or a raster");
-        return Err(Wrong);
-    }
-    if plane.is_some() {
-        return raster(value, key, extent, problems);
-    }
-    let needed = if other.is_some() {
-        by_levels
-    } else {
-        ["at_top", "gradient"]
-    };
-    for needed in needed {
-        if value.get(needed).is_none() {
-            problems
-                .error(value.place, format!("`{key}` has no `{needed}`"))
-                .help(
-                    "write { at_top = ..., gradient = ... }, or { levels = [...], values = [...] }",
-                );
-            return Err(Wrong);
+    let form = form(value, key, terms, problems)?;
+    match form.key {
+        "ratio" => Ok(Profile::StressShare(Box::new(share(
+            value, extent, problems,
+        )?))),
+        "levels" => Ok(Profile::Level(table(value, key, form, terms, problems)?)),
+        "depths" => Ok(Profile::Depth(table(value, key, form, terms, problems)?)),
+        "rows" => raster(value, key, extent, problems),
+        top => {
+            let from = match (top, value.optional_number("from")?, extent.levels()) {
+                ("at_surface", ..) => 0.0,
+                (_, Some(from), _) => from,
+                (_, None, levels) => levels.map_or(0.0, |[_, upper]| upper),
+            };
+            let variation = Variation::Gradient {
+                from,
+                at_top: value.number_at(top).ok_or(Wrong)?,
+                gradient: value.number_at("gradient").ok_or(Wrong)?,
+            };
+            Ok(match top {
+                "at_surface" => Profile::Depth(variation),
+                _ => Profile::Level(variation),
+            })
         }
     }
-    if other.is_some() {
-        return table(value, key, problems);
-    }
-    let top = extent.levels().map_or(0.0, |[_, upper]| upper);
-    Ok(Profile::Gradient {
-        from: value.optional_number("from")?.unwrap_or(top),
-        at_top: value.number_at("at_top").ok_or(Wrong)?,
-        gradient: value.number_at("gradient").ok_or(Wrong)?,
+}
+
+/// What is said of a ratio of overconsolidation.
+const OCR: Terms = Terms {
+    may_vanish: false,
+    may_be_nothing: false,
+    kept: |value| value,
+    printed: number,
+    forms: TABLES,
+};
+/// The forms of properties that have no gradient.
+pub(super) const TABLES: &str =
+    "{ levels = [...], values = [...] }, or { depths = [...], values = [...] }";
+
+fn share(value: &Node, extent: Extent<'_>, problems: &mut Problems) -> Result<StressShare, Wrong> {
+    let (ocr, ocr_profile) = if value.get("ocr").is_some() {
+        let own = property(value, "ocr", extent, OCR, problems).ok_or(Wrong)?;
+        (own.constant, own.profile)
+    } else {
+        (1.0, None)
+    };
+    Ok(StressShare {
+        ratio: value.number_at("ratio").ok_or(Wrong)?,
+        ocr,
+        ocr_profile,
+        exponent: value.optional_number("exponent")?.unwrap_or(0.8),
+        at_least: value.optional_number("at_least")?.unwrap_or(0.0),
+        water_level: value.optional_number("water_level")?,
     })
 }
 
@@ -211,17 +408,11 @@ fn raster(
     problems: &mut Problems,
 ) -> Result<Profile, Wrong> {
     let help = "write x = [...], y = [...] and rows = [[...], ...] with a list for every y, or raster = \"cu.csv\"";
-    let list = |name: &'static str| value.get(name);
-    if list("rows").is_some_and(Node::is_invalid) {
+    if value.get("rows").is_some_and(Node::is_invalid) {
         return Err(Wrong);
     }
-    let (Some(_), Some(_), Some(rows)) = (list("x"), list("y"), list("rows")) else {
-        let message = format!("`{key}` needs all of `x`, `y` and `rows`");
-        problems.error(value.place, message).help(help);
-        return Err(Wrong);
-    };
-    let (x, y) = (numbers(list("x"))?, numbers(list("y"))?);
-    let rows = rows.items().iter().map(|row| numbers(Some(row)));
+    let (x, y) = (numbers(value.get("x"))?, numbers(value.get("y"))?);
+    let rows = value.items_at("rows").iter().map(|row| numbers(Some(row)));
     let values = rows.collect::<Result<Vec<_>, _>>()?;
     if values.len() != y.len() || values.iter().any(|row| row.len() != x.len()) {
         let message = format!(
@@ -246,7 +437,7 @@ fn raster(
         }
     }
     let raster = Raster { x, y, values };
-    let corners = extent.polygons().into_iter().flatten().copied();
+    let corners = extent.polygons().flatten().copied();
     let far = |at: &[f64; 2]| raster.beyond(*at) > BEYOND;
     if let Some(at) = corners.into_iter().find(far) {
         let ends = |lines: &[f64]| {
@@ -276,19 +467,37 @@ fn raster(
     Ok(Profile::Raster(raster))
 }
 
-fn table(value: &Node, key: &str, problems: &mut Problems) -> Result<Profile, Wrong> {
-    let (levels, values) = (numbers(value.get("levels"))?, numbers(value.get("values"))?);
+fn table(
+    value: &Node,
+    key: &str,
+    form: &Form,
+    terms: Terms,
+    problems: &mut Problems,
+) -> Result<Variation, Wrong> {
+    let places = form.key;
+    let (levels, values) = (numbers(value.get(places))?, numbers(value.get("values"))?);
     if levels.len() != values.len() {
         problems
             .error(
                 value.place_at("values"),
                 format!(
-                    "`{key}` has {} levels and {} values",
+                    "`{key}` has {} {places} and {} values",
                     levels.len(),
                     values.len()
                 ),
             )
-            .help("one value for each level");
+            .help("one value for each of them");
+        return Err(Wrong);
+    }
+    if places == "depths"
+        && let Some(at) = levels.iter().position(|depth| *depth < 0.0)
+    {
+        problems
+            .error(
+                value.items_at(places)[at].place,
+                format!("a depth of `{key}` is {} m", number(levels[at])),
+            )
+            .help("depths are positive downwards from the surface");
         return Err(Wrong);
     }
     let goes_up = levels.first() < levels.last();
@@ -298,24 +507,23 @@ fn table(value: &Node, key: &str, problems: &mut Problems) -> Result<Profile, Wr
             .is_none_or(|order| order.is_lt() != goes_up || order.is_eq())
     });
     if let Some(at) = wrong {
-        let place = value.items_at("levels")[at + 1].place;
+        let place = value.items_at(places)[at + 1].place;
         problems
             .error(
                 place,
                 format!(
-                    "the levels of `{key}` go up and down: {} m after {} m",
+                    "the {places} of `{key}` go up and down: {} m after {} m",
                     number(levels[at + 1]),
                     number(levels[at])
                 ),
             )
-            .help("write them all upwards or all downwards, each once; a jump needs two levels close together");
+            .help(format!("write them all upwards or all downwards, each once; a jump needs two {places} close together"));
         return Err(Wrong);
     }
+    let sign = if places == "depths" { -1.0 } else { 1.0 };
     let mut rows: Vec<[f64; 2]> = std::iter::zip(levels, values)
-        .map(|(level, value)| [level, value])
+        .map(|(level, value)| [sign * level, (terms.kept)(value)])
         .collect();
-    if !goes_up {
-        rows.reverse();
-    }
-    Ok(Profile::Table(rows))
+    rows.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    Ok(Variation::Table(rows))
 }

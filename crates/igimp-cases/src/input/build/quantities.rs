@@ -8,7 +8,7 @@ use crate::input::text::{clip, row};
 use crate::input::tree::Node;
 
 /// Fields by their names.
-const FIELDS: [(&str, Field, &str); 19] = [
+const FIELDS: [(&str, Field, &str); 22] = [
     ("displacement", Field::Displacement, "m"),
     ("displacement_x", Field::DisplacementX, "m"),
     ("displacement_y", Field::DisplacementY, "m"),
@@ -28,6 +28,9 @@ const FIELDS: [(&str, Field, &str); 19] = [
     ("q", Field::Q, "Pa"),
     ("plastic_strain", Field::PlasticStrain, "-"),
     ("utilisation", Field::Utilisation, "-"),
+    ("strength", Field::Strength, "Pa"),
+    ("friction", Field::Friction, "rad"),
+    ("young", Field::Young, "Pa"),
 ];
 
 /// What the names of quantities of rigid bodies begin with.

@@ -2,7 +2,7 @@
 
 use super::{A_LENGTH, LENGTH, MANY};
 use crate::input::quantity::Dimension::{
-    Angle, Stress, StressGradient, UnitWeight, UnitWeightGradient,
+    self, Angle, Stress, StressGradient, UnitWeight, UnitWeightGradient,
 };
 use crate::input::spec::{
     Choice, Field, Kind, Range, Struct, Variant, Variants, choice, default, derived, optional,
@@ -40,44 +40,42 @@ static A_UNIT_WEIGHT: Kind = Kind::Quantity(UnitWeight, Range::NotNegative);
 static STRESSES: Kind = Kind::List(&A_STRESS, 1, MANY);
 static UNIT_WEIGHTS: Kind = Kind::List(&A_UNIT_WEIGHT, 1, MANY);
 
-/// The keys of a property that varies.
+/// The keys of a property that varies with the level, with the depth or in the plane.
 const fn profile(
-    top: Kind,
-    gradient: Kind,
+    of: Dimension,
+    gradient: Dimension,
     values: &'static Kind,
-    rows: &'static Kind,
-) -> [Field; 11] {
+    lists: &'static Kind,
+) -> [Field; 13] {
+    let [levels, depths, values] = rows(values);
     [
         optional(
+            "at_surface",
+            Kind::Quantity(of, Range::NotNegative),
+            "another form is given",
+            "value at the surface, the highest soil of the case on the same vertical line",
+        ),
+        optional(
             "at_top",
-            top,
-            "`levels` and `values` say it",
+            Kind::Quantity(of, Range::NotNegative),
+            "another form is given",
             "value at the level `from` and above",
         ),
         optional(
             "gradient",
-            gradient,
-            "`levels` and `values` say it",
-            "growth with depth below `from`",
+            Kind::Quantity(gradient, Range::Any),
+            "another form is given",
+            "growth with depth below the surface, or below `from`",
         ),
         optional(
             "from",
             A_LENGTH,
             "the highest soil of the material",
-            "level y where the growth begins",
+            "level y where the growth begins, with `at_top`",
         ),
-        optional(
-            "levels",
-            Kind::List(&LENGTH, 2, MANY),
-            "`at_top` and `gradient` say it",
-            "levels y, all upwards or all downwards",
-        ),
-        optional(
-            "values",
-            Kind::List(values, 2, MANY),
-            "`at_top` and `gradient` say it",
-            "values there; linear between the levels, constant beyond",
-        ),
+        levels,
+        depths,
+        values,
         optional(
             "raster",
             Kind::Text,
@@ -110,34 +108,143 @@ const fn profile(
         ),
         optional(
             "rows",
-            Kind::List(rows, 1, MANY),
+            Kind::List(lists, 1, MANY),
             "no points in the plane",
             "values there, a list along x for every y; bilinear between the points",
         ),
     ]
 }
 
+/// The keys of a table of values over levels or depths.
+const fn rows(values: &'static Kind) -> [Field; 3] {
+    [
+        optional(
+            "levels",
+            Kind::List(&LENGTH, 2, MANY),
+            "another form is given",
+            "levels y, all upwards or all downwards",
+        ),
+        optional(
+            "depths",
+            Kind::List(&LENGTH, 2, MANY),
+            "another form is given",
+            "depths below the surface, straight down",
+        ),
+        optional(
+            "values",
+            Kind::List(values, 2, MANY),
+            "another form is given",
+            "values at the levels or depths; linear between them, constant beyond",
+        ),
+    ]
+}
+
 static STRESS_PROFILE: Struct = Struct {
-    doc: "A stress that varies with the level: `at_top` and `gradient`, or `levels` and `values`; or in the plane: `raster`, or `x`, `y` and `rows`. Soil carries what it \
-          has where it starts. A strength may be zero somewhere, and counts as a millionth of the greatest there.",
-    fields: &profile(
-        Kind::Quantity(Stress, Range::NotNegative),
-        Kind::Quantity(StressGradient, Range::Any),
-        &A_STRESS,
-        &STRESSES,
-    ),
+    doc: "A stress that varies with the level y or with the depth below the surface: `at_top` and `gradient`, \
+          `at_surface` and `gradient`, or `values` at `levels` or `depths`; or in the plane: `raster`, or `x`, `y` and `rows`. Soil carries what it has where it starts. A \
+          strength may be zero somewhere, and counts as a millionth of the greatest there.",
+    fields: &STRESS_FORMS,
 };
 
+const STRESS_FORMS: [Field; 13] = profile(Stress, StressGradient, &A_STRESS, &STRESSES);
+
+static STRENGTH_PROFILE: Struct = Struct {
+    doc: "An undrained strength that varies: stated like any stress that varies, or as a share of the vertical \
+          effective stress of level ground, `ratio` * stress * `ocr`^`exponent`, from the weight of the soil straight above.",
+    fields: &{
+        let [
+            at_surface,
+            at_top,
+            gradient,
+            from,
+            levels,
+            depths,
+            values,
+            raster,
+            unit,
+            lengths,
+            x,
+            y,
+            lists,
+        ] = STRESS_FORMS;
+        [
+            at_surface,
+            at_top,
+            gradient,
+            from,
+            levels,
+            depths,
+            values,
+            raster,
+            unit,
+            lengths,
+            x,
+            y,
+            lists,
+            optional(
+                "ratio",
+                Kind::Number(Range::Positive),
+                "another form is given",
+                "strength of normally consolidated soil over the vertical effective stress",
+            ),
+            optional(
+                "ocr",
+                Kind::Either(&OCR),
+                "1",
+                "ratio of overconsolidation, with `ratio`",
+            ),
+            optional(
+                "exponent",
+                Kind::Number(Range::NotNegative),
+                "0.8",
+                "exponent of `ocr`, with `ratio`",
+            ),
+            optional(
+                "at_least",
+                Kind::Quantity(Stress, Range::NotNegative),
+                "\"0 kPa\"",
+                "no less strength than this, with `ratio`",
+            ),
+            optional(
+                "water_level",
+                A_LENGTH,
+                "the first condition of the water, or none",
+                "level y of water at rest when the ground consolidated, with `ratio`; 9.81 kN/m3",
+            ),
+        ]
+    },
+};
+
+static OCR: [Kind; 2] = [
+    Kind::Number(Range::Positive),
+    Kind::Table(&Struct {
+        doc: "A ratio of overconsolidation that varies with the level or with the depth.",
+        fields: &rows(&Kind::Number(Range::Positive)),
+    }),
+];
+
+static FRICTION: [Kind; 2] = [
+    Kind::Quantity(Angle, Range::NotNegative),
+    Kind::Table(&Struct {
+        doc: "An angle of friction that varies with the level or with the depth; its tangent is linear in between.",
+        fields: &rows(&Kind::Quantity(Angle, Range::NotNegative)),
+    }),
+];
+
 static UNIT_WEIGHT_PROFILE: Struct = Struct {
-    doc: "A unit weight that varies with the level, stated alike.",
+    doc: "A unit weight that varies with the level or with the depth, stated alike.",
     fields: &profile(
-        Kind::Quantity(UnitWeight, Range::NotNegative),
-        Kind::Quantity(UnitWeightGradient, Range::Any),
+        UnitWeight,
+        UnitWeightGradient,
         &A_UNIT_WEIGHT,
         &UNIT_WEIGHTS,
     ),
 };
 
+static UNDRAINED_STRENGTH: [Kind; 2] = [
+    Kind::Quantity(Stress, Range::Positive),
+    Kind::Table(&STRENGTH_PROFILE),
+];
 static POSITIVE_STRESS: [Kind; 2] = [
     Kind::Quantity(Stress, Range::Positive),
     Kind::Table(&STRESS_PROFILE),
@@ -153,7 +260,7 @@ static WEIGHT: [Kind; 2] = [
 
 const CU: Field = required(
     "cu",
-    Kind::Either(&POSITIVE_STRESS),
+    Kind::Either(&UNDRAINED_STRENGTH),
     "\"50 kPa\"",
     "undrained shear strength in plane strain",
 );
@@ -192,7 +299,7 @@ pub(in crate::input) static MATERIAL: Variants = Variants {
                 ),
                 required(
                     "friction",
-                    Kind::Quantity(Angle, Range::NotNegative),
+                    Kind::Either(&FRICTION),
                     "\"20 deg\"",
                     "friction angle, below 90 deg",
                 ),
@@ -200,7 +307,7 @@ pub(in crate::input) static MATERIAL: Variants = Variants {
                     "dilation",
                     Kind::Quantity(Angle, Range::NotNegative),
                     "\"0 deg\"",
-                    "dilation angle, at most the friction angle",
+                    "dilation angle, nowhere above the friction angle",
                 ),
                 optional(
                     "tension_cutoff",

@@ -64,7 +64,7 @@ static LINEAR_SOLVERS: [Choice; 7] = [
 ];
 
 /// Fields on particles.
-static FIELDS: [Choice; 19] = [
+static FIELDS: [Choice; 22] = [
     choice("displacement", "length of the displacement [m]"),
     choice("displacement_x", "displacement in x [m]"),
     choice("displacement_y", "displacement in y [m]"),
@@ -102,6 +102,12 @@ static FIELDS: [Choice; 19] = [
     choice("q", "deviatoric stress [Pa]"),
     choice("plastic_strain", "accumulated plastic strain invariant [-]"),
     choice("utilisation", "share of the strength that is mobilised [-]"),
+    choice(
+        "strength",
+        "undrained strength or cohesion that soil carries [Pa]",
+    ),
+    choice("friction", "angle of friction that soil carries [rad]"),
+    choice("young", "Young's modulus that soil carries [Pa]"),
 ];
 static FIELD: Kind = Kind::Choice(&FIELDS);
 
@@ -117,7 +123,7 @@ pub(in crate::input) static MONITOR: Kind = Kind::Table(&Struct {
         ),
         default(
             "record",
-            Kind::List(&FIELD, 1, 19),
+            Kind::List(&FIELD, 1, 22),
             "[\"displacement\"]",
             "what is recorded",
         ),
@@ -138,7 +144,7 @@ pub(in crate::input) static SECTION: Kind = Kind::Table(&Struct {
         ),
         default(
             "record",
-            Kind::List(&FIELD, 1, 19),
+            Kind::List(&FIELD, 1, 22),
             "[\"sigma_xx\", \"sigma_yy\", \"tau_xy\"]",
             "what is written",
         ),
@@ -433,7 +439,7 @@ pub(in crate::input) static OUTPUT: Struct = Struct {
         ),
         default(
             "figures",
-            Kind::List(&FIELD, 0, 19),
+            Kind::List(&FIELD, 0, 22),
             "[\"displacement\", \"plastic_strain\", \"sigma_yy\"]",
             "fields drawn at the end of every stage; with none no picture is drawn at all",
         ),

@@ -37,7 +37,7 @@ pub(super) fn of_body(body: &Body<2>) -> Vec<(&'static str, Array)> {
     let regime = regime.iter().map(|&regime| regime::code(regime)).collect();
     let ratios: Vec<_> = ratios
         .iter()
-        .map(|own| [own.strength, own.stiffness])
+        .map(|own| [own.strength, own.friction, own.stiffness])
         .collect();
     let points: Vec<_> = body.load_points.iter().map(|point| point.x).collect();
     let forces: Vec<_> = body.load_points.iter().map(|point| point.force).collect();
@@ -57,7 +57,10 @@ pub(super) fn of_body(body: &Body<2>) -> Vec<(&'static str, Array)> {
         ("excess", scalars(excess)),
         ("number", Array::new(&[n], Values::U64(number))),
         ("law", Array::new(&[n], Values::U64(law))),
-        ("ratios", vectors(&ratios)),
+        (
+            "ratios",
+            Array::new(&[n, 3], Values::F64(ratios.into_flattened())),
+        ),
         ("eps_p_eq", scalars(&eps_p_eq)),
         ("regime", Array::new(&[n], Values::U8(regime))),
         ("load_point_x", vectors(&points)),
@@ -121,10 +124,11 @@ pub(super) fn to_body(
         excess: reals("excess", &[n])?,
         number: indices("number", n)?,
         law: indices("law", n)?,
-        ratios: vectors("ratios", n)?
+        ratios: rows::<3>(&reals("ratios", &[n, 3])?)
             .into_iter()
-            .map(|[strength, stiffness]| Ratios {
+            .map(|[strength, friction, stiffness]| Ratios {
                 strength,
+                friction,
                 stiffness,
             })
             .collect(),

@@ -38,6 +38,7 @@ pub(in crate::results) fn body(n: usize) -> Body<2> {
         ratios: (0..n)
             .map(|k| Ratios {
                 strength: number(k, 44).abs(),
+                friction: number(k, 45).abs(),
                 stiffness: 1.0 / 3.0,
             })
             .collect(),

@@ -316,6 +316,7 @@ impl Group {
             Dimension::Stress => "stress",
             Dimension::Strain => "strain",
             Dimension::Share => "share",
+            Dimension::Angle => "angle",
         }
     }
 
