@@ -125,6 +125,7 @@ fn embankments() -> Vec<Slope> {
     };
     let embankment = |(gradient, known): (f64, [f64; 2])| Slope {
         section: Section {
+            horizontal: 0.0,
             name: format!("embankment, c_z = {gradient} psf/ft"),
             height: 20.0 * FOOT,
             unit_weight: 125.0 * PCF,
