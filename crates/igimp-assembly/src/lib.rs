@@ -24,6 +24,7 @@ mod method;
 mod nodal_forces;
 mod particles;
 mod reach;
+mod reinforcement;
 mod residual;
 mod rigid;
 mod small;
@@ -44,6 +45,9 @@ pub use loads::{LoadPoint, StepLoads};
 pub use matrix::{CompressedColumns, NodeBlock, Pattern, TangentMatrix};
 pub use method::{DomainUpdate, Geometry, Kinematics, Locking, Method, Remedy, SmallCuts};
 pub use particles::{ParticleFields, ParticleSeed, Particles};
+pub use reinforcement::{
+    Hold, Reinforcement, ReinforcementControl, Segment, SegmentState, Station,
+};
 pub use residual::OutOfBalance;
 pub use rigid::{
     AcceptedContact, ContactNode, ContactState, Drive, Interface, Penalty, Pose, RigidBody,

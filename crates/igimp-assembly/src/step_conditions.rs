@@ -9,6 +9,7 @@ use crate::constraints::Constraints;
 use crate::error::AssemblyError;
 use crate::loads::StepLoads;
 use crate::particles::Particles;
+use crate::reinforcement::ReinforcementControl;
 use crate::rigid::RigidMotion;
 
 /// A constitutive law that several bodies and threads share.
@@ -28,6 +29,9 @@ pub struct StepConditions<const D: usize> {
     pub laws: Vec<SharedLaw>,
     /// How rigid bodies move, in their order; one that is not listed is held.
     pub motions: Vec<RigidMotion<D>>,
+    /// What acts on reinforcement, in its order; what is not listed stretches with the ground, with its
+    /// whole bond.
+    pub reinforcement: Vec<ReinforcementControl>,
 }
 
 impl<const D: usize> StepConditions<D> {
@@ -48,6 +52,7 @@ impl<const D: usize> StepConditions<D> {
             loads,
             laws,
             motions: Vec::new(),
+            reinforcement: Vec::new(),
         };
         conditions.agree()?;
         Ok(conditions)
@@ -63,11 +68,29 @@ impl<const D: usize> StepConditions<D> {
         Ok(self)
     }
 
+    /// The same with what acts on reinforcement, in its order.
+    ///
+    /// # Errors
+    /// [`AssemblyError::NonFinite`] for a jack or a reduction that is none.
+    pub fn with_reinforcement(
+        mut self,
+        controls: Vec<ReinforcementControl>,
+    ) -> Result<Self, AssemblyError> {
+        self.reinforcement = controls;
+        self.agree()?;
+        Ok(self)
+    }
+
     /// Refuses conditions that do not agree.
     fn agree(&self) -> Result<(), AssemblyError> {
         self.constraints.belong_to(&self.grid)?;
         if let Some(index) = self.motions.iter().position(|motion| !motion.is_finite()) {
             let what = "motion of a rigid body";
+            return Err(AssemblyError::NonFinite { what, index });
+        }
+        let sound = |control: &ReinforcementControl| control.is_sound();
+        if let Some(index) = self.reinforcement.iter().position(|own| !sound(own)) {
+            let what = "jack or reduction of a reinforcement";
             return Err(AssemblyError::NonFinite { what, index });
         }
         self.loads.are_finite()

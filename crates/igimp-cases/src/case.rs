@@ -5,6 +5,7 @@
 
 mod grid;
 mod profile;
+mod reinforcement;
 mod rigid;
 
 use std::path::PathBuf;
@@ -17,6 +18,7 @@ use serde::{Deserialize, Serialize};
 
 pub use grid::{AxisSpec, GridSpec, MixedCells};
 pub use profile::{LEAST_STRENGTH, Profile, Profiles};
+pub use reinforcement::{ReinforcementKind, ReinforcementPart, ReinforcementQuantity};
 pub use rigid::{
     Adhesion, RigidDrive, RigidInterface, RigidMove, RigidPart, RigidQuantity, RigidShape,
     RigidShear,
@@ -47,6 +49,8 @@ pub struct Case {
     pub loads: Vec<Load>,
     /// Rigid bodies; stages name them by index.
     pub rigid: Vec<RigidPart>,
+    /// Reinforcement; stages name it by index.
+    pub reinforcement: Vec<ReinforcementPart>,
     /// What happens, in order.
     pub stages: Vec<Stage>,
     /// Newton, step cutting, linear solver.
@@ -296,6 +300,8 @@ pub struct Stage {
     pub start_from: Option<usize>,
     /// Whether displacements count from the end of this stage on.
     pub reset_displacements: bool,
+    /// Indices of the reinforcement that is installed as it begins.
+    pub install: Vec<usize>,
     /// Conditions that end the stage early.
     pub stop_when: StopWhen,
 }
@@ -523,6 +529,8 @@ pub enum Quantity {
     Reaction(usize),
     /// A number of a rigid body.
     Rigid(usize, RigidQuantity),
+    /// A number of a member of reinforcement.
+    Reinforcement(usize, ReinforcementQuantity),
     /// Factor on a load \[-\].
     LoadFactor(usize),
     /// A field at a monitor.

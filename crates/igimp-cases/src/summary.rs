@@ -164,6 +164,22 @@ pub struct StageSummary {
     pub settlement: Option<f64>,
     /// What a strength reduction found.
     pub safety: Option<SafetySummary>,
+    /// The reinforcement that was there at its end.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub reinforcement: Vec<MemberSummary>,
+}
+
+/// The tension of a member of reinforcement at the end of a stage.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct MemberSummary {
+    /// Name.
+    pub name: String,
+    /// Largest tension along it \[N/m\].
+    pub force: f64,
+    /// Tension at its head \[N/m\].
+    pub head_force: f64,
+    /// Share of its length on which tension is at its limit \[-\].
+    pub at_limit: f64,
 }
 
 /// How a stage ended.

@@ -315,6 +315,7 @@ mod tests {
                 settlement: 0.0,
                 srf: Vec::new(),
                 rigid: Vec::new(),
+                reinforcement: Vec::new(),
             },
         };
         let events = [

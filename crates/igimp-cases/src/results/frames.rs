@@ -1,4 +1,4 @@
-//! What a run writes for ParaView: the particles, the grid and rigid bodies, frame by frame.
+//! What a run writes for ParaView: the particles, the grid, rigid bodies and reinforcement, frame by frame.
 
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -10,9 +10,19 @@ use super::atomic::{at, sync_folder, sync_together};
 use super::fields;
 use super::particles::{Extras, of_grid, of_particles};
 use super::pvd::{self, Collection};
-use super::rigid::{Standing, lines};
+use super::reinforcement::{self, Installed};
+use super::rigid::{self, Standing};
 use crate::case::Field;
 use crate::error::CaseError;
+
+/// Structures that are there in a frame.
+#[derive(Clone, Debug, Default)]
+pub struct Structures<'a> {
+    /// Rigid bodies.
+    pub rigid: Vec<Standing<'a>>,
+    /// Reinforcement.
+    pub reinforcement: Vec<Installed<'a>>,
+}
 
 /// The frames of a run.
 #[derive(Debug)]
@@ -22,20 +32,30 @@ pub struct Frames {
     grid: Collection,
     /// Of a case with rigid bodies.
     rigid: Option<Collection>,
+    /// Of a case with reinforcement.
+    reinforcement: Option<Collection>,
     /// Frames that the disk is known to have.
     synced: usize,
 }
 
 impl Frames {
-    /// Goes on after the first `frames` frames of a folder that exists; 0 begins anew. Rigid bodies have
-    /// frames in cases that have some.
+    /// Goes on after the first `frames` frames of a folder that exists; 0 begins anew. Rigid bodies and
+    /// reinforcement have frames in cases that have some.
     ///
     /// # Errors
     /// [`CaseError::Unusable`], [`CaseError::File`].
-    pub fn open(folder: &Path, frames: usize, has_rigid: bool) -> Result<Self, CaseError> {
-        let rigid = has_rigid.then(|| Collection::resume(folder, pvd::RIGID, frames));
+    pub fn open(
+        folder: &Path,
+        frames: usize,
+        [has_rigid, has_reinforcement]: [bool; 2],
+    ) -> Result<Self, CaseError> {
+        let of = |stem, is_there: bool| {
+            let opened = is_there.then(|| Collection::resume(folder, stem, frames));
+            opened.transpose()
+        };
         Ok(Self {
-            rigid: rigid.transpose()?,
+            rigid: of(pvd::RIGID, has_rigid)?,
+            reinforcement: of(pvd::REINFORCEMENT, has_reinforcement)?,
             folder: folder.to_path_buf(),
             particles: Collection::resume(folder, pvd::PARTICLES, frames)?,
             grid: Collection::resume(folder, pvd::GRID, frames)?,
@@ -52,17 +72,21 @@ impl Frames {
         time: f64,
         (particles, laws): (&Particles<2>, &[SharedLaw]),
         grid: &Grid<2>,
-        rigid: &[Standing<'_>],
+        structures: &Structures<'_>,
     ) -> Result<(), CaseError> {
         with_extras(particles, laws, |cells| self.particles.add(time, &cells))?;
         self.grid.add(time, &of_grid(grid, None))?;
         if let Some(collection) = &mut self.rigid {
-            collection.add(time, &lines(rigid))?;
+            collection.add(time, &rigid::lines(&structures.rigid))?;
+        }
+        if let Some(collection) = &mut self.reinforcement {
+            collection.add(time, &reinforcement::lines(&structures.reinforcement))?;
         }
         Ok(())
     }
 
-    /// Writes particles beside the frames, as `NAME.vtu`, and rigid bodies as `NAME-rigid.vtu`.
+    /// Writes particles beside the frames, as `NAME.vtu`, rigid bodies as `NAME-rigid.vtu`, and
+    /// reinforcement as `NAME-reinforcement.vtu`.
     ///
     /// # Errors
     /// [`CaseError::File`].
@@ -70,11 +94,15 @@ impl Frames {
         &self,
         name: &str,
         (particles, laws): (&Particles<2>, &[SharedLaw]),
-        rigid: &[Standing<'_>],
+        structures: &Structures<'_>,
     ) -> Result<(), CaseError> {
+        let file = |of| self.folder.join(format!("{name}{of}.vtu"));
         if self.rigid.is_some() {
-            let name = format!("{name}{}.vtu", pvd::OF_BODIES);
-            lines(rigid).write(&self.folder.join(name))?;
+            rigid::lines(&structures.rigid).write(&file(pvd::OF_BODIES))?;
+        }
+        if self.reinforcement.is_some() {
+            let lines = reinforcement::lines(&structures.reinforcement);
+            lines.write(&file(pvd::OF_REINFORCEMENT))?;
         }
         let path = self.folder.join(name).with_extension("vtu");
         with_extras(particles, laws, |cells| cells.write(&path))
@@ -97,7 +125,8 @@ impl Frames {
             let file = File::open(&path).map_err(at(&path))?;
             Ok((path, file))
         };
-        let collections = [&self.particles, &self.grid].into_iter().chain(&self.rigid);
+        let collections = [&self.particles, &self.grid].into_iter();
+        let collections = collections.chain(&self.rigid).chain(&self.reinforcement);
         let files: Vec<_> = collections
             .flat_map(new)
             .map(open)

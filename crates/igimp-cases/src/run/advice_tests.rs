@@ -51,6 +51,7 @@ fn case(kind: StageKind) -> Case {
         },
         loads: Vec::new(),
         rigid: Vec::new(),
+        reinforcement: Vec::new(),
         stages: vec![Stage {
             name: "first".into(),
             kind,
@@ -58,6 +59,7 @@ fn case(kind: StageKind) -> Case {
             geometry: Geometry::Moving,
             start_from: None,
             reset_displacements: false,
+            install: Vec::new(),
             stop_when: StopWhen::default(),
         }],
         solver: SolverSettings::default(),

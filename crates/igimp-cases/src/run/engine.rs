@@ -14,7 +14,9 @@ use super::records::{Moment, Records, largest_displacement};
 use super::session::{Ended, Session};
 use super::state::State;
 use super::{Event, Failure, Listener, Run, Start, Target};
-use super::{checks, failure, initial, loading, processor, run_out, safety, sections, study};
+use super::{
+    checks, failure, initial, loading, processor, reinforcement, run_out, safety, sections, study,
+};
 use crate::case::{Case, StageKind};
 use crate::error::CaseError;
 use crate::estimate::Expectation;
@@ -251,6 +253,7 @@ impl Stages {
             export.end_of_stage(number)?;
         }
         summary.seconds = seconds_before + clock.elapsed().as_secs_f64();
+        summary.reinforcement = reinforcement::told(session.model.case, state);
         summary.largest_displacement = largest_displacement(&state.body.particles);
         if let StageKind::Displacement { .. } = stage.kind {
             summary.settlement = Some(state.controls.settlement);
@@ -317,6 +320,10 @@ impl Stages {
         } else {
             self.read(session, number, state, &summary)?;
         }
+        // What a jack held is locked off.
+        for own in &mut state.controls.reinforcement {
+            own.jack = None;
+        }
         session.tell(&Event::StageEnded { summary: &summary });
         session.summary.stages.push(summary);
         if goes_on && stage.reset_displacements {
@@ -357,6 +364,7 @@ impl Stages {
             progress: summary.reached,
             particles: &state.body.particles,
             rigid: &state.body.rigid,
+            reinforcement: &state.body.reinforcement,
             controls: &state.controls,
             resistance,
             plastic_share: summary.plastic_share,

@@ -84,12 +84,19 @@ impl<'c> Model<'c> {
         }
         let mut body = Body::new(Particles::new(&seeds)?.with_ratios(ratios)?);
         body.load_points = load_points(case);
-        let mut controls = Controls::none(case.loads.len(), case.materials.len(), case.rigid.len());
+        let mut controls = Controls::none(case);
         for (index, part) in case.rigid.iter().enumerate() {
             if part.from_start {
                 body.rigid
                     .push(super::rigid::made(case, index, model.laws.len())?);
                 controls.rigid[index].placed = true;
+            }
+        }
+        for (index, part) in case.reinforcement.iter().enumerate() {
+            if part.from_start {
+                body.reinforcement
+                    .push(super::reinforcement::made(case, part));
+                controls.reinforcement[index].installed = true;
             }
         }
         if body.particles.clear_of(&body.rigid) > 0 {
@@ -178,7 +185,8 @@ impl<'c> Model<'c> {
             },
             self.laws_reduced_by(&to.srf)?,
         )?
-        .with_motions(super::rigid::motions(self.case, from, to))
+        .with_motions(super::rigid::motions(self.case, from, to))?
+        .with_reinforcement(super::reinforcement::controls(self.case, to))
     }
 
     /// The laws at reduced strength; `srf` has a strength reduction factor for each \[-\].

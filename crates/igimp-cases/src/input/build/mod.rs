@@ -16,6 +16,7 @@ mod materials;
 mod outputs;
 mod profiles;
 mod quantities;
+mod reinforcement;
 mod rigid;
 mod safety;
 mod site;
@@ -40,6 +41,7 @@ struct AllNames {
     bodies: Names,
     loads: Names,
     rigid: Names,
+    reinforcement: Names,
     stages: Names,
     monitors: Names,
 }
@@ -64,6 +66,7 @@ impl AllNames {
             bodies: Names::of_list("body", tree.get("bodies"), problems),
             loads: Names::of_list("load", tree.get("loads"), problems),
             rigid: Names::of_list("rigid body", tree.get("rigid"), problems),
+            reinforcement: Names::of_list("reinforcement", tree.get("reinforcement"), problems),
             stages: Names::of_list("stage", tree.get("stages"), problems),
             monitors: Names::of_list("monitor", tree.get("monitors"), problems),
         }
@@ -106,6 +109,8 @@ pub(super) fn build(tree: &mut Node, file: &Path, problems: &mut Problems) -> Op
     };
     let rigid = rigid::rigid(tree, &around, problems);
     rigid::check_use(tree, &names, problems);
+    let reinforcement = reinforcement::reinforcement(tree, &site, problems);
+    reinforcement::check_searches(tree, &names, problems);
     let context = stages::Context {
         tree,
         names: &names,
@@ -149,6 +154,7 @@ pub(super) fn build(tree: &mut Node, file: &Path, problems: &mut Problems) -> Op
         boundaries: boundaries?,
         loads: all(loads)?,
         rigid: all(rigid)?,
+        reinforcement: all(reinforcement)?,
         stages: all(stages)?,
         solver: solver?,
         monitors: all(monitors)?,
