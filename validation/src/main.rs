@@ -25,6 +25,7 @@ mod oracle;
 mod pictures;
 mod prism;
 mod reference;
+mod reinforcement;
 mod review;
 mod runs;
 mod slopes;
@@ -105,6 +106,9 @@ enum Case {
     TiltedLayer,
     Layers,
     StrengthProfile,
+    ReinforcementBar,
+    ReinforcementSeam,
+    ReinforcementCut,
     FootingContact,
     ContactFooting,
     ContactColumn,
@@ -138,6 +142,9 @@ impl Case {
             Self::TiltedLayer => tilted_layer::study(level, out),
             Self::Layers => layers::study(out),
             Self::StrengthProfile => strength_profile::study(level, out),
+            Self::ReinforcementBar => reinforcement::bar::study(out),
+            Self::ReinforcementSeam => reinforcement::seam::study(level, out),
+            Self::ReinforcementCut => reinforcement::cut::study(level, out),
             Self::FootingContact => footing_contact::study(level, out),
             Self::ContactFooting => contact::footing::study(level, out),
             Self::ContactColumn => contact::column::study(out),
