@@ -35,6 +35,7 @@ mod study;
 mod table;
 mod tilted_layer;
 mod von_mises_slope;
+mod water;
 
 use std::error::Error;
 use std::path::{Path, PathBuf};
@@ -109,6 +110,7 @@ enum Case {
     ReinforcementBar,
     ReinforcementSeam,
     ReinforcementCut,
+    Water,
     FootingContact,
     ContactFooting,
     ContactColumn,
@@ -145,6 +147,7 @@ impl Case {
             Self::ReinforcementBar => reinforcement::bar::study(out),
             Self::ReinforcementSeam => reinforcement::seam::study(level, out),
             Self::ReinforcementCut => reinforcement::cut::study(level, out),
+            Self::Water => water::study(level, out),
             Self::FootingContact => footing_contact::study(level, out),
             Self::ContactFooting => contact::footing::study(level, out),
             Self::ContactColumn => contact::column::study(out),

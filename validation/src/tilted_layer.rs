@@ -1,4 +1,4 @@
-//! Dry soil without cohesion: a long layer on a rough base is tilted until it slides.
+//! Soil without cohesion, dry and with water in its pores: a long layer on a rough base is tilted until it slides.
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -6,7 +6,8 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use igimp_assembly::{
-    Constraints, Method, ParticleSeed, Particles, SharedLaw, StepConditions, StepLoads,
+    Constraints, Method, ParticleSeed, Particles, PoreSite, PoreState, PoreWater, SharedLaw,
+    StepConditions, StepLoads, Water,
 };
 use igimp_cases::CaseError;
 use igimp_cases::check::Band;
@@ -22,13 +23,21 @@ use crate::oracle::{Oracle, OracleKind};
 use crate::study::{Level, RunRecord, Study};
 
 /// What the book says of the study.
-const ABOUT: &str = "The infinite slope: a layer of dry soil without cohesion, φ = 30°, is tilted between two smooth ends until it slides. It does at tan β = tan φ, once the layer is long enough for its ends not to matter.";
+const ABOUT: &str = "The infinite slope: a layer of dry soil without cohesion, φ = 30°, is tilted between two smooth ends until it slides. It does at tan β = tan φ, once the layer is long enough for its ends not to matter; with water that seeps along it, and with r_u, at tilts that are known as well.";
 /// Sliding on planes parallel to the surface.
 const INFINITE_SLOPE: Oracle = Oracle {
     kind: OracleKind::Exact,
     source: "infinite slope without cohesion",
     locator: "F = tan φ / tan β",
 };
+/// The same with water.
+const WET_SLOPE: Oracle = Oracle {
+    kind: OracleKind::Exact,
+    source: "infinite slope without cohesion, with pore pressure",
+    locator: "seepage along it up to m of its depth: tan β = (1 − m γ_w/γ) tan φ; r_u: tan β = (1 − r_u/cos² β) tan φ",
+};
+/// Unit weight of water \[N/m³\].
+const WATER: f64 = 9810.0;
 /// Angle of friction and of dilation \[degree\].
 const FRICTION: f64 = 30.0;
 /// The tilt at the end of the march \[degree\].
@@ -53,7 +62,11 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
     if level == Level::Full {
         layers.extend([Layer::new(80, 4), Layer::new(20, 8)]);
     }
-    let slides: Vec<Slide> = layers.par_iter().map(Layer::tilt).collect();
+    wet_layers(&mut study, level);
+    let slides: Vec<Slide> = layers
+        .par_iter()
+        .map(|layer| layer.tilt(Pores::Dry))
+        .collect();
     let mut table = Table::new(
         "tilt_at_sliding",
         &["L/d_[-]", "cells_over_d", "tan(beta)/tan(phi)_[-]"],
@@ -79,6 +92,98 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
     table.write_csv(&study.folder)?;
     figure(&study, &layers, &slides)?;
     Ok(study)
+}
+
+/// Layers with water that slide.
+fn wet_layers(study: &mut Study, level: Level) {
+    let mut wet = vec![(Layer::new(40, 4), Pores::Seepage(1.0))];
+    if level >= Level::Default {
+        let seepage = [0.5].map(|share| (Layer::new(40, 4), Pores::Seepage(share)));
+        wet.extend(seepage);
+        wet.extend([0.1, 0.3].map(|ratio| (Layer::new(40, 4), Pores::Ratio(ratio))));
+    }
+    let slides: Vec<Slide> = wet
+        .par_iter()
+        .map(|(layer, pores)| layer.tilt(*pores))
+        .collect();
+    for ((layer, pores), slide) in wet.iter().zip(&slides) {
+        let Layer { length, cells } = *layer;
+        let name = format!("{}, L/d = {length}, h = d/{cells}", pores.label());
+        let run = study.run(RunRecord::new(name, &slide.report, slide.elapsed));
+        let exact = WET_SLOPE.says(pores.tilt_at_sliding());
+        let quantity = "tan β / tan φ at sliding, with water [-]";
+        study.check(run, quantity, exact, Band::Relative(0.005), slide.strength);
+    }
+}
+
+/// Water in the pores of a layer.
+#[derive(Clone, Copy, Debug)]
+enum Pores {
+    Dry,
+    /// Along the layer, up to a share of its depth.
+    Seepage(f64),
+    /// r_u.
+    Ratio(f64),
+}
+
+impl Pores {
+    fn label(self) -> String {
+        match self {
+            Self::Dry => "dry".to_owned(),
+            Self::Seepage(share) => format!("seepage up to {share} d"),
+            Self::Ratio(ratio) => format!("r_u = {ratio}"),
+        }
+    }
+
+    /// tan β / tan φ at which the infinite slope slides \[-\].
+    fn tilt_at_sliding(self) -> f64 {
+        match self {
+            Self::Dry => 1.0,
+            Self::Seepage(share) => 1.0 - share * WATER / UNIT_WEIGHT,
+            Self::Ratio(ratio) => {
+                // 1/cos² β = 1 + t², t = tan β: r μ t² + t − (1 − r) μ = 0.
+                let tan = FRICTION.to_radians().tan();
+                let [a, c] = [ratio * tan, -(1.0 - ratio) * tan];
+                (2.0 * -c / (1.0 + (1.0 - 4.0 * a * c).sqrt())) / tan
+            }
+        }
+    }
+
+    /// The water of a step, at a tilt and a multiple of gravity.
+    fn at(self, tilt: f64, gravity: f64) -> Water<2> {
+        let (slope, top, factor) = match self {
+            Self::Dry => return Water::default(),
+            Self::Seepage(share) => (WATER, share * DEPTH, tilt.cos()),
+            Self::Ratio(ratio) => (ratio * UNIT_WEIGHT, DEPTH, tilt.cos().recip()),
+        };
+        Water {
+            given: Some(Arc::new(Across { slope, top })),
+            factor: factor * gravity,
+            stiffness: Vec::new(),
+        }
+    }
+}
+
+/// Pressure that grows across the layer from a level on down.
+#[derive(Debug)]
+struct Across {
+    slope: f64,
+    top: f64,
+}
+
+impl PoreWater<2> for Across {
+    fn at(&self, site: PoreSite<'_, 2>) -> PoreState<2> {
+        let depth = self.top - site.x[1];
+        if depth <= 0.0 {
+            return PoreState::dry();
+        }
+        PoreState {
+            pressure: self.slope * depth,
+            reference: self.slope * depth,
+            gradient: [0.0, -self.slope],
+            ..PoreState::dry()
+        }
+    }
 }
 
 /// A layer of depth d on a grid.
@@ -109,7 +214,7 @@ impl Layer {
     }
 
     /// Raises gravity on the level layer and tilts it until it slides.
-    fn tilt(&self) -> Slide {
+    fn tilt(&self, pores: Pores) -> Slide {
         let clock = Instant::now();
         let h = DEPTH / self.cells as f64;
         let [columns, rows] = [self.length * self.cells, self.cells];
@@ -143,7 +248,8 @@ impl Layer {
                 supports.clone(),
                 StepLoads::gravity([weight * sin, -weight * cos]),
                 vec![law.clone()],
-            )
+            )?
+            .with_water(pores.at(tilt(to), (to / LEVEL_SHARE).min(1.0)))
         };
         let middle = 2 * columns * (2 * rows - 1) + columns;
         // Displacement in the middle and tilt before the last step and after it.

@@ -41,6 +41,7 @@ impl<const D: usize> Particles<D> {
             &mut fields.sigma,
             &mut fields.history,
             &mut fields.regime,
+            &mut fields.excess,
         );
         let particles = moving.into_par_iter().zip(stressed.into_par_iter());
         particles
@@ -49,7 +50,7 @@ impl<const D: usize> Particles<D> {
             .with_min_len(CHUNK)
             .for_each(|(particle, ((moving, stressed), slot))| {
                 let (x, displacement, half_length, half_length0, def_grad) = moving;
-                let (b_e, sigma, history, regime) = stressed;
+                let (b_e, sigma, history, regime, excess) = stressed;
                 let own = &trial.particles[slot as usize];
                 let step = interpolate(stencils, particle, u);
                 for axis in 0..D {
@@ -74,6 +75,11 @@ impl<const D: usize> Particles<D> {
                         };
                     }
                 }
+                *excess = match method.kinematics {
+                    _ if own.excess == 0.0 => 0.0,
+                    Kinematics::FiniteStrain => own.excess / determinant(def_grad),
+                    Kinematics::SmallStrain => own.excess,
+                };
                 *history = own.history;
                 *regime = own.regime;
             });
@@ -88,6 +94,16 @@ impl<const D: usize> Particles<D> {
         let ways = seeded_too_close(bodies, self);
         self.put_back(&ways);
         ways.len()
+    }
+
+    /// Keeps the given pore pressure of an accepted step, by particle; an empty one is none \[force/length²\].
+    pub fn fill_pores(&mut self, pressure: &[f64]) {
+        let fields = self.fields_mut();
+        if pressure.is_empty() {
+            fields.pore_pressure.fill(0.0);
+        } else {
+            fields.pore_pressure.copy_from_slice(pressure);
+        }
     }
 
     /// Moves particles of an accepted step, such as those that stand too close to a rigid body; nothing

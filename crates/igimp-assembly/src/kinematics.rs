@@ -21,6 +21,7 @@ use igimp_shape::Support;
 
 use crate::error::AssemblyError;
 use crate::method::{Geometry, Kinematics, Method};
+use crate::pore_water::PoreResponse;
 use crate::small::{congruence, determinant, identity, inverse};
 
 /// An elastic Hencky strain beyond this makes b_e = exp(2 ε_e) leave the floating-point numbers \[-\].
@@ -31,7 +32,7 @@ const LARGEST_STRAIN: f64 = 300.0;
 pub struct ParticleTrial<const D: usize> {
     /// ΔF, the deformation gradient of the step \[-\].
     pub delta_def_grad: [[f64; D]; D],
-    /// Kirchhoff stress τ (Cauchy stress in small strain) \[force/length²\], tension positive.
+    /// Kirchhoff stress τ (Cauchy stress in small strain) that the law answers \[force/length²\], tension positive.
     pub tau: Tensor,
     /// Principal elastic Hencky strain after the return \[-\], extension positive.
     pub eps_e: Principal,
@@ -41,6 +42,8 @@ pub struct ParticleTrial<const D: usize> {
     pub history: History,
     /// Where on the yield surface the stress is.
     pub regime: Regime,
+    /// Excess pore pressure, in the stress that τ is in; compression positive \[force/length²\].
+    pub excess: f64,
 }
 
 impl<const D: usize> ParticleTrial<D> {
@@ -53,6 +56,7 @@ impl<const D: usize> ParticleTrial<D> {
             frame: identity(),
             history: History::default(),
             regime: Regime::Elastic,
+            excess: 0.0,
         }
     }
 
@@ -69,7 +73,7 @@ pub(crate) struct Linearisation<const D: usize> {
     pub(crate) push: [[f64; D]; D],
     /// ΔF_c⁻¹ of the cell-averaged gradient; the identity in small strain.
     pub(crate) push_bar: [[f64; D]; D],
-    /// Stress and tangent in spatial axes.
+    /// Stress and tangent in spatial axes, those of the water in the pores included.
     pub(crate) lifted: Lifted<D>,
 }
 
@@ -80,6 +84,7 @@ pub(crate) struct ParticleState<'a> {
     pub(crate) b_e: &'a Tensor,
     pub(crate) history: &'a History,
     pub(crate) law: &'a dyn ConstitutiveModel,
+    pub(crate) pores: PoreResponse,
 }
 
 /// Evaluates one particle at nodal step displacements `u`; writes its `trial`.
@@ -114,11 +119,15 @@ pub(crate) fn evaluate<const D: usize>(
     if method.geometry == Geometry::Moving {
         positive(particle, determinant(&delta_def_grad))?;
     }
-    let linearisation = match method.kinematics_of_step() {
+    let mut ln_volume = 0.0;
+    let mut linearisation = match method.kinematics_of_step() {
         Kinematics::FiniteStrain => {
             let det = determinant(&delta_def_grad);
             let det_bar = positive(particle, determinant(&delta_bar))?;
             let lambda = (det_bar / det).cbrt();
+            if state.pores.stiffness != 0.0 {
+                ln_volume = det_bar.ln();
+            }
             let b_trial = pushed_forward(state.b_e, &delta_def_grad, lambda * lambda);
             Linearisation {
                 push: inverse(&delta_def_grad, det),
@@ -137,6 +146,9 @@ pub(crate) fn evaluate<const D: usize>(
             }
             for a in 0..3 {
                 strain[a][a] += difference / 3.0;
+            }
+            for (a, row) in gradient_bar.iter().enumerate() {
+                ln_volume += row[a];
             }
             Linearisation {
                 push: identity(),
@@ -157,7 +169,12 @@ pub(crate) fn evaluate<const D: usize>(
         frame: lifted.frame,
         history: lifted.history,
         regime: lifted.regime,
+        excess: state.pores.excess_after(ln_volume),
     };
+    if !state.pores.is_none() {
+        let mean = state.pores.given - trial.excess;
+        linearisation.lifted.add_mean(mean, state.pores.stiffness);
+    }
     Ok(linearisation)
 }
 

@@ -23,6 +23,7 @@ mod matrix;
 mod method;
 mod nodal_forces;
 mod particles;
+mod pore_water;
 mod reach;
 mod reinforcement;
 mod residual;
@@ -45,6 +46,7 @@ pub use loads::{LoadPoint, StepLoads};
 pub use matrix::{CompressedColumns, NodeBlock, Pattern, TangentMatrix};
 pub use method::{DomainUpdate, Geometry, Kinematics, Locking, Method, Remedy, SmallCuts};
 pub use particles::{ParticleFields, ParticleSeed, Particles};
+pub use pore_water::{HeldForces, PoreSite, PoreState, PoreWater, Water};
 pub use reinforcement::{
     Hold, Reinforcement, ReinforcementControl, Segment, SegmentState, Station,
 };

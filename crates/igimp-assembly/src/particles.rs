@@ -37,7 +37,8 @@ pub struct ParticleFields<const D: usize> {
     pub def_grad: Vec<[[f64; D]; D]>,
     /// Elastic left Cauchy–Green tensor b_e, 3 × 3 with zz in plane strain \[-\].
     pub b_e: Vec<Tensor>,
-    /// Cauchy stress σ, 3 × 3, tension positive \[force/length²\].
+    /// Cauchy stress that the law answers, 3 × 3, tension positive: effective stress σ′ where there is water, else σ
+    /// \[force/length²\].
     pub sigma: Vec<Tensor>,
     /// Current half-lengths l_p \[length\].
     pub half_length: Vec<[f64; D]>,
@@ -47,6 +48,12 @@ pub struct ParticleFields<const D: usize> {
     pub volume0: Vec<f64>,
     /// Mass \[mass\].
     pub mass: Vec<f64>,
+    /// Given pore pressure u in the last step, compression positive \[force/length²\].
+    pub pore_pressure: Vec<f64>,
+    /// Excess pore pressure that the soil made itself, compression positive \[force/length²\].
+    pub excess: Vec<f64>,
+    /// The number that a particle was seeded with and keeps, whatever others come and go.
+    pub number: Vec<usize>,
     /// Index of the constitutive law.
     pub law: Vec<usize>,
     /// Strength and stiffness over those of the law \[-\].
@@ -101,6 +108,9 @@ impl<const D: usize> Particles<D> {
                     .iter()
                     .map(|seed| seed.volume * seed.density)
                     .collect(),
+                pore_pressure: vec![0.0; n],
+                excess: vec![0.0; n],
+                number: (0..n).collect(),
                 law: seeds.iter().map(|seed| seed.law).collect(),
                 ratios: vec![Ratios::ONE; n],
                 history: vec![History::default(); n],
@@ -132,6 +142,9 @@ impl<const D: usize> Particles<D> {
             fields.half_length0.len(),
             fields.volume0.len(),
             fields.mass.len(),
+            fields.pore_pressure.len(),
+            fields.excess.len(),
+            fields.number.len(),
             fields.law.len(),
             fields.ratios.len(),
             fields.history.len(),
@@ -194,6 +207,67 @@ impl<const D: usize> Particles<D> {
         young * self.fields.ratios[particle].stiffness
     }
 
+    /// Those particles alone that a rule keeps by their places.
+    ///
+    /// # Errors
+    /// [`AssemblyError::EmptyBody`] if it keeps none.
+    pub fn keeping(&self, keep: impl Fn(usize) -> bool) -> Result<Self, AssemblyError> {
+        let kept: Vec<usize> = (0..self.len()).filter(|&particle| keep(particle)).collect();
+        let from = &self.fields;
+        Self::from_fields(ParticleFields {
+            x: picked(&from.x, &kept),
+            displacement: picked(&from.displacement, &kept),
+            def_grad: picked(&from.def_grad, &kept),
+            b_e: picked(&from.b_e, &kept),
+            sigma: picked(&from.sigma, &kept),
+            half_length: picked(&from.half_length, &kept),
+            half_length0: picked(&from.half_length0, &kept),
+            volume0: picked(&from.volume0, &kept),
+            mass: picked(&from.mass, &kept),
+            pore_pressure: picked(&from.pore_pressure, &kept),
+            excess: picked(&from.excess, &kept),
+            number: picked(&from.number, &kept),
+            law: picked(&from.law, &kept),
+            ratios: picked(&from.ratios, &kept),
+            history: picked(&from.history, &kept),
+            regime: picked(&from.regime, &kept),
+        })
+    }
+
+    /// These particles with others behind them.
+    #[must_use]
+    pub fn joined_by(&self, others: &Self) -> Self {
+        let (a, b) = (&self.fields, &others.fields);
+        Self {
+            fields: ParticleFields {
+                x: joined(&a.x, &b.x),
+                displacement: joined(&a.displacement, &b.displacement),
+                def_grad: joined(&a.def_grad, &b.def_grad),
+                b_e: joined(&a.b_e, &b.b_e),
+                sigma: joined(&a.sigma, &b.sigma),
+                half_length: joined(&a.half_length, &b.half_length),
+                half_length0: joined(&a.half_length0, &b.half_length0),
+                volume0: joined(&a.volume0, &b.volume0),
+                mass: joined(&a.mass, &b.mass),
+                pore_pressure: joined(&a.pore_pressure, &b.pore_pressure),
+                excess: joined(&a.excess, &b.excess),
+                number: joined(&a.number, &b.number),
+                law: joined(&a.law, &b.law),
+                ratios: joined(&a.ratios, &b.ratios),
+                history: joined(&a.history, &b.history),
+                regime: joined(&a.regime, &b.regime),
+            },
+        }
+    }
+
+    /// Where the particle of a number is, if it is there.
+    pub fn place_of(&self, number: usize) -> Option<usize> {
+        if self.fields.number.get(number) == Some(&number) {
+            return Some(number);
+        }
+        self.fields.number.iter().position(|&own| own == number)
+    }
+
     /// Number of particles.
     pub fn len(&self) -> usize {
         self.fields.x.len()
@@ -209,6 +283,17 @@ impl<const D: usize> Particles<D> {
         determinant(&self.fields.def_grad[particle]) * self.fields.volume0[particle]
     }
 
+    /// Total Cauchy stress σ of a particle, tension positive: what its law answers, less the pressure of the water in
+    /// its pores \[force/length²\].
+    pub fn total_stress(&self, particle: usize) -> Tensor {
+        let mut sigma = self.fields.sigma[particle];
+        let u = self.fields.pore_pressure[particle] + self.fields.excess[particle];
+        for axis in 0..3 {
+            sigma[axis][axis] -= u;
+        }
+        sigma
+    }
+
     /// Counts displacements from the present positions on; nothing else changes.
     pub fn reset_displacements(&mut self) {
         self.fields.displacement.fill([0.0; D]);
@@ -218,6 +303,14 @@ impl<const D: usize> Particles<D> {
     pub(crate) fn fields_mut(&mut self) -> &mut ParticleFields<D> {
         &mut self.fields
     }
+}
+
+fn picked<T: Clone>(from: &[T], which: &[usize]) -> Vec<T> {
+    which.iter().map(|&k| from[k].clone()).collect()
+}
+
+fn joined<T: Clone>(a: &[T], b: &[T]) -> Vec<T> {
+    [a, b].concat()
 }
 
 fn validate<const D: usize>(particle: usize, seed: &ParticleSeed<D>) -> Result<(), AssemblyError> {
@@ -260,6 +353,12 @@ fn validate_state<const D: usize>(
     )?;
     hold("volume0", &[fields.volume0[particle]], Range::Positive)?;
     hold("mass", &[fields.mass[particle]], Range::NotNegative)?;
+    hold(
+        "pore_pressure",
+        &[fields.pore_pressure[particle]],
+        Range::Finite,
+    )?;
+    hold("excess", &[fields.excess[particle]], Range::Finite)?;
     let Ratios {
         strength,
         stiffness,

@@ -99,8 +99,9 @@ pub(crate) fn force_of_round_off<const D: usize>(
         .map(|chunk| {
             let mut squared = 0.0;
             for particle in chunk * CHUNK..n.min((chunk + 1) * CHUNK) {
-                let modulus =
-                    moduli[particles.law[particle]] * particles.ratios[particle].stiffness;
+                let modulus = moduli[particles.law[particle]]
+                    * particles.ratios[particle].stiffness
+                    + conditions.water.stiffness_of(particles, particle);
                 let stress = STRAIN_ROUND_OFF * modulus * particles.volume(particle);
                 let mut slopes = 0.0;
                 for support in stencils.of(particle) {

@@ -9,6 +9,7 @@ use crate::constraints::Constraints;
 use crate::error::AssemblyError;
 use crate::loads::StepLoads;
 use crate::particles::Particles;
+use crate::pore_water::{HeldForces, Water};
 use crate::reinforcement::ReinforcementControl;
 use crate::rigid::RigidMotion;
 
@@ -32,6 +33,10 @@ pub struct StepConditions<const D: usize> {
     /// What acts on reinforcement, in its order; what is not listed stretches with the ground, with its
     /// whole bond.
     pub reinforcement: Vec<ReinforcementControl>,
+    /// Water in the pores at the end of the step.
+    pub water: Water<D>,
+    /// What still holds the body where a change has put it out of balance.
+    pub held: Option<HeldForces<D>>,
 }
 
 impl<const D: usize> StepConditions<D> {
@@ -53,6 +58,8 @@ impl<const D: usize> StepConditions<D> {
             laws,
             motions: Vec::new(),
             reinforcement: Vec::new(),
+            water: Water::default(),
+            held: None,
         };
         conditions.agree()?;
         Ok(conditions)
@@ -81,6 +88,26 @@ impl<const D: usize> StepConditions<D> {
         Ok(self)
     }
 
+    /// The same with water in the pores.
+    ///
+    /// # Errors
+    /// [`AssemblyError::NonFinite`] for water that is not finite.
+    pub fn with_water(mut self, water: Water<D>) -> Result<Self, AssemblyError> {
+        self.water = water;
+        self.agree()?;
+        Ok(self)
+    }
+
+    /// The same with forces that hold the body; they belong to the nodes of its grid.
+    ///
+    /// # Errors
+    /// [`AssemblyError::NonFinite`] for a force that is not finite, or forces of another number of nodes.
+    pub fn held_by(mut self, held: Option<HeldForces<D>>) -> Result<Self, AssemblyError> {
+        self.held = held;
+        self.agree()?;
+        Ok(self)
+    }
+
     /// Refuses conditions that do not agree.
     fn agree(&self) -> Result<(), AssemblyError> {
         self.constraints.belong_to(&self.grid)?;
@@ -93,6 +120,16 @@ impl<const D: usize> StepConditions<D> {
             let what = "jack or reduction of a reinforcement";
             return Err(AssemblyError::NonFinite { what, index });
         }
+        if let Some(held) = &self.held {
+            let bad = |force: &[f64; D]| !force.iter().all(|own| (own * held.share).is_finite());
+            let nodes = self.grid.node_count();
+            let other = (held.forces.len() != nodes).then_some(nodes);
+            if let Some(index) = other.or_else(|| held.forces.iter().position(bad)) {
+                let what = "force that holds the body at node";
+                return Err(AssemblyError::NonFinite { what, index });
+            }
+        }
+        self.water.is_finite()?;
         self.loads.are_finite()
     }
 

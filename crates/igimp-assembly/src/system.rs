@@ -16,6 +16,7 @@ use crate::matrix::{Pattern, TangentMatrix};
 use crate::method::{Kinematics, Method};
 use crate::nodal_forces::NodalForces;
 use crate::particles::Particles;
+use crate::pore_water::Pores;
 use crate::reinforcement::{Members, Reinforcement};
 use crate::residual::{OutOfBalance, force_of_round_off};
 use crate::rigid::{
@@ -43,6 +44,7 @@ pub struct System<'a, const D: usize> {
     couplings: [Couplings; 2],
     contact: Contact<'a, D>,
     reinforcement: Members<'a, D>,
+    pub(crate) pores: Pores,
     pub(crate) table: BlockTable<D>,
     pub(crate) pattern: Arc<Pattern>,
     symmetric: bool,
@@ -121,6 +123,10 @@ impl<'a, const D: usize> System<'a, D> {
         let pairs: Vec<_> = forces.iter().flat_map(|force| force.pairs()).collect();
         let symmetric = symmetric && forces.iter().all(|force| force.is_symmetric());
         let mut f_ext = weight(grid, stencils, &conditions.loads);
+        let pores = Pores::fill(particles, stencils, conditions, method, &mut f_ext)?;
+        if let Some(held) = &conditions.held {
+            held.add(stencils, &mut f_ext);
+        }
         f_ext.extend(motions.iter().map(|motion| {
             motion.map(|drive| match drive {
                 Drive::Loaded(force) => force,
@@ -139,6 +145,7 @@ impl<'a, const D: usize> System<'a, D> {
             couplings,
             contact,
             reinforcement,
+            pores,
             motions,
             table,
             pattern: Arc::new(pattern),
@@ -309,6 +316,24 @@ impl<'a, const D: usize> System<'a, D> {
         trial: &Trial<D>,
     ) -> Result<(), AssemblyError> {
         residual.update(&self.unknowns, &self.f_ext, &trial.f_int, self.round_off)
+    }
+
+    /// The force f_int − f_ext by node of the grid that would keep a trial where it is, zero where nothing is unknown
+    /// \[force\].
+    pub fn holding_forces(&self, trial: &Trial<D>) -> Vec<[f64; D]> {
+        (0..self.conditions.grid.node_count())
+            .map(|node| {
+                std::array::from_fn(|axis| match self.unknowns.index(node, axis) {
+                    Some(_) => trial.f_int[node][axis] - self.f_ext[node][axis],
+                    None => 0.0,
+                })
+            })
+            .collect()
+    }
+
+    /// Given pore pressure by particle, empty where there is none \[force/length²\].
+    pub fn into_pore_pressure(self) -> Vec<f64> {
+        self.pores.pressure
     }
 
     /// The reaction f_int − f_ext by node, zero at unknowns \[force\].

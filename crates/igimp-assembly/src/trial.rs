@@ -146,6 +146,12 @@ impl<const D: usize> System<'_, D> {
                 b_e: &self.particles.b_e[particle],
                 history: &self.particles.history[particle],
                 law,
+                pores: self.pores.response(
+                    self.particles,
+                    &self.conditions.water,
+                    self.method,
+                    particle,
+                ),
             };
             evaluate(state, supports, u, self.method, kind, trial)
         };

@@ -7,6 +7,7 @@ mod grid;
 mod profile;
 mod reinforcement;
 mod rigid;
+mod water;
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -23,6 +24,7 @@ pub use rigid::{
     Adhesion, RigidDrive, RigidInterface, RigidMove, RigidPart, RigidQuantity, RigidShape,
     RigidShear,
 };
+pub use water::{Construction, Drainage, PoreSource, WaterCondition};
 
 use crate::check::Band;
 
@@ -39,6 +41,10 @@ pub struct Case {
     pub grid: GridSpec,
     /// Variant of the method.
     pub method: Method,
+    /// Unit weight of water \[N/m³\].
+    pub water_unit_weight: f64,
+    /// Conditions of the water; stages name them by index. The first holds from the start; without any all is dry.
+    pub water: Vec<WaterCondition>,
     /// Materials; bodies name them by index.
     pub materials: Vec<Material>,
     /// Bodies.
@@ -128,6 +134,10 @@ pub struct Material {
     pub k0: Option<f64>,
     /// What varies with the level.
     pub profiles: Profiles,
+    /// Unit weight below the water table \[N/m³\]; none: that above.
+    pub saturated: Option<f64>,
+    /// What it does with water.
+    pub drainage: Drainage,
 }
 
 /// The strength of a material.
@@ -200,6 +210,8 @@ pub struct BodyPart {
     pub per_direction: usize,
     /// Corners in order, either way round \[m\].
     pub polygon: Vec<[f64; 2]>,
+    /// Whether it is there from the start, rather than from the stage that places it.
+    pub from_start: bool,
 }
 
 /// What a side of the grid does to the soil that reaches it.
@@ -304,6 +316,8 @@ pub struct Stage {
     pub install: Vec<usize>,
     /// Conditions that end the stage early.
     pub stop_when: StopWhen,
+    /// Whether all soil drains while it lasts: no excess pore pressure comes or goes.
+    pub drained: bool,
 }
 
 /// Kinds of stages.
@@ -332,6 +346,8 @@ pub enum StageKind {
     },
     /// Moves and loads rigid bodies.
     Rigid(Vec<RigidMove>),
+    /// Places and removes bodies, changes materials and water.
+    Construction(Construction),
     /// Searches for the factor of safety. The body is left as it was found.
     StrengthReduction(StrengthReduction),
     /// Lets the slope of reduced strength move until it rests.

@@ -75,7 +75,8 @@ pub use error::MaterialError;
 pub use hencky::HenckyElastic;
 pub use law::{ConstitutiveModel, History, Regime, ReturnMap};
 pub use lift::{
-    Lifted, TangentKind, elastic_left_cauchy_green, lift_finite, lift_small, logarithmic_strain,
+    Lifted, TangentKind, elastic_left_cauchy_green, elastic_left_cauchy_green_of, lift_finite,
+    lift_small, logarithmic_strain,
 };
 pub use mohr_coulomb::MohrCoulomb;
 pub use principal::{Principal, Tensor};

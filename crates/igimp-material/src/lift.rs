@@ -62,6 +62,18 @@ impl<const D: usize> Lifted<D> {
         SpatialTangent::from_principal(&self.frame, &self.normal, &self.shear)
     }
 
+    /// Adds a mean stress that grows with the logarithm of the volume by `stiffness`: that of water in the pores
+    /// \[stress\].
+    #[inline]
+    pub fn add_mean(&mut self, mean: f64, stiffness: f64) {
+        for a in 0..3 {
+            self.tau[a][a] += mean;
+            for b in 0..3 {
+                self.normal[a][b] += stiffness;
+            }
+        }
+    }
+
     /// The elastic left Cauchy–Green tensor $`b_e = \exp(2\varepsilon_e)`$ to carry to the
     /// next step.
     pub fn b_e(&self) -> Tensor {
@@ -118,6 +130,15 @@ pub fn lift_small<const D: usize>(
 /// Hencky strains `eps_e` in the axes `frame`.
 pub fn elastic_left_cauchy_green<const D: usize>(eps_e: &Principal, frame: &Tensor) -> Tensor {
     compose::<D>(&eps_e.map(|strain| (2.0 * strain).exp()), frame)
+}
+
+/// The elastic left Cauchy–Green tensor at which an elasticity answers a stress τ \[stress\].
+pub fn elastic_left_cauchy_green_of<const D: usize>(
+    elasticity: &Elasticity,
+    tau: &Tensor,
+) -> Tensor {
+    let (principal, frame) = principal_axes::<D>(tau);
+    elastic_left_cauchy_green::<D>(&elasticity.strain(&principal), &frame)
 }
 
 /// The Hencky strain $`\tfrac12\ln b`$ of a left Cauchy–Green tensor `b` (upper triangle).

@@ -193,10 +193,12 @@ fn equilibrium<const D: usize>(
     let drag_share = system.drag_share(&u);
     let plastic_share = plastic_share(trial);
     let contact = system.bodies_at(&u)?;
+    let pore_pressure = system.into_pore_pressure();
     body.load_points = load_points;
     body.rigid = contact.bodies;
     body.reinforcement = reinforcement;
     body.particles.commit(&stencils, method, trial, &u);
+    body.particles.fill_pores(&pore_pressure);
     body.particles.put_back(&contact.put_back);
     times.commit = clock.elapsed();
     let report = StepReport {

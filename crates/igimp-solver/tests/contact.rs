@@ -220,6 +220,7 @@ fn friction_of_nothing_is_smooth() {
     let without = Interface {
         shear: Shear::Limited {
             adhesion: Vec::new(),
+            varies: false,
             friction: 0.0,
         },
         tension: Tension::None,

@@ -63,6 +63,7 @@ pub(crate) fn kind(stage: &igimp_cases::case::Stage) -> &'static str {
         StageKind::Load { .. } => "load",
         StageKind::Displacement { .. } => "displacement",
         StageKind::Rigid(_) => "rigid",
+        StageKind::Construction(_) => "construction",
         StageKind::StrengthReduction(_) => "strength-reduction",
         StageKind::RunOut(_) => "run-out",
     }

@@ -316,6 +316,8 @@ mod tests {
                 srf: Vec::new(),
                 rigid: Vec::new(),
                 reinforcement: Vec::new(),
+                water: None,
+                drained: false,
             },
         };
         let events = [

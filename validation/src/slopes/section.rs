@@ -151,9 +151,12 @@ impl Section {
         [self.surface[0], self.surface[self.surface.len() - 1]].map(|p| p[0])
     }
 
-    /// Level of the crest \[m\].
+    /// Level of the crest, the highest of the surface \[m\].
     pub(crate) fn top(&self) -> f64 {
-        self.surface[0][1]
+        self.surface
+            .iter()
+            .map(|p| p[1])
+            .fold(f64::NEG_INFINITY, f64::max)
     }
 
     /// Level of the surface at x \[m\], linear beyond its ends.

@@ -128,6 +128,12 @@ impl Material {
         (self.profiles.young.as_ref()).map_or(self.young, |own| own.at(level))
     }
 
+    /// By how much it is heavier below the water table \[N/m³\].
+    pub fn added_by_water(&self) -> f64 {
+        self.saturated
+            .map_or(0.0, |saturated| saturated - self.unit_weight)
+    }
+
     /// Unit weight at a level \[N/m³\].
     pub fn unit_weight_at(&self, level: f64) -> f64 {
         (self.profiles.unit_weight.as_ref()).map_or(self.unit_weight, |own| own.at(level))

@@ -120,6 +120,7 @@ fn planned(stage: &Stage) -> Taken {
         StageKind::K0 => 0.5,
         StageKind::Gravity { .. } | StageKind::Load { .. } if to_collapse => 5.0,
         StageKind::Gravity { .. } | StageKind::Load { .. } => 3.7,
+        StageKind::Construction(_) => 5.0,
         StageKind::Displacement { .. } | StageKind::Rigid(_) => 6.5,
         StageKind::StrengthReduction(_) | StageKind::RunOut(_) => 5.0,
     };

@@ -140,7 +140,9 @@ fn at_stage(case: &Case, run: &Summary, number: usize) -> Option<Found> {
         StageKind::Load { loads, .. } => {
             limit(case, run, number, Quantity::LoadFactor(*loads.first()?))
         }
-        StageKind::K0 | StageKind::Rigid(_) | StageKind::RunOut(_) => None,
+        StageKind::K0 | StageKind::Rigid(_) | StageKind::Construction(_) | StageKind::RunOut(_) => {
+            None
+        }
     }
 }
 

@@ -242,6 +242,8 @@ mod tests {
             strength,
             k0: None,
             profiles: Profiles::default(),
+            saturated: None,
+            drainage: crate::case::Drainage::Drained,
         };
         material.law().unwrap()
     }

@@ -5,9 +5,9 @@ use std::fmt::Write as _;
 use igimp_assembly::{Geometry, Tension};
 
 use crate::case::{
-    Adhesion, AxisSpec, Boundaries, Case, Load, LoadKind, Material, Profile, Reduction,
-    ReductionPath, ReinforcementPart, RigidDrive, RigidMove, RigidPart, RigidShape, RigidShear,
-    Side, Stage, StageKind, StopWhen, Strength,
+    Adhesion, AxisSpec, Boundaries, Case, Construction, Load, LoadKind, Material, Profile,
+    Reduction, ReductionPath, ReinforcementPart, RigidDrive, RigidMove, RigidPart, RigidShape,
+    RigidShear, Side, Stage, StageKind, StopWhen, Strength,
 };
 use crate::check::short;
 use crate::summary::SetupTable;
@@ -444,6 +444,7 @@ fn happens(case: &Case, stage: &Stage) -> String {
             let Load { name, .. } = &case.loads[*load];
             format!("{name} pushed down by {} m", short(*settlement))
         }
+        StageKind::Construction(own) => construction_in_words(case, own),
         StageKind::Rigid(moves) => {
             let told: Vec<String> = moves.iter().map(|own| moves_in_words(case, own)).collect();
             told.join("; ")
@@ -472,6 +473,32 @@ fn happens(case: &Case, stage: &Stage) -> String {
             )
         }
     }
+}
+
+/// What a construction stage changes, in words.
+fn construction_in_words(case: &Case, own: &Construction) -> String {
+    let names = |which: &[usize]| {
+        let names: Vec<&str> = which.iter().map(|&k| &*case.bodies[k].name).collect();
+        names.join(", ")
+    };
+    let mut parts = Vec::new();
+    if !own.place.is_empty() {
+        parts.push(format!("{} placed", names(&own.place)));
+    }
+    if !own.remove.is_empty() {
+        parts.push(format!("{} taken away", names(&own.remove)));
+    }
+    for &(body, material) in &own.materials {
+        let (body, material) = (&case.bodies[body].name, &case.materials[material].name);
+        parts.push(format!("{body} becomes {material}"));
+    }
+    if let Some(water) = own.water {
+        parts.push(format!("water: {}", case.water[water].name));
+    }
+    if own.dissipate {
+        parts.push("excess pore pressure gone".to_owned());
+    }
+    parts.join("; ")
 }
 
 /// What a stage does to a rigid body, in words.

@@ -285,6 +285,11 @@ fn collapse(case: &Case, stage: &Stage) -> Vec<String> {
              collapse, with the limit load reached",
             stage.name
         )],
+        StageKind::Construction(_) => vec![format!(
+            "more steps in stage \"{}\", or less that is placed, removed or drawn down at once: this is \
+             probably collapse of what was built",
+            stage.name
+        )],
         StageKind::StrengthReduction(_) => {
             vec!["a lower bracket: this is probably collapse at the first factor".to_owned()]
         }

@@ -19,17 +19,22 @@ fn case(kind: StageKind) -> Case {
         strength,
         k0: None,
         profiles: Profiles::default(),
+        saturated: None,
+        drainage: crate::case::Drainage::Drained,
     };
     let body = |name: &str, material, lower, upper| BodyPart {
         name: name.into(),
         material,
         per_direction: 2,
+        from_start: true,
         polygon: vec![[0.0, lower], [20.0, lower], [20.0, upper], [0.0, upper]],
     };
     Case {
         title: String::new(),
         title_block: TitleBlock::default(),
         gravity: 9.81,
+        water_unit_weight: 9810.0,
+        water: Vec::new(),
         grid: GridSpec::equal([0.0, 0.0], [0.5, 0.5], [40, 40]),
         method: Method::default(),
         materials: vec![
@@ -61,6 +66,7 @@ fn case(kind: StageKind) -> Case {
             reset_displacements: false,
             install: Vec::new(),
             stop_when: StopWhen::default(),
+            drained: false,
         }],
         solver: SolverSettings::default(),
         monitors: Vec::new(),

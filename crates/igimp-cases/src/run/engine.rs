@@ -15,7 +15,8 @@ use super::session::{Ended, Session};
 use super::state::State;
 use super::{Event, Failure, Listener, Run, Start, Target};
 use super::{
-    checks, failure, initial, loading, processor, reinforcement, run_out, safety, sections, study,
+    checks, construction, failure, initial, loading, processor, reinforcement, run_out, safety,
+    sections, study,
 };
 use crate::case::{Case, StageKind};
 use crate::error::CaseError;
@@ -80,7 +81,12 @@ pub(super) fn one_mesh(
         return Err(CaseError::NoStages);
     }
     let (model, initial) = Model::new(case)?;
-    let records = Records::new(case, &model.laws, &initial.body.particles)?;
+    let all = (model.later.as_ref()).map(|later| initial.body.particles.joined_by(later));
+    let records = Records::new(
+        case,
+        &model.laws,
+        all.as_ref().unwrap_or(&initial.body.particles),
+    )?;
     let mut session = Session {
         model: &model,
         listener,
@@ -196,10 +202,9 @@ impl Stages {
             }
             let stage = &case.stages[number];
             let left = self.left.take().filter(|left| left.stage.is_some());
-            let mut state = match (&left, stage.start_from) {
-                (Some(left), _) => left.state.clone(),
-                (None, None) => initial.clone(),
-                (None, Some(from)) => {
+            let start = match stage.start_from {
+                None => initial.clone(),
+                Some(from) => {
                     session
                         .ends
                         .get(&from)
@@ -210,7 +215,10 @@ impl Stages {
                         })?
                 }
             };
-            let ended = self.stage(session, number, &mut state, left)?;
+            let mut state = left
+                .as_ref()
+                .map_or_else(|| start.clone(), |left| left.state.clone());
+            let ended = self.stage(session, number, (&start, &mut state), left)?;
             self.state = Some(state);
             if !ended {
                 break;
@@ -224,7 +232,7 @@ impl Stages {
         &mut self,
         session: &mut Session<'_>,
         number: usize,
-        state: &mut State,
+        (start, state): (&State, &mut State),
         left: Option<Left>,
     ) -> Result<bool, CaseError> {
         let clock = Instant::now();
@@ -244,7 +252,7 @@ impl Stages {
         let ended = dispatch(
             session,
             number,
-            state,
+            (start, state),
             &mut summary,
             resumption.as_ref(),
             search,
@@ -423,7 +431,7 @@ impl Stages {
 fn dispatch(
     session: &mut Session<'_>,
     number: usize,
-    state: &mut State,
+    (start, state): (&State, &mut State),
     summary: &mut StageSummary,
     resumption: Option<&Resumption>,
     search: Option<Search>,
@@ -441,6 +449,9 @@ fn dispatch(
         | StageKind::Rigid(_) => loading::load(session, state, number, summary, resumption),
         StageKind::StrengthReduction(reduction) => {
             safety::reduce_strength(session, state, number, reduction, summary, search)
+        }
+        StageKind::Construction(_) => {
+            construction::build(session, (start, state), number, summary, resumption)
         }
         StageKind::RunOut(spec) => {
             run_out::run_out(session, state, number, spec, summary, resumption)
@@ -464,6 +475,7 @@ fn kind(kind: &StageKind) -> &'static str {
         StageKind::Load { .. } => "load",
         StageKind::Displacement { .. } => "displacement",
         StageKind::Rigid(_) => "rigid",
+        StageKind::Construction(_) => "construction",
         StageKind::StrengthReduction(_) => "strength-reduction",
         StageKind::RunOut(_) => "run-out",
     }

@@ -1,6 +1,8 @@
 //! Stages that move the controls from where they are to where the case wants them: gravity, loads,
 //! settlement, level ground.
 
+use std::sync::Arc;
+
 use super::left::Resumption;
 use super::records::Moment;
 use super::session::{Ended, Path, Session, Taken, march_path};
@@ -37,8 +39,10 @@ pub(crate) fn target(case: &Case, stage: &Stage, start: &Controls) -> Controls {
                 }
             }
         }
+        StageKind::Construction(own) => end.water = own.water.or(end.water),
         StageKind::K0 | StageKind::StrengthReduction(_) | StageKind::RunOut(_) => {}
     }
+    end.drained = stage.drained;
     end
 }
 
@@ -47,6 +51,17 @@ pub(crate) fn load(
     session: &mut Session<'_>,
     state: &mut State,
     number: usize,
+    summary: &mut StageSummary,
+    resumption: Option<&Resumption>,
+) -> Result<Ended, CaseError> {
+    let_go(session, state, (number, None), summary, resumption)
+}
+
+/// The same with forces by node that hold the body at first and are let go on the way \[N/m\].
+pub(crate) fn let_go(
+    session: &mut Session<'_>,
+    state: &mut State,
+    (number, held): (usize, Option<Arc<Vec<[f64; 2]>>>),
     summary: &mut StageSummary,
     resumption: Option<&Resumption>,
 ) -> Result<Ended, CaseError> {
@@ -72,6 +87,7 @@ pub(crate) fn load(
         drag: &|_, _| 0.0,
         method: model.method(stage.geometry),
         settings: model.march_settings(stage.steps),
+        held,
         left: resumption,
     };
     march_path(

@@ -2,12 +2,14 @@
 
 pub mod advice;
 mod checks;
+mod construction;
 mod engine;
 mod entry;
 mod export;
 mod failure;
 mod fingerprint;
 mod footing;
+mod ground;
 mod initial;
 mod left;
 mod loading;
@@ -29,6 +31,7 @@ mod sections;
 mod session;
 mod state;
 mod study;
+mod water;
 
 use std::path::PathBuf;
 

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use igimp_assembly::{
-    AssemblyError, Constraints, Geometry, LoadPoint, Method, ParticleSeed, Particles, SharedLaw,
-    StepConditions, StepLoads,
+    AssemblyError, Constraints, Geometry, LoadPoint, Method, ParticleSeed, Particles, PoreWater,
+    SharedLaw, StepConditions, StepLoads, Water,
 };
 use igimp_material::Ratios;
 use igimp_shape::{Grid, ShapeError};
@@ -13,13 +13,14 @@ use igimp_solver::{Body, MarchSettings, NewtonSettings};
 
 use super::footing::{self, Footing};
 use super::state::{Controls, State};
-use crate::case::{Case, LoadKind, MixedCells, Side};
+use super::water::{GroundWater, Seeded};
+use crate::case::{Case, Drainage, LoadKind, Material, MixedCells, Side};
 use crate::error::CaseError;
 use crate::seed::fill_polygon;
 use crate::summary::ModelSize;
 
 /// Acceleration of gravity that turns a unit weight into a density where the case has none.
-const STANDARD_GRAVITY: f64 = 9.81;
+pub(super) const STANDARD_GRAVITY: f64 = 9.81;
 
 /// Load points per cell along a loaded segment.
 const POINTS_PER_CELL: f64 = 4.0;
@@ -37,6 +38,12 @@ pub struct Model<'c> {
     followed: Option<(usize, usize)>,
     /// How far each rigid body stands above the soil beneath it as the case has both \[m\].
     pub(crate) gaps: Vec<f64>,
+    /// By condition of the case.
+    water: Vec<Arc<GroundWater>>,
+    /// What the particles were seeded in.
+    pub(crate) seeded: Arc<Seeded>,
+    /// The particles of bodies that stages place.
+    pub(crate) later: Option<Particles<2>>,
 }
 
 impl<'c> Model<'c> {
@@ -56,6 +63,9 @@ impl<'c> Model<'c> {
             footing: Footing::of(case)?,
             followed: footing::followed(case)?,
             gaps: Vec::new(),
+            water: Vec::new(),
+            seeded: Arc::default(),
+            later: None,
         };
         let grid = model.grid(0.0)?;
         let gravity = if case.gravity > 0.0 {
@@ -64,7 +74,8 @@ impl<'c> Model<'c> {
             STANDARD_GRAVITY
         };
         let mut seeds = Vec::new();
-        for part in &case.bodies {
+        let mut seeded = Seeded::default();
+        for (body, part) in case.bodies.iter().enumerate() {
             let material = &case.materials[part.material];
             let density = material.unit_weight / gravity;
             let parts = part.per_direction;
@@ -74,6 +85,7 @@ impl<'c> Model<'c> {
                     seed.density = material.unit_weight_at(seed.x[1]) / gravity;
                 }
             }
+            seeded.body.extend(own.iter().map(|_| body));
             seeds.extend(own);
         }
         let ratios = |seed: &ParticleSeed<2>| case.materials[seed.law].ratios_at(seed.x[1]);
@@ -82,9 +94,26 @@ impl<'c> Model<'c> {
             let parts = (&mut seeds[..], &mut ratios[..]);
             super::mixed_cells::share_stiffness(case, &grid, parts, &mut model.laws)?;
         }
-        let mut body = Body::new(Particles::new(&seeds)?.with_ratios(ratios)?);
+        if case.water.iter().any(|condition| condition.carried) {
+            seeded.domain = seeds
+                .iter()
+                .map(|seed| [seed.x, seed.half_length])
+                .collect();
+        }
+        let seeded = Arc::new(seeded);
+        let water = |condition| Arc::new(GroundWater::of(case, condition, &seeded));
+        model.water = case.water.iter().map(water).collect();
+        let mut particles = Particles::new(&seeds)?.with_ratios(ratios)?;
+        if case.bodies.iter().any(|part| !part.from_start) {
+            let is_first = |particle: usize| case.bodies[seeded.body[particle]].from_start;
+            model.later = Some(particles.keeping(|particle| !is_first(particle))?);
+            particles = particles.keeping(is_first)?;
+        }
+        model.seeded = seeded;
+        let mut body = Body::new(particles);
         body.load_points = load_points(case);
         let mut controls = Controls::none(case);
+        controls.water = (!case.water.is_empty()).then_some(0);
         for (index, part) in case.rigid.iter().enumerate() {
             if part.from_start {
                 body.rigid
@@ -186,7 +215,30 @@ impl<'c> Model<'c> {
             self.laws_reduced_by(&to.srf)?,
         )?
         .with_motions(super::rigid::motions(self.case, from, to))?
-        .with_reinforcement(super::reinforcement::controls(self.case, to))
+        .with_reinforcement(super::reinforcement::controls(self.case, to))?
+        .with_water(self.water(to))
+    }
+
+    /// A condition of the water; none: dry.
+    pub(crate) fn ground_water(&self, condition: usize) -> Option<&Arc<GroundWater>> {
+        self.water.get(condition)
+    }
+
+    /// Water in the pores of a step that ends with these controls.
+    fn water(&self, to: &Controls) -> Water<2> {
+        let materials = &self.case.materials;
+        let stiffness = |material: &Material| match material.drainage {
+            Drainage::Undrained { stiffness } if !to.drained => stiffness,
+            _ => 0.0,
+        };
+        let own = to.water.and_then(|condition| self.ground_water(condition));
+        Water {
+            given: own.map(|own| Arc::clone(own) as Arc<dyn PoreWater<2>>),
+            factor: to.gravity,
+            stiffness: (0..self.laws.len())
+                .map(|law| stiffness(&materials[law % materials.len()]))
+                .collect(),
+        }
     }
 
     /// The laws at reduced strength; `srf` has a strength reduction factor for each \[-\].

@@ -59,7 +59,7 @@ pub(crate) struct Records {
     pub(crate) monitors: Vec<Table>,
     /// By rigid body of the case.
     pub(crate) rigid: Vec<Table>,
-    /// The particle that each monitor follows.
+    /// The number of the particle that each monitor follows.
     pub(crate) watched: Vec<usize>,
     /// By check of the case: the largest value of its quantity in its stage so far; not a number before.
     pub(crate) peaks: Vec<f64>,
@@ -98,7 +98,9 @@ impl Records {
             .monitors
             .iter()
             .map(|monitor| {
-                nearest(particles, &monitor.point, f64::INFINITY).ok_or(CaseError::EmptyBody)
+                nearest(particles, &monitor.point, f64::INFINITY)
+                    .map(|particle| particles.number[particle])
+                    .ok_or(CaseError::EmptyBody)
             })
             .collect::<Result<_, _>>()?;
         Ok(Self {
@@ -134,9 +136,11 @@ impl Records {
             }
             Quantity::LoadFactor(load) => controls.factors[load],
             Quantity::Monitor(monitor, field) => {
-                let particle = self.watched[monitor];
                 let laws = self.laws_at(moment);
-                fields::value(field, moment.particles, particle, &laws)
+                let place = moment.particles.place_of(self.watched[monitor]);
+                place.map_or(f64::NAN, |particle| {
+                    fields::value(field, moment.particles, particle, &laws)
+                })
             }
             Quantity::LargestDisplacement => moment.largest_displacement(),
             Quantity::GravityFactor => controls.gravity,
@@ -187,19 +191,17 @@ impl Records {
             rows.curves[k] = Some(row);
         }
         for (k, monitor) in case.monitors.iter().enumerate().filter(|_| !reopens) {
-            let (particles, particle) = (moment.particles, self.watched[k]);
+            let place = moment.particles.place_of(self.watched[k]);
             let laws = self.laws_at(moment);
             let mut row = vec![
                 moment.stage as f64 + 1.0,
                 moment.number as f64,
                 moment.progress,
             ];
-            row.extend(
-                monitor
-                    .record
-                    .iter()
-                    .map(|&field| fields::value(field, particles, particle, &laws)),
-            );
+            row.extend(monitor.record.iter().map(|&field| match place {
+                Some(particle) => fields::value(field, moment.particles, particle, &laws),
+                None => f64::NAN,
+            }));
             self.monitors[k].push(row.clone());
             rows.monitors.push(row);
         }

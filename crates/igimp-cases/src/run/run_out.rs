@@ -36,6 +36,7 @@ pub(crate) fn run_out(
     let model = session.model;
     let case = model.case;
     let mut to = state.controls.clone();
+    to.drained = case.stages[number].drained;
     let factor = match run_out.reduction {
         Reduction::Factor(factor) => factor,
         Reduction::TimesFos(times) => {
@@ -66,6 +67,7 @@ pub(crate) fn run_out(
         drag: &|from, to| drag.get() / ((to - from) * steps as f64),
         method: flowing(session.model),
         settings: session.model.march_settings(steps),
+        held: None,
         left: resumption,
     };
     let ended = march_path(
@@ -139,6 +141,7 @@ fn stand(
         drag: &|_, _| 0.0,
         method: flowing(session.model),
         settings: session.model.march_settings(1),
+        held: None,
         left: None,
         ..*path
     };

@@ -183,6 +183,7 @@ impl<'a> Trials<'a> {
             drag: &|_, _| 0.0,
             method: session.model.method(self.stage.geometry),
             settings,
+            held: None,
             left: None,
         };
         let effort = [summary.steps, summary.iterations, summary.cuts];

@@ -3,9 +3,10 @@
 use std::cell::RefCell;
 use std::collections::HashMap;
 use std::ops::ControlFlow;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use igimp_assembly::{Geometry, Method, Particles};
+use igimp_assembly::{Geometry, HeldForces, Method, Particles};
 use igimp_solver::{
     Accepted, MarchSettings, MarchState, Observer, Outcome, StepError, StepReport, Workspace,
     march_from,
@@ -82,8 +83,11 @@ impl Session<'_> {
         monitor.map_or_else(
             || largest_displacement(particles),
             |monitor| {
-                let [x, y] = particles.displacement[self.records.watched[monitor]];
-                x.hypot(y)
+                let place = particles.place_of(self.records.watched[monitor]);
+                place.map_or(0.0, |particle| {
+                    let [x, y] = particles.displacement[particle];
+                    x.hypot(y)
+                })
             },
         )
     }
@@ -168,6 +172,8 @@ pub(crate) struct Path<'a> {
     pub(crate) method: Method,
     /// Sizes of steps.
     pub(crate) settings: MarchSettings,
+    /// What holds the body at the beginning and is let go on the way, by node \[N/m\].
+    pub(crate) held: Option<Arc<Vec<[f64; 2]>>>,
     /// Where an earlier run left the march.
     pub(crate) left: Option<&'a Resumption>,
 }
@@ -238,7 +244,11 @@ pub(crate) fn march_path(
             Geometry::Moving => &before,
             Geometry::Given => path.from,
         }));
-        model.conditions_on(grid, (&before, &after), (path.drag)(from, to))
+        let conditions = model.conditions_on(grid, (&before, &after), (path.drag)(from, to))?;
+        conditions.held_by(path.held.as_ref().map(|forces| HeldForces {
+            forces: Arc::clone(forces),
+            share: 1.0 - to,
+        }))
     };
     let mut march = MarchState::start(&path.settings);
     if let Some(left) = path.left {

@@ -18,6 +18,10 @@ pub struct Controls {
     pub srf: Vec<f64>,
     /// By rigid body of the case.
     pub rigid: Vec<RigidControls>,
+    /// The condition of the water, by index; none: dry.
+    pub water: Option<usize>,
+    /// Whether all soil drains, so that no excess pore pressure comes or goes.
+    pub drained: bool,
     /// By member of reinforcement of the case.
     pub reinforcement: Vec<ReinforcementControls>,
 }
@@ -92,6 +96,8 @@ impl Controls {
             srf: vec![1.0; case.materials.len()],
             rigid: vec![RigidControls::default(); case.rigid.len()],
             reinforcement: vec![ReinforcementControls::default(); case.reinforcement.len()],
+            water: None,
+            drained: false,
         }
     }
 
@@ -109,6 +115,8 @@ impl Controls {
             reinforcement: std::iter::zip(&self.reinforcement, &end.reinforcement)
                 .map(|(own, end)| own.towards(end, t))
                 .collect(),
+            water: end.water,
+            drained: end.drained,
         }
     }
 

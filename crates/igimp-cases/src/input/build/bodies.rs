@@ -51,6 +51,7 @@ fn part(node: &Node, names: &AllNames, problems: &mut Problems) -> Option<BodyPa
         .and_then(|polygon| corners(polygon, name, problems));
     let points = node.count_at("points_per_cell")?;
     Some(BodyPart {
+        from_start: true,
         name: node.text_at("name")?.to_owned(),
         material: material?,
         per_direction: points.isqrt(),

@@ -74,6 +74,8 @@ fn material(entry: &Entry, extent: Extent<'_>, problems: &mut Problems) -> Optio
     let k0 = k0(node, strength, problems);
     let profile = |own: &Option<Property>| -> Option<Profile> { own.as_ref()?.profile.clone() };
     let material = Material {
+        saturated: None,
+        drainage: crate::case::Drainage::Drained,
         name: name.clone(),
         unit_weight: unit_weight.as_ref()?.constant,
         young: young.as_ref()?.constant,

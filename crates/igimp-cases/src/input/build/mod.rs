@@ -139,6 +139,8 @@ pub(super) fn build(tree: &mut Node, file: &Path, problems: &mut Problems) -> Op
     let case = tree.get("case")?;
     let words = |key| case.text_at(key).map(str::to_owned);
     let case = Case {
+        water_unit_weight: 9810.0,
+        water: Vec::new(),
         title: case.text_at("title")?.to_owned(),
         title_block: TitleBlock {
             project: words("project"),

@@ -95,6 +95,7 @@ fn stage(
     let stop_when = stop_when(context, node, &name, problems);
     let install = super::reinforcement::installs(context, index, node, &name, problems);
     Some(Stage {
+        drained: false,
         name: node.text_at("name")?.to_owned(),
         kind: kind?,
         steps: node.count_at("steps")?,

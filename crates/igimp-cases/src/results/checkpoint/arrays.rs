@@ -19,12 +19,16 @@ pub(super) fn of_body(body: &Body<2>) -> Vec<(&'static str, Array)> {
         half_length0,
         volume0,
         mass,
+        pore_pressure,
+        excess,
+        number,
         law,
         ratios,
         history,
         regime,
     } = &*body.particles;
     let n = x.len();
+    let number = number.iter().map(|&number| number as u64).collect();
     let law = law.iter().map(|&law| law as u64).collect();
     let eps_p_eq: Vec<f64> = history
         .iter()
@@ -49,6 +53,9 @@ pub(super) fn of_body(body: &Body<2>) -> Vec<(&'static str, Array)> {
         ("half_length0", vectors(half_length0)),
         ("volume0", scalars(volume0)),
         ("mass", scalars(mass)),
+        ("pore_pressure", scalars(pore_pressure)),
+        ("excess", scalars(excess)),
+        ("number", Array::new(&[n], Values::U64(number))),
         ("law", Array::new(&[n], Values::U64(law))),
         ("ratios", vectors(&ratios)),
         ("eps_p_eq", scalars(&eps_p_eq)),
@@ -110,6 +117,9 @@ pub(super) fn to_body(
         half_length0: vectors("half_length0", n)?,
         volume0: reals("volume0", &[n])?,
         mass: reals("mass", &[n])?,
+        pore_pressure: reals("pore_pressure", &[n])?,
+        excess: reals("excess", &[n])?,
+        number: indices("number", n)?,
         law: indices("law", n)?,
         ratios: vectors("ratios", n)?
             .into_iter()

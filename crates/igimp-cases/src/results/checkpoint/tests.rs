@@ -31,6 +31,9 @@ pub(in crate::results) fn body(n: usize) -> Body<2> {
         half_length0: (0..n).map(|k| vector(k, 26).map(f64::abs)).collect(),
         volume0: by_particle(&|k| number(k, 28).abs()),
         mass: by_particle(&|k| number(k, 29).abs()),
+        pore_pressure: by_particle(&|k| number(k, 45)),
+        excess: by_particle(&|k| number(k, 46)),
+        number: (0..n).map(|k| 2 * k + 1).collect(),
         law: (0..n).map(|k| k % 3).collect(),
         ratios: (0..n)
             .map(|k| Ratios {

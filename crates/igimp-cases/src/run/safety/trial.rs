@@ -19,6 +19,7 @@ impl Trials<'_> {
         if self.reduction.path == ReductionPath::Gravity && end.gravity == 0.0 {
             end.gravity = 1.0;
         }
+        end.drained = self.stage.drained;
         for &material in &self.reduction.materials {
             end.srf[material] = srf;
         }

@@ -1,0 +1,170 @@
+//! Construction stages: bodies come and go, consist of something else, water rises and falls.
+//!
+//! Whatever a stage changes is changed at its beginning. The nodal forces that would then keep the ground where it is
+//! hold it, and are let go over the steps of the stage (theory, eq. 55): the weight of a fill comes on, the support that
+//! removed soil gave goes, and each step ends in equilibrium.
+
+use std::sync::Arc;
+
+use igimp_assembly::{ParticleFields, Particles, Stencils, System};
+use igimp_material::{ConstitutiveModel, ScaledLaw, TangentKind, elastic_left_cauchy_green_of};
+
+use super::left::Resumption;
+use super::loading::let_go;
+use super::model::{Model, STANDARD_GRAVITY};
+use super::session::{Ended, Session};
+use super::state::State;
+use crate::case::{Construction, StageKind};
+use crate::check::short;
+use crate::error::CaseError;
+use crate::summary::StageSummary;
+
+/// Marches a state to the end of a construction stage that began with `start`, or on from where an earlier run left it.
+pub(crate) fn build(
+    session: &mut Session<'_>,
+    (start, state): (&State, &mut State),
+    number: usize,
+    summary: &mut StageSummary,
+    resumption: Option<&Resumption>,
+) -> Result<Ended, CaseError> {
+    let model = session.model;
+    let stage = &model.case.stages[number];
+    let StageKind::Construction(own) = &stage.kind else {
+        return Ok(Ended::Completed(super::REACHED_ITS_END.to_owned()));
+    };
+    let changed = changed(model, start, own)?;
+    let held = holding(model, &changed, number)?;
+    if resumption.is_none() {
+        for &body in &own.place {
+            if let Some(text) = moved_below(model, start, body) {
+                session.warn(text);
+            }
+        }
+        *state = changed;
+    }
+    let_go(
+        session,
+        state,
+        (number, Some(Arc::new(held))),
+        summary,
+        resumption,
+    )
+}
+
+/// A state with everything that a stage changes.
+fn changed(model: &Model<'_>, start: &State, own: &Construction) -> Result<State, CaseError> {
+    let case = model.case;
+    let mut state = start.clone();
+    let body_of =
+        |particles: &Particles<2>, particle: usize| model.seeded.body[particles.number[particle]];
+    if !own.place.is_empty()
+        && let Some(later) = &model.later
+    {
+        let placed = later.keeping(|particle| own.place.contains(&body_of(later, particle)))?;
+        state.body.particles = state.body.particles.joined_by(&placed);
+        state.body.particles.clear_of(&state.body.rigid);
+    }
+    if !own.remove.is_empty() {
+        let particles = &state.body.particles;
+        let stays = |particle| !own.remove.contains(&body_of(particles, particle));
+        state.body.particles = particles.keeping(stays)?;
+    }
+    let mut fields = (*state.body.particles).clone();
+    let materials = case.materials.len();
+    for particle in 0..fields.x.len() {
+        let body = model.seeded.body[fields.number[particle]];
+        let new = own.materials.iter().find(|(of, _)| *of == body);
+        if let Some(&(_, material)) = new {
+            let law = fields.law[particle];
+            fields.law[particle] = law - law % materials + material;
+            become_soil_of(model, &mut fields, particle, material)?;
+        }
+        if own.dissipate {
+            fields.excess[particle] = 0.0;
+        }
+    }
+    state.body.particles = Particles::from_fields(fields)?;
+    state.controls.water = own.water.or(state.controls.water);
+    Ok(state)
+}
+
+/// Gives a particle weight, strength and stiffness of a material; its stress stays.
+fn become_soil_of(
+    model: &Model<'_>,
+    fields: &mut ParticleFields<2>,
+    particle: usize,
+    material: usize,
+) -> Result<(), CaseError> {
+    let case = model.case;
+    let gravity = if case.gravity > 0.0 {
+        case.gravity
+    } else {
+        STANDARD_GRAVITY
+    };
+    let level = fields.x[particle][1];
+    let soil = &case.materials[material];
+    let before = model.laws[fields.law[particle]].elasticity().young();
+    let shared = (before / soil.young - 1.0).abs() > 1e-12;
+    let mut ratios = soil.ratios_at(level);
+    if shared {
+        // In cells of several soils all have one stiffness, that of the cell.
+        ratios.stiffness = 1.0;
+    }
+    fields.ratios[particle] = ratios;
+    fields.mass[particle] = fields.volume0[particle] * soil.unit_weight_at(level) / gravity;
+    let [[a, b], [c, d]] = fields.def_grad[particle];
+    let tau = fields.sigma[particle].map(|row| row.map(|stress| stress * (a * d - b * c)));
+    let law = ScaledLaw::new(&*model.laws[fields.law[particle]], ratios)?;
+    let b_e = elastic_left_cauchy_green_of::<2>(law.elasticity(), &tau);
+    fields.b_e[particle] = b_e;
+    Ok(())
+}
+
+/// The nodal forces that keep a changed state where it is \[N/m\].
+fn holding(model: &Model<'_>, state: &State, stage: usize) -> Result<Vec<[f64; 2]>, CaseError> {
+    let method = model.method(model.case.stages[stage].geometry);
+    let conditions = model.conditions(&state.controls, &state.controls, 0.0)?;
+    let particles = &state.body.particles;
+    let stencils = Stencils::build(particles, &method, &conditions)?;
+    let system = System::with_rigid_bodies(
+        particles,
+        &state.body.rigid,
+        &stencils,
+        &conditions,
+        &method,
+    )?
+    .with_load_points(&state.body.load_points)?;
+    let still = vec![[0.0; 2]; system.node_count()];
+    let trial = system.evaluate(&still, TangentKind::Elastic)?;
+    Ok(system.holding_forces(&trial))
+}
+
+/// What is to be said where the ground has moved by more than a quarter of a cell around a body that is placed where the
+/// case draws it.
+fn moved_below(model: &Model<'_>, start: &State, body: usize) -> Option<String> {
+    let part = &model.case.bodies[body];
+    let [width, height] = model.case.grid.smallest_cell();
+    let near = |x: &[f64; 2]| {
+        let inside = |axis: usize, reach: f64| {
+            let values = part.polygon.iter().map(|corner| corner[axis]);
+            let lower = values.clone().fold(f64::INFINITY, f64::min);
+            let upper = values.fold(f64::NEG_INFINITY, f64::max);
+            (lower - reach..=upper + reach).contains(&x[axis])
+        };
+        inside(0, width) && inside(1, height)
+    };
+    let particles = &start.body.particles;
+    let moved = (0..particles.len())
+        .filter(|&particle| near(&particles.x[particle]))
+        .map(|particle| particles.displacement[particle][1].abs())
+        .fold(0.0, f64::max);
+    (moved > 0.25 * height).then(|| {
+        format!(
+            "\"{}\" is placed where it is drawn, but the ground around it has moved by up to {} m upwards or \
+             downwards; draw it to the level that it is to be filled from, or set reset_displacements in the stage \
+             before if that is meant",
+            part.name,
+            short(moved)
+        )
+    })
+}

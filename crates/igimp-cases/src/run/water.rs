@@ -1,0 +1,239 @@
+//! Water in the ground as particles find it: the conditions of a case, averaged over domains (theory, eqs. 51 and 52).
+
+use std::sync::Arc;
+
+use igimp_assembly::{PoreSite, PoreState, PoreWater};
+
+use super::ground::Ground;
+use crate::case::{Case, Drainage, Material, PoreSource, WaterCondition};
+
+/// Points and weights of Gauss, three on −1 to 1.
+const ALONG: [(f64, f64); 3] = [
+    (-0.774_596_669_241_483_4, 5.0 / 18.0),
+    (0.0, 8.0 / 18.0),
+    (0.774_596_669_241_483_4, 5.0 / 18.0),
+];
+
+/// What pieces of ground the particles were seeded in.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Seeded {
+    /// Body by number.
+    pub(crate) body: Vec<usize>,
+    /// Centre and half-lengths by number \[m\]; empty where no water is carried along.
+    pub(crate) domain: Vec<[[f64; 2]; 2]>,
+}
+
+/// A condition of the water in the ground.
+#[derive(Debug)]
+pub(crate) struct GroundWater {
+    reference: Source,
+    /// By body: a pressure of its own.
+    own: Vec<Option<Source>>,
+    /// By material: density that water adds below the table \[kg/m³\].
+    added_density: Vec<f64>,
+    /// By material: whether its law speaks of total stress.
+    is_total: Vec<bool>,
+    /// Density of water \[kg/m³\].
+    density: f64,
+    carried: bool,
+    seeded: Arc<Seeded>,
+}
+
+/// Pressure below an upper end that varies along x; none above it.
+#[derive(Debug)]
+enum Source {
+    Dry,
+    Table {
+        points: Vec<[f64; 2]>,
+        unit_weight: f64,
+    },
+    Ratio {
+        ratio: f64,
+        ground: Ground,
+    },
+}
+
+/// Means over a domain.
+#[derive(Clone, Copy, Debug, Default)]
+struct Over {
+    pressure: f64,
+    gradient: [f64; 2],
+    /// Share that is wet.
+    wet: f64,
+}
+
+impl Source {
+    fn of(case: &Case, source: &PoreSource) -> Self {
+        match source {
+            PoreSource::Dry => Self::Dry,
+            PoreSource::Table(points) => Self::Table {
+                points: points.clone(),
+                unit_weight: case.water_unit_weight,
+            },
+            PoreSource::Ratio(ratio) => Self::Ratio {
+                ratio: *ratio,
+                ground: Ground::of(case),
+            },
+        }
+    }
+
+    /// The level above which there is no pressure \[m\].
+    fn top(&self, x: f64) -> f64 {
+        match self {
+            Self::Dry => f64::NEG_INFINITY,
+            Self::Table { points, .. } => on_line(points, x),
+            Self::Ratio { ground, .. } => ground.surface(x).unwrap_or(f64::NEG_INFINITY),
+        }
+    }
+
+    /// The pressure at a point that is not above the top \[Pa\].
+    fn below(&self, x: f64, y: f64) -> f64 {
+        match self {
+            Self::Dry => 0.0,
+            Self::Table {
+                points,
+                unit_weight,
+            } => unit_weight * (on_line(points, x) - y),
+            Self::Ratio { ratio, ground } => ratio * ground.weight_above(&[x, y]),
+        }
+    }
+
+    /// The pressure at a point \[Pa\].
+    fn at(&self, x: &[f64; 2]) -> f64 {
+        if x[1] < self.top(x[0]) {
+            self.below(x[0], x[1])
+        } else {
+            0.0
+        }
+    }
+
+    /// Means of pressure and of its vertical slope along a vertical line from `bottom` on up, and the share of the line that is
+    /// wet.
+    fn on_column(&self, x: f64, bottom: f64, height: f64) -> [f64; 3] {
+        let top = self.top(x).min(bottom + height);
+        if top <= bottom {
+            return [0.0; 3];
+        }
+        let wet = top - bottom;
+        let mean: f64 = [-1.0, 1.0]
+            .map(|side| 0.5 * self.below(x, bottom + 0.5 * wet * (1.0 + side / 3_f64.sqrt())))
+            .iter()
+            .sum();
+        let slope = (self.below(x, top) - self.below(x, bottom)) / height;
+        [mean * wet / height, slope, wet / height]
+    }
+
+    /// Means over a domain of which soil fills a share: where soil fills less, what is wet is taken to be soil first.
+    fn over(&self, x: &[f64; 2], half: &[f64; 2], filled: f64) -> Over {
+        if matches!(self, Self::Dry) {
+            return Over::default();
+        }
+        let (bottom, height) = (x[1] - half[1], 2.0 * half[1]);
+        let mut over = Over::default();
+        for (place, weight) in ALONG {
+            let [mean, slope, wet] = self.on_column(x[0] + place * half[0], bottom, height);
+            over.pressure += weight * mean;
+            over.gradient[1] += weight * slope;
+            over.wet += weight * wet;
+        }
+        let [right, left] =
+            [1.0, -1.0].map(|side| self.on_column(x[0] + side * half[0], bottom, height)[0]);
+        over.gradient[0] = (right - left) / (2.0 * half[0]);
+        if over.wet > 0.0 && filled < 1.0 {
+            let share = (over.wet / filled).min(1.0) / over.wet;
+            over.pressure *= share;
+            over.gradient = over.gradient.map(|slope| slope * share);
+            over.wet *= share;
+        }
+        over
+    }
+}
+
+/// The level of a line at x, constant beyond its ends.
+fn on_line(points: &[[f64; 2]], x: f64) -> f64 {
+    let after = points.partition_point(|point| point[0] <= x);
+    match (after.checked_sub(1).map(|k| points[k]), points.get(after)) {
+        (Some(from), Some(to)) => from[1] + (to[1] - from[1]) * (x - from[0]) / (to[0] - from[0]),
+        (Some(only), None) | (None, Some(&only)) => only[1],
+        (None, None) => f64::NEG_INFINITY,
+    }
+}
+
+impl GroundWater {
+    /// A condition of a case.
+    pub(crate) fn of(case: &Case, condition: &WaterCondition, seeded: &Arc<Seeded>) -> Self {
+        let mut own: Vec<Option<Source>> = case.bodies.iter().map(|_| None).collect();
+        for (body, source) in &condition.bodies {
+            own[*body] = Some(Source::of(case, source));
+        }
+        let added = |material: &Material| material.added_by_water() / case.gravity;
+        let is_total = |material: &Material| material.drainage == Drainage::Total;
+        Self {
+            reference: Source::of(case, &condition.source),
+            own,
+            added_density: case.materials.iter().map(added).collect(),
+            is_total: case.materials.iter().map(is_total).collect(),
+            density: case.water_unit_weight / case.gravity,
+            carried: condition.carried,
+            seeded: Arc::clone(seeded),
+        }
+    }
+
+    /// Vertical stress that the law of a particle speaks of under level ground, tension positive \[Pa\].
+    pub(crate) fn effective_weight(
+        &self,
+        ground: &Ground,
+        number: usize,
+        material: &Material,
+        x: &[f64; 2],
+    ) -> f64 {
+        let own = self.own[self.seeded.body[number]].as_ref();
+        let table = match own.unwrap_or(&self.reference) {
+            source @ Source::Table { .. } => source.top(x[0]),
+            _ => f64::NEG_INFINITY,
+        };
+        let surface = ground.surface(x[0]).unwrap_or(x[1]);
+        let pond = self.reference.at(&[x[0], surface]);
+        let total = ground.weight_above(x) + ground.added_above(x, table) + pond;
+        let pores = match material.drainage {
+            Drainage::Total => 0.0,
+            _ => own.unwrap_or(&self.reference).at(x),
+        };
+        pores - total
+    }
+}
+
+impl PoreWater<2> for GroundWater {
+    fn at(&self, site: PoreSite<'_, 2>) -> PoreState<2> {
+        let (x, half) = if self.carried {
+            let [x, half] = &self.seeded.domain[site.number];
+            (x, half)
+        } else {
+            (site.x, site.half_length)
+        };
+        let material = site.law % self.is_total.len();
+        let reference = self.reference.over(x, half, site.filled);
+        let own = match &self.own[self.seeded.body[site.number]] {
+            Some(own) => own.over(x, half, site.filled),
+            None => reference,
+        };
+        let saturated = |source: &Source| matches!(source, Source::Table { .. });
+        let source = self.own[self.seeded.body[site.number]].as_ref();
+        let wet = if saturated(source.unwrap_or(&self.reference)) {
+            own.wet
+        } else {
+            0.0
+        };
+        PoreState {
+            pressure: if self.is_total[material] {
+                0.0
+            } else {
+                own.pressure
+            },
+            reference: reference.pressure,
+            gradient: reference.gradient,
+            added_density: wet * self.added_density[material],
+            water_density: wet * self.density,
+        }
+    }
+}

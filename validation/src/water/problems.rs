@@ -1,0 +1,348 @@
+//! Slopes with water in them: geometry, strength and pressure as their sources state them, and the bounds of their factor
+//! of safety.
+//!
+//! Where a source is in feet and pounds its numbers stand as metres, kN/m³ and kPa: a factor of safety knows no units.
+
+use igimp_cases::case::PoreSource;
+
+use crate::oracle::{Oracle, OracleKind};
+use crate::slopes::section::{Layer, Path, Search, Section, YOUNG};
+use crate::study::Level;
+
+/// Unit weight of water \[kN/m³, pcf\].
+const SI: f64 = 9.81;
+const POUNDS: f64 = 62.4;
+
+const GRIFFITHS_LANE_5: Oracle = bounds("Griffiths and Lane 1999, example 5");
+const R_U: Oracle = bounds("slope of Griffiths and Lane 1999, example 1, with r_u");
+const GRIFFITHS_LANE_6: Oracle = bounds(
+    "Griffiths and Lane 1999, example 6: 2.4 dry and 1.9 full; 2.42 and 1.90 by limit equilibrium",
+);
+const VP70: Oracle = bounds(
+    "Duncan and Wright 2005, fig. 6.27: 1.60; Rocscience verification problem 70: 1.599 to 1.603",
+);
+const VP82: Oracle =
+    bounds("Duncan and Wright 2005, fig. 14.20a: 1.535; Rocscience verification problem 82: 1.540");
+const VP21: Oracle = bounds(
+    "Fredlund and Krahn 1977; Rocscience verification problem 21: 2.073 to 2.076 dry, 1.761 to 1.764 with r_u on their circle",
+);
+const VP100: Oracle = bounds("Morgenstern 1963: 1.20; Rocscience verification problem 100: 1.212");
+
+/// Lower and upper bounds.
+const fn bounds(locator: &'static str) -> Oracle {
+    Oracle {
+        kind: OracleKind::LimitAnalysis,
+        source: "finite-element limit analysis with given pore pressure, ψ = φ, lower and upper bound",
+        locator,
+    }
+}
+
+/// A slope with water, and what is known of it.
+pub(super) struct Problem {
+    pub(super) group: &'static str,
+    pub(super) section: Section,
+    /// Unit weight by layer \[kN/m³\].
+    pub(super) unit_weights: Vec<f64>,
+    pub(super) water: PoreSource,
+    pub(super) water_unit_weight: f64,
+    pub(super) oracle: Oracle,
+    /// Lower and upper bound of the factor of safety \[-\].
+    pub(super) known: [f64; 2],
+    /// How far beyond the bounds is asked \[-\].
+    pub(super) beyond: f64,
+    pub(super) search: Search,
+    /// Cells over the height, coarse and fine.
+    pub(super) meshes: [u32; 2],
+    pub(super) level: Level,
+}
+
+/// Where a search begins; by gravity where the slope does not bear its weight.
+fn around(known: [f64; 2], weight: f64) -> Search {
+    let middle = 0.5 * (known[0] + known[1]);
+    let by_weight = middle > 1.12;
+    Search {
+        bracket: if by_weight {
+            [1.0, 1.2 * middle]
+        } else {
+            [0.85 * middle, 1.2 * middle]
+        },
+        path: if by_weight {
+            Path::Reduce
+        } else {
+            Path::Gravity
+        },
+        steps: if by_weight { 10 } else { 5 },
+        young: YOUNG * weight,
+    }
+}
+
+/// A level water table.
+fn level(y: f64) -> PoreSource {
+    PoreSource::Table(vec![[0.0, y]])
+}
+
+/// The 2:1 slope of ten metres, with its base at a depth factor.
+fn common(name: &str, depth: f64) -> Section {
+    let margins = if depth > 1.0 {
+        [12.0, 20.0]
+    } else {
+        [12.0, 0.0]
+    };
+    Section::homogeneous(name, (2.0, depth), (10.0, 20.0), margins)
+}
+
+/// Water at one level inside and outside, that is lowered slowly.
+fn drawn_down() -> Vec<Problem> {
+    let rows = [
+        (1.0, 0.0, [1.817, 1.847], Level::Default),
+        (1.0, 0.2, [1.572, 1.592], Level::Full),
+        (1.0, 0.6, [1.312, 1.329], Level::Full),
+        (1.0, 0.7, [1.299, 1.322], Level::Default),
+        (1.0, 0.8, [1.307, 1.331], Level::Full),
+        (1.0, 1.0, [1.374, 1.394], Level::Full),
+        (1.5, 0.0, [1.770, 1.784], Level::Full),
+        (1.5, 0.2, [1.550, 1.563], Level::Full),
+        (1.5, 0.6, [1.293, 1.305], Level::Full),
+        (1.5, 0.7, [1.272, 1.284], Level::Full),
+        (1.5, 0.8, [1.271, 1.280], Level::Full),
+        (1.5, 1.0, [1.313, 1.321], Level::Full),
+    ];
+    let problem = |(depth, lowered, known, of): (f64, f64, [f64; 2], Level)| {
+        let name = format!("water L/H = {lowered} below the crest, D = {depth}");
+        let section = common(&name, depth);
+        let water = level(section.top() - 10.0 * lowered);
+        Problem {
+            group: "drawdown",
+            section,
+            unit_weights: vec![20.0],
+            water,
+            water_unit_weight: SI,
+            oracle: GRIFFITHS_LANE_5,
+            known,
+            beyond: 0.015,
+            search: around(known, 1.0),
+            meshes: [10, 20],
+            level: of,
+        }
+    };
+    rows.map(problem).into()
+}
+
+/// Pressure as a share of the weight above.
+fn ratios() -> Vec<Problem> {
+    let rows = [
+        (1.0, 0.0, [1.374, 1.394], Level::Full),
+        (1.0, 0.1, [1.269, 1.287], Level::Full),
+        (1.0, 0.4, [0.950, 0.965], Level::Default),
+        (1.0, 0.5, [0.842, 0.857], Level::Full),
+        (1.5, 0.0, [1.359, 1.374], Level::Full),
+        (1.5, 0.1, [1.253, 1.268], Level::Full),
+        (1.5, 0.4, [0.933, 0.944], Level::Full),
+        (1.5, 0.5, [0.826, 0.836], Level::Full),
+    ];
+    let problem = |(depth, ratio, known, of): (f64, f64, [f64; 2], Level)| {
+        let name = format!("r_u = {ratio}, D = {depth}");
+        Problem {
+            group: "r_u",
+            section: common(&name, depth),
+            unit_weights: vec![20.0],
+            water: PoreSource::Ratio(ratio),
+            water_unit_weight: SI,
+            oracle: R_U,
+            known,
+            beyond: 0.015,
+            search: around(known, 1.0),
+            meshes: [10, 20],
+            level: of,
+        }
+    };
+    rows.map(problem).into()
+}
+
+/// A section of layers on a base at level 0, with the surface from the left; `height` is what the cells divide.
+fn section(name: &str, height: f64, surface: &[[f64; 2]], layers: Vec<Layer>) -> Section {
+    Section {
+        name: name.to_owned(),
+        height,
+        unit_weight: 20.0,
+        surface: surface.to_vec(),
+        base: 0.0,
+        layers,
+    }
+}
+
+/// One soil between the surface and the base.
+fn one(cohesion: f64, friction: f64, surface: &[[f64; 2]]) -> Vec<Layer> {
+    let ends = [surface[0][0], surface[surface.len() - 1][0]];
+    let mut polygon = vec![[ends[0], 0.0]];
+    if surface[surface.len() - 1][1] > 0.0 {
+        polygon.push([ends[1], 0.0]);
+    }
+    polygon.extend(surface.iter().rev());
+    vec![Layer {
+        cohesion,
+        friction,
+        polygon,
+    }]
+}
+
+/// The dam, dry and with a full reservoir to its left.
+fn dam() -> Vec<Problem> {
+    let surface = [
+        [0.0, 7.3],
+        [33.5, 7.3],
+        [99.83, 28.6],
+        [107.13, 28.6],
+        [157.9, 7.3],
+        [191.4, 7.3],
+    ];
+    let line = vec![[0.0, 24.4], [86.75, 24.4], [157.9, 7.3], [191.4, 7.3]];
+    let problem = |(state, water, known, of): (&str, PoreSource, [f64; 2], Level)| Problem {
+        group: "dam",
+        section: section(
+            &format!("dam, {state}"),
+            28.6,
+            &surface,
+            one(13.8, 37.0, &surface),
+        ),
+        unit_weights: vec![18.2],
+        water,
+        water_unit_weight: SI,
+        oracle: GRIFFITHS_LANE_6,
+        known,
+        beyond: 0.02,
+        search: around(known, 2.0),
+        meshes: [26, 52],
+        level: of,
+    };
+    [
+        ("dry", PoreSource::Dry, [2.429, 2.461], Level::Full),
+        ("full", PoreSource::Table(line), [1.892, 1.908], Level::Full),
+    ]
+    .map(problem)
+    .into()
+}
+
+/// Slopes of Duncan and Wright, Fredlund and Krahn, and Morgenstern, turned so that they fall to the right.
+fn imperial() -> Vec<Problem> {
+    let submerged = [[0.0, 45.0], [35.0, 45.0], [110.0, 15.0], [140.0, 15.0]];
+    let two = [[0.0, 60.0], [60.0, 60.0], [140.0, 20.0], [200.0, 20.0]];
+    let fredlund = [[0.0, 60.0], [60.0, 60.0], [140.0, 20.0], [180.0, 20.0]];
+    let morgenstern = [[0.0, 100.0], [75.0, 100.0], [375.0, 0.0]];
+    let layers = vec![
+        Layer {
+            cohesion: 600.0,
+            friction: 25.0,
+            polygon: vec![[0.0, 20.0], [140.0, 20.0], [60.0, 60.0], [0.0, 60.0]],
+        },
+        Layer {
+            cohesion: 0.0,
+            friction: 30.0,
+            polygon: vec![[0.0, 0.0], [200.0, 0.0], [200.0, 20.0], [0.0, 20.0]],
+        },
+    ];
+    let problem = |(name, height, surface, layers, unit_weights): (
+        &str,
+        f64,
+        &[[f64; 2]],
+        Vec<Layer>,
+        Vec<f64>,
+    ),
+                   (oracle, water, known): (Oracle, PoreSource, [f64; 2]),
+                   cells: u32,
+                   of: Level| Problem {
+        group: "others",
+        section: section(name, height, surface, layers),
+        search: around(known, unit_weights[0] * height / 200.0),
+        unit_weights,
+        water,
+        water_unit_weight: POUNDS,
+        oracle,
+        known,
+        beyond: 0.02,
+        meshes: [cells, 2 * cells],
+        level: of,
+    };
+    let vp70 = (
+        "submerged",
+        30.0,
+        &submerged[..],
+        one(100.0, 20.0, &submerged),
+        vec![128.0],
+    );
+    let vp82 = (
+        "two layers, line",
+        40.0,
+        &two[..],
+        layers,
+        vec![125.0, 132.0],
+    );
+    let vp21 = |name| {
+        (
+            name,
+            40.0,
+            &fredlund[..],
+            one(600.0, 20.0, &fredlund),
+            vec![120.0],
+        )
+    };
+    let vp100 = |name| {
+        (
+            name,
+            100.0,
+            &morgenstern[..],
+            one(312.0, 30.0, &morgenstern),
+            vec![124.8],
+        )
+    };
+    let line = PoreSource::Table(vec![
+        [0.0, 40.0],
+        [100.0, 30.0],
+        [140.0, 20.0],
+        [200.0, 20.0],
+    ]);
+    let ground = PoreSource::Table(morgenstern.to_vec());
+    vec![
+        problem(vp70, (VP70, level(60.0), [1.583, 1.600]), 12, Level::Full),
+        problem(vp82, (VP82, line, [1.519, 1.533]), 16, Level::Full),
+        problem(
+            vp21("Fredlund and Krahn, dry"),
+            (VP21, PoreSource::Dry, [1.976, 1.998]),
+            16,
+            Level::Full,
+        ),
+        problem(
+            vp21("Fredlund and Krahn, r_u = 0.25"),
+            (VP21, PoreSource::Ratio(0.25), [1.683, 1.702]),
+            16,
+            Level::Full,
+        ),
+        problem(
+            vp100("Morgenstern, dry"),
+            (VP100, PoreSource::Dry, [2.228, 2.262]),
+            20,
+            Level::Full,
+        ),
+        problem(
+            vp100("Morgenstern, full pool"),
+            (VP100, level(100.0), [2.561, 2.605]),
+            20,
+            Level::Full,
+        ),
+        problem(
+            vp100("Morgenstern, drawn down"),
+            (VP100, ground, [1.196, 1.217]),
+            20,
+            Level::Full,
+        ),
+    ]
+}
+
+/// All of them.
+pub(super) fn all() -> Vec<Problem> {
+    let mut all = drawn_down();
+    all.extend(ratios());
+    all.extend(dam());
+    all.extend(imperial());
+    all
+}
