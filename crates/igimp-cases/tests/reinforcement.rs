@@ -173,7 +173,7 @@ fn frames_pictures_and_report_show_the_members() {
     for text in [
         "Reinforcement, per metre run",
         "anchor, ",
-        "locked off at 12 kN/m",
+        "locked off at 12 kN",
         "Tension per metre run",
         "nail__3-load.csv",
         "reinforcement.pvd",
