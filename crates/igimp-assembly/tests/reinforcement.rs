@@ -6,8 +6,8 @@ mod common;
 
 use common::{Random, conditions, displacements, grid, laws, particles};
 use igimp_assembly::{
-    Geometry, Hold, Kinematics, Method, Reinforcement, ReinforcementControl, Segment, SegmentState,
-    Station, Stencils, StepConditions, System,
+    AssemblyError, Geometry, Hold, Kinematics, Method, Reinforcement, ReinforcementControl,
+    Segment, SegmentState, Station, Stencils, StepConditions, System,
 };
 use igimp_material::TangentKind;
 use igimp_shape::Grid;
@@ -328,4 +328,36 @@ fn bond_that_is_reduced_limits_the_force() {
             assert!((bar.state.force - limit).abs() < 1e-13, "{k}");
         }
     }
+}
+
+#[test]
+fn members_without_soil_are_named() {
+    let scene = scene::<2>();
+    let method = Method::igimp_bbar();
+    let stencils = Stencils::build(&scene.body, &method, &scene.conditions).unwrap();
+    let error = |member: &Reinforcement<2>| {
+        let members = [member.clone()];
+        let structures = (&[][..], &members[..]);
+        let conditions = &scene.conditions;
+        let system =
+            System::with_structures(&scene.body, structures, &stencils, conditions, &method);
+        system.map(|_| ()).unwrap_err()
+    };
+    let mut away = scene.member.clone();
+    away.stations[9].points[0] = [-3.0, 2.0];
+    let said = error(&away).to_string();
+    assert_eq!(
+        said,
+        "no soil carries the reinforcement \"member\" at [-3.0, 2.0, 0.0] m"
+    );
+    let mut broken = scene.member.clone();
+    broken.segments[2].state.strain = f64::NAN;
+    let what = "reinforcement";
+    assert_eq!(error(&broken), AssemblyError::NonFinite { what, index: 0 });
+    let jack = ReinforcementControl {
+        jack: Some(-1.0),
+        ..ReinforcementControl::default()
+    };
+    let refused = scene.conditions.clone().with_reinforcement(vec![jack]);
+    assert!(refused.is_err());
 }
