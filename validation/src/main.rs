@@ -30,6 +30,7 @@ mod review;
 mod runs;
 mod slopes;
 mod snapshot;
+mod stages;
 mod strength_profile;
 mod study;
 mod table;
@@ -111,6 +112,7 @@ enum Case {
     ReinforcementSeam,
     ReinforcementCut,
     Water,
+    Stages,
     FootingContact,
     ContactFooting,
     ContactColumn,
@@ -148,6 +150,7 @@ impl Case {
             Self::ReinforcementSeam => reinforcement::seam::study(level, out),
             Self::ReinforcementCut => reinforcement::cut::study(level, out),
             Self::Water => water::study(level, out),
+            Self::Stages => stages::study(level, out),
             Self::FootingContact => footing_contact::study(level, out),
             Self::ContactFooting => contact::footing::study(level, out),
             Self::ContactColumn => contact::column::study(out),

@@ -98,8 +98,6 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
 fn wet_layers(study: &mut Study, level: Level) {
     let mut wet = vec![(Layer::new(40, 4), Pores::Seepage(1.0))];
     if level >= Level::Default {
-        let seepage = [0.5].map(|share| (Layer::new(40, 4), Pores::Seepage(share)));
-        wet.extend(seepage);
         wet.extend([0.1, 0.3].map(|ratio| (Layer::new(40, 4), Pores::Ratio(ratio))));
     }
     let slides: Vec<Slide> = wet

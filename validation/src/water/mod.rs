@@ -1,6 +1,7 @@
 //! Slopes with water in their pores: factors of safety between bounds, and identities that hold to round-off.
 
 mod problems;
+mod undrained;
 
 use std::path::Path;
 
@@ -87,6 +88,7 @@ impl Found {
 pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
     let mut study = Study::new("water", ABOUT, out)?;
     submerged(&mut study)?;
+    undrained::report(&mut study, level)?;
     let problems: Vec<Problem> = problems::all()
         .into_iter()
         .filter(|problem| problem.level <= level)
@@ -109,6 +111,7 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
             "uncertainty_[-]",
         ],
     );
+    let mut factors = Vec::new();
     let mut note = String::from("bounds; coarse, fine; extrapolated\n");
     for (problem, found) in std::iter::zip(&problems, found.chunks(2)) {
         let values = [0, 1].map(|mesh| mesh_study::Computed {
@@ -129,15 +132,43 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
         let band = Band::Between((1.0 - beyond) * lower, (1.0 + beyond) * upper);
         study.check(run, QUANTITY, expected, band, value);
         let [coarse, fine] = [&found[0], &found[1]].map(Found::factor);
+        factors.push(value);
         table.push(vec![lower, upper, coarse, fine, value, uncertainty]);
         note.push_str(&format!(
             "  {:<10} {name:<48} {lower:.3} … {upper:.3}; {coarse:.4}, {fine:.4}; {value:.4} ± {uncertainty:.4}\n",
             problem.group,
         ));
     }
+    if level == Level::Full {
+        minimum_lies_inside(&mut study, &problems, &factors);
+    }
     study.notes.push(note);
     table.write_csv(&study.folder)?;
     Ok(study)
+}
+
+/// In a slow drawdown the factor falls before it rises again.
+fn minimum_lies_inside(study: &mut Study, problems: &[Problem], factors: &[f64]) {
+    for depth in ["D = 1", "D = 1.5"] {
+        let own = std::iter::zip(problems, factors).filter(|(problem, _)| {
+            problem.group == "drawdown" && problem.section.name.ends_with(depth)
+        });
+        let own: Vec<f64> = own.map(|(_, factor)| *factor).collect();
+        let (Some((first, rest)), Some(last)) = (own.split_first(), own.last()) else {
+            continue;
+        };
+        let least = rest.iter().copied().fold(f64::INFINITY, f64::min);
+        let run = study.run(RunRecord::sum(format!("slow drawdown, {depth}"), &[]));
+        let quantity = "least factor over that of the slope drawn down [-]";
+        let band = Band::AtMost(0.985);
+        study.check(
+            run,
+            quantity,
+            problems::MINIMUM.says(0.95),
+            band,
+            least / first.min(*last),
+        );
+    }
 }
 
 /// A slope under water against the dry one of buoyant weight.

@@ -14,6 +14,12 @@ const SI: f64 = 9.81;
 const POUNDS: f64 = 62.4;
 
 const GRIFFITHS_LANE_5: Oracle = bounds("Griffiths and Lane 1999, example 5");
+/// Where the least factor lies.
+pub(super) const MINIMUM: Oracle = Oracle {
+    kind: OracleKind::LimitAnalysis,
+    source: "the bounds of slopes under water at all levels",
+    locator: "the least lies at L/H = 0.7 to 0.8: 0.949 of the empty one for D = 1, 0.970 for D = 1.5",
+};
 const R_U: Oracle = bounds("slope of Griffiths and Lane 1999, example 1, with r_u");
 const GRIFFITHS_LANE_6: Oracle = bounds(
     "Griffiths and Lane 1999, example 6: 2.4 dry and 1.9 full; 2.42 and 1.90 by limit equilibrium",

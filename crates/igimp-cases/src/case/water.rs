@@ -53,6 +53,6 @@ pub struct Construction {
     pub materials: Vec<(usize, usize)>,
     /// The condition of the water from now on, by index; none: as before.
     pub water: Option<usize>,
-    /// Whether excess pore pressure is gone at the end.
+    /// Whether excess pore pressure goes: all soil drains in this stage, and none is left at its end.
     pub dissipate: bool,
 }

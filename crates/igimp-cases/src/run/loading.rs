@@ -42,7 +42,8 @@ pub(crate) fn target(case: &Case, stage: &Stage, start: &Controls) -> Controls {
         StageKind::Construction(own) => end.water = own.water.or(end.water),
         StageKind::K0 | StageKind::StrengthReduction(_) | StageKind::RunOut(_) => {}
     }
-    end.drained = stage.drained;
+    end.drained =
+        stage.drained || matches!(&stage.kind, StageKind::Construction(own) if own.dissipate);
     end
 }
 
