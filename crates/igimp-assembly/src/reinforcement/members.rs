@@ -25,7 +25,7 @@ type Shares = Vec<(usize, f64)>;
 /// The members of one step.
 #[derive(Debug)]
 pub(crate) struct Members<'a, const D: usize> {
-    members: &'a [Reinforcement<D>],
+    all: &'a [Reinforcement<D>],
     /// By member, by station, by point.
     points: Vec<Vec<Vec<Shares>>>,
     /// The bars, member by member.
@@ -36,7 +36,7 @@ pub(crate) struct Members<'a, const D: usize> {
 impl<'a, const D: usize> Members<'a, D> {
     /// Finds the nodes that carry the members at the start of a step.
     pub(crate) fn find(
-        members: &'a [Reinforcement<D>],
+        all: &'a [Reinforcement<D>],
         stencils: &Stencils<D>,
         conditions: &StepConditions<D>,
         method: &Method,
@@ -83,7 +83,7 @@ impl<'a, const D: usize> Members<'a, D> {
             points.push(stations);
         }
         Ok(Self {
-            members,
+            all: members,
             points,
             rows,
             is_given: method.geometry == Geometry::Given,
@@ -93,7 +93,7 @@ impl<'a, const D: usize> Members<'a, D> {
     /// The members as nodal step displacements `u` \[length\] leave them. On a given geometry they stay
     /// where they are.
     pub(crate) fn accepted(&self, u: &[[f64; D]]) -> Vec<Reinforcement<D>> {
-        let mut members = self.members.to_vec();
+        let mut members = self.all.to_vec();
         let mut rows = self.rows.iter();
         for (member, points) in members.iter_mut().zip(&self.points) {
             for (segment, row) in member.segments.iter_mut().zip(&mut rows) {
