@@ -36,7 +36,7 @@ pub(crate) struct Members<'a, const D: usize> {
 impl<'a, const D: usize> Members<'a, D> {
     /// Finds the nodes that carry the members at the start of a step.
     pub(crate) fn find(
-        all: &'a [Reinforcement<D>],
+        members: &'a [Reinforcement<D>],
         stencils: &Stencils<D>,
         conditions: &StepConditions<D>,
         method: &Method,
