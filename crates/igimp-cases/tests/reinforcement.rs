@@ -150,7 +150,7 @@ fn tables_tell_tension_and_its_limit() {
     }
     assert!(nail.iter().any(|row| row[3] > 1e3));
     assert!(!folder.join("reinforcement/mat__2-stress.csv").exists());
-    assert_eq!(read("anchor__2-stress.csv")[0][3], 12e3);
+    assert!((read("anchor__2-stress.csv")[0][3] / 12e3 - 1.0).abs() < 1e-9);
     // Its bond is reduced with the strength.
     let reduced = read("anchor__stage-04-last-stable.csv");
     let full = read("anchor__3-load.csv");
@@ -207,5 +207,6 @@ fn explained_files_state_the_same() {
     let file = parsed(&[]);
     let again = CaseFile::parse("again.toml", &file.explain(), &[]).unwrap();
     assert_eq!(again.case().reinforcement, file.case().reinforcement);
-    assert_eq!(file.case().reinforcement[0].fastened, [25e3, 0.0]);
+    let [head, end] = file.case().reinforcement[0].fastened;
+    assert!((head / 25e3 - 1.0).abs() < 1e-12 && end.abs() < 1e-12);
 }

@@ -73,14 +73,14 @@ impl Search {
 /// Runs the study.
 pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
     let mut study = Study::new("reinforcement-cut", ABOUT, out)?;
-    let cells = if level == Level::Full {
-        [0.25, 0.125]
+    let cells: &[f64] = if level == Level::Full {
+        &[0.5, 0.25, 0.125]
     } else {
-        [0.5, 0.25]
+        &[0.5, 0.25]
     };
     let searches: Vec<Search> = [true, false]
         .into_iter()
-        .flat_map(|has_nails| cells.map(|cell| Search { has_nails, cell }))
+        .flat_map(|has_nails| cells.iter().map(move |&cell| Search { has_nails, cell }))
         .collect();
     let results = searches
         .par_iter()
@@ -95,9 +95,10 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
         "upper_bound_[-]",
     ];
     let mut table = Table::new("factors_of_safety", &header);
-    for (pair, computed) in std::iter::zip(searches.chunks(2), results.chunks(2)) {
-        let mut coarse = f64::NAN;
-        for (search, result) in std::iter::zip(pair, computed) {
+    let meshes = cells.len();
+    for (own, computed) in std::iter::zip(searches.chunks(meshes), results.chunks(meshes)) {
+        let mut before: Option<[f64; 2]> = None;
+        for (search, result) in std::iter::zip(own, computed) {
             let nails = if search.has_nails {
                 "nails"
             } else {
@@ -127,8 +128,8 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
                 low,
                 high,
             ]);
-            if search.cell < cells[0] {
-                let [wide, narrow] = cells;
+            let narrow = search.cell;
+            if let Some([wide, coarse]) = before {
                 study.check(
                     run,
                     format!("F, h = {wide} and {narrow} m extrapolated to h = 0 [-]"),
@@ -137,7 +138,7 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
                     found + (found - coarse) * narrow / (wide - narrow),
                 );
             }
-            coarse = found;
+            before = Some([narrow, found]);
         }
     }
     table.write_csv(&study.folder)?;
