@@ -24,6 +24,7 @@ pub use rigid::{
     Adhesion, RigidDrive, RigidInterface, RigidMove, RigidPart, RigidQuantity, RigidShape,
     RigidShear,
 };
+pub(crate) use water::table_level;
 pub use water::{Construction, Drainage, PoreSource, WaterCondition};
 
 use crate::check::Band;
@@ -518,16 +519,28 @@ pub enum Field {
     X,
     /// Position y \[m\].
     Y,
-    /// −σ_xx \[Pa\].
+    /// −σ_xx of total stress \[Pa\].
     SigmaXx,
-    /// −σ_yy \[Pa\].
+    /// −σ_yy of total stress \[Pa\].
     SigmaYy,
-    /// −σ_zz \[Pa\].
+    /// −σ_zz of total stress \[Pa\].
     SigmaZz,
     /// −τ_xy \[Pa\].
     TauXy,
-    /// Mean pressure p = −tr σ/3 \[Pa\].
+    /// Mean pressure p = −tr σ/3 of total stress \[Pa\].
     P,
+    /// −σ′_xx of effective stress: the stress that the law speaks of \[Pa\].
+    SigmaEffXx,
+    /// −σ′_yy of effective stress \[Pa\].
+    SigmaEffYy,
+    /// −σ′_zz of effective stress \[Pa\].
+    SigmaEffZz,
+    /// Mean effective pressure p′ = −tr σ′/3 \[Pa\].
+    PEff,
+    /// Pore pressure u, given and excess \[Pa\].
+    U,
+    /// Excess pore pressure that undrained soil made itself \[Pa\].
+    UExcess,
     /// Deviatoric stress q = √(3/2)‖s‖ \[Pa\].
     Q,
     /// Accumulated plastic strain invariant \[-\].

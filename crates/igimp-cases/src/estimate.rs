@@ -45,11 +45,11 @@ const TRIALS: f64 = 9.0;
 /// The size of a case.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
-    /// Particles.
+    /// Particles, the most that are there at once.
     pub particles: usize,
     /// Cells of the grid.
     pub cells: usize,
-    /// Unknowns of the first step.
+    /// Unknowns of a step with all bodies there.
     pub unknowns: usize,
     /// Memory on the threads of the current pool \[bytes\].
     pub bytes: f64,
@@ -65,7 +65,7 @@ pub fn estimate(case: &Case) -> Result<Estimate, CaseError> {
     let grid = case.grid.grid()?;
     let mut active = vec![false; grid.node_count()];
     let (mut scratch, mut list) = (Scratch::default(), Vec::new());
-    let mut particles = 0;
+    let mut by_body = Vec::new();
     for body in &case.bodies {
         let seeds = fill_polygon(&grid, &body.polygon, body.per_direction, 1.0, 0)?;
         for seed in &seeds {
@@ -82,8 +82,16 @@ pub fn estimate(case: &Case) -> Result<Estimate, CaseError> {
                 active[support.node] = true;
             }
         }
-        particles += seeds.len();
+        by_body.push(seeds.len());
     }
+    let count = |there: &[bool]| -> usize {
+        let own = std::iter::zip(&by_body, there);
+        own.map(|(count, &there)| if there { *count } else { 0 })
+            .sum()
+    };
+    let at_start: Vec<bool> = case.bodies.iter().map(|body| body.from_start).collect();
+    let stages = (0..case.stages.len()).map(|stage| count(&case.bodies_after(stage)));
+    let particles = stages.fold(count(&at_start), usize::max);
     let unknowns = (0..active.len())
         .filter(|&node| active[node])
         .map(|node| {

@@ -6,6 +6,7 @@
 //! carry them, so that soil has no gaps; where it parts they go their own ways.
 
 use std::collections::HashMap;
+use std::ops::Range;
 
 use igimp_assembly::Particles;
 
@@ -23,6 +24,7 @@ const SAME: f64 = 1e-6;
 /// A corner of a piece.
 #[derive(Clone, Copy, Debug)]
 struct Corner {
+    /// Number of the particle, which it keeps.
     particle: usize,
     /// Its place seen from the particle's, before both moved.
     offset: [f64; 2],
@@ -31,13 +33,43 @@ struct Corner {
 }
 
 impl Corner {
-    fn carried(&self, particles: &Particles<2>) -> [f64; 2] {
+    /// Where its particle carries it, if that is there.
+    fn carried(&self, there: &There<'_>) -> Option<[f64; 2]> {
+        let particle = there.place_of(self.particle)?;
         let (x, f) = (
-            particles.x[self.particle],
-            particles.def_grad[self.particle],
+            there.particles.x[particle],
+            there.particles.def_grad[particle],
         );
         let [dx, dy] = self.offset;
-        [0, 1].map(|a| x[a] + f[a][0] * dx + f[a][1] * dy)
+        Some([0, 1].map(|a| x[a] + f[a][0] * dx + f[a][1] * dy))
+    }
+}
+
+/// The particles that are there, found by their numbers: bodies are placed and taken away.
+struct There<'a> {
+    particles: &'a Particles<2>,
+    /// Place by number.
+    places: Vec<Option<usize>>,
+}
+
+impl<'a> There<'a> {
+    fn new(particles: &'a Particles<2>) -> Self {
+        let count = particles.number.iter().max().map_or(0, |last| last + 1);
+        let mut places = vec![None; count];
+        for (place, &number) in particles.number.iter().enumerate() {
+            places[number] = Some(place);
+        }
+        Self { particles, places }
+    }
+
+    fn place_of(&self, number: usize) -> Option<usize> {
+        self.places.get(number).copied().flatten()
+    }
+
+    /// Whether the body of a line of corners is there.
+    fn has(&self, corners: &[Corner]) -> bool {
+        let is_there = |corner: &Corner| self.place_of(corner.particle).is_some();
+        corners.iter().all(is_there)
     }
 }
 
@@ -49,6 +81,8 @@ pub struct Pieces {
     places: usize,
     /// Closed lines; the first corner stands at the end once more.
     edges: Vec<Vec<Corner>>,
+    /// By body: the numbers of its particles.
+    bodies: Vec<Range<usize>>,
 }
 
 impl Pieces {
@@ -66,6 +100,7 @@ impl Pieces {
             corners: Vec::new(),
             places: 0,
             edges: Vec::new(),
+            bodies: Vec::new(),
         };
         let mut first = 0;
         for body in &case.bodies {
@@ -90,42 +125,50 @@ impl Pieces {
                 all.corners.push(corners);
             }
             all.edges.extend(outline(&all.corners[own..]));
+            all.bodies.push(first..first + seeds.len());
             first += seeds.len();
         }
         all.places = numbers.len();
         Ok(all)
     }
 
-    /// The pieces as the particles of the case carry them, each with its particle.
-    ///
-    /// # Panics
-    /// If there are fewer particles than the case has.
-    pub fn now(&self, particles: &Particles<2>) -> (Vec<Polygon>, &[usize]) {
-        let met = self.met(particles);
-        let polygons = self
-            .corners
-            .iter()
-            .map(|corners| moved(corners, &met, particles));
-        (polygons.collect(), &self.particles)
+    /// The pieces of the bodies that are there as the particles carry them, each with the place of its particle.
+    pub fn now(&self, particles: &Particles<2>) -> (Vec<Polygon>, Vec<usize>) {
+        let there = There::new(particles);
+        let met = self.met(&there);
+        std::iter::zip(&self.corners, &self.particles)
+            .filter_map(|(corners, &number)| {
+                let place = there.place_of(number)?;
+                Some((moved(corners, &met, &there), place))
+            })
+            .unzip()
     }
 
-    /// The edges of the bodies as the particles carry them, closed lines.
-    ///
-    /// # Panics
-    /// If there are fewer particles than the case has.
+    /// The edges of the bodies that are there as the particles carry them, closed lines.
     pub fn edges(&self, particles: &Particles<2>) -> Vec<Polygon> {
-        let met = self.met(particles);
-        let lines = self.edges.iter().map(|edge| moved(edge, &met, particles));
-        lines.collect()
+        let there = There::new(particles);
+        let met = self.met(&there);
+        let edges = self.edges.iter().filter(|edge| there.has(edge));
+        edges.map(|edge| moved(edge, &met, &there)).collect()
+    }
+
+    /// By body of the case: whether it is there.
+    pub fn there(&self, particles: &Particles<2>) -> Vec<bool> {
+        let there = There::new(particles);
+        let is_there = |own: &Range<usize>| {
+            let mut numbers = own.clone();
+            numbers.any(|number| there.place_of(number).is_some())
+        };
+        self.bodies.iter().map(is_there).collect()
     }
 
     /// By place: where its corners meet, if they have not parted.
-    fn met(&self, particles: &Particles<2>) -> Vec<Option<[f64; 2]>> {
-        let all = || self.corners.iter().flatten();
+    fn met(&self, there: &There<'_>) -> Vec<Option<[f64; 2]>> {
+        let carried = |corner: &Corner| Some((*corner, corner.carried(there)?));
+        let all = || self.corners.iter().flatten().filter_map(carried);
         let mut sums = vec![([0.0; 2], 0.0); self.places];
-        for corner in all() {
+        for (corner, at) in all() {
             let (sum, count) = &mut sums[corner.place];
-            let at = corner.carried(particles);
             *sum = [sum[0] + at[0], sum[1] + at[1]];
             *count += 1.0;
         }
@@ -133,9 +176,11 @@ impl Pieces {
             .into_iter()
             .map(|(sum, count)| Some(sum.map(|sum| sum / count)))
             .collect();
-        for corner in all() {
-            let at = corner.carried(particles);
-            let reach = PARTED * size(particles, corner.particle);
+        for (corner, at) in all() {
+            let reach = PARTED
+                * there
+                    .place_of(corner.particle)
+                    .map_or(0.0, |place| size(there.particles, place));
             met[corner.place] = met[corner.place]
                 .filter(|middle| (middle[0] - at[0]).hypot(middle[1] - at[1]) <= reach);
         }
@@ -151,9 +196,9 @@ fn size(particles: &Particles<2>, particle: usize) -> f64 {
     side(0) + side(1)
 }
 
-fn moved(corners: &[Corner], met: &[Option<[f64; 2]>], particles: &Particles<2>) -> Polygon {
-    let now = |corner: &Corner| met[corner.place].unwrap_or_else(|| corner.carried(particles));
-    corners.iter().map(now).collect()
+fn moved(corners: &[Corner], met: &[Option<[f64; 2]>], there: &There<'_>) -> Polygon {
+    let now = |corner: &Corner| met[corner.place].or_else(|| corner.carried(there));
+    corners.iter().filter_map(now).collect()
 }
 
 /// The closed lines around pieces: sides that no other piece goes along the other way.
@@ -229,6 +274,38 @@ mod tests {
         assert!(pieces.now(&particles).0.iter().flatten().all(inside));
         let edges = pieces.edges(&particles);
         assert!((area(&edges) - whole).abs() < 1e-12 * whole);
+    }
+
+    /// GOAL: bodies that were taken away, or are not yet there, are not drawn, and the others by their own particles.
+    #[test]
+    fn only_what_is_there_is_drawn() {
+        let mut case = slope();
+        let mut hill = case.bodies[0].clone();
+        hill.polygon = vec![[0.0, 1.7], [1.3, 1.7], [0.8, 2.4], [0.0, 2.4]];
+        let area_of_hill = area_and_centroid(&hill.polygon).0;
+        case.bodies.push(hill);
+        let (model, state) = Model::new(&case).unwrap();
+        let all = state.body.particles;
+        let of_hill = |particle: usize| model.seeded.body[all.number[particle]] == 1;
+        let pieces = Pieces::of(&case).unwrap();
+        assert_eq!(pieces.there(&all), [true, true]);
+        let left = all.keeping(of_hill).unwrap();
+        assert_eq!(pieces.there(&left), [false, true]);
+        let (polygons, whose) = pieces.now(&left);
+        assert!(whose.iter().all(|&place| place < left.len()));
+        assert!((area(&polygons) - area_of_hill).abs() < 1e-12 * area_of_hill);
+        assert!((area(&pieces.edges(&left)) - area_of_hill).abs() < 1e-12 * area_of_hill);
+        // The same particles in another order are the same picture.
+        let below = all.keeping(|particle| !of_hill(particle)).unwrap();
+        let turned = left.joined_by(&below);
+        assert_eq!(pieces.edges(&turned), pieces.edges(&all));
+        let drawn = |particles: &Particles<2>| {
+            let (polygons, whose) = pieces.now(particles);
+            std::iter::zip(polygons, whose)
+                .map(|(piece, place)| (piece, particles.number[place]))
+                .collect::<Vec<_>>()
+        };
+        assert_eq!(drawn(&turned), drawn(&all));
     }
 
     /// GOAL: neighbours that deform differently leave no gaps, soil that parts is not drawn as joined.

@@ -63,6 +63,9 @@ shipped! {
     "wall": "smooth wall moved away from sand and into it: active and passive pressure",
     "plate_anchor": "plate anchor pulled up through undrained clay, with a gap below it",
     "wedge": "smooth wedge pushed into undrained clay",
+    "dam_drawdown": "dam of earth: factors of safety dry, with a full pool and after drawdown",
+    "excavation": "pit dug in two slices after the water was lowered",
+    "embankment_lifts": "embankment filled in lifts on clay that grows stronger with depth, held against limit analysis",
     "block": "block of clay that loses its strength and spreads until it rests",
 }
 

@@ -108,15 +108,15 @@ pub struct MemoryShare {
 /// Numbers that tell the size of a model.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ModelSize {
-    /// Particles.
+    /// Particles, the most that are there at once.
     pub particles: usize,
     /// Cells of the grid.
     pub cells: usize,
     /// Most unknowns of a step.
     pub unknowns: usize,
-    /// Total mass times gravity \[N/m\].
+    /// Total mass times gravity at the start \[N/m\].
     pub weight: f64,
-    /// Total volume \[m³/m\].
+    /// Total volume at the start \[m³/m\].
     pub volume: f64,
 }
 
@@ -167,6 +167,9 @@ pub struct StageSummary {
     /// The reinforcement that was there at its end.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub reinforcement: Vec<MemberSummary>,
+    /// Water in the pores at the end, where there is some.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pore_water: Option<PoreSummary>,
 }
 
 /// The tension of a member of reinforcement at the end of a stage.
@@ -180,6 +183,19 @@ pub struct MemberSummary {
     pub head_force: f64,
     /// Share of its length on which tension is at its limit \[-\].
     pub at_limit: f64,
+}
+
+/// Water in the pores at the end of a stage; pressure compression positive.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PoreSummary {
+    /// Largest pore pressure of any particle, given and excess \[Pa\].
+    pub largest: f64,
+    /// Least and largest excess pore pressure, where soil made some \[Pa\].
+    pub excess: Option<[f64; 2]>,
+    /// Particles whose pore pressure exceeds the total vertical stress.
+    pub floating: usize,
+    /// All particles.
+    pub particles: usize,
 }
 
 /// How a stage ended.

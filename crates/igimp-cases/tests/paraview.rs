@@ -90,6 +90,10 @@ fn particles<const D: usize>(side: usize) -> Particles<D> {
         half_length0: vec![[0.5; D]; n],
         volume0: vec![1.0; n],
         mass: vec![2.0; n],
+        pore_pressure: (0..n).map(|k| 5e4 * number(k, 60).abs()).collect(),
+        excess: (0..n).map(|k| 1e4 * number(k, 61)).collect(),
+        // Bodies came and went: numbers have gaps, and do not rise.
+        number: (0..n).map(|k| 3 * (n - k)).collect(),
         law: (0..n).map(|k| k % 4).collect(),
         ratios: vec![Ratios::ONE; n],
         history: (0..n)
@@ -191,6 +195,7 @@ fn vtk_pyvista_and_meshio_read_what_is_written() {
     let everything = Extras {
         utilisation: Some(&utilisation),
         def_grad: true,
+        pore_water: true,
     };
     let none = Extras::default();
     let mut of_plane = Collection::create(&folder, PARTICLES).unwrap();
@@ -256,6 +261,45 @@ fn vtk_pyvista_and_meshio_read_what_is_written() {
     });
     fs::write(folder.join("expected.json"), expected.to_string()).unwrap();
     run_script("read_vtu.py", "vtk, pyvista, meshio", &folder);
+}
+
+/// GOAL: with water the arrays name total and effective stress, and total stress is effective stress less the pore pressure;
+/// without it nothing is written of pores.
+#[test]
+fn total_and_effective_stress_are_arrays_of_their_own() {
+    let soil = particles::<2>(5);
+    let extras = Extras {
+        pore_water: true,
+        ..Extras::default()
+    };
+    let wet = of_particles(&soil, &extras);
+    let of = |grid: &UnstructuredGrid, name: &str| {
+        let array = grid.cell_data.iter().find(|array| array.name() == name);
+        array.map(|array| match array.values() {
+            Values::F64(values) => values.clone(),
+            other => panic!("{other:?}"),
+        })
+    };
+    let total = of(&wet, "sigma [Pa], tension +").unwrap();
+    let effective = of(&wet, "sigma_eff [Pa], tension +").unwrap();
+    let (u, excess) = (
+        of(&wet, "u [Pa], compression +").unwrap(),
+        of(&wet, "u_excess [Pa], compression +").unwrap(),
+    );
+    let p = ["p", "p_eff"].map(|name| of(&wet, &format!("{name} [Pa], compression +")).unwrap());
+    for k in 0..soil.len() {
+        assert_eq!(excess[k].to_bits(), soil.excess[k].to_bits());
+        for entry in 0..6 {
+            let by = if entry < 3 { u[k] } else { 0.0 };
+            let found = effective[6 * k + entry] - total[6 * k + entry];
+            assert!((found - by).abs() < 1e-9 * 1e5, "{found} {by}");
+        }
+        assert!((p[0][k] - p[1][k] - u[k]).abs() < 1e-9 * 1e5);
+    }
+    let dry = of_particles(&soil, &Extras::default());
+    let names = |grid: &UnstructuredGrid| grid.cell_data.len();
+    assert_eq!(names(&wet), names(&dry) + 4);
+    assert_eq!(of(&dry, "u [Pa], compression +"), None);
 }
 
 /// GOAL: what soil does to a body points into it, and along it where the soil slips.

@@ -399,3 +399,45 @@ fn wedge_meets_more_resistance_with_depth() {
     assert_eq!(ran.outcomes(), [Completed]);
     between(ran.end_of("resistance"), 1.4, 1.8);
 }
+
+#[test]
+fn a_full_pool_and_a_drawdown_weaken_a_dam() {
+    let ran = ran(
+        "dam_drawdown",
+        &[
+            "grid.cell={ x=\"7.656 m\", y=\"3.65 m\" }",
+            "stages.1.tolerance=0.1",
+            "stages.3.tolerance=0.1",
+            "output.figures=[]",
+        ],
+    );
+    assert_eq!(ran.outcomes(), [Completed; 6]);
+    between(ran.measured("factor of safety dry"), 2.4, 2.8);
+    between(ran.measured("factor of safety with a full pool"), 1.85, 2.2);
+}
+
+#[test]
+fn what_is_left_below_a_pit_is_its_buoyant_weight() {
+    let ran = ran(
+        "excavation",
+        &["stages.4.tolerance=0.5", "output.figures=[]"],
+    );
+    assert_eq!(ran.outcomes(), [Completed; 5]);
+    let at_rest = ran.measured("effective vertical stress at rest");
+    assert!((at_rest / 71.4975 - 1.0).abs() < 1e-9, "{at_rest}");
+    between(
+        ran.measured("effective vertical stress below the pit"),
+        30.0,
+        31.5,
+    );
+}
+
+#[test]
+fn an_embankment_is_filled_in_lifts() {
+    let ran = ran(
+        "embankment_lifts",
+        &["stages.5.tolerance=0.05", "output.figures=[]"],
+    );
+    assert_eq!(ran.outcomes(), [Completed; 6]);
+    between(ran.measured("factor of safety"), 1.12, 1.25);
+}

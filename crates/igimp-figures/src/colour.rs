@@ -27,6 +27,8 @@ impl Colour {
     pub(super) const FAINT_INK: Self = Self([96, 96, 96]);
     /// Grid lines behind curves and the frame of a legend.
     pub(super) const GRID: Self = Self([228, 228, 228]);
+    /// Water.
+    pub(super) const WATER: Self = Self([0, 92, 230]);
     /// Rigid blocks.
     pub(super) const BLOCK: Self = Self([205, 205, 205]);
 

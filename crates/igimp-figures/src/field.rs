@@ -33,6 +33,8 @@ pub enum OutlineStyle {
     Former,
     /// A heavy line on a white ground: a line that was found.
     Trace,
+    /// A blue line: a water table.
+    Water,
     /// A heavy line with a light core: a member of reinforcement.
     Member,
     /// A thin line around a pale ground: the tension along a member.

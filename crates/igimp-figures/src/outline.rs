@@ -12,6 +12,10 @@ const ROLLER: (f64, f64) = (11.0, 2.4);
 /// Length and half-width \[pt\] of an arrow head.
 const HEAD: (f64, f64) = (8.0, 3.2);
 
+/// Half-width and height \[pt\] of the mark of a water table, and its place as a share of the line \[-\].
+const MARK: (f64, f64) = (4.0, 6.5);
+const MARK_AT: f64 = 0.12;
+
 /// Length and half-width \[pt\] of the head of a small arrow.
 const SMALL_HEAD: (f64, f64) = (4.5, 1.8);
 
@@ -89,6 +93,12 @@ pub(super) fn draw(drawing: &mut Drawing, area: &Rect, style: OutlineStyle, poin
             drawing.stroke(lines(), Stroke::solid(Colour::WHITE, 4.2));
             drawing.stroke(lines(), Stroke::solid(Colour::FAILURE, 2.2));
         }
+        OutlineStyle::Water => {
+            // White below blue stays visible on every colour.
+            drawing.stroke(lines(), Stroke::solid(Colour::WHITE, 2.4));
+            drawing.stroke(lines(), Stroke::solid(Colour::WATER, 1.1));
+            water_mark(drawing, &lines());
+        }
         OutlineStyle::Member => {
             drawing.stroke(lines(), Stroke::solid(Colour::INK, 3.0));
             drawing.stroke(lines(), Stroke::solid(Colour::WHITE, 1.0));
@@ -109,6 +119,41 @@ pub(super) fn draw(drawing: &mut Drawing, area: &Rect, style: OutlineStyle, poin
                 stroke: Some(Stroke::solid(Colour::WHITE, 0.9)),
             }));
         }
+    }
+}
+
+/// The mark of a water table: a triangle with its tip on the longest of the lines.
+fn water_mark(drawing: &mut Drawing, lines: &[Vec<Point>]) {
+    let length = |line: &[Point]| -> f64 {
+        let parts = line.windows(2);
+        parts
+            .map(|p| (p[1][0] - p[0][0]).hypot(p[1][1] - p[0][1]))
+            .sum()
+    };
+    let longest = lines.iter().max_by(|a, b| length(a).total_cmp(&length(b)));
+    let Some(line) = longest.filter(|line| length(line) > 0.0) else {
+        return;
+    };
+    let mut left = MARK_AT * length(line);
+    for pair in line.windows(2) {
+        let own = length(pair);
+        if left > own {
+            left -= own;
+            continue;
+        }
+        let t = left / own.max(f64::MIN_POSITIVE);
+        let [x, y] = [0, 1].map(|k| pair[0][k] + t * (pair[1][k] - pair[0][k]));
+        let (wide, high) = MARK;
+        drawing.items.push(Item::Shape(Shape {
+            contours: vec![Contour::Closed(vec![
+                [x, y],
+                [x - wide, y - high],
+                [x + wide, y - high],
+            ])],
+            fill: Some((Colour::WATER, 1.0)),
+            stroke: Some(Stroke::solid(Colour::WHITE, 0.6)),
+        }));
+        return;
     }
 }
 
@@ -205,6 +250,7 @@ mod tests {
             OutlineStyle::Point,
             OutlineStyle::Former,
             OutlineStyle::Trace,
+            OutlineStyle::Water,
             OutlineStyle::Member,
             OutlineStyle::Diagram,
             OutlineStyle::Vectors,

@@ -304,6 +304,7 @@ fn a_key_takes_the_place_of_the_colour_bar() {
         OutlineStyle::Roller,
         OutlineStyle::Arrow,
         OutlineStyle::Point,
+        OutlineStyle::Water,
     ] {
         plot.key
             .push(entry(KeySample::Outline(style), &format!("{style:?}")));

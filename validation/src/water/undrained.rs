@@ -29,14 +29,16 @@ const NEVER: Oracle = Oracle {
 const COHESION: f64 = 10.0;
 const FRICTION: f64 = 25.0;
 const POISSON: f64 = 0.3;
+/// Of the slope, so that pressure on its surface is its mean stress between supports too: K₀ = 0.99.
+const CONFINED: f64 = 0.498;
 /// Young's modulus \[kPa\].
 const YOUNG: f64 = 1e5;
 
 /// K_w/n for an undrained Poisson's ratio \[kPa\].
-fn stiffness(undrained: f64) -> f64 {
-    let shear = YOUNG / (2.0 * (1.0 + POISSON));
+fn stiffness(poisson: f64, undrained: f64) -> f64 {
+    let shear = YOUNG / (2.0 * (1.0 + poisson));
     let bulk = |nu: f64| 2.0 * shear * (1.0 + nu) / (3.0 * (1.0 - 2.0 * nu));
-    bulk(undrained) - bulk(POISSON)
+    bulk(undrained) - bulk(poisson)
 }
 
 /// Checks of undrained strength.
@@ -49,12 +51,12 @@ pub(super) fn report(study: &mut Study, level: Level) -> Result<(), CaseError> {
 }
 
 /// A material in effective stress that cannot drain.
-fn soil(dilation: f64) -> String {
+fn soil(poisson: f64, dilation: f64) -> String {
     format!(
         "model = \"mohr-coulomb\"
          unit_weight = \"20 kN/m3\"
          young = \"{YOUNG} kPa\"
-         poisson = {POISSON}
+         poisson = {poisson}
          cohesion = \"{COHESION} kPa\"
          friction = \"{FRICTION} deg\"
          dilation = \"{dilation} deg\""
@@ -118,10 +120,10 @@ fn specimen(study: &mut Study) -> Result<(), CaseError> {
              steps = 10
              geometry = \"given\"
             ",
-            soil(0.0)
+            soil(POISSON, 0.0)
         );
         let mut case = CaseFile::parse("specimen", &text, &[])?.into_case();
-        let stiff = stiffness(undrained);
+        let stiff = stiffness(POISSON, undrained);
         case.materials[0].drainage = Drainage::Undrained {
             stiffness: 1e3 * stiff,
         };
@@ -205,9 +207,9 @@ fn slope(study: &mut Study) -> Result<(), CaseError> {
         Ok(CaseFile::parse("undrained slope", &text, &[])?.into_case())
     };
     let undrained = |dilation: f64| -> Result<Computed, CaseError> {
-        let mut case = case(&soil(dilation))?;
+        let mut case = case(&soil(CONFINED, dilation))?;
         case.materials[0].drainage = Drainage::Undrained {
-            stiffness: 1e3 * stiffness(0.4999),
+            stiffness: 1e3 * stiffness(CONFINED, 0.49999),
         };
         case.stages[0].drained = true;
         Computed::new(case)

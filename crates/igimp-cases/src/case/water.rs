@@ -1,5 +1,33 @@
 //! Water in the ground: conditions that stages move between, and what materials do with it.
 
+use super::{Case, StageKind};
+
+impl Case {
+    /// By body: whether it is there at the end of a stage, by index.
+    pub fn bodies_after(&self, stage: usize) -> Vec<bool> {
+        let stage = &self.stages[stage];
+        let mut there = match stage.start_from {
+            Some(from) => self.bodies_after(from),
+            None => self.bodies.iter().map(|body| body.from_start).collect(),
+        };
+        if let StageKind::Construction(own) = &stage.kind {
+            for &body in &own.place {
+                there[body] = true;
+            }
+            for &body in &own.remove {
+                there[body] = false;
+            }
+        }
+        there
+    }
+
+    /// Whether there is water in pores, given or held by undrained soil: only then do total and effective stress differ.
+    pub fn has_pore_water(&self) -> bool {
+        let holds = |drainage: Drainage| matches!(drainage, Drainage::Undrained { .. });
+        !self.water.is_empty() || self.materials.iter().any(|own| holds(own.drainage))
+    }
+}
+
 /// A condition of the water, under a name that stages call it by.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WaterCondition {
@@ -24,6 +52,16 @@ pub enum PoreSource {
     /// r_u: the pressure as a share of the weight of the ground above, as the bodies present from the start are
     /// drawn \[-\].
     Ratio(f64),
+}
+
+/// The level of a line at a place, level beyond its ends \[m\].
+pub(crate) fn table_level(points: &[[f64; 2]], x: f64) -> f64 {
+    let after = points.partition_point(|point| point[0] <= x);
+    match (after.checked_sub(1).map(|k| points[k]), points.get(after)) {
+        (Some(from), Some(to)) => from[1] + (to[1] - from[1]) * (x - from[0]) / (to[0] - from[0]),
+        (Some(only), None) | (None, Some(&only)) => only[1],
+        (None, None) => f64::NEG_INFINITY,
+    }
 }
 
 /// What a material does with the water in its pores.

@@ -120,9 +120,8 @@ fn planned(stage: &Stage) -> Taken {
         StageKind::K0 => 0.5,
         StageKind::Gravity { .. } | StageKind::Load { .. } if to_collapse => 5.0,
         StageKind::Gravity { .. } | StageKind::Load { .. } => 3.7,
-        StageKind::Construction(_) => 5.0,
         StageKind::Displacement { .. } | StageKind::Rigid(_) => 6.5,
-        StageKind::StrengthReduction(_) | StageKind::RunOut(_) => 5.0,
+        StageKind::Construction(_) | StageKind::StrengthReduction(_) | StageKind::RunOut(_) => 5.0,
     };
     let failing = if trials > 0.0 || to_collapse {
         FAILING

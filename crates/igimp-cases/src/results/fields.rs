@@ -1,4 +1,7 @@
 //! The fields of a case on the particles of a body, in the printed sign: compression positive.
+//!
+//! Where there is water, normal stresses are total (σ) or effective (σ′ = σ + u I, tension positive) by name; without it the
+//! two are the same numbers. Shear stress, deviatoric stress, plastic strain and mobilised strength are those of the law.
 
 use igimp_assembly::{Particles, SharedLaw};
 use igimp_material::{ConstitutiveModel, Tensor, principal_values};
@@ -20,7 +23,8 @@ pub fn values(field: Field, particles: &Particles<2>, laws: &[SharedLaw]) -> Vec
 /// # Panics
 /// If there is no such particle.
 pub fn value(field: Field, particles: &Particles<2>, particle: usize, laws: &[SharedLaw]) -> f64 {
-    let sigma = &particles.sigma[particle];
+    let effective = &particles.sigma[particle];
+    let total = || particles.total_stress(particle);
     let displacement = &particles.displacement[particle];
     // Not `-sigma`: zero stays without a sign.
     match field {
@@ -29,12 +33,18 @@ pub fn value(field: Field, particles: &Particles<2>, particle: usize, laws: &[Sh
         Field::DisplacementY => displacement[1],
         Field::X => particles.x[particle][0],
         Field::Y => particles.x[particle][1],
-        Field::SigmaXx => 0.0 - sigma[0][0],
-        Field::SigmaYy => 0.0 - sigma[1][1],
-        Field::SigmaZz => 0.0 - sigma[2][2],
-        Field::TauXy => 0.0 - sigma[0][1],
-        Field::P => mean_pressure(sigma),
-        Field::Q => deviatoric_stress(sigma),
+        Field::SigmaXx => 0.0 - total()[0][0],
+        Field::SigmaYy => 0.0 - total()[1][1],
+        Field::SigmaZz => 0.0 - total()[2][2],
+        Field::TauXy => 0.0 - effective[0][1],
+        Field::P => mean_pressure(&total()),
+        Field::SigmaEffXx => 0.0 - effective[0][0],
+        Field::SigmaEffYy => 0.0 - effective[1][1],
+        Field::SigmaEffZz => 0.0 - effective[2][2],
+        Field::PEff => mean_pressure(effective),
+        Field::U => particles.pore_pressure[particle] + particles.excess[particle],
+        Field::UExcess => particles.excess[particle],
+        Field::Q => deviatoric_stress(effective),
         Field::PlasticStrain => particles.history[particle].eps_p_eq,
         Field::Utilisation => utilisation(particles, particle, laws).unwrap_or(f64::NAN),
     }
@@ -89,12 +99,29 @@ pub fn dimension(field: Field) -> Dimension {
             Dimension::Displacement
         }
         Field::X | Field::Y => Dimension::Position,
-        Field::SigmaXx | Field::SigmaYy | Field::SigmaZz | Field::TauXy | Field::P | Field::Q => {
-            Dimension::Stress
-        }
+        Field::SigmaXx
+        | Field::SigmaYy
+        | Field::SigmaZz
+        | Field::TauXy
+        | Field::P
+        | Field::SigmaEffXx
+        | Field::SigmaEffYy
+        | Field::SigmaEffZz
+        | Field::PEff
+        | Field::U
+        | Field::UExcess
+        | Field::Q => Dimension::Stress,
         Field::PlasticStrain => Dimension::Strain,
         Field::Utilisation => Dimension::Share,
     }
+}
+
+/// Whether a field is one of total stress that has a counterpart of effective stress.
+pub(super) fn is_total(field: Field) -> bool {
+    matches!(
+        field,
+        Field::SigmaXx | Field::SigmaYy | Field::SigmaZz | Field::P
+    )
 }
 
 /// The name of a field in case files.
@@ -110,6 +137,12 @@ pub fn name(field: Field) -> &'static str {
         Field::SigmaZz => "sigma_zz",
         Field::TauXy => "tau_xy",
         Field::P => "p",
+        Field::SigmaEffXx => "sigma_eff_xx",
+        Field::SigmaEffYy => "sigma_eff_yy",
+        Field::SigmaEffZz => "sigma_eff_zz",
+        Field::PEff => "p_eff",
+        Field::U => "u",
+        Field::UExcess => "u_excess",
         Field::Q => "q",
         Field::PlasticStrain => "plastic_strain",
         Field::Utilisation => "utilisation",
@@ -174,6 +207,12 @@ pub fn title(field: Field) -> &'static str {
         Field::SigmaZz => "out-of-plane stress −σ_{zz}",
         Field::TauXy => "shear stress −τ_{xy}",
         Field::P => "mean pressure p",
+        Field::SigmaEffXx => "effective horizontal stress −σ′_{xx}",
+        Field::SigmaEffYy => "effective vertical stress −σ′_{yy}",
+        Field::SigmaEffZz => "effective out-of-plane stress −σ′_{zz}",
+        Field::PEff => "mean effective pressure p′",
+        Field::U => "pore pressure u",
+        Field::UExcess => "excess pore pressure Δu",
         Field::Q => "deviatoric stress q",
         Field::PlasticStrain => "plastic strain ε_{p}",
         Field::Utilisation => "share of the shear strength",
@@ -184,7 +223,8 @@ pub fn title(field: Field) -> &'static str {
 /// "vertical stress −σ_{yy} \[kPa\], compression positive".
 pub fn label(field: Field, scale: Scale) -> String {
     let sign = match field {
-        Field::SigmaXx | Field::SigmaYy | Field::SigmaZz | Field::P => ", compression positive",
+        Field::TauXy | Field::Q => "",
+        _ if dimension(field) == Dimension::Stress => ", compression positive",
         _ => "",
     };
     format!("{} [{}]{sign}", title(field), scale.unit)
@@ -210,7 +250,7 @@ pub fn plain(text: &str) -> String {
 }
 
 /// Every field.
-pub const ALL: [Field; 13] = [
+pub const ALL: [Field; 19] = [
     Field::Displacement,
     Field::DisplacementX,
     Field::DisplacementY,
@@ -221,6 +261,12 @@ pub const ALL: [Field; 13] = [
     Field::SigmaZz,
     Field::TauXy,
     Field::P,
+    Field::SigmaEffXx,
+    Field::SigmaEffYy,
+    Field::SigmaEffZz,
+    Field::PEff,
+    Field::U,
+    Field::UExcess,
     Field::Q,
     Field::PlasticStrain,
     Field::Utilisation,
@@ -307,6 +353,41 @@ mod tests {
             );
         }
         assert!(values(Field::SigmaYy, &particles, &laws)[1].is_sign_positive());
+    }
+
+    /// GOAL: total and effective stress differ by the pore pressure, given and excess, in normal components alone.
+    #[test]
+    fn total_and_effective_stress_are_told_apart() {
+        let laws = [law(Strength::Tresca {
+            undrained_strength: 40e3,
+        })];
+        let dry = particles(&laws);
+        let mut fields: ParticleFields<2> = (*dry).clone();
+        fields.pore_pressure[0] = 30e3;
+        fields.excess[0] = -10e3;
+        let wet = Particles::from_fields(fields).unwrap();
+        let pairs = [
+            (Field::SigmaXx, Field::SigmaEffXx),
+            (Field::SigmaYy, Field::SigmaEffYy),
+            (Field::SigmaZz, Field::SigmaEffZz),
+            (Field::P, Field::PEff),
+        ];
+        for (total, effective) in pairs {
+            let of = |field, particles| value(field, particles, 0, &laws);
+            assert_eq!(of(total, &dry).to_bits(), of(effective, &dry).to_bits());
+            assert_eq!(of(effective, &wet).to_bits(), of(effective, &dry).to_bits());
+            let by = of(total, &wet) - of(effective, &wet);
+            assert!((by - 20e3).abs() < 1e-9, "{total:?}: {by}");
+        }
+        for field in [Field::TauXy, Field::Q, Field::Utilisation] {
+            let of = |particles| value(field, particles, 0, &laws).to_bits();
+            assert_eq!(of(&wet), of(&dry), "{field:?}");
+        }
+        let of = |field| value(field, &wet, 0, &laws).to_bits();
+        assert_eq!(
+            [of(Field::U), of(Field::UExcess)],
+            [20e3_f64, -10e3].map(f64::to_bits)
+        );
     }
 
     #[test]

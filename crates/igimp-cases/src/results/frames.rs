@@ -12,7 +12,8 @@ use super::particles::{Extras, of_grid, of_particles};
 use super::pvd::{self, Collection};
 use super::reinforcement::{self, Installed};
 use super::rigid::{self, Standing};
-use crate::case::Field;
+use super::vtu::UnstructuredGrid;
+use crate::case::{Case, Field};
 use crate::error::CaseError;
 
 /// Structures that are there in a frame.
@@ -34,28 +35,28 @@ pub struct Frames {
     rigid: Option<Collection>,
     /// Of a case with reinforcement.
     reinforcement: Option<Collection>,
+    /// Whether there is pore water to write of.
+    pore_water: bool,
     /// Frames that the disk is known to have.
     synced: usize,
 }
 
 impl Frames {
     /// Goes on after the first `frames` frames of a folder that exists; 0 begins anew. Rigid bodies and
-    /// reinforcement have frames in cases that have some.
+    /// reinforcement have frames in cases that have some, and effective stress and pore pressure are written
+    /// where there is water.
     ///
     /// # Errors
     /// [`CaseError::Unusable`], [`CaseError::File`].
-    pub fn open(
-        folder: &Path,
-        frames: usize,
-        [has_rigid, has_reinforcement]: [bool; 2],
-    ) -> Result<Self, CaseError> {
+    pub fn open(folder: &Path, frames: usize, case: &Case) -> Result<Self, CaseError> {
         let of = |stem, is_there: bool| {
             let opened = is_there.then(|| Collection::resume(folder, stem, frames));
             opened.transpose()
         };
         Ok(Self {
-            rigid: of(pvd::RIGID, has_rigid)?,
-            reinforcement: of(pvd::REINFORCEMENT, has_reinforcement)?,
+            rigid: of(pvd::RIGID, !case.rigid.is_empty())?,
+            reinforcement: of(pvd::REINFORCEMENT, !case.reinforcement.is_empty())?,
+            pore_water: case.has_pore_water(),
             folder: folder.to_path_buf(),
             particles: Collection::resume(folder, pvd::PARTICLES, frames)?,
             grid: Collection::resume(folder, pvd::GRID, frames)?,
@@ -74,7 +75,8 @@ impl Frames {
         grid: &Grid<2>,
         structures: &Structures<'_>,
     ) -> Result<(), CaseError> {
-        with_extras(particles, laws, |cells| self.particles.add(time, &cells))?;
+        let cells = self.cells(particles, laws);
+        self.particles.add(time, &cells)?;
         self.grid.add(time, &of_grid(grid, None))?;
         if let Some(collection) = &mut self.rigid {
             collection.add(time, &rigid::lines(&structures.rigid))?;
@@ -105,7 +107,17 @@ impl Frames {
             lines.write(&file(pvd::OF_REINFORCEMENT))?;
         }
         let path = self.folder.join(name).with_extension("vtu");
-        with_extras(particles, laws, |cells| cells.write(&path))
+        self.cells(particles, laws).write(&path)
+    }
+
+    fn cells(&self, particles: &Particles<2>, laws: &[SharedLaw]) -> UnstructuredGrid {
+        let utilisation = fields::values(Field::Utilisation, particles, laws);
+        let extras = Extras {
+            utilisation: Some(&utilisation),
+            def_grad: true,
+            pore_water: self.pore_water,
+        };
+        of_particles(particles, &extras)
     }
 
     /// Waits until the disk has every frame: before a checkpoint that counts on them.
@@ -146,17 +158,4 @@ impl Frames {
     pub fn is_empty(&self) -> bool {
         self.particles.frames().is_empty()
     }
-}
-
-fn with_extras<T>(
-    particles: &Particles<2>,
-    laws: &[SharedLaw],
-    write: impl FnOnce(super::vtu::UnstructuredGrid) -> T,
-) -> T {
-    let utilisation = fields::values(Field::Utilisation, particles, laws);
-    let extras = Extras {
-        utilisation: Some(&utilisation),
-        def_grad: true,
-    };
-    write(of_particles(particles, &extras))
 }

@@ -2,6 +2,7 @@
 //! each cell of the grid.
 
 use igimp_assembly::Particles;
+use igimp_material::Tensor;
 use igimp_shape::Grid;
 
 use super::fields::{deviatoric_stress, mean_pressure};
@@ -15,14 +16,16 @@ pub struct Extras<'a> {
     pub utilisation: Option<&'a [f64]>,
     /// Whether the deformation gradient is written.
     pub def_grad: bool,
+    /// Whether effective stress and pore pressure are written beside total stress.
+    pub pore_water: bool,
 }
 
 /// The domains x ± l_p of the particles with their state: quads with z = 0 in the plane,
 /// hexahedra in space.
 ///
-/// Cells carry displacement, Cauchy stress σ, p, q, plastic strain, number of the material (from 0,
-/// in the order of the case), code of the [`regime`], number of the particle, volume
-/// and mass.
+/// Cells carry displacement, Cauchy stress σ (total), p, q, plastic strain, number of the material (from 0,
+/// in the order of the case), code of the [`regime`], number that the particle keeps, volume
+/// and mass; with pore water effective stress σ′, p′, pore pressure u and its excess besides.
 ///
 /// # Panics
 /// If the utilisation is not given for every particle.
@@ -47,28 +50,44 @@ pub fn of_particles<const D: usize>(
     let n = particles.len();
     let by_particle = |of: &dyn Fn(usize) -> f64| (0..n).map(of).collect();
     let integers = |of: &dyn Fn(usize) -> usize| (0..n).map(|k| of(k) as i32).collect();
-    let (sigma, history) = (&particles.sigma, &particles.history);
+    let (effective, history) = (&particles.sigma, &particles.history);
+    let sigma: Vec<Tensor> = (0..n).map(|k| particles.total_stress(k)).collect();
     let regime = |k| usize::from(regime::code(particles.regime[k]));
     // A slice of one metre in plane strain.
     let per = if D == 2 { "/m" } else { "" };
     let mut cell_data = vec![
         DataArray::vectors("displacement [m]", &particles.displacement),
-        DataArray::symmetric("sigma [Pa], tension +", sigma),
+        DataArray::symmetric("sigma [Pa], tension +", &sigma),
         DataArray::scalars(
             "p [Pa], compression +",
             by_particle(&|k| mean_pressure(&sigma[k])),
         ),
-        DataArray::scalars("q [Pa]", by_particle(&|k| deviatoric_stress(&sigma[k]))),
+        DataArray::scalars("q [Pa]", by_particle(&|k| deviatoric_stress(&effective[k]))),
         DataArray::scalars("plastic strain [-]", by_particle(&|k| history[k].eps_p_eq)),
         DataArray::integers("material", integers(&|k| particles.law[k])),
         DataArray::integers("regime", integers(&regime)),
-        DataArray::integers("particle", integers(&|k| k)),
+        DataArray::integers("particle", integers(&|k| particles.number[k])),
         DataArray::scalars(
             format!("volume [m3{per}]"),
             by_particle(&|k| particles.volume(k)),
         ),
         DataArray::scalars(format!("mass [kg{per}]"), particles.mass.clone()),
     ];
+    if extras.pore_water {
+        let excess = &particles.excess;
+        cell_data.extend([
+            DataArray::symmetric("sigma_eff [Pa], tension +", effective),
+            DataArray::scalars(
+                "p_eff [Pa], compression +",
+                by_particle(&|k| mean_pressure(&effective[k])),
+            ),
+            DataArray::scalars(
+                "u [Pa], compression +",
+                by_particle(&|k| particles.pore_pressure[k] + excess[k]),
+            ),
+            DataArray::scalars("u_excess [Pa], compression +", excess.clone()),
+        ]);
+    }
     if let Some(utilisation) = extras.utilisation {
         assert_eq!(utilisation.len(), n, "every particle has a utilisation");
         cell_data.push(DataArray::scalars("utilisation [-]", utilisation.to_vec()));
@@ -167,6 +186,7 @@ mod tests {
         let extras = Extras {
             utilisation: Some(&[0.75]),
             def_grad: true,
+            pore_water: false,
         };
         let grid = of_particles(&seeds::<3>(), &extras);
         assert_eq!((grid.kind, grid.cell_count()), (CellKind::Hexahedron, 1));
@@ -194,9 +214,10 @@ mod tests {
         let extras = Extras {
             utilisation: None,
             def_grad: true,
+            pore_water: false,
         };
         let grid = of_particles(particles, &extras);
-        let sigma = &particles.sigma[0];
+        let sigma = &particles.total_stress(0);
         let Values::F64(written) = values(&grid, "sigma [Pa], tension +") else {
             panic!()
         };
@@ -231,7 +252,7 @@ mod tests {
             ]
         );
         assert_eq!(values(&grid, "regime"), Values::I32(vec![0, 4, 9, 0, 4]));
-        assert_eq!(values(&grid, "particle"), Values::I32(vec![0, 1, 2, 3, 4]));
+        assert_eq!(values(&grid, "particle"), Values::I32(vec![1, 3, 5, 7, 9]));
     }
 
     #[test]

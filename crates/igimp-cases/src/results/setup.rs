@@ -1,5 +1,7 @@
 //! The case in words and numbers, as tables for a reader who has no case file before him.
 
+mod water;
+
 use std::fmt::Write as _;
 
 use igimp_assembly::{Geometry, Tension};
@@ -17,11 +19,13 @@ const NONE: &str = "–";
 /// Most corners of a body that are listed one by one.
 const MOST_CORNERS: usize = 24;
 
-/// Materials, bodies, rigid bodies, reinforcement, supports, loads, stages and grid of a case.
+/// Materials, bodies, water, rigid bodies, reinforcement, supports, loads, stages and grid of a case.
 pub fn tables(case: &Case) -> Vec<SetupTable> {
     [
         materials(case),
+        water::soils(case),
         bodies(case),
+        water::conditions(case),
         rigid_bodies(case),
         reinforcement(case),
         supports(&case.boundaries),
@@ -142,18 +146,48 @@ fn in_words(profile: &Profile, scale: f64, unit: &str) -> String {
 }
 
 fn bodies(case: &Case) -> SetupTable {
-    let rows = case.bodies.iter().map(|body| {
+    let come_and_go = case.stages.iter().any(|stage| match &stage.kind {
+        StageKind::Construction(own) => !(own.place.is_empty() && own.remove.is_empty()),
+        _ => false,
+    });
+    let rows = case.bodies.iter().enumerate().map(|(index, body)| {
         let corners = corners(&body.polygon);
         let per_cell = body.per_direction * body.per_direction;
-        vec![
+        let mut row = vec![
             body.name.clone(),
             case.materials[body.material].name.clone(),
             corners,
             per_cell.to_string(),
-        ]
+        ];
+        if come_and_go {
+            row.push(while_there(case, index));
+        }
+        row
     });
-    let header = ["Body", "Material", "Corners [m]", "Particles per cell"];
+    let mut header = vec!["Body", "Material", "Corners [m]", "Particles per cell"];
+    if come_and_go {
+        header.push("There");
+    }
     table("Bodies", &header, rows.collect())
+}
+
+/// When a body is there, in words.
+fn while_there(case: &Case, body: usize) -> String {
+    let mut words = Vec::new();
+    if case.bodies[body].from_start {
+        words.push("from the start".to_owned());
+    }
+    for stage in &case.stages {
+        if let StageKind::Construction(own) = &stage.kind {
+            if own.place.contains(&body) {
+                words.push(format!("from stage {} on", stage.name));
+            }
+            if own.remove.contains(&body) {
+                words.push(format!("until stage {}", stage.name));
+            }
+        }
+    }
+    words.join("; ")
 }
 
 /// Corners one by one, or how many there are.
@@ -409,6 +443,9 @@ fn stages(case: &Case) -> SetupTable {
             what.push("on the geometry as it is".to_owned());
         }
         what.extend(ends(case, &stage.stop_when));
+        if stage.drained {
+            what.push("all soil drains".to_owned());
+        }
         if stage.reset_displacements {
             what.push("displacements count from its end on".to_owned());
         }

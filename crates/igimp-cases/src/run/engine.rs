@@ -15,8 +15,8 @@ use super::session::{Ended, Session};
 use super::state::State;
 use super::{Event, Failure, Listener, Run, Start, Target};
 use super::{
-    checks, construction, failure, initial, loading, processor, reinforcement, run_out, safety,
-    sections, study,
+    checks, construction, failure, initial, loading, pores, processor, reinforcement, run_out,
+    safety, sections, study,
 };
 use crate::case::{Case, StageKind};
 use crate::error::CaseError;
@@ -152,10 +152,13 @@ impl Stages {
             sections: Vec::new(),
             failure: None,
         };
+        let case = session.model.case;
         let Some(target) = target else {
+            for text in pores::dilatant(case) {
+                session.warn(text);
+            }
             return Ok(stages);
         };
-        let case = session.model.case;
         if let Some(systems) = &target.systems {
             refuse_foreign(systems)?;
         }
@@ -181,6 +184,9 @@ impl Stages {
             stages.left = Some(left);
         } else {
             output.model_picture(case)?;
+            for text in pores::dilatant(case) {
+                session.warn(text);
+            }
         }
         for text in std::mem::take(&mut output.notes_for_user) {
             session.tell(&Event::Warning { text: &text });
@@ -311,11 +317,19 @@ impl Stages {
         session: &mut Session<'_>,
         number: usize,
         state: &mut State,
-        summary: StageSummary,
+        mut summary: StageSummary,
         step_error: Option<StepError>,
     ) -> Result<bool, CaseError> {
         let case = session.model.case;
         let stage = &case.stages[number];
+        // A search leaves the body as it was found.
+        if summary.safety.is_none() && summary.outcome != StageOutcome::Interrupted {
+            summary.pore_water = pores::summary(case, &state.body.particles);
+            let remark = summary.pore_water.as_ref();
+            if let Some(text) = remark.and_then(|own| pores::remark(&stage.name, own)) {
+                session.warn(text);
+            }
+        }
         if let Some(error) = step_error {
             self.failure = Some(failure::describe(session, number, state, &summary, error));
         }

@@ -1,7 +1,7 @@
 //! The stresses of level ground: the weight above, and K₀ times that sideways (theory, eqs. 36
 //! and 37).
 
-use igimp_assembly::Particles;
+use igimp_assembly::{Particles, PoreSite, PoreWater as _};
 use igimp_material::ConstitutiveModel;
 
 use super::ground::Ground;
@@ -46,6 +46,19 @@ pub(crate) fn level_ground(model: &Model<'_>, state: &mut State) -> Result<(), C
                 k0,
             });
         };
+        if let Some(water) = &water {
+            let half_length = &fields.half_length[particle];
+            let domain: f64 = half_length.iter().map(|half| 2.0 * half).product();
+            let site = PoreSite {
+                number,
+                law: fields.law[particle],
+                x: &x,
+                half_length,
+                filled: fields.volume0[particle] / domain,
+            };
+            // At full gravity, as the stress.
+            fields.pore_pressure[particle] = water.at(site).pressure;
+        }
         for axis in 0..3 {
             fields.sigma[particle][axis][axis] = sigma[axis];
             fields.b_e[particle][axis][axis] = (2.0 * strain[axis]).exp();

@@ -19,6 +19,7 @@ mod mixed_cells;
 mod model;
 mod outlines;
 mod output;
+mod pores;
 mod processor;
 mod records;
 mod reinforcement;

@@ -144,11 +144,42 @@ impl<'c> Model<'c> {
         }
     }
 
-    /// The size of the model.
+    /// The undeformed, stress-free state of the bodies that are there in a state, of the materials that they have there.
+    pub(crate) fn undeformed(&self, state: &State) -> Result<State, CaseError> {
+        let (model, mut base) = Model::new(self.case)?;
+        let there = &state.body.particles;
+        if let Some(later) = &model.later {
+            base.body.particles = base.body.particles.joined_by(later);
+        }
+        let mut place = vec![None; self.seeded.body.len()];
+        for (particle, &number) in there.number.iter().enumerate() {
+            place[number] = Some(particle);
+        }
+        let all = &base.body.particles;
+        let kept = all.keeping(|particle| place[all.number[particle]].is_some())?;
+        let mut fields = (*kept).clone();
+        for particle in 0..fields.x.len() {
+            if let Some(own) = place[fields.number[particle]] {
+                fields.law[particle] = there.law[own];
+                fields.ratios[particle] = there.ratios[own];
+                fields.mass[particle] = there.mass[own];
+            }
+        }
+        base.body.particles = Particles::from_fields(fields)?;
+        Ok(base)
+    }
+
+    /// The size of the model that begins with a body.
     pub fn size(&self, body: &Body<2>) -> ModelSize {
         let particles = &body.particles;
+        let there = |stage: usize| {
+            let bodies = self.case.bodies_after(stage);
+            let own = self.seeded.body.iter();
+            own.filter(|&&body| bodies[body]).count()
+        };
+        let most = (0..self.case.stages.len()).map(there).max();
         ModelSize {
-            particles: particles.len(),
+            particles: most.unwrap_or(0).max(particles.len()),
             cells: self.case.grid.cells().iter().product(),
             unknowns: 0,
             weight: particles.mass.iter().sum::<f64>() * self.case.gravity,

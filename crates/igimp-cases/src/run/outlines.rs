@@ -1,4 +1,7 @@
-//! Structures where they stand, for pictures and tables: rigid bodies, a rigid footing, reinforcement.
+//! What pictures show beside the soil: rigid bodies, a rigid footing and reinforcement where they stand, and water
+//! tables. For tables and frames the structures that are there.
+
+use std::collections::HashSet;
 
 use igimp_figures::{Outline, OutlineStyle};
 use igimp_solver::Body;
@@ -10,12 +13,15 @@ use crate::case::{Case, LoadKind};
 use crate::results::frames::Structures;
 use crate::results::pictures::Over;
 use crate::results::pictures::rigid::{POINTS_OF_CIRCLE, block};
+use crate::results::pictures::water;
 use crate::results::reinforcement;
 use crate::results::rigid::Standing;
 
-/// What is drawn over a state: everything rigid in it, as far as it lies within the grid, and reinforcement.
+/// What is drawn over a state: everything rigid in it, as far as it lies within the grid, the water tables that act, and
+/// reinforcement.
 pub(crate) fn of_state(model: &Model<'_>, state: &State) -> Over {
     let case = model.case;
+    let water = water_tables(model, state);
     let bodies = rigid::outlines(case, state, POINTS_OF_CIRCLE);
     let bodies = bodies.filter_map(|(_, outline)| block(case, &outline));
     let footing = footing(case, state.controls.settlement);
@@ -27,10 +33,30 @@ pub(crate) fn of_state(model: &Model<'_>, state: &State) -> Over {
         outlines: footing
             .into_iter()
             .chain(bodies)
+            .chain(water)
             .chain(members_drawn)
             .collect(),
         labels: reinforcement::labels(&members),
     }
+}
+
+/// The water tables that act, as far as there is soil.
+fn water_tables(model: &Model<'_>, state: &State) -> Vec<Outline> {
+    let (case, particles) = (model.case, &state.body.particles);
+    let Some(condition) = state.controls.water.and_then(|k| case.water.get(k)) else {
+        return Vec::new();
+    };
+    let bodies: HashSet<usize> = particles
+        .number
+        .iter()
+        .map(|&own| model.seeded.body[own])
+        .collect();
+    let ends = std::iter::zip(&particles.x, &particles.half_length);
+    let ends = ends.fold(
+        [f64::INFINITY, f64::NEG_INFINITY],
+        |[left, right], (x, half)| [left.min(x[0] - half[0]), right.max(x[0] + half[0])],
+    );
+    water::tables(case, condition, |body| bodies.contains(&body), ends)
 }
 
 /// The structures that are there under controls.

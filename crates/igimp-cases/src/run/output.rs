@@ -138,7 +138,7 @@ impl Output {
         let frames = Frames::open(
             &folder.paraview(),
             notes.map_or(0, |notes| notes.frames),
-            [!case.rigid.is_empty(), !case.reinforcement.is_empty()],
+            case,
         )?;
         Ok(Self {
             folder,

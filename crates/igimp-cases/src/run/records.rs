@@ -66,6 +66,8 @@ pub(crate) struct Records {
     /// Middle of the interval of the factor of safety found last \[-\].
     pub(crate) factor_of_safety: f64,
     laws: Vec<SharedLaw>,
+    /// Particles of all bodies, also of those that come later.
+    seeded: usize,
 }
 
 impl Records {
@@ -111,7 +113,13 @@ impl Records {
             peaks: vec![f64::NAN; case.checks.len()],
             factor_of_safety: f64::NAN,
             laws: laws.to_vec(),
+            seeded: particles.len(),
         })
+    }
+
+    /// How many particles the case has numbers for.
+    pub(crate) fn seeded(&self) -> usize {
+        self.seeded
     }
 
     /// How many laws particles number.

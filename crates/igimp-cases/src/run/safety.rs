@@ -17,7 +17,6 @@ use self::remarks::{moving_mass, remarks};
 use super::Event;
 use super::left::{End, Search};
 use super::loading::begin;
-use super::model::Model;
 use super::session::{Ended, Path, Session, march_path};
 use super::state::{Controls, State};
 use crate::case::{ReductionPath, Stage, StrengthReduction};
@@ -80,7 +79,7 @@ impl<'a> Trials<'a> {
     ) -> Result<Self, CaseError> {
         let mut base = match reduction.path {
             ReductionPath::Reduce => found.clone(),
-            ReductionPath::Gravity => Model::new(session.model.case)?.1,
+            ReductionPath::Gravity => session.model.undeformed(found)?,
         };
         base.body.particles.reset_displacements();
         let limit = reduction

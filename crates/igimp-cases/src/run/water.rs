@@ -5,7 +5,7 @@ use std::sync::Arc;
 use igimp_assembly::{PoreSite, PoreState, PoreWater};
 
 use super::ground::Ground;
-use crate::case::{Case, Drainage, Material, PoreSource, WaterCondition};
+use crate::case::{Case, Drainage, Material, PoreSource, WaterCondition, table_level};
 
 /// Points and weights of Gauss, three on −1 to 1.
 const ALONG: [(f64, f64); 3] = [
@@ -81,7 +81,7 @@ impl Source {
     fn top(&self, x: f64) -> f64 {
         match self {
             Self::Dry => f64::NEG_INFINITY,
-            Self::Table { points, .. } => on_line(points, x),
+            Self::Table { points, .. } => table_level(points, x),
             Self::Ratio { ground, .. } => ground.surface(x).unwrap_or(f64::NEG_INFINITY),
         }
     }
@@ -93,7 +93,7 @@ impl Source {
             Self::Table {
                 points,
                 unit_weight,
-            } => unit_weight * (on_line(points, x) - y),
+            } => unit_weight * (table_level(points, x) - y),
             Self::Ratio { ratio, ground } => ratio * ground.weight_above(&[x, y]),
         }
     }
@@ -146,16 +146,6 @@ impl Source {
             over.wet *= share;
         }
         over
-    }
-}
-
-/// The level of a line at x, constant beyond its ends.
-fn on_line(points: &[[f64; 2]], x: f64) -> f64 {
-    let after = points.partition_point(|point| point[0] <= x);
-    match (after.checked_sub(1).map(|k| points[k]), points.get(after)) {
-        (Some(from), Some(to)) => from[1] + (to[1] - from[1]) * (x - from[0]) / (to[0] - from[0]),
-        (Some(only), None) | (None, Some(&only)) => only[1],
-        (None, None) => f64::NEG_INFINITY,
     }
 }
 

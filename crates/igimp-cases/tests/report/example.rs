@@ -5,9 +5,10 @@ use std::path::{Path, PathBuf};
 use igimp_assembly::Geometry;
 use igimp_assembly::{Method, ParticleFields, Particles, SharedLaw};
 use igimp_cases::case::{
-    Average, BodyPart, Boundaries, Case, Curve, CurveAxis, Every, Field, FixedBox, GridSpec, Load,
-    LoadKind, Material, MeshStudy, Monitor, Output, Profiles, Quantity, Reference, ReferenceValues,
-    Section, Side, SolverSettings, Stage, StageKind, StopWhen, Strength, TitleBlock,
+    Average, BodyPart, Boundaries, Case, Curve, CurveAxis, Drainage, Every, Field, FixedBox,
+    GridSpec, Load, LoadKind, Material, MeshStudy, Monitor, Output, Profiles, Quantity, Reference,
+    ReferenceValues, Section, Side, SolverSettings, Stage, StageKind, StopWhen, Strength,
+    TitleBlock,
 };
 use igimp_cases::pieces::Pieces;
 use igimp_cases::results::pictures::{self, Canvas, Shown};
@@ -36,12 +37,14 @@ pub(crate) fn case() -> Case {
         reset_displacements: false,
         install: Vec::new(),
         stop_when: StopWhen::default(),
+        drained: false,
     };
     let body = |name: &str, material, polygon: &[[f64; 2]]| BodyPart {
         name: name.into(),
         material,
         per_direction: 2,
         polygon: polygon.to_vec(),
+        from_start: true,
     };
     let slope = [
         [0.0, 2.0],
@@ -57,6 +60,8 @@ pub(crate) fn case() -> Case {
         gravity: 9.81,
         grid: GridSpec::equal([0.0, 0.0], [0.5, 0.5], [120, 44]),
         method: Method::default(),
+        water_unit_weight: 9.81e3,
+        water: Vec::new(),
         materials: materials(),
         bodies: vec![
             body("slope", 0, &slope),
@@ -133,6 +138,8 @@ fn materials() -> Vec<Material> {
         },
         k0: None,
         profiles: Profiles::default(),
+        saturated: None,
+        drainage: Drainage::Drained,
     };
     let rock = Material {
         name: "rock".into(),

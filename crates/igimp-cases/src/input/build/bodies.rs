@@ -2,6 +2,7 @@
 
 use super::AllNames;
 use super::grid::MOST;
+use super::sequence::{Sequence, placed};
 use super::site::Site;
 use crate::case::{BodyPart, Boundaries, Side};
 use crate::input::diagnostic::Problems;
@@ -33,13 +34,19 @@ pub(super) fn bodies(
             .help(format!("at most {MOST_CORNERS} are possible"));
         return vec![None; items.len()];
     }
+    let later = placed(tree);
     items
         .iter()
-        .map(|body| part(body, names, problems))
+        .map(|body| part(body, names, &later, problems))
         .collect()
 }
 
-fn part(node: &Node, names: &AllNames, problems: &mut Problems) -> Option<BodyPart> {
+fn part(
+    node: &Node,
+    names: &AllNames,
+    later: &[&str],
+    problems: &mut Problems,
+) -> Option<BodyPart> {
     let name = node.text_at("name").unwrap_or("?");
     let material = node.get("material").and_then(|material| {
         let who = format!("body `{}` uses", clip(name, 40));
@@ -51,7 +58,7 @@ fn part(node: &Node, names: &AllNames, problems: &mut Problems) -> Option<BodyPa
         .and_then(|polygon| corners(polygon, name, problems));
     let points = node.count_at("points_per_cell")?;
     Some(BodyPart {
-        from_start: true,
+        from_start: !later.contains(&name),
         name: node.text_at("name")?.to_owned(),
         material: material?,
         per_direction: points.isqrt(),
@@ -103,7 +110,7 @@ fn corners(node: &Node, name: &str, problems: &mut Problems) -> Option<Vec<[f64;
 pub(super) fn check(
     tree: &Node,
     names: &AllNames,
-    bodies: &[Option<BodyPart>],
+    (bodies, sequence): (&[Option<BodyPart>], &Sequence),
     site: &Site,
     problems: &mut Problems,
 ) {
@@ -161,6 +168,9 @@ pub(super) fn check(
     for (second, b) in bodies.iter().enumerate() {
         for (first, a) in bodies[..second].iter().enumerate() {
             let (Some(a), Some(b)) = (a, b) else { continue };
+            if !sequence.are_together(first, second) {
+                continue;
+            }
             if let Some(at) = overlap(&a.polygon, &b.polygon, site.round_off) {
                 problems
                     .error(

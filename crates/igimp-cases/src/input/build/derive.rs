@@ -51,6 +51,30 @@ pub(super) fn derive(tree: &mut Node, file: &Path) {
             }
         }
     }
+    if let Some(water) = tree.get_mut("water") {
+        for condition in water.items_mut() {
+            if condition.get("pond").is_none() {
+                let is_meant = ["level", "outside"]
+                    .iter()
+                    .any(|key| condition.get(key).is_some());
+                condition.add_derived("pond", Value::Flag(is_meant));
+            }
+        }
+    }
+    if let Some(materials) = tree.get_mut("materials") {
+        for material in materials.entries_mut().into_iter().flatten() {
+            let node = &mut material.node;
+            if node.get("drainage").is_none()
+                && let Some(model) = node.text_at("model")
+            {
+                let drainage = match model {
+                    "tresca" | "von-mises" => "total",
+                    _ => "drained",
+                };
+                node.add_derived("drainage", Value::Text(drainage.to_owned()));
+            }
+        }
+    }
     if let Some(output) = tree.get_mut("output")
         && output.get("folder").is_none()
     {
@@ -75,9 +99,11 @@ pub(super) fn derive(tree: &mut Node, file: &Path) {
 
 /// Names of the materials of bodies that have a strength.
 fn strong_materials(tree: &Node) -> Vec<String> {
-    let used: Vec<_> = tree
-        .items_at("bodies")
-        .iter()
+    let changes = tree.items_at("stages").iter();
+    let changes = changes
+        .filter(|stage| stage.text_at("type") == Some("construction"))
+        .flat_map(|stage| stage.items_at("materials"));
+    let used: Vec<_> = (tree.items_at("bodies").iter().chain(changes))
         .filter_map(|body| body.text_at("material"))
         .collect();
     let materials = tree.get("materials").map_or(&[][..], Node::entries);

@@ -2,6 +2,7 @@
 //! gaps, bodies thinner than three cells, and stiffness out of proportion to the weight.
 
 use super::grid::Frame;
+use super::sequence::Sequence;
 use super::site::Site;
 use crate::case::{BodyPart, Material, Stage, StageKind, Strength};
 use crate::check::short;
@@ -33,6 +34,8 @@ pub(super) struct Layers<'a> {
     pub(super) materials: &'a [Option<Material>],
     /// Bodies on the grid.
     pub(super) site: &'a Site,
+    /// Which of them are there at the same time.
+    pub(super) sequence: &'a Sequence,
 }
 
 /// Warns of boundaries within cells, gaps and thin bodies.
@@ -76,6 +79,9 @@ fn check_pairs(
     let mut neighbours = vec![Neighbours::default(); bodies.len()];
     for (second, b) in bodies.iter().enumerate() {
         for (first, a) in bodies[..second].iter().enumerate() {
+            if !layers.sequence.are_together(first, second) {
+                continue;
+            }
             let pieces = facing(&a.polygon, &b.polygon, narrow);
             let place = items[second].place_at("polygon");
             let gap = pieces.iter().find(|piece| {

@@ -1,7 +1,7 @@
 //! Materials and the limits of their parameters.
 
 use super::profiles::{Extent, Property, Terms, property};
-use crate::case::{BodyPart, Material, Profile, Profiles, Strength};
+use crate::case::{BodyPart, Drainage, Material, Profile, Profiles, Strength};
 use crate::input::diagnostic::Problems;
 use crate::input::text::{clip, number};
 use crate::input::tree::{Entry, Node, Wrong};
@@ -72,10 +72,13 @@ fn material(entry: &Entry, extent: Extent<'_>, problems: &mut Problems) -> Optio
         _ => None,
     };
     let k0 = k0(node, strength, problems);
+    let saturated = saturated(name, node, unit_weight.as_ref(), problems);
+    let young_constant = young.as_ref().map(|own| own.constant);
+    let drainage = drainage(node, young_constant, strength, problems);
     let profile = |own: &Option<Property>| -> Option<Profile> { own.as_ref()?.profile.clone() };
     let material = Material {
-        saturated: None,
-        drainage: crate::case::Drainage::Drained,
+        saturated: saturated.ok()?,
+        drainage: drainage?,
         name: name.clone(),
         unit_weight: unit_weight.as_ref()?.constant,
         young: young.as_ref()?.constant,
@@ -95,6 +98,116 @@ fn material(entry: &Entry, extent: Extent<'_>, problems: &mut Problems) -> Optio
         problems.error(node.place, message);
     }
     Some(material)
+}
+
+/// The unit weight below a water table, if the material states one.
+fn saturated(
+    name: &str,
+    node: &Node,
+    unit_weight: Option<&Property>,
+    problems: &mut Problems,
+) -> Result<Option<f64>, Wrong> {
+    let saturated = node.optional_number("saturated_unit_weight")?;
+    if let (Some(saturated), Some(above)) = (saturated, unit_weight)
+        && saturated < above.constant
+    {
+        problems
+            .error(
+                node.place_at("saturated_unit_weight"),
+                format!(
+                    "`{}` would be lighter with full pores, {} kN/m3, than above the water, {} kN/m3",
+                    clip(name, 40),
+                    number(saturated / 1e3),
+                    number(above.constant / 1e3)
+                ),
+            )
+            .help("it is the weight of soil and water together, not that under buoyancy");
+        return Err(Wrong);
+    }
+    Ok(saturated)
+}
+
+/// Poisson's ratio of undrained soil where the file does not say.
+const UNDRAINED_POISSON: f64 = 0.495;
+
+/// What a material does with water.
+fn drainage(
+    node: &Node,
+    young: Option<f64>,
+    strength: Option<Strength>,
+    problems: &mut Problems,
+) -> Option<Drainage> {
+    let kind = node.text_at("drainage")?;
+    let stated = ["undrained_poisson", "pore_water"];
+    let stated = stated.into_iter().filter(|key| node.get(key).is_some());
+    let stated: Vec<&str> = stated.collect();
+    if let (true, Some(first)) = (kind != "undrained", stated.first()) {
+        problems
+            .error(
+                node.place_at(first),
+                format!(
+                    "`{first}` is for undrained soil, and this material is {}",
+                    match kind {
+                        "total" => "one of total stress",
+                        _ => "drained",
+                    }
+                ),
+            )
+            .help("write drainage = \"undrained\", or remove it");
+        return None;
+    }
+    match kind {
+        "total" => return Some(Drainage::Total),
+        "undrained" => {}
+        _ => return Some(Drainage::Drained),
+    }
+    if let [_, second] = stated.as_slice() {
+        problems
+            .error(
+                node.place_at(second),
+                "both `undrained_poisson` and `pore_water` are given",
+            )
+            .help("keep one of them");
+        return None;
+    }
+    if let Some(Strength::MohrCoulomb { dilation_angle, .. }) = strength
+        && dilation_angle > 0.0
+    {
+        problems
+            .warning(
+                node.place_at("dilation"),
+                "undrained soil that dilates never fails: suction grows without limit",
+            )
+            .help("dilation = \"0 deg\" for undrained soil");
+    }
+    if let Some(stiffness) = node.optional_number("pore_water").ok()? {
+        return Some(Drainage::Undrained { stiffness });
+    }
+    let undrained = node.optional_number("undrained_poisson").ok()?;
+    let (young, poisson) = (young?, node.number_at("poisson")?);
+    let with_water = undrained.unwrap_or(UNDRAINED_POISSON);
+    if with_water >= 0.5 || with_water <= poisson {
+        let place = match undrained {
+            Some(_) => node.place_at("undrained_poisson"),
+            None => node.place_at("poisson"),
+        };
+        problems
+            .error(
+                place,
+                format!(
+                    "Poisson's ratio of undrained soil, {}, must lie between that of its skeleton, {}, and 0.5",
+                    number(with_water),
+                    number(poisson)
+                ),
+            )
+            .help("poisson is that of drained soil, like 0.3; undrained_poisson = 0.495");
+        return None;
+    }
+    let shear = young / (2.0 * (1.0 + poisson));
+    let bulk = |poisson: f64| 2.0 * shear * (1.0 + poisson) / (3.0 * (1.0 - 2.0 * poisson));
+    Some(Drainage::Undrained {
+        stiffness: bulk(with_water) - bulk(poisson),
+    })
 }
 
 fn mohr_coulomb(

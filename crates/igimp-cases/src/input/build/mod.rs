@@ -5,9 +5,11 @@
 mod bodies;
 mod boundaries;
 mod checks;
+mod construction;
 mod curves;
 mod derive;
 mod grid;
+mod ground;
 mod layers;
 mod level;
 mod lines;
@@ -19,9 +21,11 @@ mod quantities;
 mod reinforcement;
 mod rigid;
 mod safety;
+mod sequence;
 mod site;
 mod stages;
 mod study;
+mod water;
 
 use std::path::Path;
 
@@ -33,6 +37,7 @@ use crate::case::{Case, TitleBlock};
 
 use layers::Layers;
 pub(super) use quantities::QUANTITY_DOCS;
+use sequence::Sequence;
 use site::Site;
 
 /// The names in a file, by what they name.
@@ -41,6 +46,7 @@ struct AllNames {
     bodies: Names,
     loads: Names,
     rigid: Names,
+    water: Names,
     reinforcement: Names,
     stages: Names,
     monitors: Names,
@@ -66,6 +72,7 @@ impl AllNames {
             bodies: Names::of_list("body", tree.get("bodies"), problems),
             loads: Names::of_list("load", tree.get("loads"), problems),
             rigid: Names::of_list("rigid body", tree.get("rigid"), problems),
+            water: Names::of_list("water condition", tree.get("water"), problems),
             reinforcement: Names::of_list("reinforcement", tree.get("reinforcement"), problems),
             stages: Names::of_list("stage", tree.get("stages"), problems),
             monitors: Names::of_list("monitor", tree.get("monitors"), problems),
@@ -90,8 +97,9 @@ pub(super) fn build(tree: &mut Node, file: &Path, problems: &mut Problems) -> Op
     if let (Some(frame), Some(grid)) = (&mut frame, &grid) {
         frame.axes.clone_from(&grid.axes);
     }
-    let site = Site::new(frame, &bodies);
-    bodies::check(tree, &names, &bodies, &site, problems);
+    let sequence = Sequence::new(tree, &names, &bodies);
+    let site = Site::new(frame, &bodies, &sequence);
+    bodies::check(tree, &names, (&bodies, &sequence), &site, problems);
     let boundaries = boundaries::boundaries(tree, &site, problems);
     bodies::check_support(tree, &bodies, boundaries.as_ref(), &site, problems);
     let layers = Layers {
@@ -99,6 +107,7 @@ pub(super) fn build(tree: &mut Node, file: &Path, problems: &mut Problems) -> Op
         bodies: &bodies,
         materials: &materials,
         site: &site,
+        sequence: &sequence,
     };
     layers::check(&layers, problems);
     let loads = loads::loads(tree, &site, problems);
@@ -106,9 +115,21 @@ pub(super) fn build(tree: &mut Node, file: &Path, problems: &mut Problems) -> Op
         site: &site,
         materials: &materials,
         loads: &loads,
+        tree,
+        sequence: &sequence,
     };
     let rigid = rigid::rigid(tree, &around, problems);
     rigid::check_use(tree, &names, problems);
+    let around = water::Around {
+        tree,
+        names: &names,
+        site: &site,
+        bodies: &bodies,
+        materials: &materials,
+        sequence: &sequence,
+    };
+    let water = water::conditions(&around, problems);
+    water::check(&around, &water, problems);
     let reinforcement = reinforcement::reinforcement(tree, &site, problems);
     reinforcement::check_searches(tree, &names, problems);
     let context = stages::Context {
@@ -118,9 +139,11 @@ pub(super) fn build(tree: &mut Node, file: &Path, problems: &mut Problems) -> Op
         bodies: &bodies,
         loads: &loads,
         site: &site,
+        sequence: &sequence,
     };
     let stages = stages::stages(&context, problems);
     stages::check_use(&context, problems);
+    construction::check(&context, problems);
     let gravity = tree.get("case").and_then(|case| case.number_at("gravity"));
     layers::check_stiffness(&layers, &stages, gravity, problems);
     let solver = outputs::solver(tree, &materials, problems);
@@ -137,17 +160,11 @@ pub(super) fn build(tree: &mut Node, file: &Path, problems: &mut Problems) -> Op
     let mesh_study = study::mesh_study(tree);
 
     let case = tree.get("case")?;
-    let words = |key| case.text_at(key).map(str::to_owned);
     let case = Case {
-        water_unit_weight: 9810.0,
-        water: Vec::new(),
+        water_unit_weight: case.number_at("water_unit_weight")?,
+        water: all(water)?,
         title: case.text_at("title")?.to_owned(),
-        title_block: TitleBlock {
-            project: words("project"),
-            client: words("client"),
-            author: words("author"),
-            revision: words("revision"),
-        },
+        title_block: title_block(case),
         gravity: case.number_at("gravity")?,
         grid: grid?,
         method: method?,
@@ -169,6 +186,17 @@ pub(super) fn build(tree: &mut Node, file: &Path, problems: &mut Problems) -> Op
     let case = case.refined(tree.get("grid")?.count_at("refine")?);
     study::check(tree, &case, problems);
     Some(case)
+}
+
+/// The head of the report.
+fn title_block(case: &Node) -> TitleBlock {
+    let words = |key| case.text_at(key).map(str::to_owned);
+    TitleBlock {
+        project: words("project"),
+        client: words("client"),
+        author: words("author"),
+        revision: words("revision"),
+    }
 }
 
 fn all<T>(parts: Vec<Option<T>>) -> Option<Vec<T>> {

@@ -8,7 +8,7 @@ use crate::input::text::{clip, row};
 use crate::input::tree::Node;
 
 /// Fields by their names.
-const FIELDS: [(&str, Field, &str); 13] = [
+const FIELDS: [(&str, Field, &str); 19] = [
     ("displacement", Field::Displacement, "m"),
     ("displacement_x", Field::DisplacementX, "m"),
     ("displacement_y", Field::DisplacementY, "m"),
@@ -19,6 +19,12 @@ const FIELDS: [(&str, Field, &str); 13] = [
     ("sigma_zz", Field::SigmaZz, "Pa"),
     ("tau_xy", Field::TauXy, "Pa"),
     ("p", Field::P, "Pa"),
+    ("sigma_eff_xx", Field::SigmaEffXx, "Pa"),
+    ("sigma_eff_yy", Field::SigmaEffYy, "Pa"),
+    ("sigma_eff_zz", Field::SigmaEffZz, "Pa"),
+    ("p_eff", Field::PEff, "Pa"),
+    ("u", Field::U, "Pa"),
+    ("u_excess", Field::UExcess, "Pa"),
     ("q", Field::Q, "Pa"),
     ("plastic_strain", Field::PlasticStrain, "-"),
     ("utilisation", Field::Utilisation, "-"),

@@ -224,7 +224,7 @@ pub(super) fn installs(
                 value.place,
                 format!("a stage of type {kind} installs nothing"),
             )
-            .help("install it in a stage of type gravity, load, rigid or displacement before");
+            .help("install it in a stage of type gravity, load, rigid, construction or displacement before");
         return None;
     }
     let mut members = Vec::new();

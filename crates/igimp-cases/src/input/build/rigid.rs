@@ -4,6 +4,7 @@ use igimp_assembly::{SurfaceError, Tension};
 
 use super::AllNames;
 use super::grid::Frame;
+use super::sequence::Sequence;
 use super::site::Site;
 use super::stages::Context;
 use crate::case::{
@@ -26,6 +27,8 @@ pub(super) struct Around<'a> {
     pub(super) site: &'a Site,
     pub(super) materials: &'a [Option<Material>],
     pub(super) loads: &'a [Option<Load>],
+    pub(super) tree: &'a Node,
+    pub(super) sequence: &'a Sequence,
 }
 
 /// The rigid bodies.
@@ -82,7 +85,7 @@ fn part(node: &Node, around: &Around<'_>, problems: &mut Problems) -> Option<Rig
     if let Some(frame) = &around.site.frame {
         in_grid(node, &part, frame, problems);
     }
-    beside_soil(node, &part, around.site, problems);
+    beside_soil(node, &part, around, problems);
     Some(part)
 }
 
@@ -391,13 +394,26 @@ fn thickness(part: &RigidPart) -> f64 {
 /// Corners up to which every pair is looked at for the thickness of a body.
 const MOST_PAIRED: usize = 100;
 
-/// Refuses a body that overlaps soil as it starts.
-fn beside_soil(node: &Node, part: &RigidPart, site: &Site, problems: &mut Problems) {
+/// Refuses a body that overlaps soil as it starts, or that is placed while it is there.
+fn beside_soil(node: &Node, part: &RigidPart, around: &Around<'_>, problems: &mut Problems) {
+    let Around { site, sequence, .. } = around;
     let outline = part.outline(POINTS_OF_CIRCLE);
-    let found = site
-        .polygons
-        .iter()
-        .find_map(|polygon| overlap(polygon, &outline, site.round_off));
+    let names = |stage: &Node| {
+        let mut moved = stage.items_at("bodies").iter();
+        moved.any(|own| own.text_at("body") == Some(&part.name))
+    };
+    let first = around.tree.items_at("stages").iter().position(names);
+    let (before, after) = match first {
+        Some(stage) if !part.from_start => (sequence.before(stage), &sequence.ends[stage..]),
+        _ => (&sequence.start, &sequence.ends[..]),
+    };
+    let is_there = |body: usize| {
+        let mut scenes = std::iter::once(before).chain(after);
+        !site.is_complete || scenes.any(|scene| scene.present[body])
+    };
+    let found = (site.polygons.iter().enumerate())
+        .filter(|(body, _)| is_there(*body))
+        .find_map(|(_, polygon)| overlap(polygon, &outline, site.round_off));
     if let Some(at) = found {
         problems
             .error(

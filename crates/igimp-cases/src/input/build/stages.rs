@@ -3,8 +3,10 @@
 use igimp_assembly::Geometry;
 
 use super::AllNames;
+use super::construction;
 use super::level::uneven;
 use super::safety::{run_out, strength_reduction};
+use super::sequence::Sequence;
 use super::site::Site;
 use crate::case::{BodyPart, Load, LoadKind, Material, Stage, StageKind, StopWhen, Strength};
 use crate::input::diagnostic::Problems;
@@ -19,6 +21,7 @@ pub(super) struct Context<'a> {
     pub(super) bodies: &'a [Option<BodyPart>],
     pub(super) loads: &'a [Option<Load>],
     pub(super) site: &'a Site,
+    pub(super) sequence: &'a Sequence,
 }
 
 impl Context<'_> {
@@ -56,9 +59,13 @@ impl Context<'_> {
 
     /// Whether a material is that of a body.
     pub(super) fn is_used(&self, material: usize) -> bool {
-        self.bodies
-            .iter()
-            .any(|body| body.as_ref().is_none_or(|body| body.material == material))
+        let mut scenes = self.sequence.scenes();
+        scenes.any(|scene| {
+            scene
+                .material
+                .iter()
+                .any(|own| own.is_none_or(|own| own == material))
+        })
     }
 }
 
@@ -84,9 +91,10 @@ fn stage(
             k0(context, index, node, problems);
             Some(StageKind::K0)
         }
-        "load" => load(context, node, &name, problems),
-        "displacement" => displacement(context, node, &name, problems),
+        "load" => load(context, index, node, &name, problems),
+        "displacement" => displacement(context, index, node, &name, problems),
         "rigid" => super::rigid::stage(context, node, &name, problems),
+        "construction" => construction::stage(context, index, node, &name, problems),
         "strength-reduction" => strength_reduction(context, index, node, &name, problems)
             .map(StageKind::StrengthReduction),
         _ => run_out(context, index, node, &name, problems).map(StageKind::RunOut),
@@ -95,7 +103,7 @@ fn stage(
     let stop_when = stop_when(context, node, &name, problems);
     let install = super::reinforcement::installs(context, index, node, &name, problems);
     Some(Stage {
-        drained: false,
+        drained: node.flag_at("drained")?,
         name: node.text_at("name")?.to_owned(),
         kind: kind?,
         steps: node.count_at("steps")?,
@@ -158,6 +166,16 @@ fn stop_when(
     let monitor = context.monitor(table, name, problems).ok()?;
     let displacement = table.optional_number("displacement").ok()?;
     let load_grows_less_than = table.optional_number("load_grows_less_than").ok()?;
+    let ends = table.entries().iter();
+    let mut ends = ends.filter(|end| end.node.written && end.node.flag() != Some(false));
+    if kind == "construction"
+        && let Some(end) = ends.next()
+    {
+        problems
+            .error(end.key_place, "a construction stage has no early end")
+            .help("what holds the ground as the stage begins must all be let go: remove stop_when")
+            .help("a stage that finds no equilibrium says how far it came");
+    }
     if monitor.is_some() && displacement.is_none() {
         problems
             .error(
@@ -203,7 +221,7 @@ fn k0(context: &Context<'_>, index: usize, node: &Node, problems: &mut Problems)
         return;
     }
     if context.site.is_complete
-        && let Some(reason) = uneven(context.site)
+        && let Some(reason) = uneven(&context.site.at_start())
     {
         problems
             .error(place, "a k0 stage needs level ground")
@@ -213,7 +231,10 @@ fn k0(context: &Context<'_>, index: usize, node: &Node, problems: &mut Problems)
     for (index, material) in context.materials.iter().enumerate() {
         let Some(material) = material else { continue };
         let needs = material.strength != Strength::Elastic && material.k0.is_none();
-        if needs && context.is_used(index) {
+        let start = &context.sequence.start;
+        let bodies = std::iter::zip(&start.present, &start.material);
+        let is_there = |(present, own): (&bool, &Option<usize>)| *present && *own == Some(index);
+        if needs && bodies.clone().any(is_there) {
             let entries = context.tree.get("materials").map_or(&[][..], Node::entries);
             let at = entries.get(index).map_or(place, |entry| entry.node.place);
             problems
@@ -234,6 +255,7 @@ fn k0(context: &Context<'_>, index: usize, node: &Node, problems: &mut Problems)
 
 fn load(
     context: &Context<'_>,
+    index: usize,
     node: &Node,
     name: &str,
     problems: &mut Problems,
@@ -266,6 +288,9 @@ fn load(
             problems.error(value.place, "this load is named twice");
         }
         loads.push(load);
+        if node.number_at("factor") != Some(0.0) {
+            construction::load_is_held(context, index, load, value, problems);
+        }
         let kind = context.loads.get(load).and_then(Option::as_ref);
         if let Some(LoadKind::RigidFooting { .. }) = kind.map(|load| load.kind) {
             problems
@@ -279,6 +304,7 @@ fn load(
 
 fn displacement(
     context: &Context<'_>,
+    index: usize,
     node: &Node,
     name: &str,
     problems: &mut Problems,
@@ -287,6 +313,7 @@ fn displacement(
     let value = node.get("load")?;
     let load = context.names.loads.find(value, &who, problems)?;
     let settlement = node.number_at("settlement")?;
+    construction::load_is_held(context, index, load, value, problems);
     let LoadKind::RigidFooting { from, .. } = context.loads.get(load)?.as_ref()?.kind else {
         let footings = context.loads.iter().flatten();
         let footings = footings

@@ -5,11 +5,12 @@ use crate::input::quantity::Dimension::{
     Angle, Stress, StressGradient, UnitWeight, UnitWeightGradient,
 };
 use crate::input::spec::{
-    Choice, Field, Kind, Range, Struct, Variant, Variants, choice, default, optional, required,
+    Choice, Field, Kind, Range, Struct, Variant, Variants, choice, default, derived, optional,
+    required,
 };
 
 /// What books call a field, and its keys here: of these the one that the material has is meant.
-pub(in crate::input) static SYMBOLS: [(&str, &[&str]); 20] = [
+pub(in crate::input) static SYMBOLS: [(&str, &[&str]); 22] = [
     ("gamma", &["unit_weight"]),
     ("γ", &["unit_weight"]),
     ("weight", &["unit_weight"]),
@@ -30,6 +31,8 @@ pub(in crate::input) static SYMBOLS: [(&str, &[&str]); 20] = [
     ("psi", &["dilation"]),
     ("ψ", &["dilation"]),
     ("dilatancy", &["dilation"]),
+    ("gamma_sat", &["saturated_unit_weight"]),
+    ("nu_u", &["undrained_poisson"]),
 ];
 
 static A_STRESS: Kind = Kind::Quantity(Stress, Range::NotNegative);
@@ -188,7 +191,46 @@ pub(in crate::input) static MATERIAL: Variants = Variants {
             "an elastic material takes poisson / (1 - poisson)",
             "coefficient of earth pressure at rest, for stages of type k0",
         ),
+        optional(
+            "saturated_unit_weight",
+            Kind::Quantity(UnitWeight, Range::Positive),
+            "as above the water table",
+            "unit weight below a water table, water included",
+        ),
+        derived(
+            "drainage",
+            Kind::Choice(&DRAINAGES),
+            "\"total\" with `cu`, \"drained\" otherwise",
+            "what it does with the water in its pores",
+        ),
+        optional(
+            "undrained_poisson",
+            Kind::Number(Range::Share),
+            "0.495 where `drainage` is undrained and `pore_water` is not given",
+            "Poisson's ratio of undrained soil with its water, above `poisson`",
+        ),
+        optional(
+            "pore_water",
+            Kind::Quantity(Stress, Range::Positive),
+            "`undrained_poisson` says it",
+            "bulk modulus of the water over the porosity, K_w/n, of undrained soil",
+        ),
     ],
 };
+
+static DRAINAGES: [Choice; 3] = [
+    choice(
+        "drained",
+        "water comes and goes: strength and stiffness are those of effective stress",
+    ),
+    choice(
+        "undrained",
+        "the same, and changes of volume make excess pore pressure",
+    ),
+    choice(
+        "total",
+        "strength and stiffness are those of total stress: pore pressure does not matter",
+    ),
+];
 
 static JAKY: [Choice; 1] = [choice("jaky", "1 - sin(friction)")];

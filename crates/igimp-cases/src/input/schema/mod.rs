@@ -8,8 +8,9 @@ mod outputs;
 mod reinforcement;
 mod rigid;
 mod stages;
+mod water;
 
-use super::quantity::Dimension::{Acceleration, Length};
+use super::quantity::Dimension::{Acceleration, Length, UnitWeight};
 use super::spec::{Choice, Kind, Range, Struct, choice, default, derived, optional, required};
 
 /// Version of the input format that this program reads.
@@ -64,6 +65,12 @@ pub(super) static ROOT: Struct = Struct {
             Kind::List(&BODY, 1, MOST_BODIES),
             "[{ name = \"soil\" }]",
             "polygons of one material each",
+        ),
+        default(
+            "water",
+            Kind::List(&water::WATER, 0, MOST_THINGS),
+            "[]",
+            "conditions of the water; the first holds from the start",
         ),
         default(
             "boundaries",
@@ -184,6 +191,12 @@ static CASE: Struct = Struct {
             Kind::Quantity(Acceleration, Range::NotNegative),
             "\"9.81 m/s2\"",
             "acceleration of gravity, along -y",
+        ),
+        default(
+            "water_unit_weight",
+            Kind::Quantity(UnitWeight, Range::Positive),
+            "\"9.81 kN/m3\"",
+            "unit weight of water",
         ),
     ],
 };

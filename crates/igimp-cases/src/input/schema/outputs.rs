@@ -64,20 +64,41 @@ static LINEAR_SOLVERS: [Choice; 7] = [
 ];
 
 /// Fields on particles.
-static FIELDS: [Choice; 13] = [
+static FIELDS: [Choice; 19] = [
     choice("displacement", "length of the displacement [m]"),
     choice("displacement_x", "displacement in x [m]"),
     choice("displacement_y", "displacement in y [m]"),
     choice("x", "position x [m]"),
     choice("y", "position y [m]"),
-    choice("sigma_xx", "stress xx, compression positive [Pa]"),
-    choice("sigma_yy", "stress yy, compression positive [Pa]"),
-    choice("sigma_zz", "stress zz, compression positive [Pa]"),
+    choice("sigma_xx", "total stress xx, compression positive [Pa]"),
+    choice("sigma_yy", "total stress yy, compression positive [Pa]"),
+    choice("sigma_zz", "total stress zz, compression positive [Pa]"),
     choice(
         "tau_xy",
         "shear stress, with the sign of compression positive [Pa]",
     ),
-    choice("p", "mean pressure [Pa]"),
+    choice("p", "mean pressure of total stress [Pa]"),
+    choice(
+        "sigma_eff_xx",
+        "effective stress xx, compression positive [Pa]; without water the same as sigma_xx",
+    ),
+    choice(
+        "sigma_eff_yy",
+        "effective stress yy, compression positive [Pa]",
+    ),
+    choice(
+        "sigma_eff_zz",
+        "effective stress zz, compression positive [Pa]",
+    ),
+    choice("p_eff", "mean pressure of effective stress [Pa]"),
+    choice(
+        "u",
+        "pore pressure, given and excess, compression positive [Pa]",
+    ),
+    choice(
+        "u_excess",
+        "excess pore pressure of undrained soil, compression positive [Pa]",
+    ),
     choice("q", "deviatoric stress [Pa]"),
     choice("plastic_strain", "accumulated plastic strain invariant [-]"),
     choice("utilisation", "share of the strength that is mobilised [-]"),
@@ -96,7 +117,7 @@ pub(in crate::input) static MONITOR: Kind = Kind::Table(&Struct {
         ),
         default(
             "record",
-            Kind::List(&FIELD, 1, 13),
+            Kind::List(&FIELD, 1, 19),
             "[\"displacement\"]",
             "what is recorded",
         ),
@@ -117,7 +138,7 @@ pub(in crate::input) static SECTION: Kind = Kind::Table(&Struct {
         ),
         default(
             "record",
-            Kind::List(&FIELD, 1, 13),
+            Kind::List(&FIELD, 1, 19),
             "[\"sigma_xx\", \"sigma_yy\", \"tau_xy\"]",
             "what is written",
         ),
@@ -412,7 +433,7 @@ pub(in crate::input) static OUTPUT: Struct = Struct {
         ),
         default(
             "figures",
-            Kind::List(&FIELD, 0, 13),
+            Kind::List(&FIELD, 0, 19),
             "[\"displacement\", \"plastic_strain\", \"sigma_yy\"]",
             "fields drawn at the end of every stage; with none no picture is drawn at all",
         ),

@@ -1,6 +1,6 @@
 //! Stages.
 
-use super::{MOST_THINGS, reduced_materials};
+use super::{MOST_THINGS, reduced_materials, water};
 use crate::input::quantity::Dimension::Length;
 use crate::input::spec::{
     Choice, Field, Kind, Range, Struct, Variant, Variants, choice, default, derived, optional,
@@ -100,6 +100,11 @@ pub(in crate::input) static STAGE: Kind = Kind::Variants(&Variants {
             ],
         },
         Variant {
+            name: "construction",
+            doc: "Places and removes bodies, changes materials and the water. What that leaves out of balance is let go over its steps.",
+            fields: &CONSTRUCTION,
+        },
+        Variant {
             name: "strength-reduction",
             doc: "Searches for the factor of safety; the body is left as it was found.",
             fields: &[
@@ -189,6 +194,12 @@ pub(in crate::input) static STAGE: Kind = Kind::Variants(&Variants {
             "whether displacements count from the end of this stage on",
         ),
         default(
+            "drained",
+            Kind::Flag,
+            "false",
+            "whether all soil drains while it lasts: no excess pore pressure comes or goes",
+        ),
+        default(
             "stop_when",
             Kind::Table(&STOP_WHEN),
             "{}",
@@ -196,6 +207,18 @@ pub(in crate::input) static STAGE: Kind = Kind::Variants(&Variants {
         ),
     ],
 });
+
+static CONSTRUCTION: [Field; 6] = {
+    let [place, remove, materials, water, dissipate] = water::CONSTRUCTION;
+    [
+        place,
+        remove,
+        materials,
+        water,
+        dissipate,
+        geometry("\"moving\""),
+    ]
+};
 
 static LOAD_NAME: Kind = Kind::Reference("load");
 static FACTOR: Kind = Kind::Number(Range::Positive);

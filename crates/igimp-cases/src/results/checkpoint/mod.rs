@@ -10,9 +10,12 @@
 //! | `x`, `displacement` | n × 2 | position, displacement \[m\] |
 //! | `def_grad` | n × 2 × 2 | deformation gradient F \[-\] |
 //! | `b_e` | n × 3 × 3 | elastic left Cauchy–Green tensor \[-\] |
-//! | `sigma` | n × 3 × 3 | Cauchy stress, tension positive \[Pa\] |
+//! | `sigma` | n × 3 × 3 | Cauchy stress of the law, tension positive: effective where there is water \[Pa\] |
 //! | `half_length`, `half_length0` | n × 2 | half-lengths of the domain, now and as seeded \[m\] |
 //! | `volume0`, `mass` | n | volume as seeded \[m³/m\], mass \[kg/m\] |
+//! | `pore_pressure`, `excess` | n | given and excess pore pressure, compression positive \[Pa\] |
+//! | `number` | n | number that the particle keeps |
+//! | `ratios` | n × 2 | strength and stiffness over those of the law |
 //! | `law`, `regime` | n | index of the law; code of the regime ([`regime`](super::regime)) |
 //! | `eps_p_eq` | n | accumulated plastic strain \[-\] |
 //! | `load_point_x`, `load_point_force` | m × 2 | loaded points \[m\], forces at factor 1 \[N/m\] |

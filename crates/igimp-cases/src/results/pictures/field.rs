@@ -4,7 +4,7 @@ use std::path::Path;
 
 use igimp_assembly::{Particles, SharedLaw};
 
-use super::{file_name, sentence, titled, write};
+use super::{file_name, sentence, titled, water, write};
 use crate::case::{Case, Field};
 use crate::error::CaseError;
 use crate::pieces::Pieces;
@@ -87,11 +87,16 @@ pub fn field_picture(
     let scale = Scale::of(fields::dimension(field), all.iter().copied());
     let colours = Colours::of(field, &scale.apply(&all));
     let (domains, whose) = canvas.pieces.now(particles);
+    let total = if case.has_pore_water() && fields::is_total(field) {
+        "total "
+    } else {
+        ""
+    };
     let plot = FieldPlot {
         title: titled(&case.title, &shown.title),
         domains,
         values: whose.iter().map(|&k| values[k] / scale.divide_by).collect(),
-        label: fields::label(field, scale) + colours.told(),
+        label: format!("{total}{}{}", fields::label(field, scale), colours.told()),
         range: colours.range,
         map: colours.map,
         outlines: edges(canvas, particles)
@@ -112,9 +117,10 @@ pub fn field_picture(
         " Heavy lines: reinforcement, its tension beside it, the largest of each in numbers."
     };
     let caption = format!(
-        "{} {}. Lines: the edges of the bodies; dashed: before they moved.{members}{same}",
-        sentence(&fields::plain(fields::title(field))),
+        "{} {}. Lines: the edges of the bodies; dashed: before they moved{}.{members}{same}",
+        sentence(&format!("{total}{}", fields::plain(fields::title(field)))),
         shown.when,
+        water::told(&over.outlines),
     );
     let name = format!("field-{}-{}", shown.name, fields::name(field));
     write(canvas.folder, &name, &plot.draw()?, caption)
@@ -122,10 +128,14 @@ pub fn field_picture(
 
 /// The edges of the bodies as they were, and as the particles carry them.
 pub(super) fn edges(canvas: &Canvas<'_>, particles: &Particles<2>) -> Vec<Outline> {
-    let former = body_outlines(canvas.case).map(|outline| Outline {
-        style: OutlineStyle::Former,
-        ..outline
-    });
+    let there = canvas.pieces.there(particles);
+    let former = std::iter::zip(body_outlines(canvas.case), there);
+    let former = former
+        .filter(|(_, there)| *there)
+        .map(|(outline, _)| Outline {
+            style: OutlineStyle::Former,
+            ..outline
+        });
     let moved = canvas.pieces.edges(particles).into_iter();
     let moved = moved.map(|points| Outline {
         points,
@@ -174,7 +184,7 @@ impl Colours {
         let (inner_low, inner_high) = (at(FEW), at(1.0 - FEW));
         let signed = matches!(
             field,
-            Field::DisplacementX | Field::DisplacementY | Field::TauXy
+            Field::DisplacementX | Field::DisplacementY | Field::TauXy | Field::UExcess
         );
         if signed && -low.min(0.0) > 0.1 * high && high.max(0.0) > -0.1 * low {
             let (reach, inner) = (

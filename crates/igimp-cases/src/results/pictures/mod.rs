@@ -24,6 +24,7 @@ mod meshes;
 mod model;
 pub(crate) mod rigid;
 mod safety;
+pub(crate) mod water;
 
 use std::path::Path;
 

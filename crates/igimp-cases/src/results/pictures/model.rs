@@ -2,10 +2,9 @@
 
 use std::path::Path;
 
-use super::field::body_outlines;
 use super::rigid::{POINTS_OF_CIRCLE, block};
 use super::write;
-use crate::case::{AxisSpec, Case, GridSpec, LoadKind, Side};
+use crate::case::{AxisSpec, Case, GridSpec, LoadKind, PoreSource, Side, table_level};
 use crate::check::short;
 use crate::error::CaseError;
 use crate::polygon::bounding_box;
@@ -34,8 +33,14 @@ pub fn model_picture(folder: &Path, case: &Case) -> Result<FigureNote, CaseError
     } else {
         "rigid bodies where they start, "
     };
+    let is_table = |source: &PoreSource| matches!(source, PoreSource::Table(_));
+    let water = if case.water.iter().any(|own| is_table(&own.source)) {
+        "water tables, "
+    } else {
+        ""
+    };
     let caption = format!(
-        "The model: {columns} × {rows} cells of {width} × {height}{lines}, bodies by material, {rigid}supports and loads.",
+        "The model: {columns} × {rows} cells of {width} × {height}{lines}, bodies by material, {rigid}{water}supports and loads.",
     );
     write(folder, "model", &plot.draw()?, caption)
 }
@@ -65,7 +70,8 @@ fn plot(case: &Case) -> FieldPlot {
     if has_lines(&case.grid) {
         plot.outlines.extend(grid_lines(&case.grid));
     }
-    plot.outlines.extend(body_outlines(case));
+    plot.outlines.extend(bodies(case));
+    add_water(&mut plot, case);
     add_rigid_bodies(&mut plot, case);
     for part in &case.reinforcement {
         plot.outlines.push(Outline {
@@ -134,6 +140,39 @@ fn grid_lines(grid: &GridSpec) -> impl Iterator<Item = Outline> {
         }
     };
     (0..2).flat_map(move |axis| grid.axes[axis].lines().map(move |at| line(axis, at)))
+}
+
+/// Bodies, those that stages place dashed.
+fn bodies(case: &Case) -> impl Iterator<Item = Outline> {
+    let (first, later): (Vec<_>, Vec<_>) =
+        std::iter::zip(super::field::body_outlines(case), &case.bodies)
+            .partition(|(_, body)| body.from_start);
+    let dashed = later.into_iter().map(|(outline, _)| Outline {
+        style: OutlineStyle::Former,
+        ..outline
+    });
+    // Firm lines over dashed ones where they meet.
+    dashed.chain(first.into_iter().map(|(outline, _)| outline))
+}
+
+/// The tables of the conditions of the water, with their names.
+fn add_water(plot: &mut FieldPlot, case: &Case) {
+    let ([left, _], [right, _]) = (case.grid.lower(), case.grid.upper());
+    for condition in &case.water {
+        let PoreSource::Table(table) = &condition.source else {
+            continue;
+        };
+        let inside = table.iter().filter(|at| left < at[0] && at[0] < right);
+        let end = |x: f64| [x, table_level(table, x)];
+        let mut points = vec![end(left)];
+        points.extend(inside.copied());
+        points.push(end(right));
+        plot.labels.push((points[0], condition.name.clone()));
+        plot.outlines.push(Outline {
+            points,
+            style: OutlineStyle::Water,
+        });
+    }
 }
 
 /// Rigid bodies where they start, with their names.
@@ -267,6 +306,8 @@ fn add_symbols_to_key(plot: &mut FieldPlot, has_bodies: bool) {
         (OutlineStyle::Block, block),
         (OutlineStyle::Member, "reinforcement"),
         (OutlineStyle::Arrow, "load"),
+        (OutlineStyle::Water, "water table"),
+        (OutlineStyle::Former, "placed later"),
         (OutlineStyle::Section, "section"),
         (OutlineStyle::Point, "monitor"),
     ] {

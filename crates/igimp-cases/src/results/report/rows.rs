@@ -6,7 +6,9 @@ use super::verdict::on_safety;
 use crate::check::{Band, short};
 use crate::mesh_study::MeshSummary;
 use crate::results::fields::{Dimension, Scale};
-use crate::summary::{MemberSummary, SafetySummary, StageOutcome, StageSummary, Summary};
+use crate::summary::{
+    MemberSummary, PoreSummary, SafetySummary, StageOutcome, StageSummary, Summary,
+};
 
 /// The phases of a stage, in the order of [`StageSummary::phases`].
 pub(super) const PHASES: [&str; 5] = ["set-up", "assembly", "factorisation", "solution", "commit"];
@@ -75,6 +77,19 @@ pub(super) fn headline(summary: &Summary) -> Vec<Number> {
         let value = length(stage.largest_displacement);
         add("Largest displacement".to_owned(), value, note);
     }
+    if let Some((stage, pores)) = last_pores(summary) {
+        let note = format!(
+            "of any particle, compression positive, at the end of “{}”",
+            stage.name
+        );
+        let value = quantity(pores.largest, "Pa");
+        add("Largest pore pressure".to_owned(), value, note.clone());
+        if let Some([least, most]) = pores.excess {
+            let value = format!("{} to {}", quantity(least, "Pa"), quantity(most, "Pa"));
+            let value = value.replace('-', "−");
+            add("Excess pore pressure".to_owned(), value, note);
+        }
+    }
     if !summary.checks.is_empty() {
         let met = summary.checks.iter().filter(|row| row.pass).count();
         let value = format!("{met} of {}", summary.checks.len());
@@ -108,6 +123,15 @@ pub(super) fn reinforcement(summary: &Summary) -> Vec<MemberView> {
         .flat_map(|stage| stage.reinforcement.iter().map(move |own| (stage, own)))
         .map(view)
         .collect()
+}
+
+/// The last stage that left water in the pores.
+fn last_pores(summary: &Summary) -> Option<(&StageSummary, &PoreSummary)> {
+    let stage = summary
+        .stages
+        .iter()
+        .rfind(|stage| stage.pore_water.is_some())?;
+    Some((stage, stage.pore_water.as_ref()?))
 }
 
 /// What the answer cost.

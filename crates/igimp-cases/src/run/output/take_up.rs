@@ -106,7 +106,7 @@ impl Output {
             Ok(body)
         };
         for (name, body) in &found.states {
-            unfit(case, body).map_or(Ok(()), |(array, why)| {
+            unfit(case, records, body).map_or(Ok(()), |(array, why)| {
                 Err(damaged(format!("{name}/{array}.npy"), why))
             })?;
         }
@@ -196,6 +196,10 @@ impl Output {
             let found = checkpoint::read(&path, None)?;
             let notes = notes_of(&path, &found.meta)?;
             if let Some((name, mut body)) = found.states.into_iter().next() {
+                if let Some((array, why)) = unfit(case, records, &body) {
+                    let file = format!("{name}/{array}.npy");
+                    return Err(CheckpointError::Damaged { path, file, why }.into());
+                }
                 let controls = notes.controls;
                 let saved = notes.rigid.get(&name).map_or(&[][..], Vec::as_slice);
                 let laws = records.law_count();
@@ -217,15 +221,27 @@ impl Output {
     }
 }
 
-/// The array of a body that names a material or a load that the case does not have, and what it
+/// The array of a body that names a law, a particle or a load that the case does not have, and what it
 /// names.
-fn unfit(case: &Case, body: &Body<2>) -> Option<(&'static str, String)> {
-    let (materials, loads) = (case.materials.len(), case.loads.len());
+fn unfit(case: &Case, records: &Records, body: &Body<2>) -> Option<(&'static str, String)> {
+    let (laws, seeded, loads) = (records.law_count(), records.seeded(), case.loads.len());
     let law = &body.particles.law;
-    if let Some(particle) = law.iter().position(|&law| law >= materials) {
+    if let Some(particle) = law.iter().position(|&law| law >= laws) {
         let law = law[particle];
-        let why = format!("particle {particle} is of material {law}, and there are {materials}");
+        let why = format!("particle {particle} is of law {law}, and there are {laws}");
         return Some(("law", why));
+    }
+    let mut taken = vec![false; seeded];
+    for (particle, &number) in body.particles.number.iter().enumerate() {
+        let why = match taken.get_mut(number) {
+            None => format!("particle {particle} has number {number}, and there are {seeded}"),
+            Some(true) => format!("particle {particle} has number {number}, as another one has"),
+            Some(taken) => {
+                *taken = true;
+                continue;
+            }
+        };
+        return Some(("number", why));
     }
     let points = &body.load_points;
     let point = points.iter().position(|point| point.load >= loads)?;
@@ -246,19 +262,32 @@ mod tests {
     #[test]
     fn materials_and_loads_that_are_not_there_are_named() {
         let case = case();
-        let mut body = Model::new(&case).unwrap().1.body;
-        assert_eq!(unfit(&case, &body), None);
+        let (model, state) = Model::new(&case).unwrap();
+        let mut body = state.body;
+        let records = Records::new(&case, &model.laws, &body.particles).unwrap();
+        let unfit = |body: &Body<2>| unfit(&case, &records, body);
+        assert_eq!(unfit(&body), None);
         body.load_points = vec![LoadPoint {
             x: [1.0, 2.0],
             force: [0.0, -1.0],
             load: 4,
         }];
         let why = "load point 0 belongs to load 4, and there are 0".to_owned();
-        assert_eq!(unfit(&case, &body), Some(("load_point_load", why)));
+        assert_eq!(unfit(&body), Some(("load_point_load", why)));
+        for (number, why) in [
+            (64, "particle 5 has number 64, and there are 64"),
+            (4, "particle 5 has number 4, as another one has"),
+        ] {
+            let mut fields = (*body.particles).clone();
+            fields.number[5] = number;
+            let mut other = body.clone();
+            other.particles = Particles::from_fields(fields).unwrap();
+            assert_eq!(unfit(&other), Some(("number", why.to_owned())));
+        }
         let mut fields = (*body.particles).clone();
         fields.law[3] = 1;
         body.particles = Particles::from_fields(fields).unwrap();
-        let why = "particle 3 is of material 1, and there are 1".to_owned();
-        assert_eq!(unfit(&case, &body), Some(("law", why)));
+        let why = "particle 3 is of law 1, and there are 1".to_owned();
+        assert_eq!(unfit(&body), Some(("law", why)));
     }
 }

@@ -1,0 +1,488 @@
+//! Conditions of the water, and whether the ground can be wet as they say.
+
+use std::collections::HashMap;
+
+use super::AllNames;
+use super::ground::{Above, Surface};
+use super::sequence::{Scene, Sequence};
+use super::site::Site;
+use crate::case::{
+    BodyPart, Drainage, Material, PoreSource, Strength, WaterCondition, table_level,
+};
+use crate::input::diagnostic::Problems;
+use crate::input::geometry::contains;
+use crate::input::source::Place;
+use crate::input::text::{clip, number};
+use crate::input::tree::Node;
+
+/// What conditions of the water are held against.
+pub(super) struct Around<'a> {
+    pub(super) tree: &'a Node,
+    pub(super) names: &'a AllNames,
+    pub(super) site: &'a Site,
+    pub(super) bodies: &'a [Option<BodyPart>],
+    pub(super) materials: &'a [Option<Material>],
+    pub(super) sequence: &'a Sequence,
+}
+
+impl Around<'_> {
+    fn surface(&self, scene: &Scene) -> Surface {
+        let fills_gaps = self.tree.items_at("rigid").is_empty();
+        Surface::of(self.site, &scene.present, fills_gaps)
+    }
+}
+
+const FORMS: &str = "write one of level = \"24 m\", line = [[\"0 m\", \"24 m\"], [\"60 m\", \"20 m\"]], inside and outside, \
+                     r_u = 0.25, dry = true";
+const OWN_FORMS: &str = "write one of level = \"24 m\", line = [[\"0 m\", \"24 m\"], [\"60 m\", \"20 m\"]], r_u = 0.25, \
+                         dry = true";
+
+/// The conditions.
+pub(super) fn conditions(
+    around: &Around<'_>,
+    problems: &mut Problems,
+) -> Vec<Option<WaterCondition>> {
+    let items = around.tree.items_at("water");
+    let conditions: Vec<_> = items
+        .iter()
+        .enumerate()
+        .map(|(index, node)| condition(around, index, node, problems))
+        .collect();
+    let case = around.tree.get("case");
+    let is_wet = |condition: &WaterCondition| {
+        let own = condition.bodies.iter().map(|(_, own)| own);
+        own.chain([&condition.source])
+            .any(|own| *own != PoreSource::Dry)
+    };
+    if let (Some(0.0), Some(index)) = (
+        case.and_then(|case| case.number_at("gravity")),
+        (conditions.iter()).position(|condition| condition.as_ref().is_some_and(is_wet)),
+    ) {
+        problems
+            .error(
+                items[index].place,
+                "there is water, but gravity is 0: water presses by its weight",
+            )
+            .help("set gravity in [case], or write dry = true");
+    }
+    conditions
+}
+
+fn condition(
+    around: &Around<'_>,
+    index: usize,
+    node: &Node,
+    problems: &mut Problems,
+) -> Option<WaterCondition> {
+    let name = clip(node.text_at("name").unwrap_or("?"), 40);
+    let who = format!("the water `{name}`");
+    let source = match form(node, &who, &["inside", "outside"], FORMS, problems) {
+        Some("inside" | "outside") => drawdown(around, index, node, &who, problems),
+        Some(form) => source_of(node, form, &who, problems),
+        None => None,
+    };
+    let mut bodies: Vec<(usize, PoreSource)> = Vec::new();
+    let mut is_right = true;
+    for own in node.items_at("bodies") {
+        let asks = format!("{who} names");
+        let body = own.get("body");
+        let body = body.and_then(|body| around.names.bodies.find(body, &asks, problems));
+        let form = form(own, &who, &[], OWN_FORMS, problems);
+        let own_source = form.and_then(|form| source_of(own, form, &who, problems));
+        let (Some(body), Some(own_source)) = (body, own_source) else {
+            is_right = false;
+            continue;
+        };
+        if bodies.iter().any(|(other, _)| *other == body) {
+            problems.error(own.place_at("body"), "this body is named twice");
+        }
+        bodies.push((body, own_source));
+    }
+    is_right.then_some(())?;
+    Some(WaterCondition {
+        name: node.text_at("name")?.to_owned(),
+        source: source?,
+        bodies,
+        carried: node.flag_at("carried")?,
+    })
+}
+
+/// The key that says where the pressure comes from; reports none and several.
+fn form(
+    node: &Node,
+    who: &str,
+    more: &[&'static str],
+    forms: &str,
+    problems: &mut Problems,
+) -> Option<&'static str> {
+    let keys = ["level", "line", "r_u", "dry"].iter().chain(more);
+    let is_said = |key: &str| {
+        node.get(key)
+            .is_some_and(|value| value.flag() != Some(false))
+    };
+    let mut given: Vec<&'static str> = keys.copied().filter(|key| is_said(key)).collect();
+    if given.ends_with(&["inside", "outside"]) {
+        given.pop();
+    }
+    match given.as_slice() {
+        [] => {
+            let message = format!("{who} does not say where its pressure comes from");
+            problems.error(node.place, message).help(forms);
+            None
+        }
+        [one] => Some(one),
+        [.., last] => {
+            let message = format!(
+                "{who} has several sources of pressure: {}",
+                given.join(", ")
+            );
+            problems
+                .error(node.place_at(last), message)
+                .help("keep one of them; bodies = [{ body = \"clay\", level = \"20 m\" }] gives a body its own");
+            None
+        }
+    }
+}
+
+/// The source that a key states.
+fn source_of(node: &Node, form: &str, who: &str, problems: &mut Problems) -> Option<PoreSource> {
+    let value = node.get(form)?;
+    Some(match form {
+        "level" => PoreSource::Table(vec![[0.0, value.number()?]]),
+        "line" => {
+            let points: Option<Vec<_>> = value.items().iter().map(Node::pair).collect();
+            let points = points?;
+            if let Some(k) = (1..points.len()).find(|&k| points[k][0] <= points[k - 1][0]) {
+                problems
+                    .error(
+                        value.items()[k].place,
+                        format!(
+                            "the line of {who} does not go on to the right: x = {} m after {} m",
+                            number(points[k][0]),
+                            number(points[k - 1][0])
+                        ),
+                    )
+                    .help("name its points from left to right, each x greater than the one before");
+                return None;
+            }
+            PoreSource::Table(points)
+        }
+        "r_u" => {
+            let ratio = value.number()?;
+            if !(0.0..=1.0).contains(&ratio) {
+                problems
+                    .error(
+                        value.place,
+                        format!(
+                            "r_u is {}, but the pressure is a share of the weight above",
+                            number(ratio)
+                        ),
+                    )
+                    .help(
+                        "r_u lies from 0, dry, to 1; half of it is about water up to the surface",
+                    );
+                return None;
+            }
+            PoreSource::Ratio(ratio)
+        }
+        _ => PoreSource::Dry,
+    })
+}
+
+/// The table of `inside` and `outside`.
+fn drawdown(
+    around: &Around<'_>,
+    index: usize,
+    node: &Node,
+    who: &str,
+    problems: &mut Problems,
+) -> Option<PoreSource> {
+    let (inside, outside) = (
+        node.optional_number("inside"),
+        node.optional_number("outside"),
+    );
+    let (inside, outside) = (inside.ok()?, outside.ok()?);
+    let (Some(inside), Some(outside)) = (inside, outside) else {
+        let (has, lacks) = if inside.is_some() {
+            ("inside", "outside")
+        } else {
+            ("outside", "inside")
+        };
+        problems
+            .error(
+                node.place_at(has),
+                format!("{who} has `{has}` without `{lacks}`"),
+            )
+            .help("inside is the level within the ground, outside that of the free water beside it")
+            .help("for one level everywhere write level = \"24 m\"");
+        return None;
+    };
+    if inside < outside {
+        problems
+            .error(
+                node.place_at("outside"),
+                format!("in {who} the water stands higher outside than inside"),
+            )
+            .help("inside and outside are for water that was drawn down; draw what flows in as line = [...]");
+        return None;
+    }
+    if !around.site.is_complete || around.site.frame.is_none() {
+        return None;
+    }
+    let surface = around.surface(around.sequence.first_with(index));
+    match surface.drained(inside, outside) {
+        Ok(points) => Some(PoreSource::Table(points)),
+        Err([x, left, right]) => {
+            problems
+                .error(
+                    node.place_at("inside"),
+                    format!(
+                        "at x = {} m the ground drops upright, and the table of {who} with it from {} m to {} m",
+                        number(x),
+                        number(left.max(right)),
+                        number(left.min(right))
+                    ),
+                )
+                .help("nothing would hold the water behind that face; draw the table as line = [...] through its foot");
+            None
+        }
+    }
+}
+
+/// Refuses tables that stand above the ground unmeant, and what water cannot do to materials; warns of conditions that
+/// do nothing.
+pub(super) fn check(
+    around: &Around<'_>,
+    conditions: &[Option<WaterCondition>],
+    problems: &mut Problems,
+) {
+    let Around { site, sequence, .. } = around;
+    if !site.is_complete || site.frame.is_none() || conditions.is_empty() {
+        return;
+    }
+    let mut checker = Checker {
+        around,
+        conditions,
+        surfaces: HashMap::new(),
+        seen: Vec::new(),
+        told: Vec::new(),
+    };
+    checker.scene(&sequence.start, None, problems);
+    for (index, end) in sequence.ends.iter().enumerate() {
+        if end != sequence.before(index) {
+            checker.scene(end, Some(index), problems);
+        }
+    }
+    let mut called = around.tree.items_at("stages").iter();
+    let is_slip = |name: &str| around.names.water.position(name).is_none();
+    if called.any(|stage| stage.text_at("water").is_some_and(is_slip)) {
+        // A name that is not defined may be a slip for one that is not used.
+        return;
+    }
+    for (index, node) in around.tree.items_at("water").iter().enumerate() {
+        let is_used = sequence.scenes().any(|scene| scene.water == Some(index));
+        let name = clip(node.text_at("name").unwrap_or("?"), 40);
+        if !is_used {
+            problems
+                .warning(
+                    node.place_at("name"),
+                    format!("no stage calls for the water `{name}`"),
+                )
+                .help("write water = \"NAME\" in a stage of type construction; the first condition holds from the start");
+        }
+    }
+}
+
+struct Checker<'a> {
+    around: &'a Around<'a>,
+    conditions: &'a [Option<WaterCondition>],
+    surfaces: HashMap<Vec<bool>, Surface>,
+    /// Conditions that have been found wrong: of each one place is enough.
+    seen: Vec<usize>,
+    /// Materials whose friction by total stress has been told.
+    told: Vec<usize>,
+}
+
+impl Checker<'_> {
+    /// Checks what is there at the start, or at the end of a stage.
+    fn scene(&mut self, scene: &Scene, stage: Option<usize>, problems: &mut Problems) {
+        let around = self.around;
+        let Some(index) = scene.water else { return };
+        let Some(condition) = self.conditions.get(index).and_then(Option::as_ref) else {
+            return;
+        };
+        if self.seen.contains(&index) || !scene.present.contains(&true) {
+            return;
+        }
+        let node = &around.tree.items_at("water")[index];
+        let surface = (self.surfaces)
+            .entry(scene.present.clone())
+            .or_insert_with(|| around.surface(scene));
+        let before = problems.errors();
+        let who = format!("the water `{}`", clip(&condition.name, 40));
+        let (place, when) = when(around.tree, node, stage);
+        match &condition.source {
+            PoreSource::Dry => {}
+            PoreSource::Table(points) => {
+                let is_meant = node.flag_at("pond") != Some(false);
+                let [highest, sloping] = surface.below(points);
+                if let Some(above) = highest.filter(|_| !is_meant) {
+                    above_ground(above, place, (&who, &when), problems);
+                } else if let Some(above) = sloping {
+                    problems
+                        .error(
+                            place,
+                            format!(
+                                "{who} is not level where it stands above the ground{when}: {} m above it at x = {} m",
+                                number(above.by),
+                                number(above.x)
+                            ),
+                        )
+                        .help("a pond is level: let the line meet the ground before it goes up or down");
+                }
+            }
+            PoreSource::Ratio(_) => {
+                if let Some([x, left, right]) = surface.drop() {
+                    problems
+                        .error(
+                            place,
+                            format!(
+                                "r_u puts pressure behind the upright face at x = {} m, from y = {} m to {} m{when}",
+                                number(x),
+                                number(left.min(right)),
+                                number(left.max(right))
+                            ),
+                        )
+                        .help("nothing would hold the water there: slope the face, or draw the table as line = [...]");
+                }
+            }
+        }
+        let bodies = std::iter::zip(around.bodies, &scene.present);
+        let mut there = bodies.filter_map(|(part, present)| part.as_ref().filter(|_| *present));
+        let is_table = matches!(condition.source, PoreSource::Table(_));
+        if is_table && !there.any(|part| is_wet(&condition.source, part)) {
+            problems
+                .warning(
+                    place,
+                    format!("{who} lies below all bodies, and wets none{when}"),
+                )
+                .help("write dry = true if that is meant");
+        }
+        self.materials(scene, condition, (node, &who), problems);
+        if problems.errors() > before {
+            self.seen.push(index);
+        }
+    }
+
+    /// Checks what the condition does to the materials of the bodies that are there.
+    fn materials(
+        &mut self,
+        scene: &Scene,
+        condition: &WaterCondition,
+        (node, who): (&Node, &str),
+        problems: &mut Problems,
+    ) {
+        let around = self.around;
+        for (body, part) in around.bodies.iter().enumerate() {
+            let Some(part) = part.as_ref().filter(|_| scene.present[body]) else {
+                continue;
+            };
+            let material =
+                scene.material[body].and_then(|k| Some((k, around.materials[k].as_ref()?)));
+            let Some((number, material)) =
+                material.filter(|(_, material)| material.drainage == Drainage::Total)
+            else {
+                continue;
+            };
+            let own = condition
+                .bodies
+                .iter()
+                .position(|(named, _)| *named == body);
+            if let Some(own) = own
+                && condition.bodies[own].1 != PoreSource::Dry
+            {
+                problems
+                    .error(
+                        node.items_at("bodies")[own].place,
+                        format!(
+                            "{who} gives `{}` a pore pressure of its own, but `{}` has strength by total stress, where there is none",
+                            clip(&part.name, 40),
+                            clip(&material.name, 40)
+                        ),
+                    )
+                    .help("write dry = true there, or drainage = \"drained\" or \"undrained\" in the material, with strength by effective stress");
+                continue;
+            }
+            let has_friction = matches!(
+                material.strength,
+                Strength::MohrCoulomb { friction_angle, .. } if friction_angle > 0.0
+            );
+            let is_wet = || own.is_none() && is_wet(&condition.source, part);
+            if has_friction && !self.told.contains(&number) && is_wet() {
+                self.told.push(number);
+                let entries = around.tree.get("materials").map_or(&[][..], Node::entries);
+                let place = entries
+                    .get(number)
+                    .map(|entry| entry.node.place_at("drainage"));
+                problems
+                    .error(
+                        place,
+                        format!(
+                            "{who} wets `{}`, and `{}` has friction by total stress: the water would make it stronger",
+                            clip(&part.name, 40),
+                            clip(&material.name, 40)
+                        ),
+                    )
+                    .help("friction goes with effective stress: drainage = \"drained\", or \"undrained\" where water cannot leave")
+                    .help("for undrained strength by total stress use model = \"tresca\" with cu");
+            }
+        }
+    }
+}
+
+/// Where a condition is told wrong, and when.
+fn when(tree: &Node, node: &Node, stage: Option<usize>) -> (Place, String) {
+    let own = ["line", "level", "inside", "r_u"];
+    let own = own.iter().find(|key| node.get(key).is_some());
+    let own = own.map_or(node.place, |key| node.place_at(key));
+    let Some(stage) = stage.map(|index| &tree.items_at("stages")[index]) else {
+        return (own, String::new());
+    };
+    let name = clip(stage.text_at("name").unwrap_or("?"), 40);
+    if stage.get("water").is_some() {
+        return (own, format!(" in stage `{name}`"));
+    }
+    let changed = ["remove", "place"];
+    let changed = changed.iter().find(|key| !stage.items_at(key).is_empty());
+    (
+        stage.place_at(changed.unwrap_or(&"name")),
+        format!(" after stage `{name}`"),
+    )
+}
+
+fn above_ground(above: Above, place: Place, (who, when): (&str, &str), problems: &mut Problems) {
+    problems
+        .error(
+            place,
+            format!(
+                "{who} stands {} m above the ground at x = {} m{when}",
+                number(above.by),
+                number(above.x)
+            ),
+        )
+        .help("a line above the ground presses on it as a pond does: draw it along the surface there, or below")
+        .help("write pond = true if free water stands there");
+}
+
+/// Whether there is pressure in a body.
+fn is_wet(source: &PoreSource, part: &BodyPart) -> bool {
+    match source {
+        PoreSource::Dry => false,
+        PoreSource::Ratio(ratio) => *ratio > 0.0,
+        PoreSource::Table(points) => {
+            let is_below = |corner: &[f64; 2]| corner[1] < table_level(points, corner[0]);
+            part.polygon.iter().any(is_below)
+                || (points.iter()).any(|&point| contains(&part.polygon, point))
+        }
+    }
+}

@@ -1,0 +1,71 @@
+//! Water tables, and the surface of free water above the ground.
+
+use igimp_figures::{Outline, OutlineStyle};
+
+use crate::case::{Case, PoreSource, WaterCondition, table_level};
+use crate::polygon::bounding_box;
+
+/// The water tables of a condition between two places along x \[m\]; bodies that are there and have a table of their own show
+/// it over their width.
+pub(crate) fn tables(
+    case: &Case,
+    condition: &WaterCondition,
+    there: impl Fn(usize) -> bool,
+    ends: [f64; 2],
+) -> Vec<Outline> {
+    let own = condition.bodies.iter().filter(|(body, _)| there(*body));
+    let own = own.map(|(body, source)| {
+        let (lower, upper) = bounding_box(&case.bodies[*body].polygon);
+        (source, [lower[0].max(ends[0]), upper[0].min(ends[1])])
+    });
+    let all = std::iter::once((&condition.source, ends)).chain(own);
+    all.filter_map(|(source, ends)| table(source, ends))
+        .collect()
+}
+
+/// A water table between two places.
+fn table(source: &PoreSource, [left, right]: [f64; 2]) -> Option<Outline> {
+    let PoreSource::Table(line) = source else {
+        return None;
+    };
+    if line.is_empty() || right <= left {
+        return None;
+    }
+    let at = |x: f64| [x, table_level(line, x)];
+    let between = line
+        .iter()
+        .filter(|point| left < point[0] && point[0] < right);
+    let points = std::iter::once(at(left)).chain(between.copied());
+    Some(Outline {
+        points: points.chain([at(right)]).collect(),
+        style: OutlineStyle::Water,
+    })
+}
+
+/// What a caption says of the water tables that are in a picture.
+pub(super) fn told(outlines: &[Outline]) -> &'static str {
+    let is_water = |outline: &Outline| outline.style == OutlineStyle::Water;
+    if outlines.iter().any(is_water) {
+        "; blue: the water table"
+    } else {
+        ""
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// GOAL: a water table is level beyond its ends and cut where the picture ends.
+    #[test]
+    fn a_water_table_goes_from_end_to_end() {
+        let line = vec![[2.0, 1.0], [4.0, 3.0], [9.0, 3.0]];
+        let drawn = |ends| table(&PoreSource::Table(line.clone()), ends).map(|own| own.points);
+        let whole = vec![[0.0, 1.0], [2.0, 1.0], [4.0, 3.0], [6.0, 3.0]];
+        assert_eq!(drawn([0.0, 6.0]), Some(whole));
+        assert_eq!(drawn([2.5, 3.5]), Some(vec![[2.5, 1.5], [3.5, 2.5]]));
+        assert_eq!(drawn([3.0, 3.0]), None);
+        let none = table(&PoreSource::Ratio(0.3), [0.0, 1.0]);
+        assert!(none.is_none());
+    }
+}

@@ -1,0 +1,91 @@
+//! Conditions of the water, and what the soil does with it, as tables.
+
+use super::{NONE, kilo, point, table};
+use crate::case::{Case, Drainage, Material, PoreSource, StageKind, WaterCondition};
+use crate::check::short;
+use crate::summary::SetupTable;
+
+/// Most points of a line that are listed one by one.
+const MOST_POINTS: usize = 12;
+
+/// The conditions of the water.
+pub(super) fn conditions(case: &Case) -> SetupTable {
+    let rows = case.water.iter().enumerate();
+    let rows = rows.map(|(index, own)| condition(case, index, own));
+    let header = [
+        "Water",
+        "Pore pressure",
+        "Bodies with their own",
+        "In force",
+        "Unit weight [kN/m³]",
+    ];
+    table("Water", &header, rows.collect())
+}
+
+fn condition(case: &Case, index: usize, own: &WaterCondition) -> Vec<String> {
+    let mut pressure = source(&own.source);
+    if own.carried {
+        pressure.push_str("; carried along by the soil");
+    }
+    let bodies = own.bodies.iter();
+    let bodies: Vec<String> = bodies
+        .map(|(body, own)| format!("{}: {}", case.bodies[*body].name, source(own)))
+        .collect();
+    let calls = case.stages.iter().filter(
+        |stage| matches!(&stage.kind, StageKind::Construction(own) if own.water == Some(index)),
+    );
+    let start = (index == 0).then(|| "from the start".to_owned());
+    let calls = calls.map(|stage| format!("from stage {} on", stage.name));
+    let force: Vec<String> = start.into_iter().chain(calls).collect();
+    let or_none = |list: &[String]| match list {
+        [] => NONE.to_owned(),
+        list => list.join("; "),
+    };
+    vec![
+        own.name.clone(),
+        pressure,
+        or_none(&bodies),
+        or_none(&force),
+        short(case.water_unit_weight / 1e3),
+    ]
+}
+
+fn source(own: &PoreSource) -> String {
+    match own {
+        PoreSource::Dry => "dry".to_owned(),
+        PoreSource::Ratio(ratio) => format!("r_u = {}", short(*ratio)),
+        PoreSource::Table(points) => match points.as_slice() {
+            [only] => format!("table level at y = {} m", short(only[1])),
+            points if points.len() <= MOST_POINTS => {
+                let points: Vec<String> = points.iter().map(|&at| point(at)).collect();
+                format!("table through {} m", points.join(" "))
+            }
+            points => format!("table through {} points", points.len()),
+        },
+    }
+}
+
+/// What materials do with water; nothing where there is none, and no soil that makes pore pressure.
+pub(super) fn soils(case: &Case) -> SetupTable {
+    let is_undrained = |own: &Material| matches!(own.drainage, Drainage::Undrained { .. });
+    let is_told = !case.water.is_empty() || case.materials.iter().any(is_undrained);
+    let soils = case.materials.iter().filter(|_| is_told);
+    let rows = soils.map(|own| {
+        let drainage = match own.drainage {
+            Drainage::Drained => "drained; strength by effective stress".to_owned(),
+            Drainage::Undrained { stiffness } => format!(
+                "undrained; strength by effective stress, water of K_w/n = {}",
+                kilo(stiffness, "Pa")
+            ),
+            Drainage::Total => "strength by total stress".to_owned(),
+        };
+        let saturated = own.saturated.unwrap_or(own.unit_weight);
+        vec![own.name.clone(), short(saturated / 1e3), drainage]
+    });
+    let header = [
+        "Material",
+        "Unit weight below the table [kN/m³]",
+        "Drainage",
+    ];
+    table("Soil and water", &header, rows.collect())
+}

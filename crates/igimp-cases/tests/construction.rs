@@ -1,0 +1,503 @@
+//! GOAL: bodies that come and go leave results that belong together, whatever is written and wherever a run is taken up.
+//! CASE: two lifts on undrained ground under water, then a slice of the ground is taken away and the water lowered. The
+//! lifts stand first in the case, so that particles are not numbered in the order in which they come.
+//! ORACLE: the weight of what is there; hydrostatic pressure; the same run left alone.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use igimp_cases::case::{
+    Case, Construction, Drainage, PoreSource, ReductionPath, Stage, StageKind, StrengthReduction,
+    WaterCondition,
+};
+use igimp_cases::input::CaseFile;
+use igimp_cases::results::admission::Replace;
+use igimp_cases::results::checkpoint;
+use igimp_cases::run::{Event, Run, Start, Target, in_memory, run};
+use igimp_cases::summary::{StageOutcome, Summary};
+use serde_json::Value;
+
+const TEXT: &str = r#"
+igimp = 1
+[case]
+title = "lifts and a slice"
+gravity = "10 m/s2"
+[grid]
+cell = "0.5 m"
+domain = { x = ["0 m", "6 m"], y = ["0 m", "4 m"] }
+[materials.fill]
+model = "mohr-coulomb"
+unit_weight = "18 kN/m3"
+young = "10 MPa"
+poisson = 0.3
+cohesion = "10 kPa"
+friction = "30 deg"
+k0 = 0.5
+[materials.clay]
+model = "mohr-coulomb"
+unit_weight = "20 kN/m3"
+young = "6 MPa"
+poisson = 0.3
+cohesion = "20 kPa"
+friction = "25 deg"
+k0 = 0.6
+[[bodies]]
+name = "upper lift"
+material = "fill"
+points_per_cell = 4
+polygon = [["0 m","2.5 m"], ["2.5 m","2.5 m"], ["2 m","3 m"], ["0 m","3 m"]]
+[[bodies]]
+name = "ground"
+material = "clay"
+points_per_cell = 4
+polygon = [["0 m","0 m"], ["6 m","0 m"], ["6 m","1 m"], ["4 m","1 m"], ["4 m","2 m"], ["0 m","2 m"]]
+[[bodies]]
+name = "lower lift"
+material = "fill"
+points_per_cell = 4
+polygon = [["0 m","2 m"], ["3 m","2 m"], ["2.5 m","2.5 m"], ["0 m","2.5 m"]]
+[[bodies]]
+name = "slice"
+material = "clay"
+points_per_cell = 4
+polygon = [["4 m","1 m"], ["6 m","1 m"], ["6 m","2 m"], ["4 m","2 m"]]
+[boundaries]
+left = "roller"
+right = "roller"
+bottom = "fixed"
+[[stages]]
+name = "rest"
+type = "gravity"
+steps = 1
+[[monitors]]
+name = "crest"
+point = ["1 m", "2.8 m"]
+record = ["displacement_y", "sigma_yy"]
+[[monitors]]
+name = "cut"
+point = ["5 m", "1.6 m"]
+record = ["sigma_yy", "u"]
+[[monitors]]
+name = "deep"
+point = ["1 m", "0.6 m"]
+record = ["sigma_yy", "sigma_eff_yy", "u", "u_excess", "p", "p_eff"]
+[[sections]]
+name = "upright"
+from = ["1 m", "0 m"]
+to = ["1 m", "3 m"]
+points = 6
+record = ["sigma_yy", "sigma_eff_yy", "u"]
+[[curves]]
+name = "crest"
+x = { of = "step", label = "step" }
+y = { of = "crest.displacement_y", label = "u_y" }
+[output]
+figures = ["displacement", "sigma_yy", "sigma_eff_yy", "u", "u_excess"]
+report = true
+paraview = { every = 1 }
+checkpoint = { every = 1, keep = 2 }
+"#;
+
+const UPPER: usize = 0;
+const LOWER: usize = 2;
+const SLICE: usize = 3;
+
+fn file() -> CaseFile {
+    CaseFile::parse("lifts.toml", TEXT, &[]).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn stage(like: &Stage, name: &str, from: usize, construction: Construction) -> Stage {
+    Stage {
+        name: name.to_owned(),
+        kind: StageKind::Construction(construction),
+        steps: 2,
+        start_from: Some(from),
+        drained: false,
+        ..like.clone()
+    }
+}
+
+/// The case without water.
+fn dry() -> Case {
+    let mut case = file().case().clone();
+    for body in [UPPER, LOWER] {
+        case.bodies[body].from_start = false;
+    }
+    case.stages[0].kind = StageKind::K0;
+    let rest = case.stages[0].clone();
+    let placing = |body| Construction {
+        place: vec![body],
+        ..Construction::default()
+    };
+    let removal = Construction {
+        remove: vec![SLICE],
+        ..Construction::default()
+    };
+    case.stages.extend([
+        stage(&rest, "lower lift", 0, placing(LOWER)),
+        stage(&rest, "upper lift", 1, placing(UPPER)),
+        stage(&rest, "slice away", 2, removal),
+    ]);
+    case
+}
+
+fn wet() -> Case {
+    let mut case = dry();
+    case.water = [("high", 1.8), ("low", 0.9)]
+        .map(|(name, level)| WaterCondition {
+            name: name.to_owned(),
+            source: PoreSource::Table(vec![[0.0, level]]),
+            bodies: Vec::new(),
+            carried: false,
+        })
+        .to_vec();
+    case.water_unit_weight = 10e3;
+    case.materials[1].drainage = Drainage::Undrained { stiffness: 50e6 };
+    case.stages[0].drained = true;
+    if let StageKind::Construction(own) = &mut case.stages[3].kind {
+        own.water = Some(1);
+    }
+    case
+}
+
+fn folder(name: &str) -> PathBuf {
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("construction-{name}"));
+    let _ = fs::remove_dir_all(&path);
+    path
+}
+
+/// Runs into a folder; with a number of steps until it is interrupted.
+fn written(case: &Case, folder: &Path, start: Start, steps: Option<usize>) -> Run {
+    let target = Target {
+        replace: Replace::Everything,
+        ..Target::of(&file(), folder)
+    };
+    let interrupt = AtomicBool::new(false);
+    let mut taken = 0;
+    let mut listener = |event: &Event<'_>| {
+        if matches!(event, Event::Step { .. }) {
+            taken += 1;
+            if Some(taken) == steps {
+                interrupt.store(true, Ordering::Relaxed);
+            }
+        }
+    };
+    run(case, Some(&target), start, &mut listener, &interrupt).unwrap()
+}
+
+fn assert_done(summary: &Summary) {
+    for stage in &summary.stages {
+        assert_eq!(
+            stage.outcome,
+            StageOutcome::Completed,
+            "{}: {}",
+            stage.name,
+            stage.reason
+        );
+    }
+}
+
+/// Every file that does not depend on the hour, and the arrays of the ends of stages.
+fn everything(root: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+    fn collect(root: &Path, folder: &Path, files: &mut BTreeMap<PathBuf, Vec<u8>>) {
+        for entry in fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                collect(root, &path, files);
+            } else {
+                let name = path.strip_prefix(root).unwrap().to_path_buf();
+                files.insert(name, fs::read(&path).unwrap());
+            }
+        }
+    }
+    let mut files = BTreeMap::new();
+    collect(root, root, &mut files);
+    files.retain(|path, _| {
+        let text = path.to_string_lossy();
+        let depends = ["checkpoint/step-", "meta.json", "report.html", ".igimp"];
+        !depends.iter().any(|part| text.contains(part))
+    });
+    if let Some(bytes) = files.get_mut(Path::new("summary.json")) {
+        let mut summary: Value = serde_json::from_slice(bytes).unwrap();
+        let whole = summary.as_object_mut().unwrap();
+        whole.retain(|key, _| {
+            !key.contains("seconds") && !key.contains("memory") && key != "estimate"
+        });
+        for stage in whole["stages"].as_array_mut().unwrap() {
+            let own = stage.as_object_mut().unwrap();
+            own.retain(|key, _| key != "seconds" && key != "phases");
+        }
+        *bytes = summary.to_string().into_bytes();
+    }
+    files
+}
+
+fn assert_equal(
+    expected: &BTreeMap<PathBuf, Vec<u8>>,
+    found: &BTreeMap<PathBuf, Vec<u8>>,
+    why: &str,
+) {
+    let names: Vec<_> = expected.keys().chain(found.keys()).collect();
+    for name in names {
+        assert!(
+            expected.get(name) == found.get(name),
+            "{why}: {} differs",
+            name.display()
+        );
+    }
+}
+
+/// GOAL: each stage has the soil that is there, and that soil carries its own weight.
+/// ORACLE: volumes of the polygons; the weight above the middle of the fill, half a lift wide of its edge.
+#[test]
+fn lifts_are_placed_and_a_slice_is_gone() {
+    let run = in_memory(&dry()).unwrap();
+    assert_done(&run.summary);
+    let volume: f64 = run.body.particles.volume0.iter().sum();
+    assert!(
+        (volume - (12.0 - 2.0 + 1.375 + 1.125)).abs() < 1e-9,
+        "{volume}"
+    );
+    let particles = &run.body.particles;
+    assert_eq!(run.summary.size.particles, particles.len() + 2 * 16);
+    let [crest, cut, deep] = &run.monitors[..] else {
+        panic!()
+    };
+    // A row for the first moment and for every step; nothing where the body is not there.
+    assert_eq!(crest.rows.len(), 1 + 1 + 2 + 2 + 2);
+    for row in &crest.rows {
+        assert_eq!(row[3].is_nan(), row[0] < 2.5, "{row:?}");
+    }
+    for row in &cut.rows {
+        assert_eq!(row[3].is_nan(), row[0] > 3.5, "{row:?}");
+    }
+    let at = |stage: f64| deep.rows.iter().rfind(|row| row[0] < stage + 0.5).unwrap()[3];
+    // The monitor stands in the particle whose centre is a quarter of a cell from lines of the grid.
+    let (first, filled) = (at(1.0), at(3.0));
+    assert!((first / (20e3 * 1.375) - 1.0).abs() < 0.02, "{first}");
+    let added = (filled - first) / 18e3;
+    assert!((0.7..1.0).contains(&added), "{added}");
+    assert_eq!(run.curves[0].rows.len(), 8);
+}
+
+/// GOAL: fields name total and effective stress, pore pressure and what soil made of it.
+/// ORACLE: hydrostatic pressure below the level; total stress is effective stress and pore pressure.
+#[test]
+fn fields_name_total_and_effective_stress() {
+    let run = in_memory(&wet()).unwrap();
+    assert_done(&run.summary);
+    let deep = &run.monitors[2].rows;
+    let (mut made, y) = (false, 0.625);
+    for row in deep {
+        let [sigma, effective, u, excess, p, p_eff] = row[3..] else {
+            panic!()
+        };
+        let level = if row[0] > 3.5 { 0.9 } else { 1.8 };
+        let given = 10e3 * f64::max(level - y, 0.0);
+        // A level that lies within a domain acts on a part of it.
+        assert!(
+            (u - excess - given).abs() < 0.03 * 11.75e3,
+            "{row:?} {given}"
+        );
+        assert!((sigma - effective - u).abs() < 1e-6, "{row:?}");
+        assert!((p - p_eff - u).abs() < 1e-6, "{row:?}");
+        made |= excess > 1e3;
+        if row[0] < 1.5 {
+            assert_eq!(excess.to_bits(), 0.0_f64.to_bits());
+        }
+    }
+    assert!(
+        made,
+        "undrained ground under a fill has excess pore pressure"
+    );
+    let pores: Vec<_> = run
+        .summary
+        .stages
+        .iter()
+        .map(|stage| stage.pore_water)
+        .collect();
+    assert!(pores.iter().all(Option::is_some));
+    assert_eq!(pores[0].unwrap().excess, None);
+    assert!(pores[2].unwrap().excess.unwrap()[1] > 1e3);
+    let section = &run.sections[3];
+    assert_eq!(section.name, "upright__4-slice-away");
+    for row in &section.rows {
+        assert!((row[3] - row[4] - row[5]).abs() < 1e-6, "{row:?}");
+    }
+    // Without water there is nothing to tell of.
+    let dry = in_memory(&dry()).unwrap();
+    assert!(
+        dry.summary
+            .stages
+            .iter()
+            .all(|stage| stage.pore_water.is_none())
+    );
+    assert!(
+        dry.monitors[2]
+            .rows
+            .iter()
+            .all(|row| row[3].to_bits() == row[4].to_bits())
+    );
+}
+
+/// GOAL: the numbers do not depend on how many threads there are.
+#[test]
+fn bodies_that_come_and_go_are_the_same_on_any_number_of_threads() {
+    let case = wet();
+    let ran = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+        let run = pool.build().unwrap().install(|| in_memory(&case).unwrap());
+        run.body.particles
+    };
+    let one = ran(1);
+    for threads in [2, 7] {
+        assert!(ran(threads) == one, "{threads} threads");
+    }
+}
+
+/// GOAL: a run that is taken up within any stage, or begun again at one, ends with the same files; they show what is there.
+#[test]
+fn a_run_is_taken_up_within_a_construction_stage() {
+    let case = wet();
+    let whole = folder("whole");
+    let run = written(&case, &whole, Start::Afresh, None);
+    assert_done(&run.summary);
+    let expected = everything(&whole);
+    let stopped = folder("stopped");
+    for steps in [2, 4, 6] {
+        let stage = written(&case, &stopped, Start::Afresh, Some(steps));
+        assert!(stage.summary.interrupted, "{steps}");
+        let end = written(&case, &stopped, Start::Resume, None);
+        assert_done(&end.summary);
+        assert_equal(
+            &expected,
+            &everything(&stopped),
+            &format!("after {steps} steps"),
+        );
+    }
+    written(&case, &stopped, Start::FromStage(3), None);
+    assert_equal(&expected, &everything(&stopped), "from the last stage");
+    shows_what_is_there(&whole);
+}
+
+fn shows_what_is_there(folder: &Path) {
+    let read = |name: &str| fs::read_to_string(folder.join(name)).unwrap();
+    // Frames: one a step, and one at the end of each stage.
+    let cells = |frame: usize| {
+        let text = read(&format!("paraview/particles_{frame:04}.vtu"));
+        let from = text.split("NumberOfCells=\"").nth(1).unwrap();
+        from.split('"').next().unwrap().parse::<usize>().unwrap()
+    };
+    let frames = read("paraview/particles.pvd").matches("<DataSet").count();
+    let counts: Vec<usize> = (1..)
+        .map_while(|k| {
+            let path = folder.join(format!("paraview/particles_{k:04}.vtu"));
+            path.exists().then(|| cells(k))
+        })
+        .collect();
+    assert_eq!(counts.len(), frames);
+    let end = |stage: usize| {
+        let path = folder.join(format!("checkpoint/stage-{stage:02}-end"));
+        checkpoint::read(&path, None).unwrap().states[0]
+            .1
+            .particles
+            .len()
+    };
+    let mut different = counts.clone();
+    different.dedup();
+    assert_eq!(different, [end(1), end(2), end(3), end(4)]);
+    let last = read(&format!("paraview/particles_{frames:04}.vtu"));
+    for name in ["sigma", "sigma_eff"] {
+        assert!(
+            last.contains(&format!("Name=\"{name} [Pa], tension +\"")),
+            "{name}"
+        );
+    }
+    for name in ["u", "u_excess", "p", "p_eff"] {
+        assert!(
+            last.contains(&format!("Name=\"{name} [Pa], compression +\"")),
+            "{name}"
+        );
+    }
+    // Pictures show the water table, and of each stage the bodies that are there: edges now and before.
+    let water = "#005ce6";
+    for (stage, name) in [
+        (1, "rest"),
+        (2, "lower-lift"),
+        (3, "upper-lift"),
+        (4, "slice-away"),
+    ] {
+        for field in ["displacement", "sigma_yy", "sigma_eff_yy", "u", "u_excess"] {
+            let picture = read(&format!("figures/field-{stage}-{name}-{field}.svg"));
+            assert!(picture.contains(water), "{name} {field}");
+        }
+    }
+    let summary = read("summary.json");
+    assert!(summary.contains("lower lift placed"), "{summary}");
+    assert!(
+        summary.contains("slice taken away; water: low"),
+        "{summary}"
+    );
+    let report = read("report.html");
+    for told in [
+        "Largest pore pressure",
+        "Excess pore pressure",
+        "Total vertical stress",
+    ] {
+        assert!(report.contains(told), "{told}");
+    }
+    let table = read("monitors/crest.csv");
+    assert!(
+        table.lines().nth(1).unwrap().ends_with("NaN,NaN"),
+        "{table}"
+    );
+}
+
+/// GOAL: a search that raises gravity anew does so on the bodies that are there.
+/// ORACLE: the same search on a case that has them from the start.
+#[test]
+fn a_search_by_gravity_sees_what_was_built() {
+    let search = |case: &Case, from: usize| Stage {
+        name: "safety".to_owned(),
+        kind: StageKind::StrengthReduction(StrengthReduction {
+            materials: vec![0, 1],
+            factors: vec![],
+            bracket: [1.0, 6.0],
+            tolerance: 1.0,
+            path: ReductionPath::Gravity,
+            failure_displacement: Some(1.0),
+            monitor: None,
+        }),
+        steps: 2,
+        start_from: Some(from),
+        ..case.stages[0].clone()
+    };
+    let mut built = dry();
+    // The order in which the bodies come.
+    built.bodies = [1, LOWER, UPPER].map(|k| built.bodies[k].clone()).to_vec();
+    built.stages.truncate(3);
+    for (stage, body) in [(1, 1), (2, 2)] {
+        built.stages[stage].kind = StageKind::Construction(Construction {
+            place: vec![body],
+            ..Construction::default()
+        });
+    }
+    built.monitors.clear();
+    built.curves.clear();
+    let mut whole = built.clone();
+    built.stages.push(search(&built, 2));
+    for body in &mut whole.bodies {
+        body.from_start = true;
+    }
+    whole.stages[0].kind = StageKind::Gravity { factor: 1.0 };
+    whole.stages.truncate(1);
+    whole.stages.push(search(&whole, 0));
+    let [built, whole] = [built, whole].map(|case| {
+        let run = in_memory(&case).unwrap();
+        let safety = run.summary.stages.last().unwrap().safety.clone().unwrap();
+        safety.trials
+    });
+    assert_eq!(built, whole);
+}

@@ -1,0 +1,358 @@
+//! Water and construction stages in case files: what they state, and what is refused and why.
+
+// Values are read to the last digit.
+#![allow(clippy::float_cmp)]
+
+use std::fmt::Write;
+
+use igimp_cases::case::{Case, Drainage, PoreSource, StageKind};
+use igimp_cases::input::CaseFile;
+use igimp_cases::results::setup;
+
+const TEXT: &str = r#"
+igimp = 1
+
+[case]
+title = "Slope with water, dug and filled"
+
+[grid]
+cell = "0.5 m"
+domain = { x = ["0 m", "30 m"], y = ["0 m", "12 m"] }
+
+[materials.sand]
+model = "mohr-coulomb"
+unit_weight = "18 kN/m3"
+saturated_unit_weight = "20 kN/m3"
+young = "20 MPa"
+poisson = 0.3
+cohesion = "5 kPa"
+friction = "30 deg"
+
+[materials.clay]
+model = "mohr-coulomb"
+unit_weight = "17 kN/m3"
+young = "20 MPa"
+poisson = 0.3
+cohesion = "5 kPa"
+friction = "22 deg"
+drainage = "undrained"
+
+[materials.soft]
+model = "tresca"
+unit_weight = "16 kN/m3"
+young = "20 MPa"
+poisson = 0.3
+cu = "40 kPa"
+
+[[bodies]]
+name = "ground"
+material = "sand"
+polygon = [["0 m", "0 m"], ["30 m", "0 m"], ["30 m", "4 m"], ["20 m", "4 m"], ["12 m", "8 m"], ["0 m", "8 m"]]
+
+[[bodies]]
+name = "top"
+material = "soft"
+polygon = [["0 m", "8 m"], ["12 m", "8 m"], ["8 m", "10 m"], ["0 m", "10 m"]]
+
+[[bodies]]
+name = "fill"
+material = "clay"
+polygon = [["20 m", "4 m"], ["30 m", "4 m"], ["30 m", "6 m"], ["16 m", "6 m"]]
+
+[[water]]
+name = "full"
+level = "7 m"
+
+[[water]]
+name = "drawn"
+inside = "7 m"
+outside = "5 m"
+
+[[water]]
+name = "line"
+line = [["0 m", "6 m"], ["20 m", "4 m"]]
+bodies = [{ body = "fill", r_u = 0.25 }, { body = "top", dry = true }]
+
+[[loads]]
+name = "surcharge"
+type = "pressure"
+from = ["0 m", "10 m"]
+to = ["6 m", "10 m"]
+pressure = "10 kPa"
+
+[[stages]]
+name = "weight"
+type = "gravity"
+drained = true
+
+[[stages]]
+name = "surcharge"
+type = "load"
+load = "surcharge"
+
+[[stages]]
+name = "off"
+type = "load"
+load = "surcharge"
+factor = 0
+
+[[stages]]
+name = "drawdown"
+type = "construction"
+water = "drawn"
+steps = 4
+
+[[stages]]
+name = "filling"
+type = "construction"
+place = ["fill"]
+water = "line"
+geometry = "given"
+
+[[stages]]
+name = "digging"
+type = "construction"
+remove = ["top"]
+materials = [{ body = "ground", material = "clay" }]
+dissipate = true
+
+[[stages]]
+name = "safety"
+type = "strength-reduction"
+"#;
+
+type Edits<'a> = &'a [(&'a str, &'a str)];
+
+fn edited(edits: Edits<'_>) -> String {
+    edits.iter().fold(TEXT.to_owned(), |text, (from, to)| {
+        assert!(text.contains(from), "`{from}` is not in the file");
+        text.replacen(from, to, 1)
+    })
+}
+
+fn case(edits: Edits<'_>) -> Case {
+    CaseFile::parse("slope.toml", &edited(edits), &[])
+        .unwrap_or_else(|error| panic!("{error}"))
+        .case()
+        .clone()
+}
+
+fn messages(cases: &[Edits<'_>]) -> String {
+    let mut out = String::new();
+    for edits in cases {
+        for (from, to) in *edits {
+            let _ = writeln!(out, "## {from:?} -> {to:?}");
+        }
+        let said = match CaseFile::parse("slope.toml", &edited(edits), &[]) {
+            Ok(file) if file.warnings().is_empty() => "(nothing)\n".to_owned(),
+            Ok(file) => file.warnings(),
+            Err(error) => error.to_string(),
+        };
+        let _ = writeln!(out, "{said}");
+    }
+    out
+}
+
+#[test]
+fn a_file_states_water_and_stages() {
+    insta::assert_snapshot!(messages(&[&[]]));
+    let case = case(&[]);
+    assert_eq!(case.water_unit_weight, 9810.0);
+    assert_eq!(case.water[0].source, PoreSource::Table(vec![[0.0, 7.0]]));
+    let there: Vec<bool> = case.bodies.iter().map(|body| body.from_start).collect();
+    assert_eq!(there, [true, true, false]);
+    assert_eq!(case.materials[0].saturated, Some(20e3));
+    assert_eq!(case.materials[2].drainage, Drainage::Total);
+    assert_eq!(
+        case.water[2].bodies,
+        [(2, PoreSource::Ratio(0.25)), (1, PoreSource::Dry)]
+    );
+    assert!(case.stages[0].drained && !case.stages[1].drained);
+    let StageKind::Construction(own) = &case.stages[5].kind else {
+        panic!("{:?}", case.stages[5]);
+    };
+    assert_eq!((&own.place[..], &own.remove[..]), (&[][..], &[1][..]));
+    assert_eq!((&own.materials[..], own.water), (&[(0, 1)][..], None));
+    assert!(own.dissipate);
+}
+
+#[test]
+fn the_water_of_undrained_soil_follows_from_its_poisson_ratio() {
+    let Drainage::Undrained { stiffness } = case(&[]).materials[1].drainage else {
+        panic!("clay is undrained");
+    };
+    let (shear, drained) = (20e6 / 2.6, 20e6 / 1.2);
+    let undrained = 2.0 * shear * 1.495 / (3.0 * 0.01);
+    assert!((stiffness / (undrained - drained) - 1.0).abs() < 1e-12);
+    let stated = case(&[(
+        "drainage = \"undrained\"",
+        "drainage = \"undrained\"\npore_water = \"500 MPa\"",
+    )]);
+    let own = stated.materials[1].drainage;
+    assert_eq!(own, Drainage::Undrained { stiffness: 500e6 });
+}
+
+/// The ground lies at 10 m, falls to 4 m between x = 8 m and 20 m, and the pool outside at 5 m: the table is level within,
+/// follows the slope from 7 m to 5 m, and is level outside.
+#[test]
+fn a_drawdown_follows_the_ground_between_its_levels() {
+    let case = case(&[]);
+    let PoreSource::Table(points) = &case.water[1].source else {
+        panic!("a drawdown is a table");
+    };
+    let expected = [[0.0, 7.0], [14.0, 7.0], [18.0, 5.0], [30.0, 5.0]];
+    assert_eq!(points.len(), expected.len(), "{points:?}");
+    for (point, expected) in std::iter::zip(points, expected) {
+        assert!(
+            (0..2).all(|k| (point[k] - expected[k]).abs() < 1e-12),
+            "{points:?}"
+        );
+    }
+}
+
+#[test]
+fn tables_tell_of_water_and_stages() {
+    let mut out = String::new();
+    for table in setup::tables(&case(&[])) {
+        if ["Soil and water", "Water", "Bodies", "Stages as planned"].contains(&&*table.title) {
+            let _ = writeln!(out, "# {}\n{}", table.title, table.header.join(" | "));
+            for row in &table.rows {
+                let _ = writeln!(out, "{}", row.join(" | "));
+            }
+        }
+    }
+    insta::assert_snapshot!(out);
+}
+
+#[test]
+fn an_explained_file_states_the_same_case() {
+    let file = CaseFile::parse("slope.toml", TEXT, &[]).unwrap();
+    let again = CaseFile::parse("slope.toml", &file.explain(), &[]).unwrap();
+    assert_eq!(format!("{:?}", file.case()), format!("{:?}", again.case()));
+}
+
+#[test]
+fn water_that_makes_no_sense() {
+    insta::assert_snapshot!(messages(&[
+        &[("level = \"7 m\"", "level = \"7 m\"\npond = false")],
+        &[(
+            "level = \"7 m\"",
+            "line = [[\"0 m\", \"9 m\"], [\"30 m\", \"6 m\"]]"
+        )],
+        &[(
+            "level = \"7 m\"",
+            "line = [[\"0 m\", \"9 m\"], [\"30 m\", \"6 m\"]]\npond = true"
+        )],
+        &[(
+            "level = \"7 m\"",
+            "line = [[\"0 m\", \"6 m\"], [\"20 m\", \"4 m\"], [\"20 m\", \"3 m\"]]"
+        )],
+        &[("title =", "gravity = \"0 m/s2\"\ntitle =")],
+        &[("\"20 kN/m3\"", "\"10 kN/m3\"")],
+        &[(
+            "friction = \"30 deg\"",
+            "friction = \"30 deg\"\ndrainage = \"total\""
+        )],
+        &[(
+            "body = \"top\", dry = true",
+            "body = \"top\", level = \"9 m\""
+        )],
+        &[("level = \"7 m\"", "level = \"-1 m\"")],
+        &[("level = \"7 m\"", "r_u = 1.5")],
+        &[("r_u = 0.25", "r_u = -0.25")],
+        &[("level = \"7 m\"", "level = \"7 m\"\nr_u = 0.2")],
+        &[("level = \"7 m\"", "dry = false")],
+        &[("outside = \"5 m\"", "")],
+        &[("outside = \"5 m\"", "outside = \"8 m\"")],
+        &[("level = \"7 m\"", "levle = \"7 m\"")],
+        &[("water = \"drawn\"", "water = \"drown\"")],
+        &[("body = \"fill\", r_u", "body = \"fil\", r_u")],
+        &[("body = \"top\", dry", "body = \"fill\", dry")],
+        &[("water = \"drawn\"\n", "dissipate = true\n")],
+        &[
+            (
+                "[\"12 m\", \"8 m\"], [\"0 m\", \"8 m\"]]",
+                "[\"20 m\", \"8 m\"], [\"0 m\", \"8 m\"]]"
+            ),
+            ("[\"16 m\", \"6 m\"]", "[\"20 m\", \"6 m\"]"),
+        ],
+        &[
+            (
+                "[\"12 m\", \"8 m\"], [\"0 m\", \"8 m\"]]",
+                "[\"20 m\", \"8 m\"], [\"0 m\", \"8 m\"]]"
+            ),
+            ("[\"16 m\", \"6 m\"]", "[\"20 m\", \"6 m\"]"),
+            ("inside = \"7 m\"\noutside = \"5 m\"", "r_u = 0.2"),
+        ],
+    ]));
+}
+
+#[test]
+fn drainage_that_makes_no_sense() {
+    let undrained = "drainage = \"undrained\"";
+    let with = |more: &str| format!("{undrained}\n{more}");
+    insta::assert_snapshot!(messages(&[
+        &[(undrained, &with("undrained_poisson = 0.2"))],
+        &[(undrained, &with("undrained_poisson = 0.5"))],
+        &[(
+            undrained,
+            &with("undrained_poisson = 0.49\npore_water = \"1 GPa\"")
+        )],
+        &[(undrained, "undrained_poisson = 0.49")],
+        &[(undrained, "drainage = \"undrianed\"")],
+        &[(undrained, &with("dilation = \"5 deg\""))],
+        &[
+            (
+                "name = \"ground\"\nmaterial = \"sand\"",
+                "name = \"ground\"\nmaterial = \"clay\""
+            ),
+            ("drained = true", "drained = false"),
+            (
+                "materials = [{ body = \"ground\", material = \"clay\" }]",
+                ""
+            )
+        ],
+    ]));
+}
+
+#[test]
+fn construction_that_makes_no_sense() {
+    let place = "place = [\"fill\"]";
+    let remove = "remove = [\"top\"]";
+    insta::assert_snapshot!(messages(&[
+        &[(place, "place = [\"fil\"]")],
+        &[(place, "place = [\"fill\", \"fill\"]")],
+        &[(remove, "remove = [\"top\"]\nplace = [\"fill\"]")],
+        &[(place, "place = [\"fill\"]\nremove = [\"fill\"]")],
+        &[("water = \"drawn\"\n", "remove = [\"fill\"]\n")],
+        &[(
+            "water = \"drawn\"\n",
+            "materials = [{ body = \"fill\", material = \"sand\" }]\n"
+        )],
+        &[
+            (remove, "remove = [\"top\", \"ground\", \"fill\"]"),
+            (
+                "materials = [{ body = \"ground\", material = \"clay\" }]",
+                ""
+            )
+        ],
+        &[("material = \"clay\" }", "material = \"caly\" }")],
+        &[("material = \"clay\" }", "material = \"sand\" }")],
+        &[("water = \"drawn\"\n", "")],
+        &[("dissipate = true", "stop_when = { displacement = \"1 m\" }")],
+        &[("factor = 0", "factor = 0.5")],
+        &[(
+            "name = \"off\"\ntype = \"load\"",
+            "name = \"off\"\nstart_from = \"weight\"\ntype = \"load\""
+        )],
+        &[(place, "place = [\"fill\", \"ground\", \"top\"]")],
+        &[(
+            "cell = \"0.5 m\"",
+            "cell = \"0.5 m\"\nmixed_cells = \"mean\""
+        )],
+        &[(
+            "from = [\"0 m\", \"10 m\"]\nto = [\"6 m\", \"10 m\"]",
+            "from = [\"22 m\", \"6 m\"]\nto = [\"26 m\", \"6 m\"]"
+        ),],
+    ]));
+}
