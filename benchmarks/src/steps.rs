@@ -159,7 +159,7 @@ impl Setting {
     fn end(&self, case: &Case, initial: &Controls) -> Controls {
         let (gravity, settlement) = match case.stages[0].kind {
             StageKind::Displacement { settlement, .. } => (0.0, settlement),
-            StageKind::Gravity { factor } => (factor, 0.0),
+            StageKind::Gravity { factor, .. } => (factor, 0.0),
             _ => (1.0, 0.0),
         };
         Controls {

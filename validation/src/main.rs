@@ -24,6 +24,7 @@ mod notched_strip;
 mod oracle;
 mod pictures;
 mod prism;
+mod pseudo_static;
 mod reference;
 mod reinforcement;
 mod review;
@@ -106,6 +107,7 @@ enum Case {
     Elastica,
     Slopes,
     TiltedLayer,
+    PseudoStatic,
     Layers,
     StrengthProfile,
     ReinforcementBar,
@@ -143,6 +145,7 @@ impl Case {
             Self::Prism => prism::study(out),
             Self::Elastica => elastica::study(level, out),
             Self::Slopes => slopes::study(level, out),
+            Self::PseudoStatic => pseudo_static::study(level, out),
             Self::TiltedLayer => tilted_layer::study(level, out),
             Self::Layers => layers::study(out),
             Self::StrengthProfile => strength_profile::study(level, out),

@@ -5,6 +5,7 @@
 
 mod grid;
 mod profile;
+mod raster;
 mod reinforcement;
 mod rigid;
 mod water;
@@ -19,6 +20,7 @@ use serde::{Deserialize, Serialize};
 
 pub use grid::{AxisSpec, GridSpec, MixedCells};
 pub use profile::{LEAST_STRENGTH, Profile, Profiles};
+pub use raster::Raster;
 pub use reinforcement::{ReinforcementKind, ReinforcementPart, ReinforcementQuantity};
 pub use rigid::{
     Adhesion, RigidDrive, RigidInterface, RigidMove, RigidPart, RigidQuantity, RigidShape,
@@ -324,10 +326,14 @@ pub struct Stage {
 /// Kinds of stages.
 #[derive(Clone, Debug, PartialEq)]
 pub enum StageKind {
-    /// Raises gravity from where it is to a multiple of its value.
+    /// Raises gravity from where it is to a multiple of its value, and changes pseudo-static acceleration.
     Gravity {
         /// The multiple \[-\].
         factor: f64,
+        /// Pseudo-static force to the right over the weight \[-\]; none: as it is.
+        horizontal: Option<f64>,
+        /// The same upwards \[-\].
+        vertical: Option<f64>,
     },
     /// Stresses of level ground: the weight above, and K₀ times that sideways; then equilibrium.
     K0,
@@ -568,6 +574,8 @@ pub enum Quantity {
     LargestDisplacement,
     /// Multiple of gravity \[-\].
     GravityFactor,
+    /// Pseudo-static force to the right over the weight \[-\].
+    HorizontalFactor,
     /// Strength reduction factor \[-\].
     ReductionFactor,
     /// Number of the step in its stage.

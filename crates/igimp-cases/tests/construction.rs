@@ -491,7 +491,11 @@ fn a_search_by_gravity_sees_what_was_built() {
     for body in &mut whole.bodies {
         body.from_start = true;
     }
-    whole.stages[0].kind = StageKind::Gravity { factor: 1.0 };
+    whole.stages[0].kind = StageKind::Gravity {
+        factor: 1.0,
+        horizontal: None,
+        vertical: None,
+    };
     whole.stages.truncate(1);
     whole.stages.push(search(&whole, 0));
     let [built, whole] = [built, whole].map(|case| {

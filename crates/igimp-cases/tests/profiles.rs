@@ -163,7 +163,7 @@ fn ground_at_rest_carries_a_weight_that_varies() {
     let particles = &run.body.particles;
     let weight = Profile::Table(vec![[0.0, 18e3], [3.0, 18e3], [5.0, 16e3]]);
     for particle in 0..particles.len() {
-        let above = weight.integral(particles.x[particle][1], 5.0);
+        let above = weight.integral(particles.x[particle], 5.0);
         let sigma = &particles.sigma[particle];
         assert!(
             (sigma[1][1] + above).abs() < 1e-3 * 88e3,

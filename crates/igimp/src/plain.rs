@@ -311,6 +311,7 @@ mod tests {
             body: Body::new(Particles::new(&[seed]).unwrap()),
             controls: Controls {
                 gravity: 1.0,
+                acceleration: [0.0; 2],
                 factors: Vec::new(),
                 settlement: 0.0,
                 srf: Vec::new(),

@@ -122,6 +122,101 @@ fn rigid_bodies_are_taken_up_where_they_stood() {
     }
 }
 
+const PUSHED: &str = r#"
+igimp = 1
+[case]
+title = "slope from files, pushed"
+[grid]
+cell = "1 m"
+domain = { x = ["0 m", "24 m"], y = ["0 m", "9 m"] }
+[materials.clay]
+model = "tresca"
+cu = { raster = "cu.csv", unit = "psf", length_unit = "m" }
+unit_weight = "115 pcf"
+young = "10 MPa"
+poisson = 0.4
+[[bodies]]
+name = "slope"
+material = "clay"
+polygon = { top = { file = "ground.csv" }, bottom = [["0 m", "0 m"], ["24 m", "0 m"]] }
+[[stages]]
+name = "weight"
+type = "gravity"
+steps = 3
+[[stages]]
+name = "push"
+type = "gravity"
+horizontal = 0.1
+vertical = 0.02
+steps = 4
+[[stages]]
+name = "factor"
+type = "strength-reduction"
+bracket = [1.0, 2.0]
+tolerance = 0.05
+[output]
+figures = []
+report = false
+checkpoint = { every = 1, keep = 20 }
+"#;
+
+/// GOAL: a pushed slope whose outline and strength come from files goes on where it stood, on any number of threads, and not after
+/// a file changed.
+#[test]
+fn a_pushed_slope_from_files_is_taken_up_while_its_files_stay() {
+    let folder = Folder::new("pushed");
+    let ground = "x [m],y [m]\n0,8\n6,8\n14,4\n24,4\n";
+    let write = |name: &str, text: &str| fs::write(folder.0.join(name), text).unwrap();
+    write("pushed.toml", PUSHED);
+    write("ground.csv", ground);
+    write("cu.csv", "x,y,cu\n0,0,900\n24,0,1000\n0,8,500\n24,8,600\n");
+    let run = |out: &str, more: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_igimp"));
+        command.args(["run", "pushed.toml", "--out", out, "--quiet"]);
+        let output = command.args(more).current_dir(&folder.0).output().unwrap();
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        (output.status.code(), said)
+    };
+    let done = |(code, said): (Option<i32>, String)| assert_eq!(code, Some(0), "{said}");
+    done(run("out", &[]));
+    let expected = folder.everything("out");
+    done(run("alone", &["--threads", "1"]));
+    let tables = folder.tables("alone");
+    assert_eq!(
+        differing(&folder.tables("out"), &tables),
+        Vec::<PathBuf>::new()
+    );
+    let checkpoints = folder.0.join("out/checkpoint");
+    for last in [2, 5, 7] {
+        for found in fs::read_dir(&checkpoints).unwrap() {
+            let path = found.unwrap().path();
+            let name = path.file_name().unwrap().to_str().unwrap();
+            let step = name.strip_prefix("step-").map(str::parse::<i32>);
+            let is_later = match step {
+                Some(step) => step.unwrap() > last,
+                None => name != "stage-01-end" || last < 3,
+            };
+            if is_later {
+                fs::remove_dir_all(&path).unwrap();
+            }
+        }
+        done(run("out", &["--resume"]));
+        let found = folder.everything("out");
+        assert_eq!(
+            differing(&expected, &found),
+            Vec::<PathBuf>::new(),
+            "{last}"
+        );
+    }
+    write("ground.csv", &ground.replace("14,4", "14,4.5"));
+    let (code, said) = run("out", &["--resume"]);
+    assert_eq!(code, Some(2), "{said}");
+    assert!(
+        said.contains("belongs to another case or to other input"),
+        "{said}"
+    );
+}
+
 /// GOAL: reinforcement goes on with the tension that it had, under a jack and locked off: from any step of its
 /// stages the run ends with the same files.
 #[test]

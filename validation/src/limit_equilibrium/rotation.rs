@@ -3,7 +3,7 @@
 //! The radius grows by r = r₀ exp(θ tan φ_F) from the crest to the toe, with tan φ_F = tan φ / F. The
 //! power of the weight is −γ ∫ (x − x_c) dA and the dissipation ∫ (c/F) r² dθ, both for a rotation
 //! of rate one; F is where they are equal. In undrained soil the spiral is a circle, and c may change
-//! along it.
+//! along it. A pseudo-static force of k times the weight adds the power k γ ∫ (y_c − y) dA (Chang, Chen and Yao 1984).
 
 use std::f64::consts::PI;
 
@@ -65,8 +65,8 @@ impl Spiral {
             })
     }
 
-    /// ∫ (x − x_c) dA over the block between slip line and surface \[m³/m\]; negative where its
-    /// weight drives it.
+    /// ∫ (x − x_c + k (y − y_c)) dA over the block between slip line and surface \[m³/m\]; negative where its
+    /// weight and the pseudo-static force drive it.
     fn area_moment(&self, section: &Section) -> f64 {
         let [from, to] = [self.points[0][0], self.points[PARTS][0]];
         let surface = section.surface.iter().rev();
@@ -77,7 +77,9 @@ impl Spiral {
         for (k, p) in outline.iter().enumerate() {
             let q = outline[(k + 1) % outline.len()];
             let (px, qx) = (p[0] - self.centre[0], q[0] - self.centre[0]);
-            moment += (px * q[1] - qx * p[1]) * (px + qx) / 6.0;
+            let (py, qy) = (p[1] - self.centre[1], q[1] - self.centre[1]);
+            let arms = px + qx + section.horizontal * (py + qy);
+            moment += (px * qy - qx * py) * arms / 6.0;
         }
         moment
     }
@@ -174,6 +176,16 @@ mod tests {
             let factor = upper_bound(&slope);
             assert!((factor - 1.0).abs() < 4e-3, "{number}: {factor}");
         }
+    }
+
+    /// GOAL: a pseudo-static force. ORACLE: Loukidis, Bandini and Salgado (2003), homogeneous 3:1 slope of 25 m with
+    /// c = 25 kPa, φ = 30°, γ = 20 kN/m³: Spencer's method on logarithmic spirals gives F = 1.000 at k_c = 0.432.
+    #[test]
+    fn the_critical_acceleration_of_loukidis_is_found() {
+        let mut slope = Section::cut("", [25.0, 3.0, 25.0], 20.0, (25.0, 30.0), [75.0, 50.0]);
+        slope.horizontal = 0.432;
+        let factor = upper_bound(&slope);
+        assert!((factor - 1.0).abs() < 3e-3, "{factor}");
     }
 
     /// GOAL: undrained circles. ORACLE: Taylor's (1937) number for 26.57°, D = 2, as Griffiths and

@@ -432,6 +432,7 @@ fn acads(name: &str, unit_weight: f64, layers: Vec<Layer>) -> Section {
         name: name.to_owned(),
         height: 10.0,
         unit_weight,
+        horizontal: 0.0,
         surface: vec![[20.0, 25.0], [30.0, 25.0], [50.0, 35.0], [70.0, 35.0]],
         base: 20.0,
         layers,

@@ -43,6 +43,8 @@ pub(crate) struct Section {
     pub(crate) height: f64,
     /// Unit weight γ of all layers \[kN/m³\].
     pub(crate) unit_weight: f64,
+    /// Pseudo-static force to the right, down the slope, over the weight \[-\].
+    pub(crate) horizontal: f64,
     /// The surface from the left side to the right one \[m\].
     pub(crate) surface: Vec<[f64; 2]>,
     /// Level of the base \[m\].
@@ -124,6 +126,7 @@ impl Section {
             name: name.to_owned(),
             height,
             unit_weight,
+            horizontal: 0.0,
             surface,
             base: 0.0,
             layers: vec![layer],
@@ -196,9 +199,19 @@ impl Section {
             Locking::BBar => "b-bar",
             Locking::SharedStrain => "shared-strain",
         };
-        let (weight, path) = match path {
-            Path::Reduce => (WEIGHT, "reduce"),
-            Path::Gravity => ("", "gravity"),
+        let push = if self.horizontal == 0.0 {
+            String::new()
+        } else {
+            format!("\nhorizontal = {}", self.horizontal)
+        };
+        // Gravity is raised anew, but a push is what a stage has left.
+        let weight = match path {
+            Path::Gravity if push.is_empty() => String::new(),
+            Path::Reduce | Path::Gravity => format!("{WEIGHT}{push}"),
+        };
+        let path = match path {
+            Path::Reduce => "reduce",
+            Path::Gravity => "gravity",
         };
         let cell = self.height / f64::from(cells);
         let ([left, right], top) = (self.sides(), self.top() + cell);

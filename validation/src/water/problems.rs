@@ -171,6 +171,7 @@ fn section(name: &str, height: f64, surface: &[[f64; 2]], layers: Vec<Layer>) ->
         name: name.to_owned(),
         height,
         unit_weight: 20.0,
+        horizontal: 0.0,
         surface: surface.to_vec(),
         base: 0.0,
         layers,

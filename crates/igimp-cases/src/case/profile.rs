@@ -1,13 +1,14 @@
-//! Properties of a material that vary with the level.
+//! Properties of a material that vary with the level, or from place to place.
 
 use igimp_material::Ratios;
 
-use super::{Material, Strength};
+use super::{Material, Raster, Strength};
+use crate::polygon::bounding_box;
 
 /// The least strength of a profile over its greatest \[-\]: soil without any would be no soil.
 pub const LEAST_STRENGTH: f64 = 1e-6;
 
-/// A property over the level y, in SI units.
+/// A property that varies, in SI units.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Profile {
     /// Constant down to a level, linear in depth below it.
@@ -21,12 +22,16 @@ pub enum Profile {
     },
     /// Level \[m\] and value, from the lowest level up; linear between them and constant beyond.
     Table(Vec<[f64; 2]>),
+    /// By points in the plane.
+    Raster(Raster),
 }
 
 impl Profile {
-    /// The value at a level.
-    pub fn at(&self, level: f64) -> f64 {
+    /// The value at a place.
+    pub fn at(&self, place: [f64; 2]) -> f64 {
+        let level = place[1];
         match self {
+            Self::Raster(raster) => raster.at(place),
             Self::Gradient {
                 from,
                 at_top,
@@ -50,25 +55,33 @@ impl Profile {
         match self {
             Self::Gradient { from, .. } => vec![*from],
             Self::Table(rows) => rows.iter().map(|row| row[0]).collect(),
+            Self::Raster(raster) => raster.y.clone(),
         }
     }
 
-    /// The levels of the least and of the greatest value between two levels \[m\].
-    pub fn extremes(&self, lower: f64, upper: f64) -> [f64; 2] {
-        let kinks = self.kinks().into_iter();
-        let within = kinks.filter(|level| (lower..=upper).contains(level));
-        let levels = || within.clone().chain([lower, upper]);
-        let by_value = |a: &f64, b: &f64| self.at(*a).total_cmp(&self.at(*b));
-        [
-            levels().min_by(by_value).unwrap_or(lower),
-            levels().max_by(by_value).unwrap_or(upper),
-        ]
+    /// The places of the least and of the greatest value within polygons; none without polygons.
+    pub fn extremes(&self, polygons: &[&[[f64; 2]]]) -> Option<[[f64; 2]; 2]> {
+        let places = polygons.iter().flat_map(|polygon| {
+            if let Self::Raster(raster) = self {
+                return raster.places_in(polygon);
+            }
+            let (lower, upper) = bounding_box(polygon);
+            let kinks = self.kinks().into_iter().map(|level| [lower[0], level]);
+            let within = kinks.filter(|at| lower[1] <= at[1] && at[1] <= upper[1]);
+            within.chain([lower, upper]).collect()
+        });
+        let places: Vec<[f64; 2]> = places.collect();
+        let by_value = |a: &[f64; 2], b: &[f64; 2]| self.at(*a).total_cmp(&self.at(*b));
+        Some([
+            places.iter().copied().min_by(by_value)?,
+            places.iter().copied().max_by(by_value)?,
+        ])
     }
 
-    /// The integral from one level up to another.
-    pub fn integral(&self, lower: f64, upper: f64) -> f64 {
+    /// The integral from a place straight up to a level.
+    pub fn integral(&self, [x, lower]: [f64; 2], upper: f64) -> f64 {
         if upper < lower {
-            return -self.integral(upper, lower);
+            return -self.integral([x, upper], lower);
         }
         let mut ends: Vec<f64> = self.kinks();
         ends.retain(|level| lower < *level && *level < upper);
@@ -76,12 +89,12 @@ impl Profile {
         ends.insert(0, lower);
         ends.push(upper);
         ends.windows(2)
-            .map(|pair| (pair[1] - pair[0]) * 0.5 * (self.at(pair[0]) + self.at(pair[1])))
+            .map(|pair| (pair[1] - pair[0]) * 0.5 * (self.at([x, pair[0]]) + self.at([x, pair[1]])))
             .sum()
     }
 }
 
-/// What of a material varies with the level; what does not is the constant of the material.
+/// What of a material varies; what does not is the constant of the material.
 ///
 /// Where something varies, the constant of the material is the greatest value in its soil.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -106,15 +119,15 @@ impl Material {
         }
     }
 
-    /// Whether anything varies with the level.
+    /// Whether anything varies.
     pub fn varies(&self) -> bool {
         self.profiles != Profiles::default()
     }
 
-    /// Strength and stiffness at a level over the constants of the material \[-\].
-    pub fn ratios_at(&self, level: f64) -> Ratios {
+    /// Strength and stiffness at a place over the constants of the material \[-\].
+    pub fn ratios_at(&self, place: [f64; 2]) -> Ratios {
         let over = |profile: &Option<Profile>, greatest: f64, least: f64| {
-            let ratio = |own: &Profile| (own.at(level) / greatest).max(least);
+            let ratio = |own: &Profile| (own.at(place) / greatest).max(least);
             profile.as_ref().map_or(1.0, ratio)
         };
         Ratios {
@@ -123,9 +136,9 @@ impl Material {
         }
     }
 
-    /// Young's modulus at a level \[Pa\].
-    pub fn young_at(&self, level: f64) -> f64 {
-        (self.profiles.young.as_ref()).map_or(self.young, |own| own.at(level))
+    /// Young's modulus at a place \[Pa\].
+    pub fn young_at(&self, place: [f64; 2]) -> f64 {
+        (self.profiles.young.as_ref()).map_or(self.young, |own| own.at(place))
     }
 
     /// By how much it is heavier below the water table \[N/m³\].
@@ -134,9 +147,9 @@ impl Material {
             .map_or(0.0, |saturated| saturated - self.unit_weight)
     }
 
-    /// Unit weight at a level \[N/m³\].
-    pub fn unit_weight_at(&self, level: f64) -> f64 {
-        (self.profiles.unit_weight.as_ref()).map_or(self.unit_weight, |own| own.at(level))
+    /// Unit weight at a place \[N/m³\].
+    pub fn unit_weight_at(&self, place: [f64; 2]) -> f64 {
+        (self.profiles.unit_weight.as_ref()).map_or(self.unit_weight, |own| own.at(place))
     }
 }
 
@@ -153,20 +166,22 @@ mod tests {
         };
         let table = Profile::Table(vec![[0.0, 20.0], [3.0, 14.0], [5.0, 10.0]]);
         for level in [-1.0, 0.0, 1.3, 3.0, 4.5, 5.0, 7.0] {
-            assert!((growing.at(level) - 10.0 - 2.0 * (5.0 - level).max(0.0)).abs() < 1e-14);
+            assert!((growing.at([7.0, level]) - 10.0 - 2.0 * (5.0 - level).max(0.0)).abs() < 1e-14);
             let clamped = f64::clamp(level, 0.0, 5.0);
             assert!(
-                (table.at(level) - growing.at(clamped)).abs() < 1e-14,
+                (table.at([7.0, level]) - growing.at([7.0, clamped])).abs() < 1e-14,
                 "{level}"
             );
         }
-        assert!((growing.integral(1.0, 6.0) - (10.0 + 4.0 * 14.0)).abs() < 1e-12);
-        assert!((growing.integral(6.0, 1.0) + 66.0).abs() < 1e-12);
-        assert!((table.integral(-1.0, 6.0) - (20.0 + 75.0 + 10.0)).abs() < 1e-12);
-        let [least, greatest] = growing.extremes(1.0, 6.0);
+        assert!((growing.integral([0.0, 1.0], 6.0) - (10.0 + 4.0 * 14.0)).abs() < 1e-12);
+        assert!((growing.integral([0.0, 6.0], 1.0) + 66.0).abs() < 1e-12);
+        assert!((table.integral([0.0, -1.0], 6.0) - (20.0 + 75.0 + 10.0)).abs() < 1e-12);
+        let between = |a: f64, b: f64| [[0.0, a], [1.0, a], [1.0, b], [0.0, b]];
+        let levels = |of: &Profile, a, b| of.extremes(&[&between(a, b)]).unwrap().map(|at| at[1]);
+        let [least, greatest] = levels(&growing, 1.0, 6.0);
         assert!(least >= 5.0 && (greatest - 1.0).abs() < 1e-15);
         let bulge = Profile::Table(vec![[0.0, 1.0], [1.0, 5.0], [2.0, 0.5]]);
-        let [least, greatest] = bulge.extremes(0.2, 1.5);
+        let [least, greatest] = levels(&bulge, 0.2, 1.5);
         assert!((least - 0.2).abs() < 1e-15 && (greatest - 1.0).abs() < 1e-15);
     }
 }

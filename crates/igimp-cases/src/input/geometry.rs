@@ -26,7 +26,7 @@ pub(super) fn distinct(polygon: &[Point], round_off: f64) -> Vec<Point> {
 }
 
 /// Whether a point lies inside a polygon; on its edge either may be said.
-pub(super) fn contains(polygon: &[Point], point: Point) -> bool {
+pub(crate) fn contains(polygon: &[Point], point: Point) -> bool {
     let crossings = edges(polygon).filter(|(p, q)| {
         (p[1] > point[1]) != (q[1] > point[1])
             && point[0] < p[0] + (point[1] - p[1]) / (q[1] - p[1]) * (q[0] - p[0])

@@ -1,8 +1,8 @@
 //! Case files: from TOML to a [`Case`](crate::case::Case), with messages that name place, text and remedy.
 //!
 //! A file is parsed into a tree whose values know their places (`tree`), changed by overrides,
-//! checked against the schema and completed with its defaults (`complete`), and built into a
-//! [`Case`](crate::case::Case) with the checks that need more than one value (`build`). The schema
+//! checked against the schema and completed with its defaults (`complete`), given what it takes from
+//! other files (`files`), and built into a [`Case`](crate::case::Case) with the checks that need more than one value (`build`). The schema
 //! is declared once (`schema`) and also drives [`CaseFile::explain`], [`json_schema`] and
 //! [`reference_markdown`]. Every problem is collected on the way and shown in the order of the
 //! file.
@@ -21,6 +21,7 @@ pub(crate) mod bytes;
 mod complete;
 mod diagnostic;
 mod explain;
+mod files;
 mod geometry;
 mod json_schema;
 mod names;
@@ -38,6 +39,8 @@ pub(crate) mod toml_text;
 mod tree;
 mod units;
 mod value;
+
+pub(crate) use geometry::contains;
 
 pub use diagnostic::{Diagnostic, DiagnosticPlace};
 pub use json_schema::json_schema;

@@ -98,6 +98,15 @@ impl QuantityError {
                 expected: Dimension::ForcePerLength,
                 found: Dimension::Force,
                 text,
+                unit,
+                ..
+            } if matches!(unit.as_str(), "lbf" | "kip") => {
+                format!("plane strain is per length: forces are per foot run, \"{text}/ft\"")
+            }
+            Self::WrongKind {
+                expected: Dimension::ForcePerLength,
+                found: Dimension::Force,
+                text,
                 ..
             } => format!("plane strain is one metre thick: forces are per metre run, \"{text}/m\""),
             Self::WrongKind { unit, found, .. } => {
@@ -284,6 +293,63 @@ mod tests {
         }
     }
 
+    /// GOAL: customary units of the United States have their exact factors.
+    ///
+    /// Outside values: the foot is 0.3048 m, the pound 0.45359237 kg, standard gravity 9.80665 m/s² (NIST SP 811,
+    /// appendix B: psi 6.894757e3 Pa, psf 47.88026 Pa, lbf/ft 14.59390 N/m, pcf 157.0875 N/m³); water weighs 62.4 pcf or 9.80 kN/m³.
+    #[test]
+    fn customary_units_have_their_exact_factors() {
+        use Dimension::{
+            Acceleration, Area, Force, ForcePerLength, Length, MomentPerLength, Stress,
+            StressGradient, UnitWeight, UnitWeightGradient,
+        };
+        for (text, value, dimension) in [
+            ("1 ft", 0.3048, Length),
+            ("3 ft", 0.9144, Length),
+            ("12 in", 0.3048, Length),
+            ("1 yd", 0.9144, Length),
+            ("2.5 ft", 0.762, Length),
+            ("1 ft2", 0.092_903_04, Area),
+            ("1 lbf", 4.448_221_615_260_5, Force),
+        ] {
+            assert_eq!(si(text), (value, Some(dimension)), "{text}");
+        }
+        for (text, value, dimension) in [
+            ("1 psi", 6.894_757e3, Stress),
+            ("1 ksi", 6.894_757e6, Stress),
+            ("1 lbf/in²", 6.894_757e3, Stress),
+            ("1 psf", 47.880_26, Stress),
+            ("1 lbf/ft^2", 47.880_26, Stress),
+            ("1 ksf", 4.788_026e4, Stress),
+            ("1 kip/ft2", 4.788_026e4, Stress),
+            ("1 tsf", 9.576_052e4, Stress),
+            ("62.4 pcf", 9.802_26e3, UnitWeight),
+            ("1 lbf/ft3", 157.087_5, UnitWeight),
+            ("0.0624 kcf", 9.802_26e3, UnitWeight),
+            ("0.0624 kip/ft3", 9.802_26e3, UnitWeight),
+            ("1 pci", 2.714_471e5, UnitWeight),
+            ("10 psf/ft", 1570.875, StressGradient),
+            ("0.01 ksf/ft", 1570.875, StressGradient),
+            ("1 psi/ft", 2.262_059e4, StressGradient),
+            ("10 lbf/ft2/ft", 1570.875, StressGradient),
+            ("1 pcf/ft", 515.378_8, UnitWeightGradient),
+            ("1 lbf/ft3/ft", 515.378_8, UnitWeightGradient),
+            ("32.174049 ft/s2", 9.806_65, Acceleration),
+            ("386.0886 in/s2", 9.806_65, Acceleration),
+            ("1 lbf/ft", 14.593_90, ForcePerLength),
+            ("1 plf", 14.593_90, ForcePerLength),
+            ("1 kip/ft", 1.459_390e4, ForcePerLength),
+            ("1 klf", 1.459_390e4, ForcePerLength),
+            ("1 lbf/in", 175.126_8, ForcePerLength),
+            ("1 kip-ft/ft", 4.448_222e3, MomentPerLength),
+            ("1 lbf-ft/ft", 4.448_222, MomentPerLength),
+        ] {
+            let (found, kind) = si(text);
+            assert_eq!(kind, Some(dimension), "{text}");
+            assert!((found / value - 1.0).abs() < 3e-7, "{text}: {found}");
+        }
+    }
+
     #[test]
     fn nonsense_is_refused_without_panic() {
         for text in [
@@ -344,6 +410,15 @@ mod tests {
             explain("50 kN", Dimension::ForcePerLength),
             "wrong kind of unit: expected a force per length such as kN/m\n\
              plane strain is one metre thick: forces are per metre run, \"50 kN/m\""
+        );
+        assert_eq!(
+            explain("5 kip", Dimension::ForcePerLength),
+            "wrong kind of unit: expected a force per length such as kN/m\n\
+             plane strain is per length: forces are per foot run, \"5 kip/ft\""
+        );
+        assert_eq!(
+            explain("120 lb/ft3", Dimension::UnitWeight),
+            "unknown unit `lb/ft3`\ndid you mean `lbf/ft3`?"
         );
     }
 }

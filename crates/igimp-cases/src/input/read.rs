@@ -10,6 +10,7 @@ use super::bytes;
 use super::complete::complete;
 use super::diagnostic::{Diagnostic, Problems};
 use super::explain::explain;
+use super::files;
 use super::overrides::apply;
 use super::source::{Place, Source};
 use super::syntax::parse;
@@ -140,6 +141,7 @@ impl CaseFile {
             apply(&mut tree, &sources, index, &mut problems);
         }
         let mut completed = complete(&tree, &sources, &mut problems);
+        files::read(&mut completed, Path::new(name), &mut problems);
         let case = build(&mut completed, Path::new(name), &mut problems);
         match case {
             Some(case) if problems.errors() == 0 => Ok(Self {

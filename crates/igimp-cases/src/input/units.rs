@@ -116,6 +116,8 @@ impl Dimension {
 enum Scale {
     /// Ten to this power; exact where the result is.
     Ten(i32),
+    /// A fraction of two numbers that are exact.
+    Fraction(f64, f64),
     /// Degrees.
     Degrees,
 }
@@ -136,6 +138,7 @@ impl Unit {
         match self.scale {
             Scale::Ten(power) if power < 0 => number / 10_f64.powi(-power),
             Scale::Ten(power) => number * 10_f64.powi(power),
+            Scale::Fraction(above, below) => number * above / below,
             Scale::Degrees => number.to_radians(),
         }
     }
@@ -190,11 +193,70 @@ const fn degrees(symbol: &'static str) -> Unit {
     }
 }
 
-static UNITS: [Unit; 51] = [
+/// A foot is 381/1250 m and an inch 127/5000 m (international yard and pound agreement, 1959).
+const FOOT: (f64, f64) = (381.0, 1250.0);
+const INCH: (f64, f64) = (127.0, 5000.0);
+/// A pound-force is 0.45359237 kg times 9.80665 m/s² = 4.4482216152605 N.
+const POUND: (f64, f64) = (44_482_216_152_605.0, 1e13);
+
+/// A unit of the foot, the pound-force and so on: a product of powers of these, times a whole number.
+const fn customary(
+    symbol: &'static str,
+    dimension: Dimension,
+    times: f64,
+    pounds: bool,
+    (length, power): ((f64, f64), i32),
+) -> Unit {
+    let (mut above, mut below) = if pounds {
+        (times * POUND.0, POUND.1)
+    } else {
+        (times, 1.0)
+    };
+    let mut left = power;
+    while left != 0 {
+        let (over, under) = if left > 0 {
+            length
+        } else {
+            (length.1, length.0)
+        };
+        (above, below) = (above * over, below * under);
+        left -= left.signum();
+    }
+    Unit {
+        symbol,
+        dimension,
+        scale: Scale::Fraction(above, below),
+    }
+}
+
+/// Feet to a power.
+const fn feet(symbol: &'static str, dimension: Dimension, times: f64, power: i32) -> Unit {
+    customary(symbol, dimension, times, false, (FOOT, power))
+}
+
+/// Inches to a power.
+const fn inches(symbol: &'static str, dimension: Dimension, times: f64, power: i32) -> Unit {
+    customary(symbol, dimension, times, false, (INCH, power))
+}
+
+/// Pounds-force times feet to a power.
+const fn pounds(symbol: &'static str, dimension: Dimension, times: f64, power: i32) -> Unit {
+    customary(symbol, dimension, times, true, (FOOT, power))
+}
+
+/// Pounds-force times inches to a power.
+const fn pounds_inch(symbol: &'static str, dimension: Dimension, times: f64, power: i32) -> Unit {
+    customary(symbol, dimension, times, true, (INCH, power))
+}
+
+static UNITS: [Unit; 86] = [
     ten("m", Dimension::Length, 0),
     ten("mm", Dimension::Length, -3),
     ten("cm", Dimension::Length, -2),
     ten("km", Dimension::Length, 3),
+    feet("ft", Dimension::Length, 1.0, 1),
+    inches("in", Dimension::Length, 1.0, 1),
+    feet("yd", Dimension::Length, 3.0, 1),
     ten("kPa", Dimension::Stress, 3),
     ten("Pa", Dimension::Stress, 0),
     ten("MPa", Dimension::Stress, 6),
@@ -205,16 +267,35 @@ static UNITS: [Unit; 51] = [
     ten("GN/m2", Dimension::Stress, 9),
     ten("N/mm2", Dimension::Stress, 6),
     ten("bar", Dimension::Stress, 5),
+    pounds("psf", Dimension::Stress, 1.0, -2),
+    pounds("ksf", Dimension::Stress, 1000.0, -2),
+    pounds("tsf", Dimension::Stress, 2000.0, -2),
+    pounds_inch("psi", Dimension::Stress, 1.0, -2),
+    pounds_inch("ksi", Dimension::Stress, 1000.0, -2),
+    pounds("lbf/ft2", Dimension::Stress, 1.0, -2),
+    pounds("kip/ft2", Dimension::Stress, 1000.0, -2),
+    pounds_inch("lbf/in2", Dimension::Stress, 1.0, -2),
     ten("kN/m3", Dimension::UnitWeight, 3),
     ten("N/m3", Dimension::UnitWeight, 0),
     ten("MN/m3", Dimension::UnitWeight, 6),
+    pounds("pcf", Dimension::UnitWeight, 1.0, -3),
+    pounds("kcf", Dimension::UnitWeight, 1000.0, -3),
+    pounds("lbf/ft3", Dimension::UnitWeight, 1.0, -3),
+    pounds("kip/ft3", Dimension::UnitWeight, 1000.0, -3),
+    pounds_inch("pci", Dimension::UnitWeight, 1.0, -3),
     ten("kPa/m", Dimension::StressGradient, 3),
     ten("Pa/m", Dimension::StressGradient, 0),
     ten("MPa/m", Dimension::StressGradient, 6),
     ten("kN/m2/m", Dimension::StressGradient, 3),
+    pounds("psf/ft", Dimension::StressGradient, 1.0, -3),
+    pounds("ksf/ft", Dimension::StressGradient, 1000.0, -3),
+    pounds("psi/ft", Dimension::StressGradient, 144.0, -3),
+    pounds("lbf/ft2/ft", Dimension::StressGradient, 1.0, -3),
     ten("kN/m3/m", Dimension::UnitWeightGradient, 3),
     ten("N/m3/m", Dimension::UnitWeightGradient, 0),
     ten("kN/m4", Dimension::UnitWeightGradient, 3),
+    pounds("pcf/ft", Dimension::UnitWeightGradient, 1.0, -4),
+    pounds("lbf/ft3/ft", Dimension::UnitWeightGradient, 1.0, -4),
     degrees("deg"),
     degrees("°"),
     degrees("degree"),
@@ -223,12 +304,21 @@ static UNITS: [Unit; 51] = [
     ten("m/s2", Dimension::Acceleration, 0),
     ten("cm/s2", Dimension::Acceleration, -2),
     ten("mm/s2", Dimension::Acceleration, -3),
+    feet("ft/s2", Dimension::Acceleration, 1.0, 1),
+    inches("in/s2", Dimension::Acceleration, 1.0, 1),
     ten("kN/m", Dimension::ForcePerLength, 3),
     ten("N/m", Dimension::ForcePerLength, 0),
     ten("MN/m", Dimension::ForcePerLength, 6),
+    pounds("lbf/ft", Dimension::ForcePerLength, 1.0, -1),
+    pounds("kip/ft", Dimension::ForcePerLength, 1000.0, -1),
+    pounds("plf", Dimension::ForcePerLength, 1.0, -1),
+    pounds("klf", Dimension::ForcePerLength, 1000.0, -1),
+    pounds_inch("lbf/in", Dimension::ForcePerLength, 1.0, -1),
     ten("kNm/m", Dimension::MomentPerLength, 3),
     ten("Nm/m", Dimension::MomentPerLength, 0),
     ten("MNm/m", Dimension::MomentPerLength, 6),
+    pounds("lbf-ft/ft", Dimension::MomentPerLength, 1.0, 0),
+    pounds("kip-ft/ft", Dimension::MomentPerLength, 1000.0, 0),
     ten("kg/m3", Dimension::MassDensity, 0),
     ten("t/m3", Dimension::MassDensity, 3),
     ten("Mg/m3", Dimension::MassDensity, 3),
@@ -238,8 +328,12 @@ static UNITS: [Unit; 51] = [
     ten("N", Dimension::Force, 0),
     ten("kN", Dimension::Force, 3),
     ten("MN", Dimension::Force, 6),
+    pounds("lbf", Dimension::Force, 1.0, 0),
+    pounds("kip", Dimension::Force, 1000.0, 0),
     ten("m2", Dimension::Area, 0),
     ten("mm2", Dimension::Area, -6),
     ten("cm2", Dimension::Area, -4),
     ten("km2", Dimension::Area, 6),
+    feet("ft2", Dimension::Area, 1.0, 2),
+    inches("in2", Dimension::Area, 1.0, 2),
 ];

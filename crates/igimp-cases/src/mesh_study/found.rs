@@ -114,8 +114,11 @@ fn of_stage(case: &Case, number: usize) -> Option<(String, ResultKind)> {
                 ResultKind::FactorOfSafety,
             ))
         }
-        StageKind::Gravity { .. } if stage.stop_when.no_equilibrium => Some((
-            format!("gravity at the end of \"{name}\" [-]"),
+        StageKind::Gravity { horizontal, .. } if stage.stop_when.no_equilibrium => Some((
+            match horizontal {
+                Some(_) => format!("horizontal acceleration at the end of \"{name}\" [-]"),
+                None => format!("gravity at the end of \"{name}\" [-]"),
+            },
             ResultKind::LimitLoad,
         )),
         StageKind::Load { .. } if stage.stop_when.no_equilibrium => Some((
@@ -136,6 +139,10 @@ fn at_stage(case: &Case, run: &Summary, number: usize) -> Option<Found> {
     match &stage.kind {
         StageKind::StrengthReduction(_) => interval(summary),
         StageKind::Displacement { .. } => Some((summary.peak_resistance?, 0.0)),
+        StageKind::Gravity {
+            horizontal: Some(_),
+            ..
+        } => limit(case, run, number, Quantity::HorizontalFactor),
         StageKind::Gravity { .. } => limit(case, run, number, Quantity::GravityFactor),
         StageKind::Load { loads, .. } => {
             limit(case, run, number, Quantity::LoadFactor(*loads.first()?))
@@ -174,7 +181,7 @@ fn limit(case: &Case, run: &Summary, number: usize, of: Quantity) -> Option<Foun
     Some((at_end(case, run, number, of), smallest * whole))
 }
 
-/// A multiple of gravity or a load factor at the end of a stage of a run.
+/// A multiple of gravity, an acceleration or a load factor at the end of a stage of a run.
 fn at_end(case: &Case, run: &Summary, number: usize, of: Quantity) -> f64 {
     let stage = &case.stages[number];
     let from = stage
@@ -184,10 +191,11 @@ fn at_end(case: &Case, run: &Summary, number: usize, of: Quantity) -> f64 {
     aim(&stage.kind, of).map_or(from, |to| from + reached * (to - from))
 }
 
-/// Where a stage takes a multiple of gravity or a load factor, if it changes it.
+/// Where a stage takes a multiple of gravity, an acceleration or a load factor, if it changes it.
 fn aim(kind: &StageKind, of: Quantity) -> Option<f64> {
     match (kind, of) {
-        (StageKind::Gravity { factor }, Quantity::GravityFactor) => Some(*factor),
+        (StageKind::Gravity { factor, .. }, Quantity::GravityFactor) => Some(*factor),
+        (StageKind::Gravity { horizontal, .. }, Quantity::HorizontalFactor) => *horizontal,
         (StageKind::K0, Quantity::GravityFactor) => Some(1.0),
         (StageKind::Load { loads, factor }, Quantity::LoadFactor(load)) => {
             loads.contains(&load).then_some(*factor)
@@ -204,7 +212,9 @@ fn width_of_check(case: &Case, run: &Summary, name: &str) -> f64 {
     let stage = check.stage.unwrap_or(case.stages.len().saturating_sub(1));
     let found = match check.of {
         Quantity::FactorOfSafety => run.stages.get(stage).and_then(interval),
-        Quantity::GravityFactor | Quantity::LoadFactor(_) => limit(case, run, stage, check.of),
+        Quantity::GravityFactor | Quantity::HorizontalFactor | Quantity::LoadFactor(_) => {
+            limit(case, run, stage, check.of)
+        }
         _ => None,
     };
     found.map_or(0.0, |(_, width)| width / check.divide_by.abs())

@@ -124,6 +124,18 @@ fn in_words(profile: &Profile, scale: f64, unit: &str) -> String {
             short(gradient.abs() / scale),
             if *gradient < 0.0 { "less" } else { "more" }
         ),
+        Profile::Raster(raster) => {
+            let values = raster.values.iter().flatten().copied();
+            let least = values.clone().fold(f64::INFINITY, f64::min);
+            let greatest = values.fold(f64::NEG_INFINITY, f64::max);
+            format!(
+                "{}{unit} to {}{unit} by a raster of {} by {} points",
+                short(least / scale),
+                short(greatest / scale),
+                raster.x.len(),
+                raster.y.len()
+            )
+        }
         Profile::Table(rows) if rows.len() <= MOST_ROWS => {
             let row = |[level, value]: &[f64; 2]| {
                 format!("{}{unit} at y = {} m", short(value / scale), short(*level))
@@ -470,7 +482,23 @@ fn happens(case: &Case, stage: &Stage) -> String {
         names.join(", ")
     };
     match &stage.kind {
-        StageKind::Gravity { factor } => format!("gravity to {}", times(*factor, "value")),
+        StageKind::Gravity {
+            factor,
+            horizontal,
+            vertical,
+        } => {
+            let mut told = format!("gravity to {}", times(*factor, "value"));
+            for (share, whither) in [(horizontal, "to the right"), (vertical, "upwards")] {
+                if let Some(share) = share {
+                    let _ = write!(
+                        told,
+                        ", pseudo-static force of {} % of the weight {whither}",
+                        short(100.0 * share)
+                    );
+                }
+            }
+            told
+        }
         StageKind::K0 => "stresses of level ground at rest (K₀), then equilibrium".to_owned(),
         StageKind::Load { loads, factor } => {
             let name = |&k: &usize| case.loads[k].name.as_str();

@@ -257,7 +257,15 @@ fn still_falling(case: &Case, error: &StepError) -> Option<String> {
 /// Most soil at the worst node yields: there may be no equilibrium to find.
 fn collapse(case: &Case, stage: &Stage) -> Vec<String> {
     match &stage.kind {
-        StageKind::Gravity { factor } => vec![
+        StageKind::Gravity {
+            horizontal: Some(share),
+            ..
+        } if *share != 0.0 => vec![format!(
+            "horizontal = {} in stage \"{}\": this is probably collapse under the pseudo-static force",
+            short(0.5 * share),
+            stage.name
+        )],
+        StageKind::Gravity { factor, .. } => vec![
             format!(
                 "factor = {} in stage \"{}\": this is probably collapse under gravity itself",
                 short(0.5 * factor),

@@ -86,7 +86,11 @@ fn case(kind: StageKind) -> Case {
 }
 
 fn gravity() -> Case {
-    case(StageKind::Gravity { factor: 1.0 })
+    case(StageKind::Gravity {
+        factor: 1.0,
+        horizontal: None,
+        vertical: None,
+    })
 }
 
 fn failed(failure: StepFailure, residuals: &[f64]) -> StepError {

@@ -101,17 +101,17 @@ fn become_soil_of(
     } else {
         STANDARD_GRAVITY
     };
-    let level = fields.x[particle][1];
+    let place = fields.x[particle];
     let soil = &case.materials[material];
     let before = model.laws[fields.law[particle]].elasticity().young();
     let shared = (before / soil.young - 1.0).abs() > 1e-12;
-    let mut ratios = soil.ratios_at(level);
+    let mut ratios = soil.ratios_at(place);
     if shared {
         // In cells of several soils all have one stiffness, that of the cell.
         ratios.stiffness = 1.0;
     }
     fields.ratios[particle] = ratios;
-    fields.mass[particle] = fields.volume0[particle] * soil.unit_weight_at(level) / gravity;
+    fields.mass[particle] = fields.volume0[particle] * soil.unit_weight_at(place) / gravity;
     let [[a, b], [c, d]] = fields.def_grad[particle];
     let tau = fields.sigma[particle].map(|row| row.map(|stress| stress * (a * d - b * c)));
     let law = ScaledLaw::new(&*model.laws[fields.law[particle]], ratios)?;

@@ -63,7 +63,7 @@ impl Ground {
     pub(crate) fn weight_above(&self, x: &[f64; 2]) -> f64 {
         let weight = |part: &Part| match &part.profile {
             None => sum_above(&part.polygon, x, |level| level) * part.unit_weight,
-            Some(own) => sum_above(&part.polygon, x, |level| own.integral(x[1], level)),
+            Some(own) => sum_above(&part.polygon, x, |level| own.integral(*x, level)),
         };
         self.parts.iter().map(weight).sum()
     }
@@ -114,7 +114,9 @@ mod tests {
             at_top: 18.0,
             gradient: 0.5,
         };
-        let weight = sum_above(&ring, &[1.0, 2.0], |level| denser.integral(2.0, level));
+        let weight = sum_above(&ring, &[1.0, 2.0], |level| {
+            denser.integral([1.0, 2.0], level)
+        });
         assert!((weight - (18.0 + 2.0 * 18.5)).abs() < 1e-12);
     }
 }

@@ -20,7 +20,16 @@ pub(crate) fn target(case: &Case, stage: &Stage, start: &Controls) -> Controls {
         end.reinforcement[member].jack = case.reinforcement[member].prestress;
     }
     match &stage.kind {
-        StageKind::Gravity { factor } => end.gravity = *factor,
+        StageKind::Gravity {
+            factor,
+            horizontal,
+            vertical,
+        } => {
+            end.gravity = *factor;
+            for (own, stated) in end.acceleration.iter_mut().zip([horizontal, vertical]) {
+                *own = stated.unwrap_or(*own);
+            }
+        }
         StageKind::Load { loads, factor } => {
             for &load in loads {
                 end.factors[load] = *factor;

@@ -82,13 +82,13 @@ impl<'c> Model<'c> {
             let mut own = fill_polygon(&grid, &part.polygon, parts, density, part.material)?;
             if material.profiles.unit_weight.is_some() {
                 for seed in &mut own {
-                    seed.density = material.unit_weight_at(seed.x[1]) / gravity;
+                    seed.density = material.unit_weight_at(seed.x) / gravity;
                 }
             }
             seeded.body.extend(own.iter().map(|_| body));
             seeds.extend(own);
         }
-        let ratios = |seed: &ParticleSeed<2>| case.materials[seed.law].ratios_at(seed.x[1]);
+        let ratios = |seed: &ParticleSeed<2>| case.materials[seed.law].ratios_at(seed.x);
         let mut ratios: Vec<Ratios> = seeds.iter().map(ratios).collect();
         if case.grid.mixed_cells == MixedCells::Mean {
             let parts = (&mut seeds[..], &mut ratios[..]);
@@ -239,7 +239,7 @@ impl<'c> Model<'c> {
             grid,
             constraints,
             StepLoads {
-                gravity: [0.0, -to.gravity * self.case.gravity],
+                gravity: to.body_force().map(|share| share * self.case.gravity),
                 factors: to.factors.clone(),
                 drag,
             },

@@ -152,6 +152,7 @@ impl Records {
             }
             Quantity::LargestDisplacement => moment.largest_displacement(),
             Quantity::GravityFactor => controls.gravity,
+            Quantity::HorizontalFactor => controls.acceleration[0],
             Quantity::ReductionFactor => controls.reduction(),
             Quantity::Step => moment.number as f64,
             Quantity::PlasticShare => moment.plastic_share,

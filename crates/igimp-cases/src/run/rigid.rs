@@ -65,9 +65,10 @@ fn interface(case: &Case, of: &RigidInterface, laws: usize) -> Interface {
     }
 }
 
-/// Own weight at a multiple of gravity, upwards \[N/m\].
-fn weight(part: &RigidPart, gravity: f64) -> [f64; 3] {
-    [0.0, -part.weight * gravity, 0.0]
+/// Own weight, with what pseudo-static acceleration adds to it, along the axes \[N/m\].
+fn weight(part: &RigidPart, controls: &Controls) -> [f64; 3] {
+    let [x, y] = controls.body_force().map(|share| share * part.weight);
+    [x, y, 0.0]
 }
 
 /// How the rigid bodies that are there move in a step between two controls.
@@ -75,7 +76,7 @@ pub(crate) fn motions(case: &Case, from: &Controls, to: &Controls) -> Vec<RigidM
     to.placed()
         .map(|index| {
             let (part, own, before) = (&case.rigid[index], &to.rigid[index], &from.rigid[index]);
-            let weight = weight(part, to.gravity);
+            let weight = weight(part, to);
             let drive = |k: usize| match own.loaded[k] {
                 Some(force) => Drive::Loaded((force + weight[k]) / part.force_factor),
                 None => Drive::Moved(own.moved[k] - before.moved[k]),
@@ -109,7 +110,7 @@ pub(crate) fn tracks(
             reactions[node][1],
             reactions[node + 1][0] * size,
         ];
-        let weight = weight(part, controls.gravity);
+        let weight = weight(part, controls);
         let track = &mut tracks[index];
         for k in 0..3 {
             track.displacement[k] += by[k];

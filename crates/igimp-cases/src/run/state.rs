@@ -10,6 +10,8 @@ use crate::case::Case;
 pub struct Controls {
     /// Multiple of gravity \[-\].
     pub gravity: f64,
+    /// Pseudo-static force over the weight, to the right and upwards \[-\].
+    pub acceleration: [f64; 2],
     /// Factor by load \[-\].
     pub factors: Vec<f64>,
     /// Settlement of the rigid footing \[m\].
@@ -91,6 +93,7 @@ impl Controls {
     pub(crate) fn none(case: &Case) -> Self {
         Self {
             gravity: 0.0,
+            acceleration: [0.0; 2],
             factors: vec![0.0; case.loads.len()],
             settlement: 0.0,
             srf: vec![1.0; case.materials.len()],
@@ -106,6 +109,9 @@ impl Controls {
         let all = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| between(*a, *b, t)).collect();
         Self {
             gravity: between(self.gravity, end.gravity, t),
+            acceleration: std::array::from_fn(|k| {
+                between(self.acceleration[k], end.acceleration[k], t)
+            }),
             factors: all(&self.factors, &end.factors),
             settlement: between(self.settlement, end.settlement, t),
             srf: all(&self.srf, &end.srf),
@@ -124,6 +130,13 @@ impl Controls {
     pub fn installed(&self) -> impl Iterator<Item = usize> + '_ {
         let members = self.reinforcement.iter().enumerate();
         members.filter(|(_, own)| own.installed).map(|(k, _)| k)
+    }
+
+    /// The force on a body of unit weight by gravity and pseudo-static acceleration, along the axes \[-\] (theory,
+    /// eq. 37d).
+    pub(crate) fn body_force(&self) -> [f64; 2] {
+        let [horizontal, vertical] = self.acceleration;
+        [horizontal, vertical - self.gravity]
     }
 
     /// The rigid bodies that are there, in the order in which the state has them.

@@ -87,7 +87,14 @@ pub(crate) fn case() -> Case {
         rigid: Vec::new(),
         reinforcement: Vec::new(),
         stages: vec![
-            stage("initial stresses", StageKind::Gravity { factor: 1.0 }),
+            stage(
+                "initial stresses",
+                StageKind::Gravity {
+                    factor: 1.0,
+                    horizontal: None,
+                    vertical: None,
+                },
+            ),
             stage(
                 "surcharge",
                 StageKind::Load {

@@ -1,13 +1,12 @@
 //! Curves and their references.
 
-use std::fs::File;
-use std::io::Read;
 use std::path::Path;
 
 use super::AllNames;
 use super::quantities::{divisor, quantity};
 use crate::case::{Curve, CurveAxis, Load, Quantity, Reference, ReferenceValues};
 use crate::input::diagnostic::Problems;
+use crate::input::files::text_of;
 use crate::input::text::clip;
 use crate::input::tree::Node;
 
@@ -128,19 +127,7 @@ pub(super) fn reference(node: &Node, file: &Path, problems: &mut Problems) -> Op
 
 /// The points of a CSV file: a header and two columns.
 fn read_points(path: &Path) -> Result<Vec<[f64; 2]>, String> {
-    // Asked before it is opened: a pipe would be waited for.
-    let about = std::fs::metadata(path).map_err(|error| error.to_string())?;
-    if !about.is_file() {
-        return Err("it is not a file".to_owned());
-    }
-    let file = File::open(path).map_err(|error| error.to_string())?;
-    let mut text = String::new();
-    file.take(LARGEST + 1)
-        .read_to_string(&mut text)
-        .map_err(|error| error.to_string())?;
-    if text.len() as u64 > LARGEST {
-        return Err(format!("it has more than {} MB", LARGEST >> 20));
-    }
+    let text = text_of(path, LARGEST)?;
     let mut reader = csv::ReaderBuilder::new()
         .comment(Some(b'#'))
         .trim(csv::Trim::All)

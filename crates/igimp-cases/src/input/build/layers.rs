@@ -55,10 +55,10 @@ fn complete<T>(parts: &[Option<T>]) -> Option<Vec<&T>> {
     parts.iter().map(Option::as_ref).collect()
 }
 
-/// The modulus of compression without lateral strain at a level.
-fn constrained(material: &Material, level: f64) -> f64 {
+/// The modulus of compression without lateral strain at a place.
+fn constrained(material: &Material, place: [f64; 2]) -> f64 {
     let nu = material.poisson;
-    material.young_at(level) * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu))
+    material.young_at(place) * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu))
 }
 
 /// Boundaries within cells and gaps; tells which bodies touch a stiffer one, or one of their own
@@ -101,8 +101,8 @@ fn check_pairs(
                     )
                     .help("bodies closer than a cell stick all the same: let them share the edge");
             }
-            let level = pieces.first().map_or(0.0, |piece| piece.middle[1]);
-            let moduli = [a, b].map(|body| constrained(materials[body.material], level));
+            let middle = pieces.first().map_or([0.0; 2], |piece| piece.middle);
+            let moduli = [a, b].map(|body| constrained(materials[body.material], middle));
             let mut touching = pieces
                 .iter()
                 .filter(|piece| piece.distance <= layers.site.round_off)
@@ -319,11 +319,13 @@ pub(super) fn check_stiffness(
         .fold(f64::MIN, f64::max);
     let file = layers.tree.get("materials");
     for (index, material) in materials.iter().enumerate() {
-        let own = bodies.iter().filter(|body| body.material == index);
-        let Some(lowest) = own.map(|body| levels(body)[0]).reduce(f64::min) else {
+        let own = || bodies.iter().filter(|body| body.material == index);
+        let lowest = own().map(|body| levels(body)[0]).reduce(f64::min);
+        let (Some(lowest), Some(first)) = (lowest, own().next()) else {
             continue;
         };
-        let middle = 0.5 * (top + lowest);
+        let (left, right) = bounding_box(&first.polygon);
+        let middle = [0.5 * (left[0] + right[0]), 0.5 * (top + lowest)];
         let (weight, young) = (material.unit_weight_at(middle), material.young_at(middle));
         let ratio = weight * (top - lowest) / young;
         let place = file

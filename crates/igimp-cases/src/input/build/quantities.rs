@@ -60,9 +60,10 @@ const REINFORCEMENT: [(&str, ReinforcementQuantity, &str); 3] = [
 ];
 
 /// Quantities of the whole model.
-const GLOBAL: [(&str, Quantity, &str); 7] = [
+const GLOBAL: [(&str, Quantity, &str); 8] = [
     ("largest_displacement", Quantity::LargestDisplacement, "m"),
     ("gravity_factor", Quantity::GravityFactor, "-"),
+    ("horizontal_factor", Quantity::HorizontalFactor, "-"),
     ("reduction_factor", Quantity::ReductionFactor, "-"),
     ("step", Quantity::Step, "-"),
     ("plastic_share", Quantity::PlasticShare, "-"),
@@ -225,7 +226,7 @@ pub(super) fn divisor(table: &Node, problems: &mut Problems) -> Option<f64> {
 }
 
 /// Quantities and what they mean, for the reference.
-pub(in crate::input) const QUANTITY_DOCS: [(&str, &str); 20] = [
+pub(in crate::input) const QUANTITY_DOCS: [(&str, &str); 21] = [
     ("FOOTING.settlement", "settlement of a rigid footing [m]"),
     (
         "FOOTING.reaction",
@@ -271,6 +272,10 @@ pub(in crate::input) const QUANTITY_DOCS: [(&str, &str); 20] = [
         "largest displacement of all particles [m]",
     ),
     ("gravity_factor", "multiple of gravity [-]"),
+    (
+        "horizontal_factor",
+        "pseudo-static horizontal force over the weight [-]",
+    ),
     ("reduction_factor", "strength reduction factor [-]"),
     ("step", "number of the step in its stage [-]"),
     ("plastic_share", "share of particles that yield [-]"),

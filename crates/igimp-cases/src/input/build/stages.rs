@@ -84,9 +84,7 @@ fn stage(
 ) -> Option<Stage> {
     let name = clip(node.text_at("name").unwrap_or("?"), 40);
     let kind = match node.text_at("type")? {
-        "gravity" => node
-            .number_at("factor")
-            .map(|factor| StageKind::Gravity { factor }),
+        "gravity" => gravity(node),
         "k0" => {
             k0(context, index, node, problems);
             Some(StageKind::K0)
@@ -112,6 +110,16 @@ fn stage(
         reset_displacements: node.flag_at("reset_displacements")?,
         install: install?,
         stop_when: stop_when?,
+    })
+}
+
+fn gravity(node: &Node) -> Option<StageKind> {
+    let horizontal = node.optional_number("horizontal");
+    let vertical = node.optional_number("vertical");
+    Some(StageKind::Gravity {
+        factor: node.number_at("factor")?,
+        horizontal: horizontal.ok()?,
+        vertical: vertical.ok()?,
     })
 }
 

@@ -37,9 +37,16 @@ pub(in crate::input) static SYMBOLS: [(&str, &[&str]); 22] = [
 
 static A_STRESS: Kind = Kind::Quantity(Stress, Range::NotNegative);
 static A_UNIT_WEIGHT: Kind = Kind::Quantity(UnitWeight, Range::NotNegative);
+static STRESSES: Kind = Kind::List(&A_STRESS, 1, MANY);
+static UNIT_WEIGHTS: Kind = Kind::List(&A_UNIT_WEIGHT, 1, MANY);
 
-/// The keys of a property that varies with the level.
-const fn profile(top: Kind, gradient: Kind, values: &'static Kind) -> [Field; 5] {
+/// The keys of a property that varies.
+const fn profile(
+    top: Kind,
+    gradient: Kind,
+    values: &'static Kind,
+    rows: &'static Kind,
+) -> [Field; 11] {
     [
         optional(
             "at_top",
@@ -71,16 +78,53 @@ const fn profile(top: Kind, gradient: Kind, values: &'static Kind) -> [Field; 5]
             "`at_top` and `gradient` say it",
             "values there; linear between the levels, constant beyond",
         ),
+        optional(
+            "raster",
+            Kind::Text,
+            "the property does not come from a file",
+            "a CSV file with the columns x, y and value on a rectangular grid of points; its path from the case file",
+        ),
+        optional(
+            "unit",
+            Kind::Text,
+            "the header of the file says it, as in `cu [kPa]`",
+            "unit of the values of the file",
+        ),
+        optional(
+            "length_unit",
+            Kind::Text,
+            "the header of the file says it, as in `x [m]`",
+            "unit of x and y of the file",
+        ),
+        optional(
+            "x",
+            Kind::List(&LENGTH, 1, MANY),
+            "no points in the plane",
+            "upright lines of points, ascending",
+        ),
+        optional(
+            "y",
+            Kind::List(&LENGTH, 1, MANY),
+            "no points in the plane",
+            "level lines of points, ascending",
+        ),
+        optional(
+            "rows",
+            Kind::List(rows, 1, MANY),
+            "no points in the plane",
+            "values there, a list along x for every y; bilinear between the points",
+        ),
     ]
 }
 
 static STRESS_PROFILE: Struct = Struct {
-    doc: "A stress that varies with the level: `at_top` and `gradient`, or `levels` and `values`. Soil carries what it \
+    doc: "A stress that varies with the level: `at_top` and `gradient`, or `levels` and `values`; or in the plane: `raster`, or `x`, `y` and `rows`. Soil carries what it \
           has where it starts. A strength may be zero somewhere, and counts as a millionth of the greatest there.",
     fields: &profile(
         Kind::Quantity(Stress, Range::NotNegative),
         Kind::Quantity(StressGradient, Range::Any),
         &A_STRESS,
+        &STRESSES,
     ),
 };
 
@@ -90,6 +134,7 @@ static UNIT_WEIGHT_PROFILE: Struct = Struct {
         Kind::Quantity(UnitWeight, Range::NotNegative),
         Kind::Quantity(UnitWeightGradient, Range::Any),
         &A_UNIT_WEIGHT,
+        &UNIT_WEIGHTS,
     ),
 };
 

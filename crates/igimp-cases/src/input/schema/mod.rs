@@ -458,12 +458,59 @@ static BODY: Kind = Kind::Table(&Struct {
         ),
         required(
             "polygon",
-            Kind::List(&CORNER, 3, MANY),
+            Kind::Either(&[Kind::List(&CORNER, 3, MANY), Kind::Table(&OUTLINE)]),
             "[[\"0 m\", \"0 m\"], [\"8 m\", \"0 m\"], [\"8 m\", \"5 m\"], [\"0 m\", \"5 m\"]]",
-            "corners in order, either way round",
+            "corners in order, either way round, or where they come from",
         ),
     ],
 });
+
+const FILE_DOC: &str =
+    "a CSV file with the columns x and y, or an ASCII DXF file; its path from the case file";
+const LAYER: super::spec::Field = optional(
+    "layer",
+    Kind::Text,
+    "the file is no drawing",
+    "layer of the drawing that the line is on, alone",
+);
+const FILE_UNIT: super::spec::Field = optional(
+    "unit",
+    Kind::Text,
+    "the header says it, as in `x [ft]`",
+    "unit of length of the file",
+);
+
+static LINE_FILE: Struct = Struct {
+    doc: "A line in a file.",
+    fields: &[
+        required("file", Kind::Text, "\"rock.csv\"", FILE_DOC),
+        LAYER,
+        FILE_UNIT,
+    ],
+};
+
+static LINE: [Kind; 2] = [Kind::List(&CORNER, 2, MANY), Kind::Table(&LINE_FILE)];
+
+static OUTLINE: Struct = Struct {
+    doc: "Where the corners come from: a file, or the lines above and below, which run from one side of the ground to the other.",
+    fields: &[
+        optional("file", Kind::Text, "`top` and `bottom` say it", FILE_DOC),
+        LAYER,
+        FILE_UNIT,
+        optional(
+            "top",
+            Kind::Either(&LINE),
+            "`file` says it",
+            "line above the body",
+        ),
+        optional(
+            "bottom",
+            Kind::Either(&LINE),
+            "`file` says it",
+            "line below the body",
+        ),
+    ],
+};
 
 static SIDES: [Choice; 3] = [
     choice("roller", "no displacement across the side"),

@@ -26,13 +26,25 @@ pub(in crate::input) static STAGE: Kind = Kind::Variants(&Variants {
     cases: &[
         Variant {
             name: "gravity",
-            doc: "Raises gravity from where it is to a multiple of its value.",
+            doc: "Raises gravity from where it is to a multiple of its value; changes pseudo-static acceleration.",
             fields: &[
                 default(
                     "factor",
                     Kind::Number(Range::NotNegative),
                     "1",
                     "the multiple",
+                ),
+                optional(
+                    "horizontal",
+                    Kind::Number(Range::Any),
+                    "it stays as it is, 0 at first",
+                    "pseudo-static force to the right, as a share of the weight",
+                ),
+                optional(
+                    "vertical",
+                    Kind::Number(Range::Any),
+                    "it stays as it is, 0 at first",
+                    "pseudo-static force upwards, as a share of the weight",
                 ),
                 geometry("\"moving\""),
             ],
