@@ -263,7 +263,7 @@ fn oedometer(study: &mut Study) -> Result<(), CaseError> {
     let modulus = young * (1.0 - POISSON) / ((1.0 + POISSON) * (1.0 - 2.0 * POISSON));
     let stiffness = 30.0 * modulus;
     let mut clay = case.materials[0].clone();
-    clay.name = "clay".to_owned();
+    "clay".clone_into(&mut clay.name);
     clay.drainage = Drainage::Undrained { stiffness };
     case.materials.push(clay);
     case.bodies[0].material = 1;

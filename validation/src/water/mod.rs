@@ -3,6 +3,7 @@
 mod problems;
 mod undrained;
 
+use std::fmt::Write as _;
 use std::path::Path;
 
 use igimp_assembly::Locking;
@@ -134,10 +135,11 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
         let [coarse, fine] = [&found[0], &found[1]].map(Found::factor);
         factors.push(value);
         table.push(vec![lower, upper, coarse, fine, value, uncertainty]);
-        note.push_str(&format!(
-            "  {:<10} {name:<48} {lower:.3} … {upper:.3}; {coarse:.4}, {fine:.4}; {value:.4} ± {uncertainty:.4}\n",
+        let _ = writeln!(
+            note,
+            "  {:<10} {name:<48} {lower:.3} … {upper:.3}; {coarse:.4}, {fine:.4}; {value:.4} ± {uncertainty:.4}",
             problem.group,
-        ));
+        );
     }
     if level == Level::Full {
         minimum_lies_inside(&mut study, &problems, &factors);

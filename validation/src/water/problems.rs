@@ -230,12 +230,46 @@ fn dam() -> Vec<Problem> {
     .into()
 }
 
-/// Slopes of Duncan and Wright, Fredlund and Krahn, and Morgenstern, turned so that they fall to the right.
-fn imperial() -> Vec<Problem> {
-    let submerged = [[0.0, 45.0], [35.0, 45.0], [110.0, 15.0], [140.0, 15.0]];
-    let two = [[0.0, 60.0], [60.0, 60.0], [140.0, 20.0], [200.0, 20.0]];
-    let fredlund = [[0.0, 60.0], [60.0, 60.0], [140.0, 20.0], [180.0, 20.0]];
-    let morgenstern = [[0.0, 100.0], [75.0, 100.0], [375.0, 0.0]];
+/// A slope in feet and pounds.
+struct Imperial<'a> {
+    name: &'a str,
+    height: f64,
+    surface: &'a [[f64; 2]],
+    layers: Vec<Layer>,
+    unit_weights: Vec<f64>,
+    /// Cells over the height on the coarse mesh.
+    cells: u32,
+}
+
+impl Imperial<'_> {
+    fn with(self, oracle: Oracle, water: PoreSource, known: [f64; 2]) -> Problem {
+        Problem {
+            group: "others",
+            section: section(self.name, self.height, self.surface, self.layers),
+            search: around(known, self.unit_weights[0] * self.height / 200.0),
+            unit_weights: self.unit_weights,
+            water,
+            water_unit_weight: POUNDS,
+            oracle,
+            known,
+            beyond: 0.02,
+            meshes: [self.cells, 2 * self.cells],
+            level: Level::Full,
+        }
+    }
+}
+
+/// Slopes of Duncan and Wright, turned so that they fall to the right.
+fn duncan_wright() -> Vec<Problem> {
+    let surface = [[0.0, 45.0], [35.0, 45.0], [110.0, 15.0], [140.0, 15.0]];
+    let submerged = Imperial {
+        name: "submerged",
+        height: 30.0,
+        surface: &surface,
+        layers: one(100.0, 20.0, &surface),
+        unit_weights: vec![128.0],
+        cells: 12,
+    };
     let layers = vec![
         Layer {
             cohesion: 600.0,
@@ -248,100 +282,49 @@ fn imperial() -> Vec<Problem> {
             polygon: vec![[0.0, 0.0], [200.0, 0.0], [200.0, 20.0], [0.0, 20.0]],
         },
     ];
-    let problem = |(name, height, surface, layers, unit_weights): (
-        &str,
-        f64,
-        &[[f64; 2]],
-        Vec<Layer>,
-        Vec<f64>,
-    ),
-                   (oracle, water, known): (Oracle, PoreSource, [f64; 2]),
-                   cells: u32,
-                   of: Level| Problem {
-        group: "others",
-        section: section(name, height, surface, layers),
-        search: around(known, unit_weights[0] * height / 200.0),
-        unit_weights,
-        water,
-        water_unit_weight: POUNDS,
-        oracle,
-        known,
-        beyond: 0.02,
-        meshes: [cells, 2 * cells],
-        level: of,
-    };
-    let vp70 = (
-        "submerged",
-        30.0,
-        &submerged[..],
-        one(100.0, 20.0, &submerged),
-        vec![128.0],
-    );
-    let vp82 = (
-        "two layers, line",
-        40.0,
-        &two[..],
+    let two_layers = Imperial {
+        name: "two layers, line",
+        height: 40.0,
+        surface: &[[0.0, 60.0], [60.0, 60.0], [140.0, 20.0], [200.0, 20.0]],
         layers,
-        vec![125.0, 132.0],
-    );
-    let vp21 = |name| {
-        (
-            name,
-            40.0,
-            &fredlund[..],
-            one(600.0, 20.0, &fredlund),
-            vec![120.0],
-        )
+        unit_weights: vec![125.0, 132.0],
+        cells: 16,
     };
-    let vp100 = |name| {
-        (
-            name,
-            100.0,
-            &morgenstern[..],
-            one(312.0, 30.0, &morgenstern),
-            vec![124.8],
-        )
-    };
-    let line = PoreSource::Table(vec![
-        [0.0, 40.0],
-        [100.0, 30.0],
-        [140.0, 20.0],
-        [200.0, 20.0],
-    ]);
-    let ground = PoreSource::Table(morgenstern.to_vec());
+    let line = vec![[0.0, 40.0], [100.0, 30.0], [140.0, 20.0], [200.0, 20.0]];
     vec![
-        problem(vp70, (VP70, level(60.0), [1.583, 1.600]), 12, Level::Full),
-        problem(vp82, (VP82, line, [1.519, 1.533]), 16, Level::Full),
-        problem(
-            vp21("Fredlund and Krahn, dry"),
-            (VP21, PoreSource::Dry, [1.976, 1.998]),
-            16,
-            Level::Full,
-        ),
-        problem(
-            vp21("Fredlund and Krahn, r_u = 0.25"),
-            (VP21, PoreSource::Ratio(0.25), [1.683, 1.702]),
-            16,
-            Level::Full,
-        ),
-        problem(
-            vp100("Morgenstern, dry"),
-            (VP100, PoreSource::Dry, [2.228, 2.262]),
-            20,
-            Level::Full,
-        ),
-        problem(
-            vp100("Morgenstern, full pool"),
-            (VP100, level(100.0), [2.561, 2.605]),
-            20,
-            Level::Full,
-        ),
-        problem(
-            vp100("Morgenstern, drawn down"),
-            (VP100, ground, [1.196, 1.217]),
-            20,
-            Level::Full,
-        ),
+        submerged.with(VP70, level(60.0), [1.583, 1.600]),
+        two_layers.with(VP82, PoreSource::Table(line), [1.519, 1.533]),
+    ]
+}
+
+/// Slopes of Fredlund and Krahn, and of Morgenstern, turned so that they fall to the right.
+fn one_soil() -> Vec<Problem> {
+    let fredlund = [[0.0, 60.0], [60.0, 60.0], [140.0, 20.0], [180.0, 20.0]];
+    let vp21 = |name| Imperial {
+        name,
+        height: 40.0,
+        surface: &fredlund,
+        layers: one(600.0, 20.0, &fredlund),
+        unit_weights: vec![120.0],
+        cells: 16,
+    };
+    let morgenstern = [[0.0, 100.0], [75.0, 100.0], [375.0, 0.0]];
+    let vp100 = |name| Imperial {
+        name,
+        height: 100.0,
+        surface: &morgenstern,
+        layers: one(312.0, 30.0, &morgenstern),
+        unit_weights: vec![124.8],
+        cells: 20,
+    };
+    let ground = PoreSource::Table(morgenstern.to_vec());
+    let quarter = PoreSource::Ratio(0.25);
+    vec![
+        vp21("Fredlund and Krahn, dry").with(VP21, PoreSource::Dry, [1.976, 1.998]),
+        vp21("Fredlund and Krahn, r_u = 0.25").with(VP21, quarter, [1.683, 1.702]),
+        vp100("Morgenstern, dry").with(VP100, PoreSource::Dry, [2.228, 2.262]),
+        vp100("Morgenstern, full pool").with(VP100, level(100.0), [2.561, 2.605]),
+        vp100("Morgenstern, drawn down").with(VP100, ground, [1.196, 1.217]),
     ]
 }
 
@@ -350,6 +333,7 @@ pub(super) fn all() -> Vec<Problem> {
     let mut all = drawn_down();
     all.extend(ratios());
     all.extend(dam());
-    all.extend(imperial());
+    all.extend(duncan_wright());
+    all.extend(one_soil());
     all
 }
