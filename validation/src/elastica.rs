@@ -83,6 +83,7 @@ impl Bending {
                 load: 0,
             }],
             rigid: Vec::new(),
+            reinforcement: Vec::new(),
         };
         let elasticity = Elasticity::new(12.0 * LENGTH * LENGTH, 0.0)?;
         let law: SharedLaw = Arc::new(HenckyElastic::new(elasticity));

@@ -26,6 +26,7 @@ mod pictures;
 mod prism;
 mod pseudo_static;
 mod reference;
+mod reinforcement;
 mod review;
 mod runs;
 mod slope_profile;
@@ -111,6 +112,9 @@ enum Case {
     Layers,
     StrengthProfile,
     SlopeProfile,
+    ReinforcementBar,
+    ReinforcementSeam,
+    ReinforcementCut,
     Water,
     Stages,
     FootingContact,
@@ -148,6 +152,9 @@ impl Case {
             Self::Layers => layers::study(out),
             Self::StrengthProfile => strength_profile::study(level, out),
             Self::SlopeProfile => slope_profile::study(level, out),
+            Self::ReinforcementBar => reinforcement::bar::study(out),
+            Self::ReinforcementSeam => reinforcement::seam::study(level, out),
+            Self::ReinforcementCut => reinforcement::cut::study(level, out),
             Self::Water => water::study(level, out),
             Self::Stages => stages::study(level, out),
             Self::FootingContact => footing_contact::study(level, out),

@@ -3,24 +3,21 @@
 
 use igimp_shape::{Grid, Support};
 
-use crate::constraints::Constraints;
 use crate::unknowns::Unknowns;
 
 /// Pivots smaller than this count as none: the nodes at hand lie on a line or a plane \[-\].
 const NO_PIVOT: f64 = 1e-9;
 
-/// Shares by node of a load point at `x`, whose linear shares on masters are `own`, without those on
+/// Shares by node of a point at `x`, whose linear shares on masters are `own`, without those on
 /// dropped nodes. The sum stays one, and the moment stays where the nodes near by allow. `None` if no
 /// node near by takes part.
 pub(crate) fn shares_of_carried<const D: usize>(
     grid: &Grid<D>,
     unknowns: &Unknowns<D>,
-    constraints: &Constraints<D>,
+    is_dropped: impl Fn(usize) -> bool,
     x: &[f64; D],
     own: &[Support<D>],
 ) -> Option<Vec<(usize, f64)>> {
-    let held = |node: usize| (0..D).all(|axis| constraints.of(node, axis).is_some());
-    let is_dropped = |node: usize| !unknowns.is_active(node) && !held(node);
     let mut shares: Vec<(usize, f64)> = own
         .iter()
         .map(|support| (support.node, support.value))

@@ -76,6 +76,14 @@ pub enum AssemblyError {
         /// Position \[length\], axes beyond the dimension 0.
         position: [f64; 3],
     },
+    /// A part of a reinforcement is where there is no soil.
+    #[error("no soil carries the reinforcement \"{name}\" at {position:?} m")]
+    UnsupportedReinforcement {
+        /// Its name.
+        name: String,
+        /// Where \[length\], axes beyond the dimension 0.
+        position: [f64; 3],
+    },
     /// A law could not answer.
     #[error("particle {particle}: the constitutive law failed")]
     Material {

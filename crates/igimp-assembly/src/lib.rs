@@ -25,6 +25,7 @@ mod nodal_forces;
 mod particles;
 mod pore_water;
 mod reach;
+mod reinforcement;
 mod residual;
 mod rigid;
 mod small;
@@ -46,6 +47,9 @@ pub use matrix::{CompressedColumns, NodeBlock, Pattern, TangentMatrix};
 pub use method::{DomainUpdate, Geometry, Kinematics, Locking, Method, Remedy, SmallCuts};
 pub use particles::{ParticleFields, ParticleSeed, Particles};
 pub use pore_water::{HeldForces, PoreSite, PoreState, PoreWater, Water};
+pub use reinforcement::{
+    Hold, Reinforcement, ReinforcementControl, Segment, SegmentState, Station,
+};
 pub use residual::OutOfBalance;
 pub use rigid::{
     AcceptedContact, ContactNode, ContactState, Drive, Interface, Penalty, Pose, RigidBody,

@@ -170,6 +170,8 @@ pub(crate) fn add_force_of_points<const D: usize>(
         loads,
         ..
     } = conditions;
+    let held = |node: usize| (0..D).all(|axis| constraints.of(node, axis).is_some());
+    let is_dropped = |node: usize| !unknowns.is_active(node) && !held(node);
     for (index, point) in points.iter().enumerate() {
         let factor = loads.factors.get(point.load).copied().unwrap_or(0.0);
         if factor == 0.0 {
@@ -186,7 +188,7 @@ pub(crate) fn add_force_of_points<const D: usize>(
                 return Err(unsupported());
             }
         }
-        let shares = shares_of_carried(grid, unknowns, constraints, &point.x, &own);
+        let shares = shares_of_carried(grid, unknowns, is_dropped, &point.x, &own);
         for (node, share) in shares.ok_or_else(unsupported)? {
             for axis in 0..D {
                 f_ext[node][axis] += share * factor * point.force[axis];

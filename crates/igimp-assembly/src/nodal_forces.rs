@@ -1,4 +1,5 @@
-//! Forces at nodes beside those of particles: the one seam for ghost penalty, drag and contact.
+//! Forces at nodes beside those of particles: the one seam for ghost penalty, drag, contact
+//! and reinforcement.
 
 /// Takes a block of the tangent: row, column, ∂f/∂u \[force/length\].
 pub(crate) type AddBlock<'b, const D: usize> = dyn FnMut(usize, usize, &[[f64; D]; D]) + 'b;

@@ -10,6 +10,7 @@ use crate::error::AssemblyError;
 use crate::loads::StepLoads;
 use crate::particles::Particles;
 use crate::pore_water::{HeldForces, Water};
+use crate::reinforcement::ReinforcementControl;
 use crate::rigid::RigidMotion;
 
 /// A constitutive law that several bodies and threads share.
@@ -29,6 +30,9 @@ pub struct StepConditions<const D: usize> {
     pub laws: Vec<SharedLaw>,
     /// How rigid bodies move, in their order; one that is not listed is held.
     pub motions: Vec<RigidMotion<D>>,
+    /// What acts on reinforcement, in its order; what is not listed stretches with the ground, with its
+    /// whole bond.
+    pub reinforcement: Vec<ReinforcementControl>,
     /// Water in the pores at the end of the step.
     pub water: Water<D>,
     /// What still holds the body where a change has put it out of balance.
@@ -53,6 +57,7 @@ impl<const D: usize> StepConditions<D> {
             loads,
             laws,
             motions: Vec::new(),
+            reinforcement: Vec::new(),
             water: Water::default(),
             held: None,
         };
@@ -66,6 +71,19 @@ impl<const D: usize> StepConditions<D> {
     /// [`AssemblyError::NonFinite`] for a motion that is not finite.
     pub fn with_motions(mut self, motions: Vec<RigidMotion<D>>) -> Result<Self, AssemblyError> {
         self.motions = motions;
+        self.agree()?;
+        Ok(self)
+    }
+
+    /// The same with what acts on reinforcement, in its order.
+    ///
+    /// # Errors
+    /// [`AssemblyError::NonFinite`] for a jack or a reduction that is none.
+    pub fn with_reinforcement(
+        mut self,
+        controls: Vec<ReinforcementControl>,
+    ) -> Result<Self, AssemblyError> {
+        self.reinforcement = controls;
         self.agree()?;
         Ok(self)
     }
@@ -95,6 +113,11 @@ impl<const D: usize> StepConditions<D> {
         self.constraints.belong_to(&self.grid)?;
         if let Some(index) = self.motions.iter().position(|motion| !motion.is_finite()) {
             let what = "motion of a rigid body";
+            return Err(AssemblyError::NonFinite { what, index });
+        }
+        let sound = |control: &ReinforcementControl| control.is_sound();
+        if let Some(index) = self.reinforcement.iter().position(|own| !sound(own)) {
+            let what = "jack or reduction of a reinforcement";
             return Err(AssemblyError::NonFinite { what, index });
         }
         if let Some(held) = &self.held {

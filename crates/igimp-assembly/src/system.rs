@@ -17,6 +17,7 @@ use crate::method::{Kinematics, Method};
 use crate::nodal_forces::NodalForces;
 use crate::particles::Particles;
 use crate::pore_water::Pores;
+use crate::reinforcement::{Members, Reinforcement};
 use crate::residual::{OutOfBalance, force_of_round_off};
 use crate::rigid::{
     AcceptedContact, Contact, Drive, NODES_PER_BODY, RigidBody, RigidMotion, Swallowed, rotations,
@@ -42,6 +43,7 @@ pub struct System<'a, const D: usize> {
     /// Ghost penalty and drag.
     couplings: [Couplings; 2],
     contact: Contact<'a, D>,
+    reinforcement: Members<'a, D>,
     pub(crate) pores: Pores,
     pub(crate) table: BlockTable<D>,
     pub(crate) pattern: Arc<Pattern>,
@@ -76,6 +78,20 @@ impl<'a, const D: usize> System<'a, D> {
         conditions: &'a StepConditions<D>,
         method: &'a Method,
     ) -> Result<Self, AssemblyError> {
+        Self::with_structures(particles, (bodies, &[]), stencils, conditions, method)
+    }
+
+    /// The same for a body that rigid bodies touch and reinforcement goes through.
+    ///
+    /// # Errors
+    /// As [`Self::new`], and [`AssemblyError::UnsupportedReinforcement`] for reinforcement without soil.
+    pub fn with_structures(
+        particles: &'a Particles<D>,
+        (bodies, members): (&'a [RigidBody<D>], &'a [Reinforcement<D>]),
+        stencils: &'a Stencils<D>,
+        conditions: &'a StepConditions<D>,
+        method: &'a Method,
+    ) -> Result<Self, AssemblyError> {
         conditions.serve(particles)?;
         let mut used = vec![false; conditions.laws.len()];
         for &law in &particles.law {
@@ -102,7 +118,8 @@ impl<'a, const D: usize> System<'a, D> {
             nodal_drag(grid, stencils, conditions.loads.drag),
         ];
         let contact = Contact::find(bodies, particles, stencils, conditions, &unknowns);
-        let forces = beside_particles(&couplings, &contact);
+        let reinforcement = Members::find(members, stencils, conditions, method, &unknowns)?;
+        let forces = beside_particles(&couplings, &contact, &reinforcement);
         let pairs: Vec<_> = forces.iter().flat_map(|force| force.pairs()).collect();
         let symmetric = symmetric && forces.iter().all(|force| force.is_symmetric());
         let mut f_ext = weight(grid, stencils, &conditions.loads);
@@ -127,6 +144,7 @@ impl<'a, const D: usize> System<'a, D> {
             round_off: force_of_round_off(particles, stencils, conditions),
             couplings,
             contact,
+            reinforcement,
             pores,
             motions,
             table,
@@ -515,9 +533,15 @@ impl<'a, const D: usize> System<'a, D> {
             .accepted(u, particles, stencils, method.geometry)
     }
 
+    /// The reinforcement as a step with nodal step displacements `u` \[length\] leaves it when it is
+    /// accepted.
+    pub fn reinforcement_at(&self, u: &[[f64; D]]) -> Vec<Reinforcement<D>> {
+        self.reinforcement.accepted(u)
+    }
+
     /// The forces beside those of particles.
-    fn forces(&self) -> [&dyn NodalForces<D>; 3] {
-        beside_particles(&self.couplings, &self.contact)
+    fn forces(&self) -> [&dyn NodalForces<D>; 4] {
+        beside_particles(&self.couplings, &self.contact, &self.reinforcement)
     }
 
     /// Adds a correction `du` by unknown to nodal displacements `u` \[length\]; tied nodes follow their
@@ -545,12 +569,13 @@ impl<'a, const D: usize> System<'a, D> {
     }
 }
 
-/// Ghost penalty, drag and contact, in the order in which they are summed.
+/// Ghost penalty, drag, contact and reinforcement, in the order in which they are summed.
 fn beside_particles<'s, const D: usize>(
     [ghost, drag]: &'s [Couplings; 2],
     contact: &'s Contact<'_, D>,
-) -> [&'s dyn NodalForces<D>; 3] {
-    [ghost, drag, contact]
+    reinforcement: &'s Members<'_, D>,
+) -> [&'s dyn NodalForces<D>; 4] {
+    [ghost, drag, contact, reinforcement]
 }
 
 /// What drives the nodes that stand for rigid bodies: two for each, displacement and rotation, the

@@ -7,6 +7,7 @@ mod grid;
 mod ground;
 mod profile;
 mod raster;
+mod reinforcement;
 mod rigid;
 mod water;
 
@@ -22,6 +23,7 @@ pub use grid::{AxisSpec, GridSpec, MixedCells};
 pub use ground::Ground;
 pub use profile::{LEAST_STRENGTH, Profile, Profiles, StressShare, Variation};
 pub use raster::Raster;
+pub use reinforcement::{ReinforcementKind, ReinforcementPart, ReinforcementQuantity};
 pub use rigid::{
     Adhesion, RigidDrive, RigidInterface, RigidMove, RigidPart, RigidQuantity, RigidShape,
     RigidShear,
@@ -58,6 +60,8 @@ pub struct Case {
     pub loads: Vec<Load>,
     /// Rigid bodies; stages name them by index.
     pub rigid: Vec<RigidPart>,
+    /// Reinforcement; stages name it by index.
+    pub reinforcement: Vec<ReinforcementPart>,
     /// What happens, in order.
     pub stages: Vec<Stage>,
     /// Newton, step cutting, linear solver.
@@ -313,6 +317,8 @@ pub struct Stage {
     pub start_from: Option<usize>,
     /// Whether displacements count from the end of this stage on.
     pub reset_displacements: bool,
+    /// Indices of the reinforcement that is installed as it begins.
+    pub install: Vec<usize>,
     /// Conditions that end the stage early.
     pub stop_when: StopWhen,
     /// Whether all soil drains while it lasts: no excess pore pressure comes or goes.
@@ -566,6 +572,8 @@ pub enum Quantity {
     Reaction(usize),
     /// A number of a rigid body.
     Rigid(usize, RigidQuantity),
+    /// A number of a member of reinforcement.
+    Reinforcement(usize, ReinforcementQuantity),
     /// Factor on a load \[-\].
     LoadFactor(usize),
     /// A field at a monitor.

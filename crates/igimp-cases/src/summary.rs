@@ -164,9 +164,25 @@ pub struct StageSummary {
     pub settlement: Option<f64>,
     /// What a strength reduction found.
     pub safety: Option<SafetySummary>,
+    /// The reinforcement that was there at its end.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub reinforcement: Vec<MemberSummary>,
     /// Water in the pores at the end, where there is some.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pore_water: Option<PoreSummary>,
+}
+
+/// The tension of a member of reinforcement at the end of a stage.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct MemberSummary {
+    /// Name.
+    pub name: String,
+    /// Largest tension along it \[N/m\].
+    pub force: f64,
+    /// Tension at its head \[N/m\].
+    pub head_force: f64,
+    /// Share of its length on which tension is at its limit \[-\].
+    pub at_limit: f64,
 }
 
 /// Water in the pores at the end of a stage; pressure compression positive.

@@ -248,6 +248,20 @@ fn vertical_cut_collapses_near_the_bounds() {
 }
 
 #[test]
+fn nails_hold_a_cut_that_would_fall() {
+    let overrides = ["grid.cell=0.5 m", "stages.0.steps=3"];
+    let held = ran("nailed_cut", &overrides);
+    assert_eq!(held.outcomes(), [Completed, Completed]);
+    // Circles through the nails, and what the mesh adds.
+    between(held.factor_of_safety(1)[0], 1.15, 1.35);
+    let most = held.end_of("force in the middle nails");
+    between(most, 10e3, 30e3);
+    let bare = [overrides[0], overrides[1], "reinforcement=[]", "curves=[]"];
+    let bare = ran("nailed_cut", &bare);
+    assert!(bare.run.failure.is_some() || bare.factor_of_safety(1)[0] < 1.05);
+}
+
+#[test]
 fn bearing_capacity_is_that_of_prandtl() {
     let ran = ran(
         "bearing_capacity",

@@ -35,6 +35,10 @@ pub enum OutlineStyle {
     Trace,
     /// A blue line: a water table.
     Water,
+    /// A heavy line with a light core: a member of reinforcement.
+    Member,
+    /// A thin line around a pale ground: the tension along a member.
+    Diagram,
     /// Small arrows, each from one point to the next, then from the third to the fourth, and so on:
     /// directions and sizes.
     Vectors,

@@ -99,6 +99,15 @@ pub(super) fn draw(drawing: &mut Drawing, area: &Rect, style: OutlineStyle, poin
             drawing.stroke(lines(), Stroke::solid(Colour::WATER, 1.1));
             water_mark(drawing, &lines());
         }
+        OutlineStyle::Member => {
+            drawing.stroke(lines(), Stroke::solid(Colour::INK, 3.0));
+            drawing.stroke(lines(), Stroke::solid(Colour::WHITE, 1.0));
+        }
+        OutlineStyle::Diagram => drawing.items.push(Item::Shape(Shape {
+            contours: vec![Contour::Closed(area.clip_polygon(points))],
+            fill: Some((Colour::WHITE, 0.7)),
+            stroke: Some(Stroke::solid(Colour::INK, 0.8)),
+        })),
         OutlineStyle::Vectors => vectors(drawing, area, points),
         OutlineStyle::Point => {
             let centres = points.iter().filter(|&&point| area.contains(point));
@@ -242,6 +251,8 @@ mod tests {
             OutlineStyle::Former,
             OutlineStyle::Trace,
             OutlineStyle::Water,
+            OutlineStyle::Member,
+            OutlineStyle::Diagram,
             OutlineStyle::Vectors,
         ] {
             let mut drawing = Drawing::new("");

@@ -1,6 +1,7 @@
-//! What a step changes: the particles, the points that carry loads, and rigid bodies.
+//! What a step changes: the particles, the points that carry loads, rigid bodies and
+//! reinforcement.
 
-use igimp_assembly::{LoadPoint, Particles, RigidBody};
+use igimp_assembly::{LoadPoint, Particles, Reinforcement, RigidBody};
 
 /// The state that marches from one equilibrium to the next.
 #[derive(Clone, Debug)]
@@ -11,6 +12,8 @@ pub struct Body<const D: usize> {
     pub load_points: Vec<LoadPoint<D>>,
     /// Rigid bodies that the soil may touch.
     pub rigid: Vec<RigidBody<D>>,
+    /// Anchors, nails and geotextiles in the soil.
+    pub reinforcement: Vec<Reinforcement<D>>,
 }
 
 impl<const D: usize> Body<D> {
@@ -20,6 +23,7 @@ impl<const D: usize> Body<D> {
             particles,
             load_points: Vec::new(),
             rigid: Vec::new(),
+            reinforcement: Vec::new(),
         }
     }
 }

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use igimp_assembly::{
-    AssemblyError, Geometry, LoadPoint, Method, OutOfBalance, Pattern, Stencils, StepConditions,
-    System, TangentMatrix, Trial,
+    AssemblyError, Geometry, LoadPoint, Method, OutOfBalance, Pattern, Reinforcement, Stencils,
+    StepConditions, System, TangentMatrix, Trial,
 };
 use igimp_material::TangentKind;
 use igimp_shape::Grid;
@@ -157,10 +157,11 @@ fn equilibrium<const D: usize>(
     let grid = &conditions.grid;
     let clock = Instant::now();
     let stencils = Stencils::build(&body.particles, method, conditions)?;
-    let bodies = &body.rigid;
-    let system = System::with_rigid_bodies(&body.particles, bodies, &stencils, conditions, method)?
-        .with_load_points(&body.load_points)?
-        .sharing(workspace.pattern());
+    let structures = (&body.rigid[..], &body.reinforcement[..]);
+    let system =
+        System::with_structures(&body.particles, structures, &stencils, conditions, method)?
+            .with_load_points(&body.load_points)?
+            .sharing(workspace.pattern());
     let set_up = clock.elapsed();
     let of_step = (&system, &stencils);
     let mut corrector = Corrector::new(of_step, grid, settings, workspace, history, set_up);
@@ -183,6 +184,8 @@ fn equilibrium<const D: usize>(
         ..
     } = corrector;
     let load_points = carried(body, method, grid, &stencils, &u)?;
+    let reinforcement = system.reinforcement_at(&u);
+    on_grid(&reinforcement, grid)?;
     let clock = Instant::now();
     let reactions = system.reactions(trial);
     let unknowns = system.unknowns().len();
@@ -193,6 +196,7 @@ fn equilibrium<const D: usize>(
     let pore_pressure = system.into_pore_pressure();
     body.load_points = load_points;
     body.rigid = contact.bodies;
+    body.reinforcement = reinforcement;
     body.particles.commit(&stencils, method, trial, &u);
     body.particles.fill_pores(&pore_pressure);
     body.particles.put_back(&contact.put_back);
@@ -251,6 +255,23 @@ fn carried<const D: usize>(
         }
     };
     body.load_points.iter().enumerate().map(carry).collect()
+}
+
+/// Refuses reinforcement that would be carried off the grid.
+fn on_grid<const D: usize>(
+    reinforcement: &[Reinforcement<D>],
+    grid: &Grid<D>,
+) -> Result<(), StepFailure> {
+    for member in reinforcement {
+        let mut points = member.stations.iter().flat_map(|own| &own.points);
+        if let Some(x) = points.find(|x| !grid.contains(x)) {
+            return Err(StepFailure::ReinforcementLeavesGrid {
+                name: member.name.clone(),
+                position: padded(x),
+            });
+        }
+    }
+    Ok(())
 }
 
 /// Lets the first correction carry the prescribed motion: sets `u` to it and takes the force that it

@@ -59,6 +59,14 @@ pub enum StepFailure {
         /// Where it would go \[length\], axes beyond the dimension 0.
         position: [f64; 3],
     },
+    /// Converged, but reinforcement would be carried off the background grid.
+    #[error("the reinforcement \"{name}\" would leave the background grid at {position:?} m")]
+    ReinforcementLeavesGrid {
+        /// Its name.
+        name: String,
+        /// Where it would go \[length\], axes beyond the dimension 0.
+        position: [f64; 3],
+    },
     /// Converged, but a particle would be carried into a rigid body, or through it.
     #[error(transparent)]
     Swallowed(#[from] Swallowed),
@@ -116,6 +124,7 @@ impl StepFailure {
             | Self::NotHeld { .. } => true,
             Self::LeavesGrid { .. }
             | Self::LoadPointLeavesGrid { .. }
+            | Self::ReinforcementLeavesGrid { .. }
             | Self::Swallowed(_)
             | Self::TooDeep { .. }
             | Self::NotFinite { .. } => false,
@@ -133,7 +142,9 @@ impl StepFailure {
     pub(crate) fn leaves_grid(&self) -> bool {
         matches!(
             self,
-            Self::LeavesGrid { .. } | Self::LoadPointLeavesGrid { .. }
+            Self::LeavesGrid { .. }
+                | Self::LoadPointLeavesGrid { .. }
+                | Self::ReinforcementLeavesGrid { .. }
         )
     }
 }

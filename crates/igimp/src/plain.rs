@@ -316,6 +316,7 @@ mod tests {
                 settlement: 0.0,
                 srf: Vec::new(),
                 rigid: Vec::new(),
+                reinforcement: Vec::new(),
                 water: None,
                 drained: false,
             },

@@ -216,3 +216,61 @@ fn a_pushed_slope_from_files_is_taken_up_while_its_files_stay() {
         "{said}"
     );
 }
+
+/// GOAL: reinforcement goes on with the tension that it had, under a jack and locked off: from any step of its
+/// stages the run ends with the same files.
+#[test]
+fn reinforcement_is_taken_up_with_its_tension() {
+    let folder = Folder::new("tied-cut");
+    let case = include_str!("../../igimp-cases/tests/data/tied_cut.toml");
+    fs::write(folder.0.join("tied_cut.toml"), case).unwrap();
+    let run = |more: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_igimp"));
+        command.args(["run", "tied_cut.toml", "--out", "out", "--quiet"]);
+        let output = command.args(more).current_dir(&folder.0).output().unwrap();
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(0), "{said}");
+    };
+    run(&[]);
+    let expected = folder.everything("out");
+    assert!(expected.contains_key(Path::new("reinforcement/mat__3-load.csv")));
+    let checkpoints = folder.0.join("out/checkpoint");
+    for last in [11, 9, 7, 5, 4, 2] {
+        for found in fs::read_dir(&checkpoints).unwrap() {
+            let path = found.unwrap().path();
+            let name = path.file_name().unwrap().to_str().unwrap();
+            let step = name.strip_prefix("step-").map(str::parse::<i32>);
+            let is_later = match step {
+                Some(step) => step.unwrap() > last,
+                None => [
+                    "stage-01-end",
+                    "stage-02-end",
+                    "stage-03-end",
+                    "stage-04-end",
+                ]
+                .iter()
+                .zip([3, 6, 10, 99])
+                .any(|(end, at)| name == *end && last < at),
+            };
+            if is_later {
+                fs::remove_dir_all(&path).unwrap();
+            }
+        }
+        run(&["--resume"]);
+        let found = folder.everything("out");
+        assert_eq!(
+            differing(&expected, &found),
+            Vec::<PathBuf>::new(),
+            "{last}"
+        );
+    }
+    for stage in ["stress", "load", "safety"] {
+        run(&["--from-stage", stage]);
+        let found = folder.everything("out");
+        assert_eq!(
+            differing(&expected, &found),
+            Vec::<PathBuf>::new(),
+            "{stage}"
+        );
+    }
+}

@@ -8,5 +8,5 @@
 
 pub(crate) mod bishop;
 pub(crate) mod rotation;
-mod search;
+pub(crate) mod search;
 pub(crate) mod sliding;

@@ -8,7 +8,7 @@ const FINE: usize = 7;
 const ROUNDS: usize = 14;
 
 /// The least value of a function over a box, and where it is; infinite values are no candidates.
-pub(super) fn least(
+pub(crate) fn least(
     value: impl Fn([f64; 3]) -> f64,
     lower: [f64; 3],
     upper: [f64; 3],

@@ -144,6 +144,7 @@ fn solve<const D: usize>(
         particles,
         load_points,
         rigid: Vec::new(),
+        reinforcement: Vec::new(),
     };
     let constraints = walls(&grid, field.rollers);
     let load_path = |_from: f64, to: f64| {

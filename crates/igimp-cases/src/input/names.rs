@@ -154,6 +154,7 @@ fn plural_of(noun: &str) -> String {
         "rigid body" => "rigid bodies".to_owned(),
         "body" => "bodies".to_owned(),
         "box" => "boxes".to_owned(),
+        "reinforcement" => "members of reinforcement".to_owned(),
         noun => format!("{noun}s"),
     }
 }

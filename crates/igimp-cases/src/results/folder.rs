@@ -6,7 +6,7 @@
 //! | `summary.json`, `report.html` | outcome, for programs and for people |
 //! | `case.toml`, `case.completed.toml` | the case as given, and with every default |
 //! | `convergence.csv` | residuals of all steps, accepted or cut |
-//! | `curves/`, `monitors/`, `rigid/`, `sections/`, `slip_lines/` | tables (`.csv`) |
+//! | `curves/`, `monitors/`, `reinforcement/`, `rigid/`, `sections/`, `slip_lines/` | tables (`.csv`) |
 //! | `figures/` | pictures (`.svg`, `.png`) |
 //! | `paraview/` | particles and grid (`.pvd`, `.vtu`) |
 //! | `checkpoint/`, `last-converged/` | states ([`checkpoint`]) |
@@ -42,7 +42,14 @@ const FILES: [&str; 5] = [
 ];
 /// Most meshes of a study of the mesh error.
 const MOST_MESHES: usize = 3;
-pub(super) const TABLES: [&str; 5] = ["curves", "monitors", "rigid", "sections", SLIP_LINES];
+pub(super) const TABLES: [&str; 6] = [
+    "curves",
+    "monitors",
+    "reinforcement",
+    "rigid",
+    "sections",
+    SLIP_LINES,
+];
 const SLIP_LINES: &str = "slip_lines";
 pub(super) const FIGURES: &str = "figures";
 pub(super) const PARAVIEW: &str = "paraview";
@@ -139,6 +146,11 @@ impl Folder {
     /// `rigid/`.
     pub fn rigid(&self) -> PathBuf {
         self.root.join("rigid")
+    }
+
+    /// `reinforcement/`.
+    pub fn reinforcement(&self) -> PathBuf {
+        self.root.join("reinforcement")
     }
 
     /// `monitors/`.

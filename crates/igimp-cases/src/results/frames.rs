@@ -1,4 +1,4 @@
-//! What a run writes for ParaView: the particles, the grid and rigid bodies, frame by frame.
+//! What a run writes for ParaView: the particles, the grid, rigid bodies and reinforcement, frame by frame.
 
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -10,10 +10,20 @@ use super::atomic::{at, sync_folder, sync_together};
 use super::fields;
 use super::particles::{Extras, of_grid, of_particles};
 use super::pvd::{self, Collection};
-use super::rigid::{Standing, lines};
+use super::reinforcement::{self, Installed};
+use super::rigid::{self, Standing};
 use super::vtu::UnstructuredGrid;
 use crate::case::{Case, Field};
 use crate::error::CaseError;
+
+/// Structures that are there in a frame.
+#[derive(Clone, Debug, Default)]
+pub struct Structures<'a> {
+    /// Rigid bodies.
+    pub rigid: Vec<Standing<'a>>,
+    /// Reinforcement.
+    pub reinforcement: Vec<Installed<'a>>,
+}
 
 /// The frames of a run.
 #[derive(Debug)]
@@ -23,6 +33,8 @@ pub struct Frames {
     grid: Collection,
     /// Of a case with rigid bodies.
     rigid: Option<Collection>,
+    /// Of a case with reinforcement.
+    reinforcement: Option<Collection>,
     /// Whether there is pore water to write of.
     pore_water: bool,
     /// Frames that the disk is known to have.
@@ -30,16 +42,20 @@ pub struct Frames {
 }
 
 impl Frames {
-    /// Goes on after the first `frames` frames of a folder that exists; 0 begins anew. Rigid bodies have
-    /// frames in cases that have some, and effective stress and pore pressure are written where there is water.
+    /// Goes on after the first `frames` frames of a folder that exists; 0 begins anew. Rigid bodies and
+    /// reinforcement have frames in cases that have some, and effective stress and pore pressure are written
+    /// where there is water.
     ///
     /// # Errors
     /// [`CaseError::Unusable`], [`CaseError::File`].
     pub fn open(folder: &Path, frames: usize, case: &Case) -> Result<Self, CaseError> {
-        let has_rigid = !case.rigid.is_empty();
-        let rigid = has_rigid.then(|| Collection::resume(folder, pvd::RIGID, frames));
+        let of = |stem, is_there: bool| {
+            let opened = is_there.then(|| Collection::resume(folder, stem, frames));
+            opened.transpose()
+        };
         Ok(Self {
-            rigid: rigid.transpose()?,
+            rigid: of(pvd::RIGID, !case.rigid.is_empty())?,
+            reinforcement: of(pvd::REINFORCEMENT, !case.reinforcement.is_empty())?,
             pore_water: case.has_pore_water(),
             folder: folder.to_path_buf(),
             particles: Collection::resume(folder, pvd::PARTICLES, frames)?,
@@ -57,18 +73,22 @@ impl Frames {
         time: f64,
         (particles, laws): (&Particles<2>, &[SharedLaw]),
         grid: &Grid<2>,
-        rigid: &[Standing<'_>],
+        structures: &Structures<'_>,
     ) -> Result<(), CaseError> {
         let cells = self.cells(particles, laws);
         self.particles.add(time, &cells)?;
         self.grid.add(time, &of_grid(grid, None))?;
         if let Some(collection) = &mut self.rigid {
-            collection.add(time, &lines(rigid))?;
+            collection.add(time, &rigid::lines(&structures.rigid))?;
+        }
+        if let Some(collection) = &mut self.reinforcement {
+            collection.add(time, &reinforcement::lines(&structures.reinforcement))?;
         }
         Ok(())
     }
 
-    /// Writes particles beside the frames, as `NAME.vtu`, and rigid bodies as `NAME-rigid.vtu`.
+    /// Writes particles beside the frames, as `NAME.vtu`, rigid bodies as `NAME-rigid.vtu`, and
+    /// reinforcement as `NAME-reinforcement.vtu`.
     ///
     /// # Errors
     /// [`CaseError::File`].
@@ -76,11 +96,15 @@ impl Frames {
         &self,
         name: &str,
         (particles, laws): (&Particles<2>, &[SharedLaw]),
-        rigid: &[Standing<'_>],
+        structures: &Structures<'_>,
     ) -> Result<(), CaseError> {
+        let file = |of| self.folder.join(format!("{name}{of}.vtu"));
         if self.rigid.is_some() {
-            let name = format!("{name}{}.vtu", pvd::OF_BODIES);
-            lines(rigid).write(&self.folder.join(name))?;
+            rigid::lines(&structures.rigid).write(&file(pvd::OF_BODIES))?;
+        }
+        if self.reinforcement.is_some() {
+            let lines = reinforcement::lines(&structures.reinforcement);
+            lines.write(&file(pvd::OF_REINFORCEMENT))?;
         }
         let path = self.folder.join(name).with_extension("vtu");
         self.cells(particles, laws).write(&path)
@@ -115,7 +139,8 @@ impl Frames {
             let file = File::open(&path).map_err(at(&path))?;
             Ok((path, file))
         };
-        let collections = [&self.particles, &self.grid].into_iter().chain(&self.rigid);
+        let collections = [&self.particles, &self.grid].into_iter();
+        let collections = collections.chain(&self.rigid).chain(&self.reinforcement);
         let files: Vec<_> = collections
             .flat_map(new)
             .map(open)

@@ -16,6 +16,7 @@ pub mod particles;
 pub mod pictures;
 pub mod pvd;
 pub mod regime;
+pub mod reinforcement;
 pub mod report;
 pub mod rigid;
 pub mod rows;

@@ -21,6 +21,12 @@ pub const GRID: &str = "grid";
 /// Name of the frames of rigid bodies.
 pub const RIGID: &str = "rigid";
 
+/// Name of the frames of reinforcement.
+pub const REINFORCEMENT: &str = "reinforcement";
+
+/// Behind the name of a state that is written beside the frames, for its reinforcement.
+pub(super) const OF_REINFORCEMENT: &str = "-reinforcement";
+
 /// Behind the name of a state that is written beside the frames, for its rigid bodies.
 pub(super) const OF_BODIES: &str = "-rigid";
 
@@ -179,9 +185,9 @@ fn attribute<'a>(tag: &'a str, name: &str) -> Option<&'a str> {
 }
 
 /// Whether a file of `paraview/` has a name that a run gives: `STEM.pvd`, `STEM_0001.vtu`, and the states
-/// of a search, `stage-02-last-stable.vtu` and `stage-02-last-stable-rigid.vtu`.
+/// of a search, such as `stage-02-last-stable.vtu` and `stage-02-last-stable-rigid.vtu`.
 pub(super) fn is_our_name(name: &str) -> bool {
-    let is_frame = [PARTICLES, GRID, RIGID]
+    let is_frame = [PARTICLES, GRID, RIGID, REINFORCEMENT]
         .iter()
         .any(|stem| name.strip_prefix(stem) == Some(".pvd") || frame_number(name, stem).is_some());
     is_frame || is_state_of_a_search(name)
@@ -196,10 +202,12 @@ fn is_state_of_a_search(name: &str) -> bool {
         .is_some_and(|(digits, what)| {
             digits.len() >= 2
                 && digits.bytes().all(|byte| byte.is_ascii_digit())
-                && matches!(
-                    what.strip_suffix(OF_BODIES).unwrap_or(what),
-                    "last-stable" | "first-unstable"
-                )
+                && [OF_BODIES, OF_REINFORCEMENT, ""].iter().any(|of| {
+                    matches!(
+                        what.strip_suffix(of),
+                        Some("last-stable" | "first-unstable")
+                    )
+                })
         })
 }
 

@@ -58,6 +58,7 @@ fn render(folder: &Path, summary: &Summary) -> Result<String, minijinja::Error> 
         .into_iter()
         .partition(|group| group.id == "convergence");
     let last_frame = last_frame(folder);
+    let reinforcement = rows::reinforcement(summary);
     let entries = contents(
         [
             (true, "numbers", "Results"),
@@ -67,6 +68,7 @@ fn render(folder: &Path, summary: &Summary) -> Result<String, minijinja::Error> 
             (!summary.warnings.is_empty(), "warnings", "Warnings"),
             (!summary.setup.is_empty(), "setup", "The model"),
             (true, "stages", "Stages"),
+            (!reinforcement.is_empty(), "reinforcement", "Reinforcement"),
             (!safety.is_empty(), "safety", "Factor of safety"),
         ],
         &pictures,
@@ -97,6 +99,7 @@ fn render(folder: &Path, summary: &Summary) -> Result<String, minijinja::Error> 
         warnings: &summary.warnings,
         stages: rows::stages(summary),
         phase_names: rows::PHASES,
+        reinforcement,
         safety,
         pictures,
         tables,
@@ -129,6 +132,7 @@ struct Page<'a> {
     warnings: &'a [String],
     stages: Vec<rows::StageView>,
     phase_names: [&'static str; 5],
+    reinforcement: Vec<rows::MemberView>,
     safety: Vec<rows::SafetyView>,
     pictures: Vec<files::Group>,
     tables: Vec<files::FileView>,

@@ -8,8 +8,8 @@ use igimp_assembly::{Geometry, Tension};
 
 use crate::case::{
     Adhesion, AxisSpec, Boundaries, Case, Construction, Load, LoadKind, Material, Profile,
-    Reduction, ReductionPath, RigidDrive, RigidMove, RigidPart, RigidShape, RigidShear, Side,
-    Stage, StageKind, StopWhen, Strength, StressShare, Variation,
+    Reduction, ReductionPath, ReinforcementPart, RigidDrive, RigidMove, RigidPart, RigidShape,
+    RigidShear, Side, Stage, StageKind, StopWhen, Strength, StressShare, Variation,
 };
 use crate::check::short;
 use crate::summary::SetupTable;
@@ -19,7 +19,7 @@ const NONE: &str = "–";
 /// Most corners of a body that are listed one by one.
 const MOST_CORNERS: usize = 24;
 
-/// Materials, bodies, water, rigid bodies, supports, loads, stages and grid of a case.
+/// Materials, bodies, water, rigid bodies, reinforcement, supports, loads, stages and grid of a case.
 pub fn tables(case: &Case) -> Vec<SetupTable> {
     [
         materials(case),
@@ -27,6 +27,7 @@ pub fn tables(case: &Case) -> Vec<SetupTable> {
         bodies(case),
         water::conditions(case),
         rigid_bodies(case),
+        reinforcement(case),
         supports(&case.boundaries),
         loads(case),
         stages(case),
@@ -275,6 +276,62 @@ fn rigid_bodies(case: &Case) -> SetupTable {
     table("Rigid bodies", &header, rows.collect())
 }
 
+fn reinforcement(case: &Case) -> SetupTable {
+    let header = [
+        "Reinforcement",
+        "Kind",
+        "Line [m]",
+        "Stiffness EA [MN/m]",
+        "Capacity [kN/m]",
+        "Bond [kPa]",
+        "Held at head, end [kN/m]",
+        "Installed",
+    ];
+    let rows = case.reinforcement.iter().enumerate();
+    let rows = rows.map(|(index, part)| member(case, index, part));
+    table("Reinforcement, per metre run", &header, rows.collect())
+}
+
+fn member(case: &Case, index: usize, part: &ReinforcementPart) -> Vec<String> {
+    let mut kind = part.kind.name().to_owned();
+    if part.free_length > 0.0 {
+        let _ = write!(kind, ", {} m of it free", short(part.free_length));
+    }
+    let mut bond = short(part.bond / 1e3);
+    if part.reduces_bond {
+        bond.push_str(", reduced with the strength");
+    }
+    let [head, end] = part.fastened.map(|force| short(force / 1e3));
+    let held = match part.plate {
+        Some([from, to]) => {
+            let width = short((to[0] - from[0]).hypot(to[1] - from[1]));
+            format!("{head} on a plate of {width} m, {end}")
+        }
+        None => format!("{head}, {end}"),
+    };
+    let stages = case.stages.iter();
+    let installed = stages.filter(|stage| stage.install.contains(&index));
+    let installed: Vec<&str> = installed.map(|stage| stage.name.as_str()).collect();
+    let mut when = if part.from_start {
+        "from the start".to_owned()
+    } else {
+        format!("in {}", installed.join(", "))
+    };
+    if let Some(prestress) = part.prestress {
+        let _ = write!(when, ", locked off at {} kN/m", short(prestress / 1e3));
+    }
+    vec![
+        part.name.clone(),
+        kind,
+        corners(&part.line),
+        short(part.stiffness / 1e6),
+        short(part.capacity / 1e3),
+        bond,
+        held,
+        when,
+    ]
+}
+
 fn rigid_body(case: &Case, index: usize, part: &RigidPart) -> Vec<String> {
     let (shape, size) = match &part.shape {
         RigidShape::Polygon(own) => {
@@ -440,6 +497,9 @@ fn stages(case: &Case) -> SetupTable {
             |from| case.stages[from].name.clone(),
         );
         let mut what = vec![happens(case, stage)];
+        for &member in &stage.install {
+            what.push(format!("{} installed", case.reinforcement[member].name));
+        }
         if stage.geometry == Geometry::Given {
             what.push("on the geometry as it is".to_owned());
         }

@@ -35,7 +35,8 @@ pub fn advice(
     let yielding = near_worst.is_some_and(|[all, yielding, _]| share(yielding, all) >= COLLAPSE);
     let mut try_this = match &*error.failure {
         StepFailure::LeavesGrid { position, .. }
-        | StepFailure::LoadPointLeavesGrid { position, .. } => off_grid(case, stage, *position),
+        | StepFailure::LoadPointLeavesGrid { position, .. }
+        | StepFailure::ReinforcementLeavesGrid { position, .. } => off_grid(case, stage, *position),
         // Soil that flows away can also turn a particle inside out, or leave a singular matrix.
         StepFailure::Assembly(
             AssemblyError::Inverted { .. }
@@ -196,6 +197,11 @@ fn unformed(case: &Case, stage: &Stage, error: &AssemblyError) -> Vec<String> {
         AssemblyError::LoadPoint { .. } => vec!["a larger domain in [grid]".to_owned()],
         AssemblyError::UnsupportedLoad { position, .. } => vec![format!(
             "moving the load that acts at ({}, {}) m onto soil",
+            short(position[0]),
+            short(position[1])
+        )],
+        AssemblyError::UnsupportedReinforcement { name, position } => vec![format!(
+            "soil around ({}, {}) m, where the reinforcement \"{name}\" is, in the stage that installs it and after",
             short(position[0]),
             short(position[1])
         )],

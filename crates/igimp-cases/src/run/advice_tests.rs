@@ -56,6 +56,7 @@ fn case(kind: StageKind) -> Case {
         },
         loads: Vec::new(),
         rigid: Vec::new(),
+        reinforcement: Vec::new(),
         stages: vec![Stage {
             name: "first".into(),
             kind,
@@ -63,6 +64,7 @@ fn case(kind: StageKind) -> Case {
             geometry: Geometry::Moving,
             start_from: None,
             reset_displacements: false,
+            install: Vec::new(),
             stop_when: StopWhen::default(),
             drained: false,
         }],

@@ -127,14 +127,9 @@ fn holding(model: &Model<'_>, state: &State, stage: usize) -> Result<Vec<[f64; 2
     let conditions = model.conditions(&state.controls, &state.controls, 0.0)?;
     let particles = &state.body.particles;
     let stencils = Stencils::build(particles, &method, &conditions)?;
-    let system = System::with_rigid_bodies(
-        particles,
-        &state.body.rigid,
-        &stencils,
-        &conditions,
-        &method,
-    )?
-    .with_load_points(&state.body.load_points)?;
+    let structures = (&state.body.rigid[..], &state.body.reinforcement[..]);
+    let system = System::with_structures(particles, structures, &stencils, &conditions, &method)?
+        .with_load_points(&state.body.load_points)?;
     let still = vec![[0.0; 2]; system.node_count()];
     let trial = system.evaluate(&still, TangentKind::Elastic)?;
     Ok(system.holding_forces(&trial))

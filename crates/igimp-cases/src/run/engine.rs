@@ -15,8 +15,8 @@ use super::session::{Ended, Session};
 use super::state::State;
 use super::{Event, Failure, Listener, Run, Start, Target};
 use super::{
-    checks, construction, failure, initial, loading, pores, processor, run_out, safety, sections,
-    study,
+    checks, construction, failure, initial, loading, pores, processor, reinforcement, run_out,
+    safety, sections, study,
 };
 use crate::case::{Case, StageKind};
 use crate::error::CaseError;
@@ -267,6 +267,7 @@ impl Stages {
             export.end_of_stage(number)?;
         }
         summary.seconds = seconds_before + clock.elapsed().as_secs_f64();
+        summary.reinforcement = reinforcement::told(session.model.case, state);
         summary.largest_displacement = largest_displacement(&state.body.particles);
         if let StageKind::Displacement { .. } = stage.kind {
             summary.settlement = Some(state.controls.settlement);
@@ -341,6 +342,10 @@ impl Stages {
         } else {
             self.read(session, number, state, &summary)?;
         }
+        // What a jack held is locked off.
+        for own in &mut state.controls.reinforcement {
+            own.jack = None;
+        }
         session.tell(&Event::StageEnded { summary: &summary });
         session.summary.stages.push(summary);
         if goes_on && stage.reset_displacements {
@@ -381,6 +386,7 @@ impl Stages {
             progress: summary.reached,
             particles: &state.body.particles,
             rigid: &state.body.rigid,
+            reinforcement: &state.body.reinforcement,
             controls: &state.controls,
             resistance,
             plastic_share: summary.plastic_share,

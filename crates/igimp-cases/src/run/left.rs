@@ -8,6 +8,7 @@ use igimp_solver::{Body, MarchState};
 use serde::{Deserialize, Serialize};
 
 use super::saved_body::SavedBody;
+use super::saved_reinforcement::SavedMember;
 use super::state::{Controls, State};
 use crate::results::checkpoint::{CheckpointError, Meta};
 use crate::summary::{CheckRow, FigureNote, StageSummary, TrialSummary};
@@ -90,6 +91,8 @@ pub(super) struct Notes {
     pub(super) rigid_rows: Vec<usize>,
     /// The rigid bodies of each state, by its name.
     pub(super) rigid: BTreeMap<String, Vec<SavedBody>>,
+    /// The reinforcement of each state, by its name.
+    pub(super) reinforcement: BTreeMap<String, Vec<SavedMember>>,
     pub(super) convergence_rows: usize,
     pub(super) frames: usize,
     pub(super) steps: usize,

@@ -5,17 +5,20 @@ use std::sync::Arc;
 
 use super::left::Resumption;
 use super::records::Moment;
-use super::rigid;
 use super::session::{Ended, Path, Session, Taken, march_path};
 use super::state::{Controls, State};
-use crate::case::{RigidDrive, Stage, StageKind};
+use super::{reinforcement, rigid};
+use crate::case::{Case, RigidDrive, Stage, StageKind};
 use crate::check::short;
 use crate::error::CaseError;
 use crate::summary::StageSummary;
 
 /// The controls at the end of a stage that begins with `start`.
-pub(crate) fn target(stage: &Stage, start: &Controls) -> Controls {
+pub(crate) fn target(case: &Case, stage: &Stage, start: &Controls) -> Controls {
     let mut end = start.clone();
+    for &member in &stage.install {
+        end.reinforcement[member].jack = case.reinforcement[member].prestress;
+    }
     match &stage.kind {
         StageKind::Gravity {
             factor,
@@ -79,8 +82,11 @@ pub(crate) fn let_go(
             session.warn(text);
         }
     }
+    if resumption.is_none() {
+        reinforcement::begin(model.case, state, stage);
+    }
     let from = resumption.map_or_else(|| state.controls.clone(), |left| left.from.clone());
-    let to = target(stage, &from);
+    let to = target(model.case, stage, &from);
     let mut resistance = resumption.map_or(0.0, |left| left.resistance);
     if resumption.is_none() {
         begin(session, state, number)?;
@@ -131,6 +137,7 @@ pub(crate) fn begin(
         progress: 0.0,
         particles: &state.body.particles,
         rigid: &state.body.rigid,
+        reinforcement: &state.body.reinforcement,
         controls: &state.controls,
         resistance: 0.0,
         plastic_share: 0.0,

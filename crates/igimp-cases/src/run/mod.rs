@@ -21,10 +21,12 @@ mod output;
 mod pores;
 mod processor;
 mod records;
+mod reinforcement;
 mod rigid;
 mod run_out;
 mod safety;
 mod saved_body;
+mod saved_reinforcement;
 mod sections;
 mod session;
 mod state;
@@ -52,7 +54,7 @@ pub use entry::can_go_on;
 pub use message::worst_node;
 pub use model::Model;
 pub use rigid::outlines as rigid_outlines;
-pub use state::{Controls, RigidControls, RigidTrack, State};
+pub use state::{Controls, ReinforcementControls, RigidControls, RigidTrack, State};
 
 /// Why a stage ended that reached its end.
 pub const REACHED_ITS_END: &str = "reached its end";

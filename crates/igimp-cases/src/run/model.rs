@@ -113,13 +113,20 @@ impl<'c> Model<'c> {
         model.seeded = seeded;
         let mut body = Body::new(particles);
         body.load_points = load_points(case);
-        let mut controls = Controls::none(case.loads.len(), case.materials.len(), case.rigid.len());
+        let mut controls = Controls::none(case);
         controls.water = (!case.water.is_empty()).then_some(0);
         for (index, part) in case.rigid.iter().enumerate() {
             if part.from_start {
                 body.rigid
                     .push(super::rigid::made(case, index, model.laws.len())?);
                 controls.rigid[index].placed = true;
+            }
+        }
+        for (index, part) in case.reinforcement.iter().enumerate() {
+            if part.from_start {
+                body.reinforcement
+                    .push(super::reinforcement::made(case, part));
+                controls.reinforcement[index].installed = true;
             }
         }
         if body.particles.clear_of(&body.rigid) > 0 {
@@ -240,6 +247,7 @@ impl<'c> Model<'c> {
             self.laws_reduced_by(&to.srf)?,
         )?
         .with_motions(super::rigid::motions(self.case, from, to))?
+        .with_reinforcement(super::reinforcement::controls(self.case, to))?
         .with_water(self.water(to))
     }
 

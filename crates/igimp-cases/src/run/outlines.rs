@@ -1,27 +1,43 @@
-//! What pictures show beside the soil: rigid bodies and a rigid footing where they stand, and water tables. For tables the
-//! rigid bodies that are there.
+//! What pictures show beside the soil: rigid bodies, a rigid footing and reinforcement where they stand, and water
+//! tables. For tables and frames the structures that are there.
 
 use std::collections::HashSet;
 
-use igimp_assembly::RigidBody;
 use igimp_figures::{Outline, OutlineStyle};
+use igimp_solver::Body;
 
 use super::model::Model;
 use super::rigid;
 use super::state::{Controls, State};
 use crate::case::{Case, LoadKind};
+use crate::results::frames::Structures;
+use crate::results::pictures::Over;
 use crate::results::pictures::rigid::{POINTS_OF_CIRCLE, block};
 use crate::results::pictures::water;
+use crate::results::reinforcement;
 use crate::results::rigid::Standing;
 
-/// The outlines of everything rigid in a state, as far as it lies within the grid, and of the water tables that act.
-pub(crate) fn of_state(model: &Model<'_>, state: &State) -> Vec<Outline> {
+/// What is drawn over a state: everything rigid in it, as far as it lies within the grid, the water tables that act, and
+/// reinforcement.
+pub(crate) fn of_state(model: &Model<'_>, state: &State) -> Over {
     let case = model.case;
     let water = water_tables(model, state);
     let bodies = rigid::outlines(case, state, POINTS_OF_CIRCLE);
     let bodies = bodies.filter_map(|(_, outline)| block(case, &outline));
     let footing = footing(case, state.controls.settlement);
-    footing.into_iter().chain(bodies).chain(water).collect()
+    let members = structures(case, &state.controls, &state.body).reinforcement;
+    let (lower, upper) = (case.grid.lower(), case.grid.upper());
+    let size = (upper[0] - lower[0]).max(upper[1] - lower[1]);
+    let members_drawn = reinforcement::outlines(&members, size);
+    Over {
+        outlines: footing
+            .into_iter()
+            .chain(bodies)
+            .chain(water)
+            .chain(members_drawn)
+            .collect(),
+        labels: reinforcement::labels(&members),
+    }
 }
 
 /// The water tables that act, as far as there is soil.
@@ -43,19 +59,23 @@ fn water_tables(model: &Model<'_>, state: &State) -> Vec<Outline> {
     water::tables(case, condition, |body| bodies.contains(&body), ends)
 }
 
-/// The rigid bodies that are there under controls.
-pub(crate) fn standing<'a>(
+/// The structures that are there under controls.
+pub(crate) fn structures<'a>(
     case: &'a Case,
     controls: &Controls,
-    bodies: &'a [RigidBody<2>],
-) -> Vec<Standing<'a>> {
-    std::iter::zip(controls.placed(), bodies)
-        .map(|(index, body)| Standing {
-            index,
-            part: &case.rigid[index],
-            body,
-        })
-        .collect()
+    body: &'a Body<2>,
+) -> Structures<'a> {
+    let rigid = std::iter::zip(controls.placed(), &body.rigid);
+    Structures {
+        rigid: rigid
+            .map(|(index, body)| Standing {
+                index,
+                part: &case.rigid[index],
+                body,
+            })
+            .collect(),
+        reinforcement: super::reinforcement::present(case, controls, &body.reinforcement),
+    }
 }
 
 /// A rigid footing that was pushed, as a block two cells high.

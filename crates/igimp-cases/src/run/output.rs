@@ -15,6 +15,7 @@ use super::model::Model;
 use super::outlines;
 use super::records::{Records, Rows};
 use super::saved_body;
+use super::saved_reinforcement;
 use super::sections;
 use super::session::Taken;
 use super::state::{Controls, State};
@@ -226,9 +227,9 @@ impl Output {
         {
             let conditions = &taken.accepted.conditions;
             let own = (&body.particles, &conditions.laws[..]);
-            let rigid = outlines::standing(model.case, taken.controls, &body.rigid);
+            let structures = outlines::structures(model.case, taken.controls, body);
             self.frames
-                .add(self.steps as f64, own, &conditions.grid, &rigid)?;
+                .add(self.steps as f64, own, &conditions.grid, &structures)?;
         }
         let due = self.checkpoint_every > 0 && summary.steps.is_multiple_of(self.checkpoint_every);
         if due || taken.interrupted {
@@ -304,11 +305,16 @@ impl Output {
         for table in sections {
             table.write_csv(&self.folder.sections())?;
         }
-        let standing = outlines::standing(case, &state.controls, &state.body.rigid);
+        let structures = outlines::structures(case, &state.controls, &state.body);
         if summary.safety.is_none() {
-            for body in &standing {
-                let name = format!("{}__{}", body.part.name, sections::stage_name(case, number));
-                body.table(name).write_csv(&self.folder.rigid())?;
+            let named = |name: &str| format!("{name}__{}", sections::stage_name(case, number));
+            for body in &structures.rigid {
+                let table = body.table(named(&body.part.name));
+                table.write_csv(&self.folder.rigid())?;
+            }
+            for own in &structures.reinforcement {
+                let table = own.table(named(&own.part.name));
+                table.write_csv(&self.folder.reinforcement())?;
             }
         }
         if self.every != Every::Never {
@@ -316,7 +322,8 @@ impl Output {
             let laws = model.laws_reduced_by(&state.controls.srf)?;
             // The time of a frame is the number of steps and trials so far.
             let own = (&state.body.particles, &laws[..]);
-            self.frames.add(self.steps as f64, own, &grid, &standing)?;
+            self.frames
+                .add(self.steps as f64, own, &grid, &structures)?;
         }
         if let Some(safety) = &summary.safety {
             self.factor_of_safety = match (safety.stable, safety.failed) {
@@ -401,9 +408,13 @@ impl Output {
             let name = format!("stage-{:02}-{what}", number + 1);
             if self.every != Every::Never {
                 let laws = model.laws_reduced_by(&state.controls.srf)?;
-                let rigid = outlines::standing(model.case, &state.controls, &state.body.rigid);
+                let structures = outlines::structures(model.case, &state.controls, &state.body);
+                for own in &structures.reinforcement {
+                    let table = own.table(format!("{}__{name}", own.part.name));
+                    table.write_csv(&self.folder.reinforcement())?;
+                }
                 self.frames
-                    .beside(&name, (&state.body.particles, &laws), &rigid)?;
+                    .beside(&name, (&state.body.particles, &laws), &structures)?;
             }
             let shown = Shown {
                 title: format!("{}, SRF {srf:.4}", summary.name),
@@ -437,8 +448,8 @@ impl Output {
                     case: model.case,
                     pieces: &pieces,
                 };
-                let rigid = outlines::of_state(model, &end.state);
-                let picture = pictures::mechanism_picture(&canvas, &failing, &found, &rigid)?;
+                let over = outlines::of_state(model, &end.state);
+                let picture = pictures::mechanism_picture(&canvas, &failing, &found, &over)?;
                 self.figures.push(picture);
             }
             break;
@@ -484,10 +495,10 @@ impl Output {
         let compared: Vec<Seen<'_>> = std::iter::zip(compared, &reduced)
             .map(|(state, laws)| (&state.body.particles, &laws[..]))
             .collect();
-        let rigid = outlines::of_state(model, state);
+        let over = outlines::of_state(model, state);
         let drawn = wanted
             .par_iter()
-            .map(|&field| pictures::field_picture(&canvas, shown, field, own, &compared, &rigid))
+            .map(|&field| pictures::field_picture(&canvas, shown, field, own, &compared, &over))
             .collect::<Result<Vec<_>, _>>()?;
         self.figures.extend(drawn);
         Ok(())
@@ -562,6 +573,7 @@ impl Output {
             monitor_rows: self.monitors.iter().map(RowWriter::len).collect(),
             rigid_rows: self.rigid.iter().map(RowWriter::len).collect(),
             rigid: BTreeMap::new(),
+            reinforcement: BTreeMap::new(),
             convergence_rows: self.convergence.len(),
             frames: self.frames.len(),
             steps: self.steps,
@@ -577,8 +589,16 @@ impl Output {
     fn meta(&self, notes: &Notes, states: &[(&str, &Body<2>)]) -> Result<Meta, CaseError> {
         let with_bodies = states.iter().filter(|(_, body)| !body.rigid.is_empty());
         let saved = with_bodies.map(|(name, body)| ((*name).to_owned(), saved_body::all(body)));
+        let with_members = states
+            .iter()
+            .filter(|(_, body)| !body.reinforcement.is_empty());
+        let members = with_members.map(|(name, body)| {
+            let own = saved_reinforcement::all(body);
+            ((*name).to_owned(), own)
+        });
         let notes = Notes {
             rigid: saved.collect(),
+            reinforcement: members.collect(),
             ..notes.clone()
         };
         let data = serde_json::to_value(notes).map_err(|source| CaseError::File {

@@ -1,10 +1,10 @@
 //! What a run records: curves and the histories at monitors, one row per recorded moment.
 
-use igimp_assembly::{Particles, RigidBody, SharedLaw};
+use igimp_assembly::{Particles, Reinforcement, RigidBody, SharedLaw};
 
 use super::model::reduced;
-use super::rigid;
 use super::state::Controls;
+use super::{reinforcement, rigid};
 use crate::case::{Case, CheckTime, Quantity};
 use crate::error::CaseError;
 use crate::measure::nearest;
@@ -24,6 +24,8 @@ pub(crate) struct Moment<'a> {
     pub(crate) particles: &'a Particles<2>,
     /// The rigid bodies that are there.
     pub(crate) rigid: &'a [RigidBody<2>],
+    /// The reinforcement that is there.
+    pub(crate) reinforcement: &'a [Reinforcement<2>],
     /// What acts on them.
     pub(crate) controls: &'a Controls,
     /// Resistance of the footing \[N/m\].
@@ -137,6 +139,9 @@ impl Records {
             Quantity::Settlement(_) => controls.settlement,
             Quantity::Reaction(_) => moment.resistance,
             Quantity::Rigid(body, of) => rigid::quantity(case, controls, moment.rigid, body, of),
+            Quantity::Reinforcement(member, of) => {
+                reinforcement::quantity(controls, moment.reinforcement, member, of)
+            }
             Quantity::LoadFactor(load) => controls.factors[load],
             Quantity::Monitor(monitor, field) => {
                 let laws = self.laws_at(moment);

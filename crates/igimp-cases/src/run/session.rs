@@ -199,6 +199,7 @@ impl<'a> Taken<'a> {
             progress: self.accepted.report.to,
             particles: &self.accepted.body.particles,
             rigid: &self.accepted.body.rigid,
+            reinforcement: &self.accepted.body.reinforcement,
             controls: self.controls,
             resistance: self.resistance,
             plastic_share: self.accepted.report.plastic_share,

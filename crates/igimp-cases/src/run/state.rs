@@ -3,6 +3,8 @@
 use igimp_solver::Body;
 use serde::{Deserialize, Serialize};
 
+use crate::case::Case;
+
 /// What acts on the body: everything that a stage can change.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Controls {
@@ -22,6 +24,24 @@ pub struct Controls {
     pub water: Option<usize>,
     /// Whether all soil drains, so that no excess pore pressure comes or goes.
     pub drained: bool,
+    /// By member of reinforcement of the case.
+    pub reinforcement: Vec<ReinforcementControls>,
+}
+
+/// What acts on a member of reinforcement.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ReinforcementControls {
+    /// Whether it is there.
+    pub installed: bool,
+    /// Tension that a jack holds, in the stage that stresses it \[N/m\].
+    pub jack: Option<f64>,
+}
+
+impl ReinforcementControls {
+    fn towards(&self, end: &Self, t: f64) -> Self {
+        let jack = end.jack.map(|to| between(self.jack.unwrap_or(to), to, t));
+        Self { jack, ..*end }
+    }
 }
 
 /// What acts on a rigid body, and where that brought it. Components: x, y, rotation (anticlockwise).
@@ -70,14 +90,15 @@ fn between(a: f64, b: f64, t: f64) -> f64 {
 
 impl Controls {
     /// Nothing acts, and strength is whole.
-    pub(crate) fn none(loads: usize, materials: usize, rigid: usize) -> Self {
+    pub(crate) fn none(case: &Case) -> Self {
         Self {
             gravity: 0.0,
             acceleration: [0.0; 2],
-            factors: vec![0.0; loads],
+            factors: vec![0.0; case.loads.len()],
             settlement: 0.0,
-            srf: vec![1.0; materials],
-            rigid: vec![RigidControls::default(); rigid],
+            srf: vec![1.0; case.materials.len()],
+            rigid: vec![RigidControls::default(); case.rigid.len()],
+            reinforcement: vec![ReinforcementControls::default(); case.reinforcement.len()],
             water: None,
             drained: false,
         }
@@ -97,9 +118,18 @@ impl Controls {
             rigid: std::iter::zip(&self.rigid, &end.rigid)
                 .map(|(own, end)| own.towards(end, t))
                 .collect(),
+            reinforcement: std::iter::zip(&self.reinforcement, &end.reinforcement)
+                .map(|(own, end)| own.towards(end, t))
+                .collect(),
             water: end.water,
             drained: end.drained,
         }
+    }
+
+    /// The members of reinforcement that are there, in the order in which the state has them.
+    pub fn installed(&self) -> impl Iterator<Item = usize> + '_ {
+        let members = self.reinforcement.iter().enumerate();
+        members.filter(|(_, own)| own.installed).map(|(k, _)| k)
     }
 
     /// The force on a body of unit weight by gravity and pseudo-static acceleration, along the axes \[-\] (theory,
@@ -144,7 +174,8 @@ impl Controls {
 /// A body and what acted on it last.
 #[derive(Clone, Debug)]
 pub struct State {
-    /// The body. Of the rigid bodies of the case it has those that are there ([`Controls::placed`]).
+    /// The body. Of the rigid bodies of the case it and of its reinforcement it has what is there
+    /// ([`Controls::placed`], [`Controls::installed`]).
     pub body: Body<2>,
     /// What acts on it.
     pub controls: Controls,

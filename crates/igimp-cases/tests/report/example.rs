@@ -35,6 +35,7 @@ pub(crate) fn case() -> Case {
         geometry: Geometry::Moving,
         start_from: None,
         reset_displacements: false,
+        install: Vec::new(),
         stop_when: StopWhen::default(),
         drained: false,
     };
@@ -84,6 +85,7 @@ pub(crate) fn case() -> Case {
         },
         loads: loads(),
         rigid: Vec::new(),
+        reinforcement: Vec::new(),
         stages: vec![
             stage(
                 "initial stresses",
@@ -298,7 +300,17 @@ pub(crate) fn draw(folder: &Path, case: &Case) -> Vec<FigureNote> {
     ] {
         let state = (&particles, laws.as_slice());
         let shown = Shown::end_of_stage(case, 1);
-        notes.push(pictures::field_picture(&canvas, &shown, field, state, &[], &[]).unwrap());
+        notes.push(
+            pictures::field_picture(
+                &canvas,
+                &shown,
+                field,
+                state,
+                &[],
+                &pictures::Over::default(),
+            )
+            .unwrap(),
+        );
     }
     notes
 }

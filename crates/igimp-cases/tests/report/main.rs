@@ -389,14 +389,30 @@ fn every_field_has_a_picture() {
     let state = (&particles, laws.as_slice());
     for field in igimp_cases::results::fields::ALL {
         let shown = Shown::end_of_stage(&case, 0);
-        let note = pictures::field_picture(&canvas, &shown, field, state, &[], &[]).unwrap();
+        let note = pictures::field_picture(
+            &canvas,
+            &shown,
+            field,
+            state,
+            &[],
+            &pictures::Over::default(),
+        )
+        .unwrap();
         assert!(
             folder.join(format!("{}.svg", note.file)).exists(),
             "{field:?}"
         );
     }
     let shown = Shown::end_of_stage(&case, 9);
-    let beyond = pictures::field_picture(&canvas, &shown, Field::P, state, &[], &[]).unwrap();
+    let beyond = pictures::field_picture(
+        &canvas,
+        &shown,
+        Field::P,
+        state,
+        &[],
+        &pictures::Over::default(),
+    )
+    .unwrap();
     assert_eq!(beyond.file, "figures/field-10-x-p");
 }
 
@@ -427,8 +443,14 @@ fn compared_states_share_unit_and_colours() {
         };
         let compared: Vec<_> = compared.iter().map(|&other| (other, &laws[..])).collect();
         let own = (own, &laws[..]);
-        let note =
-            pictures::field_picture(&canvas, &shown, Field::Displacement, own, &compared, &[]);
+        let note = pictures::field_picture(
+            &canvas,
+            &shown,
+            Field::Displacement,
+            own,
+            &compared,
+            &pictures::Over::default(),
+        );
         let path = folder.join(format!("{}.svg", note.unwrap().file));
         let svg = std::fs::read_to_string(path).unwrap();
         // Numbers and label of the colour bar stand to the right of the plot.

@@ -63,9 +63,9 @@ fn cause(failure: &StepFailure) -> &'static str {
         StepFailure::MaxIterations { .. } => "corrections run out",
         StepFailure::Diverged => "residual diverges",
         StepFailure::Stagnated => "residual stagnates",
-        StepFailure::LeavesGrid { .. } | StepFailure::LoadPointLeavesGrid { .. } => {
-            "leaves the grid"
-        }
+        StepFailure::LeavesGrid { .. }
+        | StepFailure::LoadPointLeavesGrid { .. }
+        | StepFailure::ReinforcementLeavesGrid { .. } => "leaves the grid",
         StepFailure::TooDeep { .. } => "penetrates too deep",
         StepFailure::Swallowed(_) => "soil caught by a body",
         StepFailure::NotHeld { .. } => "nothing holds a body",

@@ -38,6 +38,19 @@ pub(super) fn derive(tree: &mut Node, file: &Path) {
             }
         }
     }
+    if let Some(members) = tree.get_mut("reinforcement") {
+        for member in members.items_mut() {
+            let is_anchor = member.text_at("type") == Some("anchor");
+            if is_anchor
+                && member.get("head_capacity").is_none()
+                && let Some(Value::Quantity(value, text)) =
+                    member.get("capacity").map(|node| &node.value)
+            {
+                let value = Value::Quantity(*value, text.clone());
+                member.add_derived("head_capacity", value);
+            }
+        }
+    }
     if let Some(water) = tree.get_mut("water") {
         for condition in water.items_mut() {
             if condition.get("pond").is_none() {

@@ -18,6 +18,7 @@ mod materials;
 mod outputs;
 mod profiles;
 mod quantities;
+mod reinforcement;
 mod rigid;
 mod safety;
 mod sequence;
@@ -46,6 +47,7 @@ struct AllNames {
     loads: Names,
     rigid: Names,
     water: Names,
+    reinforcement: Names,
     stages: Names,
     monitors: Names,
 }
@@ -71,6 +73,7 @@ impl AllNames {
             loads: Names::of_list("load", tree.get("loads"), problems),
             rigid: Names::of_list("rigid body", tree.get("rigid"), problems),
             water: Names::of_list("water condition", tree.get("water"), problems),
+            reinforcement: Names::of_list("reinforcement", tree.get("reinforcement"), problems),
             stages: Names::of_list("stage", tree.get("stages"), problems),
             monitors: Names::of_list("monitor", tree.get("monitors"), problems),
         }
@@ -127,6 +130,8 @@ pub(super) fn build(tree: &mut Node, file: &Path, problems: &mut Problems) -> Op
     };
     let water = water::conditions(&around, problems);
     water::check(&around, &water, problems);
+    let reinforcement = reinforcement::reinforcement(tree, &site, problems);
+    reinforcement::check_searches(tree, &names, problems);
     let context = stages::Context {
         tree,
         names: &names,
@@ -168,6 +173,7 @@ pub(super) fn build(tree: &mut Node, file: &Path, problems: &mut Problems) -> Op
         boundaries: boundaries?,
         loads: all(loads)?,
         rigid: all(rigid)?,
+        reinforcement: all(reinforcement)?,
         stages: all(stages)?,
         solver: solver?,
         monitors: all(monitors)?,

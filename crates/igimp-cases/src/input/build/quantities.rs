@@ -1,7 +1,7 @@
 //! The quantities that curves and checks name, such as `footing.reaction`.
 
 use super::AllNames;
-use crate::case::{Field, Load, LoadKind, Quantity, RigidQuantity};
+use crate::case::{Field, Load, LoadKind, Quantity, ReinforcementQuantity, RigidQuantity};
 use crate::input::diagnostic::Problems;
 use crate::input::suggest::nearest;
 use crate::input::text::{clip, row};
@@ -52,6 +52,16 @@ const RIGID: [(&str, RigidQuantity, &str); 12] = [
     ("slipping", RigidQuantity::Slipping, "-"),
 ];
 
+/// What the names of quantities of reinforcement begin with.
+const REINFORCEMENT_PREFIX: &str = "reinforcement.";
+
+/// Quantities of a member of reinforcement.
+const REINFORCEMENT: [(&str, ReinforcementQuantity, &str); 3] = [
+    ("force", ReinforcementQuantity::Force, "N/m"),
+    ("head_force", ReinforcementQuantity::HeadForce, "N/m"),
+    ("at_limit", ReinforcementQuantity::AtLimit, "-"),
+];
+
 /// Quantities of the whole model.
 const GLOBAL: [(&str, Quantity, &str); 8] = [
     ("largest_displacement", Quantity::LargestDisplacement, "m"),
@@ -94,6 +104,10 @@ pub(super) fn unit_of(name: &str) -> &'static str {
             .iter()
             .find(|(known, ..)| *known == last)
             .map_or("-", |(_, _, unit)| unit),
+        last if name.starts_with(REINFORCEMENT_PREFIX) => REINFORCEMENT
+            .iter()
+            .find(|(known, ..)| *known == last)
+            .map_or("-", |(_, _, unit)| unit),
         last => FIELDS
             .iter()
             .find(|(known, ..)| *known == last)
@@ -118,6 +132,12 @@ pub(super) fn quantity(
         let of_body = RIGID.iter().find(|(known, ..)| *known == what);
         if let (Some(body), Some((_, quantity, _))) = (body, of_body) {
             return Some(Quantity::Rigid(body, *quantity));
+        }
+        let member = owner.strip_prefix(REINFORCEMENT_PREFIX);
+        let member = member.and_then(|member| names.reinforcement.position(member));
+        let of_member = REINFORCEMENT.iter().find(|(known, ..)| *known == what);
+        if let (Some(member), Some((_, quantity, _))) = (member, of_member) {
+            return Some(Quantity::Reinforcement(member, *quantity));
         }
         let monitor = names.monitors.position(owner);
         if let (Some(monitor), Some(field)) = (monitor, field(what)) {
@@ -171,6 +191,10 @@ fn known(names: &AllNames, loads: &[Option<Load>]) -> Vec<String> {
         let of_body = RIGID.iter();
         known.extend(of_body.map(|(what, ..)| format!("{RIGID_PREFIX}{body}.{what}")));
     }
+    for member in names.reinforcement.known() {
+        let of_member = REINFORCEMENT.iter();
+        known.extend(of_member.map(|(what, ..)| format!("{REINFORCEMENT_PREFIX}{member}.{what}")));
+    }
     known.extend(GLOBAL.iter().map(|(name, ..)| (*name).to_owned()));
     for monitor in names.monitors.known() {
         known.extend(
@@ -205,7 +229,7 @@ pub(super) fn divisor(table: &Node, problems: &mut Problems) -> Option<f64> {
 }
 
 /// Quantities and what they mean, for the reference.
-pub(in crate::input) const QUANTITY_DOCS: [(&str, &str); 19] = [
+pub(in crate::input) const QUANTITY_DOCS: [(&str, &str); 21] = [
     ("FOOTING.settlement", "settlement of a rigid footing [m]"),
     (
         "FOOTING.reaction",
@@ -232,6 +256,14 @@ pub(in crate::input) const QUANTITY_DOCS: [(&str, &str); 19] = [
     (
         "rigid.BODY.penetration, .closed, .slipping",
         "largest penetration as a share of the cell; points of its sides that soil touches, and slips along [-]",
+    ),
+    (
+        "reinforcement.MEMBER.force, reinforcement.MEMBER.head_force",
+        "largest tension along an anchor, a nail or a geotextile, and that at its head [N/m]",
+    ),
+    (
+        "reinforcement.MEMBER.at_limit",
+        "share of its length on which its tension is at its limit [-]",
     ),
     ("LOAD.factor", "factor on a pressure or point load [-]"),
     (

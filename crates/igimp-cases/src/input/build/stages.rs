@@ -25,6 +25,17 @@ pub(super) struct Context<'a> {
 }
 
 impl Context<'_> {
+    /// The stages that a stage follows, from the one that it starts from.
+    pub(super) fn before(&self, index: usize) -> impl Iterator<Item = &Node> {
+        let before = move |index: usize| {
+            let named = self.stage_nodes().get(index)?.text_at("start_from");
+            let named = named.and_then(|name| self.names.stages.position(name));
+            named.filter(|&k| k < index).or(index.checked_sub(1))
+        };
+        let all = std::iter::successors(before(index), move |&index| before(index));
+        all.filter_map(|index| self.stage_nodes().get(index))
+    }
+
     pub(super) fn stage_nodes(&self) -> &[Node] {
         self.tree.items_at("stages")
     }
@@ -88,6 +99,7 @@ fn stage(
     };
     let start_from = start_from(context, index, node, &name, problems);
     let stop_when = stop_when(context, node, &name, problems);
+    let install = super::reinforcement::installs(context, index, node, &name, problems);
     Some(Stage {
         drained: node.flag_at("drained")?,
         name: node.text_at("name")?.to_owned(),
@@ -96,6 +108,7 @@ fn stage(
         geometry: geometry(node),
         start_from: start_from.ok()?,
         reset_displacements: node.flag_at("reset_displacements")?,
+        install: install?,
         stop_when: stop_when?,
     })
 }

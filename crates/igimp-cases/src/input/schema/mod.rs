@@ -5,6 +5,7 @@ mod materials;
 
 pub(super) use materials::SYMBOLS;
 mod outputs;
+mod reinforcement;
 mod rigid;
 mod stages;
 mod water;
@@ -88,6 +89,12 @@ pub(super) static ROOT: Struct = Struct {
             Kind::List(&rigid::RIGID, 0, MOST_THINGS),
             "[]",
             "rigid bodies that soil touches",
+        ),
+        default(
+            "reinforcement",
+            Kind::List(&reinforcement::REINFORCEMENT, 0, MOST_THINGS),
+            "[]",
+            "anchors, nails and geotextiles",
         ),
         required(
             "stages",

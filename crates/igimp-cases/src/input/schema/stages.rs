@@ -194,6 +194,12 @@ pub(in crate::input) static STAGE: Kind = Kind::Variants(&Variants {
             "stage whose end this one starts from",
         ),
         default(
+            "install",
+            Kind::List(&MEMBER_NAME, 0, MOST_THINGS),
+            "[]",
+            "reinforcement that comes in as the stage begins; what no stage installs is there from the start",
+        ),
+        default(
             "reset_displacements",
             Kind::Flag,
             "false",
@@ -249,6 +255,9 @@ static GEOMETRIES: [Choice; 2] = [
         "every step begins where the last one carried the particles",
     ),
 ];
+
+/// Names of reinforcement.
+static MEMBER_NAME: Kind = Kind::Reference("reinforcement");
 
 static PATHS: [Choice; 2] = [
     choice(

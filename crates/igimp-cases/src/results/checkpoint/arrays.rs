@@ -160,6 +160,7 @@ pub(super) fn to_body(
         particles,
         load_points,
         rigid: Vec::new(),
+        reinforcement: Vec::new(),
     })
 }
 

@@ -25,6 +25,7 @@ pub(crate) fn everything(folder: &Folder) {
         folder.monitors().join(".b.csv.tmp"),
         folder.sections().join("c.csv"),
         folder.rigid().join("footing__1-push.csv"),
+        folder.reinforcement().join("nail__1-weight.csv"),
         folder.figures().join("d.svg"),
         folder.figures().join("d.png"),
         folder.paraview().join("particles.pvd"),
@@ -34,6 +35,11 @@ pub(crate) fn everything(folder: &Folder) {
         folder.paraview().join("grid_12345.vtu"),
         folder.paraview().join("rigid.pvd"),
         folder.paraview().join("rigid_0001.vtu"),
+        folder.paraview().join("reinforcement.pvd"),
+        folder.paraview().join("reinforcement_0001.vtu"),
+        folder
+            .paraview()
+            .join("stage-02-last-stable-reinforcement.vtu"),
         folder.paraview().join("stage-02-last-stable.vtu"),
         folder.paraview().join("stage-02-last-stable-rigid.vtu"),
         folder.paraview().join("stage-02-first-unstable.vtu"),
@@ -73,6 +79,7 @@ fn a_new_folder_is_laid_out() {
             "figures",
             "monitors",
             "paraview",
+            "reinforcement",
             "rigid",
             "sections",
             "slip_lines"

@@ -51,11 +51,20 @@ pub struct Canvas<'a> {
     pub pieces: &'a Pieces,
 }
 
+/// What is drawn over a field: structures where they stand.
+#[derive(Clone, Debug, Default)]
+pub struct Over {
+    /// Lines.
+    pub outlines: Vec<Outline>,
+    /// Words beside points (x, y) \[m\].
+    pub labels: Vec<([f64; 2], String)>,
+}
+
 /// Particles, and the laws that they refer to.
 pub type Seen<'a> = (&'a Particles<2>, &'a [SharedLaw]);
 
 /// The picture of a field in a state: the bodies in pieces, coloured by their particles, their edges as
-/// they moved and as they were, and further `outlines`, such as rigid bodies where they stand.
+/// they moved and as they were, and structures `over` them where they stand.
 ///
 /// Unit and colours are those of the state and of the states that it is `compared` with.
 ///
@@ -67,7 +76,7 @@ pub fn field_picture(
     field: Field,
     (particles, laws): Seen<'_>,
     compared: &[Seen<'_>],
-    outlines: &[Outline],
+    over: &Over,
 ) -> Result<FigureNote, CaseError> {
     let case = canvas.case;
     let values = fields::values(field, particles, laws);
@@ -92,8 +101,9 @@ pub fn field_picture(
         map: colours.map,
         outlines: edges(canvas, particles)
             .into_iter()
-            .chain(outlines.iter().cloned())
+            .chain(over.outlines.iter().cloned())
             .collect(),
+        labels: over.labels.clone(),
         ..FieldPlot::default()
     };
     let same = if compared.is_empty() {
@@ -101,11 +111,16 @@ pub fn field_picture(
     } else {
         " Colours and unit are the same in both states of the search."
     };
+    let members = if over.labels.is_empty() {
+        ""
+    } else {
+        " Heavy lines: reinforcement, its tension beside it, the largest of each in numbers."
+    };
     let caption = format!(
-        "{} {}. Lines: the edges of the bodies; dashed: before they moved{}.{same}",
+        "{} {}. Lines: the edges of the bodies; dashed: before they moved{}.{members}{same}",
         sentence(&format!("{total}{}", fields::plain(fields::title(field)))),
         shown.when,
-        water::told(outlines),
+        water::told(&over.outlines),
     );
     let name = format!("field-{}-{}", shown.name, fields::name(field));
     write(canvas.folder, &name, &plot.draw()?, caption)

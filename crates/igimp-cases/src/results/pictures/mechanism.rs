@@ -4,7 +4,7 @@ use igimp_assembly::Particles;
 use igimp_figures::{FieldPlot, Outline, OutlineStyle};
 
 use super::field::edges;
-use super::{Canvas, file_name, titled, write};
+use super::{Canvas, Over, file_name, titled, write};
 use crate::case::Case;
 use crate::check::short;
 use crate::error::CaseError;
@@ -84,7 +84,7 @@ impl Mechanism {
     }
 }
 
-/// The picture of a mechanism, with what is `rigid` where it stands.
+/// The picture of a mechanism, with structures `over` it where they stand.
 ///
 /// # Errors
 /// [`CaseError::File`] and [`CaseError::Figure`].
@@ -92,7 +92,7 @@ pub fn mechanism_picture(
     canvas: &Canvas<'_>,
     failing: &Failing<'_>,
     found: &Mechanism,
-    rigid: &[Outline],
+    over: &Over,
 ) -> Result<FigureNote, CaseError> {
     let stage = &canvas.case.stages[failing.stage].name;
     let (domains, whose) = canvas.pieces.now(failing.last);
@@ -108,7 +108,7 @@ pub fn mechanism_picture(
     let most = if most > 0.0 { most } else { 1.0 };
     let window = window(failing.last, found, most);
     let mut outlines = edges(canvas, failing.last);
-    outlines.extend_from_slice(rigid);
+    outlines.extend_from_slice(&over.outlines);
     outlines.push(arrows(failing.last, found, &window));
     let mut told = "; no line of shear stands out".to_owned();
     if let Some(line) = &found.line {

@@ -31,7 +31,7 @@ use std::path::Path;
 pub use convergence::{History, convergence_pictures, convergence_plot, histories};
 pub(super) use convergence::{convergence_caption, stages_of};
 pub use curve::curve_picture;
-pub use field::{Canvas, Seen, Shown, field_picture};
+pub use field::{Canvas, Over, Seen, Shown, field_picture};
 pub use histories::{monitor_pictures, section_pictures};
 pub use mechanism::{Failing, Mechanism, mechanism, mechanism_picture};
 pub use meshes::mesh_pictures;

@@ -1,4 +1,4 @@
-//! The set-up of a model: materials, grid, rigid bodies, supports, loads, sections and monitors.
+//! The set-up of a model: materials, grid, rigid bodies, reinforcement, supports, loads, sections and monitors.
 
 use std::path::Path;
 
@@ -73,6 +73,13 @@ fn plot(case: &Case) -> FieldPlot {
     plot.outlines.extend(bodies(case));
     add_water(&mut plot, case);
     add_rigid_bodies(&mut plot, case);
+    for part in &case.reinforcement {
+        plot.outlines.push(Outline {
+            points: part.line.clone(),
+            style: OutlineStyle::Member,
+        });
+        plot.labels.push((part.line[0], part.name.clone()));
+    }
     add_supports(&mut plot, case);
     let reach = add_loads(&mut plot, case, ARROW * size);
     for section in &case.sections {
@@ -297,6 +304,7 @@ fn add_symbols_to_key(plot: &mut FieldPlot, has_bodies: bool) {
         (OutlineStyle::Fixed, "held in both directions"),
         (OutlineStyle::Roller, "held across"),
         (OutlineStyle::Block, block),
+        (OutlineStyle::Member, "reinforcement"),
         (OutlineStyle::Arrow, "load"),
         (OutlineStyle::Water, "water table"),
         (OutlineStyle::Former, "placed later"),

@@ -162,20 +162,28 @@ pub(super) struct FileView {
 
 /// The tables, and the entry points of the other results.
 pub(super) fn tables(folder: &Path) -> Vec<FileView> {
-    let mut views: Vec<FileView> = ["curves", "monitors", "rigid", "sections", "slip_lines"]
-        .into_iter()
-        .flat_map(|within| {
-            names(&folder.join(within))
-                .into_iter()
-                .map(move |name| format!("{within}/{name}"))
-        })
-        .chain(["mesh_study.csv", "convergence.csv"].map(str::to_owned))
-        .filter_map(|name| table(folder, name))
-        .collect();
+    let mut views: Vec<FileView> = [
+        "curves",
+        "monitors",
+        "reinforcement",
+        "rigid",
+        "sections",
+        "slip_lines",
+    ]
+    .into_iter()
+    .flat_map(|within| {
+        names(&folder.join(within))
+            .into_iter()
+            .map(move |name| format!("{within}/{name}"))
+    })
+    .chain(["mesh_study.csv", "convergence.csv"].map(str::to_owned))
+    .filter_map(|name| table(folder, name))
+    .collect();
     for (name, about) in [
         ("paraview/particles.pvd", "particles for ParaView"),
         ("paraview/grid.pvd", "background grid for ParaView"),
         ("paraview/rigid.pvd", "rigid bodies for ParaView"),
+        ("paraview/reinforcement.pvd", "reinforcement for ParaView"),
         ("summary.json", "everything that this report says"),
     ] {
         if folder.join(name).exists() {

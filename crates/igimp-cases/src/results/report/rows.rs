@@ -6,7 +6,9 @@ use super::verdict::on_safety;
 use crate::check::{Band, short};
 use crate::mesh_study::MeshSummary;
 use crate::results::fields::{Dimension, Scale};
-use crate::summary::{PoreSummary, SafetySummary, StageOutcome, StageSummary, Summary};
+use crate::summary::{
+    MemberSummary, PoreSummary, SafetySummary, StageOutcome, StageSummary, Summary,
+};
 
 /// The phases of a stage, in the order of [`StageSummary::phases`].
 pub(super) const PHASES: [&str; 5] = ["set-up", "assembly", "factorisation", "solution", "commit"];
@@ -95,6 +97,32 @@ pub(super) fn headline(summary: &Summary) -> Vec<Number> {
         add("Checks met".to_owned(), value, note);
     }
     numbers
+}
+
+/// A member of reinforcement at the end of a stage.
+#[derive(Serialize)]
+pub(super) struct MemberView {
+    stage: String,
+    name: String,
+    force: String,
+    head_force: String,
+    at_limit: String,
+}
+
+/// The tension of reinforcement at the end of the stages that changed it.
+pub(super) fn reinforcement(summary: &Summary) -> Vec<MemberView> {
+    let stages = summary.stages.iter().filter(|own| own.safety.is_none());
+    let view = |(stage, member): (&StageSummary, &MemberSummary)| MemberView {
+        stage: stage.name.clone(),
+        name: member.name.clone(),
+        force: quantity(member.force, "N/m"),
+        head_force: quantity(member.head_force, "N/m"),
+        at_limit: format!("{} %", short(100.0 * member.at_limit)),
+    };
+    stages
+        .flat_map(|stage| stage.reinforcement.iter().map(move |own| (stage, own)))
+        .map(view)
+        .collect()
 }
 
 /// The last stage that left water in the pores.

@@ -17,8 +17,8 @@ use crate::run::Target;
 use crate::run::fingerprint;
 use crate::run::left::{End, Left, Notes, Resumption, Search, end_of_stage, notes_of};
 use crate::run::records::Records;
-use crate::run::saved_body;
 use crate::run::state::{Controls, State};
+use crate::run::{saved_body, saved_reinforcement};
 
 impl Output {
     /// A results folder taken up at its newest checkpoint; without one the run begins afresh.
@@ -99,6 +99,9 @@ impl Output {
             let mut body = own.map(|(_, body)| body.clone()).ok_or_else(missing)?;
             let saved = notes.rigid.get(name).map_or(&[][..], Vec::as_slice);
             body.rigid = saved_body::taken_up(case, laws, controls, saved)?
+                .map_err(|why| damaged("meta.json".to_owned(), why))?;
+            let saved = notes.reinforcement.get(name).map_or(&[][..], Vec::as_slice);
+            body.reinforcement = saved_reinforcement::taken_up(case, controls, saved)
                 .map_err(|why| damaged("meta.json".to_owned(), why))?;
             Ok(body)
         };
@@ -200,14 +203,17 @@ impl Output {
                 let controls = notes.controls;
                 let saved = notes.rigid.get(&name).map_or(&[][..], Vec::as_slice);
                 let laws = records.law_count();
+                let damaged = |why| CheckpointError::Damaged {
+                    path: path.clone(),
+                    file: "meta.json".to_owned(),
+                    why,
+                };
                 body.rigid =
-                    saved_body::taken_up(case, laws, &controls, saved)?.map_err(|why| {
-                        CheckpointError::Damaged {
-                            path,
-                            file: "meta.json".to_owned(),
-                            why,
-                        }
-                    })?;
+                    saved_body::taken_up(case, laws, &controls, saved)?.map_err(damaged)?;
+                let saved = notes.reinforcement.get(&name);
+                let saved = saved.map_or(&[][..], Vec::as_slice);
+                body.reinforcement =
+                    saved_reinforcement::taken_up(case, &controls, saved).map_err(damaged)?;
                 ends.insert(number, State { body, controls });
             }
         }

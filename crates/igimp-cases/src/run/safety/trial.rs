@@ -81,6 +81,7 @@ impl Trials<'_> {
             progress: 1.0,
             particles: &state.body.particles,
             rigid: &state.body.rigid,
+            reinforcement: &state.body.reinforcement,
             controls: &state.controls,
             resistance: 0.0,
             plastic_share,

@@ -1,0 +1,122 @@
+//! Reinforcement: anchors, nails and geotextiles.
+
+use super::{CORNER, MANY, POINT};
+use crate::input::quantity::Dimension::{ForcePerLength, Length, Stress};
+use crate::input::spec::{
+    Field, Kind, Range, Variant, Variants, default, derived, optional, required,
+};
+
+const HEAD: Field = required("head", POINT, "[\"10 m\", \"6 m\"]", "where its head is");
+const END: Field = required(
+    "end",
+    POINT,
+    "[\"2 m\", \"4 m\"]",
+    "where it ends in the ground",
+);
+
+/// A force that something carries at an end.
+const fn fastening(key: &'static str, doc: &'static str) -> Field {
+    default(
+        key,
+        Kind::Quantity(ForcePerLength, Range::NotNegative),
+        "\"0 kN/m\"",
+        doc,
+    )
+}
+
+const PLATE: Field = default(
+    "plate",
+    Kind::Quantity(Length, Range::NotNegative),
+    "\"0 m\"",
+    "width of the plate or facing on which the force at its head spreads, along the edge of the soil there",
+);
+
+/// A member, by type.
+pub(in crate::input) static REINFORCEMENT: Kind = Kind::Variants(&Variants {
+    doc: "A member that pulls and neither bends nor pushes. All forces are per metre run: those of one, over the spacing.",
+    tag: "type",
+    tag_doc: "kind of reinforcement",
+    before: &[required("name", Kind::Name, "\"nail 1\"", "name")],
+    cases: &[
+        Variant {
+            name: "anchor",
+            doc: "A ground anchor: a head, a free length without bond, and a bonded length at its end.",
+            fields: &[
+                HEAD,
+                END,
+                required(
+                    "bonded_length",
+                    Kind::Quantity(Length, Range::Positive),
+                    "\"4 m\"",
+                    "length at its end that is bonded to the soil",
+                ),
+                derived(
+                    "head_capacity",
+                    Kind::Quantity(ForcePerLength, Range::NotNegative),
+                    "its capacity",
+                    "force that its head carries",
+                ),
+                PLATE,
+                optional(
+                    "prestress",
+                    Kind::Quantity(ForcePerLength, Range::Positive),
+                    "it begins without tension",
+                    "tension at which it is locked off at the end of the stage that installs it",
+                ),
+            ],
+        },
+        Variant {
+            name: "nail",
+            doc: "A soil nail, bonded over its whole length.",
+            fields: &[
+                HEAD,
+                END,
+                fastening("head_capacity", "force that the plate at its head carries"),
+                PLATE,
+            ],
+        },
+        Variant {
+            name: "geotextile",
+            doc: "A geotextile or geogrid, bonded over its whole length.",
+            fields: &[
+                required(
+                    "points",
+                    Kind::List(&CORNER, 2, MANY),
+                    "[[\"0 m\", \"3 m\"], [\"12 m\", \"3 m\"]]",
+                    "its line, from one end to the other",
+                ),
+                fastening(
+                    "head_capacity",
+                    "force that holds it at its first point, as by a facing",
+                ),
+                fastening("end_capacity", "force that holds it at its last point"),
+            ],
+        },
+    ],
+    after: &[
+        required(
+            "stiffness",
+            Kind::Quantity(ForcePerLength, Range::Positive),
+            "\"20 MN/m\"",
+            "axial stiffness EA",
+        ),
+        required(
+            "capacity",
+            Kind::Quantity(ForcePerLength, Range::Positive),
+            "\"100 kN/m\"",
+            "tension that it carries at most",
+        ),
+        required(
+            "bond",
+            Kind::Quantity(Stress, Range::NotNegative),
+            "\"30 kPa\"",
+            "pull-out resistance per metre of its length: of a geotextile, that of both faces",
+        ),
+        default(
+            "reduce_bond",
+            Kind::Flag,
+            "false",
+            "whether a strength reduction divides the bond too; capacities are left alone",
+        ),
+    ],
+});

@@ -1,0 +1,144 @@
+//! Reinforcement in the results: tension along it, as tables, for ParaView and in pictures.
+
+use igimp_assembly::Reinforcement;
+use igimp_figures::{Outline, OutlineStyle};
+
+use super::vtu::{CellKind, DataArray, UnstructuredGrid, padded};
+use crate::case::ReinforcementPart;
+use crate::check::short;
+use crate::table::Table;
+
+/// A member that is there.
+#[derive(Clone, Copy, Debug)]
+pub struct Installed<'a> {
+    /// Its number in the case, from 0.
+    pub index: usize,
+    /// What it is.
+    pub part: &'a ReinforcementPart,
+    /// Where it is, and its tension.
+    pub member: &'a Reinforcement<2>,
+    /// What its bond is divided by \[-\].
+    pub reduction: f64,
+}
+
+/// Columns of a table of tension along a member, a row for each of its bars.
+const HEADER: [&str; 7] = [
+    "distance_[m]",
+    "x_[m]",
+    "y_[m]",
+    "force_[N/m]_tension_+",
+    "limit_[N/m]",
+    "strain_[-]",
+    "at_limit_[-]",
+];
+
+impl Installed<'_> {
+    /// Tension at the middle of its bars, by the distance from its head before it was stretched.
+    pub fn table(&self, name: String) -> Table {
+        let mut table = Table::new(name, &HEADER);
+        let mut so_far = 0.0;
+        let stations = self.member.stations.windows(2);
+        for (bar, ends) in std::iter::zip(&self.member.segments, stations) {
+            let (a, b) = (ends[0].position(), ends[1].position());
+            table.push(vec![
+                so_far + 0.5 * bar.length,
+                0.5 * (a[0] + b[0]),
+                0.5 * (a[1] + b[1]),
+                bar.state.force,
+                bar.limit(self.reduction),
+                bar.state.strain,
+                f64::from(u8::from(bar.state.is_at_limit)),
+            ]);
+            so_far += bar.length;
+        }
+        table
+    }
+
+    /// Its line where it is \[m\].
+    fn line(&self) -> Vec<[f64; 2]> {
+        let stations = self.member.stations.iter();
+        stations.map(igimp_assembly::Station::position).collect()
+    }
+
+    /// Its line, with its tension as a curve beside it: the `most` tension of all is `height` away \[m\].
+    fn outlines(&self, most: f64, height: f64) -> [Outline; 2] {
+        let line = self.line();
+        let mut curve = vec![line[0]];
+        for (bar, ends) in std::iter::zip(&self.member.segments, line.windows(2)) {
+            let along = [ends[1][0] - ends[0][0], ends[1][1] - ends[0][1]];
+            let length = along[0].hypot(along[1]);
+            let away = if most > 0.0 && length > 0.0 {
+                height * bar.state.force / most / length
+            } else {
+                0.0
+            };
+            let by = [-along[1] * away, along[0] * away];
+            curve.extend(ends.iter().map(|end| [end[0] + by[0], end[1] + by[1]]));
+        }
+        curve.push(line[line.len() - 1]);
+        [
+            Outline {
+                points: curve,
+                style: OutlineStyle::Diagram,
+            },
+            Outline {
+                points: line,
+                style: OutlineStyle::Member,
+            },
+        ]
+    }
+}
+
+/// All members with their tension as curves beside them, and words for the largest of each. `size` is that of
+/// the model \[m\].
+pub fn outlines(installed: &[Installed<'_>], size: f64) -> Vec<Outline> {
+    let most = installed.iter().map(|own| own.member.largest_force());
+    let most = most.fold(0.0, f64::max);
+    let all = installed.iter();
+    all.flat_map(|own| own.outlines(most, 0.04 * size))
+        .collect()
+}
+
+/// The largest tension of each member in words, beside its head.
+pub fn labels(installed: &[Installed<'_>]) -> Vec<([f64; 2], String)> {
+    let label = |own: &Installed<'_>| {
+        let force = short(own.member.largest_force() / 1e3);
+        let text = format!("{} {force} kN/m", own.part.name);
+        (own.member.stations[0].position(), text)
+    };
+    installed.iter().map(label).collect()
+}
+
+/// The members as lines between their stations, with the tension of their bars.
+pub fn lines(installed: &[Installed<'_>]) -> UnstructuredGrid {
+    let mut points = Vec::new();
+    let mut connectivity = Vec::new();
+    let (mut forces, mut limits, mut strains) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut members, mut at_limit) = (Vec::new(), Vec::new());
+    for own in installed {
+        let first = points.len();
+        points.extend(own.line().iter().map(padded));
+        for (k, bar) in own.member.segments.iter().enumerate() {
+            connectivity.extend([first + k, first + k + 1]);
+            forces.push(bar.state.force);
+            limits.push(bar.limit(own.reduction));
+            strains.push(bar.state.strain);
+            at_limit.push(i32::from(bar.state.is_at_limit));
+            members.push(own.index as i32);
+        }
+    }
+    UnstructuredGrid {
+        points,
+        kind: CellKind::Line,
+        connectivity,
+        point_data: Vec::new(),
+        cell_data: vec![
+            DataArray::scalars("force [N/m], tension +", forces),
+            DataArray::scalars("limit [N/m]", limits),
+            DataArray::scalars("strain", strains),
+            DataArray::integers("at limit", at_limit),
+            DataArray::integers("member", members),
+        ],
+        field_data: Vec::new(),
+    }
+}

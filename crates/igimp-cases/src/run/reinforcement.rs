@@ -1,0 +1,176 @@
+//! Reinforcement of a case as the solver has it: made, installed, what acts on it, and what it tells.
+
+use igimp_assembly::{Hold, Reinforcement, ReinforcementControl, Segment, SegmentState, Station};
+
+use super::state::{Controls, ReinforcementControls, State};
+use crate::case::{Case, ReinforcementPart, ReinforcementQuantity, Stage};
+use crate::results::reinforcement::Installed;
+use crate::summary::MemberSummary;
+
+/// Stations per cell along a bonded length.
+const STATIONS_PER_CELL: f64 = 4.0;
+
+/// A member of a case where it is installed, without tension.
+pub(crate) fn made(case: &Case, part: &ReinforcementPart) -> Reinforcement<2> {
+    let [x, y] = &case.grid.axes;
+    let cell_near = |a: [f64; 2], b: [f64; 2]| {
+        x.smallest_between(a[0].min(b[0]), a[0].max(b[0]))
+            .min(y.smallest_between(a[1].min(b[1]), a[1].max(b[1])))
+    };
+    let mut legs: Vec<([f64; 2], [f64; 2], bool)> = part
+        .line
+        .windows(2)
+        .map(|leg| (leg[0], leg[1], true))
+        .collect();
+    if part.free_length > 0.0 {
+        let (head, end) = (part.line[0], part.line[1]);
+        let t = part.free_length / part.length();
+        let bond = [0, 1].map(|axis| head[axis] + t * (end[axis] - head[axis]));
+        legs = vec![(head, bond, false)];
+        if t < 1.0 {
+            legs.push((bond, end, true));
+        }
+    }
+    let head = part.line[0];
+    let first = part.plate.map_or_else(
+        || vec![head],
+        |[from, to]| {
+            let width = (to[0] - from[0]).hypot(to[1] - from[1]);
+            let count = (STATIONS_PER_CELL * width / cell_near(from, to))
+                .ceil()
+                .max(2.0);
+            let place = |k: usize| {
+                let t = (k as f64 + 0.5) / count;
+                [0, 1].map(|axis| from[axis] + t * (to[axis] - from[axis]))
+            };
+            (0..count as usize).map(place).collect()
+        },
+    );
+    let mut stations = vec![Station { points: first }];
+    let mut segments = Vec::new();
+    let mut so_far = 0.0;
+    for (from, to, is_bonded) in legs {
+        let length = (to[0] - from[0]).hypot(to[1] - from[1]);
+        let count = if is_bonded {
+            (STATIONS_PER_CELL * length / cell_near(from, to))
+                .ceil()
+                .max(1.0)
+        } else {
+            1.0
+        };
+        for k in 0..count as usize {
+            let t = (k + 1) as f64 / count;
+            let at = [0, 1].map(|axis| from[axis] + t * (to[axis] - from[axis]));
+            stations.push(Station { points: vec![at] });
+            let middle = so_far + (k as f64 + 0.5) / count * length;
+            let bonded = part.bonded(middle);
+            segments.push(Segment {
+                length: length / count,
+                tensile: part.capacity,
+                held: [0, 1].map(|side| Hold {
+                    fastened: part.fastened[side],
+                    bonded: bonded[side],
+                }),
+                state: SegmentState::default(),
+            });
+        }
+        so_far += length;
+    }
+    Reinforcement {
+        name: part.name.clone(),
+        stiffness: part.stiffness,
+        stations,
+        segments,
+    }
+}
+
+/// Installs what a stage installs, in the ground as it stands. A jack takes hold of what is stressed.
+pub(crate) fn begin(case: &Case, state: &mut State, stage: &Stage) {
+    for &index in &stage.install {
+        let part = &case.reinforcement[index];
+        let controls = &mut state.controls;
+        let slot = controls.installed().take_while(|&k| k < index).count();
+        controls.reinforcement[index] = ReinforcementControls {
+            installed: true,
+            jack: part.prestress.map(|_| 0.0),
+        };
+        state.body.reinforcement.insert(slot, made(case, part));
+    }
+}
+
+/// What acts on the members that are there, at the end of a step with these controls.
+pub(crate) fn controls(case: &Case, to: &Controls) -> Vec<ReinforcementControl> {
+    to.installed()
+        .map(|index| ReinforcementControl {
+            reduction: if case.reinforcement[index].reduces_bond {
+                to.reduction()
+            } else {
+                1.0
+            },
+            jack: to.reinforcement[index].jack,
+        })
+        .collect()
+}
+
+/// The members that are there under controls.
+pub(crate) fn present<'a>(
+    case: &'a Case,
+    controls: &Controls,
+    members: &'a [Reinforcement<2>],
+) -> Vec<Installed<'a>> {
+    std::iter::zip(controls.installed(), members)
+        .map(|(index, member)| Installed {
+            index,
+            part: &case.reinforcement[index],
+            member,
+            reduction: if case.reinforcement[index].reduces_bond {
+                controls.reduction()
+            } else {
+                1.0
+            },
+        })
+        .collect()
+}
+
+/// A number of a member; zero for one that is not there.
+pub(crate) fn quantity(
+    controls: &Controls,
+    members: &[Reinforcement<2>],
+    index: usize,
+    of: ReinforcementQuantity,
+) -> f64 {
+    let Some((_, member)) =
+        std::iter::zip(controls.installed(), members).find(|(k, _)| *k == index)
+    else {
+        return 0.0;
+    };
+    match of {
+        ReinforcementQuantity::Force => member.largest_force(),
+        ReinforcementQuantity::HeadForce => {
+            member.segments.first().map_or(0.0, |own| own.state.force)
+        }
+        ReinforcementQuantity::AtLimit => {
+            let sum = |of: &dyn Fn(&Segment) -> bool| -> f64 {
+                let own = member.segments.iter().filter(|own| of(own));
+                own.map(|own| own.length)
+                    .fold(0.0, |sum, length| sum + length)
+            };
+            sum(&|own| own.state.is_at_limit) / sum(&|_| true)
+        }
+    }
+}
+
+/// The tension of the members that are there, for the summary.
+pub(crate) fn told(case: &Case, state: &State) -> Vec<MemberSummary> {
+    let of = |index: usize, of| quantity(&state.controls, &state.body.reinforcement, index, of);
+    state
+        .controls
+        .installed()
+        .map(|index| MemberSummary {
+            name: case.reinforcement[index].name.clone(),
+            force: of(index, ReinforcementQuantity::Force),
+            head_force: of(index, ReinforcementQuantity::HeadForce),
+            at_limit: of(index, ReinforcementQuantity::AtLimit),
+        })
+        .collect()
+}
