@@ -27,8 +27,8 @@ pub(crate) fn folder(name: &str) -> PathBuf {
     folder
 }
 
-pub(crate) fn case() -> Case {
-    let stage = |name: &str, kind| Stage {
+fn stage(name: &str, kind: StageKind) -> Stage {
+    Stage {
         name: name.into(),
         kind,
         steps: 10,
@@ -38,7 +38,10 @@ pub(crate) fn case() -> Case {
         install: Vec::new(),
         stop_when: StopWhen::default(),
         drained: false,
-    };
+    }
+}
+
+pub(crate) fn case() -> Case {
     let body = |name: &str, material, polygon: &[[f64; 2]]| BodyPart {
         name: name.into(),
         material,
