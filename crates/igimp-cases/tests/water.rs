@@ -176,6 +176,63 @@ fn a_file_states_water_and_stages() {
     assert!(own.dissipate);
 }
 
+/// GOAL: pressures by points act as the table does that they were taken from, with a pond, above the table and in what is
+/// saturated; from a file as from the case.
+/// ORACLE: the same case with a level.
+/// BAND: ten times the tolerance of a step; a thousandth with a level on a line of points; between two lines the kink is lost.
+#[test]
+fn points_act_as_the_table_that_they_are_of() {
+    let soil = ("saturated_unit_weight = \"20 kN/m3\"\n", "");
+    let only_weight = |edits: Edits<'_>| {
+        let mut case = case(edits);
+        case.stages.truncate(1);
+        let run = igimp_cases::run::in_memory(&case).unwrap();
+        run.body.particles.displacement.clone()
+    };
+    let apart = |one: &[[f64; 2]], other: &[[f64; 2]]| {
+        let size = |own: &[f64; 2]| own[0].hypot(own[1]);
+        let most = one.iter().map(size).fold(0.0, f64::max);
+        let pairs = std::iter::zip(one, other);
+        pairs
+            .map(|(a, b)| size(&[a[0] - b[0], a[1] - b[1]]))
+            .fold(0.0, f64::max)
+            / most
+    };
+    let level = |level: f64| format!("level = \"{level} m\"");
+    let points = |level: f64, rows: &[f64]| {
+        let of = |y: &f64| (9.81 * (level - y)).max(0.0);
+        let row = |y| format!("[\"{0} kPa\", \"{0} kPa\"]", of(y));
+        let y: Vec<String> = rows.iter().map(|y| format!("\"{y} m\"")).collect();
+        let rows: Vec<String> = rows.iter().map(row).collect();
+        let (y, rows) = (y.join(", "), rows.join(", "));
+        format!("u = {{ x = [\"0 m\", \"30 m\"], y = [{y}], rows = [{rows}] }}\npond = true")
+    };
+    let table = |at: f64| only_weight(&[soil, ("level = \"7 m\"", &level(at))]);
+    let raster =
+        |at: f64, rows: &[f64]| only_weight(&[soil, ("level = \"7 m\"", &points(at, rows))]);
+    let deep = apart(&table(14.0), &raster(14.0, &[0.0, 11.0]));
+    assert!(deep < 1e-8, "{deep}");
+    let kink = apart(&table(7.0), &raster(7.0, &[0.0, 3.0, 7.0, 11.0]));
+    assert!(kink < 1e-3, "{kink}");
+    let coarse = apart(&table(7.0), &raster(7.0, &[0.0, 6.5, 7.5, 11.0]));
+    assert!(coarse > kink && coarse < 5e-2, "{coarse}");
+
+    let folder = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("water");
+    std::fs::create_dir_all(&folder).unwrap();
+    let csv = "x [m],y [m],u [kPa]\n0,0,137.34\n30,0,137.34\n0,11,29.43\n30,11,29.43\n";
+    std::fs::write(folder.join("seepage.csv"), csv).unwrap();
+    let edit = (
+        "level = \"7 m\"",
+        "u = { raster = \"seepage.csv\" }\npond = true",
+    );
+    std::fs::write(folder.join("case.toml"), edited(&[soil, edit])).unwrap();
+    let file = CaseFile::read(&folder.join("case.toml"), &[]).unwrap();
+    let PoreSource::Points(raster) = &file.case().water[0].source else {
+        panic!("{:?}", file.case().water[0]);
+    };
+    assert!((raster.at([12.0, 5.5]) - 83.385e3).abs() < 1e-6);
+}
+
 #[test]
 fn the_water_of_undrained_soil_follows_from_its_poisson_ratio() {
     let Drainage::Undrained { stiffness } = case(&[]).materials[1].drainage else {
@@ -259,6 +316,19 @@ fn water_that_makes_no_sense() {
         )],
         &[("level = \"7 m\"", "level = \"-1 m\"")],
         &[("level = \"7 m\"", "r_u = 1.5")],
+        &[(
+            "level = \"7 m\"",
+            "u = { x = [\"0 m\", \"20 m\"], y = [\"0 m\", \"10 m\"], rows = [[\"90 kPa\", \"50 kPa\"], [\"0 kPa\", \"0 kPa\"]] }"
+        )],
+        &[(
+            "level = \"7 m\"",
+            "u = { x = [\"0 m\", \"30 m\"], y = [\"0 m\", \"10 m\"], rows = [[\"90 kPa\", \"50 kPa\"], [\"0 kPa\", \"0 kPa\"]] }"
+        )],
+        &[(
+            "level = \"7 m\"",
+            "u = { x = [\"0 m\", \"30 m\"], y = [\"0 m\", \"10 m\"] }"
+        )],
+        &[("level = \"7 m\"", "u = { raster = \"nowhere.csv\" }")],
         &[("r_u = 0.25", "r_u = -0.25")],
         &[("level = \"7 m\"", "level = \"7 m\"\nr_u = 0.2")],
         &[("level = \"7 m\"", "dry = false")],

@@ -131,6 +131,10 @@ impl Ground {
             (None, Some((PoreSource::Table(points), unit_weight))) => {
                 below(table_level(points, place[0]), *unit_weight)
             }
+            (None, Some((PoreSource::Points(raster), _))) => {
+                let on_ground = raster.at([place[0], surface]).max(0.0);
+                on_ground - raster.at(place).max(0.0)
+            }
             (None, Some((PoreSource::Ratio(ratio), _))) => -ratio * weight,
             (None, Some((PoreSource::Dry, _)) | None) => 0.0,
         };

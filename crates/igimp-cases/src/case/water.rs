@@ -1,5 +1,7 @@
 //! Water in the ground: conditions that stages move between, and what materials do with it.
 
+use super::Raster;
+
 use super::{Case, StageKind};
 
 impl Case {
@@ -49,6 +51,9 @@ pub enum PoreSource {
     /// A water table: its points from left to right \[m\], linear between them and level beyond; one point is a level.
     /// Pressure is the unit weight of water times the vertical depth below it. Soil is saturated beneath.
     Table(Vec<[f64; 2]>),
+    /// Pressures by points in the plane \[Pa\], as a seepage analysis gives them; less than none is none. On the ground it is that
+    /// of the free water there.
+    Points(Raster),
     /// r_u: the pressure as a share of the weight of the ground above, as the bodies present from the start are
     /// drawn \[-\].
     Ratio(f64),

@@ -4,7 +4,9 @@ use std::sync::Arc;
 
 use igimp_assembly::{PoreSite, PoreState, PoreWater};
 
-use crate::case::{Case, Drainage, Ground, Material, PoreSource, WaterCondition, table_level};
+use crate::case::{
+    Case, Drainage, Ground, Material, PoreSource, Raster, WaterCondition, table_level,
+};
 
 /// Points and weights of Gauss, three on −1 to 1.
 const ALONG: [(f64, f64); 3] = [
@@ -12,6 +14,9 @@ const ALONG: [(f64, f64); 3] = [
     (0.0, 8.0 / 18.0),
     (0.774_596_669_241_483_4, 5.0 / 18.0),
 ];
+
+/// Halvings of a column in which the end of the pressure is looked for.
+const HALVINGS: usize = 16;
 
 /// What pieces of ground the particles were seeded in.
 #[derive(Clone, Debug, Default)]
@@ -46,6 +51,7 @@ enum Source {
         points: Vec<[f64; 2]>,
         unit_weight: f64,
     },
+    Points(Raster),
     Ratio {
         ratio: f64,
         ground: Ground,
@@ -69,6 +75,7 @@ impl Source {
                 points: points.clone(),
                 unit_weight: case.water_unit_weight,
             },
+            PoreSource::Points(raster) => Self::Points(raster.clone()),
             PoreSource::Ratio(ratio) => Self::Ratio {
                 ratio: *ratio,
                 ground: case.ground(),
@@ -80,15 +87,37 @@ impl Source {
     fn top(&self, x: f64) -> f64 {
         match self {
             Self::Dry => f64::NEG_INFINITY,
+            Self::Points(_) => f64::INFINITY,
             Self::Table { points, .. } => table_level(points, x),
             Self::Ratio { ground, .. } => ground.surface(x).unwrap_or(f64::NEG_INFINITY),
         }
+    }
+
+    /// The level above which there is no pressure between two levels \[m\]; the lower one where there is none at all.
+    fn top_within(&self, x: f64, [lower, upper]: [f64; 2]) -> f64 {
+        let Self::Points(_) = self else {
+            return self.top(x).min(upper);
+        };
+        if self.below(x, upper) > 0.0 {
+            return upper;
+        }
+        let (mut wet, mut dry) = (lower, upper);
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (wet + dry);
+            if self.below(x, middle) > 0.0 {
+                wet = middle;
+            } else {
+                dry = middle;
+            }
+        }
+        if self.below(x, wet) > 0.0 { wet } else { lower }
     }
 
     /// The pressure at a point that is not above the top \[Pa\].
     fn below(&self, x: f64, y: f64) -> f64 {
         match self {
             Self::Dry => 0.0,
+            Self::Points(raster) => raster.at([x, y]).max(0.0),
             Self::Table {
                 points,
                 unit_weight,
@@ -109,7 +138,7 @@ impl Source {
     /// Means of pressure and of its vertical slope along a vertical line from `bottom` on up, and the share of the line that is
     /// wet.
     fn on_column(&self, x: f64, bottom: f64, height: f64) -> [f64; 3] {
-        let top = self.top(x).min(bottom + height);
+        let top = self.top_within(x, [bottom, bottom + height]);
         if top <= bottom {
             return [0.0; 3];
         }
@@ -206,12 +235,12 @@ impl PoreWater<2> for GroundWater {
             Some(own) => own.over(x, half, site.filled),
             None => reference,
         };
-        let saturated = |source: &Source| matches!(source, Source::Table { .. });
         let source = self.own[self.seeded.body[site.number]].as_ref();
-        let wet = if saturated(source.unwrap_or(&self.reference)) {
-            own.wet
-        } else {
-            0.0
+        // Shares of soil that a table saturates, and of soil whose pores are known to be full.
+        let [saturated, full] = match source.unwrap_or(&self.reference) {
+            Source::Table { .. } => [own.wet, own.wet],
+            Source::Points(_) => [0.0, own.wet],
+            Source::Dry | Source::Ratio { .. } => [0.0, 0.0],
         };
         PoreState {
             pressure: if self.is_total[material] {
@@ -221,8 +250,8 @@ impl PoreWater<2> for GroundWater {
             },
             reference: reference.pressure,
             gradient: reference.gradient,
-            added_density: wet * self.added_density[material],
-            water_density: wet * self.density,
+            added_density: saturated * self.added_density[material],
+            water_density: full * self.density,
         }
     }
 }

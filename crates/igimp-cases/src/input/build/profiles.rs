@@ -341,7 +341,13 @@ fn stated(
         )?))),
         "levels" => Ok(Profile::Level(table(value, key, form, terms, problems)?)),
         "depths" => Ok(Profile::Depth(table(value, key, form, terms, problems)?)),
-        "rows" => raster(value, key, extent, problems),
+        "rows" => {
+            let raster = points(value, key, problems)?;
+            let polygons: Vec<_> = extent.polygons().collect();
+            let of = format!("the soil of `{}`", clip(extent.name, 40));
+            reach(&raster, (value, key), (&polygons, &of), problems)?;
+            Ok(Profile::Raster(raster))
+        }
         top => {
             let from = match (top, value.optional_number("from")?, extent.levels()) {
                 ("at_surface", ..) => 0.0,
@@ -401,14 +407,17 @@ fn numbers(list: Option<&Node>) -> Result<Vec<f64>, Wrong> {
 const BEYOND: f64 = 0.5 + 1e-9;
 
 /// Points in the plane.
-fn raster(
-    value: &Node,
-    key: &str,
-    extent: Extent<'_>,
-    problems: &mut Problems,
-) -> Result<Profile, Wrong> {
+pub(super) fn points(value: &Node, key: &str, problems: &mut Problems) -> Result<Raster, Wrong> {
     let help = "write x = [...], y = [...] and rows = [[...], ...] with a list for every y, or raster = \"cu.csv\"";
-    if value.get("rows").is_some_and(Node::is_invalid) {
+    if value.is_invalid() || value.get("rows").is_some_and(Node::is_invalid) {
+        return Err(Wrong);
+    }
+    if let Some(missing) = ["x", "y", "rows"]
+        .into_iter()
+        .find(|key| value.get(key).is_none())
+    {
+        let message = format!("`{key}` has no `{missing}`");
+        problems.error(value.place, message).help(help);
         return Err(Wrong);
     }
     let (x, y) = (numbers(value.get("x"))?, numbers(value.get("y"))?);
@@ -436,8 +445,17 @@ fn raster(
             return Err(Wrong);
         }
     }
-    let raster = Raster { x, y, values };
-    let corners = extent.polygons().flatten().copied();
+    Ok(Raster { x, y, values })
+}
+
+/// Refuses points that soil lies too far beyond; `of` are the words for the soil.
+pub(super) fn reach(
+    raster: &Raster,
+    (value, key): (&Node, &str),
+    (polygons, of): (&[&[[f64; 2]]], &str),
+    problems: &mut Problems,
+) -> Result<(), Wrong> {
+    let corners = polygons.iter().flat_map(|polygon| polygon.iter().copied());
     let far = |at: &[f64; 2]| raster.beyond(*at) > BEYOND;
     if let Some(at) = corners.into_iter().find(far) {
         let ends = |lines: &[f64]| {
@@ -450,11 +468,7 @@ fn raster(
         problems
             .error(
                 value.place,
-                format!(
-                    "`{key}` has no value at {}, in the soil of `{}`",
-                    point(at),
-                    clip(extent.name, 40)
-                ),
+                format!("`{key}` has no value at {}, in {of}", point(at)),
             )
             .help(format!(
                 "its points reach from x = {}, and from y = {}",
@@ -464,7 +478,7 @@ fn raster(
             .help("soil may lie beyond them by half the distance of two points");
         return Err(Wrong);
     }
-    Ok(Profile::Raster(raster))
+    Ok(())
 }
 
 fn table(

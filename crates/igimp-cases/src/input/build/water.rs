@@ -4,10 +4,11 @@ use std::collections::HashMap;
 
 use super::AllNames;
 use super::ground::{Above, Surface};
+use super::profiles::reach;
 use super::sequence::{Scene, Sequence};
 use super::site::Site;
 use crate::case::{
-    BodyPart, Drainage, Material, PoreSource, Strength, WaterCondition, table_level,
+    BodyPart, Drainage, Material, PoreSource, Raster, Strength, WaterCondition, table_level,
 };
 use crate::input::diagnostic::Problems;
 use crate::input::geometry::contains;
@@ -33,9 +34,9 @@ impl Around<'_> {
 }
 
 const FORMS: &str = "write one of level = \"24 m\", line = [[\"0 m\", \"24 m\"], [\"60 m\", \"20 m\"]], inside and outside, \
-                     r_u = 0.25, dry = true";
+                     r_u = 0.25, u = { raster = \"u.csv\" }, dry = true";
 const OWN_FORMS: &str = "write one of level = \"24 m\", line = [[\"0 m\", \"24 m\"], [\"60 m\", \"20 m\"]], r_u = 0.25, \
-                         dry = true";
+                         u = { raster = \"u.csv\" }, dry = true";
 
 /// The conditions.
 pub(super) fn conditions(
@@ -115,7 +116,7 @@ fn form(
     forms: &str,
     problems: &mut Problems,
 ) -> Option<&'static str> {
-    let keys = ["level", "line", "r_u", "dry"].iter().chain(more);
+    let keys = ["level", "line", "r_u", "u", "dry"].iter().chain(more);
     let is_said = |key: &str| {
         node.get(key)
             .is_some_and(|value| value.flag() != Some(false))
@@ -185,6 +186,7 @@ fn source_of(node: &Node, form: &str, who: &str, problems: &mut Problems) -> Opt
             }
             PoreSource::Ratio(ratio)
         }
+        "u" => PoreSource::Points(super::profiles::points(value, "u", problems).ok()?),
         _ => PoreSource::Dry,
     })
 }
@@ -323,6 +325,12 @@ impl Checker<'_> {
         let (place, when) = when(around.tree, node, stage);
         match &condition.source {
             PoreSource::Dry => {}
+            PoreSource::Points(raster) => points(
+                raster,
+                (around, scene, surface),
+                (node, &who, &when),
+                problems,
+            ),
             PoreSource::Table(points) => {
                 let is_meant = node.flag_at("pond") != Some(false);
                 let [highest, sloping] = surface.below(points);
@@ -440,9 +448,53 @@ impl Checker<'_> {
     }
 }
 
+/// Share of the greatest pressure on the ground that is told \[-\].
+const ON_GROUND: f64 = 0.02;
+
+/// Refuses points that do not reach over the soil; warns of pressure on the ground that is not said to be free water.
+fn points(
+    raster: &Raster,
+    (around, scene, surface): (&Around<'_>, &Scene, &Surface),
+    (node, who, when): (&Node, &str, &str),
+    problems: &mut Problems,
+) {
+    let Some(value) = node.get("u") else { return };
+    let parts = std::iter::zip(around.bodies, &scene.present);
+    let there = parts.filter_map(|(part, present)| part.as_ref().filter(|_| *present));
+    let polygons: Vec<&[[f64; 2]]> = there.map(|part| &part.polygon[..]).collect();
+    let of = format!("the soil that {who} is for{when}");
+    if reach(raster, (value, "u"), (&polygons, &of), problems).is_err() {
+        return;
+    }
+    let greatest = raster.values.iter().flatten().copied().fold(0.0, f64::max);
+    let ends = surface.stretches.iter().flat_map(|own| {
+        let at = |share: f64| {
+            let [x, y] = [own.x, own.y].map(|[from, to]| from + share * (to - from));
+            [x, y]
+        };
+        [0.0, 0.25, 0.5, 0.75, 1.0].map(at)
+    });
+    let pressure = |at: &[f64; 2]| raster.at(*at);
+    let most = ends.max_by(|a, b| pressure(a).total_cmp(&pressure(b)));
+    let is_meant = node.flag_at("pond") == Some(true);
+    if let Some(at) = most.filter(|at| !is_meant && pressure(at) > ON_GROUND * greatest) {
+        problems
+            .warning(
+                value.place,
+                format!(
+                    "{who} presses on the ground with {} kPa at ({}, {}) m{when}, as free water would",
+                    number((pressure(&at) / 1e2).round() / 1e1),
+                    number(at[0]),
+                    number(at[1])
+                ),
+            )
+            .help("write pond = true if free water stands there; else let the points have no pressure on the ground");
+    }
+}
+
 /// Where a condition is told wrong, and when.
 fn when(tree: &Node, node: &Node, stage: Option<usize>) -> (Place, String) {
-    let own = ["line", "level", "inside", "r_u"];
+    let own = ["line", "level", "inside", "r_u", "u"];
     let own = own.iter().find(|key| node.get(key).is_some());
     let own = own.map_or(node.place, |key| node.place_at(key));
     let Some(stage) = stage.map(|index| &tree.items_at("stages")[index]) else {
@@ -479,6 +531,10 @@ fn is_wet(source: &PoreSource, part: &BodyPart) -> bool {
     match source {
         PoreSource::Dry => false,
         PoreSource::Ratio(ratio) => *ratio > 0.0,
+        PoreSource::Points(raster) => raster
+            .places_in(&part.polygon)
+            .iter()
+            .any(|at| raster.at(*at) > 0.0),
         PoreSource::Table(points) => {
             let is_below = |corner: &[f64; 2]| corner[1] < table_level(points, corner[0]);
             part.polygon.iter().any(is_below)

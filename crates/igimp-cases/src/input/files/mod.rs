@@ -1,5 +1,5 @@
 //! What a case file takes from files beside it, put into its tree: polygons and layer lines from CSV and
-//! DXF, properties of materials from CSV.
+//! DXF, properties of materials and pore pressures from CSV.
 //!
 //! From then on the tree carries the points themselves, each with its unit: what is built, explained and fingerprinted
 //! does not depend on the files any more.
@@ -30,12 +30,28 @@ pub(super) fn read(tree: &mut Node, case: &Path, problems: &mut Problems) {
             raster::resolve(&mut property.node, &property.key, folder, problems);
         }
     }
+    if let Some(conditions) = tree.get_mut("water") {
+        for condition in conditions.items_mut() {
+            pressures(condition, folder, problems);
+            let own = condition.get_mut("bodies").map(Node::items_mut);
+            for body in own.into_iter().flatten() {
+                pressures(body, folder, problems);
+            }
+        }
+    }
     if let Some(bodies) = tree.get_mut("bodies") {
         for body in bodies.items_mut() {
             if let Some(polygon) = body.get_mut("polygon") {
                 outline::resolve(polygon, folder, problems);
             }
         }
+    }
+}
+
+/// The pore pressures of a condition of the water, or of a body in it.
+fn pressures(of: &mut Node, folder: &Path, problems: &mut Problems) {
+    if let Some(points) = of.get_mut("u") {
+        raster::resolve(points, "u", folder, problems);
     }
 }
 

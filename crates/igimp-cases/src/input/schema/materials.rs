@@ -48,6 +48,7 @@ const fn profile(
     lists: &'static Kind,
 ) -> [Field; 13] {
     let [levels, depths, values] = rows(values);
+    let [raster, unit, length_unit, x, y, lists] = in_plane(lists);
     [
         optional(
             "at_surface",
@@ -76,10 +77,22 @@ const fn profile(
         levels,
         depths,
         values,
+        raster,
+        unit,
+        length_unit,
+        x,
+        y,
+        lists,
+    ]
+}
+
+/// The keys of values by points in the plane.
+pub(super) const fn in_plane(lists: &'static Kind) -> [Field; 6] {
+    [
         optional(
             "raster",
             Kind::Text,
-            "the property does not come from a file",
+            "it does not come from a file",
             "a CSV file with the columns x, y and value on a rectangular grid of points; its path from the case file",
         ),
         optional(

@@ -1,6 +1,8 @@
 //! Conditions of the water, and what stages of construction change.
 
+use super::materials::in_plane;
 use super::{A_LENGTH, CORNER, MANY, MOST_THINGS};
+use crate::input::quantity::Dimension::Stress;
 use crate::input::spec::{Field, Kind, Range, Struct, default, derived, optional, required};
 
 const LEVEL: Field = optional(
@@ -23,20 +25,35 @@ const RATIO: Field = optional(
 );
 const DRY: Field = optional("dry", Kind::Flag, "another key says it", "no pore pressure");
 
+static A_PRESSURE: Kind = Kind::Quantity(Stress, Range::Any);
+static PRESSURES: Kind = Kind::List(&A_PRESSURE, 1, MANY);
+
+static IN_PLANE: Struct = Struct {
+    doc: "Pore pressures by points in the plane: `raster`, or `x`, `y` and `rows`. Less than none counts as none.",
+    fields: &in_plane(&PRESSURES),
+};
+const POINTS: Field = optional(
+    "u",
+    Kind::Table(&IN_PLANE),
+    "another key says it",
+    "pore pressure by points in the plane, as a seepage analysis gives it",
+);
+
 static OWN: Kind = Kind::Table(&Struct {
-    doc: "A body with a pore pressure of its own: one of `level`, `line`, `r_u` and `dry`.",
+    doc: "A body with a pore pressure of its own: one of `level`, `line`, `r_u`, `u` and `dry`.",
     fields: &[
         required("body", Kind::Reference("body"), "\"clay\"", "the body"),
         LEVEL,
         LINE,
         RATIO,
+        POINTS,
         DRY,
     ],
 });
 
 /// A condition of the water.
 pub(super) static WATER: Kind = Kind::Table(&Struct {
-    doc: "A condition of the water: one of `level`, `line`, `inside` with `outside`, `r_u` and `dry`. The first holds from the \
+    doc: "A condition of the water: one of `level`, `line`, `inside` with `outside`, `r_u`, `u` and `dry`. The first holds from the \
           start, the others from the stages that name them.",
     fields: &[
         required("name", Kind::Name, "\"full\"", "name"),
@@ -55,6 +72,7 @@ pub(super) static WATER: Kind = Kind::Table(&Struct {
             "level of the free water outside, with `inside`",
         ),
         RATIO,
+        POINTS,
         DRY,
         derived(
             "pond",

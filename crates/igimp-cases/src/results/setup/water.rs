@@ -53,6 +53,15 @@ fn condition(case: &Case, index: usize, own: &WaterCondition) -> Vec<String> {
 fn source(own: &PoreSource) -> String {
     match own {
         PoreSource::Dry => "dry".to_owned(),
+        PoreSource::Points(raster) => {
+            let values = raster.values.iter().flatten().copied();
+            format!(
+                "up to {} kPa by a raster of {} by {} points",
+                short(values.fold(0.0, f64::max) / 1e3),
+                raster.x.len(),
+                raster.y.len()
+            )
+        }
         PoreSource::Ratio(ratio) => format!("r_u = {}", short(*ratio)),
         PoreSource::Table(points) => match points.as_slice() {
             [only] => format!("table level at y = {} m", short(only[1])),
