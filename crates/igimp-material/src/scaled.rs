@@ -1,4 +1,4 @@
-//! Laws of soil whose strength and stiffness vary in space, as multiples of those of one law (theory, eq. 19b).
+//! Laws of soil whose strength and stiffness vary in space, as multiples of those of one law (theory, eqs. 19b and 19c).
 
 use std::fmt::Debug;
 use std::ops::Deref;

@@ -1,4 +1,4 @@
-//! Reinforcement: anchors, nails and geotextiles, which pull and do not bend (theory, eqs. 61 to 64).
+//! Reinforcement: anchors, nails and geotextiles, which pull and do not bend (theory, eqs. 56 to 59).
 //!
 //! A member is a chain of bars between stations that the soil carries along. A bar carries tension only,
 //! up to what the member and its bond on either side of the bar can take.
@@ -93,7 +93,7 @@ impl ReinforcementControl {
 }
 
 impl Segment {
-    /// Most tension with the bond divided by `reduction` \[force\] (theory, eq. 63).
+    /// Most tension with the bond divided by `reduction` \[force\] (theory, eq. 58).
     pub fn limit(&self, reduction: f64) -> f64 {
         let [head, end] = self
             .held

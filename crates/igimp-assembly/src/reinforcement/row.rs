@@ -31,7 +31,7 @@ pub(crate) struct Pull<const D: usize> {
 }
 
 impl<const D: usize> Row<D> {
-    /// The bar at nodal step displacements `u` (theory, eqs. 61 to 63).
+    /// The bar at nodal step displacements `u` (theory, eqs. 56 to 58).
     pub(crate) fn pull(&self, u: &[[f64; D]]) -> Pull<D> {
         let mut by = [0.0; D];
         for &(node, share) in &self.relative {
@@ -83,7 +83,7 @@ impl<const D: usize> Row<D> {
         }
     }
 
-    /// Adds its force and, if asked for, its tangent (theory, eq. 64).
+    /// Adds its force and, if asked for, its tangent (theory, eq. 59).
     pub(crate) fn add(
         &self,
         u: &[[f64; D]],

@@ -37,7 +37,7 @@ impl ReinforcementPart {
             .sum()
     }
 
-    /// Most tension at a distance from the head along it, with the whole bond \[N/m\] (theory, eq. 63).
+    /// Most tension at a distance from the head along it, with the whole bond \[N/m\] (theory, eq. 58).
     pub fn limit(&self, at: f64) -> f64 {
         let [head, end] = self.bonded(at);
         let head = self.fastened[0] + head;
