@@ -379,12 +379,12 @@ fn refusals_say_what_to_do() {
     let text = fs::read_to_string(&file).unwrap();
     fs::write(
         &file,
-        text.replace("\"format_version\": 2", "\"format_version\": 3"),
+        text.replace("\"format_version\": 3", "\"format_version\": 4"),
     )
     .unwrap();
     insta::assert_snapshot!(
         refusal(None),
-        @"the checkpoint in DIR/a has format version 3; this program reads version 2"
+        @"the checkpoint in DIR/a has format version 4; this program reads version 3"
     );
     fs::write(&file, "{}").unwrap();
     insta::assert_snapshot!(
