@@ -156,7 +156,7 @@ impl Case {
             Self::ReinforcementSeam => reinforcement::seam::study(level, out),
             Self::ReinforcementCut => reinforcement::cut::study(level, out),
             Self::Water => water::study(level, out),
-            Self::Stages => stages::study(level, out),
+            Self::Stages => stages::study(out),
             Self::FootingContact => footing_contact::study(level, out),
             Self::ContactFooting => contact::footing::study(level, out),
             Self::ContactColumn => contact::column::study(out),

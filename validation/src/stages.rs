@@ -15,7 +15,7 @@ use igimp_cases::run::Run;
 
 use crate::oracle::{Oracle, OracleKind};
 use crate::runs::{Computed, corners};
-use crate::study::{Level, RunRecord, Study};
+use crate::study::{RunRecord, Study};
 
 /// What the book says of the study.
 const ABOUT: &str = "Construction stages: fill in lifts, excavation in slices and at once, water that is lowered, undrained loading and its dissipation. Columns between smooth sides have exact stresses; elastic ground that was cut in slices is that cut at once, and that which never was anything else.";
@@ -113,11 +113,11 @@ fn box_of(from: [f64; 2], to: [f64; 2]) -> Vec<[f64; 2]> {
 }
 
 /// Runs the study.
-pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
+pub(crate) fn study(out: &Path) -> Result<Study, CaseError> {
     let mut study = Study::new("stages", ABOUT, out)?;
     columns(&mut study)?;
     oedometer(&mut study)?;
-    cuts(&mut study, level)?;
+    cuts(&mut study)?;
     Ok(study)
 }
 
@@ -340,8 +340,8 @@ fn oedometer(study: &mut Study) -> Result<(), CaseError> {
 }
 
 /// A pit in three slices, at once, and in ground that never was anything else.
-fn cuts(study: &mut Study, level: Level) -> Result<(), CaseError> {
-    let cell = if level == Level::Full { 0.25 } else { 0.5 };
+fn cuts(study: &mut Study) -> Result<(), CaseError> {
+    let cell = 0.5;
     let rest = vec![
         [0.0, 0.0],
         [24.0, 0.0],
