@@ -95,7 +95,7 @@ impl Region<2> for [[f64; 2]] {
     }
 
     fn beyond(&self, lower: [f64; 2], upper: [f64; 2]) -> Option<[f64; 2]> {
-        let is_off = |corner: &&[f64; 2]| is_off(*corner, &lower, &upper);
+        let is_off = |corner: &&[f64; 2]| is_off(corner, &lower, &upper);
         self.iter().find(is_off).copied()
     }
 }

@@ -41,8 +41,9 @@ pub fn fill<const D: usize>(
 ) -> Result<Vec<ParticleSeed<D>>, CaseError> {
     let parts = Parts::around(grid, region, per_direction)?;
     let within = |_, from, to| (region.within(from, to), ());
-    let (seeds, _) = parts.filled(|from, to| region.cover(from, to), within)?;
-    Ok(parts.seeds(&seeds, density, law))
+    let cover = |from, to| region.cover(from, to);
+    let (seeds, _) = parts.filled((density, law), cover, within)?;
+    Ok(seeds)
 }
 
 /// Fills a polygon with `per_direction`² particles per grid cell.
@@ -63,8 +64,8 @@ pub fn fill_polygon(
         let clipped = clip_to_strip(&columns[place[0]], 1, from[1], to[1]);
         (part(&clipped), ())
     };
-    let (seeds, _) = parts.filled(|_, _| Cover::Cut, within)?;
-    Ok(parts.seeds(&seeds, density, law))
+    let (seeds, _) = parts.filled((density, law), |_, _| Cover::Cut, within)?;
+    Ok(seeds)
 }
 
 /// The same, with the pieces of the polygon: one for each particle in their order, then the slivers,
@@ -82,10 +83,9 @@ pub(crate) fn fill_in_pieces(
         let clipped = clip_to_strip(&columns[place[0]], 1, from[1], to[1]);
         (part(&clipped), clipped)
     };
-    let (seeds, pieces) = parts.filled(|_, _| Cover::Cut, within)?;
+    let (seeds, pieces) = parts.filled((density, law), |_, _| Cover::Cut, within)?;
     let piece = |(particle, polygon)| Piece { particle, polygon };
-    let pieces = pieces.into_iter().map(piece).collect();
-    Ok((parts.seeds(&seeds, density, law), pieces))
+    Ok((seeds, pieces.into_iter().map(piece).collect()))
 }
 
 fn part(clipped: &[[f64; 2]]) -> Part<2> {
@@ -96,13 +96,8 @@ fn part(clipped: &[[f64; 2]]) -> Part<2> {
     }
 }
 
-/// A particle to be.
-#[derive(Clone, Copy, Debug)]
-struct Sown<const D: usize> {
-    x: [f64; D],
-    half_length: [f64; D],
-    volume: f64,
-}
+/// Particles, and what belongs to parts with the particle that each went to.
+type Filled<const D: usize, K> = (Vec<ParticleSeed<D>>, Vec<(usize, K)>);
 
 /// The parts of the cells around a region.
 #[derive(Debug)]
@@ -169,13 +164,14 @@ impl<const D: usize> Parts<D> {
     /// `within` hands out with each part that is not empty, with the particle that the part went to.
     fn filled<K: Default>(
         &self,
+        (density, law): (f64, usize),
         cover: impl Fn([f64; D], [f64; D]) -> Cover,
         within: impl Fn([usize; D], [f64; D], [f64; D]) -> (Part<D>, K),
-    ) -> Result<(Vec<Sown<D>>, Vec<(usize, K)>), CaseError> {
+    ) -> Result<Filled<D, K>, CaseError> {
         let counts: [usize; D] = std::array::from_fn(|axis| self.cells[axis].len());
         let in_cell = [self.per_direction; D];
-        let (mut sown, mut kept, mut slivers): (Vec<Sown<D>>, _, _) =
-            (Vec::new(), Vec::new(), Vec::new());
+        let mut seeds: Vec<ParticleSeed<D>> = Vec::new();
+        let (mut kept, mut slivers) = (Vec::new(), Vec::new());
         let mut first = vec![0];
         for cell in 0..counts.iter().product() {
             let cell = place_of(cell, counts);
@@ -197,42 +193,33 @@ impl<const D: usize> Parts<D> {
                     within(place, from, to)
                 };
                 if own.volume >= SLIVER * size.iter().product::<f64>() {
-                    kept.push((sown.len(), keep));
-                    sown.push(Sown {
+                    kept.push((seeds.len(), keep));
+                    seeds.push(ParticleSeed {
                         x: std::array::from_fn(|axis| from[axis] + 0.5 * size[axis]),
                         half_length: size.map(|size| 0.5 * size),
                         volume: own.volume,
+                        density,
+                        law,
                     });
                 } else if own.volume > 0.0 {
                     slivers.push((own, keep));
                 }
             }
-            first.push(sown.len());
+            first.push(seeds.len());
         }
-        if sown.is_empty() {
+        if seeds.is_empty() {
             return Err(CaseError::EmptyBody);
         }
         if !slivers.is_empty() {
-            let x: Vec<[f64; D]> = sown.iter().map(|sown| sown.x).collect();
+            let x: Vec<[f64; D]> = seeds.iter().map(|seed| seed.x).collect();
             let nearest = Nearest::new(self, &x, &first);
             for (own, keep) in slivers {
                 let particle = nearest.to(own.centroid);
-                sown[particle].volume += own.volume;
+                seeds[particle].volume += own.volume;
                 kept.push((particle, keep));
             }
         }
-        Ok((sown, kept))
-    }
-
-    fn seeds(&self, sown: &[Sown<D>], density: f64, law: usize) -> Vec<ParticleSeed<D>> {
-        let seed = |own: &Sown<D>| ParticleSeed {
-            x: own.x,
-            half_length: own.half_length,
-            volume: own.volume,
-            density,
-            law,
-        };
-        sown.iter().map(seed).collect()
+        Ok((seeds, kept))
     }
 }
 

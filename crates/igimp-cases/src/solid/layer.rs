@@ -178,7 +178,7 @@ fn covered(plan: &[[f64; 2]], facets: &Facets, lower: [f64; 2], upper: [f64; 2])
     let size = [upper[0] - lower[0], upper[1] - lower[1]];
     facets.each_within([lower[0], lower[1], 0.0], size, |face| {
         over(face, &within, |face, sign| {
-            covered += sign * face.area_in_plan()
+            covered += sign * face.area_in_plan();
         });
     });
     [area, covered]

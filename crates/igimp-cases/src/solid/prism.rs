@@ -49,7 +49,7 @@ pub(super) fn both(
     stretch: [f64; 2],
     seen: impl FnOnce() -> Cover,
 ) -> Cover {
-    match along.map(|own| (own == stretch, seen())) {
+    match along.map(|own| (own[0] <= stretch[0] && stretch[1] <= own[1], seen())) {
         None | Some((_, Cover::Nothing)) => Cover::Nothing,
         Some((true, Cover::Whole)) => Cover::Whole,
         Some(_) => Cover::Cut,

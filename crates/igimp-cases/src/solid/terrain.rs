@@ -156,7 +156,7 @@ fn check_places(points: &[[f64; 3]]) -> Result<(), TerrainError> {
     sorted.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
     for pair in sorted.windows(2) {
         let [a, b] = [pair[0], pair[1]];
-        if a[..2] == b[..2] && a[2] != b[2] {
+        if a[..2] == b[..2] && (a[2] < b[2] || b[2] < a[2]) {
             return Err(TerrainError::TwoHeights {
                 at: [a[0], a[1]],
                 heights: [a[2], b[2]],
