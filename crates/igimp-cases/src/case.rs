@@ -312,6 +312,15 @@ pub struct Boundaries<const D: usize = 2> {
     pub boxes: Vec<FixedBox<D>>,
 }
 
+impl<const D: usize> Default for Boundaries<D> {
+    fn default() -> Self {
+        Self {
+            sides: [[Side::Free; 2]; D],
+            boxes: Vec::new(),
+        }
+    }
+}
+
 /// Nodes in a box (edges included) that are held.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FixedBox<const D: usize = 2> {
