@@ -11,7 +11,7 @@ use igimp_material::{ConstitutiveModel, ScaledLaw, TangentKind, elastic_left_cau
 
 use super::left::Resumption;
 use super::loading::let_go;
-use super::model::{Model, STANDARD_GRAVITY};
+use super::model::{Model, gravity_of_weights};
 use super::session::{Ended, Session};
 use super::state::State;
 use crate::case::{Construction, Ground, StageKind};
@@ -97,11 +97,7 @@ fn become_soil_of(
     material: usize,
 ) -> Result<(), CaseError> {
     let case = model.case;
-    let gravity = if case.gravity > 0.0 {
-        case.gravity
-    } else {
-        STANDARD_GRAVITY
-    };
+    let gravity = gravity_of_weights(case.gravity);
     let place = fields.x[particle];
     let soil = &case.materials[material];
     let before = model.laws[fields.law[particle]].elasticity().young();
