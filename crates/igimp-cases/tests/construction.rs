@@ -455,6 +455,35 @@ fn shows_what_is_there(folder: &Path) {
     );
 }
 
+/// GOAL: a stage that only goes on needs nothing but its own checkpoint.
+/// CASE: gravity is raised in three steps and stopped after two; the end of the stage before is gone.
+#[test]
+fn an_ordinary_stage_is_taken_up_without_the_state_that_it_began_with() {
+    let mut case = dry();
+    case.stages.truncate(1);
+    let mut raised = case.stages[0].clone();
+    raised.name = "heavier".to_owned();
+    raised.kind = StageKind::Gravity {
+        factor: 1.2,
+        horizontal: None,
+        vertical: None,
+    };
+    (raised.steps, raised.start_from) = (3, Some(0));
+    case.stages.push(raised);
+    let whole = in_memory(&case).unwrap();
+    assert_done(&whole.summary);
+    let stopped = folder("without-start");
+    assert!(
+        written(&case, &stopped, Start::Afresh, Some(3))
+            .summary
+            .interrupted
+    );
+    fs::remove_dir_all(stopped.join("checkpoint/stage-01-end")).unwrap();
+    let end = written(&case, &stopped, Start::Resume, None);
+    assert_done(&end.summary);
+    assert!(end.body.particles == whole.body.particles);
+}
+
 /// GOAL: a search that raises gravity anew does so on the bodies that are there.
 /// ORACLE: the same search on a case that has them from the start.
 #[test]

@@ -19,10 +19,10 @@ use crate::check::short;
 use crate::error::CaseError;
 use crate::summary::StageSummary;
 
-/// Marches a state to the end of a construction stage that began with `start`, or on from where an earlier run left it.
+/// Marches a state to the end of a construction stage; one that an earlier run left within it began with `start`.
 pub(crate) fn build(
     session: &mut Session<'_>,
-    (start, state): (&State, &mut State),
+    (start, state): (Option<&State>, &mut State),
     number: usize,
     summary: &mut StageSummary,
     resumption: Option<&Resumption>,
@@ -32,11 +32,11 @@ pub(crate) fn build(
     let StageKind::Construction(own) = &stage.kind else {
         return Ok(Ended::Completed(super::REACHED_ITS_END.to_owned()));
     };
-    let changed = changed(model, start, own)?;
+    let changed = changed(model, start.unwrap_or(state), own)?;
     let held = holding(model, &changed, number)?;
     if resumption.is_none() {
         for &body in &own.place {
-            if let Some(text) = moved_below(model, start, body) {
+            if let Some(text) = moved_below(model, state, body) {
                 session.warn(text);
             }
         }

@@ -208,23 +208,27 @@ impl Stages {
             }
             let stage = &case.stages[number];
             let left = self.left.take().filter(|left| left.stage.is_some());
-            let start = match stage.start_from {
-                None => initial.clone(),
+            let begun = || match stage.start_from {
+                None => Ok(initial.clone()),
                 Some(from) => {
-                    session
-                        .ends
-                        .get(&from)
-                        .cloned()
-                        .ok_or_else(|| CaseError::NoStart {
-                            stage: stage.name.clone(),
-                            from: case.stages[from].name.clone(),
-                        })?
+                    let end = session.ends.get(&from).cloned();
+                    end.ok_or_else(|| CaseError::NoStart {
+                        stage: stage.name.clone(),
+                        from: case.stages[from].name.clone(),
+                    })
                 }
             };
-            let mut state = left
-                .as_ref()
-                .map_or_else(|| start.clone(), |left| left.state.clone());
-            let ended = self.stage(session, number, (&start, &mut state), left)?;
+            let (start, mut state) = match &left {
+                None => (None, begun()?),
+                Some(left) => {
+                    // What construction lets go follows from what it began with.
+                    let is_built = matches!(stage.kind, StageKind::Construction(_));
+                    let is_wanted = is_built && left.resumption.is_some();
+                    let start = is_wanted.then(begun).transpose()?;
+                    (start, left.state.clone())
+                }
+            };
+            let ended = self.stage(session, number, (start.as_ref(), &mut state), left)?;
             self.state = Some(state);
             if !ended {
                 break;
@@ -238,7 +242,7 @@ impl Stages {
         &mut self,
         session: &mut Session<'_>,
         number: usize,
-        (start, state): (&State, &mut State),
+        (start, state): (Option<&State>, &mut State),
         left: Option<Left>,
     ) -> Result<bool, CaseError> {
         let clock = Instant::now();
@@ -445,7 +449,7 @@ impl Stages {
 fn dispatch(
     session: &mut Session<'_>,
     number: usize,
-    (start, state): (&State, &mut State),
+    (start, state): (Option<&State>, &mut State),
     summary: &mut StageSummary,
     resumption: Option<&Resumption>,
     search: Option<Search>,
