@@ -6,7 +6,9 @@
 
 use std::sync::Arc;
 
-use igimp_assembly::{ParticleFields, Particles, Stencils, System};
+use igimp_assembly::{
+    Kinematics, ParticleFields, Particles, PoreSite, PoreWater as _, Stencils, System,
+};
 use igimp_material::{ConstitutiveModel, ScaledLaw, TangentKind, elastic_left_cauchy_green_of};
 
 use super::left::Resumption;
@@ -14,7 +16,7 @@ use super::loading::let_go;
 use super::model::{Model, gravity_of_weights};
 use super::session::{Ended, Session};
 use super::state::State;
-use crate::case::{Construction, Ground, StageKind};
+use crate::case::{Construction, Drainage, Ground, StageKind};
 use crate::check::short;
 use crate::error::CaseError;
 use crate::summary::StageSummary;
@@ -74,19 +76,55 @@ fn changed(model: &Model<'_>, start: &State, own: &Construction) -> Result<State
     let ground = case.ground();
     for particle in 0..fields.x.len() {
         let body = model.seeded.body[fields.number[particle]];
+        if own.dissipate {
+            fields.excess[particle] = 0.0;
+        }
         let new = own.materials.iter().find(|(of, _)| *of == body);
         if let Some(&(_, material)) = new {
             let law = fields.law[particle];
             fields.law[particle] = law - law % materials + material;
+            // What is placed is free of stress, whatever its law speaks of.
+            if !own.place.contains(&body) {
+                drain_as(model, &state, &mut fields, particle, law);
+            }
             become_soil_of((model, &ground), &mut fields, particle, material)?;
-        }
-        if own.dissipate {
-            fields.excess[particle] = 0.0;
         }
     }
     state.body.particles = Particles::from_fields(fields)?;
     state.controls.water = own.water.or(state.controls.water);
     Ok(state)
+}
+
+/// Makes the stress of a particle that had another law before that of which its law speaks, total or effective; the total
+/// stress stays. The excess pressure of soil that drains from now on goes, and what it bore is out of balance.
+fn drain_as(
+    model: &Model<'_>,
+    state: &State,
+    fields: &mut ParticleFields<2>,
+    particle: usize,
+    law_before: usize,
+) {
+    let materials = &model.case.materials;
+    let law = fields.law[particle];
+    let [before, drainage] = [law_before, law].map(|law| materials[law % materials.len()].drainage);
+    if (before == Drainage::Total) != (drainage == Drainage::Total) {
+        let water = state.controls.water.and_then(|k| model.ground_water(k));
+        let given = water.map_or(0.0, |water| {
+            let site = PoreSite {
+                law,
+                ..state.body.particles.pore_site(particle)
+            };
+            state.controls.gravity * water.at(site).pressure
+        });
+        let taken_over = given - (fields.pore_pressure[particle] + fields.excess[particle]);
+        for axis in 0..3 {
+            fields.sigma[particle][axis][axis] += taken_over;
+        }
+        fields.pore_pressure[particle] = given;
+    }
+    if !matches!(drainage, Drainage::Undrained { .. }) {
+        fields.excess[particle] = 0.0;
+    }
 }
 
 /// Gives a particle weight, strength and stiffness of a material; its stress stays.
@@ -109,8 +147,14 @@ fn become_soil_of(
     }
     fields.ratios[particle] = ratios;
     fields.mass[particle] = fields.volume0[particle] * soil.unit_weight_at(place, ground) / gravity;
-    let [[a, b], [c, d]] = fields.def_grad[particle];
-    let tau = fields.sigma[particle].map(|row| row.map(|stress| stress * (a * d - b * c)));
+    let stretch = match case.method.kinematics {
+        Kinematics::FiniteStrain => {
+            let [[a, b], [c, d]] = fields.def_grad[particle];
+            a * d - b * c
+        }
+        Kinematics::SmallStrain => 1.0,
+    };
+    let tau = fields.sigma[particle].map(|row| row.map(|stress| stress * stretch));
     let law = ScaledLaw::new(&*model.laws[fields.law[particle]], ratios)?;
     let b_e = elastic_left_cauchy_green_of::<2>(law.elasticity(), &tau);
     fields.b_e[particle] = b_e;
