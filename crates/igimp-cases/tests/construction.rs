@@ -401,7 +401,7 @@ fn shows_what_is_there(folder: &Path) {
     assert_eq!(counts.len(), frames);
     let end = |stage: usize| {
         let path = folder.join(format!("checkpoint/stage-{stage:02}-end"));
-        checkpoint::read(&path, None).unwrap().states[0]
+        checkpoint::read::<2>(&path, None).unwrap().states[0]
             .1
             .particles
             .len()
@@ -467,6 +467,7 @@ fn an_ordinary_stage_is_taken_up_without_the_state_that_it_began_with() {
     raised.kind = StageKind::Gravity {
         factor: 1.2,
         horizontal: None,
+        across: None,
         vertical: None,
     };
     (raised.steps, raised.start_from) = (3, Some(0));
@@ -577,6 +578,7 @@ fn compressed_soil_of_the_same_stiffness_stays_as_it_is() {
     case.stages[0].kind = StageKind::Gravity {
         factor: 1.0,
         horizontal: None,
+        across: None,
         vertical: None,
     };
     case.stages[0].steps = 4;
@@ -679,6 +681,7 @@ fn a_search_by_gravity_sees_what_was_built() {
     whole.stages[0].kind = StageKind::Gravity {
         factor: 1.0,
         horizontal: None,
+        across: None,
         vertical: None,
     };
     whole.stages.truncate(1);
