@@ -3,11 +3,11 @@
 //! Lengths are in m, stresses in Pa, unit weights in N/m³, angles in rad, forces in N/m (plane
 //! strain, per metre run). The second axis points up; gravity acts along its negative direction.
 
+mod axes;
 mod grid;
 mod ground;
 mod profile;
 mod raster;
-mod region;
 mod reinforcement;
 mod rigid;
 mod water;
@@ -20,12 +20,11 @@ use igimp_material::{Elasticity, HenckyElastic, MaterialError, MohrCoulomb, Tres
 use igimp_solver::linear::SolverKind;
 use serde::{Deserialize, Serialize};
 
+pub(crate) use axes::{from_front, front, in_space};
 pub use grid::{AxisSpec, GridSpec, MixedCells};
 pub use ground::{Ground, Layer};
 pub use profile::{LEAST_STRENGTH, Profile, Profiles, StressShare, Variation};
 pub use raster::Raster;
-pub use region::{Crossing, Region, Within};
-pub(crate) use region::{from_front, front, in_space};
 pub use reinforcement::{ReinforcementKind, ReinforcementPart, ReinforcementQuantity};
 pub use rigid::{
     Adhesion, COMPONENTS, RigidDrive, RigidForm, RigidInterface, RigidMove, RigidPart,
@@ -35,6 +34,7 @@ pub(crate) use water::table_level;
 pub use water::{Construction, Drainage, PoreSource, WaterCondition};
 
 use crate::check::Band;
+use crate::region::Region;
 
 /// A problem in plane strain (D = 2) or in space (D = 3), and how it is solved.
 #[derive(Clone, Debug)]
@@ -225,7 +225,7 @@ pub struct BodyPart<const D: usize = 2> {
 impl BodyPart {
     /// Corners of its polygon in order, either way round \[m\].
     pub fn polygon(&self) -> &[[f64; 2]] {
-        self.region.corners()
+        self.region.polygon()
     }
 }
 
