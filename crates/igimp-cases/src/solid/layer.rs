@@ -5,8 +5,10 @@ use thiserror::Error;
 use super::facets::{Face, Facets, Moments, over};
 use super::prism::cover;
 use super::terrain::Height;
+use super::{Shape, ends};
+use crate::case::{Cover, Crossing, Within, is_off};
+use crate::input::contains;
 use crate::polygon::{Polygon, area_and_centroid, bounding_box, clip_to_box};
-use crate::region::{Cover, Part, Region, is_off};
 
 /// Surfaces that cross by less than this share of the size of the layer touch \[-\].
 const TOUCH: f64 = 1e-9;
@@ -57,6 +59,8 @@ pub struct Layer {
     top: Height,
     lower: [f64; 3],
     upper: [f64; 3],
+    /// Of its bottom and top \[length\].
+    corners: Vec<[f64; 3]>,
 }
 
 impl Layer {
@@ -110,6 +114,7 @@ impl Layer {
             top,
             lower: [from[0], from[1], lowest],
             upper: [to[0], to[1], highest],
+            corners: [below, above].concat(),
         })
     }
 
@@ -227,7 +232,7 @@ fn corners_over(plan: &[[f64; 2]], height: &Height) -> Vec<[f64; 3]> {
     };
     let facets = &terrain.facets;
     let inside = facets.points.iter();
-    corners.extend(inside.filter(|point| plan.encloses([point[0], point[1]])));
+    corners.extend(inside.filter(|point| contains(plan, [point[0], point[1]])));
     let next = plan.iter().cycle().skip(1);
     for (p, q) in std::iter::zip(plan, next) {
         let lower = [p[0].min(q[0]), p[1].min(q[1])];
@@ -252,12 +257,12 @@ fn corners_over(plan: &[[f64; 2]], height: &Height) -> Vec<[f64; 3]> {
     corners
 }
 
-impl Region<3> for Layer {
+impl Shape for Layer {
     fn bounds(&self) -> ([f64; 3], [f64; 3]) {
         (self.lower, self.upper)
     }
 
-    fn within(&self, lower: [f64; 3], upper: [f64; 3]) -> Part<3> {
+    fn within(&self, lower: [f64; 3], upper: [f64; 3]) -> Within<3> {
         let [from, to] = [lower, upper].map(|[x, y, _]| [x, y]);
         let plan = plan_within(&self.plan, from, to);
         let mut moments = Moments::default();
@@ -294,11 +299,39 @@ impl Region<3> for Layer {
         }
     }
 
-    fn encloses(&self, [x, y, z]: [f64; 3]) -> bool {
+    fn contains(&self, &[x, y, z]: &[f64; 3]) -> bool {
         let is_between = match (self.bottom.at([x, y]), self.top.at([x, y])) {
             (Some(bottom), Some(top)) => bottom <= z && z <= top,
             _ => false,
         };
-        is_between && self.plan.encloses([x, y])
+        is_between && contains(&self.plan, [x, y])
+    }
+
+    fn crossings(&self, at: [f64; 2]) -> Vec<Crossing> {
+        let levels = match (self.bottom.at(at), self.top.at(at)) {
+            (Some(bottom), Some(top)) if bottom < top && contains(&self.plan, at) => {
+                Some([bottom, top])
+            }
+            _ => None,
+        };
+        ends(levels)
+    }
+
+    fn corners(&self) -> Vec<[f64; 3]> {
+        self.corners.clone()
+    }
+
+    fn words(&self) -> String {
+        let points = |height: &Height| match height {
+            Height::Level(level) => format!("z = {level} m"),
+            Height::Terrain(terrain) => {
+                format!("a surface of {} points", terrain.facets.points.len())
+            }
+        };
+        format!(
+            "layer between {} and {}",
+            points(&self.bottom),
+            points(&self.top)
+        )
     }
 }

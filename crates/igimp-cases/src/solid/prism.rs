@@ -1,17 +1,19 @@
 //! A polygon moved along an axis: slices of plane cases, and polygons in plan between two levels.
 
+use super::{Shape, ends};
+use crate::case::{Cover, Crossing, Within, crossings};
+use crate::input::contains;
 use crate::polygon::{area_and_centroid, bounding_box, clip_to_box};
-use crate::region::{Cover, Part, Region};
 
 /// A polygon in the plane of two axes, moved along the third.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Prism {
+#[derive(Clone, Debug)]
+pub(super) struct Prism {
     /// Corners in order, either way round, by the two other axes in their order \[length\].
-    pub polygon: Vec<[f64; 2]>,
+    pub(super) polygon: Vec<[f64; 2]>,
     /// The axis along which it is moved: 0, 1 or 2.
-    pub axis: usize,
+    pub(super) axis: usize,
     /// From where to where on that axis \[length\].
-    pub between: [f64; 2],
+    pub(super) between: [f64; 2],
 }
 
 /// The two axes across an axis, in their order.
@@ -64,7 +66,7 @@ pub(super) fn cover(polygon: &[[f64; 2]], lower: [f64; 2], upper: [f64; 2]) -> C
         return Cover::Cut;
     }
     let middle = [0, 1].map(|axis| 0.5 * (lower[axis] + upper[axis]));
-    if polygon.encloses(middle) {
+    if contains(polygon, middle) {
         Cover::Whole
     } else {
         Cover::Nothing
@@ -89,30 +91,21 @@ fn runs_into([p, q]: [[f64; 2]; 2], lower: [f64; 2], upper: [f64; 2]) -> bool {
 }
 
 impl Prism {
-    /// A polygon by the axes other than this one, moved along it.
-    pub fn new(polygon: Vec<[f64; 2]>, axis: usize, between: [f64; 2]) -> Self {
-        Self {
-            polygon,
-            axis,
-            between,
-        }
-    }
-
     fn along(&self, lower: [f64; 3], upper: [f64; 3]) -> Option<[f64; 2]> {
         overlap(self.between, [lower[self.axis], upper[self.axis]])
     }
 }
 
-impl Region<3> for Prism {
+impl Shape for Prism {
     fn bounds(&self) -> ([f64; 3], [f64; 3]) {
         let (lower, upper) = bounding_box(&self.polygon);
         let [from, to] = self.between;
         (placed(lower, self.axis, from), placed(upper, self.axis, to))
     }
 
-    fn within(&self, lower: [f64; 3], upper: [f64; 3]) -> Part<3> {
+    fn within(&self, lower: [f64; 3], upper: [f64; 3]) -> Within<3> {
         let Some([from, to]) = self.along(lower, upper) else {
-            return Part::NOTHING;
+            return Within::NOTHING;
         };
         let clipped = clip_to_box(
             &self.polygon,
@@ -120,7 +113,7 @@ impl Region<3> for Prism {
             seen(upper, self.axis),
         );
         let (area, centroid) = area_and_centroid(&clipped);
-        Part {
+        Within {
             volume: area.abs() * (to - from),
             centroid: placed(centroid, self.axis, 0.5 * (from + to)),
         }
@@ -134,8 +127,31 @@ impl Region<3> for Prism {
         })
     }
 
-    fn encloses(&self, point: [f64; 3]) -> bool {
+    fn contains(&self, &point: &[f64; 3]) -> bool {
         let [from, to] = self.between;
-        (from..=to).contains(&point[self.axis]) && self.polygon.encloses(seen(point, self.axis))
+        (from..=to).contains(&point[self.axis]) && contains(&self.polygon, seen(point, self.axis))
+    }
+
+    fn crossings(&self, [x, y]: [f64; 2]) -> Vec<Crossing> {
+        let [from, to] = self.between;
+        match self.axis {
+            2 => ends(contains(&self.polygon, [x, y]).then_some(self.between)),
+            1 if (from..=to).contains(&y) => crossings(&self.polygon, x).collect(),
+            0 if (from..=to).contains(&x) => crossings(&self.polygon, y).collect(),
+            _ => Vec::new(),
+        }
+    }
+
+    fn corners(&self) -> Vec<[f64; 3]> {
+        let at = |along: f64| {
+            let corners = self.polygon.iter();
+            corners.map(move |&corner| placed(corner, self.axis, along))
+        };
+        at(self.between[0]).chain(at(self.between[1])).collect()
+    }
+
+    fn words(&self) -> String {
+        let axis = ["x", "y", "z"][self.axis];
+        format!("polygon of {} corners along {axis}", self.polygon.len())
     }
 }

@@ -2,8 +2,12 @@
 
 use std::f64::consts::PI;
 
-use super::prism::{both, overlap, placed, seen};
-use crate::region::{Cover, Part, Region};
+use super::prism::{across, both, overlap, placed, seen};
+use super::{Shape, ends};
+use crate::case::{Cover, Crossing, Within};
+
+/// A circle is drawn with so many corners.
+const CORNERS: usize = 16;
 
 /// A circular cylinder along an axis. What lies of it within a box is exact but for round-off.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,7 +22,7 @@ pub struct Cylinder {
     pub between: [f64; 2],
 }
 
-/// A sphere. What lies of it within a box is right to 1e-11 of the smaller of the two volumes' cubes around.
+/// A sphere. What lies of it within a box is right to some 1e-11 of the sphere's.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sphere {
     /// Centre \[length\].
@@ -74,6 +78,12 @@ pub(super) fn disc_within(polygon: &[[f64; 2]], radius: f64) -> (f64, [f64; 2]) 
     (area, moment)
 }
 
+/// Where an upright line that passes a circle's centre so far beside it meets the circle, the centre at a level.
+fn chord(radius: f64, beside: f64, level: f64) -> Option<[f64; 2]> {
+    let half = (radius * radius - beside * beside).max(0.0).sqrt();
+    (beside.abs() <= radius).then_some([level - half, level + half])
+}
+
 fn unit([x, y]: [f64; 2]) -> [f64; 2] {
     let length = x.hypot(y);
     [x / length, y / length]
@@ -85,7 +95,7 @@ fn disc_in_box(lower: [f64; 2], upper: [f64; 2], radius: f64) -> (f64, [f64; 2])
     match ball_cover(lower, upper, radius) {
         Cover::Nothing => (0.0, [0.0; 2]),
         Cover::Whole => {
-            let part = Part::whole(lower, upper);
+            let part = Within::whole(lower, upper);
             (part.volume, part.centroid.map(|x| part.volume * x))
         }
         Cover::Cut => disc_within(&corners, radius),
@@ -115,7 +125,7 @@ fn less<const D: usize>(a: [f64; D], b: [f64; D]) -> [f64; D] {
     std::array::from_fn(|axis| a[axis] - b[axis])
 }
 
-impl Region<3> for Cylinder {
+impl Shape for Cylinder {
     fn bounds(&self) -> ([f64; 3], [f64; 3]) {
         let [from, to] = self.between;
         (
@@ -124,19 +134,19 @@ impl Region<3> for Cylinder {
         )
     }
 
-    fn within(&self, lower: [f64; 3], upper: [f64; 3]) -> Part<3> {
+    fn within(&self, lower: [f64; 3], upper: [f64; 3]) -> Within<3> {
         let stretch = [lower[self.axis], upper[self.axis]];
         let Some([from, to]) = overlap(self.between, stretch) else {
-            return Part::NOTHING;
+            return Within::NOTHING;
         };
         let [lower, upper] =
             [lower, upper].map(|corner| less(seen(corner, self.axis), self.centre));
         let (area, moment) = disc_in_box(lower, upper, self.radius);
         if area <= 0.0 {
-            return Part::NOTHING;
+            return Within::NOTHING;
         }
         let centroid = std::array::from_fn(|axis| self.centre[axis] + moment[axis] / area);
-        Part {
+        Within {
             volume: area * (to - from),
             centroid: placed(centroid, self.axis, 0.5 * (from + to)),
         }
@@ -151,10 +161,39 @@ impl Region<3> for Cylinder {
         })
     }
 
-    fn encloses(&self, point: [f64; 3]) -> bool {
+    fn contains(&self, &point: &[f64; 3]) -> bool {
         let [from, to] = self.between;
         let [x, y] = less(seen(point, self.axis), self.centre);
         (from..=to).contains(&point[self.axis]) && x.hypot(y) <= self.radius
+    }
+
+    fn crossings(&self, [x, y]: [f64; 2]) -> Vec<Crossing> {
+        let ([u, v], [from, to]) = (self.centre, self.between);
+        let (is_met, beside) = match self.axis {
+            2 => {
+                let is_met = (x - u).hypot(y - v) <= self.radius;
+                return ends(is_met.then_some(self.between));
+            }
+            1 => ((from..=to).contains(&y), x - u),
+            _ => ((from..=to).contains(&x), y - u),
+        };
+        ends(chord(self.radius, beside, v).filter(|_| is_met))
+    }
+
+    /// Of the regular polygon around its circle that has so many.
+    fn corners(&self) -> Vec<[f64; 3]> {
+        let corner = |k: usize| {
+            let (sine, cosine) = (PI * k as f64 / (CORNERS / 2) as f64).sin_cos();
+            let [u, v] = self.centre;
+            [u + self.radius * cosine, v + self.radius * sine]
+        };
+        let at = |along: f64| (0..CORNERS).map(move |k| placed(corner(k), self.axis, along));
+        at(self.between[0]).chain(at(self.between[1])).collect()
+    }
+
+    fn words(&self) -> String {
+        let axis = ["x", "y", "z"][self.axis];
+        format!("cylinder of radius {} m along {axis}", self.radius)
     }
 }
 
@@ -170,7 +209,7 @@ const GAUSS: [[f64; 2]; 8] = [
     [0.989_400_934_991_649_9, 0.027_152_459_411_754_095],
 ];
 
-impl Region<3> for Sphere {
+impl Shape for Sphere {
     fn bounds(&self) -> ([f64; 3], [f64; 3]) {
         (
             self.centre.map(|x| x - self.radius),
@@ -180,7 +219,7 @@ impl Region<3> for Sphere {
 
     /// Discs of exact area, summed over z. Between the levels where circles begin to touch sides and
     /// corners the area is smooth but for roots at the ends, which z = cos θ takes away.
-    fn within(&self, lower: [f64; 3], upper: [f64; 3]) -> Part<3> {
+    fn within(&self, lower: [f64; 3], upper: [f64; 3]) -> Within<3> {
         let [lower, upper] = [lower, upper].map(|corner| less(corner, self.centre));
         let sides = [lower[0], upper[0], lower[1], upper[1]].map(|side| side * side);
         let corners = [
@@ -218,9 +257,9 @@ impl Region<3> for Sphere {
             }
         }
         if volume <= 0.0 {
-            return Part::NOTHING;
+            return Within::NOTHING;
         }
-        Part {
+        Within {
             volume,
             centroid: std::array::from_fn(|axis| self.centre[axis] + moment[axis] / volume),
         }
@@ -234,8 +273,32 @@ impl Region<3> for Sphere {
         )
     }
 
-    fn encloses(&self, point: [f64; 3]) -> bool {
+    fn contains(&self, &point: &[f64; 3]) -> bool {
         let [x, y, z] = less(point, self.centre);
         x.hypot(y).hypot(z) <= self.radius
+    }
+
+    fn crossings(&self, [x, y]: [f64; 2]) -> Vec<Crossing> {
+        let [u, v, w] = self.centre;
+        ends(chord(self.radius, (x - u).hypot(y - v), w))
+    }
+
+    /// Of its great circles.
+    fn corners(&self) -> Vec<[f64; 3]> {
+        let circle = |axis: usize| {
+            let place = self.centre[axis];
+            let circle = Cylinder {
+                axis,
+                centre: across(axis).map(|other| self.centre[other]),
+                radius: self.radius,
+                between: [place, place],
+            };
+            circle.corners().into_iter().take(CORNERS)
+        };
+        (0..3).flat_map(circle).collect()
+    }
+
+    fn words(&self) -> String {
+        format!("sphere of radius {} m", self.radius)
     }
 }
