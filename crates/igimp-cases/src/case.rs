@@ -3,11 +3,11 @@
 //! Lengths are in m, stresses in Pa, unit weights in N/m³, angles in rad, forces in N/m (plane
 //! strain, per metre run). The second axis points up; gravity acts along its negative direction.
 
+mod axes;
 mod grid;
 mod ground;
 mod profile;
 mod raster;
-mod region;
 mod reinforcement;
 mod rigid;
 mod water;
@@ -20,12 +20,11 @@ use igimp_material::{Elasticity, HenckyElastic, MaterialError, MohrCoulomb, Tres
 use igimp_solver::linear::SolverKind;
 use serde::{Deserialize, Serialize};
 
+pub(crate) use axes::{from_front, front, in_space};
 pub use grid::{AxisSpec, GridSpec, MixedCells};
 pub use ground::{Ground, Layer};
 pub use profile::{LEAST_STRENGTH, Profile, Profiles, StressShare, Variation};
 pub use raster::Raster;
-pub use region::{Cover, Crossing, Region, Within};
-pub(crate) use region::{crossings, from_front, front, in_space, is_off};
 pub use reinforcement::{ReinforcementKind, ReinforcementPart, ReinforcementQuantity};
 pub use rigid::{
     Adhesion, COMPONENTS, RigidDrive, RigidForm, RigidInterface, RigidMove, RigidPart,
@@ -35,6 +34,7 @@ pub(crate) use water::table_level;
 pub use water::{Construction, Drainage, PoreSource, WaterCondition};
 
 use crate::check::Band;
+use crate::region::Region;
 
 /// A problem in plane strain (D = 2) or in space (D = 3), and how it is solved.
 #[derive(Clone, Debug)]
@@ -94,6 +94,68 @@ impl<const D: usize> Case<D> {
             grid: self.grid.refined(n),
             ..self.clone()
         }
+    }
+}
+
+/// A case in the dimension that its file states.
+#[derive(Clone, Debug)]
+pub enum AnyCase {
+    /// In plane strain.
+    Plane(Case<2>),
+    /// In space.
+    Space(Case<3>),
+}
+
+/// Does the same with a case of any dimension: `in_any_dimension!(any, case => what(case))`.
+#[macro_export]
+macro_rules! in_any_dimension {
+    ($any:expr, $case:ident => $what:expr) => {
+        match $any {
+            $crate::case::AnyCase::Plane($case) => $what,
+            $crate::case::AnyCase::Space($case) => $what,
+        }
+    };
+}
+
+impl AnyCase {
+    /// Title.
+    pub fn title(&self) -> &str {
+        in_any_dimension!(self, case => &case.title)
+    }
+
+    /// What happens, in order.
+    pub fn stages(&self) -> &[Stage] {
+        in_any_dimension!(self, case => &case.stages)
+    }
+
+    /// Materials.
+    pub fn materials(&self) -> &[Material] {
+        in_any_dimension!(self, case => &case.materials)
+    }
+
+    /// Curves.
+    pub fn curves(&self) -> &[Curve] {
+        in_any_dimension!(self, case => &case.curves)
+    }
+
+    /// Checks.
+    pub fn checks(&self) -> &[CaseCheck] {
+        in_any_dimension!(self, case => &case.checks)
+    }
+
+    /// On how many meshes it is computed.
+    pub fn mesh_study(&self) -> MeshStudy {
+        in_any_dimension!(self, case => case.mesh_study)
+    }
+
+    /// What is written, and where.
+    pub fn output(&self) -> &Output {
+        in_any_dimension!(self, case => &case.output)
+    }
+
+    /// What is written, and where, to be changed.
+    pub fn output_mut(&mut self) -> &mut Output {
+        in_any_dimension!(self, case => &mut case.output)
     }
 }
 
@@ -225,7 +287,7 @@ pub struct BodyPart<const D: usize = 2> {
 impl BodyPart {
     /// Corners of its polygon in order, either way round \[m\].
     pub fn polygon(&self) -> &[[f64; 2]] {
-        self.region.corners()
+        self.region.polygon()
     }
 }
 
@@ -248,6 +310,15 @@ pub struct Boundaries<const D: usize = 2> {
     pub sides: [[Side; 2]; D],
     /// Boxes of nodes.
     pub boxes: Vec<FixedBox<D>>,
+}
+
+impl<const D: usize> Default for Boundaries<D> {
+    fn default() -> Self {
+        Self {
+            sides: [[Side::Free; 2]; D],
+            boxes: Vec::new(),
+        }
+    }
 }
 
 /// Nodes in a box (edges included) that are held.

@@ -20,13 +20,13 @@ pub enum CaseError {
     #[error(transparent)]
     Input(#[from] InputError),
     /// A body reaches beyond the grid.
-    #[error("the body reaches {} m, outside the grid domain", place(corner))]
+    #[error("the body reaches {}, outside the grid domain", place(corner))]
     OutsideGrid {
         /// The corner \[length\].
         corner: Vec<f64>,
     },
     /// A body has no volume.
-    #[error("the body is empty: its polygon has no area on the grid")]
+    #[error("the body is empty: it has no volume on the grid")]
     EmptyBody,
     /// The case has more than one rigid footing.
     #[error("the case has more than one rigid footing, but the grid can follow only one")]
@@ -48,7 +48,7 @@ pub enum CaseError {
     },
     /// The initial stress of level ground is beyond the strength.
     #[error(
-        "the initial stress at {} m with K0 = {k0} is beyond the strength of `{material}`",
+        "the initial stress at {} with K0 = {k0} is beyond the strength of `{material}`",
         place(position)
     )]
     InitialStress {
@@ -195,10 +195,10 @@ pub enum CaseError {
     Checkpoint(#[from] CheckpointError),
 }
 
-/// A place in a message.
-fn place(coordinates: &[f64]) -> String {
-    let coordinates: Vec<String> = coordinates.iter().map(f64::to_string).collect();
-    format!("({})", coordinates.join(", "))
+/// A point in a message.
+fn place(point: &[f64]) -> String {
+    let numbers: Vec<String> = point.iter().map(f64::to_string).collect();
+    format!("({}) m", numbers.join(", "))
 }
 
 /// Another case in a message.

@@ -35,6 +35,7 @@ pub mod pieces;
 mod plane;
 pub mod polygon;
 pub mod printable;
+pub mod region;
 pub mod results;
 pub mod run;
 pub mod seed;

@@ -7,9 +7,9 @@ mod nearest;
 use igimp_assembly::ParticleSeed;
 use igimp_shape::Grid;
 
-use crate::case::{Cover, Region, Within};
 use crate::error::CaseError;
-use crate::polygon::{Polygon, area_and_centroid, clip_to_box, clip_to_strip};
+use crate::polygon::{Polygon, area_and_centroid, clip_to_strip};
+use crate::region::{Cover, Part, Region};
 use nearest::Nearest;
 
 /// Clipped parts smaller than this share of a whole part join the body's nearest particle \[-\].
@@ -34,23 +34,13 @@ pub(crate) struct Piece {
 /// it has no volume.
 pub fn fill<const D: usize>(
     grid: &Grid<D>,
-    region: &dyn Region<D>,
+    region: &(impl Region<D> + ?Sized),
     per_direction: usize,
     density: f64,
     law: usize,
 ) -> Result<Vec<ParticleSeed<D>>, CaseError> {
     let parts = Parts::around(grid, region, per_direction)?;
-    // Most of the work of cutting is done once for every part along the first axis.
-    let count = parts.cells[0].len() * per_direction;
-    let strip = |part| {
-        let [from, to] = parts.ends(0, part);
-        region.strip(from, to)
-    };
-    let strips: Vec<_> = (0..count).map(strip).collect();
-    let within = |place: [usize; D], from, to| {
-        let own = strips[place[0]].as_deref().unwrap_or(region);
-        (own.within(from, to), ())
-    };
+    let within = |_, from, to| (region.within(from, to), ());
     let cover = |from, to| region.cover(from, to);
     let (seeds, _) = parts.filled((density, law), cover, within)?;
     Ok(seeds)
@@ -68,7 +58,14 @@ pub fn fill_polygon(
     density: f64,
     law: usize,
 ) -> Result<Vec<ParticleSeed<2>>, CaseError> {
-    fill(grid, &polygon.to_vec(), per_direction, density, law)
+    let parts = Parts::around(grid, polygon, per_direction)?;
+    let columns = parts.columns(polygon);
+    let within = |place: [usize; 2], from: [f64; 2], to: [f64; 2]| {
+        let clipped = clip_to_strip(&columns[place[0]], 1, from[1], to[1]);
+        (part(&clipped), ())
+    };
+    let (seeds, _) = parts.filled((density, law), |_, _| Cover::Cut, within)?;
+    Ok(seeds)
 }
 
 /// The same, with the pieces of the polygon: one for each particle in their order, then the slivers,
@@ -80,22 +77,23 @@ pub(crate) fn fill_in_pieces(
     density: f64,
     law: usize,
 ) -> Result<(Vec<ParticleSeed<2>>, Vec<Piece>), CaseError> {
-    let parts = Parts::around(grid, &polygon.to_vec(), per_direction)?;
-    let strip = |part| {
-        let [from, to] = parts.ends(0, part);
-        clip_to_strip(polygon, 0, from, to)
-    };
-    let count = parts.cells[0].len() * per_direction;
-    let strips: Vec<Polygon> = (0..count).map(strip).collect();
-    let within = |place: [usize; 2], from, to| {
-        let clipped = clip_to_box(&strips[place[0]], from, to);
-        let (area, centroid) = area_and_centroid(&clipped);
-        let volume = area.abs();
-        (Within { volume, centroid }, clipped)
+    let parts = Parts::around(grid, polygon, per_direction)?;
+    let columns = parts.columns(polygon);
+    let within = |place: [usize; 2], from: [f64; 2], to: [f64; 2]| {
+        let clipped = clip_to_strip(&columns[place[0]], 1, from[1], to[1]);
+        (part(&clipped), clipped)
     };
     let (seeds, pieces) = parts.filled((density, law), |_, _| Cover::Cut, within)?;
     let piece = |(particle, polygon)| Piece { particle, polygon };
     Ok((seeds, pieces.into_iter().map(piece).collect()))
+}
+
+fn part(clipped: &[[f64; 2]]) -> Part<2> {
+    let (area, centroid) = area_and_centroid(clipped);
+    Part {
+        volume: area.abs(),
+        centroid,
+    }
 }
 
 /// Particles, and what belongs to parts with the particle that each went to.
@@ -114,7 +112,7 @@ struct Parts<const D: usize> {
 impl<const D: usize> Parts<D> {
     fn around(
         grid: &Grid<D>,
-        region: &dyn Region<D>,
+        region: &(impl Region<D> + ?Sized),
         per_direction: usize,
     ) -> Result<Self, CaseError> {
         let (start, end) = grid.bounds();
@@ -168,7 +166,7 @@ impl<const D: usize> Parts<D> {
         &self,
         (density, law): (f64, usize),
         cover: impl Fn([f64; D], [f64; D]) -> Cover,
-        within: impl Fn([usize; D], [f64; D], [f64; D]) -> (Within<D>, K),
+        within: impl Fn([usize; D], [f64; D], [f64; D]) -> (Part<D>, K),
     ) -> Result<Filled<D, K>, CaseError> {
         let counts: [usize; D] = std::array::from_fn(|axis| self.cells[axis].len());
         let in_cell = [self.per_direction; D];
@@ -190,7 +188,7 @@ impl<const D: usize> Parts<D> {
                 let (from, to) = (ends.map(|[from, _]| from), ends.map(|[_, to]| to));
                 let size: [f64; D] = std::array::from_fn(|axis| self.cells[axis][cell[axis]][1]);
                 let (own, keep) = if cover == Cover::Whole {
-                    (Within::whole(from, to), K::default())
+                    (Part::whole(from, to), K::default())
                 } else {
                     within(place, from, to)
                 };
@@ -222,6 +220,18 @@ impl<const D: usize> Parts<D> {
             }
         }
         Ok((seeds, kept))
+    }
+}
+
+impl Parts<2> {
+    /// By column of parts, what lies in it of a polygon: most of the work of clipping, done once.
+    fn columns(&self, polygon: &[[f64; 2]]) -> Vec<Polygon> {
+        let count = self.cells[0].len() * self.per_direction;
+        let column = |part: usize| {
+            let [from, to] = self.ends(0, part);
+            clip_to_strip(polygon, 0, from, to)
+        };
+        (0..count).map(column).collect()
     }
 }
 

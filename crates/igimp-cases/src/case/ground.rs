@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use super::{BodyPart, Case, Crossing, Material, PoreSource, Profile, Region, front, table_level};
+use super::{BodyPart, Case, Material, PoreSource, Profile, front, table_level};
+use crate::region::{Crossing, Region};
 
 /// Unit weight of the water of a stated level \[N/m³\].
 const WATER: f64 = 9.81e3;
@@ -136,7 +137,7 @@ impl<const D: usize> Ground<D> {
     /// all regions, as the surface may step there.
     pub fn places(&self, region: &dyn Region<D>) -> Vec<[f64; D]> {
         let all = self.layers.iter().flat_map(|layer| layer.region.corners());
-        let corners: Vec<[f64; D]> = all.chain(region.corners()).copied().collect();
+        let corners: Vec<[f64; D]> = all.chain(region.corners()).collect();
         let mut lines = vec![[0.0; D]];
         for axis in 0..D - 1 {
             let beside = beside(corners.iter().map(|corner| corner[axis]).collect());

@@ -406,7 +406,7 @@ fn material_at<const D: usize>(case: &Case<D>, x: [f64; D]) -> Option<&Material>
     let upper = std::array::from_fn(|axis| x[axis] + half[axis]);
     let share = |body: &BodyPart<D>| body.region.within(lower, upper).volume;
     let distance = |body: &BodyPart<D>| {
-        let corners = body.region.corners().iter();
+        let corners = body.region.corners().into_iter();
         corners
             .map(|corner| {
                 length(&std::array::from_fn::<_, D, _>(|axis| {

@@ -5,8 +5,8 @@
 //! (theory, eq. 44a). A triangle that faces down counts negative. Every term changes little when a corner does, so
 //! that nothing has to be decided at edges and corners.
 
-use crate::case::Within;
 use crate::polygon::Polygon;
+use crate::region::Part;
 
 type Point = [f64; 3];
 
@@ -138,12 +138,12 @@ pub(super) struct Moments {
 
 impl Moments {
     /// The part that they are of, from the lower corner of its box.
-    pub(super) fn part(&self, lower: Point, upper: Point) -> Within<3> {
-        let whole = Within::whole(lower, upper).volume;
+    pub(super) fn part(&self, lower: Point, upper: Point) -> Part<3> {
+        let whole = Part::whole(lower, upper).volume;
         if self.volume <= ROUND_OFF * whole {
-            return Within::NOTHING;
+            return Part::NOTHING;
         }
-        Within {
+        Part {
             volume: self.volume,
             centroid: std::array::from_fn(|axis| lower[axis] + self.moment[axis] / self.volume),
         }

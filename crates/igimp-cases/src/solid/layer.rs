@@ -5,10 +5,9 @@ use thiserror::Error;
 use super::facets::{Face, Facets, Moments, over};
 use super::prism::cover;
 use super::terrain::Height;
-use super::{Shape, ends};
-use crate::case::{Cover, Crossing, Within, is_off};
-use crate::input::contains;
+use crate::check::short;
 use crate::polygon::{Polygon, area_and_centroid, bounding_box, clip_to_box};
+use crate::region::{Cover, Crossing, Part, Region, is_off};
 
 /// Surfaces that cross by less than this share of the size of the layer touch \[-\].
 const TOUCH: f64 = 1e-9;
@@ -59,8 +58,6 @@ pub struct Layer {
     top: Height,
     lower: [f64; 3],
     upper: [f64; 3],
-    /// Of its bottom and top \[length\].
-    corners: Vec<[f64; 3]>,
 }
 
 impl Layer {
@@ -114,7 +111,6 @@ impl Layer {
             top,
             lower: [from[0], from[1], lowest],
             upper: [to[0], to[1], highest],
-            corners: [below, above].concat(),
         })
     }
 
@@ -232,7 +228,7 @@ fn corners_over(plan: &[[f64; 2]], height: &Height) -> Vec<[f64; 3]> {
     };
     let facets = &terrain.facets;
     let inside = facets.points.iter();
-    corners.extend(inside.filter(|point| contains(plan, [point[0], point[1]])));
+    corners.extend(inside.filter(|point| plan.encloses([point[0], point[1]])));
     let next = plan.iter().cycle().skip(1);
     for (p, q) in std::iter::zip(plan, next) {
         let lower = [p[0].min(q[0]), p[1].min(q[1])];
@@ -257,12 +253,12 @@ fn corners_over(plan: &[[f64; 2]], height: &Height) -> Vec<[f64; 3]> {
     corners
 }
 
-impl Shape for Layer {
+impl Region<3> for Layer {
     fn bounds(&self) -> ([f64; 3], [f64; 3]) {
         (self.lower, self.upper)
     }
 
-    fn within(&self, lower: [f64; 3], upper: [f64; 3]) -> Within<3> {
+    fn within(&self, lower: [f64; 3], upper: [f64; 3]) -> Part<3> {
         let [from, to] = [lower, upper].map(|[x, y, _]| [x, y]);
         let plan = plan_within(&self.plan, from, to);
         let mut moments = Moments::default();
@@ -299,39 +295,42 @@ impl Shape for Layer {
         }
     }
 
-    fn contains(&self, &[x, y, z]: &[f64; 3]) -> bool {
+    fn encloses(&self, [x, y, z]: [f64; 3]) -> bool {
         let is_between = match (self.bottom.at([x, y]), self.top.at([x, y])) {
             (Some(bottom), Some(top)) => bottom <= z && z <= top,
             _ => false,
         };
-        is_between && contains(&self.plan, [x, y])
+        is_between && self.plan.encloses([x, y])
     }
 
-    fn crossings(&self, at: [f64; 2]) -> Vec<Crossing> {
-        let levels = match (self.bottom.at(at), self.top.at(at)) {
-            (Some(bottom), Some(top)) if bottom < top && contains(&self.plan, at) => {
-                Some([bottom, top])
-            }
-            _ => None,
-        };
-        ends(levels)
+    fn crossings(&self, place: &[f64; 3]) -> Vec<Crossing> {
+        let at = [place[0], place[1]];
+        if !self.plan.encloses(at) {
+            return Vec::new();
+        }
+        let stretch = self.bottom.at(at).zip(self.top.at(at));
+        let stretch = stretch.filter(|(bottom, top)| bottom < top);
+        let ends = stretch.into_iter();
+        ends.flat_map(|(bottom, top)| Crossing::ends([bottom, top]))
+            .collect()
     }
 
     fn corners(&self) -> Vec<[f64; 3]> {
-        self.corners.clone()
+        let mut corners = corners_over(&self.plan, &self.bottom);
+        corners.extend(corners_over(&self.plan, &self.top));
+        corners
     }
 
     fn words(&self) -> String {
-        let points = |height: &Height| match height {
-            Height::Level(level) => format!("z = {level} m"),
-            Height::Terrain(terrain) => {
-                format!("a surface of {} points", terrain.facets.points.len())
-            }
+        let height = |of: &Height| match of {
+            Height::Level(level) => format!("z = {}", short(*level)),
+            Height::Terrain(_) => "a surface".to_owned(),
         };
         format!(
-            "layer between {} and {}",
-            points(&self.bottom),
-            points(&self.top)
+            "ground from {} to {} over {} corners in plan",
+            height(&self.bottom),
+            height(&self.top),
+            self.plan.len()
         )
     }
 }

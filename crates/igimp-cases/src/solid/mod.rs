@@ -2,9 +2,8 @@
 //! left of one when others are taken out.
 //!
 //! The axes are x, y and z, z up. What lies of a solid within a box is exact but for round-off where its
-//! faces are flat (theory, eq. 44a), and for a cylinder; [`Sphere`] and [`Solid::without`] say how right they are.
+//! faces are flat (theory, eq. 44a and 44b), for a cylinder too; [`Sphere`] and [`Difference`] say how right they are.
 
-mod cuboid;
 mod difference;
 mod facets;
 mod layer;
@@ -13,183 +12,135 @@ mod round;
 mod surface;
 mod terrain;
 
-use std::fmt::Debug;
 use std::sync::Arc;
 
-use crate::case::{Cover, Crossing, Region, Within, is_off};
-use cuboid::Cuboid;
-use difference::Difference;
-use prism::Prism;
+use crate::check::short;
+use crate::region::{Cover, Crossing, Part, Region};
 
+pub use difference::Difference;
 pub use layer::{Layer, LayerError};
+pub use prism::Prism;
 pub use round::{Cylinder, Sphere};
 pub use surface::{ClosedSurface, ClosedSurfaceError};
 pub use terrain::{Height, Terrain, TerrainError};
 
-type Point = [f64; 3];
-type Corners = (Point, Point);
-
 /// A body in space.
-#[derive(Clone, Debug)]
-pub struct Solid {
-    shape: Arc<dyn Shape>,
-    corners: Vec<Point>,
-}
-
-/// What a solid knows of itself; see [`Region`].
-trait Shape: Debug + Send + Sync {
-    fn bounds(&self) -> Corners;
-
-    fn volume(&self) -> f64 {
-        let (lower, upper) = self.bounds();
-        self.within(lower, upper).volume
-    }
-
-    fn within(&self, lower: Point, upper: Point) -> Within<3>;
-
-    fn cover(&self, lower: Point, upper: Point) -> Cover;
-
-    fn beyond(&self, lower: Point, upper: Point) -> Option<Point> {
-        let (from, to) = self.bounds();
-        let mut corners = [from, to].into_iter();
-        corners.find(|corner| is_off(corner, &lower, &upper))
-    }
-
-    fn contains(&self, point: &Point) -> bool;
-
-    /// Along the upright line at a place in plan; tops have the sense `true`.
-    fn crossings(&self, at: [f64; 2]) -> Vec<Crossing>;
-
-    fn corners(&self) -> Vec<Point>;
-
-    fn words(&self) -> String;
-
-    /// The corners of a box with its sides along the axes.
-    fn as_cuboid(&self) -> Option<Corners> {
-        None
-    }
+#[derive(Clone, Debug, PartialEq)]
+pub enum Solid {
+    /// A box with its sides along the axes, by its lower and upper corner \[length\].
+    Cuboid([f64; 3], [f64; 3]),
+    /// A polygon moved along an axis.
+    Prism(Prism),
+    /// A circular cylinder along an axis.
+    Cylinder(Cylinder),
+    /// A sphere.
+    Sphere(Sphere),
+    /// The inside of a closed surface of triangles.
+    Surface(Arc<ClosedSurface>),
+    /// The ground between two surfaces.
+    Layer(Arc<Layer>),
+    /// What is left of a solid.
+    Difference(Difference),
 }
 
 impl Solid {
-    fn of(shape: impl Shape + 'static) -> Self {
-        let corners = shape.corners();
-        Self {
-            shape: Arc::new(shape),
-            corners,
-        }
-    }
-
-    /// A box with its sides along the axes, by its lower and upper corner \[length\].
-    pub fn cuboid(lower: Point, upper: Point) -> Self {
-        Self::of(Cuboid { lower, upper })
-    }
-
-    /// A polygon, either way round, in the plane of the axes other than this one (0, 1 or 2), in their order; moved along
-    /// it from a place to another \[length\].
-    pub fn prism(polygon: Vec<[f64; 2]>, axis: usize, between: [f64; 2]) -> Self {
-        Self::of(Prism {
-            polygon,
-            axis,
-            between,
-        })
-    }
-
     /// A slice of a plane case: its polygon in x and y, which point right and up, stands in x and z between
     /// two places on the axis y across it.
     pub fn slice(polygon: &[[f64; 2]], across: [f64; 2]) -> Self {
-        Self::prism(polygon.to_vec(), 1, across)
+        Self::Prism(Prism::new(polygon.to_vec(), 1, across))
     }
 
-    /// What is left when others are taken out.
-    ///
-    /// What is left within a box is exact where one boundary runs through the box, and where all but one are those of
-    /// boxes along the axes. Elsewhere the box is cut into 16³, and the solids are taken to be spread evenly in those of
-    /// them that several boundaries still cross: the error is below a thousandth of the box.
-    #[must_use]
-    pub fn without(self, others: Vec<Self>) -> Self {
-        if others.is_empty() {
-            return self;
+    fn region(&self) -> &dyn Region<3> {
+        match self {
+            Self::Cuboid(..) => self,
+            Self::Prism(prism) => prism,
+            Self::Cylinder(cylinder) => cylinder,
+            Self::Sphere(sphere) => sphere,
+            Self::Surface(surface) => &**surface,
+            Self::Layer(layer) => &**layer,
+            Self::Difference(difference) => difference,
         }
-        Self::of(Difference {
-            of: self,
-            minus: others,
-        })
-    }
-}
-
-impl From<Cylinder> for Solid {
-    fn from(cylinder: Cylinder) -> Self {
-        Self::of(cylinder)
-    }
-}
-
-impl From<Sphere> for Solid {
-    fn from(sphere: Sphere) -> Self {
-        Self::of(sphere)
-    }
-}
-
-impl From<ClosedSurface> for Solid {
-    fn from(surface: ClosedSurface) -> Self {
-        Self::of(surface)
-    }
-}
-
-impl From<Layer> for Solid {
-    fn from(layer: Layer) -> Self {
-        Self::of(layer)
     }
 }
 
 impl Region<3> for Solid {
-    fn bounds(&self) -> Corners {
-        self.shape.bounds()
+    fn bounds(&self) -> ([f64; 3], [f64; 3]) {
+        match self {
+            Self::Cuboid(lower, upper) => (*lower, *upper),
+            other => other.region().bounds(),
+        }
     }
 
-    fn volume(&self) -> f64 {
-        self.shape.volume()
+    fn within(&self, lower: [f64; 3], upper: [f64; 3]) -> Part<3> {
+        match self {
+            Self::Cuboid(from, to) => match common((*from, *to), (lower, upper)) {
+                Some((from, to)) => Part::whole(from, to),
+                None => Part::NOTHING,
+            },
+            other => other.region().within(lower, upper),
+        }
     }
 
-    fn within(&self, lower: Point, upper: Point) -> Within<3> {
-        self.shape.within(lower, upper)
+    fn cover(&self, lower: [f64; 3], upper: [f64; 3]) -> Cover {
+        match self {
+            Self::Cuboid(from, to) => {
+                if common((*from, *to), (lower, upper)).is_none() {
+                    Cover::Nothing
+                } else if (0..3).all(|axis| from[axis] <= lower[axis] && upper[axis] <= to[axis]) {
+                    Cover::Whole
+                } else {
+                    Cover::Cut
+                }
+            }
+            other => other.region().cover(lower, upper),
+        }
     }
 
-    fn cover(&self, lower: Point, upper: Point) -> Cover {
-        self.shape.cover(lower, upper)
+    fn encloses(&self, point: [f64; 3]) -> bool {
+        match self {
+            Self::Cuboid(lower, upper) => !crate::region::is_off(&point, lower, upper),
+            other => other.region().encloses(point),
+        }
     }
 
-    fn beyond(&self, lower: Point, upper: Point) -> Option<Point> {
-        self.shape.beyond(lower, upper)
+    fn crossings(&self, place: &[f64; 3]) -> Vec<Crossing> {
+        match self {
+            Self::Cuboid(lower, upper) => {
+                let is_met =
+                    (0..2).all(|axis| lower[axis] <= place[axis] && place[axis] < upper[axis]);
+                let stretch = is_met.then_some([lower[2], upper[2]]);
+                stretch.into_iter().flat_map(Crossing::ends).collect()
+            }
+            other => other.region().crossings(place),
+        }
     }
 
-    fn contains(&self, point: &Point) -> bool {
-        self.shape.contains(point)
-    }
-
-    fn crossings(&self, place: &Point) -> Vec<Crossing> {
-        self.shape.crossings([place[0], place[1]])
-    }
-
-    fn corners(&self) -> &[Point] {
-        &self.corners
+    fn corners(&self) -> Vec<[f64; 3]> {
+        match self {
+            Self::Cuboid(lower, upper) => vec![*lower, *upper],
+            other => other.region().corners(),
+        }
     }
 
     fn words(&self) -> String {
-        self.shape.words()
+        match self {
+            Self::Cuboid(lower, upper) => format!("box from {} to {}", place(lower), place(upper)),
+            other => other.region().words(),
+        }
     }
 }
 
-/// The crossings of a line with a convex body, if it meets it.
-fn ends(levels: Option<[f64; 2]>) -> Vec<Crossing> {
-    let crossing = |(level, sense)| Crossing { level, sense };
-    let ends = |[bottom, top]: [f64; 2]| [(bottom, false), (top, true)].map(crossing);
-    levels.map(ends).into_iter().flatten().collect()
+/// Coordinates in words.
+fn place<const D: usize>(point: &[f64; D]) -> String {
+    format!("({})", point.map(short).join(", "))
 }
+
+type Corners = ([f64; 3], [f64; 3]);
 
 /// What two boxes have in common, if that has volume.
 fn common(a: Corners, b: Corners) -> Option<Corners> {
-    let lower: Point = std::array::from_fn(|axis| a.0[axis].max(b.0[axis]));
-    let upper: Point = std::array::from_fn(|axis| a.1[axis].min(b.1[axis]));
+    let lower: [f64; 3] = std::array::from_fn(|axis| a.0[axis].max(b.0[axis]));
+    let upper: [f64; 3] = std::array::from_fn(|axis| a.1[axis].min(b.1[axis]));
     (0..3)
         .all(|axis| lower[axis] < upper[axis])
         .then_some((lower, upper))

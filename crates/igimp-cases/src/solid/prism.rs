@@ -1,19 +1,18 @@
 //! A polygon moved along an axis: slices of plane cases, and polygons in plan between two levels.
 
-use super::{Shape, ends};
-use crate::case::{Cover, Crossing, Within, crossings};
-use crate::input::contains;
+use crate::check::short;
 use crate::polygon::{area_and_centroid, bounding_box, clip_to_box};
+use crate::region::{Cover, Crossing, Part, Region};
 
 /// A polygon in the plane of two axes, moved along the third.
-#[derive(Clone, Debug)]
-pub(super) struct Prism {
+#[derive(Clone, Debug, PartialEq)]
+pub struct Prism {
     /// Corners in order, either way round, by the two other axes in their order \[length\].
-    pub(super) polygon: Vec<[f64; 2]>,
+    pub polygon: Vec<[f64; 2]>,
     /// The axis along which it is moved: 0, 1 or 2.
-    pub(super) axis: usize,
+    pub axis: usize,
     /// From where to where on that axis \[length\].
-    pub(super) between: [f64; 2],
+    pub between: [f64; 2],
 }
 
 /// The two axes across an axis, in their order.
@@ -66,7 +65,7 @@ pub(super) fn cover(polygon: &[[f64; 2]], lower: [f64; 2], upper: [f64; 2]) -> C
         return Cover::Cut;
     }
     let middle = [0, 1].map(|axis| 0.5 * (lower[axis] + upper[axis]));
-    if contains(polygon, middle) {
+    if polygon.encloses(middle) {
         Cover::Whole
     } else {
         Cover::Nothing
@@ -91,21 +90,30 @@ fn runs_into([p, q]: [[f64; 2]; 2], lower: [f64; 2], upper: [f64; 2]) -> bool {
 }
 
 impl Prism {
+    /// A polygon by the axes other than this one, moved along it.
+    pub fn new(polygon: Vec<[f64; 2]>, axis: usize, between: [f64; 2]) -> Self {
+        Self {
+            polygon,
+            axis,
+            between,
+        }
+    }
+
     fn along(&self, lower: [f64; 3], upper: [f64; 3]) -> Option<[f64; 2]> {
         overlap(self.between, [lower[self.axis], upper[self.axis]])
     }
 }
 
-impl Shape for Prism {
+impl Region<3> for Prism {
     fn bounds(&self) -> ([f64; 3], [f64; 3]) {
         let (lower, upper) = bounding_box(&self.polygon);
         let [from, to] = self.between;
         (placed(lower, self.axis, from), placed(upper, self.axis, to))
     }
 
-    fn within(&self, lower: [f64; 3], upper: [f64; 3]) -> Within<3> {
+    fn within(&self, lower: [f64; 3], upper: [f64; 3]) -> Part<3> {
         let Some([from, to]) = self.along(lower, upper) else {
-            return Within::NOTHING;
+            return Part::NOTHING;
         };
         let clipped = clip_to_box(
             &self.polygon,
@@ -113,7 +121,7 @@ impl Shape for Prism {
             seen(upper, self.axis),
         );
         let (area, centroid) = area_and_centroid(&clipped);
-        Within {
+        Part {
             volume: area.abs() * (to - from),
             centroid: placed(centroid, self.axis, 0.5 * (from + to)),
         }
@@ -127,31 +135,42 @@ impl Shape for Prism {
         })
     }
 
-    fn contains(&self, &point: &[f64; 3]) -> bool {
+    fn encloses(&self, point: [f64; 3]) -> bool {
         let [from, to] = self.between;
-        (from..=to).contains(&point[self.axis]) && contains(&self.polygon, seen(point, self.axis))
+        (from..=to).contains(&point[self.axis]) && self.polygon.encloses(seen(point, self.axis))
     }
 
-    fn crossings(&self, [x, y]: [f64; 2]) -> Vec<Crossing> {
+    fn crossings(&self, place: &[f64; 3]) -> Vec<Crossing> {
         let [from, to] = self.between;
-        match self.axis {
-            2 => ends(contains(&self.polygon, [x, y]).then_some(self.between)),
-            1 if (from..=to).contains(&y) => crossings(&self.polygon, x).collect(),
-            0 if (from..=to).contains(&x) => crossings(&self.polygon, y).collect(),
-            _ => Vec::new(),
+        if self.axis == 2 {
+            let stretch = self
+                .polygon
+                .encloses([place[0], place[1]])
+                .then_some([from, to]);
+            return stretch.into_iter().flat_map(Crossing::ends).collect();
         }
+        if !(from..to).contains(&place[self.axis]) {
+            return Vec::new();
+        }
+        self.polygon.crossings(&seen(*place, self.axis))
     }
 
     fn corners(&self) -> Vec<[f64; 3]> {
-        let at = |along: f64| {
-            let corners = self.polygon.iter();
-            corners.map(move |&corner| placed(corner, self.axis, along))
-        };
-        at(self.between[0]).chain(at(self.between[1])).collect()
+        let ends = self.between.into_iter();
+        ends.flat_map(|along| {
+            self.polygon
+                .iter()
+                .map(move |&at| placed(at, self.axis, along))
+        })
+        .collect()
     }
 
     fn words(&self) -> String {
-        let axis = ["x", "y", "z"][self.axis];
-        format!("polygon of {} corners along {axis}", self.polygon.len())
+        let name = ["x", "y", "z"][self.axis];
+        let [from, to] = self.between.map(short);
+        format!(
+            "polygon of {} corners from {name} = {from} to {to}",
+            self.polygon.len()
+        )
     }
 }

@@ -2,12 +2,18 @@
 
 use std::f64::consts::PI;
 
-use super::prism::{across, both, overlap, placed, seen};
-use super::{Shape, ends};
-use crate::case::{Cover, Crossing, Within};
+use super::prism::{both, overlap, placed, seen};
+use crate::check::short;
+use crate::region::{Cover, Crossing, Part, Region};
 
-/// A circle is drawn with so many corners.
-const CORNERS: usize = 16;
+/// Points that stand for a circle where straight edges are wanted.
+const POINTS_AROUND: u32 = 24;
+
+/// The ends of the upright chord of a circle at a distance from its upright axis.
+fn chord(level: f64, radius: f64, distance: f64) -> Option<[f64; 2]> {
+    let square = radius * radius - distance * distance;
+    (square > 0.0).then(|| [level - square.sqrt(), level + square.sqrt()])
+}
 
 /// A circular cylinder along an axis. What lies of it within a box is exact but for round-off.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,7 +28,7 @@ pub struct Cylinder {
     pub between: [f64; 2],
 }
 
-/// A sphere. What lies of it within a box is right to some 1e-11 of the sphere's.
+/// A sphere. What lies of it within a box is right to 1e-11 of the smaller of the two volumes' cubes around.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sphere {
     /// Centre \[length\].
@@ -78,12 +84,6 @@ pub(super) fn disc_within(polygon: &[[f64; 2]], radius: f64) -> (f64, [f64; 2]) 
     (area, moment)
 }
 
-/// Where an upright line that passes a circle's centre so far beside it meets the circle, the centre at a level.
-fn chord(radius: f64, beside: f64, level: f64) -> Option<[f64; 2]> {
-    let half = (radius * radius - beside * beside).max(0.0).sqrt();
-    (beside.abs() <= radius).then_some([level - half, level + half])
-}
-
 fn unit([x, y]: [f64; 2]) -> [f64; 2] {
     let length = x.hypot(y);
     [x / length, y / length]
@@ -95,7 +95,7 @@ fn disc_in_box(lower: [f64; 2], upper: [f64; 2], radius: f64) -> (f64, [f64; 2])
     match ball_cover(lower, upper, radius) {
         Cover::Nothing => (0.0, [0.0; 2]),
         Cover::Whole => {
-            let part = Within::whole(lower, upper);
+            let part = Part::whole(lower, upper);
             (part.volume, part.centroid.map(|x| part.volume * x))
         }
         Cover::Cut => disc_within(&corners, radius),
@@ -125,7 +125,7 @@ fn less<const D: usize>(a: [f64; D], b: [f64; D]) -> [f64; D] {
     std::array::from_fn(|axis| a[axis] - b[axis])
 }
 
-impl Shape for Cylinder {
+impl Region<3> for Cylinder {
     fn bounds(&self) -> ([f64; 3], [f64; 3]) {
         let [from, to] = self.between;
         (
@@ -134,19 +134,19 @@ impl Shape for Cylinder {
         )
     }
 
-    fn within(&self, lower: [f64; 3], upper: [f64; 3]) -> Within<3> {
+    fn within(&self, lower: [f64; 3], upper: [f64; 3]) -> Part<3> {
         let stretch = [lower[self.axis], upper[self.axis]];
         let Some([from, to]) = overlap(self.between, stretch) else {
-            return Within::NOTHING;
+            return Part::NOTHING;
         };
         let [lower, upper] =
             [lower, upper].map(|corner| less(seen(corner, self.axis), self.centre));
         let (area, moment) = disc_in_box(lower, upper, self.radius);
         if area <= 0.0 {
-            return Within::NOTHING;
+            return Part::NOTHING;
         }
         let centroid = std::array::from_fn(|axis| self.centre[axis] + moment[axis] / area);
-        Within {
+        Part {
             volume: area * (to - from),
             centroid: placed(centroid, self.axis, 0.5 * (from + to)),
         }
@@ -161,39 +161,45 @@ impl Shape for Cylinder {
         })
     }
 
-    fn contains(&self, &point: &[f64; 3]) -> bool {
+    fn encloses(&self, point: [f64; 3]) -> bool {
         let [from, to] = self.between;
         let [x, y] = less(seen(point, self.axis), self.centre);
         (from..=to).contains(&point[self.axis]) && x.hypot(y) <= self.radius
     }
 
-    fn crossings(&self, [x, y]: [f64; 2]) -> Vec<Crossing> {
-        let ([u, v], [from, to]) = (self.centre, self.between);
-        let (is_met, beside) = match self.axis {
-            2 => {
-                let is_met = (x - u).hypot(y - v) <= self.radius;
-                return ends(is_met.then_some(self.between));
-            }
-            1 => ((from..=to).contains(&y), x - u),
-            _ => ((from..=to).contains(&x), y - u),
+    fn crossings(&self, place: &[f64; 3]) -> Vec<Crossing> {
+        let [from, to] = self.between;
+        let [x, y] = less(seen(*place, self.axis), self.centre);
+        let stretch = if self.axis == 2 {
+            (x.hypot(y) < self.radius).then_some([from, to])
+        } else {
+            let is_met = (from..to).contains(&place[self.axis]);
+            chord(self.centre[1], self.radius, x).filter(|_| is_met)
         };
-        ends(chord(self.radius, beside, v).filter(|_| is_met))
+        stretch.into_iter().flat_map(Crossing::ends).collect()
     }
 
-    /// Of the regular polygon around its circle that has so many.
     fn corners(&self) -> Vec<[f64; 3]> {
-        let corner = |k: usize| {
-            let (sine, cosine) = (PI * k as f64 / (CORNERS / 2) as f64).sin_cos();
-            let [u, v] = self.centre;
-            [u + self.radius * cosine, v + self.radius * sine]
-        };
-        let at = |along: f64| (0..CORNERS).map(move |k| placed(corner(k), self.axis, along));
-        at(self.between[0]).chain(at(self.between[1])).collect()
+        let points = (0..POINTS_AROUND).flat_map(|k| {
+            let angle = 2.0 * PI * f64::from(k) / f64::from(POINTS_AROUND);
+            let (sine, cosine) = angle.sin_cos();
+            let at = [
+                self.centre[0] + self.radius * cosine,
+                self.centre[1] + self.radius * sine,
+            ];
+            self.between.map(|along| placed(at, self.axis, along))
+        });
+        points.collect()
     }
 
     fn words(&self) -> String {
-        let axis = ["x", "y", "z"][self.axis];
-        format!("cylinder of radius {} m along {axis}", self.radius)
+        let name = ["x", "y", "z"][self.axis];
+        let [from, to] = self.between.map(short);
+        let [a, b] = self.centre.map(short);
+        format!(
+            "cylinder of radius {} about ({a}, {b}) from {name} = {from} to {to}",
+            short(self.radius)
+        )
     }
 }
 
@@ -209,7 +215,7 @@ const GAUSS: [[f64; 2]; 8] = [
     [0.989_400_934_991_649_9, 0.027_152_459_411_754_095],
 ];
 
-impl Shape for Sphere {
+impl Region<3> for Sphere {
     fn bounds(&self) -> ([f64; 3], [f64; 3]) {
         (
             self.centre.map(|x| x - self.radius),
@@ -219,7 +225,7 @@ impl Shape for Sphere {
 
     /// Discs of exact area, summed over z. Between the levels where circles begin to touch sides and
     /// corners the area is smooth but for roots at the ends, which z = cos θ takes away.
-    fn within(&self, lower: [f64; 3], upper: [f64; 3]) -> Within<3> {
+    fn within(&self, lower: [f64; 3], upper: [f64; 3]) -> Part<3> {
         let [lower, upper] = [lower, upper].map(|corner| less(corner, self.centre));
         let sides = [lower[0], upper[0], lower[1], upper[1]].map(|side| side * side);
         let corners = [
@@ -257,9 +263,9 @@ impl Shape for Sphere {
             }
         }
         if volume <= 0.0 {
-            return Within::NOTHING;
+            return Part::NOTHING;
         }
-        Within {
+        Part {
             volume,
             centroid: std::array::from_fn(|axis| self.centre[axis] + moment[axis] / volume),
         }
@@ -273,32 +279,40 @@ impl Shape for Sphere {
         )
     }
 
-    fn contains(&self, &point: &[f64; 3]) -> bool {
+    fn encloses(&self, point: [f64; 3]) -> bool {
         let [x, y, z] = less(point, self.centre);
         x.hypot(y).hypot(z) <= self.radius
     }
 
-    fn crossings(&self, [x, y]: [f64; 2]) -> Vec<Crossing> {
-        let [u, v, w] = self.centre;
-        ends(chord(self.radius, (x - u).hypot(y - v), w))
+    fn crossings(&self, place: &[f64; 3]) -> Vec<Crossing> {
+        let [x, y, _] = less(*place, self.centre);
+        let stretch = chord(self.centre[2], self.radius, x.hypot(y));
+        stretch.into_iter().flat_map(Crossing::ends).collect()
     }
 
-    /// Of its great circles.
     fn corners(&self) -> Vec<[f64; 3]> {
-        let circle = |axis: usize| {
-            let place = self.centre[axis];
-            let circle = Cylinder {
-                axis,
-                centre: across(axis).map(|other| self.centre[other]),
-                radius: self.radius,
-                between: [place, place],
-            };
-            circle.corners().into_iter().take(CORNERS)
+        let ring = |level: f64| {
+            let radius = self.radius * (1.0 - level * level).sqrt();
+            (0..POINTS_AROUND).map(move |k| {
+                let angle = 2.0 * PI * f64::from(k) / f64::from(POINTS_AROUND);
+                let (sine, cosine) = angle.sin_cos();
+                let off = [radius * cosine, radius * sine, self.radius * level];
+                std::array::from_fn(|axis| self.centre[axis] + off[axis])
+            })
         };
-        (0..3).flat_map(circle).collect()
+        let poles = [-1.0, 1.0].map(|side| {
+            let [x, y, z] = self.centre;
+            [x, y, z + side * self.radius]
+        });
+        let rings = [-0.75, -0.5, 0.0, 0.5, 0.75].into_iter().flat_map(ring);
+        rings.chain(poles).collect()
     }
 
     fn words(&self) -> String {
-        format!("sphere of radius {} m", self.radius)
+        let [x, y, z] = self.centre.map(short);
+        format!(
+            "sphere of radius {} about ({x}, {y}, {z})",
+            short(self.radius)
+        )
     }
 }

@@ -4,9 +4,8 @@ use std::collections::{BTreeMap, HashMap};
 
 use thiserror::Error;
 
-use super::Shape;
 use super::facets::{Facets, Moments};
-use crate::case::{Cover, Crossing, Within, is_off};
+use crate::region::{Cover, Crossing, Part, Region};
 
 /// Corners closer than this share of the largest coordinate are one: the last bits of single precision \[-\].
 const SAME: f64 = 2.4e-7;
@@ -134,6 +133,27 @@ impl ClosedSurface {
         (0..self.triangle_count()).map(|triangle| self.facets.corners_of(triangle))
     }
 
+    /// Where the upright line at (x, y) passes its triangles: level, and 1 where it faces up, −1 where down.
+    fn passed(&self, x: f64, y: f64) -> Vec<(f64, i32)> {
+        let mut passed = Vec::new();
+        self.facets.each([x, y], [x, y], |triangle| {
+            let corners = self.facets.corners_of(triangle);
+            let mut turns = 0;
+            for k in 0..3 {
+                let (p, q) = (corners[k], corners[(k + 1) % 3]);
+                let (a, b) = if p[1] < q[1] { (p, q) } else { (q, p) };
+                let crosses = (a[1] <= y) && (y < b[1]);
+                if crosses && x < a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0]) {
+                    turns += if p[1] < q[1] { 1 } else { -1 };
+                }
+            }
+            if turns != 0 {
+                passed.push((self.facets.plane_at(triangle, [x, y]), turns));
+            }
+        });
+        passed
+    }
+
     /// Of the part within a box, from its lower corner.
     fn moments(&self, lower: [f64; 3], upper: [f64; 3]) -> Moments {
         let size: [f64; 3] = std::array::from_fn(|axis| upper[axis] - lower[axis]);
@@ -227,19 +247,19 @@ fn check_edges(points: &[[f64; 3]], faces: &[[u32; 3]]) -> Result<(), ClosedSurf
     Ok(())
 }
 
-impl Shape for ClosedSurface {
+impl Region<3> for ClosedSurface {
     fn bounds(&self) -> ([f64; 3], [f64; 3]) {
         self.facets.bounds()
     }
 
-    fn within(&self, lower: [f64; 3], upper: [f64; 3]) -> Within<3> {
+    fn within(&self, lower: [f64; 3], upper: [f64; 3]) -> Part<3> {
         self.moments(lower, upper).part(lower, upper)
     }
 
     fn cover(&self, lower: [f64; 3], upper: [f64; 3]) -> Cover {
         if self.facets.run_into(lower, upper) {
             Cover::Cut
-        } else if self.moments(lower, upper).volume > 0.5 * Within::whole(lower, upper).volume {
+        } else if self.moments(lower, upper).volume > 0.5 * Part::whole(lower, upper).volume {
             Cover::Whole
         } else {
             Cover::Nothing
@@ -247,34 +267,20 @@ impl Shape for ClosedSurface {
     }
 
     /// Counts the triangles above the point, those that face down negative.
-    fn contains(&self, &[x, y, z]: &[f64; 3]) -> bool {
-        let above = self.crossings([x, y]);
-        let above = above.iter().filter(|own| own.level > z);
-        above.map(|own| if own.sense { 1 } else { -1 }).sum::<i32>() > 0
+    fn encloses(&self, point: [f64; 3]) -> bool {
+        let above = self.passed(point[0], point[1]).into_iter();
+        let above = above.filter(|(level, _)| *level > point[2]);
+        above.map(|(_, turns)| turns).sum::<i32>() > 0
     }
 
-    fn crossings(&self, [x, y]: [f64; 2]) -> Vec<Crossing> {
-        let mut found = Vec::new();
-        self.facets.each([x, y], [x, y], |triangle| {
-            let corners = self.facets.corners_of(triangle);
-            let mut turns = 0;
-            for k in 0..3 {
-                let (p, q) = (corners[k], corners[(k + 1) % 3]);
-                // Seen from the lower end, so that both triangles at an edge find the same.
-                let (a, b) = if p[1] < q[1] { (p, q) } else { (q, p) };
-                let crosses = a[1] <= y && y < b[1];
-                if crosses && x < a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0]) {
-                    turns += if p[1] < q[1] { 1 } else { -1 };
-                }
-            }
-            if turns != 0 {
-                found.push(Crossing {
-                    level: self.facets.plane_at(triangle, [x, y]),
-                    sense: turns > 0,
-                });
-            }
-        });
-        found
+    fn crossings(&self, place: &[f64; 3]) -> Vec<Crossing> {
+        let passed = self.passed(place[0], place[1]).into_iter();
+        passed
+            .map(|(level, turns)| Crossing {
+                level,
+                sense: turns > 0,
+            })
+            .collect()
     }
 
     fn corners(&self) -> Vec<[f64; 3]> {
@@ -287,7 +293,7 @@ impl Shape for ClosedSurface {
 
     fn beyond(&self, lower: [f64; 3], upper: [f64; 3]) -> Option<[f64; 3]> {
         let points = self.facets.points.iter();
-        let mut off = points.filter(|point| is_off(point, &lower, &upper));
+        let mut off = points.filter(|point| crate::region::is_off(point, &lower, &upper));
         off.next().copied()
     }
 }

@@ -33,7 +33,7 @@ use super::diagnostic::Problems;
 use super::names::Names;
 use super::schema::FORMAT;
 use super::tree::Node;
-use crate::case::{Case, TitleBlock};
+use crate::case::{AnyCase, Case, TitleBlock};
 
 use layers::Layers;
 pub(super) use quantities::QUANTITY_DOCS;
@@ -83,7 +83,7 @@ impl AllNames {
 /// The case that a completed tree states; values that follow from others are put into the tree.
 ///
 /// `None` only when a problem was reported, here or before.
-pub(super) fn build(tree: &mut Node, file: &Path, problems: &mut Problems) -> Option<Case> {
+pub(super) fn build(tree: &mut Node, file: &Path, problems: &mut Problems) -> Option<AnyCase> {
     derive::derive(tree, file);
     let tree = &*tree;
     let names = AllNames::new(tree, problems);
@@ -185,7 +185,7 @@ pub(super) fn build(tree: &mut Node, file: &Path, problems: &mut Problems) -> Op
     };
     let case = case.refined(tree.get("grid")?.count_at("refine")?);
     study::check(tree, &case, problems);
-    Some(case)
+    Some(AnyCase::Plane(case))
 }
 
 /// The head of the report.
