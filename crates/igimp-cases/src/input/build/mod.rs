@@ -23,6 +23,7 @@ mod rigid;
 mod safety;
 mod sequence;
 mod site;
+mod solids;
 mod stages;
 mod study;
 mod water;

@@ -37,7 +37,8 @@ pub(super) fn resolve(surface: &mut Node, folder: &Path, problems: &mut Problems
 }
 
 fn table(file: &Named, like: &Node, key: &str) -> Result<Vec<Entry>, Trouble> {
-    let mut others = like.entries().iter().map(|entry| entry.key.as_str());
+    let written = like.entries().iter().filter(|entry| entry.node.written);
+    let mut others = written.map(|entry| entry.key.as_str());
     if let Some(other) = others.find(|other| ![key, "unit"].contains(other)) {
         return Err(Trouble::new(
             format_args!("the surface is stated by `{key}` and by `{other}`"),
@@ -102,7 +103,11 @@ fn scattered(text: &str, stated: (&str, Option<&str>), like: &Node) -> Result<Ve
         let lengths = lengths.collect::<Result<Vec<_>, _>>()?;
         Ok(Node::written(Value::List(lengths), like.place))
     };
-    let points = found.rows.iter().map(point).collect::<Result<Vec<_>, Trouble>>()?;
+    let points = found
+        .rows
+        .iter()
+        .map(point)
+        .collect::<Result<Vec<_>, Trouble>>()?;
     Ok(vec![Entry {
         key: "points".to_owned(),
         key_place: like.place,
@@ -156,7 +161,8 @@ impl EsriGrid {
             found.map(|(key, value, at)| (key.as_str(), *value, *at))
         };
         let needed = |keys: &[&str]| {
-            let missing = || Trouble::new(format_args!("its head has no {}", keys.join(" or ")), help);
+            let missing =
+                || Trouble::new(format_args!("its head has no {}", keys.join(" or ")), help);
             find(keys).ok_or_else(missing)
         };
         let count = |key: &str| {
@@ -165,7 +171,10 @@ impl EsriGrid {
                 return Ok(value as usize);
             }
             let message = format!("line {at}: {key} is {value}");
-            Err(Trouble::new(message, format_args!("a grid has from 2 to {MOST} of them")))
+            Err(Trouble::new(
+                message,
+                format_args!("a grid has from 2 to {MOST} of them"),
+            ))
         };
         let (columns, rows) = (count("ncols")?, count("nrows")?);
         if columns * rows > MOST {
@@ -183,7 +192,11 @@ impl EsriGrid {
             let keys = [["xllcorner", "xllcenter"], ["yllcorner", "yllcenter"]][axis];
             let (key, start, _) = needed(&keys)?;
             // Heights are those of the middles of cells.
-            first[axis] = if key == keys[0] { start + 0.5 * size } else { start };
+            first[axis] = if key == keys[0] {
+                start + 0.5 * size
+            } else {
+                start
+            };
         }
         let none = find(&["nodata_value"]).map(|(_, value, _)| value);
         let mut heights = Vec::with_capacity(columns * rows);
@@ -227,7 +240,9 @@ mod tests {
     const GRID: &str = "ncols 3\nnrows 2\nXLLCORNER 100\nyllcenter -50\ncellsize 10\nNODATA_value -9999\n1 2 3\n4 -9999 6.5\n";
 
     fn message(text: &str) -> String {
-        EsriGrid::parse(text).err().map_or(String::new(), |trouble| trouble.message)
+        EsriGrid::parse(text)
+            .err()
+            .map_or(String::new(), |trouble| trouble.message)
     }
 
     #[test]
@@ -240,7 +255,9 @@ mod tests {
         };
         assert_eq!(EsriGrid::parse(GRID).ok(), Some(expected));
         // Rows may be broken anywhere, and cells be oblong.
-        let broken = GRID.replace("1 2 3\n4 ", "1\n2 3 4\n").replace("cellsize 10", "dx 10\ndy 5");
+        let broken = GRID
+            .replace("1 2 3\n4 ", "1\n2 3 4\n")
+            .replace("cellsize 10", "dx 10\ndy 5");
         let read = EsriGrid::parse(&broken).ok();
         assert_eq!(read.map(|grid| grid.cell), Some([10.0, 5.0]));
     }
@@ -249,12 +266,24 @@ mod tests {
     fn what_is_wrong_has_its_line() {
         for (from, to, expected) in [
             ("nrows 2\n", "", "its head has no nrows"),
-            ("nrows 2", "nrows two", "line 2, `nrows two`, is not a key and a number"),
+            (
+                "nrows 2",
+                "nrows two",
+                "line 2, `nrows two`, is not a key and a number",
+            ),
             ("ncols 3", "ncols 2.5", "line 1: ncols is 2.5"),
             ("cellsize 10", "cellsize 0", "line 5: cellsize is 0"),
-            ("2 3\n", "2\n", "it has 5 heights, and 3 columns and 2 rows make 6"),
+            (
+                "2 3\n",
+                "2\n",
+                "it has 5 heights, and 3 columns and 2 rows make 6",
+            ),
             ("6.5", "6,5", "line 8: `6,5` is no height"),
-            ("ncols 3", "ncols 70000", "it has 140000 points; at most 100000 are possible"),
+            (
+                "ncols 3",
+                "ncols 70000",
+                "it has 140000 points; at most 100000 are possible",
+            ),
         ] {
             assert_eq!(message(&GRID.replace(from, to)), expected);
         }

@@ -37,7 +37,8 @@ pub(super) fn resolve(surface: &mut Node, folder: &Path, problems: &mut Problems
 
 fn table(file: &Named, like: &Node) -> Result<Vec<Entry>, Trouble> {
     let own = ["file", "unit"];
-    let mut others = like.entries().iter().map(|entry| entry.key.as_str());
+    let written = like.entries().iter().filter(|entry| entry.node.written);
+    let mut others = written.map(|entry| entry.key.as_str());
     if let Some(other) = others.find(|other| !own.contains(other)) {
         return Err(Trouble::new(
             format_args!("the surface is stated by `file` and by `{other}`"),
@@ -58,7 +59,10 @@ fn table(file: &Named, like: &Node) -> Result<Vec<Entry>, Trouble> {
     let triangles = triangles(&bytes)?;
     if triangles.len() > MOST {
         return Err(Trouble::new(
-            format_args!("it has {} triangles; at most {MOST} are possible", triangles.len()),
+            format_args!(
+                "it has {} triangles; at most {MOST} are possible",
+                triangles.len()
+            ),
             "take fewer of them",
         ));
     }
@@ -71,7 +75,9 @@ fn table(file: &Named, like: &Node) -> Result<Vec<Entry>, Trouble> {
         for corner in triangle {
             let next = vertices.len();
             // Zero has two signs.
-            let number = *numbers.entry(corner.map(|x| (x + 0.0).to_bits())).or_insert(next);
+            let number = *numbers
+                .entry(corner.map(|x| (x + 0.0).to_bits()))
+                .or_insert(next);
             if number == next {
                 let of = |&x: &f32| quantity(f64::from(x), &unit, Dimension::Length, like);
                 let lengths = corner.iter().map(of).collect::<Result<Vec<_>, _>>()?;
@@ -94,7 +100,9 @@ fn table(file: &Named, like: &Node) -> Result<Vec<Entry>, Trouble> {
 
 /// The triangles of a file.
 fn triangles(bytes: &[u8]) -> Result<Vec<[[f32; 3]; 3]>, Trouble> {
-    let count = bytes.get(HEAD - 4..HEAD).and_then(|own| <[u8; 4]>::try_from(own).ok());
+    let count = bytes
+        .get(HEAD - 4..HEAD)
+        .and_then(|own| <[u8; 4]>::try_from(own).ok());
     let count = count.map(|own| u32::from_le_bytes(own) as usize);
     let length = |count: usize| count.saturating_mul(TRIANGLE).saturating_add(HEAD);
     // Binary files may begin with the word `solid` too: their length says what they are.
@@ -162,7 +170,9 @@ mod tests {
     const FACET: &str = "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1.5 0\nendloop\nendfacet\n";
 
     fn message(bytes: &[u8]) -> String {
-        triangles(bytes).err().map_or(String::new(), |trouble| trouble.message)
+        triangles(bytes)
+            .err()
+            .map_or(String::new(), |trouble| trouble.message)
     }
 
     #[test]
@@ -192,7 +202,11 @@ mod tests {
         assert!(message(b"").contains("neither ASCII nor binary"));
         assert!(message(format!("solid x\n{FACET}").as_bytes()).contains("ends within a solid"));
         let wrong = format!("solid x\n{}endsolid", FACET.replace("1.5", "fine"));
-        assert!(message(wrong.as_bytes()).contains("no right STL"), "{}", message(wrong.as_bytes()));
+        assert!(
+            message(wrong.as_bytes()).contains("no right STL"),
+            "{}",
+            message(wrong.as_bytes())
+        );
         let many = "solid x\nfacet\nendsolid";
         assert!(message(many.as_bytes()).contains("invalid facet header"));
     }

@@ -7,6 +7,7 @@ pub(super) use materials::SYMBOLS;
 mod outputs;
 mod reinforcement;
 mod rigid;
+mod solids;
 mod stages;
 mod water;
 
