@@ -42,7 +42,8 @@ impl<'a> Bins<'a> {
             }
         }
         // Bodies of many small parts far from each other: wider bins rather than many empty ones.
-        while bins.count.iter().product::<usize>() > MOST * own.len() + 64 {
+        let all = |count: [usize; 3]| count.map(|count| count as f64).iter().product::<f64>();
+        while all(bins.count) > (MOST * own.len() + 64) as f64 {
             for axis in 0..3 {
                 bins.width[axis] *= 2.0;
                 bins.count[axis] = bins.count[axis].div_ceil(2);

@@ -88,7 +88,8 @@ pub fn packed(text: &str, keep: Keep) -> Option<String> {
     let packed = match frame.kind() {
         Some(CellKind::Quad | CellKind::Hexahedron) => of_boxes(&frame, keep)?,
         Some(kind) => of_bodies(&frame, kind)?,
-        None => nothing(),
+        None if frame.cells == 0 => nothing(),
+        None => return None,
     };
     let text = serde_json::to_string(&packed).ok()?;
     Some(text.replace('<', "\\u003c"))

@@ -153,8 +153,6 @@ class Scene {
     canvas.height = Math.round(place.height * sharp);
     const pen = canvas.getContext("2d");
     pen.scale(sharp, sharp);
-    if (this.surface) this.surface.paint(place, camera, this.cut, this.dimension, sharp, sharesOf(cssColour("--soft")), this.boxes.origin);
-    else this.drawn(pen, place);
     pen.save();
     if (this.dimension === 2) {
       const { room } = place;
@@ -162,6 +160,8 @@ class Scene {
       pen.rect(room.left, room.top, place.width - room.left - room.right, place.height - room.top - room.bottom);
       pen.clip();
     }
+    if (this.surface) this.surface.paint(place, camera, this.cut, this.dimension, sharp, sharesOf(cssColour("--soft")), this.boxes.origin);
+    else this.drawn(pen, place);
     this.outlines(pen, place);
     this.mark(pen, place);
     pen.restore();
