@@ -8,6 +8,10 @@ float lightOf(vec3 normal, float open) {
   float hollow = clamp((open - 0.12) / 0.3, 0.0, 1.0);
   return (0.5 + 0.52 * max(dot(normal, towards), 0.0)) * (0.72 + 0.28 * hollow);
 }
+// Dark colours would hide the shape.
+vec3 lifted(vec3 colour) {
+  return mix(colour, vec3(1.0), 0.07);
+}
 uniform vec3 moved;
 uniform vec4 scale;
 vec4 seen(vec3 at) {
@@ -45,11 +49,15 @@ void main() {
   else if (side > 0.0) place[axis] = high[axis];
   bool crosses = caps < 0.5 || (low[axis] < place[axis] && place[axis] < high[axis]);
   vec3 about = (lie.xyz * 255.0 - 128.0) / 127.0;
-  vec3 smoothed = normalize(normal * 0.45 + about);
-  if (caps > 0.5) tint = colour.rgb * 0.97;
-  else tint = colour.rgb * (flatly > 0.5 ? 1.0 : lightOf(smoothed, lie.w));
+  vec3 smoothed = normalize(normal * 0.3 + about);
+  bool isBack = dot(normal, eye) <= 1e-6;
+  if (flatly > 0.5) tint = colour.rgb;
+  else if (caps > 0.5) tint = lifted(colour.rgb) * 0.97;
+  else tint = lifted(colour.rgb) * (isBack ? 0.35 : lightOf(smoothed, lie.w));
   at = corner;
-  gl_Position = crosses && dot(normal, eye) > 1e-6 ? seen(place) : vec4(2.0, 2.0, 2.0, 1.0);
+  // The insides of the far walls are seen through cracks.
+  bool shown = crosses && !(isBack && (caps > 0.5 || flatly > 0.5));
+  gl_Position = shown ? seen(place) : vec4(2.0, 2.0, 2.0, 1.0);
 }`;
 
 const INK = `#version 300 es
@@ -67,7 +75,10 @@ void main() {
   vec2 from = min(at, 1.0 - at) / step;
   float line = 1.0 - smoothstep(0.3, 1.3, min(from.x, from.y));
   float room = smoothstep(5.0, 16.0, min(1.0 / step.x, 1.0 / step.y));
-  ink = vec4(min(tint, 1.0) * (1.0 - lines * line * room), 1.0);
+  // Darker than the face, on dark faces lighter.
+  float dark = 1.0 - smoothstep(0.1, 0.3, dot(tint, vec3(0.2126, 0.7152, 0.0722)));
+  vec3 own = mix(tint * (1.0 - lines), tint + 0.3 * lines * tint + 0.25 * lines * 0.3, dark);
+  ink = vec4(min(mix(tint, own, line * room), 1.0), 1.0);
 }`;
 
 const BODIES = `#version 300 es

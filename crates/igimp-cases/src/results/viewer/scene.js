@@ -189,7 +189,7 @@ class Scene {
       if (side * place.eye[axis] <= 1e-6) continue;
       const [low, high] = [this.corner("low", box), this.corner("high", box)];
       if (cut && dot(cut.normal, low.map((x, j) => 0.5 * (x + high[j]))) > cut.offset) continue;
-      const about = [0, 1, 2].map((j) => (lie[4 * box + j] - 128) / 127 + (j === axis ? 0.45 * side : 0));
+      const about = [0, 1, 2].map((j) => (lie[4 * box + j] - 128) / 127 + (j === axis ? 0.3 * side : 0));
       const length = Math.hypot(...about) || 1;
       const light = this.dimension === 2 ? 1 : lightOf(place, about.map((x) => x / length), lie[4 * box + 3] / 255);
       add(box, face, light, cornersOf(low, high, face));
