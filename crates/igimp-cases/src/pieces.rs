@@ -104,7 +104,8 @@ impl Pieces {
         };
         let mut first = 0;
         for body in &case.bodies {
-            let (seeds, pieces) = fill_in_pieces(&grid, &body.polygon, body.per_direction, 0.0, 0)?;
+            let (seeds, pieces) =
+                fill_in_pieces(&grid, body.polygon(), body.per_direction, 0.0, 0)?;
             let own = all.corners.len();
             for Piece { particle, polygon } in pieces {
                 let mut corners: Vec<Corner> = Vec::with_capacity(polygon.len());

@@ -275,6 +275,11 @@ impl<const D: usize> Surface<D> {
         self.knots.len()
     }
 
+    /// The knots of each facet, by their numbers.
+    pub fn facets(&self) -> impl Iterator<Item = [usize; D]> {
+        self.facets.iter().map(|facet| facet.knots)
+    }
+
     /// The knots on the surface with their sides, in the frame of the body \[length\].
     pub fn knots(&self) -> Vec<([f64; D], usize)> {
         let mut knots = vec![([0.0; D], 0); self.knots.len()];

@@ -54,7 +54,7 @@ pub struct Time {
 }
 
 /// The time of a case of a size on a computer of a speed, with the threads of the current pool.
-pub fn time(case: &Case, size: &Estimate, speed: Speed) -> Time {
+pub fn time<const D: usize>(case: &Case<D>, size: &Estimate, speed: Speed) -> Time {
     let stages: Vec<Taken> = case.stages.iter().map(planned).collect();
     Time {
         seconds: of_stages(case, size, speed, &stages),
@@ -64,7 +64,7 @@ pub fn time(case: &Case, size: &Estimate, speed: Speed) -> Time {
 }
 
 /// The share of each stage in the corrections that a case plans \[-\].
-pub fn shares(case: &Case) -> Vec<f64> {
+pub fn shares<const D: usize>(case: &Case<D>) -> Vec<f64> {
     let corrections: Vec<f64> = case
         .stages
         .iter()
@@ -79,8 +79,8 @@ pub fn shares(case: &Case) -> Vec<f64> {
 ///
 /// # Errors
 /// As [`estimate`].
-pub fn time_of_steps_taken(
-    case: &Case,
+pub fn time_of_steps_taken<const D: usize>(
+    case: &Case<D>,
     speed: Speed,
     stages: &[StageSummary],
 ) -> Result<f64, CaseError> {
@@ -160,7 +160,12 @@ fn is_open_ended(stage: &Stage) -> bool {
         || stop.load_grows_less_than.is_some()
 }
 
-fn of_stages(case: &Case, size: &Estimate, speed: Speed, stages: &[Taken]) -> f64 {
+fn of_stages<const D: usize>(
+    case: &Case<D>,
+    size: &Estimate,
+    speed: Speed,
+    stages: &[Taken],
+) -> f64 {
     let (particles, unknowns) = (size.particles as f64, size.unknowns as f64);
     let symmetric = case
         .materials
@@ -194,7 +199,7 @@ fn of_stages(case: &Case, size: &Estimate, speed: Speed, stages: &[Taken]) -> f6
 }
 
 /// Pictures of a run, and how many of them show a field.
-fn pictures(case: &Case) -> (f64, f64) {
+fn pictures<const D: usize>(case: &Case<D>) -> (f64, f64) {
     let stages = case.stages.len();
     let searches = case
         .stages

@@ -36,6 +36,8 @@ const LEVEL: Compression = Compression::new(3);
 pub enum CellKind {
     /// Two ends.
     Line,
+    /// Three corners.
+    Triangle,
     /// Four corners, counter-clockwise.
     Quad,
     /// Four corners of the lower face counter-clockwise seen from above, then the upper face.
@@ -70,6 +72,7 @@ impl CellKind {
         ];
         match self {
             Self::Line => &ALL[..2],
+            Self::Triangle => &ALL[..3],
             Self::Quad => &ALL[..4],
             Self::Hexahedron => &ALL,
         }
@@ -84,6 +87,7 @@ impl CellKind {
     fn code(self) -> u8 {
         match self {
             Self::Line => 3,
+            Self::Triangle => 5,
             Self::Quad => 9,
             Self::Hexahedron => 12,
         }

@@ -20,9 +20,9 @@ use crate::error::CaseError;
 use crate::summary::StageSummary;
 
 /// Marches a state to the end of a construction stage that began with `start`, or on from where an earlier run left it.
-pub(crate) fn build(
-    session: &mut Session<'_>,
-    (start, state): (&State, &mut State),
+pub(crate) fn build<const D: usize>(
+    session: &mut Session<'_, D>,
+    (start, state): (&State<D>, &mut State<D>),
     number: usize,
     summary: &mut StageSummary,
     resumption: Option<&Resumption>,
@@ -52,11 +52,15 @@ pub(crate) fn build(
 }
 
 /// A state with everything that a stage changes.
-fn changed(model: &Model<'_>, start: &State, own: &Construction) -> Result<State, CaseError> {
+fn changed<const D: usize>(
+    model: &Model<'_, D>,
+    start: &State<D>,
+    own: &Construction,
+) -> Result<State<D>, CaseError> {
     let case = model.case;
     let mut state = start.clone();
     let body_of =
-        |particles: &Particles<2>, particle: usize| model.seeded.body[particles.number[particle]];
+        |particles: &Particles<D>, particle: usize| model.seeded.body[particles.number[particle]];
     if !own.place.is_empty()
         && let Some(later) = &model.later
     {
@@ -78,7 +82,13 @@ fn changed(model: &Model<'_>, start: &State, own: &Construction) -> Result<State
         if let Some(&(_, material)) = new {
             let law = fields.law[particle];
             fields.law[particle] = law - law % materials + material;
-            become_soil_of((model, &ground), &mut fields, particle, material)?;
+            let volume_ratio = state.body.particles.volume_ratio(particle);
+            become_soil_of(
+                (model, &ground),
+                &mut fields,
+                (particle, volume_ratio),
+                material,
+            )?;
         }
         if own.dissipate {
             fields.excess[particle] = 0.0;
@@ -90,10 +100,10 @@ fn changed(model: &Model<'_>, start: &State, own: &Construction) -> Result<State
 }
 
 /// Gives a particle weight, strength and stiffness of a material; its stress stays.
-fn become_soil_of(
-    (model, ground): (&Model<'_>, &Ground),
-    fields: &mut ParticleFields<2>,
-    particle: usize,
+fn become_soil_of<const D: usize>(
+    (model, ground): (&Model<'_, D>, &Ground<D>),
+    fields: &mut ParticleFields<D>,
+    (particle, volume_ratio): (usize, f64),
     material: usize,
 ) -> Result<(), CaseError> {
     let case = model.case;
@@ -106,23 +116,27 @@ fn become_soil_of(
     let soil = &case.materials[material];
     let before = model.laws[fields.law[particle]].elasticity().young();
     let shared = (before / soil.young - 1.0).abs() > 1e-12;
-    let mut ratios = soil.ratios_at(place, ground);
+    let mut ratios = soil.ratios_at(&place, ground);
     if shared {
         // In cells of several soils all have one stiffness, that of the cell.
         ratios.stiffness = 1.0;
     }
     fields.ratios[particle] = ratios;
-    fields.mass[particle] = fields.volume0[particle] * soil.unit_weight_at(place, ground) / gravity;
-    let [[a, b], [c, d]] = fields.def_grad[particle];
-    let tau = fields.sigma[particle].map(|row| row.map(|stress| stress * (a * d - b * c)));
+    fields.mass[particle] =
+        fields.volume0[particle] * soil.unit_weight_at(&place, ground) / gravity;
+    let tau = fields.sigma[particle].map(|row| row.map(|stress| stress * volume_ratio));
     let law = ScaledLaw::new(&*model.laws[fields.law[particle]], ratios)?;
-    let b_e = elastic_left_cauchy_green_of::<2>(law.elasticity(), &tau);
+    let b_e = elastic_left_cauchy_green_of::<D>(law.elasticity(), &tau);
     fields.b_e[particle] = b_e;
     Ok(())
 }
 
 /// The nodal forces that keep a changed state where it is \[N/m\].
-fn holding(model: &Model<'_>, state: &State, stage: usize) -> Result<Vec<[f64; 2]>, CaseError> {
+fn holding<const D: usize>(
+    model: &Model<'_, D>,
+    state: &State<D>,
+    stage: usize,
+) -> Result<Vec<[f64; D]>, CaseError> {
     let method = model.method(model.case.stages[stage].geometry);
     let conditions = model.conditions(&state.controls, &state.controls, 0.0)?;
     let particles = &state.body.particles;
@@ -130,31 +144,30 @@ fn holding(model: &Model<'_>, state: &State, stage: usize) -> Result<Vec<[f64; 2
     let structures = (&state.body.rigid[..], &state.body.reinforcement[..]);
     let system = System::with_structures(particles, structures, &stencils, &conditions, &method)?
         .with_load_points(&state.body.load_points)?;
-    let still = vec![[0.0; 2]; system.node_count()];
+    let still = vec![[0.0; D]; system.node_count()];
     let trial = system.evaluate(&still, TangentKind::Elastic)?;
     Ok(system.holding_forces(&trial))
 }
 
 /// What is to be said where the ground has moved by more than a quarter of a cell around a body that is placed where the
 /// case draws it.
-fn moved_below(model: &Model<'_>, start: &State, body: usize) -> Option<String> {
+fn moved_below<const D: usize>(
+    model: &Model<'_, D>,
+    start: &State<D>,
+    body: usize,
+) -> Option<String> {
     let part = &model.case.bodies[body];
-    let [width, height] = model.case.grid.smallest_cell();
-    let near = |x: &[f64; 2]| {
-        let inside = |axis: usize, reach: f64| {
-            let values = part.polygon.iter().map(|corner| corner[axis]);
-            let lower = values.clone().fold(f64::INFINITY, f64::min);
-            let upper = values.fold(f64::NEG_INFINITY, f64::max);
-            (lower - reach..=upper + reach).contains(&x[axis])
-        };
-        inside(0, width) && inside(1, height)
+    let cell = model.case.grid.smallest_cell();
+    let (lower, upper) = part.region.bounds();
+    let near = |x: &[f64; D]| {
+        (0..D).all(|axis| (lower[axis] - cell[axis]..=upper[axis] + cell[axis]).contains(&x[axis]))
     };
     let particles = &start.body.particles;
     let moved = (0..particles.len())
         .filter(|&particle| near(&particles.x[particle]))
-        .map(|particle| particles.displacement[particle][1].abs())
+        .map(|particle| particles.displacement[particle][D - 1].abs())
         .fold(0.0, f64::max);
-    (moved > 0.25 * height).then(|| {
+    (moved > 0.25 * cell[D - 1]).then(|| {
         format!(
             "\"{}\" is placed where it is drawn, but the ground around it has moved by up to {} m upwards or \
              downwards; draw it to the level that it is to be filled from, or set reset_displacements in the stage \

@@ -61,7 +61,7 @@ pub const REACHED_ITS_END: &str = "reached its end";
 
 /// What happens during a run, as it happens.
 #[derive(Clone, Copy, Debug)]
-pub enum Event<'a> {
+pub enum Event<'a, const D: usize = 2> {
     /// The model is made; the first step follows.
     Prepared {
         /// Its size.
@@ -84,7 +84,7 @@ pub enum Event<'a> {
     /// look at body and nodal forces themselves.
     Equilibrium {
         /// The body in its new state, conditions, forces and report of the step.
-        accepted: &'a Accepted<'a, 2>,
+        accepted: &'a Accepted<'a, D>,
     },
     /// A step was accepted.
     Step {
@@ -105,7 +105,7 @@ pub enum Event<'a> {
         /// What it found.
         trial: &'a TrialSummary,
         /// Its last equilibrium.
-        state: &'a State,
+        state: &'a State<D>,
     },
     /// A stage ended.
     StageEnded {
@@ -122,18 +122,18 @@ pub enum Event<'a> {
         /// Into how many parts the mesh cuts the cells of the case.
         parts: usize,
         /// What happens.
-        event: &'a Event<'a>,
+        event: &'a Event<'a, D>,
     },
 }
 
 /// Listens to a run: a progress bar, a log. Closures are listeners.
-pub trait Listener: Send {
+pub trait Listener<const D: usize = 2>: Send {
     /// Called as it happens.
-    fn on_event(&mut self, event: &Event<'_>);
+    fn on_event(&mut self, event: &Event<'_, D>);
 }
 
-impl<F: FnMut(&Event<'_>) + Send> Listener for F {
-    fn on_event(&mut self, event: &Event<'_>) {
+impl<F: FnMut(&Event<'_, D>) + Send, const D: usize> Listener<D> for F {
+    fn on_event(&mut self, event: &Event<'_, D>) {
         self(event);
     }
 }
@@ -205,7 +205,7 @@ impl Target {
 
 impl Target {
     /// What is known of a run of a case into this folder.
-    fn claim(&self, case: &Case) -> Claim {
+    fn claim<const D: usize>(&self, case: &Case<D>) -> Claim {
         Claim {
             origin: self.origin.clone(),
             title: case.title.clone(),
@@ -216,7 +216,7 @@ impl Target {
 
 /// What a run hands back.
 #[derive(Debug)]
-pub struct Run {
+pub struct Run<const D: usize = 2> {
     /// What `summary.json` says.
     pub summary: Summary,
     /// Curves, named as in the case.
@@ -226,7 +226,7 @@ pub struct Run {
     /// Fields along sections, named `SECTION__STAGE`.
     pub sections: Vec<Table>,
     /// The state at the end.
-    pub body: Body<2>,
+    pub body: Body<D>,
     /// The step that ended the run for want of equilibrium, if one did.
     pub failure: Option<Failure>,
     /// Why meshes of a study could not be run, or their results not be written; the others are there.

@@ -14,10 +14,10 @@ pub(super) fn boundaries(tree: &Node, site: &Site, problems: &mut Problems) -> O
         .map(|part| fixed_box(part, site, problems))
         .collect();
     Some(Boundaries {
-        left: side(node, "left")?,
-        right: side(node, "right")?,
-        bottom: side(node, "bottom")?,
-        top: side(node, "top")?,
+        sides: [
+            [side(node, "left")?, side(node, "right")?],
+            [side(node, "bottom")?, side(node, "top")?],
+        ],
         boxes: boxes.into_iter().collect::<Option<_>>()?,
     })
 }

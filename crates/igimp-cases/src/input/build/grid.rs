@@ -309,8 +309,8 @@ fn wish(
 fn levels(bodies: &[Option<BodyPart>], round_off: f64) -> Vec<f64> {
     let mut levels: Vec<(f64, f64)> = Vec::new();
     for body in bodies.iter().flatten() {
-        for (k, p) in body.polygon.iter().enumerate() {
-            let q = body.polygon[(k + 1) % body.polygon.len()];
+        for (k, p) in body.polygon().iter().enumerate() {
+            let q = body.polygon()[(k + 1) % body.polygon().len()];
             if (p[1] - q[1]).abs() > round_off {
                 continue;
             }

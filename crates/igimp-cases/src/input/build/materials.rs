@@ -1,7 +1,9 @@
 //! Materials and the limits of their parameters.
 
 use super::profiles::{Extent, Property, TABLES, Terms, property};
-use crate::case::{BodyPart, Drainage, Ground, Material, Profile, Profiles, Strength};
+use std::sync::Arc;
+
+use crate::case::{BodyPart, Drainage, Ground, Layer, Material, Profile, Profiles, Strength};
 use crate::input::diagnostic::Problems;
 use crate::input::text::{clip, number};
 use crate::input::tree::{Entry, Node, Wrong};
@@ -43,7 +45,13 @@ pub(super) fn materials(
 ) -> Vec<Option<Material>> {
     let entries = tree.get("materials").map_or(&[][..], Node::entries);
     let outlines = bodies.iter().flatten();
-    let surface = Ground::of_polygons(outlines.map(|body| (&body.polygon[..], 0.0, None)));
+    let layer = |body: &BodyPart, unit_weight, profile| Layer {
+        region: Arc::clone(&body.region),
+        unit_weight,
+        profile,
+        added: 0.0,
+    };
+    let surface = Ground::of_layers(outlines.map(|body| layer(body, 0.0, None)));
     let weights: Vec<Option<Property>> = entries
         .iter()
         .enumerate()
@@ -59,9 +67,9 @@ pub(super) fn materials(
         .collect();
     let with_weights = bodies.iter().flatten().filter_map(|body| {
         let weight = weights.get(body.material)?.as_ref()?;
-        Some((&body.polygon[..], weight.constant, weight.profile.as_ref()))
+        Some(layer(body, weight.constant, weight.profile.clone()))
     });
-    let ground = Ground::of_polygons(with_weights);
+    let ground = Ground::of_layers(with_weights);
     std::iter::zip(entries, &weights)
         .enumerate()
         .map(|(index, (entry, weight))| {

@@ -24,12 +24,16 @@ pub(super) struct Extent<'a> {
 }
 
 impl<'a> Extent<'a> {
-    /// The polygons of the material.
-    fn polygons(&self) -> impl Iterator<Item = &'a [[f64; 2]]> {
+    /// The bodies of the material.
+    fn of_material(&self) -> impl Iterator<Item = &'a BodyPart> {
         let material = self.material;
         let own = self.bodies.iter().flatten();
         own.filter(move |body| body.material == material)
-            .map(|body| &body.polygon[..])
+    }
+
+    /// Their polygons.
+    fn polygons(&self) -> impl Iterator<Item = &'a [[f64; 2]]> {
+        self.of_material().map(BodyPart::polygon)
     }
 
     /// Its lowest and its highest level \[m\]; none: no body is of this material.
@@ -44,15 +48,15 @@ impl<'a> Extent<'a> {
     /// Its least and its greatest depth \[m\], to the micrometre.
     fn depths(&self) -> Option<[f64; 2]> {
         let depths = self
-            .polygons()
-            .filter_map(|polygon| self.ground.depths(polygon));
+            .of_material()
+            .filter_map(|body| self.ground.depths(&*body.region));
         let depths = depths.reduce(union)?;
         Some(depths.map(|depth| (depth * 1e6).round() / 1e6))
     }
 
     /// Places all over its soil.
     fn places(&self) -> Vec<[f64; 2]> {
-        let edges = self.polygons().map(|polygon| self.ground.corners(polygon));
+        let edges = (self.of_material()).map(|body| self.ground.places(&*body.region));
         let mut places: Vec<[f64; 2]> = edges.flatten().collect();
         let ends = places.clone();
         for pair in ends
@@ -216,7 +220,7 @@ fn extremes(profile: &Profile, extent: Extent<'_>) -> [Extreme; 2] {
         Profile::StressShare(share) => {
             let places = extent.places();
             let values = places.iter().map(|place| Extreme {
-                value: profile.at(*place, extent.ground),
+                value: profile.at(place, extent.ground),
                 place: format!("at {}", point(*place)),
             });
             let unused = || Extreme {

@@ -38,14 +38,14 @@ const RIGID_PREFIX: &str = "rigid.";
 
 /// Quantities of a rigid body.
 const RIGID: [(&str, RigidQuantity, &str); 12] = [
-    ("x", RigidQuantity::X, "m"),
-    ("y", RigidQuantity::Y, "m"),
+    ("x", RigidQuantity::Displacement(0), "m"),
+    ("y", RigidQuantity::Displacement(1), "m"),
     ("settlement", RigidQuantity::Settlement, "m"),
-    ("rotation", RigidQuantity::Rotation, "rad"),
-    ("force_x", RigidQuantity::ForceX, "N/m"),
-    ("force_y", RigidQuantity::ForceY, "N/m"),
+    ("rotation", RigidQuantity::Rotation(0), "rad"),
+    ("force_x", RigidQuantity::Force(0), "N/m"),
+    ("force_y", RigidQuantity::Force(1), "N/m"),
     ("resistance", RigidQuantity::Resistance, "N/m"),
-    ("moment", RigidQuantity::Moment, "N m/m"),
+    ("moment", RigidQuantity::Moment(0), "N m/m"),
     ("contact_width", RigidQuantity::ContactWidth, "m"),
     ("penetration", RigidQuantity::Penetration, "-"),
     ("closed", RigidQuantity::Closed, "-"),

@@ -1,5 +1,7 @@
 //! Rigid bodies: their shapes, what their sides are like, and whether they have a place.
 
+use std::sync::Arc;
+
 use igimp_assembly::{SurfaceError, Tension};
 
 use super::AllNames;
@@ -8,8 +10,8 @@ use super::sequence::Sequence;
 use super::site::Site;
 use super::stages::Context;
 use crate::case::{
-    Adhesion, Load, LoadKind, Material, RigidDrive, RigidInterface, RigidMove, RigidPart,
-    RigidShape, RigidShear, StageKind, Strength,
+    Adhesion, COMPONENTS, Load, LoadKind, Material, RigidDrive, RigidInterface, RigidMove,
+    RigidPart, RigidShape, RigidShear, StageKind, Strength,
 };
 use crate::input::diagnostic::Problems;
 use crate::input::geometry::{distinct, overlap, self_crossing};
@@ -72,7 +74,7 @@ fn part(node: &Node, around: &Around<'_>, problems: &mut Problems) -> Option<Rig
     let part = RigidPart {
         name: name.to_owned(),
         reference: stated.unwrap_or_else(|| reference(node, &shape)),
-        shape,
+        shape: Arc::new(shape),
         interfaces: interfaces?,
         stiffness: node.number_at("stiffness")?,
         rounding: node.number_at("rounding")?,
@@ -364,7 +366,7 @@ fn in_grid(node: &Node, part: &RigidPart, frame: &Frame, problems: &mut Problems
 
 /// The smallest distance of two parallel lines that hold a body between them \[m\].
 fn thickness(part: &RigidPart) -> f64 {
-    let RigidShape::Polygon(corners) = &part.shape else {
+    let Some(RigidShape::Polygon(corners)) = part.shape.in_plane() else {
         let (lower, upper) = part.bounds();
         return upper[0] - lower[0];
     };
@@ -474,9 +476,9 @@ pub(super) fn stage(
     is_right.then_some(StageKind::Rigid(moves))
 }
 
-fn drives(own: &Node, problems: &mut Problems) -> Result<[Option<RigidDrive>; 3], Wrong> {
+fn drives(own: &Node, problems: &mut Problems) -> Result<[Option<RigidDrive>; COMPONENTS], Wrong> {
     let free: Vec<&str> = own.items_at("free").iter().filter_map(Node::text).collect();
-    let mut drives = [None; 3];
+    let mut drives = [None; COMPONENTS];
     let components = [("x", "force_x"), ("y", "force_y"), ("rotation", "moment")];
     for (drive, (by, force)) in drives.iter_mut().zip(components) {
         let (moved, loaded) = (own.optional_number(by)?, own.optional_number(force)?);

@@ -32,7 +32,7 @@ impl Site {
         let polygons: Vec<_> = bodies
             .iter()
             .flatten()
-            .map(|body| body.polygon.clone())
+            .map(|body| body.polygon().to_vec())
             .collect();
         let largest = polygons
             .iter()

@@ -115,10 +115,12 @@ fn stage(
 
 fn gravity(node: &Node) -> Option<StageKind> {
     let horizontal = node.optional_number("horizontal");
+    let across = node.optional_number("across");
     let vertical = node.optional_number("vertical");
     Some(StageKind::Gravity {
         factor: node.number_at("factor")?,
         horizontal: horizontal.ok()?,
+        across: across.ok()?,
         vertical: vertical.ok()?,
     })
 }

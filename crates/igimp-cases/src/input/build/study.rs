@@ -101,7 +101,7 @@ fn is_too_large(case: &Case, parts: usize) -> bool {
         .bodies
         .iter()
         .map(|body| {
-            let share = area_and_centroid(&body.polygon).0.abs() / domain;
+            let share = area_and_centroid(body.polygon()).0.abs() / domain;
             share * cells * (body.per_direction * body.per_direction) as f64
         })
         .sum();

@@ -30,7 +30,7 @@ pub struct Shown {
 
 impl Shown {
     /// The end of stage number `stage` of a case.
-    pub fn end_of_stage(case: &Case, stage: usize) -> Self {
+    pub fn end_of_stage<const D: usize>(case: &Case<D>, stage: usize) -> Self {
         let name = case.stages.get(stage).map_or("", |stage| &stage.name);
         Self {
             name: format!("{}-{}", stage + 1, file_name(name)),
@@ -148,9 +148,9 @@ pub(super) fn edges(canvas: &Canvas<'_>, particles: &Particles<2>) -> Vec<Outlin
 pub(super) fn body_outlines(case: &Case) -> impl Iterator<Item = Outline> {
     case.bodies.iter().map(|body| Outline {
         points: body
-            .polygon
+            .polygon()
             .iter()
-            .chain(body.polygon.first())
+            .chain(body.polygon().first())
             .copied()
             .collect(),
         style: OutlineStyle::Edge,
