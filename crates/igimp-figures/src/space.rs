@@ -29,6 +29,8 @@ const APART: f64 = 5.0;
 const TICK_LENGTH: f64 = 4.0;
 /// Axes shorter than that \[pt\] are seen from their end.
 const LEAST_AXIS: f64 = 30.0;
+/// Of rigid bodies so much is in sight beside the soil, as a share of its largest side.
+const BESIDE: f64 = 0.12;
 /// Length \[pt\] of the colour bar.
 const BAR: f64 = 260.0;
 
@@ -144,7 +146,19 @@ impl SpacePlot {
                 ends[1][k] = ends[1][k].max(corner[k]);
             }
         }
-        (ends[0][0] <= ends[1][0]).then_some(ends)
+        if ends[0][0] > ends[1][0] {
+            return None;
+        }
+        // Of rigid bodies what is close to the soil.
+        let [low, high] = ends;
+        let size = (0..3).map(|k| high[k] - low[k]).fold(0.0, f64::max);
+        for corner in self.bodies.iter().flatten() {
+            for k in (0..3).filter(|&k| axis::drawable(corner[k])) {
+                ends[0][k] = ends[0][k].min(corner[k].max(low[k] - BESIDE * size));
+                ends[1][k] = ends[1][k].max(corner[k].min(high[k] + BESIDE * size));
+            }
+        }
+        Some(ends)
     }
 }
 

@@ -5,7 +5,7 @@ use super::colour::Colour;
 use super::colour_bar::ColourScale;
 use super::drawing::PIXELS_PER_POINT;
 use super::space::{Face, Image};
-use super::view::Projection;
+use super::view::{Projection, dot};
 
 /// Samples by pixel in each direction.
 const FINE: usize = 2;
@@ -13,6 +13,10 @@ const FINE: usize = 2;
 const LEAST_SIDE: f64 = 12.0;
 /// How much darker these are.
 const LINE: f64 = 0.3;
+/// Light on the insides of the far walls.
+const BACK: f64 = 0.35;
+/// Share of white in every colour: dark ones would hide the shape.
+const LIFT: f64 = 0.07;
 /// Opacity of rigid bodies.
 const OPACITY: f64 = 0.62;
 /// Their grey.
@@ -98,7 +102,16 @@ impl<'a> Painter<'a> {
             Some(level) => self.scale.colour(level),
             None => Colour::NO_VALUE,
         };
-        let light = self.projection.light(&face.normal, face.open);
+        let side = |to: &[f64; 3]| [0, 1, 2].map(|k| to[k] - corner[k]);
+        let across = cross(&side(one), &side(two));
+        // The insides of the far walls are seen through cracks.
+        let is_back = dot(&across, &face.normal) * dot(&across, &self.projection.eye) < 0.0;
+        let light = if is_back {
+            BACK
+        } else {
+            self.projection.light(&face.normal, face.open)
+        };
+        let colour = colour.map(|c| f64::from(c) + LIFT * (255.0 - f64::from(c)));
         let [length_a, length_b] = placed.heights();
         let room = ((length_a.min(length_b) - LEAST_SIDE) / LEAST_SIDE).clamp(0.0, 1.0);
         // Half a sample larger than it is, so that neighbours leave no seam.
@@ -111,7 +124,7 @@ impl<'a> Painter<'a> {
             let line = (1.0 - (edge - 0.6) / 2.0).clamp(0.0, 1.0);
             let light = light * (1.0 - LINE * line * room);
             self.depth[place] = depth;
-            self.rgb[place] = colour.map(|c| (light * f64::from(c)).round().min(255.0) as u8);
+            self.rgb[place] = colour.map(|c| (light * c).round().min(255.0) as u8);
         });
     }
 
@@ -122,10 +135,9 @@ impl<'a> Painter<'a> {
         };
         let side = |to: &[f64; 3]| [0, 1, 2].map(|k| to[k] - a[k]);
         let (u, v) = (side(b), side(c));
-        let normal = [0, 1, 2].map(|k| u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3]);
-        let length = normal.iter().map(|n| n * n).sum::<f64>().sqrt();
-        let turned = self.projection.eye.iter().zip(normal).map(|(e, n)| e * n);
-        let sense = turned.sum::<f64>().signum() / length.max(f64::MIN_POSITIVE);
+        let normal = cross(&u, &v);
+        let length = dot(&normal, &normal).sqrt().max(f64::MIN_POSITIVE);
+        let sense = dot(&self.projection.eye, &normal).signum() / length;
         let light = self.projection.light(&normal.map(|n| sense * n), 0.5);
         let Colour(grey) = GREY;
         placed.fill(self.width, self.height, [0.0; 2], true, |place, _, _, depth| {
@@ -175,6 +187,10 @@ impl<'a> Painter<'a> {
             rgba,
         })
     }
+}
+
+fn cross(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
+    [0, 1, 2].map(|k| a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3])
 }
 
 impl Placed {

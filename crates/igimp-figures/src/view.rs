@@ -2,24 +2,21 @@
 
 use super::geometry::{Point, Rect};
 
-/// Where a body is looked at from.
+/// Where a body is looked at from; z is upright.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
     /// Angle \[°\] about the upright axis: from 0, along y, turned so that the eye goes from −y to +x.
     pub turn: f64,
     /// Height \[°\] of the eye above the level plane.
     pub raise: f64,
-    /// Number of the upright axis: 2, or 1 for bodies that stand as in the plane, with z out of it.
-    pub upright: usize,
 }
 
 impl Default for View {
-    /// The isometric view, z upright.
+    /// The isometric view.
     fn default() -> Self {
         Self {
             turn: 45.0,
             raise: 35.264,
-            upright: 2,
         }
     }
 }
@@ -39,13 +36,7 @@ impl View {
             raise.sin() * turn.cos(),
             raise.cos(),
         ];
-        [right, up, eye].map(|v| {
-            if self.upright == 1 {
-                [v[0], v[2], -v[1]]
-            } else {
-                v
-            }
-        })
+        [right, up, eye]
     }
 }
 
@@ -129,17 +120,13 @@ mod tests {
     #[test]
     fn directions_are_those_of_a_draughtsman() {
         let near = |a: [f64; 3], b: [f64; 3]| (0..3).all(|k| (a[k] - b[k]).abs() < 1e-12);
-        let of = |turn, raise, upright| View { turn, raise, upright }.directions();
-        let [right, up, eye] = of(0.0, 0.0, 2);
+        let of = |turn, raise| View { turn, raise }.directions();
+        let [right, up, eye] = of(0.0, 0.0);
         assert!(near(right, [1.0, 0.0, 0.0]) && near(up, [0.0, 0.0, 1.0]));
         assert!(near(eye, [0.0, -1.0, 0.0]));
         // From above the plane is seen as plane cases are drawn.
-        let [right, up, _] = of(0.0, 90.0, 2);
+        let [right, up, _] = of(0.0, 90.0);
         assert!(near(right, [1.0, 0.0, 0.0]) && near(up, [0.0, 1.0, 0.0]));
-        // And from the front where y is upright.
-        let [right, up, eye] = of(0.0, 0.0, 1);
-        assert!(near(right, [1.0, 0.0, 0.0]) && near(up, [0.0, 1.0, 0.0]));
-        assert!(near(eye, [0.0, 0.0, 1.0]));
         // In the isometric view the axes are of one length.
         let [right, up, _] = View::default().directions();
         let length = |k: usize| right[k].hypot(up[k]);

@@ -80,7 +80,7 @@ impl CellKind {
 
     /// The kind with VTK's number.
     fn of_code(code: u8) -> Option<Self> {
-        let all = [Self::Line, Self::Quad, Self::Hexahedron];
+        let all = [Self::Line, Self::Triangle, Self::Quad, Self::Hexahedron];
         all.into_iter().find(|kind| kind.code() == code)
     }
 

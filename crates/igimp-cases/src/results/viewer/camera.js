@@ -1,6 +1,6 @@
 // Where the body is looked at from: a parallel projection, so that lengths in a direction stay comparable.
 
-const ROOM = { plane: { left: 46, right: 8, top: 8, bottom: 26 }, space: { left: 34, right: 34, top: 26, bottom: 34 } };
+const ROOM = { plane: { left: 46, right: 8, top: 8, bottom: 26 }, space: { left: 64, right: 40, top: 26, bottom: 38 } };
 
 // Turned about the upright axis and raised above the level plane [°].
 const VIEWS = {
@@ -11,10 +11,8 @@ const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 
 class Camera {
-  // `up` is the number of the upright axis in space: 1 or 2.
-  constructor(dimension, up) {
+  constructor(dimension) {
     this.dimension = dimension;
-    this.up = up;
     this.reset();
   }
 
@@ -40,9 +38,7 @@ class Camera {
     const [t, r] = [(turn * Math.PI) / 180, (raise * Math.PI) / 180];
     const right = [Math.cos(t), Math.sin(t), 0];
     const eye = [Math.cos(r) * Math.sin(t), -Math.cos(r) * Math.cos(t), Math.sin(r)];
-    // Where y is upright, the body stands as a plane case does, and z comes out of it.
-    const own = (v) => (this.dimension === 3 && this.up === 1 ? [v[0], v[2], -v[1]] : v);
-    return { right: own(right), up: own(cross(eye, right)), eye: own(eye) };
+    return { right, up: cross(eye, right), eye };
   }
 
   // Size in CSS pixels, and the projection that brings what is in sight into it.

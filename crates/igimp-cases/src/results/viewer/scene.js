@@ -48,10 +48,9 @@ function cornersOf(low, high, face) {
 }
 
 class Scene {
-  constructor(canvas, below, up) {
+  constructor(canvas, below) {
     this.canvas = canvas;
     this.below = below;
-    this.up = up;
     this.dimension = 0;
     this.boxes = null;
     this.bodies = { lines: [], triangles: [] };
@@ -69,7 +68,7 @@ class Scene {
 
   // Takes up boxes by their corners, and rigid bodies.
   show(dimension, shapes, bodies) {
-    if (dimension !== this.dimension) this.camera = new Camera(dimension, this.up);
+    if (dimension !== this.dimension) this.camera = new Camera(dimension);
     this.dimension = dimension;
     const count = shapes.low ? shapes.low.length / 3 : 0;
     const none = new Uint8Array(0);
@@ -199,7 +198,9 @@ class Scene {
       const at = cut.offset * cut.normal[axis];
       for (let box = 0; box < count; box += 1) {
         const [low, high] = [this.corner("low", box), this.corner("high", box)];
-        if (!(low[axis] < at && at < high[axis])) continue;
+        const more = cut.normal[axis] > 0 ? [1e-4, 0.1] : [-0.1, -1e-4];
+        const size = high[axis] - low[axis];
+        if (at < low[axis] + more[0] * size || at > high[axis] + more[1] * size) continue;
         low[axis] = at;
         high[axis] = at;
         add(box, 2 * axis, 0.97, cornersOf(low, high, 2 * axis));

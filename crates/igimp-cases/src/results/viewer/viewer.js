@@ -16,10 +16,10 @@ function mixed(anchors) {
 
 class Viewer {
   // `wish` may name a frame (from 1), a field, a place to point at (in space a point of the canvas, as shares of
-  // its sides), a view, a cut and the upright axis; `changed` hears of every frame shown.
+  // its sides), a view and a cut; `changed` hears of every frame shown.
   constructor(wish, changed) {
     this.part = Object.fromEntries(["soil", "field", "map", "state", "state-label", "space", "view", "cut", "cut-row", "cut-at", "cut-told", "cut-side", "canvas", "surface", "bar", "ticks", "bar-label", "play", "slider", "when", "found", "keys", "clamp", "fixed"].map((id) => [id, document.getElementById(id)]));
-    this.scene = new Scene(this.part.canvas, this.part.surface, wish.up === 1 ? 1 : 2);
+    this.scene = new Scene(this.part.canvas, this.part.surface);
     this.wish = wish;
     this.changed = changed;
     this.frames = [];
