@@ -22,8 +22,9 @@ pub use super::view::View;
 /// Width \[pt\] of the picture, and the greatest height of the body in it.
 const WIDTH: f64 = 640.0;
 const MOST_HEIGHT: f64 = 430.0;
-/// Room \[pt\] for the axes around the body.
+/// Room \[pt\] for the axes around the body, and to its left.
 const AROUND: f64 = 42.0;
+const LEFT: f64 = 62.0;
 /// Between the body and its axes \[pt\].
 const APART: f64 = 5.0;
 const TICK_LENGTH: f64 = 4.0;
@@ -111,9 +112,9 @@ impl SpacePlot {
         let projection = Projection::new(
             self.view,
             extent,
-            [room - 2.0 * AROUND, MOST_HEIGHT],
+            [room - LEFT - AROUND, MOST_HEIGHT],
             // Whole points, so that the image meets the pixels of the picture.
-            [MARGIN + AROUND, (top + 0.5 * AROUND).ceil()],
+            [MARGIN + LEFT, (top + 0.5 * AROUND).ceil()],
         );
         let area = projection.area;
         let painter = Painter::new(&projection, &scale);
@@ -190,12 +191,15 @@ fn draw_axes(drawing: &mut Drawing, projection: &Projection) {
             across[1].signum()
         };
         let out = across.map(|x| sense * x);
-        let far = |[start, end]: &[Point; 2]| {
-            (0..2).map(|k| out[k] * (start[k] + end[k])).sum::<f64>()
-        };
+        let far =
+            |[start, end]: &[Point; 2]| (0..2).map(|k| out[k] * (start[k] + end[k])).sum::<f64>();
         let edges = [edge(0), edge(1), edge(2), edge(3)];
         let nearest = edges.into_iter().reduce(|best, own| {
-            if far(&own) > far(&best) + 1e-6 { own } else { best }
+            if far(&own) > far(&best) + 1e-6 {
+                own
+            } else {
+                best
+            }
         });
         let Some([start, _]) = nearest else { continue };
         let place = |value: f64| -> Point {
@@ -221,7 +225,9 @@ fn draw_axes(drawing: &mut Drawing, projection: &Projection) {
             widest = widest.max(font::width(text, TICK));
         }
         drawing.stroke(lines, Stroke::solid(Colour::INK, 0.8));
-        let factor = ticks.factor.map_or_else(String::new, |own| format!("{own} "));
+        let factor = ticks
+            .factor
+            .map_or_else(String::new, |own| format!("{own} "));
         let name = format!("{} [{factor}m]", ["x", "y", "z"][axis]);
         // Between two ticks, beyond their labels.
         let major = &ticks.major;
@@ -230,7 +236,11 @@ fn draw_axes(drawing: &mut Drawing, projection: &Projection) {
             (Some(one), Some(two)) => 0.5 * (one.0 + two.0),
             _ => 0.5 * (low[axis] + high[axis]),
         };
-        let away = if is_upright { widest + 10.0 } else { 0.3 * widest + 16.0 };
+        let away = if is_upright {
+            widest + 10.0
+        } else {
+            0.3 * widest + 16.0
+        };
         let [x, y] = moved(place(middle), TICK_LENGTH + away);
         let at = [x, y + 0.5 * CAP_HEIGHT * LABEL];
         let anchor = if is_upright { Anchor::End } else { anchor };

@@ -116,16 +116,22 @@ impl<'a> Painter<'a> {
         let room = ((length_a.min(length_b) - LEAST_SIDE) / LEAST_SIDE).clamp(0.0, 1.0);
         // Half a sample larger than it is, so that neighbours leave no seam.
         let (da, db) = (0.5 / length_a.max(1e-9), 0.5 / length_b.max(1e-9));
-        placed.fill(self.width, self.height, [da, db], false, |place, a, b, depth| {
-            if depth <= self.depth[place] {
-                return;
-            }
-            let edge = (a.min(1.0 - a) * length_a).min(b.min(1.0 - b) * length_b);
-            let line = (1.0 - (edge - 0.6) / 2.0).clamp(0.0, 1.0);
-            let light = light * (1.0 - LINE * line * room);
-            self.depth[place] = depth;
-            self.rgb[place] = colour.map(|c| (light * c).round().min(255.0) as u8);
-        });
+        placed.fill(
+            self.width,
+            self.height,
+            [da, db],
+            false,
+            |place, a, b, depth| {
+                if depth <= self.depth[place] {
+                    return;
+                }
+                let edge = (a.min(1.0 - a) * length_a).min(b.min(1.0 - b) * length_b);
+                let line = (1.0 - (edge - 0.6) / 2.0).clamp(0.0, 1.0);
+                let light = light * (1.0 - LINE * line * room);
+                self.depth[place] = depth;
+                self.rgb[place] = colour.map(|c| (light * c).round().min(255.0) as u8);
+            },
+        );
     }
 
     fn body(&mut self, corners: &[[f64; 3]; 3]) {
@@ -140,19 +146,26 @@ impl<'a> Painter<'a> {
         let sense = dot(&self.projection.eye, &normal).signum() / length;
         let light = self.projection.light(&normal.map(|n| sense * n), 0.5);
         let Colour(grey) = GREY;
-        placed.fill(self.width, self.height, [0.0; 2], true, |place, _, _, depth| {
-            if depth <= self.depth[place] {
-                return;
-            }
-            // Over the white ground a body is as dense as over the soil.
-            if self.depth[place] == f32::NEG_INFINITY {
-                self.depth[place] = f32::MIN;
-            }
-            for (own, grey) in self.rgb[place].iter_mut().zip(grey) {
-                let mixed = OPACITY * light * f64::from(grey) + (1.0 - OPACITY) * f64::from(*own);
-                *own = mixed.round().min(255.0) as u8;
-            }
-        });
+        placed.fill(
+            self.width,
+            self.height,
+            [0.0; 2],
+            true,
+            |place, _, _, depth| {
+                if depth <= self.depth[place] {
+                    return;
+                }
+                // Over the white ground a body is as dense as over the soil.
+                if self.depth[place] == f32::NEG_INFINITY {
+                    self.depth[place] = f32::MIN;
+                }
+                for (own, grey) in self.rgb[place].iter_mut().zip(grey) {
+                    let mixed =
+                        OPACITY * light * f64::from(grey) + (1.0 - OPACITY) * f64::from(*own);
+                    *own = mixed.round().min(255.0) as u8;
+                }
+            },
+        );
     }
 
     /// The mean of the samples of every pixel.
@@ -239,5 +252,65 @@ impl Placed {
                 }
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::colour::ColourMap;
+    use super::super::view::View;
+    use super::*;
+
+    fn level(z: f64, value: f64) -> Face {
+        Face {
+            corners: [[0.0, 0.0, z], [1.0, 0.0, z], [1.0, 1.0, z], [0.0, 1.0, z]],
+            normal: [0.0, 0.0, 1.0],
+            open: 0.5,
+            value,
+        }
+    }
+
+    fn image(faces: &[Face], bodies: &[[[f64; 3]; 3]]) -> Image {
+        let view = View { turn: 0.0, raise: 90.0 };
+        let extent = [[0.0; 3], [1.0; 3]];
+        let projection = Projection::new(view, extent, [20.0, 20.0], [0.0, 0.0]);
+        let scale = ColourScale::new(ColourMap::Sequential, Some((0.0, 1.0)), &[]);
+        Painter::new(&projection, &scale).paint(faces, bodies).unwrap()
+    }
+
+    fn middle(image: &Image) -> [u8; 4] {
+        let place = (image.height / 2 * image.width + image.width / 2) as usize;
+        *image.rgba[4 * place..].first_chunk().unwrap()
+    }
+
+    /// GOAL: what is nearer hides what is farther, in whatever order they come.
+    #[test]
+    fn the_nearer_face_is_seen() {
+        let (below, above) = (level(0.0, 0.0), level(1.0, 1.0));
+        let only = middle(&image(&[above], &[]));
+        assert!(only[0] > 200 && only[2] < 90 && only[3] == 255, "{only:?}");
+        assert_eq!(middle(&image(&[below, above], &[])), only);
+        assert_eq!(middle(&image(&[above, below], &[])), only);
+        assert_eq!(middle(&image(&[], &[]))[3], 0);
+    }
+
+    #[test]
+    fn hollows_and_insides_are_darker() {
+        let red = |face: Face| middle(&image(&[face], &[]))[0];
+        let hollow = Face { open: 0.1, ..level(0.0, 1.0) };
+        let inside = Face { normal: [0.0, 0.0, -1.0], ..level(0.0, 1.0) };
+        assert!(red(inside) < red(hollow) && red(hollow) < red(level(0.0, 1.0)));
+        let none = middle(&image(&[level(0.0, f64::NAN)], &[]));
+        assert!(none[0] == none[1] && none[1] == none[2], "{none:?}");
+    }
+
+    #[test]
+    fn rigid_bodies_let_the_soil_shine_through() {
+        let roof = |z: f64| [[-1.0, -1.0, z], [3.0, -1.0, z], [-1.0, 3.0, z]];
+        let soil = level(0.5, 1.0);
+        let bare = middle(&image(&[soil], &[]));
+        let covered = middle(&image(&[soil], &[roof(1.0)]));
+        assert!(covered[0] < bare[0] && covered[2] > bare[2], "{covered:?}");
+        assert_eq!(middle(&image(&[soil], &[roof(0.0)])), bare);
     }
 }

@@ -61,12 +61,7 @@ pub(super) struct Projection {
 
 impl Projection {
     /// The largest image within `room`, below and right of `corner`, in its middle from left to right.
-    pub(super) fn new(
-        view: View,
-        extent: [[f64; 3]; 2],
-        room: [f64; 2],
-        corner: Point,
-    ) -> Self {
+    pub(super) fn new(view: View, extent: [[f64; 3]; 2], room: [f64; 2], corner: Point) -> Self {
         let [right, up, eye] = view.directions();
         let [low, high] = extent;
         let across = |v: &[f64; 3]| -> f64 {

@@ -101,17 +101,23 @@ fn faces(boxes: Boxes<'_>, bins: &Bins<'_>, k: usize) -> u8 {
     let mut faces = 0;
     for face in 0..6 {
         let (axis, side) = (face / 2, [-1.0, 1.0][face % 2]);
-        let is_hidden = [[0.0, 0.0], [-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0], [1.0, 1.0]]
-            .iter()
-            .all(|aside| {
-                let mut point = centre;
-                point[axis] += side * (1.0 + BEYOND) * half[axis];
-                for (j, share) in aside.iter().enumerate() {
-                    let along = (axis + 1 + j) % 3;
-                    point[along] += ASIDE * share * half[along];
-                }
-                bins.is_covered(&point, k)
-            });
+        let is_hidden = [
+            [0.0, 0.0],
+            [-1.0, -1.0],
+            [1.0, -1.0],
+            [-1.0, 1.0],
+            [1.0, 1.0],
+        ]
+        .iter()
+        .all(|aside| {
+            let mut point = centre;
+            point[axis] += side * (1.0 + BEYOND) * half[axis];
+            for (j, share) in aside.iter().enumerate() {
+                let along = (axis + 1 + j) % 3;
+                point[along] += ASIDE * share * half[along];
+            }
+            bins.is_covered(&point, k)
+        });
         if !is_hidden {
             faces |= 1 << face;
         }

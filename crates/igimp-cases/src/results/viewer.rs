@@ -123,7 +123,9 @@ pub(super) fn held(folder: &Path) -> Option<Held> {
     let mut frames = Vec::new();
     if size <= MOST_OF_LAST {
         // The first, and others at equal distances.
-        let probe = (last > 0 && size < MOST).then(|| of(0, Keep::LITTLE)).flatten();
+        let probe = (last > 0 && size < MOST)
+            .then(|| of(0, Keep::LITTLE))
+            .flatten();
         let room = probe.as_ref().map_or(0, |first| {
             let most = first.data.len().max(end.data.len() / 2).max(1);
             (MOST - size) / most

@@ -505,7 +505,9 @@ impl<const D: usize> Output<D> {
             .collect::<Result<Vec<_>, _>>()?;
         let reduced: Vec<&[SharedLaw]> = reduced.iter().map(|laws| &laws[..]).collect();
         if let Some(state) = in_plane::<_, State<3>>(state) {
-            let compared = compared.iter().filter_map(|own| in_plane::<_, State<3>>(*own));
+            let compared = compared
+                .iter()
+                .filter_map(|own| in_plane::<_, State<3>>(*own));
             let compared: Vec<Seen<'_, 3>> = std::iter::zip(compared, &reduced)
                 .map(|(state, laws)| (&state.body.particles, *laws))
                 .collect();

@@ -311,7 +311,8 @@ impl Region<3> for Layer {
         let stretch = self.bottom.at(at).zip(self.top.at(at));
         let stretch = stretch.filter(|(bottom, top)| bottom < top);
         let ends = stretch.into_iter();
-        ends.flat_map(|(bottom, top)| Crossing::ends([bottom, top])).collect()
+        ends.flat_map(|(bottom, top)| Crossing::ends([bottom, top]))
+            .collect()
     }
 
     fn corners(&self) -> Vec<[f64; 3]> {

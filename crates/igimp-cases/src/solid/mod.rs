@@ -106,7 +106,8 @@ impl Region<3> for Solid {
     fn crossings(&self, place: &[f64; 3]) -> Vec<Crossing> {
         match self {
             Self::Cuboid(lower, upper) => {
-                let is_met = (0..2).all(|axis| lower[axis] <= place[axis] && place[axis] < upper[axis]);
+                let is_met =
+                    (0..2).all(|axis| lower[axis] <= place[axis] && place[axis] < upper[axis]);
                 let stretch = is_met.then_some([lower[2], upper[2]]);
                 stretch.into_iter().flat_map(Crossing::ends).collect()
             }

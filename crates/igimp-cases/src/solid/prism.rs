@@ -143,7 +143,10 @@ impl Region<3> for Prism {
     fn crossings(&self, place: &[f64; 3]) -> Vec<Crossing> {
         let [from, to] = self.between;
         if self.axis == 2 {
-            let stretch = self.polygon.encloses([place[0], place[1]]).then_some([from, to]);
+            let stretch = self
+                .polygon
+                .encloses([place[0], place[1]])
+                .then_some([from, to]);
             return stretch.into_iter().flat_map(Crossing::ends).collect();
         }
         if !(from..to).contains(&place[self.axis]) {
@@ -154,8 +157,12 @@ impl Region<3> for Prism {
 
     fn corners(&self) -> Vec<[f64; 3]> {
         let ends = self.between.into_iter();
-        ends.flat_map(|along| self.polygon.iter().map(move |&at| placed(at, self.axis, along)))
-            .collect()
+        ends.flat_map(|along| {
+            self.polygon
+                .iter()
+                .map(move |&at| placed(at, self.axis, along))
+        })
+        .collect()
     }
 
     fn words(&self) -> String {

@@ -15,7 +15,6 @@ fn chord(level: f64, radius: f64, distance: f64) -> Option<[f64; 2]> {
     (square > 0.0).then(|| [level - square.sqrt(), level + square.sqrt()])
 }
 
-
 /// A circular cylinder along an axis. What lies of it within a box is exact but for round-off.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cylinder {
@@ -311,6 +310,9 @@ impl Region<3> for Sphere {
 
     fn words(&self) -> String {
         let [x, y, z] = self.centre.map(short);
-        format!("sphere of radius {} about ({x}, {y}, {z})", short(self.radius))
+        format!(
+            "sphere of radius {} about ({x}, {y}, {z})",
+            short(self.radius)
+        )
     }
 }

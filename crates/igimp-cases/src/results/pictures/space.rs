@@ -79,15 +79,20 @@ impl<'a> InSpace<'a> {
         }
     }
 
-    /// Upright planes through the middle of the body, across either level axis.
+    /// Upright planes across either level axis, through that particle which was nearest to the middle of the
+    /// body before it moved: so they run through domains and not between them.
     pub fn middle(&self) -> Vec<Plane> {
+        let particles = self.state.0;
         let plane = |axis: usize| {
-            let finite = |x: &f64| x.is_finite();
-            let low = self.low.iter().map(|x| x[axis]).filter(finite);
-            let high = self.high.iter().map(|x| x[axis]).filter(finite);
-            let ends = [low.fold(f64::MAX, f64::min), high.fold(f64::MIN, f64::max)];
-            let at = 0.5 * (ends[0] + ends[1]);
-            at.is_finite().then_some(Plane { axis, at })
+            let moved = std::iter::zip(&particles.x, &particles.displacement);
+            let places: Vec<f64> = moved.map(|(x, u)| x[axis] - u[axis]).collect();
+            let finite = places.iter().copied().filter(|x| x.is_finite());
+            let ends = finite.fold([f64::MAX, f64::MIN], |[a, b], x| [a.min(x), b.max(x)]);
+            let middle = 0.5 * (ends[0] + ends[1]);
+            let from = |x: &f64| (x - middle).abs();
+            let finite = places.iter().copied().filter(|x| x.is_finite());
+            let at = finite.min_by(|a, b| from(a).total_cmp(&from(b)))?;
+            Some(Plane { axis, at })
         };
         [1, 0].into_iter().filter_map(plane).collect()
     }

@@ -83,7 +83,8 @@ impl<'a> Bins<'a> {
     /// Calls for every bin that a box touches.
     fn touched(&self, k: usize, mut call: impl FnMut(usize)) {
         let (low, high) = (&self.boxes.low[k], &self.boxes.high[k]);
-        let ends = [0, 1, 2].map(|axis| [self.place(axis, low[axis]), self.place(axis, high[axis])]);
+        let ends =
+            [0, 1, 2].map(|axis| [self.place(axis, low[axis]), self.place(axis, high[axis])]);
         for z in ends[2][0]..=ends[2][1] {
             for y in ends[1][0]..=ends[1][1] {
                 for x in ends[0][0]..=ends[0][1] {

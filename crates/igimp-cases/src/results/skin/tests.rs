@@ -117,7 +117,10 @@ fn the_surface_points_outwards_and_knows_hollows() {
     let (low, _) = block([9, 9, 9], |[x, _, z]| x > 4 && z > 4);
     let at = |place: [f64; 3]| found.lie[low.iter().position(|&x| x == place).unwrap()];
     let level = at([2.0, 4.0, 8.0]);
-    assert!(level.normal[2] > 0.85 && (0.3..0.6).contains(&level.open), "{level:?}");
+    assert!(
+        level.normal[2] > 0.85 && (0.3..0.6).contains(&level.open),
+        "{level:?}"
+    );
     // The foot of the upper part is a hollow, its edge is none.
     assert!(at([5.0, 4.0, 4.0]).open < level.open);
     assert!(at([4.0, 4.0, 8.0]).open > level.open);

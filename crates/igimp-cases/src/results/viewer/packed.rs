@@ -19,6 +19,8 @@ use crate::results::vtu::read::{Frame, Stored};
 
 /// Numbers of planes across each axis that are tried, most first.
 const PLANES: [usize; 4] = [9, 5, 3, 1];
+/// Boxes so close to a plane, in their widths, are taken for crossed: it may run along a crack.
+const CRACK: f64 = 0.1;
 /// What rounded numbers have no room for.
 const LEFT_OUT: [&str; 4] = ["deformation gradient", "mass", "volume", "regime"];
 /// Steps of a rounded number; one more stands for what is no number.
@@ -195,7 +197,9 @@ fn thinned(boxes: Boxes<'_>, skin: &Skin, most: usize) -> (Vec<u32>, Option<[Vec
     let chosen = |planes: &[Vec<f64>; 3]| -> Vec<u32> {
         let is_crossed = |k: usize| {
             (0..3).any(|axis| {
-                let own = boxes.low[k][axis]..=boxes.high[k][axis];
+                let (low, high) = (boxes.low[k][axis], boxes.high[k][axis]);
+                let more = CRACK * (high - low);
+                let own = low - more..=high + more;
                 planes[axis].iter().any(|plane| own.contains(plane))
             })
         };
@@ -247,7 +251,16 @@ fn of_field(field: &Stored<'_>, cells: usize, kept: &[u32], keep: Keep) -> Optio
     let components = field.components;
     let numbers = field.numbers(components * cells)?;
     let mut range: Vec<[f64; 4]> = (0..components)
-        .map(|k| range_of(numbers.iter().skip(k).step_by(components).copied().collect()))
+        .map(|k| {
+            range_of(
+                numbers
+                    .iter()
+                    .skip(k)
+                    .step_by(components)
+                    .copied()
+                    .collect(),
+            )
+        })
         .collect();
     if components == 3 {
         let length = |x: &[f64; 3]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
@@ -307,7 +320,11 @@ fn rounded(name: &str, numbers: &[f64], ends: &[[f64; 2]]) -> Array {
             let place = (x - ends[k][0]) / steps[k];
             // Without a range every number stands at its low end.
             let place = if steps[k] > 0.0 { place } else { 0.0 * x };
-            let stands = if place.is_finite() { place.round() as u16 } else { u16::MAX };
+            let stands = if place.is_finite() {
+                place.round() as u16
+            } else {
+                u16::MAX
+            };
             stands.to_le_bytes()
         })
         .collect();

@@ -61,7 +61,10 @@ impl<'a> Frame<'a> {
     pub(in crate::results) fn kind(&self) -> Option<CellKind> {
         let types = self.part("Cells", "types")?.bytes(self.cells)?;
         let kind = CellKind::of_code(*types.first()?)?;
-        types.iter().all(|&code| code == kind.code()).then_some(kind)
+        types
+            .iter()
+            .all(|&code| code == kind.code())
+            .then_some(kind)
     }
 
     /// The corners of every cell, in VTK's order.
@@ -198,7 +201,10 @@ mod tests {
             connectivity: (0..points.len()).rev().collect(),
             kind: CellKind::Quad,
             cell_data: vec![
-                DataArray::scalars("a <b> \"c\" & d", (0..cells).map(|k| k as f64 / 3.0).collect()),
+                DataArray::scalars(
+                    "a <b> \"c\" & d",
+                    (0..cells).map(|k| k as f64 / 3.0).collect(),
+                ),
                 DataArray::integers("law", (0..cells).map(|k| k as i32 - 2).collect()),
             ],
             point_data: Vec::new(),
@@ -220,7 +226,10 @@ mod tests {
                 (0..cells).map(|k| k as f64 / 3.0).collect::<Vec<_>>()
             );
             assert!(arrays[1].is_whole() && !arrays[0].is_whole());
-            assert_eq!(arrays[1].numbers(cells).unwrap().first(), (cells > 0).then_some(&-2.0));
+            assert_eq!(
+                arrays[1].numbers(cells).unwrap().first(),
+                (cells > 0).then_some(&-2.0)
+            );
             assert_eq!(frame.kind(), (cells > 0).then_some(CellKind::Quad));
             let corners = frame.corners(4).unwrap();
             assert_eq!(corners.first(), written.points.last());
@@ -236,7 +245,10 @@ mod tests {
             let frame = Frame::of(&text[..cut]);
             let _ = frame.map(|frame| (frame.corners(4), frame.kind()));
         }
-        assert!(!frame(&text.replace("NumberOfCells=\"9\"", "NumberOfCells=\"99999999999\"")));
+        assert!(!frame(&text.replace(
+            "NumberOfCells=\"9\"",
+            "NumberOfCells=\"99999999999\""
+        )));
         assert!(!frame(&text.replace("AQAAAAAAAAA", "/////////38")));
         assert!(!frame(""));
     }

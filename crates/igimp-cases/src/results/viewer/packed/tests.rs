@@ -10,7 +10,8 @@ fn cube(n: usize) -> UnstructuredGrid {
     let corner = |place: &[usize; 3]| {
         let place = *place;
         let corners = kind.corners().iter();
-        corners.map(move |upper| padded(&[0, 1, 2].map(|k| (place[k] + usize::from(upper[k])) as f64)))
+        corners
+            .map(move |upper| padded(&[0, 1, 2].map(|k| (place[k] + usize::from(upper[k])) as f64)))
     };
     let points: Vec<[f64; 3]> = places.iter().flat_map(corner).collect();
     let heights: Vec<f64> = places.iter().map(|place| place[2] as f64).collect();
@@ -20,7 +21,13 @@ fn cube(n: usize) -> UnstructuredGrid {
         kind,
         point_data: Vec::new(),
         cell_data: vec![
-            DataArray::vectors("u <x> [m]", &places.iter().map(|p| p.map(|i| i as f64)).collect::<Vec<_>>()),
+            DataArray::vectors(
+                "u <x> [m]",
+                &places
+                    .iter()
+                    .map(|p| p.map(|i| i as f64))
+                    .collect::<Vec<_>>(),
+            ),
             DataArray::scalars("p [Pa]", heights),
             DataArray::integers("particle", (0..places.len() as i32).collect()),
         ],
@@ -37,15 +44,22 @@ fn unpacked(array: &serde_json::Value, width: usize) -> Vec<u8> {
     use std::io::Read as _;
     let data = BASE64.decode(array["data"].as_str().unwrap()).unwrap();
     let mut sorted = Vec::new();
-    flate2::read::ZlibDecoder::new(&data[..]).read_to_end(&mut sorted).unwrap();
+    flate2::read::ZlibDecoder::new(&data[..])
+        .read_to_end(&mut sorted)
+        .unwrap();
     let count = sorted.len() / width;
-    (0..sorted.len()).map(|k| sorted[k % width * count + k / width]).collect()
+    (0..sorted.len())
+        .map(|k| sorted[k % width * count + k / width])
+        .collect()
 }
 
 #[test]
 fn a_small_body_is_whole() {
     let page = json(&cube(4), Keep::MUCH);
-    assert_eq!((&page["dimension"], &page["count"]), (&3.into(), &64.into()));
+    assert_eq!(
+        (&page["dimension"], &page["count"]),
+        (&3.into(), &64.into())
+    );
     assert!(page["planes"].is_null());
     assert_eq!(page["fields"][0]["name"], "u <x> [m]");
     let numbers = unpacked(&page["fields"][1], 4);
@@ -60,7 +74,10 @@ fn a_small_body_is_whole() {
 
 #[test]
 fn a_large_body_has_its_skin_and_some_planes() {
-    let keep = Keep { rounded: true, boxes: 5200 };
+    let keep = Keep {
+        rounded: true,
+        boxes: 5200,
+    };
     let page = json(&cube(20), keep);
     assert_eq!(page["particles"], 8000);
     let count = page["count"].as_u64().unwrap();
@@ -68,7 +85,10 @@ fn a_large_body_has_its_skin_and_some_planes() {
     assert!((2168..5200).contains(&count), "{count}");
     assert_eq!(page["planes"][0].as_array().unwrap().len(), 1);
     let range = &page["fields"][1]["range"][0];
-    assert_eq!((range[0].as_f64(), range[1].as_f64()), (Some(0.0), Some(19.0)));
+    assert_eq!(
+        (range[0].as_f64(), range[1].as_f64()),
+        (Some(0.0), Some(19.0))
+    );
 }
 
 #[test]
@@ -104,6 +124,11 @@ fn what_cannot_be_read_is_nothing() {
     let text = cube(2).to_xml();
     assert!(packed("", Keep::MUCH).is_none());
     assert!(packed(&text.replace("AQ", "@@"), Keep::MUCH).is_none());
-    let none = UnstructuredGrid { points: Vec::new(), connectivity: Vec::new(), cell_data: Vec::new(), ..cube(1) };
+    let none = UnstructuredGrid {
+        points: Vec::new(),
+        connectivity: Vec::new(),
+        cell_data: Vec::new(),
+        ..cube(1)
+    };
     assert_eq!(json(&none, Keep::MUCH)["count"], 0);
 }
