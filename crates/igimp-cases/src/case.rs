@@ -97,6 +97,68 @@ impl<const D: usize> Case<D> {
     }
 }
 
+/// A case in the dimension that its file states.
+#[derive(Clone, Debug)]
+pub enum AnyCase {
+    /// In plane strain.
+    Plane(Case<2>),
+    /// In space.
+    Space(Case<3>),
+}
+
+/// Does the same with a case of any dimension: `in_any_dimension!(any, case => what(case))`.
+#[macro_export]
+macro_rules! in_any_dimension {
+    ($any:expr, $case:ident => $what:expr) => {
+        match $any {
+            $crate::case::AnyCase::Plane($case) => $what,
+            $crate::case::AnyCase::Space($case) => $what,
+        }
+    };
+}
+
+impl AnyCase {
+    /// Title.
+    pub fn title(&self) -> &str {
+        in_any_dimension!(self, case => &case.title)
+    }
+
+    /// What happens, in order.
+    pub fn stages(&self) -> &[Stage] {
+        in_any_dimension!(self, case => &case.stages)
+    }
+
+    /// Materials.
+    pub fn materials(&self) -> &[Material] {
+        in_any_dimension!(self, case => &case.materials)
+    }
+
+    /// Curves.
+    pub fn curves(&self) -> &[Curve] {
+        in_any_dimension!(self, case => &case.curves)
+    }
+
+    /// Checks.
+    pub fn checks(&self) -> &[CaseCheck] {
+        in_any_dimension!(self, case => &case.checks)
+    }
+
+    /// On how many meshes it is computed.
+    pub fn mesh_study(&self) -> MeshStudy {
+        in_any_dimension!(self, case => case.mesh_study)
+    }
+
+    /// What is written, and where.
+    pub fn output(&self) -> &Output {
+        in_any_dimension!(self, case => &case.output)
+    }
+
+    /// What is written, and where, to be changed.
+    pub fn output_mut(&mut self) -> &mut Output {
+        in_any_dimension!(self, case => &mut case.output)
+    }
+}
+
 /// What stands in the head of a report beside its title. Nothing that is computed depends on it.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct TitleBlock {
@@ -248,6 +310,15 @@ pub struct Boundaries<const D: usize = 2> {
     pub sides: [[Side; 2]; D],
     /// Boxes of nodes.
     pub boxes: Vec<FixedBox<D>>,
+}
+
+impl<const D: usize> Default for Boundaries<D> {
+    fn default() -> Self {
+        Self {
+            sides: [[Side::Free; 2]; D],
+            boxes: Vec::new(),
+        }
+    }
 }
 
 /// Nodes in a box (edges included) that are held.

@@ -34,11 +34,12 @@ mod study;
 mod water;
 
 use std::path::PathBuf;
+use std::sync::atomic::AtomicBool;
 
 use igimp_solver::linear::LinearSolverError;
 use igimp_solver::{Accepted, Body, StepError, StepFailure, StepReport};
 
-use crate::case::Case;
+use crate::case::{AnyCase, Case};
 use crate::error::CaseError;
 use crate::estimate::Expectation;
 use crate::input::CaseFile;
@@ -126,7 +127,7 @@ pub enum Event<'a, const D: usize = 2> {
     },
 }
 
-/// Listens to a run: a progress bar, a log. Closures are listeners.
+/// Listens to a run: a progress bar, a log. Closures are listeners to runs of one dimension.
 pub trait Listener<const D: usize = 2>: Send {
     /// Called as it happens.
     fn on_event(&mut self, event: &Event<'_, D>);
@@ -136,6 +137,50 @@ impl<F: FnMut(&Event<'_, D>) + Send, const D: usize> Listener<D> for F {
     fn on_event(&mut self, event: &Event<'_, D>) {
         self(event);
     }
+}
+
+/// A listener to runs of any dimension.
+pub trait AnyListener: Listener<2> + Listener<3> {}
+
+impl<L: Listener<2> + Listener<3>> AnyListener for L {}
+
+/// A listener that does not care.
+#[derive(Clone, Copy, Debug)]
+pub struct Nobody;
+
+impl<const D: usize> Listener<D> for Nobody {
+    fn on_event(&mut self, _: &Event<'_, D>) {}
+}
+
+/// Runs a case of any dimension, as [`run`](fn@run) does; what is left of the run without its body.
+///
+/// # Errors
+/// As [`run`](fn@run).
+pub fn run_any(
+    case: &AnyCase,
+    target: Option<&Target>,
+    start: Start,
+    listener: &mut dyn AnyListener,
+    interrupt: &AtomicBool,
+) -> Result<Account, CaseError> {
+    Ok(match case {
+        AnyCase::Plane(case) => run(case, target, start, listener, interrupt)?.into(),
+        AnyCase::Space(case) => run(case, target, start, listener, interrupt)?.into(),
+    })
+}
+
+/// The same in a results folder that was entered.
+pub(crate) fn run_any_entered(
+    case: &AnyCase,
+    target: Option<&Target>,
+    start: Start,
+    listener: &mut dyn AnyListener,
+    interrupt: &AtomicBool,
+) -> Result<Account, CaseError> {
+    Ok(match case {
+        AnyCase::Plane(case) => run_entered(case, target, start, listener, interrupt)?.into(),
+        AnyCase::Space(case) => run_entered(case, target, start, listener, interrupt)?.into(),
+    })
 }
 
 impl Failure {
@@ -231,6 +276,27 @@ pub struct Run<const D: usize = 2> {
     pub failure: Option<Failure>,
     /// Why meshes of a study could not be run, or their results not be written; the others are there.
     pub lost: Vec<CaseError>,
+}
+
+/// What a run says of itself, in any dimension.
+#[derive(Debug)]
+pub struct Account {
+    /// What `summary.json` says.
+    pub summary: Summary,
+    /// The step that ended the run for want of equilibrium, if one did.
+    pub failure: Option<Failure>,
+    /// Why meshes of a study could not be run, or their results not be written; the others are there.
+    pub lost: Vec<CaseError>,
+}
+
+impl<const D: usize> From<Run<D>> for Account {
+    fn from(run: Run<D>) -> Self {
+        Self {
+            summary: run.summary,
+            failure: run.failure,
+            lost: run.lost,
+        }
+    }
 }
 
 /// A step that found no equilibrium where the case wanted one.
