@@ -248,7 +248,7 @@ fn a_slope_in_space_is_shown() {
         let page = looked_at(
             browser,
             &folder,
-            &format!("{field}&cut=1,0.52&hover=0.45,0.6"),
+            &format!("{field}&cut=1,0.52&hover=0.5,0.55"),
             how,
         );
         let particle: usize = attribute(&page, "found", "data-particle").parse().unwrap();

@@ -44,7 +44,10 @@ pub(super) fn png(drawing: &Drawing) -> Result<Vec<u8>, FigureError> {
             Item::Image(image) => draw_image(&mut pixmap, image),
         }
     }
-    let is_flat = !drawing.items.iter().any(|item| matches!(item, Item::Image(_)));
+    let is_flat = !drawing
+        .items
+        .iter()
+        .any(|item| matches!(item, Item::Image(_)));
     encode(&pixmap, is_flat)
 }
 

@@ -271,11 +271,16 @@ mod tests {
     }
 
     fn image(faces: &[Face], bodies: &[[[f64; 3]; 3]]) -> Image {
-        let view = View { turn: 0.0, raise: 90.0 };
+        let view = View {
+            turn: 0.0,
+            raise: 90.0,
+        };
         let extent = [[0.0; 3], [1.0; 3]];
         let projection = Projection::new(view, extent, [20.0, 20.0], [0.0, 0.0]);
         let scale = ColourScale::new(ColourMap::Sequential, Some((0.0, 1.0)), &[]);
-        Painter::new(&projection, &scale).paint(faces, bodies).unwrap()
+        Painter::new(&projection, &scale)
+            .paint(faces, bodies)
+            .unwrap()
     }
 
     fn middle(image: &Image) -> [u8; 4] {
@@ -297,8 +302,14 @@ mod tests {
     #[test]
     fn hollows_and_insides_are_darker() {
         let red = |face: Face| middle(&image(&[face], &[]))[0];
-        let hollow = Face { open: 0.1, ..level(0.0, 1.0) };
-        let inside = Face { normal: [0.0, 0.0, -1.0], ..level(0.0, 1.0) };
+        let hollow = Face {
+            open: 0.1,
+            ..level(0.0, 1.0)
+        };
+        let inside = Face {
+            normal: [0.0, 0.0, -1.0],
+            ..level(0.0, 1.0)
+        };
         assert!(red(inside) < red(hollow) && red(hollow) < red(level(0.0, 1.0)));
         let none = middle(&image(&[level(0.0, f64::NAN)], &[]));
         assert!(none[0] == none[1] && none[1] == none[2], "{none:?}");

@@ -532,7 +532,10 @@ fn a_report_holds_its_frames() {
     }
     // A name that would end the script is a text within it.
     let name = "Name=\"mass [kg/m]\"";
-    let other = text.replace(name, "Name=\"&lt;/SCRIPT&gt;&lt;script&gt;alert(1)&lt;/script&gt;\"");
+    let other = text.replace(
+        name,
+        "Name=\"&lt;/SCRIPT&gt;&lt;script&gt;alert(1)&lt;/script&gt;\"",
+    );
     assert_ne!(text, other);
     std::fs::write(&frame, other).unwrap();
     let page = report();
@@ -552,7 +555,10 @@ fn frames_are_packed_for_the_page() {
     let (status, _, text) = view.get("packed/paraview/particles_0002.vtu");
     assert_eq!(status, 200);
     let frame: serde_json::Value = serde_json::from_str(&text).unwrap();
-    assert_eq!((&frame["dimension"], &frame["kind"]), (&2.into(), &"boxes".into()));
+    assert_eq!(
+        (&frame["dimension"], &frame["kind"]),
+        (&2.into(), &"boxes".into())
+    );
     for name in [
         "packed/paraview/particles.pvd",
         "packed/monitors/top%20%C3%BC.csv",

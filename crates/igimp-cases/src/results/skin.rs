@@ -101,23 +101,22 @@ fn faces(boxes: Boxes<'_>, bins: &Bins<'_>, k: usize) -> u8 {
     let mut faces = 0;
     for face in 0..6 {
         let (axis, side) = (face / 2, [-1.0, 1.0][face % 2]);
-        let is_hidden = [
-            [0.0, 0.0],
-            [-1.0, -1.0],
-            [1.0, -1.0],
-            [-1.0, 1.0],
-            [1.0, 1.0],
-        ]
-        .iter()
-        .all(|aside| {
-            let mut point = centre;
-            point[axis] += side * (1.0 + BEYOND) * half[axis];
+        let mut middle = centre;
+        middle[axis] += side * (1.0 + BEYOND) * half[axis];
+        let moved = |aside: [f64; 2]| {
+            let mut point = middle;
             for (j, share) in aside.iter().enumerate() {
                 let along = (axis + 1 + j) % 3;
                 point[along] += ASIDE * share * half[along];
             }
-            bins.is_covered(&point, k)
-        });
+            point
+        };
+        let ends = [moved([-1.0, -1.0]), moved([1.0, 1.0])];
+        let beside = [[-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0], [1.0, 1.0]];
+        // Mostly there is one box that covers all of it.
+        let is_hidden = bins.is_within_one(&ends, &middle, k)
+            || bins.is_covered(&middle, k)
+                && beside.iter().all(|&own| bins.is_covered(&moved(own), k));
         if !is_hidden {
             faces |= 1 << face;
         }

@@ -557,7 +557,10 @@ impl<const D: usize> Output<D> {
         });
         let of_case = (self.folder.root(), &*case.title, case.has_pore_water());
         let drawn = pictures::InSpace::new(of_case, (&state.body.particles, laws), bodies);
-        let planes = drawn.middle();
+        let planes = match &case.output.cuts[..] {
+            [] => drawn.middle(),
+            cuts => cuts.to_vec(),
+        };
         let wanted = &case.output.figures;
         let notes = wanted
             .par_iter()

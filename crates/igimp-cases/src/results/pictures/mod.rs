@@ -39,7 +39,7 @@ pub use mechanism::{Failing, Mechanism, mechanism, mechanism_picture};
 pub use meshes::mesh_pictures;
 pub use model::model_picture;
 pub use safety::safety_picture;
-pub use space::{InSpace, Plane};
+pub use space::InSpace;
 
 use crate::error::CaseError;
 use crate::summary::FigureNote;

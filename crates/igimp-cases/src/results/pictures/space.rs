@@ -6,7 +6,7 @@ use igimp_figures::{Face, FieldPlot, SpacePlot, View};
 
 use super::field::Colours;
 use super::{Seen, Shown, sentence, titled, write};
-use crate::case::Field;
+use crate::case::{Cut, Field};
 use crate::error::CaseError;
 use crate::results::fields::{self, Scale};
 use crate::results::skin::{Boxes, Skin};
@@ -14,15 +14,6 @@ use crate::summary::FigureNote;
 
 /// How much the direction of a face itself counts beside that of the surface around it.
 const OWN: f64 = 0.3;
-
-/// A plane across an axis.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Plane {
-    /// 0, 1 or 2.
-    pub axis: usize,
-    /// Where it stands \[m\].
-    pub at: f64,
-}
 
 /// A state in space that is drawn field by field; its surface is found once.
 #[derive(Debug)]
@@ -81,7 +72,7 @@ impl<'a> InSpace<'a> {
 
     /// Upright planes across either level axis, through that particle which was nearest to the middle of the
     /// body before it moved: so they run through domains and not between them.
-    pub fn middle(&self) -> Vec<Plane> {
+    pub fn middle(&self) -> Vec<Cut> {
         let particles = self.state.0;
         let plane = |axis: usize| {
             let moved = std::iter::zip(&particles.x, &particles.displacement);
@@ -92,7 +83,7 @@ impl<'a> InSpace<'a> {
             let from = |x: &f64| (x - middle).abs();
             let finite = places.iter().copied().filter(|x| x.is_finite());
             let at = finite.min_by(|a, b| from(a).total_cmp(&from(b)))?;
-            Some(Plane { axis, at })
+            Some(Cut { axis, at })
         };
         [1, 0].into_iter().filter_map(plane).collect()
     }
@@ -107,7 +98,7 @@ impl<'a> InSpace<'a> {
         shown: &Shown,
         field: Field,
         compared: &[Seen<'_, 3>],
-        planes: &[Plane],
+        planes: &[Cut],
     ) -> Result<Vec<FigureNote>, CaseError> {
         let own = self.coloured(field, compared);
         let title = titled(self.title, &shown.title);
@@ -144,7 +135,13 @@ impl<'a> InSpace<'a> {
                 "{} {} in the plane {at}: the domains that it crosses.{same}",
                 own.what, shown.when
             );
-            let name = name(&format!("cut-{letter}"));
+            let same_axis = planes.iter().filter(|own| own.axis == plane.axis);
+            // More of them across an axis are told apart by their places.
+            let name = if same_axis.count() > 1 {
+                name(&format!("cut-{letter}-{}", rounded(plane.at)))
+            } else {
+                name(&format!("cut-{letter}"))
+            };
             notes.push(write(self.folder, &name, &plot.draw()?, caption)?);
         }
         Ok(notes)
@@ -192,7 +189,7 @@ impl<'a> InSpace<'a> {
     }
 
     /// The sections of the domains that a plane crosses.
-    fn cut(&self, plane: Plane, own: &Coloured, title: String) -> FieldPlot {
+    fn cut(&self, plane: Cut, own: &Coloured, title: String) -> FieldPlot {
         let [across, up] = [[1, 2], [0, 2], [0, 1]][plane.axis];
         let letters = ["x [m]", "y [m]", "z [m]"];
         let crossed = (0..self.low.len()).filter(|&k| {

@@ -116,10 +116,27 @@ impl<'a> Bins<'a> {
 
     /// Whether a point lies in a box other than `own`.
     pub(super) fn is_covered(&self, point: &[f64; 3], own: usize) -> bool {
+        let mut others = self.others(point, own);
+        others.any(|other| self.boxes.holds(other, point))
+    }
+
+    /// Whether both ends of a diagonal lie in one box other than `own`, and so all that is between them;
+    /// `middle` is halfway.
+    pub(super) fn is_within_one(
+        &self,
+        ends: &[[f64; 3]; 2],
+        middle: &[f64; 3],
+        own: usize,
+    ) -> bool {
+        let mut others = self.others(middle, own);
+        others.any(|other| ends.iter().all(|end| self.boxes.holds(other, end)))
+    }
+
+    /// The boxes of the bin of a point other than `own`.
+    fn others(&self, point: &[f64; 3], own: usize) -> impl Iterator<Item = usize> {
         let bin = self.bin([0, 1, 2].map(|axis| self.place(axis, point[axis])));
         let members = self.starts[bin] as usize..self.starts[bin + 1] as usize;
         let others = self.members[members].iter().map(|&other| other as usize);
-        let mut others = others.filter(|&other| other != own);
-        others.any(|other| self.boxes.holds(other, point))
+        others.filter(move |&other| other != own)
     }
 }
