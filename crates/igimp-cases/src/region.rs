@@ -3,7 +3,7 @@
 use std::fmt::Debug;
 
 use crate::input::contains;
-use crate::polygon::{Polygon, area_and_centroid, bounding_box, clip_to_box};
+use crate::polygon::{Polygon, area_and_centroid, bounding_box, clip_to_box, clip_to_strip};
 
 /// The part of a region within a box.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,6 +69,12 @@ pub trait Region<const D: usize>: Debug + Send + Sync {
     /// How much of a box belongs to it.
     fn cover(&self, lower: [f64; D], upper: [f64; D]) -> Cover;
 
+    /// What of it lies between two places on the first axis, if boxes are sooner cut from that than from all of it: its
+    /// part within such a box is the same to the bit.
+    fn strip(&self, _lower: f64, _upper: f64) -> Option<Box<dyn Region<D>>> {
+        None
+    }
+
     /// Whether a point lies in it; on its boundary either may be said.
     fn encloses(&self, point: [f64; D]) -> bool;
 
@@ -126,13 +132,12 @@ impl Region<2> for [[f64; 2]] {
         }
     }
 
-    fn cover(&self, lower: [f64; 2], upper: [f64; 2]) -> Cover {
-        let (from, to) = self.bounds();
-        if (0..2).any(|axis| upper[axis] <= from[axis] || to[axis] <= lower[axis]) {
-            Cover::Nothing
-        } else {
-            Cover::Cut
-        }
+    fn cover(&self, _lower: [f64; 2], _upper: [f64; 2]) -> Cover {
+        Cover::Cut
+    }
+
+    fn strip(&self, lower: f64, upper: f64) -> Option<Box<dyn Region<2>>> {
+        Some(Box::new(clip_to_strip(self, 0, lower, upper)))
     }
 
     fn encloses(&self, point: [f64; 2]) -> bool {
@@ -210,6 +215,10 @@ impl Region<2> for Polygon {
 
     fn cover(&self, lower: [f64; 2], upper: [f64; 2]) -> Cover {
         self.as_slice().cover(lower, upper)
+    }
+
+    fn strip(&self, lower: f64, upper: f64) -> Option<Box<dyn Region<2>>> {
+        self.as_slice().strip(lower, upper)
     }
 
     fn encloses(&self, point: [f64; 2]) -> bool {

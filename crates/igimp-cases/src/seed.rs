@@ -40,7 +40,15 @@ pub fn fill<const D: usize>(
     law: usize,
 ) -> Result<Vec<ParticleSeed<D>>, CaseError> {
     let parts = Parts::around(grid, region, per_direction)?;
-    let within = |_, from, to| (region.within(from, to), ());
+    // Most of the work of cutting a polygon is done once for every column of parts.
+    let strips = parts.columns(|[from, to]| region.strip(from, to));
+    let within = |place: [usize; D], from, to| {
+        let part = match &strips[place[0]] {
+            Some(strip) => strip.within(from, to),
+            None => region.within(from, to),
+        };
+        (part, ())
+    };
     let cover = |from, to| region.cover(from, to);
     let (seeds, _) = parts.filled((density, law), cover, within)?;
     Ok(seeds)
@@ -58,14 +66,7 @@ pub fn fill_polygon(
     density: f64,
     law: usize,
 ) -> Result<Vec<ParticleSeed<2>>, CaseError> {
-    let parts = Parts::around(grid, polygon, per_direction)?;
-    let columns = parts.columns(polygon);
-    let within = |place: [usize; 2], from: [f64; 2], to: [f64; 2]| {
-        let clipped = clip_to_strip(&columns[place[0]], 1, from[1], to[1]);
-        (part(&clipped), ())
-    };
-    let (seeds, _) = parts.filled((density, law), |_, _| Cover::Cut, within)?;
-    Ok(seeds)
+    fill(grid, polygon, per_direction, density, law)
 }
 
 /// The same, with the pieces of the polygon: one for each particle in their order, then the slivers,
@@ -78,7 +79,7 @@ pub(crate) fn fill_in_pieces(
     law: usize,
 ) -> Result<(Vec<ParticleSeed<2>>, Vec<Piece>), CaseError> {
     let parts = Parts::around(grid, polygon, per_direction)?;
-    let columns = parts.columns(polygon);
+    let columns = parts.columns(|[from, to]| clip_to_strip(polygon, 0, from, to));
     let within = |place: [usize; 2], from: [f64; 2], to: [f64; 2]| {
         let clipped = clip_to_strip(&columns[place[0]], 1, from[1], to[1]);
         (part(&clipped), clipped)
@@ -146,6 +147,12 @@ impl<const D: usize> Parts<D> {
         let [lower, size] = self.cells[axis][part / self.per_direction];
         let from = lower + (part % self.per_direction) as f64 * size;
         [from, from + size]
+    }
+
+    /// By column of parts along the first axis, what is made of its ends.
+    fn columns<T>(&self, make: impl Fn([f64; 2]) -> T) -> Vec<T> {
+        let count = self.cells[0].len() * self.per_direction;
+        (0..count).map(|part| make(self.ends(0, part))).collect()
     }
 
     /// Lower and upper corner of a cell.
@@ -220,18 +227,6 @@ impl<const D: usize> Parts<D> {
             }
         }
         Ok((seeds, kept))
-    }
-}
-
-impl Parts<2> {
-    /// By column of parts, what lies in it of a polygon: most of the work of clipping, done once.
-    fn columns(&self, polygon: &[[f64; 2]]) -> Vec<Polygon> {
-        let count = self.cells[0].len() * self.per_direction;
-        let column = |part: usize| {
-            let [from, to] = self.ends(0, part);
-            clip_to_strip(polygon, 0, from, to)
-        };
-        (0..count).map(column).collect()
     }
 }
 

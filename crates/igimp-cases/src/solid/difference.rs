@@ -5,6 +5,8 @@ use crate::region::{Cover, Crossing, Part, Region};
 
 /// Where boundaries of several solids run through one box, it is cut so many times into eight.
 const DEPTH: u32 = 4;
+/// The same for the volume of all that is left.
+const FINEST: u32 = 6;
 /// Less than this share of a box is round-off \[-\].
 const ROUND_OFF: f64 = 1e-14;
 
@@ -128,6 +130,11 @@ impl Region<3> for Difference {
 
     fn within(&self, lower: [f64; 3], upper: [f64; 3]) -> Part<3> {
         self.left(lower, upper, DEPTH)
+    }
+
+    fn volume(&self) -> f64 {
+        let (lower, upper) = self.bounds();
+        self.left(lower, upper, FINEST).volume
     }
 
     fn cover(&self, lower: [f64; 3], upper: [f64; 3]) -> Cover {

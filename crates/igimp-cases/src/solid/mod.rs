@@ -96,10 +96,35 @@ impl Region<3> for Solid {
         }
     }
 
+    fn strip(&self, lower: f64, upper: f64) -> Option<Box<dyn Region<3>>> {
+        match self {
+            Self::Cuboid(..) => None,
+            other => other.region().strip(lower, upper),
+        }
+    }
+
     fn encloses(&self, point: [f64; 3]) -> bool {
         match self {
             Self::Cuboid(lower, upper) => !crate::region::is_off(&point, lower, upper),
             other => other.region().encloses(point),
+        }
+    }
+
+    fn volume(&self) -> f64 {
+        match self {
+            Self::Cuboid(lower, upper) => Part::whole(*lower, *upper).volume,
+            other => other.region().volume(),
+        }
+    }
+
+    fn beyond(&self, lower: [f64; 3], upper: [f64; 3]) -> Option<[f64; 3]> {
+        match self {
+            Self::Cuboid(from, to) => {
+                let corners = [*from, *to];
+                let is_off = |corner: &[f64; 3]| crate::region::is_off(corner, &lower, &upper);
+                corners.into_iter().find(is_off)
+            }
+            other => other.region().beyond(lower, upper),
         }
     }
 

@@ -1,7 +1,7 @@
 //! A polygon moved along an axis: slices of plane cases, and polygons in plan between two levels.
 
 use crate::check::short;
-use crate::polygon::{area_and_centroid, bounding_box, clip_to_box};
+use crate::polygon::{area_and_centroid, bounding_box, clip_to_box, clip_to_strip};
 use crate::region::{Cover, Crossing, Part, Region};
 
 /// A polygon in the plane of two axes, moved along the third.
@@ -132,6 +132,14 @@ impl Region<3> for Prism {
         let (from, to) = (seen(lower, self.axis), seen(upper, self.axis));
         both(self.along(lower, upper), stretch, || {
             cover(&self.polygon, from, to)
+        })
+    }
+
+    fn strip(&self, lower: f64, upper: f64) -> Option<Box<dyn Region<3>>> {
+        let is_across = self.axis != 0;
+        is_across.then(|| -> Box<dyn Region<3>> {
+            let polygon = clip_to_strip(&self.polygon, 0, lower, upper);
+            Box::new(Self::new(polygon, self.axis, self.between))
         })
     }
 

@@ -124,6 +124,34 @@ impl Terrain {
         Self::of(points.to_vec(), triangles)
     }
 
+    /// Points in any order: on lines if every x goes with every y, else scattered \[length\].
+    ///
+    /// # Errors
+    /// As [`Terrain::scattered`].
+    pub fn through(points: &[[f64; 3]]) -> Result<Self, TerrainError> {
+        check(points)?;
+        let lines = [0, 1].map(|axis| {
+            let mut lines: Vec<f64> = points.iter().map(|point| point[axis]).collect();
+            lines.sort_by(f64::total_cmp);
+            lines.dedup_by(|a, b| a.total_cmp(b).is_eq());
+            lines
+        });
+        let [x, y] = &lines;
+        if x.len() < 2 || y.len() < 2 || x.len() * y.len() != points.len() {
+            return Self::scattered(points);
+        }
+        let mut rows = vec![vec![None; x.len()]; y.len()];
+        for point in points {
+            let place = |axis: usize| lines[axis].partition_point(|line| *line < point[axis]);
+            rows[place(1)][place(0)] = Some(point[2]);
+        }
+        if rows.iter().flatten().all(Option::is_some) {
+            Self::on_lines(x, y, &rows)
+        } else {
+            Self::scattered(points)
+        }
+    }
+
     fn of(points: Vec<[f64; 3]>, triangles: Vec<[u32; 3]>) -> Result<Self, TerrainError> {
         if triangles.is_empty() {
             return Err(TerrainError::Flat);

@@ -68,7 +68,7 @@ fn part(
     })
 }
 
-fn corners(node: &Node, name: &str, problems: &mut Problems) -> Option<Vec<[f64; 2]>> {
+pub(super) fn corners(node: &Node, name: &str, problems: &mut Problems) -> Option<Vec<[f64; 2]>> {
     let written: Option<Vec<_>> = node.items().iter().map(Node::pair).collect();
     let written = written?;
     let largest = written

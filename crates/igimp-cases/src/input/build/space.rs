@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::grid::Frame;
-use super::sequence::Sequence;
+use super::sequence::{Sequence, placed};
 use super::site::Soil;
 use super::{AllNames, all, boundaries, checks, construction, curves, grid, materials, outputs};
 use super::{solids, stages, study, title_block};
@@ -81,7 +81,7 @@ pub(super) fn build(
     refuse_what_is_of_the_plane(tree, problems);
     let mut frame = grid::frame::<3>(tree, problems);
     let method = grid::method(tree);
-    let bodies = solids::solids(tree, names, problems);
+    let bodies = bodies(tree, names, problems);
     let materials = materials::materials(tree, &bodies, problems);
     let grid = grid::grid(tree, frame.as_ref(), &bodies, problems);
     if let (Some(frame), Some(grid)) = (&mut frame, &grid) {
@@ -180,6 +180,29 @@ fn refuse_what_is_of_the_plane(tree: &Node, problems: &mut Problems) {
     }
 }
 
+/// The bodies, as far as each is right by itself.
+fn bodies(tree: &Node, names: &AllNames, problems: &mut Problems) -> Vec<Option<BodyPart<3>>> {
+    let later = placed(tree);
+    let items = tree.items_at("bodies").iter();
+    let part = |node: &Node| {
+        let name = node.text_at("name").unwrap_or("?");
+        let material = node.get("material").and_then(|material| {
+            let who = format!("body `{}` uses", clip(name, 40));
+            names.materials.find(material, &who, problems)
+        });
+        let solid = solids::solid(node, name, problems);
+        let points = node.count_at("points_per_cell")?;
+        Some(BodyPart {
+            from_start: !later.contains(&name),
+            name: node.text_at("name")?.to_owned(),
+            material: material?,
+            per_direction: (1..=4).find(|count: &usize| count.pow(3) >= points)?,
+            region: Arc::new(solid?),
+        })
+    };
+    items.map(part).collect()
+}
+
 /// Checks the bodies against the domain and each other.
 fn check_bodies(
     tree: &Node,
@@ -232,7 +255,7 @@ fn check_bodies(
             if !sequence.are_together(first, second) {
                 continue;
             }
-            if let Some(at) = common_point(&*a.region, &*b.region, frame) {
+            if let Some(at) = solids::overlap(&*a.region, &*b.region) {
                 problems
                     .error(
                         items[second].place,
@@ -247,33 +270,6 @@ fn check_bodies(
             }
         }
     }
-}
-
-/// Places along an axis at which two bodies are held against each other.
-const PLACES: usize = 24;
-
-/// A place within both of two bodies, if one is found on a lattice over what their boxes have in common.
-fn common_point(a: &dyn Region<3>, b: &dyn Region<3>, frame: &Frame<3>) -> Option<[f64; 3]> {
-    let ((a_from, a_to), (b_from, b_to)) = (a.bounds(), b.bounds());
-    let from: [f64; 3] = std::array::from_fn(|axis| a_from[axis].max(b_from[axis]));
-    let to: [f64; 3] = std::array::from_fn(|axis| a_to[axis].min(b_to[axis]));
-    let least = 1e-6
-        * frame
-            .axes
-            .iter()
-            .map(|axis| axis.extremes()[0])
-            .fold(f64::INFINITY, f64::min);
-    if (0..3).any(|axis| to[axis] - from[axis] <= least) {
-        return None;
-    }
-    (0..PLACES.pow(3)).find_map(|k| {
-        let step = [k % PLACES, k / PLACES % PLACES, k / (PLACES * PLACES)];
-        let at = std::array::from_fn(|axis| {
-            let share = (step[axis] as f64 + 0.5) / PLACES as f64;
-            from[axis] + share * (to[axis] - from[axis])
-        });
-        (a.encloses(at) && b.encloses(at)).then_some(at)
-    })
 }
 
 /// Refuses stresses of level ground in ground that is not level.

@@ -7,6 +7,7 @@ pub(super) use materials::SYMBOLS;
 mod outputs;
 mod reinforcement;
 mod rigid;
+mod solids;
 mod stages;
 mod water;
 
@@ -504,24 +505,15 @@ static BODY: Kind = Kind::Table(&Struct {
             "8",
             "particles per cell, a cube number",
         )),
-        in_space(optional(
-            "box",
-            Kind::Table(&CUBOID),
-            "another shape is given",
-            "a box with its sides along the axes",
-        )),
-        in_space(optional(
-            "polygon",
-            Kind::List(&CORNER, 3, MANY),
-            "another shape is given",
-            "corners x and z of an upright section, in order; `across` says from where to where it reaches",
-        )),
-        in_space(optional(
-            "across",
-            PAIR,
-            "there is no `polygon`",
-            "the ends of the section along y",
-        )),
+        in_space(solids::BOX),
+        in_space(solids::SECTION),
+        in_space(solids::ACROSS),
+        in_space(solids::PLAN),
+        in_space(solids::BETWEEN),
+        in_space(solids::CYLINDER),
+        in_space(solids::SPHERE),
+        in_space(solids::SURFACE),
+        in_space(solids::MINUS),
         in_plane(required(
             "polygon",
             Kind::Either(&[Kind::List(&CORNER, 3, MANY), Kind::Table(&OUTLINE)]),
@@ -556,19 +548,6 @@ static LINE_FILE: Struct = Struct {
 };
 
 static LINE: [Kind; 2] = [Kind::List(&CORNER, 2, MANY), Kind::Table(&LINE_FILE)];
-
-static CUBOID: Struct = Struct {
-    doc: "A box with its sides along the axes.",
-    fields: &[
-        required("from", POINT, "[\"0 m\", \"0 m\", \"0 m\"]", "one corner"),
-        required(
-            "to",
-            POINT,
-            "[\"8 m\", \"4 m\", \"5 m\"]",
-            "the opposite corner",
-        ),
-    ],
-};
 
 static OUTLINE: Struct = Struct {
     doc: "Where the corners come from: a file, or the lines above and below, which run from one side of the ground to the other.",
