@@ -568,3 +568,64 @@ fn frames_are_packed_for_the_page() {
         assert_eq!(view.get(name).0, 404, "{name}");
     }
 }
+
+/// Elastic soil in space under its own weight.
+const CUBE: &str = "igimp = 1\n[case]\ntitle = \"a cube\"\nanalysis = \"3d\"\ngravity = \"9.81 m/s2\"\n\
+    [grid]\ncell = \"0.5 m\"\n\
+    domain = { x = [\"0 m\", \"2 m\"], y = [\"0 m\", \"2 m\"], z = [\"0 m\", \"3 m\"] }\n\
+    [materials.clay]\nmodel = \"elastic\"\nunit_weight = \"18 kN/m3\"\n\
+    young = \"10 MPa\"\npoisson = 0.0\n\
+    [[bodies]]\nname = \"cube\"\nmaterial = \"clay\"\npoints_per_cell = 8\n\
+    box = { from = [\"0 m\", \"0 m\", \"0 m\"], to = [\"2 m\", \"2 m\", \"2 m\"] }\n\
+    [[stages]]\nname = \"own weight\"\ntype = \"gravity\"\nsteps = 2\n\
+    [output]\nfolder = \"results\"\nparaview = { every = 1 }\nfigures = [\"displacement\", \"sigma_zz\"]\n";
+
+/// GOAL: a run in space has its pictures, and its page shows the six sides of the body and cuts it.
+/// ORACLE: 8³ particles have 6 · 8² faces outside; the level of a particle in the middle settles by γ (H z − z²/2) / E.
+#[test]
+fn a_run_in_space_is_shown() {
+    let folder = Folder::new("space");
+    std::fs::write(folder.0.join("case.toml"), CUBE).unwrap();
+    let cuts =
+        "output.cuts=[{ across = \"y\", at = \"0.6 m\" }, { across = \"z\", at = \"1.1 m\" }]";
+    let run = folder.igimp(&["run", "case.toml", "--quiet", "--set", cuts]);
+    let said = String::from_utf8_lossy(&run.stderr).into_owned();
+    assert!(run.status.success(), "{said}");
+    let figures = folder.0.join("results/figures");
+    for field in ["displacement", "sigma_zz"] {
+        for what in ["space", "cut-y", "cut-z"] {
+            let name = format!("{what}-1-own-weight-{field}.png");
+            assert!(figures.join(&name).is_file(), "{name}");
+        }
+    }
+    let report = std::fs::read_to_string(folder.0.join("results/report.html")).unwrap();
+    assert!(report.contains("in the plane z = 1.1 m: the domains that it crosses."));
+    assert_eq!(report.matches("class=\"held-frame\"").count(), 3);
+    let Some(browser) = browser() else {
+        return;
+    };
+    let view = View::of(&folder, "results");
+    let page = looked_at(
+        browser,
+        &folder,
+        &view,
+        "cut=1,0.55&view=front&hover=0.5,0.5",
+    );
+    assert_eq!(attribute(&page, "canvas", "data-faces"), "384");
+    let value: f64 = attribute(&page, "found", "data-value").parse().unwrap();
+    let (_, text) = page.split_once("m: displacement length ").unwrap();
+    let z: f64 = page
+        .split_once(") m: displacement")
+        .unwrap()
+        .0
+        .rsplit(", ")
+        .next()
+        .unwrap()
+        .parse()
+        .unwrap();
+    let settled = 18e3 * (2.0 * z - 0.5 * z * z) / 10e6;
+    assert!(
+        (value - settled).abs() < 0.02 * settled,
+        "{value} for {settled}: {text:.20}"
+    );
+}

@@ -187,14 +187,14 @@ class Scene {
       const [axis, side] = [Math.floor(face / 2), 2 * (face % 2) - 1];
       if (side * place.eye[axis] <= 1e-6) continue;
       const [low, high] = [this.corner("low", box), this.corner("high", box)];
-      if (cut && dot(cut.normal, low.map((x, j) => 0.5 * (x + high[j]))) > cut.offset) continue;
+      if (cut && !Scene.clipped(low, high, cut)) continue;
       const about = [0, 1, 2].map((j) => (lie[4 * box + j] - 128) / 127 + (j === axis ? 0.3 * side : 0));
       const length = Math.hypot(...about) || 1;
       const light = this.dimension === 2 ? 1 : lightOf(place, about.map((x) => x / length), lie[4 * box + 3] / 255);
       add(box, face, light, cornersOf(low, high, face));
     }
     if (cut && dot(cut.normal, place.eye) > 0) {
-      const axis = cut.normal.findIndex((x) => x !== 0);
+      const { axis } = cut;
       const at = cut.offset * cut.normal[axis];
       for (let box = 0; box < count; box += 1) {
         const [low, high] = [this.corner("low", box), this.corner("high", box)];
@@ -216,6 +216,14 @@ class Scene {
       pen.fill();
       pen.stroke();
     }
+  }
+
+  // Takes from a box what the cut takes away; false where that is all of it, or the face that is cut off.
+  static clipped(low, high, { axis, normal, offset }) {
+    const at = offset * normal[axis];
+    if (normal[axis] > 0) high[axis] = Math.min(high[axis], at);
+    else low[axis] = Math.max(low[axis], at);
+    return low[axis] < high[axis];
   }
 
   trace(pen, points) {

@@ -2,6 +2,8 @@
 
 // Frames whose arrays are kept unpacked.
 const KEPT = 8;
+// Frames of more particles are not asked for but by the user.
+const LARGE = 200000;
 // Colours of a scale.
 const LEVELS = 128;
 
@@ -87,9 +89,11 @@ class Viewer {
     this.part.view.value = name === "whole" ? "isometric" : name;
   }
 
-  // What is there for bodies in space alone.
+  // What depends on the first frame: its dimension and its size.
   furnish(dimension) {
     const { part, wish } = this;
+    // A scale for all frames asks for all of them.
+    if (this.shown.particles > LARGE) part.fixed.checked = false;
     part.space.hidden = dimension === 2;
     part.canvas.style.touchAction = dimension === 2 ? "pan-y" : "none";
     part.keys.textContent = dimension === 2
