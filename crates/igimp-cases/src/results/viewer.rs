@@ -23,10 +23,11 @@ pub const SECTION: &str = include_str!("viewer/soil.html");
 pub const STYLE: &str = include_str!("viewer/viewer.css");
 
 /// The script in parts.
-const PARTS: [&str; 6] = [
+const PARTS: [&str; 7] = [
     include_str!("viewer/frame.js"),
     include_str!("viewer/camera.js"),
     include_str!("viewer/gl.js"),
+    include_str!("viewer/axes.js"),
     include_str!("viewer/scene.js"),
     include_str!("viewer/pointing.js"),
     include_str!("viewer/viewer.js"),
