@@ -345,7 +345,11 @@ fn action_is_reaction() {
     balance(&block([half, half, 1.0]), 4, 0.03);
     balance(&Surface::sphere(5.0, 1.0).unwrap(), 4, 0.03);
     balance(&Surface::cylinder(0, 3.0, half, 0.3, 0.8).unwrap(), 4, 0.03);
-    balance(&Surface::cone(2, [2.0, 0.5, 1.0], 0.0, 0.8).unwrap(), 4, 0.3);
+    balance(
+        &Surface::cone(2, [2.0, 0.5, 1.0], 0.0, 0.8).unwrap(),
+        4,
+        0.3,
+    );
 }
 
 /// All numbers that contact has a part in, on so many threads.

@@ -32,6 +32,11 @@ impl<const D: usize> Surface<D> {
         self.space.as_deref()
     }
 
+    /// How many facets it has.
+    pub(crate) fn facet_count(&self) -> usize {
+        self.facets.len()
+    }
+
     /// The corners of a facet, as points.
     pub(crate) fn corners(&self, facet: usize) -> [usize; D] {
         self.facets[facet].corners
