@@ -43,7 +43,7 @@ impl<const D: usize> Surface<D> {
     }
 
     /// Two tangents of the surface at a knot, in the frame of the body, as far as a face with this normal
-    /// has them; the second is the normal times the first.
+    /// has them; the second is the normal times the first (theory, eq. 45a).
     pub(crate) fn tangents_at(
         &self,
         space: &Space<D>,
