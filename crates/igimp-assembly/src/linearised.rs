@@ -29,6 +29,8 @@
 //! with factors y and h that are computed once for each row and serve all columns. They are kept as
 //! vectors over the rows, so that a column is a sum of long products.
 
+use std::ops::Range;
+
 use igimp_shape::Support;
 
 use crate::kinematics::Linearisation;
@@ -166,15 +168,19 @@ impl<const D: usize> Linearised<D> {
         }
     }
 
-    /// The columns (j, c) over all rows, by c.
-    #[inline]
-    pub(crate) fn columns(&mut self, j: usize) -> [&[f64]; D] {
+    /// The columns (j, c) over the rows from `first` on, by c; what stands before these means nothing.
+    #[allow(
+        clippy::inline_always,
+        reason = "compiled again for the instructions of the caller"
+    )]
+    #[inline(always)]
+    pub(crate) fn columns(&mut self, j: usize, first: usize) -> [&[f64]; D] {
         // Known lengths leave nothing of the loops: supports on 2 × 2, 2 × 3 and 3 × 3 nodes.
         match self.lanes {
-            2 => self.columns_of(2, j),
-            3 => self.columns_of(3, j),
-            5 => self.columns_of(5, j),
-            lanes => self.columns_of(lanes, j),
+            2 if D < 3 => self.columns_of(0..2, 2, j),
+            3 if D < 3 => self.columns_of(0..3, 3, j),
+            5 if D < 3 => self.columns_of(0..5, 5, j),
+            lanes => self.columns_of(first / LANES..lanes, lanes, j),
         }
     }
 
@@ -184,17 +190,19 @@ impl<const D: usize> Linearised<D> {
         reason = "otherwise the lengths of the loops are not known"
     )]
     #[inline(always)]
-    fn columns_of(&mut self, lanes: usize, j: usize) -> [&[f64]; D] {
+    fn columns_of(&mut self, wanted: Range<usize>, lanes: usize, j: usize) -> [&[f64]; D] {
         let (g, g_bar) = (self.g[j], self.g_bar[j]);
         let factors = |all: &[[f64; LANES]]| all.len() == D * D * lanes;
         assert!(factors(&self.y) && factors(&self.h) && self.columns.len() == D * lanes);
         for c in 0..D {
-            let column = &mut self.columns[c * lanes..][..lanes];
-            for k in 0..lanes {
+            let column = &mut self.columns[c * lanes..][..lanes][wanted.clone()];
+            let part = |d: usize| (c * D + d) * lanes + wanted.start..(c * D + d) * lanes + wanted.end;
+            let y: [&[[f64; LANES]]; D] = std::array::from_fn(|d| &self.y[part(d)]);
+            let h: [&[[f64; LANES]]; D] = std::array::from_fn(|d| &self.h[part(d)]);
+            for k in 0..column.len() {
                 let mut sum = [0.0; LANES];
                 for d in 0..D {
-                    let place = (c * D + d) * lanes + k;
-                    let (y, h) = (&self.y[place], &self.h[place]);
+                    let (y, h) = (&y[d][k], &h[d][k]);
                     for lane in 0..LANES {
                         sum[lane] += y[lane] * g[d] + h[lane] * g_bar[d];
                     }

@@ -48,6 +48,8 @@ pub struct System<'a, const D: usize> {
     pub(crate) table: BlockTable<D>,
     pub(crate) pattern: Arc<Pattern>,
     symmetric: bool,
+    /// Whether the tangents of all particles are symmetric.
+    pub(crate) symmetric_particles: bool,
 }
 
 impl<'a, const D: usize> System<'a, D> {
@@ -97,7 +99,7 @@ impl<'a, const D: usize> System<'a, D> {
         for &law in &particles.law {
             used[law] = true;
         }
-        let symmetric = std::iter::zip(&conditions.laws, &used)
+        let symmetric_particles = std::iter::zip(&conditions.laws, &used)
             .all(|(law, &used)| !used || law.has_symmetric_tangent());
         let grid = &conditions.grid;
         let cuts = method.small_cuts;
@@ -121,7 +123,7 @@ impl<'a, const D: usize> System<'a, D> {
         let reinforcement = Members::find(members, stencils, conditions, method, &unknowns)?;
         let forces = beside_particles(&couplings, &contact, &reinforcement);
         let pairs: Vec<_> = forces.iter().flat_map(|force| force.pairs()).collect();
-        let symmetric = symmetric && forces.iter().all(|force| force.is_symmetric());
+        let symmetric = symmetric_particles && forces.iter().all(|force| force.is_symmetric());
         let mut f_ext = weight(grid, stencils, &conditions.loads);
         let pores = Pores::fill(particles, stencils, conditions, method, &mut f_ext)?;
         if let Some(held) = &conditions.held {
@@ -150,6 +152,7 @@ impl<'a, const D: usize> System<'a, D> {
             table,
             pattern: Arc::new(pattern),
             symmetric,
+            symmetric_particles,
         })
     }
 
@@ -420,7 +423,7 @@ impl<'a, const D: usize> System<'a, D> {
                 if !moves(column.node) {
                     continue;
                 }
-                let columns = linearised.columns(j);
+                let columns = linearised.columns(j, 0);
                 for (i, row) in supports.iter().enumerate() {
                     for (a, unknown) in self.unknowns.of(row.node) {
                         for c in 0..D {

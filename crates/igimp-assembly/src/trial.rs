@@ -7,10 +7,11 @@ use std::ops::Range;
 use igimp_material::{ConstitutiveModel, TangentKind};
 use rayon::prelude::*;
 
-use crate::blocks::Blocks;
 use crate::error::AssemblyError;
 use crate::kinematics::{Linearisation, ParticleState, ParticleTrial, evaluate};
 use crate::linearised::Linearised;
+use crate::mirror::mirror;
+use crate::scatter::{Half, Rows, Scatter};
 use crate::strips::split;
 use crate::system::System;
 
@@ -27,7 +28,7 @@ pub struct Trial<const D: usize> {
 #[derive(Debug, Default)]
 pub(crate) struct Scratch<const D: usize> {
     pub(crate) linearised: Linearised<D>,
-    pub(crate) blocks: Blocks,
+    pub(crate) rows: Rows,
 }
 
 /// The part of a pass that belongs to one strip.
@@ -92,7 +93,20 @@ impl<const D: usize> System<'_, D> {
                 return Err(error);
             }
         }
+        if let Some(values) = values.filter(|_| self.half() == Half::Lower) {
+            mirror(&self.pattern, values);
+        }
         Ok(())
+    }
+
+    /// Which half of the tangent is summed. In the plane a particle has so few columns that half of them is
+    /// no gain.
+    fn half(&self) -> Half {
+        if D == 3 && self.symmetric_particles {
+            Half::Lower
+        } else {
+            Half::Both
+        }
     }
 
     /// The particles of one strip; the particle that fails and why.
@@ -112,7 +126,7 @@ impl<const D: usize> System<'_, D> {
                 .evaluate_particle(particle, u, kind, trial)
                 .map_err(|error| (particle, error))?;
             let volume = self.reference_volume(particle);
-            let Scratch { linearised, blocks } = &mut *scratch;
+            let Scratch { linearised, rows } = &mut *scratch;
             linearised.push(supports, &own);
             for (support, force) in supports.iter().zip(linearised.forces(&own, volume)) {
                 let sum = &mut strip.f_int[support.node - strip.first_node];
@@ -121,10 +135,19 @@ impl<const D: usize> System<'_, D> {
                 }
             }
             if let Some((start, values)) = &mut strip.values {
-                blocks.set(supports, &self.table);
+                rows.set(supports, &self.table);
                 linearised.linearise(&own, volume, self.method.kinematics_of_step());
-                let place = (*start, &mut **values);
-                blocks.scatter(supports, &self.table, &self.pattern, linearised, place);
+                let scatter = Scatter {
+                    supports,
+                    rows,
+                    linearised,
+                    table: &self.table,
+                    pattern: &self.pattern,
+                    half: self.half(),
+                    start: *start,
+                    values,
+                };
+                scatter.run();
             }
         }
         Ok(())

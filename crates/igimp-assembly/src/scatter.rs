@@ -1,0 +1,195 @@
+//! From the tangent of one particle into the matrix: its unknown rows as runs that lie one after the
+//! other in every column, and its columns one by one.
+
+use igimp_shape::Support;
+use pulp::{Arch, NullaryFnOnce};
+
+use crate::blocks::BlockTable;
+use crate::linearised::Linearised;
+use crate::matrix::Pattern;
+
+/// Which entries of a symmetric matrix are summed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Half {
+    /// All.
+    Both,
+    /// Those on the diagonal and below it, by blocks. What is above means nothing until it is
+    /// mirrored.
+    Lower,
+}
+
+/// The unknown rows of one particle.
+#[derive(Debug, Default)]
+pub(crate) struct Rows {
+    runs: Vec<Run>,
+}
+
+/// Rows that follow one another in a particle, and whose values do so in every column of the matrix.
+#[derive(Clone, Copy, Debug)]
+struct Run {
+    /// First row.
+    first: u32,
+    len: u32,
+    /// Code and block of the node of the first row, and how many unknowns of the node stand before it.
+    code: u32,
+    block: u32,
+    rank: u32,
+}
+
+impl Run {
+    fn end(&self) -> usize {
+        (self.first + self.len) as usize
+    }
+}
+
+impl Rows {
+    /// Lists the unknown rows of a particle.
+    #[inline]
+    pub(crate) fn set<const D: usize>(&mut self, supports: &[Support<D>], table: &BlockTable<D>) {
+        self.runs.clear();
+        // The row and the unknown that would make the last run longer.
+        let mut next = (u32::MAX, u32::MAX);
+        for (i, support) in supports.iter().enumerate() {
+            let node = &table.nodes[support.node];
+            let mut add = |first: u32, rank: u32, len: u32| {
+                let here = (first, node.first + rank);
+                match self.runs.last_mut() {
+                    Some(run) if here == next => run.len += len,
+                    _ => self.runs.push(Run {
+                        first,
+                        len,
+                        code: node.code,
+                        block: node.block,
+                        rank,
+                    }),
+                }
+                next = (here.0 + len, here.1 + len);
+            };
+            let first = (i * D) as u32;
+            if usize::from(node.len) == D {
+                add(first, 0, D as u32);
+            } else {
+                for (rank, axis) in node.components().enumerate() {
+                    add(first + axis as u32, rank as u32, 1);
+                }
+            }
+        }
+    }
+
+}
+
+/// The tangent of one particle on its way into a slice of the values of the matrix.
+pub(crate) struct Scatter<'a, const D: usize> {
+    pub(crate) supports: &'a [Support<D>],
+    pub(crate) rows: &'a Rows,
+    pub(crate) linearised: &'a mut Linearised<D>,
+    pub(crate) table: &'a BlockTable<D>,
+    pub(crate) pattern: &'a Pattern,
+    pub(crate) half: Half,
+    /// First value of the slice.
+    pub(crate) start: usize,
+    pub(crate) values: &'a mut [f64],
+}
+
+impl<const D: usize> Scatter<'_, D> {
+    /// Adds the tangent to the matrix, with wider instructions where the processor has them: sums and their
+    /// order are the same.
+    #[inline]
+    pub(crate) fn run(self) {
+        Arch::new().dispatch(self);
+    }
+}
+
+impl<const D: usize> NullaryFnOnce for Scatter<'_, D> {
+    type Output = ();
+
+    #[allow(
+        clippy::inline_always,
+        reason = "compiled for the instructions of the caller"
+    )]
+    #[inline(always)]
+    fn call(self) {
+        let Self {
+            supports,
+            table,
+            linearised,
+            ..
+        } = self;
+        let mut runs = &self.rows.runs[..];
+        for (j, support) in supports.iter().enumerate() {
+            let column = &table.nodes[support.node];
+            if column.len == 0 {
+                continue;
+            }
+            if self.half == Half::Lower {
+                while let Some((run, rest)) = runs.split_first()
+                    && run.end() <= j * D
+                {
+                    runs = rest;
+                }
+            }
+            let first = runs.first().map_or(0, |run| run.first as usize);
+            let columns = linearised.columns(j, first);
+            let stored = self.pattern.values_of(column.block as usize);
+            let values = &mut self.values[stored.start - self.start..stored.end - self.start];
+            let offsets = table.offsets_of(support.node);
+            let offset = |run: &Run| offsets(run.code, run.block) + run.rank as usize;
+            if usize::from(column.len) == D {
+                let height = values.len() / D;
+                for run in runs {
+                    let offset = offset(run);
+                    for c in 0..D {
+                        let sums = &mut values[c * height + offset..];
+                        add(sums, &columns[c][run.first as usize..], run.len as usize);
+                    }
+                }
+            } else {
+                let height = values.len() / usize::from(column.len);
+                for run in runs {
+                    let offset = offset(run);
+                    for (rank, c) in column.components().enumerate() {
+                        let sums = &mut values[rank * height + offset..];
+                        add(sums, &columns[c][run.first as usize..], run.len as usize);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Adds the first `len` terms to the first `len` sums.
+#[allow(
+    clippy::inline_always,
+    reason = "compiled again for the instructions of the caller"
+)]
+#[inline(always)]
+fn add(sums: &mut [f64], terms: &[f64], len: usize) {
+    match len {
+        4 => add_all::<4>(sums, terms),
+        6 => add_all::<6>(sums, terms),
+        9 => add_all::<9>(sums, terms),
+        _ => {
+            for (sum, term) in sums.iter_mut().zip(&terms[..len]) {
+                *sum += term;
+            }
+        }
+    }
+}
+
+/// The same for a number that is known: so few that nothing is left of the loop.
+#[allow(
+    clippy::inline_always,
+    reason = "compiled again for the instructions of the caller"
+)]
+#[inline(always)]
+fn add_all<const N: usize>(sums: &mut [f64], terms: &[f64]) {
+    let sums = sums
+        .first_chunk_mut::<N>()
+        .expect("a run ends within its column");
+    let terms = terms
+        .first_chunk::<N>()
+        .expect("a run ends within the rows");
+    for k in 0..N {
+        sums[k] += terms[k];
+    }
+}
