@@ -19,6 +19,8 @@ const NONE: u32 = u32::MAX;
 #[derive(Clone, Debug)]
 pub(crate) struct BlockTable<const D: usize> {
     pub(crate) nodes: Vec<NodePlace>,
+    /// The reach of nearly all nodes.
+    pub(crate) near: usize,
     /// Pairs of nodes that a column node may have: a window of (2 reach + 1)^D nodes, with the reach
     /// of nearly all nodes.
     window: usize,
@@ -79,6 +81,7 @@ impl<const D: usize> BlockTable<D> {
         let side = 2 * near + 1;
         let mut table = Self {
             nodes: Vec::with_capacity(grid.node_count()),
+            near,
             window: side.pow(D as u32),
             offsets: Vec::new(),
             wide: BTreeMap::new(),
@@ -256,6 +259,24 @@ impl<const D: usize> BlockTable<D> {
             } else {
                 wide[wide.partition_point(|&(other, _)| other < block)].1 as usize
             }
+        }
+    }
+
+    /// The same for a node that need not be coupled, but is within the window.
+    #[inline]
+    pub(crate) fn offsets_if_coupled(&self, column: usize) -> impl Fn(u32, u32) -> Option<usize> {
+        let column = &self.nodes[column];
+        let centre = (self.window as u32 - 1) / 2;
+        let offsets = &self.offsets[column.block as usize * self.window..][..self.window];
+        let wide = column.is_wide.then(|| &self.wide[&column.block]);
+        move |code, block| match wide {
+            Some(wide) => {
+                let place = wide.binary_search_by_key(&block, |&(other, _)| other);
+                place.ok().map(|place| wide[place].1 as usize)
+            }
+            None => Some(offsets[(code + centre - column.code) as usize])
+                .filter(|&offset| offset != NONE)
+                .map(|offset| offset as usize),
         }
     }
 

@@ -2,21 +2,10 @@
 //! other in every column, and its columns one by one.
 
 use igimp_shape::Support;
-use pulp::{Arch, NullaryFnOnce};
 
 use crate::blocks::BlockTable;
 use crate::linearised::Linearised;
 use crate::matrix::Pattern;
-
-/// Which entries of a symmetric matrix are summed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Half {
-    /// All.
-    Both,
-    /// Those on the diagonal and below it, by blocks. What is above means nothing until it is
-    /// mirrored.
-    Lower,
-}
 
 /// The unknown rows of one particle.
 #[derive(Debug, Default)]
@@ -34,12 +23,6 @@ struct Run {
     code: u32,
     block: u32,
     rank: u32,
-}
-
-impl Run {
-    fn end(&self) -> usize {
-        (self.first + self.len) as usize
-    }
 }
 
 impl Rows {
@@ -76,67 +59,29 @@ impl Rows {
         }
     }
 
-}
 
-/// The tangent of one particle on its way into a slice of the values of the matrix.
-pub(crate) struct Scatter<'a, const D: usize> {
-    pub(crate) supports: &'a [Support<D>],
-    pub(crate) rows: &'a Rows,
-    pub(crate) linearised: &'a mut Linearised<D>,
-    pub(crate) table: &'a BlockTable<D>,
-    pub(crate) pattern: &'a Pattern,
-    pub(crate) half: Half,
-    /// First value of the slice.
-    pub(crate) start: usize,
-    pub(crate) values: &'a mut [f64],
-}
-
-impl<const D: usize> Scatter<'_, D> {
-    /// Adds the tangent to the matrix, with wider instructions where the processor has them: sums and their
-    /// order are the same.
+    /// Adds the tangent of one particle to the slice of values that begins at `start`.
     #[inline]
-    pub(crate) fn run(self) {
-        Arch::new().dispatch(self);
-    }
-}
-
-impl<const D: usize> NullaryFnOnce for Scatter<'_, D> {
-    type Output = ();
-
-    #[allow(
-        clippy::inline_always,
-        reason = "compiled for the instructions of the caller"
-    )]
-    #[inline(always)]
-    fn call(self) {
-        let Self {
-            supports,
-            table,
-            linearised,
-            ..
-        } = self;
-        let mut runs = &self.rows.runs[..];
+    pub(crate) fn scatter<const D: usize>(
+        &self,
+        supports: &[Support<D>],
+        (table, pattern): (&BlockTable<D>, &Pattern),
+        linearised: &mut Linearised<D>,
+        (start, slice): (usize, &mut [f64]),
+    ) {
         for (j, support) in supports.iter().enumerate() {
             let column = &table.nodes[support.node];
             if column.len == 0 {
                 continue;
             }
-            if self.half == Half::Lower {
-                while let Some((run, rest)) = runs.split_first()
-                    && run.end() <= j * D
-                {
-                    runs = rest;
-                }
-            }
-            let first = runs.first().map_or(0, |run| run.first as usize);
-            let columns = linearised.columns(j, first);
-            let stored = self.pattern.values_of(column.block as usize);
-            let values = &mut self.values[stored.start - self.start..stored.end - self.start];
+            let columns = linearised.columns(j);
+            let stored = pattern.values_of(column.block as usize);
+            let values = &mut slice[stored.start - start..stored.end - start];
             let offsets = table.offsets_of(support.node);
             let offset = |run: &Run| offsets(run.code, run.block) + run.rank as usize;
             if usize::from(column.len) == D {
                 let height = values.len() / D;
-                for run in runs {
+                for run in &self.runs {
                     let offset = offset(run);
                     for c in 0..D {
                         let sums = &mut values[c * height + offset..];
@@ -145,7 +90,7 @@ impl<const D: usize> NullaryFnOnce for Scatter<'_, D> {
                 }
             } else {
                 let height = values.len() / usize::from(column.len);
-                for run in runs {
+                for run in &self.runs {
                     let offset = offset(run);
                     for (rank, c) in column.components().enumerate() {
                         let sums = &mut values[rank * height + offset..];
@@ -158,11 +103,7 @@ impl<const D: usize> NullaryFnOnce for Scatter<'_, D> {
 }
 
 /// Adds the first `len` terms to the first `len` sums.
-#[allow(
-    clippy::inline_always,
-    reason = "compiled again for the instructions of the caller"
-)]
-#[inline(always)]
+#[inline]
 fn add(sums: &mut [f64], terms: &[f64], len: usize) {
     match len {
         4 => add_all::<4>(sums, terms),
@@ -177,11 +118,7 @@ fn add(sums: &mut [f64], terms: &[f64], len: usize) {
 }
 
 /// The same for a number that is known: so few that nothing is left of the loop.
-#[allow(
-    clippy::inline_always,
-    reason = "compiled again for the instructions of the caller"
-)]
-#[inline(always)]
+#[inline]
 fn add_all<const N: usize>(sums: &mut [f64], terms: &[f64]) {
     let sums = sums
         .first_chunk_mut::<N>()

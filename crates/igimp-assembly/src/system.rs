@@ -10,7 +10,7 @@ use crate::couplings::Couplings;
 use crate::error::AssemblyError;
 use crate::ghost::ghost_penalty;
 use crate::kinematics::ParticleTrial;
-use crate::linearised::Linearised;
+use crate::linearised::{Linearised, Moduli};
 use crate::loads::{LoadPoint, add_force_of_points, finite_points, nodal_drag, weight};
 use crate::matrix::{Pattern, TangentMatrix};
 use crate::method::{Kinematics, Method};
@@ -418,12 +418,12 @@ impl<'a, const D: usize> System<'a, D> {
             let own = self.evaluate_particle(particle, u, kind, &mut trial)?;
             let volume = self.reference_volume(particle);
             linearised.push(supports, &own);
-            linearised.linearise(&own, volume, self.method.kinematics_of_step());
+            linearised.linearise(&Moduli::of(&own, volume, self.method.kinematics_of_step()));
             for (j, column) in supports.iter().enumerate() {
                 if !moves(column.node) {
                     continue;
                 }
-                let columns = linearised.columns(j, 0);
+                let columns = linearised.columns(j);
                 for (i, row) in supports.iter().enumerate() {
                     for (a, unknown) in self.unknowns.of(row.node) {
                         for c in 0..D {

@@ -9,9 +9,9 @@ use rayon::prelude::*;
 
 use crate::error::AssemblyError;
 use crate::kinematics::{Linearisation, ParticleState, ParticleTrial, evaluate};
-use crate::linearised::Linearised;
-use crate::mirror::mirror;
-use crate::scatter::{Half, Rows, Scatter};
+use crate::linearised::{Linearised, Moduli};
+use crate::patch::Patch;
+use crate::scatter::Rows;
 use crate::strips::split;
 use crate::system::System;
 
@@ -29,6 +29,7 @@ pub struct Trial<const D: usize> {
 pub(crate) struct Scratch<const D: usize> {
     pub(crate) linearised: Linearised<D>,
     pub(crate) rows: Rows,
+    pub(crate) patch: Patch<D>,
 }
 
 /// The part of a pass that belongs to one strip.
@@ -93,20 +94,7 @@ impl<const D: usize> System<'_, D> {
                 return Err(error);
             }
         }
-        if let Some(values) = values.filter(|_| self.half() == Half::Lower) {
-            mirror(&self.pattern, values);
-        }
         Ok(())
-    }
-
-    /// Which half of the tangent is summed. In the plane a particle has so few columns that half of them is
-    /// no gain.
-    fn half(&self) -> Half {
-        if D == 3 && self.symmetric_particles {
-            Half::Lower
-        } else {
-            Half::Both
-        }
     }
 
     /// The particles of one strip; the particle that fails and why.
@@ -119,14 +107,19 @@ impl<const D: usize> System<'_, D> {
         scratch: &mut Scratch<D>,
     ) -> Result<(), (usize, AssemblyError)> {
         let order = &self.stencils.order()[strip.slots];
-        for (&particle, trial) in order.iter().zip(strip.particles) {
+        let mut end_of_patch = 0;
+        for (slot, (&particle, trial)) in order.iter().zip(strip.particles).enumerate() {
             let particle = particle as usize;
             let supports = self.stencils.of(particle);
             let own = self
                 .evaluate_particle(particle, u, kind, trial)
                 .map_err(|error| (particle, error))?;
             let volume = self.reference_volume(particle);
-            let Scratch { linearised, rows } = &mut *scratch;
+            let Scratch {
+                linearised,
+                rows,
+                patch,
+            } = &mut *scratch;
             linearised.push(supports, &own);
             for (support, force) in supports.iter().zip(linearised.forces(&own, volume)) {
                 let sum = &mut strip.f_int[support.node - strip.first_node];
@@ -134,20 +127,26 @@ impl<const D: usize> System<'_, D> {
                     sum[axis] += force[axis];
                 }
             }
-            if let Some((start, values)) = &mut strip.values {
+            let Some((start, values)) = &mut strip.values else {
+                continue;
+            };
+            let matrix = (&self.table, &*self.pattern);
+            let moduli = Moduli::of(&own, volume, self.method.kinematics_of_step());
+            if D == 3 {
+                if slot == end_of_patch {
+                    let next = order[slot..].iter();
+                    let next = next.map(|&particle| self.stencils.of(particle as usize));
+                    let (grid, near) = (&self.conditions.grid, self.table.near);
+                    end_of_patch += patch.begin(grid, near, next, self.symmetric_particles);
+                }
+                patch.add(supports, linearised, &moduli);
+                if slot + 1 == end_of_patch {
+                    patch.scatter(matrix, (*start, values));
+                }
+            } else {
                 rows.set(supports, &self.table);
-                linearised.linearise(&own, volume, self.method.kinematics_of_step());
-                let scatter = Scatter {
-                    supports,
-                    rows,
-                    linearised,
-                    table: &self.table,
-                    pattern: &self.pattern,
-                    half: self.half(),
-                    start: *start,
-                    values,
-                };
-                scatter.run();
+                linearised.linearise(&moduli);
+                rows.scatter(supports, matrix, linearised, (*start, values));
             }
         }
         Ok(())
