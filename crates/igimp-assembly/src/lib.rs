@@ -21,6 +21,7 @@ mod linearised;
 mod loads;
 mod matrix;
 mod method;
+mod mirror;
 mod nodal_forces;
 mod particles;
 mod patch;

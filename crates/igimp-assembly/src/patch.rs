@@ -1,17 +1,19 @@
 //! The tangents of particles in space, summed over a patch of nodes before they go into the matrix.
 //!
 //! In space a particle has some fifteen nodes, and so two thousand entries, of which its neighbours share
-//! most. Particles that begin at the same node are therefore summed first. The patch holds vectors
-//! over its nodes, by lanes that are worked on together. With the gradients of the column sorted out
-//! of the tangent (theory, eqs. 16 to 18; [`linearised`](crate::linearised) has the symbols),
+//! most. Particles that begin at the same node are therefore summed first. Sorted by the gradients of
+//! the column, the tangent (theory, eqs. 16 to 18; [`linearised`](crate::linearised) has the symbols) is
 //!
 //! ```math
 //! K_{(ia)(jc)} = \sum_d Y^{d}_{iac}\,g_{jd} + z_{ia}\,d_{jc} - V p\,\bar g_{ic}\,\bar g_{ja},\quad
 //! Y^{d}_{iac} = V\,\{g_{ib} (A_{abcd} + (p\,\delta_{ad} - \tau_{ad})\,\delta_{bc}) + d_{ia} A_{ppcd}\},
 //! ```
 //!
-//! the factors Y, z and V p ḡ are computed once for each particle and serve all columns. Of a symmetric
-//! tangent only the rows from the node of the column on are summed; the others are their mirror image.
+//! with factors Y, z and V p ḡ that are computed once for each particle and serve all columns. They are
+//! kept as vectors over the nodes i. Of a symmetric tangent the rows from the node of the column on are
+//! summed; the others are [their mirror image](crate::mirror).
+
+use std::ops::Range;
 
 use igimp_shape::{Grid, Support};
 use pulp::{Arch, NullaryFnOnce};
@@ -19,9 +21,13 @@ use pulp::{Arch, NullaryFnOnce};
 use crate::blocks::BlockTable;
 use crate::linearised::{Linearised, Moduli};
 use crate::matrix::Pattern;
+use crate::scatter::Rows;
 
 /// Nodes that are worked on together.
 const LANES: usize = 4;
+
+/// How far from their first node particles that share a patch may reach: 4³ nodes fit into a mask.
+const FURTHEST: usize = 3;
 
 /// Numbers of as many nodes.
 type Lane = [f64; LANES];
@@ -31,11 +37,11 @@ type Lane = [f64; LANES];
 pub(crate) struct Patch<const D: usize> {
     /// The nodes of all particles, ascending.
     nodes: Vec<usize>,
-    /// Room for the next ones.
-    merged: Vec<usize>,
     /// The nodes that particles may have who share the patch, ascending.
     allowed: Vec<usize>,
-    /// Where the nodes of the particle at hand are among them.
+    /// The unknown rows of the nodes.
+    rows: Rows,
+    /// Where the nodes of the particle at hand are among `nodes`.
     places: Vec<usize>,
     /// By lane: gradients g and ḡ of the particle at hand, zero at nodes that it does not touch.
     gradients: Vec<[[Lane; D]; 2]>,
@@ -71,20 +77,25 @@ impl<const D: usize> Patch<D> {
         let Some(first) = supports.next() else {
             return 0;
         };
-        self.nodes.clear();
-        self.nodes.extend(first.iter().map(|support| support.node));
-        self.allow(grid, first[0].node, near);
         let mut count = 1;
-        if self.allows(first) {
+        self.nodes.clear();
+        self.allow(grid, first[0].node, near.min(FURTHEST));
+        if let Some(mut mask) = self.mask(first) {
             for own in supports {
-                if own[0].node != first[0].node || !self.allows(own) {
+                if own[0].node != first[0].node {
                     break;
                 }
-                self.merge(own);
+                let Some(own) = self.mask(own) else { break };
+                mask |= own;
                 count += 1;
             }
+            let allowed = self.allowed.iter().enumerate();
+            let taken = allowed.filter(|&(k, _)| mask & (1 << k) != 0);
+            self.nodes.extend(taken.map(|(_, node)| node));
+        } else {
+            self.nodes.extend(first.iter().map(|support| support.node));
         }
-        let lanes = self.nodes.len().div_ceil(LANES);
+        let lanes = self.lanes();
         self.gradients.resize(lanes, [[[0.0; LANES]; D]; 2]);
         let nothing = Factors {
             y: [[[[0.0; LANES]; D]; D]; D],
@@ -97,6 +108,12 @@ impl<const D: usize> Patch<D> {
             .resize(self.nodes.len() * lanes, [[[0.0; LANES]; D]; D]);
         self.is_half = is_half;
         count
+    }
+
+    /// How many times `LANES` nodes there are.
+    #[inline]
+    fn lanes(&self) -> usize {
+        self.nodes.len().div_ceil(LANES)
     }
 
     /// Allows the nodes that are not before a corner along any axis, and no further than `near`.
@@ -117,29 +134,21 @@ impl<const D: usize> Patch<D> {
         }
     }
 
-    /// Whether all nodes of a particle are allowed.
-    fn allows(&self, own: &[Support<D>]) -> bool {
-        let mut allowed = self.allowed.iter();
-        own.iter()
-            .all(|support| allowed.any(|&node| node == support.node))
-    }
-
-    /// Adds the nodes of one more particle.
-    fn merge(&mut self, own: &[Support<D>]) {
-        self.merged.clear();
-        let mut known = self.nodes.iter().copied().peekable();
+    /// The nodes of a particle among those allowed, one bit each; `None` if there are others.
+    #[inline]
+    fn mask(&self, own: &[Support<D>]) -> Option<u64> {
+        let (mut mask, mut k) = (0, 0);
         for support in own {
-            while let Some(node) = known.next_if(|&node| node < support.node) {
-                self.merged.push(node);
+            while *self.allowed.get(k)? != support.node {
+                k += 1;
             }
-            known.next_if_eq(&support.node);
-            self.merged.push(support.node);
+            mask |= 1 << k;
         }
-        self.merged.extend(known);
-        std::mem::swap(&mut self.nodes, &mut self.merged);
+        Some(mask)
     }
 
     /// Adds the tangent of one of the particles, whose gradients were pushed.
+    #[inline]
     pub(crate) fn add(
         &mut self,
         supports: &[Support<D>],
@@ -163,12 +172,13 @@ impl<const D: usize> Patch<D> {
 
     /// Adds the sums to the slice of values of the matrix that begins at `start`.
     pub(crate) fn scatter(
-        &self,
+        &mut self,
         (table, pattern): (&BlockTable<D>, &Pattern),
         (start, slice): (usize, &mut [f64]),
     ) {
-        let lanes = self.nodes.len().div_ceil(LANES);
-        for (j, &node) in self.nodes.iter().enumerate() {
+        let lanes = self.lanes();
+        self.rows.set(self.nodes.iter().copied(), table);
+        for (j, (&node, sums)) in self.nodes.iter().zip(self.sums.chunks(lanes)).enumerate() {
             let column = &table.nodes[node];
             if column.len == 0 {
                 continue;
@@ -176,37 +186,31 @@ impl<const D: usize> Patch<D> {
             let stored = pattern.values_of(column.block as usize);
             let values = &mut slice[stored.start - start..stored.end - start];
             let height = values.len() / usize::from(column.len);
-            let offsets = table.offsets_if_coupled(node);
-            for (i, &node) in self.nodes.iter().enumerate() {
-                let row = &table.nodes[node];
-                if row.len == 0 {
-                    continue;
-                }
-                let Some(offset) = offsets(row.code, row.block) else {
-                    continue;
-                };
-                let block: [[f64; D]; D] = if self.is_half && i < j {
-                    let sums = &self.sums[i * lanes + j / LANES];
-                    std::array::from_fn(|c| std::array::from_fn(|a| sums[a][c][j % LANES]))
-                } else {
-                    let sums = &self.sums[j * lanes + i / LANES];
-                    std::array::from_fn(|c| std::array::from_fn(|a| sums[c][a][i % LANES]))
-                };
-                if usize::from(row.len) == D && usize::from(column.len) == D {
-                    for c in 0..D {
-                        let values = &mut values[c * height + offset..][..D];
-                        for a in 0..D {
-                            values[a] += block[c][a];
+            let first = if self.is_half { j * D } else { 0 };
+            let add = |rows: Range<usize>, offset: usize| {
+                let is_full = rows.start % D == 0 && rows.len() % D == 0;
+                if is_full && usize::from(column.len) == D {
+                    for (k, i) in (rows.start / D..rows.end / D).enumerate() {
+                        let (sums, lane) = (&sums[i / LANES], i % LANES);
+                        for c in 0..D {
+                            let values = &mut values[c * height + offset + k * D..][..D];
+                            for a in 0..D {
+                                values[a] += sums[c][a][lane];
+                            }
                         }
                     }
                 } else {
-                    for (values, c) in values.chunks_exact_mut(height).zip(column.components()) {
-                        for (value, a) in values[offset..].iter_mut().zip(row.components()) {
-                            *value += block[c][a];
+                    for (rank, c) in column.components().enumerate() {
+                        let values = &mut values[rank * height + offset..][..rows.len()];
+                        for (value, row) in values.iter_mut().zip(rows.clone()) {
+                            let i = row / D;
+                            *value += sums[i / LANES][c][row % D][i % LANES];
                         }
                     }
                 }
-            }
+            };
+            let nodes = (table, &self.nodes[..]);
+            self.rows.visit_coupled::<D>(nodes, node, first, add);
         }
     }
 }
@@ -298,17 +302,24 @@ fn set<const D: usize>(
     [g, g_bar]: &[[Lane; D]; 2],
     moduli: &Moduli<D>,
 ) {
-    let w = g_bar.map(|g_bar| g_bar.map(|g_bar| -moduli.vp * g_bar));
     for a in 0..D {
-        let d_3: Lane = std::array::from_fn(|lane| g_bar[a][lane] - g[a][lane]);
-        let mut z = d_3.map(|d_3| moduli.trace * d_3);
+        for lane in 0..LANES {
+            factors.w[a][lane] = -moduli.vp * g_bar[a][lane];
+        }
+        let mut d_3 = g_bar[a];
+        for lane in 0..LANES {
+            d_3[lane] -= g[a][lane];
+        }
+        let mut z = [0.0; LANES];
+        add(&mut z, &d_3, moduli.trace);
         for b in 0..D {
             add(&mut z, &g[b], moduli.right[b][a]);
         }
         factors.z[a] = z;
         for c in 0..D {
             for d in 0..D {
-                let mut y = d_3.map(|d_3| moduli.left[c][d] * d_3);
+                let mut y = [0.0; LANES];
+                add(&mut y, &d_3, moduli.left[c][d]);
                 for b in 0..D {
                     add(&mut y, &g[b], moduli.modulus[c][d][b][a]);
                 }
@@ -316,5 +327,4 @@ fn set<const D: usize>(
             }
         }
     }
-    factors.w = w;
 }

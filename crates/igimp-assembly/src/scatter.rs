@@ -1,6 +1,8 @@
 //! From the tangent of one particle into the matrix: its unknown rows as runs that lie one after the
 //! other in every column, and its columns one by one.
 
+use std::ops::Range;
+
 use igimp_shape::Support;
 
 use crate::blocks::BlockTable;
@@ -23,27 +25,42 @@ struct Run {
     code: u32,
     block: u32,
     rank: u32,
+    /// The last node, among those listed, and how many rows of the run stand before its own.
+    last: u32,
+    before_last: u32,
 }
 
 impl Rows {
-    /// Lists the unknown rows of a particle.
+    /// Lists the unknown rows of some nodes.
     #[inline]
-    pub(crate) fn set<const D: usize>(&mut self, supports: &[Support<D>], table: &BlockTable<D>) {
+    pub(crate) fn set<const D: usize>(
+        &mut self,
+        nodes: impl Iterator<Item = usize>,
+        table: &BlockTable<D>,
+    ) {
         self.runs.clear();
         // The row and the unknown that would make the last run longer.
         let mut next = (u32::MAX, u32::MAX);
-        for (i, support) in supports.iter().enumerate() {
-            let node = &table.nodes[support.node];
+        for (i, node) in nodes.enumerate() {
+            let node = &table.nodes[node];
             let mut add = |first: u32, rank: u32, len: u32| {
                 let here = (first, node.first + rank);
                 match self.runs.last_mut() {
-                    Some(run) if here == next => run.len += len,
+                    Some(run) if here == next => {
+                        if rank == 0 {
+                            run.last = i as u32;
+                            run.before_last = run.len;
+                        }
+                        run.len += len;
+                    }
                     _ => self.runs.push(Run {
                         first,
                         len,
                         code: node.code,
                         block: node.block,
                         rank,
+                        last: i as u32,
+                        before_last: 0,
                     }),
                 }
                 next = (here.0 + len, here.1 + len);
@@ -58,7 +75,6 @@ impl Rows {
             }
         }
     }
-
 
     /// Adds the tangent of one particle to the slice of values that begins at `start`.
     #[inline]
@@ -95,6 +111,47 @@ impl Rows {
                     for (rank, c) in column.components().enumerate() {
                         let sums = &mut values[rank * height + offset..];
                         add(sums, &columns[c][run.first as usize..], run.len as usize);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Visits the rows from `first` on that one of the listed `nodes` is coupled to: rows that follow one another,
+    /// and the offset of their first one in the columns of the node.
+    #[inline]
+    pub(crate) fn visit_coupled<const D: usize>(
+        &self,
+        (table, nodes): (&BlockTable<D>, &[usize]),
+        node: usize,
+        first: usize,
+        mut visit: impl FnMut(Range<usize>, usize),
+    ) {
+        let offset = table.offsets_if_coupled(node);
+        for run in &self.runs {
+            let rows = run.first as usize..(run.first + run.len) as usize;
+            if rows.end <= first {
+                continue;
+            }
+            let begin = offset(run.code, run.block).map(|offset| offset + run.rank as usize);
+            let last = &table.nodes[nodes[run.last as usize]];
+            let begin_of_last = match run.before_last {
+                0 => begin,
+                _ => offset(last.code, last.block),
+            };
+            match (begin, begin_of_last) {
+                (Some(begin), Some(last)) if last == begin + run.before_last as usize => {
+                    visit(rows, begin);
+                }
+                _ => {
+                    // Some nodes of the run are coupled, and others are not.
+                    for i in rows.start / D..rows.end.div_ceil(D) {
+                        let row = &table.nodes[nodes[i]];
+                        let own = rows.start.max(i * D)..rows.end.min((i + 1) * D);
+                        let rank = if i == rows.start / D { run.rank } else { 0 };
+                        if let Some(offset) = offset(row.code, row.block) {
+                            visit(own, offset + rank as usize);
+                        }
                     }
                 }
             }

@@ -10,6 +10,7 @@ use rayon::prelude::*;
 use crate::error::AssemblyError;
 use crate::kinematics::{Linearisation, ParticleState, ParticleTrial, evaluate};
 use crate::linearised::{Linearised, Moduli};
+use crate::mirror::mirror;
 use crate::patch::Patch;
 use crate::scatter::Rows;
 use crate::strips::split;
@@ -94,6 +95,9 @@ impl<const D: usize> System<'_, D> {
                 return Err(error);
             }
         }
+        if let Some(values) = values.filter(|_| D == 3 && self.symmetric_particles) {
+            mirror(&self.pattern, values);
+        }
         Ok(())
     }
 
@@ -144,7 +148,7 @@ impl<const D: usize> System<'_, D> {
                     patch.scatter(matrix, (*start, values));
                 }
             } else {
-                rows.set(supports, &self.table);
+                rows.set(supports.iter().map(|support| support.node), &self.table);
                 linearised.linearise(&moduli);
                 rows.scatter(supports, matrix, linearised, (*start, values));
             }
