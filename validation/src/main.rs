@@ -135,6 +135,9 @@ enum Case {
     SpaceWalls,
     SpaceSphere,
     SpaceTorsion,
+    ContactSpace,
+    ContactSphere,
+    ContactCircle,
     Comparisons,
 }
 
@@ -181,6 +184,9 @@ impl Case {
             Self::SpaceWalls => space::walls::study(level, out),
             Self::SpaceSphere => space::sphere::study(level, out),
             Self::SpaceTorsion => space::torsion::study(level, out),
+            Self::ContactSpace => contact::space::study(level, out),
+            Self::ContactSphere => contact::space::sphere::study(level, out),
+            Self::ContactCircle => contact::space::circle::study(level, out),
             Self::Comparisons => comparisons::study(level, out),
         }
     }

@@ -1,8 +1,8 @@
 //! Solver, monitors, sections, curves, checks and output.
 
-use super::{MANY, POINT, stage};
+use super::{A_LENGTH, MANY, POINT, stage};
 use crate::input::spec::{
-    Choice, Kind, Range, Struct, choice, default, derived, optional, required,
+    Choice, Kind, Range, Struct, choice, default, derived, in_space, optional, required,
 };
 
 pub(in crate::input) static SOLVER: Struct = Struct {
@@ -53,8 +53,15 @@ static STEP_CUTTING: Struct = Struct {
     ],
 };
 
-static LINEAR_SOLVERS: [Choice; 7] = [
-    choice("auto", "Cholesky for symmetric matrices, LU for others"),
+static LINEAR_SOLVERS: [Choice; 8] = [
+    choice(
+        "auto",
+        "Cholesky for symmetric matrices, LU for others; for large systems in space multigrid",
+    ),
+    choice(
+        "multigrid",
+        "conjugate gradients or GMRES with geometric multigrid on the grid",
+    ),
     choice("direct", "the same as auto"),
     choice("cholesky", "multifrontal Cholesky"),
     choice("lu", "multifrontal LU"),
@@ -447,6 +454,12 @@ pub(in crate::input) static OUTPUT: Struct = Struct {
             "[\"displacement\", \"plastic_strain\", \"sigma_yy\"]",
             "fields drawn at the end of every stage; with none no picture is drawn at all",
         ),
+        in_space(default(
+            "cuts",
+            Kind::List(&CUT, 0, 20),
+            "[]",
+            "planes in which the fields are drawn as well; without any, upright ones through the middle of the bodies",
+        )),
         default(
             "report",
             Kind::Flag,
@@ -461,6 +474,20 @@ pub(in crate::input) static OUTPUT: Struct = Struct {
         ),
     ],
 };
+
+static CUT: Kind = Kind::Table(&Struct {
+    doc: "A plane across an axis.",
+    fields: &[
+        required("across", Kind::Choice(&ACROSS), "\"y\"", "the axis"),
+        required("at", A_LENGTH, "\"5 m\"", "where it stands on the axis"),
+    ],
+});
+
+static ACROSS: [Choice; 3] = [
+    choice("x", "upright, along y"),
+    choice("y", "upright, along x"),
+    choice("z", "level"),
+];
 
 static PARAVIEW: Struct = Struct {
     doc: "When particles are written for ParaView.",
