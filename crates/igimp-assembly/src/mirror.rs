@@ -20,7 +20,8 @@ pub(crate) fn mirror(pattern: &Pattern, values: &mut [f64]) {
         .step_by(length)
         .map(|first| first..count.min(first + length))
         .collect();
-    let stored = |piece: &Range<usize>| pattern.first_value[piece.start]..pattern.first_value[piece.end];
+    let stored =
+        |piece: &Range<usize>| pattern.first_value[piece.start]..pattern.first_value[piece.end];
     let slices = split(values, pieces.iter().map(stored));
     let mut all: Vec<(Range<usize>, &mut [f64])> = pieces.into_iter().zip(slices).collect();
     let into_second = |pair: &mut [(Range<usize>, &mut [f64])]| match pair {
@@ -42,7 +43,11 @@ fn fill_upper(
     (before, earlier): (Range<usize>, &[f64]),
     (piece, own): (Range<usize>, &mut [f64]),
 ) {
-    let first_block = if before.is_empty() { piece.start } else { before.start };
+    let first_block = if before.is_empty() {
+        piece.start
+    } else {
+        before.start
+    };
     let first = |block: usize| pattern.first_value[block];
     // By column block: where the next row is that none of the columns of the piece has read yet.
     let mut next: Vec<usize> = (first_block..piece.end)

@@ -260,7 +260,11 @@ impl<const D: usize> NullaryFnOnce for Add<'_, D> {
         let lanes = nodes.len().div_ceil(LANES);
         for (&place, (g, g_bar)) in std::iter::zip(&*places, own) {
             let d_3: [f64; D] = std::array::from_fn(|c| g_bar[c] - g[c]);
-            let from = if *is_half { place / LANES } else { touched.start };
+            let from = if *is_half {
+                place / LANES
+            } else {
+                touched.start
+            };
             let sums = &mut sums[place * lanes..][from..touched.end];
             for (sums, factors) in sums.iter_mut().zip(&factors[from..touched.end]) {
                 for c in 0..D {
@@ -297,11 +301,7 @@ fn add(sum: &mut Lane, term: &Lane, factor: f64) {
     reason = "compiled for the instructions of the caller"
 )]
 #[inline(always)]
-fn set<const D: usize>(
-    factors: &mut Factors<D>,
-    [g, g_bar]: &[[Lane; D]; 2],
-    moduli: &Moduli<D>,
-) {
+fn set<const D: usize>(factors: &mut Factors<D>, [g, g_bar]: &[[Lane; D]; 2], moduli: &Moduli<D>) {
     for a in 0..D {
         for lane in 0..LANES {
             factors.w[a][lane] = -moduli.vp * g_bar[a][lane];
