@@ -178,6 +178,15 @@ fn ascending(node: &Node, who: &Who<'_>, problems: &mut Problems) -> Option<[f64
 }
 
 fn surface(node: &Node, who: &Who<'_>, problems: &mut Problems) -> Option<Solid> {
+    closed_surface(node, &who.to_string(), problems).map(Solid::Surface)
+}
+
+/// The closed surface of a table.
+pub(super) fn closed_surface(
+    node: &Node,
+    who: &str,
+    problems: &mut Problems,
+) -> Option<Arc<ClosedSurface>> {
     let (Some(vertices), Some(triangles)) = (node.get("vertices"), node.get("triangles")) else {
         problems
             .error(node.place, format!("the surface of {who} is not stated"))
@@ -202,7 +211,7 @@ fn surface(node: &Node, who: &Who<'_>, problems: &mut Problems) -> Option<Solid>
         faces.push(numbers.map(|number| points[number]));
     }
     match ClosedSurface::new(&faces) {
-        Ok(surface) => Some(Solid::Surface(Arc::new(surface))),
+        Ok(surface) => Some(Arc::new(surface)),
         Err(error) => {
             let help = match error {
                 ClosedSurfaceError::Open { .. } => {

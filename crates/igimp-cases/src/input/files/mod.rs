@@ -41,6 +41,10 @@ pub(super) fn read(tree: &mut Node, case: &Path, problems: &mut Problems) {
             }
         }
     }
+    let rigid = tree.get_mut("rigid").map(Node::items_mut);
+    for body in rigid.into_iter().flatten() {
+        shape(body, folder, problems);
+    }
     if let Some(bodies) = tree.get_mut("bodies") {
         for body in bodies.items_mut() {
             shape(body, folder, problems);
