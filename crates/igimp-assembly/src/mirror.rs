@@ -20,7 +20,8 @@ pub(crate) fn mirror(pattern: &Pattern, values: &mut [f64]) {
         .step_by(length)
         .map(|first| first..count.min(first + length))
         .collect();
-    let stored = |piece: &Range<usize>| pattern.first_value[piece.start]..pattern.first_value[piece.end];
+    let stored =
+        |piece: &Range<usize>| pattern.first_value[piece.start]..pattern.first_value[piece.end];
     let slices = split(values, pieces.iter().map(stored));
     let mut all: Vec<(Range<usize>, &mut [f64])> = pieces.into_iter().zip(slices).collect();
     let into_second = |pair: &mut [(Range<usize>, &mut [f64])]| match pair {
@@ -42,7 +43,11 @@ fn fill_upper(
     (before, earlier): (Range<usize>, &[f64]),
     (piece, own): (Range<usize>, &mut [f64]),
 ) {
-    let first_block = if before.is_empty() { piece.start } else { before.start };
+    let first_block = if before.is_empty() {
+        piece.start
+    } else {
+        before.start
+    };
     let first = |block: usize| pattern.first_value[block];
     // By column block: where the next row is that none of the columns of the piece has read yet.
     let mut next: Vec<usize> = (first_block..piece.end)
@@ -66,19 +71,37 @@ fn fill_upper(
                 *next += len;
                 break;
             }
-            let other_height = pattern.height(other);
-            for a in 0..pattern.blocks[other].len {
-                for c in 0..len {
-                    let from = first(other) + a * other_height + *next + c;
-                    let value = if other < piece.start {
-                        earlier[from - first(before.start)]
-                    } else {
-                        own[from - first(piece.start)]
-                    };
-                    own[to + c * height + row + a] = value;
+            let other_len = pattern.blocks[other].len;
+            let source = if other < piece.start {
+                &earlier[first(other) - first(before.start)..]
+            } else {
+                &own[first(other) - first(piece.start)..]
+            };
+            let (source, stride) = (&source[*next..], pattern.height(other));
+            // Most nodes have three unknowns: known lengths leave nothing of the loops.
+            if len == 3 && other_len == 3 {
+                let block: [[f64; 3]; 3] = std::array::from_fn(|a| {
+                    let column = source[a * stride..].first_chunk();
+                    *column.expect("rows of a node follow one another")
+                });
+                for c in 0..3 {
+                    let to = &mut own[to + c * height + row..][..3];
+                    for a in 0..3 {
+                        to[a] = block[a][c];
+                    }
+                }
+            } else {
+                let mut block = [[0.0; 3]; 3];
+                for a in 0..other_len {
+                    block[a][..len].copy_from_slice(&source[a * stride..][..len]);
+                }
+                for a in 0..other_len {
+                    for c in 0..len {
+                        own[to + c * height + row + a] = block[a][c];
+                    }
                 }
             }
-            row += pattern.blocks[other].len;
+            row += other_len;
             *next += len;
         }
     }

@@ -103,9 +103,13 @@ impl<const D: usize> Patch<D> {
             w: [[0.0; LANES]; D],
         };
         self.factors.resize(lanes, nothing);
-        self.sums.clear();
         self.sums
             .resize(self.nodes.len() * lanes, [[[0.0; LANES]; D]; D]);
+        for (j, sums) in self.sums.chunks_exact_mut(lanes).enumerate() {
+            let from = if is_half { j / LANES } else { 0 };
+            let sums = sums[from..].as_flattened_mut().as_flattened_mut();
+            sums.as_flattened_mut().fill(0.0);
+        }
         self.is_half = is_half;
         count
     }
@@ -245,7 +249,8 @@ impl<const D: usize> NullaryFnOnce for Add<'_, D> {
             return;
         };
         let touched = first / LANES..last / LANES + 1;
-        gradients[touched.clone()].fill([[[0.0; LANES]; D]; 2]);
+        let zeroed = gradients[touched.clone()].as_flattened_mut();
+        zeroed.as_flattened_mut().as_flattened_mut().fill(0.0);
         let own = std::iter::zip(self.linearised.g(), self.linearised.g_bar());
         for (&place, (g, g_bar)) in std::iter::zip(&*places, own.clone()) {
             let [to, to_bar] = &mut gradients[place / LANES];
@@ -258,9 +263,13 @@ impl<const D: usize> NullaryFnOnce for Add<'_, D> {
             set(&mut factors[k], &gradients[k], self.moduli);
         }
         let lanes = nodes.len().div_ceil(LANES);
-        for (&place, (g, g_bar)) in std::iter::zip(&*places, own) {
+        for (&place, (&g, &g_bar)) in std::iter::zip(&*places, own) {
             let d_3: [f64; D] = std::array::from_fn(|c| g_bar[c] - g[c]);
-            let from = if *is_half { place / LANES } else { touched.start };
+            let from = if *is_half {
+                place / LANES
+            } else {
+                touched.start
+            };
             let sums = &mut sums[place * lanes..][from..touched.end];
             for (sums, factors) in sums.iter_mut().zip(&factors[from..touched.end]) {
                 for c in 0..D {
@@ -297,11 +306,7 @@ fn add(sum: &mut Lane, term: &Lane, factor: f64) {
     reason = "compiled for the instructions of the caller"
 )]
 #[inline(always)]
-fn set<const D: usize>(
-    factors: &mut Factors<D>,
-    [g, g_bar]: &[[Lane; D]; 2],
-    moduli: &Moduli<D>,
-) {
+fn set<const D: usize>(factors: &mut Factors<D>, [g, g_bar]: &[[Lane; D]; 2], moduli: &Moduli<D>) {
     for a in 0..D {
         for lane in 0..LANES {
             factors.w[a][lane] = -moduli.vp * g_bar[a][lane];
