@@ -105,6 +105,7 @@ impl<const D: usize> BlockTable<D> {
                 blocks.push(NodeBlock {
                     first: unknowns.before(node),
                     len,
+                    free: unknowns.free(node),
                     place: block_place,
                 });
             }
