@@ -23,7 +23,7 @@ pub(crate) struct Lines {
 
 impl Lines {
     /// The line of an event, if it has one.
-    pub(crate) fn line(&mut self, event: &Event<'_>) -> Option<String> {
+    pub(crate) fn line<const D: usize>(&mut self, event: &Event<'_, D>) -> Option<String> {
         match event {
             Event::Prepared { size } => {
                 let mut line = format!(
@@ -71,7 +71,7 @@ impl Lines {
 
     /// The line of an event on a mesh. Meshes run side by side: each line says of which it is, and
     /// steps are left out.
-    fn of_mesh(&mut self, parts: usize, event: &Event<'_>) -> Option<String> {
+    fn of_mesh<const D: usize>(&mut self, parts: usize, event: &Event<'_, D>) -> Option<String> {
         let known = self.meshes.iter().position(|(own, _)| *own == parts);
         let place = known.unwrap_or_else(|| {
             self.meshes.push((parts, Lines::default()));
@@ -145,6 +145,9 @@ fn end(summary: &StageSummary) -> String {
         summary.cuts,
         short(summary.largest_displacement)
     );
+    if let Some(linear) = &summary.linear {
+        let _ = write!(line, "\n  {}", linear.sentence());
+    }
     line
 }
 
@@ -195,6 +198,7 @@ pub(crate) fn residual(value: Option<f64>) -> String {
 mod tests {
     use igimp_assembly::{ParticleSeed, Particles};
     use igimp_cases::run::{Controls, State};
+    use igimp_solver::linear::LinearEffort;
     use igimp_solver::{Body, PhaseTimes, StepFailure};
 
     use super::*;
@@ -222,6 +226,7 @@ mod tests {
             ghost_penalty: 0.0,
             drag_share: 0.0,
             worst: Some(([31.5, 10.5, 0.0], 0)),
+            linear: LinearEffort::default(),
             times: PhaseTimes::default(),
         }
     }
@@ -311,7 +316,7 @@ mod tests {
             body: Body::new(Particles::new(&[seed]).unwrap()),
             controls: Controls {
                 gravity: 1.0,
-                acceleration: [0.0; 2],
+                acceleration: [0.0; 3],
                 factors: Vec::new(),
                 settlement: 0.0,
                 srf: Vec::new(),

@@ -1,0 +1,425 @@
+//! Bodies in space: what their keys say, made into solids.
+
+use std::fmt::{self, Display, Formatter};
+use std::sync::Arc;
+
+use super::bodies::corners;
+use crate::input::diagnostic::Problems;
+use crate::input::text::{clip, number};
+use crate::input::tree::Node;
+use crate::region::{Cover, Region};
+use crate::solid::{
+    ClosedSurface, ClosedSurfaceError, Cylinder, Difference, Height, Layer, LayerError, Prism,
+    Solid, Sphere, Terrain, TerrainError,
+};
+
+/// The keys that say a shape.
+const SHAPES: [&str; 6] = ["box", "polygon", "plan", "cylinder", "sphere", "surface"];
+/// Where two solids are sought to overlap, the box around what they may share is cut so many times into eight.
+const DEPTH: u32 = 5;
+/// Solids overlap in a box if they have more than this share of it together \[-\].
+const SHARED: f64 = 1.01;
+
+/// Whose shape it is.
+#[derive(Clone, Copy, Debug)]
+struct Who<'a> {
+    /// Name of the body.
+    name: &'a str,
+    /// The number of what is taken out of it, from 1.
+    taken: Option<usize>,
+}
+
+impl Display for Who<'_> {
+    fn fmt(&self, to: &mut Formatter<'_>) -> fmt::Result {
+        match self.taken {
+            None => write!(to, "body `{}`", self.name),
+            Some(number) => write!(to, "no. {number} of `minus` of body `{}`", self.name),
+        }
+    }
+}
+
+/// The solid of a body, less what is taken out of it.
+pub(super) fn solid(node: &Node, name: &str, problems: &mut Problems) -> Option<Solid> {
+    let name = &clip(name, 40);
+    let who = Who { name, taken: None };
+    let own = shape(node, &who, problems);
+    let mut taken = Vec::new();
+    for (node, number) in std::iter::zip(node.items_at("minus"), 1..) {
+        let taken_out = Who {
+            name,
+            taken: Some(number),
+        };
+        taken.push(shape(node, &taken_out, problems));
+    }
+    let (of, minus) = (own?, taken.into_iter().collect::<Option<Vec<_>>>()?);
+    if minus.is_empty() {
+        return Some(of);
+    }
+    let of = Box::new(of);
+    for (taken, node) in std::iter::zip(&minus, node.items_at("minus")) {
+        let (a, b) = (of.bounds(), taken.bounds());
+        if (0..3).any(|axis| a.1[axis] <= b.0[axis] || b.1[axis] <= a.0[axis]) {
+            problems
+                .warning(node.place, format!("nothing of this lies in {who}"))
+                .help("it takes nothing out");
+        }
+    }
+    Some(Solid::Difference(Difference { of, minus }))
+}
+
+/// The solid of the one key that says a shape.
+fn shape(node: &Node, who: &Who<'_>, problems: &mut Problems) -> Option<Solid> {
+    let stated: Vec<&str> = (SHAPES.into_iter())
+        .filter(|key| node.get(key).is_some())
+        .collect();
+    let [key] = stated[..] else {
+        let (message, help) = match stated[..] {
+            [] => (
+                format!("{who} has no shape"),
+                "write one of box, polygon (with across), plan (with between), cylinder, sphere and surface",
+            ),
+            _ => (
+                format!("{who} has several shapes: {}", stated.join(", ")),
+                "keep one of them; what is taken out of a body stands in `minus`",
+            ),
+        };
+        problems.error(node.place, message).help(help);
+        return None;
+    };
+    for (needed, by) in [("across", "polygon"), ("between", "plan")] {
+        match (node.get(needed), key == by) {
+            (None, true) => {
+                let message = format!("the {by} of {who} needs `{needed}`");
+                let help = match needed {
+                    "across" => {
+                        "say from where to where on y it reaches, as in across = [\"0 m\", \"1 m\"]"
+                    }
+                    _ => {
+                        "say its bottom and top, as in between = [\"0 m\", { raster = \"ground.asc\", unit = \"m\" }]"
+                    }
+                };
+                problems.error(node.place_at(by), message).help(help);
+                return None;
+            }
+            (Some(extra), false) => {
+                problems
+                    .error(extra.place, format!("`{needed}` goes with `{by}`"))
+                    .help(format!("{who} is a {key}"));
+                return None;
+            }
+            _ => {}
+        }
+    }
+    let value = node.get(key).filter(|value| !value.is_invalid())?;
+    match key {
+        "box" => cuboid(value, who, problems),
+        "polygon" => {
+            let polygon = corners(value, who.name, problems);
+            let between = ascending(node.get("across")?, who, problems);
+            Some(Solid::Prism(Prism::new(polygon?, 1, between?)))
+        }
+        "plan" => ground(value, node.get("between")?, who, problems),
+        "cylinder" => {
+            let between = ascending(value.get("between")?, who, problems);
+            let axis = ["x", "y", "z"];
+            let axis = axis
+                .iter()
+                .position(|name| value.text_at("axis") == Some(name))?;
+            Some(Solid::Cylinder(Cylinder {
+                axis,
+                centre: value.pair_at("centre")?,
+                radius: value.number_at("radius")?,
+                between: between?,
+            }))
+        }
+        "sphere" => Some(Solid::Sphere(Sphere {
+            centre: triple(value.get("centre")?)?,
+            radius: value.number_at("radius")?,
+        })),
+        _ => surface(value, who, problems),
+    }
+}
+
+fn triple(node: &Node) -> Option<[f64; 3]> {
+    let numbers: Option<Vec<f64>> = node.items().iter().map(Node::number).collect();
+    numbers?.try_into().ok()
+}
+
+fn cuboid(node: &Node, who: &Who<'_>, problems: &mut Problems) -> Option<Solid> {
+    let (a, b) = (triple(node.get("from")?)?, triple(node.get("to")?)?);
+    let lower: [f64; 3] = std::array::from_fn(|axis| a[axis].min(b[axis]));
+    let upper: [f64; 3] = std::array::from_fn(|axis| a[axis].max(b[axis]));
+    if let Some(axis) = (0..3).find(|&axis| lower[axis] >= upper[axis]) {
+        let axis = ["x", "y", "z"][axis];
+        problems
+            .error(
+                node.place,
+                format!("the box of {who} has no extent along {axis}"),
+            )
+            .help("its two corners are opposite ones");
+        return None;
+    }
+    Some(Solid::Cuboid(lower, upper))
+}
+
+/// Two places in their order.
+fn ascending(node: &Node, who: &Who<'_>, problems: &mut Problems) -> Option<[f64; 2]> {
+    let [from, to] = node.pair()?;
+    if from < to {
+        return Some([from, to]);
+    }
+    problems
+        .error(
+            node.place,
+            format!("{who} reaches from {} m to {} m", number(from), number(to)),
+        )
+        .help("the first place is the lower one");
+    None
+}
+
+fn surface(node: &Node, who: &Who<'_>, problems: &mut Problems) -> Option<Solid> {
+    closed_surface(node, &who.to_string(), problems).map(Solid::Surface)
+}
+
+/// The closed surface of a table.
+pub(super) fn closed_surface(
+    node: &Node,
+    who: &str,
+    problems: &mut Problems,
+) -> Option<Arc<ClosedSurface>> {
+    let (Some(vertices), Some(triangles)) = (node.get("vertices"), node.get("triangles")) else {
+        problems
+            .error(node.place, format!("the surface of {who} is not stated"))
+            .help("write surface = { file = \"block.stl\", unit = \"m\" }, or its vertices and triangles");
+        return None;
+    };
+    let points: Option<Vec<[f64; 3]>> = vertices.items().iter().map(triple).collect();
+    let points = points?;
+    let mut faces = Vec::with_capacity(triangles.items().len());
+    for triangle in triangles.items() {
+        let numbers: Option<Vec<usize>> = triangle.items().iter().map(Node::count).collect();
+        let numbers: [usize; 3] = numbers?.try_into().ok()?;
+        if let Some(wrong) = numbers.iter().find(|number| **number >= points.len()) {
+            problems
+                .error(triangle.place, format!("there is no vertex {wrong}"))
+                .help(format!(
+                    "vertices are numbered from 0 to {}",
+                    points.len() - 1
+                ));
+            return None;
+        }
+        faces.push(numbers.map(|number| points[number]));
+    }
+    match ClosedSurface::new(&faces) {
+        Ok(surface) => Some(Arc::new(surface)),
+        Err(error) => {
+            let help = match error {
+                ClosedSurfaceError::Open { .. } => {
+                    "close it in the program that made it; a body has a triangle on both sides of every edge"
+                }
+                ClosedSurfaceError::Twisted { .. } | ClosedSurfaceError::Inverted { .. } => {
+                    "turn the triangles so that all face outwards: in most programs, recalculate normals"
+                }
+                ClosedSurfaceError::Branched { .. } => {
+                    "parts that touch along an edge, or inner walls, are to be joined or parted"
+                }
+                ClosedSurfaceError::Flat { .. } => "merge double vertices, and export it once more",
+                ClosedSurfaceError::TooFew(_) | ClosedSurfaceError::NotFinite { .. } => {
+                    "export it once more"
+                }
+            };
+            let message = format!("the surface of {who} encloses no body: {error}");
+            problems.error(node.place, message).help(help);
+            None
+        }
+    }
+}
+
+/// A polygon in plan between two heights.
+fn ground(plan: &Node, between: &Node, who: &Who<'_>, problems: &mut Problems) -> Option<Solid> {
+    let polygon = corners(plan, who.name, problems);
+    let heights: Vec<Option<Height>> = (between.items().iter())
+        .map(|own| height(own, who, problems))
+        .collect();
+    let [bottom, top]: [Height; 2] = heights
+        .into_iter()
+        .collect::<Option<Vec<_>>>()?
+        .try_into()
+        .ok()?;
+    let polygon = polygon?;
+    if let (Height::Level(from), Height::Level(to)) = (&bottom, &top) {
+        let (from, to) = (*from, *to);
+        if from >= to {
+            problems
+                .error(
+                    between.place,
+                    format!(
+                        "{who} reaches from {} m up to {} m",
+                        number(from),
+                        number(to)
+                    ),
+                )
+                .help("the first is the bottom");
+            return None;
+        }
+        return Some(Solid::Prism(Prism::new(polygon, 2, [from, to])));
+    }
+    match Layer::new(&polygon, bottom, top) {
+        Ok(layer) => Some(Solid::Layer(Arc::new(layer))),
+        Err(error) => {
+            let help = match error {
+                LayerError::NotCovered { .. } => {
+                    "make the plan smaller, or take a survey that reaches further and has no holes there"
+                }
+                LayerError::Crossing { .. } => {
+                    "surfaces may touch, where a layer ends, and not cross: raise the top or lower the bottom there"
+                }
+                LayerError::Empty => "the top is above the bottom",
+                LayerError::NoArea => "its corners lie on one line",
+            };
+            problems
+                .error(between.place, format!("{who} cannot be made: {error}"))
+                .help(help);
+            None
+        }
+    }
+}
+
+fn height(node: &Node, who: &Who<'_>, problems: &mut Problems) -> Option<Height> {
+    if node.is_invalid() {
+        return None;
+    }
+    if let Some(level) = node.number() {
+        return Some(Height::Level(level));
+    }
+    let mut refuse = |error: &dyn Display, help: &str| {
+        let message = format!("a surface of {who} cannot be used: {error}");
+        problems.error(node.place, message).help(help);
+    };
+    let lengths = |key: &str| -> Option<Vec<f64>> {
+        node.get(key)?.items().iter().map(Node::number).collect()
+    };
+    let stated = ["points", "x", "y", "rows"].map(|key| node.get(key).is_some());
+    let terrain = match stated {
+        [true, false, false, false] => {
+            let points = node.items_at("points").iter().map(triple);
+            let points: Option<Vec<[f64; 3]>> = points.collect();
+            Terrain::through(&points?)
+        }
+        [false, true, true, true] => {
+            let (x, y) = (lengths("x")?, lengths("y")?);
+            let rows = node.items_at("rows").iter();
+            let rows: Option<Vec<Vec<f64>>> = rows
+                .map(|row| row.items().iter().map(Node::number).collect())
+                .collect();
+            let rows = rows?;
+            let rises = |lines: &[f64]| lines.windows(2).all(|pair| pair[0] < pair[1]);
+            if rows.len() != y.len()
+                || rows.iter().any(|row| row.len() != x.len())
+                || !(rises(&x) && rises(&y))
+            {
+                let wrong = format!("{} x and {} y do not go with its rows", x.len(), y.len());
+                refuse(
+                    &wrong,
+                    "x and y ascend; there is a row for every y, with a height for every x",
+                );
+                return None;
+            }
+            let mut rows: Vec<Vec<Option<f64>>> = rows
+                .into_iter()
+                .map(|row| row.into_iter().map(Some).collect())
+                .collect();
+            for hole in node.items_at("holes") {
+                let place: Option<Vec<usize>> = hole.items().iter().map(Node::count).collect();
+                let [i, j]: [usize; 2] = place?.try_into().ok()?;
+                match rows.get_mut(j).and_then(|row| row.get_mut(i)) {
+                    Some(height) => *height = None,
+                    None => {
+                        refuse(
+                            &format!("it has no column {i} and row {j}"),
+                            "they are counted from 0",
+                        );
+                        return None;
+                    }
+                }
+            }
+            Terrain::on_lines(&x, &y, &rows)
+        }
+        _ => {
+            refuse(
+                &"it is not stated",
+                "write { raster = \"ground.asc\", unit = \"m\" }, { points = \"ground.csv\", unit = \"m\" }, or x, y and rows",
+            );
+            return None;
+        }
+    };
+    match terrain {
+        Ok(terrain) => Some(Height::Terrain(Arc::new(terrain))),
+        Err(error) => {
+            let help = match error {
+                TerrainError::TwoHeights { .. } => "keep one of them",
+                TerrainError::Flat => "three points or more that do not lie on one line in plan",
+                TerrainError::Number(_) => "every coordinate is a number of a usual size",
+            };
+            refuse(&error, help);
+            None
+        }
+    }
+}
+
+/// A place where two solids overlap, if they share more than their boundaries.
+pub(super) fn overlap(a: &dyn Region<3>, b: &dyn Region<3>) -> Option<[f64; 3]> {
+    let ((a_low, a_high), (b_low, b_high)) = (a.bounds(), b.bounds());
+    let lower: [f64; 3] = std::array::from_fn(|axis| a_low[axis].max(b_low[axis]));
+    let upper: [f64; 3] = std::array::from_fn(|axis| a_high[axis].min(b_high[axis]));
+    let has_volume = (0..3).all(|axis| lower[axis] < upper[axis]);
+    has_volume
+        .then(|| overlap_in(a, b, lower, upper, DEPTH))
+        .flatten()
+}
+
+fn overlap_in(
+    a: &dyn Region<3>,
+    b: &dyn Region<3>,
+    lower: [f64; 3],
+    upper: [f64; 3],
+    depth: u32,
+) -> Option<[f64; 3]> {
+    let covers = [a.cover(lower, upper), b.cover(lower, upper)];
+    if covers.contains(&Cover::Nothing) {
+        return None;
+    }
+    let whole = crate::region::Part::whole(lower, upper);
+    if covers == [Cover::Whole; 2] {
+        return Some(whole.centroid);
+    }
+    let parts = [a, b].map(|region| region.within(lower, upper));
+    if parts[0].volume + parts[1].volume > SHARED * whole.volume {
+        let of_both =
+            [0, 1, 2].map(|axis| 0.5 * (parts[0].centroid[axis] + parts[1].centroid[axis]));
+        return Some(of_both);
+    }
+    if depth == 0 || parts.iter().any(|part| part.volume <= 0.0) {
+        return None;
+    }
+    // Both may be thin and yet share a place.
+    (0..8).find_map(|eighth| {
+        let middle = whole.centroid;
+        let is_upper = |axis: usize| eighth >> axis & 1 == 1;
+        let from = std::array::from_fn(|axis| {
+            if is_upper(axis) {
+                middle[axis]
+            } else {
+                lower[axis]
+            }
+        });
+        let to = std::array::from_fn(|axis| {
+            if is_upper(axis) {
+                upper[axis]
+            } else {
+                middle[axis]
+            }
+        });
+        overlap_in(a, b, from, to, depth - 1)
+    })
+}
