@@ -129,6 +129,30 @@ impl<const D: usize> Surface<D> {
 }
 
 impl Surface<3> {
+    /// The same at another place of the frame of the body: its reference point lies elsewhere.
+    ///
+    /// # Panics
+    /// For a sphere: it stays about the origin.
+    #[must_use]
+    pub fn shifted(mut self, by: [f64; 3]) -> Self {
+        assert!(self.radius.is_none(), "a sphere stays about the origin");
+        let shift = |x: &mut [f64; 3]| {
+            for axis in 0..3 {
+                x[axis] += by[axis];
+            }
+        };
+        self.points.iter_mut().for_each(shift);
+        shift(&mut self.bounds.0);
+        shift(&mut self.bounds.1);
+        if let Some(space) = &mut self.space {
+            space.outer.iter_mut().for_each(shift);
+            space.places.iter_mut().for_each(shift);
+            space.core.shift(&by);
+            space.sides.iter_mut().for_each(|side| side.shift(&by));
+        }
+        self
+    }
+
     /// The triangles that carry contact: corners in the frame of the body \[length\], and the shares of knots
     /// at each corner, to draw what the knots carry.
     pub fn facets(&self) -> impl Iterator<Item = ([[f64; 3]; 3], [&[(usize, f64)]; 3], usize)> {
