@@ -5,7 +5,7 @@ use toml::de::DeValue;
 
 use super::quantity::Dimension;
 use super::schema::ROOT;
-use super::spec::{Choice, Field, Kind, Presence, Range, Struct, Variants};
+use super::spec::{Choice, Field, Kind, Presence, Range, Scope, Struct, Variants};
 use super::tree::{Node, Value, from_value};
 
 /// A decimal number or a fraction, as a regular expression.
@@ -84,10 +84,15 @@ fn object<'a>(
         required.push(tag.to_owned());
     }
     for field in fields {
-        if matches!(field.presence, Presence::Required(_)) {
+        let own = property(field);
+        if matches!(field.presence, Presence::Required(_)) && field.scope == Scope::Any {
             required.push(field.key.to_owned());
         }
-        properties.insert(field.key.to_owned(), property(field));
+        let own = match properties.remove(field.key) {
+            Some(other) => json!({ "anyOf": [other, own] }),
+            None => own,
+        };
+        properties.insert(field.key.to_owned(), own);
     }
     json!({
         "type": "object",
@@ -154,6 +159,12 @@ fn kind(of: &Kind) -> Json {
             "description": meanings(choices),
         }),
         Kind::Either(kinds) => json!({ "anyOf": kinds.iter().map(kind).collect::<Vec<_>>() }),
+        Kind::Vector(of) => json!({
+            "type": "array",
+            "items": kind(of),
+            "minItems": 2,
+            "maxItems": 3,
+        }),
         Kind::List(of, least, most) => json!({
             "type": "array",
             "items": kind(of),

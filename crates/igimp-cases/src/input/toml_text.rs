@@ -45,7 +45,7 @@ pub(super) fn inline(node: &Node, kind: &Kind) -> String {
         Value::Flag(value) => value.to_string(),
         Value::List(items) => {
             let of = match kind {
-                Kind::List(of, ..) => of,
+                Kind::List(of, ..) | Kind::Vector(of) => of,
                 kind => kind,
             };
             let items: Vec<_> = items.iter().map(|item| inline(item, of)).collect();

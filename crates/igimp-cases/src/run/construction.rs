@@ -6,23 +6,25 @@
 
 use std::sync::Arc;
 
-use igimp_assembly::{ParticleFields, Particles, Stencils, System};
+use igimp_assembly::{
+    Kinematics, ParticleFields, Particles, PoreSite, PoreWater as _, Stencils, System,
+};
 use igimp_material::{ConstitutiveModel, ScaledLaw, TangentKind, elastic_left_cauchy_green_of};
 
 use super::left::Resumption;
 use super::loading::let_go;
-use super::model::{Model, STANDARD_GRAVITY};
+use super::model::{Model, gravity_of_weights};
 use super::session::{Ended, Session};
 use super::state::State;
-use crate::case::{Construction, Ground, StageKind};
+use crate::case::{Construction, Drainage, Ground, StageKind};
 use crate::check::short;
 use crate::error::CaseError;
 use crate::summary::StageSummary;
 
-/// Marches a state to the end of a construction stage that began with `start`, or on from where an earlier run left it.
+/// Marches a state to the end of a construction stage; one that an earlier run left within it began with `start`.
 pub(crate) fn build<const D: usize>(
     session: &mut Session<'_, D>,
-    (start, state): (&State<D>, &mut State<D>),
+    (start, state): (Option<&State<D>>, &mut State<D>),
     number: usize,
     summary: &mut StageSummary,
     resumption: Option<&Resumption>,
@@ -32,11 +34,11 @@ pub(crate) fn build<const D: usize>(
     let StageKind::Construction(own) = &stage.kind else {
         return Ok(Ended::Completed(super::REACHED_ITS_END.to_owned()));
     };
-    let changed = changed(model, start, own)?;
+    let changed = changed(model, start.unwrap_or(state), own)?;
     let held = holding(model, &changed, number)?;
     if resumption.is_none() {
         for &body in &own.place {
-            if let Some(text) = moved_below(model, start, body) {
+            if let Some(text) = moved_below(model, state, body) {
                 session.warn(text);
             }
         }
@@ -78,20 +80,22 @@ fn changed<const D: usize>(
     let ground = case.ground();
     for particle in 0..fields.x.len() {
         let body = model.seeded.body[fields.number[particle]];
+        if own.dissipate {
+            fields.excess[particle] = 0.0;
+        }
         let new = own.materials.iter().find(|(of, _)| *of == body);
         if let Some(&(_, material)) = new {
             let law = fields.law[particle];
             fields.law[particle] = law - law % materials + material;
-            let volume_ratio = state.body.particles.volume_ratio(particle);
-            become_soil_of(
-                (model, &ground),
-                &mut fields,
-                (particle, volume_ratio),
-                material,
-            )?;
-        }
-        if own.dissipate {
-            fields.excess[particle] = 0.0;
+            // What is placed is free of stress, whatever its law speaks of.
+            if !own.place.contains(&body) {
+                drain_as(model, &state, &mut fields, particle, law);
+            }
+            let stretch = match case.method.kinematics {
+                Kinematics::FiniteStrain => state.body.particles.volume_ratio(particle),
+                Kinematics::SmallStrain => 1.0,
+            };
+            become_soil_of((model, &ground), &mut fields, (particle, stretch), material)?;
         }
     }
     state.body.particles = Particles::from_fields(fields)?;
@@ -99,19 +103,48 @@ fn changed<const D: usize>(
     Ok(state)
 }
 
-/// Gives a particle weight, strength and stiffness of a material; its stress stays.
+/// Makes the stress of a particle that had another law before that of which its law speaks, total or effective; the total
+/// stress stays. The excess pressure of soil that drains from now on goes, and what it bore is out of balance.
+fn drain_as<const D: usize>(
+    model: &Model<'_, D>,
+    state: &State<D>,
+    fields: &mut ParticleFields<D>,
+    particle: usize,
+    law_before: usize,
+) {
+    let materials = &model.case.materials;
+    let law = fields.law[particle];
+    let [before, drainage] = [law_before, law].map(|law| materials[law % materials.len()].drainage);
+    if (before == Drainage::Total) != (drainage == Drainage::Total) {
+        let water = state.controls.water.and_then(|k| model.ground_water(k));
+        let given = water.map_or(0.0, |water| {
+            let site = PoreSite {
+                law,
+                ..state.body.particles.pore_site(particle)
+            };
+            state.controls.gravity * water.at(site).pressure
+        });
+        let taken_over = given - (fields.pore_pressure[particle] + fields.excess[particle]);
+        for axis in 0..3 {
+            fields.sigma[particle][axis][axis] += taken_over;
+        }
+        fields.pore_pressure[particle] = given;
+    }
+    if !matches!(drainage, Drainage::Undrained { .. }) {
+        fields.excess[particle] = 0.0;
+    }
+}
+
+/// Gives a particle weight, strength and stiffness of a material; its stress stays, of which `stretch` makes that which goes with
+/// the elastic strain (theory, eq. 15).
 fn become_soil_of<const D: usize>(
     (model, ground): (&Model<'_, D>, &Ground<D>),
     fields: &mut ParticleFields<D>,
-    (particle, volume_ratio): (usize, f64),
+    (particle, stretch): (usize, f64),
     material: usize,
 ) -> Result<(), CaseError> {
     let case = model.case;
-    let gravity = if case.gravity > 0.0 {
-        case.gravity
-    } else {
-        STANDARD_GRAVITY
-    };
+    let gravity = gravity_of_weights(case.gravity);
     let place = fields.x[particle];
     let soil = &case.materials[material];
     let before = model.laws[fields.law[particle]].elasticity().young();
@@ -124,7 +157,7 @@ fn become_soil_of<const D: usize>(
     fields.ratios[particle] = ratios;
     fields.mass[particle] =
         fields.volume0[particle] * soil.unit_weight_at(&place, ground) / gravity;
-    let tau = fields.sigma[particle].map(|row| row.map(|stress| stress * volume_ratio));
+    let tau = fields.sigma[particle].map(|row| row.map(|stress| stress * stretch));
     let law = ScaledLaw::new(&*model.laws[fields.law[particle]], ratios)?;
     let b_e = elastic_left_cauchy_green_of::<D>(law.elasticity(), &tau);
     fields.b_e[particle] = b_e;

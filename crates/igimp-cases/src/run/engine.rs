@@ -214,23 +214,27 @@ impl<const D: usize> Stages<D> {
             }
             let stage = &case.stages[number];
             let left = self.left.take().filter(|left| left.stage.is_some());
-            let start = match stage.start_from {
-                None => initial.clone(),
+            let begun = || match stage.start_from {
+                None => Ok(initial.clone()),
                 Some(from) => {
-                    session
-                        .ends
-                        .get(&from)
-                        .cloned()
-                        .ok_or_else(|| CaseError::NoStart {
-                            stage: stage.name.clone(),
-                            from: case.stages[from].name.clone(),
-                        })?
+                    let end = session.ends.get(&from).cloned();
+                    end.ok_or_else(|| CaseError::NoStart {
+                        stage: stage.name.clone(),
+                        from: case.stages[from].name.clone(),
+                    })
                 }
             };
-            let mut state = left
-                .as_ref()
-                .map_or_else(|| start.clone(), |left| left.state.clone());
-            let ended = self.stage(session, number, (&start, &mut state), left)?;
+            let (start, mut state) = match &left {
+                None => (None, begun()?),
+                Some(left) => {
+                    // What construction lets go follows from what it began with.
+                    let is_built = matches!(stage.kind, StageKind::Construction(_));
+                    let is_wanted = is_built && left.resumption.is_some();
+                    let start = is_wanted.then(begun).transpose()?;
+                    (start, left.state.clone())
+                }
+            };
+            let ended = self.stage(session, number, (start.as_ref(), &mut state), left)?;
             self.state = Some(state);
             if !ended {
                 break;
@@ -244,7 +248,7 @@ impl<const D: usize> Stages<D> {
         &mut self,
         session: &mut Session<'_, D>,
         number: usize,
-        (start, state): (&State<D>, &mut State<D>),
+        (start, state): (Option<&State<D>>, &mut State<D>),
         left: Option<Left<D>>,
     ) -> Result<bool, CaseError> {
         let clock = Instant::now();
@@ -451,7 +455,7 @@ impl<const D: usize> Stages<D> {
 fn dispatch<const D: usize>(
     session: &mut Session<'_, D>,
     number: usize,
-    (start, state): (&State<D>, &mut State<D>),
+    (start, state): (Option<&State<D>>, &mut State<D>),
     summary: &mut StageSummary,
     resumption: Option<&Resumption>,
     search: Option<Search<D>>,

@@ -1,7 +1,7 @@
 //! The stresses of level ground: the weight above, and K₀ times that sideways (theory, eqs. 36
 //! and 37).
 
-use igimp_assembly::{Particles, PoreSite, PoreWater as _};
+use igimp_assembly::{Particles, PoreWater as _};
 use igimp_material::ConstitutiveModel;
 
 use super::model::Model;
@@ -50,15 +50,7 @@ pub(crate) fn level_ground<const D: usize>(
             });
         };
         if let Some(water) = &water {
-            let half_length = &fields.half_length[particle];
-            let domain: f64 = half_length.iter().map(|half| 2.0 * half).product();
-            let site = PoreSite {
-                number,
-                law: fields.law[particle],
-                x: &x,
-                half_length,
-                filled: fields.volume0[particle] / domain,
-            };
+            let site = state.body.particles.pore_site(particle);
             // At full gravity, as the stress.
             fields.pore_pressure[particle] = water.at(site).pressure;
         }

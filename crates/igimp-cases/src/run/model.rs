@@ -20,8 +20,11 @@ use crate::results::fields;
 use crate::seed::fill;
 use crate::summary::ModelSize;
 
-/// Acceleration of gravity that turns a unit weight into a density where the case has none.
-pub(super) const STANDARD_GRAVITY: f64 = 9.81;
+/// Acceleration of gravity that turns unit weights of a case with this one into densities \[m/s²\]: that of the earth where
+/// the case has none.
+pub(super) fn gravity_of_weights(gravity: f64) -> f64 {
+    if gravity > 0.0 { gravity } else { 9.81 }
+}
 
 /// Load points per cell along a loaded segment.
 const POINTS_PER_CELL: f64 = 4.0;
@@ -69,11 +72,7 @@ impl<'c, const D: usize> Model<'c, D> {
             later: None,
         };
         let grid = model.grid(0.0)?;
-        let gravity = if case.gravity > 0.0 {
-            case.gravity
-        } else {
-            STANDARD_GRAVITY
-        };
+        let gravity = gravity_of_weights(case.gravity);
         let ground = case.ground();
         let mut seeds = Vec::new();
         let mut seeded = Seeded::default();

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use igimp_assembly::{PoreSite, PoreState, PoreWater};
 
+use super::model::gravity_of_weights;
 use crate::case::{
     Case, Drainage, Ground, Material, PoreSource, Raster, WaterCondition, table_level,
 };
@@ -231,14 +232,15 @@ impl<const D: usize> GroundWater<D> {
         for (body, source) in &condition.bodies {
             own[*body] = Some(Source::of(case, source));
         }
-        let added = |material: &Material| material.added_by_water() / case.gravity;
+        let gravity = gravity_of_weights(case.gravity);
+        let added = |material: &Material| material.added_by_water() / gravity;
         let is_total = |material: &Material| material.drainage == Drainage::Total;
         Self {
             reference: Source::of(case, &condition.source),
             own,
             added_density: case.materials.iter().map(added).collect(),
             is_total: case.materials.iter().map(is_total).collect(),
-            density: case.water_unit_weight / case.gravity,
+            density: case.water_unit_weight / gravity,
             carried: condition.carried,
             seeded: Arc::clone(seeded),
         }
@@ -300,5 +302,31 @@ impl<const D: usize> PoreWater<D> for GroundWater<D> {
             added_density: saturated * self.added_density[material],
             water_density: full * self.density,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::case::{PoreSource, WaterCondition};
+    use crate::estimate::tests::case;
+    use crate::run::Model;
+    use igimp_assembly::{PoreState, PoreWater as _};
+
+    /// GOAL: a case without gravity may say that it is dry.
+    #[test]
+    fn ground_without_weight_may_be_dry() {
+        let mut case = case();
+        case.gravity = 0.0;
+        case.materials[0].saturated = Some(1.1 * case.materials[0].unit_weight);
+        case.water = vec![WaterCondition {
+            name: "none".to_owned(),
+            source: PoreSource::Dry,
+            bodies: Vec::new(),
+            carried: false,
+        }];
+        let (model, state) = Model::new(&case).unwrap();
+        let water = model.ground_water(0).unwrap();
+        let found = water.at(state.body.particles.pore_site(0));
+        assert_eq!(found, PoreState::dry());
     }
 }

@@ -38,14 +38,14 @@ const FRICTION: Terms = Terms {
 };
 
 /// The materials in the order of the file.
-pub(super) fn materials(
+pub(super) fn materials<const D: usize>(
     tree: &Node,
-    bodies: &[Option<BodyPart>],
+    bodies: &[Option<BodyPart<D>>],
     problems: &mut Problems,
 ) -> Vec<Option<Material>> {
     let entries = tree.get("materials").map_or(&[][..], Node::entries);
     let outlines = bodies.iter().flatten();
-    let layer = |body: &BodyPart, unit_weight, profile| Layer {
+    let layer = |body: &BodyPart<D>, unit_weight, profile| Layer {
         region: Arc::clone(&body.region),
         unit_weight,
         profile,
@@ -84,10 +84,10 @@ pub(super) fn materials(
         .collect()
 }
 
-fn material(
+fn material<const D: usize>(
     entry: &Entry,
     unit_weight: Option<&Property>,
-    extent: Extent<'_>,
+    extent: Extent<'_, D>,
     problems: &mut Problems,
 ) -> Option<Material> {
     let (name, node) = (&entry.key, &entry.node);
@@ -168,7 +168,11 @@ fn material(
 }
 
 /// tan φ, where the angle is one.
-fn friction(node: &Node, extent: Extent<'_>, problems: &mut Problems) -> Option<Property> {
+fn friction<const D: usize>(
+    node: &Node,
+    extent: Extent<'_, D>,
+    problems: &mut Problems,
+) -> Option<Property> {
     let value = node.get("friction")?;
     let angles = std::iter::once(value).chain(value.items_at("values"));
     for angle in angles {

@@ -449,8 +449,8 @@ fn follow_once(nodes: &[Node], around: &Around<'_>, problems: &mut Problems) {
 }
 
 /// A stage that moves rigid bodies.
-pub(super) fn stage(
-    context: &Context<'_>,
+pub(super) fn stage<const D: usize>(
+    context: &Context<'_, D>,
     node: &Node,
     name: &str,
     problems: &mut Problems,

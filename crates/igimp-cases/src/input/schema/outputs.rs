@@ -64,12 +64,14 @@ static LINEAR_SOLVERS: [Choice; 7] = [
 ];
 
 /// Fields on particles.
-static FIELDS: [Choice; 22] = [
+static FIELDS: [Choice; 26] = [
     choice("displacement", "length of the displacement [m]"),
     choice("displacement_x", "displacement in x [m]"),
     choice("displacement_y", "displacement in y [m]"),
+    choice("displacement_z", "displacement in z, in space [m]"),
     choice("x", "position x [m]"),
     choice("y", "position y [m]"),
+    choice("z", "position z, in space [m]"),
     choice("sigma_xx", "total stress xx, compression positive [Pa]"),
     choice("sigma_yy", "total stress yy, compression positive [Pa]"),
     choice("sigma_zz", "total stress zz, compression positive [Pa]"),
@@ -77,6 +79,8 @@ static FIELDS: [Choice; 22] = [
         "tau_xy",
         "shear stress, with the sign of compression positive [Pa]",
     ),
+    choice("tau_yz", "the same in y and z, in space [Pa]"),
+    choice("tau_xz", "the same in x and z, in space [Pa]"),
     choice("p", "mean pressure of total stress [Pa]"),
     choice(
         "sigma_eff_xx",
@@ -123,7 +127,7 @@ pub(in crate::input) static MONITOR: Kind = Kind::Table(&Struct {
         ),
         default(
             "record",
-            Kind::List(&FIELD, 1, 22),
+            Kind::List(&FIELD, 1, 26),
             "[\"displacement\"]",
             "what is recorded",
         ),
@@ -144,7 +148,7 @@ pub(in crate::input) static SECTION: Kind = Kind::Table(&Struct {
         ),
         default(
             "record",
-            Kind::List(&FIELD, 1, 22),
+            Kind::List(&FIELD, 1, 26),
             "[\"sigma_xx\", \"sigma_yy\", \"tau_xy\"]",
             "what is written",
         ),
@@ -439,7 +443,7 @@ pub(in crate::input) static OUTPUT: Struct = Struct {
         ),
         default(
             "figures",
-            Kind::List(&FIELD, 0, 22),
+            Kind::List(&FIELD, 0, 26),
             "[\"displacement\", \"plastic_strain\", \"sigma_yy\"]",
             "fields drawn at the end of every stage; with none no picture is drawn at all",
         ),

@@ -1,13 +1,11 @@
 //! Bodies in space: boxes, prisms, cylinders, spheres, closed surfaces, layers of ground.
 
-use super::{LENGTH, MANY, MOST_THINGS, OUTLINE, POINT};
+use super::{LENGTH, MANY, MOST_THINGS, OUTLINE, PAIR, POINT};
 use crate::input::quantity::Dimension::Length;
 use crate::input::spec::{Choice, Field, Kind, Range, Struct, choice, default, optional, required};
 
-/// A point in space: three lengths.
-const PLACE: Kind = Kind::List(&LENGTH, 3, 3);
-static CORNER: Kind = POINT;
-static VERTEX: Kind = PLACE;
+static CORNER: Kind = PAIR;
+static VERTEX: Kind = POINT;
 static INDEX: Kind = Kind::Integer(0, MANY as i64);
 static TRIANGLE: Kind = Kind::List(&INDEX, 3, 3);
 static HOLE: Kind = Kind::List(&INDEX, 2, 2);
@@ -16,83 +14,56 @@ static ROW: Kind = Kind::List(&LENGTH, 2, MANY);
 const OTHER: &str = "another shape is stated";
 const POLYGON: Kind = Kind::Either(&[Kind::List(&CORNER, 3, MANY), Kind::Table(&OUTLINE)]);
 
-const BOX: Field = optional(
+pub(super) const BOX: Field = optional(
     "box",
     Kind::Table(&BOX_TABLE),
     OTHER,
     "box with its sides along the axes",
 );
-const SECTION: Field = optional(
+pub(super) const SECTION: Field = optional(
     "polygon",
     POLYGON,
     OTHER,
     "corners of a polygon in x and z, either way round, or where they come from; `across` makes it a slice",
 );
-const ACROSS: Field = optional(
+pub(super) const ACROSS: Field = optional(
     "across",
-    POINT,
+    PAIR,
     "`polygon` is not stated",
     "from where to where on y the polygon reaches",
 );
-const PLAN: Field = optional(
+pub(super) const PLAN: Field = optional(
     "plan",
     POLYGON,
     OTHER,
     "corners of a polygon in plan, x and y, either way round, or where they come from; `between` says how high",
 );
-const BETWEEN: Field = optional(
+pub(super) const BETWEEN: Field = optional(
     "between",
     Kind::List(&HEIGHT, 2, 2),
     "`plan` is not stated",
     "bottom and top over the plan: levels z, or surfaces of the ground",
 );
-const CYLINDER: Field = optional(
+pub(super) const CYLINDER: Field = optional(
     "cylinder",
     Kind::Table(&CYLINDER_TABLE),
     OTHER,
     "circular cylinder along an axis",
 );
-const SPHERE: Field = optional("sphere", Kind::Table(&SPHERE_TABLE), OTHER, "sphere");
-const SURFACE: Field = optional(
+pub(super) const SPHERE: Field = optional("sphere", Kind::Table(&SPHERE_TABLE), OTHER, "sphere");
+pub(super) const SURFACE: Field = optional(
     "surface",
     Kind::Table(&SURFACE_TABLE),
     OTHER,
     "closed surface of triangles",
 );
 
-/// A body in space.
-pub(in crate::input) static BODY: Kind = Kind::Table(&Struct {
-    doc: "A solid of one material, filled with particles; one of `box`, `polygon`, `plan`, `cylinder`, `sphere` and `surface` says its shape.",
-    fields: &[
-        required("name", Kind::Name, "\"soil\"", "name"),
-        required(
-            "material",
-            Kind::Reference("material"),
-            "\"clay\"",
-            "name of the material",
-        ),
-        default(
-            "points_per_cell",
-            Kind::IntegerOf(&[1, 8, 27, 64]),
-            "8",
-            "particles per cell, a cube number",
-        ),
-        BOX,
-        SECTION,
-        ACROSS,
-        PLAN,
-        BETWEEN,
-        CYLINDER,
-        SPHERE,
-        SURFACE,
-        default(
-            "minus",
-            Kind::List(&TAKEN, 0, MOST_THINGS),
-            "[]",
-            "solids that are taken out of it, each with the keys of a shape",
-        ),
-    ],
-});
+pub(super) const MINUS: Field = default(
+    "minus",
+    Kind::List(&TAKEN, 0, MOST_THINGS),
+    "[]",
+    "solids that are taken out of it, each with the keys of a shape",
+);
 
 static TAKEN: Kind = Kind::Table(&Struct {
     doc: "A solid that is taken out of a body.",
@@ -104,10 +75,10 @@ static TAKEN: Kind = Kind::Table(&Struct {
 static BOX_TABLE: Struct = Struct {
     doc: "A box with its sides along the axes.",
     fields: &[
-        required("from", PLACE, "[\"0 m\", \"0 m\", \"0 m\"]", "one corner"),
+        required("from", POINT, "[\"0 m\", \"0 m\", \"0 m\"]", "one corner"),
         required(
             "to",
-            PLACE,
+            POINT,
             "[\"4 m\", \"2 m\", \"1 m\"]",
             "the opposite corner",
         ),
@@ -131,7 +102,7 @@ static CYLINDER_TABLE: Struct = Struct {
         ),
         required(
             "centre",
-            POINT,
+            PAIR,
             "[\"2 m\", \"1 m\"]",
             "centre of its circle by the two other axes, in their order",
         ),
@@ -143,7 +114,7 @@ static CYLINDER_TABLE: Struct = Struct {
         ),
         required(
             "between",
-            POINT,
+            PAIR,
             "[\"0 m\", \"1 m\"]",
             "from where to where on its axis",
         ),
@@ -153,7 +124,7 @@ static CYLINDER_TABLE: Struct = Struct {
 static SPHERE_TABLE: Struct = Struct {
     doc: "A sphere.",
     fields: &[
-        required("centre", PLACE, "[\"2 m\", \"1 m\", \"0.5 m\"]", "centre"),
+        required("centre", POINT, "[\"2 m\", \"1 m\", \"0.5 m\"]", "centre"),
         required(
             "radius",
             Kind::Quantity(Length, Range::Positive),
