@@ -53,7 +53,7 @@ pub use reinforcement::{
 pub use residual::OutOfBalance;
 pub use rigid::{
     AcceptedContact, ContactNode, ContactState, Drive, Interface, Penalty, Pose, RigidBody,
-    RigidMotion, Shear, Surface, SurfaceError, Swallowed, Tension,
+    RigidMotion, Shear, Surface, SurfaceError, SurfaceTriangle, Swallowed, Tension,
 };
 pub use stencils::Stencils;
 pub use step_conditions::{SharedLaw, StepConditions};

@@ -785,12 +785,23 @@ pub struct Output {
     pub paraview: Every,
     /// Fields drawn at the end of every stage.
     pub figures: Vec<Field>,
+    /// Planes in which they are drawn as well, in space; none: upright ones through the middle of the bodies.
+    pub cuts: Vec<Cut>,
     /// Whether `report.html` is written.
     pub report: bool,
     /// Steps between checkpoints; 0: only at the end of stages.
     pub checkpoint_every: usize,
     /// Checkpoints kept within a stage.
     pub checkpoint_keep: usize,
+}
+
+/// A plane across an axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cut {
+    /// 0, 1 or 2.
+    pub axis: usize,
+    /// Where it stands \[m\].
+    pub at: f64,
 }
 
 /// How often.

@@ -199,34 +199,35 @@ impl<'a, const D: usize> Standing<'a, D> {
 /// Rigid bodies for ParaView: in the plane their outlines as lines between knots, with contact, and their corners; in
 /// space the triangles between their knots.
 pub fn cells<const D: usize>(standing: &[Standing<'_, D>]) -> UnstructuredGrid {
-    let in_plane: Vec<Standing<'_>> = standing.iter().filter_map(Standing::in_plane).collect();
     if D == 2 {
+        let in_plane: Vec<Standing<'_>> = standing.iter().filter_map(Standing::in_plane).collect();
         return outlines(&in_plane);
     }
     let mut points = Vec::new();
-    let mut connectivity = Vec::new();
-    let mut contact: Vec<&ContactNode> = Vec::new();
+    let mut contact: Vec<ContactNode> = Vec::new();
     let (mut bodies, mut sides) = (Vec::new(), Vec::new());
     for own in standing {
-        let first = points.len();
-        let facets = own.body.surface.facets();
-        connectivity.extend(facets.flat_map(|knots| knots.map(|knot| first + knot)));
-        for (knot, side) in own.body.surface.knots() {
-            points.push(padded(&own.body.pose.into_space(&knot)));
-            bodies.push(own.index as i32);
-            sides.push(side as i32 + 1);
+        let Some(body) = in_plane::<RigidBody<D>, RigidBody<3>>(own.body) else {
+            continue;
+        };
+        for (corners, shares, side) in body.surface.facets() {
+            for (corner, shares) in std::iter::zip(corners, shares) {
+                points.push(body.pose.into_space(&corner));
+                contact.push(at_corner(shares, &body.contact.knots));
+                bodies.push(own.index as i32);
+                sides.push(side as i32 + 1);
+            }
         }
-        contact.extend(&own.body.contact.knots);
     }
     let scalars = |name: &str, of: &dyn Fn(&ContactNode) -> f64| {
-        DataArray::scalars(name, contact.iter().map(|own| of(own)).collect())
+        DataArray::scalars(name, contact.iter().map(of).collect())
     };
     let flags = |name: &str, of: &dyn Fn(&ContactNode) -> bool| {
         DataArray::integers(name, contact.iter().map(|own| i32::from(of(own))).collect())
     };
     UnstructuredGrid {
         kind: CellKind::Triangle,
-        connectivity,
+        connectivity: (0..points.len()).collect(),
         point_data: vec![
             scalars("contact pressure [Pa], compression +", &|own| own.pressure),
             scalars("shear [Pa]", &|own| own.shear[0].hypot(own.shear[1])),
@@ -240,6 +241,21 @@ pub fn cells<const D: usize>(standing: &[Standing<'_, D>]) -> UnstructuredGrid {
         cell_data: Vec::new(),
         field_data: Vec::new(),
     }
+}
+
+/// Contact at a corner of a triangle, of the knots that share it.
+fn at_corner(shares: &[(usize, f64)], knots: &[ContactNode]) -> ContactNode {
+    let mut at = ContactNode::default();
+    for &(knot, share) in shares {
+        let own = &knots[knot];
+        at.pressure += share * own.pressure;
+        at.shear[0] += share * own.shear[0].hypot(own.shear[1]);
+        at.gap += share * own.gap;
+        at.area += share * own.area;
+        at.is_closed |= own.is_closed;
+        at.slips |= own.slips;
+    }
+    at
 }
 
 /// The gap; not a number where no soil is near.

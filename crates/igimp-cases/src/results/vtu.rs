@@ -20,6 +20,7 @@ use super::npy::Values;
 use crate::error::CaseError;
 
 mod array;
+pub(super) mod read;
 
 pub(super) use array::padded;
 pub use array::{DataArray, Tuple};
@@ -75,6 +76,12 @@ impl CellKind {
             Self::Quad => &ALL[..4],
             Self::Hexahedron => &ALL,
         }
+    }
+
+    /// The kind with VTK's number.
+    fn of_code(code: u8) -> Option<Self> {
+        let all = [Self::Line, Self::Triangle, Self::Quad, Self::Hexahedron];
+        all.into_iter().find(|kind| kind.code() == code)
     }
 
     fn code(self) -> u8 {

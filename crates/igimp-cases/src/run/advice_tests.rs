@@ -85,6 +85,7 @@ fn case(kind: StageKind) -> Case {
             folder: "results".into(),
             paraview: Every::Never,
             figures: Vec::new(),
+            cuts: Vec::new(),
             report: false,
             checkpoint_every: 0,
             checkpoint_keep: 1,

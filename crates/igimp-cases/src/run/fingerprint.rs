@@ -28,6 +28,7 @@ fn whole<const D: usize>(case: &Case<D>) -> Case<D> {
             folder: std::path::PathBuf::new(),
             paraview: Every::Never,
             figures: Vec::new(),
+            cuts: Vec::new(),
             report: false,
             checkpoint_every: 0,
             checkpoint_keep: 0,

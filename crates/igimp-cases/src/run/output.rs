@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
+use igimp_assembly::SharedLaw;
 use igimp_solver::Body;
 use rayon::prelude::*;
 
@@ -30,6 +31,7 @@ use crate::results::frames::Frames;
 use crate::results::owner::Claim;
 use crate::results::pictures::{self, Canvas, Failing, Seen, Shown, mechanism};
 use crate::results::report;
+use crate::results::rigid;
 use crate::results::rows::RowWriter;
 use crate::summary::{FigureNote, StageSummary, Summary};
 use crate::table::Table;
@@ -501,6 +503,16 @@ impl<const D: usize> Output<D> {
             .iter()
             .map(|state| model.laws_reduced_by(&state.controls.srf))
             .collect::<Result<Vec<_>, _>>()?;
+        let reduced: Vec<&[SharedLaw]> = reduced.iter().map(|laws| &laws[..]).collect();
+        if let Some(state) = in_plane::<_, State<3>>(state) {
+            let compared = compared
+                .iter()
+                .filter_map(|own| in_plane::<_, State<3>>(*own));
+            let compared: Vec<Seen<'_, 3>> = std::iter::zip(compared, &reduced)
+                .map(|(state, laws)| (&state.body.particles, *laws))
+                .collect();
+            return self.pictures_in_space((model, shown), (state, &laws), &compared);
+        }
         let (Some(case), Some(state)) = (in_plane(model.case), in_plane::<_, State>(state)) else {
             return Ok(());
         };
@@ -513,7 +525,7 @@ impl<const D: usize> Output<D> {
         let own = (&state.body.particles, &laws[..]);
         let compared: Vec<Seen<'_>> = std::iter::zip(compared, &reduced)
             .filter_map(|(state, laws)| {
-                Some((&in_plane::<_, State>(*state)?.body.particles, &laws[..]))
+                Some((&in_plane::<_, State>(*state)?.body.particles, *laws))
             })
             .collect();
         let over = outlines::of_state((case, &model.seeded.body), state);
@@ -522,6 +534,39 @@ impl<const D: usize> Output<D> {
             .map(|&field| pictures::field_picture(&canvas, shown, field, own, &compared, &over))
             .collect::<Result<Vec<_>, _>>()?;
         self.figures.extend(drawn);
+        Ok(())
+    }
+
+    /// The same in space: the surface, and cuts through the middle.
+    fn pictures_in_space(
+        &mut self,
+        (model, shown): (&Model<'_, D>, &Shown),
+        (state, laws): (&State<3>, &[SharedLaw]),
+        compared: &[Seen<'_, 3>],
+    ) -> Result<(), CaseError> {
+        let case = model.case;
+        let standing = in_plane::<_, Case<3>>(case).map(|case| {
+            let structures = outlines::structures(case, &state.controls, &state.body);
+            rigid::cells(&structures.rigid)
+        });
+        let bodies = standing.map_or_else(Vec::new, |cells| {
+            let corners = cells.connectivity.as_chunks::<3>().0.iter();
+            corners
+                .map(|corners| corners.map(|point| cells.points[point]))
+                .collect()
+        });
+        let of_case = (self.folder.root(), &*case.title, case.has_pore_water());
+        let drawn = pictures::InSpace::new(of_case, (&state.body.particles, laws), bodies);
+        let planes = match &case.output.cuts[..] {
+            [] => drawn.middle(),
+            cuts => cuts.to_vec(),
+        };
+        let wanted = &case.output.figures;
+        let notes = wanted
+            .par_iter()
+            .map(|&field| drawn.pictures(shown, field, compared, &planes))
+            .collect::<Result<Vec<_>, _>>()?;
+        self.figures.extend(notes.concat());
         Ok(())
     }
 

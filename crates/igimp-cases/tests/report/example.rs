@@ -127,6 +127,7 @@ pub(crate) fn case() -> Case {
             folder: "results/slope".into(),
             paraview: Every::Stage,
             figures: Vec::new(),
+            cuts: Vec::new(),
             report: true,
             checkpoint_every: 10,
             checkpoint_keep: 2,

@@ -6,6 +6,7 @@ use std::time::UNIX_EPOCH;
 
 use igimp_cases::case::{AnyCase, Every, StageKind};
 use igimp_cases::input::CaseFile;
+use igimp_cases::results::viewer::{self, Keep};
 use igimp_cases::summary::Summary;
 use serde_json::{Value, json};
 
@@ -121,16 +122,28 @@ impl Results {
     /// A file by its name in an address, with its length and kind; nothing for names that are not
     /// found by looking into the folders that are shown.
     pub(super) fn file(&self, encoded: &str) -> Option<(File, u64, &'static str)> {
+        let (path, kind) = self.path(encoded)?;
+        let file = File::open(path).ok()?;
+        let length = file.metadata().ok()?.len();
+        Some((file, length, kind))
+    }
+
+    /// A frame by its name in an address, as the page takes it.
+    pub(super) fn packed(&self, encoded: &str) -> Option<String> {
+        let (path, _) = self.path(encoded)?;
+        let is_frame = path.extension().is_some_and(|ending| ending == "vtu");
+        is_frame.then(|| viewer::frame(&path, Keep::MUCH)).flatten()
+    }
+
+    /// The path of a file that is shown, and its kind.
+    fn path(&self, encoded: &str) -> Option<(PathBuf, &'static str)> {
         let name = decoded(encoded)?;
-        let (path, kind) = SHOWN.iter().find_map(|&(folder, ending, kind)| {
+        SHOWN.iter().find_map(|&(folder, ending, kind)| {
             let mut names = self.names(folder, ending);
             names
                 .find(|(own, _)| *own == name)
                 .map(|(_, path)| (path, kind))
-        })?;
-        let file = File::open(path).ok()?;
-        let length = file.metadata().ok()?.len();
-        Some((file, length, kind))
+        })
     }
 
     /// The files of a folder with an ending: plain files that stand there themselves, no links.

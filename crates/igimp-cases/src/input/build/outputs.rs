@@ -8,8 +8,8 @@ use super::AllNames;
 use super::quantities::fields;
 use super::site::Soil;
 use crate::case::{
-    Average, Every, Field, Material, Monitor, Output, Section, SectionReference, SolverSettings,
-    Stage, StageKind, Strength,
+    Average, Cut, Every, Field, Material, Monitor, Output, Section, SectionReference,
+    SolverSettings, Stage, StageKind, Strength,
 };
 use crate::input::diagnostic::Problems;
 use crate::input::text::{clip, point};
@@ -185,6 +185,14 @@ fn section_reference<const D: usize>(
     })
 }
 
+/// A plane in which fields are drawn.
+fn cut(node: &Node) -> Option<Cut> {
+    let across = node.text_at("across")?;
+    let axis = ["x", "y", "z"].iter().position(|own| *own == across)?;
+    let at = node.number_at("at")?;
+    Some(Cut { axis, at })
+}
+
 /// What is written, and where.
 pub(super) fn output<const D: usize>(tree: &Node, problems: &mut Problems) -> Option<Output> {
     let node = tree.get("output")?;
@@ -206,6 +214,11 @@ pub(super) fn output<const D: usize>(tree: &Node, problems: &mut Problems) -> Op
             None => Every::Steps(every.count()?),
         },
         figures: fields::<D>(node.items_at("figures"), problems)?,
+        cuts: node
+            .items_at("cuts")
+            .iter()
+            .map(cut)
+            .collect::<Option<_>>()?,
         report: node.flag_at("report")?,
         checkpoint_every: checkpoint.count_at("every")?,
         checkpoint_keep: checkpoint.count_at("keep")?,

@@ -1,13 +1,9 @@
 //! Bodies in space: what their keys say, made into solids.
 
 use std::fmt::{self, Display, Formatter};
-use std::sync::Arc;
 
-use super::AllNames;
 use super::bodies::corners;
-use super::sequence::placed;
 use super::surfaces::{ground, surface, triple};
-use crate::case::BodyPart;
 use crate::input::diagnostic::Problems;
 use crate::input::text::{clip, number};
 use crate::input::tree::Node;
@@ -20,41 +16,6 @@ const SHAPES: [&str; 6] = ["box", "polygon", "plan", "cylinder", "sphere", "surf
 const DEPTH: u32 = 5;
 /// Solids overlap in a box if they have more than this share of it together \[-\].
 const SHARED: f64 = 1.01;
-
-/// The bodies, as far as each is right by itself.
-pub(super) fn solids(
-    tree: &Node,
-    names: &AllNames,
-    problems: &mut Problems,
-) -> Vec<Option<BodyPart<3>>> {
-    let later = placed(tree);
-    let items = tree.items_at("bodies").iter();
-    items
-        .map(|body| part(body, names, &later, problems))
-        .collect()
-}
-
-fn part(
-    node: &Node,
-    names: &AllNames,
-    later: &[&str],
-    problems: &mut Problems,
-) -> Option<BodyPart<3>> {
-    let name = node.text_at("name").unwrap_or("?");
-    let material = node.get("material").and_then(|material| {
-        let who = format!("body `{}` uses", clip(name, 40));
-        names.materials.find(material, &who, problems)
-    });
-    let solid = solid(node, name, problems);
-    let points = node.count_at("points_per_cell")?;
-    Some(BodyPart {
-        from_start: !later.contains(&name),
-        name: node.text_at("name")?.to_owned(),
-        material: material?,
-        per_direction: (1..=4).find(|count| count * count * count >= points)?,
-        region: Arc::new(solid?),
-    })
-}
 
 /// Whose shape it is.
 #[derive(Clone, Copy, Debug)]
@@ -75,7 +36,7 @@ impl Display for Who<'_> {
 }
 
 /// The solid of a body, less what is taken out of it.
-fn solid(node: &Node, name: &str, problems: &mut Problems) -> Option<Solid> {
+pub(super) fn solid(node: &Node, name: &str, problems: &mut Problems) -> Option<Solid> {
     let name = &clip(name, 40);
     let who = Who { name, taken: None };
     let own = shape(node, &who, problems);

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::grid::Frame;
-use super::sequence::Sequence;
+use super::sequence::{Sequence, placed};
 use super::site::Soil;
 use super::{AllNames, all, boundaries, checks, construction, curves, grid, materials, outputs};
 use super::{solids, stages, study, title_block};
@@ -81,7 +81,7 @@ pub(super) fn build(
     refuse_what_is_of_the_plane(tree, problems);
     let mut frame = grid::frame::<3>(tree, problems);
     let method = grid::method(tree);
-    let bodies = solids::solids(tree, names, problems);
+    let bodies = bodies(tree, names, problems);
     let materials = materials::materials(tree, &bodies, problems);
     let grid = grid::grid(tree, frame.as_ref(), &bodies, problems);
     if let (Some(frame), Some(grid)) = (&mut frame, &grid) {
@@ -178,6 +178,29 @@ fn refuse_what_is_of_the_plane(tree: &Node, problems: &mut Problems) {
             .error(fit.place, "lines are fitted to layers in plane strain only")
             .help("write lines = { z = [...] }");
     }
+}
+
+/// The bodies, as far as each is right by itself.
+fn bodies(tree: &Node, names: &AllNames, problems: &mut Problems) -> Vec<Option<BodyPart<3>>> {
+    let later = placed(tree);
+    let items = tree.items_at("bodies").iter();
+    let part = |node: &Node| {
+        let name = node.text_at("name").unwrap_or("?");
+        let material = node.get("material").and_then(|material| {
+            let who = format!("body `{}` uses", clip(name, 40));
+            names.materials.find(material, &who, problems)
+        });
+        let solid = solids::solid(node, name, problems);
+        let points = node.count_at("points_per_cell")?;
+        Some(BodyPart {
+            from_start: !later.contains(&name),
+            name: node.text_at("name")?.to_owned(),
+            material: material?,
+            per_direction: (1..=4).find(|count: &usize| count.pow(3) >= points)?,
+            region: Arc::new(solid?),
+        })
+    };
+    items.map(part).collect()
 }
 
 /// Checks the bodies against the domain and each other.

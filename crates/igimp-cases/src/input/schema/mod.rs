@@ -484,7 +484,7 @@ static REMEDIES: [Choice; 2] = [
 ];
 
 static BODY: Kind = Kind::Table(&Struct {
-    doc: "A polygon of one material, filled with particles; in space a solid, whose shape one of `box`, `polygon`, `plan`, `cylinder`, `sphere` and `surface` says.",
+    doc: "A polygon of one material, filled with particles.",
     fields: &[
         required("name", Kind::Name, "\"soil\"", "name"),
         required(

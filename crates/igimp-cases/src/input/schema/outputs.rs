@@ -1,8 +1,8 @@
 //! Solver, monitors, sections, curves, checks and output.
 
-use super::{MANY, POINT, stage};
+use super::{A_LENGTH, MANY, POINT, stage};
 use crate::input::spec::{
-    Choice, Kind, Range, Struct, choice, default, derived, optional, required,
+    Choice, Kind, Range, Struct, choice, default, derived, in_space, optional, required,
 };
 
 pub(in crate::input) static SOLVER: Struct = Struct {
@@ -447,6 +447,12 @@ pub(in crate::input) static OUTPUT: Struct = Struct {
             "[\"displacement\", \"plastic_strain\", \"sigma_yy\"]",
             "fields drawn at the end of every stage; with none no picture is drawn at all",
         ),
+        in_space(default(
+            "cuts",
+            Kind::List(&CUT, 0, 20),
+            "[]",
+            "planes in which the fields are drawn as well; without any, upright ones through the middle of the bodies",
+        )),
         default(
             "report",
             Kind::Flag,
@@ -461,6 +467,20 @@ pub(in crate::input) static OUTPUT: Struct = Struct {
         ),
     ],
 };
+
+static CUT: Kind = Kind::Table(&Struct {
+    doc: "A plane across an axis.",
+    fields: &[
+        required("across", Kind::Choice(&ACROSS), "\"y\"", "the axis"),
+        required("at", A_LENGTH, "\"5 m\"", "where it stands on the axis"),
+    ],
+});
+
+static ACROSS: [Choice; 3] = [
+    choice("x", "upright, along y"),
+    choice("y", "upright, along x"),
+    choice("z", "level"),
+];
 
 static PARAVIEW: Struct = Struct {
     doc: "When particles are written for ParaView.",
