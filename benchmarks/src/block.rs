@@ -61,15 +61,22 @@ impl Soil {
         }
     }
 
-    fn law(self) -> Result<SharedLaw, MaterialError> {
-        let undrained = Elasticity::new(1e7, 0.49)?;
-        let drained = Elasticity::new(1e7, 0.3)?;
+    /// Poisson's ratio of a block that says none.
+    pub fn poisson(self) -> f64 {
+        match self {
+            Self::VonMises | Self::Tresca => 0.49,
+            Self::HenckyElastic | Self::MohrCoulomb => 0.3,
+        }
+    }
+
+    fn law(self, poisson: f64) -> Result<SharedLaw, MaterialError> {
+        let elasticity = Elasticity::new(1e7, poisson)?;
         Ok(match self {
-            Self::HenckyElastic => Arc::new(HenckyElastic::new(drained)),
-            Self::VonMises => Arc::new(VonMises::from_undrained_strength(undrained, STRENGTH)?),
-            Self::Tresca => Arc::new(Tresca::new(undrained, STRENGTH)?),
+            Self::HenckyElastic => Arc::new(HenckyElastic::new(elasticity)),
+            Self::VonMises => Arc::new(VonMises::from_undrained_strength(elasticity, STRENGTH)?),
+            Self::Tresca => Arc::new(Tresca::new(elasticity, STRENGTH)?),
             Self::MohrCoulomb => Arc::new(MohrCoulomb::new(
-                drained,
+                elasticity,
                 STRENGTH,
                 20_f64.to_radians(),
                 0.0,
@@ -101,7 +108,15 @@ impl<const D: usize> Block<D> {
     /// # Errors
     /// Only for a block without cells.
     pub fn new(soil: Soil, cells: usize) -> BenchResult<Self> {
-        let law = soil.law()?;
+        Self::with_poisson(soil, soil.poisson(), cells)
+    }
+
+    /// A block whose soil has another Poisson's ratio.
+    ///
+    /// # Errors
+    /// Only for a block without cells, or a ratio that there is not.
+    pub fn with_poisson(soil: Soil, poisson: f64, cells: usize) -> BenchResult<Self> {
+        let law = soil.law(poisson)?;
         let h = SIDE / cells as f64;
         let axis = Axis::uniform(0.0, h, cells)?;
         let grid = Grid::new(std::array::from_fn(|_| axis.clone()));

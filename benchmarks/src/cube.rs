@@ -53,6 +53,7 @@ fn pattern(side: usize) -> Pattern {
         blocks.push(NodeBlock {
             first: 3 * node,
             len: 3,
+            free: 0b111,
             place,
         });
     }

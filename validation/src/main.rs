@@ -130,6 +130,9 @@ enum Case {
     ContactPipe,
     ContactAnchor,
     ContactWall,
+    ContactSpace,
+    ContactSphere,
+    ContactCircle,
     Comparisons,
 }
 
@@ -170,6 +173,9 @@ impl Case {
             Self::ContactPipe => contact::pipe::study(level, out),
             Self::ContactAnchor => contact::anchor::study(level, out),
             Self::ContactWall => contact::wall::study(level, out),
+            Self::ContactSpace => contact::space::study(level, out),
+            Self::ContactSphere => contact::space::sphere::study(level, out),
+            Self::ContactCircle => contact::space::circle::study(level, out),
             Self::Comparisons => comparisons::study(level, out),
         }
     }

@@ -2,11 +2,9 @@
 //! lists for the few nodes with couplings that reach further.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::ops::Range;
 
 use igimp_shape::{Grid, Support};
 
-use crate::linearised::Linearised;
 use crate::matrix::{NodeBlock, Pattern};
 use crate::reach::{SMALL_REACH, common_reach, furthest};
 use crate::stencils::Stencils;
@@ -20,7 +18,9 @@ const NONE: u32 = u32::MAX;
 /// nodes' places on the grid.
 #[derive(Clone, Debug)]
 pub(crate) struct BlockTable<const D: usize> {
-    nodes: Vec<NodePlace>,
+    pub(crate) nodes: Vec<NodePlace>,
+    /// The reach of nearly all nodes.
+    pub(crate) near: usize,
     /// Pairs of nodes that a column node may have: a window of (2 reach + 1)^D nodes, with the reach
     /// of nearly all nodes.
     window: usize,
@@ -34,19 +34,28 @@ pub(crate) struct BlockTable<const D: usize> {
 
 /// What scattering needs to know of a node.
 #[derive(Clone, Copy, Debug)]
-struct NodePlace {
+pub(crate) struct NodePlace {
     /// A number such that differences of it tell two nodes' distance apart.
-    code: u32,
+    pub(crate) code: u32,
     /// Its block in the pattern, or [`NONE`].
-    block: u32,
+    pub(crate) block: u32,
     /// First of its unknowns.
-    first: u32,
+    pub(crate) first: u32,
     /// How many unknowns it has.
-    len: u8,
+    pub(crate) len: u8,
     /// Which components they are, one bit each.
-    free: u8,
+    pub(crate) free: u8,
     /// Whether some of its couplings reach beyond the window.
     is_wide: bool,
+}
+
+impl NodePlace {
+    /// The components that are unknown.
+    #[inline]
+    pub(crate) fn components(&self) -> impl Iterator<Item = usize> + use<> {
+        let free = self.free;
+        (0..8).filter(move |axis| free & (1 << axis) != 0)
+    }
 }
 
 impl<const D: usize> BlockTable<D> {
@@ -72,6 +81,7 @@ impl<const D: usize> BlockTable<D> {
         let side = 2 * near + 1;
         let mut table = Self {
             nodes: Vec::with_capacity(grid.node_count()),
+            near,
             window: side.pow(D as u32),
             offsets: Vec::new(),
             wide: BTreeMap::new(),
@@ -96,6 +106,7 @@ impl<const D: usize> BlockTable<D> {
                 blocks.push(NodeBlock {
                     first: unknowns.before(node),
                     len,
+                    free: unknowns.free(node),
                     place: block_place,
                 });
             }
@@ -234,7 +245,7 @@ impl<const D: usize> BlockTable<D> {
     /// The offset within a column of a node of the first row of another, by the code and the block
     /// of that.
     #[inline]
-    fn offsets_of(&self, column: usize) -> impl Fn(u32, u32) -> usize + '_ {
+    pub(crate) fn offsets_of(&self, column: usize) -> impl Fn(u32, u32) -> usize + '_ {
         let column = &self.nodes[column];
         let centre = (self.window as u32 - 1) / 2;
         let offsets = &self.offsets[column.block as usize * self.window..][..self.window];
@@ -252,25 +263,21 @@ impl<const D: usize> BlockTable<D> {
         }
     }
 
-    /// Adds the free components of block (i, j) of a particle to the columns of its node j.
-    fn add_block(
-        &self,
-        supports: &[Support<D>],
-        [i, j]: [usize; 2],
-        columns: &[&[f64]; D],
-        values: &mut [f64],
-    ) {
-        let (row, column) = (&self.nodes[supports[i].node], &self.nodes[supports[j].node]);
-        let place = self.offsets_of(supports[j].node)(row.code, row.block);
-        let height = values.len() / usize::from(column.len);
-        let free = |node: &NodePlace| {
-            let free = node.free;
-            (0..D).filter(move |axis| free & (1 << axis) != 0)
-        };
-        for (c, values) in free(column).zip(values.chunks_exact_mut(height)) {
-            for (a, value) in free(row).zip(&mut values[place..]) {
-                *value += columns[c][i * D + a];
+    /// The same for a node that need not be coupled, but is within the window.
+    #[inline]
+    pub(crate) fn offsets_if_coupled(&self, column: usize) -> impl Fn(u32, u32) -> Option<usize> {
+        let column = &self.nodes[column];
+        let centre = (self.window as u32 - 1) / 2;
+        let offsets = &self.offsets[column.block as usize * self.window..][..self.window];
+        let wide = column.is_wide.then(|| &self.wide[&column.block]);
+        move |code, block| match wide {
+            Some(wide) => {
+                let place = wide.binary_search_by_key(&block, |&(other, _)| other);
+                place.ok().map(|place| wide[place].1 as usize)
             }
+            None => Some(offsets[(code + centre - column.code) as usize])
+                .filter(|&offset| offset != NONE)
+                .map(|offset| offset as usize),
         }
     }
 
@@ -285,133 +292,6 @@ impl<const D: usize> BlockTable<D> {
         let (column, row) = (&self.nodes[column], &self.nodes[row]);
         let centre = (self.window as u32 - 1) / 2;
         column.block as usize * self.window + (row.code + centre - column.code) as usize
-    }
-}
-
-/// The supports of one particle as blocks of the matrix.
-#[derive(Debug, Default)]
-pub(crate) struct Blocks {
-    /// Supports whose components are all unknown.
-    stretches: Vec<Stretch>,
-    /// Supports with some unknown components.
-    partial: Vec<u16>,
-}
-
-/// Supports whose unknowns follow one another, and so do their values in every column.
-#[derive(Clone, Copy, Debug)]
-struct Stretch {
-    /// First support.
-    first: u16,
-    len: u16,
-    /// Code of its node.
-    code: u32,
-    /// Block of its node.
-    block: u32,
-}
-
-impl Stretch {
-    fn supports(self) -> Range<usize> {
-        usize::from(self.first)..usize::from(self.first + self.len)
-    }
-}
-
-impl Blocks {
-    /// Lists the blocks of a particle.
-    #[inline]
-    pub(crate) fn set<const D: usize>(&mut self, supports: &[Support<D>], table: &BlockTable<D>) {
-        self.stretches.clear();
-        self.partial.clear();
-        let mut next = NONE;
-        for (i, support) in supports.iter().enumerate() {
-            let node = &table.nodes[support.node];
-            if usize::from(node.len) < D {
-                if node.len > 0 {
-                    self.partial.push(i as u16);
-                }
-                next = NONE;
-                continue;
-            }
-            match self.stretches.last_mut() {
-                Some(stretch) if node.first == next => stretch.len += 1,
-                _ => self.stretches.push(Stretch {
-                    first: i as u16,
-                    len: 1,
-                    code: node.code,
-                    block: node.block,
-                }),
-            }
-            next = node.first + D as u32;
-        }
-    }
-
-    /// Adds the tangent of one particle to the slice of values that begins at `start`.
-    #[inline]
-    pub(crate) fn scatter<const D: usize>(
-        &self,
-        supports: &[Support<D>],
-        table: &BlockTable<D>,
-        pattern: &Pattern,
-        linearised: &mut Linearised<D>,
-        (start, slice): (usize, &mut [f64]),
-    ) {
-        for j in self.stretches.iter().copied().flat_map(Stretch::supports) {
-            let node = supports[j].node;
-            let block = table.nodes[node].block as usize;
-            let stored = pattern.values_of(block);
-            let values = &mut slice[stored.start - start..stored.end - start];
-            let height = values.len() / D;
-            let columns = linearised.columns(j);
-            let offsets = table.offsets_of(node);
-            for stretch in &self.stretches {
-                let (first, offset) = (
-                    usize::from(stretch.first) * D,
-                    offsets(stretch.code, stretch.block),
-                );
-                for (c, column) in columns.iter().enumerate() {
-                    let sums = &mut values[c * height + offset..];
-                    let terms = &column[first..];
-                    match usize::from(stretch.len) * D {
-                        4 => add::<4>(sums, terms),
-                        6 => add::<6>(sums, terms),
-                        9 => add::<9>(sums, terms),
-                        len => {
-                            for (sum, term) in sums.iter_mut().zip(&terms[..len]) {
-                                *sum += term;
-                            }
-                        }
-                    }
-                }
-            }
-            for &i in &self.partial {
-                table.add_block(supports, [usize::from(i), j], &columns, values);
-            }
-        }
-        for &j in &self.partial {
-            let j = usize::from(j);
-            let block = table.nodes[supports[j].node].block as usize;
-            let stored = pattern.values_of(block);
-            let values = &mut slice[stored.start - start..stored.end - start];
-            let columns = linearised.columns(j);
-            let partial = self.partial.iter().map(|&i| usize::from(i));
-            let full = self.stretches.iter().copied().flat_map(Stretch::supports);
-            for i in full.chain(partial) {
-                table.add_block(supports, [i, j], &columns, values);
-            }
-        }
-    }
-}
-
-/// Adds the first `N` terms to the first `N` sums: so few that nothing is left of the loop.
-#[inline]
-fn add<const N: usize>(sums: &mut [f64], terms: &[f64]) {
-    let sums = sums
-        .first_chunk_mut::<N>()
-        .expect("a stretch ends within its column");
-    let terms = terms
-        .first_chunk::<N>()
-        .expect("a stretch ends within the rows");
-    for k in 0..N {
-        sums[k] += terms[k];
     }
 }
 

@@ -16,6 +16,8 @@ pub struct NodeBlock {
     pub first: usize,
     /// Number of unknowns of the node, 1 to D.
     pub len: usize,
+    /// The components of the displacement that they are, one bit each from the first axis on.
+    pub free: u8,
     /// Position of the node along each axis of the grid (0 beyond the dimension), which lets a
     /// solver order the unknowns geometrically.
     pub place: [usize; 3],
@@ -103,6 +105,7 @@ impl Pattern {
         match self.blocks[block].len {
             1 => stored,
             2 => stored / 2,
+            3 => stored / 3,
             len => stored / len,
         }
     }

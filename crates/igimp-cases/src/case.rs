@@ -10,6 +10,7 @@ mod profile;
 mod raster;
 mod reinforcement;
 mod rigid;
+mod rigid_space;
 mod water;
 
 use std::path::PathBuf;
@@ -30,6 +31,7 @@ pub use rigid::{
     Adhesion, COMPONENTS, RigidDrive, RigidForm, RigidInterface, RigidMove, RigidPart,
     RigidQuantity, RigidShape, RigidShear, components,
 };
+pub use rigid_space::RigidSolid;
 pub(crate) use water::table_level;
 pub use water::{Construction, Drainage, PoreSource, WaterCondition};
 

@@ -6,7 +6,6 @@ use std::fs;
 use std::path::PathBuf;
 
 use igimp_cases::input::CaseFile;
-use igimp_cases::region::Region;
 
 const TEXT: &str = r#"
 igimp = 1

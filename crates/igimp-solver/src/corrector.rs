@@ -7,13 +7,17 @@ use igimp_assembly::{AssemblyError, OutOfBalance, Stencils, System, TangentMatri
 use igimp_material::TangentKind;
 use igimp_shape::Grid;
 
-use crate::linear::{Bordered, LinearSolver, LinearSolverError};
+use crate::linear::{Bordered, LinearEffort, LinearSolver, LinearSolverError};
 use crate::newton::{NewtonSettings, Workspace};
 use crate::report::{Component, PhaseTimes, StepFailure, padded};
 use crate::residual_history::ResidualHistory;
 
 /// How often a correction is halved.
 const MOST_HALVINGS: u32 = 4;
+
+/// Relative residual of the systems of the grid where there are rigid bodies, whose equations are made of their
+/// solutions \[-\].
+const OF_BODIES: f64 = 1e-10;
 
 /// What makes the corrections of one step.
 ///
@@ -58,6 +62,7 @@ impl<'s, 'w, const D: usize> Corrector<'s, 'w, D> {
             du,
         } = workspace;
         let earlier = matrix.take();
+        solver.start_step();
         Self {
             system,
             stencils,
@@ -106,6 +111,7 @@ impl<'s, 'w, const D: usize> Corrector<'s, 'w, D> {
             })?;
             self.is_current = true;
         }
+        self.solver.ask_for(self.demand(residual));
         if self.is_current {
             timed(&mut self.times.factor, || self.solver.factor(self.matrix)).map_err(|error| {
                 self.history.fill_of_singular = self.fill_of_singular(&error);
@@ -127,6 +133,20 @@ impl<'s, 'w, const D: usize> Corrector<'s, 'w, D> {
         }
         self.iterations += 1;
         Ok(self.du)
+    }
+
+    /// How small the relative residual of the linear system has to become.
+    fn demand(&self, residual: &OutOfBalance) -> f64 {
+        if self.matrix.border.corner.is_empty() {
+            self.history.forcing(residual, self.settings.tolerance)
+        } else {
+            OF_BODIES
+        }
+    }
+
+    /// How the linear systems were solved so far.
+    pub(crate) fn effort(&self) -> LinearEffort {
+        self.solver.effort()
     }
 
     /// Trial and residual at `u`, to which the last correction was added, with the tangent unless the

@@ -177,6 +177,7 @@ fn equilibrium<const D: usize>(
         corrector.linearise(&mut u, &mut residual)?;
     }
 
+    let linear = corrector.effort();
     let Corrector {
         trial,
         iterations,
@@ -213,6 +214,7 @@ fn equilibrium<const D: usize>(
         false_support,
         ghost_penalty: attempt.ghost_penalty,
         drag_share,
+        linear,
         times,
     };
     Ok((report, NodalForces { reactions, u }))

@@ -5,7 +5,7 @@ use std::time::Duration;
 use igimp_assembly::{AssemblyError, Swallowed};
 use thiserror::Error;
 
-use crate::linear::LinearSolverError;
+use crate::linear::{LinearEffort, LinearSolverError};
 
 /// A component of the motion of a rigid body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -219,6 +219,8 @@ pub struct StepReport {
     pub worst: Option<([f64; 3], usize)>,
     /// Share of the external force that drag against motion carries; zero in equilibrium \[-\].
     pub drag_share: f64,
+    /// How the linear systems were solved.
+    pub linear: LinearEffort,
     /// Time spent.
     pub times: PhaseTimes,
 }

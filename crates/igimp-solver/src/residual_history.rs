@@ -89,6 +89,32 @@ impl ResidualHistory {
     }
 }
 
+/// Largest relative residual of a linear system \[-\].
+const LARGEST_FORCING: f64 = 1e-4;
+/// Share of the residual after the next correction that the linear system may leave \[-\].
+const SHARE: f64 = 0.1;
+
+/// How well a linear system has to be solved.
+impl ResidualHistory {
+    /// The relative residual of the next linear system (theory, eq. 25a): a tenth of the factor by which Newton's method would
+    /// reduce the residual with an exact solution, as far as the last two residuals tell, and no more than the
+    /// tolerance asks for (S. C. Eisenstat & H. F. Walker, *Choosing the forcing terms in an inexact Newton method*, SIAM J.
+    /// Sci. Comput. 17, 1996).
+    pub(crate) fn forcing(&self, residual: &OutOfBalance, tolerance: f64) -> f64 {
+        let now = residual.relative_norm;
+        let expected = match self.residuals[..] {
+            [_, .., before, last] => (last / before).powi(2),
+            _ => 1.0,
+        };
+        let needed = if now.is_finite() {
+            tolerance / now
+        } else {
+            0.0
+        };
+        (SHARE * expected.max(needed)).min(LARGEST_FORCING)
+    }
+}
+
 /// When the factors of the last tangent serve once more.
 ///
 /// With quadratic convergence, r₊ = C r², the same factors used again leave about 2 C r r₊ (Kelley

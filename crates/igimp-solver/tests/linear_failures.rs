@@ -119,6 +119,7 @@ fn floating(nodes_x: usize, nodes_y: usize) -> TangentMatrix {
     let block = |first| NodeBlock {
         first,
         len: 1,
+        free: 1,
         place: [first % nodes_x, first / nodes_x, 0],
     };
     let blocks = (0..nodes_x * nodes_y).map(block).collect();

@@ -68,7 +68,7 @@ proptest! {
         let mut first = 0;
         let blocks = places.into_iter().map(|(x, y, z, len)| {
             first += len;
-            NodeBlock { first: first - len, len, place: [x * stretch, y, z] }
+            NodeBlock { first: first - len, len, free: (1 << len) - 1, place: [x * stretch, y, z] }
         });
         let blocks: Vec<NodeBlock> = blocks.collect();
         let alone = (0..=blocks.len()).collect();

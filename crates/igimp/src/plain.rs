@@ -145,6 +145,9 @@ fn end(summary: &StageSummary) -> String {
         summary.cuts,
         short(summary.largest_displacement)
     );
+    if let Some(linear) = &summary.linear {
+        let _ = write!(line, "\n  {}", linear.sentence());
+    }
     line
 }
 
@@ -195,6 +198,7 @@ pub(crate) fn residual(value: Option<f64>) -> String {
 mod tests {
     use igimp_assembly::{ParticleSeed, Particles};
     use igimp_cases::run::{Controls, State};
+    use igimp_solver::linear::LinearEffort;
     use igimp_solver::{Body, PhaseTimes, StepFailure};
 
     use super::*;
@@ -222,6 +226,7 @@ mod tests {
             ghost_penalty: 0.0,
             drag_share: 0.0,
             worst: Some(([31.5, 10.5, 0.0], 0)),
+            linear: LinearEffort::default(),
             times: PhaseTimes::default(),
         }
     }

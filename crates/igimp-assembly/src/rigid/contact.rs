@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use super::clearance::{Swallowed, put_back};
 use super::gathering::Gathering;
 use super::interface::{Interface, Tension};
+use super::mosaic::tents_within;
 use super::motion::rotations;
 use super::row::{Functional, Row};
 use super::{ContactNode, ContactState, NODES_PER_BODY, RigidBody};
@@ -15,6 +16,10 @@ use crate::particles::Particles;
 use crate::stencils::Stencils;
 use crate::step_conditions::StepConditions;
 use crate::unknowns::Unknowns;
+
+/// A knot of space that soil covers by a smaller share of the largest one has none: round-off beyond a plane of
+/// symmetry \[-\].
+const LEAST_COVER: f64 = 1e-6;
 
 /// Contact of one step, with directions and weights frozen at its start.
 #[derive(Debug)]
@@ -66,10 +71,21 @@ impl<'a, const D: usize> Contact<'a, D> {
     ) {
         let body = &self.bodies[index];
         let surface = &*body.surface;
-        let tents = surface.tents();
+        let tents = match surface.space() {
+            Some(space) => tents_within(body, space, &conditions.grid),
+            None => surface.tents(),
+        };
+        let least = match surface.space() {
+            Some(_) => LEAST_COVER * tents.iter().copied().fold(0.0, f64::max),
+            None => 0.0,
+        };
         let node = self.first_node + NODES_PER_BODY * index;
         let knots = Gathering::new(body, node, particles, stencils, conditions, unknowns).sums();
         for (knot, sums) in knots {
+            let area = sums.area.min(tents[knot]);
+            if area <= least {
+                continue;
+            }
             let mean = |sum: f64| sum / sums.area;
             let functional = |sum: &BTreeMap<usize, [f64; D]>| -> Functional<D> {
                 let terms = sum.iter();
@@ -92,7 +108,7 @@ impl<'a, const D: usize> Contact<'a, D> {
             let mut row = Row {
                 body: index,
                 knot,
-                area: sums.area.min(tents[knot]),
+                area,
                 gap: before.gap,
                 cell: mean(sums.cell),
                 young: mean(sums.young),

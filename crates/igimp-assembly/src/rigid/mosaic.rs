@@ -5,7 +5,7 @@ use igimp_shape::Grid;
 use super::RigidBody;
 use super::face::Face;
 use super::surface::Space;
-use super::vectors::{dot, minus, norm};
+use super::vectors::{cross_size, dot, minus, norm};
 
 /// Places and weights of six points in a triangle that integrate polynomials of degree four (Dunavant
 /// 1985): two shares of corners with their weight, each in three turns.
@@ -90,6 +90,52 @@ pub(crate) fn pieces<const D: usize>(
         }
     }
     pieces
+}
+
+/// The area of what belongs to each knot \[length²\], as far as it lies within the grid: on a plane of symmetry half
+/// of a knot has no soil.
+pub(crate) fn tents_within<const D: usize>(
+    body: &RigidBody<D>,
+    space: &Space<D>,
+    grid: &Grid<D>,
+) -> Vec<f64> {
+    let surface = &*body.surface;
+    let places: Vec<[f64; D]> = space
+        .outer
+        .iter()
+        .map(|x| body.pose.into_space(x))
+        .collect();
+    let mut areas = vec![0.0; surface.knot_count()];
+    for facet in 0..surface.facet_count() {
+        let corners = surface.corners(facet);
+        let at = corners.map(|corner| places[corner]);
+        // The triangle in shares of its second and third corner, and what of it lies within.
+        let mut part: Vec<Flat> = vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
+        for axis in 0..D {
+            let (start, end) = (grid.axes[axis].start(), grid.axes[axis].end());
+            let along = |[s, t]: &Flat| {
+                at[0][axis] + s * (at[1][axis] - at[0][axis]) + t * (at[2][axis] - at[0][axis])
+            };
+            if at.iter().any(|own| own[axis] < start) {
+                part = kept(&part, |p| along(p) - start);
+            }
+            if at.iter().any(|own| own[axis] > end) {
+                part = kept(&part, |p| end - along(p));
+            }
+        }
+        let double = cross_size(&minus(&at[1], &at[0]), &minus(&at[2], &at[0]));
+        for k in 2..part.len() {
+            let own = [part[0], part[k - 1], part[k]];
+            let area = 0.5 * double * turn(&own[0], &own[1], &own[2]);
+            let [s, t] = [0, 1].map(|a| own.iter().map(|p| p[a]).sum::<f64>() / 3.0);
+            for (corner, mean) in corners.into_iter().zip([1.0 - s - t, s, t]) {
+                for &(knot, share) in &space.shares[corner] {
+                    areas[knot] += area * mean * share;
+                }
+            }
+        }
+    }
+    areas
 }
 
 /// The domain of a particle as seen along the normal of its face, in the plane of the face: a hexagon, or a

@@ -76,6 +76,8 @@ fn units(out: &mut String) {
         Dimension::Acceleration,
         Dimension::ForcePerLength,
         Dimension::MomentPerLength,
+        Dimension::Force,
+        Dimension::Moment,
     ] {
         let units: Vec<_> = dimension.units().map(|unit| format!("`{unit}`")).collect();
         let _ = writeln!(out, "| {} | {} |", bare(dimension), units.join(" "));

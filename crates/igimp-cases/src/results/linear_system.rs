@@ -139,12 +139,18 @@ impl LinearSystem {
         }
         let mut blocks: Vec<NodeBlock> = Vec::new();
         for (unknown, place) in self.places.iter().enumerate() {
-            let place = [0, 1, 2].map(|axis| place[axis] as usize);
+            let [x, y, z, component] = place.map(|own| own as usize);
+            let place = [x, y, z];
+            let component = 1_u8.checked_shl(component as u32).unwrap_or(0);
             match blocks.last_mut() {
-                Some(block) if block.place == place => block.len += 1,
+                Some(block) if block.place == place => {
+                    block.len += 1;
+                    block.free |= component;
+                }
                 _ => blocks.push(NodeBlock {
                     first: unknown,
                     len: 1,
+                    free: component,
                     place,
                 }),
             }

@@ -121,6 +121,16 @@ impl<const D: usize> Session<'_, D> {
                 short(100.0 * stage.false_support)
             ));
         }
+        if D == 3 {
+            let own = &report.linear;
+            let linear = stage.linear.get_or_insert_default();
+            linear.method = own.method.to_owned();
+            linear.reason = own.reason.to_string();
+            linear.solutions += own.solutions;
+            linear.iterations += own.iterations;
+            linear.most_iterations = linear.most_iterations.max(own.most_iterations);
+            linear.lost_iterations += own.lost_iterations;
+        }
         let times = &report.times;
         let phases = [
             times.set_up,

@@ -123,6 +123,19 @@ impl ClosedSurface {
         self.moments(lower, upper).volume
     }
 
+    /// Its corners \[length\].
+    pub fn points(&self) -> &[[f64; 3]] {
+        &self.facets.points
+    }
+
+    /// The numbers of the corners of its triangles, anticlockwise as seen from outside.
+    pub fn faces(&self) -> Vec<[usize; 3]> {
+        let faces = self.facets.triangles.iter();
+        faces
+            .map(|face| face.map(|corner| corner as usize))
+            .collect()
+    }
+
     /// How many triangles it has.
     pub fn triangle_count(&self) -> usize {
         self.facets.triangles.len()

@@ -234,6 +234,7 @@ mod tests {
         let block = |first| NodeBlock {
             first,
             len: 1,
+            free: 1,
             place: [first, 0, 0],
         };
         let pattern = Pattern::new(vec![block(0), block(1)], vec![0, 1, 2], vec![0, 1], 1);

@@ -68,12 +68,33 @@ pub enum LinearSolverError {
         tolerance: f64,
     },
 
+    /// An iteration did not come to a solution, and there was no room for a factorisation.
+    #[error(
+        "no solution after {iterations} iterations: relative residual {relative_residual:e} above {tolerance:e}; \
+         a factorisation would need {} GiB", gibibytes(*.factor_bytes)
+    )]
+    NotConverged {
+        /// How many were made.
+        iterations: usize,
+        /// Relative residual reached, in the Euclidean norm.
+        relative_residual: f64,
+        /// Largest acceptable one.
+        tolerance: f64,
+        /// What the factors would take.
+        factor_bytes: usize,
+    },
+
     /// The factors do not fit into memory or into the index type.
     #[error("out of memory: {what}")]
     OutOfMemory {
         /// What could not be allocated.
         what: &'static str,
     },
+}
+
+/// To one decimal.
+fn gibibytes(bytes: usize) -> String {
+    format!("{:.1}", bytes as f64 / (1_u64 << 30) as f64)
 }
 
 fn at_unknown(unknown: Option<usize>) -> String {

@@ -2,7 +2,8 @@
 //!
 //! | kind | matrix | method | role |
 //! |---|---|---|---|
-//! | [`SolverKind::Auto`] | any | chooses between the next two by the symmetry of K | default |
+//! | [`SolverKind::Auto`] | any | chooses among the next three by dimension, size and symmetry of K | default |
+//! | [`SolverKind::Multigrid`] | any, of a grid | conjugate gradients or generalised minimal residuals with geometric multigrid, own | large systems in space |
 //! | [`SolverKind::MultifrontalCholesky`] | symmetric positive definite | multifrontal Cholesky, own | fast |
 //! | [`SolverKind::Multifrontal`] | structurally symmetric | multifrontal LU, own | fast |
 //! | [`SolverKind::FaerCholesky`] | symmetric positive definite | supernodal Cholesky of `faer` | independent second, fast |
@@ -14,12 +15,15 @@
 //! refined where that helps. The multifrontal solvers use the threads of the current `rayon` pool, the
 //! others one; the same input gives the same bits on any number of threads.
 
+mod auto;
 mod bordered;
 mod check;
+mod choice;
 mod error;
 mod faer_cholesky;
 mod general_lu;
 mod multifrontal;
+mod multigrid;
 mod nalgebra_cholesky;
 mod ordering;
 mod reach;
@@ -31,11 +35,13 @@ use std::sync::Arc;
 
 use igimp_assembly::{Pattern, TangentMatrix};
 
+pub use auto::AutoSolver;
 pub(crate) use bordered::Bordered;
+pub use choice::{LinearEffort, Reason};
 pub use error::LinearSolverError;
 pub use faer_cholesky::FaerCholesky;
 pub use general_lu::GeneralLu;
-pub use multifrontal::{AutoSolver, MultifrontalCholesky, MultifrontalLu};
+pub use multifrontal::{MultifrontalCholesky, MultifrontalLu};
 pub use nalgebra_cholesky::NalgebraCholesky;
 pub use ordering::NestedDissection;
 pub use record::{Record, SolvedSystem};
@@ -83,6 +89,20 @@ pub trait LinearSolver: Send {
 
     /// How many patterns were analysed since construction: shows that symbolic work is reused.
     fn analyses(&self) -> usize;
+
+    /// A step begins: what was learnt in the one before is forgotten, so that its solutions do not depend on it.
+    fn start_step(&mut self) {}
+
+    /// How small ‖b − K x‖ / ‖b‖ has to become in the next solutions \[-\]. Direct solvers reach what they can.
+    fn ask_for(&mut self, _relative_residual: f64) {}
+
+    /// How the systems since the start of the step were solved, where the solver chooses among methods.
+    fn effort(&self) -> LinearEffort {
+        LinearEffort {
+            method: self.name(),
+            ..LinearEffort::default()
+        }
+    }
 }
 
 /// What one solve achieved.
@@ -116,9 +136,12 @@ impl SolveReport {
 /// The solvers to choose from, see the table of the [module](self).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum SolverKind {
-    /// Cholesky for symmetric matrices, LU for the others and when Cholesky fails.
+    /// Cholesky for symmetric matrices, LU for the others and when Cholesky fails; for large systems in space
+    /// iteration with multigrid.
     #[default]
     Auto,
+    /// Iteration with geometric multigrid; a factorisation where it fails.
+    Multigrid,
     /// Supernodal Cholesky factorisation of `faer`.
     FaerCholesky,
     /// Multifrontal Cholesky factorisation for symmetric positive definite matrices.
@@ -133,8 +156,9 @@ pub enum SolverKind {
 
 impl SolverKind {
     /// All kinds, for tests and for listings.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::Auto,
+        Self::Multigrid,
         Self::FaerCholesky,
         Self::MultifrontalCholesky,
         Self::Multifrontal,
@@ -146,6 +170,7 @@ impl SolverKind {
     pub fn build(self) -> Box<dyn LinearSolver> {
         match self {
             Self::Auto => Box::new(AutoSolver::default()),
+            Self::Multigrid => Box::new(AutoSolver::by_iteration()),
             Self::FaerCholesky => Box::new(FaerCholesky::default()),
             Self::MultifrontalCholesky => Box::new(MultifrontalCholesky::default()),
             Self::Multifrontal => Box::new(MultifrontalLu::default()),

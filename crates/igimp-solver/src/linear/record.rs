@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use igimp_assembly::{Pattern, TangentMatrix};
 
-use super::{LinearSolver, LinearSolverError, SolveReport};
+use super::{LinearEffort, LinearSolver, LinearSolverError, SolveReport};
 
 /// A linear system K x = b with the solution that was found.
 #[derive(Clone, Debug)]
@@ -106,6 +106,18 @@ impl LinearSolver for Recorded {
 
     fn analyses(&self) -> usize {
         self.solver.analyses()
+    }
+
+    fn start_step(&mut self) {
+        self.solver.start_step();
+    }
+
+    fn ask_for(&mut self, relative_residual: f64) {
+        self.solver.ask_for(relative_residual);
+    }
+
+    fn effort(&self) -> LinearEffort {
+        self.solver.effort()
     }
 }
 

@@ -108,6 +108,7 @@ impl Body {
             blocks.push(NodeBlock {
                 first: unknowns,
                 len,
+                free: (1 << len) - 1,
                 place,
             });
             *slot = (unknowns, len);
@@ -232,6 +233,7 @@ pub(crate) fn from_dense(rows: &[&[f64]], symmetric: bool) -> TangentMatrix {
     let blocks = (0..unknowns).map(|first| NodeBlock {
         first,
         len: 1,
+        free: 1,
         place: [first, 0, 0],
     });
     assemble(&entries, unknowns, blocks.collect(), symmetric)

@@ -3,7 +3,7 @@
 use super::super::vectors::{cross, dot, minus, norm};
 use super::space::Space;
 use super::tree::Tree;
-use super::{Facet, MOST_KNOTS, Surface, SurfaceError};
+use super::{Facet, MOST_KNOTS, Surface, SurfaceError, extent_of};
 
 /// A facet of the core with less than this area over the square of its longest edge is a line \[-\].
 const FLAT: f64 = 1e-10;
@@ -132,6 +132,7 @@ impl Draft {
         }
         let frames = self.frames();
         Ok(Surface {
+            bounds: extent_of(&self.core, rounding),
             points: self.core,
             facets: self.facets,
             rounding,

@@ -15,7 +15,7 @@ pub(crate) use space::Space;
 use thiserror::Error;
 
 use self::closest::{closest, combine};
-use super::vectors::{cross_size, dot, minus, norm};
+use super::vectors::{dot, minus, norm};
 
 /// The largest number of knots of a surface.
 const MOST_KNOTS: u32 = 1_000_000;
@@ -136,6 +136,8 @@ struct Facet<const D: usize> {
 pub struct Surface<const D: usize> {
     /// Corners of the facets of the core; in the plane a knot each.
     points: Vec<[f64; D]>,
+    /// Its extent: lower and upper corner \[length\].
+    bounds: ([f64; D], [f64; D]),
     facets: Vec<Facet<D>>,
     /// Radius of its edges \[length\].
     rounding: f64,
@@ -201,14 +203,7 @@ impl<const D: usize> Surface<D> {
 
     /// Its extent in the frame of the body: lower and upper corner \[length\].
     pub fn bounds(&self) -> ([f64; D], [f64; D]) {
-        let mut bounds = ([f64::INFINITY; D], [f64::NEG_INFINITY; D]);
-        for point in &self.points {
-            for axis in 0..D {
-                bounds.0[axis] = bounds.0[axis].min(point[axis] - self.rounding);
-                bounds.1[axis] = bounds.1[axis].max(point[axis] + self.rounding);
-            }
-        }
-        bounds
+        self.bounds
     }
 
     /// What holds all of it in the frame of the body: lower and upper corner \[length\]. The knots of a circle
@@ -224,20 +219,10 @@ impl<const D: usize> Surface<D> {
         norm(&minus(&upper, &lower))
     }
 
-    /// The area of what belongs to each knot \[length^(D-1)\].
+    /// In the plane the length of what belongs to each knot \[length\].
     pub(crate) fn tents(&self) -> Vec<f64> {
         let mut areas = vec![0.0; self.knot_count()];
         for facet in &self.facets {
-            if let Some(space) = &self.space {
-                let [a, b, c] = [0, 1, 2].map(|k| space.outer[facet.corners[k]]);
-                let area = 0.5 * cross_size(&minus(&b, &a), &minus(&c, &a));
-                for &point in &facet.corners {
-                    for (knot, share) in &space.shares[point] {
-                        areas[*knot] += share * area / D as f64;
-                    }
-                }
-                continue;
-            }
             let corners = facet.corners.map(|corner| self.points[corner]);
             let area = norm(&minus(&corners[1], &corners[0]));
             for &knot in &facet.corners {
@@ -340,6 +325,18 @@ fn shares_along(length: f64, spacing: f64) -> Vec<f64> {
     let parts = (length / spacing).round().max(1.0) as usize;
     let inner = (0..=parts).filter(|&part| parts < 4 || (part != 1 && part + 1 != parts));
     inner.map(|part| part as f64 / parts as f64).collect()
+}
+
+/// The extent of points with a radius about them.
+fn extent_of<const D: usize>(points: &[[f64; D]], rounding: f64) -> ([f64; D], [f64; D]) {
+    let mut bounds = ([f64::INFINITY; D], [f64::NEG_INFINITY; D]);
+    for point in points {
+        for axis in 0..D {
+            bounds.0[axis] = bounds.0[axis].min(point[axis] - rounding);
+            bounds.1[axis] = bounds.1[axis].max(point[axis] + rounding);
+        }
+    }
+    bounds
 }
 
 fn positive(what: &'static str, value: f64) -> Result<(), SurfaceError> {

@@ -1,7 +1,7 @@
 //! Surfaces in the plane: polygons and circles.
 
 use super::super::vectors::{dot, norm};
-use super::{Facet, MOST_KNOTS, Surface, SurfaceError, positive, shares_along};
+use super::{Facet, MOST_KNOTS, Surface, SurfaceError, extent_of, positive, shares_along};
 
 impl Surface<2> {
     /// A polygon with corners in order, either way round \[length\], its corners rounded by a radius
@@ -46,6 +46,7 @@ impl Surface<2> {
         };
         let mut surface = Self {
             points: Vec::new(),
+            bounds: ([0.0; 2], [0.0; 2]),
             facets: Vec::new(),
             rounding,
             radius: None,
@@ -74,6 +75,7 @@ impl Surface<2> {
                 normal: outward(k),
             }));
         }
+        surface.bounds = extent_of(&surface.points, rounding);
         Ok(surface)
     }
 
@@ -91,10 +93,12 @@ impl Surface<2> {
             let (sin, cos) = (around * part / parts as f64).sin_cos();
             [cos, sin]
         };
+        let points: Vec<[f64; 2]> = (0..parts)
+            .map(|part| at(part as f64).map(|x| radius * x))
+            .collect();
         Ok(Self {
-            points: (0..parts)
-                .map(|part| at(part as f64).map(|x| radius * x))
-                .collect(),
+            bounds: extent_of(&points, 0.0),
+            points,
             facets: (0..parts)
                 .map(|part| Facet {
                     corners: [part, (part + 1) % parts],

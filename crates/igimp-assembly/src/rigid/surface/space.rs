@@ -32,13 +32,18 @@ impl<const D: usize> Surface<D> {
         self.space.as_deref()
     }
 
+    /// How many facets it has.
+    pub(crate) fn facet_count(&self) -> usize {
+        self.facets.len()
+    }
+
     /// The corners of a facet, as points.
     pub(crate) fn corners(&self, facet: usize) -> [usize; D] {
         self.facets[facet].corners
     }
 
     /// Two tangents of the surface at a knot, in the frame of the body, as far as a face with this normal
-    /// has them; the second is the normal times the first.
+    /// has them; the second is the normal times the first (theory, eq. 45a).
     pub(crate) fn tangents_at(
         &self,
         space: &Space<D>,

@@ -20,6 +20,7 @@ mod profiles;
 mod quantities;
 mod reinforcement;
 mod rigid;
+mod rigid_space;
 mod safety;
 mod sequence;
 mod site;

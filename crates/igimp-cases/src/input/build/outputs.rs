@@ -26,6 +26,7 @@ pub(super) fn solver(
     let cutting = node.get("step_cutting")?;
     let linear = match node.text_at("linear")? {
         "cholesky" => SolverKind::MultifrontalCholesky,
+        "multigrid" => SolverKind::Multigrid,
         "lu" => SolverKind::Multifrontal,
         "faer-cholesky" => SolverKind::FaerCholesky,
         "nalgebra-cholesky" => SolverKind::NalgebraCholesky,

@@ -7,8 +7,8 @@ use super::grid::Frame;
 use super::sequence::{Sequence, placed};
 use super::site::Soil;
 use super::{AllNames, all, boundaries, checks, construction, curves, grid, materials, outputs};
-use super::{solids, stages, study, title_block};
-use crate::case::{BodyPart, Case, Ground, Load, LoadKind, Material, RigidPart, WaterCondition};
+use super::{rigid_space, solids, stages, study, title_block};
+use crate::case::{BodyPart, Case, Ground, Load, LoadKind, Material, WaterCondition};
 use crate::input::diagnostic::Problems;
 use crate::input::text::{clip, count, number, point};
 use crate::input::tree::Node;
@@ -92,7 +92,8 @@ pub(super) fn build(
     check_bodies(tree, frame.as_ref(), (&bodies, &sequence), &soil, problems);
     let boundaries = boundaries::boundaries(tree, frame.as_ref(), problems);
     let loads = loads(tree, &soil, problems);
-    let rigid: Vec<Option<RigidPart<3>>> = Vec::new();
+    let rigid = rigid_space::rigid(tree, frame.as_ref(), &materials, problems);
+    super::rigid::check_use(tree, names, problems);
     let water: Vec<Option<WaterCondition>> = Vec::new();
     let context = stages::Context {
         tree,
@@ -154,7 +155,6 @@ fn refuse_what_is_of_the_plane(tree: &Node, problems: &mut Problems) {
     for (key, what) in [
         ("reinforcement", "reinforcement is"),
         ("water", "conditions of the water are"),
-        ("rigid", "rigid bodies are"),
     ] {
         if let Some(first) = tree.items_at(key).first() {
             problems
@@ -169,7 +169,7 @@ fn refuse_what_is_of_the_plane(tree: &Node, problems: &mut Problems) {
                     load.place_at("type"),
                     "a rigid footing that the grid follows is one of plane strain",
                 )
-                .help("in space a footing is held by nodes, or pressed by a load of type pressure");
+                .help("in space footings are [[rigid]] bodies, or pressures");
         }
     }
     let fit = tree.get("grid").and_then(|grid| grid.get("fit"));

@@ -41,6 +41,10 @@ pub(super) fn read(tree: &mut Node, case: &Path, problems: &mut Problems) {
             }
         }
     }
+    let rigid = tree.get_mut("rigid").map(Node::items_mut);
+    for body in rigid.into_iter().flatten() {
+        shape(body, folder, problems);
+    }
     if let Some(bodies) = tree.get_mut("bodies") {
         for body in bodies.items_mut() {
             shape(body, folder, problems);
@@ -166,6 +170,18 @@ fn unit_of(
         Ok(_) => Ok(unit.to_owned()),
         Err(error) => Err(Trouble::new(&error, error.help(Some(dimension)))),
     }
+}
+
+/// The unit of length of a file that cannot say it, from beside its name.
+fn unit_beside(like: &Node) -> Result<String, Trouble> {
+    if like.get("unit").is_none() {
+        return Err(Trouble::new(
+            "nothing says in which unit it is",
+            "write it beside the file, as in unit = \"m\"",
+        ));
+    }
+    let stated = ("unit", like.text_at("unit"));
+    unit_of(stated, ("coordinates", None), Dimension::Length)
 }
 
 /// A number of a file as a value with its unit.

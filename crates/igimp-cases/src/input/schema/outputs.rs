@@ -53,8 +53,15 @@ static STEP_CUTTING: Struct = Struct {
     ],
 };
 
-static LINEAR_SOLVERS: [Choice; 7] = [
-    choice("auto", "Cholesky for symmetric matrices, LU for others"),
+static LINEAR_SOLVERS: [Choice; 8] = [
+    choice(
+        "auto",
+        "Cholesky for symmetric matrices, LU for others; for large systems in space multigrid",
+    ),
+    choice(
+        "multigrid",
+        "conjugate gradients or GMRES with geometric multigrid on the grid",
+    ),
     choice("direct", "the same as auto"),
     choice("cholesky", "multifrontal Cholesky"),
     choice("lu", "multifrontal LU"),

@@ -134,7 +134,7 @@ static SPHERE_TABLE: Struct = Struct {
     ],
 };
 
-static SURFACE_TABLE: Struct = Struct {
+pub(super) static SURFACE_TABLE: Struct = Struct {
     doc: "A closed surface: an STL file, or corners and the triangles between them.",
     fields: &[
         optional(

@@ -9,6 +9,7 @@ use super::super::refine::{Accuracy, Refinement, probe};
 use super::super::{GeneralLu, LinearSolver, LinearSolverError, SolveReport};
 use super::cholesky::{Cholesky, CholeskyFactors};
 use super::factors::Factors;
+use super::kernel::Kernel;
 use super::lu::{Lu, LuFactors};
 use super::plan::Plan;
 use super::scaling::Scaling;
@@ -24,9 +25,9 @@ const SUSPICIOUS_GROWTH: f64 = 1e6;
 
 /// Plan and factors of one matrix after the other.
 #[derive(Default)]
-pub(super) struct Engine {
-    pub(super) accuracy: Accuracy,
-    pub(super) analyses: usize,
+pub(in crate::linear) struct Engine {
+    pub(in crate::linear) accuracy: Accuracy,
+    pub(in crate::linear) analyses: usize,
     pub(super) plan: Option<Plan>,
     factors: Factors,
     scaling: Scaling,
@@ -46,7 +47,7 @@ enum Factorisation {
 }
 
 impl Engine {
-    pub(super) fn with_accuracy(accuracy: Accuracy) -> Self {
+    pub(in crate::linear) fn with_accuracy(accuracy: Accuracy) -> Self {
         Self {
             accuracy,
             ..Self::default()
@@ -54,7 +55,10 @@ impl Engine {
     }
 
     /// Makes a plan, unless there is one that holds for the pattern.
-    pub(super) fn analyse(&mut self, pattern: &Arc<Pattern>) -> Result<(), LinearSolverError> {
+    pub(in crate::linear) fn analyse(
+        &mut self,
+        pattern: &Arc<Pattern>,
+    ) -> Result<(), LinearSolverError> {
         if let Some(plan) = &mut self.plan {
             if check::same_pattern(Some(&plan.pattern), pattern) {
                 return Ok(());
@@ -70,6 +74,27 @@ impl Engine {
         Ok(())
     }
 
+    /// Entries of the factors of the pattern analysed last, zero before.
+    pub(super) fn entries<K: Kernel>(&self) -> usize {
+        let tasks = self.plan.iter().flat_map(|plan| &plan.tasks);
+        tasks.map(|task| K::entries(&task.total)).sum()
+    }
+
+    /// Bytes of factors and contributions of the pattern analysed last, by Cholesky where it is `symmetric` and
+    /// by LU otherwise, and the operations that they take.
+    pub(in crate::linear) fn cost(&self, symmetric: bool) -> (usize, f64) {
+        let Some(plan) = &self.plan else {
+            return (0, 0.0);
+        };
+        let (entries, share) = if symmetric {
+            (self.entries::<Cholesky>(), 0.5)
+        } else {
+            (self.entries::<Lu>(), 1.0)
+        };
+        let contributions = plan.contribution_entries();
+        (8 * (entries + contributions), share * plan.operations())
+    }
+
     /// Prepares a factorisation: nothing is factorised until it succeeds.
     fn prepare(&mut self, matrix: &TangentMatrix) -> Result<(), LinearSolverError> {
         self.analyse(&matrix.pattern)?;
@@ -78,7 +103,7 @@ impl Engine {
     }
 
     /// Factorises a symmetric positive definite matrix.
-    pub(super) fn factor_cholesky(
+    pub(in crate::linear) fn factor_cholesky(
         &mut self,
         matrix: &TangentMatrix,
     ) -> Result<(), LinearSolverError> {
@@ -95,7 +120,10 @@ impl Engine {
 
     /// Factorises a matrix by LU; where a pivot had to be made up, a solve with a known right-hand
     /// side shows here and not later whether the matrix is singular.
-    pub(super) fn factor_lu(&mut self, matrix: &TangentMatrix) -> Result<(), LinearSolverError> {
+    pub(in crate::linear) fn factor_lu(
+        &mut self,
+        matrix: &TangentMatrix,
+    ) -> Result<(), LinearSolverError> {
         self.prepare(matrix)?;
         self.scaling.fit(matrix, &self.inspection.diagonal);
         let plan = self.plan.as_ref().ok_or(LinearSolverError::NotFactored)?;
@@ -122,7 +150,7 @@ impl Engine {
     }
 
     /// Solves for the matrix factorised last.
-    pub(super) fn solve(
+    pub(in crate::linear) fn solve(
         &mut self,
         matrix: &TangentMatrix,
         rhs: &[f64],

@@ -35,4 +35,5 @@ mod tasks;
 mod tiles;
 mod workshop;
 
-pub use solvers::{AutoSolver, MultifrontalCholesky, MultifrontalLu};
+pub(super) use engine::Engine;
+pub use solvers::{MultifrontalCholesky, MultifrontalLu};

@@ -188,6 +188,11 @@ impl Plan {
         self.fronts.iter().map(of_front).sum()
     }
 
+    /// Largest number of entries of contributions that wait for their parents at the same time, on one thread.
+    pub(super) fn contribution_entries(&self) -> usize {
+        self.tasks.iter().map(Task::waiting).max().unwrap_or(0)
+    }
+
     /// Lists the fronts with their borders and children, in the sequence of elimination.
     fn list_fronts(&mut self, supernodes: &Supernodes, sequence: &[u32], moved: &[u32]) {
         let mut front_of = vec![NONE; supernodes.len()];

@@ -28,6 +28,18 @@ pub(super) struct Task {
 }
 
 impl Task {
+    /// Largest number of entries of contributions that wait while this task and those below it are worked on, on one
+    /// thread.
+    pub(super) fn waiting(&self) -> usize {
+        let (mut done, mut most) = (0, 0);
+        for task in &self.below {
+            most = most.max(done + task.waiting());
+            done += task.own.outer * task.own.outer;
+        }
+        let own = self.own.outer * self.own.outer + self.stacks[0] + self.stacks[1];
+        most.max(done + own)
+    }
+
     /// Whether the task is a single large front, worth the work of several threads.
     pub(super) fn is_large(&self) -> bool {
         !self.below.is_empty()

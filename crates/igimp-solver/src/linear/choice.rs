@@ -1,0 +1,81 @@
+//! Which method solves the systems of a step, why, and what it took: data for reports.
+
+use std::fmt;
+
+/// How the linear systems of a step were solved.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct LinearEffort {
+    /// The method that found the last solution, empty before the first.
+    pub method: &'static str,
+    /// Why it was taken.
+    pub reason: Reason,
+    /// Solutions found.
+    pub solutions: usize,
+    /// Iterations of all of them; of a direct method none.
+    pub iterations: usize,
+    /// Iterations of the one that took most.
+    pub most_iterations: usize,
+    /// Iterations of those that were given up for a factorisation.
+    pub lost_iterations: usize,
+}
+
+/// Why a method was taken.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Reason {
+    /// It was asked for by its name.
+    #[default]
+    Asked,
+    /// The system is that of a plane, or of a line.
+    Plane,
+    /// There are too few nodes for a coarser grid.
+    Small {
+        /// Unknowns of the system.
+        unknowns: usize,
+    },
+    /// It is expected to take less time than the other.
+    Faster {
+        /// Unknowns of the system.
+        unknowns: usize,
+        /// Iterations that cost as much as a factorisation.
+        iterations: usize,
+    },
+    /// The factors would not fit into the memory allowed for them.
+    Memory {
+        /// What they would take \[bytes\].
+        factors: usize,
+        /// What is allowed \[bytes\].
+        allowed: usize,
+    },
+    /// An iteration did not converge within as many steps as a factorisation costs.
+    NotConverged {
+        /// How many were made.
+        iterations: usize,
+    },
+}
+
+impl fmt::Display for Reason {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let gibibytes = |bytes: usize| bytes as f64 / (1_u64 << 30) as f64;
+        match *self {
+            Self::Asked => write!(f, "asked for"),
+            Self::Plane => write!(f, "two dimensions"),
+            Self::Small { unknowns } => write!(f, "{unknowns} unknowns are few"),
+            Self::Faster {
+                unknowns,
+                iterations,
+            } => write!(
+                f,
+                "expected to be faster for {unknowns} unknowns, where a factorisation costs {iterations} iterations"
+            ),
+            Self::Memory { factors, allowed } => write!(
+                f,
+                "a factorisation would need {:.1} GiB, and {:.1} are allowed",
+                gibibytes(factors),
+                gibibytes(allowed)
+            ),
+            Self::NotConverged { iterations } => {
+                write!(f, "no convergence within {iterations} iterations")
+            }
+        }
+    }
+}

@@ -1,0 +1,174 @@
+//! Conjugate gradients and generalised minimal residuals, with a preconditioner.
+//!
+//! Y. Saad, *Iterative Methods for Sparse Linear Systems*, 2nd ed., SIAM 2003, algorithms 9.1 and 9.6.
+
+use super::product::dot;
+
+/// What an iteration came to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Iterated {
+    pub(super) iterations: usize,
+    /// ‖b − K x‖ / ‖b‖, as the recurrences have it \[-\].
+    pub(super) residual: f64,
+    /// Whether the method broke down: K or its preconditioner is not positive definite.
+    pub(super) broken: bool,
+}
+
+/// The matrix and its preconditioner.
+pub(super) trait Operators {
+    fn multiply(&mut self, x: &[f64], y: &mut [f64]);
+    fn precondition(&mut self, r: &[f64], z: &mut [f64]);
+}
+
+/// Conjugate gradients in the flexible form of Polak and Ribière, from x = 0.
+pub(super) fn conjugate_gradients(
+    operators: &mut dyn Operators,
+    rhs: &[f64],
+    x: &mut [f64],
+    goal: f64,
+    most: usize,
+) -> Iterated {
+    let n = rhs.len();
+    x.fill(0.0);
+    let scale = norm(rhs);
+    let mut r = rhs.to_vec();
+    let (mut z, mut p, mut q, mut before) =
+        (vec![0.0; n], vec![0.0; n], vec![0.0; n], rhs.to_vec());
+    let mut done = Iterated {
+        iterations: 0,
+        residual: 1.0,
+        broken: false,
+    };
+    let mut last = 0.0;
+    while !(done.residual <= goal) && done.iterations < most {
+        operators.precondition(&r, &mut z);
+        let rz = dot(&r, &z);
+        if !(rz > 0.0) {
+            done.broken = true;
+            break;
+        }
+        let beta = if last == 0.0 {
+            0.0
+        } else {
+            (rz - dot(&before, &z)) / last
+        };
+        last = rz;
+        for (p, z) in p.iter_mut().zip(&z) {
+            *p = z + beta * *p;
+        }
+        operators.multiply(&p, &mut q);
+        let pq = dot(&p, &q);
+        if !(pq > 0.0) {
+            done.broken = true;
+            break;
+        }
+        // p·r, and not r·z: also where the preconditioner is not quite the same from time to time.
+        let alpha = dot(&p, &r) / pq;
+        before.copy_from_slice(&r);
+        for (((x, r), p), q) in x.iter_mut().zip(&mut r).zip(&p).zip(&q) {
+            *x += alpha * p;
+            *r -= alpha * q;
+        }
+        done.iterations += 1;
+        done.residual = norm(&r) / scale;
+    }
+    done
+}
+
+/// Flexible generalised minimal residuals, restarted, from x = 0.
+pub(super) fn minimal_residuals(
+    operators: &mut dyn Operators,
+    rhs: &[f64],
+    x: &mut [f64],
+    (goal, most): (f64, usize),
+    restart: usize,
+) -> Iterated {
+    let n = rhs.len();
+    x.fill(0.0);
+    let scale = norm(rhs);
+    let mut done = Iterated {
+        iterations: 0,
+        residual: 1.0,
+        broken: false,
+    };
+    let mut r = rhs.to_vec();
+    while !(done.residual <= goal) && done.iterations < most {
+        let beta = norm(&r);
+        let mut basis: Vec<Vec<f64>> = vec![r.iter().map(|r| r / beta).collect()];
+        let mut directions: Vec<Vec<f64>> = Vec::new();
+        let mut hessenberg: Vec<Vec<f64>> = Vec::new();
+        let mut rotations: Vec<(f64, f64)> = Vec::new();
+        let mut g = vec![beta];
+        while directions.len() < restart && done.iterations < most && !(done.residual <= goal) {
+            let k = directions.len();
+            let mut z = vec![0.0; n];
+            operators.precondition(&basis[k], &mut z);
+            let mut w = vec![0.0; n];
+            operators.multiply(&z, &mut w);
+            directions.push(z);
+            let mut column = vec![0.0; k + 1];
+            // Twice is enough.
+            for _ in 0..2 {
+                for (own, entry) in basis.iter().zip(&mut column) {
+                    let share = dot(own, &w);
+                    *entry += share;
+                    for (w, own) in w.iter_mut().zip(own) {
+                        *w -= share * own;
+                    }
+                }
+            }
+            let left = norm(&w);
+            for (i, &(c, s)) in rotations.iter().enumerate() {
+                let (a, b) = (column[i], column[i + 1]);
+                column[i] = c * a + s * b;
+                column[i + 1] = c * b - s * a;
+            }
+            let (a, b) = (column[k], left);
+            let length = a.hypot(b);
+            if !(length > 0.0) {
+                done.broken = true;
+                directions.pop();
+                break;
+            }
+            let (c, s) = (a / length, b / length);
+            column[k] = length;
+            rotations.push((c, s));
+            hessenberg.push(column);
+            let last = g[k];
+            g[k] = c * last;
+            g.push(-s * last);
+            done.iterations += 1;
+            done.residual = g[k + 1].abs() / scale;
+            if left == 0.0 {
+                break;
+            }
+            basis.push(w.iter().map(|w| w / left).collect());
+        }
+        let mut y = vec![0.0; directions.len()];
+        for k in (0..y.len()).rev() {
+            let known: f64 = (k + 1..y.len()).map(|j| hessenberg[j][k] * y[j]).sum();
+            y[k] = (g[k] - known) / hessenberg[k][k];
+        }
+        for (y, direction) in y.iter().zip(&directions) {
+            for (x, z) in x.iter_mut().zip(direction) {
+                *x += y * z;
+            }
+        }
+        operators.multiply(x, &mut r);
+        for (r, b) in r.iter_mut().zip(rhs) {
+            *r = b - *r;
+        }
+        let reached = norm(&r) / scale;
+        if done.broken || !(reached < 1e3) {
+            done.residual = reached;
+            break;
+        }
+        done.residual = reached;
+    }
+    done
+}
+
+/// Euclidean norm.
+pub(super) fn norm(values: &[f64]) -> f64 {
+    dot(values, values).sqrt()
+}
