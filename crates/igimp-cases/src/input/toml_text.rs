@@ -107,5 +107,7 @@ fn variant_entries<'a>(
         return Vec::new();
     };
     let tag = node.get(of.tag).map(|tag| (of.tag, tag, &Kind::Text));
-    tag.into_iter().chain(known(node, of.fields(case))).collect()
+    tag.into_iter()
+        .chain(known(node, of.fields(case)))
+        .collect()
 }

@@ -19,8 +19,12 @@ pub(super) fn triple(node: &Node) -> Option<[f64; 3]> {
     numbers?.try_into().ok()
 }
 
-/// The inside of a closed surface.
-pub(super) fn surface(node: &Node, who: &Who<'_>, problems: &mut Problems) -> Option<Solid> {
+/// The closed surface of a table.
+pub(super) fn closed_surface(
+    node: &Node,
+    who: &dyn Display,
+    problems: &mut Problems,
+) -> Option<Arc<ClosedSurface>> {
     let (Some(vertices), Some(triangles)) = (node.get("vertices"), node.get("triangles")) else {
         problems
             .error(node.place, format!("the surface of {who} is not stated"))
@@ -45,7 +49,7 @@ pub(super) fn surface(node: &Node, who: &Who<'_>, problems: &mut Problems) -> Op
         faces.push(numbers.map(|number| points[number]));
     }
     match ClosedSurface::new(&faces) {
-        Ok(surface) => Some(Solid::Surface(Arc::new(surface))),
+        Ok(surface) => Some(Arc::new(surface)),
         Err(error) => {
             let help = match error {
                 ClosedSurfaceError::Open { .. } => {
