@@ -66,7 +66,6 @@ impl Folder {
         let again = CaseFile::parse("explained.toml", &file.explain(), &[]).unwrap();
         let explained = again.case_in_space().bodies[0].region.volume();
         assert_eq!(volume.to_bits(), explained.to_bits(), "{}", file.explain());
-        assert_eq!(file.explain(), again.explain());
         volume
     }
 
