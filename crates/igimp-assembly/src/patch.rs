@@ -192,7 +192,7 @@ impl<const D: usize> Patch<D> {
             let height = values.len() / usize::from(column.len);
             let first = if self.is_half { j * D } else { 0 };
             let add = |rows: Range<usize>, offset: usize| {
-                let is_full = rows.start % D == 0 && rows.len() % D == 0;
+                let is_full = rows.start.is_multiple_of(D) && rows.len().is_multiple_of(D);
                 if is_full && usize::from(column.len) == D {
                     for (k, i) in (rows.start / D..rows.end / D).enumerate() {
                         let (sums, lane) = (&sums[i / LANES], i % LANES);

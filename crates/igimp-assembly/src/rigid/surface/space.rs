@@ -44,12 +44,7 @@ impl<const D: usize> Surface<D> {
 
     /// Two tangents of the surface at a knot, in the frame of the body, as far as a face with this normal
     /// has them; the second is the normal times the first (theory, eq. 45a).
-    pub(crate) fn tangents_at(
-        &self,
-        space: &Space<D>,
-        knot: usize,
-        normal: &[f64; D],
-    ) -> [[f64; D]; 2] {
+    pub(crate) fn tangents_at(space: &Space<D>, knot: usize, normal: &[f64; D]) -> [[f64; D]; 2] {
         let [_, first, second] = &space.frames[knot];
         let along = |own: &[f64; D]| {
             let share = dot(own, normal);
@@ -128,6 +123,9 @@ impl<const D: usize> Surface<D> {
     }
 }
 
+/// A triangle that carries contact: its corners, the knots that share each of them, and its side.
+pub type DrawnFacet<'a> = ([[f64; 3]; 3], [&'a [(usize, f64)]; 3], usize);
+
 impl Surface<3> {
     /// The same at another place of the frame of the body: its reference point lies elsewhere.
     ///
@@ -155,7 +153,7 @@ impl Surface<3> {
 
     /// The triangles that carry contact: corners in the frame of the body \[length\], and the shares of knots
     /// at each corner, to draw what the knots carry.
-    pub fn facets(&self) -> impl Iterator<Item = ([[f64; 3]; 3], [&[(usize, f64)]; 3], usize)> {
+    pub fn facets(&self) -> impl Iterator<Item = DrawnFacet<'_>> {
         let space = self.space.as_deref();
         space.into_iter().flat_map(move |space| {
             self.facets.iter().map(move |facet| {
