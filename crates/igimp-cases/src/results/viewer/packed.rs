@@ -274,7 +274,7 @@ fn of_field(field: &Stored<'_>, cells: usize, kept: &[u32], keep: Keep) -> Optio
         .collect();
     let mut array = if field.is_whole() {
         let bytes = own.iter().flat_map(|&x| (x as i32).to_le_bytes()).collect();
-        array(&field.name, components, "i32", bytes)
+        array(&field.name, components, "i32", &bytes)
     } else if keep.rounded {
         let ends: Vec<[f64; 2]> = range.iter().map(|own| [own[0], own[1]]).collect();
         rounded(&field.name, &own, &ends[..components])
@@ -308,7 +308,7 @@ fn exact(name: &str, components: usize, numbers: &[f64]) -> Array {
     let bytes = std::iter::zip(numbers, low.iter().cycle())
         .flat_map(|(x, low)| ((x - low) as f32).to_le_bytes())
         .collect();
-    let mut array = array(name, components, "f32", bytes);
+    let mut array = array(name, components, "f32", &bytes);
     array.low = low;
     array
 }
@@ -328,17 +328,17 @@ fn rounded(name: &str, numbers: &[f64], ends: &[[f64; 2]]) -> Array {
             stands.to_le_bytes()
         })
         .collect();
-    let mut array = array(name, ends.len(), "u16", bytes);
+    let mut array = array(name, ends.len(), "u16", &bytes);
     array.low = ends.iter().map(|own| own[0]).collect();
     array.step = steps;
     array
 }
 
 fn bytes(name: &str, components: usize, bytes: Vec<u8>) -> Array {
-    array(name, components, "u8", bytes)
+    array(name, components, "u8", &bytes)
 }
 
-fn array(name: &str, components: usize, kind: &'static str, bytes: Vec<u8>) -> Array {
+fn array(name: &str, components: usize, kind: &'static str, bytes: &[u8]) -> Array {
     let width = match kind {
         "u8" => 1,
         "u16" => 2,
