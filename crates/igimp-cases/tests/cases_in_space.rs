@@ -60,6 +60,7 @@ force = ["1 kN", "-0.5 kN", "0.25 kN"]
 [[stages]]
 name = "rest"
 type = "k0"
+steps = 1
 [[stages]]
 name = "press"
 type = "load"
@@ -303,7 +304,7 @@ fn level_ground_is_at_rest() {
         let [xx, yy, zz, u_y] = row[columns - 4..] else {
             panic!()
         };
-        assert!((xx - yy).abs() < 1e-3 && (xx - 0.5 * zz).abs() < 1e-3 && u_y.abs() < 1e-12);
+        assert!((xx - yy).abs() < 1e-3 && (xx - 0.5 * zz).abs() < 1e-3 && u_y.abs() < 1e-8);
         assert!(zz > 0.0, "{row:?}");
     }
 }

@@ -452,3 +452,34 @@ fn an_embankment_is_filled_in_lifts() {
     assert_eq!(ran.outcomes(), [Completed; 6]);
     between(ran.measured("factor of safety"), 1.147, 1.22);
 }
+
+#[test]
+fn a_square_of_pressure_collapses_near_the_bounds() {
+    let ran = ran_in_space("footing_3d", &["grid.zones={}", "stages.0.steps=16"]);
+    assert_eq!(ran.outcomes(), [Stopped]);
+    // Two cells over half the width.
+    between(ran.end_of("load-settlement"), 5.0, 7.5);
+}
+
+#[test]
+fn a_slope_between_valley_sides_is_stronger_than_in_the_plane() {
+    let ran = ran_in_space("slope_3d", &["stages.1.steps=14"]);
+    assert_eq!(ran.outcomes(), [Completed, Stopped]);
+    let limit = ran.end_of("load-displacement");
+    between(limit, 5.379, 8.3);
+    between(ran.virtual_work(limit * 0.2), 0.97, 1.03);
+}
+
+#[test]
+fn clay_slides_off_inclined_rock() {
+    let ran = ran_in_space("landslide_3d", &["stages.1.tolerance=0.1"]);
+    assert_eq!(ran.outcomes(), [Completed; 2]);
+    let [stable, failed] = ran.factor_of_safety(1);
+    between(stable, 1.0, failed);
+    between(failed, stable, 1.6);
+    // The block that slides as one weighs what it should: 831.25 m3 of clay.
+    let particles = &ran.run.body.particles;
+    let clay = (0..particles.len()).filter(|&particle| particles.law[particle] == 0);
+    let volume: f64 = clay.map(|particle| particles.volume0[particle]).sum();
+    assert!((volume / 831.25 - 1.0).abs() < 1e-9, "{volume}");
+}
