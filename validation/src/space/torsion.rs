@@ -179,8 +179,8 @@ impl Bar {
             } else {
                 [0.0; 2]
             };
-            for axis in 0..2 {
-                constraints.prescribe(node, axis, moved[axis])?;
+            for (axis, moved) in moved.into_iter().enumerate() {
+                constraints.prescribe(node, axis, moved)?;
             }
         }
         Ok(constraints)
