@@ -2,15 +2,12 @@
 //! lists for the few nodes with couplings that reach further.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::ops::Range;
 
 use igimp_shape::{Grid, Support};
 
-use crate::linearised::Linearised;
 use crate::matrix::{NodeBlock, Pattern};
 use crate::reach::{SMALL_REACH, common_reach, furthest};
 use crate::stencils::Stencils;
-use crate::supports::bounds;
 use crate::unknowns::Unknowns;
 
 /// Marks a pair of nodes without a block, or a node without unknowns.
@@ -20,7 +17,9 @@ const NONE: u32 = u32::MAX;
 /// nodes' places on the grid.
 #[derive(Clone, Debug)]
 pub(crate) struct BlockTable<const D: usize> {
-    nodes: Vec<NodePlace>,
+    pub(crate) nodes: Vec<NodePlace>,
+    /// The reach of nearly all nodes.
+    pub(crate) near: usize,
     /// Pairs of nodes that a column node may have: a window of (2 reach + 1)^D nodes, with the reach
     /// of nearly all nodes.
     window: usize,
@@ -34,19 +33,28 @@ pub(crate) struct BlockTable<const D: usize> {
 
 /// What scattering needs to know of a node.
 #[derive(Clone, Copy, Debug)]
-struct NodePlace {
+pub(crate) struct NodePlace {
     /// A number such that differences of it tell two nodes' distance apart.
-    code: u32,
+    pub(crate) code: u32,
     /// Its block in the pattern, or [`NONE`].
-    block: u32,
+    pub(crate) block: u32,
     /// First of its unknowns.
-    first: u32,
+    pub(crate) first: u32,
     /// How many unknowns it has.
-    len: u8,
+    pub(crate) len: u8,
     /// Which components they are, one bit each.
-    free: u8,
+    pub(crate) free: u8,
     /// Whether some of its couplings reach beyond the window.
     is_wide: bool,
+}
+
+impl NodePlace {
+    /// The components that are unknown.
+    #[inline]
+    pub(crate) fn components(&self) -> impl Iterator<Item = usize> + use<> {
+        let free = self.free;
+        (0..8).filter(move |axis| free & (1 << axis) != 0)
+    }
 }
 
 impl<const D: usize> BlockTable<D> {
@@ -72,6 +80,7 @@ impl<const D: usize> BlockTable<D> {
         let side = 2 * near + 1;
         let mut table = Self {
             nodes: Vec::with_capacity(grid.node_count()),
+            near,
             window: side.pow(D as u32),
             offsets: Vec::new(),
             wide: BTreeMap::new(),
@@ -108,8 +117,9 @@ impl<const D: usize> BlockTable<D> {
         (table, pattern)
     }
 
-    /// Marks the coupled pairs. Particles that touch the same box of nodes couple the same pairs:
-    /// each box is marked once. Returns the row nodes of each wide column node.
+    /// Marks the coupled pairs. Particles that touch the same box of nodes couple the same pairs, and those of
+    /// a box within it: each box that is in no other from the same node is marked once. Returns the row
+    /// nodes of each wide column node.
     fn mark(
         &mut self,
         grid: &Grid<D>,
@@ -118,29 +128,28 @@ impl<const D: usize> BlockTable<D> {
     ) -> BTreeMap<usize, BTreeSet<usize>> {
         let mut wide = BTreeMap::new();
         let mut last: &[Support<D>] = &[];
-        let mut seen = vec![0_u64; grid.node_count()];
+        let mut shapes = vec![0_u64; grid.node_count()];
+        let mut nodes = Vec::new();
         for &particle in stencils.order() {
             let own = stencils.of(particle as usize);
             if same_nodes(own, last) {
                 continue;
             }
             last = own;
-            let first = own[0].node;
-            if let Some(shape) = box_shape(grid, own) {
-                if seen[first] & shape != 0 {
-                    continue;
-                }
-                seen[first] |= shape;
+            if let Some(extent) = box_extent(grid, own) {
+                shapes[own[0].node] |= 1 << shape(extent);
+            } else {
+                nodes.clear();
+                nodes.extend(own.iter().map(|support| support.node));
+                self.couple_all(&nodes, &mut wide);
             }
-            for column in own {
-                if self.nodes[column.node].block == NONE {
-                    continue;
-                }
-                for row in own {
-                    if self.nodes[row.node].block != NONE {
-                        self.couple(column.node, row.node, &mut wide);
-                    }
-                }
+        }
+        let begun = shapes.into_iter().enumerate();
+        for (first, shapes) in begun.filter(|&(_, shapes)| shapes != 0) {
+            for extent in outermost::<D>(shapes) {
+                nodes.clear();
+                nodes.extend(box_nodes(grid, first, extent));
+                self.couple_all(&nodes, &mut wide);
             }
         }
         for &(column, row) in extra {
@@ -149,6 +158,20 @@ impl<const D: usize> BlockTable<D> {
             }
         }
         wide
+    }
+
+    /// Couples nodes with each other.
+    fn couple_all(&mut self, nodes: &[usize], wide: &mut BTreeMap<usize, BTreeSet<usize>>) {
+        for &column in nodes {
+            if self.nodes[column].block == NONE {
+                continue;
+            }
+            for &row in nodes {
+                if self.nodes[row].block != NONE {
+                    self.couple(column, row, wide);
+                }
+            }
+        }
     }
 
     #[inline]
@@ -235,7 +258,7 @@ impl<const D: usize> BlockTable<D> {
     /// The offset within a column of a node of the first row of another, by the code and the block
     /// of that.
     #[inline]
-    fn offsets_of(&self, column: usize) -> impl Fn(u32, u32) -> usize + '_ {
+    pub(crate) fn offsets_of(&self, column: usize) -> impl Fn(u32, u32) -> usize + '_ {
         let column = &self.nodes[column];
         let centre = (self.window as u32 - 1) / 2;
         let offsets = &self.offsets[column.block as usize * self.window..][..self.window];
@@ -253,25 +276,21 @@ impl<const D: usize> BlockTable<D> {
         }
     }
 
-    /// Adds the free components of block (i, j) of a particle to the columns of its node j.
-    fn add_block(
-        &self,
-        supports: &[Support<D>],
-        [i, j]: [usize; 2],
-        columns: &[&[f64]; D],
-        values: &mut [f64],
-    ) {
-        let (row, column) = (&self.nodes[supports[i].node], &self.nodes[supports[j].node]);
-        let place = self.offsets_of(supports[j].node)(row.code, row.block);
-        let height = values.len() / usize::from(column.len);
-        let free = |node: &NodePlace| {
-            let free = node.free;
-            (0..D).filter(move |axis| free & (1 << axis) != 0)
-        };
-        for (c, values) in free(column).zip(values.chunks_exact_mut(height)) {
-            for (a, value) in free(row).zip(&mut values[place..]) {
-                *value += columns[c][i * D + a];
+    /// The same for a node that need not be coupled, but is within the window.
+    #[inline]
+    pub(crate) fn offsets_if_coupled(&self, column: usize) -> impl Fn(u32, u32) -> Option<usize> {
+        let column = &self.nodes[column];
+        let centre = (self.window as u32 - 1) / 2;
+        let offsets = &self.offsets[column.block as usize * self.window..][..self.window];
+        let wide = column.is_wide.then(|| &self.wide[&column.block]);
+        move |code, block| match wide {
+            Some(wide) => {
+                let place = wide.binary_search_by_key(&block, |&(other, _)| other);
+                place.ok().map(|place| wide[place].1 as usize)
             }
+            None => Some(offsets[(code + centre - column.code) as usize])
+                .filter(|&offset| offset != NONE)
+                .map(|offset| offset as usize),
         }
     }
 
@@ -289,145 +308,86 @@ impl<const D: usize> BlockTable<D> {
     }
 }
 
-/// The supports of one particle as blocks of the matrix.
-#[derive(Debug, Default)]
-pub(crate) struct Blocks {
-    /// Supports whose components are all unknown.
-    stretches: Vec<Stretch>,
-    /// Supports with some unknown components.
-    partial: Vec<u16>,
-}
-
-/// Supports whose unknowns follow one another, and so do their values in every column.
-#[derive(Clone, Copy, Debug)]
-struct Stretch {
-    /// First support.
-    first: u16,
-    len: u16,
-    /// Code of its node.
-    code: u32,
-    /// Block of its node.
-    block: u32,
-}
-
-impl Stretch {
-    fn supports(self) -> Range<usize> {
-        usize::from(self.first)..usize::from(self.first + self.len)
-    }
-}
-
-impl Blocks {
-    /// Lists the blocks of a particle.
-    #[inline]
-    pub(crate) fn set<const D: usize>(&mut self, supports: &[Support<D>], table: &BlockTable<D>) {
-        self.stretches.clear();
-        self.partial.clear();
-        let mut next = NONE;
-        for (i, support) in supports.iter().enumerate() {
-            let node = &table.nodes[support.node];
-            if usize::from(node.len) < D {
-                if node.len > 0 {
-                    self.partial.push(i as u16);
-                }
-                next = NONE;
-                continue;
-            }
-            match self.stretches.last_mut() {
-                Some(stretch) if node.first == next => stretch.len += 1,
-                _ => self.stretches.push(Stretch {
-                    first: i as u16,
-                    len: 1,
-                    code: node.code,
-                    block: node.block,
-                }),
-            }
-            next = node.first + D as u32;
-        }
-    }
-
-    /// Adds the tangent of one particle to the slice of values that begins at `start`.
-    #[inline]
-    pub(crate) fn scatter<const D: usize>(
-        &self,
-        supports: &[Support<D>],
-        table: &BlockTable<D>,
-        pattern: &Pattern,
-        linearised: &mut Linearised<D>,
-        (start, slice): (usize, &mut [f64]),
-    ) {
-        for j in self.stretches.iter().copied().flat_map(Stretch::supports) {
-            let node = supports[j].node;
-            let block = table.nodes[node].block as usize;
-            let stored = pattern.values_of(block);
-            let values = &mut slice[stored.start - start..stored.end - start];
-            let height = values.len() / D;
-            let columns = linearised.columns(j);
-            let offsets = table.offsets_of(node);
-            for stretch in &self.stretches {
-                let (first, offset) = (
-                    usize::from(stretch.first) * D,
-                    offsets(stretch.code, stretch.block),
-                );
-                for (c, column) in columns.iter().enumerate() {
-                    let sums = &mut values[c * height + offset..];
-                    let terms = &column[first..];
-                    match usize::from(stretch.len) * D {
-                        4 => add::<4>(sums, terms),
-                        6 => add::<6>(sums, terms),
-                        9 => add::<9>(sums, terms),
-                        len => {
-                            for (sum, term) in sums.iter_mut().zip(&terms[..len]) {
-                                *sum += term;
-                            }
-                        }
-                    }
-                }
-            }
-            for &i in &self.partial {
-                table.add_block(supports, [usize::from(i), j], &columns, values);
-            }
-        }
-        for &j in &self.partial {
-            let j = usize::from(j);
-            let block = table.nodes[supports[j].node].block as usize;
-            let stored = pattern.values_of(block);
-            let values = &mut slice[stored.start - start..stored.end - start];
-            let columns = linearised.columns(j);
-            let partial = self.partial.iter().map(|&i| usize::from(i));
-            let full = self.stretches.iter().copied().flat_map(Stretch::supports);
-            for i in full.chain(partial) {
-                table.add_block(supports, [i, j], &columns, values);
-            }
-        }
-    }
-}
-
-/// Adds the first `N` terms to the first `N` sums: so few that nothing is left of the loop.
-#[inline]
-fn add<const N: usize>(sums: &mut [f64], terms: &[f64]) {
-    let sums = sums
-        .first_chunk_mut::<N>()
-        .expect("a stretch ends within its column");
-    let terms = terms
-        .first_chunk::<N>()
-        .expect("a stretch ends within the rows");
-    for k in 0..N {
-        sums[k] += terms[k];
-    }
-}
-
 /// Whether two lists of supports have the same nodes.
 #[inline]
 pub(crate) fn same_nodes<const D: usize>(a: &[Support<D>], b: &[Support<D>]) -> bool {
     a.len() == b.len() && std::iter::zip(a, b).all(|(a, b)| a.node == b.node)
 }
 
-/// One bit that stands for the lengths of the sides of the box of nodes that supports fill; `None`
-/// when they do not fill it, or when it is larger than any common one.
+/// The nodes of a box from its first one on, ascending.
 #[inline]
-fn box_shape<const D: usize>(grid: &Grid<D>, own: &[Support<D>]) -> Option<u64> {
-    let (_, extent) = bounds(grid, own);
-    let filled: usize = extent.iter().map(|extent| extent + 1).product();
-    let common = extent.iter().all(|&extent| extent < 4);
-    (common && filled == own.len()).then(|| 1 << extent.iter().fold(0, |code, e| code * 4 + e))
+fn box_nodes<const D: usize>(
+    grid: &Grid<D>,
+    first: usize,
+    extent: [usize; D],
+) -> impl Iterator<Item = usize> {
+    let mut stride = 1;
+    let strides: [usize; D] = std::array::from_fn(|axis| {
+        let own = stride;
+        stride *= grid.axes[axis].node_count();
+        own
+    });
+    let count = extent.iter().map(|extent| extent + 1).product();
+    let mut place = [0; D];
+    let mut node = first;
+    (0..count).map(move |_| {
+        let own = node;
+        for axis in 0..D {
+            if place[axis] < extent[axis] {
+                place[axis] += 1;
+                node += strides[axis];
+                break;
+            }
+            node -= place[axis] * strides[axis];
+            place[axis] = 0;
+        }
+        own
+    })
+}
+
+/// Sides of boxes up to this many nodes have a shape.
+const SIDES: usize = 4;
+
+/// How far the box extends that supports fill, in nodes along each axis; `None` when they do not fill it, or when it
+/// is larger than any common one.
+#[inline]
+fn box_extent<const D: usize>(grid: &Grid<D>, own: &[Support<D>]) -> Option<[usize; D]> {
+    let (first, last) = (own[0].node, own[own.len() - 1].node);
+    let places = (grid.node_place(first), grid.node_place(last));
+    let mut extent = [0; D];
+    for axis in 0..D {
+        extent[axis] = places.1[axis].checked_sub(places.0[axis])?;
+        if extent[axis] >= SIDES {
+            return None;
+        }
+    }
+    let nodes = own.iter().map(|support| support.node);
+    nodes.eq(box_nodes(grid, first, extent)).then_some(extent)
+}
+
+/// A number for the sides of a box.
+fn shape<const D: usize>(extent: [usize; D]) -> usize {
+    extent.iter().rev().fold(0, |code, e| code * SIDES + e)
+}
+
+/// The boxes of some shapes, one bit each, that are in no other of them.
+fn outermost<const D: usize>(shapes: u64) -> impl Iterator<Item = [usize; D]> {
+    let extent = |shape: usize| -> [usize; D] {
+        std::array::from_fn(|axis| shape / SIDES.pow(axis as u32) % SIDES)
+    };
+    let all = move || {
+        let mut rest = shapes;
+        std::iter::from_fn(move || {
+            let shape = rest.trailing_zeros() as usize;
+            let some = rest != 0;
+            rest &= rest.wrapping_sub(1);
+            some.then_some(shape)
+        })
+    };
+    let is_within = move |shape: usize, other: usize| {
+        other != shape && std::iter::zip(extent(shape), extent(other)).all(|(a, b)| a <= b)
+    };
+    all()
+        .filter(move |&shape| !all().any(|other| is_within(shape, other)))
+        .map(extent)
 }

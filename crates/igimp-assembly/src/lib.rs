@@ -21,13 +21,16 @@ mod linearised;
 mod loads;
 mod matrix;
 mod method;
+mod mirror;
 mod nodal_forces;
 mod particles;
+mod patch;
 mod pore_water;
 mod reach;
 mod reinforcement;
 mod residual;
 mod rigid;
+mod scatter;
 mod small;
 mod small_cuts;
 mod stencils;
@@ -53,7 +56,7 @@ pub use reinforcement::{
 pub use residual::OutOfBalance;
 pub use rigid::{
     AcceptedContact, ContactNode, ContactState, Drive, Interface, Penalty, Pose, RigidBody,
-    RigidMotion, Shear, Surface, SurfaceError, Swallowed, Tension,
+    RigidMotion, Shear, Surface, SurfaceError, SurfaceTriangle, Swallowed, Tension,
 };
 pub use stencils::Stencils;
 pub use step_conditions::{SharedLaw, StepConditions};

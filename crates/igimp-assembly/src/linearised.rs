@@ -38,6 +38,62 @@ use crate::small::transpose_apply;
 /// Numbers that are worked on together.
 const LANES: usize = 4;
 
+/// The tangent of stress of a particle, as the factors of the rows need it.
+#[derive(Clone, Debug)]
+pub(crate) struct Moduli<const D: usize> {
+    /// V (A_abcd + (p δ_ad − τ_ad) δ_bc) by c, d, b, a \[energy\].
+    pub(crate) modulus: [[[[f64; D]; D]; D]; D],
+    /// V A_ppcd / 3 by c, d \[energy\].
+    pub(crate) left: [[f64; D]; D],
+    /// V A_abqq / 3 by b, a \[energy\].
+    pub(crate) right: [[f64; D]; D],
+    /// V A_ppqq / 9 \[energy\].
+    pub(crate) trace: f64,
+    /// V p, zero in small strain \[energy\].
+    pub(crate) vp: f64,
+}
+
+impl<const D: usize> Moduli<D> {
+    /// Those of a particle of volume `volume`.
+    #[inline]
+    pub(crate) fn of(own: &Linearisation<D>, volume: f64, kinematics: Kinematics) -> Self {
+        let tangent = own.lifted.tangent();
+        let tau = &own.lifted.tau;
+        let p = (tau[0][0] + tau[1][1] + tau[2][2]) / 3.0;
+        let geometric = match kinematics {
+            Kinematics::FiniteStrain => volume,
+            Kinematics::SmallStrain => 0.0,
+        };
+        let vp = geometric * p;
+        let mut modulus = [[[[0.0; D]; D]; D]; D];
+        let mut left = [[0.0; D]; D];
+        let mut right = [[0.0; D]; D];
+        let third = volume / 3.0;
+        for a in 0..D {
+            for b in 0..D {
+                for c in 0..D {
+                    for d in 0..D {
+                        modulus[c][d][b][a] = volume * tangent.modulus[a][b][c][d];
+                    }
+                }
+                for d in 0..D {
+                    modulus[b][d][b][a] -= geometric * tau[a][d];
+                }
+                modulus[b][a][b][a] += vp;
+                left[a][b] = third * tangent.trace_left[a][b];
+                right[b][a] = third * tangent.trace_right[a][b];
+            }
+        }
+        Self {
+            modulus,
+            left,
+            right,
+            trace: third * tangent.trace / 3.0,
+            vp,
+        }
+    }
+}
+
 /// One particle after another.
 #[derive(Debug, Default)]
 pub(crate) struct Linearised<const D: usize> {
@@ -67,6 +123,16 @@ impl<const D: usize> Linearised<D> {
         self.g_bar.extend(supports.iter().map(g_bar));
     }
 
+    /// Pushed gradients g by support.
+    pub(crate) fn g(&self) -> &[[f64; D]] {
+        &self.g
+    }
+
+    /// Pushed cell-averaged gradients ḡ by support.
+    pub(crate) fn g_bar(&self) -> &[[f64; D]] {
+        &self.g_bar
+    }
+
     /// The internal forces on the supports of a particle of volume `volume`.
     #[inline]
     pub(crate) fn forces(
@@ -92,41 +158,14 @@ impl<const D: usize> Linearised<D> {
 
     /// Computes the factors of the rows.
     #[inline]
-    pub(crate) fn linearise(
-        &mut self,
-        own: &Linearisation<D>,
-        volume: f64,
-        kinematics: Kinematics,
-    ) {
-        let tangent = own.lifted.tangent();
-        let tau = &own.lifted.tau;
-        let p = (tau[0][0] + tau[1][1] + tau[2][2]) / 3.0;
-        let geometric = match kinematics {
-            Kinematics::FiniteStrain => volume,
-            Kinematics::SmallStrain => 0.0,
-        };
-        let vp = geometric * p;
-        // V (A_abcd + (p δ_ad − τ_ad) δ_bc) by c, d, b, a, and V A_ppcd / 3, V A_abqq / 3.
-        let mut modulus = [[[[0.0; D]; D]; D]; D];
-        let mut left = [[0.0; D]; D];
-        let mut right = [[0.0; D]; D];
-        let third = volume / 3.0;
-        for a in 0..D {
-            for b in 0..D {
-                for c in 0..D {
-                    for d in 0..D {
-                        modulus[c][d][b][a] = volume * tangent.modulus[a][b][c][d];
-                    }
-                }
-                for d in 0..D {
-                    modulus[b][d][b][a] -= geometric * tau[a][d];
-                }
-                modulus[b][a][b][a] += vp;
-                left[a][b] = third * tangent.trace_left[a][b];
-                right[b][a] = third * tangent.trace_right[a][b];
-            }
-        }
-        let trace = third * tangent.trace / 3.0;
+    pub(crate) fn linearise(&mut self, moduli: &Moduli<D>) {
+        let Moduli {
+            modulus,
+            left,
+            right,
+            trace,
+            vp,
+        } = *moduli;
         self.lanes = (self.g.len() * D).div_ceil(LANES);
         for factors in [&mut self.y, &mut self.h] {
             factors.resize(D * D * self.lanes, [0.0; LANES]);

@@ -53,6 +53,46 @@ impl<const D: usize> LoadPoint<D> {
             .collect()
     }
 
+    /// A traction on a rectangle across one axis, as equal points in the middle of equal parts, so many along each
+    /// axis; they follow factor `load`.
+    ///
+    /// `traction` is force per unit area \[force/length²\] on the rectangle between the corners `from` and `to`, which
+    /// share one coordinate.
+    pub fn on_rectangle(
+        from: [f64; D],
+        to: [f64; D],
+        traction: [f64; D],
+        counts: [usize; D],
+        load: usize,
+    ) -> Vec<Self> {
+        let way: [f64; D] = std::array::from_fn(|axis| to[axis] - from[axis]);
+        let sides = way.iter().filter(|side| side.abs() > 0.0);
+        let area: f64 = sides.map(|side| side.abs()).product();
+        let counts: [usize; D] = std::array::from_fn(|axis| {
+            if way[axis].abs() > 0.0 {
+                counts[axis]
+            } else {
+                1
+            }
+        });
+        let count: usize = counts.iter().product();
+        (0..count)
+            .map(|k| {
+                let mut rest = k;
+                let x = std::array::from_fn(|axis| {
+                    let part = rest % counts[axis];
+                    rest /= counts[axis];
+                    from[axis] + (part as f64 + 0.5) / counts[axis] as f64 * way[axis]
+                });
+                Self {
+                    x,
+                    force: traction.map(|component| component * area / count as f64),
+                    load,
+                }
+            })
+            .collect()
+    }
+
     /// The nodes that take the force: linear shares, so that resultant and moment are kept.
     fn supports(&self, grid: &Grid<D>, point: usize) -> Result<Vec<Support<D>>, AssemblyError> {
         let mut own = Vec::new();

@@ -105,6 +105,7 @@ impl Pattern {
         match self.blocks[block].len {
             1 => stored,
             2 => stored / 2,
+            3 => stored / 3,
             len => stored / len,
         }
     }

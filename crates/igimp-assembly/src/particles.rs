@@ -290,6 +290,11 @@ impl<const D: usize> Particles<D> {
         determinant(&self.fields.def_grad[particle]) * self.fields.volume0[particle]
     }
 
+    /// Ratio of the volume of a particle to that at the start J = det F \[-\].
+    pub fn volume_ratio(&self, particle: usize) -> f64 {
+        determinant(&self.fields.def_grad[particle])
+    }
+
     /// Total Cauchy stress σ of a particle, tension positive: what its law answers, less the pressure of the water in
     /// its pores \[force/length²\].
     pub fn total_stress(&self, particle: usize) -> Tensor {

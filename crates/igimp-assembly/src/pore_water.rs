@@ -61,8 +61,28 @@ pub struct PoreSite<'a, const D: usize> {
     pub x: &'a [f64; D],
     /// Half-lengths of its domain \[length\].
     pub half_length: &'a [f64; D],
-    /// Its volume as seeded over that of its domain: less than 1 where the surface cuts the domain \[-\].
+    /// Its volume as seeded over that of its domain as seeded, which stretching does not change: less than 1 where the surface cuts the domain \[-\].
     pub filled: f64,
+}
+
+impl<const D: usize> Particles<D> {
+    /// How a particle asks for its water.
+    ///
+    /// # Panics
+    /// If there is no such particle.
+    #[inline]
+    pub fn pore_site(&self, particle: usize) -> PoreSite<'_, D> {
+        let domain0: f64 = (self.half_length0[particle].iter())
+            .map(|half_length| 2.0 * half_length)
+            .product();
+        PoreSite {
+            number: self.number[particle],
+            law: self.law[particle],
+            x: &self.x[particle],
+            half_length: &self.half_length[particle],
+            filled: self.volume0[particle] / domain0,
+        }
+    }
 }
 
 /// Given water. Pure: the same particle at the same place finds the same.
@@ -174,16 +194,7 @@ impl Pores {
         let states: Vec<PoreState<D>> = (0..n)
             .into_par_iter()
             .with_min_len(CHUNK)
-            .map(|p| {
-                let domain: f64 = particles.half_length0[p].iter().map(|l| 2.0 * l).product();
-                given.at(PoreSite {
-                    number: particles.number[p],
-                    law: particles.law[p],
-                    x: &particles.x[p],
-                    half_length: &particles.half_length[p],
-                    filled: particles.volume0[p] / domain,
-                })
-            })
+            .map(|particle| given.at(particles.pore_site(particle)))
             .collect();
         let gravity = &conditions.loads.gravity;
         let mut pores = Self {

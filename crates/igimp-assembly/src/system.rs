@@ -10,7 +10,7 @@ use crate::couplings::Couplings;
 use crate::error::AssemblyError;
 use crate::ghost::ghost_penalty;
 use crate::kinematics::ParticleTrial;
-use crate::linearised::Linearised;
+use crate::linearised::{Linearised, Moduli};
 use crate::loads::{LoadPoint, add_force_of_points, finite_points, nodal_drag, weight};
 use crate::matrix::{Pattern, TangentMatrix};
 use crate::method::{Kinematics, Method};
@@ -48,6 +48,8 @@ pub struct System<'a, const D: usize> {
     pub(crate) table: BlockTable<D>,
     pub(crate) pattern: Arc<Pattern>,
     symmetric: bool,
+    /// Whether the tangents of all particles are symmetric.
+    pub(crate) symmetric_particles: bool,
 }
 
 impl<'a, const D: usize> System<'a, D> {
@@ -97,7 +99,7 @@ impl<'a, const D: usize> System<'a, D> {
         for &law in &particles.law {
             used[law] = true;
         }
-        let symmetric = std::iter::zip(&conditions.laws, &used)
+        let symmetric_particles = std::iter::zip(&conditions.laws, &used)
             .all(|(law, &used)| !used || law.has_symmetric_tangent());
         let grid = &conditions.grid;
         let cuts = method.small_cuts;
@@ -121,7 +123,7 @@ impl<'a, const D: usize> System<'a, D> {
         let reinforcement = Members::find(members, stencils, conditions, method, &unknowns)?;
         let forces = beside_particles(&couplings, &contact, &reinforcement);
         let pairs: Vec<_> = forces.iter().flat_map(|force| force.pairs()).collect();
-        let symmetric = symmetric && forces.iter().all(|force| force.is_symmetric());
+        let symmetric = symmetric_particles && forces.iter().all(|force| force.is_symmetric());
         let mut f_ext = weight(grid, stencils, &conditions.loads);
         let pores = Pores::fill(particles, stencils, conditions, method, &mut f_ext)?;
         if let Some(held) = &conditions.held {
@@ -150,6 +152,7 @@ impl<'a, const D: usize> System<'a, D> {
             table,
             pattern: Arc::new(pattern),
             symmetric,
+            symmetric_particles,
         })
     }
 
@@ -415,7 +418,7 @@ impl<'a, const D: usize> System<'a, D> {
             let own = self.evaluate_particle(particle, u, kind, &mut trial)?;
             let volume = self.reference_volume(particle);
             linearised.push(supports, &own);
-            linearised.linearise(&own, volume, self.method.kinematics_of_step());
+            linearised.linearise(&Moduli::of(&own, volume, self.method.kinematics_of_step()));
             for (j, column) in supports.iter().enumerate() {
                 if !moves(column.node) {
                     continue;

@@ -7,10 +7,12 @@ use std::ops::Range;
 use igimp_material::{ConstitutiveModel, TangentKind};
 use rayon::prelude::*;
 
-use crate::blocks::Blocks;
 use crate::error::AssemblyError;
 use crate::kinematics::{Linearisation, ParticleState, ParticleTrial, evaluate};
-use crate::linearised::Linearised;
+use crate::linearised::{Linearised, Moduli};
+use crate::mirror::mirror;
+use crate::patch::Patch;
+use crate::scatter::Rows;
 use crate::strips::split;
 use crate::system::System;
 
@@ -27,7 +29,8 @@ pub struct Trial<const D: usize> {
 #[derive(Debug, Default)]
 pub(crate) struct Scratch<const D: usize> {
     pub(crate) linearised: Linearised<D>,
-    pub(crate) blocks: Blocks,
+    pub(crate) rows: Rows,
+    pub(crate) patch: Patch<D>,
 }
 
 /// The part of a pass that belongs to one strip.
@@ -92,6 +95,9 @@ impl<const D: usize> System<'_, D> {
                 return Err(error);
             }
         }
+        if let Some(values) = values.filter(|_| D == 3 && self.symmetric_particles) {
+            mirror(&self.pattern, values);
+        }
         Ok(())
     }
 
@@ -105,14 +111,19 @@ impl<const D: usize> System<'_, D> {
         scratch: &mut Scratch<D>,
     ) -> Result<(), (usize, AssemblyError)> {
         let order = &self.stencils.order()[strip.slots];
-        for (&particle, trial) in order.iter().zip(strip.particles) {
+        let mut end_of_patch = 0;
+        for (slot, (&particle, trial)) in order.iter().zip(strip.particles).enumerate() {
             let particle = particle as usize;
             let supports = self.stencils.of(particle);
             let own = self
                 .evaluate_particle(particle, u, kind, trial)
                 .map_err(|error| (particle, error))?;
             let volume = self.reference_volume(particle);
-            let Scratch { linearised, blocks } = &mut *scratch;
+            let Scratch {
+                linearised,
+                rows,
+                patch,
+            } = &mut *scratch;
             linearised.push(supports, &own);
             for (support, force) in supports.iter().zip(linearised.forces(&own, volume)) {
                 let sum = &mut strip.f_int[support.node - strip.first_node];
@@ -120,11 +131,26 @@ impl<const D: usize> System<'_, D> {
                     sum[axis] += force[axis];
                 }
             }
-            if let Some((start, values)) = &mut strip.values {
-                blocks.set(supports, &self.table);
-                linearised.linearise(&own, volume, self.method.kinematics_of_step());
-                let place = (*start, &mut **values);
-                blocks.scatter(supports, &self.table, &self.pattern, linearised, place);
+            let Some((start, values)) = &mut strip.values else {
+                continue;
+            };
+            let matrix = (&self.table, &*self.pattern);
+            let moduli = Moduli::of(&own, volume, self.method.kinematics_of_step());
+            if D == 3 {
+                if slot == end_of_patch {
+                    let next = order[slot..].iter();
+                    let next = next.map(|&particle| self.stencils.of(particle as usize));
+                    let (grid, near) = (&self.conditions.grid, self.table.near);
+                    end_of_patch += patch.begin(grid, near, next, self.symmetric_particles);
+                }
+                patch.add(supports, linearised, &moduli);
+                if slot + 1 == end_of_patch {
+                    patch.scatter(matrix, (*start, values));
+                }
+            } else {
+                rows.set(supports.iter().map(|support| support.node), &self.table);
+                linearised.linearise(&moduli);
+                rows.scatter(supports, matrix, linearised, (*start, values));
             }
         }
         Ok(())

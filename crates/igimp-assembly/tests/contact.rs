@@ -1,7 +1,7 @@
 //! GOAL: contact with rigid bodies has the tangent of its force, acts on body and soil alike, and has the
-//! same bits on any number of threads; poses and surfaces know their distances.
+//! same bits on any number of threads; poses turn rigidly.
 //! BODY: particles at random places under a tilted body, in the plane and in space.
-//! ORACLE: central differences, balance of force and moment, closed forms of distances.
+//! ORACLE: central differences, balance of force and moment.
 
 mod common;
 
@@ -10,8 +10,7 @@ use std::f64::consts::FRAC_PI_4;
 use common::{Random, displacements, grid, laws, particles};
 use igimp_assembly::{
     Constraints, ContactNode, Drive, Interface, Method, Particles, Pose, RigidBody, RigidMotion,
-    SharedLaw, Shear, Stencils, StepConditions, StepLoads, Surface, SurfaceError, System,
-    TangentMatrix, Tension,
+    SharedLaw, Shear, Stencils, StepConditions, StepLoads, Surface, System, TangentMatrix, Tension,
 };
 use igimp_material::TangentKind;
 use igimp_shape::Grid;
@@ -25,7 +24,7 @@ fn rectangle(half: [f64; 2], spacing: f64) -> Surface<2> {
 }
 
 fn block(half: [f64; 3]) -> Surface<3> {
-    Surface::cuboid(half).unwrap()
+    Surface::cuboid(half, 0.0, 1.3).unwrap()
 }
 
 fn with_shear(shear: Shear) -> Interface {
@@ -73,18 +72,18 @@ fn above<const D: usize>(
 ) -> (RigidBody<D>, RigidMotion<D>) {
     let axis = &grid.axes[D - 1];
     let top = axis.nodes()[axis.cell_count() - 1];
-    let upper = surface.bounds().1[D - 1];
+    let lower = surface.bounds().0[D - 1];
     let mut origin: [f64; D] = std::array::from_fn(|axis| {
         let nodes = grid.axes[axis].nodes();
         0.5 * (nodes[0] + nodes[nodes.len() - 1])
     });
-    origin[D - 1] = top + upper - depth;
+    origin[D - 1] = top - lower - depth;
     let sides = vec![interface.clone(); surface.side_count()];
     let mut body = RigidBody::new(surface, sides, origin);
     let turn = if D == 2 {
         [0.02, 0.0, 0.0]
     } else {
-        [0.02, 0.01, 0.0]
+        [0.02, 0.01, 0.3]
     };
     body.penalty.smoothing = 0.03;
     body.pose = body.pose.moved(&[0.0; D], &turn);
@@ -278,17 +277,18 @@ fn tangent_in_the_plane() {
 fn tangent_in_space() {
     let half = 0.5 * (grid::<3>(4).bounds().1[0] - 2.5);
     tangent_of(&block([half, half, 1.0]), 4, 40);
+    tangent_of(&Surface::sphere(5.0, 1.0).unwrap(), 4, 40);
 }
 
 /// Force and moment that contact alone makes at the nodes of the grid and at those of the body.
-fn balance<const D: usize>(surface: &Surface<D>, cells: usize) {
+fn balance<const D: usize>(surface: &Surface<D>, cells: usize, depth: f64) {
     let grid = grid::<D>(cells);
     let mut random = Random(5);
     let soil = particles(&grid, 0.0, &mut random);
     let (_, law) = laws().remove(0);
     let method = Method::igimp_bbar();
     for (name, interface, _) in interfaces() {
-        let (body, motion) = above(&grid, surface.clone(), &interface, 0.03, &mut random);
+        let (body, motion) = above(&grid, surface.clone(), &interface, depth, &mut random);
         let (size, origin) = (surface.size(), body.pose.origin);
         let conditions = conditions(&grid, &law, motion);
         let stencils = Stencils::build(&soil, &method, &conditions).unwrap();
@@ -339,215 +339,66 @@ fn balance<const D: usize>(surface: &Surface<D>, cells: usize) {
 #[test]
 fn action_is_reaction() {
     let half_width = 0.5 * (grid::<2>(6).bounds().1[0] - 2.5);
-    balance(&rectangle([half_width, 1.0], 0.7), 6);
-    balance(&Surface::circle(6.0, 0.6).unwrap(), 6);
+    balance(&rectangle([half_width, 1.0], 0.7), 6, 0.03);
+    balance(&Surface::circle(6.0, 0.6).unwrap(), 6, 0.03);
     let half = 0.5 * (grid::<3>(4).bounds().1[0] - 2.5);
-    balance(&block([half, half, 1.0]), 4);
+    balance(&block([half, half, 1.0]), 4, 0.03);
+    balance(&Surface::sphere(5.0, 1.0).unwrap(), 4, 0.03);
+    balance(&Surface::cylinder(0, 3.0, half, 0.3, 0.8).unwrap(), 4, 0.03);
+    balance(
+        &Surface::cone(2, [2.0, 0.5, 1.0], 0.0, 0.8).unwrap(),
+        4,
+        0.3,
+    );
+}
+
+/// All numbers that contact has a part in, on so many threads.
+fn bits<const D: usize>(threads: usize, cells: usize, surface: &Surface<D>) -> Vec<u64> {
+    let grid = grid::<D>(cells);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    pool.unwrap().install(|| {
+        let mut random = Random(17);
+        let soil = particles(&grid, 1.0, &mut random);
+        let mut bits = Vec::new();
+        for (_, interface, _) in interfaces() {
+            let (body, motion) = above(&grid, surface.clone(), &interface, 0.1, &mut random);
+            let bodies = [body];
+            let (_, law) = laws().remove(2);
+            let method = Method::shared_strain();
+            let conditions = conditions(&grid, &law, motion);
+            let stencils = Stencils::build(&soil, &method, &conditions).unwrap();
+            let system =
+                System::with_rigid_bodies(&soil, &bodies, &stencils, &conditions, &method).unwrap();
+            let u = moved(&grid, &mut random);
+            let (trial, matrix) = system.linearise(&u, TangentKind::Consistent).unwrap();
+            let border = &matrix.border;
+            let values = trial.f_int.as_flattened().iter().chain(&matrix.values);
+            let values = values.chain(border.columns.iter().flatten());
+            let values = values.chain(border.rows.iter().flatten());
+            let values = values.chain(border.corner.iter().flatten());
+            bits.extend(values.map(|value| value.to_bits()));
+            for knot in &system.bodies_at(&u).unwrap().bodies[0].contact.knots {
+                let [first, second] = knot.shear;
+                bits.extend([knot.pressure, first, second, knot.gap].map(f64::to_bits));
+            }
+        }
+        bits
+    })
 }
 
 #[test]
 fn bits_are_equal_for_one_two_and_seven_threads() {
-    let grid = grid::<2>(24);
-    let width = 0.5 * (grid.bounds().1[0] - 2.5);
-    let bits = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-        pool.unwrap().install(|| {
-            let mut random = Random(17);
-            let soil = particles(&grid, 1.0, &mut random);
-            let mut bits = Vec::new();
-            for (_, interface, _) in interfaces() {
-                let surface = rectangle([width, 1.0], 2.0);
-                let (body, motion) = above(&grid, surface, &interface, 0.1, &mut random);
-                let bodies = [body];
-                let (_, law) = laws().remove(2);
-                let method = Method::shared_strain();
-                let conditions = conditions(&grid, &law, motion);
-                let stencils = Stencils::build(&soil, &method, &conditions).unwrap();
-                let system =
-                    System::with_rigid_bodies(&soil, &bodies, &stencils, &conditions, &method)
-                        .unwrap();
-                let u = moved(&grid, &mut random);
-                let (trial, matrix) = system.linearise(&u, TangentKind::Consistent).unwrap();
-                let border = &matrix.border;
-                let values = trial.f_int.as_flattened().iter().chain(&matrix.values);
-                let values = values.chain(border.columns.iter().flatten());
-                let values = values.chain(border.rows.iter().flatten());
-                let values = values.chain(border.corner.iter().flatten());
-                bits.extend(values.map(|value| value.to_bits()));
-                for knot in &system.bodies_at(&u).unwrap().bodies[0].contact.knots {
-                    bits.extend([knot.pressure, knot.shear[0], knot.gap].map(f64::to_bits));
-                }
-            }
-            bits
-        })
-    };
-    let one = bits(1);
+    let width = 0.5 * (grid::<2>(24).bounds().1[0] - 2.5);
+    let plane = rectangle([width, 1.0], 2.0);
+    let one = bits(1, 24, &plane);
     assert!(one.len() > 50_000);
-    assert_eq!(one, bits(2));
-    assert_eq!(one, bits(7));
-}
-
-/// Distance of a point to a segment.
-fn to_segment(x: [f64; 2], a: [f64; 2], b: [f64; 2]) -> f64 {
-    let (along, arm) = ([b[0] - a[0], b[1] - a[1]], [x[0] - a[0], x[1] - a[1]]);
-    let t = (arm[0] * along[0] + arm[1] * along[1]) / (along[0].powi(2) + along[1].powi(2));
-    let t = t.clamp(0.0, 1.0);
-    (arm[0] - t * along[0]).hypot(arm[1] - t * along[1])
-}
-
-/// The distance to a polygon that is not convex, either way round, is that to its nearest edge, with the
-/// sign of the number of edges that a ray crosses.
-#[test]
-fn distance_to_a_polygon() {
-    let ell = [
-        [0.0, 0.0],
-        [3.0, 0.0],
-        [3.0, 1.0],
-        [1.0, 1.0],
-        [1.0, 2.5],
-        [0.0, 2.5],
-    ];
-    let mut turned = ell;
-    turned.reverse();
-    let mut random = Random(3);
-    for corners in [ell, turned] {
-        let surface = Surface::polygon(&corners, 0.0, 0.4).unwrap();
-        let sides = vec![Interface::smooth(); surface.side_count()];
-        let mut body = RigidBody::new(surface, sides, [0.5, -0.7]);
-        body.pose = body.pose.moved(&[0.1, 0.3], &[0.7, 0.0, 0.0]);
-        for _ in 0..400 {
-            let x = [
-                1.5 + 3.0 * random.symmetric(),
-                1.2 + 3.0 * random.symmetric(),
-            ];
-            let edges = || (0..6).map(|k| (corners[k], corners[(k + 1) % 6]));
-            let least = edges()
-                .map(|(a, b)| to_segment(x, a, b))
-                .fold(f64::INFINITY, f64::min);
-            let crossed = edges()
-                .filter(|(a, b)| (a[1] > x[1]) != (b[1] > x[1]))
-                .filter(|(a, b)| x[0] < a[0] + (x[1] - a[1]) / (b[1] - a[1]) * (b[0] - a[0]))
-                .count();
-            let expected = if crossed % 2 == 1 { -least } else { least };
-            let found = body.distance(&body.pose.into_space(&x));
-            assert!(
-                (found - expected).abs() < 1e-12,
-                "{x:?}: {found} {expected}"
-            );
-        }
-    }
-}
-
-/// The distance to a rectangle with rounded corners is that to its core, less the radius.
-#[test]
-fn distance_to_a_rounded_rectangle() {
-    let corners = [[-1.0, -0.5], [1.0, -0.5], [1.0, 0.5], [-1.0, 0.5]];
-    let surface = Surface::polygon(&corners, 0.2, 0.3).unwrap();
-    let body = RigidBody::new(surface, vec![Interface::smooth(); 4], [0.0; 2]);
-    let mut random = Random(9);
-    for _ in 0..400 {
-        let x = [1.6 * random.symmetric(), 1.1 * random.symmetric()];
-        let beyond = [x[0].abs() - 0.8, x[1].abs() - 0.3];
-        let outside = beyond[0].max(0.0).hypot(beyond[1].max(0.0));
-        let expected = outside + beyond[0].max(beyond[1]).min(0.0) - 0.2;
-        assert!((body.distance(&x) - expected).abs() < 1e-12, "{x:?}");
-    }
-}
-
-/// A surface that would have knots without end is refused before any is made.
-#[test]
-fn endless_surfaces_are_refused() {
-    for far in [1e9, 1e300, f64::MAX, f64::INFINITY] {
-        let corners = [[0.0, 0.0], [far, 0.0], [0.0, 1.0]];
-        let refused = Surface::polygon(&corners, 0.0, 0.1).unwrap_err();
-        assert!(matches!(refused, SurfaceError::TooLong { .. }), "{refused}");
-        assert!(Surface::circle(far, 0.1).is_err());
-    }
-    assert!(Surface::polygon(&[[0.0, 0.0], [1e3, 0.0], [0.0, 1.0]], 0.0, 0.1).is_ok());
-}
-
-#[test]
-fn distance_to_a_circle() {
-    let surface = Surface::circle(0.8, 0.1).unwrap();
-    let body = RigidBody::new(surface, vec![Interface::smooth()], [0.3, -0.2]);
-    let mut random = Random(4);
-    for _ in 0..100 {
-        let x = [2.0 * random.symmetric(), 2.0 * random.symmetric()];
-        let expected = (x[0] - 0.3).hypot(x[1] + 0.2) - 0.8;
-        assert!((body.distance(&x) - expected).abs() < 1e-12);
-    }
-}
-
-/// The distance to a turned box: outside that to the box of its half-lengths, inside to the nearest side.
-#[test]
-fn distance_to_a_box() {
-    let half = [1.0, 0.5, 0.75];
-    let mut body = RigidBody::new(block(half), vec![Interface::smooth(); 6], [1.0, 2.0, 3.0]);
-    body.pose = body.pose.moved(&[0.0; 3], &[0.3, -0.5, 0.9]);
-    let mut random = Random(6);
-    let mut within = 0;
-    for _ in 0..400 {
-        let x: [f64; 3] = std::array::from_fn(|_| 1.6 * random.symmetric());
-        let beyond: [f64; 3] = std::array::from_fn(|a| x[a].abs() - half[a]);
-        let outside = beyond
-            .map(|b| b.max(0.0).powi(2))
-            .iter()
-            .sum::<f64>()
-            .sqrt();
-        let inside = beyond
-            .into_iter()
-            .fold(f64::NEG_INFINITY, f64::max)
-            .min(0.0);
-        within += usize::from(inside < 0.0);
-        let found = body.distance(&body.pose.into_space(&x));
-        assert!((found - outside - inside).abs() < 1e-12, "{x:?}: {found}");
-    }
-    assert!(within > 20);
-}
-
-/// The distance to a tetrahedron: inside the height above the nearest side; outside at least that, and
-/// exactly that above the middle of a side and beyond a corner.
-#[test]
-fn distance_to_a_tetrahedron() {
-    let corners = [
-        [1.0, 1.0, 1.0],
-        [1.0, -1.0, -1.0],
-        [-1.0, 1.0, -1.0],
-        [-1.0, -1.0, 1.0],
-    ];
-    let sides = [
-        ([0, 1, 2], 0),
-        ([0, 3, 1], 1),
-        ([0, 2, 3], 2),
-        ([1, 3, 2], 3),
-    ];
-    let surface = Surface::triangles(&corners, &sides).unwrap();
-    let body = RigidBody::new(surface, vec![Interface::smooth(); 4], [0.0; 3]);
-    let root = 3.0_f64.sqrt();
-    // Its insphere has radius 1/√3, and the normals of its sides point away from its corners.
-    let height = |x: &[f64; 3]| {
-        let above =
-            |corner: &[f64; 3]| -(0..3).map(|a| corner[a] * x[a]).sum::<f64>() / root - 1.0 / root;
-        corners.iter().map(above).fold(f64::NEG_INFINITY, f64::max)
-    };
-    let mut random = Random(8);
-    for _ in 0..400 {
-        let x: [f64; 3] = std::array::from_fn(|_| 1.2 * random.symmetric());
-        let (found, height) = (body.distance(&x), height(&x));
-        if height < 0.0 {
-            assert!((found - height).abs() < 1e-12, "{x:?}: {found} {height}");
-        } else {
-            assert!(found > height - 1e-12, "{x:?}: {found} {height}");
-        }
-    }
-    for corner in corners {
-        for far in [0.1, 1.0, 3.0] {
-            let beyond = corner.map(|c| c * (1.0 + far));
-            assert!((body.distance(&beyond) - far * root).abs() < 1e-12);
-            let opposite = corner.map(|c| -c * (1.0 / 3.0 + far));
-            assert!((body.distance(&opposite) - far * root).abs() < 1e-12);
-        }
-    }
+    assert_eq!(one, bits(2, 24, &plane));
+    assert_eq!(one, bits(7, 24, &plane));
+    let space = Surface::cylinder(2, 2.0, 1.0, 0.2, 0.9).unwrap();
+    let one = bits(1, 5, &space);
+    assert!(one.len() > 50_000);
+    assert_eq!(one, bits(2, 5, &space));
+    assert_eq!(one, bits(7, 5, &space));
 }
 
 /// Turning there and back, about any axis, and turning in parts about one axis.

@@ -3,12 +3,14 @@
 //! Lengths are in m, stresses in Pa, unit weights in N/m³, angles in rad, forces in N/m (plane
 //! strain, per metre run). The second axis points up; gravity acts along its negative direction.
 
+mod axes;
 mod grid;
 mod ground;
 mod profile;
 mod raster;
 mod reinforcement;
 mod rigid;
+mod rigid_space;
 mod water;
 
 use std::path::PathBuf;
@@ -19,23 +21,26 @@ use igimp_material::{Elasticity, HenckyElastic, MaterialError, MohrCoulomb, Tres
 use igimp_solver::linear::SolverKind;
 use serde::{Deserialize, Serialize};
 
+pub(crate) use axes::{from_front, front, in_space};
 pub use grid::{AxisSpec, GridSpec, MixedCells};
-pub use ground::Ground;
+pub use ground::{Ground, Layer};
 pub use profile::{LEAST_STRENGTH, Profile, Profiles, StressShare, Variation};
 pub use raster::Raster;
 pub use reinforcement::{ReinforcementKind, ReinforcementPart, ReinforcementQuantity};
 pub use rigid::{
-    Adhesion, RigidDrive, RigidInterface, RigidMove, RigidPart, RigidQuantity, RigidShape,
-    RigidShear,
+    Adhesion, COMPONENTS, RigidDrive, RigidForm, RigidInterface, RigidMove, RigidPart,
+    RigidQuantity, RigidShape, RigidShear, components,
 };
+pub use rigid_space::RigidSolid;
 pub(crate) use water::table_level;
 pub use water::{Construction, Drainage, PoreSource, WaterCondition};
 
 use crate::check::Band;
+use crate::region::Region;
 
-/// A problem in plane strain and how it is solved.
+/// A problem in plane strain (D = 2) or in space (D = 3), and how it is solved.
 #[derive(Clone, Debug)]
-pub struct Case {
+pub struct Case<const D: usize = 2> {
     /// Title for reports and figures.
     pub title: String,
     /// Whom and what it is for.
@@ -43,7 +48,7 @@ pub struct Case {
     /// Acceleration of gravity \[m/s²\], positive; it acts downwards.
     pub gravity: f64,
     /// Background grid.
-    pub grid: GridSpec,
+    pub grid: GridSpec<D>,
     /// Variant of the method.
     pub method: Method,
     /// Unit weight of water \[N/m³\].
@@ -53,13 +58,13 @@ pub struct Case {
     /// Materials; bodies name them by index.
     pub materials: Vec<Material>,
     /// Bodies.
-    pub bodies: Vec<BodyPart>,
+    pub bodies: Vec<BodyPart<D>>,
     /// Supports.
-    pub boundaries: Boundaries,
+    pub boundaries: Boundaries<D>,
     /// Loads; stages name them by index.
-    pub loads: Vec<Load>,
+    pub loads: Vec<Load<D>>,
     /// Rigid bodies; stages name them by index.
-    pub rigid: Vec<RigidPart>,
+    pub rigid: Vec<RigidPart<D>>,
     /// Reinforcement; stages name it by index.
     pub reinforcement: Vec<ReinforcementPart>,
     /// What happens, in order.
@@ -67,9 +72,9 @@ pub struct Case {
     /// Newton, step cutting, linear solver.
     pub solver: SolverSettings,
     /// Points whose history is recorded in every step.
-    pub monitors: Vec<Monitor>,
+    pub monitors: Vec<Monitor<D>>,
     /// Lines along which results are written at the end of every stage.
-    pub sections: Vec<Section>,
+    pub sections: Vec<Section<D>>,
     /// One recorded quantity against another.
     pub curves: Vec<Curve>,
     /// Results that are held against outside values.
@@ -80,7 +85,7 @@ pub struct Case {
     pub output: Output,
 }
 
-impl Case {
+impl<const D: usize> Case<D> {
     /// The same problem on a grid whose cells are cut into `n` in each direction.
     ///
     /// Places, lengths and steps stay. What a file states by the cell (particles, small cuts, the stride
@@ -91,6 +96,68 @@ impl Case {
             grid: self.grid.refined(n),
             ..self.clone()
         }
+    }
+}
+
+/// A case in the dimension that its file states.
+#[derive(Clone, Debug)]
+pub enum AnyCase {
+    /// In plane strain.
+    Plane(Case<2>),
+    /// In space.
+    Space(Case<3>),
+}
+
+/// Does the same with a case of any dimension: `in_any_dimension!(any, case => what(case))`.
+#[macro_export]
+macro_rules! in_any_dimension {
+    ($any:expr, $case:ident => $what:expr) => {
+        match $any {
+            $crate::case::AnyCase::Plane($case) => $what,
+            $crate::case::AnyCase::Space($case) => $what,
+        }
+    };
+}
+
+impl AnyCase {
+    /// Title.
+    pub fn title(&self) -> &str {
+        in_any_dimension!(self, case => &case.title)
+    }
+
+    /// What happens, in order.
+    pub fn stages(&self) -> &[Stage] {
+        in_any_dimension!(self, case => &case.stages)
+    }
+
+    /// Materials.
+    pub fn materials(&self) -> &[Material] {
+        in_any_dimension!(self, case => &case.materials)
+    }
+
+    /// Curves.
+    pub fn curves(&self) -> &[Curve] {
+        in_any_dimension!(self, case => &case.curves)
+    }
+
+    /// Checks.
+    pub fn checks(&self) -> &[CaseCheck] {
+        in_any_dimension!(self, case => &case.checks)
+    }
+
+    /// On how many meshes it is computed.
+    pub fn mesh_study(&self) -> MeshStudy {
+        in_any_dimension!(self, case => case.mesh_study)
+    }
+
+    /// What is written, and where.
+    pub fn output(&self) -> &Output {
+        in_any_dimension!(self, case => &case.output)
+    }
+
+    /// What is written, and where, to be changed.
+    pub fn output_mut(&mut self) -> &mut Output {
+        in_any_dimension!(self, case => &mut case.output)
     }
 }
 
@@ -204,19 +271,26 @@ impl Material {
     }
 }
 
-/// A polygon of one material, filled with particles.
-#[derive(Clone, Debug, PartialEq)]
-pub struct BodyPart {
+/// A region of one material, filled with particles.
+#[derive(Clone, Debug)]
+pub struct BodyPart<const D: usize = 2> {
     /// Name.
     pub name: String,
     /// Index of the material.
     pub material: usize,
     /// Particles per cell in each direction.
     pub per_direction: usize,
-    /// Corners in order, either way round \[m\].
-    pub polygon: Vec<[f64; 2]>,
+    /// What it fills.
+    pub region: Arc<dyn Region<D>>,
     /// Whether it is there from the start, rather than from the stage that places it.
     pub from_start: bool,
+}
+
+impl BodyPart {
+    /// Corners of its polygon in order, either way round \[m\].
+    pub fn polygon(&self) -> &[[f64; 2]] {
+        self.region.polygon()
+    }
 }
 
 /// What a side of the grid does to the soil that reaches it.
@@ -227,51 +301,55 @@ pub enum Side {
     Free,
     /// Holds the displacement across the side.
     Roller,
-    /// Holds both displacements.
+    /// Holds all displacements.
     Fixed,
 }
 
 /// Supports: the sides of the grid, and boxes of fixed nodes.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Boundaries {
-    /// Side of the lowest x.
-    pub left: Side,
-    /// Side of the highest x.
-    pub right: Side,
-    /// Side of the lowest y.
-    pub bottom: Side,
-    /// Side of the highest y.
-    pub top: Side,
+#[derive(Clone, Debug, PartialEq)]
+pub struct Boundaries<const D: usize = 2> {
+    /// By axis: the side of its lowest and of its highest coordinate.
+    pub sides: [[Side; 2]; D],
     /// Boxes of nodes.
-    pub boxes: Vec<FixedBox>,
+    pub boxes: Vec<FixedBox<D>>,
+}
+
+impl<const D: usize> Default for Boundaries<D> {
+    fn default() -> Self {
+        Self {
+            sides: [[Side::Free; 2]; D],
+            boxes: Vec::new(),
+        }
+    }
 }
 
 /// Nodes in a box (edges included) that are held.
 #[derive(Clone, Debug, PartialEq)]
-pub struct FixedBox {
+pub struct FixedBox<const D: usize = 2> {
     /// Name.
     pub name: String,
-    /// Lower left corner \[m\].
-    pub lower: [f64; 2],
-    /// Upper right corner \[m\].
-    pub upper: [f64; 2],
+    /// Corner of the lowest coordinates \[m\].
+    pub lower: [f64; D],
+    /// Corner of the highest coordinates \[m\].
+    pub upper: [f64; D],
     /// Which components are held.
-    pub fix: [bool; 2],
+    pub fix: [bool; D],
 }
 
 /// A load that stages apply.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Load {
+pub struct Load<const D: usize = 2> {
     /// Name.
     pub name: String,
     /// Kind.
-    pub kind: LoadKind,
+    pub kind: LoadKind<D>,
 }
 
 /// Kinds of loads.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum LoadKind {
-    /// A level rigid footing on the surface, pushed down by displacement stages. The grid follows.
+pub enum LoadKind<const D: usize = 2> {
+    /// A level rigid footing on the surface, pushed down by displacement stages; in plane strain only. The grid
+    /// follows.
     RigidFooting {
         /// Left end of the base \[m\].
         from: [f64; 2],
@@ -282,21 +360,21 @@ pub enum LoadKind {
         /// Factor on the reported reaction, 2 for half a footing \[-\].
         reaction_factor: f64,
     },
-    /// A dead pressure on a segment of the surface, raised by load stages.
+    /// A dead pressure on a segment of the surface, or in space on a rectangle, raised by load stages.
     Pressure {
-        /// One end \[m\].
-        from: [f64; 2],
-        /// Other end \[m\].
-        to: [f64; 2],
-        /// Traction at factor 1 \[Pa\], its two components.
-        traction: [f64; 2],
+        /// One end, or corner \[m\].
+        from: [f64; D],
+        /// The other end, or the corner across \[m\].
+        to: [f64; D],
+        /// Traction at factor 1 \[Pa\], its components.
+        traction: [f64; D],
     },
     /// A dead force at a point, raised by load stages.
     Point {
         /// Where \[m\].
-        at: [f64; 2],
-        /// Force at factor 1 \[N/m\].
-        force: [f64; 2],
+        at: [f64; D],
+        /// Force at factor 1 \[N/m\], in space \[N\].
+        force: [f64; D],
     },
 }
 
@@ -334,6 +412,8 @@ pub enum StageKind {
         factor: f64,
         /// Pseudo-static force to the right over the weight \[-\]; none: as it is.
         horizontal: Option<f64>,
+        /// The same backwards, along the second axis of space \[-\].
+        across: Option<f64>,
         /// The same upwards \[-\].
         vertical: Option<f64>,
     },
@@ -455,24 +535,24 @@ impl Default for SolverSettings {
 
 /// A particle that is watched: the one nearest to a point in the undeformed bodies.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Monitor {
+pub struct Monitor<const D: usize = 2> {
     /// Name.
     pub name: String,
     /// Point \[m\].
-    pub point: [f64; 2],
+    pub point: [f64; D],
     /// What is recorded.
     pub record: Vec<Field>,
 }
 
 /// A line along which fields are read at the end of every stage.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Section {
+pub struct Section<const D: usize = 2> {
     /// Name.
     pub name: String,
     /// One end \[m\].
-    pub from: [f64; 2],
+    pub from: [f64; D],
     /// Other end \[m\].
-    pub to: [f64; 2],
+    pub to: [f64; D],
     /// Number of equally spaced places.
     pub points: usize,
     /// What is read.
@@ -483,9 +563,9 @@ pub struct Section {
     pub references: Vec<SectionReference>,
 }
 
-impl Section {
+impl<const D: usize> Section<D> {
     /// What the values at the end of a stage are held against.
-    pub fn references_at(&self, case: &Case, stage: usize) -> Vec<&SectionReference> {
+    pub fn references_at(&self, case: &Case<D>, stage: usize) -> Vec<&SectionReference> {
         let read = |stage: &Stage| !matches!(stage.kind, StageKind::StrengthReduction(_));
         let last = case.stages.iter().rposition(read);
         let wanted = |reference: &&SectionReference| reference.stage.or(last) == Some(stage);
@@ -523,10 +603,14 @@ pub enum Field {
     DisplacementX,
     /// Displacement in y \[m\].
     DisplacementY,
+    /// Displacement in z \[m\]; in space.
+    DisplacementZ,
     /// Position x \[m\].
     X,
     /// Position y \[m\].
     Y,
+    /// Position z \[m\]; in space.
+    Z,
     /// −σ_xx of total stress \[Pa\].
     SigmaXx,
     /// −σ_yy of total stress \[Pa\].
@@ -535,6 +619,10 @@ pub enum Field {
     SigmaZz,
     /// −τ_xy \[Pa\].
     TauXy,
+    /// −τ_yz \[Pa\]; in space.
+    TauYz,
+    /// −τ_xz \[Pa\]; in space.
+    TauXz,
     /// Mean pressure p = −tr σ/3 of total stress \[Pa\].
     P,
     /// −σ′_xx of effective stress: the stress that the law speaks of \[Pa\].
@@ -699,12 +787,23 @@ pub struct Output {
     pub paraview: Every,
     /// Fields drawn at the end of every stage.
     pub figures: Vec<Field>,
+    /// Planes in which they are drawn as well, in space; none: upright ones through the middle of the bodies.
+    pub cuts: Vec<Cut>,
     /// Whether `report.html` is written.
     pub report: bool,
     /// Steps between checkpoints; 0: only at the end of stages.
     pub checkpoint_every: usize,
     /// Checkpoints kept within a stage.
     pub checkpoint_keep: usize,
+}
+
+/// A plane across an axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cut {
+    /// 0, 1 or 2.
+    pub axis: usize,
+    /// Where it stands \[m\].
+    pub at: f64,
 }
 
 /// How often.

@@ -20,13 +20,13 @@ pub enum CaseError {
     #[error(transparent)]
     Input(#[from] InputError),
     /// A body reaches beyond the grid.
-    #[error("the body reaches ({}, {}) m, outside the grid domain", corner[0], corner[1])]
+    #[error("the body reaches {}, outside the grid domain", place(corner))]
     OutsideGrid {
         /// The corner \[length\].
-        corner: [f64; 2],
+        corner: Vec<f64>,
     },
     /// A body has no volume.
-    #[error("the body is empty: its polygon has no area on the grid")]
+    #[error("the body is empty: it has no volume on the grid")]
     EmptyBody,
     /// The case has more than one rigid footing.
     #[error("the case has more than one rigid footing, but the grid can follow only one")]
@@ -48,14 +48,14 @@ pub enum CaseError {
     },
     /// The initial stress of level ground is beyond the strength.
     #[error(
-        "the initial stress at ({}, {}) m with K0 = {k0} is beyond the strength of `{material}`",
-        position[0], position[1]
+        "the initial stress at {} with K0 = {k0} is beyond the strength of `{material}`",
+        place(position)
     )]
     InitialStress {
         /// The material.
         material: String,
         /// The place \[length\].
-        position: [f64; 2],
+        position: Vec<f64>,
         /// Its coefficient of earth pressure at rest \[-\].
         k0: f64,
     },
@@ -193,6 +193,12 @@ pub enum CaseError {
     /// The state of a run cannot be saved or taken up again.
     #[error(transparent)]
     Checkpoint(#[from] CheckpointError),
+}
+
+/// A point in a message.
+fn place(point: &[f64]) -> String {
+    let numbers: Vec<String> = point.iter().map(f64::to_string).collect();
+    format!("({}) m", numbers.join(", "))
 }
 
 /// Another case in a message.

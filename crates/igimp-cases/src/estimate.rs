@@ -15,11 +15,12 @@ pub mod time;
 pub mod watch;
 
 use igimp_shape::{Scratch, supports};
+use igimp_solver::linear::SolverKind;
 
 use crate::case::{Case, LoadKind, ReductionPath, Side, StageKind};
 use crate::error::CaseError;
 use crate::mesh_study::plan;
-use crate::seed::fill_polygon;
+use crate::seed::fill;
 use crate::summary::{Expected, StageSummary};
 use speed::Speed;
 use time::Time;
@@ -34,6 +35,16 @@ const PER_SEARCHED: f64 = 2e3;
 const PER_UNKNOWN: f64 = 3e3;
 /// Factors, for each unknown and each doubling of the unknowns \[bytes\].
 const PER_FILL: f64 = 1.5e2;
+/// The same in space, where a particle touches up to 27 nodes \[bytes\].
+const PER_PARTICLE_IN_SPACE: f64 = 4e3;
+/// Matrix, its copies and its pattern in space \[bytes per unknown\].
+const PER_UNKNOWN_IN_SPACE: f64 = 7e3;
+/// Factors of a symmetric matrix in space \[bytes\], times $`n^{4/3}`$.
+const PER_FILL_IN_SPACE: f64 = 1e3;
+/// What an iteration with multigrid holds instead of factors \[bytes per unknown\].
+const PER_ITERATED: f64 = 4e3;
+/// Unknowns in space from which on systems are solved by iteration.
+pub(crate) const ITERATED: usize = 100_000;
 /// A picture of 1920 x 1290 pixels of four bytes while it is drawn and packed \[bytes\].
 const PER_PICTURE: f64 = 2.1 * 1920.0 * 1290.0 * 4.0;
 /// Share of the smaller of the two parts, solving and drawing, that is not taken from what the
@@ -61,13 +72,13 @@ pub struct Estimate {
 ///
 /// # Errors
 /// [`CaseError`] for a grid that cannot be made and bodies that do not lie on it.
-pub fn estimate(case: &Case) -> Result<Estimate, CaseError> {
+pub fn estimate<const D: usize>(case: &Case<D>) -> Result<Estimate, CaseError> {
     let grid = case.grid.grid()?;
     let mut active = vec![false; grid.node_count()];
     let (mut scratch, mut list) = (Scratch::default(), Vec::new());
     let mut by_body = Vec::new();
     for body in &case.bodies {
-        let seeds = fill_polygon(&grid, &body.polygon, body.per_direction, 1.0, 0)?;
+        let seeds = fill(&grid, &*body.region, body.per_direction, 1.0, 0)?;
         for seed in &seeds {
             let basis = &*case.method.basis;
             supports(
@@ -134,7 +145,7 @@ impl Expectation {
     ///
     /// # Errors
     /// As [`estimate`] and [`Speed::measured`].
-    pub fn of(case: &Case) -> Result<Self, CaseError> {
+    pub fn of<const D: usize>(case: &Case<D>) -> Result<Self, CaseError> {
         let speed = Speed::measured()?;
         let meshes = plan::meshes(case);
         let mut each = Vec::new();
@@ -154,7 +165,7 @@ impl Expectation {
     }
 
     /// As it is told after a run with these stages.
-    pub(crate) fn told(&self, case: &Case, stages: &[StageSummary]) -> Expected {
+    pub(crate) fn told<const D: usize>(&self, case: &Case<D>, stages: &[StageSummary]) -> Expected {
         Expected {
             seconds: self.time.seconds,
             open_ended: self.time.open_ended,
@@ -166,8 +177,8 @@ impl Expectation {
 }
 
 /// Memory of a run on the threads of the current pool \[bytes\].
-fn memory(case: &Case, particles: usize, unknowns: usize) -> f64 {
-    let [particle, unknown] = per_item(unknowns);
+fn memory<const D: usize>(case: &Case<D>, particles: usize, unknowns: usize) -> f64 {
+    let [particle, unknown] = per_item(D, is_iterated(case, unknowns), unknowns);
     let searches = case.stages.iter().any(|stage| {
         matches!(&stage.kind, StageKind::StrengthReduction(search)
             if search.path == ReductionPath::Reduce)
@@ -178,8 +189,48 @@ fn memory(case: &Case, particles: usize, unknowns: usize) -> f64 {
     BASE + solving.max(drawing) + AGAIN * solving.min(drawing)
 }
 
-/// Memory of a particle, and of an unknown among so many with its share of the fill \[bytes\].
-pub fn per_item(unknowns: usize) -> [f64; 2] {
+/// Whether the systems of a case are expected to be solved by iteration.
+pub fn is_iterated<const D: usize>(case: &Case<D>, unknowns: usize) -> bool {
+    match case.solver.linear {
+        SolverKind::Auto => D == 3 && unknowns > ITERATED,
+        SolverKind::Multigrid => true,
+        _ => false,
+    }
+}
+
+/// Which linear solver a case is expected to use, and why.
+pub fn linear_solver<const D: usize>(case: &Case<D>, unknowns: usize) -> String {
+    let symmetric = (case.materials.iter())
+        .all(|material| material.law().is_ok_and(|law| law.has_symmetric_tangent()));
+    let [direct, iteration] = if symmetric {
+        ["Cholesky", "conjugate gradients with multigrid"]
+    } else {
+        ["LU", "GMRES with multigrid"]
+    };
+    match case.solver.linear {
+        SolverKind::Auto if is_iterated(case, unknowns) => {
+            format!("{iteration}: in space with so many unknowns a factorisation takes longer")
+        }
+        SolverKind::Auto => direct.to_owned(),
+        SolverKind::Multigrid => format!("{iteration}, as asked for"),
+        SolverKind::FaerCholesky => "Cholesky of faer, as asked for".to_owned(),
+        SolverKind::NalgebraCholesky => "Cholesky of nalgebra, as asked for".to_owned(),
+        SolverKind::MultifrontalCholesky => "Cholesky, as asked for".to_owned(),
+        SolverKind::Multifrontal => "LU, as asked for".to_owned(),
+        SolverKind::SprsBiCgStab => "bi-conjugate gradients, as asked for".to_owned(),
+    }
+}
+
+/// Memory of a particle, and of an unknown among so many with its share of the fill \[bytes\], in so many dimensions.
+pub fn per_item(dimensions: usize, is_iterated: bool, unknowns: usize) -> [f64; 2] {
+    if dimensions == 3 {
+        let solver = if is_iterated {
+            PER_ITERATED
+        } else {
+            PER_FILL_IN_SPACE * (unknowns as f64).cbrt()
+        };
+        return [PER_PARTICLE_IN_SPACE, PER_UNKNOWN_IN_SPACE + solver];
+    }
     let doublings = (unknowns as f64).max(2.0).log2();
     [PER_PARTICLE, PER_UNKNOWN + PER_FILL * doublings]
 }
@@ -197,7 +248,7 @@ pub fn readable(bytes: f64) -> String {
 }
 
 /// Load steps of all stages when none is cut.
-fn steps(case: &Case) -> f64 {
+fn steps<const D: usize>(case: &Case<D>) -> f64 {
     case.stages
         .iter()
         .map(|stage| {
@@ -211,30 +262,31 @@ fn steps(case: &Case) -> f64 {
 }
 
 /// Which components of a node are held by supports and footings.
-fn held(case: &Case, x: [f64; 2]) -> [bool; 2] {
+fn held<const D: usize>(case: &Case<D>, x: [f64; D]) -> [bool; D] {
     let (lower, upper) = (case.grid.lower(), case.grid.upper());
     let cell = case.grid.smallest_cell();
     let near = |a: f64, b: f64, axis: usize| (a - b).abs() < 1e-6 * cell[axis];
     let sides = &case.boundaries;
-    let mut held = [false; 2];
-    for (side, axis, at) in [
-        (sides.left, 0, lower[0]),
-        (sides.right, 0, upper[0]),
-        (sides.bottom, 1, lower[1]),
-        (sides.top, 1, upper[1]),
-    ] {
-        if near(x[axis], at, axis) {
-            held[axis] |= side != Side::Free;
-            held[1 - axis] |= side == Side::Fixed;
+    let mut held = [false; D];
+    for (axis, own) in sides.sides.iter().enumerate() {
+        for (side, at) in std::iter::zip(own, [lower[axis], upper[axis]]) {
+            if near(x[axis], at, axis) {
+                held[axis] |= *side != Side::Free;
+                for component in &mut held {
+                    *component |= *side == Side::Fixed;
+                }
+            }
         }
     }
     for fixed in &sides.boxes {
-        let inside = (0..2).all(|axis| {
+        let inside = (0..D).all(|axis| {
             let slack = 1e-6 * cell[axis];
             fixed.lower[axis] - slack <= x[axis] && x[axis] <= fixed.upper[axis] + slack
         });
         if inside {
-            held = [held[0] || fixed.fix[0], held[1] || fixed.fix[1]];
+            for (own, fixed) in std::iter::zip(&mut held, fixed.fix) {
+                *own |= fixed;
+            }
         }
     }
     for load in &case.loads {
@@ -244,8 +296,9 @@ fn held(case: &Case, x: [f64; 2]) -> [bool; 2] {
         {
             let slack = 1e-6 * cell[0];
             let below = from[0].min(to[0]) - slack <= x[0] && x[0] <= from[0].max(to[0]) + slack;
-            if below && near(x[1], from[1], 1) {
-                held = [held[0] || rough, true];
+            if below && near(x[D - 1], from[1], D - 1) {
+                held[0] |= rough;
+                held[D - 1] = true;
             }
         }
     }

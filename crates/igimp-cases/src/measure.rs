@@ -2,6 +2,8 @@
 
 use igimp_assembly::Particles;
 
+use crate::results::fields::length;
+
 /// Particles sorted into square buckets, for finding neighbours.
 #[derive(Clone, Debug)]
 pub(crate) struct Buckets {
@@ -124,7 +126,11 @@ pub(crate) fn plane(
 }
 
 /// The particle nearest to a position \[length\], within `reach` \[length\] of it.
-pub fn nearest(particles: &Particles<2>, position: &[f64; 2], reach: f64) -> Option<usize> {
+pub fn nearest<const D: usize>(
+    particles: &Particles<D>,
+    position: &[f64; D],
+    reach: f64,
+) -> Option<usize> {
     (0..particles.len())
         .map(|particle| (distance(&particles.x[particle], position), particle))
         .filter(|(distance, _)| *distance <= reach)
@@ -195,8 +201,8 @@ pub fn domains(particles: &Particles<2>) -> Vec<Vec<[f64; 2]>> {
         .collect()
 }
 
-fn distance(a: &[f64; 2], b: &[f64; 2]) -> f64 {
-    (a[0] - b[0]).hypot(a[1] - b[1])
+fn distance<const D: usize>(a: &[f64; D], b: &[f64; D]) -> f64 {
+    length(&std::array::from_fn::<_, D, _>(|axis| a[axis] - b[axis]))
 }
 
 #[cfg(test)]

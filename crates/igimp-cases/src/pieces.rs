@@ -104,7 +104,8 @@ impl Pieces {
         };
         let mut first = 0;
         for body in &case.bodies {
-            let (seeds, pieces) = fill_in_pieces(&grid, &body.polygon, body.per_direction, 0.0, 0)?;
+            let (seeds, pieces) =
+                fill_in_pieces(&grid, body.polygon(), body.per_direction, 0.0, 0)?;
             let own = all.corners.len();
             for Piece { particle, polygon } in pieces {
                 let mut corners: Vec<Corner> = Vec::with_capacity(polygon.len());
@@ -242,6 +243,8 @@ fn outline(pieces: &[Vec<Corner>]) -> Vec<Vec<Corner>> {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use igimp_assembly::ParticleFields;
 
     use super::*;
@@ -251,7 +254,7 @@ mod tests {
 
     fn slope() -> Case {
         let mut case = case();
-        case.bodies[0].polygon = vec![[0.0, 0.0], [3.0, 0.0], [1.3, 1.7], [0.0, 1.7]];
+        case.bodies[0].region = Arc::new(vec![[0.0, 0.0], [3.0, 0.0], [1.3, 1.7], [0.0, 1.7]]);
         case
     }
 
@@ -268,7 +271,7 @@ mod tests {
         let case = slope();
         let particles = Model::new(&case).unwrap().1.body.particles;
         let pieces = Pieces::of(&case).unwrap();
-        let whole = area_and_centroid(&case.bodies[0].polygon).0;
+        let whole = area_and_centroid(case.bodies[0].polygon()).0;
         assert!((area(&pieces.now(&particles).0) - whole).abs() < 1e-12 * whole);
         let inside = |&[x, y]: &[f64; 2]| y <= 1.7 + 1e-12 && x + y <= 3.0 + 1e-12;
         assert!(pieces.now(&particles).0.iter().flatten().all(inside));
@@ -281,8 +284,8 @@ mod tests {
     fn only_what_is_there_is_drawn() {
         let mut case = slope();
         let mut hill = case.bodies[0].clone();
-        hill.polygon = vec![[0.0, 1.7], [1.3, 1.7], [0.8, 2.4], [0.0, 2.4]];
-        let area_of_hill = area_and_centroid(&hill.polygon).0;
+        hill.region = Arc::new(vec![[0.0, 1.7], [1.3, 1.7], [0.8, 2.4], [0.0, 2.4]]);
+        let area_of_hill = area_and_centroid(hill.polygon()).0;
         case.bodies.push(hill);
         let (model, state) = Model::new(&case).unwrap();
         let all = state.body.particles;
@@ -360,7 +363,7 @@ mod tests {
         }
         let particles = Particles::from_fields(fields).unwrap();
         let pieces = Pieces::of(&case).unwrap();
-        let outline: Polygon = case.bodies[0].polygon.iter().map(|&x| moved(x)).collect();
+        let outline: Polygon = case.bodies[0].polygon().iter().map(|&x| moved(x)).collect();
         let whole = area_and_centroid(&outline).0;
         assert!((area(&pieces.now(&particles).0) - whole).abs() < 1e-12 * whole);
         assert!((area(&pieces.edges(&particles)) - whole).abs() < 1e-12 * whole);

@@ -34,12 +34,14 @@ pub fn area_and_centroid(polygon: &[[f64; 2]]) -> (f64, [f64; 2]) {
 /// Parts of a polygon that is not convex may come out joined along the sides of the box; area and
 /// centroid are exact all the same.
 pub fn clip_to_box(polygon: &[[f64; 2]], lower: [f64; 2], upper: [f64; 2]) -> Polygon {
-    let mut clipped = polygon.to_vec();
-    for axis in 0..2 {
-        clipped = clip(&clipped, axis, |x| x >= lower[axis], lower[axis]);
-        clipped = clip(&clipped, axis, |x| x <= upper[axis], upper[axis]);
-    }
-    clipped
+    let column = clip_to_strip(polygon, 0, lower[0], upper[0]);
+    clip_to_strip(&column, 1, lower[1], upper[1])
+}
+
+/// The part of a polygon between two lines across an axis; [`clip_to_box`] is one after the other.
+pub(crate) fn clip_to_strip(polygon: &[[f64; 2]], axis: usize, lower: f64, upper: f64) -> Polygon {
+    let above = clip(polygon, axis, |x| x >= lower, lower);
+    clip(&above, axis, |x| x <= upper, upper)
 }
 
 fn clip(polygon: &[[f64; 2]], axis: usize, inside: impl Fn(f64) -> bool, limit: f64) -> Polygon {

@@ -1,17 +1,21 @@
-//! Particles from polygons: every cell is cut into equal parts, and a part that the polygon's edge
+//! Particles from regions: every cell is cut into equal parts, and a part that the region's boundary
 //! crosses takes its clipped volume. The domains tile the cells, and the volume of the body is
 //! exact.
+
+mod nearest;
 
 use igimp_assembly::ParticleSeed;
 use igimp_shape::Grid;
 
 use crate::error::CaseError;
-use crate::polygon::{Polygon, area_and_centroid, bounding_box, clip_to_box};
+use crate::polygon::{Polygon, area_and_centroid, clip_to_strip};
+use crate::region::{Cover, Part, Region};
+use nearest::Nearest;
 
 /// Clipped parts smaller than this share of a whole part join the body's nearest particle \[-\].
 const SLIVER: f64 = 0.1;
 
-/// A corner may lie off the grid by so much of the grid: lines are multiples of a rounded cell \[-\].
+/// A region may reach off the grid by so much of the grid: lines are multiples of a rounded cell \[-\].
 const ROUND_OFF: f64 = 1e-9;
 
 /// The part of a polygon within a part of a cell.
@@ -21,6 +25,33 @@ pub(crate) struct Piece {
     pub(crate) particle: usize,
     /// Its corners.
     pub(crate) polygon: Polygon,
+}
+
+/// Fills a region with `per_direction`^D particles per grid cell.
+///
+/// # Errors
+/// [`CaseError::OutsideGrid`] when the region reaches off the grid, and [`CaseError::EmptyBody`] when
+/// it has no volume.
+pub fn fill<const D: usize>(
+    grid: &Grid<D>,
+    region: &(impl Region<D> + ?Sized),
+    per_direction: usize,
+    density: f64,
+    law: usize,
+) -> Result<Vec<ParticleSeed<D>>, CaseError> {
+    let parts = Parts::around(grid, region, per_direction)?;
+    // Most of the work of cutting a polygon is done once for every column of parts.
+    let strips = parts.columns(|[from, to]| region.strip(from, to));
+    let within = |place: [usize; D], from, to| {
+        let part = match &strips[place[0]] {
+            Some(strip) => strip.within(from, to),
+            None => region.within(from, to),
+        };
+        (part, ())
+    };
+    let cover = |from, to| region.cover(from, to);
+    let (seeds, _) = parts.filled((density, law), cover, within)?;
+    Ok(seeds)
 }
 
 /// Fills a polygon with `per_direction`² particles per grid cell.
@@ -35,8 +66,7 @@ pub fn fill_polygon(
     density: f64,
     law: usize,
 ) -> Result<Vec<ParticleSeed<2>>, CaseError> {
-    let (seeds, _) = fill_in_pieces(grid, polygon, per_direction, density, law)?;
-    Ok(seeds)
+    fill(grid, polygon, per_direction, density, law)
 }
 
 /// The same, with the pieces of the polygon: one for each particle in their order, then the slivers,
@@ -48,76 +78,166 @@ pub(crate) fn fill_in_pieces(
     density: f64,
     law: usize,
 ) -> Result<(Vec<ParticleSeed<2>>, Vec<Piece>), CaseError> {
-    let is_off = |corner: &&[f64; 2]| {
-        std::iter::zip(&grid.axes, *corner).any(|(axis, &x)| {
-            let slack = ROUND_OFF * (axis.end() - axis.start());
-            x.is_nan() || x < axis.start() - slack || x > axis.end() + slack
-        })
+    let parts = Parts::around(grid, polygon, per_direction)?;
+    let columns = parts.columns(|[from, to]| clip_to_strip(polygon, 0, from, to));
+    let within = |place: [usize; 2], from: [f64; 2], to: [f64; 2]| {
+        let clipped = clip_to_strip(&columns[place[0]], 1, from[1], to[1]);
+        (part(&clipped), clipped)
     };
-    if let Some(&corner) = polygon.iter().find(is_off) {
-        return Err(CaseError::OutsideGrid { corner });
-    }
-    let mut seeds: Vec<ParticleSeed<2>> = Vec::new();
-    let mut pieces = Vec::new();
-    let mut slivers = Vec::new();
-    let (first, last) = cells_around(grid, polygon);
-    let columns = last[0] + 1 - first[0];
-    for cell in 0..columns * (last[1] + 1 - first[1]) {
-        let place = [first[0] + cell % columns, first[1] + cell / columns];
-        let lower = grid.node_position(grid.node_index(place));
-        let size = grid
-            .cell_size(place)
-            .map(|size| size / per_direction as f64);
-        for part in 0..per_direction * per_direction {
-            let step = [part % per_direction, part / per_direction];
-            let from: [f64; 2] =
-                std::array::from_fn(|axis| lower[axis] + step[axis] as f64 * size[axis]);
-            let centre: [f64; 2] = std::array::from_fn(|axis| from[axis] + 0.5 * size[axis]);
-            let to = std::array::from_fn(|axis| from[axis] + size[axis]);
-            let clipped = clip_to_box(polygon, from, to);
-            let (signed, centroid) = area_and_centroid(&clipped);
-            let (area, whole) = (signed.abs(), size[0] * size[1]);
-            if area >= SLIVER * whole {
-                pieces.push(Piece {
-                    particle: seeds.len(),
-                    polygon: clipped,
-                });
-                seeds.push(ParticleSeed {
-                    x: centre,
-                    half_length: size.map(|size| 0.5 * size),
-                    volume: area,
-                    density,
-                    law,
-                });
-            } else if area > 0.0 {
-                slivers.push((area, centroid, clipped));
-            }
-        }
-    }
-    if seeds.is_empty() {
-        return Err(CaseError::EmptyBody);
-    }
-    for (area, centroid, polygon) in slivers {
-        let distance =
-            |seed: &ParticleSeed<2>| (seed.x[0] - centroid[0]).hypot(seed.x[1] - centroid[1]);
-        let nearest =
-            (0..seeds.len()).min_by(|&a, &b| distance(&seeds[a]).total_cmp(&distance(&seeds[b])));
-        if let Some(particle) = nearest {
-            seeds[particle].volume += area;
-            pieces.push(Piece { particle, polygon });
-        }
-    }
-    Ok((seeds, pieces))
+    let (seeds, pieces) = parts.filled((density, law), |_, _| Cover::Cut, within)?;
+    let piece = |(particle, polygon)| Piece { particle, polygon };
+    Ok((seeds, pieces.into_iter().map(piece).collect()))
 }
 
-/// The lowest and the highest cell that a polygon on the grid reaches into.
-fn cells_around(grid: &Grid<2>, polygon: &[[f64; 2]]) -> ([usize; 2], [usize; 2]) {
-    let (lower, upper) = bounding_box(polygon);
-    let last = [0, 1].map(|axis| grid.axes[axis].cell_count() - 1);
-    (
-        grid.cell_at(&lower).unwrap_or([0; 2]),
-        grid.cell_at(&upper).unwrap_or(last),
-    )
+fn part(clipped: &[[f64; 2]]) -> Part<2> {
+    let (area, centroid) = area_and_centroid(clipped);
+    Part {
+        volume: area.abs(),
+        centroid,
+    }
+}
+
+/// Particles, and what belongs to parts with the particle that each went to.
+type Filled<const D: usize, K> = (Vec<ParticleSeed<D>>, Vec<(usize, K)>);
+
+/// The parts of the cells around a region.
+#[derive(Debug)]
+struct Parts<const D: usize> {
+    per_direction: usize,
+    /// By direction, the cells: lower end, and size of a part.
+    cells: [Vec<[f64; 2]>; D],
+    /// By direction, the end of the last cell.
+    end: [f64; D],
+}
+
+impl<const D: usize> Parts<D> {
+    fn around(
+        grid: &Grid<D>,
+        region: &(impl Region<D> + ?Sized),
+        per_direction: usize,
+    ) -> Result<Self, CaseError> {
+        let (start, end) = grid.bounds();
+        let slack: [f64; D] = std::array::from_fn(|axis| ROUND_OFF * (end[axis] - start[axis]));
+        let from = std::array::from_fn(|axis| start[axis] - slack[axis]);
+        let to = std::array::from_fn(|axis| end[axis] + slack[axis]);
+        if let Some(corner) = region.beyond(from, to) {
+            let corner = corner.to_vec();
+            return Err(CaseError::OutsideGrid { corner });
+        }
+        // The lowest and the highest cell that it reaches into.
+        let (lower, upper) = region.bounds();
+        let last_of_all = std::array::from_fn(|axis| grid.axes[axis].cell_count() - 1);
+        let first = grid.cell_at(&lower).unwrap_or([0; D]);
+        let last = grid.cell_at(&upper).unwrap_or(last_of_all);
+        let cells = std::array::from_fn(|axis| {
+            let own = &grid.axes[axis];
+            let cell = |cell| [own.nodes()[cell], own.spacing(cell) / per_direction as f64];
+            (first[axis]..=last[axis]).map(cell).collect()
+        });
+        let end = std::array::from_fn(|axis| grid.axes[axis].nodes()[last[axis] + 1]);
+        Ok(Self {
+            per_direction,
+            cells,
+            end,
+        })
+    }
+
+    /// Lower and upper end of a part, counted from the first cell.
+    fn ends(&self, axis: usize, part: usize) -> [f64; 2] {
+        let [lower, size] = self.cells[axis][part / self.per_direction];
+        let from = lower + (part % self.per_direction) as f64 * size;
+        [from, from + size]
+    }
+
+    /// By column of parts along the first axis, what is made of its ends.
+    fn columns<T>(&self, make: impl Fn([f64; 2]) -> T) -> Vec<T> {
+        let count = self.cells[0].len() * self.per_direction;
+        (0..count).map(|part| make(self.ends(0, part))).collect()
+    }
+
+    /// Lower and upper corner of a cell.
+    fn cell(&self, place: [usize; D]) -> ([f64; D], [f64; D]) {
+        let end = |axis: usize| {
+            let next = self.cells[axis].get(place[axis] + 1);
+            next.map_or(self.end[axis], |[lower, _]| *lower)
+        };
+        (
+            std::array::from_fn(|axis| self.cells[axis][place[axis]][0]),
+            std::array::from_fn(end),
+        )
+    }
+
+    /// Fills the parts: particles in the order of the cells, then of the parts of a cell, and whatever
+    /// `within` hands out with each part that is not empty, with the particle that the part went to.
+    fn filled<K: Default>(
+        &self,
+        (density, law): (f64, usize),
+        cover: impl Fn([f64; D], [f64; D]) -> Cover,
+        within: impl Fn([usize; D], [f64; D], [f64; D]) -> (Part<D>, K),
+    ) -> Result<Filled<D, K>, CaseError> {
+        let counts: [usize; D] = std::array::from_fn(|axis| self.cells[axis].len());
+        let in_cell = [self.per_direction; D];
+        let mut seeds: Vec<ParticleSeed<D>> = Vec::new();
+        let (mut kept, mut slivers) = (Vec::new(), Vec::new());
+        let mut first = vec![0];
+        for cell in 0..counts.iter().product() {
+            let cell = place_of(cell, counts);
+            let (lower, upper) = self.cell(cell);
+            let cover = cover(lower, upper);
+            for part in 0..in_cell.iter().product() {
+                if cover == Cover::Nothing {
+                    break;
+                }
+                let step = place_of(part, in_cell);
+                let place: [usize; D] =
+                    std::array::from_fn(|axis| cell[axis] * self.per_direction + step[axis]);
+                let ends: [[f64; 2]; D] = std::array::from_fn(|axis| self.ends(axis, place[axis]));
+                let (from, to) = (ends.map(|[from, _]| from), ends.map(|[_, to]| to));
+                let size: [f64; D] = std::array::from_fn(|axis| self.cells[axis][cell[axis]][1]);
+                let (own, keep) = if cover == Cover::Whole {
+                    (Part::whole(from, to), K::default())
+                } else {
+                    within(place, from, to)
+                };
+                if own.volume >= SLIVER * size.iter().product::<f64>() {
+                    kept.push((seeds.len(), keep));
+                    seeds.push(ParticleSeed {
+                        x: std::array::from_fn(|axis| from[axis] + 0.5 * size[axis]),
+                        half_length: size.map(|size| 0.5 * size),
+                        volume: own.volume,
+                        density,
+                        law,
+                    });
+                } else if own.volume > 0.0 {
+                    slivers.push((own, keep));
+                }
+            }
+            first.push(seeds.len());
+        }
+        if seeds.is_empty() {
+            return Err(CaseError::EmptyBody);
+        }
+        if !slivers.is_empty() {
+            let x: Vec<[f64; D]> = seeds.iter().map(|seed| seed.x).collect();
+            let nearest = Nearest::new(self, &x, &first);
+            for (own, keep) in slivers {
+                let particle = nearest.to(own.centroid);
+                seeds[particle].volume += own.volume;
+                kept.push((particle, keep));
+            }
+        }
+        Ok((seeds, kept))
+    }
+}
+
+/// The place of a number in a box of so many, the first direction fastest.
+fn place_of<const D: usize>(number: usize, counts: [usize; D]) -> [usize; D] {
+    let mut rest = number;
+    counts.map(|count| {
+        let own = rest % count;
+        rest /= count;
+        own
+    })
 }
 
 #[cfg(test)]
@@ -204,8 +324,8 @@ mod tests {
         assert!(matches!(
             outside,
             Err(CaseError::OutsideGrid {
-                corner: [13.0, 0.0]
-            })
+                corner
+            }) if corner == [13.0, 0.0]
         ));
         let flat = fill_polygon(&grid(), &[[0.0, 0.0], [2.0, 0.0], [1.0, 0.0]], 2, 1.0, 0);
         assert!(matches!(flat, Err(CaseError::EmptyBody)));

@@ -170,6 +170,51 @@ pub struct StageSummary {
     /// Water in the pores at the end, where there is some.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pore_water: Option<PoreSummary>,
+    /// How its linear systems were solved, in space.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub linear: Option<LinearSummary>,
+}
+
+/// How the linear systems of a stage were solved.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct LinearSummary {
+    /// The method of the last step.
+    pub method: String,
+    /// Why it was taken, in words.
+    pub reason: String,
+    /// Solutions found in accepted steps.
+    pub solutions: usize,
+    /// Iterations of all of them; of a direct method none.
+    pub iterations: usize,
+    /// Iterations of the one that took most.
+    pub most_iterations: usize,
+    /// Iterations that were given up for a factorisation.
+    pub lost_iterations: usize,
+}
+
+impl LinearSummary {
+    /// In a sentence.
+    pub fn sentence(&self) -> String {
+        let Self {
+            method,
+            reason,
+            solutions,
+            iterations,
+            most_iterations,
+            lost_iterations,
+        } = self;
+        let mut text = format!("linear systems by {method} ({reason})");
+        if *iterations > 0 {
+            let each = (*iterations as f64 / (*solutions).max(1) as f64).round();
+            text += &format!(
+                ": {solutions} solutions, {each} iterations each, at most {most_iterations}"
+            );
+        }
+        if *lost_iterations > 0 {
+            text += &format!("; {lost_iterations} iterations given up for a factorisation");
+        }
+        text
+    }
 }
 
 /// The tension of a member of reinforcement at the end of a stage.

@@ -133,7 +133,7 @@ fn pictures_and_report_show_the_bodies() {
         "circle about (4.5, 2.4)",
         "footing__3-load.csv",
         "rigid.pvd",
-        "id=\"last-frame-bodies\"",
+        "class=\"held-bodies\"",
     ] {
         assert!(page.contains(text), "{text}");
     }

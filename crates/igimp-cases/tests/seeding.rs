@@ -3,12 +3,14 @@
 //! BODY: random polygons without crossing edges, which the reader of case files refuses: stars about a
 //! centre, concave ones and needles among them, and triangles with corners on nodes; on random graded
 //! grids.
-//! ORACLE: the shoelace formula; a count of the parts of each cell.
+//! ORACLE: the shoelace formula; a count of the parts of each cell; the rule of seeding done word by word,
+//! without columns and without a search, to the bit.
 
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 
 use igimp_cases::CaseError;
+use igimp_cases::polygon::{area_and_centroid, clip_to_box};
 use igimp_cases::seed::fill_polygon;
 use igimp_shape::{Axis, Grid};
 use proptest::prelude::*;
@@ -144,6 +146,41 @@ fn check(sample: &Sample) -> Result<(), TestCaseError> {
     Ok(())
 }
 
+/// The rule word by word: every part clips the whole polygon, every sliver looks at all particles.
+fn check_by_rule(sample: &Sample) -> Result<(), TestCaseError> {
+    let (grid, per_direction) = (&sample.grid, sample.per_direction);
+    let (mut expected, mut slivers) = (Vec::new(), Vec::new());
+    for cell in 0..grid.cell_count() {
+        let place = grid.cell_place(cell);
+        let lower = grid.node_position(grid.node_index(place));
+        let size = grid.cell_size(place).map(|h| h / per_direction as f64);
+        for part in 0..per_direction * per_direction {
+            let step = [part % per_direction, part / per_direction];
+            let from: [f64; 2] = std::array::from_fn(|d| lower[d] + step[d] as f64 * size[d]);
+            let to = std::array::from_fn(|d| from[d] + size[d]);
+            let (area, centroid) = area_and_centroid(&clip_to_box(&sample.polygon, from, to));
+            if area.abs() >= 0.1 * (size[0] * size[1]) {
+                let x: [f64; 2] = std::array::from_fn(|d| from[d] + 0.5 * size[d]);
+                expected.push((x, area.abs()));
+            } else if area != 0.0 {
+                slivers.push((area.abs(), centroid));
+            }
+        }
+    }
+    for (area, centroid) in slivers {
+        let distance = |x: [f64; 2]| (x[0] - centroid[0]).hypot(x[1] - centroid[1]);
+        let nearest = (0..expected.len())
+            .min_by(|&a, &b| distance(expected[a].0).total_cmp(&distance(expected[b].0)));
+        if let Some(nearest) = nearest {
+            expected[nearest].1 += area;
+        }
+    }
+    let seeds = fill_polygon(grid, &sample.polygon, per_direction, 2.0, 3).unwrap_or_default();
+    let found: Vec<_> = seeds.iter().map(|seed| (seed.x, seed.volume)).collect();
+    prop_assert_eq!(found, expected, "not the same bits");
+    Ok(())
+}
+
 /// A polygon that is all of the grid fills every part of every cell with its whole volume.
 fn fills(grid: &Grid<2>, per_direction: usize) -> Result<(), TestCaseError> {
     let ([x0, y0], [x1, y1]) = grid.bounds();
@@ -171,6 +208,7 @@ proptest! {
     #[test]
     fn polygons_are_filled(sample in sample()) {
         check(&sample)?;
+        check_by_rule(&sample)?;
     }
 
     #[test]

@@ -8,6 +8,7 @@ use super::FigureError;
 use super::colour::Colour;
 use super::font;
 use super::geometry::{Point, Rect};
+use super::space::Image;
 use super::{raster, svg};
 
 /// Pixels per point in the PNG: 288 dots per inch at the nominal size.
@@ -27,6 +28,7 @@ pub struct Drawing {
 pub(super) enum Item {
     Shape(Shape),
     Text(Text),
+    Image(Image),
 }
 
 /// Contours that share a fill and a stroke.
@@ -166,6 +168,10 @@ impl Drawing {
                 colour,
             });
         }
+    }
+
+    pub(super) fn image(&mut self, image: Image) {
+        self.items.push(Item::Image(image));
     }
 
     pub(super) fn push_text(&mut self, text: Text) {

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | [`CurvePlot`] | stress along a section, load-settlement, convergence, strength reduction |
 //! | [`FieldPlot`] | a field on the particle domains of one state |
+//! | [`SpacePlot`] | the surface of a body in space |
 //! | [`FieldPanel`] | the same field for several variants or steps, with one colour bar |
 //!
 //! Each is a plain value with public fields: fill it in and call `write`, or `draw` to get a
@@ -39,10 +40,13 @@ mod legend;
 mod marker;
 mod outline;
 mod raster;
+mod space;
+mod space_raster;
 mod svg;
 #[cfg(test)]
 mod tests;
 mod ticks;
+mod view;
 
 pub use axis::Scale;
 pub use colour::{Colour, ColourMap};
@@ -50,3 +54,4 @@ pub use curve::{Band, CurvePlot, LineStyle, ReferenceLine, ReferenceValue, Serie
 pub use drawing::{Drawing, PIXELS_PER_POINT};
 pub use error::FigureError;
 pub use field::{FieldPanel, FieldPlot, KeyEntry, KeySample, Outline, OutlineStyle, Polygon};
+pub use space::{Face, SpacePlot, View};

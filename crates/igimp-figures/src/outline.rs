@@ -262,7 +262,7 @@ mod tests {
                     Contour::Open(points) | Contour::Closed(points) => !points.is_empty(),
                     Contour::Circle { .. } => true,
                 }),
-                Item::Text(_) => true,
+                Item::Text(_) | Item::Image(_) => true,
             });
             assert!(!drawn, "{style:?}");
         }

@@ -6,10 +6,15 @@
 
 use std::fmt::Write as _;
 
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+
 use super::colour::Colour;
 use super::drawing::{Anchor, Contour, Drawing, Item, Shape, Stroke, Text};
 use super::font;
-use super::geometry::Point;
+use super::geometry::{Point, Rect};
+use super::raster;
+use super::space::Image;
 
 /// The whole document.
 pub(super) fn document(drawing: &Drawing) -> String {
@@ -32,6 +37,7 @@ pub(super) fn document(drawing: &Drawing) -> String {
         match item {
             Item::Shape(shape) => push_shape(&mut out, shape),
             Item::Text(text) => push_text(&mut out, text),
+            Item::Image(image) => push_image(&mut out, image),
         }
     }
     out.push_str("</svg>\n");
@@ -156,6 +162,24 @@ fn push_text(out: &mut String, text: &Text) {
         }
     }
     out.push_str("</text>\n");
+}
+
+/// Pixels, as a PNG within the document.
+fn push_image(out: &mut String, image: &Image) {
+    let Some(png) = raster::image_png(image) else {
+        return;
+    };
+    let Rect { left, top, .. } = image.area;
+    let (x, y) = (decimal(left), decimal(top));
+    let (width, height) = (decimal(image.area.width()), decimal(image.area.height()));
+    let data = STANDARD.encode(png);
+    push(
+        out,
+        format_args!(
+            "<image x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" \
+             href=\"data:image/png;base64,{data}\"/>\n"
+        ),
+    );
 }
 
 fn hex(Colour([r, g, b]): Colour) -> String {

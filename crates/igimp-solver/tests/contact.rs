@@ -57,7 +57,7 @@ fn pressed_by_a_box(angle: f64, push: f64) -> (Body<3>, NodalForces<3>, StepRepo
     let grid = unit_cells([6, 6, 5]);
     let mut body = Body::new(soil([1, 1, 0], [5, 5, 3]));
     let top = RigidBody::new(
-        Surface::cuboid([4.0, 4.0, 0.5]).unwrap(),
+        Surface::cuboid([4.0, 4.0, 0.5], 0.0, 1.0).unwrap(),
         vec![Interface::smooth(); 6],
         [3.0, 3.0, 3.5],
     );

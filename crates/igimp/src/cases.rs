@@ -1,10 +1,15 @@
 //! `igimp check` and `igimp explain`.
 
+use std::path::Path;
+
 use igimp_cases::case::Case;
 use igimp_cases::check::count;
 use igimp_cases::estimate::speed::Speed;
 use igimp_cases::estimate::watch::side_by_side;
-use igimp_cases::estimate::{estimate, per_item, readable, time, together};
+use igimp_cases::estimate::{
+    estimate, is_iterated, linear_solver, per_item, readable, time, together,
+};
+use igimp_cases::in_any_dimension;
 use igimp_cases::input::CaseFile;
 use igimp_cases::mesh_study::plan;
 use igimp_cases::printable::on_a_line;
@@ -23,21 +28,31 @@ pub(crate) fn explain(arguments: &CaseArguments) -> Result<Exit, ProgramError> {
 
 pub(crate) fn check(arguments: &CaseArguments) -> Result<Exit, ProgramError> {
     let file = read(&arguments.case, &arguments.settings())?;
-    let case = file.case();
+    in_any_dimension!(file.any_case(), case => checked(case, &file, &arguments.case))
+}
+
+/// What a case will cost.
+fn checked<const D: usize>(
+    case: &Case<D>,
+    file: &CaseFile,
+    path: &Path,
+) -> Result<Exit, ProgramError> {
     for material in &case.materials {
         material.law().map_err(igimp_cases::CaseError::from)?;
     }
     let size = estimate(case)?;
     let speed = Speed::measured()?;
     output::warn(&file.warnings());
-    let [nx, ny] = case.grid.cells();
-    let [particle, unknown] = per_item(size.unknowns).map(|bytes| count(round(bytes)));
+    let cells = case.grid.cells().map(|count| count.to_string()).join(" x ");
+    let iterated = is_iterated(case, size.unknowns);
+    let [particle, unknown] = per_item(D, iterated, size.unknowns).map(|bytes| count(round(bytes)));
     let row = |name: &str, value: String| vec![name.to_owned(), value];
     let rows = [
         row("method", case.method.label()),
         row("particles", count(size.particles)),
-        row("cells", format!("{} ({nx} x {ny})", count(size.cells))),
+        row("cells", format!("{} ({cells})", count(size.cells))),
         row("unknowns", format!("about {}", count(size.unknowns))),
+        row("linear solver", linear_solver(case, size.unknowns)),
         row("memory", format!("about {}", readable(size.bytes))),
         row(
             "",
@@ -60,7 +75,7 @@ pub(crate) fn check(arguments: &CaseArguments) -> Result<Exit, ProgramError> {
         .collect();
     output::print(&format!(
         "{} is fine\n  {}\n\n{}\nstages\n{}{}",
-        arguments.case.display(),
+        path.display(),
         on_a_line(&case.title),
         output::table(&rows),
         output::table(&stages),
@@ -70,7 +85,7 @@ pub(crate) fn check(arguments: &CaseArguments) -> Result<Exit, ProgramError> {
 }
 
 /// The meshes of a study of the mesh error, each with its size, and the cost of all; empty without one.
-fn study(case: &Case, speed: Speed) -> Result<String, ProgramError> {
+fn study<const D: usize>(case: &Case<D>, speed: Speed) -> Result<String, ProgramError> {
     if case.mesh_study.meshes < 2 {
         return Ok(String::new());
     }

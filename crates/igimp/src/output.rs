@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use std::io::{ErrorKind, Write};
 
 use igimp_cases::CaseError;
-use igimp_cases::case::Case;
+use igimp_cases::case::AnyCase;
 use igimp_cases::printable::on_lines;
 
 use crate::error::ProgramError;
@@ -70,8 +70,8 @@ pub(crate) fn kind(stage: &igimp_cases::case::Stage) -> &'static str {
 }
 
 /// Number of the stage with a name.
-pub(crate) fn stage_named(case: &Case, name: &str) -> Result<usize, ProgramError> {
-    let names = || case.stages.iter().map(|stage| stage.name.as_str());
+pub(crate) fn stage_named(case: &AnyCase, name: &str) -> Result<usize, ProgramError> {
+    let names = || case.stages().iter().map(|stage| stage.name.as_str());
     names().position(|own| own == name).ok_or_else(|| {
         let help = igimp_cases::shipped::closest(name, names()).map_or_else(
             || {

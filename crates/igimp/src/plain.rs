@@ -23,7 +23,7 @@ pub(crate) struct Lines {
 
 impl Lines {
     /// The line of an event, if it has one.
-    pub(crate) fn line(&mut self, event: &Event<'_>) -> Option<String> {
+    pub(crate) fn line<const D: usize>(&mut self, event: &Event<'_, D>) -> Option<String> {
         match event {
             Event::Prepared { size } => {
                 let mut line = format!(
@@ -71,7 +71,7 @@ impl Lines {
 
     /// The line of an event on a mesh. Meshes run side by side: each line says of which it is, and
     /// steps are left out.
-    fn of_mesh(&mut self, parts: usize, event: &Event<'_>) -> Option<String> {
+    fn of_mesh<const D: usize>(&mut self, parts: usize, event: &Event<'_, D>) -> Option<String> {
         let known = self.meshes.iter().position(|(own, _)| *own == parts);
         let place = known.unwrap_or_else(|| {
             self.meshes.push((parts, Lines::default()));
@@ -145,6 +145,9 @@ fn end(summary: &StageSummary) -> String {
         summary.cuts,
         short(summary.largest_displacement)
     );
+    if let Some(linear) = &summary.linear {
+        let _ = write!(line, "\n  {}", linear.sentence());
+    }
     line
 }
 
@@ -313,7 +316,7 @@ mod tests {
             body: Body::new(Particles::new(&[seed]).unwrap()),
             controls: Controls {
                 gravity: 1.0,
-                acceleration: [0.0; 2],
+                acceleration: [0.0; 3],
                 factors: Vec::new(),
                 settlement: 0.0,
                 srf: Vec::new(),

@@ -3,7 +3,7 @@
 use std::io::IsTerminal;
 use std::time::Duration;
 
-use igimp_cases::case::Case;
+use igimp_cases::case::AnyCase;
 use igimp_cases::printable::{on_a_line, on_lines};
 use igimp_cases::run::{Event, Listener};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -29,7 +29,7 @@ pub(crate) enum Progress {
 
 impl Progress {
     /// The way that suits where the output goes.
-    pub(crate) fn new(quiet: bool, case: &Case) -> Self {
+    pub(crate) fn new(quiet: bool, case: &AnyCase) -> Self {
         if quiet {
             Self::Quiet
         } else if std::io::stdout().is_terminal() && std::io::stderr().is_terminal() {
@@ -52,8 +52,8 @@ impl Progress {
     }
 }
 
-impl Listener for Progress {
-    fn on_event(&mut self, event: &Event<'_>) {
+impl<const D: usize> Listener<D> for Progress {
+    fn on_event(&mut self, event: &Event<'_, D>) {
         match self {
             Self::Quiet => {}
             Self::Plain(lines) => {
@@ -70,7 +70,7 @@ impl Listener for Progress {
     }
 }
 
-fn show(bar: &ProgressBar, lines: &mut Lines, event: &Event<'_>) {
+fn show<const D: usize>(bar: &ProgressBar, lines: &mut Lines, event: &Event<'_, D>) {
     let line = lines.line(event);
     match event {
         Event::Step {

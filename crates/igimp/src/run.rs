@@ -2,13 +2,13 @@
 
 use std::path::Path;
 
-use igimp_cases::CaseError;
 use igimp_cases::estimate::Expectation;
 use igimp_cases::estimate::room::refuse_beyond;
 use igimp_cases::estimate::watch::{exceeded, lacks_memory};
 use igimp_cases::results::admission::Replace;
 use igimp_cases::run::{self as engine, Start, Target};
 use igimp_cases::sweep::{Ending, Sweep};
+use igimp_cases::{CaseError, in_any_dimension};
 
 use crate::arguments::RunArguments;
 use crate::error::{Exit, ProgramError};
@@ -23,20 +23,20 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<Exit, ProgramError> {
     let flag = interrupt::watch();
     let file = cases::read(&arguments.case, &arguments.settings())?;
     output::warn(&file.warnings());
-    let mut case = file.case().clone();
+    let mut case = file.any_case().clone();
     if let Some(out) = &arguments.out {
-        case.output.folder.clone_from(out);
+        case.output_mut().folder.clone_from(out);
     }
     let start = match &arguments.from_stage {
         Some(name) => Start::FromStage(output::stage_named(&case, name)?),
         None => afresh_or_resume(arguments),
     };
-    let folder = case.output.folder.clone();
-    refuse_beyond(&case)?;
+    let folder = case.output().folder.clone();
+    in_any_dimension!(&case, case => refuse_beyond(case))?;
     output::writable(&folder)?;
     // A run that goes on makes a part of the steps only.
     let expectation = match start {
-        Start::Afresh => Expectation::of(&case).ok(),
+        Start::Afresh => in_any_dimension!(&case, case => Expectation::of(case)).ok(),
         Start::Resume | Start::FromStage(_) => None,
     };
     if let Some(lack) = expectation.and_then(|expected| lacks_memory(expected.bytes)) {
@@ -50,7 +50,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<Exit, ProgramError> {
         ..Target::of(&file, &folder)
     };
     let mut progress = Progress::new(arguments.quiet, &case);
-    let run = engine::run(&case, Some(&target), start, &mut progress, &flag);
+    let run = engine::run_any(&case, Some(&target), start, &mut progress, &flag);
     progress.finish();
     match run {
         Ok(run) => tell(&run, &folder, arguments),
@@ -84,7 +84,7 @@ fn task(arguments: &RunArguments, number: usize) -> Result<Exit, ProgramError> {
     if !arguments.quiet {
         output::say(&format!("task {number}: {}", task.label()))?;
     }
-    let mut progress = Progress::new(arguments.quiet, sweep.case_of(task)?.case());
+    let mut progress = Progress::new(arguments.quiet, sweep.case_of(task)?.any_case());
     let start = afresh_or_resume(arguments);
     let replace = replace(arguments.overwrite);
     let _shared = sweep.enter(false, replace)?;
@@ -112,7 +112,11 @@ fn afresh_or_resume(arguments: &RunArguments) -> Start {
 }
 
 /// Says how a run ended.
-fn tell(run: &engine::Run, folder: &Path, arguments: &RunArguments) -> Result<Exit, ProgramError> {
+fn tell(
+    run: &engine::Account,
+    folder: &Path,
+    arguments: &RunArguments,
+) -> Result<Exit, ProgramError> {
     let summary = &run.summary;
     let ending = Ending::of(summary);
     if arguments.quiet {

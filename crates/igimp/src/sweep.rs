@@ -4,7 +4,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use igimp_cases::results::admission::Replace;
-use igimp_cases::run::{Event, Start};
+use igimp_cases::run::{Nobody, Start};
 use igimp_cases::sweep::{self, Ending, Task};
 
 use crate::arguments::{Collect, SweepArguments};
@@ -117,12 +117,11 @@ fn run_one(
     flag: &AtomicBool,
     label: &impl Fn(&Task) -> String,
 ) -> Exit {
-    let mut listener = |_: &Event<'_>| {};
     let start = match replace {
         Replace::Everything => Ok(Start::Afresh),
         _ => sweep.start_of(task),
     };
-    let run = start.and_then(|start| sweep.run_task(task, (start, replace), &mut listener, flag));
+    let run = start.and_then(|start| sweep.run_task(task, (start, replace), &mut Nobody, flag));
     let (end, exit) = match run {
         Ok((run, ending)) => {
             let found: Vec<String> = run

@@ -1,10 +1,11 @@
 //! `igimp validate`: the cases that come with the program, held against their references.
 
-use igimp_cases::case::Case;
+use igimp_cases::case::AnyCase;
 use igimp_cases::estimate::estimate;
+use igimp_cases::in_any_dimension;
 use igimp_cases::input::CaseFile;
 use igimp_cases::results::admission::Replace;
-use igimp_cases::run::{self, Event, Start, Target};
+use igimp_cases::run::{self, Nobody, Start, Target};
 use igimp_cases::shipped::{SHIPPED, Shipped, find, nearest};
 use igimp_cases::sweep::Ending;
 
@@ -24,7 +25,9 @@ pub(crate) fn validate(arguments: &Validate) -> Result<Exit, ProgramError> {
     let (mut ran, mut met, mut missed) = (0, 0, 0);
     for shipped in chosen {
         let file = CaseFile::parse(&format!("{}.toml", shipped.name), shipped.text, &[])?;
-        if arguments.quick && estimate(file.case())?.work > QUICK {
+        if arguments.quick
+            && in_any_dimension!(file.any_case(), case => estimate(case))?.work > QUICK
+        {
             continue;
         }
         ran += 1;
@@ -33,12 +36,11 @@ pub(crate) fn validate(arguments: &Validate) -> Result<Exit, ProgramError> {
             date: date.clone(),
             ..Target::of(&file, out.join(shipped.name))
         });
-        let mut case = file.case().clone();
+        let mut case = file.any_case().clone();
         if let Some(target) = &target {
-            case.output.folder.clone_from(&target.folder);
+            case.output_mut().folder.clone_from(&target.folder);
         }
-        let mut listener = |_: &Event<'_>| {};
-        let run = run::run(&case, target.as_ref(), Start::Afresh, &mut listener, &flag)?;
+        let run = run::run_any(&case, target.as_ref(), Start::Afresh, &mut Nobody, &flag)?;
         let ending = Ending::of(&run.summary);
         output::say(&format!("{}: {ending}", shipped.name))?;
         output::say(&verdict::checks(&run.summary.checks))?;
@@ -68,7 +70,7 @@ fn choose(names: &[String]) -> Result<Vec<&'static Shipped>, ProgramError> {
     let mut chosen = Vec::new();
     for shipped in SHIPPED {
         let file = CaseFile::parse(&format!("{}.toml", shipped.name), shipped.text, &[])?;
-        if declares_references(file.case()) {
+        if declares_references(file.any_case()) {
             chosen.push(shipped);
         }
     }
@@ -86,11 +88,11 @@ fn named(name: &str) -> Result<&'static Shipped, ProgramError> {
 }
 
 /// Whether a case holds anything against an outside value.
-fn declares_references(case: &Case) -> bool {
+fn declares_references(case: &AnyCase) -> bool {
     let curves = || {
-        case.curves
+        case.curves()
             .iter()
             .filter_map(|curve| curve.reference.as_ref())
     };
-    !case.checks.is_empty() || curves().any(|reference| reference.tolerance.is_some())
+    !case.checks().is_empty() || curves().any(|reference| reference.tolerance.is_some())
 }

@@ -1,7 +1,8 @@
 //! How much of a whole run is done, from its events.
 
-use igimp_cases::case::Case;
+use igimp_cases::case::AnyCase;
 use igimp_cases::estimate::time::shares;
+use igimp_cases::in_any_dimension;
 use igimp_cases::mesh_study::plan;
 use igimp_cases::run::Event;
 
@@ -32,15 +33,16 @@ struct Mesh {
 
 impl Whole {
     /// Of a case that is about to run.
-    pub(crate) fn of(case: &Case) -> Self {
-        let parts = plan::refinements(case);
+    pub(crate) fn of(case: &AnyCase) -> Self {
+        let parts = in_any_dimension!(case, case => plan::refinements(case));
+        let stages = in_any_dimension!(case, case => shares(case));
         // Half the cell: four times the unknowns, and a factorisation that takes eight times as long.
         let work = |parts: usize| (parts as f64).powi(3);
         let all: f64 = parts.iter().map(|&parts| work(parts)).sum();
         let mesh = |&parts: &usize| Mesh {
             parts,
             share: work(parts) / all,
-            stages: shares(case),
+            stages: stages.clone(),
             stage: 0,
             trials: 0.0,
             done: 0.0,
@@ -51,7 +53,7 @@ impl Whole {
     }
 
     /// Takes an event into account; the share of the run that is done \[-\].
-    pub(crate) fn after(&mut self, event: &Event<'_>) -> f64 {
+    pub(crate) fn after<const D: usize>(&mut self, event: &Event<'_, D>) -> f64 {
         match event {
             Event::OfMesh { parts, event } => {
                 let mut meshes = self.meshes.iter_mut();
@@ -71,7 +73,7 @@ impl Whole {
 }
 
 impl Mesh {
-    fn note(&mut self, event: &Event<'_>) {
+    fn note<const D: usize>(&mut self, event: &Event<'_, D>) {
         match event {
             Event::StageStarted { stage, .. } => {
                 (self.stage, self.trials, self.done) = (*stage, 0.0, 0.0);
@@ -104,9 +106,13 @@ mod tests {
 
     use super::*;
 
-    fn case(set: &[&str]) -> Case {
+    fn case(set: &[&str]) -> AnyCase {
         let slope = find("slope").unwrap();
-        slope.case_file(set.to_vec()).unwrap().into_case()
+        slope.case_file(set.to_vec()).unwrap().any_case().clone()
+    }
+
+    fn end(summary: &StageSummary) -> Event<'_> {
+        Event::StageEnded { summary }
     }
 
     fn start(stage: usize) -> Event<'static> {
@@ -127,7 +133,7 @@ mod tests {
         for stage in 0..3 {
             let now = whole.after(&start(stage));
             assert!((now - before).abs() < 1e-12);
-            before = whole.after(&Event::StageEnded { summary: &ended });
+            before = whole.after(&end(&ended));
             assert!(before > now);
         }
         assert!((before - 1.0).abs() < 1e-12);

@@ -100,9 +100,9 @@ fn hold(system: &LinearSystem, symmetric: bool) {
     assert_eq!(skew(system) < 1e-12, symmetric, "{:e}", skew(system));
     // Held are the bottom, and x on the left.
     assert!(system.places.iter().all(|place| place[1] > 0));
-    let left: Vec<&[i32; 3]> = system.places.iter().filter(|p| p[0] == 0).collect();
+    let left: Vec<&[i32; 4]> = system.places.iter().filter(|p| p[0] == 0).collect();
     assert_eq!(left.len(), 4, "rows 1 to 4 carry soil");
-    assert!(left.iter().all(|place| place[2] == 1));
+    assert!(left.iter().all(|place| place[3] == 1));
 }
 
 #[test]

@@ -10,6 +10,7 @@ pub(crate) mod incline;
 pub(crate) mod patch;
 pub(crate) mod pipe;
 pub(crate) mod punch;
+pub(crate) mod space;
 pub(crate) mod strip;
 pub(crate) mod wall;
 pub(crate) mod wedge;
@@ -98,24 +99,24 @@ pub(crate) fn polygon(
 }
 
 /// Conditions of a step without weight.
-pub(crate) fn weightless(
-    grid: &Grid<2>,
-    constraints: &Constraints<2>,
+pub(crate) fn weightless<const D: usize>(
+    grid: &Grid<D>,
+    constraints: &Constraints<D>,
     law: &SharedLaw,
-    motion: RigidMotion<2>,
-) -> Result<StepConditions<2>, igimp_assembly::AssemblyError> {
-    let loads = StepLoads::gravity([0.0; 2]);
+    motion: RigidMotion<D>,
+) -> Result<StepConditions<D>, igimp_assembly::AssemblyError> {
+    let loads = StepLoads::gravity([0.0; D]);
     StepConditions::new(grid.clone(), constraints.clone(), loads, vec![law.clone()])?
         .with_motions(vec![motion])
 }
 
 /// The force that acts on the first body from outside along prescribed components \[force\].
-pub(crate) fn force(accepted: &Accepted<'_, 2>) -> [f64; 2] {
+pub(crate) fn force<const D: usize>(accepted: &Accepted<'_, D>) -> [f64; D] {
     accepted.forces.reactions[accepted.conditions.grid.node_count()]
 }
 
 /// The knots of the first body that soil touches: place in space and what contact left there.
-pub(crate) fn closed(bodies: &[RigidBody<2>]) -> Vec<([f64; 2], ContactNode)> {
+pub(crate) fn closed<const D: usize>(bodies: &[RigidBody<D>]) -> Vec<([f64; D], ContactNode)> {
     let body = &bodies[0];
     let knots = body.surface.knots();
     let knots = knots.iter().zip(&body.contact.knots);

@@ -112,7 +112,7 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
             "uncertainty_[-]",
         ],
     );
-    let mut factors = Vec::new();
+    let (mut factors, mut sums) = (Vec::new(), Vec::new());
     let mut note = String::from("bounds; coarse, fine; extrapolated\n");
     for (problem, found) in std::iter::zip(&problems, found.chunks(2)) {
         let values = [0, 1].map(|mesh| mesh_study::Computed {
@@ -122,7 +122,8 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
         });
         let name = &problem.section.name;
         let both = [0, 1].map(|mesh| found[mesh].run(String::new()));
-        let run = study.run(RunRecord::sum(name.clone(), &[&both[0], &both[1]]));
+        let sum = RunRecord::sum(name.clone(), &[&both[0], &both[1]]);
+        let run = study.run(sum.clone());
         let (value, uncertainty) = mesh_study::estimate(&values)
             .map_or((f64::NAN, f64::NAN), |found| {
                 (found.value, found.uncertainty)
@@ -134,6 +135,7 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
         study.check(run, QUANTITY, expected, band, value);
         let [coarse, fine] = [&found[0], &found[1]].map(Found::factor);
         factors.push(value);
+        sums.push(sum);
         table.push(vec![lower, upper, coarse, fine, value, uncertainty]);
         let _ = writeln!(
             note,
@@ -142,34 +144,43 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
         );
     }
     if level == Level::Full {
-        minimum_lies_inside(&mut study, &problems, &factors);
+        minimum_lies_inside(&mut study, &problems, (&factors, &sums));
     }
     study.notes.push(note);
     table.write_csv(&study.folder)?;
     Ok(study)
 }
 
-/// In a slow drawdown the factor falls before it rises again.
-fn minimum_lies_inside(study: &mut Study, problems: &[Problem], factors: &[f64]) {
+/// In a slow drawdown the factor falls before it rises again, by as much at least as the bounds on both sides of it ask.
+fn minimum_lies_inside(
+    study: &mut Study,
+    problems: &[Problem],
+    (factors, sums): (&[f64], &[RunRecord]),
+) {
     for depth in ["D = 1", "D = 1.5"] {
-        let own = std::iter::zip(problems, factors).filter(|(problem, _)| {
-            problem.group == "drawdown" && problem.section.name.ends_with(depth)
-        });
-        let own: Vec<f64> = own.map(|(_, factor)| *factor).collect();
-        let (Some((first, rest)), Some(last)) = (own.split_first(), own.last()) else {
+        let own: Vec<usize> = (0..problems.len())
+            .filter(|&k| {
+                let Problem { group, section, .. } = &problems[k];
+                *group == "drawdown" && section.name.ends_with(depth)
+            })
+            .collect();
+        let [first, inside @ .., last] = &own[..] else {
             continue;
         };
-        let least = rest.iter().copied().fold(f64::INFINITY, f64::min);
-        let run = study.run(RunRecord::sum(format!("slow drawdown, {depth}"), &[]));
-        let quantity = "least factor over that of the slope drawn down [-]";
-        let band = Band::AtMost(0.985);
-        study.check(
-            run,
-            quantity,
-            problems::MINIMUM.says(0.95),
-            band,
-            least / first.min(*last),
-        );
+        // The least of some values inside over the lesser of others at the ends.
+        let over = |inner: &dyn Fn(usize) -> f64, outer: &dyn Fn(usize) -> f64| {
+            let least = inside.iter().map(|&k| inner(k));
+            least.fold(f64::INFINITY, f64::min) / outer(*first).min(outer(*last))
+        };
+        let [lower, upper] = [0, 1].map(|end| move |k: usize| problems[k].known[end]);
+        let middle = |k: usize| 0.5 * (lower(k) + upper(k));
+        let runs: Vec<&RunRecord> = own.iter().map(|&k| &sums[k]).collect();
+        let run = study.run(RunRecord::sum(format!("slow drawdown, {depth}"), &runs));
+        let quantity = "least factor inside over the lesser one of the ends [-]";
+        let expected = problems::MINIMUM.says(over(&middle, &middle));
+        let band = Band::AtMost(over(&upper, &lower));
+        let measured = over(&|k| factors[k], &|k| factors[k]);
+        study.check(run, quantity, expected, band, measured);
     }
 }
 

@@ -18,7 +18,7 @@ const GRIFFITHS_LANE_5: Oracle = bounds("Griffiths and Lane 1999, example 5");
 pub(super) const MINIMUM: Oracle = Oracle {
     kind: OracleKind::LimitAnalysis,
     source: "the bounds of slopes under water at all levels",
-    locator: "the least lies at L/H = 0.7 to 0.8: 0.949 of the empty one for D = 1, 0.970 for D = 1.5",
+    locator: "the least lies at L/H = 0.7 to 0.8: at most the least upper bound over the lower one of the empty slope, 0.962 for D = 1 and 0.975 for D = 1.5",
 };
 const R_U: Oracle = bounds("slope of Griffiths and Lane 1999, example 1, with r_u");
 const GRIFFITHS_LANE_6: Oracle = bounds(

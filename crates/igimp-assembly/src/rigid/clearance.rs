@@ -4,7 +4,7 @@
 use thiserror::Error;
 
 use super::RigidBody;
-use super::surface::{minus, norm};
+use super::vectors::{minus, norm};
 use crate::particles::Particles;
 use crate::supports::padded;
 

@@ -3,25 +3,23 @@
 
 use std::collections::BTreeMap;
 
-use igimp_shape::Grid;
-
 use super::clearance::{Swallowed, put_back};
-use super::face::Face;
+use super::gathering::Gathering;
 use super::interface::{Interface, Tension};
+use super::mosaic::tents_within;
 use super::motion::rotations;
 use super::row::{Functional, Row};
-use super::surface::cross;
 use super::{ContactNode, ContactState, NODES_PER_BODY, RigidBody};
 use crate::method::Geometry;
 use crate::nodal_forces::{AddBlock, NodalForces};
 use crate::particles::Particles;
 use crate::stencils::Stencils;
 use crate::step_conditions::StepConditions;
-use crate::supports::padded;
 use crate::unknowns::Unknowns;
 
-/// A node with a smaller share of a point has none: round-off on a line of the grid \[-\].
-const LEAST_SHARE: f64 = 1e-9;
+/// A knot of space that soil covers by a smaller share of the largest one has none: round-off beyond a plane of
+/// symmetry \[-\].
+const LEAST_COVER: f64 = 1e-6;
 
 /// Contact of one step, with directions and weights frozen at its start.
 #[derive(Debug)]
@@ -40,18 +38,6 @@ pub struct AcceptedContact<const D: usize> {
     /// Particles that stand too close to a body, with the way back \[length\]: contact holds the mean around
     /// a knot, and lets single particles creep across the surface.
     pub put_back: Vec<(usize, [f64; D])>,
-}
-
-/// What is summed at a knot.
-#[derive(Default)]
-struct Sums<const D: usize> {
-    area: f64,
-    gap: f64,
-    young: f64,
-    adhesion: f64,
-    cell: f64,
-    opening: BTreeMap<usize, [f64; D]>,
-    slip: [BTreeMap<usize, [f64; D]>; 2],
 }
 
 impl<'a, const D: usize> Contact<'a, D> {
@@ -83,67 +69,23 @@ impl<'a, const D: usize> Contact<'a, D> {
         conditions: &StepConditions<D>,
         unknowns: &Unknowns<D>,
     ) {
-        let grid = &conditions.grid;
         let body = &self.bodies[index];
-        let (surface, pose) = (&*body.surface, &body.pose);
-        let (lower, upper) = surface.bounds();
-        let tents = surface.tents();
-        let places: Vec<[f64; D]> = surface
-            .knots()
-            .iter()
-            .map(|(knot, _)| pose.into_space(knot))
-            .collect();
-        let mut knots: BTreeMap<usize, Sums<D>> = BTreeMap::new();
-        for particle in 0..particles.len() {
-            let (x, half) = (&particles.x[particle], &particles.half_length[particle]);
-            let margin = 2.0 * half.iter().sum::<f64>();
-            let own = pose.into_body(x);
-            if (0..D).any(|a| own[a] < lower[a] - margin || own[a] > upper[a] + margin) {
+        let surface = &*body.surface;
+        let tents = match surface.space() {
+            Some(space) => tents_within(body, space, &conditions.grid),
+            None => surface.tents(),
+        };
+        let least = match surface.space() {
+            Some(_) => LEAST_COVER * tents.iter().copied().fold(0.0, f64::max),
+            None => 0.0,
+        };
+        let node = self.first_node + NODES_PER_BODY * index;
+        let knots = Gathering::new(body, node, particles, stencils, conditions, unknowns).sums();
+        for (knot, sums) in knots {
+            let area = sums.area.min(tents[knot]);
+            if area <= least {
                 continue;
             }
-            for side in 0..surface.side_count() {
-                let Some(face) = Face::of(body, side, x, half) else {
-                    continue;
-                };
-                let interface = &body.interfaces[side];
-                let law = particles.law[particle];
-                let young = particles.young(particle, &conditions.laws);
-                let adhesion = interface.adhesion(law, particles.ratios[particle]);
-                for point in face.points(body, &places, grid) {
-                    let Some(SoilPoint {
-                        shares,
-                        place,
-                        cell,
-                    }) = soil_at(grid, stencils, unknowns, &point.x)
-                    else {
-                        continue;
-                    };
-                    for (knot, tent) in point.knots {
-                        let weight = point.area * tent;
-                        if weight <= 0.0 {
-                            continue;
-                        }
-                        let sums = knots.entry(knot).or_default();
-                        sums.area += weight;
-                        sums.gap += weight * face.gap;
-                        sums.young += weight * young;
-                        sums.adhesion += weight * adhesion;
-                        sums.cell += weight * cell;
-                        let body_node = self.first_node + NODES_PER_BODY * index;
-                        let of_body =
-                            |direction: &[f64; D]| rigid_shares(body, &place, direction, body_node);
-                        let normal = &face.normal;
-                        add(&mut sums.opening, weight, normal, &shares, of_body(normal));
-                        for k in 0..D - 1 {
-                            let tangent = &face.tangents[k];
-                            let own = of_body(tangent);
-                            add(&mut sums.slip[k], weight, tangent, &shares, own);
-                        }
-                    }
-                }
-            }
-        }
-        for (knot, sums) in knots {
             let mean = |sum: f64| sum / sums.area;
             let functional = |sum: &BTreeMap<usize, [f64; D]>| -> Functional<D> {
                 let terms = sum.iter();
@@ -166,7 +108,7 @@ impl<'a, const D: usize> Contact<'a, D> {
             let mut row = Row {
                 body: index,
                 knot,
-                area: sums.area.min(tents[knot]),
+                area,
                 gap: before.gap,
                 cell: mean(sums.cell),
                 young: mean(sums.young),
@@ -294,99 +236,6 @@ impl<const D: usize> NodalForces<D> for Contact<'_, D> {
                 Some(blocks) => row.add(&traction, f, Some(&mut **blocks)),
                 None => row.add(&traction, f, None),
             }
-        }
-    }
-}
-
-/// The soil's displacement at a point, as shares of nodes that carry soil.
-struct SoilPoint<const D: usize> {
-    /// They sum to one.
-    shares: Vec<(usize, f64)>,
-    /// The place that the shares stand for, the point itself if all of its nodes carry soil. Seen from there
-    /// a rotation of body and soil together opens no gap, and moments balance \[length\].
-    place: [f64; D],
-    /// Size of the cell \[length\].
-    cell: f64,
-}
-
-/// The soil at a point by the tent functions; none where no node carries soil.
-fn soil_at<const D: usize>(
-    grid: &Grid<D>,
-    stencils: &Stencils<D>,
-    unknowns: &Unknowns<D>,
-    x: &[f64; D],
-) -> Option<SoilPoint<D>> {
-    let cell = grid.cell_at(x)?;
-    let size = grid.cell_size(cell);
-    let node = grid.node_position(grid.node_index(cell));
-    let within = std::array::from_fn(|a| (x[a] - node[a]) / size[a]);
-    let mut shares: Vec<(usize, f64)> = Vec::with_capacity(1 << D);
-    let mut sum = 0.0;
-    for (node, share, _) in grid.tents(cell, within) {
-        let node = stencils.master(node);
-        if share > LEAST_SHARE && unknowns.is_active(node) {
-            shares.push((node, share));
-            sum += share;
-        }
-    }
-    if shares.is_empty() {
-        return None;
-    }
-    let mut place = [0.0; D];
-    for (node, share) in &mut shares {
-        *share /= sum;
-        let own = grid.node_position(*node);
-        for axis in 0..D {
-            place[axis] += *share * own[axis];
-        }
-    }
-    Some(SoilPoint {
-        shares,
-        place,
-        cell: size.into_iter().fold(f64::INFINITY, f64::min),
-    })
-}
-
-/// Minus the displacement of a body at a point in a direction: shares of its two nodes.
-fn rigid_shares<const D: usize>(
-    body: &RigidBody<D>,
-    x: &[f64; D],
-    direction: &[f64; D],
-    node: usize,
-) -> [(usize, [f64; D]); 2] {
-    let arm: [f64; D] = std::array::from_fn(|a| x[a] - body.pose.origin[a]);
-    let size = body.surface.size();
-    let mut turning = [0.0; D];
-    if D == 2 {
-        turning[0] = -(arm[0] * direction[1] - arm[1] * direction[0]) / size;
-    } else {
-        let (r, n) = (padded(&arm), padded(direction));
-        let moment = cross(&r, &n);
-        for a in 0..D {
-            turning[a] = -moment[a] / size;
-        }
-    }
-    [(node, direction.map(|n| -n)), (node + 1, turning)]
-}
-
-/// Adds a weight times the relative displacement along a direction to a sum.
-fn add<const D: usize>(
-    sum: &mut BTreeMap<usize, [f64; D]>,
-    weight: f64,
-    direction: &[f64; D],
-    shares: &[(usize, f64)],
-    of_body: [(usize, [f64; D]); 2],
-) {
-    for &(node, share) in shares {
-        let own = sum.entry(node).or_insert([0.0; D]);
-        for axis in 0..D {
-            own[axis] += weight * share * direction[axis];
-        }
-    }
-    for (node, share) in of_body {
-        let own = sum.entry(node).or_insert([0.0; D]);
-        for axis in 0..D {
-            own[axis] += weight * share[axis];
         }
     }
 }

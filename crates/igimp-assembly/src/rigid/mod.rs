@@ -7,18 +7,21 @@
 mod clearance;
 mod contact;
 mod face;
+mod gathering;
 mod interface;
+mod mosaic;
 mod motion;
 mod pose;
 mod row;
 mod state;
 mod surface;
+mod vectors;
 
 pub use interface::{Interface, Penalty, Shear, Tension};
 pub use motion::{Drive, RigidMotion};
 pub use pose::Pose;
 pub use state::{ContactNode, ContactState};
-pub use surface::{Surface, SurfaceError};
+pub use surface::{Surface, SurfaceError, SurfaceTriangle};
 
 pub use contact::AcceptedContact;
 

@@ -9,7 +9,8 @@ pub struct Pose<const D: usize> {
     pub origin: [f64; D],
     /// Rotation from the frame of the body into space.
     pub turn: [[f64; D]; D],
-    /// Rotation since the start, summed over the steps \[rad\]: in the plane the first component.
+    /// Rotation since the start, summed over the steps \[rad\]: in the plane the first component; in space about the
+    /// axes, which is where `turn` stands only as long as the axis stays.
     pub angle: [f64; 3],
 }
 
@@ -51,7 +52,7 @@ impl<const D: usize> Pose<D> {
     }
 }
 
-/// The matrix of a rotation: by an angle in the plane, by a vector in space (Rodrigues).
+/// The matrix of a rotation: by an angle in the plane, by a vector in space (theory, eq. 45c).
 fn turn_by<const D: usize>(rotation: &[f64; 3]) -> [[f64; D]; D] {
     let mut out = identity::<D>();
     if D == 2 {

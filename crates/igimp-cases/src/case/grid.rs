@@ -5,9 +5,9 @@ use igimp_shape::{Axis, Grid, ShapeError};
 
 /// A fixed background grid.
 #[derive(Clone, Debug, PartialEq)]
-pub struct GridSpec {
+pub struct GridSpec<const D: usize = 2> {
     /// One axis for each direction.
-    pub axes: [AxisSpec; 2],
+    pub axes: [AxisSpec; D],
     /// Stiffness of particles in cells that several soils share.
     pub mixed_cells: MixedCells,
 }
@@ -38,10 +38,10 @@ pub enum AxisSpec {
     Lines(Vec<f64>),
 }
 
-impl GridSpec {
-    /// A grid of equal cells: lower left corner \[m\], size \[m\] and number of cells by direction.
-    pub fn equal(lower: [f64; 2], cell: [f64; 2], cells: [usize; 2]) -> Self {
-        let axes = [0, 1].map(|axis| AxisSpec::Equal {
+impl<const D: usize> GridSpec<D> {
+    /// A grid of equal cells: lower corner \[m\], size \[m\] and number of cells by direction.
+    pub fn equal(lower: [f64; D], cell: [f64; D], cells: [usize; D]) -> Self {
+        let axes = std::array::from_fn(|axis| AxisSpec::Equal {
             lower: lower[axis],
             cell: cell[axis],
             cells: cells[axis],
@@ -52,34 +52,34 @@ impl GridSpec {
         }
     }
 
-    /// Lower left corner \[m\].
-    pub fn lower(&self) -> [f64; 2] {
+    /// Corner of the lowest coordinates \[m\].
+    pub fn lower(&self) -> [f64; D] {
         self.axes.each_ref().map(AxisSpec::lower)
     }
 
-    /// Upper right corner \[m\].
-    pub fn upper(&self) -> [f64; 2] {
+    /// Corner of the highest coordinates \[m\].
+    pub fn upper(&self) -> [f64; D] {
         self.axes.each_ref().map(AxisSpec::upper)
     }
 
     /// Number of cells by direction.
-    pub fn cells(&self) -> [usize; 2] {
+    pub fn cells(&self) -> [usize; D] {
         self.axes.each_ref().map(AxisSpec::cells)
     }
 
     /// Size of the smallest cell by direction \[m\].
-    pub fn smallest_cell(&self) -> [f64; 2] {
+    pub fn smallest_cell(&self) -> [f64; D] {
         self.axes.each_ref().map(|axis| axis.extremes()[0])
     }
 
     /// Size of the largest cell by direction \[m\].
-    pub fn largest_cell(&self) -> [f64; 2] {
+    pub fn largest_cell(&self) -> [f64; D] {
         self.axes.each_ref().map(|axis| axis.extremes()[1])
     }
 
     /// Size of the cell at a place, or of the one nearest to it \[m\].
-    pub fn cell_at(&self, x: [f64; 2]) -> [f64; 2] {
-        [0, 1].map(|axis| self.axes[axis].cell_at(x[axis]))
+    pub fn cell_at(&self, x: [f64; D]) -> [f64; D] {
+        std::array::from_fn(|axis| self.axes[axis].cell_at(x[axis]))
     }
 
     /// Every cell divided in `n` equal parts in each direction.
@@ -98,9 +98,12 @@ impl GridSpec {
     ///
     /// # Errors
     /// [`ShapeError`] for cells that make no grid.
-    pub fn grid(&self) -> Result<Grid<2>, ShapeError> {
-        let [x, y] = self.axes.each_ref().map(AxisSpec::axis);
-        Ok(Grid::new([x?, y?]))
+    pub fn grid(&self) -> Result<Grid<D>, ShapeError> {
+        let axes: Result<Vec<_>, _> = self.axes.iter().map(AxisSpec::axis).collect();
+        let mut axes = axes?.into_iter();
+        Ok(Grid::new(std::array::from_fn(|_| {
+            axes.next().expect("there is an axis for each direction")
+        })))
     }
 }
 

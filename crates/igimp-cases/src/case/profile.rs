@@ -3,7 +3,7 @@
 
 use igimp_material::Ratios;
 
-use super::{Ground, Material, Raster, Strength};
+use super::{Ground, Material, Raster, Strength, front};
 
 /// The least strength of a profile over its greatest \[-\]: soil without any would be no soil.
 pub const LEAST_STRENGTH: f64 = 1e-6;
@@ -40,7 +40,7 @@ pub struct StressShare {
 
 impl StressShare {
     /// The strength at a place \[Pa\].
-    fn at(&self, place: [f64; 2], ground: &Ground) -> f64 {
+    fn at<const D: usize>(&self, place: &[f64; D], ground: &Ground<D>) -> f64 {
         let ocr = (self.ocr_profile.as_ref()).map_or(self.ocr, |own| own.at(place, ground));
         let stress = ground.effective_stress(place, self.water_level);
         (self.ratio * stress * ocr.powf(self.exponent)).max(self.at_least)
@@ -49,27 +49,32 @@ impl StressShare {
 
 impl Profile {
     /// The value at a place.
-    pub fn at(&self, place: [f64; 2], ground: &Ground) -> f64 {
+    pub fn at<const D: usize>(&self, place: &[f64; D], ground: &Ground<D>) -> f64 {
         match self {
-            Self::Level(variation) => variation.at(place[1]),
+            Self::Level(variation) => variation.at(place[D - 1]),
             Self::Depth(variation) => variation.at(-ground.depth(place)),
             Self::StressShare(share) => share.at(place, ground),
-            Self::Raster(raster) => raster.at(place),
+            Self::Raster(raster) => raster.at(front(place)),
         }
     }
 
     /// The integral from a place up to a level; of a share of the stress, none is asked for, that of its value at the
     /// place.
-    pub(super) fn integral(&self, place: [f64; 2], level: f64, ground: &Ground) -> f64 {
-        let [x, y] = place;
+    pub(super) fn integral<const D: usize>(
+        &self,
+        place: &[f64; D],
+        level: f64,
+        ground: &Ground<D>,
+    ) -> f64 {
+        let y = place[D - 1];
         match self {
             Self::Level(variation) => variation.integral(y, level),
             Self::Depth(variation) => {
-                let surface = ground.surface(x).unwrap_or(y);
+                let surface = ground.surface(place).unwrap_or(y);
                 variation.integral(y - surface, level - surface)
             }
             Self::StressShare(share) => share.at(place, ground) * (level - y),
-            Self::Raster(raster) => raster.integral(place, level),
+            Self::Raster(raster) => raster.integral(front(place), level),
         }
     }
 }
@@ -181,7 +186,7 @@ impl Material {
     }
 
     /// Strength, friction and stiffness at a place over the constants of the material \[-\].
-    pub fn ratios_at(&self, place: [f64; 2], ground: &Ground) -> Ratios {
+    pub fn ratios_at<const D: usize>(&self, place: &[f64; D], ground: &Ground<D>) -> Ratios {
         let Profiles {
             strength,
             friction,
@@ -204,7 +209,7 @@ impl Material {
     }
 
     /// Young's modulus at a place \[Pa\].
-    pub fn young_at(&self, place: [f64; 2], ground: &Ground) -> f64 {
+    pub fn young_at<const D: usize>(&self, place: &[f64; D], ground: &Ground<D>) -> f64 {
         (self.profiles.young.as_ref()).map_or(self.young, |own| own.at(place, ground))
     }
 
@@ -215,7 +220,7 @@ impl Material {
     }
 
     /// Unit weight at a place \[N/m³\].
-    pub fn unit_weight_at(&self, place: [f64; 2], ground: &Ground) -> f64 {
+    pub fn unit_weight_at<const D: usize>(&self, place: &[f64; D], ground: &Ground<D>) -> f64 {
         (self.profiles.unit_weight.as_ref()).map_or(self.unit_weight, |own| own.at(place, ground))
     }
 }

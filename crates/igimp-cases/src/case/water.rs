@@ -4,7 +4,7 @@ use super::Raster;
 
 use super::{Case, StageKind};
 
-impl Case {
+impl<const D: usize> Case<D> {
     /// By body: whether it is there at the end of a stage, by index.
     pub fn bodies_after(&self, stage: usize) -> Vec<bool> {
         let stage = &self.stages[stage];

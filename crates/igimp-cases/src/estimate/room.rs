@@ -21,7 +21,7 @@ struct Limit {
 ///
 /// # Errors
 /// [`CaseError::Memory`]; those of [`estimate`](super::estimate()).
-pub fn refuse_beyond(case: &Case) -> Result<(), CaseError> {
+pub fn refuse_beyond<const D: usize>(case: &Case<D>) -> Result<(), CaseError> {
     let Some(limit) = limit() else {
         return Ok(());
     };

@@ -14,7 +14,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::speed::Speed;
-use super::{Estimate, TRIALS, estimate};
+use super::{Estimate, TRIALS, estimate, is_iterated};
 use crate::case::{Case, Every, ReductionPath, Stage, StageKind};
 use crate::error::CaseError;
 use crate::summary::StageSummary;
@@ -29,6 +29,16 @@ const FACTOR: f64 = 1.8e-8;
 const UNSYMMETRIC: f64 = 1.5;
 /// Solution \[s per unknown\].
 const SOLVE: f64 = 3e-7;
+/// The same in space: set-up and commit, and a pass \[s per particle\].
+const STEP_IN_SPACE: f64 = 6e-6;
+const PASS_IN_SPACE: f64 = 4e-6;
+/// Factorisation of a symmetric matrix in space \[s\], times $`n^{1.88}`$; an unsymmetric one costs twice that.
+const FACTOR_IN_SPACE: f64 = 7.7e-9;
+const UNSYMMETRIC_IN_SPACE: f64 = 1.9;
+/// Solution with such factors \[s\], times $`n^{4/3}`$.
+const SOLVE_IN_SPACE: f64 = 2e-7;
+/// Solution by iteration with multigrid, set-up included \[s per unknown\].
+const ITERATED: f64 = 6e-5;
 /// Rows, progress and bookkeeping of a step \[s\].
 const ROWS: f64 = 5e-4;
 /// A picture \[s\], and its part by particle when it shows a field.
@@ -54,7 +64,7 @@ pub struct Time {
 }
 
 /// The time of a case of a size on a computer of a speed, with the threads of the current pool.
-pub fn time(case: &Case, size: &Estimate, speed: Speed) -> Time {
+pub fn time<const D: usize>(case: &Case<D>, size: &Estimate, speed: Speed) -> Time {
     let stages: Vec<Taken> = case.stages.iter().map(planned).collect();
     Time {
         seconds: of_stages(case, size, speed, &stages),
@@ -64,7 +74,7 @@ pub fn time(case: &Case, size: &Estimate, speed: Speed) -> Time {
 }
 
 /// The share of each stage in the corrections that a case plans \[-\].
-pub fn shares(case: &Case) -> Vec<f64> {
+pub fn shares<const D: usize>(case: &Case<D>) -> Vec<f64> {
     let corrections: Vec<f64> = case
         .stages
         .iter()
@@ -79,8 +89,8 @@ pub fn shares(case: &Case) -> Vec<f64> {
 ///
 /// # Errors
 /// As [`estimate`].
-pub fn time_of_steps_taken(
-    case: &Case,
+pub fn time_of_steps_taken<const D: usize>(
+    case: &Case<D>,
     speed: Speed,
     stages: &[StageSummary],
 ) -> Result<f64, CaseError> {
@@ -160,19 +170,38 @@ fn is_open_ended(stage: &Stage) -> bool {
         || stop.load_grows_less_than.is_some()
 }
 
-fn of_stages(case: &Case, size: &Estimate, speed: Speed, stages: &[Taken]) -> f64 {
+fn of_stages<const D: usize>(
+    case: &Case<D>,
+    size: &Estimate,
+    speed: Speed,
+    stages: &[Taken],
+) -> f64 {
     let (particles, unknowns) = (size.particles as f64, size.unknowns as f64);
     let symmetric = case
         .materials
         .iter()
         .all(|material| material.law().is_ok_and(|law| law.has_symmetric_tangent()));
-    let factor = FACTOR * unknowns.powf(1.5) * if symmetric { 1.0 } else { UNSYMMETRIC };
+    let [step, pass] = if D == 3 {
+        [STEP_IN_SPACE, PASS_IN_SPACE]
+    } else {
+        [STEP, PASS]
+    };
+    // Of a correction: factorisation and solution.
+    let unsymmetric = |times: f64| if symmetric { 1.0 } else { times };
+    let correction = if is_iterated(case, size.unknowns) {
+        ITERATED * unknowns * unsymmetric(UNSYMMETRIC)
+    } else if D == 3 {
+        FACTOR_IN_SPACE * unknowns.powf(1.88) * unsymmetric(UNSYMMETRIC_IN_SPACE)
+            + SOLVE_IN_SPACE * unknowns.powf(4.0 / 3.0)
+    } else {
+        FACTOR * unknowns.powf(1.5) * unsymmetric(UNSYMMETRIC) + SOLVE * unknowns
+    };
     let mut marching = 0.0;
     let mut states = stages.len() as f64;
     for stage in stages {
         let passes = stage.corrections + stage.steps;
-        let assembly = particles * (STEP * stage.steps + PASS * passes);
-        let solving = stage.corrections * (factor + SOLVE * unknowns);
+        let assembly = particles * (step * stage.steps + pass * passes);
+        let solving = stage.corrections * correction;
         marching += speed.assembly * (assembly + ROWS * stage.steps) + speed.factor * solving;
         if case.output.checkpoint_every > 0 {
             states += stage.trials + stage.steps / case.output.checkpoint_every as f64;
@@ -194,7 +223,7 @@ fn of_stages(case: &Case, size: &Estimate, speed: Speed, stages: &[Taken]) -> f6
 }
 
 /// Pictures of a run, and how many of them show a field.
-fn pictures(case: &Case) -> (f64, f64) {
+fn pictures<const D: usize>(case: &Case<D>) -> (f64, f64) {
     let stages = case.stages.len();
     let searches = case
         .stages

@@ -6,7 +6,7 @@ use toml::de::DeValue;
 
 use super::diagnostic::Problems;
 use super::names::check_name;
-use super::schema::{MOST_THINGS, ROOT, SYMBOLS};
+use super::schema::{MOST_THINGS, ROOT, SPACE, SYMBOLS};
 use super::source::{Place, Source};
 use super::spec::{Field, Kind, Presence, Struct, Variants};
 use super::suggest::nearest;
@@ -16,13 +16,30 @@ use super::value::check_value;
 
 /// The completed tree of a case file.
 pub(super) fn complete(tree: &Node, sources: &[Source], problems: &mut Problems) -> Node {
-    Completer { sources, problems }.table(tree, &ROOT, None)
+    let analysis = tree.get("case").and_then(|case| case.text_at("analysis"));
+    let mut completer = Completer {
+        sources,
+        problems,
+        in_space: analysis == Some(SPACE),
+    };
+    completer.table(tree, &ROOT, None)
 }
 
 /// Carries the texts and collects the problems.
 pub(super) struct Completer<'a> {
     pub(super) sources: &'a [Source],
     pub(super) problems: &'a mut Problems,
+    /// Whether the analysis is one in space.
+    in_space: bool,
+}
+
+/// That a key is one of the other analysis.
+fn of_other(in_space: bool, key: &str) -> String {
+    if in_space {
+        format!("`{key}` is a key of analysis = \"plane-strain\"")
+    } else {
+        format!("`{key}` is a key of analysis = \"{SPACE}\"")
+    }
 }
 
 impl Completer<'_> {
@@ -42,6 +59,18 @@ impl Completer<'_> {
             (Kind::Table(of), Value::Table(_)) => self.table(node, of, Some(key)),
             (Kind::Variants(of), Value::Table(_)) => self.variants(node, of, key),
             (Kind::Map(of, kind), Value::Table(_)) => self.map(node, of, kind),
+            (Kind::Vector(of), Value::List(items)) => {
+                let axes = if self.in_space { 3 } else { 2 };
+                if items.len() != axes {
+                    self.wrong_length(node, (axes, axes), items.len(), key);
+                    return Node::invalid(node.place);
+                }
+                let items = items.iter().map(|item| self.value(item, of, key)).collect();
+                Node {
+                    value: Value::List(items),
+                    ..*node
+                }
+            }
             (Kind::List(of, least, most), Value::List(items)) => {
                 if items.len() < *least || items.len() > *most {
                     self.wrong_length(node, (*least, *most), items.len(), key);
@@ -96,9 +125,17 @@ impl Completer<'_> {
 
     fn table(&mut self, node: &Node, of: &'static Struct, name: Option<&str>) -> Node {
         let mut entries = Vec::with_capacity(of.fields.len());
-        let fields: Vec<_> = of.fields.iter().collect();
+        let in_space = self.in_space;
+        let applies = |field: &&Field| field.applies(in_space);
+        let fields: Vec<_> = of.fields.iter().filter(applies).collect();
         let known: Vec<_> = fields.iter().map(|field| field.key).collect();
-        let meant = self.unknown_keys(node, &known, name, &|_| None);
+        let elsewhere = |key: &str| {
+            of.fields
+                .iter()
+                .any(|field| field.key == key)
+                .then(|| of_other(in_space, key))
+        };
+        let meant = self.unknown_keys(node, &known, name, &elsewhere);
         self.fields(node, &fields, &meant, name.is_none(), &mut entries);
         Node {
             value: Value::Table(entries),
@@ -107,7 +144,9 @@ impl Completer<'_> {
     }
 
     fn variants(&mut self, node: &Node, of: &'static Variants, name: &str) -> Node {
-        let before: Vec<_> = of.before.iter().collect();
+        let in_space = self.in_space;
+        let applies = |field: &&'static Field| field.applies(in_space);
+        let before: Vec<_> = of.before.iter().filter(applies).collect();
         let mut entries = Vec::new();
         let names = || of.cases.iter().map(|case| case.name);
         let mut found = None;
@@ -134,7 +173,11 @@ impl Completer<'_> {
             },
         };
         let known: Vec<_> = match found {
-            Some(case) => of.fields(case).map(|field| field.key).collect(),
+            Some(case) => of
+                .fields(case)
+                .filter(applies)
+                .map(|field| field.key)
+                .collect(),
             None => (of.cases.iter())
                 .flat_map(|case| of.fields(case))
                 .map(|field| field.key)
@@ -142,6 +185,10 @@ impl Completer<'_> {
         };
         let known: Vec<_> = std::iter::once(of.tag).chain(known).collect();
         let elsewhere = |key: &str| {
+            let known = |case| of.fields(case).any(|field| field.key == key);
+            if found.is_some_and(known) {
+                return Some(of_other(in_space, key));
+            }
             let case =
                 (of.cases.iter()).find(|case| case.fields.iter().any(|field| field.key == key))?;
             Some(format!(
@@ -157,7 +204,7 @@ impl Completer<'_> {
             node: tag,
         });
         let own: Vec<_> = match found {
-            Some(case) => case.fields.iter().chain(of.after).collect(),
+            Some(case) => case.fields.iter().chain(of.after).filter(applies).collect(),
             None => Vec::new(),
         };
         self.fields(node, &own, &meant, false, &mut entries);
@@ -376,7 +423,7 @@ fn takes(kind: &Kind, value: &Value) -> bool {
         Kind::Number(_) => matches!(value, Value::Integer(_) | Value::Number(_)),
         Kind::Integer(..) | Kind::IntegerOf(_) => matches!(value, Value::Integer(_)),
         Kind::Flag => matches!(value, Value::Flag(_)),
-        Kind::List(..) => matches!(value, Value::List(_)),
+        Kind::List(..) | Kind::Vector(_) => matches!(value, Value::List(_)),
         Kind::Table(_) | Kind::Variants(_) | Kind::Map(..) => matches!(value, Value::Table(_)),
         Kind::AnyQuantity | Kind::Either(_) => true,
     }

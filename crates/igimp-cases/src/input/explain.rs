@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::schema::ROOT;
+use super::schema::{ROOT, SPACE};
 use super::spec::{Field, Kind, Presence, Struct, Variants};
 use super::toml_text::{inline, key};
 use super::tree::Node;
@@ -15,6 +15,9 @@ const WIDTH: usize = 80;
 /// The file with every default; it states the same case.
 pub(super) fn explain(completed: &Node) -> String {
     let mut out = String::new();
+    let analysis = completed.get("case");
+    let analysis = analysis.and_then(|case| case.text_at("analysis"));
+    let in_space = analysis == Some(SPACE);
     for field in ROOT.fields {
         let Some(node) = completed.get(field.key) else {
             continue;
@@ -22,7 +25,7 @@ pub(super) fn explain(completed: &Node) -> String {
         match field.kind {
             Kind::Table(of) => {
                 let _ = writeln!(out, "\n# {}\n[{}]", of.doc, field.key);
-                table(&mut out, node, of);
+                table(&mut out, node, of, in_space);
             }
             Kind::Map(_, of) => {
                 for entry in node.entries() {
@@ -33,19 +36,19 @@ pub(super) fn explain(completed: &Node) -> String {
                         doc_of(&entry.node, of),
                         field.key
                     );
-                    variants(&mut out, &entry.node, of);
+                    variants(&mut out, &entry.node, of, in_space);
                 }
             }
             Kind::List(Kind::Table(of), ..) => {
                 for item in node.items() {
                     let _ = writeln!(out, "\n# {}\n[[{}]]", of.doc, field.key);
-                    table(&mut out, item, of);
+                    table(&mut out, item, of, in_space);
                 }
             }
             Kind::List(Kind::Variants(of), ..) => {
                 for item in node.items() {
                     let _ = writeln!(out, "\n# {}\n[[{}]]", doc_of(item, of), field.key);
-                    variants(&mut out, item, of);
+                    variants(&mut out, item, of, in_space);
                 }
             }
             _ => line(&mut out, field, Some(node)),
@@ -63,14 +66,15 @@ fn doc_of(node: &Node, of: &Variants) -> &'static str {
     case.map_or(of.doc, |case| case.doc)
 }
 
-fn table(out: &mut String, node: &Node, of: &Struct) {
-    for field in of.fields {
+fn table(out: &mut String, node: &Node, of: &Struct, in_space: bool) {
+    for field in of.fields.iter().filter(|field| field.applies(in_space)) {
         line(out, field, node.get(field.key));
     }
 }
 
-fn variants(out: &mut String, node: &Node, of: &'static Variants) {
-    for field in of.before {
+fn variants(out: &mut String, node: &Node, of: &'static Variants, in_space: bool) {
+    let applies = |field: &&Field| field.applies(in_space);
+    for field in of.before.iter().filter(applies) {
         line(out, field, node.get(field.key));
     }
     let names: Vec<_> = of.cases.iter().map(|case| case.name).collect();
@@ -81,7 +85,7 @@ fn variants(out: &mut String, node: &Node, of: &'static Variants) {
     }
     let case = node.text_at(of.tag).and_then(|name| of.find(name));
     let own = case.map_or(&[][..], |case| case.fields);
-    for field in own.iter().chain(of.after) {
+    for field in own.iter().chain(of.after).filter(applies) {
         line(out, field, node.get(field.key));
     }
 }
@@ -110,7 +114,7 @@ fn line(out: &mut String, field: &Field, node: Option<&Node>) {
     if value.len() > WIDTH && !node.items().is_empty() {
         let _ = writeln!(out, "# {comment}\n{} = [", field.key);
         let of = match &field.kind {
-            Kind::List(of, ..) => of,
+            Kind::List(of, ..) | Kind::Vector(of) => of,
             kind => kind,
         };
         for item in node.items() {

@@ -5,13 +5,13 @@ use toml::de::DeValue;
 
 use super::quantity::Dimension;
 use super::schema::ROOT;
-use super::spec::{Choice, Field, Kind, Presence, Range, Struct, Variants};
+use super::spec::{Choice, Field, Kind, Presence, Range, Scope, Struct, Variants};
 use super::tree::{Node, Value, from_value};
 
 /// A decimal number or a fraction, as a regular expression.
 const NUMBER: &str = r"[-+]?([0-9_]+\.?[0-9_]*|\.[0-9_]+)([eE][-+]?[0-9]+)?";
 /// Dimensions that keys take.
-const DIMENSIONS: [Dimension; 9] = [
+const DIMENSIONS: [Dimension; 11] = [
     Dimension::Length,
     Dimension::Stress,
     Dimension::UnitWeight,
@@ -21,6 +21,8 @@ const DIMENSIONS: [Dimension; 9] = [
     Dimension::Acceleration,
     Dimension::ForcePerLength,
     Dimension::MomentPerLength,
+    Dimension::Force,
+    Dimension::Moment,
 ];
 
 /// JSON Schema (draft 2020-12) of a case file.
@@ -84,10 +86,15 @@ fn object<'a>(
         required.push(tag.to_owned());
     }
     for field in fields {
-        if matches!(field.presence, Presence::Required(_)) {
+        let own = property(field);
+        if matches!(field.presence, Presence::Required(_)) && field.scope == Scope::Any {
             required.push(field.key.to_owned());
         }
-        properties.insert(field.key.to_owned(), property(field));
+        let own = match properties.remove(field.key) {
+            Some(other) => json!({ "anyOf": [other, own] }),
+            None => own,
+        };
+        properties.insert(field.key.to_owned(), own);
     }
     json!({
         "type": "object",
@@ -154,6 +161,12 @@ fn kind(of: &Kind) -> Json {
             "description": meanings(choices),
         }),
         Kind::Either(kinds) => json!({ "anyOf": kinds.iter().map(kind).collect::<Vec<_>>() }),
+        Kind::Vector(of) => json!({
+            "type": "array",
+            "items": kind(of),
+            "minItems": 2,
+            "maxItems": 3,
+        }),
         Kind::List(of, least, most) => json!({
             "type": "array",
             "items": kind(of),

@@ -15,7 +15,7 @@ use super::overrides::apply;
 use super::source::{Place, Source};
 use super::syntax::parse;
 use super::tree::{Node, Value};
-use crate::case::Case;
+use crate::case::{AnyCase, Case};
 use crate::mesh_study::plan;
 use crate::results::owner::Origin;
 
@@ -25,7 +25,7 @@ const LARGEST: usize = 8 << 20;
 /// A case file that was found right.
 #[derive(Clone, Debug)]
 pub struct CaseFile {
-    case: Case,
+    case: AnyCase,
     completed: Node,
     text: String,
     origin: Origin,
@@ -89,7 +89,7 @@ impl CaseFile {
         })?;
         let file = Self::from_bytes(name, bytes, overrides)?;
         // Its name is that of many cases; their titles tell them apart.
-        let origin = Origin::Text(format!("{name}: {}", file.case.title));
+        let origin = Origin::Text(format!("{name}: {}", file.case.title()));
         Ok(Self { origin, ..file })
     }
 
@@ -161,14 +161,42 @@ impl CaseFile {
         }
     }
 
-    /// The case.
-    pub fn case(&self) -> &Case {
+    /// The case, in the dimension that the file states.
+    pub fn any_case(&self) -> &AnyCase {
         &self.case
     }
 
-    /// The case.
+    /// The case of a file in plane strain.
+    ///
+    /// # Panics
+    /// For a case in space; [`CaseFile::any_case`] tells.
+    pub fn case(&self) -> &Case {
+        match &self.case {
+            AnyCase::Plane(case) => case,
+            AnyCase::Space(_) => panic!("the case is one in space"),
+        }
+    }
+
+    /// The case of a file in space.
+    ///
+    /// # Panics
+    /// For a case in plane strain; [`CaseFile::any_case`] tells.
+    pub fn case_in_space(&self) -> &Case<3> {
+        match &self.case {
+            AnyCase::Space(case) => case,
+            AnyCase::Plane(_) => panic!("the case is one in plane strain"),
+        }
+    }
+
+    /// The case of a file in plane strain.
+    ///
+    /// # Panics
+    /// For a case in space; [`CaseFile::any_case`] tells.
     pub fn into_case(self) -> Case {
-        self.case
+        match self.case {
+            AnyCase::Plane(case) => case,
+            AnyCase::Space(_) => panic!("the case is one in space"),
+        }
     }
 
     /// Warnings, ready to print; empty when there are none.
@@ -188,10 +216,10 @@ impl CaseFile {
 
     /// The completed file of every mesh of a study of the mesh error; nothing without a study.
     pub fn explain_meshes(&self) -> Vec<String> {
-        if self.case.mesh_study.meshes < 2 {
+        if self.case.mesh_study().meshes < 2 {
             return Vec::new();
         }
-        let parts = plan::refinements(&self.case);
+        let parts = crate::in_any_dimension!(&self.case, case => plan::refinements(case));
         parts
             .iter()
             .map(|&parts| self.explain_mesh(parts))

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::quantity::Dimension;
 use super::schema::ROOT;
-use super::spec::{Choice, Field, Kind, Presence, Range, Struct, Variants};
+use super::spec::{Choice, Field, Kind, Presence, Range, Scope, Struct, Variants};
 
 /// Lists of choices longer than this get a section of their own.
 const LONG: usize = 8;
@@ -76,6 +76,8 @@ fn units(out: &mut String) {
         Dimension::Acceleration,
         Dimension::ForcePerLength,
         Dimension::MomentPerLength,
+        Dimension::Force,
+        Dimension::Moment,
     ] {
         let units: Vec<_> = dimension.units().map(|unit| format!("`{unit}`")).collect();
         let _ = writeln!(out, "| {} | {} |", bare(dimension), units.join(" "));
@@ -163,7 +165,11 @@ fn rows(out: &mut String, fields: &mut dyn Iterator<Item = &'static Field>, long
             Presence::Derived(from) => from.to_owned(),
             Presence::Optional(meaning) => format!("not set: {meaning}"),
         };
-        let mut doc = field.doc.to_owned();
+        let mut doc = match field.scope {
+            Scope::Any => field.doc.to_owned(),
+            Scope::Plane => format!("in plane strain: {}", field.doc),
+            Scope::Space => format!("in space: {}", field.doc),
+        };
         if let Kind::Choice(choices) = field.kind
             && choices.len() <= LONG
         {
@@ -217,6 +223,7 @@ fn value(kind: &'static Kind, long: &mut Long) -> String {
             let kinds: Vec<_> = kinds.iter().map(|kind| value(kind, long)).collect();
             kinds.join(" or ")
         }
+        Kind::Vector(of) => format!("a value for each axis: {}", value(of, long)),
         Kind::List(of, least, most) if least == most => {
             format!("list of {least}: {}", value(of, long))
         }

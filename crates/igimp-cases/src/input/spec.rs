@@ -24,6 +24,30 @@ pub(super) struct Field {
     pub(super) presence: Presence,
     /// What it means, in a line.
     pub(super) doc: &'static str,
+    /// The analyses that know it.
+    pub(super) scope: Scope,
+}
+
+/// The analyses that know a key.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Scope {
+    /// All.
+    Any,
+    /// Plane strain.
+    Plane,
+    /// Space.
+    Space,
+}
+
+impl Field {
+    /// Whether an analysis in space, or else one in plane strain, knows the key.
+    pub(super) fn applies(&self, in_space: bool) -> bool {
+        match self.scope {
+            Scope::Any => true,
+            Scope::Plane => !in_space,
+            Scope::Space => in_space,
+        }
+    }
 }
 
 /// Whether a key has to be written.
@@ -137,6 +161,8 @@ pub(super) enum Kind {
     Choice(&'static [Choice]),
     /// Either of these, told apart by their types.
     Either(&'static [Kind]),
+    /// A vector: as many values as the analysis has dimensions.
+    Vector(&'static Kind),
     /// A list: of what, at least and at most so many.
     List(&'static Kind, usize, usize),
     /// A table.
@@ -166,6 +192,7 @@ impl Kind {
                 let parts: Vec<_> = kinds.iter().map(Self::expectation).collect();
                 parts.join(", or ")
             }
+            Self::Vector(_) => "a list of values, one for each axis".to_owned(),
             Self::List(of, least, most) => match of {
                 Self::Table(_) | Self::Variants(_) => "a list of tables".to_owned(),
                 _ if least == most => format!("a list of {least} values"),
@@ -212,6 +239,7 @@ pub(super) const fn required(
         kind,
         presence: Presence::Required(example),
         doc,
+        scope: Scope::Any,
     }
 }
 
@@ -227,6 +255,7 @@ pub(super) const fn default(
         kind,
         presence: Presence::Default(value),
         doc,
+        scope: Scope::Any,
     }
 }
 
@@ -242,6 +271,7 @@ pub(super) const fn derived(
         kind,
         presence: Presence::Derived(from),
         doc,
+        scope: Scope::Any,
     }
 }
 
@@ -257,6 +287,23 @@ pub(super) const fn optional(
         kind,
         presence: Presence::Optional(meaning),
         doc,
+        scope: Scope::Any,
+    }
+}
+
+/// A key that only plane strain knows.
+pub(super) const fn in_plane(field: Field) -> Field {
+    Field {
+        scope: Scope::Plane,
+        ..field
+    }
+}
+
+/// A key that only space knows.
+pub(super) const fn in_space(field: Field) -> Field {
+    Field {
+        scope: Scope::Space,
+        ..field
     }
 }
 

@@ -24,8 +24,8 @@ fn trimmed(text: &str) -> &str {
 }
 
 /// A point as messages print it.
-pub(super) fn point(point: [f64; 2]) -> String {
-    format!("({} m, {} m)", number(point[0]), number(point[1]))
+pub(super) fn point<const D: usize>(point: [f64; D]) -> String {
+    format!("({})", point.map(|x| format!("{} m", number(x))).join(", "))
 }
 
 /// A whole number in groups of three digits.

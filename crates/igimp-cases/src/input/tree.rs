@@ -234,6 +234,17 @@ impl Node {
         self.get(key)?.text()
     }
 
+    /// The coordinates of a point.
+    pub(super) fn point<const D: usize>(&self) -> Option<[f64; D]> {
+        let numbers: Option<Vec<f64>> = self.items().iter().map(Self::number).collect();
+        numbers?.try_into().ok()
+    }
+
+    /// The coordinates of the point of a key.
+    pub(super) fn point_at<const D: usize>(&self, key: &str) -> Option<[f64; D]> {
+        self.get(key)?.point()
+    }
+
     /// Two numbers.
     pub(super) fn pair(&self) -> Option<[f64; 2]> {
         match self.items() {

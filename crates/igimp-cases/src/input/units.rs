@@ -23,8 +23,10 @@ pub enum Dimension {
     MomentPerLength,
     /// Mass per volume \[kg/m³\]; no key takes one, it is known to say so.
     MassDensity,
-    /// Force \[N\]; no key takes one, it is known to say so.
+    /// Force, in space \[N\].
     Force,
+    /// Moment, in space \[N m\].
+    Moment,
     /// Area \[m²\], a divisor only.
     Area,
 }
@@ -44,6 +46,7 @@ impl Dimension {
             Self::MomentPerLength => "a moment per length",
             Self::MassDensity => "a mass density",
             Self::Force => "a force",
+            Self::Moment => "a moment",
             Self::Area => "an area",
         }
     }
@@ -62,6 +65,7 @@ impl Dimension {
             Self::MomentPerLength => "kNm/m",
             Self::MassDensity => "kg/m3",
             Self::Force => "kN",
+            Self::Moment => "kNm",
             Self::Area => "m2",
         }
     }
@@ -80,6 +84,7 @@ impl Dimension {
             Self::MomentPerLength => "Nm/m",
             Self::MassDensity => "kg/m3",
             Self::Force => "N",
+            Self::Moment => "Nm",
             Self::Area => "m2",
         }
     }
@@ -98,6 +103,7 @@ impl Dimension {
             Self::MomentPerLength => "50 kNm/m",
             Self::MassDensity => "2000 kg/m3",
             Self::Force => "100 kN",
+            Self::Moment => "50 kNm",
             Self::Area => "2 m2",
         }
     }
@@ -249,7 +255,7 @@ const fn pounds_inch(symbol: &'static str, dimension: Dimension, times: f64, pow
     customary(symbol, dimension, times, true, (INCH, power))
 }
 
-static UNITS: [Unit; 86] = [
+static UNITS: [Unit; 89] = [
     ten("m", Dimension::Length, 0),
     ten("mm", Dimension::Length, -3),
     ten("cm", Dimension::Length, -2),
@@ -314,6 +320,9 @@ static UNITS: [Unit; 86] = [
     pounds("plf", Dimension::ForcePerLength, 1.0, -1),
     pounds("klf", Dimension::ForcePerLength, 1000.0, -1),
     pounds_inch("lbf/in", Dimension::ForcePerLength, 1.0, -1),
+    ten("kNm", Dimension::Moment, 3),
+    ten("Nm", Dimension::Moment, 0),
+    ten("MNm", Dimension::Moment, 6),
     ten("kNm/m", Dimension::MomentPerLength, 3),
     ten("Nm/m", Dimension::MomentPerLength, 0),
     ten("MNm/m", Dimension::MomentPerLength, 6),

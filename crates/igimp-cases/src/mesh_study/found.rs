@@ -9,7 +9,7 @@ type Found = (f64, f64);
 
 /// Factors of safety, limit loads and checks of a case on its meshes, from the summaries of their runs;
 /// none for a mesh that has no run.
-pub fn study(case: &Case, runs: &[Option<&Summary>]) -> Vec<StudyResult> {
+pub fn study<const D: usize>(case: &Case<D>, runs: &[Option<&Summary>]) -> Vec<StudyResult> {
     let parts = plan::refinements(case);
     let mut results = Vec::new();
     let mut add = |name: String, kind, found: Vec<Option<Found>>| {
@@ -43,7 +43,11 @@ pub fn study(case: &Case, runs: &[Option<&Summary>]) -> Vec<StudyResult> {
 }
 
 /// The checks of a study: each row of the run `of` with the value that the case asks for.
-pub(crate) fn check_rows(case: &Case, of: &Summary, results: &[StudyResult]) -> Vec<CheckRow> {
+pub(crate) fn check_rows<const D: usize>(
+    case: &Case<D>,
+    of: &Summary,
+    results: &[StudyResult],
+) -> Vec<CheckRow> {
     let checks: Vec<&StudyResult> = results
         .iter()
         .filter(|result| result.kind == ResultKind::Check)
@@ -97,7 +101,7 @@ fn result(name: String, kind: ResultKind, found: &[Option<Found>], parts: &[usiz
 }
 
 /// The result that a stage is made for, if it is made for one.
-fn of_stage(case: &Case, number: usize) -> Option<(String, ResultKind)> {
+fn of_stage<const D: usize>(case: &Case<D>, number: usize) -> Option<(String, ResultKind)> {
     let stage = &case.stages[number];
     let name = &stage.name;
     let searches = |stage: &&Stage| matches!(stage.kind, StageKind::StrengthReduction(_));
@@ -134,7 +138,7 @@ fn of_stage(case: &Case, number: usize) -> Option<(String, ResultKind)> {
 }
 
 /// What a run found at a stage of that kind.
-fn at_stage(case: &Case, run: &Summary, number: usize) -> Option<Found> {
+fn at_stage<const D: usize>(case: &Case<D>, run: &Summary, number: usize) -> Option<Found> {
     let (stage, summary) = (&case.stages[number], run.stages.get(number)?);
     match &stage.kind {
         StageKind::StrengthReduction(_) => interval(summary),
@@ -162,7 +166,12 @@ fn interval(stage: &StageSummary) -> Option<Found> {
 
 /// The load at which a stage ended before its end. The smallest step that was tried lies beyond it: it
 /// counts to either side (theory, eq. 40g).
-fn limit(case: &Case, run: &Summary, number: usize, of: Quantity) -> Option<Found> {
+fn limit<const D: usize>(
+    case: &Case<D>,
+    run: &Summary,
+    number: usize,
+    of: Quantity,
+) -> Option<Found> {
     let (stage, summary) = (&case.stages[number], run.stages.get(number)?);
     if !stage.stop_when.no_equilibrium || summary.outcome != StageOutcome::Stopped {
         return None;
@@ -182,7 +191,7 @@ fn limit(case: &Case, run: &Summary, number: usize, of: Quantity) -> Option<Foun
 }
 
 /// A multiple of gravity, an acceleration or a load factor at the end of a stage of a run.
-fn at_end(case: &Case, run: &Summary, number: usize, of: Quantity) -> f64 {
+fn at_end<const D: usize>(case: &Case<D>, run: &Summary, number: usize, of: Quantity) -> f64 {
     let stage = &case.stages[number];
     let from = stage
         .start_from
@@ -205,7 +214,7 @@ fn aim(kind: &StageKind, of: Quantity) -> Option<f64> {
 }
 
 /// Half the width of the interval in which a search left the value of a check.
-fn width_of_check(case: &Case, run: &Summary, name: &str) -> f64 {
+fn width_of_check<const D: usize>(case: &Case<D>, run: &Summary, name: &str) -> f64 {
     let Some(check) = case.checks.iter().find(|check| check.name == name) else {
         return 0.0;
     };

@@ -16,7 +16,7 @@ const NEAR: f64 = 1e-6;
 /// holds the nodes below it, and acts about half a cell wider than they reach; a body ties the soil that
 /// shares a cell with its side: only with edges at the same place within a cell are the meshes those of
 /// one body.
-pub fn refinements(case: &Case) -> Vec<usize> {
+pub fn refinements<const D: usize>(case: &Case<D>) -> Vec<usize> {
     let sides = case.rigid.iter().flat_map(|part| upright_sides(case, part));
     let mid_cell = footing_ends(case)
         .into_iter()
@@ -27,7 +27,7 @@ pub fn refinements(case: &Case) -> Vec<usize> {
 }
 
 /// The cases of a study, from coarse to fine.
-pub fn meshes(case: &Case) -> Vec<Case> {
+pub fn meshes<const D: usize>(case: &Case<D>) -> Vec<Case<D>> {
     let mesh = |&parts: &usize| {
         let mut mesh = case.refined(parts);
         mesh.mesh_study.meshes = 1;
@@ -45,7 +45,7 @@ pub fn label(parts: usize) -> String {
 }
 
 /// What makes the meshes of a study meshes of different problems, in sentences.
-pub fn differences(case: &Case) -> Vec<String> {
+pub fn differences<const D: usize>(case: &Case<D>) -> Vec<String> {
     let parts = refinements(case);
     let (Some(&first), Some(&last)) = (parts.first(), parts.last()) else {
         return Vec::new();
@@ -100,7 +100,7 @@ pub fn differences(case: &Case) -> Vec<String> {
 }
 
 /// The ends of rigid footings that do not lie at a side of the grid \[m\].
-fn footing_ends(case: &Case) -> Vec<f64> {
+fn footing_ends<const D: usize>(case: &Case<D>) -> Vec<f64> {
     let mut ends = Vec::new();
     for load in &case.loads {
         if let LoadKind::RigidFooting { from, to, .. } = load.kind {
@@ -112,8 +112,8 @@ fn footing_ends(case: &Case) -> Vec<f64> {
 }
 
 /// The upright sides of a rigid body that stand within the grid \[m\].
-fn upright_sides(case: &Case, part: &RigidPart) -> Vec<f64> {
-    let RigidShape::Polygon(corners) = &part.shape else {
+fn upright_sides<const D: usize>(case: &Case<D>, part: &RigidPart<D>) -> Vec<f64> {
+    let Some(RigidShape::Polygon(corners)) = part.shape.in_plane() else {
         return Vec::new();
     };
     let next = corners.iter().cycle().skip(1);
@@ -127,26 +127,32 @@ fn upright_sides(case: &Case, part: &RigidPart) -> Vec<f64> {
 }
 
 /// Whether an x lies between the sides of the grid.
-fn is_within(case: &Case, x: f64) -> bool {
+fn is_within<const D: usize>(case: &Case<D>, x: f64) -> bool {
     let columns = case.grid.cells()[0] as f64;
     let place = place(case, 0, x);
     place > NEAR && place < columns - NEAR
 }
 
 /// Where a coordinate lies, in cells from the lower side.
-fn place(case: &Case, axis: usize, x: f64) -> f64 {
+fn place<const D: usize>(case: &Case<D>, axis: usize, x: f64) -> f64 {
     case.grid.axes[axis].place(x)
 }
 
 /// Where in its cell an x lies, as a share of the cell from 0 to below 1 \[-\].
-fn offset(case: &Case, x: f64) -> f64 {
+fn offset<const D: usize>(case: &Case<D>, x: f64) -> f64 {
     let share = place(case, 0, x).rem_euclid(1.0);
     if share > 1.0 - NEAR { 0.0 } else { share }
 }
 
 /// The node next to the end of a box on the side where the box lies, in cells of the case; on a mesh
 /// that cuts them into so many parts. An end beyond the grid stands for its side.
-fn outermost(case: &Case, axis: usize, end: f64, inwards: f64, parts: usize) -> f64 {
+fn outermost<const D: usize>(
+    case: &Case<D>,
+    axis: usize,
+    end: f64,
+    inwards: f64,
+    parts: usize,
+) -> f64 {
     let columns = case.grid.cells()[axis] as f64;
     let parts = parts as f64;
     let place = place(case, axis, end).clamp(0.0, columns) * parts;

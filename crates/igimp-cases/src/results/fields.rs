@@ -12,7 +12,11 @@ use crate::case::Field;
 ///
 /// `laws` are those that the particles refer to by index; the share of mobilised strength refers to
 /// their strength. It is not a number for a particle without a law or without a stretch.
-pub fn values(field: Field, particles: &Particles<2>, laws: &[SharedLaw]) -> Vec<f64> {
+pub fn values<const D: usize>(
+    field: Field,
+    particles: &Particles<D>,
+    laws: &[SharedLaw],
+) -> Vec<f64> {
     (0..particles.len())
         .map(|particle| value(field, particles, particle, laws))
         .collect()
@@ -22,21 +26,30 @@ pub fn values(field: Field, particles: &Particles<2>, laws: &[SharedLaw]) -> Vec
 ///
 /// # Panics
 /// If there is no such particle.
-pub fn value(field: Field, particles: &Particles<2>, particle: usize, laws: &[SharedLaw]) -> f64 {
+pub fn value<const D: usize>(
+    field: Field,
+    particles: &Particles<D>,
+    particle: usize,
+    laws: &[SharedLaw],
+) -> f64 {
     let effective = &particles.sigma[particle];
     let total = || particles.total_stress(particle);
     let displacement = &particles.displacement[particle];
     // Not `-sigma`: zero stays without a sign.
     match field {
-        Field::Displacement => displacement[0].hypot(displacement[1]),
+        Field::Displacement => length(displacement),
         Field::DisplacementX => displacement[0],
         Field::DisplacementY => displacement[1],
+        Field::DisplacementZ => component(displacement, 2),
         Field::X => particles.x[particle][0],
         Field::Y => particles.x[particle][1],
+        Field::Z => component(&particles.x[particle], 2),
         Field::SigmaXx => 0.0 - total()[0][0],
         Field::SigmaYy => 0.0 - total()[1][1],
         Field::SigmaZz => 0.0 - total()[2][2],
         Field::TauXy => 0.0 - effective[0][1],
+        Field::TauYz => 0.0 - effective[1][2],
+        Field::TauXz => 0.0 - effective[0][2],
         Field::P => mean_pressure(&total()),
         Field::SigmaEffXx => 0.0 - effective[0][0],
         Field::SigmaEffYy => 0.0 - effective[1][1],
@@ -58,9 +71,23 @@ pub fn value(field: Field, particles: &Particles<2>, particle: usize, laws: &[Sh
     }
 }
 
+/// A component of a vector; not a number for one that it does not have.
+fn component<const D: usize>(vector: &[f64; D], axis: usize) -> f64 {
+    vector.get(axis).copied().unwrap_or(f64::NAN)
+}
+
+/// The length of a vector.
+pub(crate) fn length<const D: usize>(vector: &[f64; D]) -> f64 {
+    let [x, y, rest @ ..] = &vector[..] else {
+        return f64::NAN;
+    };
+    rest.iter()
+        .fold(x.hypot(*y), |length, own| length.hypot(*own))
+}
+
 /// The strength that a particle carries, that of `laws` at its ratios; none for soil without a limit.
-fn shear_strength(
-    particles: &Particles<2>,
+fn shear_strength<const D: usize>(
+    particles: &Particles<D>,
     particle: usize,
     laws: &[SharedLaw],
 ) -> Option<ShearStrength> {
@@ -86,9 +113,13 @@ pub(super) fn deviatoric_stress(sigma: &Tensor) -> f64 {
 ///
 /// The stress is that of the law, C ½ ln b_e: Kirchhoff stress with finite strain, Cauchy stress
 /// with small strain.
-fn utilisation(particles: &Particles<2>, particle: usize, laws: &[SharedLaw]) -> Option<f64> {
+fn utilisation<const D: usize>(
+    particles: &Particles<D>,
+    particle: usize,
+    laws: &[SharedLaw],
+) -> Option<f64> {
     laws.get(particles.law[particle])?;
-    let eps_e = principal_values::<2>(&particles.b_e[particle]).map(|b| 0.5 * b.ln());
+    let eps_e = principal_values::<D>(&particles.b_e[particle]).map(|b| 0.5 * b.ln());
     let share = |law: &dyn ConstitutiveModel| {
         let tau = law.elasticity().stress(&eps_e);
         law.utilisation(&tau, &particles.history[particle])
@@ -116,14 +147,17 @@ pub enum Dimension {
 /// The dimension of a field.
 pub fn dimension(field: Field) -> Dimension {
     match field {
-        Field::Displacement | Field::DisplacementX | Field::DisplacementY => {
-            Dimension::Displacement
-        }
-        Field::X | Field::Y => Dimension::Position,
+        Field::Displacement
+        | Field::DisplacementX
+        | Field::DisplacementY
+        | Field::DisplacementZ => Dimension::Displacement,
+        Field::X | Field::Y | Field::Z => Dimension::Position,
         Field::SigmaXx
         | Field::SigmaYy
         | Field::SigmaZz
         | Field::TauXy
+        | Field::TauYz
+        | Field::TauXz
         | Field::P
         | Field::SigmaEffXx
         | Field::SigmaEffYy
@@ -154,12 +188,16 @@ pub fn name(field: Field) -> &'static str {
         Field::Displacement => "displacement",
         Field::DisplacementX => "displacement_x",
         Field::DisplacementY => "displacement_y",
+        Field::DisplacementZ => "displacement_z",
         Field::X => "x",
         Field::Y => "y",
+        Field::Z => "z",
         Field::SigmaXx => "sigma_xx",
         Field::SigmaYy => "sigma_yy",
         Field::SigmaZz => "sigma_zz",
         Field::TauXy => "tau_xy",
+        Field::TauYz => "tau_yz",
+        Field::TauXz => "tau_xz",
         Field::P => "p",
         Field::SigmaEffXx => "sigma_eff_xx",
         Field::SigmaEffYy => "sigma_eff_yy",
@@ -225,18 +263,47 @@ impl Scale {
     }
 }
 
-/// What a field is, in words and signs, with the index marks of [`figures`](igimp_figures).
+impl Field {
+    /// Whether there is such a number in so many dimensions.
+    pub fn exists_in(self, dimensions: usize) -> bool {
+        let in_space = matches!(
+            self,
+            Self::DisplacementZ | Self::Z | Self::TauYz | Self::TauXz
+        );
+        dimensions == 3 || !in_space
+    }
+}
+
+/// What a field is in so many dimensions: the third axis is upright in space, and out of the plane else.
+pub fn title_in(dimensions: usize, field: Field) -> &'static str {
+    match field {
+        _ if dimensions == 2 => title(field),
+        Field::DisplacementX => "displacement u_{x}",
+        Field::DisplacementY => "displacement u_{y}",
+        Field::SigmaYy => "horizontal stress −σ_{yy}",
+        Field::SigmaZz => "vertical stress −σ_{zz}",
+        Field::SigmaEffYy => "effective horizontal stress −σ′_{yy}",
+        Field::SigmaEffZz => "effective vertical stress −σ′_{zz}",
+        _ => title(field),
+    }
+}
+
+/// What a field is in plane strain, in words and signs, with the index marks of [`figures`](igimp_figures).
 pub fn title(field: Field) -> &'static str {
     match field {
         Field::Displacement => "displacement |u|",
         Field::DisplacementX => "horizontal displacement u_{x}",
         Field::DisplacementY => "vertical displacement u_{y}",
+        Field::DisplacementZ => "vertical displacement u_{z}",
         Field::X => "position x",
         Field::Y => "position y",
+        Field::Z => "position z",
         Field::SigmaXx => "horizontal stress −σ_{xx}",
         Field::SigmaYy => "vertical stress −σ_{yy}",
         Field::SigmaZz => "out-of-plane stress −σ_{zz}",
         Field::TauXy => "shear stress −τ_{xy}",
+        Field::TauYz => "shear stress −τ_{yz}",
+        Field::TauXz => "shear stress −τ_{xz}",
         Field::P => "mean pressure p",
         Field::SigmaEffXx => "effective horizontal stress −σ′_{xx}",
         Field::SigmaEffYy => "effective vertical stress −σ′_{yy}",
@@ -256,12 +323,17 @@ pub fn title(field: Field) -> &'static str {
 /// The label of an axis or a colour bar, such as
 /// "vertical stress −σ_{yy} \[kPa\], compression positive".
 pub fn label(field: Field, scale: Scale) -> String {
+    label_in(2, field, scale)
+}
+
+/// The same in so many dimensions.
+pub fn label_in(dimensions: usize, field: Field, scale: Scale) -> String {
     let sign = match field {
-        Field::TauXy | Field::Q => "",
+        Field::TauXy | Field::TauYz | Field::TauXz | Field::Q => "",
         _ if dimension(field) == Dimension::Stress => ", compression positive",
         _ => "",
     };
-    format!("{} [{}]{sign}", title(field), scale.unit)
+    format!("{} [{}]{sign}", title_in(dimensions, field), scale.unit)
 }
 
 /// A text of figures without its marks for indices and powers, for prose.
@@ -284,16 +356,20 @@ pub fn plain(text: &str) -> String {
 }
 
 /// Every field.
-pub const ALL: [Field; 22] = [
+pub const ALL: [Field; 26] = [
     Field::Displacement,
     Field::DisplacementX,
     Field::DisplacementY,
+    Field::DisplacementZ,
     Field::X,
     Field::Y,
+    Field::Z,
     Field::SigmaXx,
     Field::SigmaYy,
     Field::SigmaZz,
     Field::TauXy,
+    Field::TauYz,
+    Field::TauXz,
     Field::P,
     Field::SigmaEffXx,
     Field::SigmaEffYy,

@@ -18,11 +18,11 @@ use crate::error::CaseError;
 
 /// Structures that are there in a frame.
 #[derive(Clone, Debug, Default)]
-pub struct Structures<'a> {
+pub struct Structures<'a, const D: usize = 2> {
     /// Rigid bodies.
-    pub rigid: Vec<Standing<'a>>,
+    pub rigid: Vec<Standing<'a, D>>,
     /// Reinforcement.
-    pub reinforcement: Vec<Installed<'a>>,
+    pub reinforcement: Vec<Installed<'a, D>>,
 }
 
 /// The frames of a run.
@@ -48,7 +48,11 @@ impl Frames {
     ///
     /// # Errors
     /// [`CaseError::Unusable`], [`CaseError::File`].
-    pub fn open(folder: &Path, frames: usize, case: &Case) -> Result<Self, CaseError> {
+    pub fn open<const D: usize>(
+        folder: &Path,
+        frames: usize,
+        case: &Case<D>,
+    ) -> Result<Self, CaseError> {
         let of = |stem, is_there: bool| {
             let opened = is_there.then(|| Collection::resume(folder, stem, frames));
             opened.transpose()
@@ -68,18 +72,18 @@ impl Frames {
     ///
     /// # Errors
     /// [`CaseError::File`].
-    pub fn add(
+    pub fn add<const D: usize>(
         &mut self,
         time: f64,
-        (particles, laws): (&Particles<2>, &[SharedLaw]),
-        grid: &Grid<2>,
-        structures: &Structures<'_>,
+        (particles, laws): (&Particles<D>, &[SharedLaw]),
+        grid: &Grid<D>,
+        structures: &Structures<'_, D>,
     ) -> Result<(), CaseError> {
         let cells = self.cells(particles, laws);
         self.particles.add(time, &cells)?;
         self.grid.add(time, &of_grid(grid, None))?;
         if let Some(collection) = &mut self.rigid {
-            collection.add(time, &rigid::lines(&structures.rigid))?;
+            collection.add(time, &rigid::cells(&structures.rigid))?;
         }
         if let Some(collection) = &mut self.reinforcement {
             collection.add(time, &reinforcement::lines(&structures.reinforcement))?;
@@ -92,15 +96,15 @@ impl Frames {
     ///
     /// # Errors
     /// [`CaseError::File`].
-    pub fn beside(
+    pub fn beside<const D: usize>(
         &self,
         name: &str,
-        (particles, laws): (&Particles<2>, &[SharedLaw]),
-        structures: &Structures<'_>,
+        (particles, laws): (&Particles<D>, &[SharedLaw]),
+        structures: &Structures<'_, D>,
     ) -> Result<(), CaseError> {
         let file = |of| self.folder.join(format!("{name}{of}.vtu"));
         if self.rigid.is_some() {
-            rigid::lines(&structures.rigid).write(&file(pvd::OF_BODIES))?;
+            rigid::cells(&structures.rigid).write(&file(pvd::OF_BODIES))?;
         }
         if self.reinforcement.is_some() {
             let lines = reinforcement::lines(&structures.reinforcement);
@@ -110,7 +114,11 @@ impl Frames {
         self.cells(particles, laws).write(&path)
     }
 
-    fn cells(&self, particles: &Particles<2>, laws: &[SharedLaw]) -> UnstructuredGrid {
+    fn cells<const D: usize>(
+        &self,
+        particles: &Particles<D>,
+        laws: &[SharedLaw],
+    ) -> UnstructuredGrid {
         let utilisation = fields::values(Field::Utilisation, particles, laws);
         let carried = carried(particles, laws);
         let extras = Extras {
@@ -162,7 +170,10 @@ impl Frames {
     }
 }
 /// Strength and stiffness of the particles, where they are not those of the materials everywhere.
-fn carried(particles: &Particles<2>, laws: &[SharedLaw]) -> Vec<(&'static str, Vec<f64>)> {
+fn carried<const D: usize>(
+    particles: &Particles<D>,
+    laws: &[SharedLaw],
+) -> Vec<(&'static str, Vec<f64>)> {
     let varies = particles.ratios.iter().any(|ratios| !ratios.are_one());
     let arrays = [
         ("strength [Pa]", Field::Strength),

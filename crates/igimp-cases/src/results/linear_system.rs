@@ -7,7 +7,7 @@
 //! | `values.npy` | f8, stored | K, both halves \[N/m per m\] |
 //! | `rhs.npy` | f8, n | right-hand side: the out-of-balance force \[N/m\] |
 //! | `solution.npy` | f8, n | the correction that the run found \[m\] |
-//! | `places.npy` | i4, n × 3 | column and row of the unknown's node on the grid, and the component: 0 for x, 1 for y |
+//! | `places.npy` | i4, n × 4 | place of the unknown's node on the grid by axis, the third 0 in the plane, and the component: 0 for x, 1 for y, 2 for z |
 //! | `matrix.json` | | what system it is ([`About`]) |
 
 use std::fs;
@@ -76,16 +76,16 @@ pub struct LinearSystem {
     /// x, the correction \[m\].
     pub solution: Vec<f64>,
     /// Column and row of each unknown's node on the grid, and its component.
-    pub places: Vec<[i32; 3]>,
+    pub places: Vec<[i32; 4]>,
 }
 
 impl LinearSystem {
     /// The system that a solver has solved for a step with this grid and these constraints.
     /// `about` gets the numbers that the matrix tells.
-    pub fn of(
+    pub fn of<const D: usize>(
         solved: SolvedSystem,
-        grid: &Grid<2>,
-        constraints: &Constraints<2>,
+        grid: &Grid<D>,
+        constraints: &Constraints<D>,
         about: About,
     ) -> Self {
         let matrix = solved.matrix;
@@ -93,10 +93,10 @@ impl LinearSystem {
         let columns = pattern.compressed_columns();
         let mut places = Vec::with_capacity(pattern.unknowns());
         for block in &pattern.blocks {
-            let place = [block.place[0], block.place[1]];
-            let node = grid.node_index(place);
-            let free = (0..2).filter(|&axis| constraints.of(node, axis).is_none());
-            places.extend(free.map(|axis| [place[0] as i32, place[1] as i32, axis as i32]));
+            let place = block.place.map(|along| along as i32);
+            let node = grid.node_index(std::array::from_fn(|axis| block.place[axis]));
+            let free = (0..D).filter(|&axis| constraints.of(node, axis).is_none());
+            places.extend(free.map(|axis| [place[0], place[1], place[2], axis as i32]));
         }
         Self {
             about: About {
@@ -139,8 +139,8 @@ impl LinearSystem {
         }
         let mut blocks: Vec<NodeBlock> = Vec::new();
         for (unknown, place) in self.places.iter().enumerate() {
-            let [x, y, component] = place.map(|own| own as usize);
-            let place = [x, y, 0];
+            let [x, y, z, component] = place.map(|own| own as usize);
+            let place = [x, y, z];
             let component = 1_u8.checked_shl(component as u32).unwrap_or(0);
             match blocks.last_mut() {
                 Some(block) if block.place == place => {
@@ -202,7 +202,7 @@ impl LinearSystem {
             Array::new(&[stored], Values::F64(self.values)),
             Array::new(&[n], Values::F64(self.rhs)),
             Array::new(&[n], Values::F64(self.solution)),
-            Array::new(&[n, 3], Values::I32(self.places.concat())),
+            Array::new(&[n, 4], Values::I32(self.places.concat())),
         ];
         for (name, array) in std::iter::zip(ARRAYS, arrays) {
             array.write(&folder.join(name))?;

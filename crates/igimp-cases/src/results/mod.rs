@@ -21,6 +21,7 @@ pub mod report;
 pub mod rigid;
 pub mod rows;
 pub mod setup;
+pub mod skin;
 pub mod viewer;
 pub mod vtu;
 

@@ -153,10 +153,9 @@ impl Collection {
     }
 }
 
-/// The file of the last frame of a collection, if it can be read.
-pub(super) fn last(folder: &Path, stem: &str) -> Option<String> {
-    let text = fs::read_to_string(folder.join(format!("{stem}.pvd"))).ok()?;
-    parse(&text)?.pop().map(|frame| frame.file)
+/// The frames of a collection, if it can be read.
+pub(super) fn frames(folder: &Path, stem: &str) -> Option<Vec<Frame>> {
+    parse(&fs::read_to_string(folder.join(format!("{stem}.pvd"))).ok()?)
 }
 
 /// The frames of a collection as [`Collection::write`] writes it, a line each.

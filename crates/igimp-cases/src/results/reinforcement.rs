@@ -4,19 +4,19 @@ use igimp_assembly::Reinforcement;
 use igimp_figures::{Outline, OutlineStyle};
 
 use super::vtu::{CellKind, DataArray, UnstructuredGrid, padded};
-use crate::case::ReinforcementPart;
+use crate::case::{ReinforcementPart, front};
 use crate::check::short;
 use crate::table::Table;
 
 /// A member that is there.
 #[derive(Clone, Copy, Debug)]
-pub struct Installed<'a> {
+pub struct Installed<'a, const D: usize = 2> {
     /// Its number in the case, from 0.
     pub index: usize,
     /// What it is.
     pub part: &'a ReinforcementPart,
     /// Where it is, and its tension.
-    pub member: &'a Reinforcement<2>,
+    pub member: &'a Reinforcement<D>,
     /// What its bond is divided by \[-\].
     pub reduction: f64,
 }
@@ -32,7 +32,7 @@ const HEADER: [&str; 7] = [
     "at_limit_[-]",
 ];
 
-impl Installed<'_> {
+impl<const D: usize> Installed<'_, D> {
     /// Tension at the middle of its bars, by the distance from its head before it was stretched.
     pub fn table(&self, name: String) -> Table {
         let mut table = Table::new(name, &HEADER);
@@ -43,7 +43,7 @@ impl Installed<'_> {
             table.push(vec![
                 so_far + 0.5 * bar.length,
                 0.5 * (a[0] + b[0]),
-                0.5 * (a[1] + b[1]),
+                0.5 * (a[D - 1] + b[D - 1]),
                 bar.state.force,
                 bar.limit(self.reduction),
                 bar.state.strain,
@@ -54,10 +54,10 @@ impl Installed<'_> {
         table
     }
 
-    /// Its line where it is \[m\].
+    /// Its line where it is, as seen from the front \[m\].
     fn line(&self) -> Vec<[f64; 2]> {
         let stations = self.member.stations.iter();
-        stations.map(igimp_assembly::Station::position).collect()
+        stations.map(|own| front(&own.position())).collect()
     }
 
     /// Its line, with its tension as a curve beside it: the `most` tension of all is `height` away \[m\].
@@ -91,7 +91,7 @@ impl Installed<'_> {
 
 /// All members with their tension as curves beside them, and words for the largest of each. `size` is that of
 /// the model \[m\].
-pub fn outlines(installed: &[Installed<'_>], size: f64) -> Vec<Outline> {
+pub fn outlines<const D: usize>(installed: &[Installed<'_, D>], size: f64) -> Vec<Outline> {
     let most = installed.iter().map(|own| own.member.largest_force());
     let most = most.fold(0.0, f64::max);
     let all = installed.iter();
@@ -100,24 +100,25 @@ pub fn outlines(installed: &[Installed<'_>], size: f64) -> Vec<Outline> {
 }
 
 /// The largest tension of each member in words, beside its head.
-pub fn labels(installed: &[Installed<'_>]) -> Vec<([f64; 2], String)> {
-    let label = |own: &Installed<'_>| {
+pub fn labels<const D: usize>(installed: &[Installed<'_, D>]) -> Vec<([f64; 2], String)> {
+    let label = |own: &Installed<'_, D>| {
         let force = short(own.member.largest_force() / 1e3);
         let text = format!("{} {force} kN/m", own.part.name);
-        (own.member.stations[0].position(), text)
+        (front(&own.member.stations[0].position()), text)
     };
     installed.iter().map(label).collect()
 }
 
 /// The members as lines between their stations, with the tension of their bars.
-pub fn lines(installed: &[Installed<'_>]) -> UnstructuredGrid {
+pub fn lines<const D: usize>(installed: &[Installed<'_, D>]) -> UnstructuredGrid {
     let mut points = Vec::new();
     let mut connectivity = Vec::new();
     let (mut forces, mut limits, mut strains) = (Vec::new(), Vec::new(), Vec::new());
     let (mut members, mut at_limit) = (Vec::new(), Vec::new());
     for own in installed {
         let first = points.len();
-        points.extend(own.line().iter().map(padded));
+        let stations = own.member.stations.iter();
+        points.extend(stations.map(|own| padded(&own.position())));
         for (k, bar) in own.member.segments.iter().enumerate() {
             connectivity.extend([first + k, first + k + 1]);
             forces.push(bar.state.force);

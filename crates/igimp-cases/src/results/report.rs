@@ -11,7 +11,7 @@ use minijinja::value::Serde;
 use minijinja::{Environment, Value};
 use serde::Serialize;
 
-use super::viewer::{LastFrame, last_frame};
+use super::viewer::{Held, held};
 use crate::error::CaseError;
 use crate::summary::{SetupTable, Summary};
 
@@ -57,7 +57,7 @@ fn render(folder: &Path, summary: &Summary) -> Result<String, minijinja::Error> 
     let (convergence, pictures): (Vec<_>, Vec<_>) = pictures
         .into_iter()
         .partition(|group| group.id == "convergence");
-    let last_frame = last_frame(folder);
+    let held = held(folder);
     let reinforcement = rows::reinforcement(summary);
     let entries = contents(
         [
@@ -73,7 +73,7 @@ fn render(folder: &Path, summary: &Summary) -> Result<String, minijinja::Error> 
         ],
         &pictures,
         [
-            (last_frame.is_some(), "frame", "Last frame"),
+            (held.is_some(), "frame", "A closer look"),
             (!tables.is_empty(), "tables", "Tables and files"),
             (!inputs.is_empty(), "input", "Input"),
             (true, "effort", "How it was computed"),
@@ -106,7 +106,7 @@ fn render(folder: &Path, summary: &Summary) -> Result<String, minijinja::Error> 
         inputs,
         effort: rows::effort(summary),
         convergence,
-        last_frame,
+        held,
     };
     let mut environment = Environment::new();
     environment.add_template("report.html", TEMPLATE)?;
@@ -139,7 +139,7 @@ struct Page<'a> {
     inputs: Vec<files::InputView>,
     effort: Vec<rows::Number>,
     convergence: Vec<files::Group>,
-    last_frame: Option<LastFrame>,
+    held: Option<Held>,
 }
 
 /// A line of the table of contents.

@@ -4,17 +4,18 @@ use igimp_assembly::{ContactNode, RigidBody};
 
 use super::vtu::{CellKind, DataArray, UnstructuredGrid, padded};
 use crate::case::{RigidPart, RigidShape};
+use crate::plane::in_plane;
 use crate::table::Table;
 
 /// A rigid body that is there.
 #[derive(Clone, Copy, Debug)]
-pub struct Standing<'a> {
+pub struct Standing<'a, const D: usize = 2> {
     /// Its number in the case, from 0.
     pub index: usize,
     /// What it is.
-    pub part: &'a RigidPart,
+    pub part: &'a RigidPart<D>,
     /// Where it stands, and what contact has left behind.
-    pub body: &'a RigidBody<2>,
+    pub body: &'a RigidBody<D>,
 }
 
 /// Columns of a table of contact. Shear is that on the soil along the surface, anticlockwise about the body.
@@ -46,7 +47,7 @@ struct Place<'a> {
 impl<'a> Standing<'a> {
     /// Corner of a polygon at which a side begins, in the frame of the body.
     fn corner(&self, side: usize) -> Option<[f64; 2]> {
-        let RigidShape::Polygon(corners) = &self.part.shape else {
+        let Some(RigidShape::Polygon(corners)) = self.part.shape.in_plane() else {
             return None;
         };
         let corner = corners[side % corners.len()];
@@ -57,8 +58,8 @@ impl<'a> Standing<'a> {
     /// around a circle from the point that was rightmost at the start \[m\].
     fn distance(&self, place: &Place<'_>) -> f64 {
         let own = place.own;
-        match (&self.part.shape, self.corner(place.side)) {
-            (RigidShape::Circle { radius, .. }, _) => {
+        match (self.part.shape.in_plane(), self.corner(place.side)) {
+            (Some(RigidShape::Circle { radius, .. }), _) => {
                 radius * own[1].atan2(own[0]).rem_euclid(std::f64::consts::TAU)
             }
             (_, Some(corner)) => (own[0] - corner[0]).hypot(own[1] - corner[1]),
@@ -79,14 +80,14 @@ impl<'a> Standing<'a> {
 
     /// 1 if the corners go round anticlockwise, else −1.
     fn sense(&self) -> f64 {
-        match &self.part.shape {
-            RigidShape::Polygon(corners) => {
+        match self.part.shape.in_plane() {
+            Some(RigidShape::Polygon(corners)) => {
                 let next = corners.iter().cycle().skip(1);
                 let pairs = std::iter::zip(corners, next);
                 let doubled: f64 = pairs.map(|(p, q)| p[0] * q[1] - p[1] * q[0]).sum();
                 doubled.signum()
             }
-            RigidShape::Circle { .. } => 1.0,
+            _ => 1.0,
         }
     }
 
@@ -124,7 +125,7 @@ impl<'a> Standing<'a> {
     }
 
     /// Contact at the knots of its surface, side by side, as a table.
-    pub fn table(&self, name: String) -> Table {
+    fn table_of_sides(&self, name: String) -> Table {
         let mut table = Table::new(name, &HEADER);
         for place in self.knots() {
             let Some(contact) = place.contact else {
@@ -147,6 +148,116 @@ impl<'a> Standing<'a> {
     }
 }
 
+/// Columns of a table of contact in space.
+const HEADER_IN_SPACE: [&str; 10] = [
+    "side",
+    "x_[m]",
+    "y_[m]",
+    "z_[m]",
+    "pressure_[Pa]_compression_+",
+    "shear_[Pa]",
+    "gap_[m]",
+    "contact_[m2]",
+    "closed_[-]",
+    "slips_[-]",
+];
+
+impl<'a, const D: usize> Standing<'a, D> {
+    /// Of a body in the plane.
+    fn in_plane(&self) -> Option<Standing<'a>> {
+        Some(Standing {
+            index: self.index,
+            part: in_plane(self.part)?,
+            body: in_plane(self.body)?,
+        })
+    }
+
+    /// Contact at the knots of its surface, side by side, as a table.
+    pub fn table(&self, name: String) -> Table {
+        if let Some(own) = self.in_plane() {
+            return own.table_of_sides(name);
+        }
+        let mut table = Table::new(name, &HEADER_IN_SPACE);
+        let knots = self.body.surface.knots();
+        for ((own, side), contact) in std::iter::zip(knots, &self.body.contact.knots) {
+            let mut row = vec![side as f64 + 1.0];
+            row.extend(self.body.pose.into_space(&own));
+            row.extend([
+                contact.pressure,
+                contact.shear[0].hypot(contact.shear[1]),
+                gap(contact),
+                contact.area,
+                f64::from(u8::from(contact.is_closed)),
+                f64::from(u8::from(contact.slips)),
+            ]);
+            table.push(row);
+        }
+        table
+    }
+}
+
+/// Rigid bodies for ParaView: in the plane their outlines as lines between knots, with contact, and their corners; in
+/// space the triangles between their knots.
+pub fn cells<const D: usize>(standing: &[Standing<'_, D>]) -> UnstructuredGrid {
+    if D == 2 {
+        let in_plane: Vec<Standing<'_>> = standing.iter().filter_map(Standing::in_plane).collect();
+        return outlines(&in_plane);
+    }
+    let mut points = Vec::new();
+    let mut contact: Vec<ContactNode> = Vec::new();
+    let (mut bodies, mut sides) = (Vec::new(), Vec::new());
+    for own in standing {
+        let Some(body) = in_plane::<RigidBody<D>, RigidBody<3>>(own.body) else {
+            continue;
+        };
+        for (corners, shares, side) in body.surface.facets() {
+            for (corner, shares) in std::iter::zip(corners, shares) {
+                points.push(body.pose.into_space(&corner));
+                contact.push(at_corner(shares, &body.contact.knots));
+                bodies.push(own.index as i32);
+                sides.push(side as i32 + 1);
+            }
+        }
+    }
+    let scalars = |name: &str, of: &dyn Fn(&ContactNode) -> f64| {
+        DataArray::scalars(name, contact.iter().map(of).collect())
+    };
+    let flags = |name: &str, of: &dyn Fn(&ContactNode) -> bool| {
+        DataArray::integers(name, contact.iter().map(|own| i32::from(of(own))).collect())
+    };
+    UnstructuredGrid {
+        kind: CellKind::Triangle,
+        connectivity: (0..points.len()).collect(),
+        point_data: vec![
+            scalars("contact pressure [Pa], compression +", &|own| own.pressure),
+            scalars("shear [Pa]", &|own| own.shear[0].hypot(own.shear[1])),
+            scalars("gap [m]", &gap),
+            flags("closed", &|own| own.is_closed),
+            flags("slips", &|own| own.slips),
+            DataArray::integers("body", bodies),
+            DataArray::integers("side", sides),
+        ],
+        points,
+        cell_data: Vec::new(),
+        field_data: Vec::new(),
+    }
+}
+
+/// Contact at a corner of a triangle, of the knots that share it.
+fn at_corner(shares: &[(usize, f64)], knots: &[ContactNode]) -> ContactNode {
+    let mut at = ContactNode::default();
+    for &(knot, share) in shares {
+        let own = &knots[knot];
+        at.pressure += share * own.pressure;
+        at.shear[0] += share * own.shear[0].hypot(own.shear[1]);
+        at.gap += share * own.gap;
+        at.area += share * own.area;
+        at.is_closed |= own.is_closed;
+        at.slips |= own.slips;
+    }
+    at
+}
+
 /// The gap; not a number where no soil is near.
 fn gap(contact: &ContactNode) -> f64 {
     if contact.area > 0.0 {
@@ -157,7 +268,7 @@ fn gap(contact: &ContactNode) -> f64 {
 }
 
 /// The outlines of rigid bodies as lines between points: their knots with contact, and their corners.
-pub fn lines(standing: &[Standing<'_>]) -> UnstructuredGrid {
+fn outlines(standing: &[Standing<'_>]) -> UnstructuredGrid {
     let mut connectivity = Vec::new();
     let mut places: Vec<(usize, Place<'_>)> = Vec::new();
     for body in standing {

@@ -7,11 +7,12 @@ use std::fmt::Write as _;
 use igimp_assembly::{Geometry, Tension};
 
 use crate::case::{
-    Adhesion, AxisSpec, Boundaries, Case, Construction, Load, LoadKind, Material, Profile,
-    Reduction, ReductionPath, ReinforcementPart, RigidDrive, RigidMove, RigidPart, RigidShape,
+    Adhesion, AxisSpec, BodyPart, Boundaries, Case, Construction, Load, LoadKind, Material,
+    Profile, Reduction, ReductionPath, ReinforcementPart, RigidDrive, RigidMove, RigidPart,
     RigidShear, Side, Stage, StageKind, StopWhen, Strength, StressShare, Variation,
 };
 use crate::check::short;
+use crate::plane::in_plane;
 use crate::summary::SetupTable;
 
 /// Stands for what a row does not have.
@@ -20,7 +21,7 @@ const NONE: &str = "–";
 const MOST_CORNERS: usize = 24;
 
 /// Materials, bodies, water, rigid bodies, reinforcement, supports, loads, stages and grid of a case.
-pub fn tables(case: &Case) -> Vec<SetupTable> {
+pub fn tables<const D: usize>(case: &Case<D>) -> Vec<SetupTable> {
     [
         materials(case),
         water::soils(case),
@@ -46,7 +47,7 @@ fn table(title: &str, header: &[&str], rows: Vec<Vec<String>>) -> SetupTable {
     }
 }
 
-fn materials(case: &Case) -> SetupTable {
+fn materials<const D: usize>(case: &Case<D>) -> SetupTable {
     let header = [
         "Material",
         "Law",
@@ -206,14 +207,17 @@ fn share_in_words(share: &StressShare) -> String {
     format!("{} σ′_v0{consolidated}{least}{water}", short(share.ratio))
 }
 
-fn bodies(case: &Case) -> SetupTable {
+fn bodies<const D: usize>(case: &Case<D>) -> SetupTable {
     let come_and_go = case.stages.iter().any(|stage| match &stage.kind {
         StageKind::Construction(own) => !(own.place.is_empty() && own.remove.is_empty()),
         _ => false,
     });
     let rows = case.bodies.iter().enumerate().map(|(index, body)| {
-        let corners = corners(&body.polygon);
-        let per_cell = body.per_direction * body.per_direction;
+        let corners = match in_plane::<_, BodyPart>(body) {
+            Some(body) => corners(body.polygon()),
+            None => body.region.words(),
+        };
+        let per_cell = body.per_direction.pow(D as u32);
         let mut row = vec![
             body.name.clone(),
             case.materials[body.material].name.clone(),
@@ -233,7 +237,7 @@ fn bodies(case: &Case) -> SetupTable {
 }
 
 /// When a body is there, in words.
-fn while_there(case: &Case, body: usize) -> String {
+fn while_there<const D: usize>(case: &Case<D>, body: usize) -> String {
     let mut words = Vec::new();
     if case.bodies[body].from_start {
         words.push("from the start".to_owned());
@@ -260,7 +264,7 @@ fn corners(polygon: &[[f64; 2]]) -> String {
     all.join(" ")
 }
 
-fn rigid_bodies(case: &Case) -> SetupTable {
+fn rigid_bodies<const D: usize>(case: &Case<D>) -> SetupTable {
     let header = [
         "Rigid body",
         "Shape [m]",
@@ -268,7 +272,11 @@ fn rigid_bodies(case: &Case) -> SetupTable {
         "Reference point [m]",
         "Interface",
         "Tension",
-        "Weight [kN/m]",
+        if D == 2 {
+            "Weight [kN/m]"
+        } else {
+            "Weight [kN]"
+        },
         "Moved in stages",
     ];
     let rows = case.rigid.iter().enumerate();
@@ -276,7 +284,7 @@ fn rigid_bodies(case: &Case) -> SetupTable {
     table("Rigid bodies", &header, rows.collect())
 }
 
-fn reinforcement(case: &Case) -> SetupTable {
+fn reinforcement<const D: usize>(case: &Case<D>) -> SetupTable {
     let header = [
         "Reinforcement",
         "Kind",
@@ -292,7 +300,7 @@ fn reinforcement(case: &Case) -> SetupTable {
     table("Reinforcement, per metre run", &header, rows.collect())
 }
 
-fn member(case: &Case, index: usize, part: &ReinforcementPart) -> Vec<String> {
+fn member<const D: usize>(case: &Case<D>, index: usize, part: &ReinforcementPart) -> Vec<String> {
     let mut kind = part.kind.name().to_owned();
     if part.free_length > 0.0 {
         let _ = write!(kind, ", {} m of it free", short(part.free_length));
@@ -332,18 +340,8 @@ fn member(case: &Case, index: usize, part: &ReinforcementPart) -> Vec<String> {
     ]
 }
 
-fn rigid_body(case: &Case, index: usize, part: &RigidPart) -> Vec<String> {
-    let (shape, size) = match &part.shape {
-        RigidShape::Polygon(own) => {
-            let (lower, upper) = part.bounds();
-            let [width, height] = [0, 1].map(|axis| short(upper[axis] - lower[axis]));
-            (corners(own), format!("{width} × {height}"))
-        }
-        RigidShape::Circle { centre, radius } => (
-            format!("circle about {}", point(*centre)),
-            format!("radius {}", short(*radius)),
-        ),
-    };
+fn rigid_body<const D: usize>(case: &Case<D>, index: usize, part: &RigidPart<D>) -> Vec<String> {
+    let [shape, size] = part.shape.words();
     let shear = |side: usize| shear(part.interfaces[side].shear);
     let tension = |side: usize| tension(part.interfaces[side].tension);
     let weight = if (part.force_factor - 1.0).abs() > 0.0 {
@@ -427,17 +425,20 @@ fn tension(of: Tension) -> String {
     }
 }
 
-fn supports(boundaries: &Boundaries) -> SetupTable {
+fn supports<const D: usize>(boundaries: &Boundaries<D>) -> SetupTable {
     let sides = [
-        ("left side", boundaries.left, "held across"),
-        ("right side", boundaries.right, "held across"),
-        ("bottom", boundaries.bottom, "held upright"),
-        ("top", boundaries.top, "held upright"),
+        ("left side", 0, 0, "held across"),
+        ("right side", 0, 1, "held across"),
+        ("front", 1, 0, "held across"),
+        ("back", 1, 1, "held across"),
+        ("bottom", D - 1, 0, "held upright"),
+        ("top", D - 1, 1, "held upright"),
     ];
     let mut rows: Vec<Vec<String>> = sides
         .into_iter()
-        .map(|(name, side, roller)| {
-            let held = match side {
+        .filter(|&(_, axis, _, roller)| axis == 0 || D == 3 || roller == "held upright")
+        .map(|(name, axis, end, roller)| {
+            let held = match boundaries.sides[axis][end] {
                 Side::Free => "free",
                 Side::Roller => roller,
                 Side::Fixed => "fixed",
@@ -446,11 +447,21 @@ fn supports(boundaries: &Boundaries) -> SetupTable {
         })
         .collect();
     for held in &boundaries.boxes {
-        let how = match held.fix {
-            [true, true] => "fixed",
-            [true, false] => "held across",
-            [false, true] => "held upright",
-            [false, false] => "free",
+        let how = match held.fix[..] {
+            [true, true] | [true, true, true] => "fixed".to_owned(),
+            [true, false] => "held across".to_owned(),
+            [false, true] | [false, false, true] => "held upright".to_owned(),
+            _ => {
+                let names = std::iter::zip(["x", "y", "z"], held.fix);
+                let names: Vec<&str> = names
+                    .filter_map(|(name, is_held)| is_held.then_some(name))
+                    .collect();
+                if names.is_empty() {
+                    "free".to_owned()
+                } else {
+                    format!("held in {}", names.join(", "))
+                }
+            }
         };
         let place = format!("{} to {}", point(held.lower), point(held.upper));
         rows.push(vec![held.name.clone(), how.to_owned(), place]);
@@ -458,7 +469,7 @@ fn supports(boundaries: &Boundaries) -> SetupTable {
     table("Supports", &["Support", "Held", "Place [m]"], rows)
 }
 
-fn loads(case: &Case) -> SetupTable {
+fn loads<const D: usize>(case: &Case<D>) -> SetupTable {
     let rows = case.loads.iter().map(|load| {
         let (kind, place, size) = match load.kind {
             LoadKind::RigidFooting {
@@ -482,15 +493,28 @@ fn loads(case: &Case) -> SetupTable {
             LoadKind::Pressure { from, to, traction } => {
                 ("pressure", line(from, to), components(traction, "Pa"))
             }
-            LoadKind::Point { at, force } => ("force", point(at), components(force, "N/m")),
+            LoadKind::Point { at, force } => (
+                "force",
+                point(at),
+                components(force, if D == 2 { "N/m" } else { "N" }),
+            ),
         };
         vec![load.name.clone(), kind.to_owned(), place, size]
     });
-    let header = ["Load", "Kind", "Place [m]", "Size at factor 1 (x, y)"];
+    let header = [
+        "Load",
+        "Kind",
+        "Place [m]",
+        if D == 2 {
+            "Size at factor 1 (x, y)"
+        } else {
+            "Size at factor 1 (x, y, z)"
+        },
+    ];
     table("Loads", &header, rows.collect())
 }
 
-fn stages(case: &Case) -> SetupTable {
+fn stages<const D: usize>(case: &Case<D>) -> SetupTable {
     let rows = case.stages.iter().enumerate().map(|(number, stage)| {
         let from = stage.start_from.map_or_else(
             || "undeformed, free of stress".to_owned(),
@@ -522,7 +546,7 @@ fn stages(case: &Case) -> SetupTable {
     table("Stages as planned", &header, rows.collect())
 }
 
-fn happens(case: &Case, stage: &Stage) -> String {
+fn happens<const D: usize>(case: &Case<D>, stage: &Stage) -> String {
     let materials = |which: &[usize]| {
         let names: Vec<&str> = which
             .iter()
@@ -534,10 +558,16 @@ fn happens(case: &Case, stage: &Stage) -> String {
         StageKind::Gravity {
             factor,
             horizontal,
+            across,
             vertical,
         } => {
             let mut told = format!("gravity to {}", times(*factor, "value"));
-            for (share, whither) in [(horizontal, "to the right"), (vertical, "upwards")] {
+            let shares = [
+                (horizontal, "to the right"),
+                (across, "backwards"),
+                (vertical, "upwards"),
+            ];
+            for (share, whither) in shares {
                 if let Some(share) = share {
                     let _ = write!(
                         told,
@@ -590,7 +620,7 @@ fn happens(case: &Case, stage: &Stage) -> String {
 }
 
 /// What a construction stage changes, in words.
-fn construction_in_words(case: &Case, own: &Construction) -> String {
+fn construction_in_words<const D: usize>(case: &Case<D>, own: &Construction) -> String {
     let names = |which: &[usize]| {
         let names: Vec<&str> = which.iter().map(|&k| &*case.bodies[k].name).collect();
         names.join(", ")
@@ -616,7 +646,7 @@ fn construction_in_words(case: &Case, own: &Construction) -> String {
 }
 
 /// What a stage does to a rigid body, in words.
-fn moves_in_words(case: &Case, own: &RigidMove) -> String {
+fn moves_in_words<const D: usize>(case: &Case<D>, own: &RigidMove) -> String {
     let name = &case.rigid[own.body].name;
     format!("{name}: {}", drives_in_words(own))
 }
@@ -654,7 +684,7 @@ fn times(factor: f64, of: &str) -> String {
 }
 
 /// The conditions that end a stage early.
-fn ends(case: &Case, stop: &StopWhen) -> Vec<String> {
+fn ends<const D: usize>(case: &Case<D>, stop: &StopWhen) -> Vec<String> {
     let mut words = Vec::new();
     if let Some(limit) = stop.displacement {
         let whose = stop.monitor.map_or_else(
@@ -675,7 +705,7 @@ fn ends(case: &Case, stop: &StopWhen) -> Vec<String> {
     words
 }
 
-fn grid(case: &Case) -> SetupTable {
+fn grid<const D: usize>(case: &Case<D>) -> SetupTable {
     let cells = |axis: &AxisSpec| {
         let [smallest, largest] = axis.extremes();
         match axis {
@@ -696,15 +726,18 @@ fn grid(case: &Case) -> SetupTable {
     table(
         "Background grid",
         &header,
-        vec![row(0, "x, level"), row(1, "y, upright")],
+        match D {
+            2 => vec![row(0, "x, level"), row(1, "y, upright")],
+            _ => vec![row(0, "x, level"), row(1, "y, level"), row(2, "z, upright")],
+        },
     )
 }
 
-fn point([x, y]: [f64; 2]) -> String {
-    format!("({}, {})", short(x), short(y))
+fn point<const D: usize>(point: [f64; D]) -> String {
+    format!("({})", point.map(short).join(", "))
 }
 
-fn line(from: [f64; 2], to: [f64; 2]) -> String {
+fn line<const D: usize>(from: [f64; D], to: [f64; D]) -> String {
     format!("{} to {}", point(from), point(to))
 }
 
@@ -713,8 +746,9 @@ fn kilo(value: f64, unit: &str) -> String {
     format!("{} k{unit}", short(value / 1e3))
 }
 
-fn components([x, y]: [f64; 2], unit: &str) -> String {
-    format!("{}, {} k{unit}", short(x / 1e3), short(y / 1e3))
+fn components<const D: usize>(components: [f64; D], unit: &str) -> String {
+    let printed = components.map(|own| short(own / 1e3));
+    format!("{} k{unit}", printed.join(", "))
 }
 
 #[cfg(test)]
@@ -725,11 +759,8 @@ mod tests {
 
     fn of(name: &str) -> Vec<SetupTable> {
         let shipped = SHIPPED.iter().find(|case| case.name == name).unwrap();
-        tables(
-            CaseFile::parse("case.toml", shipped.text, &[])
-                .unwrap()
-                .case(),
-        )
+        let file = CaseFile::parse("case.toml", shipped.text, &[]).unwrap();
+        crate::in_any_dimension!(file.any_case(), case => tables(case))
     }
 
     fn row(tables: &[SetupTable], title: &str, number: usize) -> String {

@@ -1,15 +1,20 @@
-//! Parts of pages that show frames in a browser: `igimp view`, and the last frame of a report.
+//! Parts of pages that show frames in a browser: `igimp view`, and the frames of a report.
 //!
-//! The script reads the frames as they lie in `paraview/`; it needs no other script and no network.
+//! The script draws plane and space alike, and needs no other script and no network. It takes frames as
+//! [`packed`] makes them of those in `paraview/`.
+
+mod packed;
 
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
 use igimp_figures::ColourMap;
+use rayon::prelude::*;
 use serde::Serialize;
 
 use super::pvd;
+pub use packed::{Keep, packed};
 
 /// What stands in the section `soil` of a page: choices, canvas, slider.
 pub const SECTION: &str = include_str!("viewer/soil.html");
@@ -17,8 +22,23 @@ pub const SECTION: &str = include_str!("viewer/soil.html");
 /// The style of that section; the page gives the colours `--card`, `--line` and `--soft`.
 pub const STYLE: &str = include_str!("viewer/viewer.css");
 
-/// Largest frame that a report holds \[bytes\].
-const LARGEST_FRAME: u64 = 3_000_000;
+/// The script in parts.
+const PARTS: [&str; 7] = [
+    include_str!("viewer/frame.js"),
+    include_str!("viewer/camera.js"),
+    include_str!("viewer/gl.js"),
+    include_str!("viewer/axes.js"),
+    include_str!("viewer/scene.js"),
+    include_str!("viewer/pointing.js"),
+    include_str!("viewer/viewer.js"),
+];
+
+/// Most bytes of the last frame of a report, and of all its frames together.
+const MOST_OF_LAST: usize = 14_000_000;
+const MOST: usize = 4_000_000;
+
+/// Largest file of a frame that is read \[bytes\].
+const LARGEST_FILE: u64 = 2_000_000_000;
 
 /// The script that makes the section work, by its class `Viewer`.
 pub fn script() -> String {
@@ -37,64 +57,93 @@ pub fn script() -> String {
         let _ = writeln!(text, "  {name}: {colours:?},");
     }
     text += "};\n\n";
-    text += include_str!("viewer/frame.js");
-    text.push('\n');
-    text += include_str!("viewer/soil.js");
-    text.push('\n');
-    text += include_str!("viewer/viewer.js");
+    for part in PARTS {
+        text += part;
+        text.push('\n');
+    }
     text
 }
 
-/// The last frame of a results folder, as a report holds it.
+/// A frame of a results folder as pages take it, by its file; none where it cannot be read.
+pub fn frame(file: &Path, keep: Keep) -> Option<String> {
+    let about = fs::symlink_metadata(file).ok()?;
+    if !about.is_file() || about.len() > LARGEST_FILE {
+        return None;
+    }
+    packed(&fs::read_to_string(file).ok()?, keep)
+}
+
+/// The frames of a results folder, as a report holds them.
 #[derive(Debug, Serialize)]
-pub(super) struct LastFrame {
+pub(super) struct Held {
     section: &'static str,
     style: &'static str,
     script: String,
-    /// The file; none if it is too large for a page.
-    data: Option<String>,
-    /// The rigid bodies of that frame, where the case has some.
-    bodies: Option<String>,
-    /// What it is called.
-    label: String,
-    /// Its size in words.
+    /// Those that fit into a page, the last among them; none if that one is too large.
+    frames: Vec<HeldFrame>,
+    /// How many there are.
+    all: usize,
+    /// The size of the frames in words, or that of the last frame where there is none.
     size: String,
 }
 
-/// The last frame of particles, if there is one that can be read, and of rigid bodies.
-pub(super) fn last_frame(folder: &Path) -> Option<LastFrame> {
-    let folder = folder.join("paraview");
-    let file = pvd::last(&folder, pvd::PARTICLES)?;
-    let path = folder.join(&file);
-    let about = fs::symlink_metadata(&path).ok()?;
-    if !about.is_file() {
-        return None;
-    }
-    let data = if about.len() <= LARGEST_FRAME {
-        Some(harmless(&path)?)
-    } else {
-        None
-    };
-    let bodies = pvd::last(&folder, pvd::RIGID).and_then(|file| harmless(&folder.join(file)));
-    Some(LastFrame {
-        section: SECTION,
-        style: STYLE,
-        script: script() + "\n" + include_str!("viewer/last.js"),
-        data,
-        bodies,
-        label: file,
-        size: format!("{:.1} MB", about.len() as f64 / 1e6),
-    })
+/// A frame within a page.
+#[derive(Debug, Serialize)]
+struct HeldFrame {
+    /// What it is called.
+    label: String,
+    data: String,
+    /// The rigid bodies of that frame, where the case has some.
+    bodies: Option<String>,
 }
 
-/// The text of a frame. Numbers in base64 end no script; a file that somebody changed might.
-fn harmless(path: &Path) -> Option<String> {
-    let about = fs::symlink_metadata(path).ok()?;
-    if !about.is_file() || about.len() > LARGEST_FRAME {
-        return None;
+/// The last frame of particles, and as many before it as there is room for; none if it cannot be read.
+pub(super) fn held(folder: &Path) -> Option<Held> {
+    let folder = folder.join("paraview");
+    let particles = pvd::frames(&folder, pvd::PARTICLES)?;
+    let bodies = pvd::frames(&folder, pvd::RIGID).unwrap_or_default();
+    let all = particles.len();
+    let of = |k: usize, keep| {
+        let body = bodies.get(k);
+        Some(HeldFrame {
+            label: format!(
+                "Frame {} of {all}, after {} steps and trials",
+                k + 1,
+                particles[k].time
+            ),
+            data: frame(&folder.join(&particles[k].file), keep)?,
+            bodies: body.and_then(|body| frame(&folder.join(&body.file), keep)),
+        })
+    };
+    let last = all.checked_sub(1)?;
+    let mut end = of(last, Keep::MUCH)?;
+    if end.data.len() > MOST {
+        end = of(last, Keep::LITTLE)?;
     }
-    let text = fs::read_to_string(path).ok()?;
-    let lower = text.to_ascii_lowercase();
-    let ends = lower.contains("</script") || lower.contains("<!--");
-    (!ends).then_some(text)
+    let mut size = end.data.len();
+    let mut frames = Vec::new();
+    if size <= MOST_OF_LAST {
+        // The first, and others at equal distances.
+        let probe = (last > 0 && size < MOST)
+            .then(|| of(0, Keep::LITTLE))
+            .flatten();
+        let room = probe.as_ref().map_or(0, |first| {
+            let most = first.data.len().max(end.data.len() / 2).max(1);
+            (MOST - size) / most
+        });
+        let count = room.min(last);
+        let before: Vec<usize> = (0..count).map(|k| k * last / count).collect();
+        let read = |&k: &usize| of(k, Keep::LITTLE);
+        frames = before.par_iter().filter_map(read).collect();
+        frames.push(end);
+        size = frames.iter().map(|frame| frame.data.len()).sum();
+    }
+    Some(Held {
+        section: SECTION,
+        style: STYLE,
+        script: script() + "\n" + include_str!("viewer/held.js"),
+        frames,
+        all,
+        size: format!("{:.1} MB", size as f64 / 1e6),
+    })
 }

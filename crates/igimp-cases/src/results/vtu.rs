@@ -20,6 +20,7 @@ use super::npy::Values;
 use crate::error::CaseError;
 
 mod array;
+pub(super) mod read;
 
 pub(super) use array::padded;
 pub use array::{DataArray, Tuple};
@@ -35,6 +36,8 @@ const LEVEL: Compression = Compression::new(3);
 pub enum CellKind {
     /// Two ends.
     Line,
+    /// Three corners.
+    Triangle,
     /// Four corners, counter-clockwise.
     Quad,
     /// Four corners of the lower face counter-clockwise seen from above, then the upper face.
@@ -69,14 +72,22 @@ impl CellKind {
         ];
         match self {
             Self::Line => &ALL[..2],
+            Self::Triangle => &ALL[..3],
             Self::Quad => &ALL[..4],
             Self::Hexahedron => &ALL,
         }
     }
 
+    /// The kind with VTK's number.
+    fn of_code(code: u8) -> Option<Self> {
+        let all = [Self::Line, Self::Triangle, Self::Quad, Self::Hexahedron];
+        all.into_iter().find(|kind| kind.code() == code)
+    }
+
     fn code(self) -> u8 {
         match self {
             Self::Line => 3,
+            Self::Triangle => 5,
             Self::Quad => 9,
             Self::Hexahedron => 12,
         }

@@ -5,9 +5,9 @@ use igimp_assembly::{AssemblyError, Locking, Swallowed};
 use igimp_solver::linear::LinearSolverError;
 use igimp_solver::{Component, StepError, StepFailure};
 
-use crate::case::{Case, Material, RigidDrive, Side, Stage, StageKind, Strength};
+use crate::case::{BodyPart, Case, Material, RigidDrive, Side, Stage, StageKind, Strength};
 use crate::check::short;
-use crate::polygon::{area_and_centroid, clip_to_box};
+use crate::results::fields::length;
 
 /// Most suggestions that a reader will try.
 const MOST: usize = 4;
@@ -23,8 +23,8 @@ const NEARLY_INCOMPRESSIBLE: f64 = 0.49;
 
 /// What may help, most promising first. `near_worst` counts the particles within a cell of the
 /// worst node, those that yield, and those that returned to an apex or a corner in tension.
-pub fn advice(
-    case: &Case,
+pub fn advice<const D: usize>(
+    case: &Case<D>,
     stage: usize,
     error: &StepError,
     near_worst: Option<[usize; 3]>,
@@ -73,16 +73,16 @@ fn share(count: usize, of: usize) -> f64 {
 }
 
 /// The iteration ended without equilibrium.
-fn no_equilibrium(
-    case: &Case,
+fn no_equilibrium<const D: usize>(
+    case: &Case<D>,
     stage: &Stage,
     error: &StepError,
     near_worst: Option<[usize; 3]>,
 ) -> Vec<String> {
     let yielding = near_worst.map_or(0.0, |[all, yielding, _]| share(yielding, all));
     let apex = near_worst.map_or(0.0, |[all, _, apex]| share(apex, all));
-    let [x, y, _] = error.worst.map_or([f64::NAN; 3], |(x, _)| x);
-    let material = material_at(case, [x, y]);
+    let worst = error.worst.map_or([f64::NAN; 3], |(x, _)| x);
+    let material = material_at(case, std::array::from_fn(|axis| worst[axis]));
     let mut out = Vec::new();
 
     out.extend(round_off(case, error));
@@ -102,7 +102,7 @@ fn no_equilibrium(
     out
 }
 
-fn off_grid(case: &Case, stage: &Stage, position: [f64; 3]) -> Vec<String> {
+fn off_grid<const D: usize>(case: &Case<D>, stage: &Stage, position: [f64; 3]) -> Vec<String> {
     let (lower, upper) = (case.grid.lower(), case.grid.upper());
     let mut out = Vec::new();
     for (axis, name) in ["x", "y"].into_iter().enumerate() {
@@ -128,7 +128,7 @@ fn off_grid(case: &Case, stage: &Stage, position: [f64; 3]) -> Vec<String> {
 }
 
 /// Soil went too far into a rigid body.
-fn too_deep(case: &Case, stage: &Stage, body: &str) -> Vec<String> {
+fn too_deep<const D: usize>(case: &Case<D>, stage: &Stage, body: &str) -> Vec<String> {
     let Some(part) = case.rigid.iter().find(|part| part.name == body) else {
         return vec![more_steps(stage)];
     };
@@ -149,7 +149,12 @@ fn too_deep(case: &Case, stage: &Stage, body: &str) -> Vec<String> {
 }
 
 /// A particle would get into a rigid body, or through it.
-fn swallowed(case: &Case, stage: &Stage, body: &str, [x, y, _]: [f64; 3]) -> Vec<String> {
+fn swallowed<const D: usize>(
+    case: &Case<D>,
+    stage: &Stage,
+    body: &str,
+    [x, y, _]: [f64; 3],
+) -> Vec<String> {
     vec![
         more_steps(stage),
         format!(
@@ -191,7 +196,7 @@ fn not_held(stage: &Stage, body: &str, component: Component, touches: bool) -> V
     ]
 }
 
-fn unformed(case: &Case, stage: &Stage, error: &AssemblyError) -> Vec<String> {
+fn unformed<const D: usize>(case: &Case<D>, stage: &Stage, error: &AssemblyError) -> Vec<String> {
     match error {
         AssemblyError::Shape { position, .. } => off_grid(case, stage, *position),
         AssemblyError::LoadPoint { .. } => vec!["a larger domain in [grid]".to_owned()],
@@ -217,13 +222,13 @@ fn unformed(case: &Case, stage: &Stage, error: &AssemblyError) -> Vec<String> {
     }
 }
 
-fn unsolved(case: &Case, error: &LinearSolverError) -> Vec<String> {
+fn unsolved<const D: usize>(case: &Case<D>, error: &LinearSolverError) -> Vec<String> {
     if matches!(error, LinearSolverError::OutOfMemory { .. }) {
         return vec!["a coarser cell in [grid], or a computer with more memory".to_owned()];
     }
     let sides = &case.boundaries;
     let mut out = Vec::new();
-    if sides.bottom == Side::Free && sides.boxes.is_empty() {
+    if sides.sides[D - 1][0] == Side::Free && sides.boxes.is_empty() {
         out.push("bottom = \"fixed\" in [boundaries]".to_owned());
     }
     out.push(ghost_penalty());
@@ -232,7 +237,7 @@ fn unsolved(case: &Case, error: &LinearSolverError) -> Vec<String> {
 }
 
 /// The smallest residual is small, but above the tolerance.
-fn round_off(case: &Case, error: &StepError) -> Option<String> {
+fn round_off<const D: usize>(case: &Case<D>, error: &StepError) -> Option<String> {
     let best = error.residuals.iter().copied().fold(f64::NAN, f64::min);
     let stagnated = matches!(*error.failure, StepFailure::Stagnated);
     let (tolerance, limit) = (case.solver.tolerance, 1e-6);
@@ -243,7 +248,7 @@ fn round_off(case: &Case, error: &StepError) -> Option<String> {
 }
 
 /// The residual was still falling when the corrections ran out.
-fn still_falling(case: &Case, error: &StepError) -> Option<String> {
+fn still_falling<const D: usize>(case: &Case<D>, error: &StepError) -> Option<String> {
     let falling = error.residuals.last_chunk::<4>().is_some_and(|last| {
         last.windows(2).all(|pair| pair[1] < pair[0]) && last[3] < 0.5 * last[0]
     });
@@ -255,7 +260,7 @@ fn still_falling(case: &Case, error: &StepError) -> Option<String> {
 }
 
 /// Most soil at the worst node yields: there may be no equilibrium to find.
-fn collapse(case: &Case, stage: &Stage) -> Vec<String> {
+fn collapse<const D: usize>(case: &Case<D>, stage: &Stage) -> Vec<String> {
     match &stage.kind {
         StageKind::Gravity {
             horizontal: Some(share),
@@ -363,7 +368,7 @@ fn tension(material: &Material) -> Option<String> {
     }
 }
 
-fn incompressible(case: &Case, material: &Material) -> Option<String> {
+fn incompressible<const D: usize>(case: &Case<D>, material: &Material) -> Option<String> {
     if case.method.locking == Locking::None && material.poisson >= 0.4 {
         return Some("locking = \"b-bar\" in [grid], against volumetric locking".to_owned());
     }
@@ -375,13 +380,19 @@ fn ghost_penalty() -> String {
     "small_cuts = { ghost_penalty = 1e-3 } in [grid], for nodes that hardly touch soil".to_owned()
 }
 
-fn finer_cell(case: &Case) -> String {
-    let [x, y] = case.grid.largest_cell().map(|cell| 0.5 * cell);
-    if (x - y).abs() < 1e-9 * x {
-        format!("cell = \"{}\"", metres(x))
-    } else {
-        format!("cell = {{ x = \"{}\", y = \"{}\" }}", metres(x), metres(y))
+fn finer_cell<const D: usize>(case: &Case<D>) -> String {
+    let cell = case.grid.largest_cell().map(|cell| 0.5 * cell);
+    if cell
+        .iter()
+        .all(|own| (own - cell[0]).abs() < 1e-9 * cell[0])
+    {
+        return format!("cell = \"{}\"", metres(cell[0]));
     }
+    let each = std::iter::zip(["x", "y", "z"], cell);
+    let each: Vec<String> = each
+        .map(|(axis, cell)| format!("{axis} = \"{}\"", metres(cell)))
+        .collect();
+    format!("cell = {{ {} }}", each.join(", "))
 }
 
 fn metres(length: f64) -> String {
@@ -389,30 +400,25 @@ fn metres(length: f64) -> String {
 }
 
 /// The material at a place in the undeformed bodies; beside all bodies, that of the nearest body.
-fn material_at(case: &Case, x: [f64; 2]) -> Option<&Material> {
-    let share = |polygon: &[[f64; 2]]| {
-        let half = case.grid.cell_at(x).map(|cell| 0.5 * cell);
-        let lower = [x[0] - half[0], x[1] - half[1]];
-        let upper = [x[0] + half[0], x[1] + half[1]];
-        area_and_centroid(&clip_to_box(polygon, lower, upper))
-            .0
-            .abs()
-    };
-    let distance = |polygon: &[[f64; 2]]| {
-        polygon
-            .iter()
-            .map(|corner| (corner[0] - x[0]).hypot(corner[1] - x[1]))
+fn material_at<const D: usize>(case: &Case<D>, x: [f64; D]) -> Option<&Material> {
+    let half = case.grid.cell_at(x).map(|cell| 0.5 * cell);
+    let lower = std::array::from_fn(|axis| x[axis] - half[axis]);
+    let upper = std::array::from_fn(|axis| x[axis] + half[axis]);
+    let share = |body: &BodyPart<D>| body.region.within(lower, upper).volume;
+    let distance = |body: &BodyPart<D>| {
+        let corners = body.region.corners().into_iter();
+        corners
+            .map(|corner| {
+                length(&std::array::from_fn::<_, D, _>(|axis| {
+                    corner[axis] - x[axis]
+                }))
+            })
             .fold(f64::INFINITY, f64::min)
     };
-    let (a, b) = (
-        case.bodies
-            .iter()
-            .max_by(|a, b| share(&a.polygon).total_cmp(&share(&b.polygon))),
-        case.bodies
-            .iter()
-            .min_by(|a, b| distance(&a.polygon).total_cmp(&distance(&b.polygon))),
-    );
-    let body = a.filter(|body| share(&body.polygon) > 0.0).or(b)?;
+    let bodies = || case.bodies.iter();
+    let most = bodies().max_by(|a, b| share(a).total_cmp(&share(b)));
+    let nearest = bodies().min_by(|a, b| distance(a).total_cmp(&distance(b)));
+    let body = most.filter(|body| share(body) > 0.0).or(nearest)?;
     case.materials.get(body.material)
 }
 

@@ -3,6 +3,8 @@
 use igimp_assembly::Method;
 use igimp_assembly::{Geometry, Locking};
 
+use std::sync::Arc;
+
 use super::*;
 use crate::case::{
     BodyPart, Boundaries, Every, GridSpec, MeshStudy, Output, Profiles, Reduction, RunOut,
@@ -27,7 +29,12 @@ fn case(kind: StageKind) -> Case {
         material,
         per_direction: 2,
         from_start: true,
-        polygon: vec![[0.0, lower], [20.0, lower], [20.0, upper], [0.0, upper]],
+        region: Arc::new(vec![
+            [0.0, lower],
+            [20.0, lower],
+            [20.0, upper],
+            [0.0, upper],
+        ]),
     };
     Case {
         title: String::new(),
@@ -51,7 +58,7 @@ fn case(kind: StageKind) -> Case {
         ],
         bodies: vec![body("rock", 1, 0.0, 2.0), body("soil", 0, 2.0, 10.0)],
         boundaries: Boundaries {
-            bottom: Side::Fixed,
+            sides: [[Side::Free; 2], [Side::Fixed, Side::Free]],
             ..Boundaries::default()
         },
         loads: Vec::new(),
@@ -78,6 +85,7 @@ fn case(kind: StageKind) -> Case {
             folder: "results".into(),
             paraview: Every::Never,
             figures: Vec::new(),
+            cuts: Vec::new(),
             report: false,
             checkpoint_every: 0,
             checkpoint_keep: 1,
@@ -89,6 +97,7 @@ fn gravity() -> Case {
     case(StageKind::Gravity {
         factor: 1.0,
         horizontal: None,
+        across: None,
         vertical: None,
     })
 }

@@ -1,7 +1,7 @@
 //! Holds what a run found against the references of its case.
 
 use super::records::{Moment, Records};
-use super::sections::BEFORE_FIELDS;
+use super::sections::before_fields;
 use crate::case::{Case, CheckTime, Reference, ReferenceValues};
 use crate::check::{Band, Check};
 use crate::results::fields;
@@ -9,10 +9,10 @@ use crate::summary::CheckRow;
 use crate::table::Table;
 
 /// The checks that the case asks for at the end of a stage.
-pub(crate) fn at_end_of_stage(
-    case: &Case,
+pub(crate) fn at_end_of_stage<const D: usize>(
+    case: &Case<D>,
     records: &Records,
-    moment: &Moment<'_>,
+    moment: &Moment<'_, D>,
 ) -> Vec<CheckRow> {
     let last = case.stages.len() - 1;
     case.checks
@@ -38,7 +38,7 @@ pub(crate) fn at_end_of_stage(
 }
 
 /// The checks of curves against their references. A curve that was not recorded misses its own.
-pub(crate) fn of_curves(case: &Case, tables: &[Table]) -> Vec<CheckRow> {
+pub(crate) fn of_curves<const D: usize>(case: &Case<D>, tables: &[Table]) -> Vec<CheckRow> {
     let mut rows = Vec::new();
     for (curve, table) in case.curves.iter().zip(tables) {
         if let Some(reference) = &curve.reference {
@@ -49,7 +49,11 @@ pub(crate) fn of_curves(case: &Case, tables: &[Table]) -> Vec<CheckRow> {
 }
 
 /// The checks of fields along sections at the end of a stage; `tables` are those of the sections.
-pub(crate) fn of_sections(case: &Case, stage: usize, tables: &[Table]) -> Vec<CheckRow> {
+pub(crate) fn of_sections<const D: usize>(
+    case: &Case<D>,
+    stage: usize,
+    tables: &[Table],
+) -> Vec<CheckRow> {
     let mut rows = Vec::new();
     for (section, table) in case.sections.iter().zip(tables) {
         for held in section.references_at(case, stage) {
@@ -57,7 +61,7 @@ pub(crate) fn of_sections(case: &Case, stage: usize, tables: &[Table]) -> Vec<Ch
                 continue;
             };
             let name = format!("{}, {}", section.name, fields::name(held.of));
-            let points = table.points(0, BEFORE_FIELDS + recorded);
+            let points = table.points(0, before_fields::<D>() + recorded);
             rows.extend(against(case, &name, &points, &held.reference));
         }
     }
@@ -65,7 +69,12 @@ pub(crate) fn of_sections(case: &Case, stage: usize, tables: &[Table]) -> Vec<Ch
 }
 
 /// Points held against a reference; nothing where it is drawn only.
-fn against(case: &Case, name: &str, points: &[[f64; 2]], reference: &Reference) -> Vec<CheckRow> {
+fn against<const D: usize>(
+    case: &Case<D>,
+    name: &str,
+    points: &[[f64; 2]],
+    reference: &Reference,
+) -> Vec<CheckRow> {
     let Some(tolerance) = reference.tolerance else {
         return Vec::new();
     };

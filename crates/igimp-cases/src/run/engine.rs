@@ -18,7 +18,7 @@ use super::{
     checks, construction, failure, initial, loading, pores, processor, reinforcement, run_out,
     safety, sections, study,
 };
-use crate::case::{Case, StageKind};
+use crate::case::{COMPONENTS, Case, StageKind};
 use crate::error::CaseError;
 use crate::estimate::Expectation;
 use crate::results::checkpoint::sha256;
@@ -40,13 +40,13 @@ use igimp_solver::StepError;
 ///
 /// # Errors
 /// [`CaseError`] for a case that cannot be set up, and for files that cannot be written or read.
-pub fn run(
-    case: &Case,
+pub fn run<const D: usize>(
+    case: &Case<D>,
     target: Option<&Target>,
     start: Start,
-    listener: &mut dyn Listener,
+    listener: &mut dyn Listener<D>,
     interrupt: &AtomicBool,
-) -> Result<Run, CaseError> {
+) -> Result<Run<D>, CaseError> {
     let _entered = target
         .map(|target| Entered::new(case, target, start))
         .transpose()?;
@@ -54,13 +54,13 @@ pub fn run(
 }
 
 /// Runs a case whose results folder was entered.
-pub(crate) fn run_entered(
-    case: &Case,
+pub(crate) fn run_entered<const D: usize>(
+    case: &Case<D>,
     target: Option<&Target>,
     start: Start,
-    listener: &mut dyn Listener,
+    listener: &mut dyn Listener<D>,
     interrupt: &AtomicBool,
-) -> Result<Run, CaseError> {
+) -> Result<Run<D>, CaseError> {
     if case.mesh_study.meshes > 1 {
         return study::run(case, target, start, listener, interrupt);
     }
@@ -68,13 +68,13 @@ pub(crate) fn run_entered(
 }
 
 /// Runs a case on its own grid.
-pub(super) fn one_mesh(
-    case: &Case,
+pub(super) fn one_mesh<const D: usize>(
+    case: &Case<D>,
     target: Option<&Target>,
     start: Start,
-    listener: &mut dyn Listener,
+    listener: &mut dyn Listener<D>,
     interrupt: &AtomicBool,
-) -> Result<Run, CaseError> {
+) -> Result<Run<D>, CaseError> {
     let clock = Instant::now();
     let before = Before::now();
     if case.stages.is_empty() {
@@ -119,26 +119,32 @@ pub(super) fn one_mesh(
 ///
 /// # Errors
 /// [`CaseError`] for a case that cannot be set up.
-pub fn in_memory(case: &Case) -> Result<Run, CaseError> {
+pub fn in_memory<const D: usize>(case: &Case<D>) -> Result<Run<D>, CaseError> {
     let never = AtomicBool::new(false);
-    run(case, None, Start::Afresh, &mut |_: &Event<'_>| {}, &never)
+    run(
+        case,
+        None,
+        Start::Afresh,
+        &mut |_: &Event<'_, D>| {},
+        &never,
+    )
 }
 
 /// The stages of a run, one after another.
-struct Stages {
+struct Stages<const D: usize = 2> {
     before: Before,
     expectation: Option<Expectation>,
     first: usize,
-    left: Option<Left>,
-    state: Option<State>,
+    left: Option<Left<D>>,
+    state: Option<State<D>>,
     sections: Vec<Table>,
     failure: Option<Failure>,
 }
 
-impl Stages {
+impl<const D: usize> Stages<D> {
     /// Opens the results folder and finds where the run begins.
     fn begin(
-        session: &mut Session<'_>,
+        session: &mut Session<'_, D>,
         target: Option<&Target>,
         start: Start,
         before: Before,
@@ -199,7 +205,7 @@ impl Stages {
     }
 
     /// Runs the stages from the first that is not done.
-    fn run(&mut self, session: &mut Session<'_>, initial: &State) -> Result<(), CaseError> {
+    fn run(&mut self, session: &mut Session<'_, D>, initial: &State<D>) -> Result<(), CaseError> {
         let case = session.model.case;
         for number in self.first..case.stages.len() {
             if session.interrupted() {
@@ -208,23 +214,27 @@ impl Stages {
             }
             let stage = &case.stages[number];
             let left = self.left.take().filter(|left| left.stage.is_some());
-            let start = match stage.start_from {
-                None => initial.clone(),
+            let begun = || match stage.start_from {
+                None => Ok(initial.clone()),
                 Some(from) => {
-                    session
-                        .ends
-                        .get(&from)
-                        .cloned()
-                        .ok_or_else(|| CaseError::NoStart {
-                            stage: stage.name.clone(),
-                            from: case.stages[from].name.clone(),
-                        })?
+                    let end = session.ends.get(&from).cloned();
+                    end.ok_or_else(|| CaseError::NoStart {
+                        stage: stage.name.clone(),
+                        from: case.stages[from].name.clone(),
+                    })
                 }
             };
-            let mut state = left
-                .as_ref()
-                .map_or_else(|| start.clone(), |left| left.state.clone());
-            let ended = self.stage(session, number, (&start, &mut state), left)?;
+            let (start, mut state) = match &left {
+                None => (None, begun()?),
+                Some(left) => {
+                    // What construction lets go follows from what it began with.
+                    let is_built = matches!(stage.kind, StageKind::Construction(_));
+                    let is_wanted = is_built && left.resumption.is_some();
+                    let start = is_wanted.then(begun).transpose()?;
+                    (start, left.state.clone())
+                }
+            };
+            let ended = self.stage(session, number, (start.as_ref(), &mut state), left)?;
             self.state = Some(state);
             if !ended {
                 break;
@@ -236,10 +246,10 @@ impl Stages {
     /// Runs one stage to its end; whether the next may follow.
     fn stage(
         &mut self,
-        session: &mut Session<'_>,
+        session: &mut Session<'_, D>,
         number: usize,
-        (start, state): (&State, &mut State),
-        left: Option<Left>,
+        (start, state): (Option<&State<D>>, &mut State<D>),
+        left: Option<Left<D>>,
     ) -> Result<bool, CaseError> {
         let clock = Instant::now();
         let stage = &session.model.case.stages[number];
@@ -314,9 +324,9 @@ impl Stages {
     /// Writes down how a stage ended; whether the next may follow.
     fn close(
         &mut self,
-        session: &mut Session<'_>,
+        session: &mut Session<'_, D>,
         number: usize,
-        state: &mut State,
+        state: &mut State<D>,
         mut summary: StageSummary,
         step_error: Option<StepError>,
     ) -> Result<bool, CaseError> {
@@ -351,7 +361,7 @@ impl Stages {
         if goes_on && stage.reset_displacements {
             state.body.particles.reset_displacements();
             for own in &mut state.controls.rigid {
-                own.track.displacement = [0.0; 3];
+                own.track.displacement = [0.0; COMPONENTS];
             }
         }
         if goes_on {
@@ -368,9 +378,9 @@ impl Stages {
     /// Sections, checks, pictures and frames of the state at the end of a stage.
     fn read(
         &mut self,
-        session: &mut Session<'_>,
+        session: &mut Session<'_, D>,
         number: usize,
-        state: &State,
+        state: &State<D>,
         summary: &StageSummary,
     ) -> Result<(), CaseError> {
         let case = session.model.case;
@@ -405,10 +415,10 @@ impl Stages {
     /// Checks of curves, summary, pictures of curves, report.
     fn finish(
         self,
-        mut session: Session<'_>,
-        initial: State,
+        mut session: Session<'_, D>,
+        initial: State<D>,
         clock: Instant,
-    ) -> Result<Run, CaseError> {
+    ) -> Result<Run<D>, CaseError> {
         let case = session.model.case;
         if !session.summary.interrupted {
             let rows = checks::of_curves(case, &session.records.curves);
@@ -416,7 +426,7 @@ impl Stages {
         }
         let peak = memory::peak_mib();
         session.summary.peak_memory_mib = peak;
-        session.summary.memory = self.before.share(peak, &session.summary.size);
+        session.summary.memory = self.before.share(peak, case, &session.summary.size);
         session.summary.cpu_seconds = processor::seconds();
         let stages = &session.summary.stages;
         let expected = self
@@ -442,13 +452,13 @@ impl Stages {
 }
 
 /// Runs a stage by its kind.
-fn dispatch(
-    session: &mut Session<'_>,
+fn dispatch<const D: usize>(
+    session: &mut Session<'_, D>,
     number: usize,
-    (start, state): (&State, &mut State),
+    (start, state): (Option<&State<D>>, &mut State<D>),
     summary: &mut StageSummary,
     resumption: Option<&Resumption>,
-    search: Option<Search>,
+    search: Option<Search<D>>,
 ) -> Result<Ended, CaseError> {
     let stage = &session.model.case.stages[number];
     match &stage.kind {

@@ -13,7 +13,7 @@ use crate::results::lock::Lock;
 use crate::results::owner::Owner;
 
 /// Whether a folder holds a run of this very input that was stopped and can go on.
-pub fn can_go_on(case: &Case, root: &Path) -> bool {
+pub fn can_go_on<const D: usize>(case: &Case<D>, root: &Path) -> bool {
     let stopped = |owner: &Owner| !owner.finished && owner.input == fingerprint::of_case(case);
     owner(root).as_ref().is_some_and(stopped) && holds_checkpoints(root)
 }
@@ -32,7 +32,11 @@ impl Entered {
     /// [`CaseError::InUse`], [`CaseError::ForeignFolder`], [`CaseError::Link`],
     /// [`CaseError::OtherResults`], [`CaseError::Unfinished`]; [`CheckpointError::OtherCase`] for
     /// checkpoints of other input to go on from.
-    pub(crate) fn new(case: &Case, target: &Target, start: Start) -> Result<Self, CaseError> {
+    pub(crate) fn new<const D: usize>(
+        case: &Case<D>,
+        target: &Target,
+        start: Start,
+    ) -> Result<Self, CaseError> {
         let root = &target.folder;
         refuse_foreign(root)?;
         refuse_links(root)?;

@@ -54,9 +54,9 @@ impl Export {
     }
 
     /// A step was accepted: its system is the last one of the stage so far.
-    pub(crate) fn accepted(
+    pub(crate) fn accepted<const D: usize>(
         &mut self,
-        conditions: &StepConditions<2>,
+        conditions: &StepConditions<D>,
         run: &Summary,
         stage: &StageSummary,
     ) {

@@ -11,10 +11,10 @@ use crate::case::{Case, StageKind};
 use crate::summary::StageSummary;
 
 /// Describes the step that ended a stage.
-pub(crate) fn describe(
-    session: &Session<'_>,
+pub(crate) fn describe<const D: usize>(
+    session: &Session<'_, D>,
     number: usize,
-    state: &State,
+    state: &State<D>,
     summary: &StageSummary,
     error: StepError,
 ) -> Failure {
@@ -23,7 +23,7 @@ pub(crate) fn describe(
     let particles = &state.body.particles;
     let around = error
         .worst
-        .map(|(x, _)| around(case, particles, [x[0], x[1]]));
+        .map(|(x, _)| around(case, particles, std::array::from_fn(|axis| x[axis])));
     let near_worst = around.as_ref().map(|(counts, _)| *counts);
     Failure {
         stage: stage.name.clone(),
@@ -45,12 +45,16 @@ pub(crate) fn describe(
 
 /// Particles within a cell of a place: how many, how many yield, how many of them at an apex or a
 /// corner in tension; and the material of most of them.
-fn around(case: &Case, particles: &Particles<2>, place: [f64; 2]) -> ([usize; 3], Option<String>) {
+fn around<const D: usize>(
+    case: &Case<D>,
+    particles: &Particles<D>,
+    place: [f64; D],
+) -> ([usize; 3], Option<String>) {
     let mut counts = [0; 3];
     let mut by_material = vec![0_usize; case.materials.len()];
     let reach = case.grid.cell_at(place);
     for (particle, x) in particles.x.iter().enumerate() {
-        let near = (0..2).all(|axis| (x[axis] - place[axis]).abs() <= reach[axis]);
+        let near = (0..D).all(|axis| (x[axis] - place[axis]).abs() <= reach[axis]);
         if !near {
             continue;
         }

@@ -4,12 +4,12 @@ use crate::case::{Case, Every, Output, TitleBlock};
 use crate::results::checkpoint::sha256;
 
 /// Of everything but where and how often results are written, and for whom.
-pub(crate) fn of_case(case: &Case) -> String {
+pub(crate) fn of_case<const D: usize>(case: &Case<D>) -> String {
     sha256(format!("{:?}", whole(case)).as_bytes())
 }
 
 /// Of everything that the first `stages` stages depend on.
-pub(crate) fn of_history(case: &Case, stages: usize) -> String {
+pub(crate) fn of_history<const D: usize>(case: &Case<D>, stages: usize) -> String {
     let mut history = whole(case);
     history.stages.truncate(stages);
     history.title.clear();
@@ -21,13 +21,14 @@ pub(crate) fn of_history(case: &Case, stages: usize) -> String {
 }
 
 /// A case without what concerns its output and the head of its report alone.
-fn whole(case: &Case) -> Case {
+fn whole<const D: usize>(case: &Case<D>) -> Case<D> {
     Case {
         title_block: TitleBlock::default(),
         output: Output {
             folder: std::path::PathBuf::new(),
             paraview: Every::Never,
             figures: Vec::new(),
+            cuts: Vec::new(),
             report: false,
             checkpoint_every: 0,
             checkpoint_keep: 0,

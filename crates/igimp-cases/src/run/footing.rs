@@ -22,13 +22,15 @@ pub(crate) struct Footing {
 }
 
 /// The rigid body of a case that the rows of the grid follow, and the row of nodes at its lowest place.
-pub(crate) fn followed(case: &Case) -> Result<Option<(usize, usize)>, CaseError> {
+pub(crate) fn followed<const D: usize>(
+    case: &Case<D>,
+) -> Result<Option<(usize, usize)>, CaseError> {
     let mut followed = case.rigid.iter().enumerate();
     let Some((index, part)) = followed.find(|(_, part)| part.grid_follows) else {
         return Ok(None);
     };
-    let level = part.bounds().0[1];
-    let row = case.grid.axes[1].place(level);
+    let level = part.bounds().0[D - 1];
+    let row = case.grid.axes[D - 1].place(level);
     if (row - row.round()).abs() > 1e-6 || row.round() < 1.0 {
         return Err(CaseError::FootingOffGrid { level });
     }
@@ -57,7 +59,7 @@ pub(crate) fn rows(spec: &AxisSpec, base: usize, w: f64) -> Result<Axis, ShapeEr
 
 impl Footing {
     /// The footing of a case, if it has one.
-    pub(crate) fn of(case: &Case) -> Result<Option<Self>, CaseError> {
+    pub(crate) fn of<const D: usize>(case: &Case<D>) -> Result<Option<Self>, CaseError> {
         let mut footings = case.loads.iter().filter_map(|load| match load.kind {
             LoadKind::RigidFooting {
                 from,
@@ -74,8 +76,8 @@ impl Footing {
             return Err(CaseError::SeveralFootings);
         }
         let place = |x: f64, axis: usize| case.grid.axes[axis].place(x);
-        let row = place(from[1], 1).round();
-        if (place(from[1], 1) - row).abs() > 1e-6 || row < 1.0 {
+        let row = place(from[1], D - 1).round();
+        if (place(from[1], D - 1) - row).abs() > 1e-6 || row < 1.0 {
             return Err(CaseError::FootingOffGrid { level: from[1] });
         }
         let first = (place(from[0].min(to[0]), 0) - 1e-6).ceil().max(0.0) as usize;
@@ -94,16 +96,17 @@ impl Footing {
     }
 
     /// Whether a node belongs to the footing; `Some(true)` on its base.
-    fn part(&self, [column, row]: [usize; 2]) -> Option<bool> {
+    fn part<const D: usize>(&self, node: [usize; D]) -> Option<bool> {
+        let (column, row) = (node[0], node[D - 1]);
         let inside = (self.columns[0]..=self.columns[1]).contains(&column) && row >= self.row;
         inside.then_some(row == self.row)
     }
 
     /// Moves the footing by `step` upwards over the step (negative: down).
-    pub(crate) fn push(
+    pub(crate) fn push<const D: usize>(
         &self,
-        grid: &Grid<2>,
-        constraints: &mut Constraints<2>,
+        grid: &Grid<D>,
+        constraints: &mut Constraints<D>,
         step: f64,
     ) -> Result<(), AssemblyError> {
         for node in 0..grid.node_count() {
@@ -111,7 +114,7 @@ impl Footing {
                 continue;
             };
             if self.rough || base {
-                constraints.prescribe(node, 1, step)?;
+                constraints.prescribe(node, D - 1, step)?;
             }
             if self.rough || !base {
                 constraints.prescribe(node, 0, 0.0)?;
@@ -121,10 +124,10 @@ impl Footing {
     }
 
     /// Resistance, compression positive, times the reaction factor \[N/m\].
-    pub(crate) fn resistance(&self, grid: &Grid<2>, reactions: &[[f64; 2]]) -> f64 {
+    pub(crate) fn resistance<const D: usize>(&self, grid: &Grid<D>, reactions: &[[f64; D]]) -> f64 {
         let force: f64 = (0..grid.node_count())
             .filter(|&node| self.part(grid.node_place(node)).is_some())
-            .map(|node| reactions[node][1])
+            .map(|node| reactions[node][D - 1])
             .sum();
         -force * self.reaction_factor
     }

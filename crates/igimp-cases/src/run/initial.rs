@@ -1,7 +1,7 @@
 //! The stresses of level ground: the weight above, and K₀ times that sideways (theory, eqs. 36
 //! and 37).
 
-use igimp_assembly::{Particles, PoreSite, PoreWater as _};
+use igimp_assembly::{Particles, PoreWater as _};
 use igimp_material::ConstitutiveModel;
 
 use super::model::Model;
@@ -13,7 +13,10 @@ use crate::error::CaseError;
 /// The vertical stress is the weight of the ground above a particle, layer by layer, less the pressure of water in the
 /// pores where the law speaks of effective stress; the horizontal ones are K₀ times that. The elastic strain follows from the stress, so that the
 /// state is what the law would have returned; deformation counts from here.
-pub(crate) fn level_ground(model: &Model<'_>, state: &mut State) -> Result<(), CaseError> {
+pub(crate) fn level_ground<const D: usize>(
+    model: &Model<'_, D>,
+    state: &mut State<D>,
+) -> Result<(), CaseError> {
     let case = model.case;
     let ground = case.ground();
     let water = state.controls.water.and_then(|k| model.ground_water(k));
@@ -23,13 +26,14 @@ pub(crate) fn level_ground(model: &Model<'_>, state: &mut State) -> Result<(), C
         let material = &case.materials[fields.law[particle] % case.materials.len()];
         let number = fields.number[particle];
         let vertical = match &water {
-            None => -ground.weight_above(x),
+            None => -ground.weight_above(&x),
             Some(water) => water.effective_weight(&ground, number, material, &x),
         };
         let k0 = material
             .k0
             .unwrap_or(material.poisson / (1.0 - material.poisson));
-        let sigma = [k0 * vertical, vertical, k0 * vertical];
+        let mut sigma = [k0 * vertical; 3];
+        sigma[D - 1] = vertical;
         let answer = |law: &dyn ConstitutiveModel| {
             let excess = law.yield_function(&sigma, &fields.history[particle]);
             (excess <= 1e-9 * law.stress_scale(&sigma)).then(|| law.elasticity().strain(&sigma))
@@ -41,20 +45,12 @@ pub(crate) fn level_ground(model: &Model<'_>, state: &mut State) -> Result<(), C
         let Some(strain) = strain else {
             return Err(CaseError::InitialStress {
                 material: material.name.clone(),
-                position: x,
+                position: x.to_vec(),
                 k0,
             });
         };
         if let Some(water) = &water {
-            let half_length = &fields.half_length[particle];
-            let domain: f64 = half_length.iter().map(|half| 2.0 * half).product();
-            let site = PoreSite {
-                number,
-                law: fields.law[particle],
-                x: &x,
-                half_length,
-                filled: fields.volume0[particle] / domain,
-            };
+            let site = state.body.particles.pore_site(particle);
             // At full gravity, as the stress.
             fields.pore_pressure[particle] = water.at(site).pressure;
         }

@@ -30,30 +30,40 @@ pub(crate) struct Resumption {
 }
 
 /// Where a search for the factor of safety was left.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Search {
+#[derive(Clone, Debug)]
+pub(crate) struct Search<const D: usize = 2> {
     /// Trials made.
     pub(crate) trials: Vec<TrialSummary>,
     /// Largest stable factor and its state.
-    pub(crate) stable: Option<End>,
+    pub(crate) stable: Option<End<D>>,
     /// Smallest failed factor and its last equilibrium.
-    pub(crate) failed: Option<End>,
+    pub(crate) failed: Option<End<D>>,
+}
+
+impl<const D: usize> Default for Search<D> {
+    fn default() -> Self {
+        Self {
+            trials: Vec::new(),
+            stable: None,
+            failed: None,
+        }
+    }
 }
 
 /// An end of the interval of a search.
 #[derive(Clone, Debug)]
-pub(crate) struct End {
+pub(crate) struct End<const D: usize = 2> {
     /// Strength reduction factor \[-\].
     pub(crate) srf: f64,
     /// Its last equilibrium.
-    pub(crate) state: State,
+    pub(crate) state: State<D>,
     /// The equilibrium before that, for the way in which the body moves.
-    pub(crate) before: Option<Arc<Body<2>>>,
+    pub(crate) before: Option<Arc<Body<D>>>,
 }
 
 /// Where a run was left.
 #[derive(Clone, Debug)]
-pub(crate) struct Left {
+pub(crate) struct Left<const D: usize = 2> {
     /// Stages that are done.
     pub(crate) stages: Vec<StageSummary>,
     /// Checks made.
@@ -65,11 +75,11 @@ pub(crate) struct Left {
     /// The stage that was not done, so far.
     pub(crate) stage: Option<StageSummary>,
     /// The state.
-    pub(crate) state: State,
+    pub(crate) state: State<D>,
     /// Where its march was left.
     pub(crate) resumption: Option<Resumption>,
     /// Where its search was left.
-    pub(crate) search: Option<Search>,
+    pub(crate) search: Option<Search<D>>,
 }
 
 /// A checkpoint's own words, beside its bodies.

@@ -14,7 +14,7 @@ use crate::error::CaseError;
 use crate::summary::StageSummary;
 
 /// The controls at the end of a stage that begins with `start`.
-pub(crate) fn target(case: &Case, stage: &Stage, start: &Controls) -> Controls {
+pub(crate) fn target<const D: usize>(case: &Case<D>, stage: &Stage, start: &Controls) -> Controls {
     let mut end = start.clone();
     for &member in &stage.install {
         end.reinforcement[member].jack = case.reinforcement[member].prestress;
@@ -23,10 +23,12 @@ pub(crate) fn target(case: &Case, stage: &Stage, start: &Controls) -> Controls {
         StageKind::Gravity {
             factor,
             horizontal,
+            across,
             vertical,
         } => {
             end.gravity = *factor;
-            for (own, stated) in end.acceleration.iter_mut().zip([horizontal, vertical]) {
+            let stated = [horizontal, across, vertical];
+            for (own, stated) in end.acceleration.iter_mut().zip(stated) {
                 *own = stated.unwrap_or(*own);
             }
         }
@@ -57,9 +59,9 @@ pub(crate) fn target(case: &Case, stage: &Stage, start: &Controls) -> Controls {
 }
 
 /// Marches a state to the end of a loading stage, or on from where an earlier run left it.
-pub(crate) fn load(
-    session: &mut Session<'_>,
-    state: &mut State,
+pub(crate) fn load<const D: usize>(
+    session: &mut Session<'_, D>,
+    state: &mut State<D>,
     number: usize,
     summary: &mut StageSummary,
     resumption: Option<&Resumption>,
@@ -68,10 +70,10 @@ pub(crate) fn load(
 }
 
 /// The same with forces by node that hold the body at first and are let go on the way \[N/m\].
-pub(crate) fn let_go(
-    session: &mut Session<'_>,
-    state: &mut State,
-    (number, held): (usize, Option<Arc<Vec<[f64; 2]>>>),
+pub(crate) fn let_go<const D: usize>(
+    session: &mut Session<'_, D>,
+    state: &mut State<D>,
+    (number, held): (usize, Option<Arc<Vec<[f64; D]>>>),
     summary: &mut StageSummary,
     resumption: Option<&Resumption>,
 ) -> Result<Ended, CaseError> {
@@ -126,9 +128,9 @@ pub(crate) fn let_go(
 }
 
 /// Records the state before a stage.
-pub(crate) fn begin(
-    session: &mut Session<'_>,
-    state: &State,
+pub(crate) fn begin<const D: usize>(
+    session: &mut Session<'_, D>,
+    state: &State<D>,
     number: usize,
 ) -> Result<(), CaseError> {
     session.record(&Moment {
@@ -145,11 +147,11 @@ pub(crate) fn begin(
 }
 
 /// The condition of the case that ends the stage after a step, if one does.
-fn reason_to_stop(
-    session: &Session<'_>,
+fn reason_to_stop<const D: usize>(
+    session: &Session<'_, D>,
     stage: &Stage,
     resistance_before: f64,
-    taken: &Taken<'_>,
+    taken: &Taken<'_, D>,
 ) -> Option<String> {
     let stop = &stage.stop_when;
     let particles = &taken.accepted.body.particles;

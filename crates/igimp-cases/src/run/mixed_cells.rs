@@ -34,13 +34,13 @@ fn moduli(material: &Material, ratios: Ratios) -> [f64; 2] {
 ///
 /// Each such cell appends a law for every material: the material of a law is its number modulo the number
 /// of materials.
-pub(super) fn share_stiffness(
-    case: &Case,
-    grid: &Grid<2>,
-    (seeds, ratios): (&mut [ParticleSeed<2>], &mut [Ratios]),
+pub(super) fn share_stiffness<const D: usize>(
+    case: &Case<D>,
+    grid: &Grid<D>,
+    (seeds, ratios): (&mut [ParticleSeed<D>], &mut [Ratios]),
     laws: &mut Vec<SharedLaw>,
 ) -> Result<(), CaseError> {
-    let cell_of = |seed: &ParticleSeed<2>| grid.cell_at(&seed.x).map(|cell| grid.cell_index(cell));
+    let cell_of = |seed: &ParticleSeed<D>| grid.cell_at(&seed.x).map(|cell| grid.cell_index(cell));
     let mut shares: Vec<Option<Share>> = vec![None; grid.cell_count()];
     for (seed, ratios) in std::iter::zip(&*seeds, &*ratios) {
         let Some(cell) = cell_of(seed) else { continue };

@@ -34,11 +34,12 @@ mod study;
 mod water;
 
 use std::path::PathBuf;
+use std::sync::atomic::AtomicBool;
 
 use igimp_solver::linear::LinearSolverError;
 use igimp_solver::{Accepted, Body, StepError, StepFailure, StepReport};
 
-use crate::case::Case;
+use crate::case::{AnyCase, Case};
 use crate::error::CaseError;
 use crate::estimate::Expectation;
 use crate::input::CaseFile;
@@ -61,7 +62,7 @@ pub const REACHED_ITS_END: &str = "reached its end";
 
 /// What happens during a run, as it happens.
 #[derive(Clone, Copy, Debug)]
-pub enum Event<'a> {
+pub enum Event<'a, const D: usize = 2> {
     /// The model is made; the first step follows.
     Prepared {
         /// Its size.
@@ -84,7 +85,7 @@ pub enum Event<'a> {
     /// look at body and nodal forces themselves.
     Equilibrium {
         /// The body in its new state, conditions, forces and report of the step.
-        accepted: &'a Accepted<'a, 2>,
+        accepted: &'a Accepted<'a, D>,
     },
     /// A step was accepted.
     Step {
@@ -105,7 +106,7 @@ pub enum Event<'a> {
         /// What it found.
         trial: &'a TrialSummary,
         /// Its last equilibrium.
-        state: &'a State,
+        state: &'a State<D>,
     },
     /// A stage ended.
     StageEnded {
@@ -122,20 +123,64 @@ pub enum Event<'a> {
         /// Into how many parts the mesh cuts the cells of the case.
         parts: usize,
         /// What happens.
-        event: &'a Event<'a>,
+        event: &'a Event<'a, D>,
     },
 }
 
-/// Listens to a run: a progress bar, a log. Closures are listeners.
-pub trait Listener: Send {
+/// Listens to a run: a progress bar, a log. Closures are listeners to runs of one dimension.
+pub trait Listener<const D: usize = 2>: Send {
     /// Called as it happens.
-    fn on_event(&mut self, event: &Event<'_>);
+    fn on_event(&mut self, event: &Event<'_, D>);
 }
 
-impl<F: FnMut(&Event<'_>) + Send> Listener for F {
-    fn on_event(&mut self, event: &Event<'_>) {
+impl<F: FnMut(&Event<'_, D>) + Send, const D: usize> Listener<D> for F {
+    fn on_event(&mut self, event: &Event<'_, D>) {
         self(event);
     }
+}
+
+/// A listener to runs of any dimension.
+pub trait AnyListener: Listener<2> + Listener<3> {}
+
+impl<L: Listener<2> + Listener<3>> AnyListener for L {}
+
+/// A listener that does not care.
+#[derive(Clone, Copy, Debug)]
+pub struct Nobody;
+
+impl<const D: usize> Listener<D> for Nobody {
+    fn on_event(&mut self, _: &Event<'_, D>) {}
+}
+
+/// Runs a case of any dimension, as [`run`](fn@run) does; what is left of the run without its body.
+///
+/// # Errors
+/// As [`run`](fn@run).
+pub fn run_any(
+    case: &AnyCase,
+    target: Option<&Target>,
+    start: Start,
+    listener: &mut dyn AnyListener,
+    interrupt: &AtomicBool,
+) -> Result<Account, CaseError> {
+    Ok(match case {
+        AnyCase::Plane(case) => run(case, target, start, listener, interrupt)?.into(),
+        AnyCase::Space(case) => run(case, target, start, listener, interrupt)?.into(),
+    })
+}
+
+/// The same in a results folder that was entered.
+pub(crate) fn run_any_entered(
+    case: &AnyCase,
+    target: Option<&Target>,
+    start: Start,
+    listener: &mut dyn AnyListener,
+    interrupt: &AtomicBool,
+) -> Result<Account, CaseError> {
+    Ok(match case {
+        AnyCase::Plane(case) => run_entered(case, target, start, listener, interrupt)?.into(),
+        AnyCase::Space(case) => run_entered(case, target, start, listener, interrupt)?.into(),
+    })
 }
 
 impl Failure {
@@ -205,7 +250,7 @@ impl Target {
 
 impl Target {
     /// What is known of a run of a case into this folder.
-    fn claim(&self, case: &Case) -> Claim {
+    fn claim<const D: usize>(&self, case: &Case<D>) -> Claim {
         Claim {
             origin: self.origin.clone(),
             title: case.title.clone(),
@@ -216,7 +261,7 @@ impl Target {
 
 /// What a run hands back.
 #[derive(Debug)]
-pub struct Run {
+pub struct Run<const D: usize = 2> {
     /// What `summary.json` says.
     pub summary: Summary,
     /// Curves, named as in the case.
@@ -226,11 +271,32 @@ pub struct Run {
     /// Fields along sections, named `SECTION__STAGE`.
     pub sections: Vec<Table>,
     /// The state at the end.
-    pub body: Body<2>,
+    pub body: Body<D>,
     /// The step that ended the run for want of equilibrium, if one did.
     pub failure: Option<Failure>,
     /// Why meshes of a study could not be run, or their results not be written; the others are there.
     pub lost: Vec<CaseError>,
+}
+
+/// What a run says of itself, in any dimension.
+#[derive(Debug)]
+pub struct Account {
+    /// What `summary.json` says.
+    pub summary: Summary,
+    /// The step that ended the run for want of equilibrium, if one did.
+    pub failure: Option<Failure>,
+    /// Why meshes of a study could not be run, or their results not be written; the others are there.
+    pub lost: Vec<CaseError>,
+}
+
+impl<const D: usize> From<Run<D>> for Account {
+    fn from(run: Run<D>) -> Self {
+        Self {
+            summary: run.summary,
+            failure: run.failure,
+            lost: run.lost,
+        }
+    }
 }
 
 /// A step that found no equilibrium where the case wanted one.

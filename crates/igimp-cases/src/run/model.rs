@@ -16,20 +16,24 @@ use super::state::{Controls, State};
 use super::water::{GroundWater, Seeded};
 use crate::case::{Case, Drainage, LoadKind, Material, MixedCells, Side};
 use crate::error::CaseError;
-use crate::seed::fill_polygon;
+use crate::results::fields;
+use crate::seed::fill;
 use crate::summary::ModelSize;
 
-/// Acceleration of gravity that turns a unit weight into a density where the case has none.
-pub(super) const STANDARD_GRAVITY: f64 = 9.81;
+/// Acceleration of gravity that turns unit weights of a case with this one into densities \[m/s²\]: that of the earth where
+/// the case has none.
+pub(super) fn gravity_of_weights(gravity: f64) -> f64 {
+    if gravity > 0.0 { gravity } else { 9.81 }
+}
 
 /// Load points per cell along a loaded segment.
 const POINTS_PER_CELL: f64 = 4.0;
 
 /// Everything about a case that stays during a run.
 #[derive(Debug)]
-pub struct Model<'c> {
+pub struct Model<'c, const D: usize = 2> {
     /// The case.
-    pub case: &'c Case,
+    pub case: &'c Case<D>,
     /// Laws of full strength: one for each material in their order, then again one for each material
     /// for every cell whose soils share a mean stiffness.
     pub laws: Vec<SharedLaw>,
@@ -39,19 +43,19 @@ pub struct Model<'c> {
     /// How far each rigid body stands above the soil beneath it as the case has both \[m\].
     pub(crate) gaps: Vec<f64>,
     /// By condition of the case.
-    water: Vec<Arc<GroundWater>>,
+    water: Vec<Arc<GroundWater<D>>>,
     /// What the particles were seeded in.
-    pub(crate) seeded: Arc<Seeded>,
+    pub(crate) seeded: Arc<Seeded<D>>,
     /// The particles of bodies that stages place.
-    pub(crate) later: Option<Particles<2>>,
+    pub(crate) later: Option<Particles<D>>,
 }
 
-impl<'c> Model<'c> {
+impl<'c, const D: usize> Model<'c, D> {
     /// The model of a case, and its undeformed, stress-free state.
     ///
     /// # Errors
     /// [`CaseError`] for what cannot be made.
-    pub fn new(case: &'c Case) -> Result<(Self, State), CaseError> {
+    pub fn new(case: &'c Case<D>) -> Result<(Self, State<D>), CaseError> {
         let laws = case
             .materials
             .iter()
@@ -68,11 +72,7 @@ impl<'c> Model<'c> {
             later: None,
         };
         let grid = model.grid(0.0)?;
-        let gravity = if case.gravity > 0.0 {
-            case.gravity
-        } else {
-            STANDARD_GRAVITY
-        };
+        let gravity = gravity_of_weights(case.gravity);
         let ground = case.ground();
         let mut seeds = Vec::new();
         let mut seeded = Seeded::default();
@@ -80,16 +80,16 @@ impl<'c> Model<'c> {
             let material = &case.materials[part.material];
             let density = material.unit_weight / gravity;
             let parts = part.per_direction;
-            let mut own = fill_polygon(&grid, &part.polygon, parts, density, part.material)?;
+            let mut own = fill(&grid, &*part.region, parts, density, part.material)?;
             if material.profiles.unit_weight.is_some() {
                 for seed in &mut own {
-                    seed.density = material.unit_weight_at(seed.x, &ground) / gravity;
+                    seed.density = material.unit_weight_at(&seed.x, &ground) / gravity;
                 }
             }
             seeded.body.extend(own.iter().map(|_| body));
             seeds.extend(own);
         }
-        let ratios = |seed: &ParticleSeed<2>| case.materials[seed.law].ratios_at(seed.x, &ground);
+        let ratios = |seed: &ParticleSeed<D>| case.materials[seed.law].ratios_at(&seed.x, &ground);
         let mut ratios: Vec<Ratios> = seeds.iter().map(ratios).collect();
         if case.grid.mixed_cells == MixedCells::Mean {
             let parts = (&mut seeds[..], &mut ratios[..]);
@@ -146,7 +146,7 @@ impl<'c> Model<'c> {
     }
 
     /// The undeformed, stress-free state of the bodies that are there in a state, of the materials that they have there.
-    pub(crate) fn undeformed(&self, state: &State) -> Result<State, CaseError> {
+    pub(crate) fn undeformed(&self, state: &State<D>) -> Result<State<D>, CaseError> {
         let (model, mut base) = Model::new(self.case)?;
         let there = &state.body.particles;
         if let Some(later) = &model.later {
@@ -171,7 +171,7 @@ impl<'c> Model<'c> {
     }
 
     /// The size of the model that begins with a body.
-    pub fn size(&self, body: &Body<2>) -> ModelSize {
+    pub fn size(&self, body: &Body<D>) -> ModelSize {
         let particles = &body.particles;
         let there = |stage: usize| {
             let bodies = self.case.bodies_after(stage);
@@ -200,14 +200,15 @@ impl<'c> Model<'c> {
     ///
     /// # Errors
     /// [`ShapeError`] for cells that make no grid.
-    pub fn grid(&self, lowered: f64) -> Result<Grid<2>, ShapeError> {
-        let [x, y] = &self.case.grid.axes;
+    pub fn grid(&self, lowered: f64) -> Result<Grid<D>, ShapeError> {
+        let mut grid = self.case.grid.grid()?;
         let row = match (&self.footing, self.followed) {
             (Some(footing), _) if lowered > 0.0 => footing.row(),
             (None, Some((_, row))) if lowered != 0.0 => row,
-            _ => return self.case.grid.grid(),
+            _ => return Ok(grid),
         };
-        Ok(Grid::new([x.axis()?, footing::rows(y, row, lowered)?]))
+        grid.axes[D - 1] = footing::rows(&self.case.grid.axes[D - 1], row, lowered)?;
+        Ok(grid)
     }
 
     /// What holds during a step between two controls, with so much `drag` \[1/s²\], on the grid of the
@@ -220,17 +221,17 @@ impl<'c> Model<'c> {
         from: &Controls,
         to: &Controls,
         drag: f64,
-    ) -> Result<StepConditions<2>, AssemblyError> {
+    ) -> Result<StepConditions<D>, AssemblyError> {
         self.conditions_on(self.grid(self.lowered(from)), (from, to), drag)
     }
 
     /// The same on another grid.
     pub(crate) fn conditions_on(
         &self,
-        grid: Result<Grid<2>, ShapeError>,
+        grid: Result<Grid<D>, ShapeError>,
         (from, to): (&Controls, &Controls),
         drag: f64,
-    ) -> Result<StepConditions<2>, AssemblyError> {
+    ) -> Result<StepConditions<D>, AssemblyError> {
         let grid = grid.map_err(|source| AssemblyError::Grid { source })?;
         let mut constraints = self.supports(&grid)?;
         if let Some(footing) = self.footing.as_ref().filter(|_| to.settlement > 0.0) {
@@ -240,7 +241,7 @@ impl<'c> Model<'c> {
             grid,
             constraints,
             StepLoads {
-                gravity: to.body_force().map(|share| share * self.case.gravity),
+                gravity: to.body_force::<D>().map(|share| share * self.case.gravity),
                 factors: to.factors.clone(),
                 drag,
             },
@@ -252,12 +253,12 @@ impl<'c> Model<'c> {
     }
 
     /// A condition of the water; none: dry.
-    pub(crate) fn ground_water(&self, condition: usize) -> Option<&Arc<GroundWater>> {
+    pub(crate) fn ground_water(&self, condition: usize) -> Option<&Arc<GroundWater<D>>> {
         self.water.get(condition)
     }
 
     /// Water in the pores of a step that ends with these controls.
-    fn water(&self, to: &Controls) -> Water<2> {
+    fn water(&self, to: &Controls) -> Water<D> {
         let materials = &self.case.materials;
         let stiffness = |material: &Material| match material.drainage {
             Drainage::Undrained { stiffness } if !to.drained => stiffness,
@@ -265,7 +266,7 @@ impl<'c> Model<'c> {
         };
         let own = to.water.and_then(|condition| self.ground_water(condition));
         Water {
-            given: own.map(|own| Arc::clone(own) as Arc<dyn PoreWater<2>>),
+            given: own.map(|own| Arc::clone(own) as Arc<dyn PoreWater<D>>),
             factor: to.gravity,
             stiffness: (0..self.laws.len())
                 .map(|law| stiffness(&materials[law % materials.len()]))
@@ -282,24 +283,21 @@ impl<'c> Model<'c> {
     }
 
     /// Resistance of the footing, compression positive, times its reaction factor \[N/m\].
-    pub fn footing_resistance(&self, grid: &Grid<2>, reactions: &[[f64; 2]]) -> f64 {
+    pub fn footing_resistance(&self, grid: &Grid<D>, reactions: &[[f64; D]]) -> f64 {
         self.footing
             .as_ref()
             .map_or(0.0, |footing| footing.resistance(grid, reactions))
     }
 
-    fn supports(&self, grid: &Grid<2>) -> Result<Constraints<2>, AssemblyError> {
+    fn supports(&self, grid: &Grid<D>) -> Result<Constraints<D>, AssemblyError> {
         let mut constraints = Constraints::free(grid);
         let boundaries = &self.case.boundaries;
-        for (side, normal, upper) in [
-            (boundaries.left, 0, false),
-            (boundaries.right, 0, true),
-            (boundaries.bottom, 1, false),
-            (boundaries.top, 1, true),
-        ] {
-            for axis in 0..2 {
-                if side == Side::Fixed || (side == Side::Roller && axis == normal) {
-                    constraints.fix_wall(grid, normal, upper, axis)?;
+        for (normal, sides) in boundaries.sides.iter().enumerate() {
+            for (side, upper) in std::iter::zip(sides, [false, true]) {
+                for axis in 0..D {
+                    if *side == Side::Fixed || (*side == Side::Roller && axis == normal) {
+                        constraints.fix_wall(grid, normal, upper, axis)?;
+                    }
                 }
             }
         }
@@ -307,11 +305,11 @@ impl<'c> Model<'c> {
         for held in &boundaries.boxes {
             for node in 0..grid.node_count() {
                 let x = grid.node_position(node);
-                let inside = (0..2).all(|axis| {
+                let inside = (0..D).all(|axis| {
                     held.lower[axis] - reach[axis] <= x[axis]
                         && x[axis] <= held.upper[axis] + reach[axis]
                 });
-                for axis in (0..2).filter(|&axis| inside && held.fix[axis]) {
+                for axis in (0..D).filter(|&axis| inside && held.fix[axis]) {
                     constraints.prescribe(node, axis, 0.0)?;
                 }
             }
@@ -358,19 +356,24 @@ pub(crate) fn reduced(laws: &[SharedLaw], srf: &[f64]) -> Result<Vec<SharedLaw>,
 }
 
 /// The points that carry pressures and forces, each under the number of its load.
-fn load_points(case: &Case) -> Vec<LoadPoint<2>> {
-    let [x, y] = &case.grid.axes;
+fn load_points<const D: usize>(case: &Case<D>) -> Vec<LoadPoint<D>> {
     let mut points = Vec::new();
     for (load, kind) in case.loads.iter().map(|load| load.kind).enumerate() {
         match kind {
             LoadKind::RigidFooting { .. } => {}
             LoadKind::Pressure { from, to, traction } => {
-                let length = (to[0] - from[0]).hypot(to[1] - from[1]);
-                let cell = x
-                    .smallest_between(from[0], to[0])
-                    .min(y.smallest_between(from[1], to[1]));
-                let count = (POINTS_PER_CELL * length / cell).ceil().max(1.0) as usize;
-                points.extend(LoadPoint::along_edge(from, to, traction, count, load));
+                let cells = case.grid.axes.iter().enumerate();
+                let cells = cells.map(|(axis, own)| own.smallest_between(from[axis], to[axis]));
+                let cell = cells.fold(f64::INFINITY, f64::min);
+                let count =
+                    |length: f64| (POINTS_PER_CELL * length / cell).ceil().max(1.0) as usize;
+                let way: [f64; D] = std::array::from_fn(|axis| to[axis] - from[axis]);
+                points.extend(if D == 2 {
+                    LoadPoint::along_edge(from, to, traction, count(fields::length(&way)), load)
+                } else {
+                    let counts = way.map(|length| count(length.abs()));
+                    LoadPoint::on_rectangle(from, to, traction, counts, load)
+                });
             }
             LoadKind::Point { at, force } => points.push(LoadPoint { x: at, force, load }),
         }

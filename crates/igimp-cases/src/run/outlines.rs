@@ -6,7 +6,6 @@ use std::collections::HashSet;
 use igimp_figures::{Outline, OutlineStyle};
 use igimp_solver::Body;
 
-use super::model::Model;
 use super::rigid;
 use super::state::{Controls, State};
 use crate::case::{Case, LoadKind};
@@ -18,10 +17,9 @@ use crate::results::reinforcement;
 use crate::results::rigid::Standing;
 
 /// What is drawn over a state: everything rigid in it, as far as it lies within the grid, the water tables that act, and
-/// reinforcement.
-pub(crate) fn of_state(model: &Model<'_>, state: &State) -> Over {
-    let case = model.case;
-    let water = water_tables(model, state);
+/// reinforcement. `body_of` has the body of each particle by its number.
+pub(crate) fn of_state((case, body_of): (&Case, &[usize]), state: &State) -> Over {
+    let water = water_tables((case, body_of), state);
     let bodies = rigid::outlines(case, state, POINTS_OF_CIRCLE);
     let bodies = bodies.filter_map(|(_, outline)| block(case, &outline));
     let footing = footing(case, state.controls.settlement);
@@ -41,16 +39,12 @@ pub(crate) fn of_state(model: &Model<'_>, state: &State) -> Over {
 }
 
 /// The water tables that act, as far as there is soil.
-fn water_tables(model: &Model<'_>, state: &State) -> Vec<Outline> {
-    let (case, particles) = (model.case, &state.body.particles);
+fn water_tables((case, body_of): (&Case, &[usize]), state: &State) -> Vec<Outline> {
+    let particles = &state.body.particles;
     let Some(condition) = state.controls.water.and_then(|k| case.water.get(k)) else {
         return Vec::new();
     };
-    let bodies: HashSet<usize> = particles
-        .number
-        .iter()
-        .map(|&own| model.seeded.body[own])
-        .collect();
+    let bodies: HashSet<usize> = particles.number.iter().map(|&own| body_of[own]).collect();
     let ends = std::iter::zip(&particles.x, &particles.half_length);
     let ends = ends.fold(
         [f64::INFINITY, f64::NEG_INFINITY],
@@ -60,11 +54,11 @@ fn water_tables(model: &Model<'_>, state: &State) -> Vec<Outline> {
 }
 
 /// The structures that are there under controls.
-pub(crate) fn structures<'a>(
-    case: &'a Case,
+pub(crate) fn structures<'a, const D: usize>(
+    case: &'a Case<D>,
     controls: &Controls,
-    body: &'a Body<2>,
-) -> Structures<'a> {
+    body: &'a Body<D>,
+) -> Structures<'a, D> {
     let rigid = std::iter::zip(controls.placed(), &body.rigid);
     Structures {
         rigid: rigid

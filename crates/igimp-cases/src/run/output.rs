@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
+use igimp_assembly::SharedLaw;
 use igimp_solver::Body;
 use rayon::prelude::*;
 
@@ -22,6 +23,7 @@ use super::state::{Controls, State};
 use crate::case::{Case, Every};
 use crate::error::CaseError;
 use crate::pieces::Pieces;
+use crate::plane::in_plane;
 use crate::results::atomic::write_whole;
 use crate::results::checkpoint::{self, Meta};
 use crate::results::folder::{self, Folder, write_summary};
@@ -29,6 +31,7 @@ use crate::results::frames::Frames;
 use crate::results::owner::Claim;
 use crate::results::pictures::{self, Canvas, Failing, Seen, Shown, mechanism};
 use crate::results::report;
+use crate::results::rigid;
 use crate::results::rows::RowWriter;
 use crate::summary::{FigureNote, StageSummary, Summary};
 use crate::table::Table;
@@ -37,7 +40,7 @@ mod take_up;
 
 /// The files of a run, open.
 #[derive(Debug)]
-pub(crate) struct Output {
+pub(crate) struct Output<const D: usize = 2> {
     folder: Folder,
     claim: Claim,
     /// Whether pictures are wanted.
@@ -59,7 +62,7 @@ pub(crate) struct Output {
     /// By check: the peak of its quantity so far.
     peaks: Vec<f64>,
     /// States of a search that are kept beside the stages, by name.
-    kept: Vec<(&'static str, End)>,
+    kept: Vec<(&'static str, End<D>)>,
     /// The bodies in pieces, once a picture wants them.
     pieces: Option<Arc<Pieces>>,
     seconds: f64,
@@ -82,11 +85,11 @@ const CONVERGENCE: [&str; 7] = [
     "accepted",
 ];
 
-impl Output {
+impl<const D: usize> Output<D> {
     /// A results folder for a run from the beginning.
     pub(crate) fn create(
         target: &Target,
-        case: &Case,
+        case: &Case<D>,
         records: &Records,
     ) -> Result<Self, CaseError> {
         let folder = Folder::afresh(&target.folder, &target.claim(case))?;
@@ -99,7 +102,7 @@ impl Output {
     fn open(
         folder: Folder,
         claim: Claim,
-        case: &Case,
+        case: &Case<D>,
         records: &Records,
         notes: Option<&Notes>,
     ) -> Result<Self, CaseError> {
@@ -213,9 +216,9 @@ impl Output {
     pub(crate) fn after_step(
         &mut self,
         stage: usize,
-        model: &Model<'_>,
+        model: &Model<'_, D>,
         summary: &StageSummary,
-        taken: &Taken<'_>,
+        taken: &Taken<'_, D>,
         resumption: &Resumption,
         run: &Summary,
     ) -> Result<(), CaseError> {
@@ -248,15 +251,15 @@ impl Output {
     pub(crate) fn after_trial(
         &mut self,
         stage: usize,
-        case: &Case,
+        case: &Case<D>,
         summary: &StageSummary,
-        found: &State,
-        search: &Search,
+        found: &State<D>,
+        search: &Search<D>,
         run: &Summary,
     ) -> Result<(), CaseError> {
         let clock = Instant::now();
         self.steps += 1;
-        let controls_of = |end: &Option<End>| {
+        let controls_of = |end: &Option<End<D>>| {
             end.as_ref()
                 .map(|end| (end.srf, end.state.controls.clone()))
         };
@@ -267,7 +270,7 @@ impl Output {
             failed: controls_of(&search.failed),
             ..self.notes(case, stage, run, &found.controls)
         };
-        let mut states: Vec<(&str, &Body<2>)> = vec![("current", &found.body)];
+        let mut states: Vec<(&str, &Body<D>)> = vec![("current", &found.body)];
         for (name, before, end) in [
             ("stable", BEFORE[0], &search.stable),
             ("failed", BEFORE[1], &search.failed),
@@ -283,7 +286,7 @@ impl Output {
     }
 
     /// Keeps the ends of a search, to be written at the end of its stage.
-    pub(crate) fn keep_ends(&mut self, stable: Option<End>, failed: Option<End>) {
+    pub(crate) fn keep_ends(&mut self, stable: Option<End<D>>, failed: Option<End<D>>) {
         let named = [("last-stable", stable), ("first-unstable", failed)];
         let there = named
             .into_iter()
@@ -294,9 +297,9 @@ impl Output {
     /// Sections, pictures and a frame of the state at the end of a stage.
     pub(crate) fn end_of_stage(
         &mut self,
-        model: &Model<'_>,
+        model: &Model<'_, D>,
         number: usize,
-        state: &State,
+        state: &State<D>,
         summary: &StageSummary,
         sections: &[Table],
     ) -> Result<(), CaseError> {
@@ -362,8 +365,8 @@ impl Output {
     pub(crate) fn after_stage(
         &mut self,
         number: usize,
-        case: &Case,
-        state: &State,
+        case: &Case<D>,
+        state: &State<D>,
         run: &Summary,
     ) -> Result<(), CaseError> {
         let clock = Instant::now();
@@ -377,9 +380,9 @@ impl Output {
     /// The last equilibrium of a stage that found no further one, for whoever wants to look.
     pub(crate) fn keep_last_converged(
         &mut self,
-        case: &Case,
+        case: &Case<D>,
         number: usize,
-        state: &State,
+        state: &State<D>,
         run: &Summary,
     ) -> Result<Vec<PathBuf>, CaseError> {
         let clock = Instant::now();
@@ -399,7 +402,7 @@ impl Output {
     /// Frames and pictures of the states at the ends of a search, and of the way in which the body fails.
     fn ends_of_search(
         &mut self,
-        model: &Model<'_>,
+        model: &Model<'_, D>,
         number: usize,
         summary: &StageSummary,
     ) -> Result<(), CaseError> {
@@ -422,9 +425,24 @@ impl Output {
                 name,
             };
             let others = kept.iter().filter(|(other, _)| other != what);
-            let others: Vec<&State> = others.map(|(_, end)| &end.state).collect();
+            let others: Vec<&State<D>> = others.map(|(_, end)| &end.state).collect();
             self.field_pictures(model, &shown, state, &others)?;
         }
+        let kept_in_plane =
+            in_plane::<Vec<(&'static str, End<D>)>, Vec<(&'static str, End)>>(&kept);
+        let (Some(case), Some(kept)) = (in_plane(model.case), kept_in_plane) else {
+            return Ok(());
+        };
+        self.mechanism((case, &model.seeded.body), number, kept)
+    }
+
+    /// The way in which the body fails: the slip line as a table, and its picture.
+    fn mechanism(
+        &mut self,
+        (case, body_of): (&Case, &[usize]),
+        number: usize,
+        kept: &[(&'static str, End)],
+    ) -> Result<(), CaseError> {
         // The state that failed has moved most; where no step led to it, the stable one tells.
         for (what, end) in kept.iter().rev() {
             let Some(before) = &end.before else { continue };
@@ -438,17 +456,17 @@ impl Output {
             let Some(found) = mechanism(&failing) else {
                 continue;
             };
-            if let Some(table) = found.table(model.case, number) {
+            if let Some(table) = found.table(case, number) {
                 table.write_csv(&self.folder.slip_lines())?;
             }
-            if !model.case.output.figures.is_empty() {
-                let pieces = self.pieces(model.case)?;
+            if !case.output.figures.is_empty() {
+                let pieces = self.pieces(case)?;
                 let canvas = Canvas {
                     folder: self.folder.root(),
-                    case: model.case,
+                    case,
                     pieces: &pieces,
                 };
-                let over = outlines::of_state(model, &end.state);
+                let over = outlines::of_state((case, body_of), &end.state);
                 let picture = pictures::mechanism_picture(&canvas, &failing, &found, &over)?;
                 self.figures.push(picture);
             }
@@ -471,31 +489,46 @@ impl Output {
     /// state and the states that it is compared with.
     fn field_pictures(
         &mut self,
-        model: &Model<'_>,
+        model: &Model<'_, D>,
         shown: &Shown,
-        state: &State,
-        compared: &[&State],
+        state: &State<D>,
+        compared: &[&State<D>],
     ) -> Result<(), CaseError> {
         let wanted = &model.case.output.figures;
         if wanted.is_empty() {
             return Ok(());
         }
-        let pieces = self.pieces(model.case)?;
-        let canvas = Canvas {
-            folder: self.folder.root(),
-            case: model.case,
-            pieces: &pieces,
-        };
         let laws = model.laws_reduced_by(&state.controls.srf)?;
-        let own = (&state.body.particles, &laws[..]);
         let reduced = compared
             .iter()
             .map(|state| model.laws_reduced_by(&state.controls.srf))
             .collect::<Result<Vec<_>, _>>()?;
+        let reduced: Vec<&[SharedLaw]> = reduced.iter().map(|laws| &laws[..]).collect();
+        if let Some(state) = in_plane::<_, State<3>>(state) {
+            let compared = compared
+                .iter()
+                .filter_map(|own| in_plane::<_, State<3>>(*own));
+            let compared: Vec<Seen<'_, 3>> = std::iter::zip(compared, &reduced)
+                .map(|(state, laws)| (&state.body.particles, *laws))
+                .collect();
+            return self.pictures_in_space((model, shown), (state, &laws), &compared);
+        }
+        let (Some(case), Some(state)) = (in_plane(model.case), in_plane::<_, State>(state)) else {
+            return Ok(());
+        };
+        let pieces = self.pieces(case)?;
+        let canvas = Canvas {
+            folder: self.folder.root(),
+            case,
+            pieces: &pieces,
+        };
+        let own = (&state.body.particles, &laws[..]);
         let compared: Vec<Seen<'_>> = std::iter::zip(compared, &reduced)
-            .map(|(state, laws)| (&state.body.particles, &laws[..]))
+            .filter_map(|(state, laws)| {
+                Some((&in_plane::<_, State>(*state)?.body.particles, *laws))
+            })
             .collect();
-        let over = outlines::of_state(model, state);
+        let over = outlines::of_state((case, &model.seeded.body), state);
         let drawn = wanted
             .par_iter()
             .map(|&field| pictures::field_picture(&canvas, shown, field, own, &compared, &over))
@@ -504,14 +537,49 @@ impl Output {
         Ok(())
     }
 
+    /// The same in space: the surface, and cuts through the middle.
+    fn pictures_in_space(
+        &mut self,
+        (model, shown): (&Model<'_, D>, &Shown),
+        (state, laws): (&State<3>, &[SharedLaw]),
+        compared: &[Seen<'_, 3>],
+    ) -> Result<(), CaseError> {
+        let case = model.case;
+        let standing = in_plane::<_, Case<3>>(case).map(|case| {
+            let structures = outlines::structures(case, &state.controls, &state.body);
+            rigid::cells(&structures.rigid)
+        });
+        let bodies = standing.map_or_else(Vec::new, |cells| {
+            let corners = cells.connectivity.as_chunks::<3>().0.iter();
+            corners
+                .map(|corners| corners.map(|point| cells.points[point]))
+                .collect()
+        });
+        let of_case = (self.folder.root(), &*case.title, case.has_pore_water());
+        let drawn = pictures::InSpace::new(of_case, (&state.body.particles, laws), bodies);
+        let planes = match &case.output.cuts[..] {
+            [] => drawn.middle(),
+            cuts => cuts.to_vec(),
+        };
+        let wanted = &case.output.figures;
+        let notes = wanted
+            .par_iter()
+            .map(|&field| drawn.pictures(shown, field, compared, &planes))
+            .collect::<Result<Vec<_>, _>>()?;
+        self.figures.extend(notes.concat());
+        Ok(())
+    }
+
     /// The picture of the set-up.
-    pub(crate) fn model_picture(&mut self, case: &Case) -> Result<(), CaseError> {
+    pub(crate) fn model_picture(&mut self, case: &Case<D>) -> Result<(), CaseError> {
         if !self.draws {
             return Ok(());
         }
         let clock = Instant::now();
-        let picture = pictures::model_picture(self.folder.root(), case)?;
-        self.figures.push(picture);
+        if let Some(case) = in_plane(case) {
+            let picture = pictures::model_picture(self.folder.root(), case)?;
+            self.figures.push(picture);
+        }
         self.seconds += clock.elapsed().as_secs_f64();
         Ok(())
     }
@@ -519,7 +587,7 @@ impl Output {
     /// Pictures of curves, summary and report.
     pub(crate) fn finish(
         &mut self,
-        case: &Case,
+        case: &Case<D>,
         records: &Records,
         summary: &mut Summary,
         begun: Instant,
@@ -555,7 +623,7 @@ impl Output {
         write_summary(self.folder.root(), summary)
     }
 
-    fn notes(&self, case: &Case, stage: usize, run: &Summary, controls: &Controls) -> Notes {
+    fn notes(&self, case: &Case<D>, stage: usize, run: &Summary, controls: &Controls) -> Notes {
         Notes {
             history: fingerprint::of_history(case, stage + 1),
             stages: run.stages.clone(),
@@ -586,7 +654,7 @@ impl Output {
         }
     }
 
-    fn meta(&self, notes: &Notes, states: &[(&str, &Body<2>)]) -> Result<Meta, CaseError> {
+    fn meta(&self, notes: &Notes, states: &[(&str, &Body<D>)]) -> Result<Meta, CaseError> {
         let with_bodies = states.iter().filter(|(_, body)| !body.rigid.is_empty());
         let saved = with_bodies.map(|(name, body)| ((*name).to_owned(), saved_body::all(body)));
         let with_members = states
@@ -610,7 +678,7 @@ impl Output {
 
     /// Writes a checkpoint within a stage. It follows the rows that it counts on; what is in the
     /// hands of the system outlasts a kill.
-    fn save(&self, states: &[(&str, &Body<2>)], notes: &Notes) -> Result<(), CaseError> {
+    fn save(&self, states: &[(&str, &Body<D>)], notes: &Notes) -> Result<(), CaseError> {
         let name = format!("step-{:06}", self.steps);
         let (folder, meta) = (self.folder.checkpoint(), self.meta(notes, states)?);
         checkpoint::write_quickly(&folder, &name, states, &meta, self.checkpoint_keep)?;
@@ -618,7 +686,7 @@ impl Output {
     }
 
     /// Writes the checkpoint at the end of a stage, after its rows, to outlast a loss of power.
-    fn save_end(&mut self, stage: usize, body: &Body<2>, notes: &Notes) -> Result<(), CaseError> {
+    fn save_end(&mut self, stage: usize, body: &Body<D>, notes: &Notes) -> Result<(), CaseError> {
         let tables: Vec<&RowWriter> = self
             .curves
             .iter()
@@ -639,7 +707,11 @@ impl Output {
 }
 
 /// The pictures of curves and monitors.
-fn histories(root: &Path, case: &Case, records: &Records) -> Result<Vec<FigureNote>, CaseError> {
+fn histories<const D: usize>(
+    root: &Path,
+    case: &Case<D>,
+    records: &Records,
+) -> Result<Vec<FigureNote>, CaseError> {
     let title = &case.title;
     let curves = (&case.curves, &records.curves)
         .into_par_iter()

@@ -11,7 +11,10 @@ use crate::summary::PoreSummary;
 const FLOATS: f64 = 0.01;
 
 /// The pore pressures of a state; none where there are none.
-pub(crate) fn summary(case: &Case, particles: &Particles<2>) -> Option<PoreSummary> {
+pub(crate) fn summary<const D: usize>(
+    case: &Case<D>,
+    particles: &Particles<D>,
+) -> Option<PoreSummary> {
     if !case.has_pore_water() {
         return None;
     }
@@ -50,7 +53,7 @@ pub(crate) fn remark(stage: &str, pores: &PoreSummary) -> Option<String> {
 }
 
 /// Remarks on materials that are undrained and dilate: they never fail.
-pub(crate) fn dilatant(case: &Case) -> Vec<String> {
+pub(crate) fn dilatant<const D: usize>(case: &Case<D>) -> Vec<String> {
     if case.stages.iter().all(|stage| stage.drained) {
         return Vec::new();
     }

@@ -13,7 +13,7 @@ use crate::table::Table;
 
 /// A state that is recorded: the end of a step, or of a trial in a strength reduction.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Moment<'a> {
+pub(crate) struct Moment<'a, const D: usize = 2> {
     /// Number of the stage, from 0.
     pub(crate) stage: usize,
     /// Number of the step (or trial) in its stage, from 1; 0 before the first.
@@ -21,11 +21,11 @@ pub(crate) struct Moment<'a> {
     /// Share of the stage that is done \[-\].
     pub(crate) progress: f64,
     /// The particles.
-    pub(crate) particles: &'a Particles<2>,
+    pub(crate) particles: &'a Particles<D>,
     /// The rigid bodies that are there.
-    pub(crate) rigid: &'a [RigidBody<2>],
+    pub(crate) rigid: &'a [RigidBody<D>],
     /// The reinforcement that is there.
-    pub(crate) reinforcement: &'a [Reinforcement<2>],
+    pub(crate) reinforcement: &'a [Reinforcement<D>],
     /// What acts on them.
     pub(crate) controls: &'a Controls,
     /// Resistance of the footing \[N/m\].
@@ -34,7 +34,7 @@ pub(crate) struct Moment<'a> {
     pub(crate) plastic_share: f64,
 }
 
-impl Moment<'_> {
+impl<const D: usize> Moment<'_, D> {
     /// Length of the largest particle displacement \[m\].
     pub(crate) fn largest_displacement(&self) -> f64 {
         largest_displacement(self.particles)
@@ -42,11 +42,11 @@ impl Moment<'_> {
 }
 
 /// Length of the largest particle displacement \[m\].
-pub(crate) fn largest_displacement(particles: &Particles<2>) -> f64 {
+pub(crate) fn largest_displacement<const D: usize>(particles: &Particles<D>) -> f64 {
     particles
         .displacement
         .iter()
-        .map(|d| d[0].hypot(d[1]))
+        .map(fields::length)
         .fold(0.0, f64::max)
 }
 
@@ -72,10 +72,10 @@ pub(crate) struct Records {
 
 impl Records {
     /// Empty tables; monitors take the nearest particle of the undeformed bodies.
-    pub(crate) fn new(
-        case: &Case,
+    pub(crate) fn new<const D: usize>(
+        case: &Case<D>,
         laws: &[SharedLaw],
-        particles: &Particles<2>,
+        particles: &Particles<D>,
     ) -> Result<Self, CaseError> {
         let curves = case
             .curves
@@ -95,7 +95,7 @@ impl Records {
                 }
             })
             .collect();
-        let rigid = case.rigid.iter().map(|part| rigid::table(&part.name));
+        let rigid = case.rigid.iter().map(|part| rigid::table::<D>(&part.name));
         let watched = case
             .monitors
             .iter()
@@ -128,12 +128,17 @@ impl Records {
     }
 
     /// The laws at the strength that acts; full strength where none can be made of it.
-    fn laws_at(&self, moment: &Moment<'_>) -> Vec<SharedLaw> {
+    fn laws_at<const D: usize>(&self, moment: &Moment<'_, D>) -> Vec<SharedLaw> {
         reduced(&self.laws, &moment.controls.srf).unwrap_or_else(|_| self.laws.clone())
     }
 
     /// A quantity of a moment, in SI units.
-    pub(crate) fn quantity(&self, case: &Case, of: Quantity, moment: &Moment<'_>) -> f64 {
+    pub(crate) fn quantity<const D: usize>(
+        &self,
+        case: &Case<D>,
+        of: Quantity,
+        moment: &Moment<'_, D>,
+    ) -> f64 {
         let controls = moment.controls;
         match of {
             Quantity::Settlement(_) => controls.settlement,
@@ -158,13 +163,13 @@ impl Records {
             Quantity::PlasticShare => moment.plastic_share,
             Quantity::FactorOfSafety => self.factor_of_safety,
             Quantity::Top => std::iter::zip(&moment.particles.x, &moment.particles.half_length)
-                .map(|(x, l)| x[1] + l[1])
+                .map(|(x, l)| x[D - 1] + l[D - 1])
                 .fold(f64::NEG_INFINITY, f64::max),
         }
     }
 
     /// Takes a moment into the peaks of the checks that look for one in its stage.
-    fn raise_peaks(&mut self, case: &Case, moment: &Moment<'_>) {
+    fn raise_peaks<const D: usize>(&mut self, case: &Case<D>, moment: &Moment<'_, D>) {
         let last = case.stages.len() - 1;
         for (k, check) in case.checks.iter().enumerate() {
             if check.at == CheckTime::Peak && check.stage.unwrap_or(last) == moment.stage {
@@ -176,7 +181,11 @@ impl Records {
 
     /// Records a moment: the rows for the curves and the monitors that it belongs to, which are
     /// also kept. The moment before a later stage belongs to the curves of that stage alone.
-    pub(crate) fn record(&mut self, case: &Case, moment: &Moment<'_>) -> Rows {
+    pub(crate) fn record<const D: usize>(
+        &mut self,
+        case: &Case<D>,
+        moment: &Moment<'_, D>,
+    ) -> Rows {
         let reopens = moment.number == 0 && moment.stage > 0;
         self.raise_peaks(case, moment);
         let mut rows = Rows {

@@ -3,7 +3,7 @@
 use igimp_assembly::{Hold, Reinforcement, ReinforcementControl, Segment, SegmentState, Station};
 
 use super::state::{Controls, ReinforcementControls, State};
-use crate::case::{Case, ReinforcementPart, ReinforcementQuantity, Stage};
+use crate::case::{Case, ReinforcementPart, ReinforcementQuantity, Stage, from_front};
 use crate::results::reinforcement::Installed;
 use crate::summary::MemberSummary;
 
@@ -11,8 +11,8 @@ use crate::summary::MemberSummary;
 const STATIONS_PER_CELL: f64 = 4.0;
 
 /// A member of a case where it is installed, without tension.
-pub(crate) fn made(case: &Case, part: &ReinforcementPart) -> Reinforcement<2> {
-    let [x, y] = &case.grid.axes;
+pub(crate) fn made<const D: usize>(case: &Case<D>, part: &ReinforcementPart) -> Reinforcement<D> {
+    let (x, y) = (&case.grid.axes[0], &case.grid.axes[D - 1]);
     let cell_near = |a: [f64; 2], b: [f64; 2]| {
         x.smallest_between(a[0].min(b[0]), a[0].max(b[0]))
             .min(y.smallest_between(a[1].min(b[1]), a[1].max(b[1])))
@@ -46,7 +46,9 @@ pub(crate) fn made(case: &Case, part: &ReinforcementPart) -> Reinforcement<2> {
             (0..count as usize).map(place).collect()
         },
     );
-    let mut stations = vec![Station { points: first }];
+    let mut stations: Vec<Station<D>> = vec![Station {
+        points: first.into_iter().map(from_front).collect(),
+    }];
     let mut segments = Vec::new();
     let mut so_far = 0.0;
     for (from, to, is_bonded) in legs {
@@ -61,7 +63,9 @@ pub(crate) fn made(case: &Case, part: &ReinforcementPart) -> Reinforcement<2> {
         for k in 0..count as usize {
             let t = (k + 1) as f64 / count;
             let at = [0, 1].map(|axis| from[axis] + t * (to[axis] - from[axis]));
-            stations.push(Station { points: vec![at] });
+            stations.push(Station {
+                points: vec![from_front(at)],
+            });
             let middle = so_far + (k as f64 + 0.5) / count * length;
             let bonded = part.bonded(middle);
             segments.push(Segment {
@@ -85,7 +89,7 @@ pub(crate) fn made(case: &Case, part: &ReinforcementPart) -> Reinforcement<2> {
 }
 
 /// Installs what a stage installs, in the ground as it stands. A jack takes hold of what is stressed.
-pub(crate) fn begin(case: &Case, state: &mut State, stage: &Stage) {
+pub(crate) fn begin<const D: usize>(case: &Case<D>, state: &mut State<D>, stage: &Stage) {
     for &index in &stage.install {
         let part = &case.reinforcement[index];
         let controls = &mut state.controls;
@@ -99,7 +103,7 @@ pub(crate) fn begin(case: &Case, state: &mut State, stage: &Stage) {
 }
 
 /// What acts on the members that are there, at the end of a step with these controls.
-pub(crate) fn controls(case: &Case, to: &Controls) -> Vec<ReinforcementControl> {
+pub(crate) fn controls<const D: usize>(case: &Case<D>, to: &Controls) -> Vec<ReinforcementControl> {
     to.installed()
         .map(|index| ReinforcementControl {
             reduction: if case.reinforcement[index].reduces_bond {
@@ -113,11 +117,11 @@ pub(crate) fn controls(case: &Case, to: &Controls) -> Vec<ReinforcementControl> 
 }
 
 /// The members that are there under controls.
-pub(crate) fn present<'a>(
-    case: &'a Case,
+pub(crate) fn present<'a, const D: usize>(
+    case: &'a Case<D>,
     controls: &Controls,
-    members: &'a [Reinforcement<2>],
-) -> Vec<Installed<'a>> {
+    members: &'a [Reinforcement<D>],
+) -> Vec<Installed<'a, D>> {
     std::iter::zip(controls.installed(), members)
         .map(|(index, member)| Installed {
             index,
@@ -133,9 +137,9 @@ pub(crate) fn present<'a>(
 }
 
 /// A number of a member; zero for one that is not there.
-pub(crate) fn quantity(
+pub(crate) fn quantity<const D: usize>(
     controls: &Controls,
-    members: &[Reinforcement<2>],
+    members: &[Reinforcement<D>],
     index: usize,
     of: ReinforcementQuantity,
 ) -> f64 {
@@ -161,7 +165,7 @@ pub(crate) fn quantity(
 }
 
 /// The tension of the members that are there, for the summary.
-pub(crate) fn told(case: &Case, state: &State) -> Vec<MemberSummary> {
+pub(crate) fn told<const D: usize>(case: &Case<D>, state: &State<D>) -> Vec<MemberSummary> {
     let of = |index: usize, of| quantity(&state.controls, &state.body.reinforcement, index, of);
     state
         .controls

@@ -7,8 +7,8 @@ use super::model::Model;
 use super::records::Moment;
 use super::state::{Controls, RigidTrack, State};
 use crate::case::{
-    Adhesion, Case, RigidDrive, RigidInterface, RigidMove, RigidPart, RigidQuantity, RigidShape,
-    RigidShear,
+    Adhesion, COMPONENTS, Case, RigidDrive, RigidInterface, RigidMove, RigidPart, RigidQuantity,
+    RigidShear, components, in_space,
 };
 use crate::check::short;
 use crate::error::CaseError;
@@ -18,15 +18,19 @@ use crate::table::Table;
 const LEAST_SHIFT: f64 = 1e-9;
 
 /// The smallest cell that a rigid body starts in \[m\].
-pub(crate) fn cell_near(case: &Case, part: &RigidPart) -> f64 {
+pub(crate) fn cell_near<const D: usize>(case: &Case<D>, part: &RigidPart<D>) -> f64 {
     let (lower, upper) = part.bounds();
-    let [x, y] = &case.grid.axes;
-    x.smallest_between(lower[0], upper[0])
-        .min(y.smallest_between(lower[1], upper[1]))
+    let cells = (case.grid.axes.iter().enumerate())
+        .map(|(axis, own)| own.smallest_between(lower[axis], upper[axis]));
+    cells.fold(f64::INFINITY, f64::min)
 }
 
 /// A rigid body of a case where it starts, among so many laws: one for each material, again and again.
-pub(crate) fn made(case: &Case, index: usize, laws: usize) -> Result<RigidBody<2>, CaseError> {
+pub(crate) fn made<const D: usize>(
+    case: &Case<D>,
+    index: usize,
+    laws: usize,
+) -> Result<RigidBody<D>, CaseError> {
     let part = &case.rigid[index];
     let surface = part
         .surface(cell_near(case, part))
@@ -42,7 +46,7 @@ pub(crate) fn made(case: &Case, index: usize, laws: usize) -> Result<RigidBody<2
     Ok(body)
 }
 
-fn interface(case: &Case, of: &RigidInterface, laws: usize) -> Interface {
+fn interface<const D: usize>(case: &Case<D>, of: &RigidInterface, laws: usize) -> Interface {
     let shear = match of.shear {
         RigidShear::Smooth => Shear::Smooth,
         RigidShear::Rough => Shear::Rough,
@@ -65,14 +69,21 @@ fn interface(case: &Case, of: &RigidInterface, laws: usize) -> Interface {
     }
 }
 
-/// Own weight, with what pseudo-static acceleration adds to it, along the axes \[N/m\].
-fn weight(part: &RigidPart, controls: &Controls) -> [f64; 3] {
-    let [x, y] = controls.body_force().map(|share| share * part.weight);
-    [x, y, 0.0]
+/// Own weight, with what pseudo-static acceleration adds to it, by component \[N/m\], in space \[N\].
+fn weight<const D: usize>(part: &RigidPart<D>, controls: &Controls) -> [f64; COMPONENTS] {
+    let mut weight = [0.0; COMPONENTS];
+    for (own, share) in std::iter::zip(&mut weight, controls.body_force::<D>()) {
+        *own = share * part.weight;
+    }
+    weight
 }
 
 /// How the rigid bodies that are there move in a step between two controls.
-pub(crate) fn motions(case: &Case, from: &Controls, to: &Controls) -> Vec<RigidMotion<2>> {
+pub(crate) fn motions<const D: usize>(
+    case: &Case<D>,
+    from: &Controls,
+    to: &Controls,
+) -> Vec<RigidMotion<D>> {
     to.placed()
         .map(|index| {
             let (part, own, before) = (&case.rigid[index], &to.rigid[index], &from.rigid[index]);
@@ -82,8 +93,14 @@ pub(crate) fn motions(case: &Case, from: &Controls, to: &Controls) -> Vec<RigidM
                 None => Drive::Moved(own.moved[k] - before.moved[k]),
             };
             RigidMotion {
-                displacement: [drive(0), drive(1)],
-                rotation: [drive(2), Drive::Moved(0.0), Drive::Moved(0.0)],
+                displacement: std::array::from_fn(drive),
+                rotation: std::array::from_fn(|k| {
+                    if D + k < components::<D>() {
+                        drive(D + k)
+                    } else {
+                        Drive::Moved(0.0)
+                    }
+                }),
             }
         })
         .collect()
@@ -91,10 +108,10 @@ pub(crate) fn motions(case: &Case, from: &Controls, to: &Controls) -> Vec<RigidM
 
 /// What the rigid bodies did by the end of an accepted step, at whose end `controls` act; they tell what
 /// was done before.
-pub(crate) fn tracks(
-    case: &Case,
+pub(crate) fn tracks<const D: usize>(
+    case: &Case<D>,
     controls: &Controls,
-    accepted: &Accepted<'_, 2>,
+    accepted: &Accepted<'_, D>,
 ) -> Vec<RigidTrack> {
     let first = accepted.conditions.grid.node_count();
     let (u, reactions) = (&accepted.forces.u, &accepted.forces.reactions);
@@ -104,28 +121,28 @@ pub(crate) fn tracks(
         let (part, own) = (&case.rigid[index], &controls.rigid[index]);
         let node = first + 2 * slot;
         let size = body.surface.size();
-        let by = [u[node][0], u[node][1], u[node + 1][0] / size];
-        let reaction = [
-            reactions[node][0],
-            reactions[node][1],
-            reactions[node + 1][0] * size,
-        ];
         let weight = weight(part, controls);
         let track = &mut tracks[index];
-        for k in 0..3 {
-            track.displacement[k] += by[k];
-            track.force[k] = own.loaded[k].unwrap_or(part.force_factor * reaction[k] - weight[k]);
+        for k in 0..components::<D>() {
+            let (by, reaction) = if k < D {
+                (u[node][k], reactions[node][k])
+            } else {
+                let k = k - D;
+                (u[node + 1][k] / size, reactions[node + 1][k] * size)
+            };
+            track.displacement[k] += by;
+            track.force[k] = own.loaded[k].unwrap_or(part.force_factor * reaction - weight[k]);
         }
-        track.lowered = part.reference[1] - body.pose.origin[1];
+        track.lowered = part.reference[D - 1] - body.pose.origin[D - 1];
     }
     tracks
 }
 
 /// Prepares a state for a stage that moves rigid bodies: those that are not there are placed, and what
 /// held a component hands over to the force that will drive it. Tells of bodies that were shifted.
-pub(crate) fn begin(
-    model: &Model<'_>,
-    state: &mut State,
+pub(crate) fn begin<const D: usize>(
+    model: &Model<'_, D>,
+    state: &mut State<D>,
     moves: &[RigidMove],
 ) -> Result<Vec<String>, CaseError> {
     let mut told = Vec::new();
@@ -148,14 +165,18 @@ pub(crate) fn begin(
 }
 
 /// Puts a rigid body where it starts, or by as much lower as the soil beneath it settled.
-fn place(model: &Model<'_>, state: &mut State, index: usize) -> Result<Option<String>, CaseError> {
+fn place<const D: usize>(
+    model: &Model<'_, D>,
+    state: &mut State<D>,
+    index: usize,
+) -> Result<Option<String>, CaseError> {
     let case = model.case;
     let part = &case.rigid[index];
     let mut body = made(case, index, model.laws.len())?;
     let settled = gap_below(part, &state.body.particles) - model.gaps[index];
     let is_shifted = settled.is_finite() && settled.abs() > LEAST_SHIFT * cell_near(case, part);
     if is_shifted {
-        body.pose.origin[1] -= settled;
+        body.pose.origin[D - 1] -= settled;
         state.controls.rigid[index].track.lowered = settled;
     }
     let slot = state.controls.placed().take_while(|&k| k < index).count();
@@ -174,66 +195,29 @@ fn place(model: &Model<'_>, state: &mut State, index: usize) -> Result<Option<St
 
 /// The smallest vertical distance from soil up to a body where it starts \[m\]; infinite where no soil
 /// lies beneath it.
-pub(crate) fn gap_below(part: &RigidPart, particles: &Particles<2>) -> f64 {
+pub(crate) fn gap_below<const D: usize>(part: &RigidPart<D>, particles: &Particles<D>) -> f64 {
     let (lower, upper) = part.bounds();
-    let corners = part.outline(0);
+    let up = D - 1;
     let mut least = f64::INFINITY;
     for (x, half) in std::iter::zip(&particles.x, &particles.half_length) {
-        let (left, right) = (
-            (x[0] - half[0]).max(lower[0]),
-            (x[0] + half[0]).min(upper[0]),
-        );
-        if right - left <= 1e-6 * half[0] {
+        let from: [f64; D] = std::array::from_fn(|axis| (x[axis] - half[axis]).max(lower[axis]));
+        let to: [f64; D] = std::array::from_fn(|axis| (x[axis] + half[axis]).min(upper[axis]));
+        if (0..up).any(|axis| to[axis] - from[axis] <= 1e-6 * half[axis]) {
             continue;
         }
-        let within = corners.iter().map(|corner| corner[0]);
-        let within = within.filter(|at| left < *at && *at < right);
-        let underside = [left, right].into_iter().chain(within);
-        let lowest = underside
-            .map(|at| underside_at(part, at))
-            .fold(f64::INFINITY, f64::min);
-        let lowest = match part.shape {
-            RigidShape::Circle { centre, .. } => {
-                lowest.min(underside_at(part, centre[0].clamp(left, right)))
-            }
-            RigidShape::Polygon(_) => lowest,
-        };
-        if x[1] < lowest {
-            least = least.min(lowest - x[1] - half[1]);
+        let lowest = part.shape.underside(&from, &to);
+        if x[up] < lowest {
+            least = least.min(lowest - x[up] - half[up]);
         }
     }
     least
 }
 
-/// The lowest place of a body on an upright line \[m\].
-fn underside_at(part: &RigidPart, x: f64) -> f64 {
-    match &part.shape {
-        RigidShape::Polygon(corners) => {
-            let next = corners.iter().cycle().skip(1);
-            let edges = std::iter::zip(corners, next);
-            let crossed = edges.filter(|(p, q)| p[0].min(q[0]) <= x && x <= p[0].max(q[0]));
-            crossed
-                .map(|(p, q)| {
-                    let run = q[0] - p[0];
-                    if run == 0.0 {
-                        p[1].min(q[1])
-                    } else {
-                        p[1] + (x - p[0]) / run * (q[1] - p[1])
-                    }
-                })
-                .fold(f64::INFINITY, f64::min)
-        }
-        RigidShape::Circle { centre, radius } => {
-            centre[1] - (radius * radius - (x - centre[0]).powi(2)).max(0.0).sqrt()
-        }
-    }
-}
-
 /// A number of a rigid body; zero for one that is not there.
-pub(crate) fn quantity(
-    case: &Case,
+pub(crate) fn quantity<const D: usize>(
+    case: &Case<D>,
     controls: &Controls,
-    bodies: &[RigidBody<2>],
+    bodies: &[RigidBody<D>],
     index: usize,
     of: RigidQuantity,
 ) -> f64 {
@@ -244,14 +228,12 @@ pub(crate) fn quantity(
     let track = &controls.rigid[index].track;
     let knots = || body.contact.knots.iter();
     match of {
-        RigidQuantity::X => track.displacement[0],
-        RigidQuantity::Y => track.displacement[1],
-        RigidQuantity::Settlement => -track.displacement[1] + 0.0,
-        RigidQuantity::Rotation => track.displacement[2],
-        RigidQuantity::ForceX => track.force[0],
-        RigidQuantity::ForceY => track.force[1],
-        RigidQuantity::Resistance => -track.force[1] + 0.0,
-        RigidQuantity::Moment => track.force[2],
+        RigidQuantity::Displacement(axis) => track.displacement[axis],
+        RigidQuantity::Settlement => -track.displacement[D - 1] + 0.0,
+        RigidQuantity::Rotation(axis) => track.displacement[D + axis],
+        RigidQuantity::Force(axis) => track.force[axis],
+        RigidQuantity::Resistance => -track.force[D - 1] + 0.0,
+        RigidQuantity::Moment(axis) => track.force[D + axis],
         RigidQuantity::ContactWidth => {
             let closed = knots().filter(|knot| knot.is_closed);
             closed
@@ -268,53 +250,80 @@ pub(crate) fn quantity(
     }
 }
 
-/// What is recorded of a rigid body.
-const RECORDED: [(&str, RigidQuantity); 11] = [
-    ("displacement_x_[m]", RigidQuantity::X),
-    ("displacement_y_[m]", RigidQuantity::Y),
-    ("rotation_[rad]", RigidQuantity::Rotation),
-    ("force_x_[N/m]", RigidQuantity::ForceX),
-    ("force_y_[N/m]", RigidQuantity::ForceY),
-    ("moment_[N m/m]", RigidQuantity::Moment),
-    ("contact_width_[m]", RigidQuantity::ContactWidth),
-    ("penetration_[cells]", RigidQuantity::Penetration),
-    ("closed_[-]", RigidQuantity::Closed),
-    ("slipping_[-]", RigidQuantity::Slipping),
-    ("resistance_down_+_[N/m]", RigidQuantity::Resistance),
-];
+/// What is recorded of a rigid body, under these labels.
+fn recorded<const D: usize>() -> Vec<(String, RigidQuantity)> {
+    let per_run = if D == 2 { "/m" } else { "" };
+    let mut recorded = Vec::new();
+    let mut add = |label: String, of| recorded.push((label, of));
+    let axes = || ["x", "y", "z"].into_iter().take(D).enumerate();
+    let turns: &[&str] = if D == 2 { &[""] } else { &["_x", "_y", "_z"] };
+    for (axis, name) in axes() {
+        let label = format!("displacement_{name}_[m]");
+        add(label, RigidQuantity::Displacement(axis));
+    }
+    for (axis, about) in turns.iter().enumerate() {
+        let label = format!("rotation{about}_[rad]");
+        add(label, RigidQuantity::Rotation(axis));
+    }
+    for (axis, name) in axes() {
+        let label = format!("force_{name}_[N{per_run}]");
+        add(label, RigidQuantity::Force(axis));
+    }
+    for (axis, about) in turns.iter().enumerate() {
+        let label = format!("moment{about}_[N m{per_run}]");
+        add(label, RigidQuantity::Moment(axis));
+    }
+    let contact = if D == 2 {
+        "contact_width_[m]"
+    } else {
+        "contact_area_[m2]"
+    };
+    add(contact.to_owned(), RigidQuantity::ContactWidth);
+    add("penetration_[cells]".to_owned(), RigidQuantity::Penetration);
+    add("closed_[-]".to_owned(), RigidQuantity::Closed);
+    add("slipping_[-]".to_owned(), RigidQuantity::Slipping);
+    let label = format!("resistance_down_+_[N{per_run}]");
+    add(label, RigidQuantity::Resistance);
+    recorded
+}
 
 /// An empty history of a rigid body.
-pub(crate) fn table(name: &str) -> Table {
-    let place = ["stage", "step", "progress_[-]", "x_[m]", "y_[m]"];
-    let header = place.into_iter().chain(RECORDED.map(|(label, _)| label));
+pub(crate) fn table<const D: usize>(name: &str) -> Table {
+    let moment = ["stage", "step", "progress_[-]"];
+    let place = ["x_[m]", "y_[m]", "z_[m]"].into_iter().take(D);
+    let header = moment.into_iter().chain(place).map(str::to_owned);
+    let labels = recorded::<D>().into_iter().map(|(label, _)| label);
     Table {
         name: name.to_owned(),
-        header: header.map(str::to_owned).collect(),
+        header: header.chain(labels).collect(),
         rows: Vec::new(),
     }
 }
 
 /// The row of a rigid body that is there.
-pub(crate) fn row(case: &Case, moment: &Moment<'_>, index: usize) -> Vec<f64> {
+pub(crate) fn row<const D: usize>(
+    case: &Case<D>,
+    moment: &Moment<'_, D>,
+    index: usize,
+) -> Vec<f64> {
     let (controls, bodies) = (moment.controls, moment.rigid);
     let slot = controls.placed().take_while(|&k| k < index).count();
-    let [x, y] = bodies[slot].pose.origin;
-    let place = [
+    let mut row = vec![
         moment.stage as f64 + 1.0,
         moment.number as f64,
         moment.progress,
-        x,
-        y,
     ];
-    let numbers = RECORDED.map(|(_, of)| quantity(case, controls, bodies, index, of));
-    place.into_iter().chain(numbers).collect()
+    row.extend(bodies[slot].pose.origin);
+    let recorded = recorded::<D>().into_iter();
+    row.extend(recorded.map(|(_, of)| quantity(case, controls, bodies, index, of)));
+    row
 }
 
 /// The failure of a step that left soil further in a body than the case allows.
-pub(crate) fn too_deep(
-    case: &Case,
+pub(crate) fn too_deep<const D: usize>(
+    case: &Case<D>,
     controls: &Controls,
-    bodies: &[RigidBody<2>],
+    bodies: &[RigidBody<D>],
 ) -> Option<StepFailure> {
     std::iter::zip(controls.placed(), bodies).find_map(|(index, body)| {
         let part = &case.rigid[index];
@@ -322,11 +331,11 @@ pub(crate) fn too_deep(
         let places = body.surface.knots();
         let closed = std::iter::zip(&body.contact.knots, places).filter(|(own, _)| own.is_closed);
         let (_, (deepest, _)) = closed.min_by(|(a, _), (b, _)| a.gap.total_cmp(&b.gap))?;
-        let [x, y] = body.pose.into_space(&deepest);
+        let deepest = body.pose.into_space(&deepest);
         (share > part.most_penetration).then(|| StepFailure::TooDeep {
             body: part.name.clone(),
             share,
-            position: [x, y, 0.0],
+            position: in_space(&deepest),
         })
     })
 }

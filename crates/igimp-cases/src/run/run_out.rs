@@ -25,9 +25,9 @@ use crate::summary::StageSummary;
 const CHANGE: [f64; 2] = [0.25, 4.0];
 
 /// Moves a state to rest, or as far as the steps of its stage allow.
-pub(crate) fn run_out(
-    session: &mut Session<'_>,
-    state: &mut State,
+pub(crate) fn run_out<const D: usize>(
+    session: &mut Session<'_, D>,
+    state: &mut State<D>,
     number: usize,
     run_out: &RunOut,
     summary: &mut StageSummary,
@@ -56,8 +56,8 @@ pub(crate) fn run_out(
         begin(session, state, number)?;
     }
     let steps = case.stages[number].steps;
-    let [width, height] = case.grid.smallest_cell();
-    let target = run_out.move_per_step * width.min(height);
+    let cell = case.grid.smallest_cell();
+    let target = run_out.move_per_step * cell.into_iter().fold(f64::INFINITY, f64::min);
     // The whole weight would move the body by the target.
     let largest = case.gravity / target;
     let drag = Cell::new(resumption.map_or(largest, |left| left.drag));
@@ -121,7 +121,7 @@ fn at_rest(steps: usize, share: f64) -> String {
 
 /// The method of a body that flows: on its way cells are filled in part, and modes that a shared strain
 /// does not see add up from step to step. There B-bar serves better.
-fn flowing(model: &Model<'_>) -> Method {
+fn flowing<const D: usize>(model: &Model<'_, D>) -> Method {
     let mut method = model.method(Geometry::Moving);
     if method.locking == Locking::SharedStrain {
         method.locking = Locking::BBar;
@@ -130,10 +130,10 @@ fn flowing(model: &Model<'_>) -> Method {
 }
 
 /// The last step, without drag: the slope has to be in equilibrium where it rests.
-fn stand(
-    session: &mut Session<'_>,
-    state: &mut State,
-    path: &Path<'_>,
+fn stand<const D: usize>(
+    session: &mut Session<'_, D>,
+    state: &mut State<D>,
+    path: &Path<'_, D>,
     summary: &mut StageSummary,
     rest: &str,
 ) -> Result<Ended, CaseError> {

@@ -31,13 +31,13 @@ const MOST_TRIALS: usize = 40;
 const SLID: f64 = 0.01;
 
 /// Searches for the factor of safety of a state, which is left as it was found.
-pub(crate) fn reduce_strength(
-    session: &mut Session<'_>,
-    state: &State,
+pub(crate) fn reduce_strength<const D: usize>(
+    session: &mut Session<'_, D>,
+    state: &State<D>,
     number: usize,
     reduction: &StrengthReduction,
     summary: &mut StageSummary,
-    left: Option<Search>,
+    left: Option<Search<D>>,
 ) -> Result<Ended, CaseError> {
     let stage = &session.model.case.stages[number];
     let mut trials = Trials::new(session, state, number, stage, reduction, left)?;
@@ -51,31 +51,31 @@ pub(crate) fn reduce_strength(
 }
 
 /// The trials of one search.
-struct Trials<'a> {
+struct Trials<'a, const D: usize = 2> {
     number: usize,
     stage: &'a Stage,
     reduction: &'a StrengthReduction,
     /// The state that the search was asked for.
-    found: &'a State,
+    found: &'a State<D>,
     /// The displacement at which the body counts as failed \[m\], if one does.
     limit: Option<f64>,
     /// What every trial begins with: that state, or undeformed bodies where gravity is raised anew.
-    base: State,
+    base: State<D>,
     made: Vec<TrialSummary>,
     /// The largest stable factor, with its equilibrium.
-    stable: Option<End>,
+    stable: Option<End<D>>,
     /// The smallest failed factor, with the last equilibrium on the way to it.
-    failed: Option<End>,
+    failed: Option<End<D>>,
 }
 
-impl<'a> Trials<'a> {
+impl<'a, const D: usize> Trials<'a, D> {
     fn new(
-        session: &Session<'_>,
-        found: &'a State,
+        session: &Session<'_, D>,
+        found: &'a State<D>,
         number: usize,
         stage: &'a Stage,
         reduction: &'a StrengthReduction,
-        left: Option<Search>,
+        left: Option<Search<D>>,
     ) -> Result<Self, CaseError> {
         let mut base = match reduction.path {
             ReductionPath::Reduce => found.clone(),
@@ -102,7 +102,7 @@ impl<'a> Trials<'a> {
     /// Makes trials until the interval is narrow enough.
     fn search(
         &mut self,
-        session: &mut Session<'_>,
+        session: &mut Session<'_, D>,
         summary: &mut StageSummary,
     ) -> Result<Ended, CaseError> {
         while let Some(srf) = self.next() {
@@ -168,7 +168,7 @@ impl<'a> Trials<'a> {
     /// other reasons than want of equilibrium.
     fn trial(
         &mut self,
-        session: &mut Session<'_>,
+        session: &mut Session<'_, D>,
         summary: &mut StageSummary,
         srf: f64,
     ) -> Result<Option<Ended>, CaseError> {
@@ -191,7 +191,7 @@ impl<'a> Trials<'a> {
         let mut course: Vec<[f64; 2]> = Vec::new();
         // The last equilibrium, and the last within the criterion.
         let mut last = Arc::new(state.body.clone());
-        let mut within: Option<End> = None;
+        let mut within: Option<End<D>> = None;
         let ended = march_path(
             session,
             &mut state,
@@ -270,7 +270,7 @@ impl<'a> Trials<'a> {
 
     /// Where a trial begins: the stable state of the largest smaller factor, or the base; with the
     /// equilibrium before it.
-    fn start(&self, srf: f64) -> (State, Controls, Option<Arc<Body<2>>>) {
+    fn start(&self, srf: f64) -> (State<D>, Controls, Option<Arc<Body<D>>>) {
         match (self.reduction.path, &self.stable) {
             (ReductionPath::Reduce, Some(end)) if end.srf <= srf => {
                 let (state, before) = (end.state.clone(), end.before.clone());
@@ -289,10 +289,16 @@ impl<'a> Trials<'a> {
     }
 
     /// Takes a trial into the interval.
-    fn narrow(&mut self, session: &mut Session<'_>, stable: bool, end: End, within: Option<End>) {
+    fn narrow(
+        &mut self,
+        session: &mut Session<'_, D>,
+        stable: bool,
+        end: End<D>,
+        within: Option<End<D>>,
+    ) {
         let below_failed =
-            |srf: f64, failed: &Option<End>| failed.as_ref().is_none_or(|f| srf < f.srf);
-        let mut candidates: Vec<End> = within.into_iter().collect();
+            |srf: f64, failed: &Option<End<D>>| failed.as_ref().is_none_or(|f| srf < f.srf);
+        let mut candidates: Vec<End<D>> = within.into_iter().collect();
         if stable {
             if !below_failed(end.srf, &self.failed) {
                 session.warn(format!(
@@ -319,7 +325,7 @@ impl<'a> Trials<'a> {
     }
 
     /// A remark when the last standing state of a moving geometry is no longer the slope that was asked for.
-    fn slid(&self, session: &Session<'_>) -> Option<String> {
+    fn slid(&self, session: &Session<'_, D>) -> Option<String> {
         let End { srf, state, .. } = self.stable.as_ref()?;
         let particles = &state.body.particles;
         let moved = session.displacement(self.reduction.monitor, particles);
@@ -336,7 +342,7 @@ impl<'a> Trials<'a> {
     }
 
     /// The interval with its criterion; warns of what a reader has to know.
-    fn finish(self, session: &mut Session<'_>) -> SafetySummary {
+    fn finish(self, session: &mut Session<'_, D>) -> SafetySummary {
         let case = session.model.case;
         let names = |reduced: bool| -> Vec<String> {
             case.materials

@@ -13,8 +13,8 @@ use crate::error::CaseError;
 /// What steps change of a rigid body.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct SavedBody {
-    origin: [f64; 2],
-    turn: [[f64; 2]; 2],
+    origin: Vec<f64>,
+    turn: Vec<Vec<f64>>,
     angle: [f64; 3],
     knots: Vec<SavedKnot>,
 }
@@ -32,16 +32,16 @@ struct SavedKnot {
 }
 
 /// The rigid bodies of a state.
-pub(crate) fn all(body: &Body<2>) -> Vec<SavedBody> {
+pub(crate) fn all<const D: usize>(body: &Body<D>) -> Vec<SavedBody> {
     body.rigid.iter().map(SavedBody::of).collect()
 }
 
 impl SavedBody {
-    fn of(body: &RigidBody<2>) -> Self {
+    fn of<const D: usize>(body: &RigidBody<D>) -> Self {
         let knots = body.contact.knots.iter();
         Self {
-            origin: body.pose.origin,
-            turn: body.pose.turn,
+            origin: body.pose.origin.to_vec(),
+            turn: body.pose.turn.iter().map(|row| row.to_vec()).collect(),
             angle: body.pose.angle,
             knots: knots
                 .map(|knot| {
@@ -70,12 +70,12 @@ impl SavedBody {
 }
 
 /// The rigid bodies that are there under controls, as they were saved; or why they cannot be.
-pub(crate) fn taken_up(
-    case: &Case,
+pub(crate) fn taken_up<const D: usize>(
+    case: &Case<D>,
     laws: usize,
     controls: &Controls,
     saved: &[SavedBody],
-) -> Result<Result<Vec<RigidBody<2>>, String>, CaseError> {
+) -> Result<Result<Vec<RigidBody<D>>, String>, CaseError> {
     if controls.rigid.len() != case.rigid.len() || controls.placed().count() != saved.len() {
         let (there, bodies) = (saved.len(), case.rigid.len());
         return Ok(Err(format!(
@@ -91,8 +91,16 @@ pub(crate) fn taken_up(
                 "rigid body {index} was saved with {found} knots, and has {knots}"
             )));
         }
-        body.pose.origin = own.origin;
-        body.pose.turn = own.turn;
+        let rows: Option<Vec<[f64; D]>> = (own.turn.iter())
+            .map(|row| row.as_slice().try_into().ok())
+            .collect();
+        let turn = rows.and_then(|rows| rows.try_into().ok());
+        let (Some(turn), Ok(origin)) = (turn, own.origin.as_slice().try_into()) else {
+            return Ok(Err(format!(
+                "rigid body {index} was not saved in {D} dimensions"
+            )));
+        };
+        (body.pose.origin, body.pose.turn) = (origin, turn);
         body.pose.angle = own.angle;
         for (knot, own) in body.contact.knots.iter_mut().zip(&own.knots) {
             *knot = ContactNode {

@@ -13,18 +13,18 @@ use crate::case::Case;
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct SavedMember {
     /// By station, by point \[m\].
-    points: Vec<Vec<[f64; 2]>>,
+    points: Vec<Vec<Vec<f64>>>,
     /// By bar: strain, slack, tension, whether it is at its limit.
     bars: Vec<(f64, f64, f64, bool)>,
 }
 
 /// The members of a state.
-pub(crate) fn all(body: &Body<2>) -> Vec<SavedMember> {
+pub(crate) fn all<const D: usize>(body: &Body<D>) -> Vec<SavedMember> {
     body.reinforcement.iter().map(SavedMember::of).collect()
 }
 
 impl SavedMember {
-    fn of(member: &Reinforcement<2>) -> Self {
+    fn of<const D: usize>(member: &Reinforcement<D>) -> Self {
         let stations = member.stations.iter();
         let bars = member.segments.iter().map(|own| {
             let SegmentState {
@@ -36,18 +36,20 @@ impl SavedMember {
             (strain, slack, force, is_at_limit)
         });
         Self {
-            points: stations.map(|own| own.points.clone()).collect(),
+            points: stations
+                .map(|own| own.points.iter().map(|point| point.to_vec()).collect())
+                .collect(),
             bars: bars.collect(),
         }
     }
 }
 
 /// The members that are there under controls, as they were saved; or why they cannot be.
-pub(crate) fn taken_up(
-    case: &Case,
+pub(crate) fn taken_up<const D: usize>(
+    case: &Case<D>,
     controls: &Controls,
     saved: &[SavedMember],
-) -> Result<Vec<Reinforcement<2>>, String> {
+) -> Result<Vec<Reinforcement<D>>, String> {
     let members = case.reinforcement.len();
     if controls.reinforcement.len() != members || controls.installed().count() != saved.len() {
         let there = saved.len();
@@ -58,20 +60,26 @@ pub(crate) fn taken_up(
     let mut taken = Vec::with_capacity(saved.len());
     for (index, own) in std::iter::zip(controls.installed(), saved) {
         let mut member = reinforcement::made(case, &case.reinforcement[index]);
-        let points = |of: &[Vec<[f64; 2]>]| of.iter().map(Vec::len).collect::<Vec<_>>();
-        let places: Vec<_> = member
-            .stations
-            .iter()
-            .map(|own| own.points.clone())
+        let saved: Option<Vec<Vec<[f64; D]>>> = (own.points.iter())
+            .map(|points| {
+                let points = points.iter().map(|point| point.as_slice().try_into().ok());
+                points.collect()
+            })
             .collect();
-        if points(&own.points) != points(&places) || own.bars.len() != member.segments.len() {
+        let counts = |of: &mut dyn Iterator<Item = usize>| of.collect::<Vec<_>>();
+        let has = counts(&mut member.stations.iter().map(|own| own.points.len()));
+        let fits = |saved: &Vec<Vec<[f64; D]>>| {
+            counts(&mut saved.iter().map(Vec::len)) == has
+                && own.bars.len() == member.segments.len()
+        };
+        let Some(saved) = saved.filter(fits) else {
             return Err(format!(
                 "the reinforcement `{}` was saved with other stations than it has",
                 member.name
             ));
-        }
-        for (station, points) in member.stations.iter_mut().zip(&own.points) {
-            station.points.clone_from(points);
+        };
+        for (station, points) in member.stations.iter_mut().zip(saved) {
+            station.points = points;
         }
         for (segment, &(strain, slack, force, is_at_limit)) in
             member.segments.iter_mut().zip(&own.bars)

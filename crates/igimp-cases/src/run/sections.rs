@@ -14,12 +14,14 @@ use crate::results::pictures::file_name;
 use crate::table::Table;
 
 /// Number and name of a stage as part of a file name.
-pub(super) fn stage_name(case: &Case, stage: usize) -> String {
+pub(super) fn stage_name<const D: usize>(case: &Case<D>, stage: usize) -> String {
     format!("{}-{}", stage + 1, file_name(&case.stages[stage].name))
 }
 
-/// Columns of a table before those of the recorded fields.
-pub(super) const BEFORE_FIELDS: usize = 3;
+/// Columns of a table before those of the recorded fields: the distance and the coordinates.
+pub(super) const fn before_fields<const D: usize>() -> usize {
+    D + 1
+}
 
 /// One table per section, named `SECTION__STAGE`, with the foot of every place on the line; the share of
 /// mobilised strength is that of the strength that acts.
@@ -27,9 +29,9 @@ pub(super) const BEFORE_FIELDS: usize = 3;
 /// Values are those of the particles nearest to equally spaced places along the line, each once, as the
 /// particles hold them; places without a particle within a cell are left out. Or they are means over the
 /// cells of the grid that the places lie in, of all particles there by their volume.
-pub(crate) fn read(
-    model: &Model<'_>,
-    state: &State,
+pub(crate) fn read<const D: usize>(
+    model: &Model<'_, D>,
+    state: &State<D>,
     stage: usize,
 ) -> Result<Vec<Table>, AssemblyError> {
     let case = model.case;
@@ -38,14 +40,16 @@ pub(crate) fn read(
     let grid = model
         .grid(model.lowered(&state.controls))
         .map_err(|source| AssemblyError::Grid { source })?;
-    let mut cells: Option<Cells> = None;
+    let mut cells: Option<Cells<D>> = None;
     let tables = case
         .sections
         .iter()
         .map(|section| {
-            let mut header: Vec<String> = ["distance_[m]", "x_[m]", "y_[m]"]
+            let places = ["x_[m]", "y_[m]", "z_[m]"].into_iter().take(D);
+            let mut header: Vec<String> = std::iter::once("distance_[m]")
+                .chain(places)
                 .map(str::to_owned)
-                .to_vec();
+                .collect();
             header.extend(section.record.iter().map(|&field| fields::header(field)));
             let mut table = Table {
                 name: format!("{}__{}", section.name, stage_name(case, stage)),
@@ -69,17 +73,21 @@ pub(crate) fn read(
 }
 
 /// A place along a section, as a share of its length.
-fn place(section: &Section, k: usize) -> [f64; 2] {
+fn place<const D: usize>(section: &Section<D>, k: usize) -> [f64; D] {
     let t = (k as f64 + 0.5) / section.points as f64;
-    [0, 1].map(|axis| section.from[axis] + t * (section.to[axis] - section.from[axis]))
+    std::array::from_fn(|axis| section.from[axis] + t * (section.to[axis] - section.from[axis]))
 }
 
 /// The particles nearest to the places of a section.
-fn nearest_to(case: &Case, section: &Section, particles: &Particles<2>) -> Vec<Vec<usize>> {
+fn nearest_to<const D: usize>(
+    case: &Case<D>,
+    section: &Section<D>,
+    particles: &Particles<D>,
+) -> Vec<Vec<usize>> {
     let found = (0..section.points).filter_map(|k| {
         let place = place(section, k);
-        let [width, height] = case.grid.cell_at(place);
-        nearest(particles, &place, width.max(height))
+        let reach = case.grid.cell_at(place).into_iter().fold(0.0, f64::max);
+        nearest(particles, &place, reach)
     });
     let mut found: Vec<Vec<usize>> = found.map(|particle| vec![particle]).collect();
     found.dedup();
@@ -87,11 +95,11 @@ fn nearest_to(case: &Case, section: &Section, particles: &Particles<2>) -> Vec<V
 }
 
 /// The particles of the cells of a grid.
-struct Cells(HashMap<[usize; 2], Vec<usize>>);
+struct Cells<const D: usize>(HashMap<[usize; D], Vec<usize>>);
 
-impl Cells {
-    fn new(grid: &Grid<2>, particles: &Particles<2>) -> Self {
-        let mut cells: HashMap<[usize; 2], Vec<usize>> = HashMap::new();
+impl<const D: usize> Cells<D> {
+    fn new(grid: &Grid<D>, particles: &Particles<D>) -> Self {
+        let mut cells: HashMap<[usize; D], Vec<usize>> = HashMap::new();
         for (particle, x) in particles.x.iter().enumerate() {
             if let Some(cell) = grid.cell_at(x) {
                 cells.entry(cell).or_default().push(particle);
@@ -101,20 +109,20 @@ impl Cells {
     }
 
     /// The particles of the cells that the places of a section lie in.
-    fn along(&self, section: &Section, grid: &Grid<2>) -> Vec<Vec<usize>> {
+    fn along(&self, section: &Section<D>, grid: &Grid<D>) -> Vec<Vec<usize>> {
         let cells = (0..section.points).filter_map(|k| grid.cell_at(&place(section, k)));
-        let mut cells: Vec<[usize; 2]> = cells.collect();
+        let mut cells: Vec<[usize; D]> = cells.collect();
         cells.dedup();
-        let own = |cell: &[usize; 2]| self.0.get(cell).cloned();
+        let own = |cell: &[usize; D]| self.0.get(cell).cloned();
         cells.iter().filter_map(own).collect()
     }
 }
 
 /// The mean over particles, by volume, as a row.
-fn row(
-    section: &Section,
+fn row<const D: usize>(
+    section: &Section<D>,
     group: &[usize],
-    (particles, laws): (&Particles<2>, &[SharedLaw]),
+    (particles, laws): (&Particles<D>, &[SharedLaw]),
 ) -> Vec<f64> {
     let mean = |of: &dyn Fn(usize) -> f64| match group {
         &[only] => of(only),
@@ -127,10 +135,13 @@ fn row(
                 / volume
         }
     };
-    let x = [0, 1].map(|axis| mean(&|p| particles.x[p][axis]));
-    let way = [0, 1].map(|axis| section.to[axis] - section.from[axis]);
-    let along = [0, 1].map(|axis| (x[axis] - section.from[axis]) * way[axis]);
-    let mut row = vec![(along[0] + along[1]) / way[0].hypot(way[1]), x[0], x[1]];
+    let x: [f64; D] = std::array::from_fn(|axis| mean(&|p| particles.x[p][axis]));
+    let way: [f64; D] = std::array::from_fn(|axis| section.to[axis] - section.from[axis]);
+    let along: f64 = (0..D)
+        .map(|axis| (x[axis] - section.from[axis]) * way[axis])
+        .sum();
+    let mut row = vec![along / fields::length(&way)];
+    row.extend(x);
     let values = section
         .record
         .iter()

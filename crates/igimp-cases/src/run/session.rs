@@ -22,30 +22,31 @@ use super::state::{Controls, RigidTrack, State};
 use super::{Event, Listener, REACHED_ITS_END};
 use crate::check::short;
 use crate::error::CaseError;
+use crate::results::fields;
 use crate::summary::{StageSummary, Summary};
 
 /// Share of the load from which on a false support at dropped nodes is worth a warning \[-\].
 const FALSE_SUPPORT: f64 = 1e-3;
 
 /// A run between its stages.
-pub(crate) struct Session<'a> {
-    pub(crate) model: &'a Model<'a>,
-    pub(crate) listener: &'a mut dyn Listener,
+pub(crate) struct Session<'a, const D: usize = 2> {
+    pub(crate) model: &'a Model<'a, D>,
+    pub(crate) listener: &'a mut dyn Listener<D>,
     pub(crate) interrupt: &'a AtomicBool,
     pub(crate) records: Records,
-    pub(crate) output: Option<Output>,
+    pub(crate) output: Option<Output<D>>,
     /// Where linear systems are written, if they are wanted.
     pub(crate) export: Option<Export>,
     pub(crate) summary: Summary,
     /// Resistance of the footing after the last step \[N/m\].
     pub(crate) last_resistance: f64,
     /// Ends of stages that ran, by number.
-    pub(crate) ends: HashMap<usize, State>,
+    pub(crate) ends: HashMap<usize, State<D>>,
 }
 
-impl Session<'_> {
+impl<const D: usize> Session<'_, D> {
     /// Tells the listener.
-    pub(crate) fn tell(&mut self, event: &Event<'_>) {
+    pub(crate) fn tell(&mut self, event: &Event<'_, D>) {
         self.listener.on_event(event);
     }
 
@@ -56,7 +57,7 @@ impl Session<'_> {
     }
 
     /// What a march needs besides the body.
-    fn workspace(&self) -> Workspace<2> {
+    fn workspace(&self) -> Workspace<D> {
         let solver = self.model.solver();
         Workspace::new(match &self.export {
             Some(export) => export.watch(solver),
@@ -70,7 +71,7 @@ impl Session<'_> {
     }
 
     /// Records a moment in tables and files.
-    pub(crate) fn record(&mut self, moment: &Moment<'_>) -> Result<(), CaseError> {
+    pub(crate) fn record(&mut self, moment: &Moment<'_, D>) -> Result<(), CaseError> {
         let rows = self.records.record(self.model.case, moment);
         match &mut self.output {
             Some(output) => output.write_rows(&rows),
@@ -79,14 +80,13 @@ impl Session<'_> {
     }
 
     /// The displacement that a condition looks at: of a monitor, or the largest of all \[m\].
-    pub(crate) fn displacement(&self, monitor: Option<usize>, particles: &Particles<2>) -> f64 {
+    pub(crate) fn displacement(&self, monitor: Option<usize>, particles: &Particles<D>) -> f64 {
         monitor.map_or_else(
             || largest_displacement(particles),
             |monitor| {
                 let place = particles.place_of(self.records.watched[monitor]);
                 place.map_or(0.0, |particle| {
-                    let [x, y] = particles.displacement[particle];
-                    x.hypot(y)
+                    fields::length(&particles.displacement[particle])
                 })
             },
         )
@@ -120,6 +120,16 @@ impl Session<'_> {
                 stage.name,
                 short(100.0 * stage.false_support)
             ));
+        }
+        if D == 3 {
+            let own = &report.linear;
+            let linear = stage.linear.get_or_insert_default();
+            linear.method = own.method.to_owned();
+            linear.reason = own.reason.to_string();
+            linear.solutions += own.solutions;
+            linear.iterations += own.iterations;
+            linear.most_iterations = linear.most_iterations.max(own.most_iterations);
+            linear.lost_iterations += own.lost_iterations;
         }
         let times = &report.times;
         let phases = [
@@ -161,7 +171,7 @@ impl Session<'_> {
 }
 
 /// A march of the body between two controls.
-pub(crate) struct Path<'a> {
+pub(crate) struct Path<'a, const D: usize = 2> {
     /// Controls at load factor 0.
     pub(crate) from: &'a Controls,
     /// Controls at load factor 1.
@@ -173,15 +183,15 @@ pub(crate) struct Path<'a> {
     /// Sizes of steps.
     pub(crate) settings: MarchSettings,
     /// What holds the body at the beginning and is let go on the way, by node \[N/m\].
-    pub(crate) held: Option<Arc<Vec<[f64; 2]>>>,
+    pub(crate) held: Option<Arc<Vec<[f64; D]>>>,
     /// Where an earlier run left the march.
     pub(crate) left: Option<&'a Resumption>,
 }
 
 /// An accepted step as a stage sees it.
-pub(crate) struct Taken<'a> {
+pub(crate) struct Taken<'a, const D: usize = 2> {
     /// The step in the solver's terms.
-    pub(crate) accepted: &'a Accepted<'a, 2>,
+    pub(crate) accepted: &'a Accepted<'a, D>,
     /// What acts on the body now.
     pub(crate) controls: &'a Controls,
     /// Resistance of the footing \[N/m\].
@@ -190,9 +200,9 @@ pub(crate) struct Taken<'a> {
     pub(crate) interrupted: bool,
 }
 
-impl<'a> Taken<'a> {
+impl<'a, const D: usize> Taken<'a, D> {
     /// The step as a moment to be recorded.
-    pub(crate) fn moment(&self, stage: usize, number: usize) -> Moment<'a> {
+    pub(crate) fn moment(&self, stage: usize, number: usize) -> Moment<'a, D> {
         Moment {
             stage,
             number,
@@ -225,12 +235,12 @@ pub(crate) type Word = Result<Option<String>, CaseError>;
 
 /// Marches a state along a path. `each` is called after every accepted step. The state ends with
 /// the controls of its last equilibrium; the summary is kept up.
-pub(crate) fn march_path(
-    session: &mut Session<'_>,
-    state: &mut State,
-    path: &Path<'_>,
+pub(crate) fn march_path<const D: usize>(
+    session: &mut Session<'_, D>,
+    state: &mut State<D>,
+    path: &Path<'_, D>,
     stage: &mut StageSummary,
-    each: &mut dyn FnMut(&mut Session<'_>, &StageSummary, &Taken<'_>) -> Word,
+    each: &mut dyn FnMut(&mut Session<'_, D>, &StageSummary, &Taken<'_, D>) -> Word,
 ) -> Result<Ended, CaseError> {
     let model = session.model;
     let tracks = RefCell::new(state.controls.tracks());
@@ -299,19 +309,19 @@ enum Stop {
 }
 
 /// Follows a march for its stage.
-struct Watch<'w, 's> {
-    session: &'w mut Session<'s>,
+struct Watch<'w, 's, const D: usize = 2> {
+    session: &'w mut Session<'s, D>,
     stage: &'w mut StageSummary,
-    path: &'w Path<'w>,
-    each: &'w mut dyn FnMut(&mut Session<'_>, &StageSummary, &Taken<'_>) -> Word,
+    path: &'w Path<'w, D>,
+    each: &'w mut dyn FnMut(&mut Session<'_, D>, &StageSummary, &Taken<'_, D>) -> Word,
     /// What the rigid bodies did so far.
     tracks: &'w RefCell<Vec<RigidTrack>>,
     reached: f64,
     stopped: Result<Option<Stop>, CaseError>,
 }
 
-impl Watch<'_, '_> {
-    fn step(&mut self, accepted: &Accepted<'_, 2>) -> Result<Option<Stop>, CaseError> {
+impl<const D: usize> Watch<'_, '_, D> {
+    fn step(&mut self, accepted: &Accepted<'_, D>) -> Result<Option<Stop>, CaseError> {
         let report = accepted.report;
         self.reached = report.to;
         self.session.tell(&Event::Equilibrium { accepted });
@@ -360,8 +370,8 @@ impl Watch<'_, '_> {
     }
 }
 
-impl Observer<2> for Watch<'_, '_> {
-    fn on_step(&mut self, accepted: &Accepted<'_, 2>) -> ControlFlow<()> {
+impl<const D: usize> Observer<D> for Watch<'_, '_, D> {
+    fn on_step(&mut self, accepted: &Accepted<'_, D>) -> ControlFlow<()> {
         // A file that could not be written after a cut ends the march here.
         if self.stopped.is_ok() {
             self.stopped = self.step(accepted);

@@ -3,15 +3,15 @@
 use igimp_solver::Body;
 use serde::{Deserialize, Serialize};
 
-use crate::case::Case;
+use crate::case::{COMPONENTS, Case};
 
 /// What acts on the body: everything that a stage can change.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Controls {
     /// Multiple of gravity \[-\].
     pub gravity: f64,
-    /// Pseudo-static force over the weight, to the right and upwards \[-\].
-    pub acceleration: [f64; 2],
+    /// Pseudo-static force over the weight, to the right, backwards and upwards \[-\].
+    pub acceleration: [f64; 3],
     /// Factor by load \[-\].
     pub factors: Vec<f64>,
     /// Settlement of the rigid footing \[m\].
@@ -44,15 +44,15 @@ impl ReinforcementControls {
     }
 }
 
-/// What acts on a rigid body, and where that brought it. Components: x, y, rotation (anticlockwise).
+/// What acts on a rigid body, and where that brought it, by component.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct RigidControls {
     /// Whether it is there.
     pub placed: bool,
     /// How far each component was moved by prescription so far \[m, rad\].
-    pub moved: [f64; 3],
+    pub moved: [f64; COMPONENTS],
     /// The force \[N/m\] or moment \[N\] on the whole body of each component that is not held.
-    pub loaded: [Option<f64>; 3],
+    pub loaded: [Option<f64>; COMPONENTS],
     /// What it did so far.
     pub track: RigidTrack,
 }
@@ -62,19 +62,18 @@ pub struct RigidControls {
 pub struct RigidTrack {
     /// Displacement of the reference point \[m\] and rotation \[rad\] since it was placed, or since
     /// displacements were reset.
-    pub displacement: [f64; 3],
+    pub displacement: [f64; COMPONENTS],
     /// Force \[N/m\] and moment about the reference point \[N\] on the whole body from outside.
-    pub force: [f64; 3],
+    pub force: [f64; COMPONENTS],
     /// How far the reference point stands below where the case has it \[m\].
     pub lowered: f64,
 }
 
 impl RigidControls {
     fn towards(&self, end: &Self, t: f64) -> Self {
-        let each = std::array::from_fn::<_, 3, _>;
         Self {
             placed: end.placed,
-            moved: each(|k| between(self.moved[k], end.moved[k], t)),
+            moved: std::array::from_fn(|k| between(self.moved[k], end.moved[k], t)),
             loaded: std::array::from_fn(|k| {
                 let to = end.loaded[k]?;
                 Some(between(self.loaded[k].unwrap_or(to), to, t))
@@ -90,10 +89,10 @@ fn between(a: f64, b: f64, t: f64) -> f64 {
 
 impl Controls {
     /// Nothing acts, and strength is whole.
-    pub(crate) fn none(case: &Case) -> Self {
+    pub(crate) fn none<const D: usize>(case: &Case<D>) -> Self {
         Self {
             gravity: 0.0,
-            acceleration: [0.0; 2],
+            acceleration: [0.0; 3],
             factors: vec![0.0; case.loads.len()],
             settlement: 0.0,
             srf: vec![1.0; case.materials.len()],
@@ -134,9 +133,12 @@ impl Controls {
 
     /// The force on a body of unit weight by gravity and pseudo-static acceleration, along the axes \[-\] (theory,
     /// eq. 37d).
-    pub(crate) fn body_force(&self) -> [f64; 2] {
-        let [horizontal, vertical] = self.acceleration;
-        [horizontal, vertical - self.gravity]
+    pub(crate) fn body_force<const D: usize>(&self) -> [f64; D] {
+        let [horizontal, across, vertical] = self.acceleration;
+        let mut force = [across; D];
+        force[0] = horizontal;
+        force[D - 1] = vertical - self.gravity;
+        force
     }
 
     /// The rigid bodies that are there, in the order in which the state has them.
@@ -173,10 +175,10 @@ impl Controls {
 
 /// A body and what acted on it last.
 #[derive(Clone, Debug)]
-pub struct State {
+pub struct State<const D: usize = 2> {
     /// The body. Of the rigid bodies of the case it and of its reinforcement it has what is there
     /// ([`Controls::placed`], [`Controls::installed`]).
-    pub body: Body<2>,
+    pub body: Body<D>,
     /// What acts on it.
     pub controls: Controls,
 }

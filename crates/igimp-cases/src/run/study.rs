@@ -23,13 +23,13 @@ use crate::summary::{Expected, Summary};
 use crate::sweep::{Ending, on_one_line};
 
 /// Runs a case on all meshes of its study.
-pub(super) fn run(
-    case: &Case,
+pub(super) fn run<const D: usize>(
+    case: &Case<D>,
     target: Option<&Target>,
     start: Start,
-    listener: &mut dyn Listener,
+    listener: &mut dyn Listener<D>,
     interrupt: &AtomicBool,
-) -> Result<Run, CaseError> {
+) -> Result<Run<D>, CaseError> {
     let clock = Instant::now();
     let meshes = plan::meshes(case);
     if let Some(target) = target {
@@ -59,7 +59,7 @@ pub(super) fn run(
     };
     let taken: Option<f64> = target.and_then(|target| {
         let speed = target.expectation?.speed;
-        let of_mesh = |(mesh, run): (&Case, Option<&Summary>)| {
+        let of_mesh = |(mesh, run): (&Case<D>, Option<&Summary>)| {
             time_of_steps_taken(mesh, speed, &run?.stages).ok()
         };
         std::iter::zip(&meshes, summaries.iter().copied())
@@ -115,14 +115,14 @@ fn of_mesh(target: &Target, number: usize) -> Target {
 }
 
 /// Runs the meshes, the coarsest first, as many at a time as processors and memory allow.
-fn all(
-    meshes: &[Case],
+fn all<const D: usize>(
+    meshes: &[Case<D>],
     targets: &[Option<Target>],
     parts: &[usize],
     start: Start,
-    listener: &mut dyn Listener,
+    listener: &mut dyn Listener<D>,
     interrupt: &AtomicBool,
-) -> Vec<Result<Run, CaseError>> {
+) -> Vec<Result<Run<D>, CaseError>> {
     let bytes: Vec<f64> = meshes
         .iter()
         .filter_map(|mesh| Some(estimate(mesh).ok()?.bytes))
@@ -165,13 +165,13 @@ fn all(
 }
 
 /// Tells what happens on a mesh to the listener of the study.
-struct OfMesh<'a, 'l> {
+struct OfMesh<'a, 'l, const D: usize = 2> {
     parts: usize,
-    listener: &'a Mutex<&'l mut dyn Listener>,
+    listener: &'a Mutex<&'l mut dyn Listener<D>>,
 }
 
-impl Listener for OfMesh<'_, '_> {
-    fn on_event(&mut self, event: &Event<'_>) {
+impl<const D: usize> Listener<D> for OfMesh<'_, '_, D> {
+    fn on_event(&mut self, event: &Event<'_, D>) {
         if let Ok(mut listener) = self.listener.lock() {
             listener.on_event(&Event::OfMesh {
                 parts: self.parts,
@@ -181,7 +181,11 @@ impl Listener for OfMesh<'_, '_> {
     }
 }
 
-fn mesh_summary(number: usize, parts: usize, run: &Result<Run, CaseError>) -> MeshSummary {
+fn mesh_summary<const D: usize>(
+    number: usize,
+    parts: usize,
+    run: &Result<Run<D>, CaseError>,
+) -> MeshSummary {
     let folder = mesh_name(number + 1);
     match run {
         Ok(run) => {
@@ -214,11 +218,11 @@ fn mesh_summary(number: usize, parts: usize, run: &Result<Run, CaseError>) -> Me
 ///
 /// # Errors
 /// The first error, if no mesh could be run.
-fn together(
-    case: &Case,
-    runs: Vec<Result<Run, CaseError>>,
+fn together<const D: usize>(
+    case: &Case<D>,
+    runs: Vec<Result<Run<D>, CaseError>>,
     found: StudySummary,
-) -> Result<Run, CaseError> {
+) -> Result<Run<D>, CaseError> {
     let mut ran = Vec::new();
     let mut lost = Vec::new();
     for (run, mesh) in std::iter::zip(runs, &found.meshes) {
@@ -268,7 +272,12 @@ fn together(
 }
 
 /// Writes table, pictures, summary and report of a study.
-fn write(case: &Case, root: &Path, summary: &mut Summary, clock: Instant) -> Result<(), CaseError> {
+fn write<const D: usize>(
+    case: &Case<D>,
+    root: &Path,
+    summary: &mut Summary,
+    clock: Instant,
+) -> Result<(), CaseError> {
     let begun = Instant::now();
     if let Some(found) = &summary.mesh_study {
         found.write_table(&root.join("mesh_study.csv"))?;

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use igimp_assembly::{PoreSite, PoreState, PoreWater};
 
+use super::model::gravity_of_weights;
 use crate::case::{
     Case, Drainage, Ground, Material, PoreSource, Raster, WaterCondition, table_level,
 };
@@ -20,19 +21,51 @@ const HALVINGS: usize = 16;
 
 /// What pieces of ground the particles were seeded in.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Seeded {
+pub(crate) struct Seeded<const D: usize = 2> {
     /// Body by number.
     pub(crate) body: Vec<usize>,
     /// Centre and half-lengths by number \[m\]; empty where no water is carried along.
-    pub(crate) domain: Vec<[[f64; 2]; 2]>,
+    pub(crate) domain: Vec<[[f64; D]; 2]>,
+}
+
+/// A place at another level.
+fn at_level<const D: usize>(place: &[f64; D], level: f64) -> [f64; D] {
+    let mut place = *place;
+    place[D - 1] = level;
+    place
+}
+
+/// Upright lines through a domain, or through one of its faces across a horizontal axis, with their weights.
+fn columns<const D: usize>(
+    x: &[f64; D],
+    half: &[f64; D],
+    face: Option<(usize, f64)>,
+) -> Vec<([f64; D], f64)> {
+    let mut columns = vec![(*x, 1.0)];
+    for axis in 0..D - 1 {
+        let places = match face {
+            Some((across, side)) if across == axis => vec![(side, 1.0)],
+            _ => ALONG.to_vec(),
+        };
+        columns = (columns.into_iter())
+            .flat_map(|(column, share)| {
+                places.iter().map(move |&(place, weight)| {
+                    let mut column = column;
+                    column[axis] += place * half[axis];
+                    (column, share * weight)
+                })
+            })
+            .collect();
+    }
+    columns
 }
 
 /// A condition of the water in the ground.
 #[derive(Debug)]
-pub(crate) struct GroundWater {
-    reference: Source,
+pub(crate) struct GroundWater<const D: usize = 2> {
+    reference: Source<D>,
     /// By body: a pressure of its own.
-    own: Vec<Option<Source>>,
+    own: Vec<Option<Source<D>>>,
     /// By material: density that water adds below the table \[kg/m³\].
     added_density: Vec<f64>,
     /// By material: whether its law speaks of total stress.
@@ -40,12 +73,12 @@ pub(crate) struct GroundWater {
     /// Density of water \[kg/m³\].
     density: f64,
     carried: bool,
-    seeded: Arc<Seeded>,
+    seeded: Arc<Seeded<D>>,
 }
 
 /// Pressure below an upper end that varies along x; none above it.
 #[derive(Debug)]
-enum Source {
+enum Source<const D: usize = 2> {
     Dry,
     Table {
         points: Vec<[f64; 2]>,
@@ -54,21 +87,21 @@ enum Source {
     Points(Raster),
     Ratio {
         ratio: f64,
-        ground: Ground,
+        ground: Ground<D>,
     },
 }
 
 /// Means over a domain.
-#[derive(Clone, Copy, Debug, Default)]
-struct Over {
+#[derive(Clone, Copy, Debug)]
+struct Over<const D: usize> {
     pressure: f64,
-    gradient: [f64; 2],
+    gradient: [f64; D],
     /// Share that is wet.
     wet: f64,
 }
 
-impl Source {
-    fn of(case: &Case, source: &PoreSource) -> Self {
+impl<const D: usize> Source<D> {
+    fn of(case: &Case<D>, source: &PoreSource) -> Self {
         match source {
             PoreSource::Dry => Self::Dry,
             PoreSource::Table(points) => Self::Table {
@@ -84,52 +117,56 @@ impl Source {
     }
 
     /// The level above which there is no pressure \[m\].
-    fn top(&self, x: f64) -> f64 {
+    fn top(&self, place: &[f64; D]) -> f64 {
         match self {
             Self::Dry => f64::NEG_INFINITY,
             Self::Points(_) => f64::INFINITY,
-            Self::Table { points, .. } => table_level(points, x),
-            Self::Ratio { ground, .. } => ground.surface(x).unwrap_or(f64::NEG_INFINITY),
+            Self::Table { points, .. } => table_level(points, place[0]),
+            Self::Ratio { ground, .. } => ground.surface(place).unwrap_or(f64::NEG_INFINITY),
         }
     }
 
     /// The level above which there is no pressure between two levels \[m\]; the lower one where there is none at all.
-    fn top_within(&self, x: f64, [lower, upper]: [f64; 2]) -> f64 {
+    fn top_within(&self, place: &[f64; D], [lower, upper]: [f64; 2]) -> f64 {
         let Self::Points(_) = self else {
-            return self.top(x).min(upper);
+            return self.top(place).min(upper);
         };
-        if self.below(x, upper) > 0.0 {
+        if self.below(place, upper) > 0.0 {
             return upper;
         }
         let (mut wet, mut dry) = (lower, upper);
         for _ in 0..HALVINGS {
             let middle = 0.5 * (wet + dry);
-            if self.below(x, middle) > 0.0 {
+            if self.below(place, middle) > 0.0 {
                 wet = middle;
             } else {
                 dry = middle;
             }
         }
-        if self.below(x, wet) > 0.0 { wet } else { lower }
+        if self.below(place, wet) > 0.0 {
+            wet
+        } else {
+            lower
+        }
     }
 
-    /// The pressure at a point that is not above the top \[Pa\].
-    fn below(&self, x: f64, y: f64) -> f64 {
+    /// The pressure at a level of the upright line through a place, not above the top \[Pa\].
+    fn below(&self, place: &[f64; D], level: f64) -> f64 {
         match self {
             Self::Dry => 0.0,
-            Self::Points(raster) => raster.at([x, y]).max(0.0),
+            Self::Points(raster) => raster.at([place[0], level]).max(0.0),
             Self::Table {
                 points,
                 unit_weight,
-            } => unit_weight * (table_level(points, x) - y),
-            Self::Ratio { ratio, ground } => ratio * ground.weight_above([x, y]),
+            } => unit_weight * (table_level(points, place[0]) - level),
+            Self::Ratio { ratio, ground } => ratio * ground.weight_above(&at_level(place, level)),
         }
     }
 
     /// The pressure at a point \[Pa\].
-    fn at(&self, x: &[f64; 2]) -> f64 {
-        if x[1] < self.top(x[0]) {
-            self.below(x[0], x[1])
+    fn at(&self, x: &[f64; D]) -> f64 {
+        if x[D - 1] < self.top(x) {
+            self.below(x, x[D - 1])
         } else {
             0.0
         }
@@ -137,36 +174,47 @@ impl Source {
 
     /// Means of pressure and of its vertical slope along a vertical line from `bottom` on up, and the share of the line that is
     /// wet.
-    fn on_column(&self, x: f64, bottom: f64, height: f64) -> [f64; 3] {
-        let top = self.top_within(x, [bottom, bottom + height]);
+    fn on_column(&self, place: &[f64; D], bottom: f64, height: f64) -> [f64; 3] {
+        let top = self.top_within(place, [bottom, bottom + height]);
         if top <= bottom {
             return [0.0; 3];
         }
         let wet = top - bottom;
         let mean: f64 = [-1.0, 1.0]
-            .map(|side| 0.5 * self.below(x, bottom + 0.5 * wet * (1.0 + side / 3_f64.sqrt())))
+            .map(|side| 0.5 * self.below(place, bottom + 0.5 * wet * (1.0 + side / 3_f64.sqrt())))
             .iter()
             .sum();
-        let slope = (self.below(x, top) - self.below(x, bottom)) / height;
+        let slope = (self.below(place, top) - self.below(place, bottom)) / height;
         [mean * wet / height, slope, wet / height]
     }
 
     /// Means over a domain of which soil fills a share: where soil fills less, what is wet is taken to be soil first.
-    fn over(&self, x: &[f64; 2], half: &[f64; 2], filled: f64) -> Over {
+    fn over(&self, x: &[f64; D], half: &[f64; D], filled: f64) -> Over<D> {
+        let up = D - 1;
+        let mut over = Over {
+            pressure: 0.0,
+            gradient: [0.0; D],
+            wet: 0.0,
+        };
         if matches!(self, Self::Dry) {
-            return Over::default();
+            return over;
         }
-        let (bottom, height) = (x[1] - half[1], 2.0 * half[1]);
-        let mut over = Over::default();
-        for (place, weight) in ALONG {
-            let [mean, slope, wet] = self.on_column(x[0] + place * half[0], bottom, height);
+        let (bottom, height) = (x[up] - half[up], 2.0 * half[up]);
+        for (place, weight) in columns(x, half, None) {
+            let [mean, slope, wet] = self.on_column(&place, bottom, height);
             over.pressure += weight * mean;
-            over.gradient[1] += weight * slope;
+            over.gradient[up] += weight * slope;
             over.wet += weight * wet;
         }
-        let [right, left] =
-            [1.0, -1.0].map(|side| self.on_column(x[0] + side * half[0], bottom, height)[0]);
-        over.gradient[0] = (right - left) / (2.0 * half[0]);
+        for axis in 0..up {
+            let [right, left] = [1.0, -1.0].map(|side| -> f64 {
+                columns(x, half, Some((axis, side)))
+                    .into_iter()
+                    .map(|(place, weight)| weight * self.on_column(&place, bottom, height)[0])
+                    .sum()
+            });
+            over.gradient[axis] = (right - left) / (2.0 * half[axis]);
+        }
         if over.wet > 0.0 && filled < 1.0 {
             let share = (over.wet / filled).min(1.0) / over.wet;
             over.pressure *= share;
@@ -177,21 +225,22 @@ impl Source {
     }
 }
 
-impl GroundWater {
+impl<const D: usize> GroundWater<D> {
     /// A condition of a case.
-    pub(crate) fn of(case: &Case, condition: &WaterCondition, seeded: &Arc<Seeded>) -> Self {
-        let mut own: Vec<Option<Source>> = case.bodies.iter().map(|_| None).collect();
+    pub(crate) fn of(case: &Case<D>, condition: &WaterCondition, seeded: &Arc<Seeded<D>>) -> Self {
+        let mut own: Vec<Option<Source<D>>> = case.bodies.iter().map(|_| None).collect();
         for (body, source) in &condition.bodies {
             own[*body] = Some(Source::of(case, source));
         }
-        let added = |material: &Material| material.added_by_water() / case.gravity;
+        let gravity = gravity_of_weights(case.gravity);
+        let added = |material: &Material| material.added_by_water() / gravity;
         let is_total = |material: &Material| material.drainage == Drainage::Total;
         Self {
             reference: Source::of(case, &condition.source),
             own,
             added_density: case.materials.iter().map(added).collect(),
             is_total: case.materials.iter().map(is_total).collect(),
-            density: case.water_unit_weight / case.gravity,
+            density: case.water_unit_weight / gravity,
             carried: condition.carried,
             seeded: Arc::clone(seeded),
         }
@@ -200,19 +249,19 @@ impl GroundWater {
     /// Vertical stress that the law of a particle speaks of under level ground, tension positive \[Pa\].
     pub(crate) fn effective_weight(
         &self,
-        ground: &Ground,
+        ground: &Ground<D>,
         number: usize,
         material: &Material,
-        x: &[f64; 2],
+        x: &[f64; D],
     ) -> f64 {
         let own = self.own[self.seeded.body[number]].as_ref();
         let table = match own.unwrap_or(&self.reference) {
-            source @ Source::Table { .. } => source.top(x[0]),
+            source @ Source::Table { .. } => source.top(x),
             _ => f64::NEG_INFINITY,
         };
-        let surface = ground.surface(x[0]).unwrap_or(x[1]);
-        let pond = self.reference.at(&[x[0], surface]);
-        let total = ground.weight_above(*x) + ground.added_above(*x, table) + pond;
+        let surface = ground.surface(x).unwrap_or(x[D - 1]);
+        let pond = self.reference.at(&at_level(x, surface));
+        let total = ground.weight_above(x) + ground.added_above(x, table) + pond;
         let pores = match material.drainage {
             Drainage::Total => 0.0,
             _ => own.unwrap_or(&self.reference).at(x),
@@ -221,8 +270,8 @@ impl GroundWater {
     }
 }
 
-impl PoreWater<2> for GroundWater {
-    fn at(&self, site: PoreSite<'_, 2>) -> PoreState<2> {
+impl<const D: usize> PoreWater<D> for GroundWater<D> {
+    fn at(&self, site: PoreSite<'_, D>) -> PoreState<D> {
         let (x, half) = if self.carried {
             let [x, half] = &self.seeded.domain[site.number];
             (x, half)
@@ -253,5 +302,31 @@ impl PoreWater<2> for GroundWater {
             added_density: saturated * self.added_density[material],
             water_density: full * self.density,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::case::{PoreSource, WaterCondition};
+    use crate::estimate::tests::case;
+    use crate::run::Model;
+    use igimp_assembly::{PoreState, PoreWater as _};
+
+    /// GOAL: a case without gravity may say that it is dry.
+    #[test]
+    fn ground_without_weight_may_be_dry() {
+        let mut case = case();
+        case.gravity = 0.0;
+        case.materials[0].saturated = Some(1.1 * case.materials[0].unit_weight);
+        case.water = vec![WaterCondition {
+            name: "none".to_owned(),
+            source: PoreSource::Dry,
+            bodies: Vec::new(),
+            carried: false,
+        }];
+        let (model, state) = Model::new(&case).unwrap();
+        let water = model.ground_water(0).unwrap();
+        let found = water.at(state.body.particles.pore_site(0));
+        assert_eq!(found, PoreState::dry());
     }
 }

@@ -27,7 +27,6 @@ use std::sync::atomic::AtomicBool;
 
 use thiserror::Error;
 
-use crate::case::Case;
 use crate::error::CaseError;
 use crate::estimate::room;
 use crate::input::{CaseFile, InputError, bytes};
@@ -35,7 +34,7 @@ use crate::results::admission::{Replace, refuse_link};
 use crate::results::folder;
 use crate::results::lock::Lock;
 use crate::results::owner::{Claim, Origin, Owner};
-use crate::run::{self, Entered, Listener, Run, Start, Target, run_entered};
+use crate::run::{self, Account, AnyListener, Entered, Start, Target, run_any_entered};
 
 pub use collect::{Collected, aligned, collect};
 pub(crate) use record::chain as on_one_line;
@@ -229,7 +228,9 @@ impl Sweep {
     /// [`SweepError::Task`].
     pub fn start_of(&self, task: &Task) -> Result<Start, SweepError> {
         let file = self.case_of(task)?;
-        Ok(if run::can_go_on(file.case(), &task.folder) {
+        let goes_on =
+            crate::in_any_dimension!(file.any_case(), case => run::can_go_on(case, &task.folder));
+        Ok(if goes_on {
             Start::Resume
         } else {
             Start::Afresh
@@ -256,25 +257,25 @@ impl Sweep {
         &self,
         task: &Task,
         (start, replace): (Start, Replace),
-        listener: &mut dyn Listener,
+        listener: &mut dyn AnyListener,
         interrupt: &AtomicBool,
-    ) -> Result<(Run, Ending), SweepError> {
+    ) -> Result<(Account, Ending), SweepError> {
         let file = self.case_of(task)?;
-        let mut case: Case = file.case().clone();
-        case.output.folder.clone_from(&task.folder);
+        let mut case = file.any_case().clone();
+        case.output_mut().folder.clone_from(&task.folder);
         let target = Target {
             origin: Origin::Part(self.file.clone(), format!("task {}", task.number)),
             replace,
             date: self.date.clone(),
             ..Target::of(&file, &task.folder)
         };
-        room::refuse_beyond(&case)?;
+        crate::in_any_dimension!(&case, case => room::refuse_beyond(case))?;
         refuse_link(&task.folder)?;
-        let _entered = Entered::new(&case, &target, start)?;
+        let _entered = crate::in_any_dimension!(&case, case => Entered::new(case, &target, start))?;
         folder::claim(&task.folder)?;
         let mut record = Record::new(self, task, &file);
         record.write(&task.folder)?;
-        match run_entered(&case, Some(&target), start, listener, interrupt) {
+        match run_any_entered(&case, Some(&target), start, listener, interrupt) {
             Ok(run) => {
                 record.ending = Ending::of(&run.summary);
                 record.message = record::message(&run);

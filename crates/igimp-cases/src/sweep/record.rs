@@ -13,7 +13,7 @@ use crate::check::short;
 use crate::input::CaseFile;
 use crate::mesh_study::StudySummary;
 use crate::results::atomic::write_new;
-use crate::run::Run;
+use crate::run::Account;
 use crate::summary::{StageOutcome, Summary};
 
 /// How a task ended.
@@ -135,7 +135,7 @@ pub(super) fn fingerprint(file: &CaseFile) -> String {
 }
 
 /// Why a run is not what was wanted, on one line; empty when it is.
-pub(super) fn message(run: &Run) -> String {
+pub(super) fn message(run: &Account) -> String {
     let summary = &run.summary;
     if let Some(error) = run.lost.first() {
         return chain(error);

@@ -4,8 +4,9 @@ use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::time::UNIX_EPOCH;
 
-use igimp_cases::case::{Case, Every, StageKind};
+use igimp_cases::case::{AnyCase, Every, StageKind};
 use igimp_cases::input::CaseFile;
+use igimp_cases::results::viewer::{self, Keep};
 use igimp_cases::summary::Summary;
 use serde_json::{Value, json};
 
@@ -77,8 +78,8 @@ impl Results {
     pub(super) fn index(&self) -> String {
         let summary = self.summary();
         let case = CaseFile::read(&self.root.join("case.completed.toml"), &[]).ok();
-        let case = case.as_ref().map(CaseFile::case);
-        let title = case.map_or("", |case| &case.title);
+        let case = case.as_ref().map(CaseFile::any_case);
+        let title = case.map_or("", AnyCase::title);
         let stages: Vec<Value> = std::iter::zip(0.., summary.iter().flat_map(|own| &own.stages))
             .map(|(number, stage)| {
                 let trials = stage.safety.as_ref().map(|found| found.trials.len());
@@ -93,12 +94,12 @@ impl Results {
             .collect();
         let planned: Vec<&str> = case
             .iter()
-            .flat_map(|case| &case.stages)
+            .flat_map(|case| case.stages())
             .map(|stage| &*stage.name)
             .collect();
         let recorded: serde_json::Map<String, Value> = case
             .iter()
-            .flat_map(|case| &case.curves)
+            .flat_map(|case| case.curves())
             .map(|curve| (format!("curves/{}.csv", curve.name), json!(curve.stage)))
             .collect();
         let files: serde_json::Map<String, Value> = SHOWN
@@ -112,7 +113,7 @@ impl Results {
             "stages": stages,
             "planned": planned,
             "stage_of_curve": recorded,
-            "never": case.is_some_and(|case| case.output.paraview == Every::Never),
+            "never": case.is_some_and(|case| case.output().paraview == Every::Never),
             "files": files,
         })
         .to_string()
@@ -121,16 +122,28 @@ impl Results {
     /// A file by its name in an address, with its length and kind; nothing for names that are not
     /// found by looking into the folders that are shown.
     pub(super) fn file(&self, encoded: &str) -> Option<(File, u64, &'static str)> {
+        let (path, kind) = self.path(encoded)?;
+        let file = File::open(path).ok()?;
+        let length = file.metadata().ok()?.len();
+        Some((file, length, kind))
+    }
+
+    /// A frame by its name in an address, as the page takes it.
+    pub(super) fn packed(&self, encoded: &str) -> Option<String> {
+        let (path, _) = self.path(encoded)?;
+        let is_frame = path.extension().is_some_and(|ending| ending == "vtu");
+        is_frame.then(|| viewer::frame(&path, Keep::MUCH)).flatten()
+    }
+
+    /// The path of a file that is shown, and its kind.
+    fn path(&self, encoded: &str) -> Option<(PathBuf, &'static str)> {
         let name = decoded(encoded)?;
-        let (path, kind) = SHOWN.iter().find_map(|&(folder, ending, kind)| {
+        SHOWN.iter().find_map(|&(folder, ending, kind)| {
             let mut names = self.names(folder, ending);
             names
                 .find(|(own, _)| *own == name)
                 .map(|(_, path)| (path, kind))
-        })?;
-        let file = File::open(path).ok()?;
-        let length = file.metadata().ok()?.len();
-        Some((file, length, kind))
+        })
     }
 
     /// The files of a folder with an ending: plain files that stand there themselves, no links.
@@ -168,9 +181,9 @@ fn is_of_a_run(folder: &Path) -> bool {
 }
 
 /// Number of factors that the case lists for a search, each of which is a row of the tables.
-fn listed(case: Option<&Case>, stage: usize) -> usize {
+fn listed(case: Option<&AnyCase>, stage: usize) -> usize {
     match case
-        .and_then(|case| case.stages.get(stage))
+        .and_then(|case| case.stages().get(stage))
         .map(|stage| &stage.kind)
     {
         Some(StageKind::StrengthReduction(search)) => search.factors.len(),

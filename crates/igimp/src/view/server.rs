@@ -24,6 +24,9 @@ const PARTS: [(&str, &str); 5] = [
     ("/* page.js */", include_str!("page/page.js")),
 ];
 
+/// Before the name of a frame that is asked for as the page takes it.
+const PACKED: &str = "packed/";
+
 /// Sent with every response. Nothing is kept, guessed, framed or told to others.
 const HEADERS: [(&str, &str); 5] = [
     ("Cache-Control", "no-store"),
@@ -127,6 +130,14 @@ impl Site {
                 policy: None,
                 body: Body::Text(self.results.index()),
             }),
+            _ if name.starts_with(PACKED) => {
+                let frame = self.results.packed(&name[PACKED.len()..]);
+                Ok(Answer {
+                    kind: "application/json",
+                    policy: None,
+                    body: Body::Text(frame.ok_or(Status::NotFound)?),
+                })
+            }
             _ => {
                 let (file, length, kind) = self.results.file(name).ok_or(Status::NotFound)?;
                 Ok(Answer {

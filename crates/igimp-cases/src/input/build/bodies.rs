@@ -1,5 +1,7 @@
 //! Bodies: polygons on the grid, apart from each other, held from below.
 
+use std::sync::Arc;
+
 use super::AllNames;
 use super::grid::MOST;
 use super::sequence::{Sequence, placed};
@@ -62,11 +64,11 @@ fn part(
         name: node.text_at("name")?.to_owned(),
         material: material?,
         per_direction: points.isqrt(),
-        polygon: polygon?,
+        region: Arc::new(polygon?),
     })
 }
 
-fn corners(node: &Node, name: &str, problems: &mut Problems) -> Option<Vec<[f64; 2]>> {
+pub(super) fn corners(node: &Node, name: &str, problems: &mut Problems) -> Option<Vec<[f64; 2]>> {
     let written: Option<Vec<_>> = node.items().iter().map(Node::pair).collect();
     let written = written?;
     let largest = written
@@ -120,7 +122,7 @@ pub(super) fn check(
         let mut particles = 0.0;
         for (index, body) in bodies.iter().enumerate() {
             let Some(body) = body else { continue };
-            let outside = body.polygon.iter().find(|corner| {
+            let outside = body.polygon().iter().find(|corner| {
                 (0..2).any(|axis| {
                     corner[axis] < frame.lower[axis] - site.round_off
                         || corner[axis] > frame.upper[axis] + site.round_off
@@ -139,9 +141,9 @@ pub(super) fn check(
                     .help("extend [grid] domain");
                 continue;
             }
-            let (lower, upper) = bounding_box(&body.polygon);
+            let (lower, upper) = bounding_box(body.polygon());
             // Cells of the box around the body, times its share of the box.
-            let cells = area_and_centroid(&body.polygon).0.abs()
+            let cells = area_and_centroid(body.polygon()).0.abs()
                 * (0..2)
                     .map(|axis| {
                         let [from, to] = [lower, upper].map(|x| frame.axes[axis].place(x[axis]));
@@ -171,7 +173,7 @@ pub(super) fn check(
             if !sequence.are_together(first, second) {
                 continue;
             }
-            if let Some(at) = overlap(&a.polygon, &b.polygon, site.round_off) {
+            if let Some(at) = overlap(a.polygon(), b.polygon(), site.round_off) {
                 problems
                     .error(
                         place(second),
@@ -212,10 +214,10 @@ pub(super) fn check_support(
                 })
         });
         boxed
-            || boundaries.bottom != Side::Free && lower[1] < frame.lower[1] + reach
-            || boundaries.left == Side::Fixed && lower[0] < frame.lower[0] + reach
-            || boundaries.right == Side::Fixed && upper[0] > frame.upper[0] - reach
-            || boundaries.top != Side::Free && upper[1] > frame.upper[1] - reach
+            || boundaries.sides[1][0] != Side::Free && lower[1] < frame.lower[1] + reach
+            || boundaries.sides[0][0] == Side::Fixed && lower[0] < frame.lower[0] + reach
+            || boundaries.sides[0][1] == Side::Fixed && upper[0] > frame.upper[0] - reach
+            || boundaries.sides[1][1] != Side::Free && upper[1] > frame.upper[1] - reach
     };
     let mut is_held: Vec<bool> = polygons.iter().map(held).collect();
     let mut queue: Vec<usize> = (0..polygons.len()).filter(|&k| is_held[k]).collect();
@@ -230,7 +232,7 @@ pub(super) fn check_support(
     let items = tree.items_at("bodies");
     for (k, body) in bodies.iter().flatten().enumerate() {
         if !is_held[k] {
-            let lowest = bounding_box(&body.polygon).0[1];
+            let lowest = bounding_box(body.polygon()).0[1];
             problems
                 .warning(
                     items[k].place_at("polygon"),

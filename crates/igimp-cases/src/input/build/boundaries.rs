@@ -1,23 +1,34 @@
 //! Supports.
 
-use super::site::Site;
+use super::grid::Frame;
 use crate::case::{Boundaries, FixedBox, Side};
 use crate::input::diagnostic::Problems;
 use crate::input::tree::Node;
 
 /// The supports.
-pub(super) fn boundaries(tree: &Node, site: &Site, problems: &mut Problems) -> Option<Boundaries> {
+pub(super) fn boundaries<const D: usize>(
+    tree: &Node,
+    frame: Option<&Frame<D>>,
+    problems: &mut Problems,
+) -> Option<Boundaries<D>> {
     let node = tree.get("boundaries")?;
     let boxes: Vec<_> = node
         .items_at("boxes")
         .iter()
-        .map(|part| fixed_box(part, site, problems))
+        .map(|part| fixed_box(part, frame, problems))
         .collect();
+    let mut sides = [[Side::Free; 2]; D];
+    let [across, up] = [["front", "back"], ["bottom", "top"]];
+    for (axis, own) in sides.iter_mut().enumerate() {
+        let keys = match axis {
+            0 => ["left", "right"],
+            _ if axis == D - 1 => up,
+            _ => across,
+        };
+        *own = [side(node, keys[0])?, side(node, keys[1])?];
+    }
     Some(Boundaries {
-        left: side(node, "left")?,
-        right: side(node, "right")?,
-        bottom: side(node, "bottom")?,
-        top: side(node, "top")?,
+        sides,
         boxes: boxes.into_iter().collect::<Option<_>>()?,
     })
 }
@@ -30,12 +41,16 @@ fn side(node: &Node, key: &str) -> Option<Side> {
     })
 }
 
-fn fixed_box(node: &Node, site: &Site, problems: &mut Problems) -> Option<FixedBox> {
-    let (from, to) = (node.pair_at("from")?, node.pair_at("to")?);
-    let lower = [from[0].min(to[0]), from[1].min(to[1])];
-    let upper = [from[0].max(to[0]), from[1].max(to[1])];
-    if let Some(frame) = &site.frame {
-        let has_nodes = (0..2).all(|axis| {
+fn fixed_box<const D: usize>(
+    node: &Node,
+    frame: Option<&Frame<D>>,
+    problems: &mut Problems,
+) -> Option<FixedBox<D>> {
+    let (from, to): ([f64; D], [f64; D]) = (node.point_at("from")?, node.point_at("to")?);
+    let lower: [f64; D] = std::array::from_fn(|axis| from[axis].min(to[axis]));
+    let upper: [f64; D] = std::array::from_fn(|axis| from[axis].max(to[axis]));
+    if let Some(frame) = frame {
+        let has_nodes = (0..D).all(|axis| {
             let slack = 1e-6;
             let place = |x: f64| frame.axes[axis].place(x);
             let first = (place(lower[axis].max(frame.lower[axis])) - slack).ceil();
@@ -47,9 +62,19 @@ fn fixed_box(node: &Node, site: &Site, problems: &mut Problems) -> Option<FixedB
                 .help("let it reach over a line of the grid");
         }
     }
-    let mut fix = [false; 2];
+    let mut fix = [false; D];
     for axis in node.items_at("fix") {
-        fix[usize::from(axis.text()? == "y")] = true;
+        let name = axis.text()?;
+        let Some(own) = ["x", "y", "z"].iter().take(D).position(|key| *key == name) else {
+            problems
+                .error(
+                    axis.place,
+                    format!("there is no axis {name} in plane strain"),
+                )
+                .help("write x or y");
+            return None;
+        };
+        fix[own] = true;
     }
     Some(FixedBox {
         name: node.text_at("name")?.to_owned(),

@@ -9,10 +9,10 @@ use crate::input::text::clip;
 use crate::input::tree::{Node, Wrong};
 
 /// The checks.
-pub(super) fn checks(
+pub(super) fn checks<const D: usize>(
     tree: &Node,
     names: &AllNames,
-    loads: &[Option<Load>],
+    loads: &[Option<Load<D>>],
     stages: &[Option<Stage>],
     problems: &mut Problems,
 ) -> Vec<Option<CaseCheck>> {

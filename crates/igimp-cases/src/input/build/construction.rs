@@ -1,14 +1,14 @@
 //! Construction stages: what they may do to what is there.
 
 use super::stages::Context;
-use crate::case::{Construction, Drainage, LoadKind, StageKind};
+use crate::case::{Construction, Drainage, LoadKind, StageKind, front};
 use crate::input::diagnostic::Problems;
 use crate::input::text::{clip, row};
 use crate::input::tree::Node;
 
 /// A construction stage.
-pub(super) fn stage(
-    context: &Context<'_>,
+pub(super) fn stage<const D: usize>(
+    context: &Context<'_, D>,
     index: usize,
     node: &Node,
     name: &str,
@@ -49,8 +49,8 @@ pub(super) fn stage(
 }
 
 /// The bodies that a list names.
-fn bodies(
-    context: &Context<'_>,
+fn bodies<const D: usize>(
+    context: &Context<'_, D>,
     node: &Node,
     key: &str,
     name: &str,
@@ -73,8 +73,8 @@ fn bodies(
 }
 
 /// Bodies and what they become.
-fn materials(
-    context: &Context<'_>,
+fn materials<const D: usize>(
+    context: &Context<'_, D>,
     node: &Node,
     name: &str,
     problems: &mut Problems,
@@ -102,8 +102,8 @@ fn materials(
 }
 
 /// Refuses to place what is there, and to take away or change what is not.
-fn comes_and_goes(
-    context: &Context<'_>,
+fn comes_and_goes<const D: usize>(
+    context: &Context<'_, D>,
     index: usize,
     node: &Node,
     own: &Construction,
@@ -190,8 +190,8 @@ fn comes_and_goes(
 }
 
 /// Refuses to take away soil under a load that acts, or a footing that was pushed.
-fn loads_stay_held(
-    context: &Context<'_>,
+fn loads_stay_held<const D: usize>(
+    context: &Context<'_, D>,
     index: usize,
     node: &Node,
     own: &Construction,
@@ -202,13 +202,12 @@ fn loads_stay_held(
             continue;
         };
         let ends = match kind.kind {
-            LoadKind::RigidFooting { from, to, .. } | LoadKind::Pressure { from, to, .. } => {
-                [from, to]
-            }
-            LoadKind::Point { at, .. } => [at, at],
+            LoadKind::RigidFooting { from, to, .. } => [from, to],
+            LoadKind::Pressure { from, to, .. } => [front(&from), front(&to)],
+            LoadKind::Point { at, .. } => [front(&at); 2],
         };
         let lost = own.remove.iter().position(|&body| {
-            let bears = context.site.bears(body, ends);
+            let bears = context.site.is_some_and(|site| site.bears(body, ends));
             bears && !stays_held(context, index, ends)
         });
         if let Some(lost) = lost {
@@ -232,13 +231,14 @@ fn loads_stay_held(
 }
 
 /// Whether some body that is there after a stage bears a load.
-fn stays_held(context: &Context<'_>, index: usize, ends: [[f64; 2]; 2]) -> bool {
+fn stays_held<const D: usize>(context: &Context<'_, D>, index: usize, ends: [[f64; 2]; 2]) -> bool {
     let present = &context.sequence.ends[index].present;
-    (0..present.len()).any(|body| present[body] && context.site.bears(body, ends))
+    (0..present.len())
+        .any(|body| present[body] && context.site.is_some_and(|site| site.bears(body, ends)))
 }
 
 /// Whether a load acts as a stage begins.
-fn acts(context: &Context<'_>, index: usize, load: usize) -> bool {
+fn acts<const D: usize>(context: &Context<'_, D>, index: usize, load: usize) -> bool {
     let nodes = context.stage_nodes();
     let mut at = context.sequence.from(index);
     while let Some(stage) = at {
@@ -255,8 +255,8 @@ fn acts(context: &Context<'_>, index: usize, load: usize) -> bool {
 }
 
 /// Refuses a load on soil that is not there yet, or not any more.
-pub(super) fn load_is_held(
-    context: &Context<'_>,
+pub(super) fn load_is_held<const D: usize>(
+    context: &Context<'_, D>,
     index: usize,
     load: usize,
     value: &Node,
@@ -266,12 +266,17 @@ pub(super) fn load_is_held(
         return;
     };
     let ends = match own.kind {
-        LoadKind::RigidFooting { from, to, .. } | LoadKind::Pressure { from, to, .. } => [from, to],
-        LoadKind::Point { at, .. } => [at, at],
+        LoadKind::RigidFooting { from, to, .. } => [from, to],
+        LoadKind::Pressure { from, to, .. } => [front(&from), front(&to)],
+        LoadKind::Point { at, .. } => [front(&at); 2],
     };
     let bodies = context.sequence.start.present.len();
-    let is_somewhere = (0..bodies).any(|body| context.site.bears(body, ends));
-    if context.site.is_complete && is_somewhere && !stays_held(context, index, ends) {
+    let is_somewhere =
+        (0..bodies).any(|body| context.site.is_some_and(|site| site.bears(body, ends)));
+    if context.site.is_some_and(|site| site.is_complete)
+        && is_somewhere
+        && !stays_held(context, index, ends)
+    {
         problems
             .error(
                 value.place,
@@ -286,7 +291,7 @@ pub(super) fn load_is_held(
 
 /// Refuses cases that begin without soil; warns of undrained soil whose own weight comes on, and of stiffness that is shared
 /// between soils that come and go.
-pub(super) fn check(context: &Context<'_>, problems: &mut Problems) {
+pub(super) fn check<const D: usize>(context: &Context<'_, D>, problems: &mut Problems) {
     let start = &context.sequence.start;
     if !start.present.is_empty() && !start.present.contains(&true) {
         problems

@@ -14,10 +14,10 @@ use crate::input::tree::Node;
 const LARGEST: u64 = 1 << 20;
 
 /// The curves; files of references are beside the case file.
-pub(super) fn curves(
+pub(super) fn curves<const D: usize>(
     tree: &Node,
     names: &AllNames,
-    loads: &[Option<Load>],
+    loads: &[Option<Load<D>>],
     file: &Path,
     problems: &mut Problems,
 ) -> Vec<Option<Curve>> {
@@ -43,10 +43,10 @@ pub(super) fn curves(
         .collect()
 }
 
-fn axis(
+fn axis<const D: usize>(
     node: &Node,
     names: &AllNames,
-    loads: &[Option<Load>],
+    loads: &[Option<Load<D>>],
     problems: &mut Problems,
 ) -> Option<CurveAxis> {
     let of = node.get("of")?;

@@ -4,6 +4,7 @@
 use std::path::Path;
 
 use super::quantities::unit_of;
+use crate::input::schema::SPACE;
 use crate::input::tree::{Node, Value};
 
 /// Puts them into the tree.
@@ -83,12 +84,14 @@ pub(super) fn derive(tree: &mut Node, file: &Path) {
         let folder = format!("results/{}", stem.as_deref().unwrap_or("case"));
         output.add_derived("folder", Value::Text(folder));
     }
+    let analysis = tree.get("case").and_then(|case| case.text_at("analysis"));
+    let dimensions = if analysis == Some(SPACE) { 3 } else { 2 };
     if let Some(curves) = tree.get_mut("curves") {
         for curve in curves.items_mut() {
             for axis in ["x", "y"] {
                 if let Some(axis) = curve.get_mut(axis)
                     && axis.get("label").is_none()
-                    && let Some(label) = label(axis)
+                    && let Some(label) = label(dimensions, axis)
                 {
                     axis.add_derived("label", Value::Text(label));
                 }
@@ -116,11 +119,11 @@ fn strong_materials(tree: &Node) -> Vec<String> {
 }
 
 /// The quantity and its unit, as in `footing.settlement [m]`.
-fn label(axis: &Node) -> Option<String> {
+fn label(dimensions: usize, axis: &Node) -> Option<String> {
     let of = axis.text_at("of")?;
     let divisors = axis.items_at("divide_by");
     if divisors.is_empty() {
-        return Some(format!("{of} [{}]", unit_of(of)));
+        return Some(format!("{of} [{}]", unit_of(dimensions, of)));
     }
     let mut label = of.to_owned();
     for divisor in divisors {

@@ -20,31 +20,34 @@ const MOST_LINES: f64 = 2e4;
 const LEAST_GROWTH: f64 = 1.05;
 /// Ratio of neighbouring cells beyond which a warning is given \[-\].
 const MOST_JUMP: f64 = 2.0;
-/// The keys of the two directions.
-const DIRECTIONS: [&str; 2] = ["x", "y"];
+/// The keys of the directions.
+const DIRECTIONS: [&str; 3] = ["x", "y", "z"];
 
 /// Extent of the grid and its axes, for the checks of what lies on it \[m\].
 #[derive(Clone, Debug)]
-pub(super) struct Frame {
-    /// Lower left corner.
-    pub(super) lower: [f64; 2],
-    /// Upper right corner.
-    pub(super) upper: [f64; 2],
+pub(super) struct Frame<const D: usize = 2> {
+    /// Corner of the lowest coordinates.
+    pub(super) lower: [f64; D],
+    /// Corner of the highest coordinates.
+    pub(super) upper: [f64; D],
     /// The axes; equal cells as written as long as the grid is not known.
-    pub(super) axes: [AxisSpec; 2],
+    pub(super) axes: [AxisSpec; D],
 }
 
 /// The frame, if its numbers make sense.
-pub(super) fn frame(tree: &Node, problems: &mut Problems) -> Option<Frame> {
+pub(super) fn frame<const D: usize>(tree: &Node, problems: &mut Problems) -> Option<Frame<D>> {
     let grid = tree.get("grid")?;
-    let cell = match grid.get("cell")? {
-        table if table.get("x").is_some() => [table.number_at("x")?, table.number_at("y")?],
-        one => [one.number()?; 2],
-    };
+    let mut cell = [0.0; D];
+    for (own, key) in std::iter::zip(&mut cell, DIRECTIONS) {
+        *own = match grid.get("cell")? {
+            table if table.get("x").is_some() => table.number_at(key)?,
+            one => one.number()?,
+        };
+    }
     let domain = grid.get("domain")?;
-    let (mut lower, mut upper) = ([0.0; 2], [0.0; 2]);
+    let (mut lower, mut upper) = ([0.0; D], [0.0; D]);
     let mut is_right = true;
-    for (axis, key) in DIRECTIONS.into_iter().enumerate() {
+    for (axis, key) in DIRECTIONS.into_iter().take(D).enumerate() {
         let [from, to] = domain.pair_at(key)?;
         (lower[axis], upper[axis]) = (from, to);
         if from >= to || !(to - from).is_finite() {
@@ -57,7 +60,7 @@ pub(super) fn frame(tree: &Node, problems: &mut Problems) -> Option<Frame> {
             is_right = false;
         }
     }
-    let axes = [0, 1].map(|axis| AxisSpec::Equal {
+    let axes = std::array::from_fn(|axis| AxisSpec::Equal {
         lower: lower[axis],
         cell: cell[axis],
         cells: ((upper[axis] - lower[axis]) / cell[axis]).round().max(1.0) as usize,
@@ -67,27 +70,28 @@ pub(super) fn frame(tree: &Node, problems: &mut Problems) -> Option<Frame> {
 
 /// The grid; reports a domain that is not a whole number of cells, lines off the domain, and too
 /// many cells.
-pub(super) fn grid(
+pub(super) fn grid<const D: usize>(
     tree: &Node,
-    frame: Option<&Frame>,
-    bodies: &[Option<BodyPart>],
+    frame: Option<&Frame<D>>,
+    bodies: &[Option<BodyPart<D>>],
     problems: &mut Problems,
-) -> Option<GridSpec> {
+) -> Option<GridSpec<D>> {
     let node = tree.get("grid")?;
     let Frame { lower, upper, axes } = frame?;
-    let cell = [0, 1].map(|axis| axes[axis].cell_at(lower[axis]));
-    let extent = [upper[0] - lower[0], upper[1] - lower[1]];
-    let cells = [extent[0] / cell[0], extent[1] / cell[1]];
-    let total = cells[0].max(1.0) * cells[1].max(1.0);
+    let cell: [f64; D] = std::array::from_fn(|axis| axes[axis].cell_at(lower[axis]));
+    let extent: [f64; D] = std::array::from_fn(|axis| upper[axis] - lower[axis]);
+    let total: f64 = (0..D)
+        .map(|axis| (extent[axis] / cell[axis]).max(1.0))
+        .product();
     if total.is_nan() || total > MOST {
         too_many(node, &count(total), problems);
         return None;
     }
     let levels = match node.text_at("fit")? {
-        "layers" => levels(bodies, 1e-9 * extent[1].max(upper[1].abs())),
+        "layers" => levels(bodies, 1e-9 * extent[D - 1].max(upper[D - 1].abs())),
         _ => Vec::new(),
     };
-    let found = [0, 1].map(|axis| {
+    let found: [Option<AxisSpec>; D] = std::array::from_fn(|axis| {
         let key = DIRECTIONS[axis];
         if cell[axis] < 1e-9 * lower[axis].abs().max(upper[axis].abs()) {
             problems
@@ -99,16 +103,15 @@ pub(super) fn grid(
             return None;
         }
         let ends = [lower[axis], upper[axis]];
-        match wish(node, axis, ends, cell[axis], &levels, problems)? {
+        let levels = if axis == D - 1 { &levels[..] } else { &[] };
+        match wish(node, axis, ends, cell[axis], levels, problems)? {
             Some(wish) => with_lines(node, key, &wish, problems),
             None => equal_cells(node, key, ends, cell[axis], problems),
         }
     });
-    let [Some(x), Some(y)] = found else {
-        return None;
-    };
+    let axes: Option<Vec<AxisSpec>> = found.into_iter().collect();
     let grid = GridSpec {
-        axes: [x, y],
+        axes: axes?.try_into().ok()?,
         mixed_cells: match node.text_at("mixed_cells")? {
             "mean" => MixedCells::Mean,
             _ => MixedCells::Own,
@@ -290,7 +293,6 @@ fn wish(
             zones.push(own);
         }
     }
-    let levels = if axis == 1 { levels } else { &[] };
     let levels: Vec<f64> = levels.iter().copied().filter(|&y| is_inside(y)).collect();
     let is_equal = lines.is_empty() && zones.is_empty() && levels.is_empty();
     is_right.then(|| {
@@ -306,11 +308,12 @@ fn wish(
 }
 
 /// Level edges of bodies, the longest first \[m\].
-fn levels(bodies: &[Option<BodyPart>], round_off: f64) -> Vec<f64> {
+fn levels<const D: usize>(bodies: &[Option<BodyPart<D>>], round_off: f64) -> Vec<f64> {
     let mut levels: Vec<(f64, f64)> = Vec::new();
     for body in bodies.iter().flatten() {
-        for (k, p) in body.polygon.iter().enumerate() {
-            let q = body.polygon[(k + 1) % body.polygon.len()];
+        let polygon = body.region.polygon();
+        for (k, p) in polygon.iter().enumerate() {
+            let q = polygon[(k + 1) % polygon.len()];
             if (p[1] - q[1]).abs() > round_off {
                 continue;
             }

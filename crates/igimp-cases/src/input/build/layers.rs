@@ -64,7 +64,7 @@ fn ground_of<'a>(bodies: &[&'a BodyPart], materials: &[&'a Material]) -> Ground 
 /// The modulus of compression without lateral strain at a place.
 fn constrained(material: &Material, place: [f64; 2], ground: &Ground) -> f64 {
     let nu = material.poisson;
-    material.young_at(place, ground) * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu))
+    material.young_at(&place, ground) * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu))
 }
 
 /// Boundaries within cells and gaps; tells which bodies touch a stiffer one, or one of their own
@@ -87,7 +87,7 @@ fn check_pairs(
             if !layers.sequence.are_together(first, second) {
                 continue;
             }
-            let pieces = facing(&a.polygon, &b.polygon, narrow);
+            let pieces = facing(a.polygon(), b.polygon(), narrow);
             let place = items[second].place_at("polygon");
             let gap = pieces.iter().find(|piece| {
                 piece.distance > layers.site.round_off && !layers.site.is_inside(piece.middle)
@@ -126,7 +126,7 @@ fn check_pairs(
             // One warning for two bodies: of the boundary that matters most.
             let worst = within
                 .map(|within| {
-                    let is_first = contains(&a.polygon, within.beside());
+                    let is_first = contains(a.polygon(), within.beside());
                     let ordered = if is_first {
                         moduli
                     } else {
@@ -264,7 +264,7 @@ fn check_thickness(
         let thinnest = [0, 1]
             .into_iter()
             .filter_map(|axis| {
-                let [from, to] = largest_run(&body.polygon, axis);
+                let [from, to] = largest_run(body.polygon(), axis);
                 let spans = from <= frame.lower[axis] + layers.site.round_off
                     && to >= frame.upper[axis] - layers.site.round_off;
                 let own = &frame.axes[axis];
@@ -316,7 +316,7 @@ pub(super) fn check_stiffness(
     }
     let ground = ground_of(&bodies, &materials);
     let levels = |body: &BodyPart| {
-        let (lower, upper) = bounding_box(&body.polygon);
+        let (lower, upper) = bounding_box(body.polygon());
         [lower[1], upper[1]]
     };
     let top = bodies
@@ -330,10 +330,10 @@ pub(super) fn check_stiffness(
             continue;
         };
         let lowest = levels(body)[0];
-        let (lower, upper) = bounding_box(&body.polygon);
+        let (lower, upper) = bounding_box(body.polygon());
         let middle = [0.5 * (lower[0] + upper[0]), 0.5 * (top + lowest)];
-        let weight = material.unit_weight_at(middle, &ground);
-        let young = material.young_at(middle, &ground);
+        let weight = material.unit_weight_at(&middle, &ground);
+        let young = material.young_at(&middle, &ground);
         let ratio = weight * (top - lowest) / young;
         let place = file
             .and_then(|file| file.get(&material.name))

@@ -1,7 +1,9 @@
 //! Materials and the limits of their parameters.
 
 use super::profiles::{Extent, Property, TABLES, Terms, property};
-use crate::case::{BodyPart, Drainage, Ground, Material, Profile, Profiles, Strength};
+use std::sync::Arc;
+
+use crate::case::{BodyPart, Drainage, Ground, Layer, Material, Profile, Profiles, Strength};
 use crate::input::diagnostic::Problems;
 use crate::input::text::{clip, number};
 use crate::input::tree::{Entry, Node, Wrong};
@@ -36,14 +38,20 @@ const FRICTION: Terms = Terms {
 };
 
 /// The materials in the order of the file.
-pub(super) fn materials(
+pub(super) fn materials<const D: usize>(
     tree: &Node,
-    bodies: &[Option<BodyPart>],
+    bodies: &[Option<BodyPart<D>>],
     problems: &mut Problems,
 ) -> Vec<Option<Material>> {
     let entries = tree.get("materials").map_or(&[][..], Node::entries);
     let outlines = bodies.iter().flatten();
-    let surface = Ground::of_polygons(outlines.map(|body| (&body.polygon[..], 0.0, None)));
+    let layer = |body: &BodyPart<D>, unit_weight, profile| Layer {
+        region: Arc::clone(&body.region),
+        unit_weight,
+        profile,
+        added: 0.0,
+    };
+    let surface = Ground::of_layers(outlines.map(|body| layer(body, 0.0, None)));
     let weights: Vec<Option<Property>> = entries
         .iter()
         .enumerate()
@@ -59,9 +67,9 @@ pub(super) fn materials(
         .collect();
     let with_weights = bodies.iter().flatten().filter_map(|body| {
         let weight = weights.get(body.material)?.as_ref()?;
-        Some((&body.polygon[..], weight.constant, weight.profile.as_ref()))
+        Some(layer(body, weight.constant, weight.profile.clone()))
     });
-    let ground = Ground::of_polygons(with_weights);
+    let ground = Ground::of_layers(with_weights);
     std::iter::zip(entries, &weights)
         .enumerate()
         .map(|(index, (entry, weight))| {
@@ -76,10 +84,10 @@ pub(super) fn materials(
         .collect()
 }
 
-fn material(
+fn material<const D: usize>(
     entry: &Entry,
     unit_weight: Option<&Property>,
-    extent: Extent<'_>,
+    extent: Extent<'_, D>,
     problems: &mut Problems,
 ) -> Option<Material> {
     let (name, node) = (&entry.key, &entry.node);
@@ -160,7 +168,11 @@ fn material(
 }
 
 /// tan φ, where the angle is one.
-fn friction(node: &Node, extent: Extent<'_>, problems: &mut Problems) -> Option<Property> {
+fn friction<const D: usize>(
+    node: &Node,
+    extent: Extent<'_, D>,
+    problems: &mut Problems,
+) -> Option<Property> {
     let value = node.get("friction")?;
     let angles = std::iter::once(value).chain(value.items_at("values"));
     for angle in angles {

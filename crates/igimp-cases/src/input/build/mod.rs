@@ -20,20 +20,24 @@ mod profiles;
 mod quantities;
 mod reinforcement;
 mod rigid;
+mod rigid_space;
 mod safety;
 mod sequence;
 mod site;
+mod solids;
+mod space;
 mod stages;
 mod study;
+mod surfaces;
 mod water;
 
 use std::path::Path;
 
 use super::diagnostic::Problems;
 use super::names::Names;
-use super::schema::FORMAT;
+use super::schema::{FORMAT, SPACE};
 use super::tree::Node;
-use crate::case::{Case, TitleBlock};
+use crate::case::{AnyCase, Case, TitleBlock};
 
 use layers::Layers;
 pub(super) use quantities::QUANTITY_DOCS;
@@ -83,24 +87,32 @@ impl AllNames {
 /// The case that a completed tree states; values that follow from others are put into the tree.
 ///
 /// `None` only when a problem was reported, here or before.
-pub(super) fn build(tree: &mut Node, file: &Path, problems: &mut Problems) -> Option<Case> {
+pub(super) fn build(tree: &mut Node, file: &Path, problems: &mut Problems) -> Option<AnyCase> {
     derive::derive(tree, file);
     let tree = &*tree;
     let names = AllNames::new(tree, problems);
     header(tree, problems);
+    if tree.get("case")?.text_at("analysis") == Some(SPACE) {
+        space::build(tree, &names, file, problems).map(AnyCase::Space)
+    } else {
+        in_plane(tree, &names, file, problems).map(AnyCase::Plane)
+    }
+}
 
+/// The same for a case in plane strain.
+fn in_plane(tree: &Node, names: &AllNames, file: &Path, problems: &mut Problems) -> Option<Case> {
     let mut frame = grid::frame(tree, problems);
     let method = grid::method(tree);
-    let bodies = bodies::bodies(tree, &names, problems);
+    let bodies = bodies::bodies(tree, names, problems);
     let materials = materials::materials(tree, &bodies, problems);
     let grid = grid::grid(tree, frame.as_ref(), &bodies, problems);
     if let (Some(frame), Some(grid)) = (&mut frame, &grid) {
         frame.axes.clone_from(&grid.axes);
     }
-    let sequence = Sequence::new(tree, &names, &bodies);
+    let sequence = Sequence::new(tree, names, &bodies);
     let site = Site::new(frame, &bodies, &sequence);
-    bodies::check(tree, &names, (&bodies, &sequence), &site, problems);
-    let boundaries = boundaries::boundaries(tree, &site, problems);
+    bodies::check(tree, names, (&bodies, &sequence), &site, problems);
+    let boundaries = boundaries::boundaries(tree, site.frame.as_ref(), problems);
     bodies::check_support(tree, &bodies, boundaries.as_ref(), &site, problems);
     let layers = Layers {
         tree,
@@ -119,10 +131,10 @@ pub(super) fn build(tree: &mut Node, file: &Path, problems: &mut Problems) -> Op
         sequence: &sequence,
     };
     let rigid = rigid::rigid(tree, &around, problems);
-    rigid::check_use(tree, &names, problems);
+    rigid::check_use(tree, names, problems);
     let around = water::Around {
         tree,
-        names: &names,
+        names,
         site: &site,
         bodies: &bodies,
         materials: &materials,
@@ -131,14 +143,14 @@ pub(super) fn build(tree: &mut Node, file: &Path, problems: &mut Problems) -> Op
     let water = water::conditions(&around, problems);
     water::check(&around, &water, problems);
     let reinforcement = reinforcement::reinforcement(tree, &site, problems);
-    reinforcement::check_searches(tree, &names, problems);
+    reinforcement::check_searches(tree, names, problems);
     let context = stages::Context {
         tree,
-        names: &names,
+        names,
         materials: &materials,
         bodies: &bodies,
         loads: &loads,
-        site: &site,
+        site: Some(&site),
         sequence: &sequence,
     };
     let stages = stages::stages(&context, problems);
@@ -149,14 +161,14 @@ pub(super) fn build(tree: &mut Node, file: &Path, problems: &mut Problems) -> Op
     let solver = outputs::solver(tree, &materials, problems);
     let monitors = outputs::monitors(tree, &site, problems);
     let about = outputs::About {
-        names: &names,
+        names,
         stages: &stages,
         file,
     };
     let sections = outputs::sections(tree, &about, &site, problems);
-    let curves = curves::curves(tree, &names, &loads, file, problems);
-    let checks = checks::checks(tree, &names, &loads, &stages, problems);
-    let output = outputs::output(tree, problems);
+    let curves = curves::curves(tree, names, &loads, file, problems);
+    let checks = checks::checks(tree, names, &loads, &stages, problems);
+    let output = outputs::output::<2>(tree, problems);
     let mesh_study = study::mesh_study(tree);
 
     let case = tree.get("case")?;
@@ -203,7 +215,7 @@ fn all<T>(parts: Vec<Option<T>>) -> Option<Vec<T>> {
     parts.into_iter().collect()
 }
 
-/// Checks the version of the format and the kind of analysis.
+/// Checks the version of the format, and that gravity is there where it is raised.
 fn header(tree: &Node, problems: &mut Problems) {
     if let Some(version) = tree.number_at("igimp")
         && version > FORMAT as f64
@@ -216,14 +228,6 @@ fn header(tree: &Node, problems: &mut Problems) {
             .help(format!("this program reads igimp = {FORMAT}"));
     }
     let Some(case) = tree.get("case") else { return };
-    if case.text_at("analysis") == Some("3d") {
-        problems
-            .error(
-                case.place_at("analysis"),
-                "3D case files are not available yet; the library's crates are",
-            )
-            .help("write analysis = \"plane-strain\", or use the crates in a program");
-    }
     if case.number_at("gravity") == Some(0.0) {
         let stages = tree.get("stages").map_or(&[][..], Node::items);
         for stage in stages {

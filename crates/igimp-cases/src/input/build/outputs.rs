@@ -6,14 +6,15 @@ use igimp_solver::linear::SolverKind;
 
 use super::AllNames;
 use super::quantities::fields;
-use super::site::Site;
+use super::site::Soil;
 use crate::case::{
-    Average, Every, Field, Material, Monitor, Output, Section, SectionReference, SolverSettings,
-    Stage, StageKind, Strength,
+    Average, Cut, Every, Field, Material, Monitor, Output, Section, SectionReference,
+    SolverSettings, Stage, StageKind, Strength,
 };
 use crate::input::diagnostic::Problems;
 use crate::input::text::{clip, point};
 use crate::input::tree::Node;
+use crate::results::fields::length;
 
 /// Newton's method, step cutting, linear solver.
 pub(super) fn solver(
@@ -25,6 +26,7 @@ pub(super) fn solver(
     let cutting = node.get("step_cutting")?;
     let linear = match node.text_at("linear")? {
         "cholesky" => SolverKind::MultifrontalCholesky,
+        "multigrid" => SolverKind::Multigrid,
         "lu" => SolverKind::Multifrontal,
         "faer-cholesky" => SolverKind::FaerCholesky,
         "nalgebra-cholesky" => SolverKind::NalgebraCholesky,
@@ -63,12 +65,16 @@ pub(super) fn solver(
 }
 
 /// The monitors.
-pub(super) fn monitors(tree: &Node, site: &Site, problems: &mut Problems) -> Vec<Option<Monitor>> {
+pub(super) fn monitors<const D: usize>(
+    tree: &Node,
+    soil: &dyn Soil<D>,
+    problems: &mut Problems,
+) -> Vec<Option<Monitor<D>>> {
     let items = tree.items_at("monitors").iter();
     items
         .map(|node| {
-            let place = node.pair_at("point")?;
-            if site.is_complete && !site.holds(place, site.round_off) {
+            let place = node.point_at("point")?;
+            if soil.is_known() && !soil.holds_point(&place, soil.round_off()) {
                 problems
                     .warning(
                         node.place_at("point"),
@@ -79,43 +85,40 @@ pub(super) fn monitors(tree: &Node, site: &Site, problems: &mut Problems) -> Vec
             Some(Monitor {
                 name: node.text_at("name")?.to_owned(),
                 point: place,
-                record: fields(node.items_at("record"))?,
+                record: fields::<D>(node.items_at("record"), problems)?,
             })
         })
         .collect()
 }
 
 /// The sections.
-pub(super) fn sections(
+pub(super) fn sections<const D: usize>(
     tree: &Node,
     about: &About<'_>,
-    site: &Site,
+    soil: &dyn Soil<D>,
     problems: &mut Problems,
-) -> Vec<Option<Section>> {
+) -> Vec<Option<Section<D>>> {
     let items = tree.items_at("sections").iter();
     items
         .map(|node| {
-            let (from, to) = (node.pair_at("from")?, node.pair_at("to")?);
-            if (to[0] - from[0]).hypot(to[1] - from[1]) <= site.round_off {
+            let (from, to): ([f64; D], [f64; D]) = (node.point_at("from")?, node.point_at("to")?);
+            let way: [f64; D] = std::array::from_fn(|axis| to[axis] - from[axis]);
+            if length(&way) <= soil.round_off() {
                 problems.error(node.place_at("to"), "this section has no length");
             }
-            let along = |t: f64| {
-                [
-                    from[0] + t * (to[0] - from[0]),
-                    from[1] + t * (to[1] - from[1]),
-                ]
-            };
-            let meets = (0..=50).any(|k| site.holds(along(f64::from(k) / 50.0), site.round_off));
-            if site.is_complete && !meets {
+            let along = |t: f64| std::array::from_fn(|axis| from[axis] + t * way[axis]);
+            let meets =
+                (0..=50).any(|k| soil.holds_point(&along(f64::from(k) / 50.0), soil.round_off()));
+            if soil.is_known() && !meets {
                 problems
                     .warning(node.place_at("from"), "this section meets no body")
                     .help("it will hold no values");
             }
-            let record = fields(node.items_at("record"));
+            let record = fields::<D>(node.items_at("record"), problems);
             let references: Option<Vec<_>> = node
                 .items_at("references")
                 .iter()
-                .map(|node| section_reference(node, record.as_deref(), about, problems))
+                .map(|node| section_reference::<D>(node, record.as_deref(), about, problems))
                 .collect();
             Some(Section {
                 name: node.text_at("name")?.to_owned(),
@@ -141,13 +144,13 @@ pub(super) struct About<'a> {
 }
 
 /// A reference of a section that records these fields.
-fn section_reference(
+fn section_reference<const D: usize>(
     node: &Node,
     record: Option<&[Field]>,
     about: &About<'_>,
     problems: &mut Problems,
 ) -> Option<SectionReference> {
-    let of = fields(std::slice::from_ref(node.get("of")?))?.pop()?;
+    let of = fields::<D>(std::slice::from_ref(node.get("of")?), problems)?.pop()?;
     if record.is_some_and(|record| !record.contains(&of)) {
         let name = node.text_at("of")?;
         problems
@@ -183,8 +186,16 @@ fn section_reference(
     })
 }
 
+/// A plane in which fields are drawn.
+fn cut(node: &Node) -> Option<Cut> {
+    let across = node.text_at("across")?;
+    let axis = ["x", "y", "z"].iter().position(|own| *own == across)?;
+    let at = node.number_at("at")?;
+    Some(Cut { axis, at })
+}
+
 /// What is written, and where.
-pub(super) fn output(tree: &Node, problems: &mut Problems) -> Option<Output> {
+pub(super) fn output<const D: usize>(tree: &Node, problems: &mut Problems) -> Option<Output> {
     let node = tree.get("output")?;
     let checkpoint = node.get("checkpoint")?;
     let every = node.get("paraview")?.get("every")?;
@@ -203,7 +214,12 @@ pub(super) fn output(tree: &Node, problems: &mut Problems) -> Option<Output> {
             Some(_) => Every::Stage,
             None => Every::Steps(every.count()?),
         },
-        figures: fields(node.items_at("figures"))?,
+        figures: fields::<D>(node.items_at("figures"), problems)?,
+        cuts: node
+            .items_at("cuts")
+            .iter()
+            .map(cut)
+            .collect::<Option<_>>()?,
         report: node.flag_at("report")?,
         checkpoint_every: checkpoint.count_at("every")?,
         checkpoint_keep: checkpoint.count_at("keep")?,

@@ -1,10 +1,11 @@
 //! Properties of materials that vary with the level, with the depth, with the stress or in the plane.
 
-use crate::case::{BodyPart, Ground, Profile, Raster, StressShare, Variation};
+use crate::case::{BodyPart, Ground, Profile, Raster, StressShare, Variation, front};
 use crate::input::diagnostic::Problems;
 use crate::input::text::{clip, number, point};
 use crate::input::tree::{Node, Wrong};
-use crate::polygon::bounding_box;
+use crate::plane::in_plane;
+use crate::polygon::Polygon;
 
 /// A property of a material as a case file states it.
 pub(super) struct Property {
@@ -16,27 +17,39 @@ pub(super) struct Property {
 
 /// Where the soil of a material lies, and its name for messages.
 #[derive(Clone, Copy)]
-pub(super) struct Extent<'a> {
+pub(super) struct Extent<'a, const D: usize = 2> {
     pub(super) name: &'a str,
     pub(super) material: usize,
-    pub(super) bodies: &'a [Option<BodyPart>],
-    pub(super) ground: &'a Ground,
+    pub(super) bodies: &'a [Option<BodyPart<D>>],
+    pub(super) ground: &'a Ground<D>,
 }
 
-impl<'a> Extent<'a> {
-    /// The polygons of the material.
-    fn polygons(&self) -> impl Iterator<Item = &'a [[f64; 2]]> {
+impl<'a, const D: usize> Extent<'a, D> {
+    /// The bodies of the material.
+    fn of_material(&self) -> impl Iterator<Item = &'a BodyPart<D>> {
         let material = self.material;
         let own = self.bodies.iter().flatten();
         own.filter(move |body| body.material == material)
-            .map(|body| &body.polygon[..])
+    }
+
+    /// Their outlines as seen from the front: polygons in the plane, else the boxes around them.
+    fn outlines(&self) -> Vec<Polygon> {
+        let outline = |body: &BodyPart<D>| match in_plane::<_, BodyPart>(body) {
+            Some(body) => body.polygon().to_vec(),
+            None => {
+                let (lower, upper) = body.region.bounds();
+                let ([left, bottom], [right, top]) = (front(&lower), front(&upper));
+                vec![[left, bottom], [right, bottom], [right, top], [left, top]]
+            }
+        };
+        self.of_material().map(outline).collect()
     }
 
     /// Its lowest and its highest level \[m\]; none: no body is of this material.
     fn levels(&self) -> Option<[f64; 2]> {
-        let levels = self.polygons().map(|polygon| {
-            let (lower, upper) = bounding_box(polygon);
-            [lower[1], upper[1]]
+        let levels = self.of_material().map(|body| {
+            let (lower, upper) = body.region.bounds();
+            [lower[D - 1], upper[D - 1]]
         });
         levels.reduce(union)
     }
@@ -44,24 +57,26 @@ impl<'a> Extent<'a> {
     /// Its least and its greatest depth \[m\], to the micrometre.
     fn depths(&self) -> Option<[f64; 2]> {
         let depths = self
-            .polygons()
-            .filter_map(|polygon| self.ground.depths(polygon));
+            .of_material()
+            .filter_map(|body| self.ground.depths(&*body.region));
         let depths = depths.reduce(union)?;
         Some(depths.map(|depth| (depth * 1e6).round() / 1e6))
     }
 
     /// Places all over its soil.
-    fn places(&self) -> Vec<[f64; 2]> {
-        let edges = self.polygons().map(|polygon| self.ground.corners(polygon));
-        let mut places: Vec<[f64; 2]> = edges.flatten().collect();
+    fn places(&self) -> Vec<[f64; D]> {
+        let edges = (self.of_material()).map(|body| self.ground.places(&*body.region));
+        let mut places: Vec<[f64; D]> = edges.flatten().collect();
         let ends = places.clone();
-        for pair in ends
-            .windows(2)
-            .filter(|pair| pair[0][0].total_cmp(&pair[1][0]).is_eq())
-        {
+        let is_upright = |pair: &&[[f64; D]]| {
+            (0..D - 1).all(|axis| pair[0][axis].total_cmp(&pair[1][axis]).is_eq())
+        };
+        for pair in ends.windows(2).filter(is_upright) {
             places.extend((1..PARTS).map(|k| {
                 let share = f64::from(k) / f64::from(PARTS);
-                [pair[0][0], pair[0][1] + share * (pair[1][1] - pair[0][1])]
+                let mut place = pair[0];
+                place[D - 1] += share * (pair[1][D - 1] - pair[0][D - 1]);
+                place
             }));
         }
         places
@@ -99,10 +114,10 @@ struct Extreme {
 }
 
 /// The property of a key: a quantity, or a table that says how it varies.
-pub(super) fn property(
+pub(super) fn property<const D: usize>(
     node: &Node,
     key: &str,
-    extent: Extent<'_>,
+    extent: Extent<'_, D>,
     terms: Terms,
     problems: &mut Problems,
 ) -> Option<Property> {
@@ -174,7 +189,7 @@ pub(super) fn property(
 }
 
 /// The least and the greatest value in the soil of a material.
-fn extremes(profile: &Profile, extent: Extent<'_>) -> [Extreme; 2] {
+fn extremes<const D: usize>(profile: &Profile, extent: Extent<'_, D>) -> [Extreme; 2] {
     let of = |variation: &Variation, range: Option<[f64; 2]>, words: &dyn Fn(f64) -> String| {
         let [lower, upper] = range.unwrap_or_else(|| match variation {
             Variation::Gradient { from, .. } => [*from; 2],
@@ -197,8 +212,9 @@ fn extremes(profile: &Profile, extent: Extent<'_>) -> [Extreme; 2] {
         }
         Profile::Raster(raster) => {
             let mut places: Vec<[f64; 2]> = extent
-                .polygons()
-                .flat_map(|polygon| raster.places_in(polygon))
+                .outlines()
+                .iter()
+                .flat_map(|outline| raster.places_in(outline))
                 .collect();
             // No soil: where the raster begins.
             places.push(
@@ -216,7 +232,7 @@ fn extremes(profile: &Profile, extent: Extent<'_>) -> [Extreme; 2] {
         Profile::StressShare(share) => {
             let places = extent.places();
             let values = places.iter().map(|place| Extreme {
-                value: profile.at(*place, extent.ground),
+                value: profile.at(place, extent.ground),
                 place: format!("at {}", point(*place)),
             });
             let unused = || Extreme {
@@ -327,10 +343,10 @@ fn form(
 }
 
 /// The profile that a table states.
-fn stated(
+fn stated<const D: usize>(
     value: &Node,
     key: &str,
-    extent: Extent<'_>,
+    extent: Extent<'_, D>,
     terms: Terms,
     problems: &mut Problems,
 ) -> Result<Profile, Wrong> {
@@ -343,7 +359,8 @@ fn stated(
         "depths" => Ok(Profile::Depth(table(value, key, form, terms, problems)?)),
         "rows" => {
             let raster = points(value, key, problems)?;
-            let polygons: Vec<_> = extent.polygons().collect();
+            let outlines = extent.outlines();
+            let polygons: Vec<&[[f64; 2]]> = outlines.iter().map(Vec::as_slice).collect();
             let of = format!("the soil of `{}`", clip(extent.name, 40));
             reach(&raster, (value, key), (&polygons, &of), problems)?;
             Ok(Profile::Raster(raster))
@@ -379,7 +396,11 @@ const OCR: Terms = Terms {
 pub(super) const TABLES: &str =
     "{ levels = [...], values = [...] }, or { depths = [...], values = [...] }";
 
-fn share(value: &Node, extent: Extent<'_>, problems: &mut Problems) -> Result<StressShare, Wrong> {
+fn share<const D: usize>(
+    value: &Node,
+    extent: Extent<'_, D>,
+    problems: &mut Problems,
+) -> Result<StressShare, Wrong> {
     let (ocr, ocr_profile) = if value.get("ocr").is_some() {
         let own = property(value, "ocr", extent, OCR, problems).ok_or(Wrong)?;
         (own.constant, own.profile)

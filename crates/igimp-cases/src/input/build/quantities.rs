@@ -8,16 +8,20 @@ use crate::input::text::{clip, row};
 use crate::input::tree::Node;
 
 /// Fields by their names.
-const FIELDS: [(&str, Field, &str); 22] = [
+const FIELDS: [(&str, Field, &str); 26] = [
     ("displacement", Field::Displacement, "m"),
     ("displacement_x", Field::DisplacementX, "m"),
     ("displacement_y", Field::DisplacementY, "m"),
+    ("displacement_z", Field::DisplacementZ, "m"),
     ("x", Field::X, "m"),
     ("y", Field::Y, "m"),
+    ("z", Field::Z, "m"),
     ("sigma_xx", Field::SigmaXx, "Pa"),
     ("sigma_yy", Field::SigmaYy, "Pa"),
     ("sigma_zz", Field::SigmaZz, "Pa"),
     ("tau_xy", Field::TauXy, "Pa"),
+    ("tau_yz", Field::TauYz, "Pa"),
+    ("tau_xz", Field::TauXz, "Pa"),
     ("p", Field::P, "Pa"),
     ("sigma_eff_xx", Field::SigmaEffXx, "Pa"),
     ("sigma_eff_yy", Field::SigmaEffYy, "Pa"),
@@ -36,21 +40,38 @@ const FIELDS: [(&str, Field, &str); 22] = [
 /// What the names of quantities of rigid bodies begin with.
 const RIGID_PREFIX: &str = "rigid.";
 
-/// Quantities of a rigid body.
-const RIGID: [(&str, RigidQuantity, &str); 12] = [
-    ("x", RigidQuantity::X, "m"),
-    ("y", RigidQuantity::Y, "m"),
-    ("settlement", RigidQuantity::Settlement, "m"),
-    ("rotation", RigidQuantity::Rotation, "rad"),
-    ("force_x", RigidQuantity::ForceX, "N/m"),
-    ("force_y", RigidQuantity::ForceY, "N/m"),
-    ("resistance", RigidQuantity::Resistance, "N/m"),
-    ("moment", RigidQuantity::Moment, "N m/m"),
-    ("contact_width", RigidQuantity::ContactWidth, "m"),
-    ("penetration", RigidQuantity::Penetration, "-"),
-    ("closed", RigidQuantity::Closed, "-"),
-    ("slipping", RigidQuantity::Slipping, "-"),
+/// Quantities of a rigid body, and in how many dimensions they are; none: in any.
+const RIGID: [(&str, RigidQuantity, &str, Option<usize>); 21] = [
+    ("x", RigidQuantity::Displacement(0), "m", None),
+    ("y", RigidQuantity::Displacement(1), "m", None),
+    ("z", RigidQuantity::Displacement(2), "m", Some(3)),
+    ("settlement", RigidQuantity::Settlement, "m", None),
+    ("rotation", RigidQuantity::Rotation(0), "rad", Some(2)),
+    ("rotation_x", RigidQuantity::Rotation(0), "rad", Some(3)),
+    ("rotation_y", RigidQuantity::Rotation(1), "rad", Some(3)),
+    ("rotation_z", RigidQuantity::Rotation(2), "rad", Some(3)),
+    ("force_x", RigidQuantity::Force(0), "N/m", None),
+    ("force_y", RigidQuantity::Force(1), "N/m", None),
+    ("force_z", RigidQuantity::Force(2), "N/m", Some(3)),
+    ("resistance", RigidQuantity::Resistance, "N/m", None),
+    ("moment", RigidQuantity::Moment(0), "N m/m", Some(2)),
+    ("moment_x", RigidQuantity::Moment(0), "N m/m", Some(3)),
+    ("moment_y", RigidQuantity::Moment(1), "N m/m", Some(3)),
+    ("moment_z", RigidQuantity::Moment(2), "N m/m", Some(3)),
+    ("contact_width", RigidQuantity::ContactWidth, "m", Some(2)),
+    ("contact_area", RigidQuantity::ContactWidth, "m2", Some(3)),
+    ("penetration", RigidQuantity::Penetration, "-", None),
+    ("closed", RigidQuantity::Closed, "-", None),
+    ("slipping", RigidQuantity::Slipping, "-", None),
 ];
+
+/// The quantity of a rigid body under a name in so many dimensions, and its unit in plane strain.
+fn of_rigid(dimensions: usize, name: &str) -> Option<(RigidQuantity, &'static str)> {
+    let found = RIGID
+        .iter()
+        .find(|(known, _, _, only)| *known == name && only.is_none_or(|only| only == dimensions));
+    found.map(|(_, quantity, unit, _)| (*quantity, *unit))
+}
 
 /// What the names of quantities of reinforcement begin with.
 const REINFORCEMENT_PREFIX: &str = "reinforcement.";
@@ -80,11 +101,21 @@ pub(super) fn field(name: &str) -> Option<Field> {
     Some(found.1)
 }
 
-/// The fields of a list of names.
-pub(super) fn fields(names: &[Node]) -> Option<Vec<Field>> {
+/// The fields of a list of names; reports those that there are in space only.
+pub(super) fn fields<const D: usize>(
+    names: &[Node],
+    problems: &mut Problems,
+) -> Option<Vec<Field>> {
     let mut fields = Vec::with_capacity(names.len());
     for name in names {
         let field = field(name.text()?)?;
+        if !field.exists_in(D) {
+            let message = format!("there is no {} in plane strain", name.text()?);
+            problems
+                .error(name.place, message)
+                .help("it is a field of cases with analysis = \"3d\"");
+            return None;
+        }
         if !fields.contains(&field) {
             fields.push(field);
         }
@@ -93,17 +124,24 @@ pub(super) fn fields(names: &[Node]) -> Option<Vec<Field>> {
 }
 
 /// SI unit of a quantity by its name.
-pub(super) fn unit_of(name: &str) -> &'static str {
+pub(super) fn unit_of(dimensions: usize, name: &str) -> &'static str {
+    match (dimensions, unit_in_plane(dimensions, name)) {
+        (3, "N/m") => "N",
+        (3, "N m/m") => "N m",
+        (_, unit) => unit,
+    }
+}
+
+fn unit_in_plane(dimensions: usize, name: &str) -> &'static str {
     if let Some((_, _, unit)) = GLOBAL.iter().find(|(known, ..)| *known == name) {
         return unit;
     }
     match name.rsplit_once('.').map_or("", |(_, last)| last) {
         "settlement" => "m",
         "reaction" => "N/m",
-        last if name.starts_with(RIGID_PREFIX) => RIGID
-            .iter()
-            .find(|(known, ..)| *known == last)
-            .map_or("-", |(_, _, unit)| unit),
+        last if name.starts_with(RIGID_PREFIX) => {
+            of_rigid(dimensions, last).map_or("-", |(_, unit)| unit)
+        }
         last if name.starts_with(REINFORCEMENT_PREFIX) => REINFORCEMENT
             .iter()
             .find(|(known, ..)| *known == last)
@@ -116,10 +154,10 @@ pub(super) fn unit_of(name: &str) -> &'static str {
 }
 
 /// The quantity that a value names; reports when there is none.
-pub(super) fn quantity(
+pub(super) fn quantity<const D: usize>(
     value: &Node,
     names: &AllNames,
-    loads: &[Option<Load>],
+    loads: &[Option<Load<D>>],
     problems: &mut Problems,
 ) -> Option<Quantity> {
     let name = value.text()?;
@@ -129,9 +167,8 @@ pub(super) fn quantity(
     if let Some((owner, what)) = name.rsplit_once('.') {
         let body = owner.strip_prefix(RIGID_PREFIX);
         let body = body.and_then(|body| names.rigid.position(body));
-        let of_body = RIGID.iter().find(|(known, ..)| *known == what);
-        if let (Some(body), Some((_, quantity, _))) = (body, of_body) {
-            return Some(Quantity::Rigid(body, *quantity));
+        if let (Some(body), Some((quantity, _))) = (body, of_rigid(D, what)) {
+            return Some(Quantity::Rigid(body, quantity));
         }
         let member = owner.strip_prefix(REINFORCEMENT_PREFIX);
         let member = member.and_then(|member| names.reinforcement.position(member));
@@ -140,7 +177,8 @@ pub(super) fn quantity(
             return Some(Quantity::Reinforcement(member, *quantity));
         }
         let monitor = names.monitors.position(owner);
-        if let (Some(monitor), Some(field)) = (monitor, field(what)) {
+        let there = |field: &Field| field.exists_in(D);
+        if let (Some(monitor), Some(field)) = (monitor, field(what).filter(there)) {
             return Some(Quantity::Monitor(monitor, field));
         }
         if let Some(load) = names.loads.position(owner) {
@@ -176,7 +214,7 @@ pub(super) fn quantity(
 }
 
 /// The quantities that a file has.
-fn known(names: &AllNames, loads: &[Option<Load>]) -> Vec<String> {
+fn known<const D: usize>(names: &AllNames, loads: &[Option<Load<D>>]) -> Vec<String> {
     let mut known = Vec::new();
     for load in loads.iter().flatten() {
         match load.kind {
@@ -188,7 +226,9 @@ fn known(names: &AllNames, loads: &[Option<Load>]) -> Vec<String> {
         }
     }
     for body in names.rigid.known() {
-        let of_body = RIGID.iter();
+        let of_body = RIGID
+            .iter()
+            .filter(|(.., only)| only.is_none_or(|only| only == D));
         known.extend(of_body.map(|(what, ..)| format!("{RIGID_PREFIX}{body}.{what}")));
     }
     for member in names.reinforcement.known() {
@@ -200,6 +240,7 @@ fn known(names: &AllNames, loads: &[Option<Load>]) -> Vec<String> {
         known.extend(
             FIELDS
                 .iter()
+                .filter(|(_, field, _)| field.exists_in(D))
                 .map(|(field, ..)| format!("{monitor}.{field}")),
         );
     }
@@ -229,7 +270,7 @@ pub(super) fn divisor(table: &Node, problems: &mut Problems) -> Option<f64> {
 }
 
 /// Quantities and what they mean, for the reference.
-pub(in crate::input) const QUANTITY_DOCS: [(&str, &str); 21] = [
+pub(in crate::input) const QUANTITY_DOCS: [(&str, &str); 23] = [
     ("FOOTING.settlement", "settlement of a rigid footing [m]"),
     (
         "FOOTING.reaction",
@@ -248,6 +289,14 @@ pub(in crate::input) const QUANTITY_DOCS: [(&str, &str); 21] = [
     (
         "rigid.BODY.moment",
         "moment on it from outside about its reference point, anticlockwise [N m/m]",
+    ),
+    (
+        "rigid.BODY.z, rigid.BODY.rotation_x, .rotation_y, .rotation_z",
+        "in space: displacement in z, rotations about the axes [m, rad]",
+    ),
+    (
+        "rigid.BODY.force_z, .moment_x, .moment_y, .moment_z, .contact_area",
+        "in space: force in z, moments about the axes, area that soil touches [N, N m, m2]; forces are in N",
     ),
     (
         "rigid.BODY.contact_width",

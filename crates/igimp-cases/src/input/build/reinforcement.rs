@@ -207,8 +207,8 @@ fn holds(node: &Node, part: &ReinforcementPart, problems: &mut Problems) {
 }
 
 /// The members that a stage installs.
-pub(super) fn installs(
-    context: &Context<'_>,
+pub(super) fn installs<const D: usize>(
+    context: &Context<'_, D>,
     index: usize,
     node: &Node,
     name: &str,

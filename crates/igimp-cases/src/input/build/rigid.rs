@@ -1,5 +1,7 @@
 //! Rigid bodies: their shapes, what their sides are like, and whether they have a place.
 
+use std::sync::Arc;
+
 use igimp_assembly::{SurfaceError, Tension};
 
 use super::AllNames;
@@ -8,8 +10,8 @@ use super::sequence::Sequence;
 use super::site::Site;
 use super::stages::Context;
 use crate::case::{
-    Adhesion, Load, LoadKind, Material, RigidDrive, RigidInterface, RigidMove, RigidPart,
-    RigidShape, RigidShear, StageKind, Strength,
+    Adhesion, COMPONENTS, Load, LoadKind, Material, RigidDrive, RigidInterface, RigidMove,
+    RigidPart, RigidShape, RigidShear, StageKind, Strength,
 };
 use crate::input::diagnostic::Problems;
 use crate::input::geometry::{distinct, overlap, self_crossing};
@@ -54,8 +56,9 @@ fn part(node: &Node, around: &Around<'_>, problems: &mut Problems) -> Option<Rig
         Some(RigidShape::Polygon(corners)) => corners.len(),
         _ => 1,
     };
-    let whole = interface(node, None, around, problems);
-    let interfaces = whole.and_then(|whole| all_sides(node, whole, sides, around, problems));
+    let whole = interface(node, None, around.materials, problems);
+    let interfaces =
+        whole.and_then(|whole| all_sides(node, whole, sides, around.materials, problems));
     let stated = match node.get("reference") {
         None => None,
         Some(value) => Some(value.pair()?),
@@ -72,7 +75,7 @@ fn part(node: &Node, around: &Around<'_>, problems: &mut Problems) -> Option<Rig
     let part = RigidPart {
         name: name.to_owned(),
         reference: stated.unwrap_or_else(|| reference(node, &shape)),
-        shape,
+        shape: Arc::new(shape),
         interfaces: interfaces?,
         stiffness: node.number_at("stiffness")?,
         rounding: node.number_at("rounding")?,
@@ -163,14 +166,14 @@ fn reference(node: &Node, shape: &RigidShape) -> [f64; 2] {
 }
 
 /// What a table says of its interface; what it does not say is that of the whole body.
-fn interface(
+pub(super) fn interface(
     node: &Node,
     whole: Option<RigidInterface>,
-    around: &Around<'_>,
+    materials: &[Option<Material>],
     problems: &mut Problems,
 ) -> Option<RigidInterface> {
     let shear = match node.get("interface") {
-        Some(value) => shear(value, around, problems)?,
+        Some(value) => shear(value, materials, problems)?,
         None => whole?.shear,
     };
     let limit = node.optional_number("tension_limit").ok()?;
@@ -191,7 +194,11 @@ fn interface(
     Some(RigidInterface { shear, tension })
 }
 
-fn shear(value: &Node, around: &Around<'_>, problems: &mut Problems) -> Option<RigidShear> {
+fn shear(
+    value: &Node,
+    materials: &[Option<Material>],
+    problems: &mut Problems,
+) -> Option<RigidShear> {
     match value.text() {
         Some("smooth") => return Some(RigidShear::Smooth),
         Some(_) => return Some(RigidShear::Rough),
@@ -229,7 +236,7 @@ fn shear(value: &Node, around: &Around<'_>, problems: &mut Problems) -> Option<R
             return None;
         }
         (None, Some(share)) => {
-            for material in around.materials.iter().flatten() {
+            for material in materials.iter().flatten() {
                 if material.strength == Strength::Elastic {
                     problems.warning(
                         value.place_at("adhesion_share"),
@@ -253,7 +260,7 @@ fn all_sides(
     node: &Node,
     whole: RigidInterface,
     sides: usize,
-    around: &Around<'_>,
+    materials: &[Option<Material>],
     problems: &mut Problems,
 ) -> Option<Vec<RigidInterface>> {
     let mut interfaces = vec![whole; sides];
@@ -280,7 +287,7 @@ fn all_sides(
                 .help(format!("sides here: {names}"));
             return None;
         };
-        interfaces[side - 1] = interface(own, Some(whole), around, problems)?;
+        interfaces[side - 1] = interface(own, Some(whole), materials, problems)?;
     }
     Some(interfaces)
 }
@@ -364,7 +371,7 @@ fn in_grid(node: &Node, part: &RigidPart, frame: &Frame, problems: &mut Problems
 
 /// The smallest distance of two parallel lines that hold a body between them \[m\].
 fn thickness(part: &RigidPart) -> f64 {
-    let RigidShape::Polygon(corners) = &part.shape else {
+    let Some(RigidShape::Polygon(corners)) = part.shape.in_plane() else {
         let (lower, upper) = part.bounds();
         return upper[0] - lower[0];
     };
@@ -447,8 +454,8 @@ fn follow_once(nodes: &[Node], around: &Around<'_>, problems: &mut Problems) {
 }
 
 /// A stage that moves rigid bodies.
-pub(super) fn stage(
-    context: &Context<'_>,
+pub(super) fn stage<const D: usize>(
+    context: &Context<'_, D>,
     node: &Node,
     name: &str,
     problems: &mut Problems,
@@ -466,7 +473,7 @@ pub(super) fn stage(
         if moves.iter().any(|other| other.body == body) {
             problems.error(own.place_at("body"), "this rigid body is named twice");
         }
-        match drives(own, problems) {
+        match drives::<D>(own, problems) {
             Ok(drives) => moves.push(RigidMove { body, drives }),
             Err(Wrong) => is_right = false,
         }
@@ -474,11 +481,25 @@ pub(super) fn stage(
     is_right.then_some(StageKind::Rigid(moves))
 }
 
-fn drives(own: &Node, problems: &mut Problems) -> Result<[Option<RigidDrive>; 3], Wrong> {
+fn drives<const D: usize>(
+    own: &Node,
+    problems: &mut Problems,
+) -> Result<[Option<RigidDrive>; COMPONENTS], Wrong> {
     let free: Vec<&str> = own.items_at("free").iter().filter_map(Node::text).collect();
-    let mut drives = [None; 3];
-    let components = [("x", "force_x"), ("y", "force_y"), ("rotation", "moment")];
-    for (drive, (by, force)) in drives.iter_mut().zip(components) {
+    let mut drives = [None; COMPONENTS];
+    let components: &[(&str, &str)] = if D == 2 {
+        &[("x", "force_x"), ("y", "force_y"), ("rotation", "moment")]
+    } else {
+        &[
+            ("x", "force_x"),
+            ("y", "force_y"),
+            ("z", "force_z"),
+            ("rotation_x", "moment_x"),
+            ("rotation_y", "moment_y"),
+            ("rotation_z", "moment_z"),
+        ]
+    };
+    for (drive, &(by, force)) in drives.iter_mut().zip(components) {
         let (moved, loaded) = (own.optional_number(by)?, own.optional_number(force)?);
         let is_free = free.contains(&by);
         let told = usize::from(moved.is_some()) + usize::from(loaded.is_some());

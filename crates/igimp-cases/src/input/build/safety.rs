@@ -7,8 +7,8 @@ use crate::input::text::clip;
 use crate::input::tree::Node;
 
 /// Indices of the materials whose strength is reduced.
-fn materials(
-    context: &Context<'_>,
+fn materials<const D: usize>(
+    context: &Context<'_, D>,
     node: &Node,
     name: &str,
     problems: &mut Problems,
@@ -58,8 +58,8 @@ fn materials(
 }
 
 /// A search for the factor of safety.
-pub(super) fn strength_reduction(
-    context: &Context<'_>,
+pub(super) fn strength_reduction<const D: usize>(
+    context: &Context<'_, D>,
     index: usize,
     node: &Node,
     name: &str,
@@ -116,8 +116,8 @@ pub(super) fn strength_reduction(
 }
 
 /// A run-out.
-pub(super) fn run_out(
-    context: &Context<'_>,
+pub(super) fn run_out<const D: usize>(
+    context: &Context<'_, D>,
     index: usize,
     node: &Node,
     name: &str,

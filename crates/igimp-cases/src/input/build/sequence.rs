@@ -31,7 +31,11 @@ pub(super) struct Sequence {
 }
 
 impl Sequence {
-    pub(super) fn new(tree: &Node, names: &AllNames, bodies: &[Option<BodyPart>]) -> Self {
+    pub(super) fn new<const D: usize>(
+        tree: &Node,
+        names: &AllNames,
+        bodies: &[Option<BodyPart<D>>],
+    ) -> Self {
         let later = placed(tree);
         let items = tree.items_at("bodies").iter();
         let is_there = |node: &Node| {

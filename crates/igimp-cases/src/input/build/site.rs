@@ -23,6 +23,32 @@ pub(super) struct Site {
     surface: Vec<[[f64; 2]; 2]>,
 }
 
+/// What checks of places ask of the soil.
+pub(super) trait Soil<const D: usize> {
+    /// Whether all bodies are known.
+    fn is_known(&self) -> bool;
+
+    /// Whether a point lies in a body or nearly on its edge.
+    fn holds_point(&self, point: &[f64; D], margin: f64) -> bool;
+
+    /// Lengths below this are round-off \[m\].
+    fn round_off(&self) -> f64;
+}
+
+impl Soil<2> for Site {
+    fn is_known(&self) -> bool {
+        self.is_complete
+    }
+
+    fn holds_point(&self, point: &[f64; 2], margin: f64) -> bool {
+        self.holds(*point, margin)
+    }
+
+    fn round_off(&self) -> f64 {
+        self.round_off
+    }
+}
+
 impl Site {
     pub(super) fn new(
         frame: Option<Frame>,
@@ -32,7 +58,7 @@ impl Site {
         let polygons: Vec<_> = bodies
             .iter()
             .flatten()
-            .map(|body| body.polygon.clone())
+            .map(|body| body.polygon().to_vec())
             .collect();
         let largest = polygons
             .iter()

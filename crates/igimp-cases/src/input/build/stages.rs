@@ -14,17 +14,18 @@ use crate::input::text::{clip, number, row};
 use crate::input::tree::{Node, Wrong};
 
 /// What stages refer to.
-pub(super) struct Context<'a> {
+pub(super) struct Context<'a, const D: usize = 2> {
     pub(super) tree: &'a Node,
     pub(super) names: &'a AllNames,
     pub(super) materials: &'a [Option<Material>],
-    pub(super) bodies: &'a [Option<BodyPart>],
-    pub(super) loads: &'a [Option<Load>],
-    pub(super) site: &'a Site,
+    pub(super) bodies: &'a [Option<BodyPart<D>>],
+    pub(super) loads: &'a [Option<Load<D>>],
+    /// The ground of the plane; none in space.
+    pub(super) site: Option<&'a Site>,
     pub(super) sequence: &'a Sequence,
 }
 
-impl Context<'_> {
+impl<const D: usize> Context<'_, D> {
     /// The stages that a stage follows, from the one that it starts from.
     pub(super) fn before(&self, index: usize) -> impl Iterator<Item = &Node> {
         let before = move |index: usize| {
@@ -70,14 +71,17 @@ impl Context<'_> {
 }
 
 /// The stages.
-pub(super) fn stages(context: &Context<'_>, problems: &mut Problems) -> Vec<Option<Stage>> {
+pub(super) fn stages<const D: usize>(
+    context: &Context<'_, D>,
+    problems: &mut Problems,
+) -> Vec<Option<Stage>> {
     (context.stage_nodes().iter().enumerate())
         .map(|(index, node)| stage(context, index, node, problems))
         .collect()
 }
 
-fn stage(
-    context: &Context<'_>,
+fn stage<const D: usize>(
+    context: &Context<'_, D>,
     index: usize,
     node: &Node,
     problems: &mut Problems,
@@ -115,10 +119,12 @@ fn stage(
 
 fn gravity(node: &Node) -> Option<StageKind> {
     let horizontal = node.optional_number("horizontal");
+    let across = node.optional_number("across");
     let vertical = node.optional_number("vertical");
     Some(StageKind::Gravity {
         factor: node.number_at("factor")?,
         horizontal: horizontal.ok()?,
+        across: across.ok()?,
         vertical: vertical.ok()?,
     })
 }
@@ -131,8 +137,8 @@ fn geometry(node: &Node) -> Geometry {
     }
 }
 
-fn start_from(
-    context: &Context<'_>,
+fn start_from<const D: usize>(
+    context: &Context<'_, D>,
     index: usize,
     node: &Node,
     name: &str,
@@ -163,8 +169,8 @@ fn start_from(
     Ok(from)
 }
 
-fn stop_when(
-    context: &Context<'_>,
+fn stop_when<const D: usize>(
+    context: &Context<'_, D>,
     node: &Node,
     name: &str,
     problems: &mut Problems,
@@ -220,7 +226,12 @@ fn stop_when(
     })
 }
 
-fn k0(context: &Context<'_>, index: usize, node: &Node, problems: &mut Problems) {
+fn k0<const D: usize>(
+    context: &Context<'_, D>,
+    index: usize,
+    node: &Node,
+    problems: &mut Problems,
+) {
     let place = node.place_at("type");
     if index > 0 {
         problems
@@ -228,8 +239,8 @@ fn k0(context: &Context<'_>, index: usize, node: &Node, problems: &mut Problems)
             .help("make it the first stage");
         return;
     }
-    if context.site.is_complete
-        && let Some(reason) = uneven(&context.site.at_start())
+    if let Some(site) = context.site.filter(|site| site.is_complete)
+        && let Some(reason) = uneven(&site.at_start())
     {
         problems
             .error(place, "a k0 stage needs level ground")
@@ -261,8 +272,8 @@ fn k0(context: &Context<'_>, index: usize, node: &Node, problems: &mut Problems)
     }
 }
 
-fn load(
-    context: &Context<'_>,
+fn load<const D: usize>(
+    context: &Context<'_, D>,
     index: usize,
     node: &Node,
     name: &str,
@@ -310,8 +321,8 @@ fn load(
     is_right.then_some(StageKind::Load { loads, factor })
 }
 
-fn displacement(
-    context: &Context<'_>,
+fn displacement<const D: usize>(
+    context: &Context<'_, D>,
     index: usize,
     node: &Node,
     name: &str,
@@ -333,7 +344,7 @@ fn displacement(
             .help("pressures and point loads are for stages of type load");
         return None;
     };
-    if let Some(frame) = &context.site.frame
+    if let Some(frame) = context.site.and_then(|site| site.frame.as_ref())
         && settlement >= from[1] - frame.lower[1]
     {
         let depth = number(from[1] - frame.lower[1]);
@@ -348,7 +359,7 @@ fn displacement(
 }
 
 /// Warns of materials and loads that nothing uses.
-pub(super) fn check_use(context: &Context<'_>, problems: &mut Problems) {
+pub(super) fn check_use<const D: usize>(context: &Context<'_, D>, problems: &mut Problems) {
     let materials = context.tree.get("materials").map_or(&[][..], Node::entries);
     for (index, entry) in materials.iter().enumerate() {
         if !context.is_used(index) && !context.bodies.is_empty() {

@@ -6,7 +6,6 @@ use crate::input::diagnostic::Problems;
 use crate::input::text::{clip, count};
 use crate::input::tree::Node;
 use crate::mesh_study::plan;
-use crate::polygon::area_and_centroid;
 
 /// The study that the file asks for.
 pub(super) fn mesh_study(tree: &Node) -> Option<MeshStudy> {
@@ -15,7 +14,7 @@ pub(super) fn mesh_study(tree: &Node) -> Option<MeshStudy> {
 }
 
 /// Checks the refined grid, and whether a study can be made and has something to study.
-pub(super) fn check(tree: &Node, case: &Case, problems: &mut Problems) {
+pub(super) fn check<const D: usize>(tree: &Node, case: &Case<D>, problems: &mut Problems) {
     let place = tree.get("mesh_study").map(|study| study.place_at("meshes"));
     if case.mesh_study.meshes < 2 {
         // A grid that is too large as it is was told of before.
@@ -68,7 +67,7 @@ pub(super) fn check(tree: &Node, case: &Case, problems: &mut Problems) {
 }
 
 /// Warns of checks that want what one mesh does not give.
-fn one_mesh_only(tree: &Node, case: &Case, problems: &mut Problems) {
+fn one_mesh_only<const D: usize>(tree: &Node, case: &Case<D>, problems: &mut Problems) {
     for (node, check) in tree.items_at("checks").iter().zip(&case.checks) {
         if check.value == CheckValue::Extrapolated {
             problems
@@ -86,7 +85,7 @@ fn one_mesh_only(tree: &Node, case: &Case, problems: &mut Problems) {
 }
 
 /// Whether a mesh has more cells or particles than are possible.
-fn is_too_large(case: &Case, parts: usize) -> bool {
+fn is_too_large<const D: usize>(case: &Case<D>, parts: usize) -> bool {
     let finer = (parts * parts) as f64;
     let cells: f64 = case
         .grid
@@ -101,8 +100,8 @@ fn is_too_large(case: &Case, parts: usize) -> bool {
         .bodies
         .iter()
         .map(|body| {
-            let share = area_and_centroid(&body.polygon).0.abs() / domain;
-            share * cells * (body.per_direction * body.per_direction) as f64
+            let share = body.region.volume() / domain;
+            share * cells * body.per_direction.pow(D as u32) as f64
         })
         .sum();
     finer * cells.max(particles) > MOST

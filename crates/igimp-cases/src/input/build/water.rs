@@ -461,7 +461,7 @@ fn points(
     let Some(value) = node.get("u") else { return };
     let parts = std::iter::zip(around.bodies, &scene.present);
     let there = parts.filter_map(|(part, present)| part.as_ref().filter(|_| *present));
-    let polygons: Vec<&[[f64; 2]]> = there.map(|part| &part.polygon[..]).collect();
+    let polygons: Vec<&[[f64; 2]]> = there.map(|part| part.polygon()).collect();
     let of = format!("the soil that {who} is for{when}");
     if reach(raster, (value, "u"), (&polygons, &of), problems).is_err() {
         return;
@@ -532,13 +532,13 @@ fn is_wet(source: &PoreSource, part: &BodyPart) -> bool {
         PoreSource::Dry => false,
         PoreSource::Ratio(ratio) => *ratio > 0.0,
         PoreSource::Points(raster) => raster
-            .places_in(&part.polygon)
+            .places_in(part.polygon())
             .iter()
             .any(|at| raster.at(*at) > 0.0),
         PoreSource::Table(points) => {
             let is_below = |corner: &[f64; 2]| corner[1] < table_level(points, corner[0]);
-            part.polygon.iter().any(is_below)
-                || (points.iter()).any(|&point| contains(&part.polygon, point))
+            part.polygon().iter().any(is_below)
+                || (points.iter()).any(|&point| contains(part.polygon(), point))
         }
     }
 }

@@ -1,13 +1,15 @@
 //! What a case file takes from files beside it, put into its tree: polygons and layer lines from CSV and
-//! DXF, properties of materials and pore pressures from CSV.
+//! DXF, properties of materials and pore pressures from CSV, surfaces from STL, ESRI ASCII grids and CSV.
 //!
 //! From then on the tree carries the points themselves, each with its unit: what is built, explained and fingerprinted
 //! does not depend on the files any more.
 
 mod columns;
 mod dxf;
+mod elevation;
 mod outline;
 mod raster;
+mod stl;
 
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
@@ -39,12 +41,34 @@ pub(super) fn read(tree: &mut Node, case: &Path, problems: &mut Problems) {
             }
         }
     }
+    let rigid = tree.get_mut("rigid").map(Node::items_mut);
+    for body in rigid.into_iter().flatten() {
+        shape(body, folder, problems);
+    }
     if let Some(bodies) = tree.get_mut("bodies") {
         for body in bodies.items_mut() {
-            if let Some(polygon) = body.get_mut("polygon") {
-                outline::resolve(polygon, folder, problems);
+            shape(body, folder, problems);
+            let taken = body.get_mut("minus").map(Node::items_mut);
+            for taken in taken.into_iter().flatten() {
+                shape(taken, folder, problems);
             }
         }
+    }
+}
+
+/// What says the shape of a body.
+fn shape(of: &mut Node, folder: &Path, problems: &mut Problems) {
+    for key in ["polygon", "plan"] {
+        if let Some(polygon) = of.get_mut(key) {
+            outline::resolve(polygon, folder, problems);
+        }
+    }
+    let heights = of.get_mut("between").map(Node::items_mut);
+    for height in heights.into_iter().flatten() {
+        elevation::resolve(height, folder, problems);
+    }
+    if let Some(surface) = of.get_mut("surface") {
+        stl::resolve(surface, folder, problems);
     }
 }
 
@@ -146,6 +170,18 @@ fn unit_of(
         Ok(_) => Ok(unit.to_owned()),
         Err(error) => Err(Trouble::new(&error, error.help(Some(dimension)))),
     }
+}
+
+/// The unit of length of a file that cannot say it, from beside its name.
+fn unit_beside(like: &Node) -> Result<String, Trouble> {
+    if like.get("unit").is_none() {
+        return Err(Trouble::new(
+            "nothing says in which unit it is",
+            "write it beside the file, as in unit = \"m\"",
+        ));
+    }
+    let stated = ("unit", like.text_at("unit"));
+    unit_of(stated, ("coordinates", None), Dimension::Length)
 }
 
 /// A number of a file as a value with its unit.

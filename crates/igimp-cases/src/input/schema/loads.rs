@@ -1,10 +1,13 @@
 //! Loads.
 
 use super::POINT;
-use crate::input::quantity::Dimension::{ForcePerLength, Stress};
-use crate::input::spec::{Choice, Kind, Range, Variant, Variants, choice, default, required};
+use crate::input::quantity::Dimension::{Force, ForcePerLength, Stress};
+use crate::input::spec::{
+    Choice, Kind, Range, Variant, Variants, choice, default, in_plane, in_space, required,
+};
 
 static FORCE: Kind = Kind::Quantity(ForcePerLength, Range::Any);
+static WHOLE_FORCE: Kind = Kind::Quantity(Force, Range::Any);
 
 static INTERFACES: [Choice; 2] = [
     choice("rough", "soil sticks to base and shaft"),
@@ -50,10 +53,20 @@ pub(in crate::input) static LOAD: Kind = Kind::Variants(&Variants {
         },
         Variant {
             name: "pressure",
-            doc: "A dead pressure on a segment of the surface, raised by load stages.",
+            doc: "A dead pressure on a segment of the surface, in space on a level or upright rectangle, raised by load stages.",
             fields: &[
-                required("from", POINT, "[\"0 m\", \"5 m\"]", "one end"),
-                required("to", POINT, "[\"2 m\", \"5 m\"]", "the other end"),
+                required(
+                    "from",
+                    POINT,
+                    "[\"0 m\", \"5 m\"]",
+                    "one end, in space one corner",
+                ),
+                required(
+                    "to",
+                    POINT,
+                    "[\"2 m\", \"5 m\"]",
+                    "the other end, in space the opposite corner",
+                ),
                 required(
                     "pressure",
                     Kind::Quantity(Stress, Range::Any),
@@ -73,12 +86,18 @@ pub(in crate::input) static LOAD: Kind = Kind::Variants(&Variants {
             doc: "A dead force at a point, raised by load stages.",
             fields: &[
                 required("at", POINT, "[\"2 m\", \"5 m\"]", "where"),
-                required(
+                in_plane(required(
                     "force",
-                    Kind::List(&FORCE, 2, 2),
+                    Kind::Vector(&FORCE),
                     "[\"0 kN/m\", \"-10 kN/m\"]",
                     "force at factor 1, x and y, per metre run",
-                ),
+                )),
+                in_space(required(
+                    "force",
+                    Kind::Vector(&WHOLE_FORCE),
+                    "[\"0 kN\", \"0 kN\", \"-10 kN\"]",
+                    "force at factor 1, x, y and z",
+                )),
             ],
         },
     ],

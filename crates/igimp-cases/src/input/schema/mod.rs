@@ -7,11 +7,14 @@ pub(super) use materials::SYMBOLS;
 mod outputs;
 mod reinforcement;
 mod rigid;
+mod solids;
 mod stages;
 mod water;
 
 use super::quantity::Dimension::{Acceleration, Length, UnitWeight};
-use super::spec::{Choice, Kind, Range, Struct, choice, default, derived, optional, required};
+use super::spec::{
+    Choice, Kind, Range, Struct, choice, default, derived, in_plane, in_space, optional, required,
+};
 
 /// Version of the input format that this program reads.
 pub(super) const FORMAT: i64 = 1;
@@ -28,9 +31,11 @@ const MOST_CURVES: usize = 200;
 /// A length.
 const A_LENGTH: Kind = Kind::Quantity(Length, Range::Any);
 static LENGTH: Kind = A_LENGTH;
-/// A point: two lengths.
-const POINT: Kind = Kind::List(&LENGTH, 2, 2);
-static CORNER: Kind = POINT;
+/// A point: a length along each axis.
+const POINT: Kind = Kind::Vector(&LENGTH);
+/// Two lengths: a corner of an outline, or the ends of a stretch.
+const PAIR: Kind = Kind::List(&LENGTH, 2, 2);
+static CORNER: Kind = PAIR;
 
 /// The whole file.
 pub(super) static ROOT: Struct = Struct {
@@ -201,9 +206,12 @@ static CASE: Struct = Struct {
     ],
 };
 
+/// Name of the analysis in space.
+pub(super) const SPACE: &str = "3d";
+
 static ANALYSES: [Choice; 2] = [
-    choice("plane-strain", "per metre run"),
-    choice("3d", "not available in case files yet"),
+    choice("plane-strain", "per metre run; x points right, y up"),
+    choice(SPACE, "in space; x points right, y backwards, z up"),
 ];
 
 static GRID: Struct = Struct {
@@ -303,8 +311,14 @@ static CELL: Struct = Struct {
             "y",
             Kind::Quantity(Length, Range::Positive),
             "\"0.5 m\"",
-            "height",
+            "height; in space depth",
         ),
+        in_space(required(
+            "z",
+            Kind::Quantity(Length, Range::Positive),
+            "\"0.5 m\"",
+            "height",
+        )),
     ],
 };
 
@@ -321,8 +335,14 @@ static LINES: Struct = Struct {
             "y",
             Kind::List(&LENGTH, 0, MOST_THINGS),
             "[]",
-            "places of level lines",
+            "places of level lines, in space of upright ones",
         ),
+        in_space(default(
+            "z",
+            Kind::List(&LENGTH, 0, MOST_THINGS),
+            "[]",
+            "places of level planes",
+        )),
     ],
 };
 
@@ -355,8 +375,14 @@ static ZONES: Struct = Struct {
             "y",
             Kind::List(&ZONE, 0, MOST_THINGS),
             "[]",
-            "stretches of lower cells",
+            "stretches of lower cells, in space of cells that are less deep",
         ),
+        in_space(default(
+            "z",
+            Kind::List(&ZONE, 0, MOST_THINGS),
+            "[]",
+            "stretches of lower cells",
+        )),
     ],
 };
 
@@ -377,8 +403,25 @@ static ZONE: Kind = Kind::Table(&Struct {
 static DOMAIN: Struct = Struct {
     doc: "Extent of the grid. Without lines, zones and fit it is a whole number of cells in each direction.",
     fields: &[
-        required("x", POINT, "[\"0 m\", \"60 m\"]", "from left to right"),
-        required("y", POINT, "[\"0 m\", \"22 m\"]", "from bottom to top"),
+        required("x", PAIR, "[\"0 m\", \"60 m\"]", "from left to right"),
+        in_plane(required(
+            "y",
+            PAIR,
+            "[\"0 m\", \"22 m\"]",
+            "from bottom to top",
+        )),
+        in_space(required(
+            "y",
+            PAIR,
+            "[\"0 m\", \"30 m\"]",
+            "from front to back",
+        )),
+        in_space(required(
+            "z",
+            PAIR,
+            "[\"0 m\", \"22 m\"]",
+            "from bottom to top",
+        )),
     ],
 };
 
@@ -450,18 +493,33 @@ static BODY: Kind = Kind::Table(&Struct {
             "\"clay\"",
             "name of the material",
         ),
-        default(
+        in_plane(default(
             "points_per_cell",
             Kind::IntegerOf(&[1, 4, 9, 16, 25]),
             "4",
             "particles per cell, a square number",
-        ),
-        required(
+        )),
+        in_space(default(
+            "points_per_cell",
+            Kind::IntegerOf(&[1, 8, 27, 64]),
+            "8",
+            "particles per cell, a cube number",
+        )),
+        in_space(solids::BOX),
+        in_space(solids::SECTION),
+        in_space(solids::ACROSS),
+        in_space(solids::PLAN),
+        in_space(solids::BETWEEN),
+        in_space(solids::CYLINDER),
+        in_space(solids::SPHERE),
+        in_space(solids::SURFACE),
+        in_space(solids::MINUS),
+        in_plane(required(
             "polygon",
             Kind::Either(&[Kind::List(&CORNER, 3, MANY), Kind::Table(&OUTLINE)]),
             "[[\"0 m\", \"0 m\"], [\"8 m\", \"0 m\"], [\"8 m\", \"5 m\"], [\"0 m\", \"5 m\"]]",
             "corners in order, either way round, or where they come from",
-        ),
+        )),
     ],
 });
 
@@ -533,17 +591,29 @@ static BOUNDARIES: Struct = Struct {
             "\"roller\"",
             "side of the highest x",
         ),
+        in_space(default(
+            "front",
+            Kind::Choice(&SIDES),
+            "\"roller\"",
+            "side of the lowest y",
+        )),
+        in_space(default(
+            "back",
+            Kind::Choice(&SIDES),
+            "\"roller\"",
+            "side of the highest y",
+        )),
         default(
             "bottom",
             Kind::Choice(&SIDES),
             "\"fixed\"",
-            "side of the lowest y",
+            "side of the lowest y, in space of the lowest z",
         ),
         default(
             "top",
             Kind::Choice(&SIDES),
             "\"free\"",
-            "side of the highest y",
+            "side of the highest y, in space of the highest z",
         ),
         default(
             "boxes",
@@ -554,9 +624,10 @@ static BOUNDARIES: Struct = Struct {
     ],
 };
 
-static AXES: [Choice; 2] = [
+static AXES: [Choice; 3] = [
     choice("x", "displacement in x"),
     choice("y", "displacement in y"),
+    choice("z", "displacement in z, in space"),
 ];
 static AXIS: Kind = Kind::Choice(&AXES);
 
@@ -566,12 +637,18 @@ static BOX: Kind = Kind::Table(&Struct {
         required("name", Kind::Name, "\"wall\"", "name"),
         required("from", POINT, "[\"0 m\", \"0 m\"]", "one corner"),
         required("to", POINT, "[\"1 m\", \"5 m\"]", "the opposite corner"),
-        default(
+        in_plane(default(
             "fix",
             Kind::List(&AXIS, 1, 2),
             "[\"x\", \"y\"]",
             "what is held",
-        ),
+        )),
+        in_space(default(
+            "fix",
+            Kind::List(&AXIS, 1, 3),
+            "[\"x\", \"y\", \"z\"]",
+            "what is held",
+        )),
     ],
 });
 

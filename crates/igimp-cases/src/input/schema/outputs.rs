@@ -1,8 +1,8 @@
 //! Solver, monitors, sections, curves, checks and output.
 
-use super::{MANY, POINT, stage};
+use super::{A_LENGTH, MANY, POINT, stage};
 use crate::input::spec::{
-    Choice, Kind, Range, Struct, choice, default, derived, optional, required,
+    Choice, Kind, Range, Struct, choice, default, derived, in_space, optional, required,
 };
 
 pub(in crate::input) static SOLVER: Struct = Struct {
@@ -53,8 +53,15 @@ static STEP_CUTTING: Struct = Struct {
     ],
 };
 
-static LINEAR_SOLVERS: [Choice; 7] = [
-    choice("auto", "Cholesky for symmetric matrices, LU for others"),
+static LINEAR_SOLVERS: [Choice; 8] = [
+    choice(
+        "auto",
+        "Cholesky for symmetric matrices, LU for others; for large systems in space multigrid",
+    ),
+    choice(
+        "multigrid",
+        "conjugate gradients or GMRES with geometric multigrid on the grid",
+    ),
     choice("direct", "the same as auto"),
     choice("cholesky", "multifrontal Cholesky"),
     choice("lu", "multifrontal LU"),
@@ -64,12 +71,14 @@ static LINEAR_SOLVERS: [Choice; 7] = [
 ];
 
 /// Fields on particles.
-static FIELDS: [Choice; 22] = [
+static FIELDS: [Choice; 26] = [
     choice("displacement", "length of the displacement [m]"),
     choice("displacement_x", "displacement in x [m]"),
     choice("displacement_y", "displacement in y [m]"),
+    choice("displacement_z", "displacement in z, in space [m]"),
     choice("x", "position x [m]"),
     choice("y", "position y [m]"),
+    choice("z", "position z, in space [m]"),
     choice("sigma_xx", "total stress xx, compression positive [Pa]"),
     choice("sigma_yy", "total stress yy, compression positive [Pa]"),
     choice("sigma_zz", "total stress zz, compression positive [Pa]"),
@@ -77,6 +86,8 @@ static FIELDS: [Choice; 22] = [
         "tau_xy",
         "shear stress, with the sign of compression positive [Pa]",
     ),
+    choice("tau_yz", "the same in y and z, in space [Pa]"),
+    choice("tau_xz", "the same in x and z, in space [Pa]"),
     choice("p", "mean pressure of total stress [Pa]"),
     choice(
         "sigma_eff_xx",
@@ -123,7 +134,7 @@ pub(in crate::input) static MONITOR: Kind = Kind::Table(&Struct {
         ),
         default(
             "record",
-            Kind::List(&FIELD, 1, 22),
+            Kind::List(&FIELD, 1, 26),
             "[\"displacement\"]",
             "what is recorded",
         ),
@@ -144,7 +155,7 @@ pub(in crate::input) static SECTION: Kind = Kind::Table(&Struct {
         ),
         default(
             "record",
-            Kind::List(&FIELD, 1, 22),
+            Kind::List(&FIELD, 1, 26),
             "[\"sigma_xx\", \"sigma_yy\", \"tau_xy\"]",
             "what is written",
         ),
@@ -439,10 +450,16 @@ pub(in crate::input) static OUTPUT: Struct = Struct {
         ),
         default(
             "figures",
-            Kind::List(&FIELD, 0, 22),
+            Kind::List(&FIELD, 0, 26),
             "[\"displacement\", \"plastic_strain\", \"sigma_yy\"]",
             "fields drawn at the end of every stage; with none no picture is drawn at all",
         ),
+        in_space(default(
+            "cuts",
+            Kind::List(&CUT, 0, 20),
+            "[]",
+            "planes in which the fields are drawn as well; without any, upright ones through the middle of the bodies",
+        )),
         default(
             "report",
             Kind::Flag,
@@ -457,6 +474,20 @@ pub(in crate::input) static OUTPUT: Struct = Struct {
         ),
     ],
 };
+
+static CUT: Kind = Kind::Table(&Struct {
+    doc: "A plane across an axis.",
+    fields: &[
+        required("across", Kind::Choice(&ACROSS), "\"y\"", "the axis"),
+        required("at", A_LENGTH, "\"5 m\"", "where it stands on the axis"),
+    ],
+});
+
+static ACROSS: [Choice; 3] = [
+    choice("x", "upright, along y"),
+    choice("y", "upright, along x"),
+    choice("z", "level"),
+];
 
 static PARAVIEW: Struct = Struct {
     doc: "When particles are written for ParaView.",

@@ -1,9 +1,12 @@
 //! Rigid bodies that soil touches, and how stages move them.
 
 use super::{A_LENGTH, LENGTH, MANY, MOST_THINGS, POINT};
-use crate::input::quantity::Dimension::{Angle, ForcePerLength, Length, MomentPerLength, Stress};
+use crate::input::quantity::Dimension::{
+    Angle, Force, ForcePerLength, Length, Moment, MomentPerLength, Stress,
+};
 use crate::input::spec::{
-    Choice, Field, Kind, Range, Struct, Variant, Variants, choice, default, optional, required,
+    Choice, Field, Kind, Range, Struct, Variant, Variants, choice, default, in_plane, in_space,
+    optional, required,
 };
 
 static CORNER: Kind = Kind::List(&LENGTH, 2, 2);
@@ -63,12 +66,18 @@ const fn tension_limit(without: &'static str) -> Field {
     )
 }
 
-static SIDE_NAMES: [Choice; 5] = [
+static SIDE_NAMES: [Choice; 11] = [
     choice("bottom", "lower side of a rectangle"),
     choice("right", "right side of a rectangle"),
     choice("top", "upper side of a rectangle"),
     choice("left", "left side of a rectangle"),
     choice("face", "the side of a wall from `from` to `to`"),
+    choice("front", "front of a box"),
+    choice("back", "back of a box"),
+    choice("shaft", "shaft of a cylinder or a cone"),
+    choice("tip", "face of the tip of a cone"),
+    choice("start", "lower end of a level cylinder"),
+    choice("end", "its other end"),
 ];
 
 static SIDE: Kind = Kind::Table(&Struct {
@@ -145,14 +154,105 @@ pub(in crate::input) static RIGID: Kind = Kind::Variants(&Variants {
                 ),
             ],
         },
+        Variant {
+            name: "box",
+            doc: "In space: a box with its sides along the axes. Its sides are left, right, front, back, bottom, top.",
+            fields: &[
+                required("from", POINT, "[\"0 m\", \"0 m\", \"5 m\"]", "one corner"),
+                required(
+                    "to",
+                    POINT,
+                    "[\"1 m\", \"1 m\", \"6 m\"]",
+                    "the opposite corner",
+                ),
+            ],
+        },
+        Variant {
+            name: "cylinder",
+            doc: "In space: a cylinder along an axis. Its sides are bottom, shaft, top; of a level one start, shaft, end.",
+            fields: &[
+                default(
+                    "axis",
+                    Kind::Choice(&DIRECTIONS),
+                    "\"z\"",
+                    "direction of its axis",
+                ),
+                required(
+                    "middle",
+                    POINT,
+                    "[\"0 m\", \"0 m\", \"5.5 m\"]",
+                    "its middle",
+                ),
+                required(
+                    "radius",
+                    Kind::Quantity(Length, Range::Positive),
+                    "\"0.5 m\"",
+                    "radius",
+                ),
+                required(
+                    "length",
+                    Kind::Quantity(Length, Range::Positive),
+                    "\"1 m\"",
+                    "length along its axis",
+                ),
+            ],
+        },
+        Variant {
+            name: "sphere",
+            doc: "In space: a sphere. It has one side.",
+            fields: &[
+                required("centre", POINT, "[\"0 m\", \"0 m\", \"5.5 m\"]", "centre"),
+                required(
+                    "radius",
+                    Kind::Quantity(Length, Range::Positive),
+                    "\"0.5 m\"",
+                    "radius",
+                ),
+            ],
+        },
+        Variant {
+            name: "cone",
+            doc: "In space: a cone with its tip down, and a shaft above it. Its sides are tip, shaft, top.",
+            fields: &[
+                required("tip", POINT, "[\"0 m\", \"0 m\", \"5 m\"]", "its tip"),
+                required(
+                    "radius",
+                    Kind::Quantity(Length, Range::Positive),
+                    "\"0.25 m\"",
+                    "radius of its upper end",
+                ),
+                required(
+                    "height",
+                    Kind::Quantity(Length, Range::Positive),
+                    "\"0.43 m\"",
+                    "height of the cone",
+                ),
+                default(
+                    "shaft",
+                    Kind::Quantity(Length, Range::NotNegative),
+                    "\"0 m\"",
+                    "length of the shaft",
+                ),
+            ],
+        },
+        Variant {
+            name: "surface",
+            doc: "In space: a closed surface of triangles. It has one side.",
+            fields: &[required(
+                "surface",
+                Kind::Table(&super::solids::SURFACE_TABLE),
+                "{ file = \"pile.stl\", unit = \"m\" }",
+                "the surface",
+            )],
+        },
     ],
     after: &[
-        optional(
+        in_plane(optional(
             "reference",
             POINT,
             "the middle of the base of a rectangle, of the face of a wall, of the extent of others",
             "point that displacement and forces are told of; a circle has its centre",
-        ),
+        )),
         default("interface", INTERFACE, "\"rough\"", "along all its sides"),
         default("tension", TENSION, "\"none\"", TENSION_DOC),
         tension_limit("as `tension` says"),
@@ -162,12 +262,18 @@ pub(in crate::input) static RIGID: Kind = Kind::Variants(&Variants {
             "[]",
             "sides that are unlike the others",
         ),
-        default(
+        in_plane(default(
             "weight",
             Kind::Quantity(ForcePerLength, Range::NotNegative),
             "\"0 kN/m\"",
             "own weight of the whole body, at its reference point; acts with gravity",
-        ),
+        )),
+        in_space(default(
+            "weight",
+            Kind::Quantity(Force, Range::NotNegative),
+            "\"0 kN\"",
+            "own weight of the whole body, at its middle; acts with gravity",
+        )),
         default(
             "force_factor",
             Kind::Number(Range::Positive),
@@ -202,10 +308,20 @@ pub(in crate::input) static RIGID: Kind = Kind::Variants(&Variants {
     ],
 });
 
-static COMPONENTS: [Choice; 3] = [
+static DIRECTIONS: [Choice; 3] = [
+    choice("x", "to the right"),
+    choice("y", "to the back"),
+    choice("z", "up"),
+];
+
+static COMPONENTS: [Choice; 7] = [
     choice("x", "displacement in x"),
     choice("y", "displacement in y"),
-    choice("rotation", "rotation"),
+    choice("rotation", "rotation, in plane strain"),
+    choice("z", "displacement in z, in space"),
+    choice("rotation_x", "rotation about x, in space"),
+    choice("rotation_y", "rotation about y, in space"),
+    choice("rotation_z", "rotation about z, in space"),
 ];
 static COMPONENT: Kind = Kind::Choice(&COMPONENTS);
 
@@ -224,6 +340,26 @@ const fn force(key: &'static str, doc: &'static str) -> Field {
     )
 }
 
+/// A rotation that a body is given.
+const fn turn(key: &'static str, doc: &'static str) -> Field {
+    optional(
+        key,
+        Kind::Quantity(Angle, Range::Any),
+        "as before; held at first",
+        doc,
+    )
+}
+
+/// A force that a body in space is given.
+const fn whole_force(key: &'static str, doc: &'static str) -> Field {
+    optional(key, Kind::Quantity(Force, Range::Any), "as before", doc)
+}
+
+/// A moment that a body in space is given.
+const fn moment(key: &'static str, doc: &'static str) -> Field {
+    optional(key, Kind::Quantity(Moment, Range::Any), "as before", doc)
+}
+
 /// How a stage moves a rigid body.
 pub(super) static MOVE: Kind = Kind::Table(&Struct {
     doc: "How a rigid body moves in a stage. What is not mentioned goes on as before: held, or under its force.",
@@ -235,27 +371,47 @@ pub(super) static MOVE: Kind = Kind::Table(&Struct {
             "which",
         ),
         by("x", "further displacement in x"),
-        by("y", "further displacement in y, negative downwards"),
-        optional(
-            "rotation",
-            Kind::Quantity(Angle, Range::Any),
-            "as before; held at first",
-            "further rotation, anticlockwise",
+        by(
+            "y",
+            "further displacement in y, in plane strain negative downwards",
         ),
-        force("force_x", "force on it in x at the end of the stage"),
-        force(
+        in_space(by("z", "further displacement in z, negative downwards")),
+        in_plane(turn("rotation", "further rotation, anticlockwise")),
+        in_space(turn("rotation_x", "further rotation about x")),
+        in_space(turn("rotation_y", "further rotation about y")),
+        in_space(turn("rotation_z", "further rotation about z")),
+        in_plane(force("force_x", "force on it in x at the end of the stage")),
+        in_plane(force(
             "force_y",
             "force on it in y at the end of the stage, negative downwards, beside its weight",
-        ),
-        optional(
+        )),
+        in_plane(optional(
             "moment",
             Kind::Quantity(MomentPerLength, Range::Any),
             "as before",
             "moment on it about its reference point at the end of the stage, anticlockwise",
-        ),
+        )),
+        in_space(whole_force(
+            "force_x",
+            "force on it in x at the end of the stage",
+        )),
+        in_space(whole_force(
+            "force_y",
+            "force on it in y at the end of the stage",
+        )),
+        in_space(whole_force(
+            "force_z",
+            "force on it in z at the end of the stage, negative downwards, beside its weight",
+        )),
+        in_space(moment(
+            "moment_x",
+            "moment on it about x through its reference point at the end of the stage",
+        )),
+        in_space(moment("moment_y", "moment on it about y")),
+        in_space(moment("moment_z", "moment on it about z")),
         default(
             "free",
-            Kind::List(&COMPONENT, 0, 3),
+            Kind::List(&COMPONENT, 0, 6),
             "[]",
             "components that no force and no moment holds by the end of the stage",
         ),

@@ -3,8 +3,8 @@
 use super::{MOST_THINGS, reduced_materials, water};
 use crate::input::quantity::Dimension::Length;
 use crate::input::spec::{
-    Choice, Field, Kind, Range, Struct, Variant, Variants, choice, default, derived, optional,
-    required,
+    Choice, Field, Kind, Range, Struct, Variant, Variants, choice, default, derived, in_space,
+    optional, required,
 };
 
 /// Most load steps of a stage.
@@ -40,6 +40,12 @@ pub(in crate::input) static STAGE: Kind = Kind::Variants(&Variants {
                     "it stays as it is, 0 at first",
                     "pseudo-static force to the right, as a share of the weight",
                 ),
+                in_space(optional(
+                    "across",
+                    Kind::Number(Range::Any),
+                    "it stays as it is, 0 at first",
+                    "pseudo-static force backwards, along y, as a share of the weight",
+                )),
                 optional(
                     "vertical",
                     Kind::Number(Range::Any),

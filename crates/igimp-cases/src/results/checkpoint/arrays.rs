@@ -8,7 +8,7 @@ use crate::results::npy::{Array, Values};
 use crate::results::regime;
 
 /// The arrays of a body by name.
-pub(super) fn of_body(body: &Body<2>) -> Vec<(&'static str, Array)> {
+pub(super) fn of_body<const D: usize>(body: &Body<D>) -> Vec<(&'static str, Array)> {
     let ParticleFields {
         x,
         displacement,
@@ -72,10 +72,10 @@ pub(super) fn of_body(body: &Body<2>) -> Vec<(&'static str, Array)> {
 /// The body of numbers of particles and load points, from the bytes of its array files.
 ///
 /// An error is the name of an array and why it does not serve.
-pub(super) fn to_body(
+pub(super) fn to_body<const D: usize>(
     [n, m]: [usize; 2],
     bytes: impl Fn(&'static str) -> Result<Vec<u8>, String>,
-) -> Result<Body<2>, (&'static str, String)> {
+) -> Result<Body<D>, (&'static str, String)> {
     let array = |name: &'static str, shape: &[usize]| {
         bytes(name)
             .and_then(|bytes| Array::from_bytes(&bytes).map_err(|error| error.to_string()))
@@ -93,8 +93,8 @@ pub(super) fn to_body(
         Values::F64(values) => Ok(values.clone()),
         _ => Err((name, "its numbers are not of type <f8".to_owned())),
     };
-    let vectors = |name, count| Ok(rows::<2>(&reals(name, &[count, 2])?));
-    let planar = |name| Ok(squares::<2>(&reals(name, &[n, 2, 2])?));
+    let vectors = |name, count| Ok(rows::<D>(&reals(name, &[count, D])?));
+    let gradients = |name| Ok(squares::<D>(&reals(name, &[n, D, D])?));
     let spatial = |name| Ok(squares::<3>(&reals(name, &[n, 3, 3])?));
     let indices = |name: &'static str, count: usize| match array(name, &[count])?.values() {
         Values::U64(values) => Ok(values.iter().map(|&k| k as usize).collect::<Vec<_>>()),
@@ -113,7 +113,7 @@ pub(super) fn to_body(
     let fields = ParticleFields {
         x: vectors("x", n)?,
         displacement: vectors("displacement", n)?,
-        def_grad: planar("def_grad")?,
+        def_grad: gradients("def_grad")?,
         b_e: spatial("b_e")?,
         sigma: spatial("sigma")?,
         half_length: vectors("half_length", n)?,
@@ -141,7 +141,7 @@ pub(super) fn to_body(
     let particles =
         Particles::from_fields(fields).map_err(|error| (array_of(&error), error.to_string()))?;
     let finite = |name: &'static str| {
-        let values: Vec<[f64; 2]> = vectors(name, m)?;
+        let values: Vec<[f64; D]> = vectors(name, m)?;
         match values
             .iter()
             .position(|value| !value.iter().all(|v| v.is_finite()))
@@ -180,9 +180,9 @@ fn scalars(values: &[f64]) -> Array {
     Array::new(&[values.len()], Values::F64(values.to_vec()))
 }
 
-fn vectors(values: &[[f64; 2]]) -> Array {
+fn vectors<const N: usize>(values: &[[f64; N]]) -> Array {
     Array::new(
-        &[values.len(), 2],
+        &[values.len(), N],
         Values::F64(values.as_flattened().to_vec()),
     )
 }

@@ -20,10 +20,10 @@ pub type Files = BTreeMap<String, Vec<u8>>;
 ///
 /// # Errors
 /// [`CheckpointError::Name`] for names other than letters, digits, `-` and `_`.
-pub fn to_files(
+pub fn to_files<const D: usize>(
     name: &str,
     sequence: u64,
-    states: &[(&str, &Body<2>)],
+    states: &[(&str, &Body<D>)],
     meta: &Meta,
 ) -> Result<Files, CheckpointError> {
     let mut files = Files::new();
@@ -51,11 +51,11 @@ pub fn to_files(
 /// # Errors
 /// Those of [`read`](super::read), save [`CheckpointError::File`]: a file that is missing is
 /// damage.
-pub fn from_files(
+pub fn from_files<const D: usize>(
     path: &Path,
     files: &Files,
     expected_fingerprint: Option<&str>,
-) -> Result<Checkpoint, CheckpointError> {
+) -> Result<Checkpoint<D>, CheckpointError> {
     let Some(meta) = files.get(FILE) else {
         let (path, why) = (path.into(), "it has no meta.json");
         return Err(CheckpointError::NotACheckpoint { path, why });

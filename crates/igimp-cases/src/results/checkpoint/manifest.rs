@@ -15,7 +15,7 @@ use super::error::{CheckpointError, at};
 use crate::results::atomic::create;
 
 /// Version of the layout; another one is not read.
-pub const FORMAT_VERSION: u64 = 3;
+pub const FORMAT_VERSION: u64 = 4;
 
 /// The program and its version, as written into checkpoints.
 pub const PROGRAM: &str = concat!("igimp ", env!("CARGO_PKG_VERSION"));
@@ -99,9 +99,24 @@ fn is_sealed(manifest: &str, sum: &str) -> bool {
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) struct StateEntry {
     pub(super) name: String,
+    #[serde(default = "plane", skip_serializing_if = "is_plane")]
+    pub(super) dimensions: usize,
     pub(super) particles: usize,
     pub(super) load_points: usize,
     files: BTreeMap<String, FileEntry>,
+}
+
+/// Dimensions of a body of which nothing is said.
+fn plane() -> usize {
+    2
+}
+
+#[allow(
+    clippy::trivially_copy_pass_by_ref,
+    reason = "the signature that serde asks for"
+)]
+fn is_plane(dimensions: &usize) -> bool {
+    *dimensions == plane()
 }
 
 #[derive(Debug, Serialize, Deserialize)]
@@ -206,9 +221,10 @@ impl Manifest {
 }
 
 impl StateEntry {
-    pub(super) fn new(name: &str, body: &Body<2>) -> Self {
+    pub(super) fn new<const D: usize>(name: &str, body: &Body<D>) -> Self {
         Self {
             name: name.into(),
+            dimensions: D,
             particles: body.particles.len(),
             load_points: body.load_points.len(),
             files: BTreeMap::new(),

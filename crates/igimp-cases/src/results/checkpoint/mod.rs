@@ -52,11 +52,11 @@ const REPLACED: &str = ".previous";
 
 /// A state of a run, read from disk.
 #[derive(Clone, Debug)]
-pub struct Checkpoint {
+pub struct Checkpoint<const D: usize = 2> {
     /// What is known about it.
     pub meta: Meta,
     /// Bodies by name, in the order in which they were written.
-    pub states: Vec<(String, Body<2>)>,
+    pub states: Vec<(String, Body<D>)>,
 }
 
 /// Writes a checkpoint into a folder of checkpoints, which is made if need be.
@@ -68,10 +68,10 @@ pub struct Checkpoint {
 /// # Errors
 /// [`CheckpointError::Name`] for names other than letters, digits, `-` and `_`;
 /// [`CheckpointError::File`].
-pub fn write(
+pub fn write<const D: usize>(
     folder: &Path,
     name: &str,
-    states: &[(&str, &Body<2>)],
+    states: &[(&str, &Body<D>)],
     meta: &Meta,
     keep: usize,
 ) -> Result<PathBuf, CaseError> {
@@ -84,10 +84,10 @@ pub fn write(
 ///
 /// # Errors
 /// As [`write()`].
-pub fn write_quickly(
+pub fn write_quickly<const D: usize>(
     folder: &Path,
     name: &str,
-    states: &[(&str, &Body<2>)],
+    states: &[(&str, &Body<D>)],
     meta: &Meta,
     keep: usize,
 ) -> Result<PathBuf, CaseError> {
@@ -101,10 +101,10 @@ enum Lasts {
     PowerLoss,
 }
 
-fn write_to_last(
+fn write_to_last<const D: usize>(
     folder: &Path,
     name: &str,
-    states: &[(&str, &Body<2>)],
+    states: &[(&str, &Body<D>)],
     meta: &Meta,
     keep: usize,
     lasts: Lasts,
@@ -168,7 +168,7 @@ pub fn passed_over(path: &Path) -> Result<Vec<CheckpointError>, CheckpointError>
         let is_later = found.manifest.is_err() || found.sequence() > sequence;
         let manifest = is_later.then_some(found.manifest)?;
         manifest
-            .and_then(|manifest| load(&found.path, manifest))
+            .and_then(|manifest| is_whole(&found.path, manifest))
             .err()
     });
     Ok(errors.collect())
@@ -192,10 +192,10 @@ pub fn named(folder: &Path, name: &str) -> Result<Option<PathBuf>, CheckpointErr
 /// # Errors
 /// [`CheckpointError`]: no checkpoint, another format or program, another fingerprint than the one
 /// expected, or damaged.
-pub fn read(
+pub fn read<const D: usize>(
     path: &Path,
     expected_fingerprint: Option<&str>,
-) -> Result<Checkpoint, CheckpointError> {
+) -> Result<Checkpoint<D>, CheckpointError> {
     let manifest = accepted(path, Manifest::read(path)?, expected_fingerprint)?;
     load(path, manifest)
 }
@@ -305,26 +305,36 @@ fn list(folder: &Path) -> Result<Vec<Found>, CheckpointError> {
 fn first_whole(found: Vec<Found>) -> Result<Option<PathBuf>, CheckpointError> {
     let mut first_error = None;
     for Found { path, manifest } in found {
-        match manifest.and_then(|manifest| load(&path, manifest)) {
-            Ok(_) => return Ok(Some(path)),
+        match manifest.and_then(|manifest| is_whole(&path, manifest)) {
+            Ok(()) => return Ok(Some(path)),
             Err(error) => first_error = first_error.or(Some(error)),
         }
     }
     first_error.map_or(Ok(None), Err)
 }
 
-fn load(path: &Path, manifest: Manifest) -> Result<Checkpoint, CheckpointError> {
+/// Whether a checkpoint can be read; or what is wrong with it.
+fn is_whole(path: &Path, manifest: Manifest) -> Result<(), CheckpointError> {
+    let in_space = manifest.states.iter().any(|entry| entry.dimensions == 3);
+    if in_space {
+        load::<3>(path, manifest).map(drop)
+    } else {
+        load::<2>(path, manifest).map(drop)
+    }
+}
+
+fn load<const D: usize>(path: &Path, manifest: Manifest) -> Result<Checkpoint<D>, CheckpointError> {
     load_from(path, manifest, |file| {
         fs::read(path.join(file)).map_err(|error| error.to_string())
     })
 }
 
 /// The states of a manifest, from the bytes of the files that it lists.
-fn load_from(
+fn load_from<const D: usize>(
     path: &Path,
     manifest: Manifest,
     bytes: impl Fn(&str) -> Result<Vec<u8>, String>,
-) -> Result<Checkpoint, CheckpointError> {
+) -> Result<Checkpoint<D>, CheckpointError> {
     let states = manifest
         .states
         .iter()
@@ -334,10 +344,10 @@ fn load_from(
     Ok(Checkpoint { meta, states })
 }
 
-fn write_state(
+fn write_state<const D: usize>(
     checkpoint: &Path,
     name: &str,
-    body: &Body<2>,
+    body: &Body<D>,
     unsynced: &mut Vec<(PathBuf, File)>,
 ) -> Result<StateEntry, CheckpointError> {
     let folder = checkpoint.join(name);
@@ -354,11 +364,11 @@ fn write_state(
     Ok(entry)
 }
 
-fn read_state(
+fn read_state<const D: usize>(
     checkpoint: &Path,
     entry: &StateEntry,
     bytes: &impl Fn(&str) -> Result<Vec<u8>, String>,
-) -> Result<Body<2>, CheckpointError> {
+) -> Result<Body<D>, CheckpointError> {
     let name = &entry.name;
     let damaged = |(array, why): (&str, String)| CheckpointError::Damaged {
         path: checkpoint.into(),
@@ -367,6 +377,10 @@ fn read_state(
     };
     if check_name(name).is_err() {
         return Err(damaged(("*", "the state has no proper name".into())));
+    }
+    if entry.dimensions != D {
+        let why = format!("its body is one in {} dimensions", entry.dimensions);
+        return Err(damaged(("x", why)));
     }
     arrays::to_body([entry.particles, entry.load_points], |array| {
         let bytes = bytes(&array_file(name, array))?;

@@ -79,7 +79,7 @@ fn write_one(folder: &Path, name: &str, particles: usize) -> PathBuf {
 }
 
 fn particles(path: &Path) -> usize {
-    read(path, None).unwrap().states[0].1.particles.len()
+    read::<2>(path, None).unwrap().states[0].1.particles.len()
 }
 
 #[test]
@@ -92,7 +92,7 @@ fn states_come_back_to_the_bit() {
     let states = [("current", &current), ("stable", &stable)];
     let path = write(&folder, "load-0010", &states, &meta, 3).unwrap();
     assert_eq!(path, folder.join("load-0010"));
-    let back = read(&path, Some(&sha256(b""))).unwrap();
+    let back = read::<2>(&path, Some(&sha256(b""))).unwrap();
     assert_eq!(back.meta, meta);
     assert_eq!(back.states[0].0, "current");
     assert_eq!(back.states[1].0, "stable");
@@ -114,19 +114,19 @@ fn in_memory_and_on_disk_are_the_same() {
     for (file, bytes) in &files {
         assert_eq!(&fs::read(path.join(file)).unwrap(), bytes, "{file}");
     }
-    let back = from_files(&path, &files, None).unwrap();
+    let back = from_files::<2>(&path, &files, None).unwrap();
     assert_eq!(back.meta, meta());
     assert_eq!(bits(&back.states[0].1), bits(&current));
     assert_eq!(bits(&back.states[1].1), bits(&stable));
     let mut files = files;
     files.remove("stable/x.npy");
     insta::assert_snapshot!(
-        scratch.hide(&from_files(&path, &files, None).unwrap_err()),
+        scratch.hide(&from_files::<2>(&path, &files, None).unwrap_err()),
         @"the checkpoint in DIR/a is damaged: stable/x.npy: there is no such file"
     );
     files.clear();
     insta::assert_snapshot!(
-        scratch.hide(&from_files(&path, &files, None).unwrap_err()),
+        scratch.hide(&from_files::<2>(&path, &files, None).unwrap_err()),
         @"DIR/a is not a checkpoint of igimp: it has no meta.json"
     );
 }
@@ -266,7 +266,7 @@ fn every_damage_is_noticed() {
         let longer = [&whole[..], &[0]].concat();
         for bytes in [&flipped[..], &longer, &whole[1..], &[]] {
             fs::write(&array, bytes).unwrap();
-            let error = read(&path, None).unwrap_err();
+            let error = read::<2>(&path, None).unwrap_err();
             assert!(matches!(error, CheckpointError::Damaged { .. }), "{error}");
         }
         fs::write(&array, whole).unwrap();
@@ -275,17 +275,17 @@ fn every_damage_is_noticed() {
     let whole = fs::read(&file).unwrap();
     for length in (0..whole.len() - 1).step_by(7) {
         fs::write(&file, &whole[..length]).unwrap();
-        let error = read(&path, None).unwrap_err();
+        let error = read::<2>(&path, None).unwrap_err();
         assert!(matches!(error, CheckpointError::Damaged { .. }), "{error}");
     }
     for at in 0..whole.len() {
         let mut flipped = whole.clone();
         flipped[at] ^= 1;
         fs::write(&file, &flipped).unwrap();
-        assert!(read(&path, None).is_err(), "byte {at}");
+        assert!(read::<2>(&path, None).is_err(), "byte {at}");
     }
     fs::write(&file, whole).unwrap();
-    read(&path, None).unwrap();
+    read::<2>(&path, None).unwrap();
 }
 
 /// A manifest that vouches for itself.
@@ -309,7 +309,7 @@ fn a_forged_state_is_refused() {
         let array = path.join("current").join(array).with_extension("npy");
         let before = fs::read(&array).unwrap();
         fs::write(&array, bytes).unwrap();
-        let message = scratch.hide(&read(&path, None).unwrap_err());
+        let message = scratch.hide(&read::<2>(&path, None).unwrap_err());
         fs::write(&array, before).unwrap();
         fs::write(&file, text).unwrap();
         message
@@ -354,7 +354,7 @@ fn a_forged_state_is_refused() {
         assert!(text.contains(from));
         let value = serde_json::from_str(&text.replace(from, to)).unwrap();
         fs::write(&file, sealed(value)).unwrap();
-        let error = read(&path, None).unwrap_err();
+        let error = read::<2>(&path, None).unwrap_err();
         assert!(matches!(error, CheckpointError::Damaged { .. }), "{error}");
     }
 }
@@ -363,14 +363,14 @@ fn a_forged_state_is_refused() {
 fn refusals_say_what_to_do() {
     let scratch = Scratch::new();
     let path = write_one(scratch.path(), "a", 1);
-    let refusal = |expected| scratch.hide(&read(&path, expected).unwrap_err());
+    let refusal = |expected| scratch.hide(&read::<2>(&path, expected).unwrap_err());
     insta::assert_snapshot!(
         refusal(Some("0")),
         @"the checkpoint in DIR/a belongs to another case or to other input; run without --resume and --from-stage to begin afresh"
     );
     let mut other = meta();
     other.program = "igimp 0.0.7".into();
-    write(scratch.path(), "a", &[], &other, 1).unwrap();
+    write::<2>(scratch.path(), "a", &[], &other, 1).unwrap();
     insta::assert_snapshot!(
         refusal(None).replace(PROGRAM, "igimp VERSION"),
         @"the checkpoint in DIR/a was written by igimp 0.0.7, and this is igimp VERSION; resume with that version, or run without --resume to begin afresh"
@@ -379,12 +379,12 @@ fn refusals_say_what_to_do() {
     let text = fs::read_to_string(&file).unwrap();
     fs::write(
         &file,
-        text.replace("\"format_version\": 3", "\"format_version\": 4"),
+        text.replace("\"format_version\": 4", "\"format_version\": 5"),
     )
     .unwrap();
     insta::assert_snapshot!(
         refusal(None),
-        @"the checkpoint in DIR/a has format version 4; this program reads version 3"
+        @"the checkpoint in DIR/a has format version 5; this program reads version 4"
     );
     fs::write(&file, "{}").unwrap();
     insta::assert_snapshot!(
@@ -396,7 +396,7 @@ fn refusals_say_what_to_do() {
         refusal(None),
         @"DIR/a is not a checkpoint of igimp: it has no meta.json"
     );
-    let error = write(scratch.path(), "../x", &[], &meta(), 1).unwrap_err();
+    let error = write::<2>(scratch.path(), "../x", &[], &meta(), 1).unwrap_err();
     insta::assert_snapshot!(
         error,
         @"`../x` cannot name a checkpoint or a state: only letters a to z, digits, `-` and `_`"

@@ -30,7 +30,7 @@ pub struct Shown {
 
 impl Shown {
     /// The end of stage number `stage` of a case.
-    pub fn end_of_stage(case: &Case, stage: usize) -> Self {
+    pub fn end_of_stage<const D: usize>(case: &Case<D>, stage: usize) -> Self {
         let name = case.stages.get(stage).map_or("", |stage| &stage.name);
         Self {
             name: format!("{}-{}", stage + 1, file_name(name)),
@@ -61,7 +61,7 @@ pub struct Over {
 }
 
 /// Particles, and the laws that they refer to.
-pub type Seen<'a> = (&'a Particles<2>, &'a [SharedLaw]);
+pub type Seen<'a, const D: usize = 2> = (&'a Particles<D>, &'a [SharedLaw]);
 
 /// The picture of a field in a state: the bodies in pieces, coloured by their particles, their edges as
 /// they moved and as they were, and structures `over` them where they stand.
@@ -148,9 +148,9 @@ pub(super) fn edges(canvas: &Canvas<'_>, particles: &Particles<2>) -> Vec<Outlin
 pub(super) fn body_outlines(case: &Case) -> impl Iterator<Item = Outline> {
     case.bodies.iter().map(|body| Outline {
         points: body
-            .polygon
+            .polygon()
             .iter()
-            .chain(body.polygon.first())
+            .chain(body.polygon().first())
             .copied()
             .collect(),
         style: OutlineStyle::Edge,
@@ -159,9 +159,9 @@ pub(super) fn body_outlines(case: &Case) -> impl Iterator<Item = Outline> {
 
 /// How values become colours.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Colours {
-    map: ColourMap,
-    range: Option<(f64, f64)>,
+pub(super) struct Colours {
+    pub(super) map: ColourMap,
+    pub(super) range: Option<(f64, f64)>,
     /// Whether the range leaves out the outermost values at its low and at its high end.
     cut: (bool, bool),
 }
@@ -169,7 +169,7 @@ struct Colours {
 impl Colours {
     /// From zero where a field has no sign, about zero where both signs matter, without the few values
     /// that would pale all others.
-    fn of(field: Field, values: &[f64]) -> Self {
+    pub(super) fn of(field: Field, values: &[f64]) -> Self {
         let mut sorted: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
         sorted.sort_by(f64::total_cmp);
         let whole = Self {
@@ -184,7 +184,13 @@ impl Colours {
         let (inner_low, inner_high) = (at(FEW), at(1.0 - FEW));
         let signed = matches!(
             field,
-            Field::DisplacementX | Field::DisplacementY | Field::TauXy | Field::UExcess
+            Field::DisplacementX
+                | Field::DisplacementY
+                | Field::DisplacementZ
+                | Field::TauXy
+                | Field::TauYz
+                | Field::TauXz
+                | Field::UExcess
         );
         if signed && -low.min(0.0) > 0.1 * high && high.max(0.0) > -0.1 * low {
             let (reach, inner) = (
@@ -233,7 +239,7 @@ impl Colours {
     }
 
     /// What the colour bar says of values beyond it.
-    fn told(&self) -> &'static str {
+    pub(super) fn told(&self) -> &'static str {
         match self.cut {
             (false, false) => "",
             (true, false) => "; bar from 0.5 % of the particles",

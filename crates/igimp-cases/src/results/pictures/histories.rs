@@ -23,10 +23,10 @@ const MOST_MARKS: usize = 12;
 ///
 /// # Errors
 /// [`CaseError::File`] and [`CaseError::Figure`].
-pub fn monitor_pictures(
+pub fn monitor_pictures<const D: usize>(
     folder: &Path,
-    case: &Case,
-    monitor: &Monitor,
+    case: &Case<D>,
+    monitor: &Monitor<D>,
     table: &Table,
 ) -> Result<Vec<FigureNote>, CaseError> {
     let along: Vec<f64> = (1..=table.rows.len()).map(|row| row as f64).collect();
@@ -82,7 +82,7 @@ fn changes(table: &Table) -> Vec<(usize, [usize; 2])> {
 }
 
 /// The rows after which a quantity of this kind begins anew.
-fn breaks(case: &Case, table: &Table, of: Dimension) -> Vec<usize> {
+fn breaks<const D: usize>(case: &Case<D>, table: &Table, of: Dimension) -> Vec<usize> {
     let anew = |&(_, [before, after]): &(usize, [usize; 2])| {
         let stage = |number: usize| case.stages.get(number.checked_sub(1)?);
         let (Some(ended), Some(begun)) = (stage(before), stage(after)) else {
@@ -120,10 +120,10 @@ fn stage_marks(table: &Table) -> Vec<ReferenceLine> {
 ///
 /// # Errors
 /// [`CaseError::File`] and [`CaseError::Figure`].
-pub fn section_pictures(
+pub fn section_pictures<const D: usize>(
     folder: &Path,
     case_title: &str,
-    section: &Section,
+    section: &Section<D>,
     (stage, references): (&str, &[&SectionReference]),
     table: &Table,
 ) -> Result<Vec<FigureNote>, CaseError> {

@@ -9,6 +9,7 @@
 //! | [`section_pictures`] | `section-NAME-KIND` |
 //! | [`mechanism_picture`] | `mechanism-STAGE` |
 //! | [`field_picture`] | `field-STAGE-FIELD` |
+//! | [`InSpace`] | `space-STAGE-FIELD`, `cut-AXIS-STAGE-FIELD` |
 //! | [`convergence_pictures`] | `convergence-STAGE` |
 //! | [`mesh_pictures`] | `mesh-study-NUMBER-RESULT` |
 //!
@@ -24,6 +25,7 @@ mod meshes;
 mod model;
 pub(crate) mod rigid;
 mod safety;
+mod space;
 pub(crate) mod water;
 
 use std::path::Path;
@@ -37,6 +39,7 @@ pub use mechanism::{Failing, Mechanism, mechanism, mechanism_picture};
 pub use meshes::mesh_pictures;
 pub use model::model_picture;
 pub use safety::safety_picture;
+pub use space::InSpace;
 
 use crate::error::CaseError;
 use crate::summary::FigureNote;

@@ -51,7 +51,7 @@ fn plot(case: &Case) -> FieldPlot {
         domains: case
             .bodies
             .iter()
-            .map(|body| body.polygon.clone())
+            .map(|body| body.polygon().to_vec())
             .collect(),
         values: case
             .bodies
@@ -109,7 +109,11 @@ fn plot(case: &Case) -> FieldPlot {
 
 /// The larger side of grid and bodies.
 fn model_size(case: &Case) -> f64 {
-    let corners: Vec<[f64; 2]> = case.bodies.iter().flat_map(|b| b.polygon.clone()).collect();
+    let corners: Vec<[f64; 2]> = case
+        .bodies
+        .iter()
+        .flat_map(|b| b.polygon().to_vec())
+        .collect();
     let (lower, upper) = bounding_box(&corners);
     let (from, to) = (case.grid.lower(), case.grid.upper());
     let side = |axis: usize| upper[axis].max(to[axis]) - lower[axis].min(from[axis]);
@@ -190,12 +194,12 @@ fn add_rigid_bodies(plot: &mut FieldPlot, case: &Case) {
 /// Sides counter-clockwise, so that their symbols stand outside; boxes clockwise, symbols within.
 fn add_supports(plot: &mut FieldPlot, case: &Case) {
     let ([left, bottom], [right, top]) = (case.grid.lower(), case.grid.upper());
-    let sides = &case.boundaries;
+    let sides = &case.boundaries.sides;
     let lines = [
-        (sides.bottom, [left, bottom], [right, bottom]),
-        (sides.right, [right, bottom], [right, top]),
-        (sides.top, [right, top], [left, top]),
-        (sides.left, [left, top], [left, bottom]),
+        (sides[1][0], [left, bottom], [right, bottom]),
+        (sides[0][1], [right, bottom], [right, top]),
+        (sides[1][1], [right, top], [left, top]),
+        (sides[0][0], [left, top], [left, bottom]),
     ];
     for (side, from, to) in lines {
         let style = match side {
@@ -208,7 +212,7 @@ fn add_supports(plot: &mut FieldPlot, case: &Case) {
             style,
         });
     }
-    for held in &sides.boxes {
+    for held in &case.boundaries.boxes {
         let style = match held.fix {
             [true, true] => OutlineStyle::Fixed,
             [false, false] => continue,

@@ -15,7 +15,7 @@ pub(crate) fn tables(
 ) -> Vec<Outline> {
     let own = condition.bodies.iter().filter(|(body, _)| there(*body));
     let own = own.map(|(body, source)| {
-        let (lower, upper) = bounding_box(&case.bodies[*body].polygon);
+        let (lower, upper) = bounding_box(case.bodies[*body].polygon());
         (source, [lower[0].max(ends[0]), upper[0].min(ends[1])])
     });
     let all = std::iter::once((&condition.source, ends)).chain(own);

@@ -52,7 +52,7 @@ const GROUPS: [(&str, &str, &[&str]); 8] = [
         &["monitor", "section"],
     ),
     ("mechanism", "Mechanism of failure", &["mechanism"]),
-    ("fields", "Fields", &["field"]),
+    ("fields", "Fields", &["field", "space", "cut"]),
     ("pictures", "Further pictures", &[""]),
     ("convergence", "Convergence", &["convergence"]),
 ];

@@ -9,7 +9,7 @@ use crate::summary::SetupTable;
 const MOST_POINTS: usize = 12;
 
 /// The conditions of the water.
-pub(super) fn conditions(case: &Case) -> SetupTable {
+pub(super) fn conditions<const D: usize>(case: &Case<D>) -> SetupTable {
     let rows = case.water.iter().enumerate();
     let rows = rows.map(|(index, own)| condition(case, index, own));
     let header = [
@@ -22,7 +22,7 @@ pub(super) fn conditions(case: &Case) -> SetupTable {
     table("Water", &header, rows.collect())
 }
 
-fn condition(case: &Case, index: usize, own: &WaterCondition) -> Vec<String> {
+fn condition<const D: usize>(case: &Case<D>, index: usize, own: &WaterCondition) -> Vec<String> {
     let mut pressure = source(&own.source);
     if own.carried {
         pressure.push_str("; carried along by the soil");
@@ -75,7 +75,7 @@ fn source(own: &PoreSource) -> String {
 }
 
 /// What materials do with water; nothing where there is none, and no soil that makes pore pressure.
-pub(super) fn soils(case: &Case) -> SetupTable {
+pub(super) fn soils<const D: usize>(case: &Case<D>) -> SetupTable {
     let is_undrained = |own: &Material| matches!(own.drainage, Drainage::Undrained { .. });
     let is_told = !case.water.is_empty() || case.materials.iter().any(is_undrained);
     let soils = case.materials.iter().filter(|_| is_told);

@@ -1,21 +1,11 @@
-// Frames: VTK's XML format as igimp writes it. Arrays stand in the text in base64, compressed by zlib in
-// blocks; an array is unpacked when it is first asked for.
+// Frames as the program packs them: JSON with numbers in base64, compressed by zlib; an array is unpacked
+// when it is first asked for.
 
-// Whole numbers of eight bytes, as far as they are exact.
-function ofEightBytes(bytes) {
-  const halves = new Uint32Array(bytes.buffer);
-  const numbers = new Float64Array(halves.length / 2);
-  for (let k = 0; k < numbers.length; k += 1) numbers[k] = halves[2 * k] + 4294967296 * halves[2 * k + 1];
-  return numbers;
-}
-
-// Numbers of the bytes of an array, little-endian as browsers are.
 const READERS = {
-  Float64: (bytes) => new Float64Array(bytes.buffer),
-  Int64: ofEightBytes,
-  UInt64: ofEightBytes,
-  Int32: (bytes) => Float64Array.from(new Int32Array(bytes.buffer)),
-  UInt8: (bytes) => Float64Array.from(bytes),
+  f32: (bytes) => new Float32Array(bytes.buffer),
+  i32: (bytes) => new Int32Array(bytes.buffer),
+  u16: (bytes) => new Uint16Array(bytes.buffer),
+  u8: (bytes) => bytes,
 };
 
 function fromBase64(text) {
@@ -30,116 +20,97 @@ async function inflated(bytes) {
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }
 
-// Number of blocks, their size, size of a smaller last one, compressed size of each; then the blocks.
-async function unpacked(text) {
-  const blocks = ofEightBytes(fromBase64(text.slice(0, 12)).slice(0, 8))[0];
-  const length = 4 * Math.ceil((8 * (3 + blocks)) / 3);
-  const sizes = ofEightBytes(fromBase64(text.slice(0, length))).subarray(3);
-  const data = fromBase64(text.slice(length));
-  let start = 0;
-  const parts = await Promise.all([...sizes].map((size) => {
-    start += size;
-    return inflated(data.subarray(start - size, start));
-  }));
-  const whole = new Uint8Array(parts.reduce((sum, part) => sum + part.length, 0));
-  let at = 0;
-  for (const part of parts) {
-    whole.set(part, at);
-    at += part.length;
+// Numbers from their bytes: all first bytes, all second bytes, and so on.
+async function unpacked(array) {
+  const sorted = await inflated(fromBase64(array.data));
+  const width = { f32: 4, i32: 4, u16: 2, u8: 1 }[array.kind];
+  const count = sorted.length / width;
+  const bytes = new Uint8Array(sorted.length);
+  for (let k = 0; k < width; k += 1) {
+    for (let at = 0; at < count; at += 1) bytes[at * width + k] = sorted[k * count + at];
   }
-  return whole;
+  const stored = READERS[array.kind](bytes);
+  if (array.whole || array.kind === "u8") return stored;
+  const { components, low, step, kind } = array;
+  const numbers = new Float64Array(stored.length);
+  for (let at = 0; at < stored.length; at += 1) {
+    const component = at % components;
+    // The last step of rounded numbers stands for what is none.
+    numbers[at] = kind === "u16" && stored[at] === 65535 ? NaN : low[component] + step[component] * stored[at];
+  }
+  return numbers;
 }
 
 class Frame {
   constructor(text) {
-    const page = new DOMParser().parseFromString(text, "application/xml");
-    this.cells = Number(page.querySelector("Piece").getAttribute("NumberOfCells"));
-    const arrays = (selector) => new Map([...page.querySelectorAll(selector)].map((own) => [own.getAttribute("Name"), own]));
-    this.places = arrays("Points > DataArray, Cells > DataArray");
-    this.data = arrays("CellData > DataArray");
+    Object.assign(this, JSON.parse(text));
     this.known = new Map();
   }
 
   // The numbers of an array, as a promise.
-  numbers(element) {
-    if (!this.known.has(element)) this.known.set(element, Frame.unpack(element));
-    return this.known.get(element);
+  numbers(array) {
+    if (!this.known.has(array)) this.known.set(array, unpacked(array));
+    return this.known.get(array);
   }
 
-  static async unpack(element) {
-    if (element.getAttribute("format") !== "binary") return new Float64Array(0);
-    return READERS[element.getAttribute("type")](await unpacked(element.textContent.trim()));
-  }
-
-  // The four corners of each cell, x and y in turn: eight numbers a cell.
-  async corners() {
-    if (!this.corner) {
-      const points = await this.numbers(this.places.get("Points"));
-      const connectivity = await this.numbers(this.places.get("connectivity"));
-      this.corner = new Float64Array(8 * this.cells);
-      for (let k = 0; k < 4 * this.cells; k += 1) {
-        this.corner[2 * k] = points[3 * connectivity[k]];
-        this.corner[2 * k + 1] = points[3 * connectivity[k] + 1];
-      }
-    }
-    return this.corner;
-  }
-
-  // The ends of each line of a frame of rigid bodies, x and y in turn: four numbers a line, around one body
-  // after another.
-  async lines() {
-    const points = await this.numbers(this.places.get("Points"));
-    const connectivity = await this.numbers(this.places.get("connectivity"));
-    const ends = new Float64Array(4 * this.cells);
-    for (let k = 0; k < 2 * this.cells; k += 1) {
-      ends[2 * k] = points[3 * connectivity[k]];
-      ends[2 * k + 1] = points[3 * connectivity[k] + 1];
-    }
-    return ends;
+  // What is shown of boxes and bodies, by name.
+  async shapes() {
+    const pairs = this.places.map(async (array) => [array.name, await this.numbers(array)]);
+    return Object.fromEntries(await Promise.all(pairs));
   }
 
   // Every field that can be shown: arrays of one number, components, lengths of vectors.
-  fields() {
+  shown() {
     const fields = [];
-    for (const [array, element] of this.data) {
-      const components = Number(element.getAttribute("NumberOfComponents") || 1);
-      const whole = element.getAttribute("type") !== "Float64";
-      const [, name, unit, rest] = /^(.*?)(?: \[(.*?)\](.*))?$/.exec(array);
+    for (const array of this.fields) {
+      const { components, whole } = array;
+      const [, name, unit, rest] = /^(.*?)(?: \[(.*?)\](.*))?$/.exec(array.name);
       const add = (what, component) => fields.push({
-        key: what ? `${array}, ${what}` : array, array, components, component, whole,
+        key: what ? `${array.name}, ${what}` : array.name, array: array.name, component, whole,
         unit: unit === undefined ? "" : unit, title: what ? `${name} ${what}` : name, rest: rest || "",
       });
       if (components === 1) {
         add("", 0);
         continue;
       }
-      if (components === 3) add("length", -1);
+      if (components === 3) add("length", 3);
       for (let k = 0; k < components; k += 1) {
-        const called = element.getAttribute(`ComponentName${k}`) || String(k);
+        const called = array.component_names[k] || String(k);
         // In the plane nothing points out of it but stress and stretch.
-        if (!called.includes("Z") || called === "ZZ") add(called.toLowerCase(), k);
+        if (this.dimension === 3 || !called.includes("Z") || called === "ZZ") add(called.toLowerCase(), k);
       }
     }
     return fields;
   }
 
-  // A number for every cell, in SI units.
+  arrayOf(name) {
+    return this.fields.find((array) => array.name === name);
+  }
+
+  // A number for every box, in SI units.
   async values(field) {
-    const numbers = await this.numbers(this.data.get(field.array));
-    const { components, component } = field;
+    const array = this.arrayOf(field.array);
+    const numbers = await this.numbers(array);
+    const { components } = array;
     if (components === 1) return numbers;
-    const values = new Float64Array(this.cells);
-    for (let cell = 0; cell < this.cells; cell += 1) {
-      const at = cell * components;
-      values[cell] = component < 0 ? Math.hypot(numbers[at], numbers[at + 1], numbers[at + 2]) : numbers[at + component];
+    const values = new Float64Array(this.count);
+    for (let box = 0; box < this.count; box += 1) {
+      const at = box * components;
+      values[box] = field.component === 3 && components === 3 ? Math.hypot(numbers[at], numbers[at + 1], numbers[at + 2]) : numbers[at + field.component];
     }
     return values;
   }
 
-  // The number of a cell's particle.
-  async particle(cell) {
-    const numbers = this.data.get("particle");
-    return numbers ? (await this.numbers(numbers))[cell] : cell;
+  // Least and largest over all particles, and the same without the outermost 1 % on either side.
+  range(field) {
+    const [least, most, low, high] = this.arrayOf(field.array).range[field.component];
+    return { whole: [least, most], inner: [low, high] };
+  }
+
+  // The number of a box's particle.
+  async particle(box) {
+    const numbers = this.arrayOf("particle");
+    return numbers ? (await this.numbers(numbers))[box] : box;
   }
 }
 
@@ -149,15 +120,6 @@ function unitFor(unit, largest) {
   if (unit === "Pa" && (largest >= 500 || largest === 0)) return [1e3, "kPa"];
   if (unit === "m" && largest > 0 && largest < 0.1) return [1e-3, "mm"];
   return [1, unit];
-}
-
-// Least and largest, and the same without the outermost 1 % on either side.
-function rangeOf(values) {
-  const sorted = values.filter(Number.isFinite).sort();
-  if (sorted.length === 0) return { whole: [NaN, NaN], inner: [NaN, NaN] };
-  const last = sorted.length - 1;
-  const at = (share) => sorted[Math.round(share * last)];
-  return { whole: [sorted[0], sorted[last]], inner: [at(0.01), at(0.99)] };
 }
 
 function short(value) {

@@ -2,6 +2,8 @@
 
 // Frames whose arrays are kept unpacked.
 const KEPT = 8;
+// Frames of more particles are not asked for but by the user.
+const LARGE = 200000;
 // Colours of a scale.
 const LEVELS = 128;
 
@@ -10,15 +12,16 @@ function mixed(anchors) {
     const place = (level / (LEVELS - 1)) * (anchors.length - 1);
     const k = Math.min(Math.floor(place), anchors.length - 2);
     const part = [0, 1, 2].map((c) => Math.round(anchors[k][c] + (place - k) * (anchors[k + 1][c] - anchors[k][c])));
-    return `rgb(${part.join(",")})`;
+    return part;
   });
 }
 
 class Viewer {
-  // `wish` may name a frame (from 1), a field and a place to point at; `changed` hears of every frame shown.
+  // `wish` may name a frame (from 1), a field, a place to point at (in space a point of the canvas, as shares of
+  // its sides), a view and a cut; `changed` hears of every frame shown.
   constructor(wish, changed) {
-    this.part = Object.fromEntries(["soil", "field", "map", "state", "state-label", "canvas", "bar", "ticks", "bar-label", "play", "slider", "when", "found", "clamp", "fixed"].map((id) => [id, document.getElementById(id)]));
-    this.soil = new Soil(this.part.canvas);
+    this.part = Object.fromEntries(["soil", "field", "map", "state", "state-label", "space", "view", "cut", "cut-row", "cut-at", "cut-told", "cut-side", "canvas", "surface", "bar", "ticks", "bar-label", "play", "slider", "when", "found", "keys", "clamp", "fixed"].map((id) => [id, document.getElementById(id)]));
+    this.scene = new Scene(this.part.canvas, this.part.surface);
     this.wish = wish;
     this.changed = changed;
     this.frames = [];
@@ -57,33 +60,91 @@ class Viewer {
   }
 
   listen() {
-    const { part, soil } = this;
+    const { part, scene } = this;
     part.slider.addEventListener("input", () => {
       part.state.value = "";
       this.show();
     });
     for (const name of ["field", "state", "map", "clamp", "fixed"]) part[name].addEventListener("change", () => this.show());
     part.play.addEventListener("click", () => (this.playing ? this.stop() : this.play()));
-    document.getElementById("in").addEventListener("click", () => soil.zoom(1.6));
-    document.getElementById("out").addEventListener("click", () => soil.zoom(1 / 1.6));
-    document.getElementById("whole").addEventListener("click", () => soil.whole());
-    const inside = (event) => {
-      const box = part.canvas.getBoundingClientRect();
-      return soil.placeAt(event.clientX - box.left, event.clientY - box.top);
-    };
-    part.canvas.addEventListener("wheel", (event) => {
-      // As on maps: the wheel alone belongs to the page.
-      if (!event.ctrlKey && !event.metaKey) return;
-      event.preventDefault();
-      soil.zoom(1.2 ** -Math.sign(event.deltaY), inside(event));
-    }, { passive: false });
-    part.canvas.addEventListener("pointermove", (event) => {
-      if (event.buttons === 1) soil.move(event.movementX, event.movementY);
-      else this.pointAt(...inside(event));
+    document.getElementById("in").addEventListener("click", () => scene.zoom(1.6));
+    document.getElementById("out").addEventListener("click", () => scene.zoom(1 / 1.6));
+    document.getElementById("whole").addEventListener("click", () => this.look("whole"));
+    part.view.addEventListener("change", () => this.look(part.view.value));
+    part.cut.addEventListener("change", () => this.layCut());
+    part["cut-at"].addEventListener("input", () => this.cutThere());
+    part["cut-side"].addEventListener("click", () => {
+      this.side = -(this.side || 1);
+      this.cutThere();
     });
-    part.canvas.addEventListener("pointerdown", (event) => this.pointAt(...inside(event)));
-    window.addEventListener("resize", () => soil.paint());
-    window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => soil.paint());
+    new Pointing(scene, (x, y) => this.pointAt(scene.boxAt(x, y)), (view) => this.look(view));
+    window.addEventListener("resize", () => scene.paint());
+    window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => scene.paint());
+  }
+
+  // Takes up a view by its name; without one the body was turned by hand.
+  look(name) {
+    if (name === "whole") this.scene.whole();
+    else if (name) this.scene.look(name);
+    this.part.view.value = name === "whole" ? "isometric" : name;
+  }
+
+  // What depends on the first frame: its dimension and its size.
+  furnish(dimension) {
+    const { part, wish } = this;
+    // A scale for all frames asks for all of them.
+    if (this.shown.particles > LARGE) part.fixed.checked = false;
+    part.space.hidden = dimension === 2;
+    part.canvas.style.touchAction = dimension === 2 ? "pan-y" : "none";
+    part.keys.textContent = dimension === 2
+      ? "Buttons, or the wheel on the drawing once it was clicked (or with Ctrl), zoom; drag to move. Keys: arrows, + − 0."
+      : "Drag to turn, with Shift or the right button to move; the wheel zooms once the drawing was clicked (or with Ctrl), two fingers do both. Keys: arrows turn, Shift and arrows move, + − 0, and 1 to 7 for the views.";
+    if (dimension === 3 && wish.view) {
+      this.look(wish.view);
+      wish.view = "";
+    }
+    if (dimension === 3 && wish.cut) {
+      const [axis, share, side] = wish.cut;
+      part.cut.value = String(axis);
+      this.side = side || 1;
+      this.layCut(share);
+      wish.cut = null;
+    }
+  }
+
+  // Lets the slider of the cut run over the body: anywhere, or from one place to the next where the page has
+  // the particles of some planes alone.
+  layCut(share = 0.5) {
+    const { part, scene } = this;
+    const axis = part.cut.value === "" ? -1 : Number(part.cut.value);
+    part["cut-row"].hidden = axis < 0;
+    if (axis >= 0) {
+      const { planes } = this.shown;
+      const slider = part["cut-at"];
+      const { low, high } = scene.extent;
+      const places = planes ? planes[axis] : null;
+      Object.assign(slider, places ? { min: 0, max: places.length - 1, step: 1 } : { min: low[axis], max: high[axis], step: (high[axis] - low[axis]) / 500 || 1 });
+      slider.value = Number(slider.min) + share * (slider.max - slider.min);
+    }
+    this.cutThere();
+  }
+
+  cutThere() {
+    const { part, scene } = this;
+    if (part.cut.value === "") scene.cut = null;
+    else {
+      const axis = Number(part.cut.value);
+      const { planes } = this.shown;
+      const at = planes ? planes[axis][Math.min(Number(part["cut-at"].value), planes[axis].length - 1)] : Number(part["cut-at"].value);
+      // What is taken away is the side of the eye, unless the other one is asked for.
+      const side = (this.side || 1) * (scene.layout().eye[axis] < 0 ? -1 : 1);
+      if (!scene.cut || scene.cut.axis !== axis || scene.cut.own !== this.side) this.facing = side;
+      const normal = [0, 0, 0];
+      normal[axis] = this.facing;
+      scene.cut = { axis, own: this.side, normal, offset: at * this.facing };
+      part["cut-told"].textContent = `${"xyz"[axis]} = ${short(at)} m`;
+    }
+    scene.paint();
   }
 
   play() {
@@ -156,13 +217,19 @@ class Viewer {
     if (!entry) return;
     try {
       const frame = await this.frame(entry);
-      const field = this.choose(frame.fields());
-      const [corner, values] = [await frame.corners(), await frame.values(field)];
-      const lines = frame.bodies ? await frame.bodies.lines() : [];
-      this.ranges.set(this.named(entry, field), rangeOf(values));
+      const field = this.choose(frame.shown());
+      const [shapes, values] = [await frame.shapes(), await frame.values(field)];
+      const bodies = { lines: [], triangles: [] };
+      if (frame.bodies && frame.bodies.count > 0) bodies[frame.bodies.kind] = (await frame.bodies.shapes()).corners;
+      this.ranges.set(this.named(entry, field), frame.range(field));
       if (turn !== this.turn) return;
+      const isOther = this.shown !== frame;
       Object.assign(this, { shown: frame, values, field, shownEntry: entry });
-      Object.assign(this.soil, { corner, lines });
+      if (isOther) {
+        const isFirst = this.scene.dimension === 0;
+        this.scene.show(frame.dimension, shapes, bodies);
+        if (isFirst) this.furnish(frame.dimension);
+      }
       this.paint();
       await this.describe();
       this.changed(entry, field, Number(this.part.slider.value));
@@ -181,7 +248,7 @@ class Viewer {
     const missing = this.frames.filter((entry) => !this.ranges.has(this.named(entry, field)));
     for (const entry of missing) {
       const frame = await this.frame(entry);
-      this.ranges.set(this.named(entry, field), rangeOf(await frame.values(field)));
+      this.ranges.set(this.named(entry, field), frame.range(field));
       if (turn !== this.turn) return;
     }
     if (missing.length > 0) this.paint();
@@ -206,8 +273,9 @@ class Viewer {
     if (map === "diverging") [low, high] = [-Math.max(Math.abs(low), Math.abs(high)), Math.max(Math.abs(low), Math.abs(high))];
     const colours = mixed(MAPS[map]);
     this.unit = unitFor(field.unit, Math.max(Math.abs(low), Math.abs(high)));
-    this.soil.show(this.soil.corner, this.values, [low, high], colours);
-    part.bar.style.background = `linear-gradient(to right, ${colours.filter((_, k) => k % 8 === 0 || k === LEVELS - 1).join(", ")})`;
+    this.scene.colour(this.values, [low, high], colours);
+    const stops = colours.filter((_, k) => k % 8 === 0 || k === LEVELS - 1).map((colour) => `rgb(${colour})`);
+    part.bar.style.background = `linear-gradient(to right, ${stops.join(", ")})`;
     const count = field.whole ? Math.min(high - low, 8) : 4;
     const shares = high > low ? Array.from({ length: count + 1 }, (_, k) => k / count) : [0.5];
     const tick = (share) => {
@@ -221,29 +289,38 @@ class Viewer {
     part.slider.setAttribute("aria-valuetext", this.shownEntry.label);
   }
 
-  pointAt(x, y) {
-    this.pointed = this.soil.cellAt(x, y);
+  pointAt(box) {
+    if (!this.shown) return;
+    this.pointed = box;
     this.describe();
+  }
+
+  // The box at the place that was wished for.
+  wished([x, y]) {
+    const { scene } = this;
+    const place = scene.layout();
+    return scene.dimension === 2 ? scene.holding([x, y]) : scene.boxAt(x * place.width, y * place.height);
   }
 
   // Tells of the particle that is pointed at; it stays the same from frame to frame.
   async describe() {
     const { found } = this.part;
     if (this.wish.hover && this.shown) {
-      this.pointed = this.soil.cellAt(...this.wish.hover);
+      this.pointed = this.wished(this.wish.hover);
       this.wish.hover = null;
     }
     const cell = this.pointed;
-    this.soil.marked = cell;
-    this.soil.paint();
+    this.scene.marked = cell;
+    this.scene.paint();
     if (cell < 0 || cell >= this.values.length) return;
     const number = await this.shown.particle(cell);
     if (cell !== this.pointed) return;
-    const [x, y] = this.soil.centre(cell);
+    const [x, y, z] = this.scene.centre(cell);
+    const place = this.scene.dimension === 2 ? `(${short(x)}, ${short(y)})` : `(${short(x)}, ${short(y)}, ${short(z)})`;
     const value = this.values[cell];
     const unit = ["", "-"].includes(this.unit[1]) ? "" : ` ${this.unit[1]}`;
     const read = short(this.field.whole ? value : value / this.unit[0]);
-    found.textContent = `Particle ${number} at (${short(x)}, ${short(y)}) m: ${this.field.title} ${read}${unit}`;
+    found.textContent = `Particle ${number} at ${place} m: ${this.field.title} ${read}${unit}`;
     Object.assign(found.dataset, { particle: number, x, y, value });
   }
 }

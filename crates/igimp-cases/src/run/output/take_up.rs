@@ -20,13 +20,13 @@ use crate::run::records::Records;
 use crate::run::state::{Controls, State};
 use crate::run::{saved_body, saved_reinforcement};
 
-impl Output {
+impl<const D: usize> Output<D> {
     /// A results folder taken up at its newest checkpoint; without one the run begins afresh.
     pub(crate) fn resume(
         target: &Target,
-        case: &Case,
+        case: &Case<D>,
         records: &mut Records,
-    ) -> Result<(Self, Option<Left>), CaseError> {
+    ) -> Result<(Self, Option<Left<D>>), CaseError> {
         let folder = match Folder::open(&target.folder) {
             Ok(folder) => folder,
             Err(CaseError::NoResults { .. }) => {
@@ -52,10 +52,10 @@ impl Output {
     /// A results folder taken up at the beginning of a stage.
     pub(crate) fn from_stage(
         target: &Target,
-        case: &Case,
+        case: &Case<D>,
         records: &mut Records,
         stage: usize,
-    ) -> Result<(Self, Option<Left>), CaseError> {
+    ) -> Result<(Self, Option<Left<D>>), CaseError> {
         let Some(before) = stage.checked_sub(1) else {
             return Ok((Self::create(target, case, records)?, None));
         };
@@ -80,10 +80,10 @@ impl Output {
     fn take_up(
         folder: Folder,
         claim: Claim,
-        case: &Case,
+        case: &Case<D>,
         records: &mut Records,
-        found: &checkpoint::Checkpoint,
-    ) -> Result<(Self, Option<Left>), CaseError> {
+        found: &checkpoint::Checkpoint<D>,
+    ) -> Result<(Self, Option<Left<D>>), CaseError> {
         let path = folder.checkpoint();
         let notes: Notes = notes_of(&path, &found.meta)?;
         let damaged = |file: String, why: String| CheckpointError::Damaged {
@@ -92,7 +92,7 @@ impl Output {
             why,
         };
         let laws = records.law_count();
-        let body = |name: &str, controls: &Controls| -> Result<Body<2>, CaseError> {
+        let body = |name: &str, controls: &Controls| -> Result<Body<D>, CaseError> {
             let states = &mut found.states.iter();
             let own = states.find(|(state, _)| state == name);
             let missing = || damaged(name.to_owned(), "the state is missing".to_owned());
@@ -177,10 +177,10 @@ impl Output {
     /// The saved ends of the first `stages` stages.
     pub(crate) fn ends(
         &self,
-        case: &Case,
+        case: &Case<D>,
         records: &Records,
         stages: usize,
-    ) -> Result<HashMap<usize, State>, CaseError> {
+    ) -> Result<HashMap<usize, State<D>>, CaseError> {
         let mut ends = HashMap::new();
         for number in 0..stages {
             let wanted = case.stages[stages.min(case.stages.len() - 1)..]
@@ -193,7 +193,7 @@ impl Output {
             else {
                 continue;
             };
-            let found = checkpoint::read(&path, None)?;
+            let found = checkpoint::read::<D>(&path, None)?;
             let notes = notes_of(&path, &found.meta)?;
             if let Some((name, mut body)) = found.states.into_iter().next() {
                 if let Some((array, why)) = unfit(case, records, &body) {
@@ -223,7 +223,11 @@ impl Output {
 
 /// The array of a body that names a law, a particle or a load that the case does not have, and what it
 /// names.
-fn unfit(case: &Case, records: &Records, body: &Body<2>) -> Option<(&'static str, String)> {
+fn unfit<const D: usize>(
+    case: &Case<D>,
+    records: &Records,
+    body: &Body<D>,
+) -> Option<(&'static str, String)> {
     let (laws, seeded, loads) = (records.law_count(), records.seeded(), case.loads.len());
     let law = &body.particles.law;
     if let Some(particle) = law.iter().position(|&law| law >= laws) {

@@ -9,7 +9,11 @@ use crate::run::state::State;
 /// The displacement γH²/E at which a body of moving geometry counts as failed when the case states none
 /// \[m\] (theory, eq. 32a), with means over the volume: the mean unit weight and the mean of 1/E. None on
 /// a given geometry, which needs none, and for bodies without weight.
-pub(super) fn default_limit(model: &Model<'_>, stage: &Stage, state: &State) -> Option<f64> {
+pub(super) fn default_limit<const D: usize>(
+    model: &Model<'_, D>,
+    stage: &Stage,
+    state: &State<D>,
+) -> Option<f64> {
     if stage.geometry == Geometry::Given {
         return None;
     }
@@ -24,7 +28,7 @@ pub(super) fn default_limit(model: &Model<'_>, stage: &Stage, state: &State) -> 
 }
 
 /// Height of the bodies \[m\].
-pub(super) fn height(state: &State) -> f64 {
+pub(super) fn height<const D: usize>(state: &State<D>) -> f64 {
     let particles = &state.body.particles;
     let levels = || {
         let edges = particles.x.iter().zip(&particles.half_length);

@@ -52,7 +52,7 @@ pub(super) fn remarks(safety: &SafetySummary, reduction: &StrengthReduction) -> 
 
 /// The share of the mass that moves by more than a tenth of the largest displacement \[-\]; of the
 /// volume where nothing has a weight.
-pub(super) fn moving_mass(state: &State) -> f64 {
+pub(super) fn moving_mass<const D: usize>(state: &State<D>) -> f64 {
     let particles = &state.body.particles;
     let limit = MOVING * largest_displacement(particles);
     let weighs = particles.mass.iter().any(|&mass| mass > 0.0);

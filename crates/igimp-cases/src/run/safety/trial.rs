@@ -11,7 +11,7 @@ use crate::run::records::Moment;
 use crate::run::session::Session;
 use crate::run::state::{Controls, State};
 
-impl Trials<'_> {
+impl<const D: usize> Trials<'_, D> {
     /// What acts at the end of a trial: what was found with strength reduced, and gravity in full
     /// where none acted yet.
     pub(super) fn end(&self, srf: f64) -> Controls {
@@ -29,7 +29,12 @@ impl Trials<'_> {
     /// Steps of a trial: by gravity those of the stage; of a reduction, one on the way to the lower end of
     /// the bracket, where equilibrium is expected, and beyond it in strides of which the stage has so many
     /// from full strength to the upper end. A reduction is cut until its step is no wider than the tolerance, and once more.
-    pub(super) fn settings(&self, model: &Model<'_>, from: &Controls, srf: f64) -> MarchSettings {
+    pub(super) fn settings(
+        &self,
+        model: &Model<'_, D>,
+        from: &Controls,
+        srf: f64,
+    ) -> MarchSettings {
         let [low, high] = self.reduction.bracket;
         if self.reduction.path == ReductionPath::Gravity {
             return model.march_settings(self.stage.steps);
@@ -48,13 +53,13 @@ impl Trials<'_> {
         settings
     }
 
-    pub(super) fn exceeded(&self, session: &Session<'_>) -> String {
+    pub(super) fn exceeded(&self, session: &Session<'_, D>) -> String {
         let limit = self.limit.unwrap_or(f64::INFINITY);
         let whose = session.whose_displacement(self.reduction.monitor);
         format!("{whose} exceeds {} m", short(limit))
     }
 
-    pub(super) fn no_equilibrium(&self, state: &State, cause: &StepError) -> String {
+    pub(super) fn no_equilibrium(&self, state: &State<D>, cause: &StepError) -> String {
         let failure = &cause.failure;
         match self.reduction.path {
             ReductionPath::Gravity => {
@@ -71,8 +76,8 @@ impl Trials<'_> {
     /// Adds the row of a listed factor to the curves.
     pub(super) fn record(
         &self,
-        session: &mut Session<'_>,
-        state: &State,
+        session: &mut Session<'_, D>,
+        state: &State<D>,
         plastic_share: f64,
     ) -> Result<(), CaseError> {
         session.record(&Moment {

@@ -48,11 +48,11 @@ function stageName(k) {
 // The way to load the rigid bodies of a frame, where there are some.
 function bodiesOf(name) {
   const own = name.includes("particles_") ? name.replace("particles_", "rigid_") : name.replace(".vtu", "-rigid.vtu");
-  return index.files[own] ? () => fetched(own) : null;
+  return index.files[own] ? () => fetched(`packed/${own}`) : null;
 }
 
 function entryOf(name, label, more) {
-  return { name, bodies: bodiesOf(name), label, key: `${name} ${index.files[name]}`, load: () => fetched(name), ...more };
+  return { name, bodies: bodiesOf(name), label, key: `${name} ${index.files[name]}`, load: () => fetched(`packed/${name}`), ...more };
 }
 
 async function framesOf() {
@@ -128,11 +128,18 @@ async function drawTables() {
   pointCharts();
 }
 
+// Numbers behind the # of the address.
+function numbersOf(name) {
+  return asked.has(name) ? asked.get(name).split(",").map(Number) : null;
+}
+
 const viewer = new Viewer(
   {
     frame: Number(asked.get("frame")),
     field: asked.get("field"),
-    hover: asked.has("hover") ? asked.get("hover").split(",").map(Number) : null,
+    hover: numbersOf("hover"),
+    view: asked.get("view"),
+    cut: numbersOf("cut"),
   },
   (entry, field, frame) => {
     current = entry;

@@ -1,0 +1,437 @@
+//! The tangents of particles in space, summed over a patch of nodes before they go into the matrix.
+//!
+//! In space a particle has some fifteen nodes, and so two thousand entries, of which its neighbours share
+//! most. Particles that begin at the same node are therefore summed first. Sorted by the gradients of
+//! the column, the tangent (theory, eqs. 16 to 18; [`linearised`](crate::linearised) has the symbols) is
+//!
+//! ```math
+//! K_{(ia)(jc)} = \sum_d Y^{d}_{iac}\,g_{jd} + z_{ia}\,d_{jc} - V p\,\bar g_{ic}\,\bar g_{ja},\quad
+//! Y^{d}_{iac} = V\,\{g_{ib} (A_{abcd} + (p\,\delta_{ad} - \tau_{ad})\,\delta_{bc}) + d_{ia} A_{ppcd}\},
+//! ```
+//!
+//! with factors Y, z and V p ḡ that are computed once for each particle and serve all columns. They are
+//! kept as vectors over the nodes i. Of a symmetric tangent the rows from the node of the column on are
+//! summed; the others are [their mirror image](crate::mirror).
+
+use std::ops::Range;
+
+use igimp_shape::{Grid, Support};
+use pulp::{Arch, NullaryFnOnce};
+
+use crate::blocks::BlockTable;
+use crate::linearised::{Linearised, Moduli};
+use crate::matrix::Pattern;
+use crate::scatter::Rows;
+
+/// Nodes that are worked on together.
+const LANES: usize = 4;
+
+/// How far from their first node particles that share a patch may reach: 4³ nodes fit into a mask.
+const FURTHEST: usize = 3;
+
+/// Numbers of as many nodes.
+type Lane = [f64; LANES];
+
+/// The tangents of some particles that begin at the same node.
+#[derive(Debug, Default)]
+pub(crate) struct Patch<const D: usize> {
+    /// The nodes of all particles, ascending.
+    nodes: Vec<usize>,
+    /// The nodes that particles may have who share the patch, ascending.
+    allowed: Vec<usize>,
+    /// The unknown rows of the nodes.
+    rows: Rows,
+    /// Where the nodes of the particle at hand are among `nodes`.
+    places: Vec<usize>,
+    /// By lane: gradients g and ḡ of the particle at hand, zero at nodes that it does not touch.
+    gradients: Vec<[[Lane; D]; 2]>,
+    /// By lane: what the particle at hand contributes.
+    factors: Vec<Factors<D>>,
+    /// By column node and lane: the tangent by c and a.
+    sums: Vec<[[Lane; D]; D]>,
+    /// Whether rows before the node of their column are left out.
+    is_half: bool,
+}
+
+/// Factors of rows.
+#[derive(Clone, Copy, Debug)]
+struct Factors<const D: usize> {
+    /// Y by c, a and d.
+    y: [[[Lane; D]; D]; D],
+    /// A third of z, by a.
+    z: [Lane; D],
+    /// −V p ḡ, by c.
+    w: [Lane; D],
+}
+
+impl<const D: usize> Patch<D> {
+    /// Begins a patch with the supports of particles in their order; how many of them it takes: those that begin
+    /// at the same node and reach no further on from it than `near`, or the first alone.
+    pub(crate) fn begin<'s>(
+        &mut self,
+        grid: &Grid<D>,
+        near: usize,
+        mut supports: impl Iterator<Item = &'s [Support<D>]>,
+        is_half: bool,
+    ) -> usize {
+        let Some(first) = supports.next() else {
+            return 0;
+        };
+        let mut count = 1;
+        self.nodes.clear();
+        self.allow(grid, first[0].node, near.min(FURTHEST));
+        if let Some(mut mask) = self.mask(first) {
+            for own in supports {
+                if own[0].node != first[0].node {
+                    break;
+                }
+                let Some(own) = self.mask(own) else { break };
+                mask |= own;
+                count += 1;
+            }
+            let allowed = self.allowed.iter().enumerate();
+            let taken = allowed.filter(|&(k, _)| mask & (1 << k) != 0);
+            self.nodes.extend(taken.map(|(_, node)| node));
+        } else {
+            self.nodes.extend(first.iter().map(|support| support.node));
+        }
+        let lanes = self.lanes();
+        self.gradients.resize(lanes, [[[0.0; LANES]; D]; 2]);
+        let nothing = Factors {
+            y: [[[[0.0; LANES]; D]; D]; D],
+            z: [[0.0; LANES]; D],
+            w: [[0.0; LANES]; D],
+        };
+        self.factors.resize(lanes, nothing);
+        self.sums
+            .resize(self.nodes.len() * lanes, [[[0.0; LANES]; D]; D]);
+        for (j, sums) in self.sums.chunks_exact_mut(lanes).enumerate() {
+            let from = if is_half { j / LANES } else { 0 };
+            let sums = sums[from..].as_flattened_mut().as_flattened_mut();
+            sums.as_flattened_mut().fill(0.0);
+        }
+        self.is_half = is_half;
+        count
+    }
+
+    /// How many times `LANES` nodes there are.
+    #[inline]
+    fn lanes(&self) -> usize {
+        self.nodes.len().div_ceil(LANES)
+    }
+
+    /// Allows the nodes that are not before a corner along any axis, and no further than `near`.
+    fn allow(&mut self, grid: &Grid<D>, corner: usize, near: usize) {
+        self.allowed.clear();
+        self.allowed.push(corner);
+        let place = grid.node_place(corner);
+        let mut stride = 1;
+        for axis in 0..D {
+            let nodes = grid.axes[axis].node_count();
+            let known = self.allowed.len();
+            for step in 1..=near.min(nodes - 1 - place[axis]) {
+                for k in 0..known {
+                    self.allowed.push(self.allowed[k] + step * stride);
+                }
+            }
+            stride *= nodes;
+        }
+    }
+
+    /// The nodes of a particle among those allowed, one bit each; `None` if there are others.
+    #[inline]
+    fn mask(&self, own: &[Support<D>]) -> Option<u64> {
+        let (mut mask, mut k) = (0, 0);
+        for support in own {
+            while *self.allowed.get(k)? != support.node {
+                k += 1;
+            }
+            mask |= 1 << k;
+        }
+        Some(mask)
+    }
+
+    /// Adds the tangent of one of the particles, whose gradients were pushed.
+    #[inline]
+    pub(crate) fn add(
+        &mut self,
+        supports: &[Support<D>],
+        linearised: &Linearised<D>,
+        moduli: &Moduli<D>,
+    ) {
+        self.places.clear();
+        let mut place = 0;
+        for support in supports {
+            while self.nodes[place] != support.node {
+                place += 1;
+            }
+            self.places.push(place);
+        }
+        Arch::new().dispatch(Add {
+            patch: self,
+            linearised,
+            moduli,
+        });
+    }
+
+    /// Adds the sums to the slice of values of the matrix that begins at `start`.
+    pub(crate) fn scatter(
+        &mut self,
+        (table, pattern): (&BlockTable<D>, &Pattern),
+        (start, slice): (usize, &mut [f64]),
+    ) {
+        let lanes = self.lanes();
+        self.rows.set(self.nodes.iter().copied(), table);
+        for (j, (&node, sums)) in self.nodes.iter().zip(self.sums.chunks(lanes)).enumerate() {
+            let column = &table.nodes[node];
+            if column.len == 0 {
+                continue;
+            }
+            let stored = pattern.values_of(column.block as usize);
+            let values = &mut slice[stored.start - start..stored.end - start];
+            let height = values.len() / usize::from(column.len);
+            let first = if self.is_half { j * D } else { 0 };
+            let add = |rows: Range<usize>, offset: usize| {
+                let is_full = rows.start % D == 0 && rows.len() % D == 0;
+                if is_full && usize::from(column.len) == D {
+                    for (k, i) in (rows.start / D..rows.end / D).enumerate() {
+                        let (sums, lane) = (&sums[i / LANES], i % LANES);
+                        for c in 0..D {
+                            let values = &mut values[c * height + offset + k * D..][..D];
+                            for a in 0..D {
+                                values[a] += sums[c][a][lane];
+                            }
+                        }
+                    }
+                } else {
+                    for (rank, c) in column.components().enumerate() {
+                        let values = &mut values[rank * height + offset..][..rows.len()];
+                        for (value, row) in values.iter_mut().zip(rows.clone()) {
+                            let i = row / D;
+                            *value += sums[i / LANES][c][row % D][i % LANES];
+                        }
+                    }
+                }
+            };
+            let nodes = (table, &self.nodes[..]);
+            self.rows.visit_coupled::<D>(nodes, node, first, add);
+        }
+    }
+}
+
+/// A particle on its way into a patch, with wider instructions where the processor has them: sums and their
+/// order are the same.
+struct Add<'a, const D: usize> {
+    patch: &'a mut Patch<D>,
+    linearised: &'a Linearised<D>,
+    moduli: &'a Moduli<D>,
+}
+
+impl<const D: usize> NullaryFnOnce for Add<'_, D> {
+    type Output = ();
+
+    #[allow(
+        clippy::inline_always,
+        reason = "compiled for the instructions of the caller"
+    )]
+    #[inline(always)]
+    fn call(self) {
+        let Patch {
+            nodes,
+            places,
+            gradients,
+            factors,
+            sums,
+            is_half,
+            ..
+        } = self.patch;
+        let (Some(first), Some(last)) = (places.first(), places.last()) else {
+            return;
+        };
+        let touched = first / LANES..last / LANES + 1;
+        let zeroed = gradients[touched.clone()].as_flattened_mut();
+        zeroed.as_flattened_mut().as_flattened_mut().fill(0.0);
+        let own = std::iter::zip(self.linearised.g(), self.linearised.g_bar());
+        for (&place, (g, g_bar)) in std::iter::zip(&*places, own.clone()) {
+            let [to, to_bar] = &mut gradients[place / LANES];
+            for a in 0..D {
+                to[a][place % LANES] = g[a];
+                to_bar[a][place % LANES] = g_bar[a];
+            }
+        }
+        for k in touched.clone() {
+            set(&mut factors[k], &gradients[k], self.moduli);
+        }
+        let lanes = nodes.len().div_ceil(LANES);
+        for (&place, (&g, &g_bar)) in std::iter::zip(&*places, own) {
+            let d_3: [f64; D] = std::array::from_fn(|c| g_bar[c] - g[c]);
+            let from = if *is_half {
+                place / LANES
+            } else {
+                touched.start
+            };
+            let sums = &mut sums[place * lanes..][from..touched.end];
+            for (sums, factors) in sums.iter_mut().zip(&factors[from..touched.end]) {
+                for c in 0..D {
+                    for a in 0..D {
+                        let mut sum = sums[c][a];
+                        for d in 0..D {
+                            add(&mut sum, &factors.y[c][a][d], g[d]);
+                        }
+                        add(&mut sum, &factors.z[a], d_3[c]);
+                        add(&mut sum, &factors.w[c], g_bar[a]);
+                        sums[c][a] = sum;
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Adds `factor` times `term`.
+#[allow(
+    clippy::inline_always,
+    reason = "compiled for the instructions of the caller"
+)]
+#[inline(always)]
+fn add(sum: &mut Lane, term: &Lane, factor: f64) {
+    for lane in 0..LANES {
+        sum[lane] += term[lane] * factor;
+    }
+}
+
+/// The factors of the rows of a lane.
+#[allow(
+    clippy::inline_always,
+    reason = "compiled for the instructions of the caller"
+)]
+#[inline(always)]
+fn set<const D: usize>(factors: &mut Factors<D>, [g, g_bar]: &[[Lane; D]; 2], moduli: &Moduli<D>) {
+    for a in 0..D {
+        for lane in 0..LANES {
+            factors.w[a][lane] = -moduli.vp * g_bar[a][lane];
+        }
+        let mut d_3 = g_bar[a];
+        for lane in 0..LANES {
+            d_3[lane] -= g[a][lane];
+        }
+        let mut z = [0.0; LANES];
+        add(&mut z, &d_3, moduli.trace);
+        for b in 0..D {
+            add(&mut z, &g[b], moduli.right[b][a]);
+        }
+        factors.z[a] = z;
+        for c in 0..D {
+            for d in 0..D {
+                let mut y = [0.0; LANES];
+                add(&mut y, &d_3, moduli.left[c][d]);
+                for b in 0..D {
+                    add(&mut y, &g[b], moduli.modulus[c][d][b][a]);
+                }
+                factors.y[c][a][d] = y;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use igimp_material::{Elasticity, HenckyElastic, MohrCoulomb, TangentKind};
+    use igimp_shape::Axis;
+
+    use crate::{
+        Constraints, Method, ParticleSeed, ParticleTrial, Particles, SharedLaw, Stencils,
+        StepConditions, StepLoads, System,
+    };
+
+    use super::*;
+
+    /// A grid with a large cell at its corner, whose particle is wide, and two particles a direction in each of
+    /// the other cells off its walls, off their places; the topmost make small cuts.
+    fn body() -> (Grid<3>, Particles<3>) {
+        let nodes = std::iter::once(0.0).chain((0..6).map(|k| 5.0 + f64::from(k)));
+        let axis = Axis::from_nodes(nodes.collect()).unwrap();
+        let grid = Grid::<3>::new([axis.clone(), axis.clone(), axis]);
+        let seed = |x: [f64; 3], half_length: f64| ParticleSeed {
+            x,
+            half_length: [half_length; 3],
+            volume: (2.0 * half_length).powi(3),
+            density: 1.0,
+            law: 0,
+        };
+        let mut seeds = vec![seed([4.5; 3], 2.0)];
+        for k in 0..512_usize {
+            let place = [k % 8, k / 8 % 8, k / 64];
+            let x = std::array::from_fn(|axis| {
+                let off = (k * (axis + 3) % 7) as f64 / 7.0 - 0.5;
+                5.28 + 0.5 * place[axis] as f64 + 0.2 * off
+            });
+            seeds.push(seed(x, 0.25));
+        }
+        (grid, Particles::new(&seeds).unwrap())
+    }
+
+    /// The sums over patches are those over particles, and symmetric to the last bit where the law is.
+    fn compare(law: SharedLaw) {
+        let (grid, body) = body();
+        let mut constraints = Constraints::free(&grid);
+        constraints.fix_wall(&grid, 0, false, 0).unwrap();
+        constraints.fix_wall(&grid, 1, true, 1).unwrap();
+        constraints.fix_wall(&grid, 1, true, 2).unwrap();
+        let is_symmetric = law.has_symmetric_tangent();
+        let loads = StepLoads::gravity([0.0; 3]);
+        let conditions = StepConditions::new(grid, constraints, loads, vec![law]).unwrap();
+        let method = Method::igimp_bbar();
+        let stencils = Stencils::build(&body, &method, &conditions).unwrap();
+        assert!(!stencils.masters().is_empty(), "some small cuts are tied");
+        let system = System::new(&body, &stencils, &conditions, &method).unwrap();
+        let u: Vec<[f64; 3]> = (0..system.node_count())
+            .map(|node| std::array::from_fn(|axis| 1e-3 * ((node * (axis + 5)) % 11) as f64))
+            .collect();
+        let kind = TangentKind::Consistent;
+        let (_, matrix) = system.linearise(&u, kind).unwrap();
+        let mut expected = vec![0.0; matrix.values.len()];
+        let mut linearised = Linearised::default();
+        let mut trial = ParticleTrial::at_rest();
+        for particle in 0..body.len() {
+            let supports = stencils.of(particle);
+            let own = system.evaluate_particle(particle, &u, kind, &mut trial);
+            let own = own.unwrap();
+            linearised.push(supports, &own);
+            let volume = system.reference_volume(particle);
+            linearised.linearise(&Moduli::of(&own, volume, method.kinematics));
+            for (j, column) in supports.iter().enumerate() {
+                let columns = linearised.columns(j);
+                for (component, (c, _)) in system.unknowns().of(column.node).enumerate() {
+                    for (i, row) in supports.iter().enumerate() {
+                        for (rank, (a, _)) in system.unknowns().of(row.node).enumerate() {
+                            let (pattern, nodes) = (system.pattern(), [column.node, row.node]);
+                            let place = system.table.value(pattern, nodes[0], component, nodes[1]);
+                            expected[place + rank] += columns[c][i * 3 + a];
+                        }
+                    }
+                }
+            }
+        }
+        let size = expected.iter().fold(0.0_f64, |size, k| size.max(k.abs()));
+        for (found, expected) in matrix.values.iter().zip(&expected) {
+            assert!(
+                (found - expected).abs() < 1e-14 * size,
+                "{found} {expected}"
+            );
+        }
+        let (dense, transposed) = (matrix.to_csc(), matrix.to_csc().transpose());
+        assert_eq!(dense == transposed, is_symmetric);
+    }
+
+    #[test]
+    fn patches_sum_what_particles_contribute() {
+        let elasticity = Elasticity::new(1e3, 0.3).unwrap();
+        compare(Arc::new(HenckyElastic::new(elasticity)));
+        compare(Arc::new(
+            MohrCoulomb::new(elasticity, 0.1, 0.5, 0.0).unwrap(),
+        ));
+    }
+}

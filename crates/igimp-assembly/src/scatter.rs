@@ -1,0 +1,189 @@
+//! From the tangent of one particle into the matrix: its unknown rows as runs that lie one after the
+//! other in every column, and its columns one by one.
+
+use std::ops::Range;
+
+use igimp_shape::Support;
+
+use crate::blocks::BlockTable;
+use crate::linearised::Linearised;
+use crate::matrix::Pattern;
+
+/// The unknown rows of one particle.
+#[derive(Debug, Default)]
+pub(crate) struct Rows {
+    runs: Vec<Run>,
+}
+
+/// Rows that follow one another in a particle, and whose values do so in every column of the matrix.
+#[derive(Clone, Copy, Debug)]
+struct Run {
+    /// First row.
+    first: u32,
+    len: u32,
+    /// Code and block of the node of the first row, and how many unknowns of the node stand before it.
+    code: u32,
+    block: u32,
+    rank: u32,
+    /// The last node, among those listed, and how many rows of the run stand before its own.
+    last: u32,
+    before_last: u32,
+}
+
+impl Rows {
+    /// Lists the unknown rows of some nodes.
+    #[inline]
+    pub(crate) fn set<const D: usize>(
+        &mut self,
+        nodes: impl Iterator<Item = usize>,
+        table: &BlockTable<D>,
+    ) {
+        self.runs.clear();
+        // The row and the unknown that would make the last run longer.
+        let mut next = (u32::MAX, u32::MAX);
+        for (i, node) in nodes.enumerate() {
+            let node = &table.nodes[node];
+            let mut add = |first: u32, rank: u32, len: u32| {
+                let here = (first, node.first + rank);
+                match self.runs.last_mut() {
+                    Some(run) if here == next => {
+                        if rank == 0 {
+                            run.last = i as u32;
+                            run.before_last = run.len;
+                        }
+                        run.len += len;
+                    }
+                    _ => self.runs.push(Run {
+                        first,
+                        len,
+                        code: node.code,
+                        block: node.block,
+                        rank,
+                        last: i as u32,
+                        before_last: 0,
+                    }),
+                }
+                next = (here.0 + len, here.1 + len);
+            };
+            let first = (i * D) as u32;
+            if usize::from(node.len) == D {
+                add(first, 0, D as u32);
+            } else {
+                for (rank, axis) in node.components().enumerate() {
+                    add(first + axis as u32, rank as u32, 1);
+                }
+            }
+        }
+    }
+
+    /// Adds the tangent of one particle to the slice of values that begins at `start`.
+    #[inline]
+    pub(crate) fn scatter<const D: usize>(
+        &self,
+        supports: &[Support<D>],
+        (table, pattern): (&BlockTable<D>, &Pattern),
+        linearised: &mut Linearised<D>,
+        (start, slice): (usize, &mut [f64]),
+    ) {
+        for (j, support) in supports.iter().enumerate() {
+            let column = &table.nodes[support.node];
+            if column.len == 0 {
+                continue;
+            }
+            let columns = linearised.columns(j);
+            let stored = pattern.values_of(column.block as usize);
+            let values = &mut slice[stored.start - start..stored.end - start];
+            let offsets = table.offsets_of(support.node);
+            let offset = |run: &Run| offsets(run.code, run.block) + run.rank as usize;
+            if usize::from(column.len) == D {
+                let height = values.len() / D;
+                for run in &self.runs {
+                    let offset = offset(run);
+                    for c in 0..D {
+                        let sums = &mut values[c * height + offset..];
+                        add(sums, &columns[c][run.first as usize..], run.len as usize);
+                    }
+                }
+            } else {
+                let height = values.len() / usize::from(column.len);
+                for run in &self.runs {
+                    let offset = offset(run);
+                    for (rank, c) in column.components().enumerate() {
+                        let sums = &mut values[rank * height + offset..];
+                        add(sums, &columns[c][run.first as usize..], run.len as usize);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Visits the rows from `first` on that one of the listed `nodes` is coupled to: rows that follow one another,
+    /// and the offset of their first one in the columns of the node.
+    #[inline]
+    pub(crate) fn visit_coupled<const D: usize>(
+        &self,
+        (table, nodes): (&BlockTable<D>, &[usize]),
+        node: usize,
+        first: usize,
+        mut visit: impl FnMut(Range<usize>, usize),
+    ) {
+        let offset = table.offsets_if_coupled(node);
+        for run in &self.runs {
+            let rows = run.first as usize..(run.first + run.len) as usize;
+            if rows.end <= first {
+                continue;
+            }
+            let begin = offset(run.code, run.block).map(|offset| offset + run.rank as usize);
+            let last = &table.nodes[nodes[run.last as usize]];
+            let begin_of_last = match run.before_last {
+                0 => begin,
+                _ => offset(last.code, last.block),
+            };
+            match (begin, begin_of_last) {
+                (Some(begin), Some(last)) if last == begin + run.before_last as usize => {
+                    visit(rows, begin);
+                }
+                _ => {
+                    // Some nodes of the run are coupled, and others are not.
+                    for i in rows.start / D..rows.end.div_ceil(D) {
+                        let row = &table.nodes[nodes[i]];
+                        let own = rows.start.max(i * D)..rows.end.min((i + 1) * D);
+                        let rank = if i == rows.start / D { run.rank } else { 0 };
+                        if let Some(offset) = offset(row.code, row.block) {
+                            visit(own, offset + rank as usize);
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Adds the first `len` terms to the first `len` sums.
+#[inline]
+fn add(sums: &mut [f64], terms: &[f64], len: usize) {
+    match len {
+        4 => add_all::<4>(sums, terms),
+        6 => add_all::<6>(sums, terms),
+        9 => add_all::<9>(sums, terms),
+        _ => {
+            for (sum, term) in sums.iter_mut().zip(&terms[..len]) {
+                *sum += term;
+            }
+        }
+    }
+}
+
+/// The same for a number that is known: so few that nothing is left of the loop.
+#[inline]
+fn add_all<const N: usize>(sums: &mut [f64], terms: &[f64]) {
+    let sums = sums
+        .first_chunk_mut::<N>()
+        .expect("a run ends within its column");
+    let terms = terms
+        .first_chunk::<N>()
+        .expect("a run ends within the rows");
+    for k in 0..N {
+        sums[k] += terms[k];
+    }
+}

@@ -1,0 +1,441 @@
+//! A case in space from a completed tree: what plane strain has, without what is drawn in the plane.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use super::grid::Frame;
+use super::sequence::{Sequence, placed};
+use super::site::Soil;
+use super::{AllNames, all, boundaries, checks, construction, curves, grid, materials, outputs};
+use super::{rigid_space, solids, stages, study, title_block};
+use crate::case::{BodyPart, Case, Ground, Load, LoadKind, Material, WaterCondition};
+use crate::input::diagnostic::Problems;
+use crate::input::text::{clip, count, number, point};
+use crate::input::tree::Node;
+use crate::region::Region;
+
+/// Most particles.
+const MOST: f64 = 5e7;
+
+/// The bodies, for the checks of places.
+struct Solids {
+    regions: Vec<Arc<dyn Region<3>>>,
+    is_complete: bool,
+    round_off: f64,
+    /// Smallest side of a cell \[m\].
+    cell: f64,
+}
+
+impl Solids {
+    fn new(bodies: &[Option<BodyPart<3>>], frame: Option<&Frame<3>>) -> Self {
+        let regions: Vec<_> = bodies
+            .iter()
+            .flatten()
+            .map(|body| Arc::clone(&body.region))
+            .collect();
+        let ends = frame
+            .iter()
+            .flat_map(|frame| frame.lower.iter().chain(&frame.upper));
+        let largest = ends.fold(0.0, |largest: f64, x| largest.max(x.abs()));
+        let round_off = 1e-9 * largest;
+        let cells = frame.iter().flat_map(|frame| frame.axes.iter());
+        Self {
+            is_complete: regions.len() == bodies.len() && !bodies.is_empty(),
+            regions,
+            round_off,
+            cell: cells
+                .map(|axis| axis.extremes()[0])
+                .fold(f64::INFINITY, f64::min),
+        }
+    }
+}
+
+impl Soil<3> for Solids {
+    fn is_known(&self) -> bool {
+        self.is_complete
+    }
+
+    fn holds_point(&self, point: &[f64; 3], margin: f64) -> bool {
+        let margin = margin.max(self.round_off);
+        let beside = (0..6).map(|side| {
+            let mut at = *point;
+            at[side / 2] += if side % 2 == 0 { margin } else { -margin };
+            at
+        });
+        let mut places = std::iter::once(*point).chain(beside);
+        places.any(|at| self.regions.iter().any(|region| region.encloses(at)))
+    }
+
+    fn round_off(&self) -> f64 {
+        self.round_off
+    }
+}
+
+/// The case; `None` only when a problem was reported, here or before.
+pub(super) fn build(
+    tree: &Node,
+    names: &AllNames,
+    file: &Path,
+    problems: &mut Problems,
+) -> Option<Case<3>> {
+    refuse_what_is_of_the_plane(tree, problems);
+    let mut frame = grid::frame::<3>(tree, problems);
+    let method = grid::method(tree);
+    let bodies = bodies(tree, names, problems);
+    let materials = materials::materials(tree, &bodies, problems);
+    let grid = grid::grid(tree, frame.as_ref(), &bodies, problems);
+    if let (Some(frame), Some(grid)) = (&mut frame, &grid) {
+        frame.axes.clone_from(&grid.axes);
+    }
+    let sequence = Sequence::new(tree, names, &bodies);
+    let soil = Solids::new(&bodies, frame.as_ref());
+    check_bodies(tree, frame.as_ref(), (&bodies, &sequence), &soil, problems);
+    let boundaries = boundaries::boundaries(tree, frame.as_ref(), problems);
+    let loads = loads(tree, &soil, problems);
+    let rigid = rigid_space::rigid(tree, frame.as_ref(), &materials, problems);
+    super::rigid::check_use(tree, names, problems);
+    let water: Vec<Option<WaterCondition>> = Vec::new();
+    let context = stages::Context {
+        tree,
+        names,
+        materials: &materials,
+        bodies: &bodies,
+        loads: &loads,
+        site: None,
+        sequence: &sequence,
+    };
+    let stages = stages::stages(&context, problems);
+    stages::check_use(&context, problems);
+    construction::check(&context, problems);
+    check_level(tree, (&bodies, &materials), &soil, problems);
+    let solver = outputs::solver(tree, &materials, problems);
+    let monitors = outputs::monitors(tree, &soil, problems);
+    let about = outputs::About {
+        names,
+        stages: &stages,
+        file,
+    };
+    let sections = outputs::sections(tree, &about, &soil, problems);
+    let curves = curves::curves(tree, names, &loads, file, problems);
+    let checks = checks::checks(tree, names, &loads, &stages, problems);
+    let output = outputs::output::<3>(tree, problems);
+    let mesh_study = study::mesh_study(tree);
+
+    let case = tree.get("case")?;
+    let case = Case {
+        water_unit_weight: case.number_at("water_unit_weight")?,
+        water: all(water)?,
+        title: case.text_at("title")?.to_owned(),
+        title_block: title_block(case),
+        gravity: case.number_at("gravity")?,
+        grid: grid?,
+        method: method?,
+        materials: all(materials)?,
+        bodies: all(bodies)?,
+        boundaries: boundaries?,
+        loads: all(loads)?,
+        rigid: all(rigid)?,
+        reinforcement: Vec::new(),
+        stages: all(stages)?,
+        solver: solver?,
+        monitors: all(monitors)?,
+        sections: all(sections)?,
+        curves: all(curves)?,
+        checks: all(checks)?,
+        mesh_study: mesh_study?,
+        output: output?,
+    };
+    let case = case.refined(tree.get("grid")?.count_at("refine")?);
+    study::check(tree, &case, problems);
+    Some(case)
+}
+
+/// Reports what case files can say of the plane only.
+fn refuse_what_is_of_the_plane(tree: &Node, problems: &mut Problems) {
+    for (key, what) in [
+        ("reinforcement", "reinforcement is"),
+        ("water", "conditions of the water are"),
+    ] {
+        if let Some(first) = tree.items_at(key).first() {
+            problems
+                .error(first.place, format!("{what} not available in space yet"))
+                .help("compute a slice with analysis = \"plane-strain\"");
+        }
+    }
+    for load in tree.items_at("loads") {
+        if load.text_at("type") == Some("rigid-footing") {
+            problems
+                .error(
+                    load.place_at("type"),
+                    "a rigid footing that the grid follows is one of plane strain",
+                )
+                .help("in space footings are [[rigid]] bodies, or pressures");
+        }
+    }
+    let fit = tree.get("grid").and_then(|grid| grid.get("fit"));
+    if let Some(fit) = fit.filter(|fit| fit.text() == Some("layers")) {
+        problems
+            .error(fit.place, "lines are fitted to layers in plane strain only")
+            .help("write lines = { z = [...] }");
+    }
+}
+
+/// The bodies, as far as each is right by itself.
+fn bodies(tree: &Node, names: &AllNames, problems: &mut Problems) -> Vec<Option<BodyPart<3>>> {
+    let later = placed(tree);
+    let items = tree.items_at("bodies").iter();
+    let part = |node: &Node| {
+        let name = node.text_at("name").unwrap_or("?");
+        let material = node.get("material").and_then(|material| {
+            let who = format!("body `{}` uses", clip(name, 40));
+            names.materials.find(material, &who, problems)
+        });
+        let solid = solids::solid(node, name, problems);
+        let points = node.count_at("points_per_cell")?;
+        Some(BodyPart {
+            from_start: !later.contains(&name),
+            name: node.text_at("name")?.to_owned(),
+            material: material?,
+            per_direction: (1..=4).find(|count: &usize| count.pow(3) >= points)?,
+            region: Arc::new(solid?),
+        })
+    };
+    items.map(part).collect()
+}
+
+/// Checks the bodies against the domain and each other.
+fn check_bodies(
+    tree: &Node,
+    frame: Option<&Frame<3>>,
+    (bodies, sequence): (&[Option<BodyPart<3>>], &Sequence),
+    soil: &Solids,
+    problems: &mut Problems,
+) {
+    let items = tree.items_at("bodies");
+    let Some(frame) = frame else { return };
+    let slack = soil.round_off;
+    let (lower, upper) = (
+        frame.lower.map(|x| x - slack),
+        frame.upper.map(|x| x + slack),
+    );
+    let mut particles = 0.0;
+    for (body, node) in std::iter::zip(bodies, items) {
+        let Some(body) = body else { continue };
+        if let Some(at) = body.region.beyond(lower, upper) {
+            let name = clip(&body.name, 40);
+            let message = format!(
+                "body `{name}` reaches {}, outside the grid domain",
+                point(at)
+            );
+            problems
+                .error(node.place, message)
+                .help("extend [grid] domain");
+            continue;
+        }
+        let (from, to) = body.region.bounds();
+        let cells: f64 = (0..3)
+            .map(|axis| frame.axes[axis].place(to[axis]) - frame.axes[axis].place(from[axis]))
+            .product();
+        let around: f64 = (0..3).map(|axis| to[axis] - from[axis]).product();
+        let share = body.region.volume() / around;
+        particles += cells * share * (body.per_direction as f64).powi(3);
+    }
+    if particles > MOST {
+        let message = format!("the bodies would have {} particles", count(particles));
+        problems
+            .error(tree.get("grid").map(|grid| grid.place_at("cell")), message)
+            .help(format!(
+                "at most {} are possible: use larger cells or fewer points_per_cell",
+                count(MOST)
+            ));
+    }
+    for (second, b) in bodies.iter().enumerate() {
+        for (first, a) in bodies[..second].iter().enumerate() {
+            let (Some(a), Some(b)) = (a, b) else { continue };
+            if !sequence.are_together(first, second) {
+                continue;
+            }
+            if let Some(at) = solids::overlap(&*a.region, &*b.region) {
+                problems
+                    .error(
+                        items[second].place,
+                        format!(
+                            "body `{}` overlaps body `{}` near {}",
+                            clip(&b.name, 40),
+                            clip(&a.name, 40),
+                            point(at)
+                        ),
+                    )
+                    .help("bodies may share faces only");
+            }
+        }
+    }
+}
+
+/// Refuses stresses of level ground in ground that is not level.
+fn check_level(
+    tree: &Node,
+    (bodies, materials): (&[Option<BodyPart<3>>], &[Option<Material>]),
+    soil: &Solids,
+    problems: &mut Problems,
+) {
+    let first = tree.items_at("stages").first();
+    let Some(stage) = first.filter(|stage| stage.text_at("type") == Some("k0")) else {
+        return;
+    };
+    let parts: Option<Vec<_>> = (bodies.iter())
+        .map(|body| {
+            let body = body.as_ref()?;
+            Some((body, materials.get(body.material)?.as_ref()?))
+        })
+        .collect();
+    let Some(parts) = parts else { return };
+    let ground = Ground::new(parts.iter().copied());
+    let levels = parts
+        .iter()
+        .filter(|(body, _)| body.from_start)
+        .flat_map(|(body, _)| {
+            let places = ground.places(&*body.region);
+            let levels = places
+                .iter()
+                .filter_map(|place| Some((ground.surface(place)?, *place)));
+            levels.collect::<Vec<_>>()
+        });
+    let levels: Vec<(f64, [f64; 3])> = levels.collect();
+    let by_level = |a: &&(f64, [f64; 3]), b: &&(f64, [f64; 3])| a.0.total_cmp(&b.0);
+    let (Some(low), Some(high)) = (
+        levels.iter().min_by(by_level),
+        levels.iter().max_by(by_level),
+    ) else {
+        return;
+    };
+    if high.0 - low.0 > 1e-6 * soil.cell {
+        problems
+            .error(stage.place_at("type"), "a k0 stage needs level ground")
+            .help(format!(
+                "the surface is at z = {} m above ({} m, {} m) and at z = {} m above ({} m, {} m)",
+                number(low.0),
+                number(low.1[0]),
+                number(low.1[1]),
+                number(high.0),
+                number(high.1[0]),
+                number(high.1[1])
+            ))
+            .help("for a slope use a stage of type gravity");
+    }
+}
+
+/// The loads.
+fn loads(tree: &Node, soil: &Solids, problems: &mut Problems) -> Vec<Option<Load<3>>> {
+    let items = tree.items_at("loads").iter();
+    items
+        .map(|node| {
+            let name = node.text_at("name")?;
+            let kind = match node.text_at("type")? {
+                "pressure" => pressure(node, name, soil, problems),
+                "point" => at_point(node, name, soil, problems),
+                _ => None,
+            }?;
+            Some(Load {
+                name: name.to_owned(),
+                kind,
+            })
+        })
+        .collect()
+}
+
+fn pressure(
+    node: &Node,
+    name: &str,
+    soil: &Solids,
+    problems: &mut Problems,
+) -> Option<LoadKind<3>> {
+    let (from, to) = (node.point_at::<3>("from")?, node.point_at::<3>("to")?);
+    let pressure = node.number_at("pressure")?;
+    let shown = clip(name, 40);
+    let flat: Vec<usize> = (0..3)
+        .filter(|&axis| (to[axis] - from[axis]).abs() <= soil.round_off)
+        .collect();
+    let &[normal] = &flat[..] else {
+        problems
+            .error(
+                node.place_at("to"),
+                format!("the corners of the pressure `{shown}` span no rectangle across an axis"),
+            )
+            .help("two corners that lie across from each other have one coordinate in common");
+        return None;
+    };
+    let step = 1e-2 * soil.cell;
+    let is_soil = |share: [f64; 3], side: f64| {
+        let mut at: [f64; 3] =
+            std::array::from_fn(|axis| from[axis] + share[axis] * (to[axis] - from[axis]));
+        at[normal] += side * step;
+        soil.regions.iter().any(|region| region.encloses(at))
+    };
+    let mut sides = [0_usize; 2];
+    let mut buried = 0;
+    const SAMPLES: usize = 7;
+    for k in 0..SAMPLES * SAMPLES {
+        let mut share = [0.0; 3];
+        let places = [k % SAMPLES, k / SAMPLES].map(|place| (place as f64 + 0.5) / SAMPLES as f64);
+        let along = (0..3).filter(|&axis| axis != normal);
+        for (axis, place) in along.zip(places) {
+            share[axis] = place;
+        }
+        match (is_soil(share, 1.0), is_soil(share, -1.0)) {
+            (true, true) => buried += 1,
+            (true, false) => sides[0] += 1,
+            (false, true) => sides[1] += 1,
+            (false, false) => {}
+        }
+    }
+    let mut inward = [0.0; 3];
+    if soil.is_complete && sides.iter().all(|&side| side < SAMPLES * SAMPLES) {
+        let message = if buried > 0 {
+            format!(
+                "the rectangle of the pressure `{shown}` lies inside the soil, not on its surface"
+            )
+        } else if sides == [0, 0] {
+            format!("no body lies along the rectangle of the pressure `{shown}`")
+        } else {
+            format!(
+                "only a part of the rectangle of the pressure `{shown}` lies on the surface of a body"
+            )
+        };
+        problems
+            .error(node.place_at("from"), message)
+            .help("the rectangle lies on a level or upright face of a body");
+        return None;
+    }
+    inward[normal] = if sides[0] > 0 { 1.0 } else { -1.0 };
+    if node.text_at("direction")? == "down" {
+        inward = [0.0, 0.0, -1.0];
+    }
+    Some(LoadKind::Pressure {
+        from,
+        to,
+        traction: inward.map(|component| component * pressure + 0.0),
+    })
+}
+
+fn at_point(
+    node: &Node,
+    name: &str,
+    soil: &Solids,
+    problems: &mut Problems,
+) -> Option<LoadKind<3>> {
+    let (at, force) = (node.point_at("at")?, node.point_at("force")?);
+    if soil.is_complete && !soil.holds_point(&at, 1e-2 * soil.cell) {
+        problems
+            .error(
+                node.place_at("at"),
+                format!(
+                    "there is no body at {}, where `{}` acts",
+                    point(at),
+                    clip(name, 40)
+                ),
+            )
+            .help("move the load onto a body");
+    }
+    Some(LoadKind::Point { at, force })
+}

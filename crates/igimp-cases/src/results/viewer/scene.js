@@ -1,0 +1,335 @@
+// The body on the page: boxes in the colour of their value, rigid bodies, axes in metres, zoom, rotation, a
+// cut, and the box under a point. Boxes are drawn by WebGL2, or by a plain canvas where there is none.
+
+// Of rigid bodies so much is in sight beside the soil, as a share of its larger side.
+const BESIDE = 0.12;
+
+// A colour of a style as three shares.
+function sharesOf(colour) {
+  const digits = /^#(..)(..)(..)$/.exec(colour);
+  return digits ? digits.slice(1).map((part) => parseInt(part, 16) / 255) : [0.7, 0.7, 0.7];
+}
+
+// Least and largest corner of points, three numbers each.
+function extentOf(points, start = { low: [Infinity, Infinity, Infinity], high: [-Infinity, -Infinity, -Infinity] }) {
+  const { low, high } = start;
+  for (let k = 0; k < points.length; k += 1) {
+    if (points[k] < low[k % 3]) low[k % 3] = points[k];
+    if (points[k] > high[k % 3]) high[k % 3] = points[k];
+  }
+  return { low, high };
+}
+
+// A face of a box: its axis and side by number, its corners in turn.
+function cornersOf(low, high, face) {
+  const [axis, one, two] = [0, 1, 2].map((k) => (Math.floor(face / 2) + k) % 3);
+  return [[0, 0], [1, 0], [1, 1], [0, 1]].map(([a, b]) => {
+    const corner = [0, 0, 0];
+    corner[axis] = face % 2 === 1 ? high[axis] : low[axis];
+    corner[one] = a ? high[one] : low[one];
+    corner[two] = b ? high[two] : low[two];
+    return corner;
+  });
+}
+
+class Scene {
+  constructor(canvas, below) {
+    this.canvas = canvas;
+    this.below = below;
+    this.dimension = 0;
+    this.boxes = null;
+    this.bodies = { lines: [], triangles: [] };
+    this.extent = extentOf([]);
+    this.cut = null;
+    this.marked = -1;
+    this.painting = 0;
+    this.axes = new Axes(this);
+    try {
+      this.surface = new Surface(below);
+    } catch {
+      this.surface = null;
+    }
+    canvas.dataset.by = this.surface ? "webgl2" : "canvas";
+  }
+
+  // Takes up boxes by their corners, and rigid bodies.
+  show(dimension, shapes, bodies) {
+    if (dimension !== this.dimension) this.camera = new Camera(dimension);
+    this.dimension = dimension;
+    const count = shapes.low ? shapes.low.length / 3 : 0;
+    const none = new Uint8Array(0);
+    const { low = none, high = none, lie = new Uint8Array(4 * count).fill(128) } = shapes;
+    this.bodies = bodies;
+    this.extent = extentOf(high, extentOf(low, this.extent));
+    const faces = Scene.facesOf(shapes.faces || new Uint8Array(count).fill(32));
+    const origin = [0, 1, 2].map((k) => (count > 0 ? 0.5 * (this.extent.low[k] + this.extent.high[k]) : 0));
+    this.boxes = { low, high, lie, faces, origin, count };
+    if (this.surface) this.surface.shape(this.boxes, bodies.triangles);
+    this.canvas.dataset.faces = faces.box.length;
+    this.canvas.dataset.lines = bodies.lines.length / 6;
+  }
+
+  // The faces that are seen, by box and number.
+  static facesOf(masks) {
+    let count = 0;
+    for (const mask of masks) for (let bits = mask; bits > 0; bits >>= 1) count += bits & 1;
+    const faces = { box: new Uint32Array(count), face: new Uint8Array(count) };
+    let at = 0;
+    masks.forEach((mask, box) => {
+      for (let face = 0; face < 6; face += 1) {
+        if (!((mask >> face) & 1)) continue;
+        faces.box[at] = box;
+        faces.face[at] = face;
+        at += 1;
+      }
+    });
+    return faces;
+  }
+
+  // Colours by box: shares of the scale, grey where there is no value.
+  colour(values, [low, high], colours) {
+    const bytes = new Uint8Array(4 * this.boxes.count);
+    const last = colours.length - 1;
+    for (let box = 0; box < this.boxes.count; box += 1) {
+      const share = high > low ? (values[box] - low) / (high - low) : 0.5;
+      const colour = Number.isFinite(share) ? colours[Math.min(Math.max(Math.round(share * last), 0), last)] : [168, 168, 168];
+      bytes.set(colour, 4 * box);
+      bytes[4 * box + 3] = 255;
+    }
+    this.colours = bytes;
+    if (this.surface) this.surface.colour(bytes);
+    this.paint();
+  }
+
+  // What has been seen of the soil, and what of the rigid bodies is close to it.
+  inSight() {
+    const low = [...this.extent.low];
+    const high = [...this.extent.high];
+    const beside = BESIDE * Math.max(...high.map((x, k) => x - low[k]));
+    for (const points of [this.bodies.lines, this.bodies.triangles]) {
+      points.forEach((x, k) => {
+        const axis = k % 3;
+        low[axis] = Math.min(low[axis], Math.max(x, this.extent.low[axis] - beside));
+        high[axis] = Math.max(high[axis], Math.min(x, this.extent.high[axis] + beside));
+      });
+    }
+    return { low, high };
+  }
+
+  layout() {
+    return this.camera.layout(this.canvas.clientWidth, this.inSight());
+  }
+
+  // Once before the next picture of the screen, however often it is asked for.
+  paint() {
+    if (this.painting) return;
+    this.painting = requestAnimationFrame(() => {
+      this.painting = 0;
+      if (this.colours && this.boxes.count > 0 && this.canvas.clientWidth > 0) this.paintNow();
+    });
+  }
+
+  paintNow() {
+    const { canvas, below, camera } = this;
+    const place = this.layout();
+    const sharp = window.devicePixelRatio || 1;
+    for (const own of [canvas, below]) own.style.height = `${place.height}px`;
+    canvas.width = Math.round(place.width * sharp);
+    canvas.height = Math.round(place.height * sharp);
+    const pen = canvas.getContext("2d");
+    pen.scale(sharp, sharp);
+    pen.save();
+    if (this.dimension === 2) {
+      const { room } = place;
+      pen.beginPath();
+      pen.rect(room.left, room.top, place.width - room.left - room.right, place.height - room.top - room.bottom);
+      pen.clip();
+    }
+    if (this.surface) this.surface.paint(place, camera, this.cut, this.dimension, sharp, sharesOf(cssColour("--soft")), this.boxes.origin);
+    else this.drawn(pen, place);
+    this.outlines(pen, place);
+    this.mark(pen, place);
+    pen.restore();
+    if (this.dimension === 2) this.axes.plane(pen, place);
+    else this.axes.space(pen, place);
+  }
+
+  corner(name, box) {
+    const numbers = this.boxes[name];
+    return [numbers[3 * box], numbers[3 * box + 1], numbers[3 * box + 2]];
+  }
+
+  // Boxes without WebGL2: faces from the farthest to the nearest, and those of the cut.
+  drawn(pen, place) {
+    const { faces, lie, count } = this.boxes;
+    const { cut, camera } = this;
+    const quads = [];
+    const add = (box, face, light, corners) => {
+      const points = corners.map((corner) => projected(place, camera, corner));
+      quads.push({ box, light, points, depth: points.reduce((sum, point) => sum + point[2], 0) });
+    };
+    for (let k = 0; k < faces.box.length; k += 1) {
+      const [box, face] = [faces.box[k], faces.face[k]];
+      const [axis, side] = [Math.floor(face / 2), 2 * (face % 2) - 1];
+      if (side * place.eye[axis] <= 1e-6) continue;
+      const [low, high] = [this.corner("low", box), this.corner("high", box)];
+      if (cut && !Scene.clipped(low, high, cut)) continue;
+      const about = [0, 1, 2].map((j) => (lie[4 * box + j] - 128) / 127 + (j === axis ? 0.3 * side : 0));
+      const length = Math.hypot(...about) || 1;
+      const light = this.dimension === 2 ? 1 : lightOf(place, about.map((x) => x / length), lie[4 * box + 3] / 255);
+      add(box, face, light, cornersOf(low, high, face));
+    }
+    if (cut && dot(cut.normal, place.eye) > 0) {
+      const { axis } = cut;
+      const at = cut.offset * cut.normal[axis];
+      for (let box = 0; box < count; box += 1) {
+        const [low, high] = [this.corner("low", box), this.corner("high", box)];
+        const more = cut.normal[axis] > 0 ? [1e-4, 0.1] : [-0.1, -1e-4];
+        const size = high[axis] - low[axis];
+        if (at < low[axis] + more[0] * size || at > high[axis] + more[1] * size) continue;
+        low[axis] = at;
+        high[axis] = at;
+        add(box, 2 * axis, 0.97, cornersOf(low, high, 2 * axis));
+      }
+    }
+    if (this.dimension === 3) quads.sort((a, b) => a.depth - b.depth);
+    pen.lineWidth = 0.7;
+    for (const { box, light, points } of quads) {
+      const colour = [0, 1, 2].map((k) => Math.min(Math.round(light * this.colours[4 * box + k]), 255));
+      pen.fillStyle = `rgb(${colour})`;
+      pen.strokeStyle = pen.fillStyle;
+      this.trace(pen, points);
+      pen.fill();
+      pen.stroke();
+    }
+  }
+
+  // Takes from a box what the cut takes away; false where that is all of it, or the face that is cut off.
+  static clipped(low, high, { axis, normal, offset }) {
+    const at = offset * normal[axis];
+    if (normal[axis] > 0) high[axis] = Math.min(high[axis], at);
+    else low[axis] = Math.max(low[axis], at);
+    return low[axis] < high[axis];
+  }
+
+  trace(pen, points) {
+    pen.beginPath();
+    points.forEach(([x, y], k) => (k === 0 ? pen.moveTo(x, y) : pen.lineTo(x, y)));
+    pen.closePath();
+  }
+
+  // Rigid bodies of the plane: a line goes on from the one before it, or begins another body.
+  outlines(pen, place) {
+    const { lines } = this.bodies;
+    pen.beginPath();
+    for (let at = 0; at < lines.length; at += 6) {
+      const [from, to] = [lines.slice(at, at + 3), lines.slice(at + 3, at + 6)];
+      const goesOn = at > 0 && [0, 1, 2].every((k) => lines[at + k] === lines[at - 3 + k]);
+      const [start, end] = [projected(place, this.camera, from), projected(place, this.camera, to)];
+      if (!goesOn) pen.moveTo(start[0], start[1]);
+      pen.lineTo(end[0], end[1]);
+    }
+    pen.fillStyle = cssColour("--line");
+    pen.strokeStyle = cssColour("--soft");
+    pen.lineWidth = 1.5;
+    pen.fill();
+    pen.stroke();
+  }
+
+  mark(pen, place) {
+    if (this.marked < 0 || this.marked >= this.boxes.count) return;
+    const [low, high] = [this.corner("low", this.marked), this.corner("high", this.marked)];
+    pen.strokeStyle = cssColour("--cursor");
+    pen.lineWidth = 2;
+    for (let face = 0; face < 6; face += 1) {
+      if ((2 * (face % 2) - 1) * place.eye[Math.floor(face / 2)] <= 1e-6) continue;
+      this.trace(pen, cornersOf(low, high, face).map((corner) => projected(place, this.camera, corner)));
+      pen.stroke();
+    }
+  }
+
+  centre(box) {
+    const [low, high] = [this.corner("low", box), this.corner("high", box)];
+    return low.map((x, k) => 0.5 * (x + high[k]));
+  }
+
+  // The box that is seen at a point of the canvas, and -1 where there is none. Where boxes of the plane overlap
+  // it is the one whose centre is nearest.
+  boxAt(x, y) {
+    const place = this.layout();
+    const from = lifted(place, this.camera, x, y);
+    if (this.dimension === 2) return this.holding(from);
+    const { low, high, count } = this.boxes;
+    let [least, most] = [-Infinity, Infinity];
+    if (this.cut) {
+      // Along the way to the eye, up to the cut or from it.
+      const [speed, room] = [dot(this.cut.normal, place.eye), this.cut.offset - dot(this.cut.normal, from)];
+      if (speed > 1e-9) most = room / speed;
+      else if (speed < -1e-9) least = room / speed;
+      else if (room < 0) return -1;
+    }
+    let [best, nearest] = [-1, -Infinity];
+    for (let box = 0; box < count; box += 1) {
+      let [enter, leave] = [least, most];
+      for (let k = 0; k < 3 && enter < leave; k += 1) {
+        const [a, b] = [low[3 * box + k] - from[k], high[3 * box + k] - from[k]];
+        if (Math.abs(place.eye[k]) < 1e-9) {
+          if (a > 0 || b < 0) leave = -Infinity;
+          continue;
+        }
+        const ends = [a / place.eye[k], b / place.eye[k]];
+        enter = Math.max(enter, Math.min(...ends));
+        leave = Math.min(leave, Math.max(...ends));
+      }
+      if (enter < leave && leave > nearest) [best, nearest] = [box, leave];
+    }
+    return best;
+  }
+
+  holding([x, y]) {
+    const { low, high, count } = this.boxes;
+    let [best, nearest] = [-1, Infinity];
+    for (let box = 0; box < count; box += 1) {
+      const at = 3 * box;
+      if (x < low[at] || x > high[at] || y < low[at + 1] || y > high[at + 1]) continue;
+      const distance = Math.hypot(0.5 * (low[at] + high[at]) - x, 0.5 * (low[at + 1] + high[at + 1]) - y);
+      if (distance < nearest) [best, nearest] = [box, distance];
+    }
+    return best;
+  }
+
+  // Zooms about a point of the canvas, or about the middle.
+  zoom(factor, about) {
+    const { camera } = this;
+    const before = this.layout();
+    camera.zoom = Math.min(Math.max(camera.zoom * factor, this.dimension === 2 ? 1 : 0.5), 200);
+    const after = this.layout();
+    const [x, y] = about || before.middle;
+    const from = [x - before.middle[0], before.middle[1] - y];
+    camera.pan = camera.pan.map((own, k) => own + from[k] / before.scale - from[k] / after.scale);
+    if (this.dimension === 2 && camera.zoom === 1) camera.pan = [0, 0];
+    this.paint();
+  }
+
+  move(dx, dy) {
+    const { camera } = this;
+    const { scale } = this.layout();
+    if (this.dimension === 3 || camera.zoom > 1) camera.pan = [camera.pan[0] - dx / scale, camera.pan[1] + dy / scale];
+    this.paint();
+  }
+
+  rotate(turn, raise) {
+    this.camera.rotate(turn, raise);
+    this.paint();
+  }
+
+  look(name) {
+    this.camera.look(name);
+    this.paint();
+  }
+
+  whole() {
+    this.camera.reset();
+    this.paint();
+  }
+}
