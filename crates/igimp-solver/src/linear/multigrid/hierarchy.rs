@@ -149,7 +149,9 @@ impl<const B: usize> Hierarchy<B> {
         };
         smoother.apply::<B>(couplings, slabs, values, rhs, x);
         let omega = smoother.omega;
-        x.iter_mut().for_each(|x| *x *= omega);
+        for x in &mut *x {
+            *x *= omega;
+        }
         residual::<B>(couplings, values, rhs, x, work);
         transfer.restrict::<B>(work, &mut coarse.rhs);
         Self::cycle(coarser, dense);
