@@ -273,7 +273,7 @@ fn of_field(field: &Stored<'_>, cells: usize, kept: &[u32], keep: Keep) -> Optio
         .copied()
         .collect();
     let mut array = if field.is_whole() {
-        let bytes = own.iter().flat_map(|&x| (x as i32).to_le_bytes()).collect();
+        let bytes: Vec<u8> = own.iter().flat_map(|&x| (x as i32).to_le_bytes()).collect();
         array(&field.name, components, "i32", &bytes)
     } else if keep.rounded {
         let ends: Vec<[f64; 2]> = range.iter().map(|own| [own[0], own[1]]).collect();

@@ -149,8 +149,8 @@ impl<const B: usize> Hierarchy<B> {
         };
         smoother.apply::<B>(couplings, slabs, values, rhs, x);
         let omega = smoother.omega;
-        for own in x.iter_mut() {
-            *own *= omega;
+        for x in &mut *x {
+            *x *= omega;
         }
         residual::<B>(couplings, values, rhs, x, work);
         transfer.restrict::<B>(work, &mut coarse.rhs);
