@@ -279,6 +279,7 @@ fn critical(study: &mut Study, level: Level) -> Result<(), CaseError> {
             kind: StageKind::Gravity {
                 factor: 1.0,
                 horizontal: Some(horizontal),
+                across: None,
                 vertical: None,
             },
             steps,

@@ -759,11 +759,8 @@ mod tests {
 
     fn of(name: &str) -> Vec<SetupTable> {
         let shipped = SHIPPED.iter().find(|case| case.name == name).unwrap();
-        tables(
-            CaseFile::parse("case.toml", shipped.text, &[])
-                .unwrap()
-                .case(),
-        )
+        let file = CaseFile::parse("case.toml", shipped.text, &[]).unwrap();
+        crate::in_any_dimension!(file.any_case(), case => tables(case))
     }
 
     fn row(tables: &[SetupTable], title: &str, number: usize) -> String {

@@ -23,7 +23,7 @@ const MOST_GROWTH: f32 = 2.0;
 /// The same after damping.
 const DAMPED: f32 = 1.7;
 /// Steps of the power method.
-const POWERS: usize = 5;
+const POWERS: usize = 10;
 
 /// What approximates K⁻¹.
 pub(super) trait Preconditioner: Send {
@@ -185,6 +185,9 @@ fn growth<const B: usize>(
             next += f64::from(*work) * f64::from(*change);
         }
         found = (next / own).abs() as f32;
+        if found > MOST_GROWTH {
+            break;
+        }
         let size = change.iter().fold(0.0_f32, |most, own| most.max(own.abs()));
         for (x, change) in x.iter_mut().zip(&*change) {
             *x = change / size;

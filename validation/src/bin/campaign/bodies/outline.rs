@@ -16,12 +16,16 @@ pub(crate) struct Outline {
 impl Outline {
     /// The outline of a body of a case about its reference point, its corners rounded by cells of a size.
     pub(crate) fn of(part: &RigidPart, cell: f64) -> Self {
-        match &part.shape {
-            RigidShape::Circle { radius, .. } => Self {
+        match part.shape.in_plane() {
+            None => Self {
+                core: Vec::new(),
+                radius: 0.0,
+            },
+            Some(RigidShape::Circle { radius, .. }) => Self {
                 core: vec![[0.0; 2]],
                 radius: *radius,
             },
-            RigidShape::Polygon(corners) => {
+            Some(RigidShape::Polygon(corners)) => {
                 let [x, y] = part.reference;
                 let own: Vec<[f64; 2]> = corners.iter().map(|at| [at[0] - x, at[1] - y]).collect();
                 let radius = part.rounding * cell;
