@@ -1,8 +1,6 @@
 //! Runs the four benchmark cases of the paper and problems with exact answers, holds every result
 //! against outside values, and compares curves and effort with snapshots. `cargo xtask validate`
 //! calls this program.
-//! Runs the four benchmark cases of the paper and a study of the footing's side, holds every result against outside values, and
-//! compares curves and effort with snapshots. `cargo xtask validate` calls this program.
 
 mod column;
 mod comparisons;
@@ -32,6 +30,7 @@ mod runs;
 mod slope_profile;
 mod slopes;
 mod snapshot;
+mod space;
 mod stages;
 mod strength_profile;
 mod study;
@@ -130,6 +129,12 @@ enum Case {
     ContactPipe,
     ContactAnchor,
     ContactWall,
+    SpaceColumn,
+    SpaceSlice,
+    SpaceSafety,
+    SpaceWalls,
+    SpaceSphere,
+    SpaceTorsion,
     ContactSpace,
     ContactSphere,
     ContactCircle,
@@ -173,6 +178,12 @@ impl Case {
             Self::ContactPipe => contact::pipe::study(level, out),
             Self::ContactAnchor => contact::anchor::study(level, out),
             Self::ContactWall => contact::wall::study(level, out),
+            Self::SpaceColumn => space::column::study(out),
+            Self::SpaceSlice => space::slice::study(out),
+            Self::SpaceSafety => space::safety::study(level, out),
+            Self::SpaceWalls => space::walls::study(level, out),
+            Self::SpaceSphere => space::sphere::study(level, out),
+            Self::SpaceTorsion => space::torsion::study(level, out),
             Self::ContactSpace => contact::space::study(level, out),
             Self::ContactSphere => contact::space::sphere::study(level, out),
             Self::ContactCircle => contact::space::circle::study(level, out),

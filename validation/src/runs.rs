@@ -55,35 +55,35 @@ pub(crate) fn unwatched() -> [String; 3] {
 
 /// A case that was run.
 #[derive(Debug)]
-pub(crate) struct Computed {
+pub(crate) struct Computed<const D: usize = 2> {
     /// The case.
-    pub(crate) case: Case,
+    pub(crate) case: Case<D>,
     /// What the engine hands back.
-    pub(crate) run: run::Run,
+    pub(crate) run: run::Run<D>,
     /// Every step, but those of trials.
     pub(crate) report: MarchReport,
     /// The trials of a strength reduction in the order they were made.
-    pub(crate) trials: Vec<Trial>,
+    pub(crate) trials: Vec<Trial<D>>,
     /// Wall-clock time.
     pub(crate) elapsed: Duration,
 }
 
 /// A trial of a strength reduction.
 #[derive(Debug)]
-pub(crate) struct Trial {
+pub(crate) struct Trial<const D: usize = 2> {
     /// Factor and verdict.
     pub(crate) summary: TrialSummary,
     /// The particles at its last equilibrium.
-    pub(crate) particles: Particles<2>,
+    pub(crate) particles: Particles<D>,
     /// Its steps.
     pub(crate) report: MarchReport,
     /// Wall-clock time.
     pub(crate) elapsed: Duration,
 }
 
-impl Computed {
+impl<const D: usize> Computed<D> {
     /// Runs a case in memory.
-    pub(crate) fn new(case: Case) -> Result<Self, CaseError> {
+    pub(crate) fn new(case: Case<D>) -> Result<Self, CaseError> {
         let clock = Instant::now();
         let mut recorder = Recorder::new();
         let never = AtomicBool::new(false);
@@ -98,7 +98,7 @@ impl Computed {
     }
 
     /// The particles at the end.
-    pub(crate) fn particles(&self) -> &Particles<2> {
+    pub(crate) fn particles(&self) -> &Particles<D> {
         &self.run.body.particles
     }
 
@@ -124,13 +124,13 @@ impl Computed {
 }
 
 /// Gathers the steps of a run, and its trials.
-struct Recorder {
+struct Recorder<const D: usize> {
     report: MarchReport,
-    trials: Vec<Trial>,
+    trials: Vec<Trial<D>>,
     clock: Instant,
 }
 
-impl Recorder {
+impl<const D: usize> Recorder<D> {
     fn new() -> Self {
         Self {
             report: no_steps(),
@@ -140,8 +140,8 @@ impl Recorder {
     }
 }
 
-impl Listener for Recorder {
-    fn on_event(&mut self, event: &Event<'_>) {
+impl<const D: usize> Listener<D> for Recorder<D> {
+    fn on_event(&mut self, event: &Event<'_, D>) {
         match event {
             Event::Step { report, .. } => {
                 self.report.outcome = if report.to < 1.0 {

@@ -67,7 +67,7 @@ impl ThickCylinder {
 }
 
 /// The dilogarithm Li₂(x) = Σ x^k/k² for 0 ≤ x ≤ 0.95.
-fn dilogarithm(x: f64) -> f64 {
+pub(super) fn dilogarithm(x: f64) -> f64 {
     (1..TERMS).rev().map(|k| x.powi(k) / f64::from(k * k)).sum()
 }
 

@@ -2,3 +2,4 @@
 
 pub(crate) mod cylinder;
 pub(crate) mod elastica;
+pub(crate) mod sphere;

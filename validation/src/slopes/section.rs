@@ -86,6 +86,30 @@ pub(crate) enum Path {
     Gravity,
 }
 
+/// The part of a slope in space between two ends of which the one in front is smooth.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Ends {
+    /// From one to the other \[m\].
+    pub(crate) length: f64,
+    /// Cells between them.
+    pub(crate) cells: u32,
+    /// Whether soil sticks to the one at the back.
+    pub(crate) is_rough: bool,
+}
+
+impl Ends {
+    /// Where they are.
+    fn domain(self) -> String {
+        format!("domain.y = [\"0 m\", \"{} m\"]", self.length)
+    }
+
+    /// What they hold.
+    fn walls(self) -> String {
+        let back = if self.is_rough { "fixed" } else { "roller" };
+        format!("front = \"roller\"\nback = \"{back}\"")
+    }
+}
+
 impl Section {
     /// A homogeneous slope of height H = 10 m and γ = 20 kN/m³: `run` across for one down, the base
     /// at depth `depth_factor` H below the crest, `beyond` on both sides of the face \[m\].
@@ -196,6 +220,25 @@ impl Section {
         search: Search,
         overrides: &[String],
     ) -> Result<Case, CaseError> {
+        let text = self.text(variant, search, None);
+        Ok(CaseFile::parse(&self.name, &text, overrides)?.into_case())
+    }
+
+    /// The case that computes its factor of safety in space, between two ends.
+    pub(crate) fn case_in_space(
+        &self,
+        variant: Variant,
+        search: Search,
+        ends: Ends,
+        overrides: &[String],
+    ) -> Result<Case<3>, CaseError> {
+        let text = self.text(variant, search, Some(ends));
+        let file = CaseFile::parse(&self.name, &text, overrides)?;
+        Ok(file.case_in_space().clone())
+    }
+
+    /// The case file, in the plane or in space between two ends.
+    fn text(&self, variant: Variant, search: Search, ends: Option<Ends>) -> String {
         let Variant {
             cells,
             locking,
@@ -229,21 +272,43 @@ impl Section {
         let cell = self.height / f64::from(cells);
         let ([left, right], top) = (self.sides(), self.top() + cell);
         let base = self.base;
+        let upright = format!("[\"{base} m\", \"{top} m\"]");
+        let (points, analysis, cells, rest, across) = match ends {
+            None => (
+                4,
+                "plane-strain",
+                format!("\"{cell} m\""),
+                format!("domain.y = {upright}"),
+                String::new(),
+            ),
+            Some(ends) => (
+                8,
+                "3d",
+                format!(
+                    "{{ x = \"{cell} m\", y = \"{} m\", z = \"{cell} m\" }}",
+                    ends.length / f64::from(ends.cells)
+                ),
+                format!("{}\ndomain.z = {upright}", ends.domain()),
+                format!("across = [\"0 m\", \"{} m\"]", ends.length),
+            ),
+        };
+        let walls = ends.map_or_else(String::new, Ends::walls);
         let mut text = format!(
             "igimp = 1
              [case]
              title = \"{}\"
-             analysis = \"plane-strain\"
+             analysis = \"{analysis}\"
              gravity = \"9.81 m/s2\"
              [grid]
-             cell = \"{cell} m\"
+             cell = {cells}
              domain.x = [\"{left} m\", \"{right} m\"]
-             domain.y = [\"{base} m\", \"{top} m\"]
+             {rest}
              locking = \"{locking}\"
              [boundaries]
              left = \"roller\"
              right = \"roller\"
              bottom = \"fixed\"
+             {walls}
              [solver]
              tolerance = 1e-6
              max_iterations = 20
@@ -286,14 +351,15 @@ impl Section {
                  [[bodies]]
                  name = \"layer {k}\"
                  material = \"soil-{k}\"
-                 points_per_cell = 4
+                 points_per_cell = {points}
                  polygon = {}
+                 {across}
                 ",
                 self.unit_weight,
                 corners(polygon),
             );
         }
-        Ok(CaseFile::parse(&self.name, &text, overrides)?.into_case())
+        text
     }
 }
 

@@ -10,6 +10,7 @@ mod space;
 mod tree;
 
 pub use mesh::SurfaceTriangle;
+pub use space::DrawnFacet;
 pub(crate) use space::Space;
 
 use thiserror::Error;

@@ -44,12 +44,7 @@ impl<const D: usize> Surface<D> {
 
     /// Two tangents of the surface at a knot, in the frame of the body, as far as a face with this normal
     /// has them; the second is the normal times the first (theory, eq. 45a).
-    pub(crate) fn tangents_at(
-        &self,
-        space: &Space<D>,
-        knot: usize,
-        normal: &[f64; D],
-    ) -> [[f64; D]; 2] {
+    pub(crate) fn tangents_at(space: &Space<D>, knot: usize, normal: &[f64; D]) -> [[f64; D]; 2] {
         let [_, first, second] = &space.frames[knot];
         let along = |own: &[f64; D]| {
             let share = dot(own, normal);
@@ -128,10 +123,37 @@ impl<const D: usize> Surface<D> {
     }
 }
 
+/// A triangle that carries contact: its corners, the knots that share each of them, and its side.
+pub type DrawnFacet<'a> = ([[f64; 3]; 3], [&'a [(usize, f64)]; 3], usize);
+
 impl Surface<3> {
+    /// The same at another place of the frame of the body: its reference point lies elsewhere.
+    ///
+    /// # Panics
+    /// For a sphere: it stays about the origin.
+    #[must_use]
+    pub fn shifted(mut self, by: [f64; 3]) -> Self {
+        assert!(self.radius.is_none(), "a sphere stays about the origin");
+        let shift = |x: &mut [f64; 3]| {
+            for axis in 0..3 {
+                x[axis] += by[axis];
+            }
+        };
+        self.points.iter_mut().for_each(shift);
+        shift(&mut self.bounds.0);
+        shift(&mut self.bounds.1);
+        if let Some(space) = &mut self.space {
+            space.outer.iter_mut().for_each(shift);
+            space.places.iter_mut().for_each(shift);
+            space.core.shift(&by);
+            space.sides.iter_mut().for_each(|side| side.shift(&by));
+        }
+        self
+    }
+
     /// The triangles that carry contact: corners in the frame of the body \[length\], and the shares of knots
     /// at each corner, to draw what the knots carry.
-    pub fn facets(&self) -> impl Iterator<Item = ([[f64; 3]; 3], [&[(usize, f64)]; 3], usize)> {
+    pub fn facets(&self) -> impl Iterator<Item = DrawnFacet<'_>> {
         let space = self.space.as_deref();
         space.into_iter().flat_map(move |space| {
             self.facets.iter().map(move |facet| {

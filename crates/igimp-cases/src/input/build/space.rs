@@ -346,6 +346,9 @@ fn loads(tree: &Node, soil: &Solids, problems: &mut Problems) -> Vec<Option<Load
         .collect()
 }
 
+/// Places along each side of a loaded rectangle at which soil is looked for.
+const SAMPLES: usize = 7;
+
 fn pressure(
     node: &Node,
     name: &str,
@@ -376,7 +379,6 @@ fn pressure(
     };
     let mut sides = [0_usize; 2];
     let mut buried = 0;
-    const SAMPLES: usize = 7;
     for k in 0..SAMPLES * SAMPLES {
         let mut share = [0.0; 3];
         let places = [k % SAMPLES, k / SAMPLES].map(|place| (place as f64 + 0.5) / SAMPLES as f64);

@@ -1,0 +1,99 @@
+//! A thick sphere of incompressible elastic-plastic soil that is expanded from within, at any strain.
+
+use super::cylinder::dilogarithm;
+
+/// A hollow sphere and its soil.
+///
+/// Volume is kept: a shell of initial radius R is found at r with r³ − R³ = a³ − a₀³ = Δ. Its Hencky strain is
+/// ln(r/R) around and twice that, shortening, along the radius, so σ_θ − σ_r = min(6G ln(r/R), 2 s_u) for Tresca and
+/// von Mises alike, and equilibrium makes the pressure within
+///
+/// `p = ∫_a^b 2 (σ_θ − σ_r) dr/r = 4 s_u ln(r_p/a) + 4/3 G [Li₂(Δ/r_p³) − Li₂(Δ/b³)]`
+///
+/// with `Li₂` the dilogarithm and r_p the radius up to which the soil yields, `Δ/r_p³ = 1 − exp(−s_u/G)`, cut off at
+/// a and b.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ThickSphere {
+    /// Initial inner radius a₀ \[length\].
+    pub(crate) inner: f64,
+    /// Initial outer radius b₀ \[length\].
+    pub(crate) outer: f64,
+    /// Shear modulus G \[force/length²\].
+    pub(crate) shear: f64,
+    /// Undrained strength s_u, half the strength in triaxial compression \[force/length²\].
+    pub(crate) strength: f64,
+}
+
+impl ThickSphere {
+    /// Outer radius at the inner radius `a` \[length\].
+    pub(crate) fn outer_at(&self, a: f64) -> f64 {
+        (self.outer.powi(3) + a.powi(3) - self.inner.powi(3)).cbrt()
+    }
+
+    /// Δ/r_p³, at most 1 \[-\].
+    fn at_yield(&self) -> f64 {
+        -(-self.strength / self.shear).exp_m1()
+    }
+
+    /// Pressure within at the inner radius `a`, none acting outside \[force/length²\].
+    pub(crate) fn pressure(&self, a: f64) -> f64 {
+        self.between(a, self.outer_at(a), a)
+    }
+
+    /// The part of the pressure at `a` that soil beyond the outer radius would add if it went on without end
+    /// \[force/length²\].
+    pub(crate) fn beyond(&self, a: f64) -> f64 {
+        self.between(self.outer_at(a), f64::INFINITY, a)
+    }
+
+    /// What the soil between two radii adds to the pressure at the inner radius `a`.
+    fn between(&self, from: f64, to: f64, a: f64) -> f64 {
+        let added = a.powi(3) - self.inner.powi(3);
+        let edge = (added / self.at_yield()).cbrt().clamp(from, to);
+        let elastic = |r: f64| dilogarithm(added / r.powi(3));
+        4.0 * self.strength * (edge / from).ln()
+            + 4.0 / 3.0 * self.shear * (elastic(edge) - elastic(to))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sphere(outer: f64, shear: f64) -> ThickSphere {
+        ThickSphere {
+            inner: 1.0,
+            outer,
+            shear,
+            strength: 1.0,
+        }
+    }
+
+    /// Against direct integration elsewhere, to the digits kept.
+    #[test]
+    fn known_values() {
+        let thick = sphere(2.0, 100.0);
+        let known = [
+            (1.001, 0.349_46),
+            (1.005, 1.613_10),
+            (1.01, 2.271_40),
+            (1.02, 2.658_73),
+            (1.05, 2.603_44),
+            (1.1, 2.445_40),
+            (1.5, 1.497_34),
+        ];
+        for (a, expected) in known {
+            let found = thick.pressure(a);
+            assert!((found - expected).abs() < 2e-5, "{a}: {found}");
+        }
+    }
+
+    #[test]
+    fn soil_without_end() {
+        for (a, expected) in [(1.01, 1.316_84), (1.1, 4.163_30), (2.0, 5.840_69)] {
+            let sphere = sphere(8.0, 100.0 / 3.0);
+            let found = sphere.pressure(a) + sphere.beyond(a);
+            assert!((found - expected).abs() < 2e-3, "{a}: {found}");
+        }
+    }
+}
