@@ -475,10 +475,10 @@ fn a_hillside_is_as_safe_as_its_bounds_say() {
     let ran = ran_in_space("landslide_3d", &["stages.1.tolerance=0.2"]);
     assert_eq!(ran.outcomes(), [Completed; 2]);
     let [stable, failed] = ran.factor_of_safety(1);
-    between(stable, 1.076, failed);
+    between(stable, 1.05, failed);
     between(failed, stable, 1.75);
-    // Prisms below flat triangles, 1377.6 or 1372.4 m3 by how the rectangles of the raster are halved.
+    // Prisms below flat triangles, 1467.6 or 1462.4 m3 by how the rectangles of the raster are halved.
     let volume: f64 = ran.run.body.particles.volume0.iter().sum();
-    assert!((volume - 1375.0).abs() < 2.61, "{volume}");
+    assert!((volume - 1465.0).abs() < 2.61, "{volume}");
     between(ran.virtual_work(1.0), 0.97, 1.03);
 }
