@@ -40,7 +40,7 @@ impl Solids {
         let round_off = 1e-9 * largest;
         let cells = frame.iter().flat_map(|frame| frame.axes.iter());
         Self {
-            is_complete: regions.len() == bodies.len() && !bodies.is_empty(),
+            is_complete: frame.is_some() && regions.len() == bodies.len() && !bodies.is_empty(),
             regions,
             round_off,
             cell: cells
@@ -310,16 +310,18 @@ fn check_level(
         return;
     };
     if high.0 - low.0 > 1e-6 * soil.cell {
+        // Places are taken a little beside edges.
+        let near = |x: f64| number((1e6 * x).round() / 1e6);
         problems
             .error(stage.place_at("type"), "a k0 stage needs level ground")
             .help(format!(
                 "the surface is at z = {} m above ({} m, {} m) and at z = {} m above ({} m, {} m)",
                 number(low.0),
-                number(low.1[0]),
-                number(low.1[1]),
+                near(low.1[0]),
+                near(low.1[1]),
                 number(high.0),
-                number(high.1[0]),
-                number(high.1[1])
+                near(high.1[0]),
+                near(high.1[1])
             ))
             .help("for a slope use a stage of type gravity");
     }
