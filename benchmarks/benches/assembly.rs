@@ -14,6 +14,8 @@ use rayon::ThreadPool;
 const SIZES: [usize; 3] = [50, 158, 500];
 /// Cells along a side of the blocks that compare laws: 2500 particles, which stay in the caches.
 const SMALL: usize = 25;
+/// Cells along a side of the cube: 13 824 particles.
+const CUBE: usize = 12;
 
 fn main() -> BenchResult {
     let sizes = match Set::asked() {
@@ -32,6 +34,9 @@ fn main() -> BenchResult {
         }
         for soil in Soil::ALL {
             linearise_of(criterion, soil, &pools[0]);
+        }
+        for soil in [Soil::VonMises, Soil::MohrCoulomb] {
+            in_space(criterion, soil, &pools[0]);
         }
         Ok(())
     })
@@ -104,5 +109,28 @@ fn linearise_of(criterion: &mut Criterion, soil: Soil, pool: &ThreadPool) {
         let pass = pass.get_or_insert_with(|| made(Pass::new(block, stencils)));
         bencher.iter(|| pool.install(|| pass.linearise()));
     });
+    group.finish();
+}
+
+fn in_space(criterion: &mut Criterion, soil: Soil, pool: &ThreadPool) {
+    let input: OnceCell<(Block<3>, Stencils<3>)> = OnceCell::new();
+    let mut pass = None;
+    let mut group = criterion.benchmark_group("space");
+    group.throughput(elements(Block::<3>::particles(CUBE)));
+    group.sample_size(10).sampling_mode(SamplingMode::Flat);
+    for phase in ["evaluate", "linearise"] {
+        group.bench_function(format!("{}/{phase}", soil.name()), |bencher| {
+            let (block, stencils) = input.get_or_init(|| {
+                let block = made(Block::new(soil, CUBE));
+                let stencils = made(block.stencils());
+                (block, stencils)
+            });
+            let pass = pass.get_or_insert_with(|| made(Pass::new(block, stencils)));
+            match phase {
+                "evaluate" => bencher.iter(|| pool.install(|| pass.evaluate())),
+                _ => bencher.iter(|| pool.install(|| pass.linearise())),
+            }
+        });
+    }
     group.finish();
 }

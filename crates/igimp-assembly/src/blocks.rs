@@ -8,7 +8,6 @@ use igimp_shape::{Grid, Support};
 use crate::matrix::{NodeBlock, Pattern};
 use crate::reach::{SMALL_REACH, common_reach, furthest};
 use crate::stencils::Stencils;
-use crate::supports::bounds;
 use crate::unknowns::Unknowns;
 
 /// Marks a pair of nodes without a block, or a node without unknowns.
@@ -118,8 +117,9 @@ impl<const D: usize> BlockTable<D> {
         (table, pattern)
     }
 
-    /// Marks the coupled pairs. Particles that touch the same box of nodes couple the same pairs:
-    /// each box is marked once. Returns the row nodes of each wide column node.
+    /// Marks the coupled pairs. Particles that touch the same box of nodes couple the same pairs, and those of
+    /// a box within it: each box that is in no other from the same node is marked once. Returns the row
+    /// nodes of each wide column node.
     fn mark(
         &mut self,
         grid: &Grid<D>,
@@ -128,29 +128,28 @@ impl<const D: usize> BlockTable<D> {
     ) -> BTreeMap<usize, BTreeSet<usize>> {
         let mut wide = BTreeMap::new();
         let mut last: &[Support<D>] = &[];
-        let mut seen = vec![0_u64; grid.node_count()];
+        let mut shapes = vec![0_u64; grid.node_count()];
+        let mut nodes = Vec::new();
         for &particle in stencils.order() {
             let own = stencils.of(particle as usize);
             if same_nodes(own, last) {
                 continue;
             }
             last = own;
-            let first = own[0].node;
-            if let Some(shape) = box_shape(grid, own) {
-                if seen[first] & shape != 0 {
-                    continue;
-                }
-                seen[first] |= shape;
+            if let Some(extent) = box_extent(grid, own) {
+                shapes[own[0].node] |= 1 << shape(extent);
+            } else {
+                nodes.clear();
+                nodes.extend(own.iter().map(|support| support.node));
+                self.couple_all(&nodes, &mut wide);
             }
-            for column in own {
-                if self.nodes[column.node].block == NONE {
-                    continue;
-                }
-                for row in own {
-                    if self.nodes[row.node].block != NONE {
-                        self.couple(column.node, row.node, &mut wide);
-                    }
-                }
+        }
+        let begun = shapes.into_iter().enumerate();
+        for (first, shapes) in begun.filter(|&(_, shapes)| shapes != 0) {
+            for extent in outermost::<D>(shapes) {
+                nodes.clear();
+                nodes.extend(box_nodes(grid, first, extent));
+                self.couple_all(&nodes, &mut wide);
             }
         }
         for &(column, row) in extra {
@@ -159,6 +158,20 @@ impl<const D: usize> BlockTable<D> {
             }
         }
         wide
+    }
+
+    /// Couples nodes with each other.
+    fn couple_all(&mut self, nodes: &[usize], wide: &mut BTreeMap<usize, BTreeSet<usize>>) {
+        for &column in nodes {
+            if self.nodes[column].block == NONE {
+                continue;
+            }
+            for &row in nodes {
+                if self.nodes[row].block != NONE {
+                    self.couple(column, row, wide);
+                }
+            }
+        }
     }
 
     #[inline]
@@ -301,12 +314,80 @@ pub(crate) fn same_nodes<const D: usize>(a: &[Support<D>], b: &[Support<D>]) -> 
     a.len() == b.len() && std::iter::zip(a, b).all(|(a, b)| a.node == b.node)
 }
 
-/// One bit that stands for the lengths of the sides of the box of nodes that supports fill; `None`
-/// when they do not fill it, or when it is larger than any common one.
+/// The nodes of a box from its first one on, ascending.
 #[inline]
-fn box_shape<const D: usize>(grid: &Grid<D>, own: &[Support<D>]) -> Option<u64> {
-    let (_, extent) = bounds(grid, own);
-    let filled: usize = extent.iter().map(|extent| extent + 1).product();
-    let common = extent.iter().all(|&extent| extent < 4);
-    (common && filled == own.len()).then(|| 1 << extent.iter().fold(0, |code, e| code * 4 + e))
+fn box_nodes<const D: usize>(
+    grid: &Grid<D>,
+    first: usize,
+    extent: [usize; D],
+) -> impl Iterator<Item = usize> {
+    let mut stride = 1;
+    let strides: [usize; D] = std::array::from_fn(|axis| {
+        let own = stride;
+        stride *= grid.axes[axis].node_count();
+        own
+    });
+    let count = extent.iter().map(|extent| extent + 1).product();
+    let mut place = [0; D];
+    let mut node = first;
+    (0..count).map(move |_| {
+        let own = node;
+        for axis in 0..D {
+            if place[axis] < extent[axis] {
+                place[axis] += 1;
+                node += strides[axis];
+                break;
+            }
+            node -= place[axis] * strides[axis];
+            place[axis] = 0;
+        }
+        own
+    })
+}
+
+/// Sides of boxes up to this many nodes have a shape.
+const SIDES: usize = 4;
+
+/// How far the box extends that supports fill, in nodes along each axis; `None` when they do not fill it, or when it
+/// is larger than any common one.
+#[inline]
+fn box_extent<const D: usize>(grid: &Grid<D>, own: &[Support<D>]) -> Option<[usize; D]> {
+    let (first, last) = (own[0].node, own[own.len() - 1].node);
+    let places = (grid.node_place(first), grid.node_place(last));
+    let mut extent = [0; D];
+    for axis in 0..D {
+        extent[axis] = places.1[axis].checked_sub(places.0[axis])?;
+        if extent[axis] >= SIDES {
+            return None;
+        }
+    }
+    let nodes = own.iter().map(|support| support.node);
+    nodes.eq(box_nodes(grid, first, extent)).then_some(extent)
+}
+
+/// A number for the sides of a box.
+fn shape<const D: usize>(extent: [usize; D]) -> usize {
+    extent.iter().rev().fold(0, |code, e| code * SIDES + e)
+}
+
+/// The boxes of some shapes, one bit each, that are in no other of them.
+fn outermost<const D: usize>(shapes: u64) -> impl Iterator<Item = [usize; D]> {
+    let extent = |shape: usize| -> [usize; D] {
+        std::array::from_fn(|axis| shape / SIDES.pow(axis as u32) % SIDES)
+    };
+    let all = move || {
+        let mut rest = shapes;
+        std::iter::from_fn(move || {
+            let shape = rest.trailing_zeros() as usize;
+            let some = rest != 0;
+            rest &= rest.wrapping_sub(1);
+            some.then_some(shape)
+        })
+    };
+    let is_within = move |shape: usize, other: usize| {
+        other != shape && std::iter::zip(extent(shape), extent(other)).all(|(a, b)| a <= b)
+    };
+    all()
+        .filter(move |&shape| !all().any(|other| is_within(shape, other)))
+        .map(extent)
 }

@@ -24,11 +24,10 @@ pub(crate) fn mirror(pattern: &Pattern, values: &mut [f64]) {
         |piece: &Range<usize>| pattern.first_value[piece.start]..pattern.first_value[piece.end];
     let slices = split(values, pieces.iter().map(stored));
     let mut all: Vec<(Range<usize>, &mut [f64])> = pieces.into_iter().zip(slices).collect();
-    let into_second = |pair: &mut [(Range<usize>, &mut [f64])]| match pair {
-        [(before, earlier), (piece, own)] => {
+    let into_second = |pair: &mut [(Range<usize>, &mut [f64])]| {
+        if let [(before, earlier), (piece, own)] = pair {
             fill_upper(pattern, (before.clone(), earlier), (piece.clone(), own));
         }
-        _ => {}
     };
     all.par_chunks_mut(2).for_each(into_second);
     if let Some(((piece, own), rest)) = all.split_first_mut() {
@@ -71,19 +70,37 @@ fn fill_upper(
                 *next += len;
                 break;
             }
-            let other_height = pattern.height(other);
-            for a in 0..pattern.blocks[other].len {
-                for c in 0..len {
-                    let from = first(other) + a * other_height + *next + c;
-                    let value = if other < piece.start {
-                        earlier[from - first(before.start)]
-                    } else {
-                        own[from - first(piece.start)]
-                    };
-                    own[to + c * height + row + a] = value;
+            let other_len = pattern.blocks[other].len;
+            let source = if other < piece.start {
+                &earlier[first(other) - first(before.start)..]
+            } else {
+                &own[first(other) - first(piece.start)..]
+            };
+            let (source, stride) = (&source[*next..], pattern.height(other));
+            // Most nodes have three unknowns: known lengths leave nothing of the loops.
+            if len == 3 && other_len == 3 {
+                let block: [[f64; 3]; 3] = std::array::from_fn(|a| {
+                    let column = source[a * stride..].first_chunk();
+                    *column.expect("rows of a node follow one another")
+                });
+                for c in 0..3 {
+                    let to = &mut own[to + c * height + row..][..3];
+                    for a in 0..3 {
+                        to[a] = block[a][c];
+                    }
+                }
+            } else {
+                let mut block = [[0.0; 3]; 3];
+                for a in 0..other_len {
+                    block[a][..len].copy_from_slice(&source[a * stride..][..len]);
+                }
+                for a in 0..other_len {
+                    for c in 0..len {
+                        own[to + c * height + row + a] = block[a][c];
+                    }
                 }
             }
-            row += pattern.blocks[other].len;
+            row += other_len;
             *next += len;
         }
     }

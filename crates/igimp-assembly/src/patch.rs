@@ -103,9 +103,13 @@ impl<const D: usize> Patch<D> {
             w: [[0.0; LANES]; D],
         };
         self.factors.resize(lanes, nothing);
-        self.sums.clear();
         self.sums
             .resize(self.nodes.len() * lanes, [[[0.0; LANES]; D]; D]);
+        for (j, sums) in self.sums.chunks_exact_mut(lanes).enumerate() {
+            let from = if is_half { j / LANES } else { 0 };
+            let sums = sums[from..].as_flattened_mut().as_flattened_mut();
+            sums.as_flattened_mut().fill(0.0);
+        }
         self.is_half = is_half;
         count
     }
@@ -188,7 +192,7 @@ impl<const D: usize> Patch<D> {
             let height = values.len() / usize::from(column.len);
             let first = if self.is_half { j * D } else { 0 };
             let add = |rows: Range<usize>, offset: usize| {
-                let is_full = rows.start % D == 0 && rows.len() % D == 0;
+                let is_full = rows.start.is_multiple_of(D) && rows.len().is_multiple_of(D);
                 if is_full && usize::from(column.len) == D {
                     for (k, i) in (rows.start / D..rows.end / D).enumerate() {
                         let (sums, lane) = (&sums[i / LANES], i % LANES);
@@ -245,7 +249,8 @@ impl<const D: usize> NullaryFnOnce for Add<'_, D> {
             return;
         };
         let touched = first / LANES..last / LANES + 1;
-        gradients[touched.clone()].fill([[[0.0; LANES]; D]; 2]);
+        let zeroed = gradients[touched.clone()].as_flattened_mut();
+        zeroed.as_flattened_mut().as_flattened_mut().fill(0.0);
         let own = std::iter::zip(self.linearised.g(), self.linearised.g_bar());
         for (&place, (g, g_bar)) in std::iter::zip(&*places, own.clone()) {
             let [to, to_bar] = &mut gradients[place / LANES];
@@ -258,7 +263,7 @@ impl<const D: usize> NullaryFnOnce for Add<'_, D> {
             set(&mut factors[k], &gradients[k], self.moduli);
         }
         let lanes = nodes.len().div_ceil(LANES);
-        for (&place, (g, g_bar)) in std::iter::zip(&*places, own) {
+        for (&place, (&g, &g_bar)) in std::iter::zip(&*places, own) {
             let d_3: [f64; D] = std::array::from_fn(|c| g_bar[c] - g[c]);
             let from = if *is_half {
                 place / LANES
@@ -326,5 +331,109 @@ fn set<const D: usize>(factors: &mut Factors<D>, [g, g_bar]: &[[Lane; D]; 2], mo
                 factors.y[c][a][d] = y;
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use igimp_material::{Elasticity, HenckyElastic, MohrCoulomb, TangentKind};
+    use igimp_shape::Axis;
+
+    use crate::{
+        Constraints, Method, ParticleSeed, ParticleTrial, Particles, SharedLaw, Stencils,
+        StepConditions, StepLoads, System,
+    };
+
+    use super::*;
+
+    /// A grid with a large cell at its corner, whose particle is wide, and two particles a direction in each of
+    /// the other cells off its walls, off their places; the topmost make small cuts.
+    fn body() -> (Grid<3>, Particles<3>) {
+        let nodes = std::iter::once(0.0).chain((0..6).map(|k| 5.0 + f64::from(k)));
+        let axis = Axis::from_nodes(nodes.collect()).unwrap();
+        let grid = Grid::<3>::new([axis.clone(), axis.clone(), axis]);
+        let seed = |x: [f64; 3], half_length: f64| ParticleSeed {
+            x,
+            half_length: [half_length; 3],
+            volume: (2.0 * half_length).powi(3),
+            density: 1.0,
+            law: 0,
+        };
+        let mut seeds = vec![seed([4.5; 3], 2.0)];
+        for k in 0..512_usize {
+            let place = [k % 8, k / 8 % 8, k / 64];
+            let x = std::array::from_fn(|axis| {
+                let off = (k * (axis + 3) % 7) as f64 / 7.0 - 0.5;
+                5.28 + 0.5 * place[axis] as f64 + 0.2 * off
+            });
+            seeds.push(seed(x, 0.25));
+        }
+        (grid, Particles::new(&seeds).unwrap())
+    }
+
+    /// The sums over patches are those over particles, and symmetric where the law is.
+    fn compare(law: SharedLaw) {
+        let (grid, body) = body();
+        let mut constraints = Constraints::free(&grid);
+        constraints.fix_wall(&grid, 0, false, 0).unwrap();
+        constraints.fix_wall(&grid, 1, true, 1).unwrap();
+        constraints.fix_wall(&grid, 1, true, 2).unwrap();
+        let is_symmetric = law.has_symmetric_tangent();
+        let loads = StepLoads::gravity([0.0; 3]);
+        let conditions = StepConditions::new(grid, constraints, loads, vec![law]).unwrap();
+        let method = Method::igimp_bbar();
+        let stencils = Stencils::build(&body, &method, &conditions).unwrap();
+        assert!(!stencils.masters().is_empty(), "some small cuts are tied");
+        let system = System::new(&body, &stencils, &conditions, &method).unwrap();
+        let u: Vec<[f64; 3]> = (0..system.node_count())
+            .map(|node| std::array::from_fn(|axis| 1e-3 * ((node * (axis + 5)) % 11) as f64))
+            .collect();
+        let kind = TangentKind::Consistent;
+        let (_, matrix) = system.linearise(&u, kind).unwrap();
+        let mut expected = vec![0.0; matrix.values.len()];
+        let mut linearised = Linearised::default();
+        let mut trial = ParticleTrial::at_rest();
+        for particle in 0..body.len() {
+            let supports = stencils.of(particle);
+            let own = system.evaluate_particle(particle, &u, kind, &mut trial);
+            let own = own.unwrap();
+            linearised.push(supports, &own);
+            let volume = system.reference_volume(particle);
+            linearised.linearise(&Moduli::of(&own, volume, method.kinematics));
+            for (j, column) in supports.iter().enumerate() {
+                let columns = linearised.columns(j);
+                for (component, (c, _)) in system.unknowns().of(column.node).enumerate() {
+                    for (i, row) in supports.iter().enumerate() {
+                        for (rank, (a, _)) in system.unknowns().of(row.node).enumerate() {
+                            let (pattern, nodes) = (system.pattern(), [column.node, row.node]);
+                            let place = system.table.value(pattern, nodes[0], component, nodes[1]);
+                            expected[place + rank] += columns[c][i * 3 + a];
+                        }
+                    }
+                }
+            }
+        }
+        let size = expected.iter().fold(0.0_f64, |size, k| size.max(k.abs()));
+        for (found, expected) in matrix.values.iter().zip(&expected) {
+            assert!(
+                (found - expected).abs() < 1e-14 * size,
+                "{found} {expected}"
+            );
+        }
+        let (columns, rows) = (matrix.to_csc(), matrix.to_csc().transpose());
+        let both = std::iter::zip(columns.values(), rows.values());
+        let asymmetry = both.fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
+        assert_eq!(asymmetry < 1e-14 * size, is_symmetric, "{asymmetry:e}");
+    }
+
+    #[test]
+    fn patches_sum_what_particles_contribute() {
+        let elasticity = Elasticity::new(1e3, 0.3).unwrap();
+        compare(Arc::new(HenckyElastic::new(elasticity)));
+        compare(Arc::new(
+            MohrCoulomb::new(elasticity, 0.1, 0.5, 0.0).unwrap(),
+        ));
     }
 }

@@ -301,6 +301,27 @@ fn cones() {
     );
 }
 
+/// A surface that is shifted has the distances of one that was not, elsewhere.
+#[test]
+fn shifted_surfaces() {
+    let surface = Surface::cylinder(1, 1.0, 0.7, 0.1, 0.3).unwrap();
+    let (first, by) = (body(surface.clone()), [0.3, -2.0, 1.0]);
+    let second = body(surface.shifted(by));
+    let ([lower, upper], knots) = (
+        [second.surface.bounds().0, second.surface.bounds().1],
+        second.surface.knots(),
+    );
+    for (place, _) in knots {
+        assert!((0..3).all(|a| lower[a] - 1e-12 < place[a] && place[a] < upper[a] + 1e-12));
+    }
+    let mut random = Random(18);
+    for _ in 0..200 {
+        let x: [f64; 3] = std::array::from_fn(|_| 1.5 * random.symmetric());
+        let moved = std::array::from_fn(|a| x[a] + by[a]);
+        assert!((first.distance(&x) - second.distance(&moved)).abs() < 1e-12);
+    }
+}
+
 /// A sphere has its exact distance, and facets that nearly cover it.
 #[test]
 fn spheres() {

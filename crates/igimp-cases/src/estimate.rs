@@ -15,6 +15,7 @@ pub mod time;
 pub mod watch;
 
 use igimp_shape::{Scratch, supports};
+use igimp_solver::linear::SolverKind;
 
 use crate::case::{Case, LoadKind, ReductionPath, Side, StageKind};
 use crate::error::CaseError;
@@ -34,6 +35,16 @@ const PER_SEARCHED: f64 = 2e3;
 const PER_UNKNOWN: f64 = 3e3;
 /// Factors, for each unknown and each doubling of the unknowns \[bytes\].
 const PER_FILL: f64 = 1.5e2;
+/// The same in space, where a particle touches up to 27 nodes \[bytes\].
+const PER_PARTICLE_IN_SPACE: f64 = 4e3;
+/// Matrix, its copies and its pattern in space \[bytes per unknown\].
+const PER_UNKNOWN_IN_SPACE: f64 = 7e3;
+/// Factors of a symmetric matrix in space \[bytes\], times $`n^{4/3}`$.
+const PER_FILL_IN_SPACE: f64 = 1e3;
+/// What an iteration with multigrid holds instead of factors \[bytes per unknown\].
+const PER_ITERATED: f64 = 4e3;
+/// Unknowns in space from which on systems are solved by iteration.
+pub(crate) const ITERATED: usize = 100_000;
 /// A picture of 1920 x 1290 pixels of four bytes while it is drawn and packed \[bytes\].
 const PER_PICTURE: f64 = 2.1 * 1920.0 * 1290.0 * 4.0;
 /// Share of the smaller of the two parts, solving and drawing, that is not taken from what the
@@ -167,7 +178,7 @@ impl Expectation {
 
 /// Memory of a run on the threads of the current pool \[bytes\].
 fn memory<const D: usize>(case: &Case<D>, particles: usize, unknowns: usize) -> f64 {
-    let [particle, unknown] = per_item(unknowns);
+    let [particle, unknown] = per_item(D, is_iterated(case, unknowns), unknowns);
     let searches = case.stages.iter().any(|stage| {
         matches!(&stage.kind, StageKind::StrengthReduction(search)
             if search.path == ReductionPath::Reduce)
@@ -178,8 +189,48 @@ fn memory<const D: usize>(case: &Case<D>, particles: usize, unknowns: usize) -> 
     BASE + solving.max(drawing) + AGAIN * solving.min(drawing)
 }
 
-/// Memory of a particle, and of an unknown among so many with its share of the fill \[bytes\].
-pub fn per_item(unknowns: usize) -> [f64; 2] {
+/// Whether the systems of a case are expected to be solved by iteration.
+pub fn is_iterated<const D: usize>(case: &Case<D>, unknowns: usize) -> bool {
+    match case.solver.linear {
+        SolverKind::Auto => D == 3 && unknowns > ITERATED,
+        SolverKind::Multigrid => true,
+        _ => false,
+    }
+}
+
+/// Which linear solver a case is expected to use, and why.
+pub fn linear_solver<const D: usize>(case: &Case<D>, unknowns: usize) -> String {
+    let symmetric = (case.materials.iter())
+        .all(|material| material.law().is_ok_and(|law| law.has_symmetric_tangent()));
+    let [direct, iteration] = if symmetric {
+        ["Cholesky", "conjugate gradients with multigrid"]
+    } else {
+        ["LU", "GMRES with multigrid"]
+    };
+    match case.solver.linear {
+        SolverKind::Auto if is_iterated(case, unknowns) => {
+            format!("{iteration}: in space with so many unknowns a factorisation takes longer")
+        }
+        SolverKind::Auto => direct.to_owned(),
+        SolverKind::Multigrid => format!("{iteration}, as asked for"),
+        SolverKind::FaerCholesky => "Cholesky of faer, as asked for".to_owned(),
+        SolverKind::NalgebraCholesky => "Cholesky of nalgebra, as asked for".to_owned(),
+        SolverKind::MultifrontalCholesky => "Cholesky, as asked for".to_owned(),
+        SolverKind::Multifrontal => "LU, as asked for".to_owned(),
+        SolverKind::SprsBiCgStab => "bi-conjugate gradients, as asked for".to_owned(),
+    }
+}
+
+/// Memory of a particle, and of an unknown among so many with its share of the fill \[bytes\], in so many dimensions.
+pub fn per_item(dimensions: usize, is_iterated: bool, unknowns: usize) -> [f64; 2] {
+    if dimensions == 3 {
+        let solver = if is_iterated {
+            PER_ITERATED
+        } else {
+            PER_FILL_IN_SPACE * (unknowns as f64).cbrt()
+        };
+        return [PER_PARTICLE_IN_SPACE, PER_UNKNOWN_IN_SPACE + solver];
+    }
     let doublings = (unknowns as f64).max(2.0).log2();
     [PER_PARTICLE, PER_UNKNOWN + PER_FILL * doublings]
 }
@@ -300,14 +351,14 @@ pub(crate) mod tests {
 
     #[test]
     fn memory_is_that_of_particles_and_unknowns() {
-        let [particle, unknown] = per_item(1 << 19);
+        let [particle, unknown] = per_item(2, false, 1 << 19);
         let sum = 1e6 * particle + f64::from(1 << 19) * unknown;
         let drawing = PER_PICTURE * rayon::current_num_threads() as f64;
         let expected = BASE + sum + AGAIN * drawing;
         assert!((memory(&case(), 1_000_000, 1 << 19) - expected).abs() < 1.0);
         assert!((unknown - PER_UNKNOWN - 19.0 * PER_FILL).abs() < 1e-9);
         // A small case is a program that draws pictures.
-        let [particle, unknown] = per_item(36);
+        let [particle, unknown] = per_item(2, false, 36);
         let expected = BASE + drawing + AGAIN * (64.0 * particle + 36.0 * unknown);
         assert!((memory(&case(), 64, 36) - expected).abs() < 1.0);
     }

@@ -67,7 +67,7 @@ impl Folder {
 
     fn outline(&self, polygon: &str) -> Vec<[f64; 2]> {
         let file = self.read(polygon).unwrap_or_else(|error| panic!("{error}"));
-        file.case().bodies[0].polygon.clone()
+        file.case().bodies[0].polygon().to_vec()
     }
 
     /// What is said of it, the folder aside.

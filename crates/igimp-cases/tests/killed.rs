@@ -8,7 +8,7 @@ use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use igimp_assembly::{ParticleSeed, Particles};
-use igimp_cases::results::checkpoint::{self, Meta};
+use igimp_cases::results::checkpoint::{self, Checkpoint, Meta};
 use igimp_cases::results::folder::write_atomically;
 use igimp_solver::Body;
 use serde_json::json;
@@ -51,7 +51,7 @@ fn write_many(folder: &Path) {
 /// Particles of the newest checkpoint, which must be whole and agree with itself.
 fn written(folder: &Path) -> Option<usize> {
     let path = checkpoint::newest(folder).unwrap()?;
-    let checkpoint = checkpoint::read(&path, Some("case")).unwrap();
+    let checkpoint: Checkpoint = checkpoint::read(&path, Some("case")).unwrap();
     let particles = checkpoint.states[0].1.particles.len();
     assert_eq!(checkpoint.meta.data, json!(particles));
     assert_eq!(checkpoint.states[1].1.particles.len(), particles);

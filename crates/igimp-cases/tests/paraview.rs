@@ -5,14 +5,15 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::Arc;
 
 use igimp_assembly::{Interface, ParticleFields, Particles, RigidBody, Surface};
 use igimp_cases::case::{RigidInterface, RigidPart, RigidShape, RigidShear};
-use igimp_cases::results::checkpoint::{self, Meta};
+use igimp_cases::results::checkpoint::{self, Checkpoint, Meta};
 use igimp_cases::results::npy::{Array, Values};
 use igimp_cases::results::particles::{Extras, of_grid, of_particles};
 use igimp_cases::results::pvd::{Collection, GRID, PARTICLES, RIGID};
-use igimp_cases::results::rigid::{Standing, lines};
+use igimp_cases::results::rigid::{Standing, cells as cells_of_bodies};
 use igimp_cases::results::vtu::{CellKind, DataArray, UnstructuredGrid};
 use igimp_material::{History, Ratios, Regime};
 use igimp_shape::{Axis, Grid};
@@ -127,6 +128,7 @@ fn expected(grid: &UnstructuredGrid, time: f64, size: f64) -> Value {
     let arrays = |arrays: &[DataArray]| arrays.iter().map(array).collect::<Vec<_>>();
     let cell_type = match grid.kind {
         CellKind::Line => 3,
+        CellKind::Triangle => 5,
         CellKind::Quad => 9,
         CellKind::Hexahedron => 12,
     };
@@ -155,7 +157,7 @@ fn rectangle() -> (RigidPart, RigidBody<2>) {
     };
     let part = RigidPart {
         name: "plate".into(),
-        shape: RigidShape::Polygon(corners.to_vec()),
+        shape: Arc::new(RigidShape::Polygon(corners.to_vec())),
         reference: [1.0, 0.0],
         interfaces: vec![interface; 4],
         stiffness: 10.0,
@@ -226,7 +228,7 @@ fn vtk_pyvista_and_meshio_read_what_is_written() {
     let cells = of_grid(&Grid::new([axis(3), axis(2), axis(4)]), None);
     add(&mut of_background, 0.1, &cells, 3.0);
     let (part, body) = rectangle();
-    let plate = lines(&[Standing {
+    let plate = cells_of_bodies(&[Standing {
         index: 0,
         part: &part,
         body: &body,
@@ -314,7 +316,7 @@ fn tractions_turn_with_the_body() {
         part: &part,
         body: &body,
     };
-    let grid = lines(&[standing]);
+    let grid = cells_of_bodies(&[standing]);
     let of = |name: &str| {
         let mut arrays = grid.point_data.iter();
         match arrays.find(|array| array.name() == name).unwrap().values() {
@@ -363,7 +365,7 @@ fn numpy_reads_and_writes_checkpoints() {
     if !run_script("numpy_arrays.py", "numpy", &folder) {
         return;
     }
-    let changed = checkpoint::read(&path, Some("case")).unwrap();
+    let changed: Checkpoint = checkpoint::read(&path, Some("case")).unwrap();
     assert_eq!(changed.meta.data["factor"], json!(0.1 + 0.2));
     let particles = &changed.states[0].1.particles;
     assert_eq!(particles.x, body.particles.x);

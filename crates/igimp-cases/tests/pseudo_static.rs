@@ -136,6 +136,7 @@ fn a_push_is_a_number_of_a_stage_of_gravity() {
         StageKind::Gravity {
             factor: 1.0,
             horizontal: Some(0.1),
+            across: None,
             vertical: None
         }
     );

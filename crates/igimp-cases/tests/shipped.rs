@@ -3,37 +3,45 @@
 
 use std::sync::atomic::AtomicBool;
 
+use igimp_cases::case::Case;
 use igimp_cases::input::CaseFile;
-use igimp_cases::run::{Event, Run, Start, run};
+use igimp_cases::run::{Nobody, Run, Start, run};
 use igimp_cases::shipped::{SHIPPED, find};
 use igimp_cases::summary::StageOutcome::{self, Completed, Stopped};
 
 /// A shipped case after a run in memory.
-struct Ran {
-    run: Run,
+struct Ran<const D: usize = 2> {
+    run: Run<D>,
     gravity: f64,
 }
 
-/// Runs a shipped case with changed values.
-fn ran(name: &str, overrides: &[&str]) -> Ran {
+/// A shipped case with changed values.
+fn file(name: &str, overrides: &[&str]) -> CaseFile {
     let overrides: Vec<String> = overrides.iter().map(ToString::to_string).collect();
     let text = find(name).unwrap().text;
-    let file = CaseFile::parse(name, text, &overrides).unwrap_or_else(|error| panic!("{error}"));
-    let run = run(
-        file.case(),
-        None,
-        Start::Afresh,
-        &mut |_: &Event<'_>| {},
-        &AtomicBool::new(false),
-    )
-    .unwrap();
+    CaseFile::parse(name, text, &overrides).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Runs a case.
+fn ran_case<const D: usize>(case: &Case<D>) -> Ran<D> {
+    let interrupt = AtomicBool::new(false);
     Ran {
-        run,
-        gravity: file.case().gravity,
+        run: run(case, None, Start::Afresh, &mut Nobody, &interrupt).unwrap(),
+        gravity: case.gravity,
     }
 }
 
-impl Ran {
+/// Runs a shipped case of plane strain with changed values.
+fn ran(name: &str, overrides: &[&str]) -> Ran {
+    ran_case(file(name, overrides).case())
+}
+
+/// Runs a shipped case in space with changed values.
+fn ran_in_space(name: &str, overrides: &[&str]) -> Ran<3> {
+    ran_case(file(name, overrides).case_in_space())
+}
+
+impl<const D: usize> Ran<D> {
     /// Outcomes of the stages, in order.
     fn outcomes(&self) -> Vec<StageOutcome> {
         let stages = &self.run.summary.stages;
@@ -72,15 +80,15 @@ impl Ran {
         [safety.stable.unwrap(), safety.failed.unwrap()]
     }
 
-    /// Work of the vertical stress over that of the weight, for the virtual displacement v = y: 1
-    /// in equilibrium on a base at y = 0, whatever the law and however large the deformation.
+    /// Work of the vertical stress over that of the weight, for a virtual displacement upwards that is
+    /// the height: 1 in equilibrium on a base at height 0, whatever the law and however large the deformation.
     fn virtual_work(&self, gravity_factor: f64) -> f64 {
         let particles = &self.run.body.particles;
         let stress: f64 = (0..particles.len())
-            .map(|particle| particles.sigma[particle][1][1] * particles.volume(particle))
+            .map(|particle| particles.sigma[particle][D - 1][D - 1] * particles.volume(particle))
             .sum();
         let weight: f64 = std::iter::zip(&particles.mass, &particles.x)
-            .map(|(mass, x)| mass * self.gravity * gravity_factor * x[1])
+            .map(|(mass, x)| mass * self.gravity * gravity_factor * x[D - 1])
             .sum();
         -stress / weight
     }
@@ -97,8 +105,11 @@ fn every_case_has_a_test() {
     for case in SHIPPED {
         let call = format!("ran(\"{}\"", case.name);
         let broken = format!("ran(\n        \"{}\"", case.name);
+        let in_space = format!("ran_in_space(\"{}\"", case.name);
         assert!(
-            source.contains(&call) || source.contains(&broken),
+            [call, broken, in_space]
+                .iter()
+                .any(|call| source.contains(call)),
             "{}",
             case.name
         );
@@ -440,4 +451,33 @@ fn an_embankment_is_filled_in_lifts() {
     );
     assert_eq!(ran.outcomes(), [Completed; 6]);
     between(ran.measured("factor of safety"), 1.147, 1.22);
+}
+
+#[test]
+fn a_square_of_pressure_collapses_near_the_bounds() {
+    let ran = ran_in_space("footing_3d", &["grid.zones={}", "stages.0.steps=16"]);
+    assert_eq!(ran.outcomes(), [Stopped]);
+    // Two cells over half the width.
+    between(ran.end_of("load-settlement"), 5.0, 7.5);
+}
+
+#[test]
+fn a_slope_between_valley_sides_is_stronger_than_in_the_plane() {
+    let ran = ran_in_space("slope_3d", &["stages.1.steps=14"]);
+    assert_eq!(ran.outcomes(), [Completed, Stopped]);
+    let limit = ran.end_of("load-displacement");
+    between(limit, 5.379, 8.3);
+    between(ran.virtual_work(limit * 0.2), 0.97, 1.03);
+}
+
+#[test]
+fn a_slope_from_a_raster_is_as_safe_as_its_bounds_say() {
+    let ran = ran_in_space("landslide_3d", &["stages.1.tolerance=0.2"]);
+    assert_eq!(ran.outcomes(), [Completed; 2]);
+    let [stable, failed] = ran.factor_of_safety(1);
+    between(stable, 1.076, failed);
+    between(failed, stable, 1.75);
+    let volume: f64 = ran.run.body.particles.volume0.iter().sum();
+    assert!((volume / 687.5 - 1.0).abs() < 1e-9, "{volume}");
+    between(ran.virtual_work(1.0), 0.97, 1.03);
 }

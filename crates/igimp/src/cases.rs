@@ -6,7 +6,9 @@ use igimp_cases::case::Case;
 use igimp_cases::check::count;
 use igimp_cases::estimate::speed::Speed;
 use igimp_cases::estimate::watch::side_by_side;
-use igimp_cases::estimate::{estimate, per_item, readable, time, together};
+use igimp_cases::estimate::{
+    estimate, is_iterated, linear_solver, per_item, readable, time, together,
+};
 use igimp_cases::in_any_dimension;
 use igimp_cases::input::CaseFile;
 use igimp_cases::mesh_study::plan;
@@ -42,13 +44,15 @@ fn checked<const D: usize>(
     let speed = Speed::measured()?;
     output::warn(&file.warnings());
     let cells = case.grid.cells().map(|count| count.to_string()).join(" x ");
-    let [particle, unknown] = per_item(size.unknowns).map(|bytes| count(round(bytes)));
+    let iterated = is_iterated(case, size.unknowns);
+    let [particle, unknown] = per_item(D, iterated, size.unknowns).map(|bytes| count(round(bytes)));
     let row = |name: &str, value: String| vec![name.to_owned(), value];
     let rows = [
         row("method", case.method.label()),
         row("particles", count(size.particles)),
         row("cells", format!("{} ({cells})", count(size.cells))),
         row("unknowns", format!("about {}", count(size.unknowns))),
+        row("linear solver", linear_solver(case, size.unknowns)),
         row("memory", format!("about {}", readable(size.bytes))),
         row(
             "",

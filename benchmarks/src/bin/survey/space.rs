@@ -14,8 +14,10 @@ const CELLS: [usize; 2] = [50, 12];
 /// Nodes along a side of the cubes that are counted: 3000 to 192 000 unknowns.
 const SIDES: [usize; 4] = [10, 20, 30, 40];
 
-/// Cost of an iteration \[ns per particle\], and what explains it.
+/// Cost of a step's set-up and of an iteration \[ns per particle\], and what explains it.
 struct Assembly {
+    stencils: Rounds,
+    system: Rounds,
     evaluate: Rounds,
     linearise: Rounds,
     entries: f64,
@@ -23,50 +25,54 @@ struct Assembly {
 }
 
 pub(crate) fn run(scope: &mut Scope) -> BenchResult {
-    let plane = assembly::<2>(scope, CELLS[0])?;
-    let space = assembly::<3>(scope, CELLS[1])?;
-    let rows = [("plane", &plane), ("space", &space)].map(|(name, found)| {
-        let nanoseconds_per_entry = found.linearise.map(|time| time / found.entries);
-        [
-            name.to_owned(),
-            format!("{:.0}", found.entries),
-            format!("{:.0}", found.bytes),
-            format!("{:.0}", found.evaluate.median()),
-            format!("{:.0}", found.linearise.median()),
-            format!("{:.2}", nanoseconds_per_entry.median()),
-        ]
-    });
-    let report = &mut scope.report;
-    for (number, (name, found)) in [("plane", &plane), ("space", &space)]
-        .into_iter()
-        .enumerate()
-    {
-        let particles = (2 * CELLS[number]).pow(2 + number as u32);
-        report.row(
-            "space",
-            &format!("{name}/evaluate"),
-            particles,
-            "ns/particle",
-            &found.evaluate,
-        );
-        report.row(
-            "space",
-            &format!("{name}/linearise"),
-            particles,
-            "ns/particle",
-            &found.linearise,
-        );
+    let mut rows = Vec::new();
+    for soil in [Soil::VonMises, Soil::MohrCoulomb] {
+        let plane = assembly::<2>(scope, soil, CELLS[0])?;
+        let space = assembly::<3>(scope, soil, CELLS[1])?;
+        let particles = [
+            Block::<2>::particles(CELLS[0]),
+            Block::<3>::particles(CELLS[1]),
+        ];
+        for ((name, found), particles) in [("plane", &plane), ("space", &space)]
+            .into_iter()
+            .zip(particles)
+        {
+            for (part, time) in [
+                ("stencils", &found.stencils),
+                ("unknowns-and-pattern", &found.system),
+                ("evaluate", &found.evaluate),
+                ("linearise", &found.linearise),
+            ] {
+                let name = format!("{name}/{}/{part}", soil.name());
+                let report = &mut scope.report;
+                report.row("space", &name, particles, "ns/particle", time);
+            }
+            let nanoseconds_per_entry = found.linearise.map(|time| time / found.entries);
+            rows.push([
+                format!("{name}, {}", soil.name()),
+                format!("{:.0}", found.entries),
+                format!("{:.0}", found.bytes),
+                format!("{:.0}", found.stencils.median()),
+                format!("{:.0}", found.system.median()),
+                format!("{:.0}", found.evaluate.median()),
+                format!("{:.0}", found.linearise.median()),
+                format!("{:.2}", nanoseconds_per_entry.median()),
+            ]);
+        }
     }
+    let report = &mut scope.report;
     report.heading("Three dimensions");
     report.paragraph(
-        "Assembly of a square with 2 × 2 and of a cube with 2 × 2 × 2 particles per cell, von Mises \
-         soil, one thread \\[ns per particle\\]. *Entries*: what a particle adds to the matrix, the \
+        "Assembly of a square with 2 × 2 and of a cube with 2 × 2 × 2 particles per cell, one \
+         thread \\[ns per particle\\]. *Entries*: what a particle adds to the matrix, the \
          square of nodes times directions, on average.",
     );
     let header = [
         "block",
         "entries",
         "bytes",
+        "stencils",
+        "unknowns and pattern",
         "evaluate",
         "linearise",
         "linearise per entry [ns]",
@@ -75,19 +81,27 @@ pub(crate) fn run(scope: &mut Scope) -> BenchResult {
     count(scope)
 }
 
-fn assembly<const D: usize>(scope: &Scope, cells: usize) -> BenchResult<Assembly> {
-    let block: Block<D> = Block::new(Soil::VonMises, cells)?;
+fn assembly<const D: usize>(scope: &Scope, soil: Soil, cells: usize) -> BenchResult<Assembly> {
+    let block: Block<D> = Block::new(soil, cells)?;
     let stencils = block.stencils()?;
     let mut pass = Pass::new(&block, &stencils)?;
-    let (mut evaluate, mut linearise) = (Rounds::default(), Rounds::default());
-    let particles = block.len() as f64;
+    let mut times = [const { Rounds(Vec::new()) }; 4];
+    let (particles, pool) = (block.len() as f64, &scope.pools[0]);
     for _ in 0..scope.choose(5, 15) {
-        let time = scope.pools[0].install(|| timed(|| pass.evaluate()))?;
-        evaluate.push(time / particles);
-        let time = scope.pools[0].install(|| timed(|| pass.linearise()))?;
-        linearise.push(time / particles);
+        let found = [
+            pool.install(|| timed(|| block.stencils()))?,
+            pool.install(|| timed(|| block.system(&stencils)))?,
+            pool.install(|| timed(|| pass.evaluate()))?,
+            pool.install(|| timed(|| pass.linearise()))?,
+        ];
+        for (times, time) in times.iter_mut().zip(found) {
+            times.push(time / particles);
+        }
     }
+    let [of_stencils, system, evaluate, linearise] = times;
     Ok(Assembly {
+        stencils: of_stencils,
+        system,
         evaluate,
         linearise,
         entries: pass.entries_per_particle(),

@@ -14,7 +14,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::speed::Speed;
-use super::{Estimate, TRIALS, estimate};
+use super::{Estimate, TRIALS, estimate, is_iterated};
 use crate::case::{Case, Every, ReductionPath, Stage, StageKind};
 use crate::error::CaseError;
 use crate::summary::StageSummary;
@@ -29,6 +29,16 @@ const FACTOR: f64 = 1.8e-8;
 const UNSYMMETRIC: f64 = 1.5;
 /// Solution \[s per unknown\].
 const SOLVE: f64 = 3e-7;
+/// The same in space: set-up and commit, and a pass \[s per particle\].
+const STEP_IN_SPACE: f64 = 6e-6;
+const PASS_IN_SPACE: f64 = 4e-6;
+/// Factorisation of a symmetric matrix in space \[s\], times $`n^{1.88}`$; an unsymmetric one costs twice that.
+const FACTOR_IN_SPACE: f64 = 7.7e-9;
+const UNSYMMETRIC_IN_SPACE: f64 = 1.9;
+/// Solution with such factors \[s\], times $`n^{4/3}`$.
+const SOLVE_IN_SPACE: f64 = 2e-7;
+/// Solution by iteration with multigrid, set-up included \[s per unknown\].
+const ITERATED: f64 = 6e-5;
 /// Rows, progress and bookkeeping of a step \[s\].
 const ROWS: f64 = 5e-4;
 /// A picture \[s\], and its part by particle when it shows a field.
@@ -171,13 +181,27 @@ fn of_stages<const D: usize>(
         .materials
         .iter()
         .all(|material| material.law().is_ok_and(|law| law.has_symmetric_tangent()));
-    let factor = FACTOR * unknowns.powf(1.5) * if symmetric { 1.0 } else { UNSYMMETRIC };
+    let [step, pass] = if D == 3 {
+        [STEP_IN_SPACE, PASS_IN_SPACE]
+    } else {
+        [STEP, PASS]
+    };
+    // Of a correction: factorisation and solution.
+    let unsymmetric = |times: f64| if symmetric { 1.0 } else { times };
+    let correction = if is_iterated(case, size.unknowns) {
+        ITERATED * unknowns * unsymmetric(UNSYMMETRIC)
+    } else if D == 3 {
+        FACTOR_IN_SPACE * unknowns.powf(1.88) * unsymmetric(UNSYMMETRIC_IN_SPACE)
+            + SOLVE_IN_SPACE * unknowns.powf(4.0 / 3.0)
+    } else {
+        FACTOR * unknowns.powf(1.5) * unsymmetric(UNSYMMETRIC) + SOLVE * unknowns
+    };
     let mut marching = 0.0;
     let mut states = stages.len() as f64;
     for stage in stages {
         let passes = stage.corrections + stage.steps;
-        let assembly = particles * (STEP * stage.steps + PASS * passes);
-        let solving = stage.corrections * (factor + SOLVE * unknowns);
+        let assembly = particles * (step * stage.steps + pass * passes);
+        let solving = stage.corrections * correction;
         marching += speed.assembly * (assembly + ROWS * stage.steps) + speed.factor * solving;
         if case.output.checkpoint_every > 0 {
             states += stage.trials + stage.steps / case.output.checkpoint_every as f64;

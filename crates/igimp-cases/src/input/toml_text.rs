@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::spec::{Kind, Struct, Variants};
+use super::spec::{Field, Kind, Struct, Variants};
 use super::tree::{Node, Value};
 use crate::printable::is_odd;
 
@@ -80,10 +80,23 @@ fn entries<'a>(node: &'a Node, kind: &'a Kind) -> Vec<(&'a str, &'a Node, &'a Ki
 }
 
 fn struct_entries<'a>(node: &'a Node, of: &'static Struct) -> Vec<(&'a str, &'a Node, &'a Kind)> {
-    of.fields
-        .iter()
-        .filter_map(|field| Some((field.key, node.get(field.key)?, &field.kind)))
-        .collect()
+    known(node, of.fields.iter())
+}
+
+/// The values of fields that a table has; a key that plane and space know as fields of their own is one.
+fn known<'a>(
+    node: &'a Node,
+    fields: impl Iterator<Item = &'static Field>,
+) -> Vec<(&'a str, &'a Node, &'a Kind)> {
+    let mut all: Vec<(&'a str, &'a Node, &'a Kind)> = Vec::new();
+    for field in fields {
+        if let Some(value) = node.get(field.key)
+            && all.iter().all(|(key, ..)| *key != field.key)
+        {
+            all.push((field.key, value, &field.kind));
+        }
+    }
+    all
 }
 
 fn variant_entries<'a>(
@@ -94,8 +107,7 @@ fn variant_entries<'a>(
         return Vec::new();
     };
     let tag = node.get(of.tag).map(|tag| (of.tag, tag, &Kind::Text));
-    let fields = of
-        .fields(case)
-        .filter_map(|field| Some((field.key, node.get(field.key)?, &field.kind)));
-    tag.into_iter().chain(fields).collect()
+    tag.into_iter()
+        .chain(known(node, of.fields(case)))
+        .collect()
 }

@@ -464,7 +464,7 @@ fn supports<const D: usize>(boundaries: &Boundaries<D>) -> SetupTable {
             }
         };
         let place = format!("{} to {}", point(held.lower), point(held.upper));
-        rows.push(vec![held.name.clone(), how.to_owned(), place]);
+        rows.push(vec![held.name.clone(), how, place]);
     }
     table("Supports", &["Support", "Held", "Place [m]"], rows)
 }
@@ -759,11 +759,8 @@ mod tests {
 
     fn of(name: &str) -> Vec<SetupTable> {
         let shipped = SHIPPED.iter().find(|case| case.name == name).unwrap();
-        tables(
-            CaseFile::parse("case.toml", shipped.text, &[])
-                .unwrap()
-                .case(),
-        )
+        let file = CaseFile::parse("case.toml", shipped.text, &[]).unwrap();
+        crate::in_any_dimension!(file.any_case(), case => tables(case))
     }
 
     fn row(tables: &[SetupTable], title: &str, number: usize) -> String {

@@ -426,7 +426,7 @@ impl<const D: usize> Stages<D> {
         }
         let peak = memory::peak_mib();
         session.summary.peak_memory_mib = peak;
-        session.summary.memory = self.before.share(peak, &session.summary.size);
+        session.summary.memory = self.before.share(peak, case, &session.summary.size);
         session.summary.cpu_seconds = processor::seconds();
         let stages = &session.summary.stages;
         let expected = self

@@ -1,6 +1,7 @@
 //! Memory of a run, as the system counts it for the process; nothing where it does not tell.
 
-use crate::estimate::per_item;
+use crate::case::Case;
+use crate::estimate::{is_iterated, per_item};
 use crate::summary::{MemoryShare, ModelSize};
 
 /// Resident memory at the beginning of a run \[MiB\].
@@ -15,9 +16,14 @@ impl Before {
 
     /// What came on top, shared among particles and unknowns as in the model of
     /// [`estimate`](mod@crate::estimate): one number is measured, and its split is the model's.
-    pub(crate) fn share(self, peak_mib: Option<f64>, size: &ModelSize) -> Option<MemoryShare> {
+    pub(crate) fn share<const D: usize>(
+        self,
+        peak_mib: Option<f64>,
+        case: &Case<D>,
+        size: &ModelSize,
+    ) -> Option<MemoryShare> {
         let used = (peak_mib? - self.0?) * 1_048_576.0;
-        let [particle, unknown] = per_item(size.unknowns);
+        let [particle, unknown] = per_item(D, is_iterated(case, size.unknowns), size.unknowns);
         let model = particle * size.particles as f64 + unknown * size.unknowns as f64;
         (used > 0.0 && size.unknowns > 0).then(|| MemoryShare {
             bytes_per_particle: particle * used / model,
@@ -41,20 +47,22 @@ fn resident_mib(name: &str) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::estimate::tests::case;
 
     #[test]
     fn shares_add_up_to_what_was_used() {
+        let case = case();
         let size = ModelSize {
             particles: 4000,
             unknowns: 2000,
             ..ModelSize::default()
         };
-        let share = Before(Some(10.0)).share(Some(34.0), &size).unwrap();
+        let share = Before(Some(10.0)).share(Some(34.0), &case, &size).unwrap();
         let used = share.bytes_per_particle * 4000.0 + share.bytes_per_unknown * 2000.0;
         assert!((used / 1_048_576.0 - 24.0).abs() < 1e-9);
-        assert_eq!(Before(None).share(Some(34.0), &size), None);
-        assert_eq!(Before(Some(10.0)).share(None, &size), None);
-        assert_eq!(Before(Some(40.0)).share(Some(34.0), &size), None);
+        assert_eq!(Before(None).share(Some(34.0), &case, &size), None);
+        assert_eq!(Before(Some(10.0)).share(None, &case, &size), None);
+        assert_eq!(Before(Some(40.0)).share(Some(34.0), &case, &size), None);
     }
 
     #[test]

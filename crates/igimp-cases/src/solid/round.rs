@@ -40,7 +40,7 @@ pub struct Sphere {
 /// Area of a disc about the origin within a polygon, positive counter-clockwise, and its first moments.
 ///
 /// Every edge contributes its triangle with the origin as far as it runs inside the circle, and beyond it
-/// the sector that it is seen under.
+/// the sector that it is seen under (theory, eq. 44b).
 pub(super) fn disc_within(polygon: &[[f64; 2]], radius: f64) -> (f64, [f64; 2]) {
     let (mut area, mut moment) = (0.0, [0.0; 2]);
     let next = polygon.iter().cycle().skip(1);

@@ -272,7 +272,7 @@ impl Region<3> for ClosedSurface {
     fn cover(&self, lower: [f64; 3], upper: [f64; 3]) -> Cover {
         if self.facets.run_into(lower, upper) {
             Cover::Cut
-        } else if self.moments(lower, upper).volume > 0.5 * Part::whole(lower, upper).volume {
+        } else if self.encloses(Part::whole(lower, upper).centroid) {
             Cover::Whole
         } else {
             Cover::Nothing

@@ -1,6 +1,7 @@
 //! A made-up run of a slope with everything that a results folder can hold.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use igimp_assembly::Geometry;
 use igimp_assembly::{Method, ParticleFields, Particles, SharedLaw};
@@ -46,7 +47,7 @@ pub(crate) fn case() -> Case {
         name: name.into(),
         material,
         per_direction: 2,
-        polygon: polygon.to_vec(),
+        region: Arc::new(polygon.to_vec()),
         from_start: true,
     };
     let slope = [
@@ -75,10 +76,7 @@ pub(crate) fn case() -> Case {
             ),
         ],
         boundaries: Boundaries {
-            left: Side::Roller,
-            right: Side::Roller,
-            bottom: Side::Fixed,
-            top: Side::Free,
+            sides: [[Side::Roller; 2], [Side::Fixed, Side::Free]],
             boxes: vec![FixedBox {
                 name: "anchor".into(),
                 lower: [52.0, 6.0],
@@ -95,6 +93,7 @@ pub(crate) fn case() -> Case {
                 StageKind::Gravity {
                     factor: 1.0,
                     horizontal: None,
+                    across: None,
                     vertical: None,
                 },
             ),
@@ -238,7 +237,7 @@ pub(crate) fn particles(case: &Case) -> (Particles<2>, Vec<SharedLaw>) {
             let density = case.materials[body.material].unit_weight / case.gravity;
             fill_polygon(
                 &grid,
-                &body.polygon,
+                body.polygon(),
                 body.per_direction,
                 density,
                 body.material,

@@ -87,6 +87,16 @@ impl<const D: usize> Tree<D> {
         own
     }
 
+    /// Moves all of it.
+    pub(super) fn shift(&mut self, by: &[f64; D]) {
+        for group in &mut self.groups {
+            for axis in 0..D {
+                group.lower[axis] += by[axis];
+                group.upper[axis] += by[axis];
+            }
+        }
+    }
+
     /// The facets of which one is nearest to a point, all that tie with it among them, in ascending order;
     /// `distance` tells how far off a facet is \[length\].
     pub(super) fn near(&self, x: &[f64; D], distance: impl Fn(usize) -> f64) -> Vec<usize> {

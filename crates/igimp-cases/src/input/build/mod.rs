@@ -28,6 +28,7 @@ mod solids;
 mod space;
 mod stages;
 mod study;
+mod surfaces;
 mod water;
 
 use std::path::Path;

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::grid::Frame;
 use super::rigid::interface;
-use super::solids::closed_surface;
+use super::surfaces::closed_surface;
 use crate::case::{Material, RigidInterface, RigidPart, RigidSolid};
 use crate::input::diagnostic::Problems;
 use crate::input::text::{clip, number};

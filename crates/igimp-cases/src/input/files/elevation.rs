@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::columns::columns;
-use super::{LARGEST, Named, Trouble, quantity, text_of, unit_of};
+use super::{LARGEST, Named, Trouble, quantity, text_of, unit_beside, unit_of};
 use crate::input::diagnostic::Problems;
 use crate::input::quantity::Dimension;
 use crate::input::text::clip;
@@ -52,7 +52,7 @@ fn table(file: &Named, like: &Node, key: &str) -> Result<Vec<Entry>, Trouble> {
         return scattered(&text, stated, like);
     }
     let grid = EsriGrid::parse(&text)?;
-    let unit = unit_of(stated, ("x, y and z", None), Dimension::Length)?;
+    let unit = unit_beside(like)?;
     let length = |x: f64| quantity(x, &unit, Dimension::Length, like);
     let list = |items| Node::written(Value::List(items), like.place);
     let lines = |start: f64, cell: f64, count: usize| {

@@ -172,6 +172,18 @@ fn unit_of(
     }
 }
 
+/// The unit of length of a file that cannot say it, from beside its name.
+fn unit_beside(like: &Node) -> Result<String, Trouble> {
+    if like.get("unit").is_none() {
+        return Err(Trouble::new(
+            "nothing says in which unit it is",
+            "write it beside the file, as in unit = \"m\"",
+        ));
+    }
+    let stated = ("unit", like.text_at("unit"));
+    unit_of(stated, ("coordinates", None), Dimension::Length)
+}
+
 /// A number of a file as a value with its unit.
 fn quantity(number: f64, unit: &str, dimension: Dimension, like: &Node) -> Result<Node, Trouble> {
     let text = format!("{number} {unit}");

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::io::Cursor;
 use std::path::Path;
 
-use super::{LARGEST, Named, Trouble, quantity, unit_of};
+use super::{LARGEST, Named, Trouble, quantity, unit_beside};
 use crate::input::bytes;
 use crate::input::diagnostic::Problems;
 use crate::input::quantity::Dimension;
@@ -45,11 +45,7 @@ fn table(file: &Named, like: &Node) -> Result<Vec<Entry>, Trouble> {
             "keep one of them",
         ));
     }
-    let unit = unit_of(
-        ("unit", like.text_at("unit")),
-        ("corners", None),
-        Dimension::Length,
-    )?;
+    let unit = unit_beside(like)?;
     let bytes = bytes::of_file(&file.path, LARGEST)
         .map_err(|error| Trouble::new(error, "its path starts from the case file"))?;
     if bytes.len() as u64 > LARGEST {

@@ -1,13 +1,11 @@
 //! Bodies in space: boxes, prisms, cylinders, spheres, closed surfaces, layers of ground.
 
-use super::{LENGTH, MANY, MOST_THINGS, OUTLINE, PAIR};
+use super::{LENGTH, MANY, MOST_THINGS, OUTLINE, PAIR, POINT};
 use crate::input::quantity::Dimension::Length;
 use crate::input::spec::{Choice, Field, Kind, Range, Struct, choice, default, optional, required};
 
-/// A point in space: three lengths.
-const PLACE: Kind = Kind::List(&LENGTH, 3, 3);
 static CORNER: Kind = PAIR;
-static VERTEX: Kind = PLACE;
+static VERTEX: Kind = POINT;
 static INDEX: Kind = Kind::Integer(0, MANY as i64);
 static TRIANGLE: Kind = Kind::List(&INDEX, 3, 3);
 static HOLE: Kind = Kind::List(&INDEX, 2, 2);
@@ -77,10 +75,10 @@ static TAKEN: Kind = Kind::Table(&Struct {
 static BOX_TABLE: Struct = Struct {
     doc: "A box with its sides along the axes.",
     fields: &[
-        required("from", PLACE, "[\"0 m\", \"0 m\", \"0 m\"]", "one corner"),
+        required("from", POINT, "[\"0 m\", \"0 m\", \"0 m\"]", "one corner"),
         required(
             "to",
-            PLACE,
+            POINT,
             "[\"4 m\", \"2 m\", \"1 m\"]",
             "the opposite corner",
         ),
@@ -126,7 +124,7 @@ static CYLINDER_TABLE: Struct = Struct {
 static SPHERE_TABLE: Struct = Struct {
     doc: "A sphere.",
     fields: &[
-        required("centre", PLACE, "[\"2 m\", \"1 m\", \"0.5 m\"]", "centre"),
+        required("centre", POINT, "[\"2 m\", \"1 m\", \"0.5 m\"]", "centre"),
         required(
             "radius",
             Kind::Quantity(Length, Range::Positive),

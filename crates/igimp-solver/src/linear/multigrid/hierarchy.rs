@@ -23,7 +23,7 @@ const MOST_GROWTH: f32 = 2.0;
 /// The same after damping.
 const DAMPED: f32 = 1.7;
 /// Steps of the power method.
-const POWERS: usize = 5;
+const POWERS: usize = 10;
 
 /// What approximates K⁻¹.
 pub(super) trait Preconditioner: Send {
@@ -149,7 +149,9 @@ impl<const B: usize> Hierarchy<B> {
         };
         smoother.apply::<B>(couplings, slabs, values, rhs, x);
         let omega = smoother.omega;
-        x.iter_mut().for_each(|x| *x *= omega);
+        for x in &mut *x {
+            *x *= omega;
+        }
         residual::<B>(couplings, values, rhs, x, work);
         transfer.restrict::<B>(work, &mut coarse.rhs);
         Self::cycle(coarser, dense);
@@ -185,6 +187,9 @@ fn growth<const B: usize>(
             next += f64::from(*work) * f64::from(*change);
         }
         found = (next / own).abs() as f32;
+        if found > MOST_GROWTH {
+            break;
+        }
         let size = change.iter().fold(0.0_f32, |most, own| most.max(own.abs()));
         for (x, change) in x.iter_mut().zip(&*change) {
             *x = change / size;

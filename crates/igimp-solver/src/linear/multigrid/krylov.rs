@@ -2,6 +2,11 @@
 //!
 //! Y. Saad, *Iterative Methods for Sparse Linear Systems*, 2nd ed., SIAM 2003, algorithms 9.1 and 9.6.
 
+#![allow(
+    clippy::neg_cmp_op_on_partial_ord,
+    reason = "what is not a number is neither small enough nor positive"
+)]
+
 use super::product::dot;
 
 /// What an iteration came to.
@@ -40,10 +45,10 @@ pub(super) fn conjugate_gradients(
         broken: false,
     };
     let mut last = 0.0;
-    while !(done.residual <= goal) && done.iterations < most {
+    while done.residual > goal && done.iterations < most {
         operators.precondition(&r, &mut z);
         let rz = dot(&r, &z);
-        if !(rz > 0.0) {
+        if rz.is_nan() || rz <= 0.0 {
             done.broken = true;
             break;
         }
@@ -58,7 +63,7 @@ pub(super) fn conjugate_gradients(
         }
         operators.multiply(&p, &mut q);
         let pq = dot(&p, &q);
-        if !(pq > 0.0) {
+        if pq.is_nan() || pq <= 0.0 {
             done.broken = true;
             break;
         }
@@ -92,14 +97,14 @@ pub(super) fn minimal_residuals(
         broken: false,
     };
     let mut r = rhs.to_vec();
-    while !(done.residual <= goal) && done.iterations < most {
+    while done.residual > goal && done.iterations < most {
         let beta = norm(&r);
         let mut basis: Vec<Vec<f64>> = vec![r.iter().map(|r| r / beta).collect()];
         let mut directions: Vec<Vec<f64>> = Vec::new();
         let mut hessenberg: Vec<Vec<f64>> = Vec::new();
         let mut rotations: Vec<(f64, f64)> = Vec::new();
         let mut g = vec![beta];
-        while directions.len() < restart && done.iterations < most && !(done.residual <= goal) {
+        while directions.len() < restart && done.iterations < most && done.residual > goal {
             let k = directions.len();
             let mut z = vec![0.0; n];
             operators.precondition(&basis[k], &mut z);
@@ -125,7 +130,7 @@ pub(super) fn minimal_residuals(
             }
             let (a, b) = (column[k], left);
             let length = a.hypot(b);
-            if !(length > 0.0) {
+            if length.is_nan() || length == 0.0 {
                 done.broken = true;
                 directions.pop();
                 break;
@@ -159,11 +164,10 @@ pub(super) fn minimal_residuals(
             *r = b - *r;
         }
         let reached = norm(&r) / scale;
-        if done.broken || !(reached < 1e3) {
-            done.residual = reached;
+        done.residual = reached;
+        if done.broken {
             break;
         }
-        done.residual = reached;
     }
     done
 }

@@ -1,4 +1,4 @@
-//! Incomplete elimination without fill, by blocks: (D + L) D⁻¹ (D + U) ≈ A, as a smoother.
+//! Incomplete elimination without fill, by blocks: (D + L) D⁻¹ (D + U) ≈ A, as a smoother (theory, eq. 25b).
 //!
 //! J. A. Meijerink & H. A. van der Vorst, *An iterative solution method for linear systems of which the coefficient
 //! matrix is a symmetric M-matrix*, Math. Comp. 31 (1977); Y. Saad, *Iterative Methods for Sparse Linear Systems*, 2nd ed.,
