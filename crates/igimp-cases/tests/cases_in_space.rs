@@ -428,23 +428,47 @@ fn what_is_of_the_plane_is_refused_in_space() {
     insta::assert_snapshot!(messages(
         LEDGE,
         &[
-            &[("point = [\"0.4 m\", \"0.4 m\", \"1.4 m\"]", "point = [\"0.4 m\", \"1.4 m\"]")],
-            &[("material = \"clay\"\nbox", "material = \"clay\"\npoints_per_cell = 4\nbox")],
+            &[(
+                "point = [\"0.4 m\", \"0.4 m\", \"1.4 m\"]",
+                "point = [\"0.4 m\", \"1.4 m\"]"
+            )],
+            &[(
+                "material = \"clay\"\nbox",
+                "material = \"clay\"\npoints_per_cell = 4\nbox"
+            )],
             &[("across = [\"0 m\", \"1.5 m\"]\n", "")],
             &[("remove = [\"slice\"]", "remove = [\"ledge\"]")],
             &[(", z = [\"0 m\", \"2.5 m\"]", "")],
-            &[("to = [\"2 m\", \"1 m\", \"1.5 m\"]", "to = [\"2 m\", \"1 m\", \"1.4 m\"]")],
-            &[("from = [\"1 m\", \"0 m\", \"1.5 m\"]\nto = [\"2 m\", \"1 m\", \"1.5 m\"]", "from = [\"1 m\", \"0 m\", \"1 m\"]\nto = [\"2 m\", \"1 m\", \"1 m\"]")],
-            &[("at = [\"1.25 m\", \"1.25 m\", \"1.375 m\"]", "at = [\"1.25 m\", \"1.25 m\", \"2.4 m\"]")],
-            &[("force = [\"1 kN\", \"-0.5 kN\", \"0.25 kN\"]", "force = [\"1 kN/m\", \"-0.5 kN/m\", \"0.25 kN/m\"]")],
+            &[(
+                "to = [\"2 m\", \"1 m\", \"1.5 m\"]",
+                "to = [\"2 m\", \"1 m\", \"1.4 m\"]"
+            )],
+            &[(
+                "from = [\"1 m\", \"0 m\", \"1.5 m\"]\nto = [\"2 m\", \"1 m\", \"1.5 m\"]",
+                "from = [\"1 m\", \"0 m\", \"1 m\"]\nto = [\"2 m\", \"1 m\", \"1 m\"]"
+            )],
+            &[(
+                "at = [\"1.25 m\", \"1.25 m\", \"1.375 m\"]",
+                "at = [\"1.25 m\", \"1.25 m\", \"2.4 m\"]"
+            )],
+            &[(
+                "force = [\"1 kN\", \"-0.5 kN\", \"0.25 kN\"]",
+                "force = [\"1 kN/m\", \"-0.5 kN/m\", \"0.25 kN/m\"]"
+            )],
             &[(
                 "type = \"point\"\nat = [\"1.25 m\", \"1.25 m\", \"1.375 m\"]\nforce = [\"1 kN\", \"-0.5 kN\", \"0.25 kN\"]",
                 "type = \"rigid-footing\"\nfrom = [\"0 m\", \"1.5 m\"]\nto = [\"1 m\", \"1.5 m\"]",
             )],
             // The ground alone has a ledge.
             &[("remove = [\"slice\"]", "place = [\"slice\"]")],
-            &[("box = { from = [\"2 m\", \"0 m\", \"1 m\"]", "box = { from = [\"1.5 m\", \"0 m\", \"1 m\"]")],
-            &[("to = [\"1 m\", \"1 m\", \"2 m\"] }", "to = [\"1 m\", \"1 m\", \"3 m\"] }")],
+            &[(
+                "box = { from = [\"2 m\", \"0 m\", \"1 m\"]",
+                "box = { from = [\"1.5 m\", \"0 m\", \"1 m\"]"
+            )],
+            &[(
+                "to = [\"1 m\", \"1 m\", \"2 m\"] }",
+                "to = [\"1 m\", \"1 m\", \"3 m\"] }"
+            )],
         ]
     ));
 }
@@ -455,8 +479,14 @@ fn what_is_of_space_is_refused_in_the_plane() {
     insta::assert_snapshot!(messages(
         plane,
         &[
-            &[("point = [\"15 m\", \"20 m\"]", "point = [\"15 m\", \"0 m\", \"20 m\"]")],
-            &[("record = [\"displacement\", \"plastic_strain\"]", "record = [\"tau_yz\", \"plastic_strain\"]")],
+            &[(
+                "point = [\"15 m\", \"20 m\"]",
+                "point = [\"15 m\", \"0 m\", \"20 m\"]"
+            )],
+            &[(
+                "record = [\"displacement\", \"plastic_strain\"]",
+                "record = [\"tau_yz\", \"plastic_strain\"]"
+            )],
             &[("polygon = [", "across = [\"0 m\", \"1 m\"]\npolygon = [")],
             &[("plane-strain", "3d")],
         ]
