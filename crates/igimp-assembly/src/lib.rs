@@ -55,8 +55,8 @@ pub use reinforcement::{
 };
 pub use residual::OutOfBalance;
 pub use rigid::{
-    AcceptedContact, ContactNode, ContactState, Drive, Interface, Penalty, Pose, RigidBody,
-    RigidMotion, Shear, Surface, SurfaceError, SurfaceTriangle, Swallowed, Tension,
+    AcceptedContact, CarryingTriangle, ContactNode, ContactState, Drive, Interface, Penalty, Pose,
+    RigidBody, RigidMotion, Shear, Surface, SurfaceError, SurfaceTriangle, Swallowed, Tension,
 };
 pub use stencils::Stencils;
 pub use step_conditions::{SharedLaw, StepConditions};

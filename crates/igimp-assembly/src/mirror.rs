@@ -24,11 +24,10 @@ pub(crate) fn mirror(pattern: &Pattern, values: &mut [f64]) {
         |piece: &Range<usize>| pattern.first_value[piece.start]..pattern.first_value[piece.end];
     let slices = split(values, pieces.iter().map(stored));
     let mut all: Vec<(Range<usize>, &mut [f64])> = pieces.into_iter().zip(slices).collect();
-    let into_second = |pair: &mut [(Range<usize>, &mut [f64])]| match pair {
-        [(before, earlier), (piece, own)] => {
+    let into_second = |pair: &mut [(Range<usize>, &mut [f64])]| {
+        if let [(before, earlier), (piece, own)] = pair {
             fill_upper(pattern, (before.clone(), earlier), (piece.clone(), own));
         }
-        _ => {}
     };
     all.par_chunks_mut(2).for_each(into_second);
     if let Some(((piece, own), rest)) = all.split_first_mut() {

@@ -351,14 +351,14 @@ pub(crate) mod tests {
 
     #[test]
     fn memory_is_that_of_particles_and_unknowns() {
-        let [particle, unknown] = per_item(1 << 19);
+        let [particle, unknown] = per_item(2, false, 1 << 19);
         let sum = 1e6 * particle + f64::from(1 << 19) * unknown;
         let drawing = PER_PICTURE * rayon::current_num_threads() as f64;
         let expected = BASE + sum + AGAIN * drawing;
         assert!((memory(&case(), 1_000_000, 1 << 19) - expected).abs() < 1.0);
         assert!((unknown - PER_UNKNOWN - 19.0 * PER_FILL).abs() < 1e-9);
         // A small case is a program that draws pictures.
-        let [particle, unknown] = per_item(36);
+        let [particle, unknown] = per_item(2, false, 36);
         let expected = BASE + drawing + AGAIN * (64.0 * particle + 36.0 * unknown);
         assert!((memory(&case(), 64, 36) - expected).abs() < 1.0);
     }

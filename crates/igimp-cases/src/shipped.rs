@@ -68,7 +68,7 @@ shipped! {
     "embankment_lifts": "embankment filled in lifts on clay that grows stronger with depth, held against limit analysis",
     "footing_3d": "square of uniform pressure on undrained clay in space, held against limit analysis",
     "slope_3d": "undrained slope between rough valley sides under rising weight, held against limit analysis",
-    "landslide_3d": "lens of clay on inclined rock from an elevation grid: factor of safety in space",
+    "landslide_3d": "slope of clay from an elevation grid: factor of safety in space, held against limit analysis",
     "block": "block of clay that loses its strength and spreads until it rests",
 }
 

@@ -1,5 +1,7 @@
 //! What a run found, as written to `summary.json`.
 
+use std::fmt::Write as _;
+
 use serde::{Deserialize, Serialize};
 
 use crate::case::TitleBlock;
@@ -206,12 +208,16 @@ impl LinearSummary {
         let mut text = format!("linear systems by {method} ({reason})");
         if *iterations > 0 {
             let each = (*iterations as f64 / (*solutions).max(1) as f64).round();
-            text += &format!(
+            let _ = write!(
+                text,
                 ": {solutions} solutions, {each} iterations each, at most {most_iterations}"
             );
         }
         if *lost_iterations > 0 {
-            text += &format!("; {lost_iterations} iterations given up for a factorisation");
+            let _ = write!(
+                text,
+                "; {lost_iterations} iterations given up for a factorisation"
+            );
         }
         text
     }

@@ -213,8 +213,8 @@ impl Expansion {
             let r = radius(x);
             if r > 0.0 && r <= reach {
                 let stretch = (r.powi(3) + added).cbrt() / r;
-                for axis in 0..3 {
-                    constraints.prescribe(node, axis, (stretch - 1.0) * x[axis])?;
+                for (axis, x) in x.into_iter().enumerate() {
+                    constraints.prescribe(node, axis, (stretch - 1.0) * x)?;
                 }
             }
         }

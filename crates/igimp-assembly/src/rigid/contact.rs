@@ -19,7 +19,7 @@ use crate::unknowns::Unknowns;
 
 /// A knot of space that soil covers by a smaller share of the largest one has none: round-off beyond a plane of
 /// symmetry \[-\].
-const LEAST_COVER: f64 = 1e-6;
+const LEAST_COVER: f64 = 1e-10;
 
 /// Contact of one step, with directions and weights frozen at its start.
 #[derive(Debug)]

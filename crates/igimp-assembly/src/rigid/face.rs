@@ -36,7 +36,7 @@ pub(crate) struct FacePoint<const D: usize> {
 
 impl<const D: usize> Face<D> {
     /// The face of the particle with centre and half-lengths \[length\] that looks at a side of a body;
-    /// none if its centre stands below the side or further off than the particle is thick.
+    /// none if its centre stands below the side or further off than the particle is thick (theory, eq. 45b).
     pub(crate) fn of(
         body: &RigidBody<D>,
         side: usize,
@@ -51,7 +51,15 @@ impl<const D: usize> Face<D> {
         };
         let thickness = reach(&normal);
         let gap = nearest.height - thickness;
-        if nearest.height <= 0.0 || gap > thickness {
+        // In space centres within this height cover the side once, whatever the direction.
+        let most = if D == 3 {
+            let volume: f64 = half_length.iter().product();
+            let seen = (0..D).map(|a| normal[a].abs() * volume / half_length[a]);
+            2.0 * volume / seen.sum::<f64>()
+        } else {
+            f64::INFINITY
+        };
+        if nearest.height <= 0.0 || gap > thickness || nearest.height > most {
             return None;
         }
         let along = tangents(&normal);

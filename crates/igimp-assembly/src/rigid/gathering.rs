@@ -75,12 +75,11 @@ impl<'a, const D: usize> Gathering<'a, D> {
         let (body, particles) = (self.body, self.particles);
         let (surface, pose) = (&*body.surface, &body.pose);
         let (lower, upper) = surface.bounds();
-        let places: Vec<[f64; D]> = match surface.space() {
-            Some(space) => space.outer.iter().map(|x| pose.into_space(x)).collect(),
-            None => {
-                let knots = surface.knots().into_iter();
-                knots.map(|(knot, _)| pose.into_space(&knot)).collect()
-            }
+        let places: Vec<[f64; D]> = if let Some(space) = surface.space() {
+            space.outer.iter().map(|x| pose.into_space(x)).collect()
+        } else {
+            let knots = surface.knots().into_iter();
+            knots.map(|(knot, _)| pose.into_space(&knot)).collect()
         };
         for particle in 0..particles.len() {
             let (x, half) = (&particles.x[particle], &particles.half_length[particle]);
@@ -134,7 +133,7 @@ impl<'a, const D: usize> Gathering<'a, D> {
         for piece in pieces(face, half, body, space, places, &self.conditions.grid) {
             for (corner, (weight, own)) in self.means(&piece).into_iter().enumerate() {
                 for &(knot, share) in &space.shares[piece.corners[corner]] {
-                    let tangents = body.surface.tangents_at(space, knot, &face.facing);
+                    let tangents = space.tangents_at(knot, &face.facing);
                     let tangents = tangents.map(|own| body.pose.direction(&own));
                     self.add(soil, knot, share * weight, &own, &tangents);
                 }

@@ -99,11 +99,12 @@ impl<const D: usize> GridSpec<D> {
     /// # Errors
     /// [`ShapeError`] for cells that make no grid.
     pub fn grid(&self) -> Result<Grid<D>, ShapeError> {
-        let axes: Result<Vec<_>, _> = self.axes.iter().map(AxisSpec::axis).collect();
-        let mut axes = axes?.into_iter();
-        Ok(Grid::new(std::array::from_fn(|_| {
-            axes.next().expect("there is an axis for each direction")
-        })))
+        let first = self.axes[0].axis()?;
+        let mut axes: [Axis; D] = std::array::from_fn(|_| first.clone());
+        for (axis, spec) in std::iter::zip(&mut axes, &self.axes) {
+            *axis = spec.axis()?;
+        }
+        Ok(Grid::new(axes))
     }
 }
 

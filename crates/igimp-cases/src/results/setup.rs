@@ -464,7 +464,7 @@ fn supports<const D: usize>(boundaries: &Boundaries<D>) -> SetupTable {
             }
         };
         let place = format!("{} to {}", point(held.lower), point(held.upper));
-        rows.push(vec![held.name.clone(), how.to_owned(), place]);
+        rows.push(vec![held.name.clone(), how, place]);
     }
     table("Supports", &["Support", "Held", "Place [m]"], rows)
 }

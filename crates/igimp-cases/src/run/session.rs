@@ -124,7 +124,7 @@ impl<const D: usize> Session<'_, D> {
         if D == 3 {
             let own = &report.linear;
             let linear = stage.linear.get_or_insert_default();
-            linear.method = own.method.to_owned();
+            own.method.clone_into(&mut linear.method);
             linear.reason = own.reason.to_string();
             linear.solutions += own.solutions;
             linear.iterations += own.iterations;

@@ -199,9 +199,9 @@ pub(super) fn check(study: &mut Study, effort: Level) -> Result<(), CaseError> {
         study.check(run, quantity, none, Band::AtMost(1e-9), pressure);
     }
     let meshes: &[usize] = if effort == Level::Full {
-        &[3, 6, 12]
+        &[4, 8, 16]
     } else {
-        &[3, 6]
+        &[4, 8]
     };
     for degrees in [15.0_f64, 30.0, 42.0] {
         let mut errors = Table::new(

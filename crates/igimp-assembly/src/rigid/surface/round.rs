@@ -211,7 +211,7 @@ impl Ring {
         let quarters = (TAU * radius / spacing / QUARTERS as f64).round();
         let count = (QUARTERS * quarters as usize).max(LEAST_AROUND);
         let part = TAU / count as f64;
-        // The polygon has the area of the circle (theory, eq. 45b).
+        // The polygon has the area of the circle (theory, eq. 45c).
         let wider = (part / part.sin()).sqrt();
         let points = (0..count)
             .map(|k| {

@@ -34,13 +34,13 @@ impl<'a, const D: usize> Extent<'a, D> {
 
     /// Their outlines as seen from the front: polygons in the plane, else the boxes around them.
     fn outlines(&self) -> Vec<Polygon> {
-        let outline = |body: &BodyPart<D>| match in_plane::<_, BodyPart>(body) {
-            Some(body) => body.polygon().to_vec(),
-            None => {
-                let (lower, upper) = body.region.bounds();
-                let ([left, bottom], [right, top]) = (front(&lower), front(&upper));
-                vec![[left, bottom], [right, bottom], [right, top], [left, top]]
+        let outline = |body: &BodyPart<D>| {
+            if let Some(body) = in_plane::<_, BodyPart>(body) {
+                return body.polygon().to_vec();
             }
+            let (lower, upper) = body.region.bounds();
+            let ([left, bottom], [right, top]) = (front(&lower), front(&upper));
+            vec![[left, bottom], [right, bottom], [right, top], [left, top]]
         };
         self.of_material().map(outline).collect()
     }

@@ -40,7 +40,7 @@ impl Solids {
         let round_off = 1e-9 * largest;
         let cells = frame.iter().flat_map(|frame| frame.axes.iter());
         Self {
-            is_complete: regions.len() == bodies.len() && !bodies.is_empty(),
+            is_complete: frame.is_some() && regions.len() == bodies.len() && !bodies.is_empty(),
             regions,
             round_off,
             cell: cells
@@ -310,16 +310,18 @@ fn check_level(
         return;
     };
     if high.0 - low.0 > 1e-6 * soil.cell {
+        // Places are taken a little beside edges.
+        let near = |x: f64| number((1e6 * x).round() / 1e6);
         problems
             .error(stage.place_at("type"), "a k0 stage needs level ground")
             .help(format!(
                 "the surface is at z = {} m above ({} m, {} m) and at z = {} m above ({} m, {} m)",
                 number(low.0),
-                number(low.1[0]),
-                number(low.1[1]),
+                near(low.1[0]),
+                near(low.1[1]),
                 number(high.0),
-                number(high.1[0]),
-                number(high.1[1])
+                near(high.1[0]),
+                near(high.1[1])
             ))
             .help("for a slope use a stage of type gravity");
     }
@@ -343,6 +345,9 @@ fn loads(tree: &Node, soil: &Solids, problems: &mut Problems) -> Vec<Option<Load
         })
         .collect()
 }
+
+/// Places along each side of a loaded rectangle at which soil is looked for.
+const SAMPLES: usize = 7;
 
 fn pressure(
     node: &Node,
@@ -374,7 +379,6 @@ fn pressure(
     };
     let mut sides = [0_usize; 2];
     let mut buried = 0;
-    const SAMPLES: usize = 7;
     for k in 0..SAMPLES * SAMPLES {
         let mut share = [0.0; 3];
         let places = [k % SAMPLES, k / SAMPLES].map(|place| (place as f64 + 0.5) / SAMPLES as f64);

@@ -461,7 +461,7 @@ fn points(
     let Some(value) = node.get("u") else { return };
     let parts = std::iter::zip(around.bodies, &scene.present);
     let there = parts.filter_map(|(part, present)| part.as_ref().filter(|_| *present));
-    let polygons: Vec<&[[f64; 2]]> = there.map(|part| part.polygon()).collect();
+    let polygons: Vec<&[[f64; 2]]> = there.map(BodyPart::polygon).collect();
     let of = format!("the soil that {who} is for{when}");
     if reach(raster, (value, "u"), (&polygons, &of), problems).is_err() {
         return;

@@ -1,3 +1,5 @@
+#![allow(clippy::float_cmp, reason = "places are whole numbers")]
+
 use super::*;
 
 type Corners = (Vec<[f64; 3]>, Vec<[f64; 3]>);

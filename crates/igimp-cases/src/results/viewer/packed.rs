@@ -154,12 +154,12 @@ fn of_boxes(frame: &Frame<'_>, keep: Keep) -> Option<Packed> {
         position("high", &high, &kept, (&low, &high), keep),
     ];
     if let Some(skin) = &skin {
-        let faces = kept.iter().map(|&k| skin.faces[k as usize]).collect();
+        let faces: Vec<u8> = kept.iter().map(|&k| skin.faces[k as usize]).collect();
         let lie: Vec<u8> = kept
             .iter()
             .flat_map(|&k| bytes_of(skin.lie[k as usize]))
             .collect();
-        places.extend([bytes("faces", 1, faces), bytes("lie", 4, lie)]);
+        places.extend([bytes("faces", 1, &faces), bytes("lie", 4, &lie)]);
     }
     let fields = frame.arrays("CellData");
     let wanted: Vec<&Stored<'_>> = fields
@@ -273,8 +273,8 @@ fn of_field(field: &Stored<'_>, cells: usize, kept: &[u32], keep: Keep) -> Optio
         .copied()
         .collect();
     let mut array = if field.is_whole() {
-        let bytes = own.iter().flat_map(|&x| (x as i32).to_le_bytes()).collect();
-        array(&field.name, components, "i32", bytes)
+        let bytes: Vec<u8> = own.iter().flat_map(|&x| (x as i32).to_le_bytes()).collect();
+        array(&field.name, components, "i32", &bytes)
     } else if keep.rounded {
         let ends: Vec<[f64; 2]> = range.iter().map(|own| [own[0], own[1]]).collect();
         rounded(&field.name, &own, &ends[..components])
@@ -305,17 +305,17 @@ fn exact(name: &str, components: usize, numbers: &[f64]) -> Array {
         Some(first) if components == 3 && first.iter().all(|x| x.is_finite()) => first.to_vec(),
         _ => vec![0.0; components],
     };
-    let bytes = std::iter::zip(numbers, low.iter().cycle())
+    let bytes: Vec<u8> = std::iter::zip(numbers, low.iter().cycle())
         .flat_map(|(x, low)| ((x - low) as f32).to_le_bytes())
         .collect();
-    let mut array = array(name, components, "f32", bytes);
+    let mut array = array(name, components, "f32", &bytes);
     array.low = low;
     array
 }
 
 fn rounded(name: &str, numbers: &[f64], ends: &[[f64; 2]]) -> Array {
     let steps: Vec<f64> = ends.iter().map(|[a, b]| (b - a) / STEPS).collect();
-    let bytes = std::iter::zip(numbers, (0..ends.len()).cycle())
+    let bytes: Vec<u8> = std::iter::zip(numbers, (0..ends.len()).cycle())
         .flat_map(|(&x, k)| {
             let place = (x - ends[k][0]) / steps[k];
             // Without a range every number stands at its low end.
@@ -328,17 +328,17 @@ fn rounded(name: &str, numbers: &[f64], ends: &[[f64; 2]]) -> Array {
             stands.to_le_bytes()
         })
         .collect();
-    let mut array = array(name, ends.len(), "u16", bytes);
+    let mut array = array(name, ends.len(), "u16", &bytes);
     array.low = ends.iter().map(|own| own[0]).collect();
     array.step = steps;
     array
 }
 
-fn bytes(name: &str, components: usize, bytes: Vec<u8>) -> Array {
+fn bytes(name: &str, components: usize, bytes: &[u8]) -> Array {
     array(name, components, "u8", bytes)
 }
 
-fn array(name: &str, components: usize, kind: &'static str, bytes: Vec<u8>) -> Array {
+fn array(name: &str, components: usize, kind: &'static str, bytes: &[u8]) -> Array {
     let width = match kind {
         "u8" => 1,
         "u16" => 2,

@@ -2,6 +2,11 @@
 //!
 //! Y. Saad, *Iterative Methods for Sparse Linear Systems*, 2nd ed., SIAM 2003, algorithms 9.1 and 9.6.
 
+#![allow(
+    clippy::neg_cmp_op_on_partial_ord,
+    reason = "what is not a number is neither small enough nor positive"
+)]
+
 use super::product::dot;
 
 /// What an iteration came to.

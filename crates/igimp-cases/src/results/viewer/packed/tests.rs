@@ -96,13 +96,9 @@ fn numbers_are_rounded_to_their_range() {
     let ends = [[-1.0, 3.0]];
     let array = rounded("x", &[-1.0, 3.0, 0.5, f64::NAN], &ends);
     let array = serde_json::to_value(&array).unwrap();
-    let (stored, _) = unpacked(&array, 2).as_chunks::<2>().0.iter().fold(
-        (Vec::new(), ()),
-        |(mut all, ()), bytes| {
-            all.push(u16::from_le_bytes(*bytes));
-            (all, ())
-        },
-    );
+    let bytes = unpacked(&array, 2);
+    let pairs = bytes.as_chunks::<2>().0.iter();
+    let stored: Vec<u16> = pairs.map(|pair| u16::from_le_bytes(*pair)).collect();
     assert_eq!((stored[0], stored[1], stored[3]), (0, 65_534, u16::MAX));
     let read = -1.0 + f64::from(stored[2]) * array["step"][0].as_f64().unwrap();
     assert!((read - 0.5).abs() < 4.0 / 65_534.0);
