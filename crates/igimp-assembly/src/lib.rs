@@ -55,7 +55,7 @@ pub use reinforcement::{
 };
 pub use residual::OutOfBalance;
 pub use rigid::{
-    AcceptedContact, ContactNode, ContactState, DrawnFacet, Drive, Interface, Penalty, Pose,
+    AcceptedContact, CarryingTriangle, ContactNode, ContactState, Drive, Interface, Penalty, Pose,
     RigidBody, RigidMotion, Shear, Surface, SurfaceError, SurfaceTriangle, Swallowed, Tension,
 };
 pub use stencils::Stencils;

@@ -470,7 +470,7 @@ proptest! {
 
     #[test]
     fn convex_polyhedra_are_filled(
-        points in prop::collection::vec((0.0..6.283, -0.99..0.99), 5..=14),
+        points in prop::collection::vec((0.0..6.25, -0.99..0.99), 5..=14),
         sizes in [0.3..2.4, 0.3..2.4, 0.3..1.4],
         per_direction in 1_usize..=3,
     ) {

@@ -238,6 +238,7 @@ impl Section {
     }
 
     /// The case file, in the plane or in space between two ends.
+    #[allow(clippy::too_many_lines, reason = "a case file, table by table")]
     fn text(&self, variant: Variant, search: Search, ends: Option<Ends>) -> String {
         let Variant {
             cells,

@@ -54,9 +54,9 @@ fn slopes() -> Vec<Slope> {
     };
     vec![
         of(cut(), 5, Level::Quick, [1.2, 1.6]),
-        of(hill(), 5, Level::Default, [1.2, 1.6]),
-        of(cut(), 10, Level::Full, [1.2, 1.6]),
-        of(hill(), 10, Level::Full, [1.2, 1.6]),
+        of(hill(), 5, Level::Quick, [1.2, 1.6]),
+        of(cut(), 10, Level::Default, [1.2, 1.6]),
+        of(hill(), 10, Level::Default, [1.2, 1.6]),
     ]
 }
 

@@ -97,7 +97,7 @@ impl Bar {
     }
 
     /// Twist per length at a load factor; yield begins at the rim of the round bar at `factor = 1/TWIST`.
-    fn twist(&self, factor: f64) -> f64 {
+    fn twist(factor: f64) -> f64 {
         factor * TWIST / SHEAR
     }
 
@@ -137,7 +137,7 @@ impl Bar {
         let load_path = |from: f64, to: f64| {
             StepConditions::new(
                 grid.clone(),
-                self.turned(&grid, h * (self.twist(to) - self.twist(from)))?,
+                Self::turned(&grid, h * (Self::twist(to) - Self::twist(from)))?,
                 StepLoads::gravity([0.0; 3]),
                 vec![Arc::clone(&law)],
             )
@@ -147,7 +147,7 @@ impl Bar {
             &["twist_over_that_at_yield_[-]", "torque_[k]"],
         );
         let mut observe = |accepted: &Accepted<'_, 3>| {
-            let twist = self.twist(accepted.report.to);
+            let twist = Self::twist(accepted.report.to);
             curve.push(vec![SHEAR * twist, torque(accepted)]);
             ControlFlow::Continue(())
         };
@@ -165,7 +165,7 @@ impl Bar {
 
     /// The lower end held, the upper one turned by so much, both free to warp; and the planes x = 0 and y = 0, on which
     /// only the displacement across is free.
-    fn turned(&self, grid: &Grid<3>, angle: f64) -> Result<Constraints<3>, AssemblyError> {
+    fn turned(grid: &Grid<3>, angle: f64) -> Result<Constraints<3>, AssemblyError> {
         let mut constraints = Constraints::free(grid);
         for (normal, held) in [(0, 1), (1, 0)] {
             constraints.fix_wall(grid, normal, false, held)?;

@@ -8,7 +8,7 @@ use igimp_shape::Grid;
 use super::RigidBody;
 use super::face::Face;
 use super::mosaic::{Piece, pieces};
-use super::surface::{Space, Surface};
+use super::surface::Space;
 use super::vectors::cross;
 use crate::particles::Particles;
 use crate::stencils::Stencils;
@@ -133,7 +133,7 @@ impl<'a, const D: usize> Gathering<'a, D> {
         for piece in pieces(face, half, body, space, places, &self.conditions.grid) {
             for (corner, (weight, own)) in self.means(&piece).into_iter().enumerate() {
                 for &(knot, share) in &space.shares[piece.corners[corner]] {
-                    let tangents = Surface::tangents_at(space, knot, &face.facing);
+                    let tangents = space.tangents_at(knot, &face.facing);
                     let tangents = tangents.map(|own| body.pose.direction(&own));
                     self.add(soil, knot, share * weight, &own, &tangents);
                 }

@@ -21,7 +21,7 @@ pub use interface::{Interface, Penalty, Shear, Tension};
 pub use motion::{Drive, RigidMotion};
 pub use pose::Pose;
 pub use state::{ContactNode, ContactState};
-pub use surface::{DrawnFacet, Surface, SurfaceError, SurfaceTriangle};
+pub use surface::{CarryingTriangle, Surface, SurfaceError, SurfaceTriangle};
 
 pub use contact::AcceptedContact;
 

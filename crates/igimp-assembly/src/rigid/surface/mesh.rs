@@ -244,14 +244,11 @@ fn crosses(corners: &[[f64; 2]]) -> bool {
     })
 }
 
-/// Three numbers of corners.
-type Face = [usize; 3];
+/// Corners, and triangles between them.
+type Welded = (Vec<[f64; 3]>, Vec<[usize; 3]>);
 
 /// Corners that differ in place, and triangles between them.
-fn welded(
-    corners: &[[f64; 3]],
-    triangles: &[SurfaceTriangle],
-) -> Result<(Vec<[f64; 3]>, Vec<Face>), SurfaceError> {
+fn welded(corners: &[[f64; 3]], triangles: &[SurfaceTriangle]) -> Result<Welded, SurfaceError> {
     let mut places: BTreeMap<[u64; 3], usize> = BTreeMap::new();
     let mut points = Vec::new();
     let mut out = Vec::with_capacity(triangles.len());

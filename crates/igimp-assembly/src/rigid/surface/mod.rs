@@ -10,7 +10,7 @@ mod space;
 mod tree;
 
 pub use mesh::SurfaceTriangle;
-pub use space::DrawnFacet;
+pub use space::CarryingTriangle;
 pub(crate) use space::Space;
 
 use thiserror::Error;

@@ -26,26 +26,11 @@ pub(crate) struct Space<const D: usize> {
     pub(super) sides: Vec<Tree<D>>,
 }
 
-impl<const D: usize> Surface<D> {
-    /// What is known beside the core of a surface in space; none in the plane.
-    pub(crate) fn space(&self) -> Option<&Space<D>> {
-        self.space.as_deref()
-    }
-
-    /// How many facets it has.
-    pub(crate) fn facet_count(&self) -> usize {
-        self.facets.len()
-    }
-
-    /// The corners of a facet, as points.
-    pub(crate) fn corners(&self, facet: usize) -> [usize; D] {
-        self.facets[facet].corners
-    }
-
+impl<const D: usize> Space<D> {
     /// Two tangents of the surface at a knot, in the frame of the body, as far as a face with this normal
     /// has them; the second is the normal times the first (theory, eq. 45a).
-    pub(crate) fn tangents_at(space: &Space<D>, knot: usize, normal: &[f64; D]) -> [[f64; D]; 2] {
-        let [_, first, second] = &space.frames[knot];
+    pub(crate) fn tangents_at(&self, knot: usize, normal: &[f64; D]) -> [[f64; D]; 2] {
+        let [_, first, second] = &self.frames[knot];
         let along = |own: &[f64; D]| {
             let share = dot(own, normal);
             let flat: [f64; D] = std::array::from_fn(|axis| own[axis] - share * normal[axis]);
@@ -62,6 +47,26 @@ impl<const D: usize> Surface<D> {
             out[1][a] = normal[b] * t[c] - normal[c] * t[b];
         }
         out
+    }
+}
+
+/// A triangle that carries contact: its corners \[length\], knots with their shares at each of them, and its side.
+pub type CarryingTriangle<'a> = ([[f64; 3]; 3], [&'a [(usize, f64)]; 3], usize);
+
+impl<const D: usize> Surface<D> {
+    /// What is known beside the core of a surface in space; none in the plane.
+    pub(crate) fn space(&self) -> Option<&Space<D>> {
+        self.space.as_deref()
+    }
+
+    /// How many facets it has.
+    pub(crate) fn facet_count(&self) -> usize {
+        self.facets.len()
+    }
+
+    /// The corners of a facet, as points.
+    pub(crate) fn corners(&self, facet: usize) -> [usize; D] {
+        self.facets[facet].corners
     }
 
     /// The place of a side that is nearest to a point, in space.
@@ -123,9 +128,6 @@ impl<const D: usize> Surface<D> {
     }
 }
 
-/// A triangle that carries contact: its corners, the knots that share each of them, and its side.
-pub type DrawnFacet<'a> = ([[f64; 3]; 3], [&'a [(usize, f64)]; 3], usize);
-
 impl Surface<3> {
     /// The same at another place of the frame of the body: its reference point lies elsewhere.
     ///
@@ -153,7 +155,7 @@ impl Surface<3> {
 
     /// The triangles that carry contact: corners in the frame of the body \[length\], and the shares of knots
     /// at each corner, to draw what the knots carry.
-    pub fn facets(&self) -> impl Iterator<Item = DrawnFacet<'_>> {
+    pub fn facets(&self) -> impl Iterator<Item = CarryingTriangle<'_>> {
         let space = self.space.as_deref();
         space.into_iter().flat_map(move |space| {
             self.facets.iter().map(move |facet| {

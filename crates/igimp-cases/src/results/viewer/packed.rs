@@ -154,7 +154,7 @@ fn of_boxes(frame: &Frame<'_>, keep: Keep) -> Option<Packed> {
         position("high", &high, &kept, (&low, &high), keep),
     ];
     if let Some(skin) = &skin {
-        let faces = kept.iter().map(|&k| skin.faces[k as usize]).collect();
+        let faces: Vec<u8> = kept.iter().map(|&k| skin.faces[k as usize]).collect();
         let lie: Vec<u8> = kept
             .iter()
             .flat_map(|&k| bytes_of(skin.lie[k as usize]))
