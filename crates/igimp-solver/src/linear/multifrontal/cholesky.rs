@@ -9,7 +9,7 @@
 //!   r  [  L     C ]    L → L L₁⁻ᵀ,  C = contributions − L Lᵀ
 //! ```
 //!
-//! A and C keep the room of full squares; what is above their diagonals is never read.
+//! A keeps the room of a full square; what is above its diagonal is never read. Of C only the lower triangle is kept.
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::{
@@ -24,13 +24,14 @@ use igimp_assembly::TangentMatrix;
 use super::super::{LinearSolverError, check};
 use super::dense_lu::PivotRecord;
 use super::extend_add::{Block, BorderMap};
-use super::kernel::{Kernel, Room, Substitution};
+use super::kernel::{Kernel, Room, Shape, Substitution};
 use super::panels::{
     solve_lower, solve_lower_transposed, subtract_product, subtract_transposed_product,
 };
 use super::plan::{Front, Plan};
 use super::tasks::Extent;
-use super::tiles::by_columns;
+use super::tiles::{TILE, by_columns};
+use super::workshop::make_room;
 
 /// Pivots that are factorised at once in a front that the threads share.
 const STRIDE: usize = 128;
@@ -42,6 +43,8 @@ pub(super) struct Cholesky<'a> {
 }
 
 impl Kernel for Cholesky<'_> {
+    const SHAPE: Shape = Shape::Triangle;
+
     fn entries(extent: &Extent) -> usize {
         extent.squares + extent.panels
     }
@@ -115,18 +118,13 @@ impl Kernel for Cholesky<'_> {
             let factored = MatRef::from_column_major_slice(&*pivots, w, w);
             let mut lower = MatMut::from_column_major_slice_mut(lower, r, w);
             divide(factored, lower.as_mut(), large);
-            let contribution = MatMut::from_column_major_slice_mut(room.contribution, r, r);
-            multiply(contribution, Accum::Replace, lower.as_ref(), large);
+            contribute(room.contribution, lower.as_ref(), room.scratch, large)?;
         }
         Ok(PivotRecord::default())
     }
 
     fn pass_on(front: &Front, child: &[f64], map: &BorderMap, contribution: &mut [f64]) {
-        let mut contribution = Block {
-            entries: contribution,
-            rows: front.border,
-        };
-        map.pass_on_lower(child, &mut contribution);
+        map.pass_on_lower(child, contribution, front.border);
     }
 }
 
@@ -162,32 +160,85 @@ fn divide(factored: MatRef<'_, f64>, lower: MatMut<'_, f64>, large: bool) {
     });
 }
 
+/// Replaces a triangle by −L Lᵀ, which is worked out in squares: in one, or in tiles where the threads share it.
+fn contribute(
+    contribution: &mut [f64],
+    lower: MatRef<'_, f64>,
+    scratch: &mut Vec<f64>,
+    large: bool,
+) -> Result<(), LinearSolverError> {
+    let rows = lower.nrows();
+    if large {
+        halve(0, rows, contribution, lower);
+        return Ok(());
+    }
+    make_room(scratch, rows * rows, "contributions")?;
+    let square = &mut scratch[..rows * rows];
+    let target = MatMut::from_column_major_slice_mut(square, rows, rows);
+    multiply(target, Accum::Replace, lower, large);
+    keep_lower(square, rows, contribution);
+    Ok(())
+}
+
+/// Columns from `first` on of a triangle, by the tiles of [`by_columns`].
+fn halve(first: usize, columns: usize, triangle: &mut [f64], lower: MatRef<'_, f64>) {
+    let rows = lower.nrows();
+    if columns > TILE {
+        let half = (columns / 2).next_multiple_of(TILE);
+        let height = rows - first;
+        let entries = half * height - half * (half - 1) / 2;
+        let (left, right) = triangle.split_at_mut(entries);
+        rayon::join(
+            || halve(first, half, left, lower),
+            || halve(first + half, columns - half, right, lower),
+        );
+        return;
+    }
+    let height = rows - first;
+    let mut tile = vec![0.0; height * columns];
+    let target = MatMut::from_column_major_slice_mut(&mut tile, height, columns);
+    multiply_tile(target, Accum::Replace, lower, first);
+    keep_lower(&tile, height, triangle);
+}
+
+/// Copies the columns of a block from the diagonal on.
+fn keep_lower(block: &[f64], rows: usize, mut triangle: &mut [f64]) {
+    for (column, entries) in block.chunks_exact(rows).enumerate() {
+        let (own, later) = triangle.split_at_mut(rows - column);
+        own.copy_from_slice(&entries[column..]);
+        triangle = later;
+    }
+}
+
 /// The lower half of C, to which L Lᵀ is taken off or with whose negative it is replaced.
 fn multiply(target: MatMut<'_, f64>, accum: Accum, lower: MatRef<'_, f64>, large: bool) {
     let rows = target.nrows();
     by_columns(large, target, &|first, tile: MatMut<'_, f64>| {
-        let columns = tile.ncols();
-        let across = lower.subrows(first, columns).transpose();
-        let (square, below) = tile
-            .subrows_mut(first, rows - first)
-            .split_at_row_mut(columns);
-        triangular::matmul(
-            square,
-            BlockStructure::TriangularLower,
-            accum,
-            across.transpose(),
-            BlockStructure::Rectangular,
-            across,
-            BlockStructure::Rectangular,
-            -1.0,
-            Par::Seq,
-        );
-        let end = first + columns;
-        if end < rows {
-            let lower = lower.subrows(end, rows - end);
-            matmul(below, accum, lower, across, -1.0, Par::Seq);
-        }
+        multiply_tile(tile.subrows_mut(first, rows - first), accum, lower, first);
     });
+}
+
+/// The same for some columns of C, given from the diagonal on.
+fn multiply_tile(tile: MatMut<'_, f64>, accum: Accum, lower: MatRef<'_, f64>, first: usize) {
+    let (rows, columns) = (lower.nrows(), tile.ncols());
+    let across = lower.subrows(first, columns).transpose();
+    let (square, below) = tile.split_at_row_mut(columns);
+    triangular::matmul(
+        square,
+        BlockStructure::TriangularLower,
+        accum,
+        across.transpose(),
+        BlockStructure::Rectangular,
+        across,
+        BlockStructure::Rectangular,
+        -1.0,
+        Par::Seq,
+    );
+    let end = first + columns;
+    if end < rows {
+        let lower = lower.subrows(end, rows - end);
+        matmul(below, accum, lower, across, -1.0, Par::Seq);
+    }
 }
 
 /// Solves with the factors of [`Cholesky`].

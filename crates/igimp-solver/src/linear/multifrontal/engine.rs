@@ -86,12 +86,12 @@ impl Engine {
         let Some(plan) = &self.plan else {
             return (0, 0.0);
         };
-        let (entries, share) = if symmetric {
-            (self.entries::<Cholesky>(), 0.5)
+        let (entries, shape, share) = if symmetric {
+            (self.entries::<Cholesky>(), Cholesky::SHAPE, 0.5)
         } else {
-            (self.entries::<Lu>(), 1.0)
+            (self.entries::<Lu>(), Lu::SHAPE, 1.0)
         };
-        let contributions = plan.contribution_entries();
+        let contributions = plan.contribution_entries(shape);
         (8 * (entries + contributions), share * plan.operations())
     }
 

@@ -3,6 +3,8 @@
 //! I. S. Duff & J. K. Reid, *The multifrontal solution of indefinite sparse symmetric linear
 //! systems*, ACM Trans. Math. Softw. 9 (1983).
 
+use std::ops::Range;
+
 use super::plan::{Front, Plan};
 
 /// Consecutive border unknowns of a child that are consecutive in the parent.
@@ -81,12 +83,12 @@ impl BorderMap {
         }
     }
 
-    /// The same where of all columns only the part from the diagonal on is stored.
+    /// The same where the contribution of the child is a [`triangle`].
     pub(super) fn add_lower_to_pivots(&self, child: &[f64], pivots: &mut Block, lower: &mut Block) {
         let (into_pivots, into_border) = self.parts();
         for (index, columns) in into_pivots.iter().enumerate() {
             for k in 0..columns.len {
-                let source = &child[(columns.source + k) * self.rows..][..self.rows];
+                let source = &child[triangle_column(self.rows, columns.source + k)];
                 let target = pivots.column(columns.target + k);
                 add_stretch(target, source, columns.from(k));
                 add_stretches(target, source, &into_pivots[index + 1..]);
@@ -118,18 +120,29 @@ impl BorderMap {
         }
     }
 
-    /// The same where of all columns only the part from the diagonal on is stored.
-    pub(super) fn pass_on_lower(&self, child: &[f64], contribution: &mut Block) {
+    /// The same where both are a [`triangle`], the parent's with so many rows.
+    pub(super) fn pass_on_lower(&self, child: &[f64], contribution: &mut [f64], rows: usize) {
         let (_, into_border) = self.parts();
         for (index, columns) in into_border.iter().enumerate() {
             for k in 0..columns.len {
-                let source = &child[(columns.source + k) * self.rows..][..self.rows];
-                let target = contribution.column(columns.target + k);
+                let source = &child[triangle_column(self.rows, columns.source + k)];
+                let target = &mut contribution[triangle_column(rows, columns.target + k)];
                 add_stretch(target, source, columns.from(k));
                 add_stretches(target, source, &into_border[index + 1..]);
             }
         }
     }
+}
+
+/// Entries of the lower triangle of a symmetric block with so many rows, stored by columns from the diagonal on.
+pub(super) fn triangle(rows: usize) -> usize {
+    rows * (rows + 1) / 2
+}
+
+/// As many entries of such a triangle as a column has rows, of which those from the diagonal on are the column.
+pub(super) fn triangle_column(rows: usize, column: usize) -> Range<usize> {
+    let before = column * rows - column * (column + 1) / 2;
+    before..before + rows
 }
 
 impl Stretch {

@@ -104,15 +104,16 @@ impl<K: Kernel> Job<'_, K> {
             exchanges.split_at_mut(task.total.pivots - task.own.pivots);
         let below = self.tasks(&task.below, values_below, exchanges_below)?;
 
+        let shape = K::SHAPE as usize;
         let mut tools = self.workshop.tools(self.plan)?;
-        for (stack, &len) in tools.stacks.iter_mut().zip(&task.stacks) {
+        for (stack, &len) in tools.stacks.iter_mut().zip(&task.stacks[shape]) {
             make_room(stack, len, "contributions")?;
         }
         let mut record = PivotRecord::default();
         for done in &below {
             record.add(&done.record);
         }
-        let mut output = self.workshop.buffer(task.own.outer * task.own.outer)?;
+        let mut output = self.workshop.buffer(K::SHAPE.entries(task.own.outer))?;
         for index in task.fronts.clone() {
             let front = &self.plan.fronts[index];
             let entries = K::entries(&front.extent());
@@ -126,9 +127,9 @@ impl<K: Kernel> Job<'_, K> {
                 (odd, &*even)
             };
             let contribution = if index + 1 == task.fronts.end {
-                &mut output[..front.border * front.border]
+                &mut output[..K::SHAPE.entries(front.border)]
             } else {
-                &mut own_stack[front.contribution.clone()]
+                &mut own_stack[front.contribution[shape].clone()]
             };
             let children = self.plan.children[front.children.clone()]
                 .iter()
@@ -137,7 +138,7 @@ impl<K: Kernel> Job<'_, K> {
                 let child = &self.plan.fronts[child as usize];
                 let contribution = match below.get(order) {
                     Some(done) => &done.contribution[..],
-                    None => &stack_below[child.contribution.clone()],
+                    None => &stack_below[child.contribution[shape].clone()],
                 };
                 (child, contribution)
             });
@@ -152,15 +153,16 @@ impl<K: Kernel> Job<'_, K> {
                 factors: own_values,
                 exchanges: own_exchanges,
                 contribution,
+                scratch: &mut tools.scratch,
             };
             let found = self
                 .kernel
                 .eliminate(self.plan, front, room, task.is_large())?;
             record.add(&found);
             let contribution = if index + 1 == task.fronts.end {
-                &mut output[..front.border * front.border]
+                &mut output[..K::SHAPE.entries(front.border)]
             } else {
-                &mut own_stack[front.contribution.clone()]
+                &mut own_stack[front.contribution[shape].clone()]
             };
             for (child, entries) in children {
                 tools.map.set(self.plan, child, front, &tools.local);

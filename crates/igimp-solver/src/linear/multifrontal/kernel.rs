@@ -2,12 +2,15 @@
 
 use super::super::LinearSolverError;
 use super::dense_lu::PivotRecord;
-use super::extend_add::BorderMap;
+use super::extend_add::{BorderMap, triangle};
 use super::plan::{Front, Plan};
 use super::tasks::Extent;
 
 /// A kind of elimination, on given values.
 pub(super) trait Kernel: Sync {
+    /// How contributions are stored.
+    const SHAPE: Shape;
+
     /// Entries of the factors of fronts of this extent.
     fn entries(extent: &Extent) -> usize;
 
@@ -34,14 +37,35 @@ pub(super) trait Kernel: Sync {
     fn pass_on(front: &Front, child: &[f64], map: &BorderMap, contribution: &mut [f64]);
 }
 
+/// How the contribution of a front is stored.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Shape {
+    /// Border × border entries, by columns.
+    Square,
+    /// The entries from the diagonal on, by columns.
+    Triangle,
+}
+
+impl Shape {
+    /// Entries for a border with so many unknowns.
+    pub(super) fn entries(self, border: usize) -> usize {
+        match self {
+            Self::Square => border * border,
+            Self::Triangle => triangle(border),
+        }
+    }
+}
+
 /// Where the result of an elimination goes.
 pub(super) struct Room<'a> {
     /// Factors of the front.
     pub(super) factors: &'a mut [f64],
     /// Row exchanges within the pivot block.
     pub(super) exchanges: &'a mut [u32],
-    /// Border × border entries, by columns.
+    /// What the border of the front takes, see [`Shape`].
     pub(super) contribution: &'a mut [f64],
+    /// Memory to work in.
+    pub(super) scratch: &'a mut Vec<f64>,
 }
 
 /// What the factors of a front are used for in a solve.

@@ -21,7 +21,7 @@ use igimp_assembly::TangentMatrix;
 use super::super::LinearSolverError;
 use super::dense_lu::{PivotRecord, exchange, exchange_columns, factor_block};
 use super::extend_add::{Block, BorderMap};
-use super::kernel::{Kernel, Room, Substitution};
+use super::kernel::{Kernel, Room, Shape, Substitution};
 use super::panels::{solve_lower, solve_upper, subtract_product, subtract_transposed_product};
 use super::plan::{Front, Plan};
 use super::tasks::Extent;
@@ -41,6 +41,8 @@ fn blocks(pivots: usize, border: usize, factors: &mut [f64]) -> [&mut [f64]; 3] 
 }
 
 impl Kernel for Lu<'_> {
+    const SHAPE: Shape = Shape::Square;
+
     fn entries(extent: &Extent) -> usize {
         extent.squares + 2 * extent.panels
     }

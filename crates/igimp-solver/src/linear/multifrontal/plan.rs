@@ -12,6 +12,7 @@ use igimp_assembly::Pattern;
 
 use super::super::reach::Reach;
 use super::super::{LinearSolverError, NestedDissection, check};
+use super::kernel::Shape;
 use super::neighbours::{NONE, Neighbours};
 use super::supernodes::Supernodes;
 use super::tasks::{Extent, Task, cut};
@@ -35,8 +36,8 @@ pub(super) struct Front {
     /// Which of the two stacks holds its contribution to the parent: a front and its parent use
     /// different ones, so that each stays last in, first out.
     pub(super) stack: usize,
-    /// Where in that stack the contribution lies, stored by columns.
-    pub(super) contribution: Range<usize>,
+    /// Where in that stack the contribution lies, for each shape of contributions.
+    pub(super) contribution: [Range<usize>; 2],
 }
 
 impl Front {
@@ -189,8 +190,9 @@ impl Plan {
     }
 
     /// Largest number of entries of contributions that wait for their parents at the same time, on one thread.
-    pub(super) fn contribution_entries(&self) -> usize {
-        self.tasks.iter().map(Task::waiting).max().unwrap_or(0)
+    pub(super) fn contribution_entries(&self, shape: Shape) -> usize {
+        let waiting = self.tasks.iter().map(|task| task.waiting(shape));
+        waiting.max().unwrap_or(0)
     }
 
     /// Lists the fronts with their borders and children, in the sequence of elimination.
@@ -216,7 +218,7 @@ impl Plan {
                 subtree: front,
                 children: 0..0,
                 stack: 0,
-                contribution: 0..0,
+                contribution: [0..0, 0..0],
             });
             first += pivots;
         }

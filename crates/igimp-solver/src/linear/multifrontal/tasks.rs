@@ -6,6 +6,7 @@
 
 use std::ops::Range;
 
+use super::kernel::Shape;
 use super::plan::Front;
 
 /// Subtrees with less than this part of all operations are not cut further.
@@ -23,20 +24,21 @@ pub(super) struct Task {
     pub(super) total: Extent,
     /// What this task takes.
     pub(super) own: Extent,
-    /// Room for the contributions within the task, by stack.
-    pub(super) stacks: [usize; 2],
+    /// Room for the contributions within the task, by shape and stack.
+    pub(super) stacks: [[usize; 2]; 2],
 }
 
 impl Task {
     /// Largest number of entries of contributions that wait while this task and those below it are worked on, on one
     /// thread.
-    pub(super) fn waiting(&self) -> usize {
+    pub(super) fn waiting(&self, shape: Shape) -> usize {
         let (mut done, mut most) = (0, 0);
         for task in &self.below {
-            most = most.max(done + task.waiting());
-            done += task.own.outer * task.own.outer;
+            most = most.max(done + task.waiting(shape));
+            done += shape.entries(task.own.outer);
         }
-        let own = self.own.outer * self.own.outer + self.stacks[0] + self.stacks[1];
+        let [even, odd] = self.stacks[shape as usize];
+        let own = shape.entries(self.own.outer) + even + odd;
         most.max(done + own)
     }
 
@@ -139,25 +141,28 @@ impl Cutter<'_> {
             below,
             total,
             own,
-            stacks: self.place_contributions(first..root),
+            stacks: self.place_contributions(&(first..root)),
         }
     }
 
     /// Places the contributions of all fronts of a task but the last, whose contribution leaves it;
-    /// returns the largest fill of both stacks.
-    fn place_contributions(&mut self, fronts: Range<usize>) -> [usize; 2] {
-        let (mut fill, mut largest) = ([0, 0], [0, 0]);
-        for this in fronts {
-            let front = &self.fronts[this];
-            let own = front.stack;
-            let start = fill[own];
-            fill[own] += front.border * front.border;
-            largest[own] = largest[own].max(fill[own]);
-            if let Some(&eldest) = self.children[front.children.clone()].first() {
-                fill[1 - own] = self.fronts[eldest as usize].contribution.start;
+    /// returns the largest fill of both stacks, by shape.
+    fn place_contributions(&mut self, fronts: &Range<usize>) -> [[usize; 2]; 2] {
+        [Shape::Square, Shape::Triangle].map(|shape| {
+            let (mut fill, mut largest) = ([0, 0], [0, 0]);
+            for this in fronts.clone() {
+                let front = &self.fronts[this];
+                let own = front.stack;
+                let start = fill[own];
+                fill[own] += shape.entries(front.border);
+                largest[own] = largest[own].max(fill[own]);
+                if let Some(&eldest) = self.children[front.children.clone()].first() {
+                    let eldest = &self.fronts[eldest as usize];
+                    fill[1 - own] = eldest.contribution[shape as usize].start;
+                }
+                self.fronts[this].contribution[shape as usize] = start..fill[own];
             }
-            self.fronts[this].contribution = start..fill[own];
-        }
-        largest
+            largest
+        })
     }
 }

@@ -6,7 +6,7 @@
 use faer::MatMut;
 
 /// Columns of a tile.
-const TILE: usize = 192;
+pub(super) const TILE: usize = 192;
 
 /// Calls `work` with the first column and the columns of each tile of a matrix, on several threads;
 /// with the whole matrix at once where it is not `large`.

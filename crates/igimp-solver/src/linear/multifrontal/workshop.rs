@@ -19,6 +19,8 @@ pub(super) struct Tools {
     pub(super) map: BorderMap,
     /// Part of a vector on the border of a front.
     pub(super) border: Vec<f64>,
+    /// What a kernel works in.
+    pub(super) scratch: Vec<f64>,
 }
 
 /// The shelf.
