@@ -124,7 +124,7 @@ impl Expansion {
         let load_path = |from: f64, to: f64| {
             StepConditions::new(
                 grid.clone(),
-                self.driven(&grid, self.radius(from), self.radius(to))?,
+                Self::driven(&grid, self.radius(from), self.radius(to))?,
                 StepLoads::gravity([0.0; 3]),
                 vec![Arc::clone(&law)],
             )
@@ -156,7 +156,7 @@ impl Expansion {
 
     /// Planes of symmetry, and the exact motion r'³ = r³ + a'³ − a³ of all nodes within the cavity. Cells
     /// of which all nodes were driven would not keep their volume.
-    fn driven(&self, grid: &Grid<3>, from: f64, to: f64) -> Result<Constraints<3>, AssemblyError> {
+    fn driven(grid: &Grid<3>, from: f64, to: f64) -> Result<Constraints<3>, AssemblyError> {
         let mut constraints = Constraints::free(grid);
         for axis in 0..3 {
             constraints.fix_wall(grid, axis, false, axis)?;
