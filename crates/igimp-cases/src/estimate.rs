@@ -26,7 +26,7 @@ use speed::Speed;
 use time::Time;
 
 /// Program, tables and buffers \[bytes\].
-const BASE: f64 = 1.8e7;
+const BASE: f64 = 2.2e7;
 /// State, trial and supports of a particle \[bytes\].
 const PER_PARTICLE: f64 = 2e3;
 /// The states that a search along the reduction of strength keeps \[bytes per particle\].

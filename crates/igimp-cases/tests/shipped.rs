@@ -467,7 +467,8 @@ fn a_slope_between_valley_sides_is_stronger_than_in_the_plane() {
     assert_eq!(ran.outcomes(), [Completed, Stopped]);
     let limit = ran.end_of("load-displacement");
     between(limit, 5.379, 8.3);
-    between(ran.virtual_work(limit * 0.2), 0.97, 1.03);
+    // Rough valley sides carry a part of the weight.
+    assert!(ran.virtual_work(limit * 0.2) < 0.97);
 }
 
 #[test]
@@ -479,5 +480,5 @@ fn a_slope_from_a_raster_is_as_safe_as_its_bounds_say() {
     between(failed, stable, 1.75);
     let volume: f64 = ran.run.body.particles.volume0.iter().sum();
     assert!((volume / 687.5 - 1.0).abs() < 1e-9, "{volume}");
-    between(ran.virtual_work(1.0), 0.97, 1.03);
+    assert!(ran.virtual_work(1.0) < 0.97);
 }

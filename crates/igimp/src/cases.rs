@@ -52,7 +52,7 @@ fn checked<const D: usize>(
         row("particles", count(size.particles)),
         row("cells", format!("{} ({cells})", count(size.cells))),
         row("unknowns", format!("about {}", count(size.unknowns))),
-        row("linear solver", linear_solver(case, size.unknowns)),
+        row("solver", linear_solver(case, size.unknowns)),
         row("memory", format!("about {}", readable(size.bytes))),
         row(
             "",
