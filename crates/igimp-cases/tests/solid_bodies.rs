@@ -136,14 +136,13 @@ fn raster(hole: Option<&str>) -> String {
 
 #[test]
 fn every_shape_has_its_volume() {
-    let scattered: String = (0..60)
-        .map(|k| {
-            let k = f64::from(k);
-            let x = 13.0 + 14.0 * (1.3 * k).sin();
-            let y = 10.0 + 11.0 * (2.1 * k + 0.4).cos();
-            format!("{x},{y},{}\n", 1.0 + 0.05 * x - 0.03 * y)
-        })
-        .collect();
+    let mut scattered = String::new();
+    for k in 0..60 {
+        let k = f64::from(k);
+        let x = 13.0 + 14.0 * (1.3 * k).sin();
+        let y = 10.0 + 11.0 * (2.1 * k + 0.4).cos();
+        writeln!(scattered, "{x},{y},{}", 1.0 + 0.05 * x - 0.03 * y).unwrap();
+    }
     let scattered = format!(
         "x [ft],y [ft],z [ft]\n-2,-2,0.96\n28,-2,2.46\n28,22,1.74\n-2,22,0.24\n{scattered}"
     );
