@@ -3,12 +3,12 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use super::assemble::{self, Basics, Upon};
 use super::grid::Frame;
 use super::sequence::{Sequence, placed};
 use super::site::Soil;
-use super::{AllNames, all, boundaries, checks, construction, curves, grid, materials, outputs};
-use super::{rigid_space, solids, stages, study, title_block};
-use crate::case::{BodyPart, Case, Ground, Load, LoadKind, Material, WaterCondition};
+use super::{AllNames, boundaries, rigid_space, rigid_stage, solids, stages};
+use crate::case::{BodyPart, Case, Ground, Load, LoadKind, Material};
 use crate::input::diagnostic::Problems;
 use crate::input::text::{clip, count, number, point};
 use crate::input::tree::Node;
@@ -57,18 +57,59 @@ impl Soil<3> for Solids {
 
     fn holds_point(&self, point: &[f64; 3], margin: f64) -> bool {
         let margin = margin.max(self.round_off);
-        let beside = (0..6).map(|side| {
-            let mut at = *point;
-            at[side / 2] += if side % 2 == 0 { margin } else { -margin };
-            at
-        });
-        let mut places = std::iter::once(*point).chain(beside);
-        places.any(|at| self.regions.iter().any(|region| region.encloses(at)))
+        self.regions
+            .iter()
+            .any(|region| near(&**region, point, margin))
+    }
+
+    fn bears(&self, body: usize, load: &LoadKind<3>) -> bool {
+        let Some(region) = self.regions.get(body).filter(|_| self.is_complete) else {
+            return false;
+        };
+        let margin = (1e-2 * self.cell).max(self.round_off);
+        let places = match load {
+            LoadKind::RigidFooting { .. } => Vec::new(),
+            LoadKind::Pressure { from, to, .. } => samples(from, to),
+            LoadKind::Point { at, .. } => vec![*at],
+        };
+        places.iter().any(|at| near(&**region, at, margin))
     }
 
     fn round_off(&self) -> f64 {
         self.round_off
     }
+}
+
+/// Whether a place lies in a region, or not further outside than a margin.
+fn near(region: &dyn Region<3>, point: &[f64; 3], margin: f64) -> bool {
+    let beside = (0..6).map(|side| {
+        let mut at = *point;
+        at[side / 2] += if side % 2 == 0 { margin } else { -margin };
+        at
+    });
+    let mut places = std::iter::once(*point).chain(beside);
+    places.any(|at| region.encloses(at))
+}
+
+/// Places across a rectangle across an axis.
+fn samples(from: &[f64; 3], to: &[f64; 3]) -> Vec<[f64; 3]> {
+    let step = |k: usize| (k as f64 + 0.5) / SAMPLES as f64;
+    let widths = [0, 1, 2].map(|axis| (to[axis] - from[axis]).abs());
+    let normal = (0..3)
+        .min_by(|&a, &b| widths[a].total_cmp(&widths[b]))
+        .unwrap_or(2);
+    let place = |k: usize| {
+        let mut shares = [step(k % SAMPLES), step(k / SAMPLES)].into_iter();
+        std::array::from_fn(|axis| {
+            let share = if axis == normal {
+                0.0
+            } else {
+                shares.next().unwrap_or(0.0)
+            };
+            from[axis] + share * (to[axis] - from[axis])
+        })
+    };
+    (0..SAMPLES * SAMPLES).map(place).collect()
 }
 
 /// The case; `None` only when a problem was reported, here or before.
@@ -79,75 +120,40 @@ pub(super) fn build(
     problems: &mut Problems,
 ) -> Option<Case<3>> {
     refuse_what_is_of_the_plane(tree, problems);
-    let mut frame = grid::frame::<3>(tree, problems);
-    let method = grid::method(tree);
-    let bodies = bodies(tree, names, problems);
-    let materials = materials::materials(tree, &bodies, problems);
-    let grid = grid::grid(tree, frame.as_ref(), &bodies, problems);
-    if let (Some(frame), Some(grid)) = (&mut frame, &grid) {
-        frame.axes.clone_from(&grid.axes);
-    }
-    let sequence = Sequence::new(tree, names, &bodies);
-    let soil = Solids::new(&bodies, frame.as_ref());
-    check_bodies(tree, frame.as_ref(), (&bodies, &sequence), &soil, problems);
-    let boundaries = boundaries::boundaries(tree, frame.as_ref(), problems);
+    let basics = Basics::new(tree, names, bodies(tree, names, problems), problems);
+    let Basics {
+        frame,
+        bodies,
+        materials,
+        sequence,
+        ..
+    } = &basics;
+    let frame = frame.as_ref();
+    let soil = Solids::new(bodies, frame);
+    check_bodies(tree, frame, (bodies, sequence), &soil, problems);
+    let boundaries = boundaries::boundaries(tree, frame, problems);
     let loads = loads(tree, &soil, problems);
-    let rigid = rigid_space::rigid(tree, frame.as_ref(), &materials, problems);
-    super::rigid::check_use(tree, names, problems);
-    let water: Vec<Option<WaterCondition>> = Vec::new();
+    let rigid = rigid_space::rigid(tree, frame, materials, problems);
+    rigid_stage::check_use(tree, names, problems);
     let context = stages::Context {
         tree,
         names,
-        materials: &materials,
-        bodies: &bodies,
+        materials,
+        bodies,
         loads: &loads,
+        soil: &soil,
         site: None,
-        sequence: &sequence,
+        sequence,
     };
-    let stages = stages::stages(&context, problems);
-    stages::check_use(&context, problems);
-    construction::check(&context, problems);
-    check_level(tree, (&bodies, &materials), &soil, problems);
-    let solver = outputs::solver(tree, &materials, problems);
-    let monitors = outputs::monitors(tree, &soil, problems);
-    let about = outputs::About {
-        names,
-        stages: &stages,
-        file,
-    };
-    let sections = outputs::sections(tree, &about, &soil, problems);
-    let curves = curves::curves(tree, names, &loads, file, problems);
-    let checks = checks::checks(tree, names, &loads, &stages, problems);
-    let output = outputs::output::<3>(tree, problems);
-    let mesh_study = study::mesh_study(tree);
-
-    let case = tree.get("case")?;
-    let case = Case {
-        water_unit_weight: case.number_at("water_unit_weight")?,
-        water: all(water)?,
-        title: case.text_at("title")?.to_owned(),
-        title_block: title_block(case),
-        gravity: case.number_at("gravity")?,
-        grid: grid?,
-        method: method?,
-        materials: all(materials)?,
-        bodies: all(bodies)?,
-        boundaries: boundaries?,
-        loads: all(loads)?,
-        rigid: all(rigid)?,
+    let stages = assemble::stages_of(&context, problems);
+    check_level(tree, (bodies, materials), &soil, problems);
+    let upon = Upon {
+        boundaries,
+        rigid,
+        water: Vec::new(),
         reinforcement: Vec::new(),
-        stages: all(stages)?,
-        solver: solver?,
-        monitors: all(monitors)?,
-        sections: all(sections)?,
-        curves: all(curves)?,
-        checks: all(checks)?,
-        mesh_study: mesh_study?,
-        output: output?,
     };
-    let case = case.refined(tree.get("grid")?.count_at("refine")?);
-    study::check(tree, &case, problems);
-    Some(case)
+    assemble::assemble((&context, file), &basics, upon, stages, problems)
 }
 
 /// Reports what case files can say of the plane only.
