@@ -41,7 +41,7 @@ pub use rigid::{
 pub use rigid_space::RigidSolid;
 pub use stage::{Reduction, ReductionPath, RunOut, Stage, StageKind, StopWhen, StrengthReduction};
 pub(crate) use water::table_level;
-pub use water::{Construction, Drainage, PoreSource, WaterCondition};
+pub use water::{Construction, Drainage, Drained, PoreSource, WaterCondition};
 
 use crate::region::Region;
 

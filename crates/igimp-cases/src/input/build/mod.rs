@@ -11,6 +11,7 @@ mod curves;
 mod derive;
 mod grid;
 mod ground;
+mod ground_space;
 mod layers;
 mod level;
 mod lines;
@@ -136,7 +137,7 @@ fn in_plane(tree: &Node, names: &AllNames, file: &Path, problems: &mut Problems)
     let around = water::Around {
         tree,
         names,
-        site: &site,
+        earth: &site,
         bodies,
         materials,
         sequence,

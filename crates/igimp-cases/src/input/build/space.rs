@@ -7,7 +7,7 @@ use super::assemble::{self, Basics, Upon};
 use super::grid::Frame;
 use super::sequence::{Sequence, placed};
 use super::site::Soil;
-use super::{AllNames, boundaries, rigid_space, rigid_stage, solids, stages};
+use super::{AllNames, boundaries, rigid_space, rigid_stage, solids, stages, water};
 use crate::case::{BodyPart, Case, Ground, Load, LoadKind, Material};
 use crate::input::diagnostic::Problems;
 use crate::input::text::{clip, count, number, point};
@@ -18,12 +18,15 @@ use crate::region::Region;
 const MOST: f64 = 5e7;
 
 /// The bodies, for the checks of places.
-struct Solids {
-    regions: Vec<Arc<dyn Region<3>>>,
-    is_complete: bool,
-    round_off: f64,
+pub(super) struct Solids {
+    pub(super) regions: Vec<Arc<dyn Region<3>>>,
+    pub(super) is_complete: bool,
+    pub(super) round_off: f64,
     /// Smallest side of a cell \[m\].
-    cell: f64,
+    pub(super) cell: f64,
+    /// Extent of the grid \[m\].
+    pub(super) lower: [f64; 3],
+    pub(super) upper: [f64; 3],
 }
 
 impl Solids {
@@ -43,6 +46,8 @@ impl Solids {
             is_complete: frame.is_some() && regions.len() == bodies.len() && !bodies.is_empty(),
             regions,
             round_off,
+            lower: frame.map_or([0.0; 3], |frame| frame.lower),
+            upper: frame.map_or([0.0; 3], |frame| frame.upper),
             cell: cells
                 .map(|axis| axis.extremes()[0])
                 .fold(f64::INFINITY, f64::min),
@@ -135,6 +140,16 @@ pub(super) fn build(
     let loads = loads(tree, &soil, problems);
     let rigid = rigid_space::rigid(tree, frame, materials, problems);
     rigid_stage::check_use(tree, names, problems);
+    let around = water::Around {
+        tree,
+        names,
+        earth: &soil,
+        bodies,
+        materials,
+        sequence,
+    };
+    let water = water::conditions(&around, problems);
+    water::check(&around, &water, problems);
     let context = stages::Context {
         tree,
         names,
@@ -150,7 +165,7 @@ pub(super) fn build(
     let upon = Upon {
         boundaries,
         rigid,
-        water: Vec::new(),
+        water,
         reinforcement: Vec::new(),
     };
     assemble::assemble((&context, file), &basics, upon, stages, problems)
@@ -158,15 +173,10 @@ pub(super) fn build(
 
 /// Reports what case files can say of the plane only.
 fn refuse_what_is_of_the_plane(tree: &Node, problems: &mut Problems) {
-    for (key, what) in [
-        ("reinforcement", "reinforcement is"),
-        ("water", "conditions of the water are"),
-    ] {
-        if let Some(first) = tree.items_at(key).first() {
-            problems
-                .error(first.place, format!("{what} not available in space yet"))
-                .help("compute a slice with analysis = \"plane-strain\"");
-        }
+    if let Some(first) = tree.items_at("reinforcement").first() {
+        problems
+            .error(first.place, "reinforcement is not available in space yet")
+            .help("compute a slice with analysis = \"plane-strain\"");
     }
     for load in tree.items_at("loads") {
         if load.text_at("type") == Some("rigid-footing") {

@@ -122,12 +122,24 @@ pub(super) fn ground(
     }
 }
 
-fn height(node: &Node, who: &Who<'_>, problems: &mut Problems) -> Option<Height> {
+fn height(node: &Node, who: &dyn Display, problems: &mut Problems) -> Option<Height> {
     if node.is_invalid() {
         return None;
     }
     if let Some(level) = node.number() {
         return Some(Height::Level(level));
+    }
+    terrain(node, who, problems).map(Height::Terrain)
+}
+
+/// A surface of the ground, or of water in it.
+pub(super) fn terrain(
+    node: &Node,
+    who: &dyn Display,
+    problems: &mut Problems,
+) -> Option<Arc<Terrain>> {
+    if node.is_invalid() {
+        return None;
     }
     let mut refuse = |error: &dyn Display, help: &str| {
         let message = format!("a surface of {who} cannot be used: {error}");
@@ -187,7 +199,7 @@ fn height(node: &Node, who: &Who<'_>, problems: &mut Problems) -> Option<Height>
         }
     };
     match terrain {
-        Ok(terrain) => Some(Height::Terrain(Arc::new(terrain))),
+        Ok(terrain) => Some(Arc::new(terrain)),
         Err(error) => {
             let help = match error {
                 TerrainError::TwoHeights { .. } => "keep one of them",

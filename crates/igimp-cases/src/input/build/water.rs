@@ -3,33 +3,30 @@
 use std::collections::HashMap;
 
 use super::AllNames;
-use super::ground::{Above, Surface};
+use super::ground::{Above, Earth, Surface, UprightFace};
 use super::profiles::reach;
 use super::sequence::{Scene, Sequence};
-use super::site::Site;
-use crate::case::{
-    BodyPart, Drainage, Material, PoreSource, Raster, Strength, WaterCondition, table_level,
-};
+use super::surfaces::terrain;
+use crate::case::{BodyPart, Drainage, Material, PoreSource, Raster, Strength, WaterCondition};
 use crate::input::diagnostic::Problems;
-use crate::input::geometry::contains;
 use crate::input::source::Place;
 use crate::input::text::{clip, number};
 use crate::input::tree::Node;
 
 /// What conditions of the water are held against.
-pub(super) struct Around<'a> {
+pub(super) struct Around<'a, const D: usize = 2> {
     pub(super) tree: &'a Node,
     pub(super) names: &'a AllNames,
-    pub(super) site: &'a Site,
-    pub(super) bodies: &'a [Option<BodyPart>],
+    pub(super) earth: &'a dyn Earth<D>,
+    pub(super) bodies: &'a [Option<BodyPart<D>>],
     pub(super) materials: &'a [Option<Material>],
     pub(super) sequence: &'a Sequence,
 }
 
-impl Around<'_> {
-    fn surface(&self, scene: &Scene) -> Surface {
+impl<const D: usize> Around<'_, D> {
+    fn surface(&self, scene: &Scene) -> Box<dyn Surface> {
         let fills_gaps = self.tree.items_at("rigid").is_empty();
-        Surface::of(self.site, &scene.present, fills_gaps)
+        self.earth.surface(&scene.present, fills_gaps)
     }
 }
 
@@ -39,8 +36,8 @@ const OWN_FORMS: &str = "write one of level = \"24 m\", line = [[\"0 m\", \"24 m
                          u = { raster = \"u.csv\" }, dry = true";
 
 /// The conditions.
-pub(super) fn conditions(
-    around: &Around<'_>,
+pub(super) fn conditions<const D: usize>(
+    around: &Around<'_, D>,
     problems: &mut Problems,
 ) -> Vec<Option<WaterCondition>> {
     let items = around.tree.items_at("water");
@@ -69,8 +66,8 @@ pub(super) fn conditions(
     conditions
 }
 
-fn condition(
-    around: &Around<'_>,
+fn condition<const D: usize>(
+    around: &Around<'_, D>,
     index: usize,
     node: &Node,
     problems: &mut Problems,
@@ -116,7 +113,9 @@ fn form(
     forms: &str,
     problems: &mut Problems,
 ) -> Option<&'static str> {
-    let keys = ["level", "line", "r_u", "u", "dry"].iter().chain(more);
+    let keys = ["level", "line", "surface", "r_u", "u", "dry"]
+        .iter()
+        .chain(more);
     let is_said = |key: &str| {
         node.get(key)
             .is_some_and(|value| value.flag() != Some(false))
@@ -168,6 +167,7 @@ fn source_of(node: &Node, form: &str, who: &str, problems: &mut Problems) -> Opt
             }
             PoreSource::Table(points)
         }
+        "surface" => PoreSource::Surface(terrain(value, &who, problems)?),
         "r_u" => {
             let ratio = value.number()?;
             if !(0.0..=1.0).contains(&ratio) {
@@ -192,8 +192,8 @@ fn source_of(node: &Node, form: &str, who: &str, problems: &mut Problems) -> Opt
 }
 
 /// The table of `inside` and `outside`.
-fn drawdown(
-    around: &Around<'_>,
+fn drawdown<const D: usize>(
+    around: &Around<'_, D>,
     index: usize,
     node: &Node,
     who: &str,
@@ -228,24 +228,27 @@ fn drawdown(
             .help("inside and outside are for water that was drawn down; draw what flows in as line = [...]");
         return None;
     }
-    if !around.site.is_complete || around.site.frame.is_none() {
+    if !around.earth.is_complete() {
         return None;
     }
     let surface = around.surface(around.sequence.first_with(index));
     match surface.drained(inside, outside) {
-        Ok(points) => Some(PoreSource::Table(points)),
-        Err([x, left, right]) => {
+        Ok(source) => Some(source),
+        Err(UprightFace { at, levels }) => {
+            let [low, high] = levels;
             problems
                 .error(
                     node.place_at("inside"),
                     format!(
-                        "at x = {} m the ground drops upright, and the table of {who} with it from {} m to {} m",
-                        number(x),
-                        number(left.max(right)),
-                        number(left.min(right))
+                        "at {at} the ground drops upright, and the table of {who} with it from {} m to {} m",
+                        number(high),
+                        number(low)
                     ),
                 )
-                .help("nothing would hold the water behind that face; draw the table as line = [...] through its foot");
+                .help(match D {
+                    2 => "nothing would hold the water behind that face; draw the table as line = [...] through its foot",
+                    _ => "nothing would hold the water behind that face; draw the table as line = [...] or surface = {...} through its foot",
+                });
             None
         }
     }
@@ -253,13 +256,15 @@ fn drawdown(
 
 /// Refuses tables that stand above the ground unmeant, and what water cannot do to materials; warns of conditions that
 /// do nothing.
-pub(super) fn check(
-    around: &Around<'_>,
+pub(super) fn check<const D: usize>(
+    around: &Around<'_, D>,
     conditions: &[Option<WaterCondition>],
     problems: &mut Problems,
 ) {
-    let Around { site, sequence, .. } = around;
-    if !site.is_complete || site.frame.is_none() || conditions.is_empty() {
+    let Around {
+        earth, sequence, ..
+    } = around;
+    if !earth.is_complete() || conditions.is_empty() {
         return;
     }
     let mut checker = Checker {
@@ -295,17 +300,17 @@ pub(super) fn check(
     }
 }
 
-struct Checker<'a> {
-    around: &'a Around<'a>,
+struct Checker<'a, const D: usize> {
+    around: &'a Around<'a, D>,
     conditions: &'a [Option<WaterCondition>],
-    surfaces: HashMap<Vec<bool>, Surface>,
+    surfaces: HashMap<Vec<bool>, Box<dyn Surface>>,
     /// Conditions that have been found wrong: of each one place is enough.
     seen: Vec<usize>,
     /// Materials whose friction by total stress has been told.
     told: Vec<usize>,
 }
 
-impl Checker<'_> {
+impl<const D: usize> Checker<'_, D> {
     /// Checks what is there at the start, or at the end of a stage.
     fn scene(&mut self, scene: &Scene, stage: Option<usize>, problems: &mut Problems) {
         let around = self.around;
@@ -327,38 +332,45 @@ impl Checker<'_> {
             PoreSource::Dry => {}
             PoreSource::Points(raster) => points(
                 raster,
-                (around, scene, surface),
+                (around, scene, &**surface),
                 (node, &who, &when),
                 problems,
             ),
-            PoreSource::Table(points) => {
+            PoreSource::Table(_) | PoreSource::Surface(_) | PoreSource::Drained(_) => {
                 let is_meant = node.flag_at("pond") != Some(false);
-                let [highest, sloping] = surface.below(points);
-                if let Some(above) = highest.filter(|_| !is_meant) {
-                    above_ground(above, place, (&who, &when), problems);
+                let [highest, sloping] = surface.above(&condition.source);
+                if let Some(at) = surface.uncovered(&condition.source) {
+                    problems
+                        .error(
+                            place,
+                            format!("the surface of {who} does not reach the ground at {at}{when}"),
+                        )
+                        .help("take a survey that reaches over all bodies, and has no holes there");
+                } else if let Some(above) = highest.filter(|_| !is_meant) {
+                    above_ground(&above, place, (&who, &when), problems);
                 } else if let Some(above) = sloping {
                     problems
                         .error(
                             place,
                             format!(
-                                "{who} is not level where it stands above the ground{when}: {} m above it at x = {} m",
+                                "{who} is not level where it stands above the ground{when}: {} m above it at {}",
                                 number(above.by),
-                                number(above.x)
+                                above.at
                             ),
                         )
                         .help("a pond is level: let the line meet the ground before it goes up or down");
                 }
             }
             PoreSource::Ratio(_) => {
-                if let Some([x, left, right]) = surface.drop() {
+                if let Some(UprightFace { at, levels }) = surface.upright_face() {
+                    let up = if D == 2 { "y" } else { "z" };
                     problems
                         .error(
                             place,
                             format!(
-                                "r_u puts pressure behind the upright face at x = {} m, from y = {} m to {} m{when}",
-                                number(x),
-                                number(left.min(right)),
-                                number(left.max(right))
+                                "r_u puts pressure behind the upright face at {at}, from {up} = {} m to {} m{when}",
+                                number(levels[0]),
+                                number(levels[1])
                             ),
                         )
                         .help("nothing would hold the water there: slope the face, or draw the table as line = [...]");
@@ -367,8 +379,11 @@ impl Checker<'_> {
         }
         let bodies = std::iter::zip(around.bodies, &scene.present);
         let mut there = bodies.filter_map(|(part, present)| part.as_ref().filter(|_| *present));
-        let is_table = matches!(condition.source, PoreSource::Table(_));
-        if is_table && !there.any(|part| is_wet(&condition.source, part)) {
+        let is_table = matches!(
+            condition.source,
+            PoreSource::Table(_) | PoreSource::Surface(_) | PoreSource::Drained(_)
+        );
+        if is_table && !there.any(|part| is_wet(around.earth, &condition.source, part)) {
             problems
                 .warning(
                     place,
@@ -425,7 +440,7 @@ impl Checker<'_> {
                 material.strength,
                 Strength::MohrCoulomb { friction_angle, .. } if friction_angle > 0.0
             );
-            let is_wet = || own.is_none() && is_wet(&condition.source, part);
+            let is_wet = || own.is_none() && is_wet(around.earth, &condition.source, part);
             if has_friction && !self.told.contains(&number) && is_wet() {
                 self.told.push(number);
                 let entries = around.tree.get("materials").map_or(&[][..], Node::entries);
@@ -452,40 +467,33 @@ impl Checker<'_> {
 const ON_GROUND: f64 = 0.02;
 
 /// Refuses points that do not reach over the soil; warns of pressure on the ground that is not said to be free water.
-fn points(
+fn points<const D: usize>(
     raster: &Raster,
-    (around, scene, surface): (&Around<'_>, &Scene, &Surface),
+    (around, scene, surface): (&Around<'_, D>, &Scene, &dyn Surface),
     (node, who, when): (&Node, &str, &str),
     problems: &mut Problems,
 ) {
     let Some(value) = node.get("u") else { return };
     let parts = std::iter::zip(around.bodies, &scene.present);
     let there = parts.filter_map(|(part, present)| part.as_ref().filter(|_| *present));
-    let polygons: Vec<&[[f64; 2]]> = there.map(BodyPart::polygon).collect();
+    let outlines: Vec<_> = there.map(|part| around.earth.from_front(part)).collect();
+    let polygons: Vec<&[[f64; 2]]> = outlines.iter().map(|own| &own[..]).collect();
     let of = format!("the soil that {who} is for{when}");
     if reach(raster, (value, "u"), (&polygons, &of), problems).is_err() {
         return;
     }
     let greatest = raster.values.iter().flatten().copied().fold(0.0, f64::max);
-    let ends = surface.stretches.iter().flat_map(|own| {
-        let at = |share: f64| {
-            let [x, y] = [own.x, own.y].map(|[from, to]| from + share * (to - from));
-            [x, y]
-        };
-        [0.0, 0.25, 0.5, 0.75, 1.0].map(at)
-    });
-    let pressure = |at: &[f64; 2]| raster.at(*at);
-    let most = ends.max_by(|a, b| pressure(a).total_cmp(&pressure(b)));
+    let most = surface.most_on_ground(raster);
     let is_meant = node.flag_at("pond") == Some(true);
-    if let Some(at) = most.filter(|at| !is_meant && pressure(at) > ON_GROUND * greatest) {
+    if let Some((at, pressure)) =
+        most.filter(|(_, pressure)| !is_meant && *pressure > ON_GROUND * greatest)
+    {
         problems
             .warning(
                 value.place,
                 format!(
-                    "{who} presses on the ground with {} kPa at ({}, {}) m{when}, as free water would",
-                    number((pressure(&at) / 1e2).round() / 1e1),
-                    number(at[0]),
-                    number(at[1])
+                    "{who} presses on the ground with {} kPa at {at}{when}, as free water would",
+                    number((pressure / 1e2).round() / 1e1)
                 ),
             )
             .help("write pond = true if free water stands there; else let the points have no pressure on the ground");
@@ -494,7 +502,7 @@ fn points(
 
 /// Where a condition is told wrong, and when.
 fn when(tree: &Node, node: &Node, stage: Option<usize>) -> (Place, String) {
-    let own = ["line", "level", "inside", "r_u", "u"];
+    let own = ["line", "level", "surface", "inside", "r_u", "u"];
     let own = own.iter().find(|key| node.get(key).is_some());
     let own = own.map_or(node.place, |key| node.place_at(key));
     let Some(stage) = stage.map(|index| &tree.items_at("stages")[index]) else {
@@ -512,14 +520,14 @@ fn when(tree: &Node, node: &Node, stage: Option<usize>) -> (Place, String) {
     )
 }
 
-fn above_ground(above: Above, place: Place, (who, when): (&str, &str), problems: &mut Problems) {
+fn above_ground(above: &Above, place: Place, (who, when): (&str, &str), problems: &mut Problems) {
     problems
         .error(
             place,
             format!(
-                "{who} stands {} m above the ground at x = {} m{when}",
+                "{who} stands {} m above the ground at {}{when}",
                 number(above.by),
-                number(above.x)
+                above.at
             ),
         )
         .help("a line above the ground presses on it as a pond does: draw it along the surface there, or below")
@@ -527,18 +535,13 @@ fn above_ground(above: Above, place: Place, (who, when): (&str, &str), problems:
 }
 
 /// Whether there is pressure in a body.
-fn is_wet(source: &PoreSource, part: &BodyPart) -> bool {
+fn is_wet<const D: usize>(earth: &dyn Earth<D>, source: &PoreSource, part: &BodyPart<D>) -> bool {
     match source {
         PoreSource::Dry => false,
         PoreSource::Ratio(ratio) => *ratio > 0.0,
-        PoreSource::Points(raster) => raster
-            .places_in(part.polygon())
-            .iter()
-            .any(|at| raster.at(*at) > 0.0),
-        PoreSource::Table(points) => {
-            let is_below = |corner: &[f64; 2]| corner[1] < table_level(points, corner[0]);
-            part.polygon().iter().any(is_below)
-                || (points.iter()).any(|&point| contains(part.polygon(), point))
-        }
+        PoreSource::Points(_)
+        | PoreSource::Table(_)
+        | PoreSource::Surface(_)
+        | PoreSource::Drained(_) => earth.wets(source, part),
     }
 }

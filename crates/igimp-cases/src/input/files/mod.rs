@@ -72,10 +72,13 @@ fn shape(of: &mut Node, folder: &Path, problems: &mut Problems) {
     }
 }
 
-/// The pore pressures of a condition of the water, or of a body in it.
+/// The pore pressures, or the table, of a condition of the water, or of a body in it.
 fn pressures(of: &mut Node, folder: &Path, problems: &mut Problems) {
     if let Some(points) = of.get_mut("u") {
         raster::resolve(points, "u", folder, problems);
+    }
+    if let Some(surface) = of.get_mut("surface") {
+        elevation::resolve(surface, folder, problems);
     }
 }
 

@@ -166,7 +166,7 @@ pub(super) static SURFACE_TABLE: Struct = Struct {
 
 static HEIGHT: Kind = Kind::Either(&[Kind::Quantity(Length, Range::Any), Kind::Table(&TERRAIN)]);
 
-static TERRAIN: Struct = Struct {
+pub(super) static TERRAIN: Struct = Struct {
     doc: "A surface of the ground: an ESRI ASCII grid, points from a CSV file, points, or heights on lines.",
     fields: &[
         optional(
