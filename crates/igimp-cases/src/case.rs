@@ -6,6 +6,7 @@
 mod axes;
 mod grid;
 mod ground;
+mod load;
 mod material;
 mod profile;
 mod raster;
@@ -23,9 +24,10 @@ use igimp_assembly::Method;
 use igimp_solver::linear::SolverKind;
 use serde::{Deserialize, Serialize};
 
-pub(crate) use axes::{from_front, front, in_space};
+pub(crate) use axes::{front, in_space};
 pub use grid::{AxisSpec, GridSpec, MixedCells};
 pub use ground::{Ground, Layer};
+pub use load::{Load, LoadKind, Plan};
 pub use material::{Material, Strength};
 pub use profile::{LEAST_STRENGTH, Profile, Profiles, StressShare, Variation};
 pub use raster::Raster;
@@ -33,6 +35,7 @@ pub use record::{
     Average, CaseCheck, CheckTime, CheckValue, Curve, CurveAxis, Field, Monitor, Quantity,
     Reference, ReferenceValues, Section, SectionReference,
 };
+pub(crate) use reinforcement::distance;
 pub use reinforcement::{ReinforcementKind, ReinforcementPart, ReinforcementQuantity};
 pub use rigid::{
     Adhesion, COMPONENTS, RigidDrive, RigidForm, RigidInterface, RigidMove, RigidPart,
@@ -73,7 +76,7 @@ pub struct Case<const D: usize = 2> {
     /// Rigid bodies; stages name them by index.
     pub rigid: Vec<RigidPart<D>>,
     /// Reinforcement; stages name it by index.
-    pub reinforcement: Vec<ReinforcementPart>,
+    pub reinforcement: Vec<ReinforcementPart<D>>,
     /// What happens, in order.
     pub stages: Vec<Stage>,
     /// Newton, step cutting, linear solver.
@@ -259,48 +262,6 @@ pub struct FixedBox<const D: usize = 2> {
     pub upper: [f64; D],
     /// Which components are held.
     pub fix: [bool; D],
-}
-
-/// A load that stages apply.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Load<const D: usize = 2> {
-    /// Name.
-    pub name: String,
-    /// Kind.
-    pub kind: LoadKind<D>,
-}
-
-/// Kinds of loads.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum LoadKind<const D: usize = 2> {
-    /// A level rigid footing on the surface, pushed down by displacement stages; in plane strain only. The grid
-    /// follows.
-    RigidFooting {
-        /// Left end of the base \[m\].
-        from: [f64; 2],
-        /// Right end of the base, at the same level \[m\].
-        to: [f64; 2],
-        /// Whether the soil sticks to base and shaft.
-        rough: bool,
-        /// Factor on the reported reaction, 2 for half a footing \[-\].
-        reaction_factor: f64,
-    },
-    /// A dead pressure on a segment of the surface, or in space on a rectangle, raised by load stages.
-    Pressure {
-        /// One end, or corner \[m\].
-        from: [f64; D],
-        /// The other end, or the corner across \[m\].
-        to: [f64; D],
-        /// Traction at factor 1 \[Pa\], its components.
-        traction: [f64; D],
-    },
-    /// A dead force at a point, raised by load stages.
-    Point {
-        /// Where \[m\].
-        at: [f64; D],
-        /// Force at factor 1 \[N/m\], in space \[N\].
-        force: [f64; D],
-    },
 }
 
 /// Newton's method, step cutting and the linear solver.

@@ -91,7 +91,7 @@ fn while_there<const D: usize>(case: &Case<D>, body: usize) -> String {
 }
 
 /// Corners one by one, or how many there are.
-fn corners(polygon: &[[f64; 2]]) -> String {
+fn corners<const D: usize>(polygon: &[[f64; D]]) -> String {
     if polygon.len() > MOST_CORNERS {
         return format!("{} corners", polygon.len());
     }
@@ -145,7 +145,7 @@ fn supports<const D: usize>(boundaries: &Boundaries<D>) -> SetupTable {
 
 fn loads<const D: usize>(case: &Case<D>) -> SetupTable {
     let rows = case.loads.iter().map(|load| {
-        let (kind, place, size) = match load.kind {
+        let (kind, place, size) = match load.kind.clone() {
             LoadKind::RigidFooting {
                 from,
                 to,
@@ -166,6 +166,14 @@ fn loads<const D: usize>(case: &Case<D>) -> SetupTable {
             }
             LoadKind::Pressure { from, to, traction } => {
                 ("pressure", line(from, to), components(traction, "Pa"))
+            }
+            LoadKind::Patch {
+                plan,
+                level,
+                traction,
+            } => {
+                let place = format!("{}, at z = {}", plan.words(), short(level));
+                ("pressure", place, components(traction, "Pa"))
             }
             LoadKind::Point { at, force } => (
                 "force",

@@ -53,7 +53,7 @@ pub(super) struct Upon<const D: usize> {
     pub(super) boundaries: Option<Boundaries<D>>,
     pub(super) rigid: Vec<Option<RigidPart<D>>>,
     pub(super) water: Vec<Option<WaterCondition>>,
-    pub(super) reinforcement: Vec<Option<ReinforcementPart>>,
+    pub(super) reinforcement: Vec<Option<ReinforcementPart<D>>>,
 }
 
 /// The stages, with the checks of what they use.

@@ -16,6 +16,7 @@ mod layers;
 mod level;
 mod lines;
 mod loads;
+mod loads_space;
 mod materials;
 mod outputs;
 mod profiles;

@@ -36,6 +36,9 @@ pub(super) trait Soil<const D: usize> {
 
     /// Lengths below this are round-off \[m\].
     fn round_off(&self) -> f64;
+
+    /// Smallest side of a cell \[m\].
+    fn cell(&self) -> f64;
 }
 
 impl Soil<2> for Site {
@@ -52,6 +55,7 @@ impl Soil<2> for Site {
             LoadKind::RigidFooting { from, to, .. } | LoadKind::Pressure { from, to, .. } => {
                 [from, to]
             }
+            LoadKind::Patch { .. } => return false,
             LoadKind::Point { at, .. } => [at; 2],
         };
         let margin = (1e-2 * self.cell()).max(self.round_off);
@@ -67,6 +71,10 @@ impl Soil<2> for Site {
 
     fn round_off(&self) -> f64 {
         self.round_off
+    }
+
+    fn cell(&self) -> f64 {
+        self.cell()
     }
 }
 

@@ -7,8 +7,11 @@ use super::assemble::{self, Basics, Upon};
 use super::grid::Frame;
 use super::sequence::{Sequence, placed};
 use super::site::Soil;
-use super::{AllNames, boundaries, rigid_space, rigid_stage, solids, stages, water};
-use crate::case::{BodyPart, Case, Ground, Load, LoadKind, Material};
+use super::{
+    AllNames, boundaries, loads_space, reinforcement, rigid_space, rigid_stage, solids, stages,
+    water,
+};
+use crate::case::{BodyPart, Case, Ground, LoadKind, Material};
 use crate::input::diagnostic::Problems;
 use crate::input::text::{clip, count, number, point};
 use crate::input::tree::Node;
@@ -74,7 +77,8 @@ impl Soil<3> for Solids {
         let margin = (1e-2 * self.cell).max(self.round_off);
         let places = match load {
             LoadKind::RigidFooting { .. } => Vec::new(),
-            LoadKind::Pressure { from, to, .. } => samples(from, to),
+            LoadKind::Pressure { from, to, .. } => loads_space::samples(from, to),
+            LoadKind::Patch { plan, level, .. } => loads_space::places(plan, *level, self),
             LoadKind::Point { at, .. } => vec![*at],
         };
         places.iter().any(|at| near(&**region, at, margin))
@@ -82,6 +86,10 @@ impl Soil<3> for Solids {
 
     fn round_off(&self) -> f64 {
         self.round_off
+    }
+
+    fn cell(&self) -> f64 {
+        self.cell
     }
 }
 
@@ -94,27 +102,6 @@ fn near(region: &dyn Region<3>, point: &[f64; 3], margin: f64) -> bool {
     });
     let mut places = std::iter::once(*point).chain(beside);
     places.any(|at| region.encloses(at))
-}
-
-/// Places across a rectangle across an axis.
-fn samples(from: &[f64; 3], to: &[f64; 3]) -> Vec<[f64; 3]> {
-    let step = |k: usize| (k as f64 + 0.5) / SAMPLES as f64;
-    let widths = [0, 1, 2].map(|axis| (to[axis] - from[axis]).abs());
-    let normal = (0..3)
-        .min_by(|&a, &b| widths[a].total_cmp(&widths[b]))
-        .unwrap_or(2);
-    let place = |k: usize| {
-        let mut shares = [step(k % SAMPLES), step(k / SAMPLES)].into_iter();
-        std::array::from_fn(|axis| {
-            let share = if axis == normal {
-                0.0
-            } else {
-                shares.next().unwrap_or(0.0)
-            };
-            from[axis] + share * (to[axis] - from[axis])
-        })
-    };
-    (0..SAMPLES * SAMPLES).map(place).collect()
 }
 
 /// The case; `None` only when a problem was reported, here or before.
@@ -137,7 +124,7 @@ pub(super) fn build(
     let soil = Solids::new(bodies, frame);
     check_bodies(tree, frame, (bodies, sequence), &soil, problems);
     let boundaries = boundaries::boundaries(tree, frame, problems);
-    let loads = loads(tree, &soil, problems);
+    let loads = loads_space::loads(tree, &soil, problems);
     let rigid = rigid_space::rigid(tree, frame, materials, problems);
     rigid_stage::check_use(tree, names, problems);
     let around = water::Around {
@@ -150,6 +137,8 @@ pub(super) fn build(
     };
     let water = water::conditions(&around, problems);
     water::check(&around, &water, problems);
+    let reinforcement = reinforcement::in_space(tree, &soil, problems);
+    reinforcement::check_searches(tree, names, problems);
     let context = stages::Context {
         tree,
         names,
@@ -166,18 +155,13 @@ pub(super) fn build(
         boundaries,
         rigid,
         water,
-        reinforcement: Vec::new(),
+        reinforcement,
     };
     assemble::assemble((&context, file), &basics, upon, stages, problems)
 }
 
 /// Reports what case files can say of the plane only.
 fn refuse_what_is_of_the_plane(tree: &Node, problems: &mut Problems) {
-    if let Some(first) = tree.items_at("reinforcement").first() {
-        problems
-            .error(first.place, "reinforcement is not available in space yet")
-            .help("compute a slice with analysis = \"plane-strain\"");
-    }
     for load in tree.items_at("loads") {
         if load.text_at("type") == Some("rigid-footing") {
             problems
@@ -341,121 +325,4 @@ fn check_level(
             ))
             .help("for a slope use a stage of type gravity");
     }
-}
-
-/// The loads.
-fn loads(tree: &Node, soil: &Solids, problems: &mut Problems) -> Vec<Option<Load<3>>> {
-    let items = tree.items_at("loads").iter();
-    items
-        .map(|node| {
-            let name = node.text_at("name")?;
-            let kind = match node.text_at("type")? {
-                "pressure" => pressure(node, name, soil, problems),
-                "point" => at_point(node, name, soil, problems),
-                _ => None,
-            }?;
-            Some(Load {
-                name: name.to_owned(),
-                kind,
-            })
-        })
-        .collect()
-}
-
-/// Places along each side of a loaded rectangle at which soil is looked for.
-const SAMPLES: usize = 7;
-
-fn pressure(
-    node: &Node,
-    name: &str,
-    soil: &Solids,
-    problems: &mut Problems,
-) -> Option<LoadKind<3>> {
-    let (from, to) = (node.point_at::<3>("from")?, node.point_at::<3>("to")?);
-    let pressure = node.number_at("pressure")?;
-    let shown = clip(name, 40);
-    let flat: Vec<usize> = (0..3)
-        .filter(|&axis| (to[axis] - from[axis]).abs() <= soil.round_off)
-        .collect();
-    let &[normal] = &flat[..] else {
-        problems
-            .error(
-                node.place_at("to"),
-                format!("the corners of the pressure `{shown}` span no rectangle across an axis"),
-            )
-            .help("two corners that lie across from each other have one coordinate in common");
-        return None;
-    };
-    let step = 1e-2 * soil.cell;
-    let is_soil = |share: [f64; 3], side: f64| {
-        let mut at: [f64; 3] =
-            std::array::from_fn(|axis| from[axis] + share[axis] * (to[axis] - from[axis]));
-        at[normal] += side * step;
-        soil.regions.iter().any(|region| region.encloses(at))
-    };
-    let mut sides = [0_usize; 2];
-    let mut buried = 0;
-    for k in 0..SAMPLES * SAMPLES {
-        let mut share = [0.0; 3];
-        let places = [k % SAMPLES, k / SAMPLES].map(|place| (place as f64 + 0.5) / SAMPLES as f64);
-        let along = (0..3).filter(|&axis| axis != normal);
-        for (axis, place) in along.zip(places) {
-            share[axis] = place;
-        }
-        match (is_soil(share, 1.0), is_soil(share, -1.0)) {
-            (true, true) => buried += 1,
-            (true, false) => sides[0] += 1,
-            (false, true) => sides[1] += 1,
-            (false, false) => {}
-        }
-    }
-    let mut inward = [0.0; 3];
-    if soil.is_complete && sides.iter().all(|&side| side < SAMPLES * SAMPLES) {
-        let message = if buried > 0 {
-            format!(
-                "the rectangle of the pressure `{shown}` lies inside the soil, not on its surface"
-            )
-        } else if sides == [0, 0] {
-            format!("no body lies along the rectangle of the pressure `{shown}`")
-        } else {
-            format!(
-                "only a part of the rectangle of the pressure `{shown}` lies on the surface of a body"
-            )
-        };
-        problems
-            .error(node.place_at("from"), message)
-            .help("the rectangle lies on a level or upright face of a body");
-        return None;
-    }
-    inward[normal] = if sides[0] > 0 { 1.0 } else { -1.0 };
-    if node.text_at("direction")? == "down" {
-        inward = [0.0, 0.0, -1.0];
-    }
-    Some(LoadKind::Pressure {
-        from,
-        to,
-        traction: inward.map(|component| component * pressure + 0.0),
-    })
-}
-
-fn at_point(
-    node: &Node,
-    name: &str,
-    soil: &Solids,
-    problems: &mut Problems,
-) -> Option<LoadKind<3>> {
-    let (at, force) = (node.point_at("at")?, node.point_at("force")?);
-    if soil.is_complete && !soil.holds_point(&at, 1e-2 * soil.cell) {
-        problems
-            .error(
-                node.place_at("at"),
-                format!(
-                    "there is no body at {}, where `{}` acts",
-                    point(at),
-                    clip(name, 40)
-                ),
-            )
-            .help("move the load onto a body");
-    }
-    Some(LoadKind::Point { at, force })
 }

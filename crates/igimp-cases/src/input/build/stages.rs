@@ -312,7 +312,7 @@ fn load<const D: usize>(
             construction::load_is_held(context, index, load, value, problems);
         }
         let kind = context.loads.get(load).and_then(Option::as_ref);
-        if let Some(LoadKind::RigidFooting { .. }) = kind.map(|load| load.kind) {
+        if let Some(LoadKind::RigidFooting { .. }) = kind.map(|load| &load.kind) {
             problems
                 .error(value.place, "a rigid footing is pushed, not loaded")
                 .help("use a stage of type displacement");

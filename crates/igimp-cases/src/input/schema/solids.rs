@@ -12,7 +12,8 @@ static HOLE: Kind = Kind::List(&INDEX, 2, 2);
 static ROW: Kind = Kind::List(&LENGTH, 2, MANY);
 
 const OTHER: &str = "another shape is stated";
-const POLYGON: Kind = Kind::Either(&[Kind::List(&CORNER, 3, MANY), Kind::Table(&OUTLINE)]);
+pub(super) const POLYGON: Kind =
+    Kind::Either(&[Kind::List(&CORNER, 3, MANY), Kind::Table(&OUTLINE)]);
 
 pub(super) const BOX: Field = optional(
     "box",

@@ -6,7 +6,7 @@ use igimp_assembly::Tension;
 
 use super::stages::drives_in_words;
 use super::{corners, kilo, point, table};
-use crate::case::{Adhesion, Case, ReinforcementPart, RigidPart, RigidShear, StageKind};
+use crate::case::{Adhesion, Case, ReinforcementPart, RigidPart, RigidShear, StageKind, distance};
 use crate::check::short;
 use crate::summary::SetupTable;
 
@@ -116,22 +116,43 @@ fn tension(of: Tension) -> String {
 }
 
 pub(super) fn reinforcement<const D: usize>(case: &Case<D>) -> SetupTable {
-    let header = [
-        "Reinforcement",
-        "Kind",
-        "Line [m]",
-        "Stiffness EA [MN/m]",
-        "Capacity [kN/m]",
-        "Bond [kPa]",
-        "Held at head, end [kN/m]",
-        "Installed",
-    ];
+    let header = match D {
+        2 => [
+            "Reinforcement",
+            "Kind",
+            "Line [m]",
+            "Stiffness EA [MN/m]",
+            "Capacity [kN/m]",
+            "Bond [kPa]",
+            "Held at head, end [kN/m]",
+            "Installed",
+        ],
+        _ => [
+            "Reinforcement",
+            "Kind",
+            "Line [m]",
+            "Stiffness EA [MN]",
+            "Capacity [kN]",
+            "Bond [kN/m]",
+            "Held at head, end [kN]",
+            "Installed",
+        ],
+    };
+    let title = if D == 2 {
+        "Reinforcement, per metre run"
+    } else {
+        "Reinforcement"
+    };
     let rows = case.reinforcement.iter().enumerate();
     let rows = rows.map(|(index, part)| member(case, index, part));
-    table("Reinforcement, per metre run", &header, rows.collect())
+    table(title, &header, rows.collect())
 }
 
-fn member<const D: usize>(case: &Case<D>, index: usize, part: &ReinforcementPart) -> Vec<String> {
+fn member<const D: usize>(
+    case: &Case<D>,
+    index: usize,
+    part: &ReinforcementPart<D>,
+) -> Vec<String> {
     let mut kind = part.kind.name().to_owned();
     if part.free_length > 0.0 {
         let _ = write!(kind, ", {} m of it free", short(part.free_length));
@@ -143,7 +164,7 @@ fn member<const D: usize>(case: &Case<D>, index: usize, part: &ReinforcementPart
     let [head, end] = part.fastened.map(|force| short(force / 1e3));
     let held = match part.plate {
         Some([from, to]) => {
-            let width = short((to[0] - from[0]).hypot(to[1] - from[1]));
+            let width = short(distance(&from, &to));
             format!("{head} on a plate of {width} m, {end}")
         }
         None => format!("{head}, {end}"),
@@ -157,7 +178,8 @@ fn member<const D: usize>(case: &Case<D>, index: usize, part: &ReinforcementPart
         format!("in {}", installed.join(", "))
     };
     if let Some(prestress) = part.prestress {
-        let _ = write!(when, ", locked off at {} kN/m", short(prestress / 1e3));
+        let unit = if D == 2 { "kN/m" } else { "kN" };
+        let _ = write!(when, ", locked off at {} {unit}", short(prestress / 1e3));
     }
     vec![
         part.name.clone(),

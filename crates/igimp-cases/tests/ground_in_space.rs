@@ -1,0 +1,508 @@
+//! GOAL: water, stages of construction, reinforcement and patches of pressure in case files of space.
+//! CASE: columns, a slope in a pond, blocks; each with an exact answer, or with the answer of another way to say it.
+//! ORACLE: hydrostatics; buoyancy; equal runs; equilibrium; messages.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use igimp_cases::case::Case;
+use igimp_cases::input::CaseFile;
+use igimp_cases::results::admission::Replace;
+use igimp_cases::run::{Event, Run, Start, Target, in_memory, run};
+use igimp_cases::summary::StageOutcome;
+
+fn parsed(text: &str) -> CaseFile {
+    CaseFile::parse("ground.toml", text, &[]).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn done(text: &str) -> (Case<3>, Run<3>) {
+    let case = parsed(text).case_in_space().clone();
+    let run = in_memory(&case).unwrap();
+    for stage in &run.summary.stages {
+        let (name, reason) = (&stage.name, &stage.reason);
+        assert_eq!(stage.outcome, StageOutcome::Completed, "{name}: {reason}");
+    }
+    (case, run)
+}
+
+/// A block of elastic ground, 2 m by 1 m, so high, with more after it.
+fn block(height: f64, water: &str, more: &str) -> String {
+    format!(
+        r#"igimp = 1
+[case]
+title = "a block in space"
+analysis = "3d"
+gravity = "10 m/s2"
+water_unit_weight = "10 kN/m3"
+[grid]
+cell = "0.5 m"
+domain = {{ x = ["0 m", "2 m"], y = ["0 m", "1 m"], z = ["0 m", "{} m"] }}
+[materials.sand]
+model = "elastic"
+unit_weight = "18 kN/m3"
+saturated_unit_weight = "20 kN/m3"
+young = "200 MPa"
+poisson = 0.25
+[[bodies]]
+name = "ground"
+material = "sand"
+box = {{ from = ["0 m", "0 m", "0 m"], to = ["2 m", "1 m", "{height} m"] }}
+{water}
+{more}
+[output]
+figures = []
+paraview = false
+report = false
+"#,
+        height + 1.0
+    )
+}
+
+const WEIGHT: &str =
+    "[[stages]]\nname = \"weight\"\ntype = \"gravity\"\nsteps = 1\ngeometry = \"given\"";
+
+/// GOAL: under a level pond pressure is hydrostatic at every particle, and the grains carry the buoyant weight.
+#[test]
+fn a_column_below_a_pond_is_hydrostatic() {
+    let water = "[[water]]\nname = \"pond\"\nlevel = \"2.5 m\"";
+    let (_, run) = done(&block(2.0, water, WEIGHT));
+    let particles = &run.body.particles;
+    for k in 0..particles.len() {
+        let depth = 2.0 - particles.x[k][2];
+        let pressure = 10e3 * (2.5 - particles.x[k][2]);
+        let found = particles.pore_pressure[k];
+        assert!(
+            (found - pressure).abs() < 1e-9 * pressure,
+            "{found} {pressure}"
+        );
+        let effective = particles.sigma[k][2][2];
+        assert!(
+            (effective + 10e3 * depth).abs() < 1e-2 * 20e3,
+            "{effective} {depth}"
+        );
+    }
+    // The mean over the particles is exact: what lies above their middle.
+    let mean = |of: &dyn Fn(usize) -> f64| {
+        (0..particles.len()).map(of).sum::<f64>() / particles.len() as f64
+    };
+    let mean = mean(&|k| particles.sigma[k][2][2]);
+    assert!((mean + 10e3).abs() < 1e-3 * 10e3, "{mean}");
+}
+
+/// A slope in a deep pond, its table said in several ways.
+fn slope_in_pond(water: &str) -> String {
+    format!(
+        r#"igimp = 1
+[case]
+title = "a slope in a pond"
+analysis = "3d"
+gravity = "10 m/s2"
+water_unit_weight = "10 kN/m3"
+[grid]
+cell = "1 m"
+domain = {{ x = ["0 m", "7 m"], y = ["0 m", "3 m"], z = ["0 m", "4 m"] }}
+[materials.sand]
+model = "mohr-coulomb"
+unit_weight = "20 kN/m3"
+saturated_unit_weight = "20 kN/m3"
+young = "20 MPa"
+poisson = 0.3
+cohesion = "5 kPa"
+friction = "30 deg"
+[[bodies]]
+name = "slope"
+material = "sand"
+polygon = [["0 m", "0 m"], ["7 m", "0 m"], ["7 m", "1 m"], ["5 m", "1 m"], ["3 m", "3 m"], ["0 m", "3 m"]]
+across = ["0 m", "3 m"]
+[boundaries]
+back = "fixed"
+{water}
+[[stages]]
+name = "weight"
+type = "gravity"
+steps = 2
+[solver]
+tolerance = 1e-11
+[output]
+figures = []
+paraview = false
+report = false
+"#
+    )
+}
+
+fn largest_difference(a: &Run<3>, b: &Run<3>) -> [f64; 2] {
+    let (mut largest, mut worst) = ([0.0_f64; 2], [0.0_f64; 2]);
+    let (a, b) = (&a.body.particles, &b.body.particles);
+    assert_eq!(a.len(), b.len());
+    for k in 0..a.len() {
+        for i in 0..3 {
+            largest[0] = largest[0].max(a.displacement[k][i].abs());
+            worst[0] = worst[0].max((a.displacement[k][i] - b.displacement[k][i]).abs());
+            for j in 0..3 {
+                largest[1] = largest[1].max(a.sigma[k][i][j].abs());
+                worst[1] = worst[1].max((a.sigma[k][i][j] - b.sigma[k][i][j]).abs());
+            }
+        }
+    }
+    [worst[0] / largest[0], worst[1] / largest[1]]
+}
+
+/// GOAL: how deep a pond is over a slope makes no difference to the grains, and water that drowns soil makes it as heavy as
+/// buoyancy says.
+#[test]
+fn a_drowned_slope_feels_buoyancy_alone() {
+    let pond = |level: &str| format!("[[water]]\nname = \"pond\"\nlevel = \"{level}\"");
+    let (_, low) = done(&slope_in_pond(&pond("3.5 m")));
+    let (_, high) = done(&slope_in_pond(&pond("20 m")));
+    let dry = slope_in_pond("").replace("weight = \"20 kN/m3\"", "weight = \"10 kN/m3\"");
+    let (_, dry) = done(&dry);
+    for (what, other) in [("pond", &high), ("buoyant", &dry)] {
+        let [displacement, stress] = largest_difference(&low, other);
+        assert!(displacement < 1e-9, "{what}: {displacement}");
+        assert!(stress < 1e-9, "{what}: {stress}");
+    }
+}
+
+/// GOAL: a table is the same as a line, as a surface on lines, and as a surface through points; drawdown without a drop is a level.
+#[test]
+fn a_water_table_can_be_said_in_several_ways() {
+    let line = "line = [[\"0 m\", \"2.8 m\"], [\"7 m\", \"0.7 m\"]]";
+    let lines = "surface = { x = [\"0 m\", \"7 m\"], y = [\"0 m\", \"3 m\"], rows = [[\"2.8 m\", \"0.7 m\"], [\"2.8 m\", \"0.7 m\"]] }";
+    let points = "surface = { points = [[\"-1 m\", \"-1 m\", \"3.1 m\"], [\"9 m\", \"-1 m\", \"0.1 m\"], [\"9 m\", \"5 m\", \"0.1 m\"], [\"-1 m\", \"4 m\", \"3.1 m\"]] }";
+    let of = |water: &str| {
+        done(&slope_in_pond(&format!(
+            "[[water]]\nname = \"table\"\n{water}"
+        )))
+        .1
+    };
+    let line = of(line);
+    assert!(line.body.particles.pore_pressure.iter().any(|u| *u > 0.0));
+    for (what, other) in [("lines", of(lines)), ("points", of(points))] {
+        let [displacement, stress] = largest_difference(&line, &other);
+        assert!(displacement < 1e-9, "{what}: {displacement}");
+        assert!(stress < 1e-9, "{what}: {stress}");
+    }
+    let level = of("level = \"2 m\"");
+    let drained = of("inside = \"2 m\"\noutside = \"2 m\"");
+    assert!(
+        largest_difference(&level, &drained)
+            .iter()
+            .all(|own| *own < 1e-12)
+    );
+    // Where the ground lies between the levels, the table is its surface.
+    let drawn = of("inside = \"2.5 m\"\noutside = \"1.5 m\"");
+    let along = of("line = [[\"3.5 m\", \"2.5 m\"], [\"4.5 m\", \"1.5 m\"]]");
+    assert!(
+        largest_difference(&drawn, &along)
+            .iter()
+            .all(|own| *own < 1e-9)
+    );
+}
+
+/// An excavation before an anchored face, with water that is lowered and a circular load.
+const PIT: &str = r#"igimp = 1
+[case]
+title = "a pit in space"
+analysis = "3d"
+gravity = "10 m/s2"
+[grid]
+cell = "1 m"
+domain = { x = ["0 m", "6 m"], y = ["0 m", "4 m"], z = ["0 m", "5 m"] }
+[materials.clay]
+model = "mohr-coulomb"
+unit_weight = "19 kN/m3"
+saturated_unit_weight = "20 kN/m3"
+young = "20 MPa"
+poisson = 0.3
+cohesion = "25 kPa"
+friction = "25 deg"
+k0 = 0.5
+drainage = "undrained"
+[materials.treated]
+model = "elastic"
+unit_weight = "20 kN/m3"
+young = "50 MPa"
+poisson = 0.3
+[[bodies]]
+name = "ground"
+material = "clay"
+box = { from = ["0 m", "0 m", "0 m"], to = ["6 m", "4 m", "4 m"] }
+minus = [{ box = { from = ["4 m", "2 m", "2 m"], to = ["6 m", "4 m", "4 m"] } }]
+[[bodies]]
+name = "pit"
+material = "clay"
+box = { from = ["4 m", "2 m", "2 m"], to = ["6 m", "4 m", "4 m"] }
+[[bodies]]
+name = "fill"
+material = "clay"
+box = { from = ["0 m", "0 m", "4 m"], to = ["1 m", "1 m", "4.5 m"] }
+[[water]]
+name = "high"
+level = "3 m"
+[[water]]
+name = "low"
+surface = { x = ["0 m", "3 m", "6 m"], y = ["0 m", "4 m"], rows = [["3 m", "3 m", "2.5 m"], ["3 m", "2.5 m", "2 m"]] }
+[[reinforcement]]
+name = "anchor"
+type = "anchor"
+head = ["4 m", "3 m", "3 m"]
+end = ["1 m", "2 m", "2 m"]
+bonded_length = "2 m"
+stiffness = "20 MN"
+capacity = "200 kN"
+bond = "60 kN/m"
+prestress = "20 kN"
+[[loads]]
+name = "tank"
+type = "patch"
+circle = { centre = ["2 m", "0 m"], radius = "1 m" }
+level = "4 m"
+pressure = "30 kPa"
+[[stages]]
+name = "rest"
+type = "k0"
+steps = 1
+[[stages]]
+name = "dig"
+type = "construction"
+remove = ["pit"]
+water = "low"
+install = ["anchor"]
+steps = 2
+[[stages]]
+name = "fill"
+type = "construction"
+place = ["fill"]
+materials = [{ body = "ground", material = "treated" }]
+dissipate = true
+steps = 1
+[[stages]]
+name = "tank"
+type = "load"
+load = "tank"
+steps = 1
+[[curves]]
+name = "head"
+x = { of = "tank.factor" }
+y = { of = "reinforcement.anchor.head_force" }
+[output]
+figures = ["displacement"]
+cuts = ["y = 3 m"]
+paraview = { every = 1 }
+report = false
+checkpoint = { every = 1, keep = 2 }
+"#;
+
+fn written(file: &CaseFile, folder: &Path, start: Start, steps: Option<usize>) -> Run<3> {
+    let target = Target {
+        replace: Replace::Everything,
+        ..Target::of(file, folder)
+    };
+    let interrupt = AtomicBool::new(false);
+    let mut taken = 0;
+    let mut listener = |event: &Event<'_, 3>| {
+        if matches!(event, Event::Step { .. }) {
+            taken += 1;
+            if Some(taken) == steps {
+                interrupt.store(true, Ordering::Relaxed);
+            }
+        }
+    };
+    run(
+        file.case_in_space(),
+        Some(&target),
+        start,
+        &mut listener,
+        &interrupt,
+    )
+    .unwrap()
+}
+
+/// GOAL: bodies, water and anchors come, go and change in space; the load is the circle's; a resumed run ends with the same
+/// bytes.
+#[test]
+fn a_pit_is_dug_and_its_run_resumed() {
+    let file = parsed(PIT);
+    let root = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let [whole, cut] = ["pit-whole", "pit-cut"].map(|name| root.join(name));
+    for folder in [&whole, &cut] {
+        let _ = fs::remove_dir_all(folder);
+    }
+    let run = written(&file, &whole, Start::Afresh, None);
+    for stage in &run.summary.stages {
+        assert_eq!(stage.outcome, StageOutcome::Completed, "{}", stage.reason);
+    }
+    let member = run.summary.stages[1].reinforcement[0].clone();
+    assert!(
+        (member.head_force - 20e3).abs() < 1e-6 * 20e3,
+        "{}",
+        member.head_force
+    );
+    let [least, most] = run.summary.stages[1]
+        .pore_water
+        .as_ref()
+        .unwrap()
+        .excess
+        .unwrap();
+    assert!(least < -100.0, "digging sucks: {least} {most}");
+    assert!(
+        run.summary.stages[2]
+            .pore_water
+            .as_ref()
+            .unwrap()
+            .excess
+            .is_none()
+    );
+    written(&file, &cut, Start::Afresh, Some(2));
+    written(&file, &cut, Start::Resume, None);
+    let mut names = Vec::new();
+    for part in ["curves", "reinforcement", "paraview"] {
+        for entry in fs::read_dir(whole.join(part)).unwrap() {
+            let path = entry.unwrap().path();
+            let other = cut.join(part).join(path.file_name().unwrap());
+            assert_eq!(
+                fs::read(&path).unwrap(),
+                fs::read(other).unwrap(),
+                "{path:?}"
+            );
+            names.push(path.file_name().unwrap().to_string_lossy().into_owned());
+        }
+    }
+    assert!(names.contains(&"anchor__dig.csv".to_owned()), "{names:?}");
+}
+
+/// GOAL: the supports carry the pressure times the area of half a circle.
+#[test]
+fn half_a_circle_beside_a_plane_of_symmetry_presses_with_half_its_force() {
+    let patch = |shape: &str| {
+        format!(
+            "[[loads]]\nname = \"tank\"\ntype = \"patch\"\n{shape}\nlevel = \"2 m\"\npressure = \"40 kPa\"\n[[stages]]\nname = \"load\"\ntype = \"load\"\nload = \"tank\"\nsteps = 1\ngeometry = \"given\""
+        )
+    };
+    let circle = patch("circle = { centre = [\"1 m\", \"0 m\"], radius = \"0.6 m\" }");
+    let square = patch(
+        "plan = [[\"0.5 m\", \"0 m\"], [\"1.5 m\", \"0 m\"], [\"1.5 m\", \"1 m\"], [\"0.5 m\", \"1 m\"]]",
+    );
+    let rectangle = "[[loads]]\nname = \"tank\"\ntype = \"pressure\"\nfrom = [\"0.5 m\", \"0 m\", \"2 m\"]\nto = [\"1.5 m\", \"1 m\", \"2 m\"]\npressure = \"40 kPa\"\n[[stages]]\nname = \"load\"\ntype = \"load\"\nload = \"tank\"\nsteps = 1\ngeometry = \"given\"";
+    let force = |run: &Run<3>| {
+        // In equilibrium the mean upright stress over the volume is that of the force from top to bottom.
+        let particles = &run.body.particles;
+        let sum = (0..particles.len()).map(|k| particles.sigma[k][2][2] * particles.volume[k]);
+        -sum.sum::<f64>() / 2.0
+    };
+    let (_, run) = done(&block(2.0, "", &circle));
+    let exact = 40e3 * 0.5 * std::f64::consts::PI * 0.36;
+    assert!(
+        (force(&run) / exact - 1.0).abs() < 1e-3,
+        "{} {exact}",
+        force(&run)
+    );
+    let (_, square) = done(&block(2.0, "", &square));
+    let (_, rectangle) = done(&block(2.0, "", rectangle));
+    assert!(
+        largest_difference(&square, &rectangle)
+            .iter()
+            .all(|own| *own < 1e-9)
+    );
+}
+
+/// GOAL: what cannot be is refused with its place and a remedy.
+#[test]
+fn what_makes_no_sense_is_refused() {
+    let problem = |title: &str, text: &str, told: &mut String| {
+        let _ = writeln!(told, "## {title}");
+        match CaseFile::parse("ground.toml", text, &[]) {
+            Ok(file) => {
+                for warning in file.warnings() {
+                    let _ = writeln!(told, "{warning}");
+                }
+            }
+            Err(error) => {
+                let _ = writeln!(told, "{error}");
+            }
+        }
+    };
+    let mut told = String::new();
+    let water = |own: &str| format!("[[water]]\nname = \"w\"\n{own}");
+    for (title, own) in [
+        (
+            "a surface that ends too soon",
+            "surface = { points = [[\"0 m\", \"0 m\", \"1 m\"], [\"1 m\", \"0 m\", \"1 m\"], [\"0 m\", \"1 m\", \"1 m\"]] }",
+        ),
+        (
+            "a line above the ground",
+            "line = [[\"0 m\", \"2.5 m\"], [\"2 m\", \"2.5 m\"]]",
+        ),
+        (
+            "a pond that is not level",
+            "line = [[\"0 m\", \"2.5 m\"], [\"2 m\", \"2.8 m\"]]\npond = true",
+        ),
+        ("two sources", "level = \"1 m\"\nr_u = 0.2"),
+        ("a table below the ground", "level = \"-1 m\""),
+        (
+            "pressures that end too soon",
+            "u = { x = [\"0 m\", \"1 m\"], y = [\"0 m\", \"2 m\"], rows = [[\"10 kPa\", \"10 kPa\"], [\"0 kPa\", \"0 kPa\"]] }",
+        ),
+    ] {
+        problem(title, &block(2.0, &water(own), WEIGHT), &mut told);
+    }
+    let upright = block(
+        2.0,
+        &water("inside = \"1.5 m\"\noutside = \"0.5 m\""),
+        WEIGHT,
+    )
+    .replace(
+        "to = [\"2 m\", \"1 m\", \"2 m\"]",
+        "to = [\"1 m\", \"1 m\", \"2 m\"]",
+    );
+    problem("drawdown behind an upright face", &upright, &mut told);
+    let member = |own: &str| {
+        format!(
+            "[[reinforcement]]\nname = \"r\"\nstiffness = \"20 MN\"\ncapacity = \"100 kN\"\nbond = \"40 kN/m\"\n{own}"
+        )
+    };
+    for (title, own) in [
+        (
+            "a sheet",
+            "type = \"geotextile\"\npoints = [[\"0 m\", \"0 m\", \"1 m\"], [\"2 m\", \"0 m\", \"1 m\"]]",
+        ),
+        (
+            "a nail in the air",
+            "type = \"nail\"\nhead = [\"1 m\", \"0.5 m\", \"2 m\"]\nend = [\"1 m\", \"0.5 m\", \"2.6 m\"]",
+        ),
+        (
+            "a plate",
+            "type = \"nail\"\nhead = [\"1 m\", \"0.5 m\", \"2 m\"]\nend = [\"1 m\", \"0.5 m\", \"1 m\"]\nplate = \"0.5 m\"",
+        ),
+        (
+            "forces per metre",
+            "type = \"nail\"\nhead = [\"1 m\", \"0.5 m\", \"2 m\"]\nend = [\"1 m\", \"0.5 m\", \"1 m\"]\nhead_capacity = \"20 kN/m\"",
+        ),
+    ] {
+        problem(
+            title,
+            &block(2.0, "", &format!("{}\n{WEIGHT}", member(own))),
+            &mut told,
+        );
+    }
+    let patch = |own: &str| {
+        format!("[[loads]]\nname = \"p\"\ntype = \"patch\"\npressure = \"10 kPa\"\n{own}\n{WEIGHT}")
+    };
+    for (title, own) in [
+        (
+            "a patch in the soil",
+            "circle = { centre = [\"1 m\", \"0.5 m\"], radius = \"0.3 m\" }\nlevel = \"1 m\"",
+        ),
+        ("a patch without a shape", "level = \"2 m\""),
+        (
+            "a patch without area",
+            "plan = [[\"0 m\", \"0 m\"], [\"1 m\", \"0 m\"], [\"2 m\", \"0 m\"]]\nlevel = \"2 m\"",
+        ),
+    ] {
+        problem(title, &block(2.0, "", &patch(own)), &mut told);
+    }
+    insta::assert_snapshot!(told);
+}
