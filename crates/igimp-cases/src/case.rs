@@ -319,6 +319,15 @@ pub struct Cut {
     pub at: f64,
 }
 
+impl Cut {
+    /// What the names of its pictures and tables begin with: `cut-y-3`.
+    pub fn name(&self) -> String {
+        let place = format!("{:.3}", self.at);
+        let place = place.trim_end_matches('0').trim_end_matches('.');
+        format!("cut-{}-{place}", ["x", "y", "z"][self.axis])
+    }
+}
+
 /// How often.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Every {

@@ -19,8 +19,9 @@ pub struct ReinforcementPart<const D: usize = 2> {
     pub fastened: [f64; 2],
     /// Length from the head on that has no bond and is one bar \[m\].
     pub free_length: f64,
-    /// Ends of the plate on which the force at the head spreads, in the plane \[m\].
-    pub plate: Option<[[f64; D]; 2]>,
+    /// The plate on which the force at the head spreads: its ends, in space three of its corners, the first one that
+    /// between the others \[m\].
+    pub plate: Option<Vec<[f64; D]>>,
     /// Tension at which it is locked off at the end of the stage that installs it \[N/m, in space N\].
     pub prestress: Option<f64>,
     /// Whether a strength reduction divides its bond too.

@@ -305,6 +305,9 @@ impl<const D: usize> Output<D> {
         }
         let structures = outlines::structures(case, &state.controls, &state.body);
         if summary.safety.is_none() {
+            for table in sections::planes(model, state, number)? {
+                table.write_csv(&self.folder.sections())?;
+            }
             let named = |name: &str| format!("{name}__{}", sections::stage_name(case, number));
             for body in &structures.rigid {
                 let table = body.table(named(&body.part.name));

@@ -38,18 +38,26 @@ pub(crate) fn made<const D: usize>(
         }
     }
     let head = part.line[0];
-    let first = part.plate.map_or_else(
+    // Places in the middle of equal parts of the plate.
+    let first = part.plate.as_ref().map_or_else(
         || vec![head],
-        |[from, to]| {
-            let width = distance(&from, &to);
-            let count = (STATIONS_PER_CELL * width / cell_near(from, to))
-                .ceil()
-                .max(2.0);
-            let place = |k: usize| {
-                let t = (k as f64 + 0.5) / count;
-                between(from, to, t)
-            };
-            (0..count as usize).map(place).collect()
+        |corners| {
+            let from = corners[0];
+            let mut places = vec![from];
+            for &to in &corners[1..] {
+                let width = distance(&from, &to);
+                let count = (STATIONS_PER_CELL * width / cell_near(from, to))
+                    .ceil()
+                    .max(2.0);
+                let steps = (0..count as usize).map(|k| (k as f64 + 0.5) / count);
+                let moved = |place: &[f64; D], t: f64| -> [f64; D] {
+                    std::array::from_fn(|axis| place[axis] + t * (to[axis] - from[axis]))
+                };
+                places = steps
+                    .flat_map(|t| places.iter().map(move |place| moved(place, t)))
+                    .collect();
+            }
+            places
         },
     );
     let mut stations: Vec<Station<D>> = vec![Station { points: first }];

@@ -22,6 +22,7 @@ mod outputs;
 mod profiles;
 mod quantities;
 mod reinforcement;
+mod reinforcement_space;
 mod rigid;
 mod rigid_plane;
 mod rigid_space;

@@ -24,36 +24,15 @@ pub(super) fn reinforcement(
         let mut own = part(tree, node, site, problems)?;
         let width = node.optional_number("plate").ok()?;
         if let Some(width) = width.filter(|&width| width > 0.0) {
-            own.plate = Some(plate(&own, width, site));
+            own.plate = Some(plate(&own, width, site).to_vec());
         }
         Some(own)
     };
     nodes.map(member).collect()
 }
 
-/// The members in space: lines.
-pub(super) fn in_space(
-    tree: &Node,
-    soil: &dyn Soil<3>,
-    problems: &mut Problems,
-) -> Vec<Option<ReinforcementPart<3>>> {
-    let nodes = tree.items_at("reinforcement").iter();
-    let member = |node: &Node| {
-        if node.text_at("type") == Some("geotextile") {
-            problems
-                .error(
-                    node.place_at("type"),
-                    "a geotextile is a sheet, and in space reinforcement is a line",
-                )
-                .help("compute a slice with analysis = \"plane-strain\", or state strips as nails");
-            return None;
-        }
-        part(tree, node, soil, problems)
-    };
-    nodes.map(member).collect()
-}
-
-fn part<const D: usize>(
+/// A member without its plate.
+pub(super) fn part<const D: usize>(
     tree: &Node,
     node: &Node,
     soil: &dyn Soil<D>,

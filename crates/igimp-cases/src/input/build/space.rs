@@ -8,8 +8,8 @@ use super::grid::Frame;
 use super::sequence::{Sequence, placed};
 use super::site::Soil;
 use super::{
-    AllNames, boundaries, loads_space, reinforcement, rigid_space, rigid_stage, solids, stages,
-    water,
+    AllNames, boundaries, loads_space, reinforcement, reinforcement_space, rigid_space,
+    rigid_stage, solids, stages, water,
 };
 use crate::case::{BodyPart, Case, Ground, LoadKind, Material};
 use crate::input::diagnostic::Problems;
@@ -137,7 +137,7 @@ pub(super) fn build(
     };
     let water = water::conditions(&around, problems);
     water::check(&around, &water, problems);
-    let reinforcement = reinforcement::in_space(tree, &soil, problems);
+    let reinforcement = reinforcement_space::reinforcement(tree, &soil, problems);
     reinforcement::check_searches(tree, names, problems);
     let context = stages::Context {
         tree,

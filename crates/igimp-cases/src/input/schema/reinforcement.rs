@@ -34,12 +34,12 @@ const fn whole_fastening(key: &'static str, doc: &'static str) -> Field {
     ))
 }
 
-const PLATE: Field = in_plane(default(
+const PLATE: Field = default(
     "plate",
     Kind::Quantity(Length, Range::NotNegative),
     "\"0 m\"",
-    "width of the plate or facing on which the force at its head spreads, along the edge of the soil there",
-));
+    "width of the plate or facing on which the force at its head spreads, along the edge of the soil there; in space the side of a square on the surface there",
+);
 
 /// A member, by type.
 pub(in crate::input) static REINFORCEMENT: Kind = Kind::Variants(&Variants {

@@ -162,12 +162,12 @@ fn member<const D: usize>(
         bond.push_str(", reduced with the strength");
     }
     let [head, end] = part.fastened.map(|force| short(force / 1e3));
-    let held = match part.plate {
-        Some([from, to]) => {
-            let width = short(distance(&from, &to));
+    let held = match part.plate.as_deref() {
+        Some([from, to, ..]) => {
+            let width = short(distance(from, to));
             format!("{head} on a plate of {width} m, {end}")
         }
-        None => format!("{head}, {end}"),
+        _ => format!("{head}, {end}"),
     };
     let stages = case.stages.iter();
     let installed = stages.filter(|stage| stage.install.contains(&index));

@@ -178,6 +178,13 @@ impl<const D: usize> Output<D> {
         });
         let of_case = (self.folder.root(), &*case.title, case.has_pore_water());
         let drawn = pictures::InSpace::new(of_case, (&state.body.particles, laws), bodies);
+        let condition = state.controls.water.and_then(|k| case.water.get(k));
+        let drawn = drawn.with_water(
+            condition
+                .map(|own| own.source.clone())
+                .into_iter()
+                .collect(),
+        );
         let planes = match &case.output.cuts[..] {
             [] => drawn.middle(),
             cuts => cuts.to_vec(),
