@@ -53,7 +53,7 @@ box = {{ from = ["0 m", "0 m", "0 m"], to = ["2 m", "1 m", "{height} m"] }}
 {more}
 [output]
 figures = []
-paraview = { every = "never" }
+paraview = {{ every = "never" }}
 report = false
 "#,
         height + 1.0
@@ -127,7 +127,7 @@ steps = 2
 tolerance = 1e-11
 [output]
 figures = []
-paraview = { every = "never" }
+paraview = {{ every = "never" }}
 report = false
 "#
     )

@@ -68,6 +68,9 @@ fn rigid_body<const D: usize>(case: &Case<D>, index: usize, part: &RigidPart<D>)
     ]
 }
 
+/// Title of the table of reinforcement in space, where forces are those of one member.
+pub(crate) const MEMBERS_IN_SPACE: &str = "Reinforcement";
+
 /// What all sides have in common, or what each has, numbered from 1.
 fn by_side(sides: usize, of: impl Fn(usize) -> String) -> String {
     let each: Vec<String> = (0..sides).map(of).collect();
@@ -141,7 +144,7 @@ pub(super) fn reinforcement<const D: usize>(case: &Case<D>) -> SetupTable {
     let title = if D == 2 {
         "Reinforcement, per metre run"
     } else {
-        "Reinforcement"
+        MEMBERS_IN_SPACE
     };
     let rows = case.reinforcement.iter().enumerate();
     let rows = rows.map(|(index, part)| member(case, index, part));
