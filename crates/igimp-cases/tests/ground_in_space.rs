@@ -2,16 +2,15 @@
 //! CASE: columns, a slope in a pond, blocks; each with an exact answer, or with the answer of another way to say it.
 //! ORACLE: hydrostatics; buoyancy; equal runs; equilibrium; messages.
 
+mod resuming;
+
 use std::fmt::Write as _;
-use std::fs;
 use std::path::Path;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use igimp_cases::case::Case;
 use igimp_cases::input::CaseFile;
-use igimp_cases::results::admission::Replace;
-use igimp_cases::run::{Event, Run, Start, Target, in_memory, run};
-use igimp_cases::summary::StageOutcome;
+use igimp_cases::run::{Run, Start, in_memory};
+use resuming::{assert_done, assert_equal, everything, folder, run_into};
 
 fn parsed(text: &str) -> CaseFile {
     CaseFile::parse("ground.toml", text, &[]).unwrap_or_else(|error| panic!("{error}"))
@@ -20,10 +19,7 @@ fn parsed(text: &str) -> CaseFile {
 fn done(text: &str) -> (Case<3>, Run<3>) {
     let case = parsed(text).case_in_space().clone();
     let run = in_memory(&case).unwrap();
-    for stage in &run.summary.stages {
-        let (name, reason) = (&stage.name, &stage.reason);
-        assert_eq!(stage.outcome, StageOutcome::Completed, "{name}: {reason}");
-    }
+    assert_done(&run.summary);
     (case, run)
 }
 
@@ -77,18 +73,14 @@ fn a_column_below_a_pond_is_hydrostatic() {
             (found - pressure).abs() < 1e-9 * pressure,
             "{found} {pressure}"
         );
+        // B-bar: that of the middle of the cell.
+        let middle = 0.5 * (depth / 0.5).floor() + 0.25;
         let effective = particles.sigma[k][2][2];
         assert!(
-            (effective + 10e3 * depth).abs() < 1e-2 * 20e3,
-            "{effective} {depth}"
+            (effective + 10e3 * middle).abs() < 1e-6 * 10e3,
+            "{effective} {middle}"
         );
     }
-    // The mean over the particles is exact: what lies above their middle.
-    let mean = |of: &dyn Fn(usize) -> f64| {
-        (0..particles.len()).map(of).sum::<f64>() / particles.len() as f64
-    };
-    let mean = mean(&|k| particles.sigma[k][2][2]);
-    assert!((mean + 10e3).abs() < 1e-3 * 10e3, "{mean}");
 }
 
 /// A slope in a deep pond, its table said in several ways.
@@ -172,11 +164,10 @@ fn a_water_table_can_be_said_in_several_ways() {
     let line = "line = [[\"0 m\", \"2.8 m\"], [\"7 m\", \"-0.7 m\"]]";
     let lines = "surface = { x = [\"0 m\", \"7 m\"], y = [\"0 m\", \"3 m\"], rows = [[\"2.8 m\", \"-0.7 m\"], [\"2.8 m\", \"-0.7 m\"]] }";
     let points = "surface = { points = [[\"-1 m\", \"-1 m\", \"3.3 m\"], [\"9 m\", \"-1 m\", \"-1.7 m\"], [\"9 m\", \"5 m\", \"-1.7 m\"], [\"-1 m\", \"4 m\", \"3.3 m\"]] }";
+    // Soil that does not yield: equal to round-off, and not to what Newton's method leaves.
     let of = |water: &str| {
-        done(&slope_in_pond(&format!(
-            "[[water]]\nname = \"table\"\n{water}"
-        )))
-        .1
+        let text = slope_in_pond(&format!("[[water]]\nname = \"table\"\n{water}"));
+        done(&text.replace("\"5 kPa\"", "\"60 kPa\"")).1
     };
     let line = of(line);
     assert!(line.body.particles.pore_pressure.iter().any(|u| *u > 0.0));
@@ -297,45 +288,17 @@ report = false
 checkpoint = { every = 1, keep = 2 }
 "#;
 
-fn written(file: &CaseFile, folder: &Path, start: Start, steps: Option<usize>) -> Run<3> {
-    let target = Target {
-        replace: Replace::Everything,
-        ..Target::of(file, folder)
-    };
-    let interrupt = AtomicBool::new(false);
-    let mut taken = 0;
-    let mut listener = |event: &Event<'_, 3>| {
-        if matches!(event, Event::Step { .. }) {
-            taken += 1;
-            if Some(taken) == steps {
-                interrupt.store(true, Ordering::Relaxed);
-            }
-        }
-    };
-    run(
-        file.case_in_space(),
-        Some(&target),
-        start,
-        &mut listener,
-        &interrupt,
-    )
-    .unwrap()
-}
-
 /// GOAL: bodies, water and anchors come, go and change in space; the load is the circle's; a resumed run ends with the same
 /// bytes.
 #[test]
 fn a_pit_is_dug_and_its_run_resumed() {
     let file = parsed(PIT);
-    let root = Path::new(env!("CARGO_TARGET_TMPDIR"));
-    let [whole, cut] = ["pit-whole", "pit-cut"].map(|name| root.join(name));
-    for folder in [&whole, &cut] {
-        let _ = fs::remove_dir_all(folder);
-    }
-    let run = written(&file, &whole, Start::Afresh, None);
-    for stage in &run.summary.stages {
-        assert_eq!(stage.outcome, StageOutcome::Completed, "{}", stage.reason);
-    }
+    let [whole, cut] = ["pit-whole", "pit-cut"].map(folder);
+    let written = |folder: &Path, start: Start, steps: Option<usize>| {
+        run_into((&file, file.case_in_space()), folder, start, steps)
+    };
+    let run = written(&whole, Start::Afresh, None);
+    assert_done(&run.summary);
     let member = run.summary.stages[1].reinforcement[0].clone();
     assert!(
         (member.head_force - 20e3).abs() < 1e-6 * 20e3,
@@ -357,22 +320,18 @@ fn a_pit_is_dug_and_its_run_resumed() {
             .excess
             .is_none()
     );
-    written(&file, &cut, Start::Afresh, Some(2));
-    written(&file, &cut, Start::Resume, None);
-    let mut names = Vec::new();
-    for part in ["curves", "reinforcement", "paraview"] {
-        for entry in fs::read_dir(whole.join(part)).unwrap() {
-            let path = entry.unwrap().path();
-            let other = cut.join(part).join(path.file_name().unwrap());
-            assert_eq!(
-                fs::read(&path).unwrap(),
-                fs::read(other).unwrap(),
-                "{path:?}"
-            );
-            names.push(path.file_name().unwrap().to_string_lossy().into_owned());
-        }
+    written(&cut, Start::Afresh, Some(2));
+    written(&cut, Start::Resume, None);
+    let expected = everything(&whole);
+    assert_equal(&expected, &everything(&cut), "taken up");
+    for file in [
+        "reinforcement/anchor__2-dig.csv",
+        "sections/cut-y-3.2__2-dig.csv",
+        "figures/cut-y-2-dig-displacement.svg",
+    ] {
+        let names: Vec<_> = expected.keys().collect();
+        assert!(expected.contains_key(Path::new(file)), "{file}: {names:?}");
     }
-    assert!(names.contains(&"anchor__dig.csv".to_owned()), "{names:?}");
 }
 
 /// GOAL: the supports carry the pressure times the area of half a circle.

@@ -36,6 +36,7 @@ mod stages;
 mod study;
 mod surfaces;
 mod water;
+mod water_checks;
 
 use std::path::Path;
 
@@ -145,7 +146,7 @@ fn in_plane(tree: &Node, names: &AllNames, file: &Path, problems: &mut Problems)
         sequence,
     };
     let water = water::conditions(&around, problems);
-    water::check(&around, &water, problems);
+    water_checks::check(&around, &water, problems);
     let reinforcement = reinforcement::reinforcement(tree, &site, problems);
     reinforcement::check_searches(tree, names, problems);
     let context = stages::Context {

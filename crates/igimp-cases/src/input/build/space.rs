@@ -9,7 +9,7 @@ use super::sequence::{Sequence, placed};
 use super::site::Soil;
 use super::{
     AllNames, boundaries, loads_space, reinforcement, reinforcement_space, rigid_space,
-    rigid_stage, solids, stages, water,
+    rigid_stage, solids, stages, water, water_checks,
 };
 use crate::case::{BodyPart, Case, Ground, LoadKind, Material};
 use crate::input::diagnostic::Problems;
@@ -136,7 +136,7 @@ pub(super) fn build(
         sequence,
     };
     let water = water::conditions(&around, problems);
-    water::check(&around, &water, problems);
+    water_checks::check(&around, &water, problems);
     let reinforcement = reinforcement_space::reinforcement(tree, &soil, problems);
     reinforcement::check_searches(tree, names, problems);
     let context = stages::Context {
