@@ -154,6 +154,7 @@ gravity = \"{gravity}\"
 cell = \"{CELL} m\"
 domain = {{ x = [\"0 m\", \"{width} m\"], {domain} }}
 locking = \"{locking}\"
+small_cuts = {{ below = 1e-4 }}
 [materials.soil]
 unit_weight = \"20 kN/m3\"
 {material}
