@@ -185,11 +185,11 @@ impl Surface for Relief {
     fn drained(&self, inside: f64, outside: f64) -> Result<PoreSource, UprightFace> {
         match self.face_between(outside, inside) {
             Some(face) => Err(face),
-            None => Ok(PoreSource::Drained(Drained {
+            None => Ok(PoreSource::Drained(Drained::new(
                 inside,
                 outside,
-                ground: self.regions.clone(),
-            })),
+                self.regions.clone(),
+            ))),
         }
     }
 
