@@ -7,10 +7,11 @@ mod resuming;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
 
 use igimp_cases::case::Case;
 use igimp_cases::input::CaseFile;
-use igimp_cases::run::{Run, Start, in_memory};
+use igimp_cases::run::{Event, Run, Start, in_memory, run};
 use igimp_cases::summary::StageOutcome;
 use resuming::{assert_done, assert_equal, everything, run_into};
 

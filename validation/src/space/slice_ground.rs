@@ -27,6 +27,7 @@ water_unit_weight = "10 kN/m3"
 [grid]
 cell = "1 m"
 domain = { x = ["0 m", "10 m"], @domain }
+small_cuts = { below = 1e-4 }
 [materials.sand]
 model = "mohr-coulomb"
 unit_weight = "18 kN/m3"
