@@ -29,11 +29,11 @@ pub(in crate::linear) struct Engine {
     pub(in crate::linear) accuracy: Accuracy,
     pub(in crate::linear) analyses: usize,
     pub(super) plan: Option<Plan>,
-    factors: Factors,
+    factors: Factors<f64>,
     scaling: Scaling,
     inspection: Inspection,
-    workshop: Workshop,
-    vectors: Vectors,
+    workshop: Workshop<f64>,
+    vectors: Vectors<f64>,
     refinement: Refinement,
     factored: Option<Factorisation>,
 }
@@ -75,7 +75,7 @@ impl Engine {
     }
 
     /// Entries of the factors of the pattern analysed last, zero before.
-    pub(super) fn entries<K: Kernel>(&self) -> usize {
+    pub(super) fn entries<K: Kernel<f64>>(&self) -> usize {
         let tasks = self.plan.iter().flat_map(|plan| &plan.tasks);
         tasks.map(|task| K::entries(&task.total)).sum()
     }
@@ -87,9 +87,13 @@ impl Engine {
             return (0, 0.0);
         };
         let (entries, shape, share) = if symmetric {
-            (self.entries::<Cholesky>(), Cholesky::SHAPE, 0.5)
+            (
+                self.entries::<Cholesky>(),
+                <Cholesky as Kernel<f64>>::SHAPE,
+                0.5,
+            )
         } else {
-            (self.entries::<Lu>(), Lu::SHAPE, 1.0)
+            (self.entries::<Lu>(), <Lu as Kernel<f64>>::SHAPE, 1.0)
         };
         let contributions = plan.contribution_entries(shape);
         (8 * (entries + contributions), share * plan.operations())

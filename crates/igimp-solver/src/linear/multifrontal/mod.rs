@@ -13,7 +13,7 @@
 //! |---|---|
 //! | [`neighbours`], [`supernodes`], [`plan`], [`tasks`] | analysis: fronts, their order, their memory, what threads share |
 //! | [`scaling`], [`kernel`], [`lu`], [`cholesky`], [`extend_add`], [`factors`] | factorisation |
-//! | [`dense_lu`], [`tiles`], [`panels`], [`workshop`] | dense kernels, memory |
+//! | [`dense_lu`], [`tiles`], [`panels`], [`layout`], [`scalar`], [`workshop`] | dense kernels, numbers, memory |
 //! | [`substitution`] | solution |
 //! | [`engine`], [`solvers`] | the whole, and the solvers to choose from |
 
@@ -23,10 +23,12 @@ mod engine;
 mod extend_add;
 mod factors;
 mod kernel;
+mod layout;
 mod lu;
 mod neighbours;
 mod panels;
 mod plan;
+mod scalar;
 mod scaling;
 mod solvers;
 mod substitution;
