@@ -15,6 +15,7 @@
 //! | [`scaling`], [`kernel`], [`lu`], [`cholesky`], [`extend_add`], [`factors`] | factorisation |
 //! | [`dense_lu`], [`tiles`], [`panels`], [`layout`], [`scalar`], [`workshop`] | dense kernels, numbers, memory |
 //! | [`substitution`] | solution |
+//! | [`single`] | factors in single precision as a preconditioner |
 //! | [`engine`], [`solvers`] | the whole, and the solvers to choose from |
 
 mod cholesky;
@@ -30,6 +31,7 @@ mod panels;
 mod plan;
 mod scalar;
 mod scaling;
+mod single;
 mod solvers;
 mod substitution;
 mod supernodes;
