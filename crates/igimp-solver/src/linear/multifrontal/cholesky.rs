@@ -359,18 +359,18 @@ impl<T: Scalar> Substitution<T> for CholeskyFactors {
         <Cholesky as Kernel<T>>::entries(extent)
     }
 
-    fn forward(factors: &[T], _exchanges: &[u32], y: &mut [T], product: &mut [T]) {
+    fn forward(factors: &[T], _exchanges: &[u32], y: &mut [T], product: &mut [T], large: bool) {
         let layout = Layout::lower(y.len());
         let (pivots, lower) = factors.split_at(layout.entries());
         solve_lower(layout, pivots, false, y);
         product.fill(T::default());
-        subtract_product(lower, y, product);
+        subtract_product(lower, y, product, large);
     }
 
-    fn backward(factors: &[T], y: &mut [T], border: &[T]) {
+    fn backward(factors: &[T], y: &mut [T], border: &[T], large: bool) {
         let layout = Layout::lower(y.len());
         let (pivots, lower) = factors.split_at(layout.entries());
-        subtract_transposed_product(lower, border, y);
+        subtract_transposed_product(lower, border, y, large);
         solve_lower_transposed(layout, pivots, y);
     }
 }

@@ -88,9 +88,9 @@ pub(super) trait Substitution<T: Scalar>: Sync {
     /// As [`Kernel::entries`].
     fn entries(extent: &Extent) -> usize;
 
-    /// y ← L⁻¹ P y for the pivots, and `product` = L y for the border.
-    fn forward(factors: &[T], exchanges: &[u32], y: &mut [T], product: &mut [T]);
+    /// y ← L⁻¹ P y for the pivots, and `product` = −L y for the border. The threads share the work on a `large` front.
+    fn forward(factors: &[T], exchanges: &[u32], y: &mut [T], product: &mut [T], large: bool);
 
     /// y ← U⁻¹ (y − Uᵀ border).
-    fn backward(factors: &[T], y: &mut [T], border: &[T]);
+    fn backward(factors: &[T], y: &mut [T], border: &[T], large: bool);
 }

@@ -303,17 +303,17 @@ impl<T: Scalar> Substitution<T> for LuFactors {
         <Lu as Kernel<T>>::entries(extent)
     }
 
-    fn forward(factors: &[T], exchanges: &[u32], y: &mut [T], product: &mut [T]) {
+    fn forward(factors: &[T], exchanges: &[u32], y: &mut [T], product: &mut [T], large: bool) {
         let (w, r) = (y.len(), product.len());
         exchange(y, 0, exchanges);
         solve_lower(Layout::square(w), &factors[..w * w], true, y);
         product.fill(T::default());
-        subtract_product(&factors[w * w..][..r * w], y, product);
+        subtract_product(&factors[w * w..][..r * w], y, product, large);
     }
 
-    fn backward(factors: &[T], y: &mut [T], border: &[T]) {
+    fn backward(factors: &[T], y: &mut [T], border: &[T], large: bool) {
         let (w, r) = (y.len(), border.len());
-        subtract_transposed_product(&factors[w * (w + r)..], border, y);
+        subtract_transposed_product(&factors[w * (w + r)..], border, y, large);
         solve_upper(&factors[..w * w], y);
     }
 }

@@ -2,6 +2,7 @@
 //! memory. The order of the sums is fixed.
 
 use faer::traits::pulp::Arch;
+use rayon::prelude::*;
 
 use super::layout::Layout;
 use super::scalar::Scalar;
@@ -9,40 +10,69 @@ use super::scalar::Scalar;
 /// Columns that are worked on together.
 const WIDTH: usize = 4;
 
+/// Rows and columns of a large panel that a thread works on at a time.
+const ROWS: usize = 512;
+const COLUMNS: usize = 64;
+
 /// Partial sums of a scalar product.
 const LANES: usize = 16;
 
-/// y ← y − A x for a panel A stored by columns.
-pub(super) fn subtract_product<T: Scalar>(panel: &[T], x: &[T], y: &mut [T]) {
+/// y ← y − A x for a panel A stored by columns; the threads share the rows of a `large` one.
+pub(super) fn subtract_product<T: Scalar>(panel: &[T], x: &[T], y: &mut [T], large: bool) {
     let rows = y.len();
-    if rows == 0 {
-        return;
+    if large && rows > ROWS {
+        let parts = y.par_chunks_mut(ROWS).enumerate();
+        parts.for_each(|(part, y)| subtract_rows(panel, rows, part * ROWS, x, y));
+    } else if rows > 0 {
+        subtract_rows(panel, rows, 0, x, y);
     }
+}
+
+/// The same for some rows of a panel of `height`, from the row `first` on.
+fn subtract_rows<T: Scalar>(panel: &[T], height: usize, first: usize, x: &[T], y: &mut [T]) {
     Arch::new().dispatch(|| {
+        let own = first..first + y.len();
         let mut groups = x.chunks_exact(WIDTH);
-        let mut columns = panel.chunks_exact(WIDTH * rows);
+        let mut columns = panel.chunks_exact(WIDTH * height);
         for (x, columns) in groups.by_ref().zip(columns.by_ref()) {
-            let (a, columns) = columns.split_at(rows);
-            let (b, columns) = columns.split_at(rows);
-            let (c, d) = columns.split_at(rows);
+            let (a, columns) = columns.split_at(height);
+            let (b, columns) = columns.split_at(height);
+            let (c, d) = columns.split_at(height);
+            let (a, b) = (&a[own.clone()], &b[own.clone()]);
+            let (c, d) = (&c[own.clone()], &d[own.clone()]);
             for ((((y, a), b), c), d) in y.iter_mut().zip(a).zip(b).zip(c).zip(d) {
                 *y -= (*a * x[0] + *b * x[1]) + (*c * x[2] + *d * x[3]);
             }
         }
-        let rest = columns.remainder().chunks_exact(rows);
+        let rest = columns.remainder().chunks_exact(height);
         for (x, column) in groups.remainder().iter().zip(rest) {
-            for (y, a) in y.iter_mut().zip(column) {
+            for (y, a) in y.iter_mut().zip(&column[own.clone()]) {
                 *y -= *a * *x;
             }
         }
     });
 }
 
-/// y ← y − Aᵀ x for a panel A stored by columns.
-pub(super) fn subtract_transposed_product<T: Scalar>(panel: &[T], x: &[T], y: &mut [T]) {
-    if x.is_empty() {
-        return;
+/// y ← y − Aᵀ x for a panel A stored by columns; the threads share the columns of a `large` one.
+pub(super) fn subtract_transposed_product<T: Scalar>(
+    panel: &[T],
+    x: &[T],
+    y: &mut [T],
+    large: bool,
+) {
+    let rows = x.len();
+    if large && rows > ROWS {
+        let parts = y
+            .par_chunks_mut(COLUMNS)
+            .zip(panel.par_chunks(COLUMNS * rows));
+        parts.for_each(|(y, panel)| subtract_columns(panel, x, y));
+    } else if rows > 0 {
+        subtract_columns(panel, x, y);
     }
+}
+
+/// The same for some columns.
+fn subtract_columns<T: Scalar>(panel: &[T], x: &[T], y: &mut [T]) {
     Arch::new().dispatch(|| {
         for (y, column) in y.iter_mut().zip(panel.chunks_exact(x.len())) {
             *y -= dot(column, x);

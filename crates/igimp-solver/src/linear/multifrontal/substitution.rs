@@ -146,7 +146,7 @@ impl<S: Substitution<T>, T: Scalar> Job<'_, S, T> {
             values = later;
             let exchanges = &self.factors.exchanges[front.first..front.end()];
             let product = &mut border[..front.border];
-            S::forward(own, exchanges, part.pivots(front), product);
+            S::forward(own, exchanges, part.pivots(front), product, task.is_large());
             part.add(self.plan, front, product);
         }
         self.workshop.give_back(tools);
@@ -171,7 +171,8 @@ impl<S: Substitution<T>, T: Scalar> Job<'_, S, T> {
             let (earlier, own) = values.split_at(values.len() - S::entries(&front.extent()));
             values = earlier;
             part.gather(self.plan, front, &mut border[..front.border]);
-            S::backward(own, part.pivots(front), &border[..front.border]);
+            let border = &border[..front.border];
+            S::backward(own, part.pivots(front), border, task.is_large());
         }
         for (child, known) in task.outer_parts() {
             let child = &self.plan.fronts[child];
