@@ -454,11 +454,11 @@ fn an_embankment_is_filled_in_lifts() {
 }
 
 #[test]
-fn a_square_of_pressure_collapses_near_the_bounds() {
-    let ran = ran_in_space("footing_3d", &["grid.zones={}", "stages.0.steps=16"]);
-    assert_eq!(ran.outcomes(), [Stopped]);
-    // Two cells over half the width.
-    between(ran.end_of("load-settlement"), 5.0, 7.5);
+fn a_square_footing_carries_what_limit_analysis_says() {
+    let ran = ran_in_space("footing_3d", &["output.figures=[]"]);
+    assert_eq!(ran.outcomes(), [Completed]);
+    // Lower bound 5.52, best upper bound 5.95.
+    between(ran.measured("bearing capacity factor"), 5.5, 6.0);
 }
 
 #[test]
