@@ -20,8 +20,8 @@ use igimp_solver::{Accepted, Body, MarchSettings};
 use rayon::prelude::*;
 
 use super::Octant;
-use crate::exact::sphere::ThickSphere;
 use crate::contact::graded;
+use crate::exact::sphere::ThickSphere;
 use crate::laboratory::run;
 use crate::oracle::{Oracle, OracleKind};
 use crate::study::{Level, RunRecord, Study};

@@ -102,7 +102,12 @@ impl Valley {
         let cohesion = (1.3 * WEIGHT / self.bounds[1]).round();
         let beyond = 15.0 * (self.depth - 1.0);
         let margins = [15.0, beyond];
-        Section::homogeneous("undrained, 45°", (1.0, self.depth), (cohesion, 0.0), margins)
+        Section::homogeneous(
+            "undrained, 45°",
+            (1.0, self.depth),
+            (cohesion, 0.0),
+            margins,
+        )
     }
 
     fn name(&self, mesh: usize) -> String {

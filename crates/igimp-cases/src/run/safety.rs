@@ -144,7 +144,8 @@ impl<'a, const D: usize> Trials<'a, D> {
         if !self.made.iter().any(at_full_strength) {
             return Some(1.0);
         }
-        if made >= MOST_TRIALS + self.reduction.factors.len() || stands_nowhere(&self.made, self.reduction.path)
+        if made >= MOST_TRIALS + self.reduction.factors.len()
+            || stands_nowhere(&self.made, self.reduction.path)
         {
             return None;
         }

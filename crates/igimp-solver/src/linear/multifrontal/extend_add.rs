@@ -68,19 +68,19 @@ impl BorderMap {
     }
 
     /// Stretches among the pivots.
-    pub(super) fn into_pivots(&self) -> &[Stretch] {
+    pub(super) fn among_pivots(&self) -> &[Stretch] {
         &self.stretches[..self.pivot_stretches]
     }
 
     /// Stretches in the border.
-    pub(super) fn into_border(&self) -> &[Stretch] {
+    pub(super) fn in_border(&self) -> &[Stretch] {
         &self.stretches[self.pivot_stretches..]
     }
 
     /// How many pivots of the parent stand before a place in the border of the child, `all` where it is
     /// beyond them.
     pub(super) fn pivots_before(&self, source: usize, all: usize) -> usize {
-        let stretches = self.into_pivots();
+        let stretches = self.among_pivots();
         let next = stretches.partition_point(|stretch| stretch.source + stretch.len <= source);
         stretches.get(next).map_or(all, |stretch| {
             stretch.target + source.saturating_sub(stretch.source)
@@ -99,7 +99,7 @@ impl<T: Scalar> Waiting<'_, T> {
     /// the first column. What waits is a [`triangle`].
     pub(super) fn add_lower(&self, tile: &mut [T], height: usize, columns: &Range<usize>) {
         let rows = self.map.rows - self.map.taken;
-        let stretches = self.map.into_border();
+        let stretches = self.map.in_border();
         for (index, own, target) in within(stretches, columns) {
             let stretch = stretches[index].from(own);
             let source = &self.entries[triangle_column(rows, stretch.source - self.map.taken)];
@@ -121,7 +121,7 @@ impl<T: Scalar> Waiting<'_, T> {
         first_row: usize,
     ) {
         let rows = self.map.rows - self.map.taken;
-        let stretches = self.map.into_border();
+        let stretches = self.map.in_border();
         let first = stretches.partition_point(|own| own.target + own.len <= first_row);
         for (index, own, target) in within(stretches, columns) {
             let column = stretches[index].source + own - self.map.taken;
@@ -143,7 +143,7 @@ impl<T: Scalar> Waiting<'_, T> {
         first_column: usize,
     ) {
         let rows = self.map.rows - self.map.taken;
-        let stretches = self.map.into_border();
+        let stretches = self.map.in_border();
         let first = stretches.partition_point(|own| own.target + own.len <= first_column);
         for (index, own, target) in within(stretches, rows_of_parent) {
             let row = stretches[index].source + own - self.map.taken;
@@ -191,7 +191,7 @@ pub(super) struct Target<'a, T> {
     pub(super) waiting: &'a mut [T],
 }
 
-impl<'a, T: Scalar> Target<'a, T> {
+impl<T: Scalar> Target<'_, T> {
     /// Cuts before a column of the child. `before` are the entries that wait of columns before the cut.
     pub(super) fn cut(
         self,
@@ -236,7 +236,7 @@ impl<'a, T: Scalar> Target<'a, T> {
         lower_half: bool,
     ) {
         let height = map.rows - first_row;
-        let (into_pivots, into_border) = (map.into_pivots(), map.into_border());
+        let (into_pivots, into_border) = (map.among_pivots(), map.in_border());
         let first = into_pivots.partition_point(|own| own.source + own.len <= columns.start);
         for (index, own) in into_pivots.iter().enumerate().skip(first) {
             if own.source >= columns.end {
@@ -266,9 +266,7 @@ impl<'a, T: Scalar> Target<'a, T> {
             }
         }
     }
-}
 
-impl<T: Scalar> Target<'_, T> {
     /// Adds the columns of a tile below the pivots only; the tile has the rows of the child from `first_row` on, where its
     /// pivots end.
     pub(super) fn add_below(
@@ -279,14 +277,14 @@ impl<T: Scalar> Target<'_, T> {
         first_row: usize,
     ) {
         let height = map.rows - first_row;
-        for own in map.into_pivots() {
+        for own in map.among_pivots() {
             let from = columns.start.saturating_sub(own.source);
             let to = own.len.min(columns.end.saturating_sub(own.source));
             for k in from..to {
                 let source = &tile[(own.source + k - columns.start) * height..][..height];
                 let first = (own.target + k - self.first_pivot) * self.border;
                 let into = &mut self.lower[first..][..self.border];
-                for &stretch in map.into_border() {
+                for &stretch in map.in_border() {
                     add_stretch(into, source, stretch, (first_row, 0));
                 }
             }

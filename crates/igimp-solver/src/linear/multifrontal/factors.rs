@@ -112,7 +112,7 @@ impl<K: Kernel<T>, T: Scalar> Job<'_, K, T> {
             [] => Ok(PivotRecord::default()),
             [task] => {
                 let done = self.task(task, values, exchanges)?;
-                self.pass_on(task, values, done, above)
+                self.pass_on(task, values, &done, above)
             }
             _ => {
                 let (left, right) = tasks.split_at(tasks.len() / 2);
@@ -127,7 +127,7 @@ impl<K: Kernel<T>, T: Scalar> Job<'_, K, T> {
                 for (task, done) in right.iter().zip(done?) {
                     let (own, later) = right_values.split_at_mut(K::entries(&task.total));
                     right_values = later;
-                    record.add(&self.pass_on(task, own, done, above)?);
+                    record.add(&self.pass_on(task, own, &done, above)?);
                 }
                 Ok(record)
             }
@@ -139,7 +139,7 @@ impl<K: Kernel<T>, T: Scalar> Job<'_, K, T> {
         &self,
         task: &Task,
         values: &[T],
-        done: Done<T>,
+        done: &Done<T>,
         above: &mut Above<'_, T>,
     ) -> Result<PivotRecord, LinearSolverError> {
         let front = &self.plan.fronts[task.fronts.end - 1];
