@@ -27,6 +27,7 @@ pub(super) fn solver(
     let linear = match node.text_at("linear")? {
         "cholesky" => SolverKind::MultifrontalCholesky,
         "multigrid" => SolverKind::Multigrid,
+        "single" => SolverKind::Single,
         "lu" => SolverKind::Multifrontal,
         "faer-cholesky" => SolverKind::FaerCholesky,
         "nalgebra-cholesky" => SolverKind::NalgebraCholesky,

@@ -55,14 +55,19 @@ fn rigid_body<const D: usize>(case: &Case<D>, index: usize, part: &RigidPart<D>)
             moved.push(format!("{}: {}", stage.name, drives_in_words::<D>(own)));
         }
     }
-    let sides = part.interfaces.len();
+    let names = match part.shape.sides() {
+        [] => (1..=part.interfaces.len())
+            .map(|side| format!("side {side}"))
+            .collect(),
+        named => named.iter().map(ToString::to_string).collect::<Vec<_>>(),
+    };
     vec![
         part.name.clone(),
         shape,
         size,
         point(part.reference),
-        by_side(sides, shear),
-        by_side(sides, tension),
+        by_side(&names, shear),
+        by_side(&names, tension),
         weight,
         moved.join("; "),
     ]
@@ -71,17 +76,22 @@ fn rigid_body<const D: usize>(case: &Case<D>, index: usize, part: &RigidPart<D>)
 /// Title of the table of reinforcement in space, where forces are those of one member.
 pub(crate) const MEMBERS_IN_SPACE: &str = "Reinforcement";
 
-/// What all sides have in common, or what each has, numbered from 1.
-fn by_side(sides: usize, of: impl Fn(usize) -> String) -> String {
-    let each: Vec<String> = (0..sides).map(of).collect();
-    match each.split_first() {
-        Some((first, others)) if others.iter().all(|own| own == first) => first.clone(),
-        _ => {
-            let numbered = std::iter::zip(1.., &each);
-            let numbered = numbered.map(|(side, own)| format!("side {side} {own}"));
-            numbered.collect::<Vec<_>>().join(", ")
-        }
+/// What all sides have in common, or what each has; what most of them have is said once, last.
+fn by_side(names: &[String], of: impl Fn(usize) -> String) -> String {
+    let each: Vec<String> = (0..names.len()).map(of).collect();
+    let count = |own: &String| each.iter().filter(|other| *other == own).count();
+    let Some(most) = each.iter().rev().max_by_key(|own| count(own)) else {
+        return String::new();
+    };
+    if count(most) == each.len() {
+        return most.clone();
     }
+    let said = std::iter::zip(names, &each).filter(|(_, own)| *own != most || count(most) == 1);
+    let mut said: Vec<String> = said.map(|(side, own)| format!("{side} {own}")).collect();
+    if count(most) > 1 {
+        said.push(format!("others {most}"));
+    }
+    said.join(", ")
 }
 
 fn shear(of: RigidShear) -> String {
