@@ -56,7 +56,7 @@ impl Earth<3> for Solids {
         })
     }
 
-    fn from_front(&self, part: &BodyPart<3>) -> Vec<[f64; 2]> {
+    fn front_outline(&self, part: &BodyPart<3>) -> Vec<[f64; 2]> {
         let (lower, upper) = part.region.bounds();
         let [left, right] = [lower[0], upper[0]];
         let [low, high] = [lower[2], upper[2]];
