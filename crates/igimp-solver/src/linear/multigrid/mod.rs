@@ -9,6 +9,7 @@
 
 mod dense;
 mod galerkin;
+mod given;
 mod hierarchy;
 mod krylov;
 mod product;
@@ -18,4 +19,5 @@ mod smoother;
 mod solver;
 mod transfer;
 
+pub(super) use given::Preconditioned;
 pub(super) use solver::{Demand, Iteration};
