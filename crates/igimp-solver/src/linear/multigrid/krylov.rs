@@ -9,6 +9,9 @@
 
 use super::product::dot;
 
+/// Minimal residuals that leave more than this of a residual between two restarts are given up \[-\].
+const STAGNANT: f64 = 0.9;
+
 /// What an iteration came to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Iterated {
@@ -193,7 +196,8 @@ pub(super) fn minimal_residuals(
         }
         let reached = norm(&r) / scale;
         done.residual = reached;
-        if done.broken {
+        // Written so that what is not a number is given up too.
+        if done.broken || !(reached <= STAGNANT * beta / scale) {
             break;
         }
     }
