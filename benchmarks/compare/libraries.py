@@ -10,6 +10,8 @@ one line of JSON. A library is a class with
     solve(rhs)                   the solution
     entries()                    entries of the factors, None if the library does not tell
     VERSION                      of the library, where it tells
+    place(places)                before the others, where it wants to know node and component of each unknown
+    iterations                   of the last solution, where there were any
 
 The number of threads comes from the environment (see `environment`).
 """
@@ -242,7 +244,89 @@ class SuperLu:
         return int(self.factors.nnz)
 
 
+class Gamg:
+    """Conjugate gradients or GMRES of PETSc with its algebraic multigrid: smoothed aggregation with the
+    six rigid body modes, blocks of three, Chebyshev smoothing with the blocks of nodes."""
+
+    OPTIONS = {
+        "pc_type": "gamg",
+        "pc_gamg_type": "agg",
+        "pc_gamg_agg_nsmooths": 1,
+        "pc_gamg_threshold": 0.0,
+        "mg_levels_ksp_type": "chebyshev",
+        "mg_levels_pc_type": "pbjacobi",
+        "ksp_rtol": 1e-8,
+        "ksp_max_it": 1000,
+        "ksp_norm_type": "unpreconditioned",
+    }
+
+    def __init__(self, matrix, symmetric):
+        try:
+            import petsc4py
+        except ImportError as error:
+            raise Missing("apt-get install python3-petsc4py-real python3-scipy") from error
+        petsc4py.init([])
+        from petsc4py import PETSc
+
+        self.petsc, self.matrix, self.symmetric = PETSc, matrix, symmetric
+        self.VERSION = "PETSc " + ".".join(str(part) for part in PETSc.Sys.getVersion())
+
+    def place(self, places):
+        """Gives every node three unknowns; those that are held get an equation of their own."""
+        import numpy
+        import scipy.sparse
+
+        nodes, node = numpy.unique(places[:, :3], axis=0, return_inverse=True)
+        self.slot = 3 * node.ravel() + places[:, 3]
+        n = 3 * len(nodes)
+        old = self.matrix.tocoo()
+        held = numpy.setdiff1d(numpy.arange(n), self.slot)
+        diagonal = numpy.full(len(held), abs(self.matrix.diagonal()).mean())
+        rows = numpy.concatenate([self.slot[old.row], held])
+        columns = numpy.concatenate([self.slot[old.col], held])
+        values = numpy.concatenate([old.data, diagonal])
+        # Whole blocks, also where PETSc would drop what is zero.
+        full = scipy.sparse.csr_matrix((values, (rows, columns)), shape=(n, n))
+        full.sort_indices()
+        petsc = self.petsc
+        arrays = (full.indptr.astype(petsc.IntType), full.indices.astype(petsc.IntType), full.data)
+        self.operator = petsc.Mat().createAIJ(size=(n, n), bsize=3, csr=arrays)
+        places_of_nodes = petsc.Vec().createWithArray(nodes.astype(float).ravel().copy(), bsize=3)
+        modes = petsc.NullSpace().createRigidBody(places_of_nodes)
+        self.operator.setNearNullSpace(modes)
+        self.matrix = None
+
+    def analyse(self):
+        pass
+
+    def factor(self):
+        options = self.petsc.Options()
+        kind = "cg" if self.symmetric else "gmres"
+        for name, value in {**self.OPTIONS, "ksp_type": kind}.items():
+            options[name] = value
+        if not self.symmetric:
+            options["ksp_pc_side"] = "right"
+            options["ksp_gmres_restart"] = 50
+        self.method = self.petsc.KSP().create()
+        self.method.setOperators(self.operator)
+        self.method.setFromOptions()
+        self.method.setUp()
+
+    def solve(self, rhs):
+        right, solution = self.operator.createVecs()
+        right.set(0.0)
+        right.setValues(self.slot.astype(self.petsc.IntType), rhs)
+        right.assemble()
+        self.method.solve(right, solution)
+        self.iterations = self.method.getIterationNumber()
+        return solution.getArray()[self.slot]
+
+    def entries(self):
+        return None
+
+
 LIBRARIES = {
+    "PETSc GAMG": Gamg,
     "PARDISO": Pardiso,
     "PARDISO general": GeneralPardiso,
     "CHOLMOD": Cholmod,
@@ -288,6 +372,8 @@ def measure(name, folder):
 
     matrix, rhs, about = load(folder)
     library = LIBRARIES[name](matrix, about["symmetric"])
+    if hasattr(library, "place"):
+        library.place(numpy.load(folder / "places.npy"))
     forget_peak()
     before = resident("VmRSS:")
     times, processor = {}, {}
@@ -308,6 +394,8 @@ def measure(name, folder):
         "solve": times["solve"],
         "analysis_cpu": processor["analyse"],
         "factor_cpu": processor["factor"],
+        "solve_cpu": processor["solve"],
+        "refinements": getattr(library, "iterations", None),
         "entries": library.entries(),
         "memory_mib": None if peak is None else peak - before,
         "residual": float(residual),

@@ -63,3 +63,24 @@ def make(igimp, cases, folder, kind, size):
         raise SystemExit(f"igimp run ends with {done.returncode}:\n{done.stderr}{done.stdout}")
     shutil.rmtree(results)
     return system
+
+
+# Cubes of soil, by what they are called: soil and Poisson's ratio of the program `cube_system`.
+CUBES = {
+    "elastic, ν = 0.3": ("hencky-elastic", 0.3),
+    "elastic, ν = 0.49": ("hencky-elastic", 0.49),
+    "von Mises, ν = 0.3": ("von-mises", 0.3),
+    "von Mises, ν = 0.49": ("von-mises", 0.49),
+    "Mohr–Coulomb, ψ = 0": ("mohr-coulomb", 0.3),
+}
+
+
+def make_cube(program, folder, kind, cells):
+    """The folder of the system of a cube; it is made if it does not exist."""
+    soil, poisson = CUBES[kind]
+    system = folder / f"cube-{soil}-{poisson}-{cells}"
+    if not (system / "matrix.json").is_file():
+        print(f"making a cube, {kind}, {cells} cells a side ...", flush=True)
+        command = [program, system, "--cells", str(cells), "--soil", soil]
+        subprocess.run([*command, "--poisson", str(poisson)], check=True)
+    return system

@@ -136,9 +136,9 @@ def write(folder, rows, text):
     (folder / "compare.md").write_text(f"# Linear solvers side by side\n\n{text}")
 
 
-def into_book(page, text):
+def into_book(page, text, begin=BEGIN, end=END):
     """Replaces what stands between the marks of a page."""
     old = page.read_text()
-    before, rest = old.split(BEGIN)
-    _, after = rest.split(END)
-    page.write_text(f"{before}{BEGIN}\n\n{text}\n{END}{after}")
+    before, rest = old.split(begin)
+    _, after = rest.split(end)
+    page.write_text(f"{before}{begin}\n\n{text}\n{end}{after}")

@@ -167,6 +167,16 @@ impl<const D: usize> Block<D> {
         self.particles.is_empty()
     }
 
+    /// The grid that it fills.
+    pub fn grid(&self) -> &Grid<D> {
+        &self.conditions.grid
+    }
+
+    /// How it is held.
+    pub fn constraints(&self) -> &Constraints<D> {
+        &self.conditions.constraints
+    }
+
     /// Who touches what.
     ///
     /// # Errors

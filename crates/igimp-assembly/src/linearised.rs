@@ -55,7 +55,11 @@ pub(crate) struct Moduli<const D: usize> {
 
 impl<const D: usize> Moduli<D> {
     /// Those of a particle of volume `volume`.
-    #[inline]
+    #[allow(
+        clippy::inline_always,
+        reason = "compiled for the instructions of the caller"
+    )]
+    #[inline(always)]
     pub(crate) fn of(own: &Linearisation<D>, volume: f64, kinematics: Kinematics) -> Self {
         let tangent = own.lifted.tangent();
         let tau = &own.lifted.tau;
@@ -157,7 +161,11 @@ impl<const D: usize> Linearised<D> {
     }
 
     /// Computes the factors of the rows.
-    #[inline]
+    #[allow(
+        clippy::inline_always,
+        reason = "compiled for the instructions of the caller"
+    )]
+    #[inline(always)]
     pub(crate) fn linearise(&mut self, moduli: &Moduli<D>) {
         let Moduli {
             modulus,
@@ -165,7 +173,8 @@ impl<const D: usize> Linearised<D> {
             right,
             trace,
             vp,
-        } = *moduli;
+        } = moduli;
+        let (trace, vp) = (*trace, *vp);
         self.lanes = (self.g.len() * D).div_ceil(LANES);
         for factors in [&mut self.y, &mut self.h] {
             factors.resize(D * D * self.lanes, [0.0; LANES]);
@@ -206,7 +215,11 @@ impl<const D: usize> Linearised<D> {
     }
 
     /// The columns (j, c) over all rows, by c.
-    #[inline]
+    #[allow(
+        clippy::inline_always,
+        reason = "compiled for the instructions of the caller"
+    )]
+    #[inline(always)]
     pub(crate) fn columns(&mut self, j: usize) -> [&[f64]; D] {
         // Known lengths leave nothing of the loops: supports on 2 × 2, 2 × 3 and 3 × 3 nodes.
         match self.lanes {

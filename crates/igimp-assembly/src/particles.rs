@@ -192,16 +192,21 @@ impl<const D: usize> Particles<D> {
     ) -> Result<T, MaterialError> {
         let law: &dyn ConstitutiveModel = &*laws[self.fields.law[particle]];
         let ratios = self.fields.ratios[particle];
-        if ratios.are_one() {
-            return Ok(ask(law));
-        }
-        let at_friction = if ratios.has_friction_of_its_own() {
-            law.at_friction(ratios.friction)?
+        // It is asked in one place, so that what asks is compiled into it.
+        let at_friction;
+        let scaled;
+        let asked: &dyn ConstitutiveModel = if ratios.are_one() {
+            law
         } else {
-            None
+            at_friction = if ratios.has_friction_of_its_own() {
+                law.at_friction(ratios.friction)?
+            } else {
+                None
+            };
+            scaled = ScaledLaw::new(at_friction.as_deref().unwrap_or(law), ratios)?;
+            &scaled
         };
-        let law = at_friction.as_deref().unwrap_or(law);
-        Ok(ask(&ScaledLaw::new(law, ratios)?))
+        Ok(ask(asked))
     }
 
     /// Young's modulus of a particle \[force/length²\], `laws` being those that particles name.

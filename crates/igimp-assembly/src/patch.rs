@@ -13,15 +13,12 @@
 //! kept as vectors over the nodes i. Of a symmetric tangent the rows from the node of the column on are
 //! summed; the others are [their mirror image](crate::mirror).
 
-use std::ops::Range;
-
 use igimp_shape::{Grid, Support};
-use pulp::{Arch, NullaryFnOnce};
 
 use crate::blocks::BlockTable;
 use crate::linearised::{Linearised, Moduli};
 use crate::matrix::Pattern;
-use crate::scatter::Rows;
+use crate::scatter::{Piece, Rows};
 
 /// Nodes that are worked on together.
 const LANES: usize = 4;
@@ -41,6 +38,8 @@ pub(crate) struct Patch<const D: usize> {
     allowed: Vec<usize>,
     /// The unknown rows of the nodes.
     rows: Rows,
+    /// Those that the column node at hand is coupled to.
+    pieces: Vec<Piece>,
     /// Where the nodes of the particle at hand are among `nodes`.
     places: Vec<usize>,
     /// By lane: gradients g and ḡ of the particle at hand, zero at nodes that it does not touch.
@@ -151,13 +150,18 @@ impl<const D: usize> Patch<D> {
         Some(mask)
     }
 
-    /// Adds the tangent of one of the particles, whose gradients were pushed.
-    #[inline]
+    /// Adds the tangent of one of the particles, whose gradients were pushed; `fuses` products and sums.
+    #[allow(
+        clippy::inline_always,
+        reason = "compiled for the instructions of the caller"
+    )]
+    #[inline(always)]
     pub(crate) fn add(
         &mut self,
         supports: &[Support<D>],
         linearised: &Linearised<D>,
         moduli: &Moduli<D>,
+        fuses: bool,
     ) {
         self.places.clear();
         let mut place = 0;
@@ -167,14 +171,49 @@ impl<const D: usize> Patch<D> {
             }
             self.places.push(place);
         }
-        Arch::new().dispatch(Add {
-            patch: self,
-            linearised,
-            moduli,
-        });
+        // All particles of a patch have its first node.
+        let touched = place / LANES + 1;
+        let zeroed = self.gradients[..touched].as_flattened_mut();
+        zeroed.as_flattened_mut().as_flattened_mut().fill(0.0);
+        let own = std::iter::zip(linearised.g(), linearised.g_bar());
+        for (&place, (g, g_bar)) in std::iter::zip(&self.places, own.clone()) {
+            let [to, to_bar] = &mut self.gradients[place / LANES];
+            for a in 0..D {
+                to[a][place % LANES] = g[a];
+                to_bar[a][place % LANES] = g_bar[a];
+            }
+        }
+        let of_lanes = std::iter::zip(&mut self.factors, &self.gradients);
+        for (factors, gradients) in of_lanes.take(touched) {
+            set(factors, gradients, moduli, fuses);
+        }
+        let lanes = self.lanes();
+        for (&place, (&g, &g_bar)) in std::iter::zip(&self.places, own) {
+            let d_3: [f64; D] = std::array::from_fn(|c| g_bar[c] - g[c]);
+            let from = if self.is_half { place / LANES } else { 0 };
+            let sums = &mut self.sums[place * lanes..][from..touched];
+            for (sums, factors) in sums.iter_mut().zip(&self.factors[from..touched]) {
+                for c in 0..D {
+                    for a in 0..D {
+                        let mut sum = sums[c][a];
+                        for d in 0..D {
+                            add(&mut sum, &factors.y[c][a][d], g[d], fuses);
+                        }
+                        add(&mut sum, &factors.z[a], d_3[c], fuses);
+                        add(&mut sum, &factors.w[c], g_bar[a], fuses);
+                        sums[c][a] = sum;
+                    }
+                }
+            }
+        }
     }
 
     /// Adds the sums to the slice of values of the matrix that begins at `start`.
+    #[allow(
+        clippy::inline_always,
+        reason = "compiled for the instructions of the caller"
+    )]
+    #[inline(always)]
     pub(crate) fn scatter(
         &mut self,
         (table, pattern): (&BlockTable<D>, &Pattern),
@@ -191,10 +230,13 @@ impl<const D: usize> Patch<D> {
             let values = &mut slice[stored.start - start..stored.end - start];
             let height = values.len() / usize::from(column.len);
             let first = if self.is_half { j * D } else { 0 };
-            let add = |rows: Range<usize>, offset: usize| {
-                let is_full = rows.start.is_multiple_of(D) && rows.len().is_multiple_of(D);
+            self.pieces.clear();
+            let nodes = (table, &self.nodes[..]);
+            self.rows.coupled(nodes, node, first, &mut self.pieces);
+            for &Piece { first, len, offset } in &self.pieces {
+                let is_full = first.is_multiple_of(D) && len.is_multiple_of(D);
                 if is_full && usize::from(column.len) == D {
-                    for (k, i) in (rows.start / D..rows.end / D).enumerate() {
+                    for (k, i) in (first / D..(first + len) / D).enumerate() {
                         let (sums, lane) = (&sums[i / LANES], i % LANES);
                         for c in 0..D {
                             let values = &mut values[c * height + offset + k * D..][..D];
@@ -205,98 +247,31 @@ impl<const D: usize> Patch<D> {
                     }
                 } else {
                     for (rank, c) in column.components().enumerate() {
-                        let values = &mut values[rank * height + offset..][..rows.len()];
-                        for (value, row) in values.iter_mut().zip(rows.clone()) {
+                        let values = &mut values[rank * height + offset..][..len];
+                        for (value, row) in values.iter_mut().zip(first..) {
                             let i = row / D;
                             *value += sums[i / LANES][c][row % D][i % LANES];
                         }
                     }
                 }
-            };
-            let nodes = (table, &self.nodes[..]);
-            self.rows.visit_coupled::<D>(nodes, node, first, add);
-        }
-    }
-}
-
-/// A particle on its way into a patch, with wider instructions where the processor has them: sums and their
-/// order are the same.
-struct Add<'a, const D: usize> {
-    patch: &'a mut Patch<D>,
-    linearised: &'a Linearised<D>,
-    moduli: &'a Moduli<D>,
-}
-
-impl<const D: usize> NullaryFnOnce for Add<'_, D> {
-    type Output = ();
-
-    #[allow(
-        clippy::inline_always,
-        reason = "compiled for the instructions of the caller"
-    )]
-    #[inline(always)]
-    fn call(self) {
-        let Patch {
-            nodes,
-            places,
-            gradients,
-            factors,
-            sums,
-            is_half,
-            ..
-        } = self.patch;
-        let (Some(first), Some(last)) = (places.first(), places.last()) else {
-            return;
-        };
-        let touched = first / LANES..last / LANES + 1;
-        let zeroed = gradients[touched.clone()].as_flattened_mut();
-        zeroed.as_flattened_mut().as_flattened_mut().fill(0.0);
-        let own = std::iter::zip(self.linearised.g(), self.linearised.g_bar());
-        for (&place, (g, g_bar)) in std::iter::zip(&*places, own.clone()) {
-            let [to, to_bar] = &mut gradients[place / LANES];
-            for a in 0..D {
-                to[a][place % LANES] = g[a];
-                to_bar[a][place % LANES] = g_bar[a];
-            }
-        }
-        for k in touched.clone() {
-            set(&mut factors[k], &gradients[k], self.moduli);
-        }
-        let lanes = nodes.len().div_ceil(LANES);
-        for (&place, (&g, &g_bar)) in std::iter::zip(&*places, own) {
-            let d_3: [f64; D] = std::array::from_fn(|c| g_bar[c] - g[c]);
-            let from = if *is_half {
-                place / LANES
-            } else {
-                touched.start
-            };
-            let sums = &mut sums[place * lanes..][from..touched.end];
-            for (sums, factors) in sums.iter_mut().zip(&factors[from..touched.end]) {
-                for c in 0..D {
-                    for a in 0..D {
-                        let mut sum = sums[c][a];
-                        for d in 0..D {
-                            add(&mut sum, &factors.y[c][a][d], g[d]);
-                        }
-                        add(&mut sum, &factors.z[a], d_3[c]);
-                        add(&mut sum, &factors.w[c], g_bar[a]);
-                        sums[c][a] = sum;
-                    }
-                }
             }
         }
     }
 }
 
-/// Adds `factor` times `term`.
+/// Adds `factor` times `term`; `fuses` product and sum.
 #[allow(
     clippy::inline_always,
     reason = "compiled for the instructions of the caller"
 )]
 #[inline(always)]
-fn add(sum: &mut Lane, term: &Lane, factor: f64) {
+fn add(sum: &mut Lane, term: &Lane, factor: f64, fuses: bool) {
     for lane in 0..LANES {
-        sum[lane] += term[lane] * factor;
+        if fuses {
+            sum[lane] = term[lane].mul_add(factor, sum[lane]);
+        } else {
+            sum[lane] += term[lane] * factor;
+        }
     }
 }
 
@@ -306,7 +281,12 @@ fn add(sum: &mut Lane, term: &Lane, factor: f64) {
     reason = "compiled for the instructions of the caller"
 )]
 #[inline(always)]
-fn set<const D: usize>(factors: &mut Factors<D>, [g, g_bar]: &[[Lane; D]; 2], moduli: &Moduli<D>) {
+fn set<const D: usize>(
+    factors: &mut Factors<D>,
+    [g, g_bar]: &[[Lane; D]; 2],
+    moduli: &Moduli<D>,
+    fuses: bool,
+) {
     for a in 0..D {
         for lane in 0..LANES {
             factors.w[a][lane] = -moduli.vp * g_bar[a][lane];
@@ -316,17 +296,17 @@ fn set<const D: usize>(factors: &mut Factors<D>, [g, g_bar]: &[[Lane; D]; 2], mo
             d_3[lane] -= g[a][lane];
         }
         let mut z = [0.0; LANES];
-        add(&mut z, &d_3, moduli.trace);
+        add(&mut z, &d_3, moduli.trace, fuses);
         for b in 0..D {
-            add(&mut z, &g[b], moduli.right[b][a]);
+            add(&mut z, &g[b], moduli.right[b][a], fuses);
         }
         factors.z[a] = z;
         for c in 0..D {
             for d in 0..D {
                 let mut y = [0.0; LANES];
-                add(&mut y, &d_3, moduli.left[c][d]);
+                add(&mut y, &d_3, moduli.left[c][d], fuses);
                 for b in 0..D {
-                    add(&mut y, &g[b], moduli.modulus[c][d][b][a]);
+                    add(&mut y, &g[b], moduli.modulus[c][d][b][a], fuses);
                 }
                 factors.y[c][a][d] = y;
             }

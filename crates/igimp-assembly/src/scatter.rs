@@ -1,8 +1,6 @@
 //! From the tangent of one particle into the matrix: its unknown rows as runs that lie one after the
 //! other in every column, and its columns one by one.
 
-use std::ops::Range;
-
 use igimp_shape::Support;
 
 use crate::blocks::BlockTable;
@@ -28,6 +26,15 @@ struct Run {
     /// The last node, among those listed, and how many rows of the run stand before its own.
     last: u32,
     before_last: u32,
+}
+
+/// Rows that follow one another, and so do their values in the columns of a node.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Piece {
+    pub(crate) first: usize,
+    pub(crate) len: usize,
+    /// Where the first one is in the columns.
+    pub(crate) offset: usize,
 }
 
 impl Rows {
@@ -77,7 +84,11 @@ impl Rows {
     }
 
     /// Adds the tangent of one particle to the slice of values that begins at `start`.
-    #[inline]
+    #[allow(
+        clippy::inline_always,
+        reason = "compiled for the instructions of the caller"
+    )]
+    #[inline(always)]
     pub(crate) fn scatter<const D: usize>(
         &self,
         supports: &[Support<D>],
@@ -117,15 +128,14 @@ impl Rows {
         }
     }
 
-    /// Visits the rows from `first` on that one of the listed `nodes` is coupled to: rows that follow one another,
-    /// and the offset of their first one in the columns of the node.
+    /// Lists the rows from `first` on that one of the listed `nodes` is coupled to.
     #[inline]
-    pub(crate) fn visit_coupled<const D: usize>(
+    pub(crate) fn coupled<const D: usize>(
         &self,
         (table, nodes): (&BlockTable<D>, &[usize]),
         node: usize,
         first: usize,
-        mut visit: impl FnMut(Range<usize>, usize),
+        pieces: &mut Vec<Piece>,
     ) {
         let offset = table.offsets_if_coupled(node);
         for run in &self.runs {
@@ -139,20 +149,29 @@ impl Rows {
                 0 => begin,
                 _ => offset(last.code, last.block),
             };
-            match (begin, begin_of_last) {
-                (Some(begin), Some(last)) if last == begin + run.before_last as usize => {
-                    visit(rows, begin);
-                }
-                _ => {
+            let whole = begin.filter(|begin| {
+                begin_of_last.is_some_and(|last| last == begin + run.before_last as usize)
+            });
+            let mut done = rows.start;
+            while done < rows.end {
+                let (own, offset) = if whole.is_some() {
+                    (rows.clone(), whole)
+                } else {
                     // Some nodes of the run are coupled, and others are not.
-                    for i in rows.start / D..rows.end.div_ceil(D) {
-                        let row = &table.nodes[nodes[i]];
-                        let own = rows.start.max(i * D)..rows.end.min((i + 1) * D);
-                        let rank = if i == rows.start / D { run.rank } else { 0 };
-                        if let Some(offset) = offset(row.code, row.block) {
-                            visit(own, offset + rank as usize);
-                        }
-                    }
+                    let i = done / D;
+                    let row = &table.nodes[nodes[i]];
+                    let rank = if done == rows.start { run.rank } else { 0 };
+                    let offset = offset(row.code, row.block).map(|offset| offset + rank as usize);
+                    (done..rows.end.min((i + 1) * D), offset)
+                };
+                done = own.end;
+                let from = own.start.max(first);
+                if let Some(offset) = offset.filter(|_| from < own.end) {
+                    pieces.push(Piece {
+                        first: from,
+                        len: own.end - from,
+                        offset: offset + from - own.start,
+                    });
                 }
             }
         }
@@ -160,7 +179,11 @@ impl Rows {
 }
 
 /// Adds the first `len` terms to the first `len` sums.
-#[inline]
+#[allow(
+    clippy::inline_always,
+    reason = "compiled for the instructions of the caller"
+)]
+#[inline(always)]
 fn add(sums: &mut [f64], terms: &[f64], len: usize) {
     match len {
         4 => add_all::<4>(sums, terms),
@@ -175,7 +198,11 @@ fn add(sums: &mut [f64], terms: &[f64], len: usize) {
 }
 
 /// The same for a number that is known: so few that nothing is left of the loop.
-#[inline]
+#[allow(
+    clippy::inline_always,
+    reason = "compiled for the instructions of the caller"
+)]
+#[inline(always)]
 fn add_all<const N: usize>(sums: &mut [f64], terms: &[f64]) {
     let sums = sums
         .first_chunk_mut::<N>()

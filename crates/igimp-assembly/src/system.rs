@@ -418,7 +418,8 @@ impl<'a, const D: usize> System<'a, D> {
             let own = self.evaluate_particle(particle, u, kind, &mut trial)?;
             let volume = self.reference_volume(particle);
             linearised.push(supports, &own);
-            linearised.linearise(&Moduli::of(&own, volume, self.method.kinematics_of_step()));
+            let kinematics = self.method.kinematics_of_step();
+            linearised.linearise(&Moduli::of(&own, volume, kinematics));
             for (j, column) in supports.iter().enumerate() {
                 if !moves(column.node) {
                     continue;

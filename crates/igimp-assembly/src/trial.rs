@@ -5,11 +5,16 @@
 use std::ops::Range;
 
 use igimp_material::{ConstitutiveModel, TangentKind};
+use igimp_shape::Support;
+use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
+use crate::blocks::BlockTable;
 use crate::error::AssemblyError;
 use crate::kinematics::{Linearisation, ParticleState, ParticleTrial, evaluate};
 use crate::linearised::{Linearised, Moduli};
+use crate::matrix::Pattern;
+use crate::method::Kinematics;
 use crate::mirror::mirror;
 use crate::patch::Patch;
 use crate::scatter::Rows;
@@ -111,6 +116,7 @@ impl<const D: usize> System<'_, D> {
         scratch: &mut Scratch<D>,
     ) -> Result<(), (usize, AssemblyError)> {
         let order = &self.stencils.order()[strip.slots];
+        let (arch, kinematics) = (Arch::new(), self.method.kinematics_of_step());
         let mut end_of_patch = 0;
         for (slot, (&particle, trial)) in order.iter().zip(strip.particles).enumerate() {
             let particle = particle as usize;
@@ -119,13 +125,9 @@ impl<const D: usize> System<'_, D> {
                 .evaluate_particle(particle, u, kind, trial)
                 .map_err(|error| (particle, error))?;
             let volume = self.reference_volume(particle);
-            let Scratch {
-                linearised,
-                rows,
-                patch,
-            } = &mut *scratch;
-            linearised.push(supports, &own);
-            for (support, force) in supports.iter().zip(linearised.forces(&own, volume)) {
+            scratch.linearised.push(supports, &own);
+            let forces = scratch.linearised.forces(&own, volume);
+            for (support, force) in supports.iter().zip(forces) {
                 let sum = &mut strip.f_int[support.node - strip.first_node];
                 for axis in 0..D {
                     sum[axis] += force[axis];
@@ -134,24 +136,23 @@ impl<const D: usize> System<'_, D> {
             let Some((start, values)) = &mut strip.values else {
                 continue;
             };
-            let matrix = (&self.table, &*self.pattern);
-            let moduli = Moduli::of(&own, volume, self.method.kinematics_of_step());
-            if D == 3 {
-                if slot == end_of_patch {
-                    let next = order[slot..].iter();
-                    let next = next.map(|&particle| self.stencils.of(particle as usize));
-                    let (grid, near) = (&self.conditions.grid, self.table.near);
-                    end_of_patch += patch.begin(grid, near, next, self.symmetric_particles);
-                }
-                patch.add(supports, linearised, &moduli);
-                if slot + 1 == end_of_patch {
-                    patch.scatter(matrix, (*start, values));
-                }
-            } else {
-                rows.set(supports.iter().map(|support| support.node), &self.table);
-                linearised.linearise(&moduli);
-                rows.scatter(supports, matrix, linearised, (*start, values));
+            if D == 3 && slot == end_of_patch {
+                let next = order[slot..].iter();
+                let next = next.map(|&particle| self.stencils.of(particle as usize));
+                let (grid, near) = (&self.conditions.grid, self.table.near);
+                let patch = &mut scratch.patch;
+                end_of_patch += patch.begin(grid, near, next, self.symmetric_particles);
             }
+            arch.dispatch(Addition {
+                supports,
+                own: &own,
+                volume,
+                kinematics,
+                ends_patch: slot + 1 == end_of_patch,
+                scratch,
+                matrix: (&self.table, &self.pattern),
+                values: (*start, values),
+            });
         }
         Ok(())
     }
@@ -190,5 +191,50 @@ impl<const D: usize> System<'_, D> {
     fn values_of(&self, nodes: &Range<usize>) -> Range<usize> {
         let first = |node: usize| self.pattern.first_value[self.unknowns.blocks_before(node)];
         first(nodes.start)..first(nodes.end)
+    }
+}
+
+/// The tangent of one particle on its way into the matrix, with wider instructions where the processor has them.
+struct Addition<'a, const D: usize> {
+    supports: &'a [Support<D>],
+    own: &'a Linearisation<D>,
+    volume: f64,
+    kinematics: Kinematics,
+    /// Whether it is the last one of its patch.
+    ends_patch: bool,
+    scratch: &'a mut Scratch<D>,
+    matrix: (&'a BlockTable<D>, &'a Pattern),
+    /// Where the values of the strip begin, and the values.
+    values: (usize, &'a mut [f64]),
+}
+
+impl<const D: usize> WithSimd for Addition<'_, D> {
+    type Output = ();
+
+    #[allow(
+        clippy::inline_always,
+        reason = "compiled for the instructions of the caller"
+    )]
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Scratch {
+            linearised,
+            rows,
+            patch,
+        } = self.scratch;
+        if D == 3 {
+            // Processors with vectors fuse products and sums; without, fusing would be slow.
+            let fuses = S::F64_LANES > 1;
+            let moduli = Moduli::of(self.own, self.volume, self.kinematics);
+            patch.add(self.supports, linearised, &moduli, fuses);
+            if self.ends_patch {
+                patch.scatter(self.matrix, self.values);
+            }
+        } else {
+            let nodes = self.supports.iter().map(|support| support.node);
+            rows.set(nodes, self.matrix.0);
+            linearised.linearise(&Moduli::of(self.own, self.volume, self.kinematics));
+            rows.scatter(self.supports, self.matrix, linearised, self.values);
+        }
     }
 }

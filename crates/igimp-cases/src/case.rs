@@ -6,36 +6,46 @@
 mod axes;
 mod grid;
 mod ground;
+mod load;
+mod material;
 mod profile;
 mod raster;
+mod record;
 mod reinforcement;
 mod rigid;
 mod rigid_space;
+mod stage;
 mod water;
 
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use igimp_assembly::{Geometry, Method, SharedLaw};
-use igimp_material::{Elasticity, HenckyElastic, MaterialError, MohrCoulomb, Tresca, VonMises};
+use igimp_assembly::Method;
 use igimp_solver::linear::SolverKind;
 use serde::{Deserialize, Serialize};
 
-pub(crate) use axes::{from_front, front, in_space};
+pub(crate) use axes::{front, in_space};
 pub use grid::{AxisSpec, GridSpec, MixedCells};
 pub use ground::{Ground, Layer};
+pub use load::{Load, LoadKind, Plan};
+pub use material::{Material, Strength};
 pub use profile::{LEAST_STRENGTH, Profile, Profiles, StressShare, Variation};
 pub use raster::Raster;
+pub use record::{
+    Average, CaseCheck, CheckTime, CheckValue, Curve, CurveAxis, Field, Monitor, Quantity,
+    Reference, ReferenceValues, Section, SectionReference,
+};
+pub(crate) use reinforcement::distance;
 pub use reinforcement::{ReinforcementKind, ReinforcementPart, ReinforcementQuantity};
 pub use rigid::{
     Adhesion, COMPONENTS, RigidDrive, RigidForm, RigidInterface, RigidMove, RigidPart,
     RigidQuantity, RigidShape, RigidShear, components,
 };
 pub use rigid_space::RigidSolid;
+pub use stage::{Reduction, ReductionPath, RunOut, Stage, StageKind, StopWhen, StrengthReduction};
 pub(crate) use water::table_level;
-pub use water::{Construction, Drainage, PoreSource, WaterCondition};
+pub use water::{Construction, Drainage, Drained, PoreSource, WaterCondition};
 
-use crate::check::Band;
 use crate::region::Region;
 
 /// A problem in plane strain (D = 2) or in space (D = 3), and how it is solved.
@@ -66,7 +76,7 @@ pub struct Case<const D: usize = 2> {
     /// Rigid bodies; stages name them by index.
     pub rigid: Vec<RigidPart<D>>,
     /// Reinforcement; stages name it by index.
-    pub reinforcement: Vec<ReinforcementPart>,
+    pub reinforcement: Vec<ReinforcementPart<D>>,
     /// What happens, in order.
     pub stages: Vec<Stage>,
     /// Newton, step cutting, linear solver.
@@ -189,88 +199,6 @@ impl Default for MeshStudy {
     }
 }
 
-/// A material. Where a property varies, its constant is the greatest value in the soil.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Material {
-    /// Name.
-    pub name: String,
-    /// Unit weight γ \[N/m³\].
-    pub unit_weight: f64,
-    /// Young's modulus \[Pa\].
-    pub young: f64,
-    /// Poisson's ratio \[-\].
-    pub poisson: f64,
-    /// Strength.
-    pub strength: Strength,
-    /// Coefficient of earth pressure at rest K₀ \[-\], if the material states one.
-    pub k0: Option<f64>,
-    /// What varies from place to place.
-    pub profiles: Profiles,
-    /// Unit weight below the water table \[N/m³\]; none: that above.
-    pub saturated: Option<f64>,
-    /// What it does with water.
-    pub drainage: Drainage,
-}
-
-/// The strength of a material.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Strength {
-    /// No limit.
-    Elastic,
-    /// von Mises with undrained strength c_u in plane strain \[Pa\].
-    VonMises {
-        /// c_u \[Pa\].
-        undrained_strength: f64,
-    },
-    /// Tresca.
-    Tresca {
-        /// c_u \[Pa\].
-        undrained_strength: f64,
-    },
-    /// Mohr–Coulomb.
-    MohrCoulomb {
-        /// c \[Pa\].
-        cohesion: f64,
-        /// φ \[rad\].
-        friction_angle: f64,
-        /// ψ \[rad\].
-        dilation_angle: f64,
-        /// Largest tensile stress \[Pa\]; none: the apex of the cone.
-        tension_cutoff: Option<f64>,
-    },
-}
-
-impl Material {
-    /// The constitutive law; where strength, friction or stiffness vary, that of the greatest, of which particles have multiples.
-    ///
-    /// # Errors
-    /// [`MaterialError::InvalidParameter`].
-    pub fn law(&self) -> Result<SharedLaw, MaterialError> {
-        let elasticity = Elasticity::new(self.young, self.poisson)?;
-        Ok(match self.strength {
-            Strength::Elastic => Arc::new(HenckyElastic::new(elasticity)),
-            Strength::VonMises { undrained_strength } => Arc::new(
-                VonMises::from_undrained_strength(elasticity, undrained_strength)?,
-            ),
-            Strength::Tresca { undrained_strength } => {
-                Arc::new(Tresca::new(elasticity, undrained_strength)?)
-            }
-            Strength::MohrCoulomb {
-                cohesion,
-                friction_angle,
-                dilation_angle,
-                tension_cutoff,
-            } => {
-                let law = MohrCoulomb::new(elasticity, cohesion, friction_angle, dilation_angle)?;
-                match tension_cutoff {
-                    Some(limit) => Arc::new(law.with_tension_cutoff(limit)?),
-                    None => Arc::new(law),
-                }
-            }
-        })
-    }
-}
-
 /// A region of one material, filled with particles.
 #[derive(Clone, Debug)]
 pub struct BodyPart<const D: usize = 2> {
@@ -336,176 +264,6 @@ pub struct FixedBox<const D: usize = 2> {
     pub fix: [bool; D],
 }
 
-/// A load that stages apply.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Load<const D: usize = 2> {
-    /// Name.
-    pub name: String,
-    /// Kind.
-    pub kind: LoadKind<D>,
-}
-
-/// Kinds of loads.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum LoadKind<const D: usize = 2> {
-    /// A level rigid footing on the surface, pushed down by displacement stages; in plane strain only. The grid
-    /// follows.
-    RigidFooting {
-        /// Left end of the base \[m\].
-        from: [f64; 2],
-        /// Right end of the base, at the same level \[m\].
-        to: [f64; 2],
-        /// Whether the soil sticks to base and shaft.
-        rough: bool,
-        /// Factor on the reported reaction, 2 for half a footing \[-\].
-        reaction_factor: f64,
-    },
-    /// A dead pressure on a segment of the surface, or in space on a rectangle, raised by load stages.
-    Pressure {
-        /// One end, or corner \[m\].
-        from: [f64; D],
-        /// The other end, or the corner across \[m\].
-        to: [f64; D],
-        /// Traction at factor 1 \[Pa\], its components.
-        traction: [f64; D],
-    },
-    /// A dead force at a point, raised by load stages.
-    Point {
-        /// Where \[m\].
-        at: [f64; D],
-        /// Force at factor 1 \[N/m\], in space \[N\].
-        force: [f64; D],
-    },
-}
-
-/// One thing that happens.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Stage {
-    /// Name.
-    pub name: String,
-    /// Kind.
-    pub kind: StageKind,
-    /// Load steps when none is cut; in a strength reduction those of each trial by gravity, or of a
-    /// reduction from F = 1 to the upper end of the bracket.
-    pub steps: usize,
-    /// The geometry that its steps are computed on.
-    pub geometry: Geometry,
-    /// Stage whose end this one starts from; `None`: the undeformed, stress-free bodies for the
-    /// first stage.
-    pub start_from: Option<usize>,
-    /// Whether displacements count from the end of this stage on.
-    pub reset_displacements: bool,
-    /// Indices of the reinforcement that is installed as it begins.
-    pub install: Vec<usize>,
-    /// Conditions that end the stage early.
-    pub stop_when: StopWhen,
-    /// Whether all soil drains while it lasts: no excess pore pressure comes or goes.
-    pub drained: bool,
-}
-
-/// Kinds of stages.
-#[derive(Clone, Debug, PartialEq)]
-pub enum StageKind {
-    /// Raises gravity from where it is to a multiple of its value, and changes pseudo-static acceleration.
-    Gravity {
-        /// The multiple \[-\].
-        factor: f64,
-        /// Pseudo-static force to the right over the weight \[-\]; none: as it is.
-        horizontal: Option<f64>,
-        /// The same backwards, along the second axis of space \[-\].
-        across: Option<f64>,
-        /// The same upwards \[-\].
-        vertical: Option<f64>,
-    },
-    /// Stresses of level ground: the weight above, and K₀ times that sideways; then equilibrium.
-    K0,
-    /// Changes the factor of loads from where it is.
-    Load {
-        /// Indices of the loads.
-        loads: Vec<usize>,
-        /// Factor at the end \[-\].
-        factor: f64,
-    },
-    /// Pushes a rigid footing down.
-    Displacement {
-        /// Index of the footing.
-        load: usize,
-        /// Further settlement \[m\].
-        settlement: f64,
-    },
-    /// Moves and loads rigid bodies.
-    Rigid(Vec<RigidMove>),
-    /// Places and removes bodies, changes materials and water.
-    Construction(Construction),
-    /// Searches for the factor of safety. The body is left as it was found.
-    StrengthReduction(StrengthReduction),
-    /// Lets the slope of reduced strength move until it rests.
-    RunOut(RunOut),
-}
-
-/// How the factor of safety is searched for.
-#[derive(Clone, Debug, PartialEq)]
-pub struct StrengthReduction {
-    /// Indices of the materials whose strength is reduced.
-    pub materials: Vec<usize>,
-    /// Factors tried first, for the curve of displacement against factor \[-\]; may be empty.
-    pub factors: Vec<f64>,
-    /// Where the search begins: a factor thought stable and one thought unstable \[-\].
-    pub bracket: [f64; 2],
-    /// Width of the interval at which the search ends \[-\].
-    pub tolerance: f64,
-    /// How the reduced strength is reached.
-    pub path: ReductionPath,
-    /// A displacement at which the slope counts as failed \[m\]; lack of equilibrium always does.
-    pub failure_displacement: Option<f64>,
-    /// Monitor whose displacement counts; none: the largest of all particles.
-    pub monitor: Option<usize>,
-}
-
-/// How a trial reaches its reduced strength.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ReductionPath {
-    /// The strength of the loaded body is reduced step by step.
-    Reduce,
-    /// Gravity is raised on undeformed bodies of reduced strength.
-    Gravity,
-}
-
-/// A run-out of a slope with reduced strength: overdamped motion until it rests.
-#[derive(Clone, Debug, PartialEq)]
-pub struct RunOut {
-    /// Indices of the materials whose strength is reduced.
-    pub materials: Vec<usize>,
-    /// The reduction.
-    pub reduction: Reduction,
-    /// Largest displacement aimed at in a step, as a share of the cell \[-\].
-    pub move_per_step: f64,
-    /// The slope rests when the drag carries less than this share of the external force \[-\].
-    pub at_rest: f64,
-}
-
-/// By how much strength is reduced.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Reduction {
-    /// A multiple of the factor of safety found before (middle of its interval).
-    TimesFos(f64),
-    /// A factor.
-    Factor(f64),
-}
-
-/// Conditions that end a stage early, and count as a planned end.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct StopWhen {
-    /// A displacement is reached \[m\].
-    pub displacement: Option<f64>,
-    /// Monitor whose displacement counts; none: the largest of all particles.
-    pub monitor: Option<usize>,
-    /// Want of equilibrium is the planned end: the load reached is the collapse load.
-    pub no_equilibrium: bool,
-    /// The reaction of the pushed footing grows by less than this share in a step \[-\].
-    pub load_grows_less_than: Option<f64>,
-}
-
 /// Newton's method, step cutting and the linear solver.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SolverSettings {
@@ -531,251 +289,6 @@ impl Default for SolverSettings {
             linear: SolverKind::Auto,
         }
     }
-}
-
-/// A particle that is watched: the one nearest to a point in the undeformed bodies.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Monitor<const D: usize = 2> {
-    /// Name.
-    pub name: String,
-    /// Point \[m\].
-    pub point: [f64; D],
-    /// What is recorded.
-    pub record: Vec<Field>,
-}
-
-/// A line along which fields are read at the end of every stage.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Section<const D: usize = 2> {
-    /// Name.
-    pub name: String,
-    /// One end \[m\].
-    pub from: [f64; D],
-    /// Other end \[m\].
-    pub to: [f64; D],
-    /// Number of equally spaced places.
-    pub points: usize,
-    /// What is read.
-    pub record: Vec<Field>,
-    /// Of which particles.
-    pub average: Average,
-    /// What the values are held against.
-    pub references: Vec<SectionReference>,
-}
-
-impl<const D: usize> Section<D> {
-    /// What the values at the end of a stage are held against.
-    pub fn references_at(&self, case: &Case<D>, stage: usize) -> Vec<&SectionReference> {
-        let read = |stage: &Stage| !matches!(stage.kind, StageKind::StrengthReduction(_));
-        let last = case.stages.iter().rposition(read);
-        let wanted = |reference: &&SectionReference| reference.stage.or(last) == Some(stage);
-        self.references.iter().filter(wanted).collect()
-    }
-}
-
-/// Of which particles a section reads its values.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Average {
-    /// The particle nearest to each place.
-    #[default]
-    None,
-    /// All particles of each cell that the line goes through, by volume.
-    Cell,
-}
-
-/// A reference for a field along a section.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SectionReference {
-    /// The field.
-    pub of: Field,
-    /// The stage at whose end it is read; none: the last that is read along sections.
-    pub stage: Option<usize>,
-    /// Values over the distance along the section \[m\], in SI units.
-    pub reference: Reference,
-}
-
-/// A field on particles, as it is printed: stress compression positive.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Field {
-    /// Length of the displacement \[m\].
-    Displacement,
-    /// Displacement in x \[m\].
-    DisplacementX,
-    /// Displacement in y \[m\].
-    DisplacementY,
-    /// Displacement in z \[m\]; in space.
-    DisplacementZ,
-    /// Position x \[m\].
-    X,
-    /// Position y \[m\].
-    Y,
-    /// Position z \[m\]; in space.
-    Z,
-    /// −σ_xx of total stress \[Pa\].
-    SigmaXx,
-    /// −σ_yy of total stress \[Pa\].
-    SigmaYy,
-    /// −σ_zz of total stress \[Pa\].
-    SigmaZz,
-    /// −τ_xy \[Pa\].
-    TauXy,
-    /// −τ_yz \[Pa\]; in space.
-    TauYz,
-    /// −τ_xz \[Pa\]; in space.
-    TauXz,
-    /// Mean pressure p = −tr σ/3 of total stress \[Pa\].
-    P,
-    /// −σ′_xx of effective stress: the stress that the law speaks of \[Pa\].
-    SigmaEffXx,
-    /// −σ′_yy of effective stress \[Pa\].
-    SigmaEffYy,
-    /// −σ′_zz of effective stress \[Pa\].
-    SigmaEffZz,
-    /// Mean effective pressure p′ = −tr σ′/3 \[Pa\].
-    PEff,
-    /// Pore pressure u, given and excess \[Pa\].
-    U,
-    /// Excess pore pressure that undrained soil made itself \[Pa\].
-    UExcess,
-    /// Deviatoric stress q = √(3/2)‖s‖ \[Pa\].
-    Q,
-    /// Accumulated plastic strain invariant \[-\].
-    PlasticStrain,
-    /// Share of the strength that is mobilised \[-\].
-    Utilisation,
-    /// Undrained strength or cohesion \[Pa\]; none of soil without a strength limit.
-    Strength,
-    /// Angle of friction \[rad\]; none of soil without a strength limit.
-    Friction,
-    /// Young's modulus \[Pa\].
-    Young,
-}
-
-/// A number that every step has.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Quantity {
-    /// Settlement of a rigid footing \[m\].
-    Settlement(usize),
-    /// Resistance of a rigid footing times its reaction factor, compression positive \[N/m\].
-    Reaction(usize),
-    /// A number of a rigid body.
-    Rigid(usize, RigidQuantity),
-    /// A number of a member of reinforcement.
-    Reinforcement(usize, ReinforcementQuantity),
-    /// Factor on a load \[-\].
-    LoadFactor(usize),
-    /// A field at a monitor.
-    Monitor(usize, Field),
-    /// Largest particle displacement \[m\].
-    LargestDisplacement,
-    /// Multiple of gravity \[-\].
-    GravityFactor,
-    /// Pseudo-static force to the right over the weight \[-\].
-    HorizontalFactor,
-    /// Strength reduction factor \[-\].
-    ReductionFactor,
-    /// Number of the step in its stage.
-    Step,
-    /// Share of particles that yield \[-\].
-    PlasticShare,
-    /// Middle of the interval of the factor of safety; known at the end of its stage \[-\].
-    FactorOfSafety,
-    /// Height of the highest particle's upper edge \[m\].
-    Top,
-}
-
-/// One recorded quantity against another, one point per accepted step.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Curve {
-    /// Name, also of its file.
-    pub name: String,
-    /// Abscissa.
-    pub x: CurveAxis,
-    /// Ordinate.
-    pub y: CurveAxis,
-    /// The stage that is recorded; none: all.
-    pub stage: Option<usize>,
-    /// What it is held against.
-    pub reference: Option<Reference>,
-}
-
-/// A quantity as plotted.
-#[derive(Clone, Debug, PartialEq)]
-pub struct CurveAxis {
-    /// The quantity.
-    pub of: Quantity,
-    /// It is divided by this \[SI units\].
-    pub divide_by: f64,
-    /// Label with unit, as in `d / B [-]`.
-    pub label: String,
-}
-
-/// A reference for a curve.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Reference {
-    /// Label, with the source.
-    pub label: String,
-    /// Values.
-    pub values: ReferenceValues,
-    /// Accepted relative deviation; none: drawn only \[-\].
-    pub tolerance: Option<f64>,
-}
-
-/// Values of a reference, in the units of the plot.
-#[derive(Clone, Debug, PartialEq)]
-pub enum ReferenceValues {
-    /// The ordinate at the end of the curve, or at an abscissa.
-    Level {
-        /// Ordinate.
-        y: f64,
-        /// Abscissa at which the curve is read; none: its end.
-        at: Option<f64>,
-    },
-    /// Points; the curve is held against each that it spans.
-    Points(Vec<[f64; 2]>),
-}
-
-/// A result held against an outside value.
-#[derive(Clone, Debug, PartialEq)]
-pub struct CaseCheck {
-    /// Name.
-    pub name: String,
-    /// What is measured.
-    pub of: Quantity,
-    /// It is divided by this \[SI units\].
-    pub divide_by: f64,
-    /// The stage; none: the last.
-    pub stage: Option<usize>,
-    /// When in the stage.
-    pub at: CheckTime,
-    /// Which value is held against it.
-    pub value: CheckValue,
-    /// Outside value \[SI units after division\].
-    pub expected: f64,
-    /// What is accepted.
-    pub band: Band,
-    /// Where the value comes from.
-    pub source: String,
-}
-
-/// When in its stage a check looks at its quantity.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum CheckTime {
-    /// At the end.
-    #[default]
-    End,
-    /// When it was largest.
-    Peak,
-}
-
-/// Which value a check looks at.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum CheckValue {
-    /// That of the mesh; of the finest in a study of the mesh error.
-    #[default]
-    Computed,
-    /// The one extrapolated from the meshes of a study; without a study that of the mesh.
-    Extrapolated,
 }
 
 /// What is written, and where.
@@ -804,6 +317,15 @@ pub struct Cut {
     pub axis: usize,
     /// Where it stands \[m\].
     pub at: f64,
+}
+
+impl Cut {
+    /// What the names of its pictures and tables begin with: `cut-y-3`.
+    pub fn name(&self) -> String {
+        let place = format!("{:.3}", self.at);
+        let place = place.trim_end_matches('0').trim_end_matches('.');
+        format!("cut-{}-{place}", ["x", "y", "z"][self.axis])
+    }
 }
 
 /// How often.

@@ -39,8 +39,12 @@ const PER_FILL: f64 = 1.5e2;
 const PER_PARTICLE_IN_SPACE: f64 = 4e3;
 /// Matrix, its copies and its pattern in space \[bytes per unknown\].
 const PER_UNKNOWN_IN_SPACE: f64 = 7e3;
-/// Factors of a symmetric matrix in space \[bytes\], times $`n^{4/3}`$.
-const PER_FILL_IN_SPACE: f64 = 1e3;
+/// Factors of a symmetric matrix in space and what waits for them \[bytes\], times $`n^{4/3}`$.
+const PER_FILL_IN_SPACE: f64 = 6.5e2;
+/// The same of an unsymmetric one, over that \[-\].
+const UNSYMMETRIC: f64 = 1.9;
+/// Factors in single precision with the vectors of the iteration, over those in double \[-\].
+const IN_SINGLE: f64 = 0.55;
 /// What an iteration with multigrid holds instead of factors \[bytes per unknown\].
 const PER_ITERATED: f64 = 4e3;
 /// Unknowns in space from which on systems are solved by iteration: cubes go over at 24 000 where the tangent is not
@@ -179,7 +183,7 @@ impl Expectation {
 
 /// Memory of a run on the threads of the current pool \[bytes\].
 fn memory<const D: usize>(case: &Case<D>, particles: usize, unknowns: usize) -> f64 {
-    let [particle, unknown] = per_item(D, is_iterated(case, unknowns), unknowns);
+    let [particle, unknown] = per_item(D, storage(case, unknowns), unknowns);
     let searches = case.stages.iter().any(|stage| {
         matches!(&stage.kind, StageKind::StrengthReduction(search)
             if search.path == ReductionPath::Reduce)
@@ -199,10 +203,48 @@ pub fn is_iterated<const D: usize>(case: &Case<D>, unknowns: usize) -> bool {
     }
 }
 
+/// What the linear solver is expected to keep.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Storage {
+    /// Grids of an iteration.
+    Grids,
+    /// Factors, and how much they take over those of a symmetric matrix in double precision in space, and in the
+    /// plane \[-\].
+    Factors {
+        /// In space.
+        space: f64,
+        /// In the plane, where both kinds were counted together.
+        plane: f64,
+    },
+}
+
+/// What the linear solver of a case is expected to keep.
+pub fn storage<const D: usize>(case: &Case<D>, unknowns: usize) -> Storage {
+    if is_iterated(case, unknowns) {
+        return Storage::Grids;
+    }
+    let plane = if case.solver.linear == SolverKind::Single {
+        IN_SINGLE
+    } else {
+        1.0
+    };
+    let space = if is_symmetric(case) {
+        plane
+    } else {
+        UNSYMMETRIC * plane
+    };
+    Storage::Factors { space, plane }
+}
+
+/// Whether all tangents of a case are symmetric.
+fn is_symmetric<const D: usize>(case: &Case<D>) -> bool {
+    (case.materials.iter())
+        .all(|material| material.law().is_ok_and(|law| law.has_symmetric_tangent()))
+}
+
 /// Which linear solver a case is expected to use, and why.
 pub fn linear_solver<const D: usize>(case: &Case<D>, unknowns: usize) -> String {
-    let symmetric = (case.materials.iter())
-        .all(|material| material.law().is_ok_and(|law| law.has_symmetric_tangent()));
+    let symmetric = is_symmetric(case);
     let [direct, iteration] = if symmetric {
         ["Cholesky", "conjugate gradients with multigrid"]
     } else {
@@ -214,6 +256,9 @@ pub fn linear_solver<const D: usize>(case: &Case<D>, unknowns: usize) -> String 
         }
         SolverKind::Auto => direct.to_owned(),
         SolverKind::Multigrid => format!("{iteration}, as asked for"),
+        SolverKind::Single => {
+            format!("{direct} in single precision and an iteration with it, as asked for")
+        }
         SolverKind::FaerCholesky => "Cholesky of faer, as asked for".to_owned(),
         SolverKind::NalgebraCholesky => "Cholesky of nalgebra, as asked for".to_owned(),
         SolverKind::MultifrontalCholesky => "Cholesky, as asked for".to_owned(),
@@ -223,17 +268,20 @@ pub fn linear_solver<const D: usize>(case: &Case<D>, unknowns: usize) -> String 
 }
 
 /// Memory of a particle, and of an unknown among so many with its share of the fill \[bytes\], in so many dimensions.
-pub fn per_item(dimensions: usize, is_iterated: bool, unknowns: usize) -> [f64; 2] {
+pub fn per_item(dimensions: usize, storage: Storage, unknowns: usize) -> [f64; 2] {
     if dimensions == 3 {
-        let solver = if is_iterated {
-            PER_ITERATED
-        } else {
-            PER_FILL_IN_SPACE * (unknowns as f64).cbrt()
+        let solver = match storage {
+            Storage::Grids => PER_ITERATED,
+            Storage::Factors { space, .. } => space * PER_FILL_IN_SPACE * (unknowns as f64).cbrt(),
         };
         return [PER_PARTICLE_IN_SPACE, PER_UNKNOWN_IN_SPACE + solver];
     }
     let doublings = (unknowns as f64).max(2.0).log2();
-    [PER_PARTICLE, PER_UNKNOWN + PER_FILL * doublings]
+    let fill = match storage {
+        Storage::Grids => 1.0,
+        Storage::Factors { plane, .. } => plane,
+    };
+    [PER_PARTICLE, PER_UNKNOWN + fill * PER_FILL * doublings]
 }
 
 /// A number of bytes as a reader likes it.
@@ -312,6 +360,11 @@ pub(crate) mod tests {
     use crate::case::FixedBox;
     use crate::input::CaseFile;
 
+    const FACTORS: Storage = Storage::Factors {
+        space: 1.0,
+        plane: 1.0,
+    };
+
     pub(crate) fn case() -> Case {
         let text = "igimp = 1\n[case]\ntitle = \"block\"\ngravity = \"9.81 m/s2\"\n\
             [grid]\ncell = \"0.5 m\"\ndomain = { x = [\"0 m\", \"4 m\"], y = [\"0 m\", \"4 m\"] }\n\
@@ -352,14 +405,14 @@ pub(crate) mod tests {
 
     #[test]
     fn memory_is_that_of_particles_and_unknowns() {
-        let [particle, unknown] = per_item(2, false, 1 << 19);
+        let [particle, unknown] = per_item(2, FACTORS, 1 << 19);
         let sum = 1e6 * particle + f64::from(1 << 19) * unknown;
         let drawing = PER_PICTURE * rayon::current_num_threads() as f64;
         let expected = BASE + sum + AGAIN * drawing;
         assert!((memory(&case(), 1_000_000, 1 << 19) - expected).abs() < 1.0);
         assert!((unknown - PER_UNKNOWN - 19.0 * PER_FILL).abs() < 1e-9);
         // A small case is a program that draws pictures.
-        let [particle, unknown] = per_item(2, false, 36);
+        let [particle, unknown] = per_item(2, FACTORS, 36);
         let expected = BASE + drawing + AGAIN * (64.0 * particle + 36.0 * unknown);
         assert!((memory(&case(), 64, 36) - expected).abs() < 1.0);
     }

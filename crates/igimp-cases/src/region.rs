@@ -58,6 +58,15 @@ impl Crossing {
     }
 }
 
+/// What of a region stands over one box in plan, without end along the last axis.
+pub trait Column<const D: usize> {
+    /// The part between two levels.
+    fn within(&self, ends: [f64; 2]) -> Part<D>;
+
+    /// How much of what lies between two levels belongs to it.
+    fn cover(&self, ends: [f64; 2]) -> Cover;
+}
+
 /// A region of the plane or of space, its boundary included. Its last axis points up.
 pub trait Region<const D: usize>: Debug + Send + Sync {
     /// Lower and upper corner of the smallest box around it \[length\].
@@ -72,6 +81,12 @@ pub trait Region<const D: usize>: Debug + Send + Sync {
     /// What of it lies between two places on the first axis, if boxes are sooner cut from that than from all of it: its
     /// part within such a box is the same to the bit.
     fn strip(&self, _lower: f64, _upper: f64) -> Option<Box<dyn Region<D>>> {
+        None
+    }
+
+    /// What of it lies above and below a box along the last axis, if boxes one above the other are sooner cut from that:
+    /// their parts are the same but for round-off.
+    fn column(&self, _lower: [f64; D], _upper: [f64; D]) -> Option<Box<dyn Column<D>>> {
         None
     }
 

@@ -40,16 +40,24 @@ pub fn fill<const D: usize>(
     law: usize,
 ) -> Result<Vec<ParticleSeed<D>>, CaseError> {
     let parts = Parts::around(grid, region, per_direction)?;
+    if let Some(found) = parts.by_columns(region) {
+        let cover = |cell: usize, _, _| found[cell].0;
+        let within = |cell: usize, part: usize, _, _| (found[cell].1[part], ());
+        let (seeds, _) = parts.filled((density, law), cover, within)?;
+        return Ok(seeds);
+    }
     // Most of the work of cutting a polygon is done once for every column of parts.
     let strips = parts.columns(|[from, to]| region.strip(from, to));
-    let within = |place: [usize; D], from, to| {
-        let part = match &strips[place[0]] {
+    let along_first = parts.cells[0].len();
+    let within = |cell: usize, part: usize, from, to| {
+        let strip = cell % along_first * per_direction + part % per_direction;
+        let part = match &strips[strip] {
             Some(strip) => strip.within(from, to),
             None => region.within(from, to),
         };
         (part, ())
     };
-    let cover = |from, to| region.cover(from, to);
+    let cover = |_, from, to| region.cover(from, to);
     let (seeds, _) = parts.filled((density, law), cover, within)?;
     Ok(seeds)
 }
@@ -80,11 +88,13 @@ pub(crate) fn fill_in_pieces(
 ) -> Result<(Vec<ParticleSeed<2>>, Vec<Piece>), CaseError> {
     let parts = Parts::around(grid, polygon, per_direction)?;
     let columns = parts.columns(|[from, to]| clip_to_strip(polygon, 0, from, to));
-    let within = |place: [usize; 2], from: [f64; 2], to: [f64; 2]| {
-        let clipped = clip_to_strip(&columns[place[0]], 1, from[1], to[1]);
+    let along_first = parts.cells[0].len();
+    let within = |cell: usize, own: usize, from: [f64; 2], to: [f64; 2]| {
+        let column = cell % along_first * per_direction + own % per_direction;
+        let clipped = clip_to_strip(&columns[column], 1, from[1], to[1]);
         (part(&clipped), clipped)
     };
-    let (seeds, pieces) = parts.filled((density, law), |_, _| Cover::Cut, within)?;
+    let (seeds, pieces) = parts.filled((density, law), |_, _, _| Cover::Cut, within)?;
     let piece = |(particle, polygon)| Piece { particle, polygon };
     Ok((seeds, pieces.into_iter().map(piece).collect()))
 }
@@ -167,23 +177,61 @@ impl<const D: usize> Parts<D> {
         )
     }
 
+    /// What a region that stands in columns has of each cell, and where it is cut of its parts; `None` for another
+    /// region. Every column of parts is cut once.
+    fn by_columns(&self, region: &(impl Region<D> + ?Sized)) -> Option<Vec<(Cover, Vec<Part<D>>)>> {
+        let counts: [usize; D] = std::array::from_fn(|axis| self.cells[axis].len());
+        let in_cell = [self.per_direction; D];
+        let in_plan = |counts: &[usize; D]| counts[..D - 1].iter().product::<usize>();
+        let (cells, parts) = (in_plan(&counts), in_plan(&in_cell));
+        let mut found = vec![(Cover::Nothing, Vec::new()); cells * counts[D - 1]];
+        for cell in 0..cells {
+            let place = place_of(cell, counts);
+            let columns = (0..parts).map(|part| {
+                let step = place_of(part, in_cell);
+                let ends: [[f64; 2]; D] = std::array::from_fn(|axis| {
+                    self.ends(axis, place[axis] * self.per_direction + step[axis])
+                });
+                region.column(ends.map(|[from, _]| from), ends.map(|[_, to]| to))
+            });
+            let columns: Vec<_> = columns.collect::<Option<_>>()?;
+            for level in 0..counts[D - 1] {
+                let ends = |step: usize| self.ends(D - 1, level * self.per_direction + step);
+                let whole = [ends(0)[0], ends(self.per_direction - 1)[1]];
+                let covers = columns.iter().map(|column| column.cover(whole));
+                let both = |a, b| if a == b { a } else { Cover::Cut };
+                let cover = covers.reduce(both).unwrap_or(Cover::Nothing);
+                let own = &mut found[level * cells + cell];
+                own.0 = cover;
+                if cover == Cover::Cut {
+                    let steps = (0..self.per_direction).map(ends);
+                    let cut =
+                        steps.flat_map(|ends| columns.iter().map(move |own| own.within(ends)));
+                    own.1.extend(cut);
+                }
+            }
+        }
+        Some(found)
+    }
+
     /// Fills the parts: particles in the order of the cells, then of the parts of a cell, and whatever
-    /// `within` hands out with each part that is not empty, with the particle that the part went to.
+    /// `within` hands out with each part that is not empty, with the particle that the part went to. Cells and their
+    /// parts are numbered, the first direction fastest.
     fn filled<K: Default>(
         &self,
         (density, law): (f64, usize),
-        cover: impl Fn([f64; D], [f64; D]) -> Cover,
-        within: impl Fn([usize; D], [f64; D], [f64; D]) -> (Part<D>, K),
+        cover: impl Fn(usize, [f64; D], [f64; D]) -> Cover,
+        within: impl Fn(usize, usize, [f64; D], [f64; D]) -> (Part<D>, K),
     ) -> Result<Filled<D, K>, CaseError> {
         let counts: [usize; D] = std::array::from_fn(|axis| self.cells[axis].len());
         let in_cell = [self.per_direction; D];
         let mut seeds: Vec<ParticleSeed<D>> = Vec::new();
         let (mut kept, mut slivers) = (Vec::new(), Vec::new());
         let mut first = vec![0];
-        for cell in 0..counts.iter().product() {
-            let cell = place_of(cell, counts);
+        for number in 0..counts.iter().product() {
+            let cell = place_of(number, counts);
             let (lower, upper) = self.cell(cell);
-            let cover = cover(lower, upper);
+            let cover = cover(number, lower, upper);
             for part in 0..in_cell.iter().product() {
                 if cover == Cover::Nothing {
                     break;
@@ -197,7 +245,7 @@ impl<const D: usize> Parts<D> {
                 let (own, keep) = if cover == Cover::Whole {
                     (Part::whole(from, to), K::default())
                 } else {
-                    within(place, from, to)
+                    within(number, part, from, to)
                 };
                 if own.volume >= SLIVER * size.iter().product::<f64>() {
                     kept.push((seeds.len(), keep));

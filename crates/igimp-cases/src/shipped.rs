@@ -66,7 +66,7 @@ shipped! {
     "dam_drawdown": "dam of earth: factors of safety dry, with a full pool and after drawdown",
     "excavation": "pit dug in two slices after the water was lowered",
     "embankment_lifts": "embankment filled in lifts on clay that grows stronger with depth, held against limit analysis",
-    "footing_3d": "square of uniform pressure on undrained clay in space, held against limit analysis",
+    "footing_3d": "rough square footing on undrained clay in space, held against limit analysis",
     "slope_3d": "undrained slope between rough valley sides under rising weight, held against limit analysis",
     "landslide_3d": "slope of clay from an elevation grid: factor of safety in space, held against limit analysis",
     "block": "block of clay that loses its strength and spreads until it rests",

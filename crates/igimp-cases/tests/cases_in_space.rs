@@ -2,18 +2,18 @@
 //! CASE: a ledge of ground that is at rest, pressed and pulled, filled on and dug at; a small slope that loses its strength.
 //! ORACLE: stresses of level ground; forces in equilibrium; the same run left alone.
 
-use std::collections::BTreeMap;
+mod resuming;
+
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 
 use igimp_cases::case::Case;
 use igimp_cases::input::CaseFile;
-use igimp_cases::results::admission::Replace;
-use igimp_cases::run::{Event, Run, Start, Target, in_memory, run};
-use igimp_cases::summary::{StageOutcome, Summary};
-use serde_json::Value;
+use igimp_cases::run::{Event, Run, Start, in_memory, run};
+use igimp_cases::summary::StageOutcome;
+use resuming::{assert_done, assert_equal, everything, run_into};
 
 /// Ground of 3 m by 1.5 m by 1.5 m, at rest with K0 = 0.5; a cube of fill comes, and a slice of the ground goes.
 const LEDGE: &str = r#"
@@ -150,84 +150,17 @@ fn case(text: &str, settings: &[&str]) -> Case<3> {
 }
 
 fn folder(name: &str) -> PathBuf {
-    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("space-{name}"));
-    let _ = fs::remove_dir_all(&path);
-    path
+    resuming::folder(&format!("space-{name}"))
 }
 
 /// Runs into a folder; with a number of steps until it is interrupted.
 fn written(file: &CaseFile, folder: &Path, start: Start, steps: Option<usize>) -> Run<3> {
-    let target = Target {
-        replace: Replace::Everything,
-        ..Target::of(file, folder)
-    };
-    let interrupt = AtomicBool::new(false);
-    let mut taken = 0;
-    let mut listener = |event: &Event<'_, 3>| {
-        if matches!(event, Event::Step { .. }) {
-            taken += 1;
-            if Some(taken) == steps {
-                interrupt.store(true, Ordering::Relaxed);
-            }
-        }
-    };
-    let case = file.case_in_space();
-    run(case, Some(&target), start, &mut listener, &interrupt).unwrap()
-}
-
-#[track_caller]
-fn assert_done(summary: &Summary) {
-    for stage in &summary.stages {
-        let (name, reason) = (&stage.name, &stage.reason);
-        assert_eq!(stage.outcome, StageOutcome::Completed, "{name}: {reason}");
-    }
-}
-
-/// Every file that does not depend on the hour, and the arrays of the ends of stages.
-fn everything(root: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
-    fn collect(root: &Path, folder: &Path, files: &mut BTreeMap<PathBuf, Vec<u8>>) {
-        for entry in fs::read_dir(folder).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                collect(root, &path, files);
-            } else {
-                let name = path.strip_prefix(root).unwrap().to_path_buf();
-                files.insert(name, fs::read(&path).unwrap());
-            }
-        }
-    }
-    let mut files = BTreeMap::new();
-    collect(root, root, &mut files);
-    files.retain(|path, _| {
-        let text = path.to_string_lossy();
-        let depends = ["checkpoint/step-", "meta.json", "report.html", ".igimp"];
-        !depends.iter().any(|part| text.contains(part))
-    });
-    if let Some(bytes) = files.get_mut(Path::new("summary.json")) {
-        let mut summary: Value = serde_json::from_slice(bytes).unwrap();
-        let whole = summary.as_object_mut().unwrap();
-        whole.retain(|key, _| {
-            !key.contains("seconds") && !key.contains("memory") && key != "estimate"
-        });
-        for stage in whole["stages"].as_array_mut().unwrap() {
-            let own = stage.as_object_mut().unwrap();
-            own.retain(|key, _| key != "seconds" && key != "phases");
-        }
-        *bytes = summary.to_string().into_bytes();
-    }
-    files
+    run_into((file, file.case_in_space()), folder, start, steps)
 }
 
 #[track_caller]
 fn assert_same_files(whole: &Path, found: &Path, why: &str) {
-    let [expected, found] = [whole, found].map(everything);
-    for name in expected.keys().chain(found.keys()) {
-        let shown = name.display();
-        assert!(
-            expected.get(name) == found.get(name),
-            "{why}: {shown} differs"
-        );
-    }
+    assert_equal(&everything(whole), &everything(found), why);
 }
 
 /// GOAL: a run that is taken up at any checkpoint, or begun again at any stage, ends with the same files.

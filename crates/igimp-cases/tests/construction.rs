@@ -3,10 +3,10 @@
 //! lifts stand first in the case, so that particles are not numbered in the order in which they come.
 //! ORACLE: the weight of what is there; hydrostatic pressure; the same run left alone.
 
-use std::collections::BTreeMap;
+mod resuming;
+
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use igimp_assembly::{Kinematics, Particles};
 use igimp_cases::case::{
@@ -14,11 +14,9 @@ use igimp_cases::case::{
     ReinforcementPart, Stage, StageKind, StrengthReduction, WaterCondition,
 };
 use igimp_cases::input::CaseFile;
-use igimp_cases::results::admission::Replace;
 use igimp_cases::results::checkpoint;
-use igimp_cases::run::{Event, Run, Start, Target, in_memory, run};
-use igimp_cases::summary::{StageOutcome, Summary};
-use serde_json::Value;
+use igimp_cases::run::{Run, Start, in_memory};
+use resuming::{assert_done, assert_equal, everything, run_into};
 
 const TEXT: &str = r#"
 igimp = 1
@@ -164,90 +162,12 @@ fn wet() -> Case {
 }
 
 fn folder(name: &str) -> PathBuf {
-    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("construction-{name}"));
-    let _ = fs::remove_dir_all(&path);
-    path
+    resuming::folder(&format!("construction-{name}"))
 }
 
 /// Runs into a folder; with a number of steps until it is interrupted.
 fn written(case: &Case, folder: &Path, start: Start, steps: Option<usize>) -> Run {
-    let target = Target {
-        replace: Replace::Everything,
-        ..Target::of(&file(), folder)
-    };
-    let interrupt = AtomicBool::new(false);
-    let mut taken = 0;
-    let mut listener = |event: &Event<'_>| {
-        if matches!(event, Event::Step { .. }) {
-            taken += 1;
-            if Some(taken) == steps {
-                interrupt.store(true, Ordering::Relaxed);
-            }
-        }
-    };
-    run(case, Some(&target), start, &mut listener, &interrupt).unwrap()
-}
-
-fn assert_done(summary: &Summary) {
-    for stage in &summary.stages {
-        assert_eq!(
-            stage.outcome,
-            StageOutcome::Completed,
-            "{}: {}",
-            stage.name,
-            stage.reason
-        );
-    }
-}
-
-/// Every file that does not depend on the hour, and the arrays of the ends of stages.
-fn everything(root: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
-    fn collect(root: &Path, folder: &Path, files: &mut BTreeMap<PathBuf, Vec<u8>>) {
-        for entry in fs::read_dir(folder).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                collect(root, &path, files);
-            } else {
-                let name = path.strip_prefix(root).unwrap().to_path_buf();
-                files.insert(name, fs::read(&path).unwrap());
-            }
-        }
-    }
-    let mut files = BTreeMap::new();
-    collect(root, root, &mut files);
-    files.retain(|path, _| {
-        let text = path.to_string_lossy();
-        let depends = ["checkpoint/step-", "meta.json", "report.html", ".igimp"];
-        !depends.iter().any(|part| text.contains(part))
-    });
-    if let Some(bytes) = files.get_mut(Path::new("summary.json")) {
-        let mut summary: Value = serde_json::from_slice(bytes).unwrap();
-        let whole = summary.as_object_mut().unwrap();
-        whole.retain(|key, _| {
-            !key.contains("seconds") && !key.contains("memory") && key != "estimate"
-        });
-        for stage in whole["stages"].as_array_mut().unwrap() {
-            let own = stage.as_object_mut().unwrap();
-            own.retain(|key, _| key != "seconds" && key != "phases");
-        }
-        *bytes = summary.to_string().into_bytes();
-    }
-    files
-}
-
-fn assert_equal(
-    expected: &BTreeMap<PathBuf, Vec<u8>>,
-    found: &BTreeMap<PathBuf, Vec<u8>>,
-    why: &str,
-) {
-    let names: Vec<_> = expected.keys().chain(found.keys()).collect();
-    for name in names {
-        assert!(
-            expected.get(name) == found.get(name),
-            "{why}: {} differs",
-            name.display()
-        );
-    }
+    run_into((&file(), case), folder, start, steps)
 }
 
 /// GOAL: each stage has the soil that is there, and that soil carries its own weight.

@@ -454,19 +454,19 @@ fn an_embankment_is_filled_in_lifts() {
 }
 
 #[test]
-fn a_square_of_pressure_collapses_near_the_bounds() {
-    let ran = ran_in_space("footing_3d", &["grid.zones={}", "stages.0.steps=16"]);
-    assert_eq!(ran.outcomes(), [Stopped]);
-    // Two cells over half the width.
-    between(ran.end_of("load-settlement"), 5.0, 7.5);
+fn a_square_footing_carries_what_limit_analysis_says() {
+    let ran = ran_in_space("footing_3d", &["output.figures=[]"]);
+    assert_eq!(ran.outcomes(), [Completed]);
+    // Lower bound 5.52, best upper bound 5.95.
+    between(ran.measured("bearing capacity factor"), 5.5, 6.0);
 }
 
 #[test]
 fn a_slope_between_valley_sides_is_stronger_than_in_the_plane() {
-    let ran = ran_in_space("slope_3d", &["stages.1.steps=14"]);
+    let ran = ran_in_space("slope_3d", &["output.figures=[]"]);
     assert_eq!(ran.outcomes(), [Completed, Stopped]);
     let limit = ran.end_of("load-displacement");
-    between(limit, 5.379, 8.3);
+    between(limit, 5.379, 7.877);
     // Rough valley sides carry a part of the weight.
     assert!(ran.virtual_work(limit * 0.2) < 0.97);
 }
@@ -476,8 +476,8 @@ fn a_slope_from_a_raster_is_as_safe_as_its_bounds_say() {
     let ran = ran_in_space("landslide_3d", &["stages.1.tolerance=0.2"]);
     assert_eq!(ran.outcomes(), [Completed; 2]);
     let [stable, failed] = ran.factor_of_safety(1);
-    between(stable, 1.076, failed);
-    between(failed, stable, 1.75);
+    between(stable, 1.076, 1.575);
+    between(failed, stable, stable + 0.2);
     let volume: f64 = ran.run.body.particles.volume0.iter().sum();
     assert!((volume / 687.5 - 1.0).abs() < 1e-9, "{volume}");
     assert!(ran.virtual_work(1.0) < 0.97);

@@ -57,7 +57,11 @@ pub struct Lifted<const D: usize> {
 
 impl<const D: usize> Lifted<D> {
     /// The derivative of stress by the velocity gradient, in spatial axes.
-    #[inline]
+    #[allow(
+        clippy::inline_always,
+        reason = "compiled for the instructions of the caller"
+    )]
+    #[inline(always)]
     pub fn tangent(&self) -> SpatialTangent<D> {
         SpatialTangent::from_principal(&self.frame, &self.normal, &self.shear)
     }

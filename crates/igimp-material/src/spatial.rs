@@ -32,7 +32,11 @@ impl<const D: usize> SpatialTangent<D> {
     /// From the principal axes `frame`, the normal part $`A_{aabb}`$ in `normal` and
     /// the shear part $`A_{abab}`$ off the diagonal of `shear`: in principal axes
     /// $`d\tau_{ab} = A_{abab}\,l_{ab} + A_{baba}\,l_{ba}`$.
-    #[inline]
+    #[allow(
+        clippy::inline_always,
+        reason = "compiled for the instructions of the caller"
+    )]
+    #[inline(always)]
     pub(crate) fn from_principal(
         frame: &Tensor,
         normal: &[[f64; 3]; 3],
@@ -77,7 +81,11 @@ impl<const D: usize> SpatialTangent<D> {
     }
 
     /// Adds the dyadic product of two second-order tensors to the modulus.
-    #[inline]
+    #[allow(
+        clippy::inline_always,
+        reason = "compiled for the instructions of the caller"
+    )]
+    #[inline(always)]
     fn add_product(&mut self, left: &[[f64; D]; D], right: &[[f64; D]; D]) {
         for a in 0..D {
             for b in 0..D {
@@ -88,7 +96,11 @@ impl<const D: usize> SpatialTangent<D> {
 }
 
 /// Adds `factor` times `term`.
-#[inline]
+#[allow(
+    clippy::inline_always,
+    reason = "compiled for the instructions of the caller"
+)]
+#[inline(always)]
 fn add<const D: usize>(sum: &mut [[f64; D]; D], factor: f64, term: &[[f64; D]; D]) {
     for i in 0..D {
         for j in 0..D {

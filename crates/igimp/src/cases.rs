@@ -6,9 +6,7 @@ use igimp_cases::case::Case;
 use igimp_cases::check::count;
 use igimp_cases::estimate::speed::Speed;
 use igimp_cases::estimate::watch::side_by_side;
-use igimp_cases::estimate::{
-    estimate, is_iterated, linear_solver, per_item, readable, time, together,
-};
+use igimp_cases::estimate::{estimate, linear_solver, per_item, readable, storage, time, together};
 use igimp_cases::in_any_dimension;
 use igimp_cases::input::CaseFile;
 use igimp_cases::mesh_study::plan;
@@ -44,8 +42,8 @@ fn checked<const D: usize>(
     let speed = Speed::measured()?;
     output::warn(&file.warnings());
     let cells = case.grid.cells().map(|count| count.to_string()).join(" x ");
-    let iterated = is_iterated(case, size.unknowns);
-    let [particle, unknown] = per_item(D, iterated, size.unknowns).map(|bytes| count(round(bytes)));
+    let storage = storage(case, size.unknowns);
+    let [particle, unknown] = per_item(D, storage, size.unknowns).map(|bytes| count(round(bytes)));
     let row = |name: &str, value: String| vec![name.to_owned(), value];
     let rows = [
         row("method", case.method.label()),

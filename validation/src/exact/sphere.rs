@@ -30,29 +30,21 @@ impl ThickSphere {
         (self.outer.powi(3) + a.powi(3) - self.inner.powi(3)).cbrt()
     }
 
-    /// Δ/r_p³, at most 1 \[-\].
-    fn at_yield(&self) -> f64 {
-        -(-self.strength / self.shear).exp_m1()
-    }
-
     /// Pressure within at the inner radius `a`, none acting outside \[force/length²\].
     pub(crate) fn pressure(&self, a: f64) -> f64 {
-        self.between(a, self.outer_at(a), a)
-    }
-
-    /// Whether all of it yields at the inner radius `a`.
-    pub(crate) fn is_plastic(&self, a: f64) -> bool {
         let added = a.powi(3) - self.inner.powi(3);
-        added >= self.at_yield() * self.outer_at(a).powi(3)
-    }
-
-    /// What the soil between two radii adds to the pressure at the inner radius `a`.
-    fn between(&self, from: f64, to: f64, a: f64) -> f64 {
-        let added = a.powi(3) - self.inner.powi(3);
-        let edge = (added / self.at_yield()).cbrt().clamp(from, to);
+        let front = self.yields_to(a);
         let elastic = |r: f64| dilogarithm(added / r.powi(3));
-        4.0 * self.strength * (edge / from).ln()
-            + 4.0 / 3.0 * self.shear * (elastic(edge) - elastic(to))
+        4.0 * self.strength * (front / a).ln()
+            + 4.0 / 3.0 * self.shear * (elastic(front) - elastic(self.outer_at(a)))
+    }
+
+    /// Radius up to which it yields at the inner radius `a`, at most the outer one \[length\].
+    pub(crate) fn yields_to(&self, a: f64) -> f64 {
+        let added = a.powi(3) - self.inner.powi(3);
+        // Δ/r_p³
+        let at_yield = -(-self.strength / self.shear).exp_m1();
+        (added / at_yield).cbrt().clamp(a, self.outer_at(a))
     }
 }
 

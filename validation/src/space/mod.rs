@@ -4,6 +4,7 @@
 pub(crate) mod column;
 pub(crate) mod safety;
 pub(crate) mod slice;
+mod slice_ground;
 pub(crate) mod sphere;
 pub(crate) mod torsion;
 pub(crate) mod walls;

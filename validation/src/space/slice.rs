@@ -14,8 +14,8 @@ use crate::runs::{Computed, corners};
 use crate::study::{RunRecord, Study};
 
 /// What the book says of the study.
-const ABOUT: &str = "Cases of plane strain are computed again as slices in space, one cell across, between smooth sides: a soft column, slopes of three soils that yield under their weight, a strip of pressure. Displacements and stresses at the particles are the plane's.";
-const PLANE_STRAIN: Oracle = Oracle {
+const ABOUT: &str = "Cases of plane strain are computed again as slices in space, one cell across, between smooth sides: a soft column, slopes of three soils that yield under their weight, a strip of pressure; slopes with water tables, ratios and given pressures, drained and undrained, with drawdown; ground that is dug, filled and treated; a face with an anchor and nails, one of each across the slice. Displacements and stresses, pore pressures and tensions are the plane's.";
+pub(super) const PLANE_STRAIN: Oracle = Oracle {
     kind: OracleKind::Theory,
     source: "plane strain is a part of space",
     locator: "the same fields, nothing of them across; largest difference over largest value",
@@ -154,6 +154,7 @@ gravity = \"{gravity}\"
 cell = \"{CELL} m\"
 domain = {{ x = [\"0 m\", \"{width} m\"], {domain} }}
 locking = \"{locking}\"
+small_cuts = {{ below = 1e-4 }}
 [materials.soil]
 unit_weight = \"20 kN/m3\"
 {material}
@@ -191,7 +192,7 @@ tolerance = 1e-11
 
 /// Largest difference of displacement and of stress over the largest value \[-\]; infinite where a particle of space
 /// has none of the plane beside it.
-fn differences(plane: &Particles<2>, space: &Particles<3>) -> [f64; 2] {
+pub(super) fn differences(plane: &Particles<2>, space: &Particles<3>) -> [f64; 2] {
     let key = |x: f64, y: f64| [x, y].map(|x| (1e6 * x / CELL).round() as i64);
     let mut at = HashMap::new();
     let (mut largest, mut worst) = ([0.0_f64; 2], [0.0_f64; 2]);
@@ -253,5 +254,6 @@ pub(crate) fn study(out: &Path) -> Result<Study, CaseError> {
             );
         }
     }
+    super::slice_ground::add(&mut study)?;
     Ok(study)
 }

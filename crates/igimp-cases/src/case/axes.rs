@@ -9,11 +9,3 @@ pub(crate) fn front<const D: usize>(place: &[f64; D]) -> [f64; 2] {
 pub(crate) fn in_space<const D: usize>(point: &[f64; D]) -> [f64; 3] {
     std::array::from_fn(|axis| point.get(axis).copied().unwrap_or(0.0))
 }
-
-/// A point of a drawing from the front in the plane or in space, there in the plane y = 0 \[m\].
-pub(crate) fn from_front<const D: usize>([x, level]: [f64; 2]) -> [f64; D] {
-    let mut point = [0.0; D];
-    point[0] = x;
-    point[D - 1] = level;
-    point
-}

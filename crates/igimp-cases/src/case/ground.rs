@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{BodyPart, Case, Material, PoreSource, Profile, front, table_level};
+use super::{BodyPart, Case, Material, PoreSource, Profile, front};
 use crate::region::{Crossing, Region};
 
 /// Unit weight of the water of a stated level \[N/m³\].
@@ -110,9 +110,16 @@ impl<const D: usize> Ground<D> {
         };
         let by_water = match (water_level, &self.water) {
             (Some(level), _) => below(level, WATER),
-            (None, Some((PoreSource::Table(points), unit_weight))) => {
-                below(table_level(points, x), *unit_weight)
-            }
+            (
+                None,
+                Some((
+                    table
+                    @ (PoreSource::Table(_) | PoreSource::Surface(_) | PoreSource::Drained(_)),
+                    unit_weight,
+                )),
+            ) => table
+                .table(place)
+                .map_or(0.0, |level| below(level, *unit_weight)),
             (None, Some((PoreSource::Points(raster), _))) => {
                 let on_ground = raster.at([x, surface]).max(0.0);
                 on_ground - raster.at([x, level]).max(0.0)

@@ -1,27 +1,28 @@
 //! Reinforcement: anchors, nails and geotextiles.
 
-/// A member that pulls: it neither bends nor pushes. All forces are per metre run.
+/// A member that pulls: it neither bends nor pushes. In the plane all forces are per metre run, in space they are its own.
 #[derive(Clone, Debug, PartialEq)]
-pub struct ReinforcementPart {
+pub struct ReinforcementPart<const D: usize = 2> {
     /// Name.
     pub name: String,
     /// What it is.
     pub kind: ReinforcementKind,
     /// Its line from the head to the end, in the ground as it stands when it is placed \[m\].
-    pub line: Vec<[f64; 2]>,
-    /// Axial stiffness EA \[N/m\].
+    pub line: Vec<[f64; D]>,
+    /// Axial stiffness EA \[N/m, in space N\].
     pub stiffness: f64,
-    /// Tension that it carries at most \[N/m\].
+    /// Tension that it carries at most \[N/m, in space N\].
     pub capacity: f64,
-    /// Bond per length \[N/m²\].
+    /// Bond per length \[N/m², in space N/m\].
     pub bond: f64,
-    /// Force that its plate, or what it is fastened to, carries at the head and at the end \[N/m\].
+    /// Force that its plate, or what it is fastened to, carries at the head and at the end \[N/m, in space N\].
     pub fastened: [f64; 2],
     /// Length from the head on that has no bond and is one bar \[m\].
     pub free_length: f64,
-    /// Ends of the plate on which the force at the head spreads \[m\].
-    pub plate: Option<[[f64; 2]; 2]>,
-    /// Tension at which it is locked off at the end of the stage that installs it \[N/m\].
+    /// The plate on which the force at the head spreads: its ends, in space three of its corners, the first one that
+    /// between the others \[m\].
+    pub plate: Option<Vec<[f64; D]>>,
+    /// Tension at which it is locked off at the end of the stage that installs it \[N/m, in space N\].
     pub prestress: Option<f64>,
     /// Whether a strength reduction divides its bond too.
     pub reduces_bond: bool,
@@ -29,15 +30,14 @@ pub struct ReinforcementPart {
     pub from_start: bool,
 }
 
-impl ReinforcementPart {
+impl<const D: usize> ReinforcementPart<D> {
     /// Its length \[m\].
     pub fn length(&self) -> f64 {
         let legs = self.line.windows(2);
-        legs.map(|leg| (leg[1][0] - leg[0][0]).hypot(leg[1][1] - leg[0][1]))
-            .sum()
+        legs.map(|leg| distance(&leg[0], &leg[1])).sum()
     }
 
-    /// Most tension at a distance from the head along it, with the whole bond \[N/m\] (theory, eq. 58).
+    /// Most tension at a distance from the head along it, with the whole bond \[N/m, in space N\] (theory, eq. 58).
     pub fn limit(&self, at: f64) -> f64 {
         let [head, end] = self.bonded(at);
         let head = self.fastened[0] + head;
@@ -50,6 +50,15 @@ impl ReinforcementPart {
         let lengths = [at - from, self.length() - at.max(from)];
         lengths.map(|length| self.bond * length.max(0.0))
     }
+}
+
+/// The distance of two places \[m\].
+pub(crate) fn distance<const D: usize>(a: &[f64; D], b: &[f64; D]) -> f64 {
+    let way: [f64; D] = std::array::from_fn(|axis| b[axis] - a[axis]);
+    way[..D - 1]
+        .iter()
+        .rev()
+        .fold(way[D - 1], |so_far, own| own.hypot(so_far))
 }
 
 /// Kinds of reinforcement.

@@ -71,6 +71,11 @@ pub trait RigidForm<const D: usize>: Debug + Send + Sync {
 
     /// What it is and where, and how large it is, in words.
     fn words(&self) -> [String; 2];
+
+    /// Names of its sides, in their order; none where they are numbered.
+    fn sides(&self) -> &'static [&'static str] {
+        &[]
+    }
 }
 
 impl<const D: usize> RigidPart<D> {

@@ -62,18 +62,6 @@ impl RigidSolid {
             Self::Cone { tip, .. } => *tip,
         }
     }
-
-    /// Names of its sides, in their order.
-    pub fn sides(&self) -> &'static [&'static str] {
-        match self {
-            Self::Cuboid(..) => &["left", "right", "front", "back", "bottom", "top"],
-            Self::Cylinder { axis: 2, .. } => &["bottom", "shaft", "top"],
-            Self::Cylinder { .. } => &["start", "shaft", "end"],
-            Self::Sphere { .. } | Self::Surface(_) => &["surface"],
-            Self::Cone { shaft, .. } if *shaft > 0.0 => &["tip", "shaft", "top"],
-            Self::Cone { .. } => &["tip", "top"],
-        }
-    }
 }
 
 /// The nearest distance in plan of a box from a point \[m\].
@@ -83,6 +71,17 @@ fn distance_in_plan(at: &[f64; 3], lower: &[f64; 3], upper: &[f64; 3]) -> f64 {
 }
 
 impl RigidForm<3> for RigidSolid {
+    fn sides(&self) -> &'static [&'static str] {
+        match self {
+            Self::Cuboid(..) => &["left", "right", "front", "back", "bottom", "top"],
+            Self::Cylinder { axis: 2, .. } => &["bottom", "shaft", "top"],
+            Self::Cylinder { .. } => &["start", "shaft", "end"],
+            Self::Sphere { .. } | Self::Surface(_) => &["surface"],
+            Self::Cone { shaft, .. } if *shaft > 0.0 => &["tip", "shaft", "top"],
+            Self::Cone { .. } => &["tip", "top"],
+        }
+    }
+
     fn surface(
         &self,
         _about: [f64; 3],

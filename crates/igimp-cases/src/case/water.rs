@@ -1,8 +1,10 @@
 //! Water in the ground: conditions that stages move between, and what materials do with it.
 
-use super::Raster;
+use std::sync::Arc;
 
-use super::{Case, StageKind};
+use super::{Case, Raster, StageKind, in_space};
+use crate::region::Region;
+use crate::solid::Terrain;
 
 impl<const D: usize> Case<D> {
     /// By body: whether it is there at the end of a stage, by index.
@@ -51,12 +53,67 @@ pub enum PoreSource {
     /// A water table: its points from left to right \[m\], linear between them and level beyond; one point is a level.
     /// Pressure is the unit weight of water times the vertical depth below it. Soil is saturated beneath.
     Table(Vec<[f64; 2]>),
+    /// A water table in space, by a surface; beyond its extent as at the nearest place of the box around it. As with
+    /// [`PoreSource::Table`] pressure goes by the vertical depth below it.
+    Surface(Arc<Terrain>),
+    /// The water table of ground in space that was drained.
+    Drained(Drained),
     /// Pressures by points in the plane \[Pa\], as a seepage analysis gives them; less than none is none. On the ground it is that
     /// of the free water there.
     Points(Raster),
     /// r_u: the pressure as a share of the weight of the ground above, as the bodies present from the start are
     /// drawn \[-\].
     Ratio(f64),
+}
+
+impl PoreSource {
+    /// The level of its water table above or below a place \[m\]; none of what is no table.
+    pub fn table<const D: usize>(&self, place: &[f64; D]) -> Option<f64> {
+        match self {
+            Self::Table(points) => Some(table_level(points, place[0])),
+            Self::Surface(terrain) => {
+                let [x, y, _] = in_space(place);
+                let nearest = || {
+                    let (lower, upper) = terrain.bounds();
+                    [x.clamp(lower[0], upper[0]), y.clamp(lower[1], upper[1])]
+                };
+                let level = terrain.height_at([x, y]);
+                let level = level.or_else(|| terrain.height_at(nearest()));
+                Some(level.unwrap_or(f64::NEG_INFINITY))
+            }
+            Self::Drained(own) => Some(own.level(&in_space(place))),
+            Self::Dry | Self::Points(_) | Self::Ratio(_) => None,
+        }
+    }
+}
+
+/// A water table that is `inside` within higher ground, the surface of the ground where that lies between the two levels,
+/// and `outside` above lower ground and beside it.
+#[derive(Clone, Debug)]
+pub struct Drained {
+    /// Level within the ground \[m\].
+    pub inside: f64,
+    /// Level of the free water outside \[m\], not above `inside`.
+    pub outside: f64,
+    /// What the ground consists of when it is drained.
+    pub ground: Vec<Arc<dyn Region<3>>>,
+}
+
+impl Drained {
+    fn level(&self, place: &[f64; 3]) -> f64 {
+        let tops = self.ground.iter().filter_map(|own| own.top(place));
+        tops.fold(self.outside, f64::max).min(self.inside)
+    }
+}
+
+impl PartialEq for Drained {
+    fn eq(&self, other: &Self) -> bool {
+        let levels = [[self.inside, other.inside], [self.outside, other.outside]];
+        let mut grounds = std::iter::zip(&self.ground, &other.ground);
+        levels.iter().all(|[a, b]| a.total_cmp(b).is_eq())
+            && self.ground.len() == other.ground.len()
+            && grounds.all(|(a, b)| Arc::ptr_eq(a, b))
+    }
 }
 
 /// The level of a line at a place, level beyond its ends \[m\].

@@ -14,7 +14,7 @@ pub struct Installed<'a, const D: usize = 2> {
     /// Its number in the case, from 0.
     pub index: usize,
     /// What it is.
-    pub part: &'a ReinforcementPart,
+    pub part: &'a ReinforcementPart<D>,
     /// Where it is, and its tension.
     pub member: &'a Reinforcement<D>,
     /// What its bond is divided by \[-\].
@@ -31,24 +31,40 @@ const HEADER: [&str; 7] = [
     "strain_[-]",
     "at_limit_[-]",
 ];
+/// The same in space.
+const HEADER_IN_SPACE: [&str; 8] = [
+    "distance_[m]",
+    "x_[m]",
+    "y_[m]",
+    "z_[m]",
+    "force_[N]_tension_+",
+    "limit_[N]",
+    "strain_[-]",
+    "at_limit_[-]",
+];
 
 impl<const D: usize> Installed<'_, D> {
     /// Tension at the middle of its bars, by the distance from its head before it was stretched.
     pub fn table(&self, name: String) -> Table {
-        let mut table = Table::new(name, &HEADER);
+        let header = if D == 2 {
+            &HEADER[..]
+        } else {
+            &HEADER_IN_SPACE
+        };
+        let mut table = Table::new(name, header);
         let mut so_far = 0.0;
         let stations = self.member.stations.windows(2);
         for (bar, ends) in std::iter::zip(&self.member.segments, stations) {
             let (a, b) = (ends[0].position(), ends[1].position());
-            table.push(vec![
-                so_far + 0.5 * bar.length,
-                0.5 * (a[0] + b[0]),
-                0.5 * (a[D - 1] + b[D - 1]),
+            let mut row = vec![so_far + 0.5 * bar.length];
+            row.extend((0..D).map(|axis| 0.5 * (a[axis] + b[axis])));
+            row.extend([
                 bar.state.force,
                 bar.limit(self.reduction),
                 bar.state.strain,
                 f64::from(u8::from(bar.state.is_at_limit)),
             ]);
+            table.push(row);
             so_far += bar.length;
         }
         table
@@ -128,14 +144,15 @@ pub fn lines<const D: usize>(installed: &[Installed<'_, D>]) -> UnstructuredGrid
             members.push(own.index as i32);
         }
     }
+    let unit = if D == 2 { "N/m" } else { "N" };
     UnstructuredGrid {
         points,
         kind: CellKind::Line,
         connectivity,
         point_data: Vec::new(),
         cell_data: vec![
-            DataArray::scalars("force [N/m], tension +", forces),
-            DataArray::scalars("limit [N/m]", limits),
+            DataArray::scalars(&format!("force [{unit}], tension +"), forces),
+            DataArray::scalars(&format!("limit [{unit}]"), limits),
             DataArray::scalars("strain", strains),
             DataArray::integers("at limit", at_limit),
             DataArray::integers("member", members),

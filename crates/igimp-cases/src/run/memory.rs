@@ -1,7 +1,7 @@
 //! Memory of a run, as the system counts it for the process; nothing where it does not tell.
 
 use crate::case::Case;
-use crate::estimate::{is_iterated, per_item};
+use crate::estimate::{per_item, storage};
 use crate::summary::{MemoryShare, ModelSize};
 
 /// Resident memory at the beginning of a run \[MiB\].
@@ -23,7 +23,7 @@ impl Before {
         size: &ModelSize,
     ) -> Option<MemoryShare> {
         let used = (peak_mib? - self.0?) * 1_048_576.0;
-        let [particle, unknown] = per_item(D, is_iterated(case, size.unknowns), size.unknowns);
+        let [particle, unknown] = per_item(D, storage(case, size.unknowns), size.unknowns);
         let model = particle * size.particles as f64 + unknown * size.unknowns as f64;
         (used > 0.0 && size.unknowns > 0).then(|| MemoryShare {
             bytes_per_particle: particle * used / model,

@@ -358,10 +358,10 @@ pub(crate) fn reduced(laws: &[SharedLaw], srf: &[f64]) -> Result<Vec<SharedLaw>,
 /// The points that carry pressures and forces, each under the number of its load.
 fn load_points<const D: usize>(case: &Case<D>) -> Vec<LoadPoint<D>> {
     let mut points = Vec::new();
-    for (load, kind) in case.loads.iter().map(|load| load.kind).enumerate() {
+    for (load, kind) in case.loads.iter().map(|load| &load.kind).enumerate() {
         match kind {
             LoadKind::RigidFooting { .. } => {}
-            LoadKind::Pressure { from, to, traction } => {
+            &LoadKind::Pressure { from, to, traction } => {
                 let cells = case.grid.axes.iter().enumerate();
                 let cells = cells.map(|(axis, own)| own.smallest_between(from[axis], to[axis]));
                 let cell = cells.fold(f64::INFINITY, f64::min);
@@ -375,7 +375,33 @@ fn load_points<const D: usize>(case: &Case<D>) -> Vec<LoadPoint<D>> {
                     LoadPoint::on_rectangle(from, to, traction, counts, load)
                 });
             }
-            LoadKind::Point { at, force } => points.push(LoadPoint { x: at, force, load }),
+            LoadKind::Patch {
+                plan,
+                level,
+                traction,
+            } => {
+                let (lower, upper) = plan.bounds((&case.grid.lower(), &case.grid.upper()));
+                let cells = case.grid.axes.iter().take(2).enumerate();
+                let cells = cells.map(|(axis, own)| own.smallest_between(lower[axis], upper[axis]));
+                let cell = cells.fold(f64::INFINITY, f64::min);
+                let counts = [0, 1].map(|axis| {
+                    let side = upper[axis] - lower[axis];
+                    (POINTS_PER_CELL * side / cell).ceil().max(1.0) as usize
+                });
+                points.extend(
+                    plan.parts((lower, upper), counts)
+                        .into_iter()
+                        .map(|(area, at)| LoadPoint {
+                            x: std::array::from_fn(|axis| match axis {
+                                2 => *level,
+                                _ => at[axis],
+                            }),
+                            force: traction.map(|own| own * area),
+                            load,
+                        }),
+                );
+            }
+            &LoadKind::Point { at, force } => points.push(LoadPoint { x: at, force, load }),
         }
     }
     points

@@ -1,41 +1,36 @@
 //! The results folder of a run: what is written, and when.
 
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
-use igimp_assembly::SharedLaw;
 use igimp_solver::Body;
 use rayon::prelude::*;
 
 use super::Target;
-use super::fingerprint;
-use super::left::{End, Notes, Resumption, Search, end_of_stage};
+use super::left::{End, Notes, Resumption, Search};
 use super::model::Model;
 use super::outlines;
 use super::records::{Records, Rows};
-use super::saved_body;
-use super::saved_reinforcement;
 use super::sections;
 use super::session::Taken;
-use super::state::{Controls, State};
+use super::state::State;
 use crate::case::{Case, Every};
 use crate::error::CaseError;
 use crate::pieces::Pieces;
-use crate::plane::in_plane;
 use crate::results::atomic::write_whole;
-use crate::results::checkpoint::{self, Meta};
+use crate::results::checkpoint;
 use crate::results::folder::{self, Folder, write_summary};
 use crate::results::frames::Frames;
 use crate::results::owner::Claim;
-use crate::results::pictures::{self, Canvas, Failing, Seen, Shown, mechanism};
+use crate::results::pictures::{self, Shown};
 use crate::results::report;
-use crate::results::rigid;
 use crate::results::rows::RowWriter;
 use crate::summary::{FigureNote, StageSummary, Summary};
 use crate::table::Table;
 
+mod drawn;
+mod saved;
 mod take_up;
 
 /// The files of a run, open.
@@ -310,6 +305,9 @@ impl<const D: usize> Output<D> {
         }
         let structures = outlines::structures(case, &state.controls, &state.body);
         if summary.safety.is_none() {
+            for table in sections::planes(model, state, number)? {
+                table.write_csv(&self.folder.sections())?;
+            }
             let named = |name: &str| format!("{name}__{}", sections::stage_name(case, number));
             for body in &structures.rigid {
                 let table = body.table(named(&body.part.name));
@@ -399,191 +397,6 @@ impl<const D: usize> Output<D> {
         Ok(saved)
     }
 
-    /// Frames and pictures of the states at the ends of a search, and of the way in which the body fails.
-    fn ends_of_search(
-        &mut self,
-        model: &Model<'_, D>,
-        number: usize,
-        summary: &StageSummary,
-    ) -> Result<(), CaseError> {
-        let kept = std::mem::take(&mut self.kept);
-        for (what, End { srf, state, .. }) in &kept {
-            let name = format!("stage-{:02}-{what}", number + 1);
-            if self.every != Every::Never {
-                let laws = model.laws_reduced_by(&state.controls.srf)?;
-                let structures = outlines::structures(model.case, &state.controls, &state.body);
-                for own in &structures.reinforcement {
-                    let table = own.table(format!("{}__{name}", own.part.name));
-                    table.write_csv(&self.folder.reinforcement())?;
-                }
-                self.frames
-                    .beside(&name, (&state.body.particles, &laws), &structures)?;
-            }
-            let shown = Shown {
-                title: format!("{}, SRF {srf:.4}", summary.name),
-                when: format!("in the {} state, SRF {srf:.4}", what.replace('-', " ")),
-                name,
-            };
-            let others = kept.iter().filter(|(other, _)| other != what);
-            let others: Vec<&State<D>> = others.map(|(_, end)| &end.state).collect();
-            self.field_pictures(model, &shown, state, &others)?;
-        }
-        let kept_in_plane =
-            in_plane::<Vec<(&'static str, End<D>)>, Vec<(&'static str, End)>>(&kept);
-        let (Some(case), Some(kept)) = (in_plane(model.case), kept_in_plane) else {
-            return Ok(());
-        };
-        self.mechanism((case, &model.seeded.body), number, kept)
-    }
-
-    /// The way in which the body fails: the slip line as a table, and its picture.
-    fn mechanism(
-        &mut self,
-        (case, body_of): (&Case, &[usize]),
-        number: usize,
-        kept: &[(&'static str, End)],
-    ) -> Result<(), CaseError> {
-        // The state that failed has moved most; where no step led to it, the stable one tells.
-        for (what, end) in kept.iter().rev() {
-            let Some(before) = &end.before else { continue };
-            let failing = Failing {
-                stage: number,
-                srf: end.srf,
-                what,
-                before: &before.particles,
-                last: &end.state.body.particles,
-            };
-            let Some(found) = mechanism(&failing) else {
-                continue;
-            };
-            if let Some(table) = found.table(case, number) {
-                table.write_csv(&self.folder.slip_lines())?;
-            }
-            if !case.output.figures.is_empty() {
-                let pieces = self.pieces(case)?;
-                let canvas = Canvas {
-                    folder: self.folder.root(),
-                    case,
-                    pieces: &pieces,
-                };
-                let over = outlines::of_state((case, body_of), &end.state);
-                let picture = pictures::mechanism_picture(&canvas, &failing, &found, &over)?;
-                self.figures.push(picture);
-            }
-            break;
-        }
-        Ok(())
-    }
-
-    /// The bodies in pieces, cut once.
-    fn pieces(&mut self, case: &Case) -> Result<Arc<Pieces>, CaseError> {
-        let pieces = match &self.pieces {
-            Some(pieces) => Arc::clone(pieces),
-            None => Arc::new(Pieces::of(case)?),
-        };
-        self.pieces = Some(Arc::clone(&pieces));
-        Ok(pieces)
-    }
-
-    /// The pictures of the fields that the case wants to see, with the units and colours that suit the
-    /// state and the states that it is compared with.
-    fn field_pictures(
-        &mut self,
-        model: &Model<'_, D>,
-        shown: &Shown,
-        state: &State<D>,
-        compared: &[&State<D>],
-    ) -> Result<(), CaseError> {
-        let wanted = &model.case.output.figures;
-        if wanted.is_empty() {
-            return Ok(());
-        }
-        let laws = model.laws_reduced_by(&state.controls.srf)?;
-        let reduced = compared
-            .iter()
-            .map(|state| model.laws_reduced_by(&state.controls.srf))
-            .collect::<Result<Vec<_>, _>>()?;
-        let reduced: Vec<&[SharedLaw]> = reduced.iter().map(|laws| &laws[..]).collect();
-        if let Some(state) = in_plane::<_, State<3>>(state) {
-            let compared = compared
-                .iter()
-                .filter_map(|own| in_plane::<_, State<3>>(*own));
-            let compared: Vec<Seen<'_, 3>> = std::iter::zip(compared, &reduced)
-                .map(|(state, laws)| (&state.body.particles, *laws))
-                .collect();
-            return self.pictures_in_space((model, shown), (state, &laws), &compared);
-        }
-        let (Some(case), Some(state)) = (in_plane(model.case), in_plane::<_, State>(state)) else {
-            return Ok(());
-        };
-        let pieces = self.pieces(case)?;
-        let canvas = Canvas {
-            folder: self.folder.root(),
-            case,
-            pieces: &pieces,
-        };
-        let own = (&state.body.particles, &laws[..]);
-        let compared: Vec<Seen<'_>> = std::iter::zip(compared, &reduced)
-            .filter_map(|(state, laws)| {
-                Some((&in_plane::<_, State>(*state)?.body.particles, *laws))
-            })
-            .collect();
-        let over = outlines::of_state((case, &model.seeded.body), state);
-        let drawn = wanted
-            .par_iter()
-            .map(|&field| pictures::field_picture(&canvas, shown, field, own, &compared, &over))
-            .collect::<Result<Vec<_>, _>>()?;
-        self.figures.extend(drawn);
-        Ok(())
-    }
-
-    /// The same in space: the surface, and cuts through the middle.
-    fn pictures_in_space(
-        &mut self,
-        (model, shown): (&Model<'_, D>, &Shown),
-        (state, laws): (&State<3>, &[SharedLaw]),
-        compared: &[Seen<'_, 3>],
-    ) -> Result<(), CaseError> {
-        let case = model.case;
-        let standing = in_plane::<_, Case<3>>(case).map(|case| {
-            let structures = outlines::structures(case, &state.controls, &state.body);
-            rigid::cells(&structures.rigid)
-        });
-        let bodies = standing.map_or_else(Vec::new, |cells| {
-            let corners = cells.connectivity.as_chunks::<3>().0.iter();
-            corners
-                .map(|corners| corners.map(|point| cells.points[point]))
-                .collect()
-        });
-        let of_case = (self.folder.root(), &*case.title, case.has_pore_water());
-        let drawn = pictures::InSpace::new(of_case, (&state.body.particles, laws), bodies);
-        let planes = match &case.output.cuts[..] {
-            [] => drawn.middle(),
-            cuts => cuts.to_vec(),
-        };
-        let wanted = &case.output.figures;
-        let notes = wanted
-            .par_iter()
-            .map(|&field| drawn.pictures(shown, field, compared, &planes))
-            .collect::<Result<Vec<_>, _>>()?;
-        self.figures.extend(notes.concat());
-        Ok(())
-    }
-
-    /// The picture of the set-up.
-    pub(crate) fn model_picture(&mut self, case: &Case<D>) -> Result<(), CaseError> {
-        if !self.draws {
-            return Ok(());
-        }
-        let clock = Instant::now();
-        if let Some(case) = in_plane(case) {
-            let picture = pictures::model_picture(self.folder.root(), case)?;
-            self.figures.push(picture);
-        }
-        self.seconds += clock.elapsed().as_secs_f64();
-        Ok(())
-    }
-
     /// Pictures of curves, summary and report.
     pub(crate) fn finish(
         &mut self,
@@ -621,88 +434,6 @@ impl<const D: usize> Output<D> {
 
     fn write_summary(&self, summary: &Summary) -> Result<(), CaseError> {
         write_summary(self.folder.root(), summary)
-    }
-
-    fn notes(&self, case: &Case<D>, stage: usize, run: &Summary, controls: &Controls) -> Notes {
-        Notes {
-            history: fingerprint::of_history(case, stage + 1),
-            stages: run.stages.clone(),
-            checks: run.checks.clone(),
-            warnings: run.warnings.clone(),
-            unknowns: run.size.unknowns,
-            figures: self.figures.clone(),
-            factor_of_safety: self.factor_of_safety,
-            peaks: self
-                .peaks
-                .iter()
-                .map(|&peak| Some(peak).filter(|peak| peak.is_finite()))
-                .collect(),
-            curve_rows: self.curves.iter().map(RowWriter::len).collect(),
-            monitor_rows: self.monitors.iter().map(RowWriter::len).collect(),
-            rigid_rows: self.rigid.iter().map(RowWriter::len).collect(),
-            rigid: BTreeMap::new(),
-            reinforcement: BTreeMap::new(),
-            convergence_rows: self.convergence.len(),
-            frames: self.frames.len(),
-            steps: self.steps,
-            stage: None,
-            controls: controls.clone(),
-            resumption: None,
-            trials: None,
-            stable: None,
-            failed: None,
-        }
-    }
-
-    fn meta(&self, notes: &Notes, states: &[(&str, &Body<D>)]) -> Result<Meta, CaseError> {
-        let with_bodies = states.iter().filter(|(_, body)| !body.rigid.is_empty());
-        let saved = with_bodies.map(|(name, body)| ((*name).to_owned(), saved_body::all(body)));
-        let with_members = states
-            .iter()
-            .filter(|(_, body)| !body.reinforcement.is_empty());
-        let members = with_members.map(|(name, body)| {
-            let own = saved_reinforcement::all(body);
-            ((*name).to_owned(), own)
-        });
-        let notes = Notes {
-            rigid: saved.collect(),
-            reinforcement: members.collect(),
-            ..notes.clone()
-        };
-        let data = serde_json::to_value(notes).map_err(|source| CaseError::File {
-            path: self.folder.checkpoint(),
-            source: source.into(),
-        })?;
-        Ok(Meta::new(&self.claim.input, data))
-    }
-
-    /// Writes a checkpoint within a stage. It follows the rows that it counts on; what is in the
-    /// hands of the system outlasts a kill.
-    fn save(&self, states: &[(&str, &Body<D>)], notes: &Notes) -> Result<(), CaseError> {
-        let name = format!("step-{:06}", self.steps);
-        let (folder, meta) = (self.folder.checkpoint(), self.meta(notes, states)?);
-        checkpoint::write_quickly(&folder, &name, states, &meta, self.checkpoint_keep)?;
-        Ok(())
-    }
-
-    /// Writes the checkpoint at the end of a stage, after its rows, to outlast a loss of power.
-    fn save_end(&mut self, stage: usize, body: &Body<D>, notes: &Notes) -> Result<(), CaseError> {
-        let tables: Vec<&RowWriter> = self
-            .curves
-            .iter()
-            .chain(&self.monitors)
-            .chain(&self.rigid)
-            .chain([&self.convergence])
-            .collect();
-        let (rows, frames) = rayon::join(
-            || tables.par_iter().try_for_each(|table| table.sync()),
-            || self.frames.sync(),
-        );
-        rows.and(frames)?;
-        let states = [("current", body)];
-        let (folder, meta) = (self.folder.checkpoint(), self.meta(notes, &states)?);
-        checkpoint::write(&folder, &end_of_stage(stage), &states, &meta, 1)?;
-        Ok(())
     }
 }
 

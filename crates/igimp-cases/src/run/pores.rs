@@ -28,8 +28,9 @@ pub(crate) fn summary<const D: usize>(
     if largest <= 0.0 && least >= 0.0 {
         return None;
     }
-    // Effective stress in tension: u > −σ_yy.
-    let floats = |&k: &usize| pressure(k) > 0.0 && particles.sigma[k][1][1] > FLOATS * largest;
+    // Effective stress in tension: u exceeds the total vertical pressure.
+    let up = D - 1;
+    let floats = |&k: &usize| pressure(k) > 0.0 && particles.sigma[k][up][up] > FLOATS * largest;
     Some(PoreSummary {
         largest,
         excess: (least < 0.0 || most > 0.0).then_some([least, most]),

@@ -3,7 +3,7 @@
 use igimp_assembly::{Hold, Reinforcement, ReinforcementControl, Segment, SegmentState, Station};
 
 use super::state::{Controls, ReinforcementControls, State};
-use crate::case::{Case, ReinforcementPart, ReinforcementQuantity, Stage, from_front};
+use crate::case::{Case, ReinforcementPart, ReinforcementQuantity, Stage, distance};
 use crate::results::reinforcement::Installed;
 use crate::summary::MemberSummary;
 
@@ -11,13 +11,19 @@ use crate::summary::MemberSummary;
 const STATIONS_PER_CELL: f64 = 4.0;
 
 /// A member of a case where it is installed, without tension.
-pub(crate) fn made<const D: usize>(case: &Case<D>, part: &ReinforcementPart) -> Reinforcement<D> {
-    let (x, y) = (&case.grid.axes[0], &case.grid.axes[D - 1]);
-    let cell_near = |a: [f64; 2], b: [f64; 2]| {
-        x.smallest_between(a[0].min(b[0]), a[0].max(b[0]))
-            .min(y.smallest_between(a[1].min(b[1]), a[1].max(b[1])))
+pub(crate) fn made<const D: usize>(
+    case: &Case<D>,
+    part: &ReinforcementPart<D>,
+) -> Reinforcement<D> {
+    let cell_near = |a: [f64; D], b: [f64; D]| {
+        let axes = case.grid.axes.iter().enumerate();
+        axes.map(|(k, own)| own.smallest_between(a[k].min(b[k]), a[k].max(b[k])))
+            .fold(f64::INFINITY, f64::min)
     };
-    let mut legs: Vec<([f64; 2], [f64; 2], bool)> = part
+    let between = |a: [f64; D], b: [f64; D], t: f64| -> [f64; D] {
+        std::array::from_fn(|axis| a[axis] + t * (b[axis] - a[axis]))
+    };
+    let mut legs: Vec<([f64; D], [f64; D], bool)> = part
         .line
         .windows(2)
         .map(|leg| (leg[0], leg[1], true))
@@ -25,34 +31,40 @@ pub(crate) fn made<const D: usize>(case: &Case<D>, part: &ReinforcementPart) -> 
     if part.free_length > 0.0 {
         let (head, end) = (part.line[0], part.line[1]);
         let t = part.free_length / part.length();
-        let bond = [0, 1].map(|axis| head[axis] + t * (end[axis] - head[axis]));
+        let bond = between(head, end, t);
         legs = vec![(head, bond, false)];
         if t < 1.0 {
             legs.push((bond, end, true));
         }
     }
     let head = part.line[0];
-    let first = part.plate.map_or_else(
+    // Places in the middle of equal parts of the plate.
+    let first = part.plate.as_ref().map_or_else(
         || vec![head],
-        |[from, to]| {
-            let width = (to[0] - from[0]).hypot(to[1] - from[1]);
-            let count = (STATIONS_PER_CELL * width / cell_near(from, to))
-                .ceil()
-                .max(2.0);
-            let place = |k: usize| {
-                let t = (k as f64 + 0.5) / count;
-                [0, 1].map(|axis| from[axis] + t * (to[axis] - from[axis]))
-            };
-            (0..count as usize).map(place).collect()
+        |corners| {
+            let from = corners[0];
+            let mut places = vec![from];
+            for &to in &corners[1..] {
+                let width = distance(&from, &to);
+                let count = (STATIONS_PER_CELL * width / cell_near(from, to))
+                    .ceil()
+                    .max(2.0);
+                let steps = (0..count as usize).map(|k| (k as f64 + 0.5) / count);
+                let moved = |place: &[f64; D], t: f64| -> [f64; D] {
+                    std::array::from_fn(|axis| place[axis] + t * (to[axis] - from[axis]))
+                };
+                places = steps
+                    .flat_map(|t| places.iter().map(move |place| moved(place, t)))
+                    .collect();
+            }
+            places
         },
     );
-    let mut stations: Vec<Station<D>> = vec![Station {
-        points: first.into_iter().map(from_front).collect(),
-    }];
+    let mut stations: Vec<Station<D>> = vec![Station { points: first }];
     let mut segments = Vec::new();
     let mut so_far = 0.0;
     for (from, to, is_bonded) in legs {
-        let length = (to[0] - from[0]).hypot(to[1] - from[1]);
+        let length = distance(&from, &to);
         let count = if is_bonded {
             (STATIONS_PER_CELL * length / cell_near(from, to))
                 .ceil()
@@ -62,9 +74,8 @@ pub(crate) fn made<const D: usize>(case: &Case<D>, part: &ReinforcementPart) -> 
         };
         for k in 0..count as usize {
             let t = (k + 1) as f64 / count;
-            let at = [0, 1].map(|axis| from[axis] + t * (to[axis] - from[axis]));
             stations.push(Station {
-                points: vec![from_front(at)],
+                points: vec![between(from, to, t)],
             });
             let middle = so_far + (k as f64 + 0.5) / count * length;
             let bonded = part.bonded(middle);

@@ -27,6 +27,9 @@ use crate::summary::{SafetySummary, StageSummary, TrialSummary};
 /// Most trials that a search makes before it reports the interval that it has.
 const MOST_TRIALS: usize = 40;
 
+/// Trials without a single equilibrium after which no other strength is tried.
+const FUTILE_TRIALS: usize = 4;
+
 /// Displacements of the last standing state above this share of the height are worth a remark \[-\].
 const SLID: f64 = 0.01;
 
@@ -141,7 +144,9 @@ impl<'a, const D: usize> Trials<'a, D> {
         if !self.made.iter().any(at_full_strength) {
             return Some(1.0);
         }
-        if made >= MOST_TRIALS + self.reduction.factors.len() {
+        if made >= MOST_TRIALS + self.reduction.factors.len()
+            || stands_nowhere(&self.made, self.reduction.path)
+        {
             return None;
         }
         let [low, high] = self.reduction.bracket;
@@ -389,4 +394,11 @@ impl<'a, const D: usize> Trials<'a, D> {
 /// Whether a trial is the one at F = 1.
 fn at_full_strength(trial: &TrialSummary) -> bool {
     (trial.srf - 1.0).abs() < 1e-9
+}
+
+/// Whether so many reductions failed before their first equilibrium that the failure is none of strength.
+fn stands_nowhere(trials: &[TrialSummary], path: ReductionPath) -> bool {
+    path == ReductionPath::Reduce
+        && trials.len() >= FUTILE_TRIALS
+        && trials.iter().all(|trial| !trial.stable && trial.steps == 0)
 }

@@ -7,7 +7,7 @@ use igimp_shape::Grid;
 
 use super::model::Model;
 use super::state::State;
-use crate::case::{Average, Case, Section};
+use crate::case::{Average, Case, Cut, Section};
 use crate::measure::nearest;
 use crate::results::fields;
 use crate::results::pictures::file_name;
@@ -70,6 +70,42 @@ pub(crate) fn read<const D: usize>(
         })
         .collect();
     Ok(tables)
+}
+
+/// One table per plane that the case states in space, named `cut-AXIS-PLACE__STAGE`: the particles whose domains the plane
+/// crosses, with the fields that are drawn.
+pub(crate) fn planes<const D: usize>(
+    model: &Model<'_, D>,
+    state: &State<D>,
+    stage: usize,
+) -> Result<Vec<Table>, AssemblyError> {
+    let case = model.case;
+    let particles = &state.body.particles;
+    let wanted = &case.output.figures;
+    if wanted.is_empty() || case.output.cuts.is_empty() {
+        return Ok(Vec::new());
+    }
+    let laws = model.laws_reduced_by(&state.controls.srf)?;
+    let places = ["x_[m]", "y_[m]", "z_[m]"].into_iter().take(D);
+    let fields = wanted.iter().map(|&field| fields::header(field));
+    let header: Vec<String> = places.map(str::to_owned).chain(fields).collect();
+    let table = |cut: &Cut| {
+        let crossed = (0..particles.len()).filter(|&k| {
+            let (x, half) = (particles.x[k][cut.axis], particles.half_length[k][cut.axis]);
+            x - half <= cut.at && cut.at < x + half
+        });
+        let row = |k: usize| {
+            let values = wanted.iter();
+            let values = values.map(|&field| fields::value(field, particles, k, &laws));
+            particles.x[k].iter().copied().chain(values).collect()
+        };
+        Table {
+            name: format!("{}__{}", cut.name(), stage_name(case, stage)),
+            header: header.clone(),
+            rows: crossed.map(row).collect(),
+        }
+    };
+    Ok(case.output.cuts.iter().map(table).collect())
 }
 
 /// A place along a section, as a share of its length.

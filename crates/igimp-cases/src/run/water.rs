@@ -5,9 +5,7 @@ use std::sync::Arc;
 use igimp_assembly::{PoreSite, PoreState, PoreWater};
 
 use super::model::gravity_of_weights;
-use crate::case::{
-    Case, Drainage, Ground, Material, PoreSource, Raster, WaterCondition, table_level,
-};
+use crate::case::{Case, Drainage, Ground, Material, PoreSource, Raster, WaterCondition};
 
 /// Points and weights of Gauss, three on −1 to 1.
 const ALONG: [(f64, f64); 3] = [
@@ -80,15 +78,9 @@ pub(crate) struct GroundWater<const D: usize = 2> {
 #[derive(Debug)]
 enum Source<const D: usize = 2> {
     Dry,
-    Table {
-        points: Vec<[f64; 2]>,
-        unit_weight: f64,
-    },
+    Table { table: PoreSource, unit_weight: f64 },
     Points(Raster),
-    Ratio {
-        ratio: f64,
-        ground: Ground<D>,
-    },
+    Ratio { ratio: f64, ground: Ground<D> },
 }
 
 /// Means over a domain.
@@ -104,8 +96,8 @@ impl<const D: usize> Source<D> {
     fn of(case: &Case<D>, source: &PoreSource) -> Self {
         match source {
             PoreSource::Dry => Self::Dry,
-            PoreSource::Table(points) => Self::Table {
-                points: points.clone(),
+            PoreSource::Table(_) | PoreSource::Surface(_) | PoreSource::Drained(_) => Self::Table {
+                table: source.clone(),
                 unit_weight: case.water_unit_weight,
             },
             PoreSource::Points(raster) => Self::Points(raster.clone()),
@@ -121,7 +113,7 @@ impl<const D: usize> Source<D> {
         match self {
             Self::Dry => f64::NEG_INFINITY,
             Self::Points(_) => f64::INFINITY,
-            Self::Table { points, .. } => table_level(points, place[0]),
+            Self::Table { table, .. } => table.table(place).unwrap_or(f64::NEG_INFINITY),
             Self::Ratio { ground, .. } => ground.surface(place).unwrap_or(f64::NEG_INFINITY),
         }
     }
@@ -155,10 +147,7 @@ impl<const D: usize> Source<D> {
         match self {
             Self::Dry => 0.0,
             Self::Points(raster) => raster.at([place[0], level]).max(0.0),
-            Self::Table {
-                points,
-                unit_weight,
-            } => unit_weight * (table_level(points, place[0]) - level),
+            Self::Table { unit_weight, .. } => unit_weight * (self.top(place) - level),
             Self::Ratio { ratio, ground } => ratio * ground.weight_above(&at_level(place, level)),
         }
     }

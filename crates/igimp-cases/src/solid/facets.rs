@@ -113,6 +113,15 @@ impl Face {
         self.clipped(|x| along[0] * (x[1] - p[1]) - along[1] * (x[0] - p[0]))
     }
 
+    /// As seen from a level.
+    pub(super) fn lowered(&self, level: f64) -> Self {
+        let mut seen = *self;
+        for corner in &mut seen.corners[..seen.count] {
+            corner[2] -= level;
+        }
+        seen
+    }
+
     /// The lowest and highest of its corners on an axis.
     pub(super) fn extent(&self, axis: usize) -> [f64; 2] {
         let start = [f64::INFINITY, f64::NEG_INFINITY];
@@ -169,8 +178,17 @@ impl Moments {
         self.add_slope(&slope, sign);
     }
 
+    /// Of prisms of this height, if these are of prisms of height 1.
+    pub(super) fn of_height(&self, height: f64) -> Self {
+        let [x, y, z] = self.moment;
+        Self {
+            volume: self.volume * height,
+            moment: [x * height, y * height, z * height * height],
+        }
+    }
+
     /// Of what a face covers in plan, with this height.
-    fn add_prism(&mut self, face: &Face, height: f64, sign: f64) {
+    pub(super) fn add_prism(&mut self, face: &Face, height: f64, sign: f64) {
         for [a, b, c] in fan(face.corners()) {
             let volume = sign * height * area(a, b, c);
             self.volume += volume;

@@ -2,12 +2,13 @@
 
 use thiserror::Error;
 
-use super::facets::{Face, Facets, Moments, over};
+use super::facets::{Face, Facets, over};
 use super::prism::cover;
+use super::standing::Standing;
 use super::terrain::Height;
 use crate::check::short;
 use crate::polygon::{Polygon, area_and_centroid, bounding_box, clip_to_box};
-use crate::region::{Cover, Crossing, Part, Region, is_off};
+use crate::region::{Column, Cover, Crossing, Part, Region, is_off};
 
 /// Surfaces that cross by less than this share of the size of the layer touch \[-\].
 const TOUCH: f64 = 1e-9;
@@ -119,6 +120,20 @@ impl Layer {
         self.within(self.lower, self.upper).volume
     }
 
+    /// What of it stands over a rectangle in plan.
+    fn standing(&self, lower: [f64; 3], upper: [f64; 3]) -> Standing {
+        let [from, to] = [lower, upper].map(|[x, y, _]| [x, y]);
+        let plan = plan_within(&self.plan, from, to);
+        let seen = (lower, [to[0] - from[0], to[1] - from[1]]);
+        Standing::new(seen.0, seen.1, |call| {
+            for (height, sense) in [(&self.top, 1.0), (&self.bottom, -1.0)] {
+                each_over(height, seen, plan.as_ref(), |face, sign| {
+                    call(face, sense * sign);
+                });
+            }
+        })
+    }
+
     /// The polygon in plan, counter-clockwise \[length\].
     pub fn plan(&self) -> &[[f64; 2]] {
         &self.plan
@@ -134,36 +149,30 @@ fn plan_within(plan: &[[f64; 2]], lower: [f64; 2], upper: [f64; 2]) -> Option<Po
     })
 }
 
-/// Adds what lies under a surface within a box, over a polygon in plan if that does not cover the box.
-fn add_under(
+/// Calls with the faces of a surface over a rectangle, over a polygon in plan if that does not cover it, as seen from a
+/// corner, and with their sense.
+fn each_over(
     height: &Height,
-    (lower, upper): ([f64; 3], [f64; 3]),
+    (origin, size): ([f64; 3], [f64; 2]),
     plan: Option<&Polygon>,
-    sign: f64,
-    moments: &mut Moments,
+    mut call: impl FnMut(&Face, f64),
 ) {
-    let size: [f64; 3] = std::array::from_fn(|axis| upper[axis] - lower[axis]);
-    let mut add = |face: &Face| match plan {
-        None => moments.add_under(face, size[2], sign),
-        Some(plan) => over(face, plan, |face, own| {
-            moments.add_under(face, size[2], sign * own);
-        }),
+    let mut each = |face: &Face| match plan {
+        None => call(face, 1.0),
+        Some(plan) => over(face, plan, &mut call),
     };
     match height {
         Height::Level(level) => {
-            let z = level - lower[2];
+            let z = level - origin[2];
             let corners = [
                 [0.0, 0.0, z],
                 [size[0], 0.0, z],
                 [size[0], size[1], z],
                 [0.0, size[1], z],
             ];
-            add(&Face::new(&corners));
+            each(&Face::new(&corners));
         }
-        Height::Terrain(terrain) => {
-            let size = [size[0], size[1]];
-            terrain.facets.each_within(lower, size, |face| add(face));
-        }
+        Height::Terrain(terrain) => terrain.facets.each_within(origin, size, each),
     }
 }
 
@@ -259,13 +268,11 @@ impl Region<3> for Layer {
     }
 
     fn within(&self, lower: [f64; 3], upper: [f64; 3]) -> Part<3> {
-        let [from, to] = [lower, upper].map(|[x, y, _]| [x, y]);
-        let plan = plan_within(&self.plan, from, to);
-        let mut moments = Moments::default();
-        let own = (lower, upper);
-        add_under(&self.top, own, plan.as_ref(), 1.0, &mut moments);
-        add_under(&self.bottom, own, plan.as_ref(), -1.0, &mut moments);
-        moments.part(lower, upper)
+        self.standing(lower, upper).within([lower[2], upper[2]])
+    }
+
+    fn column(&self, lower: [f64; 3], upper: [f64; 3]) -> Option<Box<dyn Column<3>>> {
+        Some(Box::new(self.standing(lower, upper)))
     }
 
     fn cover(&self, lower: [f64; 3], upper: [f64; 3]) -> Cover {

@@ -9,13 +9,14 @@ mod facets;
 mod layer;
 mod prism;
 mod round;
+mod standing;
 mod surface;
 mod terrain;
 
 use std::sync::Arc;
 
 use crate::check::short;
-use crate::region::{Cover, Crossing, Part, Region};
+use crate::region::{Column, Cover, Crossing, Part, Region};
 
 pub use difference::Difference;
 pub use layer::{Layer, LayerError};
@@ -100,6 +101,13 @@ impl Region<3> for Solid {
         match self {
             Self::Cuboid(..) => None,
             other => other.region().strip(lower, upper),
+        }
+    }
+
+    fn column(&self, lower: [f64; 3], upper: [f64; 3]) -> Option<Box<dyn Column<3>>> {
+        match self {
+            Self::Cuboid(..) => None,
+            other => other.region().column(lower, upper),
         }
     }
 

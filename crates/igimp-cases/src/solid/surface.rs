@@ -5,7 +5,8 @@ use std::collections::{BTreeMap, HashMap};
 use thiserror::Error;
 
 use super::facets::{Facets, Moments};
-use crate::region::{Cover, Crossing, Part, Region};
+use super::standing::Standing;
+use crate::region::{Column, Cover, Crossing, Part, Region};
 
 /// Corners closer than this share of the largest coordinate are one: the last bits of single precision \[-\].
 const SAME: f64 = 2.4e-7;
@@ -120,7 +121,12 @@ impl ClosedSurface {
     /// The enclosed volume \[length³\].
     pub fn volume(&self) -> f64 {
         let (lower, upper) = self.facets.bounds();
-        self.moments(lower, upper).volume
+        let size: [f64; 3] = std::array::from_fn(|axis| upper[axis] - lower[axis]);
+        let mut moments = Moments::default();
+        self.facets.each_within(lower, [size[0], size[1]], |face| {
+            moments.add_under(face, size[2], 1.0);
+        });
+        moments.volume
     }
 
     /// Its corners \[length\].
@@ -167,14 +173,12 @@ impl ClosedSurface {
         passed
     }
 
-    /// Of the part within a box, from its lower corner.
-    fn moments(&self, lower: [f64; 3], upper: [f64; 3]) -> Moments {
-        let size: [f64; 3] = std::array::from_fn(|axis| upper[axis] - lower[axis]);
-        let mut moments = Moments::default();
-        self.facets.each_within(lower, [size[0], size[1]], |face| {
-            moments.add_under(face, size[2], 1.0);
-        });
-        moments
+    /// What of it stands over a rectangle in plan.
+    fn standing(&self, lower: [f64; 3], upper: [f64; 3]) -> Standing {
+        let size = [upper[0] - lower[0], upper[1] - lower[1]];
+        Standing::new(lower, size, |call| {
+            self.facets.each_within(lower, size, |face| call(face, 1.0));
+        })
     }
 }
 
@@ -266,7 +270,7 @@ impl Region<3> for ClosedSurface {
     }
 
     fn within(&self, lower: [f64; 3], upper: [f64; 3]) -> Part<3> {
-        self.moments(lower, upper).part(lower, upper)
+        self.standing(lower, upper).within([lower[2], upper[2]])
     }
 
     fn cover(&self, lower: [f64; 3], upper: [f64; 3]) -> Cover {
@@ -277,6 +281,10 @@ impl Region<3> for ClosedSurface {
         } else {
             Cover::Nothing
         }
+    }
+
+    fn column(&self, lower: [f64; 3], upper: [f64; 3]) -> Option<Box<dyn Column<3>>> {
+        Some(Box::new(self.standing(lower, upper)))
     }
 
     /// Counts the triangles above the point, those that face down negative.

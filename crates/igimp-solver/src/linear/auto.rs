@@ -38,6 +38,8 @@ pub struct AutoSolver {
     inspection: Inspection,
     /// Whether iteration was asked for.
     by_iteration: bool,
+    /// Whether factors in single precision were asked for.
+    in_single: bool,
     factor_bytes: usize,
     asked: f64,
     state: State,
@@ -51,6 +53,8 @@ pub struct AutoSolver {
 enum State {
     Nothing,
     Factorised,
+    /// With factors in single precision.
+    InSingle,
     /// So many iterations, and whether a factorisation may follow.
     Iterating(usize, bool),
 }
@@ -70,6 +74,7 @@ impl AutoSolver {
             iteration: Iteration::default(),
             inspection: Inspection::default(),
             by_iteration: false,
+            in_single: false,
             factor_bytes: FACTOR_BYTES,
             state: State::Nothing,
             given_up: None,
@@ -81,6 +86,15 @@ impl AutoSolver {
     pub fn by_iteration() -> Self {
         Self {
             by_iteration: true,
+            ..Self::default()
+        }
+    }
+
+    /// The same that factorises in single precision and iterates with that; in double precision where it does not
+    /// converge.
+    pub fn in_single() -> Self {
+        Self {
+            in_single: true,
             ..Self::default()
         }
     }
@@ -98,6 +112,12 @@ impl AutoSolver {
     fn choose(&mut self, matrix: &TangentMatrix) -> Result<(State, Reason), LinearSolverError> {
         let pattern = &matrix.pattern;
         let unknowns = pattern.unknowns();
+        if self.in_single {
+            return Ok(match &self.given_up {
+                Some(reason) => (State::Factorised, reason.clone()),
+                None => (State::InSingle, Reason::Asked),
+            });
+        }
         let in_space = pattern.blocks.iter().any(|block| block.place[2] != 0);
         if !in_space && !self.by_iteration {
             return Ok((State::Factorised, Reason::Plane));
@@ -109,12 +129,23 @@ impl AutoSolver {
         let stored = pattern.stored() as f64;
         let iterations = ((operations - SET_UP * stored) / (ITERATION * stored)).max(0.0) as usize;
         let (factors, allowed) = (bytes, self.factor_bytes);
+        let fits_in_single = factors / 2 <= allowed;
+        if let Some(reason) = &self.given_up {
+            let in_single = factors > allowed && fits_in_single;
+            if in_single {
+                return Ok((State::InSingle, reason.clone()));
+            } else if factors <= allowed {
+                return Ok((State::Factorised, reason.clone()));
+            }
+        }
         if factors > allowed {
             let reason = Reason::Memory { factors, allowed };
-            return Ok((State::Iterating(MOST, false), reason));
-        }
-        if let Some(reason) = &self.given_up {
-            return Ok((State::Factorised, reason.clone()));
+            let most = if fits_in_single {
+                iterations.clamp(TRIED, MOST)
+            } else {
+                MOST
+            };
+            return Ok((State::Iterating(most, fits_in_single), reason));
         }
         if self.by_iteration {
             return Ok((State::Iterating(iterations.max(TRIED), true), Reason::Asked));
@@ -132,6 +163,62 @@ impl AutoSolver {
             };
             (State::Factorised, reason)
         })
+    }
+
+    /// Factorises after an iteration was given up: in double precision if the factors fit, else in single.
+    fn factorise_instead(
+        &mut self,
+        matrix: &TangentMatrix,
+        iterations: usize,
+    ) -> Result<(), LinearSolverError> {
+        let (factors, allowed) = (self.engine.cost(matrix.symmetric).0, self.factor_bytes);
+        self.effort.lost_iterations += iterations;
+        let in_single = factors > allowed;
+        self.effort.reason = if in_single {
+            Reason::OnlySingle {
+                iterations,
+                factors,
+                allowed,
+            }
+        } else {
+            Reason::NotConverged { iterations }
+        };
+        self.given_up = Some(self.effort.reason.clone());
+        if in_single {
+            self.engine.factor_single(matrix)?;
+            self.state = State::InSingle;
+            return Ok(());
+        }
+        self.factorise(matrix)
+    }
+
+    /// Solves with factors in single precision; in double precision where they do not serve and there is room.
+    fn solve_in_single(
+        &mut self,
+        matrix: &TangentMatrix,
+        rhs: &[f64],
+        solution: &mut [f64],
+    ) -> Result<SolveReport, LinearSolverError> {
+        let found = (self.engine).solve_single(matrix, rhs, solution, self.asked);
+        let iterations = match found {
+            Err(LinearSolverError::NotConverged { iterations, .. }) if self.in_single => iterations,
+            other => return other,
+        };
+        self.effort.lost_iterations += iterations;
+        self.without_single(matrix, iterations)?;
+        self.engine.solve(matrix, rhs, solution)
+    }
+
+    /// Factorises in double precision because single does not serve.
+    fn without_single(
+        &mut self,
+        matrix: &TangentMatrix,
+        iterations: usize,
+    ) -> Result<(), LinearSolverError> {
+        self.effort.reason = Reason::SingleFailed { iterations };
+        self.given_up = Some(self.effort.reason.clone());
+        self.engine.forget_single();
+        self.factorise(matrix)
     }
 
     /// Factorises by what suits the matrix.
@@ -153,7 +240,7 @@ impl AutoSolver {
     fn count(&mut self, report: &SolveReport) {
         self.effort.method = report.method;
         self.effort.solutions += 1;
-        if matches!(self.state, State::Iterating(..)) {
+        if matches!(self.state, State::Iterating(..) | State::InSingle) {
             self.effort.iterations += report.refinements;
             self.effort.most_iterations = self.effort.most_iterations.max(report.refinements);
         }
@@ -162,7 +249,9 @@ impl AutoSolver {
 
 impl LinearSolver for AutoSolver {
     fn name(&self) -> &'static str {
-        if self.by_iteration {
+        if self.in_single {
+            "single"
+        } else if self.by_iteration {
             "multigrid"
         } else {
             "auto"
@@ -180,6 +269,16 @@ impl LinearSolver for AutoSolver {
         self.effort.reason = reason;
         if state == State::Factorised {
             return self.factorise(matrix);
+        }
+        if state == State::InSingle {
+            match self.engine.factor_single(matrix) {
+                Err(LinearSolverError::NotPositiveDefinite { .. }) if self.in_single => {
+                    return self.without_single(matrix, 0);
+                }
+                other => other?,
+            }
+            self.state = state;
+            return Ok(());
         }
         self.inspection.inspect(matrix)?;
         self.iteration.set(matrix, &self.inspection.diagonal);
@@ -200,6 +299,11 @@ impl LinearSolver for AutoSolver {
                 self.count(&report);
                 return Ok(report);
             }
+            State::InSingle => {
+                let report = self.solve_in_single(matrix, rhs, solution)?;
+                self.count(&report);
+                return Ok(report);
+            }
             State::Iterating(most, may_fall_back) => (most, may_fall_back),
         };
         let demand = Demand {
@@ -213,11 +317,12 @@ impl LinearSolver for AutoSolver {
                 Ok(report)
             }
             Err(LinearSolverError::NotConverged { iterations, .. }) if may_fall_back => {
-                self.effort.lost_iterations += iterations;
-                self.effort.reason = Reason::NotConverged { iterations };
-                self.given_up = Some(self.effort.reason.clone());
-                self.factorise(matrix)?;
-                let report = self.engine.solve(matrix, rhs, solution)?;
+                self.factorise_instead(matrix, iterations)?;
+                let report = if self.state == State::InSingle {
+                    self.solve_in_single(matrix, rhs, solution)?
+                } else {
+                    self.engine.solve(matrix, rhs, solution)?
+                };
                 self.count(&report);
                 Ok(report)
             }

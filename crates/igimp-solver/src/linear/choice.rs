@@ -53,6 +53,21 @@ pub enum Reason {
         /// What is allowed \[bytes\].
         allowed: usize,
     },
+    /// Factors in single precision did not serve.
+    SingleFailed {
+        /// Iterations that were made with them, zero where there are none: the matrix is not positive definite in
+        /// single precision.
+        iterations: usize,
+    },
+    /// An iteration did not converge, and factors fit into the memory allowed in single precision only.
+    OnlySingle {
+        /// Iterations that were made.
+        iterations: usize,
+        /// What factors in double precision would take \[bytes\].
+        factors: usize,
+        /// What is allowed \[bytes\].
+        allowed: usize,
+    },
     /// An iteration did not converge within as many steps as a factorisation costs.
     NotConverged {
         /// How many were made.
@@ -91,6 +106,24 @@ impl fmt::Display for Reason {
             Self::Memory { factors, allowed } => write!(
                 f,
                 "a factorisation would need {:.1} GiB, and {:.1} are allowed",
+                gibibytes(factors),
+                gibibytes(allowed)
+            ),
+            Self::SingleFailed { iterations: 0 } => {
+                write!(f, "not positive definite in single precision")
+            }
+            Self::SingleFailed { iterations } => write!(
+                f,
+                "no convergence within {iterations} iterations with factors in single precision"
+            ),
+            Self::OnlySingle {
+                iterations,
+                factors,
+                allowed,
+            } => write!(
+                f,
+                "no convergence within {iterations} iterations, and factors in double precision would need {:.1} GiB, \
+                 where {:.1} are allowed",
                 gibibytes(factors),
                 gibibytes(allowed)
             ),

@@ -4,6 +4,7 @@
 //! |---|---|---|---|
 //! | [`SolverKind::Auto`] | any | chooses among the next three by dimension, size and symmetry of K | default |
 //! | [`SolverKind::Multigrid`] | any, of a grid | conjugate gradients or generalised minimal residuals with geometric multigrid, own | large systems in space |
+//! | [`SolverKind::Single`] | any | multifrontal factors in single precision, and conjugate gradients or generalised minimal residuals with them, own | half the memory |
 //! | [`SolverKind::MultifrontalCholesky`] | symmetric positive definite | multifrontal Cholesky, own | fast |
 //! | [`SolverKind::Multifrontal`] | structurally symmetric | multifrontal LU, own | fast |
 //! | [`SolverKind::FaerCholesky`] | symmetric positive definite | supernodal Cholesky of `faer` | independent second, fast |
@@ -142,6 +143,8 @@ pub enum SolverKind {
     Auto,
     /// Iteration with geometric multigrid; a factorisation where it fails.
     Multigrid,
+    /// Factors in single precision, and an iteration with them; in double precision where it fails.
+    Single,
     /// Supernodal Cholesky factorisation of `faer`.
     FaerCholesky,
     /// Multifrontal Cholesky factorisation for symmetric positive definite matrices.
@@ -156,8 +159,9 @@ pub enum SolverKind {
 
 impl SolverKind {
     /// All kinds, for tests and for listings.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Auto,
+        Self::Single,
         Self::Multigrid,
         Self::FaerCholesky,
         Self::MultifrontalCholesky,
@@ -171,6 +175,7 @@ impl SolverKind {
         match self {
             Self::Auto => Box::new(AutoSolver::default()),
             Self::Multigrid => Box::new(AutoSolver::by_iteration()),
+            Self::Single => Box::new(AutoSolver::in_single()),
             Self::FaerCholesky => Box::new(FaerCholesky::default()),
             Self::MultifrontalCholesky => Box::new(MultifrontalCholesky::default()),
             Self::Multifrontal => Box::new(MultifrontalLu::default()),

@@ -1,7 +1,7 @@
 //! Construction stages: what they may do to what is there.
 
 use super::stages::Context;
-use crate::case::{Construction, Drainage, LoadKind, StageKind, front};
+use crate::case::{Construction, Drainage, LoadKind, StageKind};
 use crate::input::diagnostic::Problems;
 use crate::input::text::{clip, row};
 use crate::input::tree::Node;
@@ -201,14 +201,8 @@ fn loads_stay_held<const D: usize>(
         let Some(kind) = kind.as_ref().filter(|_| acts(context, index, load)) else {
             continue;
         };
-        let ends = match kind.kind {
-            LoadKind::RigidFooting { from, to, .. } => [from, to],
-            LoadKind::Pressure { from, to, .. } => [front(&from), front(&to)],
-            LoadKind::Point { at, .. } => [front(&at); 2],
-        };
         let lost = own.remove.iter().position(|&body| {
-            let bears = context.site.is_some_and(|site| site.bears(body, ends));
-            bears && !stays_held(context, index, ends)
+            context.soil.bears(body, &kind.kind) && !stays_held(context, index, &kind.kind)
         });
         if let Some(lost) = lost {
             let body = clip(context.names.bodies.name(own.remove[lost]), 40);
@@ -231,10 +225,9 @@ fn loads_stay_held<const D: usize>(
 }
 
 /// Whether some body that is there after a stage bears a load.
-fn stays_held<const D: usize>(context: &Context<'_, D>, index: usize, ends: [[f64; 2]; 2]) -> bool {
+fn stays_held<const D: usize>(context: &Context<'_, D>, index: usize, load: &LoadKind<D>) -> bool {
     let present = &context.sequence.ends[index].present;
-    (0..present.len())
-        .any(|body| present[body] && context.site.is_some_and(|site| site.bears(body, ends)))
+    (0..present.len()).any(|body| present[body] && context.soil.bears(body, load))
 }
 
 /// Whether a load acts as a stage begins.
@@ -265,18 +258,9 @@ pub(super) fn load_is_held<const D: usize>(
     let Some(own) = context.loads.get(load).and_then(Option::as_ref) else {
         return;
     };
-    let ends = match own.kind {
-        LoadKind::RigidFooting { from, to, .. } => [from, to],
-        LoadKind::Pressure { from, to, .. } => [front(&from), front(&to)],
-        LoadKind::Point { at, .. } => [front(&at); 2],
-    };
     let bodies = context.sequence.start.present.len();
-    let is_somewhere =
-        (0..bodies).any(|body| context.site.is_some_and(|site| site.bears(body, ends)));
-    if context.site.is_some_and(|site| site.is_complete)
-        && is_somewhere
-        && !stays_held(context, index, ends)
-    {
+    let is_somewhere = (0..bodies).any(|body| context.soil.bears(body, &own.kind));
+    if context.soil.is_known() && is_somewhere && !stays_held(context, index, &own.kind) {
         problems
             .error(
                 value.place,

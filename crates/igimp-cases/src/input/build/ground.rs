@@ -1,35 +1,126 @@
 //! The surface of the ground, straight from place to place, and how water tables lie to it.
 
 use super::site::Site;
-use crate::case::table_level;
+use crate::case::{BodyPart, PoreSource, Raster, table_level};
+use crate::input::geometry::contains;
+use crate::input::text::number;
 
-/// A stretch of the surface.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Stretch {
-    /// Where it begins and ends \[m\].
-    pub(super) x: [f64; 2],
-    /// Its levels there \[m\].
-    pub(super) y: [f64; 2],
+/// What conditions of the water ask of the ground.
+pub(super) trait Earth<const D: usize> {
+    /// Whether bodies and grid are known.
+    fn is_complete(&self) -> bool;
+
+    /// The surface of the bodies that are there. With `fills_gaps` it lies at the bottom of the grid where there is no
+    /// ground.
+    fn surface(&self, present: &[bool], fills_gaps: bool) -> Box<dyn Surface>;
+
+    /// Whether a water table, or pressures by points, reach into a body.
+    fn wets(&self, source: &PoreSource, part: &BodyPart<D>) -> bool;
+
+    /// The outline of a body, or of the box around it, as it is seen from the front.
+    fn from_front(&self, part: &BodyPart<D>) -> Vec<[f64; 2]>;
 }
 
-/// The surface of bodies from left to right.
+/// The surface of the ground.
+pub(super) trait Surface {
+    /// Where a water table stands above it: highest, and highest where it is not level.
+    fn above(&self, table: &PoreSource) -> [Option<Above>; 2];
+
+    /// A place with ground to which a table does not reach, in words.
+    fn uncovered(&self, _table: &PoreSource) -> Option<String> {
+        None
+    }
+
+    /// The table of ground that drains from `inside` to `outside`: `inside` within higher ground, the surface where it
+    /// lies between the two, `outside` above lower ground.
+    ///
+    /// # Errors
+    /// Where the surface drops upright between the levels.
+    fn drained(&self, inside: f64, outside: f64) -> Result<PoreSource, UprightFace>;
+
+    /// Where it drops upright.
+    fn upright_face(&self) -> Option<UprightFace>;
+
+    /// Where pressures by points are greatest on it, and the pressure there \[Pa\].
+    fn most_on_ground(&self, raster: &Raster) -> Option<(String, f64)>;
+}
+
+/// Where and by how much a table stands above the ground.
 #[derive(Clone, Debug)]
-pub(super) struct Surface {
-    pub(super) stretches: Vec<Stretch>,
-    /// Water that stands higher than this above it counts \[m\].
-    pub(super) tolerance: f64,
-}
-
-/// Where and by how much a table stands highest above the ground.
-#[derive(Clone, Copy, Debug)]
 pub(super) struct Above {
-    pub(super) x: f64,
+    /// The place, in words.
+    pub(super) at: String,
+    /// \[m\].
     pub(super) by: f64,
 }
 
-impl Surface {
+/// Where the surface drops upright.
+#[derive(Clone, Debug)]
+pub(super) struct UprightFace {
+    /// The place, in words.
+    pub(super) at: String,
+    /// Lower and upper level \[m\].
+    pub(super) levels: [f64; 2],
+}
+
+impl UprightFace {
+    fn new(x: f64, left: f64, right: f64) -> Self {
+        Self {
+            at: format!("x = {} m", number(x)),
+            levels: [left.min(right), left.max(right)],
+        }
+    }
+}
+
+impl Earth<2> for Site {
+    fn is_complete(&self) -> bool {
+        self.is_complete && self.frame.is_some()
+    }
+
+    fn surface(&self, present: &[bool], fills_gaps: bool) -> Box<dyn Surface> {
+        Box::new(Line::of(self, present, fills_gaps))
+    }
+
+    fn wets(&self, source: &PoreSource, part: &BodyPart) -> bool {
+        match source {
+            PoreSource::Points(raster) => raster
+                .places_in(part.polygon())
+                .iter()
+                .any(|at| raster.at(*at) > 0.0),
+            PoreSource::Table(points) => {
+                let is_below = |corner: &[f64; 2]| corner[1] < table_level(points, corner[0]);
+                part.polygon().iter().any(is_below)
+                    || (points.iter()).any(|&point| contains(part.polygon(), point))
+            }
+            _ => false,
+        }
+    }
+
+    fn from_front(&self, part: &BodyPart) -> Vec<[f64; 2]> {
+        part.polygon().to_vec()
+    }
+}
+
+/// A stretch of the surface.
+#[derive(Clone, Copy, Debug)]
+struct Stretch {
+    /// Where it begins and ends \[m\].
+    x: [f64; 2],
+    /// Its levels there \[m\].
+    y: [f64; 2],
+}
+
+/// The surface of bodies in the plane from left to right.
+#[derive(Clone, Debug)]
+struct Line {
+    stretches: Vec<Stretch>,
+    /// Water that stands higher than this above it counts \[m\].
+    tolerance: f64,
+}
+
+impl Line {
     /// That of some of the bodies of a site. With `fills_gaps` it lies at the bottom of the grid where there is no ground.
-    pub(super) fn of(site: &Site, present: &[bool], fills_gaps: bool) -> Self {
+    fn of(site: &Site, present: &[bool], fills_gaps: bool) -> Self {
         let polygons = std::iter::zip(&site.polygons, present);
         let polygons = polygons.filter(|(_, present)| **present);
         let edges: Vec<[[f64; 2]; 2]> = polygons
@@ -78,10 +169,14 @@ impl Surface {
             tolerance: site.round_off.max(1e-2 * site.cell()),
         }
     }
+}
 
-    /// Where a table stands above the ground: highest, and highest where it is not level.
-    pub(super) fn below(&self, table: &[[f64; 2]]) -> [Option<Above>; 2] {
-        let mut found = [None; 2];
+impl Surface for Line {
+    fn above(&self, table: &PoreSource) -> [Option<Above>; 2] {
+        let PoreSource::Table(table) = table else {
+            return [None, None];
+        };
+        let mut found: [Option<[f64; 2]>; 2] = [None; 2];
         for stretch in &self.stretches {
             let inside = table.iter().map(|point| point[0]);
             let inside = inside.filter(|x| stretch.x[0] < *x && *x < stretch.x[1]);
@@ -98,22 +193,22 @@ impl Surface {
                     }
                     for (kind, found) in found.iter_mut().enumerate() {
                         let counts = kind == 0 || slopes;
-                        if counts && found.is_none_or(|other: Above| by > other.by) {
-                            *found = Some(Above { x, by });
+                        if counts && found.is_none_or(|[_, most]| by > most) {
+                            *found = Some([x, by]);
                         }
                     }
                 }
             }
         }
-        found
+        found.map(|own| {
+            own.map(|[x, by]| Above {
+                at: format!("x = {} m", number(x)),
+                by,
+            })
+        })
     }
 
-    /// The table of ground that drains from `inside` to `outside`: `inside` within higher ground, the surface where it
-    /// lies between the two, `outside` above lower ground.
-    ///
-    /// # Errors
-    /// Where the surface drops upright between the levels: the place and the two levels there \[m\].
-    pub(super) fn drained(&self, inside: f64, outside: f64) -> Result<Vec<[f64; 2]>, [f64; 3]> {
+    fn drained(&self, inside: f64, outside: f64) -> Result<PoreSource, UprightFace> {
         let mut points: Vec<[f64; 2]> = Vec::new();
         for stretch in &self.stretches {
             let [[x0, x1], [y0, y1]] = [stretch.x, stretch.y];
@@ -127,7 +222,7 @@ impl Surface {
                 match points.last() {
                     Some(last) if x - last[0] <= 1e-9 * (x1 - x0) => {
                         if (y - last[1]).abs() > self.tolerance {
-                            return Err([x, last[1], y]);
+                            return Err(UprightFace::new(x, last[1], y));
                         }
                     }
                     _ => points.push([x, y]),
@@ -144,15 +239,28 @@ impl Surface {
                 k += 1;
             }
         }
-        Ok(points)
+        Ok(PoreSource::Table(points))
     }
 
-    /// Where the surface drops upright: the place and the levels on the left and on the right \[m\].
-    pub(super) fn drop(&self) -> Option<[f64; 3]> {
+    fn upright_face(&self) -> Option<UprightFace> {
         let pairs = self.stretches.windows(2);
         let beside = pairs.filter(|pair| pair[1].x[0] <= pair[0].x[1]);
         let mut drops = beside.map(|pair| [pair[0].x[1], pair[0].y[1], pair[1].y[0]]);
-        drops.find(|[_, left, right]| (left - right).abs() > self.tolerance)
+        let found = drops.find(|[_, left, right]| (left - right).abs() > self.tolerance);
+        found.map(|[x, left, right]| UprightFace::new(x, left, right))
+    }
+
+    fn most_on_ground(&self, raster: &Raster) -> Option<(String, f64)> {
+        let ends = self.stretches.iter().flat_map(|own| {
+            let at = |share: f64| {
+                let [x, y] = [own.x, own.y].map(|[from, to]| from + share * (to - from));
+                [x, y]
+            };
+            [0.0, 0.25, 0.5, 0.75, 1.0].map(at)
+        });
+        let most = ends.max_by(|a, b| raster.at(*a).total_cmp(&raster.at(*b)))?;
+        let at = format!("({}, {}) m", number(most[0]), number(most[1]));
+        Some((at, raster.at(most)))
     }
 }
 

@@ -19,6 +19,12 @@ pub(super) fn loads(tree: &Node, site: &Site, problems: &mut Problems) -> Vec<Op
             let kind = match node.text_at("type")? {
                 "rigid-footing" => footing(node, name, site, problems),
                 "pressure" => pressure(node, name, site, problems),
+                "patch" => {
+                    problems
+                        .error(node.place_at("type"), "a patch is a load in space")
+                        .help("in plane strain use a load of type pressure");
+                    None
+                }
                 _ => at_point(node, name, site, problems),
             }?;
             if let LoadKind::RigidFooting { .. } = kind

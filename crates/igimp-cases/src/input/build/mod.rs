@@ -2,6 +2,7 @@
 //!
 //! Every part is built as far as it can be, so that all problems are found at once.
 
+mod assemble;
 mod bodies;
 mod boundaries;
 mod checks;
@@ -10,17 +11,22 @@ mod curves;
 mod derive;
 mod grid;
 mod ground;
+mod ground_space;
 mod layers;
 mod level;
 mod lines;
 mod loads;
+mod loads_space;
 mod materials;
 mod outputs;
 mod profiles;
 mod quantities;
 mod reinforcement;
+mod reinforcement_space;
 mod rigid;
+mod rigid_plane;
 mod rigid_space;
+mod rigid_stage;
 mod safety;
 mod sequence;
 mod site;
@@ -30,6 +36,7 @@ mod stages;
 mod study;
 mod surfaces;
 mod water;
+mod water_checks;
 
 use std::path::Path;
 
@@ -39,9 +46,9 @@ use super::schema::{FORMAT, SPACE};
 use super::tree::Node;
 use crate::case::{AnyCase, Case, TitleBlock};
 
+use assemble::{Basics, Upon};
 use layers::Layers;
 pub(super) use quantities::QUANTITY_DOCS;
-use sequence::Sequence;
 use site::Site;
 
 /// The names in a file, by what they name.
@@ -101,103 +108,67 @@ pub(super) fn build(tree: &mut Node, file: &Path, problems: &mut Problems) -> Op
 
 /// The same for a case in plane strain.
 fn in_plane(tree: &Node, names: &AllNames, file: &Path, problems: &mut Problems) -> Option<Case> {
-    let mut frame = grid::frame(tree, problems);
-    let method = grid::method(tree);
-    let bodies = bodies::bodies(tree, names, problems);
-    let materials = materials::materials(tree, &bodies, problems);
-    let grid = grid::grid(tree, frame.as_ref(), &bodies, problems);
-    if let (Some(frame), Some(grid)) = (&mut frame, &grid) {
-        frame.axes.clone_from(&grid.axes);
-    }
-    let sequence = Sequence::new(tree, names, &bodies);
-    let site = Site::new(frame, &bodies, &sequence);
-    bodies::check(tree, names, (&bodies, &sequence), &site, problems);
+    let basics = Basics::new(tree, names, bodies::bodies(tree, names, problems), problems);
+    let Basics {
+        bodies,
+        materials,
+        sequence,
+        ..
+    } = &basics;
+    let site = Site::new(basics.frame.clone(), bodies, sequence);
+    bodies::check(tree, names, (bodies, sequence), &site, problems);
     let boundaries = boundaries::boundaries(tree, site.frame.as_ref(), problems);
-    bodies::check_support(tree, &bodies, boundaries.as_ref(), &site, problems);
+    bodies::check_support(tree, bodies, boundaries.as_ref(), &site, problems);
     let layers = Layers {
         tree,
-        bodies: &bodies,
-        materials: &materials,
+        bodies,
+        materials,
         site: &site,
-        sequence: &sequence,
+        sequence,
     };
     layers::check(&layers, problems);
     let loads = loads::loads(tree, &site, problems);
-    let around = rigid::Around {
+    let around = rigid_plane::Around {
         site: &site,
-        materials: &materials,
+        materials,
         loads: &loads,
         tree,
-        sequence: &sequence,
+        sequence,
     };
-    let rigid = rigid::rigid(tree, &around, problems);
-    rigid::check_use(tree, names, problems);
+    let rigid = rigid_plane::rigid(tree, &around, problems);
+    rigid_stage::check_use(tree, names, problems);
     let around = water::Around {
         tree,
         names,
-        site: &site,
-        bodies: &bodies,
-        materials: &materials,
-        sequence: &sequence,
+        earth: &site,
+        bodies,
+        materials,
+        sequence,
     };
     let water = water::conditions(&around, problems);
-    water::check(&around, &water, problems);
+    water_checks::check(&around, &water, problems);
     let reinforcement = reinforcement::reinforcement(tree, &site, problems);
     reinforcement::check_searches(tree, names, problems);
     let context = stages::Context {
         tree,
         names,
-        materials: &materials,
-        bodies: &bodies,
+        materials,
+        bodies,
         loads: &loads,
+        soil: &site,
         site: Some(&site),
-        sequence: &sequence,
+        sequence,
     };
-    let stages = stages::stages(&context, problems);
-    stages::check_use(&context, problems);
-    construction::check(&context, problems);
+    let stages = assemble::stages_of(&context, problems);
     let gravity = tree.get("case").and_then(|case| case.number_at("gravity"));
     layers::check_stiffness(&layers, &stages, gravity, problems);
-    let solver = outputs::solver(tree, &materials, problems);
-    let monitors = outputs::monitors(tree, &site, problems);
-    let about = outputs::About {
-        names,
-        stages: &stages,
-        file,
+    let upon = Upon {
+        boundaries,
+        rigid,
+        water,
+        reinforcement,
     };
-    let sections = outputs::sections(tree, &about, &site, problems);
-    let curves = curves::curves(tree, names, &loads, file, problems);
-    let checks = checks::checks(tree, names, &loads, &stages, problems);
-    let output = outputs::output::<2>(tree, problems);
-    let mesh_study = study::mesh_study(tree);
-
-    let case = tree.get("case")?;
-    let case = Case {
-        water_unit_weight: case.number_at("water_unit_weight")?,
-        water: all(water)?,
-        title: case.text_at("title")?.to_owned(),
-        title_block: title_block(case),
-        gravity: case.number_at("gravity")?,
-        grid: grid?,
-        method: method?,
-        materials: all(materials)?,
-        bodies: all(bodies)?,
-        boundaries: boundaries?,
-        loads: all(loads)?,
-        rigid: all(rigid)?,
-        reinforcement: all(reinforcement)?,
-        stages: all(stages)?,
-        solver: solver?,
-        monitors: all(monitors)?,
-        sections: all(sections)?,
-        curves: all(curves)?,
-        checks: all(checks)?,
-        mesh_study: mesh_study?,
-        output: output?,
-    };
-    let case = case.refined(tree.get("grid")?.count_at("refine")?);
-    study::check(tree, &case, problems);
-    Some(case)
+    assemble::assemble((&context, file), &basics, upon, stages, problems)
 }
 
 /// The head of the report.

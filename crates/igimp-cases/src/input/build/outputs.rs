@@ -27,6 +27,7 @@ pub(super) fn solver(
     let linear = match node.text_at("linear")? {
         "cholesky" => SolverKind::MultifrontalCholesky,
         "multigrid" => SolverKind::Multigrid,
+        "single" => SolverKind::Single,
         "lu" => SolverKind::Multifrontal,
         "faer-cholesky" => SolverKind::FaerCholesky,
         "nalgebra-cholesky" => SolverKind::NalgebraCholesky,
@@ -113,6 +114,17 @@ pub(super) fn sections<const D: usize>(
                 problems
                     .warning(node.place_at("from"), "this section meets no body")
                     .help("it will hold no values");
+            }
+            let has_cuts = tree
+                .get("output")
+                .is_some_and(|own| !own.items_at("cuts").is_empty());
+            if has_cuts && node.text_at("name")?.starts_with("cut-") {
+                problems
+                    .error(
+                        node.place_at("name"),
+                        "tables of planes have names that begin with `cut-`",
+                    )
+                    .help("give the section another name");
             }
             let record = fields::<D>(node.items_at("record"), problems);
             let references: Option<Vec<_>> = node

@@ -1,9 +1,9 @@
 //! Reinforcement: its lines, whether soil holds them, and which stages install it.
 
 use super::AllNames;
-use super::site::Site;
+use super::site::{Site, Soil};
 use super::stages::Context;
-use crate::case::{ReinforcementKind, ReinforcementPart};
+use crate::case::{ReinforcementKind, ReinforcementPart, distance};
 use crate::input::diagnostic::Problems;
 use crate::input::text::{clip, number, point};
 use crate::input::tree::Node;
@@ -13,22 +13,31 @@ const SAMPLES: u32 = 40;
 /// A head this near to an edge of the soil lies on it, as a share of the cell \[-\].
 const NEAR: f64 = 0.05;
 
-/// The members.
+/// The members in the plane.
 pub(super) fn reinforcement(
     tree: &Node,
     site: &Site,
     problems: &mut Problems,
 ) -> Vec<Option<ReinforcementPart>> {
     let nodes = tree.items_at("reinforcement").iter();
-    nodes.map(|node| part(tree, node, site, problems)).collect()
+    let member = |node: &Node| {
+        let mut own = part(tree, node, site, problems)?;
+        let width = node.optional_number("plate").ok()?;
+        if let Some(width) = width.filter(|&width| width > 0.0) {
+            own.plate = Some(plate(&own, width, site).to_vec());
+        }
+        Some(own)
+    };
+    nodes.map(member).collect()
 }
 
-fn part(
+/// A member without its plate.
+pub(super) fn part<const D: usize>(
     tree: &Node,
     node: &Node,
-    site: &Site,
+    soil: &dyn Soil<D>,
     problems: &mut Problems,
-) -> Option<ReinforcementPart> {
+) -> Option<ReinforcementPart<D>> {
     let name = node.text_at("name")?;
     let shown = clip(name, 40);
     let kind = match node.text_at("type")? {
@@ -37,10 +46,10 @@ fn part(
         _ => ReinforcementKind::Geotextile,
     };
     let (line, last) = if kind == ReinforcementKind::Geotextile {
-        let points: Option<Vec<_>> = node.items_at("points").iter().map(Node::pair).collect();
+        let points: Option<Vec<_>> = node.items_at("points").iter().map(Node::point).collect();
         (points?, "points")
     } else {
-        (vec![node.pair_at("head")?, node.pair_at("end")?], "end")
+        (vec![node.point_at("head")?, node.point_at("end")?], "end")
     };
     let capacity = node.number_at("capacity")?;
     let at_head = node.optional_number("head_capacity").ok()?;
@@ -62,7 +71,7 @@ fn part(
     let short = part
         .line
         .windows(2)
-        .any(|leg| (leg[1][0] - leg[0][0]).hypot(leg[1][1] - leg[0][1]) <= site.round_off);
+        .any(|leg| distance(&leg[0], &leg[1]) <= soil.round_off());
     if short {
         problems.error(
             node.place_at(last),
@@ -81,16 +90,13 @@ fn part(
                 .help(format!("from head to end it is {} m long", number(length)));
             return None;
         }
-        part.free_length = if length - bonded <= site.round_off {
+        part.free_length = if length - bonded <= soil.round_off() {
             0.0
         } else {
             length - bonded
         };
     }
-    let within = in_soil(node, &part, site, problems);
-    if let Some(width) = node.optional_number("plate").ok()?.filter(|&w| w > 0.0) {
-        part.plate = Some(plate(&part, width, site));
-    }
+    let within = in_soil(node, &part, soil, problems);
     holds(node, &part, problems);
     within.then_some(part)
 }
@@ -102,8 +108,13 @@ fn installed(tree: &Node) -> impl Iterator<Item = &Node> {
 }
 
 /// Refuses a member with a head, or a bonded part, where no soil is.
-fn in_soil(node: &Node, part: &ReinforcementPart, site: &Site, problems: &mut Problems) -> bool {
-    if !site.is_complete {
+fn in_soil<const D: usize>(
+    node: &Node,
+    part: &ReinforcementPart<D>,
+    soil: &dyn Soil<D>,
+    problems: &mut Problems,
+) -> bool {
+    if !soil.is_known() {
         return true;
     }
     let length = part.length();
@@ -111,7 +122,7 @@ fn in_soil(node: &Node, part: &ReinforcementPart, site: &Site, problems: &mut Pr
         .map(|k| f64::from(k) / f64::from(SAMPLES) * length)
         .filter(|&at| at == 0.0 || at >= part.free_length)
         .map(|at| place(&part.line, at))
-        .find(|&at| !site.holds(at, 1e-2 * site.cell()));
+        .find(|at| !soil.holds_point(at, 1e-2 * soil.cell()));
     let Some(at) = free else { return true };
     problems
         .error(
@@ -128,12 +139,13 @@ fn in_soil(node: &Node, part: &ReinforcementPart, site: &Site, problems: &mut Pr
 }
 
 /// The point of a line at a distance from its beginning.
-fn place(line: &[[f64; 2]], mut at: f64) -> [f64; 2] {
+fn place<const D: usize>(line: &[[f64; D]], mut at: f64) -> [f64; D] {
     for leg in line.windows(2) {
-        let along = [leg[1][0] - leg[0][0], leg[1][1] - leg[0][1]];
-        let length = along[0].hypot(along[1]);
+        let length = distance(&leg[0], &leg[1]);
         if at <= length {
-            return [0, 1].map(|axis| leg[0][axis] + at / length * along[axis]);
+            return std::array::from_fn(|axis| {
+                leg[0][axis] + at / length * (leg[1][axis] - leg[0][axis])
+            });
         }
         at -= length;
     }
@@ -164,7 +176,7 @@ fn plate(part: &ReinforcementPart, width: f64, site: &Site) -> [[f64; 2]; 2] {
 }
 
 /// Refuses what carries nothing, and a prestress that the member does not carry.
-fn holds(node: &Node, part: &ReinforcementPart, problems: &mut Problems) {
+fn holds<const D: usize>(node: &Node, part: &ReinforcementPart<D>, problems: &mut Problems) {
     let (name, kind) = (clip(&part.name, 40), part.kind.name());
     let length = part.length();
     let most = (0..=SAMPLES)
@@ -190,8 +202,9 @@ fn holds(node: &Node, part: &ReinforcementPart, problems: &mut Problems) {
                 format!("the anchor `{name}` does not carry its prestress"),
             )
             .help(format!(
-                "capacity, head_capacity and bond times bonded_length leave it {} kN/m",
-                number(limit / 1e3)
+                "capacity, head_capacity and bond times bonded_length leave it {} {}",
+                number(limit / 1e3),
+                if D == 2 { "kN/m" } else { "kN" }
             ));
     }
     if part.from_start {

@@ -1,81 +1,49 @@
-//! Rigid bodies: their shapes, what their sides are like, and whether they have a place.
+//! Rigid bodies: what their sides are like, and whether the grid has a place for them.
 
 use std::sync::Arc;
 
 use igimp_assembly::{SurfaceError, Tension};
 
-use super::AllNames;
 use super::grid::Frame;
-use super::sequence::Sequence;
-use super::site::Site;
-use super::stages::Context;
-use crate::case::{
-    Adhesion, COMPONENTS, Load, LoadKind, Material, RigidDrive, RigidInterface, RigidMove,
-    RigidPart, RigidShape, RigidShear, StageKind, Strength,
-};
+use crate::case::{Adhesion, Material, RigidForm, RigidInterface, RigidPart, RigidShear, Strength};
 use crate::input::diagnostic::Problems;
-use crate::input::geometry::{distinct, overlap, self_crossing};
-use crate::input::text::{clip, number, point};
-use crate::input::tree::{Node, Wrong};
-use crate::polygon::area_and_centroid;
+use crate::input::text::{clip, number};
+use crate::input::tree::Node;
 
 /// A body is at least so many cells thick.
 const LEAST_CELLS: f64 = 2.0;
-/// Corners of a circle where it is looked at as a polygon.
-const POINTS_OF_CIRCLE: usize = 90;
 
-/// What rigid bodies are held against.
-pub(super) struct Around<'a> {
-    pub(super) site: &'a Site,
-    pub(super) materials: &'a [Option<Material>],
-    pub(super) loads: &'a [Option<Load>],
-    pub(super) tree: &'a Node,
-    pub(super) sequence: &'a Sequence,
+/// A shape, and what is told of it.
+pub(super) struct Basis<const D: usize> {
+    pub(super) shape: Arc<dyn RigidForm<D>>,
+    /// The point that displacement and forces are told of \[m\].
+    pub(super) reference: [f64; D],
+    pub(super) sides: Sides,
+    /// \[m\].
+    pub(super) thickness: f64,
 }
 
-/// The rigid bodies.
-pub(super) fn rigid(
-    tree: &Node,
-    around: &Around<'_>,
+/// The sides of a shape.
+pub(super) struct Sides {
+    pub(super) count: usize,
+    /// Names of the first ones, in their order.
+    pub(super) names: &'static [&'static str],
+}
+
+/// The rigid body that a shape becomes.
+pub(super) fn part_of<const D: usize>(
+    node: &Node,
+    basis: Option<Basis<D>>,
+    (frame, materials): (Option<&Frame<D>>, &[Option<Material>]),
     problems: &mut Problems,
-) -> Vec<Option<RigidPart>> {
-    let nodes = tree.items_at("rigid");
-    let parts: Vec<_> = nodes
-        .iter()
-        .map(|node| part(node, around, problems))
-        .collect();
-    follow_once(nodes, around, problems);
-    parts
-}
-
-fn part(node: &Node, around: &Around<'_>, problems: &mut Problems) -> Option<RigidPart> {
-    let name = node.text_at("name")?;
-    let shown = clip(name, 40);
-    let shape = shape(node, &shown, around.site, problems);
-    let sides = match &shape {
-        Some(RigidShape::Polygon(corners)) => corners.len(),
-        _ => 1,
-    };
-    let whole = interface(node, None, around.materials, problems);
-    let interfaces =
-        whole.and_then(|whole| all_sides(node, whole, sides, around.materials, problems));
-    let stated = match node.get("reference") {
-        None => None,
-        Some(value) => Some(value.pair()?),
-    };
-    if let (Some(RigidShape::Circle { .. }), Some(_)) = (&shape, stated) {
-        problems
-            .error(
-                node.place_at("reference"),
-                "the reference point of a circle is its centre",
-            )
-            .help("remove reference, or use a polygon");
-    }
-    let shape = shape?;
+) -> Option<RigidPart<D>> {
+    let whole = interface(node, None, materials, problems);
+    let basis = basis?;
+    let interfaces = all_sides(node, whole?, &basis.sides, materials, problems);
     let part = RigidPart {
-        name: name.to_owned(),
-        reference: stated.unwrap_or_else(|| reference(node, &shape)),
-        shape: Arc::new(shape),
+        name: node.text_at("name")?.to_owned(),
+        reference: basis.reference,
+        shape: basis.shape,
         interfaces: interfaces?,
         stiffness: node.number_at("stiffness")?,
         rounding: node.number_at("rounding")?,
@@ -85,88 +53,14 @@ fn part(node: &Node, around: &Around<'_>, problems: &mut Problems) -> Option<Rig
         from_start: node.flag_at("from_start")?,
         most_penetration: node.number_at("most_penetration")?,
     };
-    if let Some(frame) = &around.site.frame {
-        in_grid(node, &part, frame, problems);
+    if let Some(frame) = frame {
+        in_grid(node, (&part, basis.thickness), frame, problems);
     }
-    beside_soil(node, &part, around, problems);
     Some(part)
 }
 
-fn shape(node: &Node, name: &str, site: &Site, problems: &mut Problems) -> Option<RigidShape> {
-    let mut flat = |place| {
-        problems.error(place, format!("the rigid body `{name}` has no area"));
-        None
-    };
-    Some(match node.text_at("type")? {
-        "rectangle" => {
-            let (a, b) = (node.pair_at("from")?, node.pair_at("to")?);
-            let [left, bottom] = [a[0].min(b[0]), a[1].min(b[1])];
-            let [right, top] = [a[0].max(b[0]), a[1].max(b[1])];
-            if right - left <= site.round_off || top - bottom <= site.round_off {
-                return flat(node.place_at("to"));
-            }
-            RigidShape::Polygon(vec![
-                [left, bottom],
-                [right, bottom],
-                [right, top],
-                [left, top],
-            ])
-        }
-        "circle" => RigidShape::Circle {
-            centre: node.pair_at("centre")?,
-            radius: node.number_at("radius")?,
-        },
-        "wall" => {
-            let (from, to) = (node.pair_at("from")?, node.pair_at("to")?);
-            let thickness = node.number_at("thickness")?;
-            let along = [to[0] - from[0], to[1] - from[1]];
-            let length = along[0].hypot(along[1]);
-            if length <= site.round_off {
-                return flat(node.place_at("to"));
-            }
-            let back = [-along[1], along[0]].map(|x| x / length * thickness);
-            let behind = |at: [f64; 2]| [at[0] + back[0], at[1] + back[1]];
-            RigidShape::Polygon(vec![from, to, behind(to), behind(from)])
-        }
-        _ => {
-            let corners: Option<Vec<_>> = node.items_at("corners").iter().map(Node::pair).collect();
-            let corners = distinct(&corners?, site.round_off);
-            if corners.len() < 3 {
-                return flat(node.place_at("corners"));
-            }
-            if let Some(at) = self_crossing(&corners, site.round_off) {
-                problems.error(
-                    node.place_at("corners"),
-                    format!("the rigid body `{name}` crosses itself at {}", point(at)),
-                );
-                return None;
-            }
-            if area_and_centroid(&corners).0 == 0.0 {
-                return flat(node.place_at("corners"));
-            }
-            RigidShape::Polygon(corners)
-        }
-    })
-}
-
-/// The point that displacement and forces are told of where the file does not say.
-fn reference(node: &Node, shape: &RigidShape) -> [f64; 2] {
-    let middle = |a: [f64; 2], b: [f64; 2]| [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
-    match shape {
-        RigidShape::Circle { centre, .. } => *centre,
-        RigidShape::Polygon(corners) => {
-            if let Some("rectangle" | "wall") = node.text_at("type") {
-                middle(corners[0], corners[1])
-            } else {
-                let (lower, upper) = crate::polygon::bounding_box(corners);
-                middle(lower, upper)
-            }
-        }
-    }
-}
-
 /// What a table says of its interface; what it does not say is that of the whole body.
-pub(super) fn interface(
+fn interface(
     node: &Node,
     whole: Option<RigidInterface>,
     materials: &[Option<Material>],
@@ -259,44 +153,48 @@ fn shear(
 fn all_sides(
     node: &Node,
     whole: RigidInterface,
-    sides: usize,
+    sides: &Sides,
     materials: &[Option<Material>],
     problems: &mut Problems,
 ) -> Option<Vec<RigidInterface>> {
-    let mut interfaces = vec![whole; sides];
+    let Sides { count, names } = sides;
+    let mut interfaces = vec![whole; *count];
     for own in node.items_at("sides") {
         let value = own.get("side")?;
-        let kind = node.text_at("type")?;
-        let side = match (value.text(), kind) {
-            (Some("bottom"), "rectangle") | (Some("face"), "wall") => Some(1),
-            (Some("right"), "rectangle") => Some(2),
-            (Some("top"), "rectangle") => Some(3),
-            (Some("left"), "rectangle") => Some(4),
-            (Some(_), _) => None,
-            (None, _) => Some(value.count()?),
+        let side = match value.text() {
+            Some(name) => names.iter().position(|known| *known == name),
+            None => value.count()?.checked_sub(1),
         };
-        let Some(side) = side.filter(|side| (1..=sides).contains(side)) else {
-            let names = match kind {
-                "rectangle" => "bottom, right, top, left, or 1 to 4".to_owned(),
-                "wall" => "face, or 1 to 4".to_owned(),
-                _ if sides == 1 => "1".to_owned(),
-                _ => format!("1 to {sides}"),
+        let Some(side) = side.filter(|side| side < count) else {
+            let numbers = match count {
+                1 => "1".to_owned(),
+                _ => format!("1 to {count}"),
             };
+            let known = match names {
+                [] => numbers,
+                _ => format!("{}, or {numbers}", names.join(", ")),
+            };
+            let kind = node.text_at("type")?;
             problems
                 .error(value.place, format!("a {kind} has no such side"))
-                .help(format!("sides here: {names}"));
+                .help(format!("sides here: {known}"));
             return None;
         };
-        interfaces[side - 1] = interface(own, Some(whole), materials, problems)?;
+        interfaces[side] = interface(own, Some(whole), materials, problems)?;
     }
     Some(interfaces)
 }
 
 /// Refuses a body that lies outside the grid, or is too thin for it.
-fn in_grid(node: &Node, part: &RigidPart, frame: &Frame, problems: &mut Problems) {
+fn in_grid<const D: usize>(
+    node: &Node,
+    (part, thickness): (&RigidPart<D>, f64),
+    frame: &Frame<D>,
+    problems: &mut Problems,
+) {
     let name = clip(&part.name, 40);
     let (lower, upper) = part.bounds();
-    if (0..2).any(|k| upper[k] <= frame.lower[k] || lower[k] >= frame.upper[k]) {
+    if (0..D).any(|k| upper[k] <= frame.lower[k] || lower[k] >= frame.upper[k]) {
         problems
             .error(
                 node.place_at("name"),
@@ -305,11 +203,10 @@ fn in_grid(node: &Node, part: &RigidPart, frame: &Frame, problems: &mut Problems
             .help("soil is only within the domain: move the body, or extend [grid] domain");
         return;
     }
-    let [x, y] = &frame.axes;
-    let cell = x
-        .smallest_between(lower[0], upper[0])
-        .min(y.smallest_between(lower[1], upper[1]));
-    let thickness = thickness(part);
+    let axes = frame.axes.iter().enumerate();
+    let cell = axes
+        .map(|(axis, own)| own.smallest_between(lower[axis], upper[axis]))
+        .fold(f64::INFINITY, f64::min);
     if thickness < LEAST_CELLS * cell * (1.0 - 1e-9) {
         problems
             .error(
@@ -346,101 +243,40 @@ fn in_grid(node: &Node, part: &RigidPart, frame: &Frame, problems: &mut Problems
                     node.place_at("name"),
                     format!("the rigid body `{name}` cannot be made: {error}"),
                 )
-                .help("soil is only within the domain: the body need not reach far beyond it");
+                .help(if D == 2 {
+                    "soil is only within the domain: the body need not reach far beyond it"
+                } else {
+                    "a smaller rounding, or smaller cells there, may help"
+                });
         }
     }
-    let level = lower[1];
+    let level = lower[D - 1];
     if part.grid_follows {
-        let place = y.place(level);
+        let place = frame.axes[D - 1].place(level);
         if (place - place.round()).abs() > 1e-6 || place.round() < 1.0 {
+            let up = if D == 2 { "y" } else { "z" };
             problems
                 .error(
                     node.place_at("grid_follows"),
                     format!(
-                        "no row of the grid lies at y = {} m, its lowest place",
+                        "no row of the grid lies at {up} = {} m, its lowest place",
                         number(level)
                     ),
                 )
                 .help(format!(
-                    "add lines = {{ y = [\"{} m\"] }} to [grid]",
+                    "add lines = {{ {up} = [\"{} m\"] }} to [grid]",
                     number(level)
                 ));
         }
     }
 }
 
-/// The smallest distance of two parallel lines that hold a body between them \[m\].
-fn thickness(part: &RigidPart) -> f64 {
-    let Some(RigidShape::Polygon(corners)) = part.shape.in_plane() else {
-        let (lower, upper) = part.bounds();
-        return upper[0] - lower[0];
-    };
-    let n = corners.len();
-    let mut least = f64::INFINITY;
-    // The narrowest strip runs along an edge of the hull: a line between two corners.
-    for a in 0..n {
-        for b in a + 1..n {
-            let along = [corners[b][0] - corners[a][0], corners[b][1] - corners[a][1]];
-            let length = along[0].hypot(along[1]);
-            if length == 0.0 || n > MOST_PAIRED && b != a + 1 {
-                continue;
-            }
-            let heights = corners.iter().map(|corner| {
-                (along[0] * (corner[1] - corners[a][1]) - along[1] * (corner[0] - corners[a][0]))
-                    / length
-            });
-            let (low, high) = heights.fold((0.0_f64, 0.0_f64), |(low, high), height| {
-                (low.min(height), high.max(height))
-            });
-            least = least.min(high - low);
-        }
-    }
-    least
-}
-
-/// Corners up to which every pair is looked at for the thickness of a body.
-const MOST_PAIRED: usize = 100;
-
-/// Refuses a body that overlaps soil as it starts, or that is placed while it is there.
-fn beside_soil(node: &Node, part: &RigidPart, around: &Around<'_>, problems: &mut Problems) {
-    let Around { site, sequence, .. } = around;
-    let outline = part.outline(POINTS_OF_CIRCLE);
-    let names = |stage: &Node| {
-        let mut moved = stage.items_at("bodies").iter();
-        moved.any(|own| own.text_at("body") == Some(&part.name))
-    };
-    let first = around.tree.items_at("stages").iter().position(names);
-    let (before, after) = match first {
-        Some(stage) if !part.from_start => (sequence.before(stage), &sequence.ends[stage..]),
-        _ => (&sequence.start, &sequence.ends[..]),
-    };
-    let is_there = |body: usize| {
-        let mut scenes = std::iter::once(before).chain(after);
-        !site.is_complete || scenes.any(|scene| scene.present[body])
-    };
-    let found = (site.polygons.iter().enumerate())
-        .filter(|(body, _)| is_there(*body))
-        .find_map(|(_, polygon)| overlap(polygon, &outline, site.round_off));
-    if let Some(at) = found {
-        problems
-            .error(
-                node.place_at("name"),
-                format!(
-                    "the rigid body `{}` overlaps soil at {}",
-                    clip(&part.name, 40),
-                    point(at)
-                ),
-            )
-            .help(
-                "leave its place free in the polygons of [[bodies]], or let it start beside them",
-            );
-    }
-}
-
 /// Refuses a second thing that the grid would follow.
-fn follow_once(nodes: &[Node], around: &Around<'_>, problems: &mut Problems) {
-    let is_footing = |load: &Load| matches!(load.kind, LoadKind::RigidFooting { .. });
-    let mut is_taken = around.loads.iter().flatten().any(is_footing);
+pub(super) fn follow_once(
+    nodes: &[Node],
+    (mut is_taken, help): (bool, &str),
+    problems: &mut Problems,
+) {
     for node in nodes {
         if node.flag_at("grid_follows") == Some(true) && std::mem::replace(&mut is_taken, true) {
             problems
@@ -448,108 +284,7 @@ fn follow_once(nodes: &[Node], around: &Around<'_>, problems: &mut Problems) {
                     node.place_at("grid_follows"),
                     "the grid follows something else already",
                 )
-                .help("it can follow one rigid body, or one rigid footing");
-        }
-    }
-}
-
-/// A stage that moves rigid bodies.
-pub(super) fn stage<const D: usize>(
-    context: &Context<'_, D>,
-    node: &Node,
-    name: &str,
-    problems: &mut Problems,
-) -> Option<StageKind> {
-    let mut moves: Vec<RigidMove> = Vec::new();
-    let mut is_right = true;
-    for own in node.items_at("bodies") {
-        let who = format!("stage `{name}` moves");
-        let Some(body) =
-            (own.get("body")).and_then(|value| context.names.rigid.find(value, &who, problems))
-        else {
-            is_right = false;
-            continue;
-        };
-        if moves.iter().any(|other| other.body == body) {
-            problems.error(own.place_at("body"), "this rigid body is named twice");
-        }
-        match drives::<D>(own, problems) {
-            Ok(drives) => moves.push(RigidMove { body, drives }),
-            Err(Wrong) => is_right = false,
-        }
-    }
-    is_right.then_some(StageKind::Rigid(moves))
-}
-
-fn drives<const D: usize>(
-    own: &Node,
-    problems: &mut Problems,
-) -> Result<[Option<RigidDrive>; COMPONENTS], Wrong> {
-    let free: Vec<&str> = own.items_at("free").iter().filter_map(Node::text).collect();
-    let mut drives = [None; COMPONENTS];
-    let components: &[(&str, &str)] = if D == 2 {
-        &[("x", "force_x"), ("y", "force_y"), ("rotation", "moment")]
-    } else {
-        &[
-            ("x", "force_x"),
-            ("y", "force_y"),
-            ("z", "force_z"),
-            ("rotation_x", "moment_x"),
-            ("rotation_y", "moment_y"),
-            ("rotation_z", "moment_z"),
-        ]
-    };
-    for (drive, &(by, force)) in drives.iter_mut().zip(components) {
-        let (moved, loaded) = (own.optional_number(by)?, own.optional_number(force)?);
-        let is_free = free.contains(&by);
-        let told = usize::from(moved.is_some()) + usize::from(loaded.is_some());
-        if told + usize::from(is_free) > 1 {
-            let second = if loaded.is_some() { force } else { "free" };
-            let first = if moved.is_some() { by } else { "free" };
-            problems
-                .error(
-                    own.place_at(second),
-                    format!("both `{first}` and `{second}` are said of one component"),
-                )
-                .help("a component is moved, or loaded, or free: keep one of them");
-            return Err(Wrong);
-        }
-        *drive = match (moved, loaded) {
-            (Some(by), _) => Some(RigidDrive::By(by)),
-            (_, Some(force)) => Some(RigidDrive::Force(force)),
-            _ if is_free => Some(RigidDrive::Force(0.0)),
-            _ => None,
-        };
-    }
-    Ok(drives)
-}
-
-/// Warns of rigid bodies that never come in.
-pub(super) fn check_use(tree: &Node, names: &AllNames, problems: &mut Problems) {
-    let moved: Vec<&str> = (tree.items_at("stages").iter())
-        .filter(|stage| stage.text_at("type") == Some("rigid"))
-        .flat_map(|stage| stage.items_at("bodies"))
-        .filter_map(|own| own.text_at("body"))
-        .collect();
-    if moved
-        .iter()
-        .any(|name| names.rigid.position(name).is_none())
-    {
-        return;
-    }
-    for node in tree.items_at("rigid") {
-        let is_there = node.flag_at("from_start") != Some(false);
-        if let Some(name) = node.text_at("name")
-            && !is_there
-            && !moved.contains(&name)
-        {
-            problems.warning(
-                node.place_at("name"),
-                format!(
-                    "no stage names the rigid body `{}`, which is never there",
-                    clip(name, 40)
-                ),
-            );
+                .help(help);
         }
     }
 }

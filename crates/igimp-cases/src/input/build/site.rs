@@ -2,7 +2,7 @@
 
 use super::grid::Frame;
 use super::sequence::Sequence;
-use crate::case::BodyPart;
+use crate::case::{BodyPart, LoadKind};
 use crate::input::geometry::{contains, near_edge, top_edges};
 use crate::polygon::bounding_box;
 
@@ -31,8 +31,14 @@ pub(super) trait Soil<const D: usize> {
     /// Whether a point lies in a body or nearly on its edge.
     fn holds_point(&self, point: &[f64; D], margin: f64) -> bool;
 
+    /// Whether a body lies along a load: near its edge, or around it.
+    fn bears(&self, body: usize, load: &LoadKind<D>) -> bool;
+
     /// Lengths below this are round-off \[m\].
     fn round_off(&self) -> f64;
+
+    /// Smallest side of a cell \[m\].
+    fn cell(&self) -> f64;
 }
 
 impl Soil<2> for Site {
@@ -44,8 +50,31 @@ impl Soil<2> for Site {
         self.holds(*point, margin)
     }
 
+    fn bears(&self, body: usize, load: &LoadKind) -> bool {
+        let [from, to] = match *load {
+            LoadKind::RigidFooting { from, to, .. } | LoadKind::Pressure { from, to, .. } => {
+                [from, to]
+            }
+            LoadKind::Patch { .. } => return false,
+            LoadKind::Point { at, .. } => [at; 2],
+        };
+        let margin = (1e-2 * self.cell()).max(self.round_off);
+        let Some(polygon) = self.polygons.get(body).filter(|_| self.is_complete) else {
+            return false;
+        };
+        (0..5).any(|k| {
+            let t = (f64::from(k) + 0.5) / 5.0;
+            let at = [0, 1].map(|axis| from[axis] + t * (to[axis] - from[axis]));
+            contains(polygon, at) || near_edge(polygon, at, margin)
+        })
+    }
+
     fn round_off(&self) -> f64 {
         self.round_off
+    }
+
+    fn cell(&self) -> f64 {
+        self.cell()
     }
 }
 
@@ -146,19 +175,6 @@ impl Site {
         let margin = margin.max(self.round_off);
         self.near(point, margin)
             .any(|(_, polygon)| contains(polygon, point) || near_edge(polygon, point, margin))
-    }
-
-    /// Whether a body lies along a load from one end to the other: near its edge, or around it.
-    pub(super) fn bears(&self, body: usize, [from, to]: [[f64; 2]; 2]) -> bool {
-        let margin = (1e-2 * self.cell()).max(self.round_off);
-        let Some(polygon) = self.polygons.get(body).filter(|_| self.is_complete) else {
-            return false;
-        };
-        (0..5).any(|k| {
-            let t = (f64::from(k) + 0.5) / 5.0;
-            let at = [0, 1].map(|axis| from[axis] + t * (to[axis] - from[axis]));
-            contains(polygon, at) || near_edge(polygon, at, margin)
-        })
     }
 
     /// Edges with soil below and none above: left end, right end. Edges that another body covers

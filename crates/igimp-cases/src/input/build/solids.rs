@@ -3,7 +3,7 @@
 use std::fmt::{self, Display, Formatter};
 
 use super::bodies::corners;
-use super::surfaces::{closed_surface, ground, triple};
+use super::surfaces::{closed_surface, ground};
 use crate::input::diagnostic::Problems;
 use crate::input::text::{clip, number};
 use crate::input::tree::Node;
@@ -130,7 +130,7 @@ fn shape(node: &Node, who: &Who<'_>, problems: &mut Problems) -> Option<Solid> {
             }))
         }
         "sphere" => Some(Solid::Sphere(Sphere {
-            centre: triple(value.get("centre")?)?,
+            centre: value.point_at("centre")?,
             radius: value.number_at("radius")?,
         })),
         _ => closed_surface(value, who, problems).map(Solid::Surface),
@@ -138,7 +138,7 @@ fn shape(node: &Node, who: &Who<'_>, problems: &mut Problems) -> Option<Solid> {
 }
 
 fn cuboid(node: &Node, who: &Who<'_>, problems: &mut Problems) -> Option<Solid> {
-    let (a, b) = (triple(node.get("from")?)?, triple(node.get("to")?)?);
+    let (a, b) = (node.point_at::<3>("from")?, node.point_at::<3>("to")?);
     let lower: [f64; 3] = std::array::from_fn(|axis| a[axis].min(b[axis]));
     let upper: [f64; 3] = std::array::from_fn(|axis| a[axis].max(b[axis]));
     if let Some(axis) = (0..3).find(|&axis| lower[axis] >= upper[axis]) {

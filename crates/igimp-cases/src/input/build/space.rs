@@ -3,12 +3,15 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use super::assemble::{self, Basics, Upon};
 use super::grid::Frame;
 use super::sequence::{Sequence, placed};
 use super::site::Soil;
-use super::{AllNames, all, boundaries, checks, construction, curves, grid, materials, outputs};
-use super::{rigid_space, solids, stages, study, title_block};
-use crate::case::{BodyPart, Case, Ground, Load, LoadKind, Material, WaterCondition};
+use super::{
+    AllNames, boundaries, loads_space, reinforcement, reinforcement_space, rigid_space,
+    rigid_stage, solids, stages, water, water_checks,
+};
+use crate::case::{BodyPart, Case, Ground, LoadKind, Material};
 use crate::input::diagnostic::Problems;
 use crate::input::text::{clip, count, number, point};
 use crate::input::tree::Node;
@@ -18,12 +21,15 @@ use crate::region::Region;
 const MOST: f64 = 5e7;
 
 /// The bodies, for the checks of places.
-struct Solids {
-    regions: Vec<Arc<dyn Region<3>>>,
-    is_complete: bool,
-    round_off: f64,
+pub(super) struct Solids {
+    pub(super) regions: Vec<Arc<dyn Region<3>>>,
+    pub(super) is_complete: bool,
+    pub(super) round_off: f64,
     /// Smallest side of a cell \[m\].
-    cell: f64,
+    pub(super) cell: f64,
+    /// Extent of the grid \[m\].
+    pub(super) lower: [f64; 3],
+    pub(super) upper: [f64; 3],
 }
 
 impl Solids {
@@ -43,6 +49,8 @@ impl Solids {
             is_complete: frame.is_some() && regions.len() == bodies.len() && !bodies.is_empty(),
             regions,
             round_off,
+            lower: frame.map_or([0.0; 3], |frame| frame.lower),
+            upper: frame.map_or([0.0; 3], |frame| frame.upper),
             cell: cells
                 .map(|axis| axis.extremes()[0])
                 .fold(f64::INFINITY, f64::min),
@@ -57,18 +65,43 @@ impl Soil<3> for Solids {
 
     fn holds_point(&self, point: &[f64; 3], margin: f64) -> bool {
         let margin = margin.max(self.round_off);
-        let beside = (0..6).map(|side| {
-            let mut at = *point;
-            at[side / 2] += if side % 2 == 0 { margin } else { -margin };
-            at
-        });
-        let mut places = std::iter::once(*point).chain(beside);
-        places.any(|at| self.regions.iter().any(|region| region.encloses(at)))
+        self.regions
+            .iter()
+            .any(|region| near(&**region, point, margin))
+    }
+
+    fn bears(&self, body: usize, load: &LoadKind<3>) -> bool {
+        let Some(region) = self.regions.get(body).filter(|_| self.is_complete) else {
+            return false;
+        };
+        let margin = (1e-2 * self.cell).max(self.round_off);
+        let places = match load {
+            LoadKind::RigidFooting { .. } => Vec::new(),
+            LoadKind::Pressure { from, to, .. } => loads_space::samples(from, to),
+            LoadKind::Patch { plan, level, .. } => loads_space::places(plan, *level, self),
+            LoadKind::Point { at, .. } => vec![*at],
+        };
+        places.iter().any(|at| near(&**region, at, margin))
     }
 
     fn round_off(&self) -> f64 {
         self.round_off
     }
+
+    fn cell(&self) -> f64 {
+        self.cell
+    }
+}
+
+/// Whether a place lies in a region, or not further outside than a margin.
+fn near(region: &dyn Region<3>, point: &[f64; 3], margin: f64) -> bool {
+    let beside = (0..6).map(|side| {
+        let mut at = *point;
+        at[side / 2] += if side % 2 == 0 { margin } else { -margin };
+        at
+    });
+    let mut places = std::iter::once(*point).chain(beside);
+    places.any(|at| region.encloses(at))
 }
 
 /// The case; `None` only when a problem was reported, here or before.
@@ -79,89 +112,56 @@ pub(super) fn build(
     problems: &mut Problems,
 ) -> Option<Case<3>> {
     refuse_what_is_of_the_plane(tree, problems);
-    let mut frame = grid::frame::<3>(tree, problems);
-    let method = grid::method(tree);
-    let bodies = bodies(tree, names, problems);
-    let materials = materials::materials(tree, &bodies, problems);
-    let grid = grid::grid(tree, frame.as_ref(), &bodies, problems);
-    if let (Some(frame), Some(grid)) = (&mut frame, &grid) {
-        frame.axes.clone_from(&grid.axes);
-    }
-    let sequence = Sequence::new(tree, names, &bodies);
-    let soil = Solids::new(&bodies, frame.as_ref());
-    check_bodies(tree, frame.as_ref(), (&bodies, &sequence), &soil, problems);
-    let boundaries = boundaries::boundaries(tree, frame.as_ref(), problems);
-    let loads = loads(tree, &soil, problems);
-    let rigid = rigid_space::rigid(tree, frame.as_ref(), &materials, problems);
-    super::rigid::check_use(tree, names, problems);
-    let water: Vec<Option<WaterCondition>> = Vec::new();
+    let basics = Basics::new(tree, names, bodies(tree, names, problems), problems);
+    let Basics {
+        frame,
+        bodies,
+        materials,
+        sequence,
+        ..
+    } = &basics;
+    let frame = frame.as_ref();
+    let soil = Solids::new(bodies, frame);
+    check_bodies(tree, frame, (bodies, sequence), &soil, problems);
+    let boundaries = boundaries::boundaries(tree, frame, problems);
+    let loads = loads_space::loads(tree, &soil, problems);
+    let rigid = rigid_space::rigid(tree, frame, materials, problems);
+    rigid_stage::check_use(tree, names, problems);
+    let around = water::Around {
+        tree,
+        names,
+        earth: &soil,
+        bodies,
+        materials,
+        sequence,
+    };
+    let water = water::conditions(&around, problems);
+    water_checks::check(&around, &water, problems);
+    let reinforcement = reinforcement_space::reinforcement(tree, &soil, problems);
+    reinforcement::check_searches(tree, names, problems);
     let context = stages::Context {
         tree,
         names,
-        materials: &materials,
-        bodies: &bodies,
+        materials,
+        bodies,
         loads: &loads,
+        soil: &soil,
         site: None,
-        sequence: &sequence,
+        sequence,
     };
-    let stages = stages::stages(&context, problems);
-    stages::check_use(&context, problems);
-    construction::check(&context, problems);
-    check_level(tree, (&bodies, &materials), &soil, problems);
-    let solver = outputs::solver(tree, &materials, problems);
-    let monitors = outputs::monitors(tree, &soil, problems);
-    let about = outputs::About {
-        names,
-        stages: &stages,
-        file,
+    let stages = assemble::stages_of(&context, problems);
+    check_level(tree, (bodies, materials), &soil, problems);
+    let upon = Upon {
+        boundaries,
+        rigid,
+        water,
+        reinforcement,
     };
-    let sections = outputs::sections(tree, &about, &soil, problems);
-    let curves = curves::curves(tree, names, &loads, file, problems);
-    let checks = checks::checks(tree, names, &loads, &stages, problems);
-    let output = outputs::output::<3>(tree, problems);
-    let mesh_study = study::mesh_study(tree);
-
-    let case = tree.get("case")?;
-    let case = Case {
-        water_unit_weight: case.number_at("water_unit_weight")?,
-        water: all(water)?,
-        title: case.text_at("title")?.to_owned(),
-        title_block: title_block(case),
-        gravity: case.number_at("gravity")?,
-        grid: grid?,
-        method: method?,
-        materials: all(materials)?,
-        bodies: all(bodies)?,
-        boundaries: boundaries?,
-        loads: all(loads)?,
-        rigid: all(rigid)?,
-        reinforcement: Vec::new(),
-        stages: all(stages)?,
-        solver: solver?,
-        monitors: all(monitors)?,
-        sections: all(sections)?,
-        curves: all(curves)?,
-        checks: all(checks)?,
-        mesh_study: mesh_study?,
-        output: output?,
-    };
-    let case = case.refined(tree.get("grid")?.count_at("refine")?);
-    study::check(tree, &case, problems);
-    Some(case)
+    assemble::assemble((&context, file), &basics, upon, stages, problems)
 }
 
 /// Reports what case files can say of the plane only.
 fn refuse_what_is_of_the_plane(tree: &Node, problems: &mut Problems) {
-    for (key, what) in [
-        ("reinforcement", "reinforcement is"),
-        ("water", "conditions of the water are"),
-    ] {
-        if let Some(first) = tree.items_at(key).first() {
-            problems
-                .error(first.place, format!("{what} not available in space yet"))
-                .help("compute a slice with analysis = \"plane-strain\"");
-        }
-    }
     for load in tree.items_at("loads") {
         if load.text_at("type") == Some("rigid-footing") {
             problems
@@ -325,121 +325,4 @@ fn check_level(
             ))
             .help("for a slope use a stage of type gravity");
     }
-}
-
-/// The loads.
-fn loads(tree: &Node, soil: &Solids, problems: &mut Problems) -> Vec<Option<Load<3>>> {
-    let items = tree.items_at("loads").iter();
-    items
-        .map(|node| {
-            let name = node.text_at("name")?;
-            let kind = match node.text_at("type")? {
-                "pressure" => pressure(node, name, soil, problems),
-                "point" => at_point(node, name, soil, problems),
-                _ => None,
-            }?;
-            Some(Load {
-                name: name.to_owned(),
-                kind,
-            })
-        })
-        .collect()
-}
-
-/// Places along each side of a loaded rectangle at which soil is looked for.
-const SAMPLES: usize = 7;
-
-fn pressure(
-    node: &Node,
-    name: &str,
-    soil: &Solids,
-    problems: &mut Problems,
-) -> Option<LoadKind<3>> {
-    let (from, to) = (node.point_at::<3>("from")?, node.point_at::<3>("to")?);
-    let pressure = node.number_at("pressure")?;
-    let shown = clip(name, 40);
-    let flat: Vec<usize> = (0..3)
-        .filter(|&axis| (to[axis] - from[axis]).abs() <= soil.round_off)
-        .collect();
-    let &[normal] = &flat[..] else {
-        problems
-            .error(
-                node.place_at("to"),
-                format!("the corners of the pressure `{shown}` span no rectangle across an axis"),
-            )
-            .help("two corners that lie across from each other have one coordinate in common");
-        return None;
-    };
-    let step = 1e-2 * soil.cell;
-    let is_soil = |share: [f64; 3], side: f64| {
-        let mut at: [f64; 3] =
-            std::array::from_fn(|axis| from[axis] + share[axis] * (to[axis] - from[axis]));
-        at[normal] += side * step;
-        soil.regions.iter().any(|region| region.encloses(at))
-    };
-    let mut sides = [0_usize; 2];
-    let mut buried = 0;
-    for k in 0..SAMPLES * SAMPLES {
-        let mut share = [0.0; 3];
-        let places = [k % SAMPLES, k / SAMPLES].map(|place| (place as f64 + 0.5) / SAMPLES as f64);
-        let along = (0..3).filter(|&axis| axis != normal);
-        for (axis, place) in along.zip(places) {
-            share[axis] = place;
-        }
-        match (is_soil(share, 1.0), is_soil(share, -1.0)) {
-            (true, true) => buried += 1,
-            (true, false) => sides[0] += 1,
-            (false, true) => sides[1] += 1,
-            (false, false) => {}
-        }
-    }
-    let mut inward = [0.0; 3];
-    if soil.is_complete && sides.iter().all(|&side| side < SAMPLES * SAMPLES) {
-        let message = if buried > 0 {
-            format!(
-                "the rectangle of the pressure `{shown}` lies inside the soil, not on its surface"
-            )
-        } else if sides == [0, 0] {
-            format!("no body lies along the rectangle of the pressure `{shown}`")
-        } else {
-            format!(
-                "only a part of the rectangle of the pressure `{shown}` lies on the surface of a body"
-            )
-        };
-        problems
-            .error(node.place_at("from"), message)
-            .help("the rectangle lies on a level or upright face of a body");
-        return None;
-    }
-    inward[normal] = if sides[0] > 0 { 1.0 } else { -1.0 };
-    if node.text_at("direction")? == "down" {
-        inward = [0.0, 0.0, -1.0];
-    }
-    Some(LoadKind::Pressure {
-        from,
-        to,
-        traction: inward.map(|component| component * pressure + 0.0),
-    })
-}
-
-fn at_point(
-    node: &Node,
-    name: &str,
-    soil: &Solids,
-    problems: &mut Problems,
-) -> Option<LoadKind<3>> {
-    let (at, force) = (node.point_at("at")?, node.point_at("force")?);
-    if soil.is_complete && !soil.holds_point(&at, 1e-2 * soil.cell) {
-        problems
-            .error(
-                node.place_at("at"),
-                format!(
-                    "there is no body at {}, where `{}` acts",
-                    point(at),
-                    clip(name, 40)
-                ),
-            )
-            .help("move the load onto a body");
-    }
-    Some(LoadKind::Point { at, force })
 }

@@ -7,7 +7,7 @@ use super::construction;
 use super::level::uneven;
 use super::safety::{run_out, strength_reduction};
 use super::sequence::Sequence;
-use super::site::Site;
+use super::site::{Site, Soil};
 use crate::case::{BodyPart, Load, LoadKind, Material, Stage, StageKind, StopWhen, Strength};
 use crate::input::diagnostic::Problems;
 use crate::input::text::{clip, number, row};
@@ -20,6 +20,7 @@ pub(super) struct Context<'a, const D: usize = 2> {
     pub(super) materials: &'a [Option<Material>],
     pub(super) bodies: &'a [Option<BodyPart<D>>],
     pub(super) loads: &'a [Option<Load<D>>],
+    pub(super) soil: &'a dyn Soil<D>,
     /// The ground of the plane; none in space.
     pub(super) site: Option<&'a Site>,
     pub(super) sequence: &'a Sequence,
@@ -95,7 +96,7 @@ fn stage<const D: usize>(
         }
         "load" => load(context, index, node, &name, problems),
         "displacement" => displacement(context, index, node, &name, problems),
-        "rigid" => super::rigid::stage(context, node, &name, problems),
+        "rigid" => super::rigid_stage::stage(context, node, &name, problems),
         "construction" => construction::stage(context, index, node, &name, problems),
         "strength-reduction" => strength_reduction(context, index, node, &name, problems)
             .map(StageKind::StrengthReduction),
@@ -311,7 +312,7 @@ fn load<const D: usize>(
             construction::load_is_held(context, index, load, value, problems);
         }
         let kind = context.loads.get(load).and_then(Option::as_ref);
-        if let Some(LoadKind::RigidFooting { .. }) = kind.map(|load| load.kind) {
+        if let Some(LoadKind::RigidFooting { .. }) = kind.map(|load| &load.kind) {
             problems
                 .error(value.place, "a rigid footing is pushed, not loaded")
                 .help("use a stage of type displacement");

@@ -13,12 +13,6 @@ use crate::solid::{
     TerrainError,
 };
 
-/// Three numbers.
-pub(super) fn triple(node: &Node) -> Option<[f64; 3]> {
-    let numbers: Option<Vec<f64>> = node.items().iter().map(Node::number).collect();
-    numbers?.try_into().ok()
-}
-
 /// The closed surface of a table.
 pub(super) fn closed_surface(
     node: &Node,
@@ -31,7 +25,7 @@ pub(super) fn closed_surface(
             .help("write surface = { file = \"block.stl\", unit = \"m\" }, or its vertices and triangles");
         return None;
     };
-    let points: Option<Vec<[f64; 3]>> = vertices.items().iter().map(triple).collect();
+    let points: Option<Vec<[f64; 3]>> = vertices.items().iter().map(Node::point).collect();
     let points = points?;
     let mut faces = Vec::with_capacity(triangles.items().len());
     for triangle in triangles.items() {
@@ -128,12 +122,24 @@ pub(super) fn ground(
     }
 }
 
-fn height(node: &Node, who: &Who<'_>, problems: &mut Problems) -> Option<Height> {
+fn height(node: &Node, who: &dyn Display, problems: &mut Problems) -> Option<Height> {
     if node.is_invalid() {
         return None;
     }
     if let Some(level) = node.number() {
         return Some(Height::Level(level));
+    }
+    terrain(node, who, problems).map(Height::Terrain)
+}
+
+/// A surface of the ground, or of water in it.
+pub(super) fn terrain(
+    node: &Node,
+    who: &dyn Display,
+    problems: &mut Problems,
+) -> Option<Arc<Terrain>> {
+    if node.is_invalid() {
+        return None;
     }
     let mut refuse = |error: &dyn Display, help: &str| {
         let message = format!("a surface of {who} cannot be used: {error}");
@@ -145,7 +151,7 @@ fn height(node: &Node, who: &Who<'_>, problems: &mut Problems) -> Option<Height>
     let stated = ["points", "x", "y", "rows"].map(|key| node.get(key).is_some());
     let terrain = match stated {
         [true, false, false, false] => {
-            let points = node.items_at("points").iter().map(triple);
+            let points = node.items_at("points").iter().map(Node::point);
             let points: Option<Vec<[f64; 3]>> = points.collect();
             Terrain::through(&points?)
         }
@@ -193,7 +199,7 @@ fn height(node: &Node, who: &Who<'_>, problems: &mut Problems) -> Option<Height>
         }
     };
     match terrain {
-        Ok(terrain) => Some(Height::Terrain(Arc::new(terrain))),
+        Ok(terrain) => Some(Arc::new(terrain)),
         Err(error) => {
             let help = match error {
                 TerrainError::TwoHeights { .. } => "keep one of them",

@@ -1,35 +1,28 @@
-//! Conditions of the water, and whether the ground can be wet as they say.
-
-use std::collections::HashMap;
+//! Conditions of the water.
 
 use super::AllNames;
-use super::ground::{Above, Surface};
-use super::profiles::reach;
+use super::ground::{Earth, Surface, UprightFace};
 use super::sequence::{Scene, Sequence};
-use super::site::Site;
-use crate::case::{
-    BodyPart, Drainage, Material, PoreSource, Raster, Strength, WaterCondition, table_level,
-};
+use super::surfaces::terrain;
+use crate::case::{BodyPart, Material, PoreSource, WaterCondition};
 use crate::input::diagnostic::Problems;
-use crate::input::geometry::contains;
-use crate::input::source::Place;
 use crate::input::text::{clip, number};
 use crate::input::tree::Node;
 
 /// What conditions of the water are held against.
-pub(super) struct Around<'a> {
+pub(super) struct Around<'a, const D: usize = 2> {
     pub(super) tree: &'a Node,
     pub(super) names: &'a AllNames,
-    pub(super) site: &'a Site,
-    pub(super) bodies: &'a [Option<BodyPart>],
+    pub(super) earth: &'a dyn Earth<D>,
+    pub(super) bodies: &'a [Option<BodyPart<D>>],
     pub(super) materials: &'a [Option<Material>],
     pub(super) sequence: &'a Sequence,
 }
 
-impl Around<'_> {
-    fn surface(&self, scene: &Scene) -> Surface {
+impl<const D: usize> Around<'_, D> {
+    pub(super) fn surface(&self, scene: &Scene) -> Box<dyn Surface> {
         let fills_gaps = self.tree.items_at("rigid").is_empty();
-        Surface::of(self.site, &scene.present, fills_gaps)
+        self.earth.surface(&scene.present, fills_gaps)
     }
 }
 
@@ -39,8 +32,8 @@ const OWN_FORMS: &str = "write one of level = \"24 m\", line = [[\"0 m\", \"24 m
                          u = { raster = \"u.csv\" }, dry = true";
 
 /// The conditions.
-pub(super) fn conditions(
-    around: &Around<'_>,
+pub(super) fn conditions<const D: usize>(
+    around: &Around<'_, D>,
     problems: &mut Problems,
 ) -> Vec<Option<WaterCondition>> {
     let items = around.tree.items_at("water");
@@ -69,8 +62,8 @@ pub(super) fn conditions(
     conditions
 }
 
-fn condition(
-    around: &Around<'_>,
+fn condition<const D: usize>(
+    around: &Around<'_, D>,
     index: usize,
     node: &Node,
     problems: &mut Problems,
@@ -116,7 +109,9 @@ fn form(
     forms: &str,
     problems: &mut Problems,
 ) -> Option<&'static str> {
-    let keys = ["level", "line", "r_u", "u", "dry"].iter().chain(more);
+    let keys = ["level", "line", "surface", "r_u", "u", "dry"]
+        .iter()
+        .chain(more);
     let is_said = |key: &str| {
         node.get(key)
             .is_some_and(|value| value.flag() != Some(false))
@@ -168,6 +163,7 @@ fn source_of(node: &Node, form: &str, who: &str, problems: &mut Problems) -> Opt
             }
             PoreSource::Table(points)
         }
+        "surface" => PoreSource::Surface(terrain(value, &who, problems)?),
         "r_u" => {
             let ratio = value.number()?;
             if !(0.0..=1.0).contains(&ratio) {
@@ -192,8 +188,8 @@ fn source_of(node: &Node, form: &str, who: &str, problems: &mut Problems) -> Opt
 }
 
 /// The table of `inside` and `outside`.
-fn drawdown(
-    around: &Around<'_>,
+fn drawdown<const D: usize>(
+    around: &Around<'_, D>,
     index: usize,
     node: &Node,
     who: &str,
@@ -228,317 +224,28 @@ fn drawdown(
             .help("inside and outside are for water that was drawn down; draw what flows in as line = [...]");
         return None;
     }
-    if !around.site.is_complete || around.site.frame.is_none() {
+    if !around.earth.is_complete() {
         return None;
     }
     let surface = around.surface(around.sequence.first_with(index));
     match surface.drained(inside, outside) {
-        Ok(points) => Some(PoreSource::Table(points)),
-        Err([x, left, right]) => {
+        Ok(source) => Some(source),
+        Err(UprightFace { at, levels }) => {
+            let [low, high] = levels;
             problems
                 .error(
                     node.place_at("inside"),
                     format!(
-                        "at x = {} m the ground drops upright, and the table of {who} with it from {} m to {} m",
-                        number(x),
-                        number(left.max(right)),
-                        number(left.min(right))
+                        "at {at} the ground drops upright, and the table of {who} with it from {} m to {} m",
+                        number(high),
+                        number(low)
                     ),
                 )
-                .help("nothing would hold the water behind that face; draw the table as line = [...] through its foot");
+                .help(match D {
+                    2 => "nothing would hold the water behind that face; draw the table as line = [...] through its foot",
+                    _ => "nothing would hold the water behind that face; draw the table as line = [...] or surface = {...} through its foot",
+                });
             None
-        }
-    }
-}
-
-/// Refuses tables that stand above the ground unmeant, and what water cannot do to materials; warns of conditions that
-/// do nothing.
-pub(super) fn check(
-    around: &Around<'_>,
-    conditions: &[Option<WaterCondition>],
-    problems: &mut Problems,
-) {
-    let Around { site, sequence, .. } = around;
-    if !site.is_complete || site.frame.is_none() || conditions.is_empty() {
-        return;
-    }
-    let mut checker = Checker {
-        around,
-        conditions,
-        surfaces: HashMap::new(),
-        seen: Vec::new(),
-        told: Vec::new(),
-    };
-    checker.scene(&sequence.start, None, problems);
-    for (index, end) in sequence.ends.iter().enumerate() {
-        if end != sequence.before(index) {
-            checker.scene(end, Some(index), problems);
-        }
-    }
-    let mut called = around.tree.items_at("stages").iter();
-    let is_slip = |name: &str| around.names.water.position(name).is_none();
-    if called.any(|stage| stage.text_at("water").is_some_and(is_slip)) {
-        // A name that is not defined may be a slip for one that is not used.
-        return;
-    }
-    for (index, node) in around.tree.items_at("water").iter().enumerate() {
-        let is_used = sequence.scenes().any(|scene| scene.water == Some(index));
-        let name = clip(node.text_at("name").unwrap_or("?"), 40);
-        if !is_used {
-            problems
-                .warning(
-                    node.place_at("name"),
-                    format!("no stage calls for the water `{name}`"),
-                )
-                .help("write water = \"NAME\" in a stage of type construction; the first condition holds from the start");
-        }
-    }
-}
-
-struct Checker<'a> {
-    around: &'a Around<'a>,
-    conditions: &'a [Option<WaterCondition>],
-    surfaces: HashMap<Vec<bool>, Surface>,
-    /// Conditions that have been found wrong: of each one place is enough.
-    seen: Vec<usize>,
-    /// Materials whose friction by total stress has been told.
-    told: Vec<usize>,
-}
-
-impl Checker<'_> {
-    /// Checks what is there at the start, or at the end of a stage.
-    fn scene(&mut self, scene: &Scene, stage: Option<usize>, problems: &mut Problems) {
-        let around = self.around;
-        let Some(index) = scene.water else { return };
-        let Some(condition) = self.conditions.get(index).and_then(Option::as_ref) else {
-            return;
-        };
-        if self.seen.contains(&index) || !scene.present.contains(&true) {
-            return;
-        }
-        let node = &around.tree.items_at("water")[index];
-        let surface = (self.surfaces)
-            .entry(scene.present.clone())
-            .or_insert_with(|| around.surface(scene));
-        let before = problems.errors();
-        let who = format!("the water `{}`", clip(&condition.name, 40));
-        let (place, when) = when(around.tree, node, stage);
-        match &condition.source {
-            PoreSource::Dry => {}
-            PoreSource::Points(raster) => points(
-                raster,
-                (around, scene, surface),
-                (node, &who, &when),
-                problems,
-            ),
-            PoreSource::Table(points) => {
-                let is_meant = node.flag_at("pond") != Some(false);
-                let [highest, sloping] = surface.below(points);
-                if let Some(above) = highest.filter(|_| !is_meant) {
-                    above_ground(above, place, (&who, &when), problems);
-                } else if let Some(above) = sloping {
-                    problems
-                        .error(
-                            place,
-                            format!(
-                                "{who} is not level where it stands above the ground{when}: {} m above it at x = {} m",
-                                number(above.by),
-                                number(above.x)
-                            ),
-                        )
-                        .help("a pond is level: let the line meet the ground before it goes up or down");
-                }
-            }
-            PoreSource::Ratio(_) => {
-                if let Some([x, left, right]) = surface.drop() {
-                    problems
-                        .error(
-                            place,
-                            format!(
-                                "r_u puts pressure behind the upright face at x = {} m, from y = {} m to {} m{when}",
-                                number(x),
-                                number(left.min(right)),
-                                number(left.max(right))
-                            ),
-                        )
-                        .help("nothing would hold the water there: slope the face, or draw the table as line = [...]");
-                }
-            }
-        }
-        let bodies = std::iter::zip(around.bodies, &scene.present);
-        let mut there = bodies.filter_map(|(part, present)| part.as_ref().filter(|_| *present));
-        let is_table = matches!(condition.source, PoreSource::Table(_));
-        if is_table && !there.any(|part| is_wet(&condition.source, part)) {
-            problems
-                .warning(
-                    place,
-                    format!("{who} lies below all bodies, and wets none{when}"),
-                )
-                .help("write dry = true if that is meant");
-        }
-        self.materials(scene, condition, (node, &who), problems);
-        if problems.errors() > before {
-            self.seen.push(index);
-        }
-    }
-
-    /// Checks what the condition does to the materials of the bodies that are there.
-    fn materials(
-        &mut self,
-        scene: &Scene,
-        condition: &WaterCondition,
-        (node, who): (&Node, &str),
-        problems: &mut Problems,
-    ) {
-        let around = self.around;
-        for (body, part) in around.bodies.iter().enumerate() {
-            let Some(part) = part.as_ref().filter(|_| scene.present[body]) else {
-                continue;
-            };
-            let material =
-                scene.material[body].and_then(|k| Some((k, around.materials[k].as_ref()?)));
-            let Some((number, material)) =
-                material.filter(|(_, material)| material.drainage == Drainage::Total)
-            else {
-                continue;
-            };
-            let own = condition
-                .bodies
-                .iter()
-                .position(|(named, _)| *named == body);
-            if let Some(own) = own
-                && condition.bodies[own].1 != PoreSource::Dry
-            {
-                problems
-                    .error(
-                        node.items_at("bodies")[own].place,
-                        format!(
-                            "{who} gives `{}` a pore pressure of its own, but `{}` has strength by total stress, where there is none",
-                            clip(&part.name, 40),
-                            clip(&material.name, 40)
-                        ),
-                    )
-                    .help("write dry = true there, or drainage = \"drained\" or \"undrained\" in the material, with strength by effective stress");
-                continue;
-            }
-            let has_friction = matches!(
-                material.strength,
-                Strength::MohrCoulomb { friction_angle, .. } if friction_angle > 0.0
-            );
-            let is_wet = || own.is_none() && is_wet(&condition.source, part);
-            if has_friction && !self.told.contains(&number) && is_wet() {
-                self.told.push(number);
-                let entries = around.tree.get("materials").map_or(&[][..], Node::entries);
-                let place = entries
-                    .get(number)
-                    .map(|entry| entry.node.place_at("drainage"));
-                problems
-                    .error(
-                        place,
-                        format!(
-                            "{who} wets `{}`, and `{}` has friction by total stress: the water would make it stronger",
-                            clip(&part.name, 40),
-                            clip(&material.name, 40)
-                        ),
-                    )
-                    .help("friction goes with effective stress: drainage = \"drained\", or \"undrained\" where water cannot leave")
-                    .help("for undrained strength by total stress use model = \"tresca\" with cu");
-            }
-        }
-    }
-}
-
-/// Share of the greatest pressure on the ground that is told \[-\].
-const ON_GROUND: f64 = 0.02;
-
-/// Refuses points that do not reach over the soil; warns of pressure on the ground that is not said to be free water.
-fn points(
-    raster: &Raster,
-    (around, scene, surface): (&Around<'_>, &Scene, &Surface),
-    (node, who, when): (&Node, &str, &str),
-    problems: &mut Problems,
-) {
-    let Some(value) = node.get("u") else { return };
-    let parts = std::iter::zip(around.bodies, &scene.present);
-    let there = parts.filter_map(|(part, present)| part.as_ref().filter(|_| *present));
-    let polygons: Vec<&[[f64; 2]]> = there.map(BodyPart::polygon).collect();
-    let of = format!("the soil that {who} is for{when}");
-    if reach(raster, (value, "u"), (&polygons, &of), problems).is_err() {
-        return;
-    }
-    let greatest = raster.values.iter().flatten().copied().fold(0.0, f64::max);
-    let ends = surface.stretches.iter().flat_map(|own| {
-        let at = |share: f64| {
-            let [x, y] = [own.x, own.y].map(|[from, to]| from + share * (to - from));
-            [x, y]
-        };
-        [0.0, 0.25, 0.5, 0.75, 1.0].map(at)
-    });
-    let pressure = |at: &[f64; 2]| raster.at(*at);
-    let most = ends.max_by(|a, b| pressure(a).total_cmp(&pressure(b)));
-    let is_meant = node.flag_at("pond") == Some(true);
-    if let Some(at) = most.filter(|at| !is_meant && pressure(at) > ON_GROUND * greatest) {
-        problems
-            .warning(
-                value.place,
-                format!(
-                    "{who} presses on the ground with {} kPa at ({}, {}) m{when}, as free water would",
-                    number((pressure(&at) / 1e2).round() / 1e1),
-                    number(at[0]),
-                    number(at[1])
-                ),
-            )
-            .help("write pond = true if free water stands there; else let the points have no pressure on the ground");
-    }
-}
-
-/// Where a condition is told wrong, and when.
-fn when(tree: &Node, node: &Node, stage: Option<usize>) -> (Place, String) {
-    let own = ["line", "level", "inside", "r_u", "u"];
-    let own = own.iter().find(|key| node.get(key).is_some());
-    let own = own.map_or(node.place, |key| node.place_at(key));
-    let Some(stage) = stage.map(|index| &tree.items_at("stages")[index]) else {
-        return (own, String::new());
-    };
-    let name = clip(stage.text_at("name").unwrap_or("?"), 40);
-    if stage.get("water").is_some() {
-        return (own, format!(" in stage `{name}`"));
-    }
-    let changed = ["remove", "place"];
-    let changed = changed.iter().find(|key| !stage.items_at(key).is_empty());
-    (
-        stage.place_at(changed.unwrap_or(&"name")),
-        format!(" after stage `{name}`"),
-    )
-}
-
-fn above_ground(above: Above, place: Place, (who, when): (&str, &str), problems: &mut Problems) {
-    problems
-        .error(
-            place,
-            format!(
-                "{who} stands {} m above the ground at x = {} m{when}",
-                number(above.by),
-                number(above.x)
-            ),
-        )
-        .help("a line above the ground presses on it as a pond does: draw it along the surface there, or below")
-        .help("write pond = true if free water stands there");
-}
-
-/// Whether there is pressure in a body.
-fn is_wet(source: &PoreSource, part: &BodyPart) -> bool {
-    match source {
-        PoreSource::Dry => false,
-        PoreSource::Ratio(ratio) => *ratio > 0.0,
-        PoreSource::Points(raster) => raster
-            .places_in(part.polygon())
-            .iter()
-            .any(|at| raster.at(*at) > 0.0),
-        PoreSource::Table(points) => {
-            let is_below = |corner: &[f64; 2]| corner[1] < table_level(points, corner[0]);
-            part.polygon().iter().any(is_below)
-                || (points.iter()).any(|&point| contains(part.polygon(), point))
         }
     }
 }

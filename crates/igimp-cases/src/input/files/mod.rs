@@ -41,6 +41,10 @@ pub(super) fn read(tree: &mut Node, case: &Path, problems: &mut Problems) {
             }
         }
     }
+    let loads = tree.get_mut("loads").map(Node::items_mut);
+    for load in loads.into_iter().flatten() {
+        shape(load, folder, problems);
+    }
     let rigid = tree.get_mut("rigid").map(Node::items_mut);
     for body in rigid.into_iter().flatten() {
         shape(body, folder, problems);
@@ -56,7 +60,7 @@ pub(super) fn read(tree: &mut Node, case: &Path, problems: &mut Problems) {
     }
 }
 
-/// What says the shape of a body.
+/// What says the shape of a body, or of what a load covers.
 fn shape(of: &mut Node, folder: &Path, problems: &mut Problems) {
     for key in ["polygon", "plan"] {
         if let Some(polygon) = of.get_mut(key) {
@@ -72,10 +76,13 @@ fn shape(of: &mut Node, folder: &Path, problems: &mut Problems) {
     }
 }
 
-/// The pore pressures of a condition of the water, or of a body in it.
+/// The pore pressures, or the table, of a condition of the water, or of a body in it.
 fn pressures(of: &mut Node, folder: &Path, problems: &mut Problems) {
     if let Some(points) = of.get_mut("u") {
         raster::resolve(points, "u", folder, problems);
+    }
+    if let Some(surface) = of.get_mut("surface") {
+        elevation::resolve(surface, folder, problems);
     }
 }
 

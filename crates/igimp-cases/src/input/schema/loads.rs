@@ -1,13 +1,28 @@
 //! Loads.
 
-use super::POINT;
-use crate::input::quantity::Dimension::{Force, ForcePerLength, Stress};
+use super::solids::POLYGON;
+use super::{PAIR, POINT};
+use crate::input::quantity::Dimension::{Force, ForcePerLength, Length, Stress};
 use crate::input::spec::{
-    Choice, Kind, Range, Variant, Variants, choice, default, in_plane, in_space, required,
+    Choice, Kind, Range, Struct, Variant, Variants, choice, default, in_plane, in_space, optional,
+    required,
 };
 
 static FORCE: Kind = Kind::Quantity(ForcePerLength, Range::Any);
 static WHOLE_FORCE: Kind = Kind::Quantity(Force, Range::Any);
+
+static CIRCLE: Struct = Struct {
+    doc: "A circle in plan.",
+    fields: &[
+        required("centre", PAIR, "[\"2 m\", \"2 m\"]", "centre, x and y"),
+        required(
+            "radius",
+            Kind::Quantity(Length, Range::Positive),
+            "\"1 m\"",
+            "radius",
+        ),
+    ],
+};
 
 static INTERFACES: [Choice; 2] = [
     choice("rough", "soil sticks to base and shaft"),
@@ -78,6 +93,36 @@ pub(in crate::input) static LOAD: Kind = Kind::Variants(&Variants {
                     Kind::Choice(&DIRECTIONS),
                     "\"normal\"",
                     "which way it acts",
+                ),
+            ],
+        },
+        Variant {
+            name: "patch",
+            doc: "In space: a dead pressure down on a level circle or polygon, raised by load stages. What of it lies beyond the grid is left out, as behind a plane of symmetry.",
+            fields: &[
+                optional(
+                    "circle",
+                    Kind::Table(&CIRCLE),
+                    "`plan` says it",
+                    "the circle that it covers",
+                ),
+                optional(
+                    "plan",
+                    POLYGON,
+                    "`circle` says it",
+                    "corners of the polygon that it covers, x and y, either way round",
+                ),
+                required(
+                    "level",
+                    Kind::Quantity(Length, Range::Any),
+                    "\"5 m\"",
+                    "height z of the surface on which it lies",
+                ),
+                required(
+                    "pressure",
+                    Kind::Quantity(Stress, Range::Any),
+                    "\"100 kPa\"",
+                    "pressure at factor 1, positive downwards",
                 ),
             ],
         },

@@ -457,12 +457,18 @@ static DOMAIN_UPDATES: [Choice; 4] = [
 static SMALL_CUTS: Struct = Struct {
     doc: "Treatment of nodes that carry next to no soil.",
     fields: &[
-        default(
+        in_plane(default(
             "below",
             Kind::Number(Range::NotNegative),
             "1e-4",
             "share of a cell's volume below which a node is a small cut; 0 switches off",
-        ),
+        )),
+        in_space(default(
+            "below",
+            Kind::Number(Range::NotNegative),
+            "1e-3",
+            "share of a cell's volume below which a node is a small cut; 0 switches off",
+        )),
         default(
             "remedy",
             Kind::Choice(&REMEDIES),

@@ -53,7 +53,7 @@ static STEP_CUTTING: Struct = Struct {
     ],
 };
 
-static LINEAR_SOLVERS: [Choice; 8] = [
+static LINEAR_SOLVERS: [Choice; 9] = [
     choice(
         "auto",
         "Cholesky for symmetric matrices, LU for others; for large systems in space multigrid",
@@ -63,6 +63,10 @@ static LINEAR_SOLVERS: [Choice; 8] = [
         "conjugate gradients or GMRES with geometric multigrid on the grid",
     ),
     choice("direct", "the same as auto"),
+    choice(
+        "single",
+        "factors in single precision, half the memory, and an iteration with them; in double where that does not converge",
+    ),
     choice("cholesky", "multifrontal Cholesky"),
     choice("lu", "multifrontal LU"),
     choice("faer-cholesky", "an independent supernodal Cholesky"),

@@ -1,8 +1,8 @@
 //! Rigid bodies that soil touches, and how stages move them.
 
-use super::{A_LENGTH, LENGTH, MANY, MOST_THINGS, POINT};
+use super::{LENGTH, MANY, MOST_THINGS, POINT};
 use crate::input::quantity::Dimension::{
-    Angle, Force, ForcePerLength, Length, Moment, MomentPerLength, Stress,
+    self, Angle, Force, ForcePerLength, Length, Moment, MomentPerLength, Stress,
 };
 use crate::input::spec::{
     Choice, Field, Kind, Range, Struct, Variant, Variants, choice, default, in_plane, in_space,
@@ -102,6 +102,11 @@ const FROM_START: Field = default(
     "whether it is there from the start, held, rather than from the first stage that names it",
 );
 
+/// A length of a shape.
+const fn a_length(key: &'static str, example: &'static str, doc: &'static str) -> Field {
+    required(key, Kind::Quantity(Length, Range::Positive), example, doc)
+}
+
 /// A rigid body, by type of shape.
 pub(in crate::input) static RIGID: Kind = Kind::Variants(&Variants {
     doc: "A rigid body that soil touches, slides along and leaves.",
@@ -132,12 +137,7 @@ pub(in crate::input) static RIGID: Kind = Kind::Variants(&Variants {
             doc: "A circle: a pipe, a bar, a pile in section. It has one side.",
             fields: &[
                 required("centre", POINT, "[\"0 m\", \"5.5 m\"]", "centre"),
-                required(
-                    "radius",
-                    Kind::Quantity(Length, Range::Positive),
-                    "\"0.5 m\"",
-                    "radius",
-                ),
+                a_length("radius", "\"0.5 m\"", "radius"),
             ],
         },
         Variant {
@@ -146,12 +146,7 @@ pub(in crate::input) static RIGID: Kind = Kind::Variants(&Variants {
             fields: &[
                 required("from", POINT, "[\"0 m\", \"0 m\"]", "one end of the face"),
                 required("to", POINT, "[\"0 m\", \"5 m\"]", "the other end"),
-                required(
-                    "thickness",
-                    Kind::Quantity(Length, Range::Positive),
-                    "\"1 m\"",
-                    "thickness",
-                ),
+                a_length("thickness", "\"1 m\"", "thickness"),
             ],
         },
         Variant {
@@ -183,18 +178,8 @@ pub(in crate::input) static RIGID: Kind = Kind::Variants(&Variants {
                     "[\"0 m\", \"0 m\", \"5.5 m\"]",
                     "its middle",
                 ),
-                required(
-                    "radius",
-                    Kind::Quantity(Length, Range::Positive),
-                    "\"0.5 m\"",
-                    "radius",
-                ),
-                required(
-                    "length",
-                    Kind::Quantity(Length, Range::Positive),
-                    "\"1 m\"",
-                    "length along its axis",
-                ),
+                a_length("radius", "\"0.5 m\"", "radius"),
+                a_length("length", "\"1 m\"", "length along its axis"),
             ],
         },
         Variant {
@@ -202,12 +187,7 @@ pub(in crate::input) static RIGID: Kind = Kind::Variants(&Variants {
             doc: "In space: a sphere. It has one side.",
             fields: &[
                 required("centre", POINT, "[\"0 m\", \"0 m\", \"5.5 m\"]", "centre"),
-                required(
-                    "radius",
-                    Kind::Quantity(Length, Range::Positive),
-                    "\"0.5 m\"",
-                    "radius",
-                ),
+                a_length("radius", "\"0.5 m\"", "radius"),
             ],
         },
         Variant {
@@ -215,18 +195,8 @@ pub(in crate::input) static RIGID: Kind = Kind::Variants(&Variants {
             doc: "In space: a cone with its tip down, and a shaft above it. Its sides are tip, shaft, top.",
             fields: &[
                 required("tip", POINT, "[\"0 m\", \"0 m\", \"5 m\"]", "its tip"),
-                required(
-                    "radius",
-                    Kind::Quantity(Length, Range::Positive),
-                    "\"0.25 m\"",
-                    "radius of its upper end",
-                ),
-                required(
-                    "height",
-                    Kind::Quantity(Length, Range::Positive),
-                    "\"0.43 m\"",
-                    "height of the cone",
-                ),
+                a_length("radius", "\"0.25 m\"", "radius of its upper end"),
+                a_length("height", "\"0.43 m\"", "height of the cone"),
                 default(
                     "shaft",
                     Kind::Quantity(Length, Range::NotNegative),
@@ -325,39 +295,19 @@ static COMPONENTS: [Choice; 7] = [
 ];
 static COMPONENT: Kind = Kind::Choice(&COMPONENTS);
 
-/// A length that a body moves by.
-const fn by(key: &'static str, doc: &'static str) -> Field {
-    optional(key, A_LENGTH, "as before; held at first", doc)
-}
-
-/// A force that a body is given.
-const fn force(key: &'static str, doc: &'static str) -> Field {
+/// What a component of the motion goes on by.
+const fn by(key: &'static str, dimension: Dimension, doc: &'static str) -> Field {
     optional(
         key,
-        Kind::Quantity(ForcePerLength, Range::Any),
-        "as before",
-        doc,
-    )
-}
-
-/// A rotation that a body is given.
-const fn turn(key: &'static str, doc: &'static str) -> Field {
-    optional(
-        key,
-        Kind::Quantity(Angle, Range::Any),
+        Kind::Quantity(dimension, Range::Any),
         "as before; held at first",
         doc,
     )
 }
 
-/// A force that a body in space is given.
-const fn whole_force(key: &'static str, doc: &'static str) -> Field {
-    optional(key, Kind::Quantity(Force, Range::Any), "as before", doc)
-}
-
-/// A moment that a body in space is given.
-const fn moment(key: &'static str, doc: &'static str) -> Field {
-    optional(key, Kind::Quantity(Moment, Range::Any), "as before", doc)
+/// What loads a component of the motion.
+const fn load(key: &'static str, dimension: Dimension, doc: &'static str) -> Field {
+    optional(key, Kind::Quantity(dimension, Range::Any), "as before", doc)
 }
 
 /// How a stage moves a rigid body.
@@ -370,45 +320,58 @@ pub(super) static MOVE: Kind = Kind::Table(&Struct {
             "\"footing\"",
             "which",
         ),
-        by("x", "further displacement in x"),
+        by("x", Length, "further displacement in x"),
         by(
             "y",
+            Length,
             "further displacement in y, in plane strain negative downwards",
         ),
-        in_space(by("z", "further displacement in z, negative downwards")),
-        in_plane(turn("rotation", "further rotation, anticlockwise")),
-        in_space(turn("rotation_x", "further rotation about x")),
-        in_space(turn("rotation_y", "further rotation about y")),
-        in_space(turn("rotation_z", "further rotation about z")),
-        in_plane(force("force_x", "force on it in x at the end of the stage")),
-        in_plane(force(
-            "force_y",
-            "force on it in y at the end of the stage, negative downwards, beside its weight",
+        in_space(by(
+            "z",
+            Length,
+            "further displacement in z, negative downwards",
         )),
-        in_plane(optional(
-            "moment",
-            Kind::Quantity(MomentPerLength, Range::Any),
-            "as before",
-            "moment on it about its reference point at the end of the stage, anticlockwise",
-        )),
-        in_space(whole_force(
+        in_plane(by("rotation", Angle, "further rotation, anticlockwise")),
+        in_space(by("rotation_x", Angle, "further rotation about x")),
+        in_space(by("rotation_y", Angle, "further rotation about y")),
+        in_space(by("rotation_z", Angle, "further rotation about z")),
+        in_plane(load(
             "force_x",
+            ForcePerLength,
             "force on it in x at the end of the stage",
         )),
-        in_space(whole_force(
+        in_plane(load(
             "force_y",
+            ForcePerLength,
+            "force on it in y at the end of the stage, negative downwards, beside its weight",
+        )),
+        in_plane(load(
+            "moment",
+            MomentPerLength,
+            "moment on it about its reference point at the end of the stage, anticlockwise",
+        )),
+        in_space(load(
+            "force_x",
+            Force,
+            "force on it in x at the end of the stage",
+        )),
+        in_space(load(
+            "force_y",
+            Force,
             "force on it in y at the end of the stage",
         )),
-        in_space(whole_force(
+        in_space(load(
             "force_z",
+            Force,
             "force on it in z at the end of the stage, negative downwards, beside its weight",
         )),
-        in_space(moment(
+        in_space(load(
             "moment_x",
+            Moment,
             "moment on it about x through its reference point at the end of the stage",
         )),
-        in_space(moment("moment_y", "moment on it about y")),
-        in_space(moment("moment_z", "moment on it about z")),
+        in_space(load("moment_y", Moment, "moment on it about y")),
+        in_space(load("moment_z", Moment, "moment on it about z")),
         default(
             "free",
             Kind::List(&COMPONENT, 0, 6),

@@ -12,7 +12,8 @@ static HOLE: Kind = Kind::List(&INDEX, 2, 2);
 static ROW: Kind = Kind::List(&LENGTH, 2, MANY);
 
 const OTHER: &str = "another shape is stated";
-const POLYGON: Kind = Kind::Either(&[Kind::List(&CORNER, 3, MANY), Kind::Table(&OUTLINE)]);
+pub(super) const POLYGON: Kind =
+    Kind::Either(&[Kind::List(&CORNER, 3, MANY), Kind::Table(&OUTLINE)]);
 
 pub(super) const BOX: Field = optional(
     "box",
@@ -166,7 +167,7 @@ pub(super) static SURFACE_TABLE: Struct = Struct {
 
 static HEIGHT: Kind = Kind::Either(&[Kind::Quantity(Length, Range::Any), Kind::Table(&TERRAIN)]);
 
-static TERRAIN: Struct = Struct {
+pub(super) static TERRAIN: Struct = Struct {
     doc: "A surface of the ground: an ESRI ASCII grid, points from a CSV file, points, or heights on lines.",
     fields: &[
         optional(

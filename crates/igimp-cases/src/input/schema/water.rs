@@ -1,9 +1,12 @@
 //! Conditions of the water, and what stages of construction change.
 
 use super::materials::in_plane;
+use super::solids::TERRAIN;
 use super::{A_LENGTH, CORNER, MANY, MOST_THINGS};
 use crate::input::quantity::Dimension::Stress;
-use crate::input::spec::{Field, Kind, Range, Struct, default, derived, optional, required};
+use crate::input::spec::{
+    Field, Kind, Range, Struct, default, derived, in_space, optional, required,
+};
 
 const LEVEL: Field = optional(
     "level",
@@ -15,8 +18,14 @@ const LINE: Field = optional(
     "line",
     Kind::List(&CORNER, 2, MANY),
     "another key says it",
-    "points of the water table from left to right; it is level beyond its ends",
+    "points of the water table from left to right, x and height; it is level beyond its ends, and in space the same for every y",
 );
+const SURFACE: Field = in_space(optional(
+    "surface",
+    Kind::Table(&TERRAIN),
+    "another key says it",
+    "surface that is the water table",
+));
 const RATIO: Field = optional(
     "r_u",
     Kind::Number(Range::Any),
@@ -29,7 +38,7 @@ static A_PRESSURE: Kind = Kind::Quantity(Stress, Range::Any);
 static PRESSURES: Kind = Kind::List(&A_PRESSURE, 1, MANY);
 
 static IN_PLANE: Struct = Struct {
-    doc: "Pore pressures by points in the plane: `raster`, or `x`, `y` and `rows`. Less than none counts as none.",
+    doc: "Pore pressures by points in the plane, in space by x and height for every y: `raster`, or `x`, `y` and `rows`. Less than none counts as none.",
     fields: &in_plane(&PRESSURES),
 };
 const POINTS: Field = optional(
@@ -45,6 +54,7 @@ static OWN: Kind = Kind::Table(&Struct {
         required("body", Kind::Reference("body"), "\"clay\"", "the body"),
         LEVEL,
         LINE,
+        SURFACE,
         RATIO,
         POINTS,
         DRY,
@@ -53,12 +63,13 @@ static OWN: Kind = Kind::Table(&Struct {
 
 /// A condition of the water.
 pub(super) static WATER: Kind = Kind::Table(&Struct {
-    doc: "A condition of the water: one of `level`, `line`, `inside` with `outside`, `r_u`, `u` and `dry`. The first holds from the \
+    doc: "A condition of the water: one of `level`, `line`, in space `surface`, `inside` with `outside`, `r_u`, `u` and `dry`. The first holds from the \
           start, the others from the stages that name them.",
     fields: &[
         required("name", Kind::Name, "\"full\"", "name"),
         LEVEL,
         LINE,
+        SURFACE,
         optional(
             "inside",
             A_LENGTH,

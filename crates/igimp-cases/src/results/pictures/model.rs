@@ -256,7 +256,8 @@ fn add_loads(plot: &mut FieldPlot, case: &Case, length: f64) -> Vec<[f64; 2]> {
         from
     };
     for load in &case.loads {
-        let at = match load.kind {
+        let at = match load.kind.clone() {
+            LoadKind::Patch { .. } => continue,
             LoadKind::RigidFooting { from, to, .. } => {
                 let height = 0.35 * length;
                 let middle = 0.5 * (from[0] + to[0]);

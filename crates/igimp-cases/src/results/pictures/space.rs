@@ -5,8 +5,8 @@ use std::path::Path;
 use igimp_figures::{Face, FieldPlot, SpacePlot, View};
 
 use super::field::Colours;
-use super::{Seen, Shown, sentence, titled, write};
-use crate::case::{Cut, Field};
+use super::{Seen, Shown, sentence, titled, water, write};
+use crate::case::{Cut, Field, PoreSource};
 use crate::error::CaseError;
 use crate::results::fields::{self, Scale};
 use crate::results::skin::{Boxes, Skin};
@@ -26,6 +26,8 @@ pub struct InSpace<'a> {
     state: Seen<'a, 3>,
     /// Triangles of rigid bodies.
     bodies: Vec<[[f64; 3]; 3]>,
+    /// What water tables are drawn.
+    water: Vec<PoreSource>,
     low: Vec<[f64; 3]>,
     high: Vec<[f64; 3]>,
     skin: Skin,
@@ -64,10 +66,17 @@ impl<'a> InSpace<'a> {
             pore_water,
             state,
             bodies,
+            water: Vec::new(),
             low,
             high,
             skin,
         }
+    }
+
+    /// The same, with water tables over the cuts.
+    #[must_use]
+    pub fn with_water(self, water: Vec<PoreSource>) -> Self {
+        Self { water, ..self }
     }
 
     /// Upright planes across either level axis, through that particle which was nearest to the middle of the
@@ -132,13 +141,15 @@ impl<'a> InSpace<'a> {
             let at = format!("{letter} = {} m", rounded(plane.at));
             let plot = self.cut(*plane, &own, titled(&title, &at));
             let caption = format!(
-                "{} {} in the plane {at}: the domains that it crosses.{same}",
-                own.what, shown.when
+                "{} {} in the plane {at}: the domains that it crosses{}.{same}",
+                own.what,
+                shown.when,
+                water::told(&plot.outlines)
             );
             let same_axis = planes.iter().filter(|own| own.axis == plane.axis);
             // More of them across an axis are told apart by their places.
             let name = if same_axis.count() > 1 {
-                name(&format!("cut-{letter}-{}", rounded(plane.at)))
+                name(&plane.name())
             } else {
                 name(&format!("cut-{letter}"))
             };
@@ -196,7 +207,7 @@ impl<'a> InSpace<'a> {
             // Of domains that meet in the plane, those beyond it.
             self.low[k][plane.axis] <= plane.at && plane.at < self.high[k][plane.axis]
         });
-        let (domains, values) = crossed
+        let (domains, values): (Vec<_>, Vec<_>) = crossed
             .map(|k| {
                 let (low, high) = (self.low[k], self.high[k]);
                 let corners = vec![
@@ -210,6 +221,7 @@ impl<'a> InSpace<'a> {
             .unzip();
         FieldPlot {
             title,
+            outlines: water::over_cut(&self.water, plane, &domains),
             domains,
             values,
             label: own.label.clone(),

@@ -1,8 +1,8 @@
 //! Water tables, and the surface of free water above the ground.
 
-use igimp_figures::{Outline, OutlineStyle};
+use igimp_figures::{Outline, OutlineStyle, Polygon};
 
-use crate::case::{Case, PoreSource, WaterCondition, table_level};
+use crate::case::{Case, Cut, PoreSource, WaterCondition, table_level};
 use crate::polygon::bounding_box;
 
 /// The water tables of a condition between two places along x \[m\]; bodies that are there and have a table of their own show
@@ -40,6 +40,40 @@ fn table(source: &PoreSource, [left, right]: [f64; 2]) -> Option<Outline> {
         points: points.chain([at(right)]).collect(),
         style: OutlineStyle::Water,
     })
+}
+
+/// Places along a cut at which the level of a water table is taken.
+const ALONG: usize = 100;
+
+/// Water tables over an upright cut through domains of soil in space.
+pub(super) fn over_cut(tables: &[PoreSource], plane: Cut, domains: &[Polygon]) -> Vec<Outline> {
+    let across = match plane.axis {
+        0 => 1,
+        1 => 0,
+        _ => return Vec::new(),
+    };
+    let ends = domains.iter().flatten().map(|corner| corner[0]);
+    let [from, to] = ends.fold([f64::INFINITY, f64::NEG_INFINITY], |[from, to], own| {
+        [from.min(own), to.max(own)]
+    });
+    if from >= to {
+        return Vec::new();
+    }
+    let line = |table: &PoreSource| {
+        let point = |k: usize| {
+            let along = from + k as f64 / ALONG as f64 * (to - from);
+            let mut place = [plane.at; 3];
+            place[across] = along;
+            let level = table.table(&place).filter(|level| level.is_finite())?;
+            Some([along, level])
+        };
+        let points: Vec<[f64; 2]> = (0..=ALONG).filter_map(point).collect();
+        (points.len() > 1).then_some(Outline {
+            points,
+            style: OutlineStyle::Water,
+        })
+    };
+    tables.iter().filter_map(line).collect()
 }
 
 /// What a caption says of the water tables that are in a picture.

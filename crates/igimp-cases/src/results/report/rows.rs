@@ -6,6 +6,7 @@ use super::verdict::on_safety;
 use crate::check::{Band, short};
 use crate::mesh_study::MeshSummary;
 use crate::results::fields::{Dimension, Scale};
+use crate::results::setup::MEMBERS_IN_SPACE;
 use crate::summary::{
     MemberSummary, PoreSummary, SafetySummary, StageOutcome, StageSummary, Summary,
 };
@@ -107,16 +108,22 @@ pub(super) struct MemberView {
     force: String,
     head_force: String,
     at_limit: String,
+    /// Whether forces are those per metre run.
+    per_metre: bool,
 }
 
 /// The tension of reinforcement at the end of the stages that changed it.
 pub(super) fn reinforcement(summary: &Summary) -> Vec<MemberView> {
     let stages = summary.stages.iter().filter(|own| own.safety.is_none());
+    let mut titles = summary.setup.iter().map(|table| table.title.as_str());
+    let per_metre = !titles.any(|title| title == MEMBERS_IN_SPACE);
+    let unit = if per_metre { "N/m" } else { "N" };
     let view = |(stage, member): (&StageSummary, &MemberSummary)| MemberView {
+        per_metre,
         stage: stage.name.clone(),
         name: member.name.clone(),
-        force: quantity(member.force, "N/m"),
-        head_force: quantity(member.head_force, "N/m"),
+        force: quantity(member.force, unit),
+        head_force: quantity(member.head_force, unit),
         at_limit: format!("{} %", short(100.0 * member.at_limit)),
     };
     stages

@@ -23,13 +23,13 @@ pub(super) fn conditions<const D: usize>(case: &Case<D>) -> SetupTable {
 }
 
 fn condition<const D: usize>(case: &Case<D>, index: usize, own: &WaterCondition) -> Vec<String> {
-    let mut pressure = source(&own.source);
+    let mut pressure = source::<D>(&own.source);
     if own.carried {
         pressure.push_str("; carried along by the soil");
     }
     let bodies = own.bodies.iter();
     let bodies: Vec<String> = bodies
-        .map(|(body, own)| format!("{}: {}", case.bodies[*body].name, source(own)))
+        .map(|(body, own)| format!("{}: {}", case.bodies[*body].name, source::<D>(own)))
         .collect();
     let calls = case.stages.iter().filter(
         |stage| matches!(&stage.kind, StageKind::Construction(own) if own.water == Some(index)),
@@ -50,7 +50,7 @@ fn condition<const D: usize>(case: &Case<D>, index: usize, own: &WaterCondition)
     ]
 }
 
-fn source(own: &PoreSource) -> String {
+fn source<const D: usize>(own: &PoreSource) -> String {
     match own {
         PoreSource::Dry => "dry".to_owned(),
         PoreSource::Points(raster) => {
@@ -62,9 +62,25 @@ fn source(own: &PoreSource) -> String {
                 raster.y.len()
             )
         }
+        PoreSource::Surface(terrain) => {
+            let (lower, upper) = terrain.bounds();
+            format!(
+                "table by a surface from z = {} m to {} m",
+                short(lower[2]),
+                short(upper[2])
+            )
+        }
+        PoreSource::Drained(own) => format!(
+            "table level at z = {} m within the ground, along its surface, and at z = {} m outside",
+            short(own.inside),
+            short(own.outside)
+        ),
         PoreSource::Ratio(ratio) => format!("r_u = {}", short(*ratio)),
         PoreSource::Table(points) => match points.as_slice() {
-            [only] => format!("table level at y = {} m", short(only[1])),
+            [only] => {
+                let up = if D == 2 { "y" } else { "z" };
+                format!("table level at {up} = {} m", short(only[1]))
+            }
             points if points.len() <= MOST_POINTS => {
                 let points: Vec<String> = points.iter().map(|&at| point(at)).collect();
                 format!("table through {} m", points.join(" "))

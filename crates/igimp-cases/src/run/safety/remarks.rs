@@ -1,8 +1,9 @@
 //! What a reader has to know about an interval.
 
-use super::at_full_strength;
+use super::{at_full_strength, stands_nowhere};
 use crate::case::StrengthReduction;
 use crate::check::short;
+use crate::results::fields::length;
 use crate::run::records::largest_displacement;
 use crate::run::state::State;
 use crate::summary::SafetySummary;
@@ -32,6 +33,11 @@ pub(super) fn remarks(safety: &SafetySummary, reduction: &StrengthReduction) -> 
         (Some(stable), None) => remarks.push(format!(
             "the slope still stands at SRF {stable:.4}, the largest factor tried"
         )),
+        (None, Some(_)) if stands_nowhere(&safety.trials, reduction.path) => remarks.push(
+            "no trial found a single equilibrium, whatever the strength: this tells nothing of the factor of safety; \
+             more steps, other cells, or `small_cuts` with a larger `below` may"
+                .to_owned(),
+        ),
         (None, Some(failed)) => remarks.push(format!(
             "the slope fails even at SRF {failed:.4}, the smallest factor tried"
         )),
@@ -65,7 +71,7 @@ pub(super) fn moving_mass<const D: usize>(state: &State<D>) -> f64 {
         .displacement
         .iter()
         .zip(share)
-        .filter(|(d, _)| d[0].hypot(d[1]) > limit)
+        .filter(|(d, _)| length(d) > limit)
         .map(|(_, share)| share)
         .sum();
     moving / share.iter().sum::<f64>()

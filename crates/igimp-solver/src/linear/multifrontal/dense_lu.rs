@@ -9,14 +9,8 @@ use faer::linalg::matmul::matmul;
 use faer::linalg::triangular_solve::solve_unit_lower_triangular_in_place;
 use faer::{Accum, MatMut, MatRef, Par};
 
+use super::scalar::Scalar;
 use super::tiles::by_columns;
-
-/// Pivots below this part of the largest entry of the scaled matrix carry no correct digit.
-const LOST: f64 = 1e-13;
-
-/// What replaces a lost pivot: the square root of the machine epsilon, large enough to bound the
-/// growth and small enough for refinement to undo the error.
-const REPLACEMENT: f64 = 1.490_116_119_384_765_6e-8;
 
 /// Columns that are eliminated one by one.
 const NARROW: usize = 8;
@@ -44,8 +38,8 @@ impl PivotRecord {
 /// Factorises a square block, stored by columns, into P A = L U in its place; row k was exchanged
 /// with row `exchanges[k]` ≥ k. `first` is the position of the first pivot, for the record; a
 /// `large` block is shared by the threads.
-pub(super) fn factor_block(
-    block: &mut [f64],
+pub(super) fn factor_block<T: Scalar>(
+    block: &mut [T],
     exchanges: &mut [u32],
     first: usize,
     large: bool,
@@ -59,7 +53,7 @@ pub(super) fn factor_block(
         record,
     };
     panel.factor(block, 0, exchanges);
-    let sizes = block.iter().map(|value| value.abs());
+    let sizes = block.iter().map(|value| value.wide().abs());
     record.largest = sizes.fold(record.largest, f64::max);
 }
 
@@ -74,7 +68,7 @@ struct Panel<'a> {
 
 impl Panel<'_> {
     /// Factorises some columns, whose first pivot is in row `top`.
-    fn factor(&mut self, columns: &mut [f64], top: usize, exchanges: &mut [u32]) {
+    fn factor<T: Scalar>(&mut self, columns: &mut [T], top: usize, exchanges: &mut [u32]) {
         let (rows, count) = (self.rows, exchanges.len());
         if count <= NARROW {
             self.factor_narrow(columns, top, exchanges);
@@ -92,7 +86,7 @@ impl Panel<'_> {
             factored.subrows(middle, rows - middle),
         );
         let remaining = MatMut::from_column_major_slice_mut(right, rows, count - half);
-        by_columns(self.large, remaining, &|_, mut tile: MatMut<'_, f64>| {
+        by_columns(self.large, remaining, &|_, mut tile: MatMut<'_, T>| {
             for column in tile.as_mut().col_iter_mut() {
                 if let Some(column) = column.try_as_col_major_mut() {
                     exchange(column.as_slice_mut(), top, left_exchanges);
@@ -100,7 +94,14 @@ impl Panel<'_> {
             }
             let (mut upper, lower) = tile.subrows_mut(top, rows - top).split_at_row_mut(half);
             solve_unit_lower_triangular_in_place(pivots, upper.as_mut(), Par::Seq);
-            matmul(lower, Accum::Add, below, upper.as_ref(), -1.0, Par::Seq);
+            matmul(
+                lower,
+                Accum::Add,
+                below,
+                upper.as_ref(),
+                -T::near(1.0),
+                Par::Seq,
+            );
         });
 
         self.factor(right, middle, right_exchanges);
@@ -110,20 +111,25 @@ impl Panel<'_> {
     }
 
     /// Factorises a few columns one after the other.
-    fn factor_narrow(&mut self, columns: &mut [f64], top: usize, exchanges: &mut [u32]) {
+    fn factor_narrow<T: Scalar>(&mut self, columns: &mut [T], top: usize, exchanges: &mut [u32]) {
         let rows = self.rows;
         for k in 0..exchanges.len() {
             let pivot_row = top + k;
             let column = &mut columns[k * rows..(k + 1) * rows];
             let mut chosen = pivot_row;
             for row in pivot_row + 1..rows {
-                if column[row].abs() > column[chosen].abs() {
+                if size(column[row]) > size(column[chosen]) {
                     chosen = row;
                 }
             }
-            if column[chosen].abs() <= LOST {
+            if size(column[chosen]) <= T::LOST {
                 chosen = pivot_row;
-                column[chosen] = REPLACEMENT.copysign(column[chosen]);
+                let is_negative = column[chosen].wide().is_sign_negative();
+                column[chosen] = if is_negative {
+                    -T::REPLACEMENT
+                } else {
+                    T::REPLACEMENT
+                };
                 self.record.replaced += 1;
                 let position = self.first + pivot_row;
                 self.record.first_replaced.get_or_insert(position);
@@ -135,7 +141,7 @@ impl Panel<'_> {
 
             let (eliminated, later) = columns.split_at_mut((k + 1) * rows);
             let (above, multipliers) = eliminated[k * rows..].split_at_mut(pivot_row + 1);
-            let inverse = 1.0 / above[pivot_row];
+            let inverse = T::near(1.0) / above[pivot_row];
             for value in &mut *multipliers {
                 *value *= inverse;
             }
@@ -143,22 +149,27 @@ impl Panel<'_> {
                 let (above, below) = column.split_at_mut(pivot_row + 1);
                 let factor = above[pivot_row];
                 for (value, multiplier) in below.iter_mut().zip(&*multipliers) {
-                    *value -= factor * multiplier;
+                    *value -= factor * *multiplier;
                 }
             }
         }
     }
 }
 
+/// Its magnitude.
+fn size<T: Scalar>(value: T) -> T {
+    if value < T::default() { -value } else { value }
+}
+
 /// Exchanges row `top + k` with row `exchanges[k]`, in turn, in a column.
-pub(super) fn exchange(column: &mut [f64], top: usize, exchanges: &[u32]) {
+pub(super) fn exchange<T>(column: &mut [T], top: usize, exchanges: &[u32]) {
     for (k, &other) in exchanges.iter().enumerate() {
         column.swap(top + k, other as usize);
     }
 }
 
 /// Exchanges column k with column `exchanges[k]`, in turn, of a panel with columns of `rows` entries.
-pub(super) fn exchange_columns(panel: &mut [f64], rows: usize, exchanges: &[u32]) {
+pub(super) fn exchange_columns<T>(panel: &mut [T], rows: usize, exchanges: &[u32]) {
     for (k, &other) in exchanges.iter().enumerate() {
         let other = other as usize;
         if other > k {

@@ -13,6 +13,7 @@ use super::kernel::Kernel;
 use super::lu::{Lu, LuFactors};
 use super::plan::Plan;
 use super::scaling::Scaling;
+use super::single::Single;
 use super::substitution::Vectors;
 use super::workshop::Workshop;
 
@@ -29,12 +30,14 @@ pub(in crate::linear) struct Engine {
     pub(in crate::linear) accuracy: Accuracy,
     pub(in crate::linear) analyses: usize,
     pub(super) plan: Option<Plan>,
-    factors: Factors,
+    factors: Factors<f64>,
     scaling: Scaling,
     inspection: Inspection,
-    workshop: Workshop,
-    vectors: Vectors,
+    workshop: Workshop<f64>,
+    vectors: Vectors<f64>,
     refinement: Refinement,
+    /// Takes the place of the factors in double precision while it is used.
+    single: Box<Single>,
     factored: Option<Factorisation>,
 }
 
@@ -42,6 +45,10 @@ pub(in crate::linear) struct Engine {
 enum Factorisation {
     Cholesky,
     Lu,
+    /// In single precision: Cholesky, or LU.
+    Single {
+        by_cholesky: bool,
+    },
     /// Takes over from the own factors where they fail.
     General(Box<GeneralLu>),
 }
@@ -75,7 +82,7 @@ impl Engine {
     }
 
     /// Entries of the factors of the pattern analysed last, zero before.
-    pub(super) fn entries<K: Kernel>(&self) -> usize {
+    pub(super) fn entries<K: Kernel<f64>>(&self) -> usize {
         let tasks = self.plan.iter().flat_map(|plan| &plan.tasks);
         tasks.map(|task| K::entries(&task.total)).sum()
     }
@@ -87,9 +94,13 @@ impl Engine {
             return (0, 0.0);
         };
         let (entries, shape, share) = if symmetric {
-            (self.entries::<Cholesky>(), Cholesky::SHAPE, 0.5)
+            (
+                self.entries::<Cholesky>(),
+                <Cholesky as Kernel<f64>>::SHAPE,
+                0.5,
+            )
         } else {
-            (self.entries::<Lu>(), Lu::SHAPE, 1.0)
+            (self.entries::<Lu>(), <Lu as Kernel<f64>>::SHAPE, 1.0)
         };
         let contributions = plan.contribution_entries(shape);
         (8 * (entries + contributions), share * plan.operations())
@@ -100,6 +111,52 @@ impl Engine {
         self.analyse(&matrix.pattern)?;
         self.factored = None;
         self.inspection.inspect(matrix)
+    }
+
+    /// Factorises in single precision, by Cholesky where the matrix is symmetric. The memory of factors in double
+    /// precision is given back.
+    pub(in crate::linear) fn factor_single(
+        &mut self,
+        matrix: &TangentMatrix,
+    ) -> Result<(), LinearSolverError> {
+        self.prepare(matrix)?;
+        (self.factors, self.workshop) = Default::default();
+        let plan = self.plan.as_ref().ok_or(LinearSolverError::NotFactored)?;
+        let by_cholesky = matrix.symmetric;
+        if by_cholesky {
+            let diagonal = &self.inspection.diagonal;
+            (self.single).factor_cholesky(plan, &Cholesky { matrix, diagonal })?;
+        } else {
+            self.scaling.fit(matrix, &self.inspection.diagonal);
+            let scale = &self.scaling.scale;
+            self.single.factor_lu(plan, &Lu { matrix, scale })?;
+        }
+        self.factored = Some(Factorisation::Single { by_cholesky });
+        Ok(())
+    }
+
+    /// Gives back the memory of factors in single precision.
+    pub(in crate::linear) fn forget_single(&mut self) {
+        *self.single = Single::default();
+    }
+
+    /// Solves with factors in single precision to a relative residual, in the Euclidean norm.
+    pub(in crate::linear) fn solve_single(
+        &mut self,
+        matrix: &TangentMatrix,
+        rhs: &[f64],
+        solution: &mut [f64],
+        target: f64,
+    ) -> Result<SolveReport, LinearSolverError> {
+        let (Some(plan), Some(Factorisation::Single { by_cholesky })) =
+            (&self.plan, &self.factored)
+        else {
+            return Err(LinearSolverError::NotFactored);
+        };
+        check::length("the matrix", matrix.pattern.unknowns(), plan.unknowns())?;
+        let scale = (!by_cholesky).then_some(&self.scaling.scale[..]);
+        let accuracy = (target, self.accuracy.tolerance);
+        (self.single).solve(plan, scale, (matrix, rhs), solution, accuracy)
     }
 
     /// Factorises a symmetric positive definite matrix.
@@ -161,7 +218,9 @@ impl Engine {
             check::length("the matrix", unknowns, plan.unknowns())?;
         }
         match &mut self.factored {
-            None => return Err(LinearSolverError::NotFactored),
+            None | Some(Factorisation::Single { .. }) => {
+                return Err(LinearSolverError::NotFactored);
+            }
             Some(Factorisation::General(general)) => return general.solve(matrix, rhs, solution),
             Some(Factorisation::Cholesky | Factorisation::Lu) => {}
         }

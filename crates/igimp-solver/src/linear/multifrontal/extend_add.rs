@@ -1,35 +1,34 @@
 //! Adding what a child contributes to the front of its parent, stretch by stretch.
 //!
 //! I. S. Duff & J. K. Reid, *The multifrontal solution of indefinite sparse symmetric linear
-//! systems*, ACM Trans. Math. Softw. 9 (1983).
+//! systems*, ACM Trans. Math. Softw. 9 (1983). What falls on the pivots of the parent is added to its factors at
+//! once; only what falls on its border waits for it.
 
 use std::ops::Range;
 
+use super::layout::Layout;
 use super::plan::{Front, Plan};
+use super::scalar::Scalar;
 
 /// Consecutive border unknowns of a child that are consecutive in the parent.
 #[derive(Clone, Copy)]
-struct Stretch {
+pub(super) struct Stretch {
     /// First of them in the border of the child.
-    source: usize,
+    pub(super) source: usize,
     /// First of them among the pivots or in the border of the parent.
-    target: usize,
-    len: usize,
+    pub(super) target: usize,
+    pub(super) len: usize,
 }
 
 /// Where the border of a child lies in its parent: first stretches among the pivots, then in the border.
 #[derive(Default)]
 pub(super) struct BorderMap {
     /// Unknowns of the border of the child.
-    rows: usize,
+    pub(super) rows: usize,
+    /// The first of them that are pivots of the parent.
+    pub(super) taken: usize,
     stretches: Vec<Stretch>,
     pivot_stretches: usize,
-}
-
-/// A block stored by columns with so many rows.
-pub(super) struct Block<'a> {
-    pub(super) entries: &'a mut [f64],
-    pub(super) rows: usize,
 }
 
 impl BorderMap {
@@ -37,6 +36,7 @@ impl BorderMap {
     /// of its border nodes, by rank.
     pub(super) fn set(&mut self, plan: &Plan, child: &Front, parent: &Front, local: &[u32]) {
         self.rows = child.border;
+        self.taken = child.border - child.passed_on;
         self.stretches.clear();
         self.pivot_stretches = 0;
         let mut source = 0;
@@ -67,68 +67,226 @@ impl BorderMap {
         }
     }
 
-    fn parts(&self) -> (&[Stretch], &[Stretch]) {
-        self.stretches.split_at(self.pivot_stretches)
+    /// Stretches among the pivots.
+    pub(super) fn among_pivots(&self) -> &[Stretch] {
+        &self.stretches[..self.pivot_stretches]
     }
 
-    /// Adds the rows of the child's columns among the pivots.
-    pub(super) fn add_to_pivots(&self, child: &[f64], pivots: &mut Block, lower: &mut Block) {
-        let (into_pivots, into_border) = self.parts();
-        for columns in into_pivots {
-            for k in 0..columns.len {
-                let source = &child[(columns.source + k) * self.rows..][..self.rows];
-                add_stretches(pivots.column(columns.target + k), source, into_pivots);
-                add_stretches(lower.column(columns.target + k), source, into_border);
+    /// Stretches in the border.
+    pub(super) fn in_border(&self) -> &[Stretch] {
+        &self.stretches[self.pivot_stretches..]
+    }
+
+    /// How many pivots of the parent stand before a place in the border of the child, `all` where it is
+    /// beyond them.
+    pub(super) fn pivots_before(&self, source: usize, all: usize) -> usize {
+        let stretches = self.among_pivots();
+        let next = stretches.partition_point(|stretch| stretch.source + stretch.len <= source);
+        stretches.get(next).map_or(all, |stretch| {
+            stretch.target + source.saturating_sub(stretch.source)
+        })
+    }
+}
+
+/// What a child has left for its parent to pass on: the entries of its border without the pivots of the parent.
+pub(super) struct Waiting<'a, T> {
+    pub(super) map: BorderMap,
+    pub(super) entries: &'a [T],
+}
+
+impl<T: Scalar> Waiting<'_, T> {
+    /// Adds what is in some columns of the parent's border, from their diagonal on, to a tile of them whose rows begin with
+    /// the first column. What waits is a [`triangle`].
+    pub(super) fn add_lower(&self, tile: &mut [T], height: usize, columns: &Range<usize>) {
+        let rows = self.map.rows - self.map.taken;
+        let stretches = self.map.in_border();
+        for (index, own, target) in within(stretches, columns) {
+            let stretch = stretches[index].from(own);
+            let source = &self.entries[triangle_column(rows, stretch.source - self.map.taken)];
+            let into = &mut tile[(target - columns.start) * height..][..height];
+            let shift = (self.map.taken, columns.start);
+            add_stretch(into, source, stretch, shift);
+            for &stretch in &stretches[index + 1..] {
+                add_stretch(into, source, stretch, shift);
             }
         }
     }
 
-    /// The same where the contribution of the child is a [`triangle`].
-    pub(super) fn add_lower_to_pivots(&self, child: &[f64], pivots: &mut Block, lower: &mut Block) {
-        let (into_pivots, into_border) = self.parts();
-        for (index, columns) in into_pivots.iter().enumerate() {
-            for k in 0..columns.len {
-                let source = &child[triangle_column(self.rows, columns.source + k)];
-                let target = pivots.column(columns.target + k);
-                add_stretch(target, source, columns.from(k));
-                add_stretches(target, source, &into_pivots[index + 1..]);
-                add_stretches(lower.column(columns.target + k), source, into_border);
+    /// The same with all rows from `first_row` on of the parent's border. What waits is a square.
+    pub(super) fn add_square(
+        &self,
+        tile: &mut [T],
+        height: usize,
+        columns: &Range<usize>,
+        first_row: usize,
+    ) {
+        let rows = self.map.rows - self.map.taken;
+        let stretches = self.map.in_border();
+        let first = stretches.partition_point(|own| own.target + own.len <= first_row);
+        for (index, own, target) in within(stretches, columns) {
+            let column = stretches[index].source + own - self.map.taken;
+            let source = &self.entries[column * rows..][..rows];
+            let into = &mut tile[(target - columns.start) * height..][..height];
+            for stretch in &stretches[first..] {
+                let stretch = stretch.from(first_row.saturating_sub(stretch.target));
+                add_stretch(into, source, stretch, (self.map.taken, first_row));
             }
         }
     }
 
-    /// Adds the columns of the child's border to the rows of the pivots, into a transposed block.
-    pub(super) fn add_transposed(&self, child: &[f64], upper: &mut Block) {
-        let (into_pivots, into_border) = self.parts();
-        for rows in into_pivots {
-            for columns in into_border {
-                let target = &mut upper.entries[rows.target * upper.rows + columns.target..];
-                let source = &child[columns.source * self.rows + rows.source..];
-                add_block_transposed(target, upper.rows, source, self.rows, rows.len, columns.len);
+    /// Adds the columns from `first_column` on of some rows of the parent's border, transposed. What waits is a square.
+    pub(super) fn add_transposed(
+        &self,
+        tile: &mut [T],
+        height: usize,
+        rows_of_parent: &Range<usize>,
+        first_column: usize,
+    ) {
+        let rows = self.map.rows - self.map.taken;
+        let stretches = self.map.in_border();
+        let first = stretches.partition_point(|own| own.target + own.len <= first_column);
+        for (index, own, target) in within(stretches, rows_of_parent) {
+            let row = stretches[index].source + own - self.map.taken;
+            let into = &mut tile[(target - rows_of_parent.start) * height..][..height];
+            for stretch in &stretches[first..] {
+                let stretch = stretch.from(first_column.saturating_sub(stretch.target));
+                let into = &mut into[stretch.target - first_column..][..stretch.len];
+                let column = stretch.source - self.map.taken;
+                for (k, into) in into.iter_mut().enumerate() {
+                    *into += self.entries[(column + k) * rows + row];
+                }
+            }
+        }
+    }
+}
+
+/// The unknowns of stretches whose target is within a range: stretch, number within it, target.
+fn within(
+    stretches: &[Stretch],
+    targets: &Range<usize>,
+) -> impl Iterator<Item = (usize, usize, usize)> {
+    let first = stretches.partition_point(|own| own.target + own.len <= targets.start);
+    let later = stretches[first..].iter().enumerate();
+    later
+        .take_while(|(_, own)| own.target < targets.end)
+        .flat_map(move |(index, own)| {
+            let from = targets.start.saturating_sub(own.target);
+            let to = own.len.min(targets.end - own.target);
+            (from..to).map(move |k| (first + index, k, own.target + k))
+        })
+}
+
+/// A part of the factors of a parent that some columns of its child are added to, and of what the child leaves.
+pub(super) struct Target<'a, T> {
+    pub(super) layout: Layout,
+    /// First pivot of the part.
+    pub(super) first_pivot: usize,
+    /// Columns of the pivots from that one on.
+    pub(super) pivots: &'a mut [T],
+    /// The same columns below the pivots, so many rows each.
+    pub(super) lower: &'a mut [T],
+    pub(super) border: usize,
+    /// Columns that wait, from the one with this number on.
+    pub(super) first_waiting: usize,
+    pub(super) waiting: &'a mut [T],
+}
+
+impl<T: Scalar> Target<'_, T> {
+    /// Cuts before a column of the child. `before` are the entries that wait of columns before the cut.
+    pub(super) fn cut(
+        self,
+        map: &BorderMap,
+        column: usize,
+        pivots: usize,
+        before: usize,
+    ) -> (Self, Self) {
+        let pivot = map.pivots_before(column, pivots).max(self.first_pivot);
+        let at = self.layout.offset(pivot) - self.layout.offset(self.first_pivot);
+        let at = at.min(self.pivots.len());
+        let (left_pivots, right_pivots) = self.pivots.split_at_mut(at);
+        let below = (pivot - self.first_pivot) * self.border;
+        let (left_lower, right_lower) = self.lower.split_at_mut(below);
+        let (left_waiting, right_waiting) = self.waiting.split_at_mut(before);
+        let left = Target {
+            pivots: left_pivots,
+            lower: left_lower,
+            waiting: left_waiting,
+            ..self
+        };
+        let right = Target {
+            layout: left.layout,
+            border: left.border,
+            first_pivot: pivot,
+            pivots: right_pivots,
+            lower: right_lower,
+            first_waiting: column.max(map.taken) - map.taken,
+            waiting: right_waiting,
+        };
+        (left, right)
+    }
+
+    /// Adds the columns of a tile that are among the pivots. The tile has the rows of the child from `first_row` on, of each
+    /// column those from its own on count where only the lower half does.
+    pub(super) fn add_columns(
+        &mut self,
+        map: &BorderMap,
+        tile: &[T],
+        columns: &Range<usize>,
+        first_row: usize,
+        lower_half: bool,
+    ) {
+        let height = map.rows - first_row;
+        let (into_pivots, into_border) = (map.among_pivots(), map.in_border());
+        let first = into_pivots.partition_point(|own| own.source + own.len <= columns.start);
+        for (index, own) in into_pivots.iter().enumerate().skip(first) {
+            if own.source >= columns.end {
+                break;
+            }
+            for k in columns.start.saturating_sub(own.source)..own.len.min(columns.end - own.source)
+            {
+                let source = &tile[(own.source + k - columns.start) * height..][..height];
+                let pivot = own.target + k;
+                let start = self.layout.offset(pivot) - self.layout.offset(self.first_pivot);
+                let shift = (first_row, self.layout.first_row(pivot));
+                let into = &mut self.pivots[start..];
+                let stretches = if lower_half {
+                    add_stretch(into, source, own.from(k), shift);
+                    &into_pivots[index + 1..]
+                } else {
+                    into_pivots
+                };
+                for &stretch in stretches {
+                    add_stretch(into, source, stretch, shift);
+                }
+                let into =
+                    &mut self.lower[(pivot - self.first_pivot) * self.border..][..self.border];
+                for &stretch in into_border {
+                    add_stretch(into, source, stretch, (first_row, 0));
+                }
             }
         }
     }
 
-    /// Adds the part that the parent passes on to its own contribution.
-    pub(super) fn pass_on(&self, child: &[f64], contribution: &mut Block) {
-        let (_, into_border) = self.parts();
-        for columns in into_border {
-            for k in 0..columns.len {
-                let source = &child[(columns.source + k) * self.rows..][..self.rows];
-                add_stretches(contribution.column(columns.target + k), source, into_border);
-            }
-        }
-    }
-
-    /// The same where both are a [`triangle`], the parent's with so many rows.
-    pub(super) fn pass_on_lower(&self, child: &[f64], contribution: &mut [f64], rows: usize) {
-        let (_, into_border) = self.parts();
-        for (index, columns) in into_border.iter().enumerate() {
-            for k in 0..columns.len {
-                let source = &child[triangle_column(self.rows, columns.source + k)];
-                let target = &mut contribution[triangle_column(rows, columns.target + k)];
-                add_stretch(target, source, columns.from(k));
-                add_stretches(target, source, &into_border[index + 1..]);
+    /// Adds the columns of a tile below the pivots only; the tile has the rows of the child from `first_row` on, where its
+    /// pivots end.
+    pub(super) fn add_below(
+        &mut self,
+        map: &BorderMap,
+        tile: &[T],
+        columns: &Range<usize>,
+        first_row: usize,
+    ) {
+        let height = map.rows - first_row;
+        for own in map.among_pivots() {
+            let from = columns.start.saturating_sub(own.source);
+            let to = own.len.min(columns.end.saturating_sub(own.source));
+            for k in from..to {
+                let source = &tile[(own.source + k - columns.start) * height..][..height];
+                let first = (own.target + k - self.first_pivot) * self.border;
+                let into = &mut self.lower[first..][..self.border];
+                for &stretch in map.in_border() {
+                    add_stretch(into, source, stretch, (first_row, 0));
+                }
             }
         }
     }
@@ -148,6 +306,7 @@ pub(super) fn triangle_column(rows: usize, column: usize) -> Range<usize> {
 impl Stretch {
     /// What is left of a stretch without its first `k` unknowns.
     fn from(&self, k: usize) -> Self {
+        let k = k.min(self.len);
         Self {
             source: self.source + k,
             target: self.target + k,
@@ -156,41 +315,17 @@ impl Stretch {
     }
 }
 
-impl Block<'_> {
-    fn column(&mut self, column: usize) -> &mut [f64] {
-        &mut self.entries[column * self.rows..][..self.rows]
-    }
-}
-
-/// Adds stretches of `source` where they belong in `target`.
-fn add_stretches(target: &mut [f64], source: &[f64], stretches: &[Stretch]) {
-    for &stretch in stretches {
-        add_stretch(target, source, stretch);
-    }
-}
-
-fn add_stretch(target: &mut [f64], source: &[f64], stretch: Stretch) {
-    let into = &mut target[stretch.target..stretch.target + stretch.len];
-    let from = &source[stretch.source..stretch.source + stretch.len];
+/// Adds a stretch of `source` where it belongs in `target`; both begin with a later row than 0.
+#[inline]
+fn add_stretch<T: Scalar>(
+    target: &mut [T],
+    source: &[T],
+    stretch: Stretch,
+    (first_source, first_target): (usize, usize),
+) {
+    let into = &mut target[stretch.target - first_target..][..stretch.len];
+    let from = &source[stretch.source - first_source..][..stretch.len];
     for (into, &value) in into.iter_mut().zip(from) {
         *into += value;
-    }
-}
-
-/// Adds the transpose of a block of `rows` by `columns` entries; both are stored by columns, with
-/// the given numbers of entries from one column to the next.
-fn add_block_transposed(
-    target: &mut [f64],
-    target_step: usize,
-    source: &[f64],
-    source_step: usize,
-    rows: usize,
-    columns: usize,
-) {
-    for j in 0..rows {
-        let into = &mut target[j * target_step..][..columns];
-        for (k, into) in into.iter_mut().enumerate() {
-            *into += source[k * source_step + j];
-        }
     }
 }

@@ -2,12 +2,13 @@
 
 use super::super::LinearSolverError;
 use super::dense_lu::PivotRecord;
-use super::extend_add::{BorderMap, triangle};
+use super::extend_add::{BorderMap, Waiting, triangle};
 use super::plan::{Front, Plan};
+use super::scalar::Scalar;
 use super::tasks::Extent;
 
 /// A kind of elimination, on given values.
-pub(super) trait Kernel: Sync {
+pub(super) trait Kernel<T: Scalar>: Sync {
     /// How contributions are stored.
     const SHAPE: Shape;
 
@@ -16,12 +17,10 @@ pub(super) trait Kernel: Sync {
 
     /// Sets the factors of a front to the entries of the matrix in its rows and columns. `local` gives
     /// the first row in the border of each border node, by rank.
-    fn load(&self, plan: &Plan, front: &Front, factors: &mut [f64], local: &[u32]);
+    fn load(&self, plan: &Plan, front: &Front, factors: &mut [T], local: &[u32]);
 
-    /// Adds what a child contributes to the rows and columns of the pivots.
-    fn add(front: &Front, factors: &mut [f64], child: &[f64], map: &BorderMap);
-
-    /// Eliminates the pivots and sets `contribution`. The threads share the work on a `large` front.
+    /// Eliminates the pivots. The threads share the work on a `large` front; `exchanges` are those of rows
+    /// within the pivot block.
     ///
     /// # Errors
     /// [`LinearSolverError::NotPositiveDefinite`], where that matters.
@@ -29,12 +28,40 @@ pub(super) trait Kernel: Sync {
         &self,
         plan: &Plan,
         front: &Front,
-        room: Room,
+        factors: &mut [T],
+        exchanges: &mut [u32],
         large: bool,
     ) -> Result<PivotRecord, LinearSolverError>;
 
-    /// Adds the part of a child's contribution that the parent passes on.
-    fn pass_on(front: &Front, child: &[f64], map: &BorderMap, contribution: &mut [f64]);
+    /// Works out what a front contributes to its parent: adds to the factors of the parent what falls on
+    /// its pivots, and leaves the rest.
+    ///
+    /// # Errors
+    /// [`LinearSolverError::OutOfMemory`].
+    fn contribute(
+        contribution: Contribution<'_, T>,
+        room: Room<'_, T>,
+        scratch: &mut Vec<T>,
+        large: bool,
+    ) -> Result<(), LinearSolverError>;
+}
+
+/// What a front contributes to its parent: the product of its factors, and what its own children left.
+pub(super) struct Contribution<'a, T> {
+    pub(super) front: &'a Front,
+    pub(super) factors: &'a [T],
+    pub(super) children: &'a [Waiting<'a, T>],
+    /// Where its border lies in the parent.
+    pub(super) map: &'a BorderMap,
+}
+
+/// Where a contribution goes.
+pub(super) struct Room<'a, T> {
+    pub(super) parent: &'a Front,
+    /// Factors of the parent, loaded.
+    pub(super) factors: &'a mut [T],
+    /// What the parent will pass on, see [`Shape`].
+    pub(super) waiting: &'a mut [T],
 }
 
 /// How the contribution of a front is stored.
@@ -56,26 +83,14 @@ impl Shape {
     }
 }
 
-/// Where the result of an elimination goes.
-pub(super) struct Room<'a> {
-    /// Factors of the front.
-    pub(super) factors: &'a mut [f64],
-    /// Row exchanges within the pivot block.
-    pub(super) exchanges: &'a mut [u32],
-    /// What the border of the front takes, see [`Shape`].
-    pub(super) contribution: &'a mut [f64],
-    /// Memory to work in.
-    pub(super) scratch: &'a mut Vec<f64>,
-}
-
 /// What the factors of a front are used for in a solve.
-pub(super) trait Substitution: Sync {
+pub(super) trait Substitution<T: Scalar>: Sync {
     /// As [`Kernel::entries`].
     fn entries(extent: &Extent) -> usize;
 
-    /// y ← L⁻¹ P y for the pivots, and `product` = L y for the border.
-    fn forward(factors: &[f64], exchanges: &[u32], y: &mut [f64], product: &mut [f64]);
+    /// y ← L⁻¹ P y for the pivots, and `product` = −L y for the border. The threads share the work on a `large` front.
+    fn forward(factors: &[T], exchanges: &[u32], y: &mut [T], product: &mut [T], large: bool);
 
     /// y ← U⁻¹ (y − Uᵀ border).
-    fn backward(factors: &[f64], y: &mut [f64], border: &[f64]);
+    fn backward(factors: &[T], y: &mut [T], border: &[T], large: bool);
 }

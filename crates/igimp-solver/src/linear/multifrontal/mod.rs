@@ -13,8 +13,9 @@
 //! |---|---|
 //! | [`neighbours`], [`supernodes`], [`plan`], [`tasks`] | analysis: fronts, their order, their memory, what threads share |
 //! | [`scaling`], [`kernel`], [`lu`], [`cholesky`], [`extend_add`], [`factors`] | factorisation |
-//! | [`dense_lu`], [`tiles`], [`panels`], [`workshop`] | dense kernels, memory |
+//! | [`dense_lu`], [`tiles`], [`panels`], [`layout`], [`scalar`], [`workshop`] | dense kernels, numbers, memory |
 //! | [`substitution`] | solution |
+//! | [`single`] | factors in single precision as a preconditioner |
 //! | [`engine`], [`solvers`] | the whole, and the solvers to choose from |
 
 mod cholesky;
@@ -23,11 +24,14 @@ mod engine;
 mod extend_add;
 mod factors;
 mod kernel;
+mod layout;
 mod lu;
 mod neighbours;
 mod panels;
 mod plan;
+mod scalar;
 mod scaling;
+mod single;
 mod solvers;
 mod substitution;
 mod supernodes;

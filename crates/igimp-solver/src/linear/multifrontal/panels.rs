@@ -2,44 +2,77 @@
 //! memory. The order of the sums is fixed.
 
 use faer::traits::pulp::Arch;
+use rayon::prelude::*;
+
+use super::layout::Layout;
+use super::scalar::Scalar;
 
 /// Columns that are worked on together.
 const WIDTH: usize = 4;
 
+/// Rows and columns of a large panel that a thread works on at a time.
+const ROWS: usize = 512;
+const COLUMNS: usize = 64;
+
 /// Partial sums of a scalar product.
 const LANES: usize = 16;
 
-/// y ← y − A x for a panel A stored by columns.
-pub(super) fn subtract_product(panel: &[f64], x: &[f64], y: &mut [f64]) {
+/// y ← y − A x for a panel A stored by columns; the threads share the rows of a `large` one.
+pub(super) fn subtract_product<T: Scalar>(panel: &[T], x: &[T], y: &mut [T], large: bool) {
     let rows = y.len();
-    if rows == 0 {
-        return;
+    if large && rows > ROWS {
+        let parts = y.par_chunks_mut(ROWS).enumerate();
+        parts.for_each(|(part, y)| subtract_rows(panel, rows, part * ROWS, x, y));
+    } else if rows > 0 {
+        subtract_rows(panel, rows, 0, x, y);
     }
+}
+
+/// The same for some rows of a panel of `height`, from the row `first` on.
+fn subtract_rows<T: Scalar>(panel: &[T], height: usize, first: usize, x: &[T], y: &mut [T]) {
     Arch::new().dispatch(|| {
+        let own = first..first + y.len();
         let mut groups = x.chunks_exact(WIDTH);
-        let mut columns = panel.chunks_exact(WIDTH * rows);
+        let mut columns = panel.chunks_exact(WIDTH * height);
         for (x, columns) in groups.by_ref().zip(columns.by_ref()) {
-            let (a, columns) = columns.split_at(rows);
-            let (b, columns) = columns.split_at(rows);
-            let (c, d) = columns.split_at(rows);
+            let (a, columns) = columns.split_at(height);
+            let (b, columns) = columns.split_at(height);
+            let (c, d) = columns.split_at(height);
+            let (a, b) = (&a[own.clone()], &b[own.clone()]);
+            let (c, d) = (&c[own.clone()], &d[own.clone()]);
             for ((((y, a), b), c), d) in y.iter_mut().zip(a).zip(b).zip(c).zip(d) {
-                *y -= (a * x[0] + b * x[1]) + (c * x[2] + d * x[3]);
+                *y -= (*a * x[0] + *b * x[1]) + (*c * x[2] + *d * x[3]);
             }
         }
-        let rest = columns.remainder().chunks_exact(rows);
+        let rest = columns.remainder().chunks_exact(height);
         for (x, column) in groups.remainder().iter().zip(rest) {
-            for (y, a) in y.iter_mut().zip(column) {
-                *y -= a * x;
+            for (y, a) in y.iter_mut().zip(&column[own.clone()]) {
+                *y -= *a * *x;
             }
         }
     });
 }
 
-/// y ← y − Aᵀ x for a panel A stored by columns.
-pub(super) fn subtract_transposed_product(panel: &[f64], x: &[f64], y: &mut [f64]) {
-    if x.is_empty() {
-        return;
+/// y ← y − Aᵀ x for a panel A stored by columns; the threads share the columns of a `large` one.
+pub(super) fn subtract_transposed_product<T: Scalar>(
+    panel: &[T],
+    x: &[T],
+    y: &mut [T],
+    large: bool,
+) {
+    let rows = x.len();
+    if large && rows > ROWS {
+        let parts = y
+            .par_chunks_mut(COLUMNS)
+            .zip(panel.par_chunks(COLUMNS * rows));
+        parts.for_each(|(y, panel)| subtract_columns(panel, x, y));
+    } else if rows > 0 {
+        subtract_columns(panel, x, y);
     }
+}
+
+/// The same for some columns.
+fn subtract_columns<T: Scalar>(panel: &[T], x: &[T], y: &mut [T]) {
     Arch::new().dispatch(|| {
         for (y, column) in y.iter_mut().zip(panel.chunks_exact(x.len())) {
             *y -= dot(column, x);
@@ -47,43 +80,53 @@ pub(super) fn subtract_transposed_product(panel: &[f64], x: &[f64], y: &mut [f64
     });
 }
 
-/// y ← L⁻¹ y for the lower triangle of a square block, with a diagonal of ones instead of its own where
+/// y ← L⁻¹ y for the lower triangle of a block, with a diagonal of ones instead of its own where
 /// it is `unit`.
-pub(super) fn solve_lower(block: &[f64], unit: bool, y: &mut [f64]) {
+pub(super) fn solve_lower<T: Scalar>(layout: Layout, block: &[T], unit: bool, y: &mut [T]) {
     Arch::new().dispatch(|| {
         let rows = y.len();
-        for (k, column) in block.chunks_exact(rows).enumerate() {
-            let (known, below) = y.split_at_mut(k + 1);
-            if !unit {
-                known[k] /= column[k];
-            }
-            for (value, multiplier) in below.iter_mut().zip(&column[k + 1..]) {
-                *value -= known[k] * multiplier;
+        let mut rest = block;
+        for (first, columns) in layout.strides() {
+            let (own, later) = rest.split_at(columns * (rows - first));
+            rest = later;
+            for (k, column) in own.chunks_exact(rows - first).enumerate() {
+                let (known, below) = y[first..].split_at_mut(k + 1);
+                if !unit {
+                    known[k] /= column[k];
+                }
+                for (value, multiplier) in below.iter_mut().zip(&column[k + 1..]) {
+                    *value -= known[k] * *multiplier;
+                }
             }
         }
     });
 }
 
-/// y ← L⁻ᵀ y for the lower triangle of a square block.
-pub(super) fn solve_lower_transposed(block: &[f64], y: &mut [f64]) {
+/// y ← L⁻ᵀ y for the lower triangle of a block.
+pub(super) fn solve_lower_transposed<T: Scalar>(layout: Layout, block: &[T], y: &mut [T]) {
     Arch::new().dispatch(|| {
         let rows = y.len();
-        for (k, column) in block.chunks_exact(rows).enumerate().rev() {
-            let (unknown, known) = y.split_at_mut(k + 1);
-            unknown[k] = (unknown[k] - dot(&column[k + 1..], known)) / column[k];
+        let mut rest = block;
+        for (first, columns) in layout.strides().rev() {
+            let (earlier, own) = rest.split_at(rest.len() - columns * (rows - first));
+            rest = earlier;
+            for (k, column) in own.chunks_exact(rows - first).enumerate().rev() {
+                let (unknown, known) = y[first..].split_at_mut(k + 1);
+                unknown[k] = (unknown[k] - dot(&column[k + 1..], known)) / column[k];
+            }
         }
     });
 }
 
 /// y ← U⁻¹ y for the upper triangle of a square block.
-pub(super) fn solve_upper(block: &[f64], y: &mut [f64]) {
+pub(super) fn solve_upper<T: Scalar>(block: &[T], y: &mut [T]) {
     Arch::new().dispatch(|| {
         let rows = y.len();
         for (k, column) in block.chunks_exact(rows).enumerate().rev() {
             let (above, known) = y.split_at_mut(k);
             known[0] /= column[k];
             for (value, factor) in above.iter_mut().zip(column) {
-                *value -= known[0] * factor;
+                *value -= known[0] * *factor;
             }
         }
     });
@@ -95,17 +138,17 @@ pub(super) fn solve_upper(block: &[f64], y: &mut [f64]) {
     reason = "it takes the vector instructions of its caller"
 )]
 #[inline(always)]
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let mut lanes = [0.0; LANES];
+fn dot<T: Scalar>(a: &[T], b: &[T]) -> T {
+    let mut lanes = [T::default(); LANES];
     let (mut a, mut b) = (a.chunks_exact(LANES), b.chunks_exact(LANES));
     for (a, b) in a.by_ref().zip(b.by_ref()) {
         for (lane, (a, b)) in lanes.iter_mut().zip(a.iter().zip(b)) {
-            *lane += a * b;
+            *lane += *a * *b;
         }
     }
-    let mut sum = 0.0;
+    let mut sum = T::default();
     for (a, b) in a.remainder().iter().zip(b.remainder()) {
-        sum += a * b;
+        sum += *a * *b;
     }
     for four in lanes.chunks_exact(WIDTH) {
         sum += (four[0] + four[1]) + (four[2] + four[3]);

@@ -13,9 +13,13 @@ use igimp_assembly::Pattern;
 use super::super::reach::Reach;
 use super::super::{LinearSolverError, NestedDissection, check};
 use super::kernel::Shape;
+use super::layout::Layout;
 use super::neighbours::{NONE, Neighbours};
 use super::supernodes::Supernodes;
 use super::tasks::{Extent, Task, cut};
+
+/// Stands for the parent of a root.
+pub(super) const NO_FRONT: usize = usize::MAX;
 
 /// One dense elimination: `pivots` unknowns, coupled to `border` later ones.
 pub(super) struct Front {
@@ -29,14 +33,18 @@ pub(super) struct Front {
     pub(super) columns: Range<usize>,
     /// Later nodes: a range of [`Plan::borders`].
     pub(super) rows: Range<usize>,
+    /// The front that it contributes to, or [`NO_FRONT`].
+    pub(super) parent: usize,
     /// First front of the subtree, whose fronts are contiguous and end with this one.
     pub(super) subtree: usize,
     /// The fronts that contribute to this one: a range of [`Plan::children`].
     pub(super) children: Range<usize>,
-    /// Which of the two stacks holds its contribution to the parent: a front and its parent use
-    /// different ones, so that each stays last in, first out.
+    /// Unknowns of the border that the parent does not eliminate: what falls on them waits for the parent.
+    pub(super) passed_on: usize,
+    /// Which of the two stacks holds what waits: a front and its parent use different ones, so that each
+    /// stays last in, first out.
     pub(super) stack: usize,
-    /// Where in that stack the contribution lies, for each shape of contributions.
+    /// Where in that stack it lies, for each shape of contributions.
     pub(super) contribution: [Range<usize>; 2],
 }
 
@@ -51,6 +59,7 @@ impl Front {
         Extent {
             pivots: self.pivots,
             squares: self.pivots * self.pivots,
+            halves: Layout::lower(self.pivots).entries(),
             panels: self.pivots * self.border,
             outer: 0,
         }
@@ -189,7 +198,7 @@ impl Plan {
         self.fronts.iter().map(of_front).sum()
     }
 
-    /// Largest number of entries of contributions that wait for their parents at the same time, on one thread.
+    /// Largest number of entries that wait for their parents at the same time, on one thread.
     pub(super) fn contribution_entries(&self, shape: Shape) -> usize {
         let waiting = self.tasks.iter().map(|task| task.waiting(shape));
         waiting.max().unwrap_or(0)
@@ -215,8 +224,10 @@ impl Plan {
                 border,
                 columns,
                 rows: start..self.borders.len(),
+                parent: NO_FRONT,
                 subtree: front,
                 children: 0..0,
+                passed_on: 0,
                 stack: 0,
                 contribution: [0..0, 0..0],
             });
@@ -251,7 +262,13 @@ impl Plan {
         }
         for front in (0..sequence.len()).rev() {
             if let Some(parent) = parent_of(front) {
+                self.fronts[front].parent = parent;
                 self.fronts[front].stack = 1 - self.fronts[parent].stack;
+                let end = self.fronts[parent].end();
+                let rows = self.rows(&self.fronts[front]).iter();
+                let passed_on = rows.map(|&rank| self.positions_of(rank));
+                let passed_on = passed_on.filter(|own| own.start >= end);
+                self.fronts[front].passed_on = passed_on.map(|own| own.len()).sum();
             }
         }
     }

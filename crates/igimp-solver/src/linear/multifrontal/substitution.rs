@@ -8,27 +8,28 @@ use super::super::LinearSolverError;
 use super::factors::Factors;
 use super::kernel::Substitution;
 use super::plan::{Front, Plan};
+use super::scalar::Scalar;
 use super::tasks::{Extent, Task};
 use super::workshop::{Tools, Workshop, make_room};
 
 /// Vectors for solves, kept from solve to solve.
 #[derive(Default)]
-pub(super) struct Vectors {
+pub(super) struct Vectors<T> {
     /// The vector being solved for, by position.
-    vector: Vec<f64>,
+    vector: Vec<T>,
     /// Parts of vectors on the borders of the tasks.
-    outer: Vec<f64>,
+    outer: Vec<T>,
 }
 
-impl Vectors {
+impl<T: Scalar> Vectors<T> {
     /// Replaces a vector by (an approximation of) K⁻¹ times it; `scale` is the diagonal of S where
     /// S K S was factorised, by unknown.
-    pub(super) fn solve<S: Substitution>(
+    pub(super) fn solve<S: Substitution<T>>(
         &mut self,
         plan: &Plan,
-        factors: &Factors,
+        factors: &Factors<T>,
         scale: Option<&[f64]>,
-        workshop: &Workshop,
+        workshop: &Workshop<T>,
         vector: &mut [f64],
     ) -> Result<(), LinearSolverError> {
         let outer = plan.tasks.iter().map(|task| task.total.outer).sum();
@@ -39,9 +40,9 @@ impl Vectors {
             let block = plan.pattern.blocks[block as usize];
             let unknowns = block.first..block.first + block.len;
             self.vector
-                .extend(unknowns.map(|unknown| vector[unknown] * scaled(unknown)));
+                .extend(unknowns.map(|unknown| T::near(vector[unknown] * scaled(unknown))));
         }
-        let job = Job::<S> {
+        let job = Job::<S, T> {
             plan,
             factors,
             workshop,
@@ -54,7 +55,8 @@ impl Vectors {
             let block = plan.pattern.blocks[block as usize];
             for k in 0..block.len {
                 let unknown = block.first + k;
-                vector[unknown] = self.vector[position as usize + k] * scaled(unknown);
+                let value = self.vector[position as usize + k].wide();
+                vector[unknown] = value * scaled(unknown);
             }
         }
         Ok(())
@@ -76,22 +78,22 @@ struct Place {
     position: usize,
 }
 
-struct Job<'a, S> {
+struct Job<'a, S, T> {
     plan: &'a Plan,
-    factors: &'a Factors,
-    workshop: &'a Workshop,
+    factors: &'a Factors<T>,
+    workshop: &'a Workshop<T>,
     kind: std::marker::PhantomData<S>,
 }
 
-impl<S: Substitution> Job<'_, S> {
+impl<S: Substitution<T>, T: Scalar> Job<'_, S, T> {
     /// Goes through several tasks with everything below them. `y` and `outer` are their parts.
     fn each(
         &self,
         direction: Direction,
         tasks: &[Task],
         place: Place,
-        y: &mut [f64],
-        outer: &mut [f64],
+        y: &mut [T],
+        outer: &mut [T],
     ) -> Result<(), LinearSolverError> {
         match tasks {
             [] => Ok(()),
@@ -123,8 +125,8 @@ impl<S: Substitution> Job<'_, S> {
         &self,
         task: &Task,
         place: Place,
-        y: &mut [f64],
-        outer: &mut [f64],
+        y: &mut [T],
+        outer: &mut [T],
     ) -> Result<(), LinearSolverError> {
         let (y_below, y) = y.split_at_mut(task.total.pivots - task.own.pivots);
         let (outer_below, outer) = outer.split_at_mut(task.total.outer - task.own.outer);
@@ -133,7 +135,7 @@ impl<S: Substitution> Job<'_, S> {
         let mut tools = self.workshop.tools(self.plan)?;
         let Tools { local, border, .. } = &mut tools;
         let mut part = Part::new(self.plan, task, y, outer, local);
-        part.outer.fill(0.0);
+        part.outer.fill(T::default());
         for (child, changes) in task.outer_parts() {
             let child = &self.plan.fronts[child];
             part.add(self.plan, child, &outer_below[changes]);
@@ -144,7 +146,7 @@ impl<S: Substitution> Job<'_, S> {
             values = later;
             let exchanges = &self.factors.exchanges[front.first..front.end()];
             let product = &mut border[..front.border];
-            S::forward(own, exchanges, part.pivots(front), product);
+            S::forward(own, exchanges, part.pivots(front), product, task.is_large());
             part.add(self.plan, front, product);
         }
         self.workshop.give_back(tools);
@@ -155,8 +157,8 @@ impl<S: Substitution> Job<'_, S> {
         &self,
         task: &Task,
         place: Place,
-        y: &mut [f64],
-        outer: &mut [f64],
+        y: &mut [T],
+        outer: &mut [T],
     ) -> Result<(), LinearSolverError> {
         let (y_below, y) = y.split_at_mut(task.total.pivots - task.own.pivots);
         let (outer_below, outer) = outer.split_at_mut(task.total.outer - task.own.outer);
@@ -169,7 +171,8 @@ impl<S: Substitution> Job<'_, S> {
             let (earlier, own) = values.split_at(values.len() - S::entries(&front.extent()));
             values = earlier;
             part.gather(self.plan, front, &mut border[..front.border]);
-            S::backward(own, part.pivots(front), &border[..front.border]);
+            let border = &border[..front.border];
+            S::backward(own, part.pivots(front), border, task.is_large());
         }
         for (child, known) in task.outer_parts() {
             let child = &self.plan.fronts[child];
@@ -192,22 +195,22 @@ impl<S: Substitution> Job<'_, S> {
 }
 
 /// The part of a vector that a task sees: its own positions, and the border to those above.
-struct Part<'a> {
+struct Part<'a, T> {
     /// First and last position of its own.
     start: usize,
     end: usize,
-    y: &'a mut [f64],
-    outer: &'a mut [f64],
+    y: &'a mut [T],
+    outer: &'a mut [T],
     /// First row in the border, by rank.
     local: &'a [u32],
 }
 
-impl<'a> Part<'a> {
+impl<'a, T: Scalar> Part<'a, T> {
     fn new(
         plan: &Plan,
         task: &Task,
-        y: &'a mut [f64],
-        outer: &'a mut [f64],
+        y: &'a mut [T],
+        outer: &'a mut [T],
         local: &'a mut [u32],
     ) -> Self {
         let fronts = &plan.fronts[task.fronts.clone()];
@@ -222,12 +225,12 @@ impl<'a> Part<'a> {
         }
     }
 
-    fn pivots(&mut self, front: &Front) -> &mut [f64] {
+    fn pivots(&mut self, front: &Front) -> &mut [T] {
         &mut self.y[front.first - self.start..front.end() - self.start]
     }
 
     /// The entries of a border node.
-    fn entries(&mut self, plan: &Plan, rank: u32) -> &mut [f64] {
+    fn entries(&mut self, plan: &Plan, rank: u32) -> &mut [T] {
         let positions = plan.positions_of(rank);
         if positions.start < self.end {
             &mut self.y[positions.start - self.start..positions.end - self.start]
@@ -238,19 +241,19 @@ impl<'a> Part<'a> {
     }
 
     /// Adds to the border of a front.
-    fn add(&mut self, plan: &Plan, front: &Front, mut changes: &[f64]) {
+    fn add(&mut self, plan: &Plan, front: &Front, mut changes: &[T]) {
         for &rank in plan.rows(front) {
             let entries = self.entries(plan, rank);
             let (own, later) = changes.split_at(entries.len());
             changes = later;
             for (entry, change) in entries.iter_mut().zip(own) {
-                *entry += change;
+                *entry += *change;
             }
         }
     }
 
     /// Takes the border of a front.
-    fn gather(&mut self, plan: &Plan, front: &Front, mut border: &mut [f64]) {
+    fn gather(&mut self, plan: &Plan, front: &Front, mut border: &mut [T]) {
         for &rank in plan.rows(front) {
             let entries = self.entries(plan, rank);
             let (own, later) = border.split_at_mut(entries.len());

@@ -24,22 +24,31 @@ pub(super) struct Task {
     pub(super) total: Extent,
     /// What this task takes.
     pub(super) own: Extent,
-    /// Room for the contributions within the task, by shape and stack.
+    /// Room for what waits within the task, by shape and stack.
     pub(super) stacks: [[usize; 2]; 2],
+    /// Unknowns of the border of the last front that its parent passes on.
+    passed_on: usize,
+    /// The same of the children of the last front.
+    left: Vec<usize>,
 }
 
 impl Task {
     /// Largest number of entries of contributions that wait while this task and those below it are worked on, on one
     /// thread.
     pub(super) fn waiting(&self, shape: Shape) -> usize {
-        let (mut done, mut most) = (0, 0);
+        let (mut held, mut most) = (0, 0);
         for task in &self.below {
-            most = most.max(done + task.waiting(shape));
-            done += shape.entries(task.own.outer);
+            most = most.max(held + task.waiting(shape));
+            held += shape.entries(task.passed_on);
+            most = most.max(held + task.left_below(shape));
         }
         let [even, odd] = self.stacks[shape as usize];
-        let own = shape.entries(self.own.outer) + even + odd;
-        most.max(done + own)
+        most.max(even + odd + self.left_below(shape))
+    }
+
+    /// Entries that wait for the last front when it is eliminated.
+    fn left_below(&self, shape: Shape) -> usize {
+        self.left.iter().map(|&border| shape.entries(border)).sum()
     }
 
     /// Whether the task is a single large front, worth the work of several threads.
@@ -65,6 +74,8 @@ pub(super) struct Extent {
     pub(super) pivots: usize,
     /// Entries of the pivot blocks.
     pub(super) squares: usize,
+    /// Entries of their lower halves, as they are stored.
+    pub(super) halves: usize,
     /// Entries of the blocks below the pivots.
     pub(super) panels: usize,
     /// Unknowns of the borders by which tasks are coupled to those above.
@@ -75,6 +86,7 @@ impl Extent {
     fn add(&mut self, other: &Self) {
         self.pivots += other.pivots;
         self.squares += other.squares;
+        self.halves += other.halves;
         self.panels += other.panels;
         self.outer += other.outer;
     }
@@ -136,7 +148,14 @@ impl Cutter<'_> {
         for task in &below {
             total.add(&task.total);
         }
+        let front = &self.fronts[root];
+        let children = &self.children[front.children.clone()];
+        let left = children
+            .iter()
+            .map(|&child| self.fronts[child as usize].passed_on);
         Task {
+            passed_on: front.passed_on,
+            left: left.collect(),
             fronts: first..root + 1,
             below,
             total,
@@ -145,8 +164,8 @@ impl Cutter<'_> {
         }
     }
 
-    /// Places the contributions of all fronts of a task but the last, whose contribution leaves it;
-    /// returns the largest fill of both stacks, by shape.
+    /// Places what waits of all fronts of a task but the last, whose contribution leaves it; returns the
+    /// largest fill of both stacks, by shape.
     fn place_contributions(&mut self, fronts: &Range<usize>) -> [[usize; 2]; 2] {
         [Shape::Square, Shape::Triangle].map(|shape| {
             let (mut fill, mut largest) = ([0, 0], [0, 0]);
@@ -154,7 +173,7 @@ impl Cutter<'_> {
                 let front = &self.fronts[this];
                 let own = front.stack;
                 let start = fill[own];
-                fill[own] += shape.entries(front.border);
+                fill[own] += shape.entries(front.passed_on);
                 largest[own] = largest[own].max(fill[own]);
                 if let Some(&eldest) = self.children[front.children.clone()].first() {
                     let eldest = &self.fronts[eldest as usize];

@@ -5,15 +5,22 @@
 
 use faer::MatMut;
 
+use super::scalar::Scalar;
+
 /// Columns of a tile.
 pub(super) const TILE: usize = 192;
 
+/// Columns of a tile of so many rows on one thread: the whole of a small front.
+pub(super) fn tile_width(rows: usize) -> usize {
+    if rows <= 3 * TILE { rows.max(1) } else { TILE }
+}
+
 /// Calls `work` with the first column and the columns of each tile of a matrix, on several threads;
 /// with the whole matrix at once where it is not `large`.
-pub(super) fn by_columns(
+pub(super) fn by_columns<T: Scalar>(
     large: bool,
-    matrix: MatMut<'_, f64>,
-    work: &(impl Fn(usize, MatMut<'_, f64>) + Sync),
+    matrix: MatMut<'_, T>,
+    work: &(impl Fn(usize, MatMut<'_, T>) + Sync),
 ) {
     if matrix.ncols() == 0 {
         return;
@@ -25,7 +32,11 @@ pub(super) fn by_columns(
     }
 }
 
-fn halve(first: usize, matrix: MatMut<'_, f64>, work: &(impl Fn(usize, MatMut<'_, f64>) + Sync)) {
+fn halve<T: Scalar>(
+    first: usize,
+    matrix: MatMut<'_, T>,
+    work: &(impl Fn(usize, MatMut<'_, T>) + Sync),
+) {
     let columns = matrix.ncols();
     if columns <= TILE {
         work(first, matrix);

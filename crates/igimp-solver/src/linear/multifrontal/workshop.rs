@@ -8,32 +8,34 @@ use std::sync::Mutex;
 use super::super::LinearSolverError;
 use super::extend_add::BorderMap;
 use super::plan::Plan;
+use super::scalar::Scalar;
 
 /// What one task needs while it is worked on.
 #[derive(Default)]
-pub(super) struct Tools {
-    /// Contributions that wait for their parents.
-    pub(super) stacks: [Vec<f64>; 2],
+pub(super) struct Tools<T> {
+    /// What waits for parents.
+    pub(super) stacks: [Vec<T>; 2],
     /// First row in the border of the current front, by rank.
     pub(super) local: Vec<u32>,
-    pub(super) map: BorderMap,
+    /// Where fronts lie in their parents, for a front and its children.
+    pub(super) maps: Vec<BorderMap>,
+    /// Where the factors of each front of the task begin.
+    pub(super) offsets: Vec<usize>,
     /// Part of a vector on the border of a front.
-    pub(super) border: Vec<f64>,
+    pub(super) border: Vec<T>,
     /// What a kernel works in.
-    pub(super) scratch: Vec<f64>,
+    pub(super) scratch: Vec<T>,
 }
 
 /// The shelf.
 #[derive(Default)]
-pub(super) struct Workshop {
-    tools: Mutex<Vec<Tools>>,
-    /// Room for contributions from task to task.
-    buffers: Mutex<Vec<Vec<f64>>>,
+pub(super) struct Workshop<T> {
+    tools: Mutex<Vec<Tools<T>>>,
 }
 
-impl Workshop {
+impl<T: Scalar> Workshop<T> {
     /// Tools for a task of a plan.
-    pub(super) fn tools(&self, plan: &Plan) -> Result<Tools, LinearSolverError> {
+    pub(super) fn tools(&self, plan: &Plan) -> Result<Tools<T>, LinearSolverError> {
         let mut tools = lock(&self.tools).pop().unwrap_or_default();
         if tools.local.len() < plan.order.len() {
             tools.local.resize(plan.order.len(), 0);
@@ -42,32 +44,13 @@ impl Workshop {
         Ok(tools)
     }
 
-    pub(super) fn give_back(&self, tools: Tools) {
+    pub(super) fn give_back(&self, tools: Tools<T>) {
         lock(&self.tools).push(tools);
-    }
-
-    /// A buffer of at least so many entries, of any content.
-    pub(super) fn buffer(&self, len: usize) -> Result<Vec<f64>, LinearSolverError> {
-        let mut buffers = lock(&self.buffers);
-        let fitting = (0..buffers.len()).filter(|&index| buffers[index].len() >= len);
-        let smallest = fitting.min_by_key(|&index| buffers[index].len());
-        let mut buffer = smallest
-            .map(|index| buffers.swap_remove(index))
-            .unwrap_or_default();
-        drop(buffers);
-        make_room(&mut buffer, len, "contributions")?;
-        Ok(buffer)
-    }
-
-    pub(super) fn give_back_buffer(&self, buffer: Vec<f64>) {
-        if !buffer.is_empty() {
-            lock(&self.buffers).push(buffer);
-        }
     }
 }
 
 /// The content of a lock, also after a panic elsewhere: tools have no state that could be broken.
-fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
+fn lock<C>(mutex: &Mutex<C>) -> std::sync::MutexGuard<'_, C> {
     mutex
         .lock()
         .unwrap_or_else(std::sync::PoisonError::into_inner)
@@ -78,8 +61,8 @@ fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
 /// Memory is kept while it suffices, and some is added to spare when it does not: a body that
 /// spreads over the grid asks for a little more in every step. Fresh memory comes zeroed from the
 /// system and is not touched before it is used.
-pub(super) fn make_room(
-    values: &mut Vec<f64>,
+pub(super) fn make_room<T: Copy + Default>(
+    values: &mut Vec<T>,
     len: usize,
     what: &'static str,
 ) -> Result<(), LinearSolverError> {
@@ -90,7 +73,7 @@ pub(super) fn make_room(
             .try_reserve_exact(roomy)
             .map_err(|_| LinearSolverError::OutOfMemory { what })?;
         *values = Vec::new();
-        *values = vec![0.0; roomy];
+        *values = vec![T::default(); roomy];
     }
     Ok(())
 }

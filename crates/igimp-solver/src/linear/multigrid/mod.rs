@@ -10,6 +10,7 @@
 
 mod dense;
 mod galerkin;
+mod given;
 mod hierarchy;
 mod krylov;
 mod product;
@@ -20,4 +21,5 @@ mod smoother;
 mod solver;
 mod transfer;
 
+pub(super) use given::Preconditioned;
 pub(super) use solver::{Demand, Iteration};

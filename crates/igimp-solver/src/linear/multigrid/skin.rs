@@ -1,5 +1,5 @@
 //! The skin of a body: nodes that carry little soil, solved for directly before and after each cycle of multigrid (theory,
-//! eq. 25c).
+//! eq. 25d).
 //!
 //! Where a surface cuts cells, few particles hold several nodes, and some motions of those nodes strain none of
 //! them or hardly: next to nothing resists. No smoother sees such motions, and no coarse grid has them. They are local, so

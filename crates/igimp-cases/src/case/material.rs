@@ -1,0 +1,90 @@
+//! Materials: stiffness, strength and weight.
+
+use std::sync::Arc;
+
+use igimp_assembly::SharedLaw;
+use igimp_material::{Elasticity, HenckyElastic, MaterialError, MohrCoulomb, Tresca, VonMises};
+
+use super::{Drainage, Profiles};
+
+/// A material. Where a property varies, its constant is the greatest value in the soil.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Material {
+    /// Name.
+    pub name: String,
+    /// Unit weight γ \[N/m³\].
+    pub unit_weight: f64,
+    /// Young's modulus \[Pa\].
+    pub young: f64,
+    /// Poisson's ratio \[-\].
+    pub poisson: f64,
+    /// Strength.
+    pub strength: Strength,
+    /// Coefficient of earth pressure at rest K₀ \[-\], if the material states one.
+    pub k0: Option<f64>,
+    /// What varies from place to place.
+    pub profiles: Profiles,
+    /// Unit weight below the water table \[N/m³\]; none: that above.
+    pub saturated: Option<f64>,
+    /// What it does with water.
+    pub drainage: Drainage,
+}
+
+/// The strength of a material.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Strength {
+    /// No limit.
+    Elastic,
+    /// von Mises with undrained strength c_u in plane strain \[Pa\].
+    VonMises {
+        /// c_u \[Pa\].
+        undrained_strength: f64,
+    },
+    /// Tresca.
+    Tresca {
+        /// c_u \[Pa\].
+        undrained_strength: f64,
+    },
+    /// Mohr–Coulomb.
+    MohrCoulomb {
+        /// c \[Pa\].
+        cohesion: f64,
+        /// φ \[rad\].
+        friction_angle: f64,
+        /// ψ \[rad\].
+        dilation_angle: f64,
+        /// Largest tensile stress \[Pa\]; none: the apex of the cone.
+        tension_cutoff: Option<f64>,
+    },
+}
+
+impl Material {
+    /// The constitutive law; where strength, friction or stiffness vary, that of the greatest, of which particles have multiples.
+    ///
+    /// # Errors
+    /// [`MaterialError::InvalidParameter`].
+    pub fn law(&self) -> Result<SharedLaw, MaterialError> {
+        let elasticity = Elasticity::new(self.young, self.poisson)?;
+        Ok(match self.strength {
+            Strength::Elastic => Arc::new(HenckyElastic::new(elasticity)),
+            Strength::VonMises { undrained_strength } => Arc::new(
+                VonMises::from_undrained_strength(elasticity, undrained_strength)?,
+            ),
+            Strength::Tresca { undrained_strength } => {
+                Arc::new(Tresca::new(elasticity, undrained_strength)?)
+            }
+            Strength::MohrCoulomb {
+                cohesion,
+                friction_angle,
+                dilation_angle,
+                tension_cutoff,
+            } => {
+                let law = MohrCoulomb::new(elasticity, cohesion, friction_angle, dilation_angle)?;
+                match tension_cutoff {
+                    Some(limit) => Arc::new(law.with_tension_cutoff(limit)?),
+                    None => Arc::new(law),
+                }
+            }
+        })
+    }
+}

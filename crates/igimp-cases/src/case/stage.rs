@@ -1,0 +1,133 @@
+//! Stages: what happens, in order.
+
+use igimp_assembly::Geometry;
+
+use super::{Construction, RigidMove};
+
+/// One thing that happens.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stage {
+    /// Name.
+    pub name: String,
+    /// Kind.
+    pub kind: StageKind,
+    /// Load steps when none is cut; in a strength reduction those of each trial by gravity, or of a
+    /// reduction from F = 1 to the upper end of the bracket.
+    pub steps: usize,
+    /// The geometry that its steps are computed on.
+    pub geometry: Geometry,
+    /// Stage whose end this one starts from; `None`: the undeformed, stress-free bodies for the
+    /// first stage.
+    pub start_from: Option<usize>,
+    /// Whether displacements count from the end of this stage on.
+    pub reset_displacements: bool,
+    /// Indices of the reinforcement that is installed as it begins.
+    pub install: Vec<usize>,
+    /// Conditions that end the stage early.
+    pub stop_when: StopWhen,
+    /// Whether all soil drains while it lasts: no excess pore pressure comes or goes.
+    pub drained: bool,
+}
+
+/// Kinds of stages.
+#[derive(Clone, Debug, PartialEq)]
+pub enum StageKind {
+    /// Raises gravity from where it is to a multiple of its value, and changes pseudo-static acceleration.
+    Gravity {
+        /// The multiple \[-\].
+        factor: f64,
+        /// Pseudo-static force to the right over the weight \[-\]; none: as it is.
+        horizontal: Option<f64>,
+        /// The same backwards, along the second axis of space \[-\].
+        across: Option<f64>,
+        /// The same upwards \[-\].
+        vertical: Option<f64>,
+    },
+    /// Stresses of level ground: the weight above, and K₀ times that sideways; then equilibrium.
+    K0,
+    /// Changes the factor of loads from where it is.
+    Load {
+        /// Indices of the loads.
+        loads: Vec<usize>,
+        /// Factor at the end \[-\].
+        factor: f64,
+    },
+    /// Pushes a rigid footing down.
+    Displacement {
+        /// Index of the footing.
+        load: usize,
+        /// Further settlement \[m\].
+        settlement: f64,
+    },
+    /// Moves and loads rigid bodies.
+    Rigid(Vec<RigidMove>),
+    /// Places and removes bodies, changes materials and water.
+    Construction(Construction),
+    /// Searches for the factor of safety. The body is left as it was found.
+    StrengthReduction(StrengthReduction),
+    /// Lets the slope of reduced strength move until it rests.
+    RunOut(RunOut),
+}
+
+/// How the factor of safety is searched for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StrengthReduction {
+    /// Indices of the materials whose strength is reduced.
+    pub materials: Vec<usize>,
+    /// Factors tried first, for the curve of displacement against factor \[-\]; may be empty.
+    pub factors: Vec<f64>,
+    /// Where the search begins: a factor thought stable and one thought unstable \[-\].
+    pub bracket: [f64; 2],
+    /// Width of the interval at which the search ends \[-\].
+    pub tolerance: f64,
+    /// How the reduced strength is reached.
+    pub path: ReductionPath,
+    /// A displacement at which the slope counts as failed \[m\]; lack of equilibrium always does.
+    pub failure_displacement: Option<f64>,
+    /// Monitor whose displacement counts; none: the largest of all particles.
+    pub monitor: Option<usize>,
+}
+
+/// How a trial reaches its reduced strength.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ReductionPath {
+    /// The strength of the loaded body is reduced step by step.
+    Reduce,
+    /// Gravity is raised on undeformed bodies of reduced strength.
+    Gravity,
+}
+
+/// A run-out of a slope with reduced strength: overdamped motion until it rests.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RunOut {
+    /// Indices of the materials whose strength is reduced.
+    pub materials: Vec<usize>,
+    /// The reduction.
+    pub reduction: Reduction,
+    /// Largest displacement aimed at in a step, as a share of the cell \[-\].
+    pub move_per_step: f64,
+    /// The slope rests when the drag carries less than this share of the external force \[-\].
+    pub at_rest: f64,
+}
+
+/// By how much strength is reduced.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Reduction {
+    /// A multiple of the factor of safety found before (middle of its interval).
+    TimesFos(f64),
+    /// A factor.
+    Factor(f64),
+}
+
+/// Conditions that end a stage early, and count as a planned end.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StopWhen {
+    /// A displacement is reached \[m\].
+    pub displacement: Option<f64>,
+    /// Monitor whose displacement counts; none: the largest of all particles.
+    pub monitor: Option<usize>,
+    /// Want of equilibrium is the planned end: the load reached is the collapse load.
+    pub no_equilibrium: bool,
+    /// The reaction of the pushed footing grows by less than this share in a step \[-\].
+    pub load_grows_less_than: Option<f64>,
+}

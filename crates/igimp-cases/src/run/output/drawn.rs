@@ -1,0 +1,214 @@
+//! Pictures of states: fields, the way in which a body fails, the set-up.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use igimp_assembly::SharedLaw;
+use rayon::prelude::*;
+
+use super::Output;
+use crate::case::{Case, Every};
+use crate::error::CaseError;
+use crate::pieces::Pieces;
+use crate::plane::in_plane;
+use crate::results::pictures::{self, Canvas, Failing, Seen, Shown, mechanism};
+use crate::results::rigid;
+use crate::run::left::End;
+use crate::run::model::Model;
+use crate::run::outlines;
+use crate::run::state::State;
+use crate::summary::StageSummary;
+
+impl<const D: usize> Output<D> {
+    /// Frames and pictures of the states at the ends of a search, and of the way in which the body fails.
+    pub(super) fn ends_of_search(
+        &mut self,
+        model: &Model<'_, D>,
+        number: usize,
+        summary: &StageSummary,
+    ) -> Result<(), CaseError> {
+        let kept = std::mem::take(&mut self.kept);
+        for (what, End { srf, state, .. }) in &kept {
+            let name = format!("stage-{:02}-{what}", number + 1);
+            if self.every != Every::Never {
+                let laws = model.laws_reduced_by(&state.controls.srf)?;
+                let structures = outlines::structures(model.case, &state.controls, &state.body);
+                for own in &structures.reinforcement {
+                    let table = own.table(format!("{}__{name}", own.part.name));
+                    table.write_csv(&self.folder.reinforcement())?;
+                }
+                self.frames
+                    .beside(&name, (&state.body.particles, &laws), &structures)?;
+            }
+            let shown = Shown {
+                title: format!("{}, SRF {srf:.4}", summary.name),
+                when: format!("in the {} state, SRF {srf:.4}", what.replace('-', " ")),
+                name,
+            };
+            let others = kept.iter().filter(|(other, _)| other != what);
+            let others: Vec<&State<D>> = others.map(|(_, end)| &end.state).collect();
+            self.field_pictures(model, &shown, state, &others)?;
+        }
+        let kept_in_plane =
+            in_plane::<Vec<(&'static str, End<D>)>, Vec<(&'static str, End)>>(&kept);
+        let (Some(case), Some(kept)) = (in_plane(model.case), kept_in_plane) else {
+            return Ok(());
+        };
+        self.mechanism((case, &model.seeded.body), number, kept)
+    }
+
+    /// The way in which the body fails: the slip line as a table, and its picture.
+    fn mechanism(
+        &mut self,
+        (case, body_of): (&Case, &[usize]),
+        number: usize,
+        kept: &[(&'static str, End)],
+    ) -> Result<(), CaseError> {
+        // The state that failed has moved most; where no step led to it, the stable one tells.
+        for (what, end) in kept.iter().rev() {
+            let Some(before) = &end.before else { continue };
+            let failing = Failing {
+                stage: number,
+                srf: end.srf,
+                what,
+                before: &before.particles,
+                last: &end.state.body.particles,
+            };
+            let Some(found) = mechanism(&failing) else {
+                continue;
+            };
+            if let Some(table) = found.table(case, number) {
+                table.write_csv(&self.folder.slip_lines())?;
+            }
+            if !case.output.figures.is_empty() {
+                let pieces = self.pieces(case)?;
+                let canvas = Canvas {
+                    folder: self.folder.root(),
+                    case,
+                    pieces: &pieces,
+                };
+                let over = outlines::of_state((case, body_of), &end.state);
+                let picture = pictures::mechanism_picture(&canvas, &failing, &found, &over)?;
+                self.figures.push(picture);
+            }
+            break;
+        }
+        Ok(())
+    }
+
+    /// The bodies in pieces, cut once.
+    fn pieces(&mut self, case: &Case) -> Result<Arc<Pieces>, CaseError> {
+        let pieces = match &self.pieces {
+            Some(pieces) => Arc::clone(pieces),
+            None => Arc::new(Pieces::of(case)?),
+        };
+        self.pieces = Some(Arc::clone(&pieces));
+        Ok(pieces)
+    }
+
+    /// The pictures of the fields that the case wants to see, with the units and colours that suit the
+    /// state and the states that it is compared with.
+    pub(super) fn field_pictures(
+        &mut self,
+        model: &Model<'_, D>,
+        shown: &Shown,
+        state: &State<D>,
+        compared: &[&State<D>],
+    ) -> Result<(), CaseError> {
+        let wanted = &model.case.output.figures;
+        if wanted.is_empty() {
+            return Ok(());
+        }
+        let laws = model.laws_reduced_by(&state.controls.srf)?;
+        let reduced = compared
+            .iter()
+            .map(|state| model.laws_reduced_by(&state.controls.srf))
+            .collect::<Result<Vec<_>, _>>()?;
+        let reduced: Vec<&[SharedLaw]> = reduced.iter().map(|laws| &laws[..]).collect();
+        if let Some(state) = in_plane::<_, State<3>>(state) {
+            let compared = compared
+                .iter()
+                .filter_map(|own| in_plane::<_, State<3>>(*own));
+            let compared: Vec<Seen<'_, 3>> = std::iter::zip(compared, &reduced)
+                .map(|(state, laws)| (&state.body.particles, *laws))
+                .collect();
+            return self.pictures_in_space((model, shown), (state, &laws), &compared);
+        }
+        let (Some(case), Some(state)) = (in_plane(model.case), in_plane::<_, State>(state)) else {
+            return Ok(());
+        };
+        let pieces = self.pieces(case)?;
+        let canvas = Canvas {
+            folder: self.folder.root(),
+            case,
+            pieces: &pieces,
+        };
+        let own = (&state.body.particles, &laws[..]);
+        let compared: Vec<Seen<'_>> = std::iter::zip(compared, &reduced)
+            .filter_map(|(state, laws)| {
+                Some((&in_plane::<_, State>(*state)?.body.particles, *laws))
+            })
+            .collect();
+        let over = outlines::of_state((case, &model.seeded.body), state);
+        let drawn = wanted
+            .par_iter()
+            .map(|&field| pictures::field_picture(&canvas, shown, field, own, &compared, &over))
+            .collect::<Result<Vec<_>, _>>()?;
+        self.figures.extend(drawn);
+        Ok(())
+    }
+
+    /// The same in space: the surface, and cuts through the middle.
+    fn pictures_in_space(
+        &mut self,
+        (model, shown): (&Model<'_, D>, &Shown),
+        (state, laws): (&State<3>, &[SharedLaw]),
+        compared: &[Seen<'_, 3>],
+    ) -> Result<(), CaseError> {
+        let case = model.case;
+        let standing = in_plane::<_, Case<3>>(case).map(|case| {
+            let structures = outlines::structures(case, &state.controls, &state.body);
+            rigid::cells(&structures.rigid)
+        });
+        let bodies = standing.map_or_else(Vec::new, |cells| {
+            let corners = cells.connectivity.as_chunks::<3>().0.iter();
+            corners
+                .map(|corners| corners.map(|point| cells.points[point]))
+                .collect()
+        });
+        let of_case = (self.folder.root(), &*case.title, case.has_pore_water());
+        let drawn = pictures::InSpace::new(of_case, (&state.body.particles, laws), bodies);
+        let condition = state.controls.water.and_then(|k| case.water.get(k));
+        let drawn = drawn.with_water(
+            condition
+                .map(|own| own.source.clone())
+                .into_iter()
+                .collect(),
+        );
+        let planes = match &case.output.cuts[..] {
+            [] => drawn.middle(),
+            cuts => cuts.to_vec(),
+        };
+        let wanted = &case.output.figures;
+        let notes = wanted
+            .par_iter()
+            .map(|&field| drawn.pictures(shown, field, compared, &planes))
+            .collect::<Result<Vec<_>, _>>()?;
+        self.figures.extend(notes.concat());
+        Ok(())
+    }
+
+    /// The picture of the set-up.
+    pub(crate) fn model_picture(&mut self, case: &Case<D>) -> Result<(), CaseError> {
+        if !self.draws {
+            return Ok(());
+        }
+        let clock = Instant::now();
+        if let Some(case) = in_plane(case) {
+            let picture = pictures::model_picture(self.folder.root(), case)?;
+            self.figures.push(picture);
+        }
+        self.seconds += clock.elapsed().as_secs_f64();
+        Ok(())
+    }
+}

@@ -1,0 +1,116 @@
+//! Checkpoints of a run: what they hold beside the particles, and when they are written.
+
+use std::collections::BTreeMap;
+
+use igimp_solver::Body;
+use rayon::prelude::*;
+
+use super::Output;
+use crate::case::Case;
+use crate::error::CaseError;
+use crate::results::checkpoint::{self, Meta};
+use crate::results::rows::RowWriter;
+use crate::run::fingerprint;
+use crate::run::left::{Notes, end_of_stage};
+use crate::run::state::Controls;
+use crate::run::{saved_body, saved_reinforcement};
+use crate::summary::Summary;
+
+impl<const D: usize> Output<D> {
+    pub(super) fn notes(
+        &self,
+        case: &Case<D>,
+        stage: usize,
+        run: &Summary,
+        controls: &Controls,
+    ) -> Notes {
+        Notes {
+            history: fingerprint::of_history(case, stage + 1),
+            stages: run.stages.clone(),
+            checks: run.checks.clone(),
+            warnings: run.warnings.clone(),
+            unknowns: run.size.unknowns,
+            figures: self.figures.clone(),
+            factor_of_safety: self.factor_of_safety,
+            peaks: self
+                .peaks
+                .iter()
+                .map(|&peak| Some(peak).filter(|peak| peak.is_finite()))
+                .collect(),
+            curve_rows: self.curves.iter().map(RowWriter::len).collect(),
+            monitor_rows: self.monitors.iter().map(RowWriter::len).collect(),
+            rigid_rows: self.rigid.iter().map(RowWriter::len).collect(),
+            rigid: BTreeMap::new(),
+            reinforcement: BTreeMap::new(),
+            convergence_rows: self.convergence.len(),
+            frames: self.frames.len(),
+            steps: self.steps,
+            stage: None,
+            controls: controls.clone(),
+            resumption: None,
+            trials: None,
+            stable: None,
+            failed: None,
+        }
+    }
+
+    pub(super) fn meta(
+        &self,
+        notes: &Notes,
+        states: &[(&str, &Body<D>)],
+    ) -> Result<Meta, CaseError> {
+        let with_bodies = states.iter().filter(|(_, body)| !body.rigid.is_empty());
+        let saved = with_bodies.map(|(name, body)| ((*name).to_owned(), saved_body::all(body)));
+        let with_members = states
+            .iter()
+            .filter(|(_, body)| !body.reinforcement.is_empty());
+        let members = with_members.map(|(name, body)| {
+            let own = saved_reinforcement::all(body);
+            ((*name).to_owned(), own)
+        });
+        let notes = Notes {
+            rigid: saved.collect(),
+            reinforcement: members.collect(),
+            ..notes.clone()
+        };
+        let data = serde_json::to_value(notes).map_err(|source| CaseError::File {
+            path: self.folder.checkpoint(),
+            source: source.into(),
+        })?;
+        Ok(Meta::new(&self.claim.input, data))
+    }
+
+    /// Writes a checkpoint within a stage. It follows the rows that it counts on; what is in the
+    /// hands of the system outlasts a kill.
+    pub(super) fn save(&self, states: &[(&str, &Body<D>)], notes: &Notes) -> Result<(), CaseError> {
+        let name = format!("step-{:06}", self.steps);
+        let (folder, meta) = (self.folder.checkpoint(), self.meta(notes, states)?);
+        checkpoint::write_quickly(&folder, &name, states, &meta, self.checkpoint_keep)?;
+        Ok(())
+    }
+
+    /// Writes the checkpoint at the end of a stage, after its rows, to outlast a loss of power.
+    pub(super) fn save_end(
+        &mut self,
+        stage: usize,
+        body: &Body<D>,
+        notes: &Notes,
+    ) -> Result<(), CaseError> {
+        let tables: Vec<&RowWriter> = self
+            .curves
+            .iter()
+            .chain(&self.monitors)
+            .chain(&self.rigid)
+            .chain([&self.convergence])
+            .collect();
+        let (rows, frames) = rayon::join(
+            || tables.par_iter().try_for_each(|table| table.sync()),
+            || self.frames.sync(),
+        );
+        rows.and(frames)?;
+        let states = [("current", body)];
+        let (folder, meta) = (self.folder.checkpoint(), self.meta(notes, &states)?);
+        checkpoint::write(&folder, &end_of_stage(stage), &states, &meta, 1)?;
+        Ok(())
+    }
+}
