@@ -1,6 +1,6 @@
-//! GOAL: the case of a million particles is one, with half a million unknowns and an unsymmetric
-//! tangent.
-//! ORACLE: the area of the slope, four particles and two unknowns for every cell of it.
+//! GOAL: the cases of a million particles are that, with half a million unknowns in the plane, four hundred thousand in
+//! space, and an unsymmetric tangent.
+//! ORACLE: the area of the slope, four particles and two unknowns for every cell of it; its volume, eight and three.
 
 use std::path::Path;
 
@@ -25,4 +25,25 @@ fn the_million_is_a_million() {
     assert!(!case.materials[0].law().unwrap().has_symmetric_tangent());
     assert_eq!(case.stages.len(), 1);
     assert_eq!(case.stages[0].steps, 10);
+}
+
+#[test]
+fn the_million_in_space_is_a_million() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/slope_3d_million.toml");
+    let file = CaseFile::read(&path, &[]).unwrap();
+    let case = file.case_in_space();
+    let area = 9.0 * 10.0 + 5.0 * 7.5 + 6.02 * 5.0;
+    let cells = area * 15.08 / 0.26_f64.powi(3);
+    let size = estimate(case).unwrap();
+    assert!(
+        (size.particles as f64 / (8.0 * cells) - 1.0).abs() < 0.01,
+        "{size:?}"
+    );
+    // More nodes than cells: the surface is one layer of nodes more.
+    assert!(
+        (size.unknowns as f64 / (3.0 * cells) - 1.0).abs() < 0.03,
+        "{size:?}"
+    );
+    assert!(size.particles >= 1_000_000 && size.unknowns >= 400_000);
+    assert!(!case.materials[0].law().unwrap().has_symmetric_tangent());
 }

@@ -47,8 +47,9 @@ const UNSYMMETRIC: f64 = 1.9;
 const IN_SINGLE: f64 = 0.55;
 /// What an iteration with multigrid holds instead of factors \[bytes per unknown\].
 const PER_ITERATED: f64 = 4e3;
-/// Unknowns in space from which on systems are solved by iteration.
-pub(crate) const ITERATED: usize = 100_000;
+/// Unknowns in space from which on systems are solved by iteration: cubes go over at 24 000 where the tangent is not
+/// symmetric and at 31 000 where it is.
+pub(crate) const ITERATED: usize = 30_000;
 /// A picture of 1920 x 1290 pixels of four bytes while it is drawn and packed \[bytes\].
 const PER_PICTURE: f64 = 2.1 * 1920.0 * 1290.0 * 4.0;
 /// Share of the smaller of the two parts, solving and drawing, that is not taken from what the

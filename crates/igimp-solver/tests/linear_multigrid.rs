@@ -167,6 +167,21 @@ fn iterations_hardly_grow() {
     }
 }
 
+/// Ground whose surface cuts cells, with particles that reach a little into the next ones, takes as many iterations as
+/// ground that fills its cells.
+#[test]
+fn cut_cells_cost_no_iterations() {
+    let hill = |[x, y, z]: [usize; 3]| 2 * x + y + 3 * z > 38;
+    for (law, most) in [
+        (elastic(0.3), 10),
+        (elastic(0.49), 25),
+        (mohr_coulomb(), 40),
+    ] {
+        let taken = iterations(&equations(&ground::<3>(&law, 11, 4, hill)));
+        assert!(taken <= most, "{taken}, and at most {most}");
+    }
+}
+
 #[test]
 fn planes_are_solved_too() {
     let slope = |[x, y]: [usize; 2]| x + y > 34;

@@ -150,16 +150,19 @@ impl AutoSolver {
         if self.by_iteration {
             return Ok((State::Iterating(iterations.max(TRIED), true), Reason::Asked));
         }
-        let reason = Reason::Faster {
-            unknowns,
-            iterations,
-        };
-        let state = if iterations as f64 > EXPECTED {
-            State::Iterating(iterations, true)
+        Ok(if iterations as f64 > EXPECTED {
+            let reason = Reason::IterationFaster {
+                unknowns,
+                iterations,
+            };
+            (State::Iterating(iterations, true), reason)
         } else {
-            State::Factorised
-        };
-        Ok((state, reason))
+            let reason = Reason::FactorisationFaster {
+                unknowns,
+                iterations,
+            };
+            (State::Factorised, reason)
+        })
     }
 
     /// Factorises after an iteration was given up: in double precision if the factors fit, else in single.

@@ -32,11 +32,18 @@ pub enum Reason {
         /// Unknowns of the system.
         unknowns: usize,
     },
-    /// It is expected to take less time than the other.
-    Faster {
+    /// Iteration is expected to take less time than a factorisation.
+    IterationFaster {
         /// Unknowns of the system.
         unknowns: usize,
         /// Iterations that cost as much as a factorisation.
+        iterations: usize,
+    },
+    /// A factorisation is expected to take no more time than iteration.
+    FactorisationFaster {
+        /// Unknowns of the system.
+        unknowns: usize,
+        /// Iterations that cost as much as a factorisation, beyond their set-up.
         iterations: usize,
     },
     /// The factors would not fit into the memory allowed for them.
@@ -75,12 +82,26 @@ impl fmt::Display for Reason {
             Self::Asked => write!(f, "asked for"),
             Self::Plane => write!(f, "two dimensions"),
             Self::Small { unknowns } => write!(f, "{unknowns} unknowns are few"),
-            Self::Faster {
+            Self::IterationFaster {
                 unknowns,
                 iterations,
             } => write!(
                 f,
-                "expected to be faster for {unknowns} unknowns, where a factorisation costs {iterations} iterations"
+                "a factorisation for {unknowns} unknowns is expected to cost as much as {iterations} iterations"
+            ),
+            Self::FactorisationFaster {
+                unknowns,
+                iterations: 0,
+            } => write!(
+                f,
+                "a factorisation for {unknowns} unknowns is expected to cost less than setting up an iteration"
+            ),
+            Self::FactorisationFaster {
+                unknowns,
+                iterations,
+            } => write!(
+                f,
+                "a factorisation for {unknowns} unknowns is expected to cost no more than {iterations} iterations"
             ),
             Self::Memory { factors, allowed } => write!(
                 f,

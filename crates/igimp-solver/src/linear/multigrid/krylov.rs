@@ -9,6 +9,9 @@
 
 use super::product::dot;
 
+/// Minimal residuals that leave more than this of a residual between two restarts are given up \[-\].
+const STAGNANT: f64 = 0.9;
+
 /// What an iteration came to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Iterated {
@@ -80,6 +83,37 @@ pub(super) fn conjugate_gradients(
     done
 }
 
+/// A direction of search, in single precision: it is rounded before the matrix is applied to it, so that nothing is lost.
+struct Direction {
+    scale: f64,
+    entries: Vec<f32>,
+}
+
+impl Direction {
+    /// Takes a direction over and leaves what is kept of it.
+    fn rounded(z: &mut [f64]) -> Self {
+        let largest = z.iter().fold(0.0, |most: f64, entry| most.max(entry.abs()));
+        let scale = if largest > 0.0 { largest } else { 1.0 };
+        let entries = z.iter_mut().map(|z| {
+            let kept = (*z / scale) as f32;
+            *z = f64::from(kept) * scale;
+            kept
+        });
+        Self {
+            entries: entries.collect(),
+            scale,
+        }
+    }
+
+    /// x ← x + y z.
+    fn add_to(&self, x: &mut [f64], y: f64) {
+        let factor = y * self.scale;
+        for (x, &entry) in x.iter_mut().zip(&self.entries) {
+            *x += factor * f64::from(entry);
+        }
+    }
+}
+
 /// Flexible generalised minimal residuals, restarted, from x = 0.
 pub(super) fn minimal_residuals(
     operators: &mut dyn Operators,
@@ -96,21 +130,20 @@ pub(super) fn minimal_residuals(
         residual: 1.0,
         broken: false,
     };
-    let mut r = rhs.to_vec();
+    let (mut r, mut z) = (rhs.to_vec(), vec![0.0; n]);
     while done.residual > goal && done.iterations < most {
         let beta = norm(&r);
         let mut basis: Vec<Vec<f64>> = vec![r.iter().map(|r| r / beta).collect()];
-        let mut directions: Vec<Vec<f64>> = Vec::new();
+        let mut directions: Vec<Direction> = Vec::new();
         let mut hessenberg: Vec<Vec<f64>> = Vec::new();
         let mut rotations: Vec<(f64, f64)> = Vec::new();
         let mut g = vec![beta];
         while directions.len() < restart && done.iterations < most && done.residual > goal {
             let k = directions.len();
-            let mut z = vec![0.0; n];
             operators.precondition(&basis[k], &mut z);
+            directions.push(Direction::rounded(&mut z));
             let mut w = vec![0.0; n];
             operators.multiply(&z, &mut w);
-            directions.push(z);
             let mut column = vec![0.0; k + 1];
             // Twice is enough.
             for _ in 0..2 {
@@ -155,9 +188,7 @@ pub(super) fn minimal_residuals(
             y[k] = (g[k] - known) / hessenberg[k][k];
         }
         for (y, direction) in y.iter().zip(&directions) {
-            for (x, z) in x.iter_mut().zip(direction) {
-                *x += y * z;
-            }
+            direction.add_to(x, *y);
         }
         operators.multiply(x, &mut r);
         for (r, b) in r.iter_mut().zip(rhs) {
@@ -165,7 +196,8 @@ pub(super) fn minimal_residuals(
         }
         let reached = norm(&r) / scale;
         done.residual = reached;
-        if done.broken {
+        // Written so that what is not a number is given up too.
+        if done.broken || !(reached <= STAGNANT * beta / scale) {
             break;
         }
     }

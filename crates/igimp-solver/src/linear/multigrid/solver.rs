@@ -9,9 +9,10 @@ use super::super::{LinearSolverError, SolveReport, check};
 use super::hierarchy::{self, Preconditioner};
 use super::krylov::{Iterated, Operators, conjugate_gradients, minimal_residuals, norm};
 use super::product::Product;
+use super::skin::Skin;
 
 /// Vectors between restarts of generalised minimal residuals.
-const RESTART: usize = 50;
+const RESTART: usize = 100;
 
 /// A new start from the true residual must leave less than this of it.
 const PROGRESS: f64 = 0.5;
@@ -21,6 +22,7 @@ const PROGRESS: f64 = 0.5;
 pub(in crate::linear) struct Iteration {
     pattern: Option<Arc<Pattern>>,
     grids: Option<Box<dyn Preconditioner>>,
+    skin: Skin,
     product: Product,
     residual: Vec<f64>,
     change: Vec<f64>,
@@ -56,6 +58,7 @@ impl Iteration {
         if let Some(grids) = &mut self.grids {
             grids.set(matrix, diagonal);
         }
+        self.skin.set(matrix, diagonal);
     }
 
     /// Solves K x = b. The residual that counts is computed from the matrix itself, in the end and after every
@@ -77,7 +80,7 @@ impl Iteration {
         check::finite("right-hand side", rhs)?;
         solution.fill(0.0);
         let (scale, largest) = (norm(rhs), max_norm(rhs));
-        let mut by_gradients = matrix.symmetric;
+        let mut by_gradients = matrix.symmetric && !self.skin.is_indefinite;
         let mut report = SolveReport::new(method(by_gradients), 0.0, 0);
         if largest == 0.0 {
             return Ok(report);
@@ -86,6 +89,7 @@ impl Iteration {
             product,
             residual,
             change,
+            skin,
             ..
         } = self;
         residual.clear();
@@ -95,6 +99,8 @@ impl Iteration {
             matrix,
             product,
             grids,
+            skin,
+            rest: Vec::new(),
         };
         let mut reached = 1.0;
         while reached > demand.target && report.refinements < demand.most {
@@ -165,6 +171,9 @@ struct Both<'a> {
     matrix: &'a TangentMatrix,
     product: &'a mut Product,
     grids: &'a mut dyn Preconditioner,
+    skin: &'a mut Skin,
+    /// What the skin leaves of a residual.
+    rest: Vec<f64>,
 }
 
 impl Operators for Both<'_> {
@@ -173,6 +182,17 @@ impl Operators for Both<'_> {
     }
 
     fn precondition(&mut self, r: &[f64], z: &mut [f64]) {
-        self.grids.apply(r, z);
+        if !self.skin.is_there() {
+            self.grids.apply(r, z);
+            return;
+        }
+        self.rest.clear();
+        self.rest.extend_from_slice(r);
+        self.skin.before(self.matrix, &mut self.rest);
+        self.grids.apply(&self.rest, z);
+        self.skin.add(self.matrix, z);
+        if self.matrix.symmetric {
+            self.skin.after(self.matrix, r, z);
+        }
     }
 }
