@@ -69,7 +69,7 @@ fn write<const D: usize>(arguments: &Arguments) -> BenchResult {
             best = best.min(start.elapsed().as_secs_f64());
         }
         let microseconds = 1e6 * best / block.len() as f64;
-        println!("assembly on {threads} threads: {microseconds:.2f} µs a particle");
+        println!("assembly on {threads} threads: {microseconds:.2} µs a particle");
         pass.equations()?
     };
     let about = About {

@@ -161,8 +161,8 @@ fn a_drowned_slope_feels_buoyancy_alone() {
 /// GOAL: a table is the same as a line, as a surface on lines, and as a surface through points; drawdown without a drop is a level.
 #[test]
 fn a_water_table_can_be_said_in_several_ways() {
-    let line = "line = [[\"0 m\", \"2.8 m\"], [\"7 m\", \"-0.7 m\"]]";
-    let lines = "surface = { x = [\"0 m\", \"7 m\"], y = [\"0 m\", \"3 m\"], rows = [[\"2.8 m\", \"-0.7 m\"], [\"2.8 m\", \"-0.7 m\"]] }";
+    let line = "line = [[\"-1 m\", \"3.3 m\"], [\"9 m\", \"-1.7 m\"]]";
+    let lines = "surface = { x = [\"-1 m\", \"9 m\"], y = [\"0 m\", \"3 m\"], rows = [[\"3.3 m\", \"-1.7 m\"], [\"3.3 m\", \"-1.7 m\"]] }";
     let points = "surface = { points = [[\"-1 m\", \"-1 m\", \"3.3 m\"], [\"9 m\", \"-1 m\", \"-1.7 m\"], [\"9 m\", \"5 m\", \"-1.7 m\"], [\"-1 m\", \"4 m\", \"3.3 m\"]] }";
     // Soil that does not yield: equal to round-off, and not to what Newton's method leaves.
     let of = |water: &str| {

@@ -181,12 +181,7 @@ tolerance = 1e-11
 
     /// Both runs.
     fn run(&self) -> Result<(Computed, Computed<3>), CaseError> {
-        let plane = CaseFile::parse(self.name, &self.text(false), &[])?;
-        let space = CaseFile::parse(self.name, &self.text(true), &[])?;
-        Ok((
-            Computed::new(plane.into_case())?,
-            Computed::new(space.case_in_space().clone())?,
-        ))
+        computed(self.name, [self.text(false), self.text(true)])
     }
 }
 
@@ -227,6 +222,30 @@ pub(super) fn differences(plane: &Particles<2>, space: &Particles<3>) -> [f64; 2
     [worst[0] / largest[0], worst[1] / largest[1]]
 }
 
+/// Runs a case file of the plane, and that of its slice.
+pub(super) fn computed(
+    name: &str,
+    [plane, space]: [String; 2],
+) -> Result<(Computed, Computed<3>), CaseError> {
+    let plane = CaseFile::parse(name, &plane, &[])?;
+    let space = CaseFile::parse(name, &space, &[])?;
+    Ok((
+        Computed::new(plane.into_case())?,
+        Computed::new(space.case_in_space().clone())?,
+    ))
+}
+
+/// Adds both runs to the study; the number of that in space.
+pub(super) fn add_runs(
+    study: &mut Study,
+    name: &str,
+    (plane, space): (&Computed, &Computed<3>),
+) -> usize {
+    let record = RunRecord::new(format!("{name}, plane"), &plane.report, plane.elapsed);
+    study.run_to_end(record);
+    study.run_to_end(RunRecord::new(name, &space.report, space.elapsed))
+}
+
 /// Runs the study; it is short enough to be the same at every level.
 pub(crate) fn study(out: &Path) -> Result<Study, CaseError> {
     let mut study = Study::new("space-slice", ABOUT, out)?;
@@ -235,14 +254,7 @@ pub(crate) fn study(out: &Path) -> Result<Study, CaseError> {
         .map(Sheet::run)
         .collect::<Result<Vec<_>, CaseError>>()?;
     for (sheet, (plane, space)) in SHEETS.iter().zip(done) {
-        let record = RunRecord::new(
-            format!("{}, plane", sheet.name),
-            &plane.report,
-            plane.elapsed,
-        );
-        study.run_to_end(record);
-        let record = RunRecord::new(sheet.name, &space.report, space.elapsed);
-        let run = study.run_to_end(record);
+        let run = add_runs(&mut study, sheet.name, (&plane, &space));
         let [displacement, stress] = differences(plane.particles(), space.particles());
         for (what, found) in [("displacement", displacement), ("stress", stress)] {
             study.check(

@@ -2,12 +2,11 @@
 
 use igimp_cases::CaseError;
 use igimp_cases::check::Band;
-use igimp_cases::input::CaseFile;
 use rayon::prelude::*;
 
-use super::slice::{PLANE_STRAIN, differences};
+use super::slice::{PLANE_STRAIN, add_runs, computed, differences};
 use crate::runs::Computed;
-use crate::study::{RunRecord, Study};
+use crate::study::Study;
 
 /// A case of both: `(x, y)` stands for a point, `@across` for the thickness of a body, `@m` for the unit of a force per metre.
 struct Pair {
@@ -272,12 +271,7 @@ impl Pair {
 
     /// Both runs.
     fn run(&self) -> Result<(Computed, Computed<3>), CaseError> {
-        let plane = CaseFile::parse(self.name, &self.text(false), &[])?;
-        let space = CaseFile::parse(self.name, &self.text(true), &[])?;
-        Ok((
-            Computed::new(plane.into_case())?,
-            Computed::new(space.case_in_space().clone())?,
-        ))
+        computed(self.name, [self.text(false), self.text(true)])
     }
 }
 
@@ -304,14 +298,7 @@ pub(super) fn add(study: &mut Study) -> Result<(), CaseError> {
         .map(Pair::run)
         .collect::<Result<Vec<_>, CaseError>>()?;
     for (pair, (plane, space)) in PAIRS.iter().zip(done) {
-        let record = RunRecord::new(
-            format!("{}, plane", pair.name),
-            &plane.report,
-            plane.elapsed,
-        );
-        study.run_to_end(record);
-        let record = RunRecord::new(pair.name, &space.report, space.elapsed);
-        let run = study.run_to_end(record);
+        let run = add_runs(study, pair.name, (&plane, &space));
         let [displacement, stress] = differences(plane.particles(), space.particles());
         let mut found = vec![("displacement", displacement), ("stress", stress)];
         let (flat, deep) = (plane.particles(), space.particles());

@@ -88,20 +88,57 @@ impl PoreSource {
 }
 
 /// A water table that is `inside` within higher ground, the surface of the ground where that lies between the two levels,
-/// and `outside` above lower ground and beside it.
+/// and `outside` above lower ground.
 #[derive(Clone, Debug)]
 pub struct Drained {
-    /// Level within the ground \[m\].
-    pub inside: f64,
-    /// Level of the free water outside \[m\], not above `inside`.
-    pub outside: f64,
-    /// What the ground consists of when it is drained.
-    pub ground: Vec<Arc<dyn Region<3>>>,
+    inside: f64,
+    outside: f64,
+    ground: Vec<Arc<dyn Region<3>>>,
+    /// Lower and upper corner of the box around the ground, hardly within it \[m\].
+    within: [[f64; 3]; 2],
 }
 
+/// Places beyond the ground are seen this much within the box around it, as a share of its size \[-\]: domains of particles
+/// reach beyond by round-off.
+const WITHIN: f64 = 1e-9;
+
 impl Drained {
+    /// A table at `inside` within the ground that is made of regions, and at `outside`, not above it, over lower ground \[m\].
+    pub fn new(inside: f64, outside: f64, ground: Vec<Arc<dyn Region<3>>>) -> Self {
+        let mut within = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
+        for (lower, upper) in ground.iter().map(|own| own.bounds()) {
+            for axis in 0..3 {
+                within[0][axis] = within[0][axis].min(lower[axis]);
+                within[1][axis] = within[1][axis].max(upper[axis]);
+            }
+        }
+        for axis in 0..3 {
+            let by = WITHIN * (within[1][axis] - within[0][axis]);
+            within[0][axis] += by;
+            within[1][axis] -= by;
+        }
+        Self {
+            inside,
+            outside,
+            ground,
+            within,
+        }
+    }
+
+    /// Level within the ground \[m\].
+    pub fn inside(&self) -> f64 {
+        self.inside
+    }
+
+    /// Level of the free water outside \[m\].
+    pub fn outside(&self) -> f64 {
+        self.outside
+    }
+
     fn level(&self, place: &[f64; 3]) -> f64 {
-        let tops = self.ground.iter().filter_map(|own| own.top(place));
+        let [lower, upper] = &self.within;
+        let place = std::array::from_fn(|axis| place[axis].max(lower[axis]).min(upper[axis]));
+        let tops = self.ground.iter().filter_map(|own| own.top(&place));
         tops.fold(self.outside, f64::max).min(self.inside)
     }
 }

@@ -151,8 +151,8 @@ pub fn lines<const D: usize>(installed: &[Installed<'_, D>]) -> UnstructuredGrid
         connectivity,
         point_data: Vec::new(),
         cell_data: vec![
-            DataArray::scalars(&format!("force [{unit}], tension +"), forces),
-            DataArray::scalars(&format!("limit [{unit}]"), limits),
+            DataArray::scalars(format!("force [{unit}], tension +"), forces),
+            DataArray::scalars(format!("limit [{unit}]"), limits),
             DataArray::scalars("strain", strains),
             DataArray::integers("at limit", at_limit),
             DataArray::integers("member", members),

@@ -18,7 +18,7 @@ pub(super) trait Earth<const D: usize> {
     fn wets(&self, source: &PoreSource, part: &BodyPart<D>) -> bool;
 
     /// The outline of a body, or of the box around it, as it is seen from the front.
-    fn from_front(&self, part: &BodyPart<D>) -> Vec<[f64; 2]>;
+    fn front_outline(&self, part: &BodyPart<D>) -> Vec<[f64; 2]>;
 }
 
 /// The surface of the ground.
@@ -96,7 +96,7 @@ impl Earth<2> for Site {
         }
     }
 
-    fn from_front(&self, part: &BodyPart) -> Vec<[f64; 2]> {
+    fn front_outline(&self, part: &BodyPart) -> Vec<[f64; 2]> {
         part.polygon().to_vec()
     }
 }

@@ -56,7 +56,7 @@ impl Earth<3> for Solids {
         })
     }
 
-    fn from_front(&self, part: &BodyPart<3>) -> Vec<[f64; 2]> {
+    fn front_outline(&self, part: &BodyPart<3>) -> Vec<[f64; 2]> {
         let (lower, upper) = part.region.bounds();
         let [left, right] = [lower[0], upper[0]];
         let [low, high] = [lower[2], upper[2]];
@@ -185,11 +185,11 @@ impl Surface for Relief {
     fn drained(&self, inside: f64, outside: f64) -> Result<PoreSource, UprightFace> {
         match self.face_between(outside, inside) {
             Some(face) => Err(face),
-            None => Ok(PoreSource::Drained(Drained {
+            None => Ok(PoreSource::Drained(Drained::new(
                 inside,
                 outside,
-                ground: self.regions.clone(),
-            })),
+                self.regions.clone(),
+            ))),
         }
     }
 

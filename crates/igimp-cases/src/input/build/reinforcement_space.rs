@@ -61,7 +61,7 @@ fn surface_at(at: &[f64; 3], soil: &Solids) -> Option<[f64; 3]> {
     let is_soil = |place: [f64; 3]| soil.regions.iter().any(|own| own.encloses(place));
     let mut outwards = [0.0; 3];
     for k in 0..27 {
-        let along = [k % 3, k / 3 % 3, k / 9].map(|own| own as f64 - 1.0);
+        let along = [k % 3, k / 3 % 3, k / 9].map(|own| f64::from(own) - 1.0);
         let Some(along) = unit(along) else { continue };
         let side = if is_soil(step(along, reach)) {
             -1.0

@@ -234,7 +234,7 @@ fn points<const D: usize>(
     let Some(value) = node.get("u") else { return };
     let parts = std::iter::zip(around.bodies, &scene.present);
     let there = parts.filter_map(|(part, present)| part.as_ref().filter(|_| *present));
-    let outlines: Vec<_> = there.map(|part| around.earth.from_front(part)).collect();
+    let outlines: Vec<_> = there.map(|part| around.earth.front_outline(part)).collect();
     let polygons: Vec<&[[f64; 2]]> = outlines.iter().map(|own| &own[..]).collect();
     let of = format!("the soil that {who} is for{when}");
     if reach(raster, (value, "u"), (&polygons, &of), problems).is_err() {

@@ -72,8 +72,8 @@ fn source<const D: usize>(own: &PoreSource) -> String {
         }
         PoreSource::Drained(own) => format!(
             "table level at z = {} m within the ground, along its surface, and at z = {} m outside",
-            short(own.inside),
-            short(own.outside)
+            short(own.inside()),
+            short(own.outside())
         ),
         PoreSource::Ratio(ratio) => format!("r_u = {}", short(*ratio)),
         PoreSource::Table(points) => match points.as_slice() {
