@@ -25,7 +25,14 @@ impl fmt::Display for Failure {
 pub fn worst_node(worst: Option<([f64; 3], usize)>) -> Option<String> {
     let (x, axis) = worst?;
     let name = ["x", "y", "z"].get(axis)?;
-    Some(format!("({}, {}) m, {name}", short(x[0]), short(x[1])))
+    // In the plane the third coordinate is zero.
+    let upright = if x[2] != 0.0 || axis == 2 {
+        format!(", {}", short(x[2]))
+    } else {
+        String::new()
+    };
+    let (first, second) = (short(x[0]), short(x[1]));
+    Some(format!("({first}, {second}{upright}) m, {name}"))
 }
 
 fn render(failure: &Failure) -> String {
