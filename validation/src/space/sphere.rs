@@ -117,7 +117,9 @@ impl Expansion {
         let cell = self.exact.inner / self.cells as f64;
         let reach = self.exact.outer_at(self.radius(1.0));
         let fine = (reach.min(self.fine) / cell).ceil() * cell;
-        let lines = graded(cell, [0.0, fine], [0.0, reach.max(fine)], 1.2);
+        // The last of the growing cells may end half a cell early.
+        let end = if fine < reach { 1.15 * reach } else { fine };
+        let lines = graded(cell, [0.0, fine], [0.0, end], 1.2);
         let axis = || Axis::from_nodes(lines.clone());
         Ok(Grid::new([axis()?, axis()?, axis()?]))
     }
