@@ -185,7 +185,7 @@ fn a_water_table_can_be_said_in_several_ways() {
     );
     // Where the ground lies between the levels, the table is its surface.
     let drawn = of("inside = \"2.5 m\"\noutside = \"1.5 m\"");
-    let along = of("line = [[\"3.5 m\", \"2.5 m\"], [\"4.5 m\", \"1.5 m\"]]");
+    let along = of("pond = true\nline = [[\"3.5 m\", \"2.5 m\"], [\"4.5 m\", \"1.5 m\"]]");
     assert!(
         largest_difference(&drawn, &along)
             .iter()

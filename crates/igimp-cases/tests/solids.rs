@@ -361,9 +361,9 @@ fn layers_between_planes_are_exact() {
         [-2.2, 2.0],
     ];
     let (area, [x, y]) = igimp_cases::polygon::area_and_centroid(&plan);
-    for (which, top) in planes([0.12, -0.07, 0.4]).into_iter().enumerate() {
+    for (which, top) in planes([0.12, -0.07, 0.41]).into_iter().enumerate() {
         let bottom = planes([-0.05, 0.02, -1.3])[1 - which].clone();
-        let gap = 0.17 * x - 0.09 * y + 1.7;
+        let gap = 0.17 * x - 0.09 * y + 1.71;
         let layer = Layer::new(&plan, bottom.clone(), top.clone()).unwrap();
         let found = sum(&layer, &grid(), 1e-10);
         assert!((found.volume / (area * gap) - 1.0).abs() < 1e-12, "{which}");

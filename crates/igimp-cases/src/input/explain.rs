@@ -140,7 +140,7 @@ fn commented(out: &mut String, text: &str, comment: &str) {
 /// The choices of a key, when they fit on a line.
 fn short_choices(kind: &Kind) -> Option<String> {
     match kind {
-        Kind::Choice(choices) if choices.len() <= 8 => {
+        Kind::Choice(choices) if choices.len() <= 9 => {
             let names: Vec<_> = choices.iter().map(|choice| choice.name).collect();
             Some(names.join(" | "))
         }

@@ -7,7 +7,7 @@ use super::schema::ROOT;
 use super::spec::{Choice, Field, Kind, Presence, Range, Scope, Struct, Variants};
 
 /// Lists of choices longer than this get a section of their own.
-const LONG: usize = 8;
+const LONG: usize = 9;
 
 /// Reference of the case file in Markdown.
 pub fn reference_markdown() -> String {
