@@ -27,7 +27,7 @@ use crate::oracle::{Oracle, OracleKind};
 use crate::study::{Level, RunRecord, Study};
 
 /// What the book says of the study.
-const ABOUT: &str = "A thick sphere of nearly incompressible elastic-plastic soil, an eighth of it, is expanded from within by a fifth of its radius, and a cavity in eight times as much ground across by a half. The pressure is held against the exact curve at finite strain once soil yields to the outer surface or to three radii; before that it is told.";
+const ABOUT: &str = "A thick sphere of nearly incompressible elastic-plastic soil, an eighth of it, is expanded from within by a fifth of its radius, and a cavity in eight times as much ground across by a half. The pressure is held against the exact curve at finite strain once all of the sphere yields; before that, and of the cavity, it is told.";
 const SPHERE: Oracle = Oracle {
     kind: OracleKind::Exact,
     source: "expanding incompressible thick sphere, Hencky elasticity",
@@ -89,15 +89,13 @@ const fn cavity(name: &'static str, shear: f64, cells: usize) -> Expansion {
     expansion
 }
 
-static EXPANSIONS: [Expansion; 8] = [
+static EXPANSIONS: [Expansion; 6] = [
     thick("thick, I_r = 100", 100.0, (3, 3), Level::Quick),
     thick("thick, I_r = 100", 100.0, (5, 3), Level::Full),
     thick("thick, I_r = 33", 100.0 / 3.0, (3, 3), Level::Default),
     thick("thick, I_r = 33", 100.0 / 3.0, (5, 3), Level::Full),
     cavity("cavity, I_r = 100", 100.0, 2),
-    cavity("cavity, I_r = 100", 100.0, 3),
     cavity("cavity, I_r = 33", 100.0 / 3.0, 2),
-    cavity("cavity, I_r = 33", 100.0 / 3.0, 3),
 ];
 
 impl Expansion {
@@ -245,7 +243,7 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
                 continue;
             };
             let quantity = format!("p/s_u at a = {a} a₀ [-]");
-            if job.exact.yields_to(a) >= job.exact.outer_at(a).min(3.0 * job.exact.inner) {
+            if job.exact.yields_to(a) >= job.exact.outer_at(a) {
                 let expected = SPHERE.says(row[2]);
                 study.check(run, quantity, expected, Band::Relative(SHARE), row[1]);
             } else {
