@@ -25,6 +25,8 @@ const MOST: usize = 1500;
 /// Share of the right-hand side that an iteration may leave where no factorisation can follow \[-\]: Newton's method then takes
 /// more corrections, and its own residual decides (theory, eq. 25a).
 const INEXACT: f64 = 0.1;
+/// Iterations after which it may.
+const PATIENCE: usize = 300;
 /// Iterations that are tried at least where one was asked for.
 const TRIED: usize = 300;
 /// Memory allowed for factors \[bytes\], unless told otherwise.
@@ -328,13 +330,15 @@ impl LinearSolver for AutoSolver {
             }
             State::Iterating(most, may_fall_back) => (most, may_fall_back),
         };
+        let (tolerance, patience) = if may_fall_back {
+            (self.engine.accuracy.tolerance, most)
+        } else {
+            (INEXACT, PATIENCE)
+        };
         let demand = Demand {
             target: self.asked,
-            tolerance: if may_fall_back {
-                self.engine.accuracy.tolerance
-            } else {
-                INEXACT
-            },
+            tolerance,
+            patience,
             most,
         };
         match self.iteration.solve(matrix, rhs, solution, &demand) {

@@ -79,6 +79,7 @@ impl Single {
         let demand = Demand {
             target,
             tolerance,
+            patience: MOST,
             most: MOST,
         };
         let method = Method {

@@ -24,6 +24,8 @@ pub(in crate::linear) struct Demand {
     pub(in crate::linear) target: f64,
     /// The same of a solution that is handed out where it stops before \[-\].
     pub(in crate::linear) tolerance: f64,
+    /// Iterations after which that is all that is wanted.
+    pub(in crate::linear) patience: usize,
     /// Largest number of iterations.
     pub(in crate::linear) most: usize,
 }
@@ -84,10 +86,20 @@ impl Preconditioned {
             product,
             precondition,
         };
-        let mut reached = 1.0;
-        while reached > demand.target && report.refinements < demand.most {
-            let goal = 0.9 * demand.target / reached;
-            let left = demand.most - report.refinements;
+        let (mut reached, mut patience) = (1.0, demand.patience);
+        loop {
+            let is_patient = report.refinements < patience;
+            let (wanted, most) = if is_patient {
+                (demand.target, patience.min(demand.most))
+            } else {
+                (demand.target.max(demand.tolerance), demand.most)
+            };
+            // Written so that what is not a number goes no further.
+            if !(reached > wanted && report.refinements < most) {
+                break;
+            }
+            let goal = 0.9 * wanted / reached;
+            let left = most - report.refinements;
             let done = if by_gradients {
                 conjugate_gradients(&mut both, residual, change, goal, left)
             } else {
@@ -112,6 +124,8 @@ impl Preconditioned {
             if done.broken && by_gradients {
                 by_gradients = false;
                 report.method = residuals;
+            } else if !progress && is_patient && patience < demand.most {
+                patience = 0;
             } else if !progress {
                 break;
             }
