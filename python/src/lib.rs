@@ -11,6 +11,8 @@ mod march;
 mod raised;
 mod relay;
 
+use igimp_cases::sweep::Ending;
+use igimp_cases::telling;
 use pyo3::prelude::*;
 
 /// The engine; use the package `igimp`.
@@ -32,20 +34,13 @@ mod _igimp {
     }
 }
 
-/// What is said at the end of a run, from its `summary.json`.
-///
-/// Parameters
-/// ----------
-/// summary : str
-///     The text of the file.
-///
-/// Returns
-/// -------
-/// str
-///     Stages, mesh error and checks as the program prints them.
+/// What is said of a run, from its `summary.json`: stages, mesh error and checks as the program prints them;
+/// how it ended, in a word; the exit code of the program.
 #[pyfunction]
-fn verdict(summary: &str) -> PyResult<String> {
+fn verdict(summary: &str) -> PyResult<(String, String, u8)> {
     let summary = serde_json::from_str(summary)
         .map_err(|error| pyo3::exceptions::PyValueError::new_err(error.to_string()))?;
-    Ok(igimp_cases::telling::verdict::stages_and_checks(&summary))
+    let ending = Ending::of(&summary);
+    let text = telling::verdict::stages_and_checks(&summary);
+    Ok((text, ending.to_string(), raised::code(ending)))
 }

@@ -13,6 +13,7 @@ use igimp_cases::estimate::room::refuse_beyond;
 use igimp_cases::estimate::watch::{exceeded, lacks_memory};
 use igimp_cases::results::admission::Replace;
 use igimp_cases::run::{self as engine, Start, Target};
+use igimp_cases::sweep::Ending;
 use igimp_cases::table::Table;
 use igimp_cases::telling::lines::Lines;
 use igimp_cases::telling::whole::Whole;
@@ -23,7 +24,7 @@ use pyo3::types::PyDict;
 use crate::arrays::{self, Arrays};
 use crate::case::CaseFile;
 use crate::law::{Trouble, give};
-use crate::raised::Raised;
+use crate::raised::{self, Raised};
 use crate::relay::{Relay, Stage, Told};
 
 /// Bytes of the stack of a run, as much as that of a program.
@@ -287,14 +288,10 @@ where
 
 /// The exit code that the program would end with.
 fn code<const D: usize>(run: &engine::Run<D>) -> u8 {
-    use igimp_cases::sweep::Ending;
-    let code = match (&run.failure, Ending::of(&run.summary)) {
-        (Some(failure), _) if failure.is_want_of_memory() => 4,
-        (Some(_), _) => 3,
-        (None, Ending::Done) => 0,
-        (None, Ending::Missed) => 1,
-        (None, Ending::NotConverged | Ending::Interrupted | Ending::Running) => 3,
-        (None, Ending::Failed) => 2,
+    let code = match &run.failure {
+        Some(failure) if failure.is_want_of_memory() => 4,
+        Some(_) => 3,
+        None => raised::code(Ending::of(&run.summary)),
     };
     let of_lost = |error: &CaseError| if igimp_cases::is_of_the_system(error) { 4 } else { 2 };
     run.lost.iter().map(of_lost).fold(code, u8::max)

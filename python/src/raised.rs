@@ -4,6 +4,7 @@ use std::error::Error;
 
 use igimp_cases::input::{Diagnostic, InputError};
 use igimp_cases::results::checkpoint::CheckpointError;
+use igimp_cases::sweep::Ending;
 use igimp_cases::{CaseError, chain, is_of_the_system};
 use pyo3::prelude::*;
 use serde_json::json;
@@ -12,6 +13,16 @@ use serde_json::json;
 const BAD_INPUT: u8 = 2;
 /// Exit code of the program for files, memory and folders that the system does not give.
 const INPUT_OUTPUT: u8 = 4;
+
+/// The exit code of the program for a run that ended so.
+pub(crate) fn code(ending: Ending) -> u8 {
+    match ending {
+        Ending::Done => 0,
+        Ending::Missed => 1,
+        Ending::Failed => BAD_INPUT,
+        Ending::NotConverged | Ending::Interrupted | Ending::Running => 3,
+    }
+}
 
 /// An error as Python raises it; made where Python is at hand.
 #[derive(Clone, Debug)]
