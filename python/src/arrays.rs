@@ -79,7 +79,11 @@ impl Arrays {
     }
 }
 
-fn shaped<T: Element>(py: Python<'_>, values: Vec<T>, shape: Vec<usize>) -> PyResult<Bound<'_, PyAny>> {
+fn shaped<T: Element>(
+    py: Python<'_>,
+    values: Vec<T>,
+    shape: Vec<usize>,
+) -> PyResult<Bound<'_, PyAny>> {
     let flat = PyArray1::from_vec(py, values);
     Ok(if shape.len() == 1 {
         flat.into_any()

@@ -40,12 +40,7 @@ impl CaseFile {
 
     /// Parses a text; files that it names lie beside the file of this name.
     #[staticmethod]
-    fn parse(
-        py: Python<'_>,
-        name: PathBuf,
-        text: String,
-        settings: Vec<String>,
-    ) -> PyResult<Self> {
+    fn parse(py: Python<'_>, name: PathBuf, text: String, settings: Vec<String>) -> PyResult<Self> {
         let read = py.detach(|| {
             let shown = name.display().to_string();
             Ok(input::CaseFile::read_from(

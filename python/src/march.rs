@@ -204,7 +204,9 @@ impl March {
             Some(Err(_)) => Err(Raised::internal(
                 "error: the run ended by an error of igimp itself; what it wrote before is kept",
             )),
-            None => Err(Raised::internal("error: what the run found was taken before")),
+            None => Err(Raised::internal(
+                "error: what the run found was taken before",
+            )),
         };
         let found = found.map_err(|raised| raised.exception(py))?;
         let dict = PyDict::new(py);
@@ -245,11 +247,7 @@ fn in_pool(any: &AnyCase, order: Order, mut relay: Relay) -> Result<Found, Raise
 }
 
 /// The same steps as `igimp run` takes.
-fn run<const D: usize>(
-    case: &Case<D>,
-    order: &Order,
-    relay: &mut Relay,
-) -> Result<Found, Raised>
+fn run<const D: usize>(case: &Case<D>, order: &Order, relay: &mut Relay) -> Result<Found, Raised>
 where
     Relay: engine::Listener<D>,
 {
@@ -293,6 +291,12 @@ fn code<const D: usize>(run: &engine::Run<D>) -> u8 {
         Some(_) => 3,
         None => raised::code(Ending::of(&run.summary)),
     };
-    let of_lost = |error: &CaseError| if igimp_cases::is_of_the_system(error) { 4 } else { 2 };
+    let of_lost = |error: &CaseError| {
+        if igimp_cases::is_of_the_system(error) {
+            4
+        } else {
+            2
+        }
+    };
     run.lost.iter().map(of_lost).fold(code, u8::max)
 }

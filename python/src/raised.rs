@@ -97,7 +97,9 @@ impl From<CaseError> for Raised {
             other => other,
         };
         let help = match &error {
-            CaseError::OtherResults { .. } => "out=... chooses another folder, overwrite=True replaces them",
+            CaseError::OtherResults { .. } => {
+                "out=... chooses another folder, overwrite=True replaces them"
+            }
             CaseError::Unfinished { .. } => {
                 "resume=True goes on with a run of the same input, overwrite=True begins afresh"
             }

@@ -200,9 +200,9 @@ pub fn is_of_the_system(error: &(dyn Error + 'static)) -> bool {
     let mut link = Some(error);
     while let Some(error) = link {
         let is_file = error.is::<std::io::Error>() || error.is::<csv::Error>();
-        let refused = error.downcast_ref::<CaseError>().is_some_and(|own| {
-            matches!(own, CaseError::InUse { .. } | CaseError::Memory { .. })
-        });
+        let refused = error
+            .downcast_ref::<CaseError>()
+            .is_some_and(|own| matches!(own, CaseError::InUse { .. } | CaseError::Memory { .. }));
         if is_file || refused {
             return true;
         }

@@ -4,10 +4,10 @@ use std::error::Error;
 use std::io::ErrorKind;
 use std::path::PathBuf;
 
-use igimp_cases::{CaseError, is_of_the_system};
 use igimp_cases::input::InputError;
 use igimp_cases::results::checkpoint::CheckpointError;
 use igimp_cases::sweep::{Ending, SweepError};
+use igimp_cases::{CaseError, is_of_the_system};
 use thiserror::Error;
 
 /// Exit codes; part of the contract with callers. Ordered by how bad they are.

@@ -196,8 +196,8 @@ pub fn residual(value: Option<f64>) -> String {
 
 #[cfg(test)]
 mod tests {
-    use igimp_assembly::{ParticleSeed, Particles};
     use crate::run::{Controls, State};
+    use igimp_assembly::{ParticleSeed, Particles};
     use igimp_solver::linear::LinearEffort;
     use igimp_solver::{Body, PhaseTimes, StepFailure};
 

@@ -10,7 +10,6 @@ use crate::summary::{CheckRow, SafetySummary, Summary};
 
 use super::{lines, table};
 
-
 /// Stages and checks of a run; no times, so that two runs give equal texts.
 pub fn stages_and_checks(summary: &Summary) -> String {
     let rows: Vec<Vec<String>> = summary

@@ -1,0 +1,35 @@
+# %% [markdown]
+# # Inverse analysis of a slope
+# A slope has failed, so that its factor of safety was 1. Which cohesion had it, if its friction is known? A root
+# finder of SciPy asks igimp for the factor.
+
+# %%
+from scipy.optimize import brentq
+
+import igimp
+
+slope = igimp.new("slope").with_values({"grid.cell": {"x": "5 m", "y": "2 m"}})
+slope["stages"] = slope["stages"][:2]  # without the run-out
+slope["checks"] = []  # the check of the template is for its own cohesion
+slope["stages.factor of safety.bracket"] = [0.8, 1.6]
+asked = []
+
+
+def excess(cohesion):
+    """Factor of safety less 1 at a cohesion [kPa]."""
+    case = slope.with_values({"materials.clay.cohesion": f"{cohesion} kPa"})
+    found = case.run(progress=False).factor_of_safety
+    asked.append((cohesion, found))
+    return found - 1
+
+
+# %% [markdown]
+# The factor is an interval of a search (`tolerance = 0.02`): a root is not known better than that, and the root
+# finder is told so.
+
+# %%
+cohesion = brentq(excess, 6, 20, xtol=0.2)
+for at, found in asked:
+    print(f"c = {at:5.2f} kPa: F = {found:.3f}")
+print(f"the slope failed with c = {cohesion:.1f} kPa")
+assert abs(excess(cohesion)) < 0.03
