@@ -339,9 +339,7 @@ class Case:
                 raise KeyError(f"there is no stage {from_stage!r}; stages: {', '.join(map(repr, self.stages))}")
             start = ("stage", self.stages.index(from_stage))
         folder = None if out is None else Path(out)
-        begun = engine.March(
-            self._file, folder, start, threads, overwrite, _now(), bodies, list(self._laws.items())
-        )
+        begun = engine.March(self._file, folder, start, threads, overwrite, _now(), bodies, list(self._laws.items()))
         return March(begun, self, folder)
 
 

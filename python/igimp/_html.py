@@ -56,7 +56,10 @@ def results(results: Results) -> str:
     if results.mesh_study is not None:
         text += results.mesh_study._repr_html_()
     if results.checks:
-        checks = [["met" if own.met else "MISSED", own.name, own.value, own.reference, own.band, own.source] for own in results.checks]
+        checks = [
+            ["met" if own.met else "MISSED", own.name, own.value, own.reference, own.band, own.source]
+            for own in results.checks
+        ]
         text += rows(["check", "", "value", "reference", "band", "source"], checks)
     if results.failure:
         text += preformatted(results.failure)

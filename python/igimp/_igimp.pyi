@@ -1,6 +1,5 @@
 """The engine; use the package ``igimp``."""
 
-from collections.abc import Mapping
 from os import PathLike
 from typing import Any, final
 
@@ -65,7 +64,7 @@ class March:
     def leave(self) -> None:
         """Listens no more."""
 
-    def found(self) -> Mapping[str, Any]:
+    def found(self) -> dict[str, Any]:
         """Waits for the end and hands over what was found, once."""
 
 def shipped() -> list[tuple[str, str]]: ...

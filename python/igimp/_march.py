@@ -177,8 +177,9 @@ def finish(march: March, shown: Progress | None = None, callback: Callable[[Step
                 continue
             event = json.loads(text)
             shown.show(event)
-            is_step = callback is not None and event["event"] == "step"
-            if is_step and not march._stopped and callback(Step.of(event, march._body(arrays))) is False:
+            if callback is None or march._stopped or event["event"] != "step":
+                continue
+            if callback(Step.of(event, march._body(arrays))) is False:
                 march.stop()
     except KeyboardInterrupt:
         shown.close()

@@ -324,12 +324,12 @@ class Results:
     @property
     def title(self) -> str:
         """Title of the case."""
-        return self.summary["title"]
+        return str(self.summary["title"])
 
     @property
     def interrupted(self) -> bool:
         """Whether the run was stopped and can go on."""
-        return self.summary["interrupted"]
+        return bool(self.summary["interrupted"])
 
     @property
     def warnings(self) -> list[str]:
@@ -419,7 +419,9 @@ class Results:
 
     def _need(self, what: str) -> Path:
         if self.folder is None:
-            raise InputError(f"error: a run in memory has no {what}\n  help: give it a folder, as in case.run(out='results')")
+            raise InputError(
+                f"error: a run in memory has no {what}\n  help: give it a folder, as in case.run(out='results')"
+            )
         return self.folder
 
     @property
@@ -453,7 +455,9 @@ class Results:
 
         frames = self.frames
         if not frames:
-            raise FileError("error: the run wrote no frames\n  help: ask for them with the key output.paraview of the case")
+            raise FileError(
+                "error: the run wrote no frames\n  help: ask for them with the key output.paraview of the case"
+            )
         return pyvista.read(frames[number][1])
 
     # Texts.

@@ -53,7 +53,9 @@ def test_a_notebook_runs(notebook, tmp_path):
             book.cells.append(nbformat.v4.new_markdown_cell(text))
         else:
             book.cells.append(nbformat.v4.new_code_cell(cell.strip()))
-    nbclient.NotebookClient(book, timeout=300, kernel_name="python3", resources={"metadata": {"path": tmp_path}}).execute()
+    nbclient.NotebookClient(
+        book, timeout=300, kernel_name="python3", resources={"metadata": {"path": tmp_path}}
+    ).execute()
 
 
 def jupyter():
