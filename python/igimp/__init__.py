@@ -49,3 +49,8 @@ __all__ = [
 ]
 
 open = Results.open
+
+# Messages name what users import.
+for _name in __all__:
+    if isinstance(globals()[_name], type):
+        globals()[_name].__module__ = "igimp"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import sys
 from collections.abc import Callable
@@ -130,8 +131,8 @@ class March:
         try:
             self._engine.stop()
             self._engine.leave()
-        except Exception:  # noqa: BLE001 - the interpreter may be going down
-            pass
+        except Exception:
+            pass  # The interpreter may be going down.
 
     def stop(self) -> None:
         """Ends the run after the step that it is at, with everything saved."""
@@ -144,6 +145,8 @@ class March:
             from ._results import Results
 
             self._engine.stop()
+            while self._engine.next(PATIENCE) is not None:
+                pass  # Ctrl-C is heard in between.
             self._results = Results._of(self._engine.found(), self._case, self._folder)
 
     @property
@@ -186,7 +189,8 @@ def finish(march: March, shown: Progress | None = None, callback: Callable[[Step
         raise march._interrupted() from None
     except BaseException:
         shown.close()
-        march.close()
+        with contextlib.suppress(Exception):
+            march.close()
         raise
     shown.close()
     results = march.results

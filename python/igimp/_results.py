@@ -269,7 +269,6 @@ class Results:
         exit_code: int | None = None,
         failure: str | None = None,
         lost: list[str] | None = None,
-        exceeded: list[str] | None = None,
         tables: dict[str, Tables] | None = None,
         body: Body | None = None,
     ) -> None:
@@ -279,7 +278,6 @@ class Results:
         self.exit_code = code if exit_code is None else exit_code
         self.failure = failure
         self.lost = lost or []
-        self._exceeded = exceeded or []
         self.folder = folder
         self._materials = materials
         self._tables = tables or {}
@@ -295,7 +293,6 @@ class Results:
             exit_code=found["exit_code"],
             failure=found["failure"],
             lost=found["lost"],
-            exceeded=found["exceeded"],
             tables={kind: Tables({name: (header, values) for name, header, values in found[kind]}) for kind in kinds},
             body=Body(found["body"], case.materials),
         )
@@ -334,7 +331,7 @@ class Results:
     @property
     def warnings(self) -> list[str]:
         """What was told during the run."""
-        return [*self.summary["warnings"], *self._exceeded]
+        return list(self.summary["warnings"])
 
     @cached_property
     def stages(self) -> tuple[Stage, ...]:
@@ -410,6 +407,8 @@ class Results:
             root = self._need("states of the particles")
             ends = sorted((root / "checkpoint").glob("stage-*-end/current"))
             ends += sorted((root / "last-converged").glob("**/current"))
+            if self.interrupted:
+                ends += sorted((root / "checkpoint").glob("step-*/current"))
             if not ends:
                 raise FileError(f"error: {root} holds no state of the particles")
             self._body = Body.load(ends[-1], self._materials)

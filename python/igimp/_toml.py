@@ -33,9 +33,9 @@ def value(given: Any) -> str:
     if isinstance(given, (str, os.PathLike)):
         return json.dumps(os.fspath(given), ensure_ascii=False)
     if isinstance(given, int):
-        return str(given)
+        return str(int(given))
     if isinstance(given, float):
-        return repr(given) if math.isfinite(given) else str(given)
+        return repr(float(given)) if math.isfinite(given) else str(float(given))
     if isinstance(given, Mapping):
         return "{ " + ", ".join(f"{key(k)} = {value(v)}" for k, v in given.items()) + " }"
     if isinstance(given, (list, tuple)):

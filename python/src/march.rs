@@ -10,7 +10,7 @@ use std::time::Duration;
 use igimp_cases::case::{AnyCase, Case};
 use igimp_cases::estimate::Expectation;
 use igimp_cases::estimate::room::refuse_beyond;
-use igimp_cases::estimate::watch::{exceeded, lacks_memory};
+use igimp_cases::estimate::watch::lacks_memory;
 use igimp_cases::results::admission::Replace;
 use igimp_cases::run::{self as engine, Start, Target};
 use igimp_cases::sweep::Ending;
@@ -56,7 +56,6 @@ struct Found {
     /// Messages of what failed: the step without equilibrium, and meshes that could not be run.
     failure: Option<String>,
     lost: Vec<String>,
-    exceeded: Vec<String>,
     curves: Vec<Table>,
     monitors: Vec<Table>,
     sections: Vec<Table>,
@@ -213,7 +212,6 @@ impl March {
         dict.set_item("summary", found.summary)?;
         dict.set_item("failure", found.failure)?;
         dict.set_item("lost", found.lost)?;
-        dict.set_item("exceeded", found.exceeded)?;
         dict.set_item("exit_code", found.code)?;
         dict.set_item("curves", arrays::tables(py, found.curves)?)?;
         dict.set_item("monitors", arrays::tables(py, found.monitors)?)?;
@@ -274,7 +272,6 @@ where
         summary: serde_json::to_string(&run.summary)
             .map_err(|error| Raised::internal(format!("error: {error}")))?,
         code: code(&run),
-        exceeded: exceeded(&run.summary),
         failure: run.failure.as_ref().map(ToString::to_string),
         lost: lost.map(|error| chain(error)).collect(),
         curves: run.curves,

@@ -47,11 +47,22 @@ impl<const D: usize> Listener<D> for Relay {
         let line = self.lines.line(event);
         let share = self.whole.after(event);
         let (kind, own) = match event {
-            Event::Equilibrium { accepted } => {
+            // Python sees a step before it is recorded: if it wants no more, the run ends at this very step.
+            Event::Equilibrium { number, accepted } => {
                 if self.with_body {
                     self.body = Some(Arrays::of((*accepted.body.particles).clone()));
                 }
-                return;
+                let report = accepted.report;
+                let step = json!({
+                    "number": number,
+                    "load_factor": report.to,
+                    "iterations": report.iterations,
+                    "residuals": report.residuals,
+                    "plastic_share": report.plastic_share,
+                    "unknowns": report.unknowns,
+                    "at_round_off": report.at_round_off,
+                });
+                ("step", step)
             }
             Event::StageStarted {
                 stage,
@@ -70,22 +81,7 @@ impl<const D: usize> Listener<D> for Relay {
                 };
                 ("stage", Value::Null)
             }
-            Event::Step {
-                number,
-                progress,
-                report,
-            } => (
-                "step",
-                json!({
-                    "number": number,
-                    "load_factor": progress,
-                    "iterations": report.iterations,
-                    "residuals": report.residuals,
-                    "plastic_share": report.plastic_share,
-                    "unknowns": report.unknowns,
-                    "at_round_off": report.at_round_off,
-                }),
-            ),
+            Event::Step { .. } => ("recorded", Value::Null),
             Event::Cut { error } => ("cut", json!({ "from": error.from, "to": error.to })),
             Event::Trial { trial, .. } => {
                 self.stage.trial += 1;
@@ -113,7 +109,7 @@ impl<const D: usize> Listener<D> for Relay {
         });
         let told = Told {
             what: what.to_string(),
-            body: self.body.take().filter(|_| kind == "step"),
+            body: self.body.take(),
         };
         // Nobody listens any more: the run goes on to where it may end.
         if self.told.send(told).is_ok() {

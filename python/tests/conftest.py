@@ -14,6 +14,18 @@ def slope():
 
 
 @pytest.fixture
+def short(slope):
+    """The slope without its run-out."""
+    return slope.with_values({"stages": slope["stages"][:2], "curves": []})
+
+
+@pytest.fixture
+def first(slope):
+    """The initial stresses of the slope alone."""
+    return slope.with_values({"stages": slope["stages"][:1], "curves": [], "checks": []})
+
+
+@pytest.fixture
 def column():
     """An elastic column under its weight: one stage of gravity, with checks."""
     return igimp.new("column")
@@ -21,7 +33,7 @@ def column():
 
 @pytest.fixture(scope="session")
 def folder(tmp_path_factory):
-    """Results of the coarse slope, without its run-out."""
+    """Results of the coarse slope."""
     out = tmp_path_factory.mktemp("results") / "slope"
-    case = igimp.new("slope").with_values(COARSE | {"output.paraview": "stage"})
+    case = igimp.new("slope").with_values(COARSE | {"output.paraview": {"every": 5}})
     return case.run(out=out, progress=False)

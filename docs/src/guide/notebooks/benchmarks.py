@@ -11,7 +11,7 @@ import igimp
 
 COARSE = {
     "column": {"grid.cell": "50/16 m", "stages.own weight.steps": 20},
-    "von_mises_slope": {"grid.cell": "1 m"},
+    "von_mises_slope": {"grid.cell": {"x": "1 m", "y": "0.5 m"}},
     "mohr_coulomb_slope": {"grid.cell": "2 m", "checks": []},
     "footing": {"grid.cell": "0.21 m", "stages.push to one width.steps": 40, "checks": []},
 }

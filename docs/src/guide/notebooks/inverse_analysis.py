@@ -9,8 +9,8 @@ from scipy.optimize import brentq
 import igimp
 
 slope = igimp.new("slope").with_values({"grid.cell": {"x": "5 m", "y": "2 m"}})
-slope["stages"] = slope["stages"][:2]  # without the run-out
-slope["checks"] = []  # the check of the template is for its own cohesion
+# Without the run-out; the check of the template is for its own strength.
+slope = slope.with_values({"stages": slope["stages"][:2], "curves": [], "checks": []})
 slope["stages.factor of safety.bracket"] = [0.8, 1.6]
 asked = []
 

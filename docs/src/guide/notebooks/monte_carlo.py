@@ -10,8 +10,8 @@ from joblib import Parallel, delayed
 import igimp
 
 slope = igimp.new("slope").with_values({"grid.cell": {"x": "5 m", "y": "2 m"}})
-slope["stages"] = slope["stages"][:2]  # without the run-out
-slope["checks"] = []  # the check of the template is for its own strength
+# Without the run-out; the check of the template is for its own strength.
+slope = slope.with_values({"stages": slope["stages"][:2], "curves": [], "checks": []})
 slope["stages.factor of safety.bracket"] = [0.8, 1.8]
 
 

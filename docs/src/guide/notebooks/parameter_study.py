@@ -12,7 +12,8 @@ import pandas as pd
 import igimp
 
 slope = igimp.new("slope").with_values({"grid.cell": {"x": "5 m", "y": "2 m"}})
-slope["stages"] = slope["stages"][:2]  # without the run-out
+# Without the run-out; the check of the template is for its own strength.
+slope = slope.with_values({"stages": slope["stages"][:2], "curves": [], "checks": []})
 
 
 def factor(cohesion, friction):
