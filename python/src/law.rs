@@ -135,7 +135,7 @@ impl InPython {
     fn returned(
         &self,
         strain: &Principal,
-        history: &History,
+        history: History,
         (tau, tangent): (&[f64], &[f64]),
     ) -> ReturnMap {
         let trial = self.elasticity.stress(strain);
@@ -201,7 +201,7 @@ impl ConstitutiveModel for InPython {
         let states = std::iter::zip(eps_e_trial, histories);
         let answers = std::iter::zip(tau.chunks_exact(3), tangent.chunks_exact(9));
         Ok(std::iter::zip(states, answers)
-            .map(|((strain, history), answer)| self.returned(strain, history, answer))
+            .map(|((strain, history), answer)| self.returned(strain, *history, answer))
             .collect())
     }
 

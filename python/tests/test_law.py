@@ -102,6 +102,6 @@ def test_a_run_goes_on_with_the_same_law_only(clay, tmp_path):
     march = begun(45e3).march(out=tmp_path, bodies=False)
     next(march)
     march.close()
-    with pytest.raises(igimp.InputError, match="other"):
+    with pytest.raises(igimp.InputError, match="other case or to other input"):
         begun(46e3).run(out=tmp_path, resume=True, progress=False)
     assert len(begun(45e3).run(out=tmp_path, resume=True, progress=False).stages) == 1

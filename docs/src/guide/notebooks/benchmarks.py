@@ -1,7 +1,8 @@
 # %% [markdown]
 # # The four benchmarks
 # The problems of Yuan et al. (2021) on coarse grids, against the curves that each case file holds: exact solutions,
-# published tables and limit analysis. The full grids are those of the files themselves.
+# published tables and limit analysis. The full grids are those of the files themselves; a coarse one may miss a band
+# that they meet, and says so.
 
 # %%
 import matplotlib.pyplot as plt
@@ -10,15 +11,15 @@ import numpy as np
 import igimp
 
 COARSE = {
-    "column": {"grid.cell": "50/16 m", "stages.own weight.steps": 20},
+    "column": {},
     "von_mises_slope": {"grid.cell": {"x": "1 m", "y": "0.5 m"}},
-    "mohr_coulomb_slope": {"grid.cell": "2 m", "checks": []},
-    "footing": {"grid.cell": "0.21 m", "stages.push to one width.steps": 40, "checks": []},
+    "mohr_coulomb_slope": {"grid.cell": {"x": "2 m", "y": "1 m"}, "checks": []},
+    "footing": {"grid.cell": {"x": "0.18 m", "y": "0.21 m"}, "stages.push to one width.steps": 40, "checks": []},
 }
 found = {}
 for name, values in COARSE.items():
     found[name] = igimp.new(name).with_values(values).run(progress=False)
-    print(f"{name}: {found[name].ending}")
+    print(f"{name}: {found[name].ending}", *[check.name for check in found[name].checks if not check.met])
 
 # %% [markdown]
 # Each curve with its reference, read from the case:
@@ -44,5 +45,5 @@ figure.savefig("benchmarks.svg")
 
 # %%
 for name, share in far.items():
-    print(f"{name}: at most {share:.1%} from its reference")
+    print(f"{name}: at most {share:.2%} from its reference")
 assert far["column"] < 0.01
