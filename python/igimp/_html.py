@@ -51,8 +51,8 @@ def results(results: Results) -> str:
     text = f"<b>{html.escape(results.title)}</b>: {html.escape(results.ending)}"
     text += rows(["stage", "kind", "steps", "outcome", "reason"], stages)
     if results.factor_of_safety is not None:
-        low, high = results.factor_of_safety_interval
-        text += f"<p>factor of safety <b>{results.factor_of_safety:.3f}</b> (stable {low}, failed {high})</p>"
+        stable, failed = results.factor_of_safety_interval
+        text += f"<p>factor of safety <b>{results.factor_of_safety:.3f}</b> ({stable:.3f} ≤ F &lt; {failed:.3f})</p>"
     if results.mesh_study is not None:
         text += results.mesh_study._repr_html_()
     if results.checks:

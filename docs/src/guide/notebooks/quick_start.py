@@ -12,7 +12,6 @@ print(case.check())
 
 # %%
 results = case.run(out="results/slope")
-print(results)
 print(f"F = {results.factor_of_safety:.2f}")
 results
 
