@@ -202,11 +202,30 @@ impl AutoSolver {
         let found = (self.engine).solve_single(matrix, rhs, solution, self.asked);
         let iterations = match found {
             Err(LinearSolverError::NotConverged { iterations, .. }) if self.in_single => iterations,
-            other => return other,
+            Err(error) => return Err(self.without_room(error, matrix)),
+            solved => return solved,
         };
         self.effort.lost_iterations += iterations;
         self.without_single(matrix, iterations)?;
         self.engine.solve(matrix, rhs, solution)
+    }
+
+    /// An error with what factors would take, if an iteration did not converge that they have no room beside.
+    fn without_room(&self, error: LinearSolverError, matrix: &TangentMatrix) -> LinearSolverError {
+        match error {
+            LinearSolverError::NotConverged {
+                iterations,
+                relative_residual,
+                tolerance,
+                ..
+            } => LinearSolverError::NotConverged {
+                iterations,
+                relative_residual,
+                tolerance,
+                factor_bytes: Some(self.engine.cost(matrix.symmetric).0),
+            },
+            other => other,
+        }
     }
 
     /// Factorises in double precision because single does not serve.
@@ -326,18 +345,7 @@ impl LinearSolver for AutoSolver {
                 self.count(&report);
                 Ok(report)
             }
-            Err(LinearSolverError::NotConverged {
-                iterations,
-                relative_residual,
-                tolerance,
-                ..
-            }) => Err(LinearSolverError::NotConverged {
-                iterations,
-                relative_residual,
-                tolerance,
-                factor_bytes: self.engine.cost(matrix.symmetric).0,
-            }),
-            Err(other) => Err(other),
+            Err(error) => Err(self.without_room(error, matrix)),
         }
     }
 
