@@ -3,6 +3,7 @@
 import json
 import os
 import signal
+import sys
 import threading
 import time
 import warnings
@@ -201,3 +202,9 @@ def test_a_study_of_the_mesh_is_an_object(column):
     study = found.mesh_study
     assert study.meshes == ("h", "h/2") and all(len(own.values) == 2 for own in study)
     assert "<table>" in study._repr_html_()
+
+
+def test_tables_are_dicts_of_arrays_without_pandas(folder, monkeypatch):
+    monkeypatch.setitem(sys.modules, "pandas", None)
+    history = folder.monitors["crest"]
+    assert isinstance(history, dict) and all(isinstance(own, np.ndarray) for own in history.values())
