@@ -22,6 +22,9 @@ const SET_UP: f64 = 1200.0;
 const EXPECTED: f64 = 60.0;
 /// Iterations where there is no factorisation to fall back to.
 const MOST: usize = 1500;
+/// Share of the right-hand side that an iteration may leave where no factorisation can follow \[-\]: Newton's method then takes
+/// more corrections, and its own residual decides (theory, eq. 25a).
+const INEXACT: f64 = 0.1;
 /// Iterations that are tried at least where one was asked for.
 const TRIED: usize = 300;
 /// Memory allowed for factors \[bytes\], unless told otherwise.
@@ -327,7 +330,11 @@ impl LinearSolver for AutoSolver {
         };
         let demand = Demand {
             target: self.asked,
-            tolerance: self.engine.accuracy.tolerance,
+            tolerance: if may_fall_back {
+                self.engine.accuracy.tolerance
+            } else {
+                INEXACT
+            },
             most,
         };
         match self.iteration.solve(matrix, rhs, solution, &demand) {
