@@ -77,7 +77,7 @@ impl ConstitutiveModel for Batched {
 
 fn slope() -> Case {
     let slope = find("von_mises_slope").unwrap();
-    let settings = ["grid.cell=1 m", "stages.0.steps=5"];
+    let settings = ["grid.cell={ x = '1 m', y = '0.5 m' }", "stages.0.steps=5"];
     slope.case_file(settings).unwrap().into_case()
 }
 
