@@ -12,6 +12,7 @@ mod mdbook;
 mod metadata;
 mod pages;
 mod process;
+mod python;
 mod tidy;
 mod validate;
 
@@ -68,6 +69,11 @@ enum Task {
     },
     /// Check what the compiler does not: layers, printing, leftovers, licences, links, equations.
     Tidy,
+    /// Build the Python package, install it into a virtual environment and run its tests.
+    ///
+    /// Tools come from the package registry into `target/python`. Without Python 3.10, and where the
+    /// registry cannot be reached, this says so and is done.
+    Python(python::Arguments),
     /// Build the book in `docs/`, set its mathematics and check its links.
     ///
     /// mdBook is installed into `target/tools` unless it is there.
@@ -90,6 +96,7 @@ fn main() -> ExitCode {
         Task::Fuzz { arguments } => fuzz::run(&arguments),
         Task::Campaign { arguments } => campaign::run(&arguments),
         Task::Bench(arguments) => bench::run(&arguments),
+        Task::Python(arguments) => python::run(&arguments),
         Task::Tidy => tidy::run(),
         Task::Book { open } => book::book(open),
         Task::Doc { open } => book::crates(open),

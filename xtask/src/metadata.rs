@@ -36,7 +36,19 @@ pub(crate) struct Metadata {
 impl Metadata {
     /// Asks cargo.
     pub(crate) fn of_workspace() -> Result<Self, Failure> {
-        let text = output(cargo().args(["metadata", "--format-version", "1"]))?;
+        Self::of_manifest("Cargo.toml")
+    }
+
+    /// Asks cargo about the workspace of a manifest, from the root.
+    pub(crate) fn of_manifest(manifest: &str) -> Result<Self, Failure> {
+        let command = [
+            "metadata",
+            "--format-version",
+            "1",
+            "--manifest-path",
+            manifest,
+        ];
+        let text = output(cargo().args(command))?;
         Self::parse(&text).ok_or_else(|| Failure::input_output("cargo metadata", "not understood"))
     }
 

@@ -7,6 +7,7 @@
 //!
 //! Nothing here iterates, cuts a step, reads a file or prints.
 
+mod batches;
 mod blocks;
 mod border;
 mod cell_soil;

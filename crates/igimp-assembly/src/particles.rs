@@ -280,6 +280,11 @@ impl<const D: usize> Particles<D> {
         self.fields.number.iter().position(|&own| own == number)
     }
 
+    /// The arrays, handed over.
+    pub fn into_fields(self) -> ParticleFields<D> {
+        self.fields
+    }
+
     /// Number of particles.
     pub fn len(&self) -> usize {
         self.fields.x.len()

@@ -4,11 +4,12 @@
 
 use std::ops::Range;
 
-use igimp_material::{ConstitutiveModel, TangentKind};
+use igimp_material::{ConstitutiveModel, ReturnMap, TangentKind};
 use igimp_shape::Support;
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
+use crate::batches::Answered;
 use crate::blocks::BlockTable;
 use crate::error::AssemblyError;
 use crate::kinematics::{Linearisation, ParticleState, ParticleTrial, evaluate};
@@ -66,6 +67,7 @@ impl<const D: usize> System<'_, D> {
         if let Some(values) = &mut values {
             values.fill(0.0);
         }
+        let answers = self.answers(u)?;
         for parity in 0..2 {
             let strips = self.stencils.strips().of_parity(parity);
             let slots = strips.clone().map(|(_, slots)| slots.clone());
@@ -92,7 +94,7 @@ impl<const D: usize> System<'_, D> {
             let failures: Vec<Option<(usize, AssemblyError)>> = tasks
                 .into_par_iter()
                 .map_init(Scratch::default, |scratch, strip| {
-                    self.pass_strip(u, kind, strip, scratch).err()
+                    self.pass_strip(u, kind, &answers, strip, scratch).err()
                 })
                 .collect();
             let failures = failures.into_iter().flatten();
@@ -112,6 +114,7 @@ impl<const D: usize> System<'_, D> {
         &self,
         u: &[[f64; D]],
         kind: TangentKind,
+        answers: &[Option<ReturnMap>],
         mut strip: StripTask<'_, D>,
         scratch: &mut Scratch<D>,
     ) -> Result<(), (usize, AssemblyError)> {
@@ -121,8 +124,9 @@ impl<const D: usize> System<'_, D> {
         for (slot, (&particle, trial)) in order.iter().zip(strip.particles).enumerate() {
             let particle = particle as usize;
             let supports = self.stencils.of(particle);
+            let answer = answers.get(particle).and_then(Option::as_ref);
             let own = self
-                .evaluate_particle(particle, u, kind, trial)
+                .evaluate_answered(particle, u, kind, answer, trial)
                 .map_err(|error| (particle, error))?;
             let volume = self.reference_volume(particle);
             scratch.linearised.push(supports, &own);
@@ -166,25 +170,54 @@ impl<const D: usize> System<'_, D> {
         kind: TangentKind,
         trial: &mut ParticleTrial<D>,
     ) -> Result<Linearisation<D>, AssemblyError> {
-        let supports = self.stencils.of(particle);
-        let evaluated = |law: &dyn ConstitutiveModel| {
-            let state = ParticleState {
-                particle,
-                b_e: &self.particles.b_e[particle],
-                history: &self.particles.history[particle],
-                law,
-                pores: self.pores.response(
-                    self.particles,
-                    &self.conditions.water,
-                    self.method,
-                    particle,
-                ),
-            };
-            evaluate(state, supports, u, self.method, kind, trial)
-        };
+        let evaluated =
+            |law: &dyn ConstitutiveModel| self.evaluate_by(law, particle, u, kind, trial);
         self.particles
             .ask_law(particle, &self.conditions.laws, evaluated)
             .map_err(|source| AssemblyError::Material { particle, source })?
+    }
+
+    /// The same where the answer of its law may be known.
+    #[inline]
+    fn evaluate_answered(
+        &self,
+        particle: usize,
+        u: &[[f64; D]],
+        kind: TangentKind,
+        answer: Option<&ReturnMap>,
+        trial: &mut ParticleTrial<D>,
+    ) -> Result<Linearisation<D>, AssemblyError> {
+        let Some(answer) = answer else {
+            return self.evaluate_particle(particle, u, kind, trial);
+        };
+        let law = &*self.conditions.laws[self.particles.law[particle]];
+        self.evaluate_by(&Answered { law, answer }, particle, u, kind, trial)
+    }
+
+    /// One particle by a law.
+    #[inline]
+    pub(crate) fn evaluate_by(
+        &self,
+        law: &dyn ConstitutiveModel,
+        particle: usize,
+        u: &[[f64; D]],
+        kind: TangentKind,
+        trial: &mut ParticleTrial<D>,
+    ) -> Result<Linearisation<D>, AssemblyError> {
+        let state = ParticleState {
+            particle,
+            b_e: &self.particles.b_e[particle],
+            history: &self.particles.history[particle],
+            law,
+            pores: self.pores.response(
+                self.particles,
+                &self.conditions.water,
+                self.method,
+                particle,
+            ),
+        };
+        let supports = self.stencils.of(particle);
+        evaluate(state, supports, u, self.method, kind, trial)
     }
 
     /// The stored values of the columns of some nodes.

@@ -195,6 +195,22 @@ pub enum CaseError {
     Checkpoint(#[from] CheckpointError),
 }
 
+/// Whether files, memory or another program stand in the way, rather than the input.
+pub fn is_of_the_system(error: &(dyn Error + 'static)) -> bool {
+    let mut link = Some(error);
+    while let Some(error) = link {
+        let is_file = error.is::<std::io::Error>() || error.is::<csv::Error>();
+        let refused = error
+            .downcast_ref::<CaseError>()
+            .is_some_and(|own| matches!(own, CaseError::InUse { .. } | CaseError::Memory { .. }));
+        if is_file || refused {
+            return true;
+        }
+        link = error.source();
+    }
+    false
+}
+
 /// A point in a message.
 fn place(point: &[f64]) -> String {
     let numbers: Vec<String> = point.iter().map(f64::to_string).collect();

@@ -13,6 +13,7 @@
 //! | [`check`], [`exact`], [`measure`] | bands, exact solutions, what is read off particles |
 //! | [`seed`], [`polygon`], [`estimate`] | particles from polygons; the size of a case before it runs |
 //! | [`sweep`] | many cases that differ in a few values |
+//! | [`telling`] | what is said of a case and of its run, as text |
 //! | [`mesh_study`] | the mesh error: a case on several meshes, and what their values say together |
 //!
 //! # The factor of safety of a slope
@@ -45,10 +46,11 @@ pub mod solid;
 pub mod summary;
 pub mod sweep;
 pub mod table;
+pub mod telling;
 
 mod error;
 
-pub use error::{CaseError, chain};
+pub use error::{CaseError, chain, is_of_the_system};
 
 /// The examples of the book, run as tests.
 #[cfg(doctest)]

@@ -251,7 +251,7 @@ fn reactions_carry_loads_and_weight() {
     let mut stage_now = 0;
     let mut listener = |event: &Event<'_, 3>| match event {
         Event::StageStarted { stage, .. } => stage_now = *stage,
-        Event::Equilibrium { accepted } => {
+        Event::Equilibrium { accepted, .. } => {
             let all = accepted.forces.reactions.iter();
             let sum = all.fold([0.0; 3], |sum, own| {
                 std::array::from_fn(|axis| sum[axis] + own[axis])

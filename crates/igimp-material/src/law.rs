@@ -123,6 +123,26 @@ pub trait ConstitutiveModel: Send + Sync + Debug {
         history: &History,
     ) -> Result<ReturnMap, MaterialError>;
 
+    /// Whether many trial states are better asked for at once, with [`return_maps`](Self::return_maps): of a
+    /// law for which being asked costs more than the answer.
+    fn prefers_batches(&self) -> bool {
+        false
+    }
+
+    /// Answers many trial states, each as [`return_map`](Self::return_map) does; there is a history for each.
+    ///
+    /// # Errors
+    /// As [`return_map`](Self::return_map), of any of the states.
+    fn return_maps(
+        &self,
+        eps_e_trial: &[Principal],
+        histories: &[History],
+    ) -> Result<Vec<ReturnMap>, MaterialError> {
+        std::iter::zip(eps_e_trial, histories)
+            .map(|(strain, history)| self.return_map(strain, history))
+            .collect()
+    }
+
     /// The yield function f(τ) \[stress\]: at most zero where τ is admissible; `-∞` for a law
     /// without a yield surface. Each law states how f is scaled.
     fn yield_function(&self, tau: &Principal, history: &History) -> f64;

@@ -4,10 +4,10 @@ use std::error::Error;
 use std::io::ErrorKind;
 use std::path::PathBuf;
 
-use igimp_cases::CaseError;
 use igimp_cases::input::InputError;
 use igimp_cases::results::checkpoint::CheckpointError;
 use igimp_cases::sweep::{Ending, SweepError};
+use igimp_cases::{CaseError, is_of_the_system};
 use thiserror::Error;
 
 /// Exit codes; part of the contract with callers. Ordered by how bad they are.
@@ -77,9 +77,10 @@ impl ProgramError {
         if self.is_closed_pipe() {
             return Exit::Done;
         }
+        // Transparent: its source is that of the case's error.
         match self {
-            Self::Case(error) | Self::Sweep(SweepError::Case(error)) => of_case(error),
-            other => of_cause(other),
+            Self::Case(error) => of_error(error),
+            other => of_error(other),
         }
     }
 
@@ -106,25 +107,14 @@ impl ProgramError {
     }
 }
 
-/// The exit code of a case that could not be run: what the system does not give, a folder that somebody
-/// else writes into or memory, is told apart as files are.
-pub(crate) fn of_case(error: &CaseError) -> Exit {
-    match error {
-        CaseError::InUse { .. } | CaseError::Memory { .. } => Exit::InputOutput,
-        other => of_cause(other),
+/// The exit code of an error: what the system does not give, files, memory or a folder that somebody else
+/// writes into, is told apart from bad input.
+pub(crate) fn of_error(error: &(dyn Error + 'static)) -> Exit {
+    if is_of_the_system(error) {
+        Exit::InputOutput
+    } else {
+        Exit::BadInput
     }
-}
-
-/// Anything that comes from a file is input or output, the rest is bad input.
-fn of_cause(error: &(dyn Error + 'static)) -> Exit {
-    let mut link = Some(error);
-    while let Some(error) = link {
-        if error.is::<std::io::Error>() || error.is::<csv::Error>() {
-            return Exit::InputOutput;
-        }
-        link = error.source();
-    }
-    Exit::BadInput
 }
 
 #[cfg(test)]

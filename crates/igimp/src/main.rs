@@ -8,16 +8,13 @@ mod error;
 mod interrupt;
 mod output;
 mod pages;
-mod plain;
 mod progress;
 mod report;
 mod run;
 mod sweep;
 mod template;
 mod validate;
-mod verdict;
 mod view;
-mod whole;
 
 use std::borrow::Cow;
 use std::process::ExitCode;

@@ -1,7 +1,6 @@
 //! Writing to the terminal. A reader that goes away never makes the program panic, and what a file says
 //! never commands the terminal.
 
-use std::fmt::Write as _;
 use std::io::{ErrorKind, Write};
 
 use igimp_cases::CaseError;
@@ -45,30 +44,6 @@ pub(crate) fn warn(warnings: &str) {
     }
 }
 
-/// Rows as aligned columns, indented by two.
-pub(crate) fn table(rows: &[Vec<String>]) -> String {
-    let mut text = String::new();
-    for line in igimp_cases::sweep::aligned(rows).lines() {
-        let _ = writeln!(text, "  {line}");
-    }
-    text
-}
-
-/// The kind of a stage, as in the case file.
-pub(crate) fn kind(stage: &igimp_cases::case::Stage) -> &'static str {
-    use igimp_cases::case::StageKind;
-    match stage.kind {
-        StageKind::Gravity { .. } => "gravity",
-        StageKind::K0 => "k0",
-        StageKind::Load { .. } => "load",
-        StageKind::Displacement { .. } => "displacement",
-        StageKind::Rigid(_) => "rigid",
-        StageKind::Construction(_) => "construction",
-        StageKind::StrengthReduction(_) => "strength-reduction",
-        StageKind::RunOut(_) => "run-out",
-    }
-}
-
 /// Number of the stage with a name.
 pub(crate) fn stage_named(case: &AnyCase, name: &str) -> Result<usize, ProgramError> {
     let names = || case.stages().iter().map(|stage| stage.name.as_str());
@@ -103,15 +78,4 @@ pub(crate) fn writable(folder: &std::path::Path) -> Result<(), ProgramError> {
         }
         .into()
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn columns_are_aligned() {
-        let rows = [["a", "bb"], ["ccc", "d"]].map(|row| row.map(str::to_owned).to_vec());
-        assert_eq!(table(&rows), "  a    bb\n  ccc  d\n");
-    }
 }

@@ -6,11 +6,11 @@ use std::time::Duration;
 use igimp_cases::case::AnyCase;
 use igimp_cases::printable::{on_a_line, on_lines};
 use igimp_cases::run::{Event, Listener};
+use igimp_cases::telling::lines::{self, Lines};
+use igimp_cases::telling::whole::Whole;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::output;
-use crate::plain::{self, Lines};
-use crate::whole::Whole;
 
 /// Positions of the bar.
 const LENGTH: u64 = 1000;
@@ -70,15 +70,15 @@ impl<const D: usize> Listener<D> for Progress {
     }
 }
 
-fn show<const D: usize>(bar: &ProgressBar, lines: &mut Lines, event: &Event<'_, D>) {
-    let line = lines.line(event);
+fn show<const D: usize>(bar: &ProgressBar, told: &mut Lines, event: &Event<'_, D>) {
+    let line = told.line(event);
     match event {
         Event::Step {
             number,
             progress,
             report,
         } => {
-            let text = plain::step(*number, lines.steps, *progress, report);
+            let text = lines::step(*number, told.steps, *progress, report);
             bar.set_message(on_a_line(&text).into_owned());
         }
         Event::Cut { error } => {

@@ -8,12 +8,13 @@ use igimp_cases::estimate::watch::{exceeded, lacks_memory};
 use igimp_cases::results::admission::Replace;
 use igimp_cases::run::{self as engine, Start, Target};
 use igimp_cases::sweep::{Ending, Sweep};
+use igimp_cases::telling::verdict;
 use igimp_cases::{CaseError, in_any_dimension};
 
 use crate::arguments::RunArguments;
 use crate::error::{Exit, ProgramError};
 use crate::progress::Progress;
-use crate::{cases, clock, interrupt, output, verdict};
+use crate::{cases, clock, interrupt, output};
 
 pub(crate) fn run(arguments: &RunArguments) -> Result<Exit, ProgramError> {
     output::use_threads(arguments.threads);
@@ -146,7 +147,7 @@ fn tell(
     // Of what went wrong on several meshes the worst counts; what the system refused is told apart.
     for error in &run.lost {
         output::complain(&igimp_cases::chain(error));
-        exit = exit.max(crate::error::of_case(error));
+        exit = exit.max(crate::error::of_error(error));
     }
     Ok(exit)
 }

@@ -6,11 +6,12 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use igimp_cases::results::admission::Replace;
 use igimp_cases::run::{Nobody, Start};
 use igimp_cases::sweep::{self, Ending, Task};
+use igimp_cases::telling::lines;
 
 use crate::arguments::{Collect, SweepArguments};
 use crate::error::{Exit, ProgramError};
 use crate::run::replace;
-use crate::{clock, interrupt, output, plain};
+use crate::{clock, interrupt, output};
 
 pub(crate) fn sweep(arguments: &SweepArguments) -> Result<Exit, ProgramError> {
     let flag = interrupt::watch();
@@ -128,7 +129,7 @@ fn run_one(
                 .summary
                 .stages
                 .iter()
-                .filter_map(|stage| stage.safety.as_ref().map(plain::interval))
+                .filter_map(|stage| stage.safety.as_ref().map(lines::interval))
                 .collect();
             let found = found.join(", ");
             (format!("{ending}  {found}"), ending.into())

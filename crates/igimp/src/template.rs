@@ -1,6 +1,7 @@
 //! `igimp new`.
 
 use igimp_cases::shipped::{SHIPPED, find, nearest};
+use igimp_cases::telling::table;
 
 use crate::arguments::New;
 use crate::error::{Exit, ProgramError};
@@ -29,5 +30,5 @@ fn list() -> String {
         .iter()
         .map(|case| vec![case.name.to_owned(), case.summary.to_owned()])
         .collect();
-    format!("templates:\n{}", output::table(&rows))
+    format!("templates:\n{}", table(&rows))
 }

@@ -8,10 +8,11 @@ use igimp_cases::results::admission::Replace;
 use igimp_cases::run::{self, Nobody, Start, Target};
 use igimp_cases::shipped::{SHIPPED, Shipped, find, nearest};
 use igimp_cases::sweep::Ending;
+use igimp_cases::telling::verdict;
 
 use crate::arguments::Validate;
 use crate::error::{Exit, ProgramError};
-use crate::{clock, interrupt, output, verdict};
+use crate::{clock, interrupt, output};
 
 /// Steps times unknowns up to which a case counts as quick: seconds on any computer.
 const QUICK: f64 = 2e5;

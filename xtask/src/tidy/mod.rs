@@ -10,16 +10,22 @@ mod sources;
 use crate::failure::{FOUND, Failure};
 use crate::metadata::Metadata;
 use crate::process::root;
+use crate::python::MANIFEST;
 
 /// Runs all checks; prints what is wrong, one line each.
 pub(crate) fn run() -> Result<u8, Failure> {
     let root = root();
     let metadata = Metadata::of_workspace()?;
+    let python = Metadata::of_manifest(MANIFEST)?;
     let allowed = deny::allowed_licences(&root.join("deny.toml"))?;
     let checks = [
         ("layers", layers::check(&metadata)),
         ("sources", sources::check(&metadata, &root)?),
         ("licences", licences::check(&metadata, &allowed)),
+        (
+            "licences of the Python package",
+            licences::check(&python, &allowed),
+        ),
         ("links", links::check(&root)?),
         ("equations", equations::check(&metadata, &root)?),
     ];

@@ -119,6 +119,22 @@ pub enum Reduction {
     Factor(f64),
 }
 
+impl StageKind {
+    /// Its name in a case file.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Gravity { .. } => "gravity",
+            Self::K0 => "k0",
+            Self::Load { .. } => "load",
+            Self::Displacement { .. } => "displacement",
+            Self::Rigid(_) => "rigid",
+            Self::Construction(_) => "construction",
+            Self::StrengthReduction(_) => "strength-reduction",
+            Self::RunOut(_) => "run-out",
+        }
+    }
+}
+
 /// Conditions that end a stage early, and count as a planned end.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StopWhen {

@@ -403,6 +403,7 @@ mod tests {
             profiles: Profiles::default(),
             saturated: None,
             drainage: crate::case::Drainage::Drained,
+            given: None,
         };
         material.law().unwrap()
     }

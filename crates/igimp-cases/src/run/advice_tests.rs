@@ -23,6 +23,7 @@ fn case(kind: StageKind) -> Case {
         profiles: Profiles::default(),
         saturated: None,
         drainage: crate::case::Drainage::Drained,
+        given: None,
     };
     let body = |name: &str, material, lower, upper| BodyPart {
         name: name.into(),

@@ -257,12 +257,12 @@ impl<const D: usize> Stages<D> {
             stage: number,
             of: session.model.case.stages.len(),
             name: &stage.name,
-            kind: kind(&stage.kind),
+            kind: stage.kind.name(),
             steps: stage.steps,
         });
         let (mut summary, resumption, search) = match left {
             Some(left) => (left.stage.unwrap_or_default(), left.resumption, left.search),
-            None => (new_summary(&stage.name, kind(&stage.kind)), None, None),
+            None => (new_summary(&stage.name, stage.kind.name()), None, None),
         };
         let seconds_before = summary.seconds;
         let ended = dispatch(
@@ -488,19 +488,5 @@ fn new_summary(name: &str, kind: &str) -> StageSummary {
         name: name.to_owned(),
         kind: kind.to_owned(),
         ..StageSummary::default()
-    }
-}
-
-/// The kind of a stage as case files call it.
-fn kind(kind: &StageKind) -> &'static str {
-    match kind {
-        StageKind::Gravity { .. } => "gravity",
-        StageKind::K0 => "k0",
-        StageKind::Load { .. } => "load",
-        StageKind::Displacement { .. } => "displacement",
-        StageKind::Rigid(_) => "rigid",
-        StageKind::Construction(_) => "construction",
-        StageKind::StrengthReduction(_) => "strength-reduction",
-        StageKind::RunOut(_) => "run-out",
     }
 }

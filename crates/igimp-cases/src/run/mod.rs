@@ -82,8 +82,10 @@ pub enum Event<'a, const D: usize = 2> {
         steps: usize,
     },
     /// A step found equilibrium; its [`Event::Step`] follows when it is recorded. For those who
-    /// look at body and nodal forces themselves.
+    /// look at body and nodal forces themselves. An interruption now ends the run at this step.
     Equilibrium {
+        /// Number of the step in its stage, from 1.
+        number: usize,
         /// The body in its new state, conditions, forces and report of the step.
         accepted: &'a Accepted<'a, D>,
     },

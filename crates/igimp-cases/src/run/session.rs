@@ -324,7 +324,8 @@ impl<const D: usize> Watch<'_, '_, D> {
     fn step(&mut self, accepted: &Accepted<'_, D>) -> Result<Option<Stop>, CaseError> {
         let report = accepted.report;
         self.reached = report.to;
-        self.session.tell(&Event::Equilibrium { accepted });
+        let number = self.stage.steps + 1;
+        self.session.tell(&Event::Equilibrium { number, accepted });
         self.session.tally(self.stage, report)?;
         if let Some(export) = &mut self.session.export {
             export.accepted(accepted.conditions, &self.session.summary, self.stage);
@@ -364,7 +365,8 @@ impl<const D: usize> Watch<'_, '_, D> {
         }
         Ok(match reason {
             Some(reason) => Some(Stop::Stage(reason)),
-            None if self.session.interrupted() && report.to < 1.0 => Some(Stop::User),
+            // What was not saved as the last step is not left.
+            None if taken.interrupted && report.to < 1.0 => Some(Stop::User),
             None => None,
         })
     }

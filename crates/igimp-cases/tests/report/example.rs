@@ -150,6 +150,7 @@ fn materials() -> Vec<Material> {
         profiles: Profiles::default(),
         saturated: None,
         drainage: Drainage::Drained,
+        given: None,
     };
     let rock = Material {
         name: "rock".into(),

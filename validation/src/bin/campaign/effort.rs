@@ -107,7 +107,7 @@ impl<'c> Follower<'c> {
     /// Takes an event.
     pub(crate) fn on_event(&mut self, event: &Event<'_>) {
         match event {
-            Event::Equilibrium { accepted } => self.accepted(accepted),
+            Event::Equilibrium { accepted, .. } => self.accepted(accepted),
             Event::Cut { error } => {
                 self.effort.cuts += 1;
                 self.effort.last_cut = Some(Cut::new(error));

@@ -177,7 +177,7 @@ impl Listener for Watch<'_> {
     fn on_event(&mut self, event: &Event<'_>) {
         self.follower.on_event(event);
         match event {
-            Event::Equilibrium { accepted } => {
+            Event::Equilibrium { accepted, .. } => {
                 self.corrections += accepted.report.iterations;
                 self.ended_by_cut = false;
             }

@@ -145,6 +145,7 @@ fn material<const D: usize>(
     let material = Material {
         saturated: saturated.ok()?,
         drainage: drainage?,
+        given: None,
         name: name.clone(),
         unit_weight: unit_weight?.constant,
         young: young.as_ref()?.constant,

@@ -2,28 +2,28 @@
 
 use std::fmt::Write as _;
 
-use igimp_cases::check::{count, short};
-use igimp_cases::mesh_study::plan::label;
-use igimp_cases::run::{Event, REACHED_ITS_END, worst_node};
-use igimp_cases::summary::{SafetySummary, StageOutcome, StageSummary, TrialSummary};
+use crate::check::{count, short};
+use crate::mesh_study::plan::label;
+use crate::run::{Event, REACHED_ITS_END, worst_node};
+use crate::summary::{SafetySummary, StageOutcome, StageSummary, TrialSummary};
 use igimp_solver::{StepError, StepReport};
 
 const SEARCH: &str = "strength-reduction";
 
 /// Turns events into lines.
 #[derive(Debug, Default)]
-pub(crate) struct Lines {
+pub struct Lines {
     /// Steps of the stage when none is cut.
-    pub(crate) steps: usize,
+    pub steps: usize,
     /// Whether the stage is a search, whose trials are lines instead of their steps.
-    pub(crate) search: bool,
+    pub search: bool,
     /// Of a study of the mesh error: the lines of each mesh by its parts.
     meshes: Vec<(usize, Lines)>,
 }
 
 impl Lines {
     /// The line of an event, if it has one.
-    pub(crate) fn line<const D: usize>(&mut self, event: &Event<'_, D>) -> Option<String> {
+    pub fn line<const D: usize>(&mut self, event: &Event<'_, D>) -> Option<String> {
         match event {
             Event::Prepared { size } => {
                 let mut line = format!(
@@ -84,7 +84,7 @@ impl Lines {
 }
 
 /// An accepted step.
-pub(crate) fn step(number: usize, steps: usize, progress: f64, report: &StepReport) -> String {
+pub fn step(number: usize, steps: usize, progress: f64, report: &StepReport) -> String {
     let width = steps.to_string().len();
     let mut line = format!(
         "step {number:>width$}/{steps}  load factor {progress:.4}  {:>2} it  residual {}  plastic {:>5.1} %",
@@ -152,7 +152,7 @@ fn end(summary: &StageSummary) -> String {
 }
 
 /// How a stage ended, with the reason where that is news.
-pub(crate) fn outcome(summary: &StageSummary) -> String {
+pub fn outcome(summary: &StageSummary) -> String {
     if let Some(safety) = &summary.safety
         && summary.outcome != StageOutcome::Interrupted
     {
@@ -176,7 +176,7 @@ pub(crate) fn outcome(summary: &StageSummary) -> String {
 }
 
 /// A factor of safety as an interval.
-pub(crate) fn interval(safety: &SafetySummary) -> String {
+pub fn interval(safety: &SafetySummary) -> String {
     let three = |value: f64| format!("{value:.3}");
     match (safety.stable, safety.failed) {
         (Some(stable), Some(failed)) => format!("{} <= F < {}", three(stable), three(failed)),
@@ -187,7 +187,7 @@ pub(crate) fn interval(safety: &SafetySummary) -> String {
 }
 
 /// A relative norm with two digits.
-pub(crate) fn residual(value: Option<f64>) -> String {
+pub fn residual(value: Option<f64>) -> String {
     match value {
         Some(value) if value.is_finite() => format!("{value:.1e}"),
         _ => "-".to_owned(),
@@ -196,8 +196,8 @@ pub(crate) fn residual(value: Option<f64>) -> String {
 
 #[cfg(test)]
 mod tests {
+    use crate::run::{Controls, State};
     use igimp_assembly::{ParticleSeed, Particles};
-    use igimp_cases::run::{Controls, State};
     use igimp_solver::linear::LinearEffort;
     use igimp_solver::{Body, PhaseTimes, StepFailure};
 

@@ -1,10 +1,10 @@
 //! How much of a whole run is done, from its events.
 
-use igimp_cases::case::AnyCase;
-use igimp_cases::estimate::time::shares;
-use igimp_cases::in_any_dimension;
-use igimp_cases::mesh_study::plan;
-use igimp_cases::run::Event;
+use crate::case::AnyCase;
+use crate::estimate::time::shares;
+use crate::in_any_dimension;
+use crate::mesh_study::plan;
+use crate::run::Event;
 
 /// Trials of a search that are shown as progress: how many it makes is not known before it ends, and each
 /// takes this share of what is left \[-\].
@@ -12,7 +12,7 @@ const TRIAL: f64 = 0.3;
 
 /// The share of a run that is done.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Whole {
+pub struct Whole {
     meshes: Vec<Mesh>,
 }
 
@@ -33,7 +33,7 @@ struct Mesh {
 
 impl Whole {
     /// Of a case that is about to run.
-    pub(crate) fn of(case: &AnyCase) -> Self {
+    pub fn of(case: &AnyCase) -> Self {
         let parts = in_any_dimension!(case, case => plan::refinements(case));
         let stages = in_any_dimension!(case, case => shares(case));
         // Half the cell: four times the unknowns, and a factorisation that takes eight times as long.
@@ -53,7 +53,7 @@ impl Whole {
     }
 
     /// Takes an event into account; the share of the run that is done \[-\].
-    pub(crate) fn after<const D: usize>(&mut self, event: &Event<'_, D>) -> f64 {
+    pub fn after<const D: usize>(&mut self, event: &Event<'_, D>) -> f64 {
         match event {
             Event::OfMesh { parts, event } => {
                 let mut meshes = self.meshes.iter_mut();
@@ -101,8 +101,8 @@ impl Mesh {
 
 #[cfg(test)]
 mod tests {
-    use igimp_cases::shipped::find;
-    use igimp_cases::summary::StageSummary;
+    use crate::shipped::find;
+    use crate::summary::StageSummary;
 
     use super::*;
 

@@ -3,16 +3,15 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use igimp_cases::check::{count, short};
-use igimp_cases::mesh_study::{MeshSummary, StudySummary};
-use igimp_cases::printable::on_a_line;
-use igimp_cases::summary::{CheckRow, SafetySummary, Summary};
+use crate::check::{count, short};
+use crate::mesh_study::{MeshSummary, StudySummary};
+use crate::printable::on_a_line;
+use crate::summary::{CheckRow, SafetySummary, Summary};
 
-use crate::output;
-use crate::plain;
+use super::{lines, table};
 
 /// Stages and checks of a run; no times, so that two runs give equal texts.
-pub(crate) fn stages_and_checks(summary: &Summary) -> String {
+pub fn stages_and_checks(summary: &Summary) -> String {
     let rows: Vec<Vec<String>> = summary
         .stages
         .iter()
@@ -22,19 +21,19 @@ pub(crate) fn stages_and_checks(summary: &Summary) -> String {
                 stage.name.clone(),
                 stage.kind.clone(),
                 format!("{} steps", stage.steps),
-                plain::outcome(stage) + &found,
+                lines::outcome(stage) + &found,
             ]
         })
         .collect();
     let mut text = match summary.mesh_study.as_ref() {
         Some(study) => {
             let shown = study.shown().map_or_else(String::new, MeshSummary::label);
-            let meshes = output::table(&study.meshes.iter().map(mesh).collect::<Vec<_>>());
+            let meshes = table(&study.meshes.iter().map(mesh).collect::<Vec<_>>());
             format!("meshes\n{meshes}stages ({shown})\n")
         }
         None => "stages\n".to_owned(),
     };
-    text += &output::table(&rows);
+    text += &table(&rows);
     let at_round_off: usize = summary.stages.iter().map(|stage| stage.at_round_off).sum();
     if at_round_off > 0 {
         let _ = writeln!(
@@ -89,16 +88,16 @@ fn mesh_error(study: &StudySummary) -> String {
             row
         })
         .collect();
-    output::table(&rows)
+    table(&rows)
 }
 
 /// The last line: where the results are, and the time taken.
-pub(crate) fn results(summary: &Summary, folder: &Path) -> String {
+pub fn results(summary: &Summary, folder: &Path) -> String {
     format!("results in {} ({:.1} s)", folder.display(), summary.seconds)
 }
 
 /// Checks as a table, with the source of each expected value.
-pub(crate) fn checks(rows: &[CheckRow]) -> String {
+pub fn checks(rows: &[CheckRow]) -> String {
     let rows: Vec<Vec<String>> = rows
         .iter()
         .map(|row| {
@@ -113,7 +112,7 @@ pub(crate) fn checks(rows: &[CheckRow]) -> String {
             ]
         })
         .collect();
-    output::table(&rows)
+    table(&rows)
 }
 
 /// What stands behind a factor of safety: the criterion, the materials, how much moves.
@@ -140,8 +139,8 @@ fn explain(safety: &SafetySummary) -> String {
 
 #[cfg(test)]
 mod tests {
-    use igimp_cases::check::{Band, Check};
-    use igimp_cases::summary::{StageOutcome, StageSummary};
+    use crate::check::{Band, Check};
+    use crate::summary::{StageOutcome, StageSummary};
 
     use super::*;
 

@@ -1,0 +1,129 @@
+//! What a case will cost, as it is told before it runs.
+
+use std::path::Path;
+
+use super::table;
+use crate::case::Case;
+use crate::check::count;
+use crate::error::CaseError;
+use crate::estimate::speed::Speed;
+use crate::estimate::watch::side_by_side;
+use crate::estimate::{
+    Estimate, estimate, linear_solver, per_item, readable, storage, time, together,
+};
+use crate::mesh_study::plan;
+use crate::printable::on_a_line;
+
+/// The size of a case and what it will cost.
+#[derive(Clone, Debug)]
+pub struct Told {
+    /// Particles, cells, unknowns and memory.
+    pub size: Estimate,
+    /// Time of the case on its own grid.
+    pub time: time::Time,
+    /// How its linear systems will be solved, in words.
+    pub solver: String,
+    /// All of it as it is printed.
+    pub text: String,
+}
+
+/// Estimates a case; `name` is that of its file.
+///
+/// # Errors
+/// [`CaseError`] for a case that cannot be set up.
+pub fn size<const D: usize>(case: &Case<D>, name: &Path) -> Result<Told, CaseError> {
+    for material in &case.materials {
+        material.law()?;
+    }
+    let size = estimate(case)?;
+    let speed = Speed::measured()?;
+    let time = time::time(case, &size, speed);
+    let solver = linear_solver(case, size.unknowns);
+    let cells = case.grid.cells().map(|count| count.to_string()).join(" x ");
+    let storage = storage(case, size.unknowns);
+    let [particle, unknown] = per_item(D, storage, size.unknowns).map(|bytes| count(round(bytes)));
+    let row = |name: &str, value: String| vec![name.to_owned(), value];
+    let rows = [
+        row("method", case.method.label()),
+        row("particles", count(size.particles)),
+        row("cells", format!("{} ({cells})", count(size.cells))),
+        row("unknowns", format!("about {}", count(size.unknowns))),
+        row("solver", solver.clone()),
+        row("memory", format!("about {}", readable(size.bytes))),
+        row(
+            "",
+            format!("about {particle} bytes for a particle, {unknown} for an unknown"),
+        ),
+        row("time", time::sentence(&time)),
+        row("results", case.output.folder.display().to_string()),
+    ];
+    let stages: Vec<Vec<String>> = case
+        .stages
+        .iter()
+        .enumerate()
+        .map(|(index, stage)| {
+            vec![
+                format!("{}. {}", index + 1, stage.name),
+                stage.kind.name().to_owned(),
+                format!("{} steps", stage.steps),
+            ]
+        })
+        .collect();
+    let text = format!(
+        "{} is fine\n  {}\n\n{}\nstages\n{}{}",
+        name.display(),
+        on_a_line(&case.title),
+        table(&rows),
+        table(&stages),
+        study(case, speed)?
+    );
+    Ok(Told {
+        size,
+        time,
+        solver,
+        text,
+    })
+}
+
+/// The meshes of a study of the mesh error, each with its size, and the cost of all; empty without one.
+fn study<const D: usize>(case: &Case<D>, speed: Speed) -> Result<String, CaseError> {
+    if case.mesh_study.meshes < 2 {
+        return Ok(String::new());
+    }
+    let mut rows = Vec::new();
+    let (mut bytes, mut all) = (Vec::new(), None::<time::Time>);
+    for (mesh, parts) in std::iter::zip(plan::meshes(case), plan::refinements(case)) {
+        let size = estimate(&mesh)?;
+        let own = time::time(&mesh, &size, speed);
+        rows.push(vec![
+            plan::label(parts),
+            format!("{} particles", count(size.particles)),
+            format!("{} cells", count(size.cells)),
+            format!("about {} unknowns", count(size.unknowns)),
+            format!("about {}", readable(size.bytes)),
+            format!("about {}", time::readable(own.seconds)),
+        ]);
+        bytes.push(size.bytes);
+        all = Some(all.map_or(own, |all| time::Time {
+            seconds: all.seconds + own.seconds,
+            ..own
+        }));
+    }
+    let how = if side_by_side(&bytes) > 1 {
+        "side by side"
+    } else {
+        "one after another"
+    };
+    Ok(format!(
+        "\nmeshes\n{}  {how}: about {} of memory, {}\n",
+        table(&rows),
+        readable(together(&bytes)),
+        all.map_or_else(String::new, |all| time::sentence(&all))
+    ))
+}
+
+/// A number of bytes to two digits: more are not known.
+fn round(bytes: f64) -> usize {
+    let unit = 10.0_f64.powf(bytes.max(1.0).log10().floor() - 1.0).max(1.0);
+    ((bytes / unit).round() * unit) as usize
+}

@@ -1,0 +1,210 @@
+"""GOAL: runs give what the program gives, in memory and in a folder; they can be watched, stopped and gone on with."""
+
+import json
+import os
+import signal
+import sys
+import threading
+import time
+import warnings
+
+import numpy as np
+import pytest
+
+import igimp
+
+
+def test_memory_and_folder_hold_the_same(column, tmp_path):
+    kept = column.run(progress=False)
+    written = column.run(out=tmp_path / "column", progress=False)
+    assert kept.exit_code == written.exit_code == 0 and kept.ending == "done"
+    assert [own.met for own in kept.checks] == [own.met for own in written.checks]
+    for name in ("x", "sigma", "displacement", "eps_p_eq", "number"):
+        assert np.array_equal(getattr(kept.body, name), getattr(written.body, name))
+    read = igimp.open(tmp_path / "column")
+    assert np.array_equal(read.body.sigma, kept.body.sigma)
+    assert read.summary == json.loads(json.dumps(written.summary))
+    assert str(read) == str(kept) and "checks" in str(kept)
+    assert set(read.sections) == set(kept.sections)
+    for name in kept.sections:
+        assert list(read.sections[name]) == list(kept.sections[name])
+        assert np.allclose(read.sections[name], kept.sections[name], rtol=1e-8)
+
+
+def test_arrays_have_their_shapes_and_signs(column):
+    body = column.run(progress=False).body
+    n = len(body)
+    assert body.x.shape == (n, 2) and body.sigma.shape == (n, 3, 3) and body.law.shape == (n,)
+    assert body.sigma.flags.writeable and body.mean_stress.max() < 0 < body.q.max()
+    assert np.allclose(body.total_stress, body.sigma)
+    assert np.isclose(body.volume.sum(), (body.volume0 * np.linalg.det(body.def_grad)).sum())
+    assert set(body.material) <= set(column.materials)
+    frame = body.to_frame()
+    assert len(frame) == n and "sigma_yy [Pa] tension +" in frame
+
+
+def test_any_number_of_threads_gives_the_same_bits(first):
+    one, two = (first.run(threads=threads, progress=False).body for threads in (1, 2))
+    assert np.array_equal(one.sigma, two.sigma)
+
+
+def test_a_factor_of_safety_is_an_interval(folder):
+    stable, failed = folder.factor_of_safety_interval
+    assert 1.2 < stable < folder.factor_of_safety < failed < 1.5
+    stage = folder.stages[1]
+    assert stage.kind == "strength-reduction" and stage.details["safety"]["trials"]
+    assert folder.checks[0].met and folder.checks[0].band == "1.2 … 1.45"
+    assert folder.raise_for_failure() is folder
+
+
+def test_pictures_report_and_frames_are_found(folder):
+    assert folder.report.exists()
+    assert folder.figures and all(own.svg.exists() and own.png.exists() for own in folder.figures.values())
+    assert "<img" in folder.figures._repr_html_() and "factor of safety" in folder._repr_html_()
+    assert folder.frames and folder.frames[-1][1].exists()
+    history = folder.monitors["crest"]
+    assert any("displacement" in column for column in history)
+    pyvista = pytest.importorskip("pyvista")
+    assert isinstance(folder.frame(-1), pyvista.DataSet)
+
+
+def test_a_run_in_memory_says_what_it_lacks(column):
+    kept = column.run(progress=False)
+    for what in ("report", "figures", "frames"):
+        with pytest.raises(igimp.InputError, match="in memory"):
+            getattr(kept, what)
+    assert "in memory" in kept._repr_html_()
+
+
+def test_results_of_another_case_are_not_replaced(column, slope, tmp_path):
+    column.run(out=tmp_path, progress=False)
+    with pytest.raises(igimp.InputError, match="overwrite=True"):
+        slope.run(out=tmp_path, progress=False)
+    with pytest.raises(igimp.FileError):
+        igimp.open(tmp_path / "nothing")
+
+
+def test_want_of_equilibrium_is_a_result(column):
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        weak = column.with_values({"solver.max_iterations": 1, "solver.step_cutting.times": 0})
+        found = weak.run(progress=False)
+    assert found.exit_code == 3 and found.failure and found.ending == "not converged"
+    with pytest.raises(igimp.NotConverged):
+        found.raise_for_failure()
+
+
+def test_a_missed_reference_is_told(column):
+    column["checks.0.expected"] = 0.6
+    found = column.run(progress=False)
+    assert found.exit_code == 1 and not found.checks[0].met and found.ending == "reference missed"
+    with pytest.raises(igimp.ReferenceMissed, match="height over initial height"):
+        found.raise_for_failure()
+
+
+def test_steps_are_seen_and_may_end_the_run(slope):
+    seen = []
+
+    def look(step):
+        seen.append(step)
+        return len(seen) < 4
+
+    found = slope.run(progress=False, callback=look)
+    assert len(seen) == 4 and found.interrupted and found.ending == "interrupted"
+    assert [own.number for own in seen] == [1, 2, 3, 4] and seen[0].stage == "initial stresses"
+    assert seen[-1].residual < 1e-6 and seen[-1].body.x.shape[1] == 2
+    assert seen[0].load_factor < seen[-1].load_factor <= 1
+
+
+def test_what_a_callback_raises_ends_the_run(slope, tmp_path):
+    def fail(step):
+        raise RuntimeError("no more")
+
+    with pytest.raises(RuntimeError, match="no more"):
+        slope.run(out=tmp_path / "r", progress=False, callback=fail)
+    left = igimp.open(tmp_path / "r")
+    assert left.interrupted and left.stages[0].steps == 1 and left.body.displacement.any()
+
+
+def test_a_march_is_step_by_step(slope):
+    march = slope.march()
+    depth = []
+    for step in march:
+        depth.append(step.body.displacement[:, 1].min())
+        if step.stage != "initial stresses" or step.number == 6:
+            march.stop()
+    assert len(depth) == 6 and depth == sorted(depth, reverse=True)
+    assert march.results.interrupted
+
+
+def test_leaving_the_loop_ends_the_run_and_it_can_go_on(first, tmp_path):
+    case = first.with_values({"output.checkpoint.every": 1})
+    for step in case.march(out=tmp_path / "stopped", bodies=False):
+        assert step.body is None
+        if step.number == 3:
+            break
+    deadline = time.monotonic() + 60
+    while True:  # The engine ends by itself, and gives the folder free.
+        try:
+            resumed = case.run(out=tmp_path / "stopped", resume=True, progress=False)
+            break
+        except igimp.FileError:
+            assert time.monotonic() < deadline
+            time.sleep(0.1)
+    whole = case.run(out=tmp_path / "whole", progress=False)
+    assert resumed.exit_code == 0
+    assert np.array_equal(resumed.body.sigma, whole.body.sigma)
+    for file in ("monitors/crest.csv", "convergence.csv"):
+        assert (tmp_path / "stopped" / file).read_bytes() == (tmp_path / "whole" / file).read_bytes()
+
+
+def test_ctrl_c_ends_the_run_after_its_step(slope, tmp_path):
+    def interrupt(step):
+        if step.number == 2:
+            os.kill(os.getpid(), signal.SIGINT)
+            time.sleep(0.01)
+
+    with pytest.raises(igimp.Interrupted, match="resume=True") as caught:
+        slope.run(out=tmp_path / "r", progress=False, callback=interrupt)
+    assert caught.value.results.interrupted and isinstance(caught.value, KeyboardInterrupt)
+    assert slope.run(out=tmp_path / "r", progress=False, resume=True).exit_code == 0
+
+
+def test_python_goes_on_while_the_engine_computes(slope):
+    counts = []
+
+    def count():
+        while not done.is_set():
+            counts.append(None)
+            time.sleep(0.001)
+
+    done = threading.Event()
+    other = threading.Thread(target=count)
+    other.start()
+    slope.run(progress=False)
+    done.set()
+    other.join()
+    assert len(counts) > 20
+
+
+def test_progress_is_lines_or_a_bar(column, capsys):
+    column.run(progress="lines")
+    assert "stage 1/" in capsys.readouterr().out
+    column.run(progress=True)
+    captured = capsys.readouterr()
+    assert "[=" in captured.err and not captured.out
+    column.run()
+    assert capsys.readouterr() == ("", "")
+
+
+def test_a_study_of_the_mesh_is_an_object(column):
+    found = column.run(meshes=2, progress=False)
+    study = found.mesh_study
+    assert study.meshes == ("h", "h/2") and all(len(own.values) == 2 for own in study)
+    assert "<table>" in study._repr_html_()
+
+
+def test_tables_are_dicts_of_arrays_without_pandas(folder, monkeypatch):
+    monkeypatch.setitem(sys.modules, "pandas", None)
+    history = folder.monitors["crest"]
+    assert isinstance(history, dict) and all(isinstance(own, np.ndarray) for own in history.values())
