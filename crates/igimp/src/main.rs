@@ -12,6 +12,7 @@ mod plain;
 mod progress;
 mod report;
 mod run;
+mod scheduler;
 mod sweep;
 mod template;
 mod validate;

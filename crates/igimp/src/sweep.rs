@@ -10,7 +10,7 @@ use igimp_cases::sweep::{self, Ending, Task};
 use crate::arguments::{Collect, SweepArguments};
 use crate::error::{Exit, ProgramError};
 use crate::run::replace;
-use crate::{clock, interrupt, output, plain};
+use crate::{clock, interrupt, output, plain, scheduler};
 
 pub(crate) fn sweep(arguments: &SweepArguments) -> Result<Exit, ProgramError> {
     let flag = interrupt::watch();
@@ -25,6 +25,9 @@ pub(crate) fn sweep(arguments: &SweepArguments) -> Result<Exit, ProgramError> {
             output::print(&format!("{}  {}", label(task), task.label()))?;
         }
         return Ok(Exit::Done);
+    }
+    if let Some(scheduler) = arguments.to {
+        return scheduler::to(scheduler, &sweep, arguments);
     }
     let replace = replace(arguments.overwrite);
     let _alone = sweep.enter(true, replace)?;
