@@ -134,7 +134,8 @@ class Problem:
             converged = self.solver.SolveSolutionStep()
         except RuntimeError as error:
             # A point turned inside out, or a matrix that is singular.
-            self.reason = str(error).strip().splitlines()[0]
+            text = " ".join(str(error).split())
+            self.reason = text[:100]
             return False, 0.0
         if not converged:
             self.reason = "no convergence within 25 corrections"

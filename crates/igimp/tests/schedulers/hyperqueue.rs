@@ -30,7 +30,7 @@ fn a_killed_worker_of_hyperqueue_loses_nothing() {
     let study = Study::new("hq", steps);
     let output = study.igimp(&["sweep", "study.toml", "--to", "hyperqueue"]);
     assert_eq!(output.status.code(), Some(0), "{}", said(&output));
-    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/schedulers/hyperqueue.py");
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/schedulers/killed_worker.py");
     let output = Command::new(python)
         .arg(script)
         .args(["out/hyperqueue.toml", "2"])

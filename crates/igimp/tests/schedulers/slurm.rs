@@ -118,7 +118,7 @@ fn an_array_of_slurm_loses_nothing() {
         return;
     }
     // The last takes longer than its time limit.
-    let steps = [300, 4000, 300, 40_000];
+    let steps = [300, 4000, 300, 30_000];
     let study = Study::new("slurm with blanks", steps);
     let slurm = Slurm::start(Path::new(env!("CARGO_TARGET_TMPDIR")).join("slurm"));
     let output = study.igimp(&["sweep", "study.toml", "--to", "slurm"]);

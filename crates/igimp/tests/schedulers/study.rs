@@ -97,7 +97,7 @@ impl Study {
             let entries = fs::read_dir(&saved).into_iter().flatten().flatten();
             entries
                 .filter_map(|entry| entry.file_name().into_string().ok())
-                .any(|name| name.starts_with("step-02"))
+                .any(|name| name.starts_with("step-"))
         });
     }
 
@@ -131,7 +131,7 @@ impl Study {
 pub(crate) fn wait(what: &str, mut come: impl FnMut() -> bool) {
     let clock = Instant::now();
     while !come() {
-        assert!(clock.elapsed() < Duration::from_mins(5), "no {what}");
+        assert!(clock.elapsed() < Duration::from_mins(10), "no {what}");
         std::thread::sleep(Duration::from_millis(50));
     }
 }

@@ -1,7 +1,7 @@
 """A job file of `igimp sweep --to hyperqueue` on a real server of HyperQueue with two workers, one of them killed.
 
     pip install hyperqueue
-    python hyperqueue.py JOB.toml TASK
+    python killed_worker.py JOB.toml TASK
 
 The package carries the server and the worker, and not the program `hq`: the tasks of the file are submitted as they
 stand there through the interface in Python, without the memory and the time that they ask for (these workers declare
@@ -11,6 +11,7 @@ saved something; the server then gives its task to the other.
 
 import ctypes
 import os
+import select
 import signal
 import sys
 import tempfile
@@ -27,13 +28,20 @@ from hyperqueue.task.program import ExternalProgram
 
 def worker(cluster):
     """A worker with one core, in a process that ends with this one."""
-    number = os.fork()
-    if number == 0:
-        ctypes.CDLL(None).prctl(1, signal.SIGKILL)
-        cluster.start_worker(WorkerConfig(cores=1))
-        while True:
-            time.sleep(3600)
-    return number
+    while True:
+        heard, told = os.pipe()
+        number = os.fork()
+        if number == 0:
+            ctypes.CDLL(None).prctl(1, signal.SIGKILL)
+            cluster.start_worker(WorkerConfig(cores=1))
+            os.write(told, b"up")
+            while True:
+                time.sleep(3600)
+        if select.select([heard], [], [], 20)[0]:
+            return number
+        # The server has threads, and one of them held a lock when the process was copied.
+        os.kill(number, signal.SIGKILL)
+        os.waitpid(number, 0)
 
 
 def tasks_of(array):
@@ -46,7 +54,7 @@ def tasks_of(array):
 def saved(array, task):
     """Whether a task has saved a step of its second stage."""
     folder = Path(array["stdout"]).parent / f"task-{task:04}" / "checkpoint"
-    return any(folder.glob("step-02*"))
+    return any(folder.glob("step-*"))
 
 
 def ancestors(number):
