@@ -189,7 +189,10 @@ fn arrays(tasks: &[&Task]) -> Vec<(usize, String)> {
     let groups = tasks.chunk_by(|a, b| offset(a) == offset(b));
     let arrays = groups.map(|group| {
         let offset = offset(&group[0]);
-        (offset, ranges(group.iter().map(|task| task.number - offset)))
+        (
+            offset,
+            ranges(group.iter().map(|task| task.number - offset)),
+        )
     });
     arrays.collect()
 }

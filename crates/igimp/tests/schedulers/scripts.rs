@@ -60,13 +60,22 @@ fn a_script_of_slurm_holds_what_is_left() {
 #[test]
 fn a_job_file_of_hyperqueue_holds_what_is_left() {
     let study = Study::new("to-hq", [40, 40, 40, 40]);
-    let words = ["sweep", "study.toml", "--to", "hyperqueue", "--threads", "2"];
+    let words = [
+        "sweep",
+        "study.toml",
+        "--to",
+        "hyperqueue",
+        "--threads",
+        "2",
+    ];
     let mut command = study.command(&words);
     let output = command.env("PATH", "/none").output().unwrap();
     assert_eq!(output.status.code(), Some(0), "{}", said(&output));
     insta::assert_snapshot!("hyperqueue_said", like(&said(&output), &study));
     let file = fs::read_to_string(study.path("out/hyperqueue.toml")).unwrap();
-    let file = file.lines().filter(|line| !line.starts_with("time_request"));
+    let file = file
+        .lines()
+        .filter(|line| !line.starts_with("time_request"));
     let file = file.collect::<Vec<_>>().join("\n");
     insta::assert_snapshot!("hyperqueue_file", like(&file, &study));
 }

@@ -58,7 +58,9 @@ impl Slurm {
                 .unwrap();
             assert!(output.status.success(), "{daemon:?}: {}", said(&output));
         }
-        wait("idle node", || slurm.says(&["sinfo", "-h", "-o", "%t"]).contains("idle"));
+        wait("idle node", || {
+            slurm.says(&["sinfo", "-h", "-o", "%t"]).contains("idle")
+        });
         slurm
     }
 
@@ -85,7 +87,9 @@ impl Slurm {
     }
 
     fn wait_until_empty(&self) {
-        wait("end of the jobs", || self.says(&["squeue", "-h"]).trim().is_empty());
+        wait("end of the jobs", || {
+            self.says(&["squeue", "-h"]).trim().is_empty()
+        });
     }
 
     /// State and exit code of a task of an array, as the controller remembers them.
@@ -114,7 +118,9 @@ impl Drop for Slurm {
 fn an_array_of_slurm_loses_nothing() {
     let programs = ["slurmctld", "slurmd", "sbatch", "munged"];
     if std::env::var_os("IGIMP_SLURM").is_none() || !programs.iter().all(|name| is_there(name)) {
-        println!("skipped: IGIMP_SLURM=1 with slurmctld, slurmd, sbatch and munged runs it (four minutes)");
+        println!(
+            "skipped: IGIMP_SLURM=1 with slurmctld, slurmd, sbatch and munged runs it (four minutes)"
+        );
         return;
     }
     // The last takes longer than its time limit.
@@ -137,10 +143,16 @@ fn an_array_of_slurm_loses_nothing() {
     assert_eq!(slurm.end_of(&job, 4), "FAILED 3:0");
     let output = study.igimp(&["collect", "study.toml"]);
     let text = said(&output);
-    assert!(text.contains("running") && text.contains("interrupted"), "{text}");
+    assert!(
+        text.contains("running") && text.contains("interrupted"),
+        "{text}"
+    );
     let output = study.igimp(&["sweep", "study.toml", "--to", "slurm"]);
     let text = said(&output);
-    assert!(text.starts_with("2 of 4 tasks are not done: 2,4\n"), "{text}");
+    assert!(
+        text.starts_with("2 of 4 tasks are not done: 2,4\n"),
+        "{text}"
+    );
     // Submitted twice by mistake: what is begun twice is computed once.
     let jobs = [slurm.submit(&study, &[]), slurm.submit(&study, &[])];
     slurm.wait_until_empty();

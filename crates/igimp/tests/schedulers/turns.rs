@@ -5,7 +5,7 @@ use std::process::{Child, Stdio};
 use crate::study::{Study, said, wait};
 
 /// The same task, begun by two schedulers.
-const TASK: [&str; 7] = [
+const TASK: [&str; 8] = [
     "run",
     "study.toml",
     "--task",
@@ -13,6 +13,7 @@ const TASK: [&str; 7] = [
     "--resume",
     "--threads",
     "1",
+    "--quiet",
 ];
 
 fn begun(study: &Study) -> Child {
