@@ -1,11 +1,15 @@
 //! GOAL: the cases of a million particles are that, with half a million unknowns in the plane, four hundred thousand in
 //! space, and an unsymmetric tangent.
-//! ORACLE: the area of the slope, four particles and two unknowns for every cell of it; its volume, eight and three.
+//! A hillside that cuts the cells obliquely carries its own weight.
+//! ORACLE: the area of the slope, four particles and two unknowns for every cell of it; its volume, eight and three; the
+//! same hillside with small cuts as the plane has them.
 
 use std::path::Path;
 
 use igimp_cases::estimate::estimate;
 use igimp_cases::input::CaseFile;
+use igimp_cases::run::in_memory;
+use igimp_cases::summary::StageSummary;
 
 #[test]
 fn the_million_is_a_million() {
@@ -51,4 +55,23 @@ fn the_million_in_space_is_a_million() {
     );
     assert!(size.particles >= 1_000_000 && size.unknowns >= 400_000);
     assert!(!case.materials[0].law().unwrap().has_symmetric_tangent());
+}
+
+/// CONTROL: with fewer nodes tied, two of them move against each other in the soil of one cell, and steps are cut.
+#[test]
+fn a_hillside_across_the_grid_is_not_cut() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/hillside.toml");
+    let weight = |settings: &[&str]| -> StageSummary {
+        let settings: Vec<_> = settings.iter().map(|&own| own.to_owned()).collect();
+        let file = CaseFile::read(&path, &settings).unwrap();
+        in_memory(file.case_in_space()).unwrap().summary.stages[0].clone()
+    };
+    let own = weight(&[]);
+    assert_eq!((own.steps, own.cuts), (3, 0), "{own:?}");
+    let plane = weight(&["grid.small_cuts.below=1e-4"]);
+    assert!(plane.cuts > 0, "{plane:?}");
+    assert!(
+        plane.largest_displacement > 1.2 * own.largest_displacement,
+        "{plane:?}"
+    );
 }

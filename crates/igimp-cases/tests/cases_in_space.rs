@@ -294,6 +294,59 @@ fn reactions_carry_loads_and_weight() {
     assert_eq!(run.curves[0].rows.len(), 8);
 }
 
+/// GOAL: whatever solves the linear systems, a run ends in the same state, is the same on any number of threads, and can be taken up.
+/// ORACLE: factors in double precision.
+#[test]
+fn every_linear_solver_serves_a_run() {
+    let of = |kind: &str| {
+        let linear = format!("solver.linear=\"{kind}\"");
+        parsed(
+            LEDGE,
+            &[
+                linear.as_str(),
+                "solver.tolerance=1e-10",
+                "grid.cell=0.25 m",
+            ],
+        )
+    };
+    let particles = |file: &CaseFile, threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+        let case = file.case_in_space();
+        let run = pool.build().unwrap().install(|| in_memory(case).unwrap());
+        run.body.particles
+    };
+    let expected = particles(&of("auto"), 1);
+    let largest = |values: &[[f64; 3]]| {
+        values
+            .as_flattened()
+            .iter()
+            .fold(0.0, |most: f64, u| most.max(u.abs()))
+    };
+    for kind in ["single", "multigrid"] {
+        let file = of(kind);
+        let [one, two] = [1, 2].map(|threads| particles(&file, threads));
+        assert!(one == two, "{kind}: bits");
+        let pairs = std::iter::zip(&one.displacement, &expected.displacement);
+        let apart: Vec<_> = pairs.map(|(a, b)| [0, 1, 2].map(|k| a[k] - b[k])).collect();
+        let (apart, most) = (largest(&apart), largest(&expected.displacement));
+        assert!(apart < 1e-8 * most, "{kind}: {apart} of {most}");
+        let [whole, stopped] = ["whole", "stopped"].map(|end| folder(&format!("{kind}-{end}")));
+        let run = written(&file, &whole, Start::Afresh, None);
+        assert_done(&run.summary);
+        let mut told = run
+            .summary
+            .stages
+            .iter()
+            .filter_map(|own| own.linear.as_ref());
+        let linear = told.next().unwrap();
+        assert!(linear.method.starts_with(kind), "{}", linear.sentence());
+        assert!(linear.iterations > 0, "{}", linear.sentence());
+        written(&file, &stopped, Start::Afresh, Some(3));
+        written(&file, &stopped, Start::Resume, None);
+        assert_same_files(&whole, &stopped, kind);
+    }
+}
+
 /// GOAL: a slope in space has a factor of safety, and comes to rest when its strength is a little less; both can be
 /// taken up.
 /// ORACLE: a slope in plane strain of the same strength, γH/c = 3.33, is safe by 5.379 / 3.33 at least on deep clay.

@@ -15,7 +15,7 @@ use crate::study::{RunRecord, Study};
 
 /// What the book says of the study.
 const ABOUT: &str = "Cases of plane strain are computed again as slices in space, one cell across, between smooth sides: a soft column, slopes of three soils that yield under their weight, a strip of pressure; slopes with water tables, ratios and given pressures, drained and undrained, with drawdown; ground that is dug, filled and treated; a face with an anchor and nails, one of each across the slice. Displacements and stresses, pore pressures and tensions are the plane's.";
-pub(super) const PLANE_STRAIN: Oracle = Oracle {
+const PLANE_STRAIN: Oracle = Oracle {
     kind: OracleKind::Theory,
     source: "plane strain is a part of space",
     locator: "the same fields, nothing of them across; largest difference over largest value",
@@ -235,15 +235,25 @@ pub(super) fn computed(
     ))
 }
 
-/// Adds both runs to the study; the number of that in space.
-pub(super) fn add_runs(
+/// Adds both runs to the study, and what was found of their differences.
+pub(super) fn check_pair(
     study: &mut Study,
     name: &str,
     (plane, space): (&Computed, &Computed<3>),
-) -> usize {
+    found: &[(&str, f64)],
+) {
     let record = RunRecord::new(format!("{name}, plane"), &plane.report, plane.elapsed);
     study.run_to_end(record);
-    study.run_to_end(RunRecord::new(name, &space.report, space.elapsed))
+    let run = study.run_to_end(RunRecord::new(name, &space.report, space.elapsed));
+    for (what, found) in found {
+        study.check(
+            run,
+            format!("difference of {what} from the plane [-]"),
+            PLANE_STRAIN.says(0.0),
+            Band::AtMost(1e-9),
+            *found,
+        );
+    }
 }
 
 /// Runs the study; it is short enough to be the same at every level.
@@ -254,17 +264,9 @@ pub(crate) fn study(out: &Path) -> Result<Study, CaseError> {
         .map(Sheet::run)
         .collect::<Result<Vec<_>, CaseError>>()?;
     for (sheet, (plane, space)) in SHEETS.iter().zip(done) {
-        let run = add_runs(&mut study, sheet.name, (&plane, &space));
         let [displacement, stress] = differences(plane.particles(), space.particles());
-        for (what, found) in [("displacement", displacement), ("stress", stress)] {
-            study.check(
-                run,
-                format!("difference of {what} from the plane [-]"),
-                PLANE_STRAIN.says(0.0),
-                Band::AtMost(1e-9),
-                found,
-            );
-        }
+        let found = [("displacement", displacement), ("stress", stress)];
+        check_pair(&mut study, sheet.name, (&plane, &space), &found);
     }
     super::slice_ground::add(&mut study)?;
     Ok(study)

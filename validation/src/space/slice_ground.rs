@@ -1,10 +1,9 @@
 //! More slices: water, stages of construction and reinforcement in space as they are in plane strain.
 
 use igimp_cases::CaseError;
-use igimp_cases::check::Band;
 use rayon::prelude::*;
 
-use super::slice::{PLANE_STRAIN, add_runs, computed, differences};
+use super::slice::{check_pair, computed, differences};
 use crate::runs::Computed;
 use crate::study::Study;
 
@@ -298,7 +297,6 @@ pub(super) fn add(study: &mut Study) -> Result<(), CaseError> {
         .map(Pair::run)
         .collect::<Result<Vec<_>, CaseError>>()?;
     for (pair, (plane, space)) in PAIRS.iter().zip(done) {
-        let run = add_runs(study, pair.name, (&plane, &space));
         let [displacement, stress] = differences(plane.particles(), space.particles());
         let mut found = vec![("displacement", displacement), ("stress", stress)];
         let (flat, deep) = (plane.particles(), space.particles());
@@ -330,15 +328,7 @@ pub(super) fn add(study: &mut Study) -> Result<(), CaseError> {
                 },
             ));
         }
-        for (what, found) in found {
-            study.check(
-                run,
-                format!("difference of {what} from the plane [-]"),
-                PLANE_STRAIN.says(0.0),
-                Band::AtMost(1e-9),
-                found,
-            );
-        }
+        check_pair(study, pair.name, (&plane, &space), &found);
     }
     Ok(())
 }

@@ -5,8 +5,6 @@ mod stages;
 mod structures;
 mod water;
 
-pub(crate) use structures::MEMBERS_IN_SPACE;
-
 use crate::case::{AxisSpec, BodyPart, Boundaries, Case, LoadKind, Side, StageKind};
 use crate::check::short;
 use crate::plane::in_plane;

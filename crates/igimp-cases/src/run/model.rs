@@ -180,6 +180,7 @@ impl<'c, const D: usize> Model<'c, D> {
         };
         let most = (0..self.case.stages.len()).map(there).max();
         ModelSize {
+            dimensions: D,
             particles: most.unwrap_or(0).max(particles.len()),
             cells: self.case.grid.cells().iter().product(),
             unknowns: 0,

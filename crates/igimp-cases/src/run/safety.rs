@@ -402,3 +402,35 @@ fn stands_nowhere(trials: &[TrialSummary], path: ReductionPath) -> bool {
         && trials.len() >= FUTILE_TRIALS
         && trials.iter().all(|trial| !trial.stable && trial.steps == 0)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn trial(srf: f64, stable: bool, steps: usize) -> TrialSummary {
+        TrialSummary {
+            srf,
+            stable,
+            reason: String::new(),
+            displacement: 0.0,
+            steps,
+            iterations: 0,
+            cuts: 0,
+            course: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn four_trials_without_an_equilibrium_tell_nothing_of_strength() {
+        let futile = [1.0, 0.5, 0.25, 0.125].map(|srf| trial(srf, false, 0));
+        assert!(stands_nowhere(&futile, ReductionPath::Reduce));
+        assert!(!stands_nowhere(&futile[1..], ReductionPath::Reduce));
+        // Raised gravity finds its first equilibrium under a part of the weight or not at all.
+        assert!(!stands_nowhere(&futile, ReductionPath::Gravity));
+        for found in [trial(0.125, true, 1), trial(0.125, false, 1)] {
+            let mut trials = futile.clone();
+            trials[3] = found;
+            assert!(!stands_nowhere(&trials, ReductionPath::Reduce));
+        }
+    }
+}

@@ -121,8 +121,8 @@ impl<const D: usize> Session<'_, D> {
                 short(100.0 * stage.false_support)
             ));
         }
-        if D == 3 {
-            let own = &report.linear;
+        let own = &report.linear;
+        if D == 3 && own.solutions > 0 {
             let linear = stage.linear.get_or_insert_default();
             own.method.clone_into(&mut linear.method);
             linear.reason = own.reason.to_string();

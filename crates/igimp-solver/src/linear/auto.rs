@@ -22,6 +22,9 @@ const SET_UP: f64 = 1200.0;
 const EXPECTED: f64 = 60.0;
 /// Iterations where there is no factorisation to fall back to.
 const MOST: usize = 1500;
+/// Share of the right-hand side that an iteration may leave where no factorisation can follow \[-\]: Newton's method then takes
+/// more corrections, and its own residual decides (theory, eq. 25a).
+const INEXACT: f64 = 0.1;
 /// Iterations that are tried at least where one was asked for.
 const TRIED: usize = 300;
 /// Memory allowed for factors \[bytes\], unless told otherwise.
@@ -202,11 +205,30 @@ impl AutoSolver {
         let found = (self.engine).solve_single(matrix, rhs, solution, self.asked);
         let iterations = match found {
             Err(LinearSolverError::NotConverged { iterations, .. }) if self.in_single => iterations,
-            other => return other,
+            Err(error) => return Err(self.without_room(error, matrix)),
+            solved => return solved,
         };
         self.effort.lost_iterations += iterations;
         self.without_single(matrix, iterations)?;
         self.engine.solve(matrix, rhs, solution)
+    }
+
+    /// An error with what factors would take, if an iteration did not converge that they have no room beside.
+    fn without_room(&self, error: LinearSolverError, matrix: &TangentMatrix) -> LinearSolverError {
+        match error {
+            LinearSolverError::NotConverged {
+                iterations,
+                relative_residual,
+                tolerance,
+                ..
+            } => LinearSolverError::NotConverged {
+                iterations,
+                relative_residual,
+                tolerance,
+                factor_bytes: Some(self.engine.cost(matrix.symmetric).0),
+            },
+            other => other,
+        }
     }
 
     /// Factorises in double precision because single does not serve.
@@ -308,7 +330,11 @@ impl LinearSolver for AutoSolver {
         };
         let demand = Demand {
             target: self.asked,
-            tolerance: self.engine.accuracy.tolerance,
+            tolerance: if may_fall_back {
+                self.engine.accuracy.tolerance
+            } else {
+                INEXACT
+            },
             most,
         };
         match self.iteration.solve(matrix, rhs, solution, &demand) {
@@ -326,18 +352,7 @@ impl LinearSolver for AutoSolver {
                 self.count(&report);
                 Ok(report)
             }
-            Err(LinearSolverError::NotConverged {
-                iterations,
-                relative_residual,
-                tolerance,
-                ..
-            }) => Err(LinearSolverError::NotConverged {
-                iterations,
-                relative_residual,
-                tolerance,
-                factor_bytes: self.engine.cost(matrix.symmetric).0,
-            }),
-            Err(other) => Err(other),
+            Err(error) => Err(self.without_room(error, matrix)),
         }
     }
 

@@ -70,8 +70,8 @@ pub enum LinearSolverError {
 
     /// An iteration did not come to a solution, and there was no room for a factorisation.
     #[error(
-        "no solution after {iterations} iterations: relative residual {relative_residual:e} above {tolerance:e}; \
-         a factorisation would need {} GiB", gibibytes(*.factor_bytes)
+        "no solution after {iterations} iterations: relative residual {relative_residual:e} above {tolerance:e}{}",
+        would_need(*.factor_bytes)
     )]
     NotConverged {
         /// How many were made.
@@ -80,8 +80,8 @@ pub enum LinearSolverError {
         relative_residual: f64,
         /// Largest acceptable one.
         tolerance: f64,
-        /// What the factors would take.
-        factor_bytes: usize,
+        /// What factors in double precision would take, if there was no room for them.
+        factor_bytes: Option<usize>,
     },
 
     /// The factors do not fit into memory or into the index type.
@@ -92,9 +92,11 @@ pub enum LinearSolverError {
     },
 }
 
-/// To one decimal.
-fn gibibytes(bytes: usize) -> String {
-    format!("{:.1}", bytes as f64 / (1_u64 << 30) as f64)
+fn would_need(factor_bytes: Option<usize>) -> String {
+    factor_bytes.map_or_else(String::new, |bytes| {
+        let gibibytes = bytes as f64 / (1_u64 << 30) as f64;
+        format!("; a factorisation would need {gibibytes:.1} GiB")
+    })
 }
 
 fn at_unknown(unknown: Option<usize>) -> String {

@@ -1,7 +1,7 @@
 //! Loads, and whether there is soil where they act.
 
 use super::grid::Frame;
-use super::site::Site;
+use super::site::{Site, Soil};
 use crate::case::{AxisSpec, Load, LoadKind};
 use crate::input::diagnostic::Problems;
 use crate::input::geometry::cover;
@@ -294,9 +294,15 @@ fn soil_side(
     None
 }
 
-fn at_point(node: &Node, name: &str, site: &Site, problems: &mut Problems) -> Option<LoadKind> {
-    let (at, force) = (node.pair_at("at")?, node.pair_at("force")?);
-    if site.is_complete && !site.holds(at, 1e-2 * site.cell()) {
+/// A force at a point of a body.
+pub(super) fn at_point<const D: usize>(
+    node: &Node,
+    name: &str,
+    soil: &impl Soil<D>,
+    problems: &mut Problems,
+) -> Option<LoadKind<D>> {
+    let (at, force) = (node.point_at("at")?, node.point_at("force")?);
+    if soil.is_known() && !soil.holds_point(&at, 1e-2 * soil.cell()) {
         problems
             .error(
                 node.place_at("at"),

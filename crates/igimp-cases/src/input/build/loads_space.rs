@@ -1,6 +1,6 @@
 //! Loads in space, and whether there is soil where they act.
 
-use super::site::Soil as _;
+use super::loads::at_point;
 use super::space::Solids;
 use crate::case::{Load, LoadKind, Plan};
 use crate::input::diagnostic::Problems;
@@ -102,28 +102,6 @@ fn pressure(
         to,
         traction: inward.map(|component| component * pressure + 0.0),
     })
-}
-
-fn at_point(
-    node: &Node,
-    name: &str,
-    soil: &Solids,
-    problems: &mut Problems,
-) -> Option<LoadKind<3>> {
-    let (at, force) = (node.point_at("at")?, node.point_at("force")?);
-    if soil.is_complete && !soil.holds_point(&at, 1e-2 * soil.cell) {
-        problems
-            .error(
-                node.place_at("at"),
-                format!(
-                    "there is no body at {}, where `{}` acts",
-                    point(at),
-                    clip(name, 40)
-                ),
-            )
-            .help("move the load onto a body");
-    }
-    Some(LoadKind::Point { at, force })
 }
 
 /// A pressure on a circle or polygon in plan.

@@ -6,7 +6,6 @@ use super::verdict::on_safety;
 use crate::check::{Band, short};
 use crate::mesh_study::MeshSummary;
 use crate::results::fields::{Dimension, Scale};
-use crate::results::setup::MEMBERS_IN_SPACE;
 use crate::summary::{
     MemberSummary, PoreSummary, SafetySummary, StageOutcome, StageSummary, Summary,
 };
@@ -64,7 +63,7 @@ pub(super) fn headline(summary: &Summary) -> Vec<Number> {
                 stage,
                 "Peak resistance",
             );
-            add(name, quantity(peak, "N/m"), mesh_error.clone());
+            add(name, quantity(peak, force(summary)), mesh_error.clone());
         }
         if let Some(settlement) = stage.settlement {
             let name = several(|stage| stage.settlement.is_some(), stage, "Settlement");
@@ -115,9 +114,8 @@ pub(super) struct MemberView {
 /// The tension of reinforcement at the end of the stages that changed it.
 pub(super) fn reinforcement(summary: &Summary) -> Vec<MemberView> {
     let stages = summary.stages.iter().filter(|own| own.safety.is_none());
-    let mut titles = summary.setup.iter().map(|table| table.title.as_str());
-    let per_metre = !titles.any(|title| title == MEMBERS_IN_SPACE);
-    let unit = if per_metre { "N/m" } else { "N" };
+    let per_metre = !summary.size.is_in_space();
+    let unit = force(summary);
     let view = |(stage, member): (&StageSummary, &MemberSummary)| MemberView {
         per_metre,
         stage: stage.name.clone(),
@@ -130,6 +128,15 @@ pub(super) fn reinforcement(summary: &Summary) -> Vec<MemberView> {
         .flat_map(|stage| stage.reinforcement.iter().map(move |own| (stage, own)))
         .map(view)
         .collect()
+}
+
+/// Unit of forces: per metre run in the plane.
+fn force(summary: &Summary) -> &'static str {
+    if summary.size.is_in_space() {
+        "N"
+    } else {
+        "N/m"
+    }
 }
 
 /// The last stage that left water in the pores.
@@ -155,8 +162,9 @@ pub(super) fn effort(summary: &Summary) -> Vec<Number> {
     add("Particles", grouped(size.particles));
     add("Grid cells", grouped(size.cells));
     add("Most unknowns", grouped(size.unknowns));
-    add("Weight", quantity(size.weight, "N/m"));
-    add("Volume", format!("{} m³/m", short(size.volume)));
+    add("Weight", quantity(size.weight, force(summary)));
+    let volume = if size.is_in_space() { "m³" } else { "m³/m" };
+    add("Volume", format!("{} {volume}", short(size.volume)));
     add("Time", time(summary.seconds));
     if summary.output_seconds > 0.0 {
         add("Of that, writing", time(summary.output_seconds));

@@ -73,9 +73,6 @@ fn rigid_body<const D: usize>(case: &Case<D>, index: usize, part: &RigidPart<D>)
     ]
 }
 
-/// Title of the table of reinforcement in space, where forces are those of one member.
-pub(crate) const MEMBERS_IN_SPACE: &str = "Reinforcement";
-
 /// What all sides have in common, or what each has; what most of them have is said once, last.
 fn by_side(names: &[String], of: impl Fn(usize) -> String) -> String {
     let each: Vec<String> = (0..names.len()).map(of).collect();
@@ -154,7 +151,7 @@ pub(super) fn reinforcement<const D: usize>(case: &Case<D>) -> SetupTable {
     let title = if D == 2 {
         "Reinforcement, per metre run"
     } else {
-        MEMBERS_IN_SPACE
+        "Reinforcement"
     };
     let rows = case.reinforcement.iter().enumerate();
     let rows = rows.map(|(index, part)| member(case, index, part));

@@ -2,7 +2,7 @@
 
 use igimp_assembly::TangentMatrix;
 
-use super::super::multigrid::{Demand, Preconditioned};
+use super::super::multigrid::{Demand, Method, Preconditioned};
 use super::super::refine::max_norm;
 use super::super::{LinearSolverError, SolveReport};
 use super::cholesky::{Cholesky, CholeskyFactors};
@@ -15,7 +15,7 @@ use super::workshop::Workshop;
 /// Largest number of iterations: more would say that the factors are of no use.
 const MOST: usize = 60;
 
-/// Names of the methods, by whether K is symmetric.
+/// Names of the methods.
 const NAMES: [&str; 2] = ["single-cg", "single-gmres"];
 
 /// Factors in single precision, and what it takes to make them and to use them.
@@ -81,8 +81,11 @@ impl Single {
             tolerance,
             most: MOST,
         };
-        let (matrix, rhs) = system;
-        let report = preconditioned.solve(matrix, rhs, solution, &demand, NAMES, &mut apply);
+        let method = Method {
+            by_gradients: system.0.symmetric,
+            names: NAMES,
+        };
+        let report = preconditioned.solve(system, solution, &demand, method, &mut apply);
         failure?;
         let report = report?;
         Ok(SolveReport {

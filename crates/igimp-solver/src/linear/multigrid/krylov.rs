@@ -9,8 +9,8 @@
 
 use super::product::dot;
 
-/// Minimal residuals that leave more than this of a residual between two restarts are given up \[-\].
-const STAGNANT: f64 = 0.9;
+/// Conjugate gradients look after so many iterations whether they will come to their end.
+const LOOK: usize = 100;
 
 /// What an iteration came to.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,7 +47,7 @@ pub(super) fn conjugate_gradients(
         residual: 1.0,
         broken: false,
     };
-    let mut last = 0.0;
+    let (mut last, mut looked) = (0.0, 1.0);
     while done.residual > goal && done.iterations < most {
         operators.precondition(&r, &mut z);
         let rz = dot(&r, &z);
@@ -79,6 +79,13 @@ pub(super) fn conjugate_gradients(
         }
         done.iterations += 1;
         done.residual = norm(&r) / scale;
+        if done.iterations.is_multiple_of(LOOK) {
+            let left = most - done.iterations;
+            if is_hopeless([looked, done.residual, goal], LOOK, left) {
+                break;
+            }
+            looked = done.residual;
+        }
     }
     done
 }
@@ -196,12 +203,20 @@ pub(super) fn minimal_residuals(
         }
         let reached = norm(&r) / scale;
         done.residual = reached;
-        // Written so that what is not a number is given up too.
-        if done.broken || !(reached <= STAGNANT * beta / scale) {
+        let left = most - done.iterations;
+        if done.broken || is_hopeless([beta / scale, reached, goal], restart, left) {
             break;
         }
     }
     done
+}
+
+/// Whether an iteration that went from the first residual to the second in so many iterations will not come to the third in those
+/// that are left.
+fn is_hopeless([before, now, goal]: [f64; 3], made: usize, left: usize) -> bool {
+    let pace = (now / before).ln() / made as f64;
+    // Written so that what is not a number is hopeless too.
+    !(now <= goal || (pace < 0.0 && (goal / now).ln() / pace <= left as f64))
 }
 
 /// Euclidean norm.

@@ -6,13 +6,13 @@
 //! ([`dense`]). All of this is kept in single precision ([`rows`]). Nodes that carry little soil, at surfaces that cut cells,
 //! are solved for directly before and after each cycle ([`skin`]). Both together are the preconditioner of conjugate
 //! gradients, for symmetric matrices, or of generalised minimal residuals ([`krylov`]), which use the matrix itself
-//! ([`product`]). The solution is checked against it ([`solver`]).
+//! ([`product`]). The solution is checked against it, from restart to restart ([`preconditioned`]).
 
 mod dense;
 mod galerkin;
-mod given;
 mod hierarchy;
 mod krylov;
+mod preconditioned;
 mod product;
 mod rows;
 mod skin;
@@ -21,5 +21,5 @@ mod smoother;
 mod solver;
 mod transfer;
 
-pub(super) use given::Preconditioned;
-pub(super) use solver::{Demand, Iteration};
+pub(super) use preconditioned::{Demand, Method, Preconditioned};
+pub(super) use solver::Iteration;
