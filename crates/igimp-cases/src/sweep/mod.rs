@@ -289,7 +289,7 @@ impl Sweep {
         interrupt: &AtomicBool,
     ) -> Result<(Account, Ending), SweepError> {
         let ready = self.make_ready(task, (start, replace))?;
-        self.run_ready(task, ready, listener, interrupt)
+        self.run_ready(task, &ready, listener, interrupt)
     }
 
     /// Enters the folder of a task.
@@ -322,7 +322,7 @@ impl Sweep {
     fn run_ready(
         &self,
         task: &Task,
-        ready: Ready,
+        ready: &Ready,
         listener: &mut dyn AnyListener,
         interrupt: &AtomicBool,
     ) -> Result<(Account, Ending), SweepError> {

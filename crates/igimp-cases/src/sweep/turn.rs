@@ -75,7 +75,7 @@ impl Sweep {
         if self.done(task)?.is_some() || self.start_of(task)? != start {
             return Ok(None);
         }
-        let (run, ending) = self.run_ready(task, ready, listener, interrupt)?;
+        let (run, ending) = self.run_ready(task, &ready, listener, interrupt)?;
         Ok(Some(Turn::Ran(Box::new(run), ending)))
     }
 }

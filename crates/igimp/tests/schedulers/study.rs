@@ -48,6 +48,9 @@ report = false
 checkpoint = { every = 50 }
 "#;
 
+/// Longest wait for anything \[s\].
+const LONGEST: u64 = 600;
+
 /// A folder with a case and a sweep of four tasks in it.
 pub(crate) struct Study {
     pub(crate) folder: Folder,
@@ -131,7 +134,7 @@ impl Study {
 pub(crate) fn wait(what: &str, mut come: impl FnMut() -> bool) {
     let clock = Instant::now();
     while !come() {
-        assert!(clock.elapsed() < Duration::from_mins(10), "no {what}");
+        assert!(clock.elapsed() < Duration::from_secs(LONGEST), "no {what}");
         std::thread::sleep(Duration::from_millis(50));
     }
 }

@@ -67,7 +67,7 @@ fn who_waits_can_be_stopped() {
     let mut first = begun(&study);
     study.wait_for_push(2);
     let second = begun(&study);
-    std::thread::sleep(std::time::Duration::from_millis(1000));
+    std::thread::sleep(std::time::Duration::from_secs(1));
     for (child, word) in [
         (&second, "interrupted while another igimp ran task 2"),
         (&first, ""),
