@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 
 const EXIT_CODES: &str = "Exit codes: 0 done, references met; 1 a reference missed; 2 bad input; \
@@ -106,7 +106,8 @@ pub(crate) struct RunArguments {
     /// Threads to use; all cores when not given.
     #[arg(long, value_name = "N", value_parser = at_least_one)]
     pub(crate) threads: Option<usize>,
-    /// Go on from the newest checkpoint in the results folder.
+    /// Go on from the newest checkpoint in the results folder; with --task, also leave a task alone that is done, and
+    /// wait for one that another program runs.
     #[arg(long)]
     pub(crate) resume: bool,
     /// Begin afresh where a stopped run could go on, or another case has its results.
@@ -149,7 +150,7 @@ pub(crate) struct SweepArguments {
     /// Tasks that run at the same time.
     #[arg(long, value_name = "N", default_value = "1", value_parser = at_least_one)]
     pub(crate) jobs: usize,
-    /// Threads to use in all; all cores when not given.
+    /// Threads to use in all, all cores when not given; with --to those of a task, 1 when not given.
     #[arg(long, value_name = "N", value_parser = at_least_one)]
     pub(crate) threads: Option<usize>,
     /// Begin tasks afresh that were stopped, and replace those of another sweep.
@@ -158,6 +159,20 @@ pub(crate) struct SweepArguments {
     /// List the tasks and their settings, and run none.
     #[arg(long)]
     pub(crate) list: bool,
+    /// Run none, and write what a scheduler needs to run those that are not done.
+    #[arg(long, value_name = "SCHEDULER", conflicts_with_all = ["jobs", "overwrite", "list"])]
+    pub(crate) to: Option<Scheduler>,
+}
+
+/// What starts the tasks of a sweep.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Scheduler {
+    /// A batch script with an array job.
+    Slurm,
+    /// A job file.
+    Hyperqueue,
+    /// This computer: the command that does it, with as many jobs as have room.
+    Local,
 }
 
 #[derive(Debug, Args)]

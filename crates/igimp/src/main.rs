@@ -11,6 +11,7 @@ mod pages;
 mod progress;
 mod report;
 mod run;
+mod scheduler;
 mod sweep;
 mod template;
 mod validate;

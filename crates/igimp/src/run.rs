@@ -7,7 +7,7 @@ use igimp_cases::estimate::room::refuse_beyond;
 use igimp_cases::estimate::watch::{exceeded, lacks_memory};
 use igimp_cases::results::admission::Replace;
 use igimp_cases::run::{self as engine, Start, Target};
-use igimp_cases::sweep::{Ending, Sweep};
+use igimp_cases::sweep::{Ending, Sweep, Turn};
 use igimp_cases::telling::verdict;
 use igimp_cases::{CaseError, in_any_dimension};
 
@@ -86,13 +86,35 @@ fn task(arguments: &RunArguments, number: usize) -> Result<Exit, ProgramError> {
         output::say(&format!("task {number}: {}", task.label()))?;
     }
     let mut progress = Progress::new(arguments.quiet, sweep.case_of(task)?.any_case());
-    let start = afresh_or_resume(arguments);
-    let replace = replace(arguments.overwrite);
-    let _shared = sweep.enter(false, replace)?;
-    let run = sweep.run_task(task, (start, replace), &mut progress, &flag);
+    if !arguments.resume {
+        let replace = replace(arguments.overwrite);
+        let _shared = sweep.enter(false, replace)?;
+        let run = sweep.run_task(task, (Start::Afresh, replace), &mut progress, &flag);
+        progress.finish();
+        let (run, _) = run?;
+        return tell(&run, &task.folder, arguments);
+    }
+    let turn = sweep.take_up(task, &mut progress, &flag, |folder| {
+        output::complain(&format!(
+            "another igimp writes into {}; waiting until it has ended",
+            folder.display()
+        ));
+    });
     progress.finish();
-    let (run, _) = run?;
-    tell(&run, &task.folder, arguments)
+    match turn? {
+        Turn::Ran(run, _) => tell(&run, &task.folder, arguments),
+        Turn::Done(ending) => {
+            output::say(&format!("task {number} is done already: {ending}"))?;
+            Ok(ending.into())
+        }
+        Turn::Elsewhere => {
+            output::complain(&format!(
+                "interrupted while another igimp ran task {number}; to go on: {}",
+                again(arguments)
+            ));
+            Ok(Exit::NotConverged)
+        }
+    }
 }
 
 /// What may be replaced.
@@ -180,7 +202,7 @@ fn again(arguments: &RunArguments) -> String {
 }
 
 /// A word as a shell reads it back.
-fn quoted(word: &str) -> String {
+pub(crate) fn quoted(word: &str) -> String {
     let plain = |letter: char| letter.is_alphanumeric() || "_-./=:,+@%".contains(letter);
     if !word.is_empty() && word.chars().all(plain) {
         word.to_owned()

@@ -11,7 +11,7 @@ use igimp_cases::telling::lines;
 use crate::arguments::{Collect, SweepArguments};
 use crate::error::{Exit, ProgramError};
 use crate::run::replace;
-use crate::{clock, interrupt, output};
+use crate::{clock, interrupt, output, scheduler};
 
 pub(crate) fn sweep(arguments: &SweepArguments) -> Result<Exit, ProgramError> {
     let flag = interrupt::watch();
@@ -26,6 +26,9 @@ pub(crate) fn sweep(arguments: &SweepArguments) -> Result<Exit, ProgramError> {
             output::print(&format!("{}  {}", label(task), task.label()))?;
         }
         return Ok(Exit::Done);
+    }
+    if let Some(scheduler) = arguments.to {
+        return scheduler::to(scheduler, &sweep, arguments);
     }
     let replace = replace(arguments.overwrite);
     let _alone = sweep.enter(true, replace)?;

@@ -72,7 +72,7 @@ pub fn side_by_side(bytes: &[f64]) -> usize {
 }
 
 /// Memory that the system can give without swapping \[bytes\], where it tells.
-fn available() -> Option<f64> {
+pub fn available() -> Option<f64> {
     let text = std::fs::read_to_string("/proc/meminfo").ok()?;
     let line = text
         .lines()

@@ -7,7 +7,7 @@ use super::columns::{Column, column};
 use super::{Record, Sweep, SweepError, Task};
 use crate::check::short;
 use crate::printable::on_a_line;
-use crate::results::atomic::create;
+use crate::results::atomic::write_whole;
 use crate::results::cells::cell;
 use crate::summary::Summary;
 
@@ -90,17 +90,19 @@ impl Collected {
             source,
         })?;
         let path = folder.join("results.csv");
-        let write = || -> Result<(), csv::Error> {
-            let mut writer = csv::Writer::from_writer(create(&path)?);
+        let text = || -> Result<Vec<u8>, csv::Error> {
+            let mut writer = csv::Writer::from_writer(Vec::new());
             for row in std::iter::once(&self.header).chain(&self.rows) {
                 writer.write_record(row.iter().map(|text| cell(text).into_owned()))?;
             }
-            Ok(writer.flush()?)
+            let text = writer.into_inner();
+            text.map_err(|error| error.into_error().into())
         };
-        write().map_err(|source| SweepError::Table {
+        let text = text().map_err(|source| SweepError::Table {
             path: path.clone(),
             source,
         })?;
+        write_whole(&path, text)?;
         Ok(path)
     }
 

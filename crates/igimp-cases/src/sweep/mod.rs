@@ -19,14 +19,19 @@
 mod chart;
 mod collect;
 mod columns;
+mod demand;
 mod file;
 mod record;
+mod scripts;
+mod turn;
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
+use std::time::Duration;
 
 use thiserror::Error;
 
+use crate::case::AnyCase;
 use crate::error::CaseError;
 use crate::estimate::room;
 use crate::input::{CaseFile, InputError, bytes};
@@ -37,8 +42,11 @@ use crate::results::owner::{Claim, Origin, Owner};
 use crate::run::{self, Account, AnyListener, Entered, Start, Target, run_any_entered};
 
 pub use collect::{Collected, aligned, collect};
+pub use demand::{Demand, Largest};
 pub(crate) use record::chain as on_one_line;
 pub use record::{Ending, Record};
+pub use scripts::{Script, Words, numbers};
+pub use turn::Turn;
 
 /// Most bytes of a sweep file.
 const LARGEST: u64 = 8 << 20;
@@ -205,15 +213,21 @@ impl Sweep {
             input: String::new(),
         };
         let (marker, own) = (root.join(MARKER), Owner::of(&claim, root, false));
-        match Owner::read(&marker).filter(|found| found.case != own.case) {
-            Some(found) if replace != Replace::Everything && self.holds_tasks() => {
+        match Owner::read(&marker) {
+            // Many tasks begin at once: what is there already is not written again.
+            Some(found) if found == own => Ok(lock),
+            Some(found)
+                if found.case != own.case
+                    && replace != Replace::Everything
+                    && self.holds_tasks() =>
+            {
                 Err(CaseError::OtherResults {
                     path: root.clone(),
                     case: found.case,
                     title: String::new(),
                 })
             }
-            _ => own.write(&marker).map(|()| lock),
+            _ => sign(&own, &marker).map(|()| lock),
         }
     }
 
@@ -249,6 +263,20 @@ impl Sweep {
             .filter(|ending| ending.is_verdict()))
     }
 
+    /// The tasks that are not done, in order.
+    ///
+    /// # Errors
+    /// [`SweepError::Task`].
+    pub fn left(&self) -> Result<Vec<&Task>, SweepError> {
+        let mut left = Vec::new();
+        for task in &self.tasks {
+            if self.done(task)?.is_none() {
+                left.push(task);
+            }
+        }
+        Ok(left)
+    }
+
     /// Runs a task and records its settings and its end in `task.json`.
     ///
     /// # Errors
@@ -260,6 +288,16 @@ impl Sweep {
         listener: &mut dyn AnyListener,
         interrupt: &AtomicBool,
     ) -> Result<(Account, Ending), SweepError> {
+        let ready = self.make_ready(task, (start, replace))?;
+        self.run_ready(task, &ready, listener, interrupt)
+    }
+
+    /// Enters the folder of a task.
+    fn make_ready(
+        &self,
+        task: &Task,
+        (start, replace): (Start, Replace),
+    ) -> Result<Ready, SweepError> {
         let file = self.case_of(task)?;
         let mut case = file.any_case().clone();
         case.output_mut().folder.clone_from(&task.folder);
@@ -271,11 +309,28 @@ impl Sweep {
         };
         crate::in_any_dimension!(&case, case => room::refuse_beyond(case))?;
         refuse_link(&task.folder)?;
-        let _entered = crate::in_any_dimension!(&case, case => Entered::new(case, &target, start))?;
+        let entered = crate::in_any_dimension!(&case, case => Entered::new(case, &target, start))?;
+        Ok(Ready {
+            file,
+            case,
+            target,
+            start,
+            _entered: entered,
+        })
+    }
+
+    fn run_ready(
+        &self,
+        task: &Task,
+        ready: &Ready,
+        listener: &mut dyn AnyListener,
+        interrupt: &AtomicBool,
+    ) -> Result<(Account, Ending), SweepError> {
         folder::claim(&task.folder)?;
-        let mut record = Record::new(self, task, &file);
+        let mut record = Record::new(self, task, &ready.file);
         record.write(&task.folder)?;
-        match run_any_entered(&case, Some(&target), start, listener, interrupt) {
+        let (target, start) = (Some(&ready.target), ready.start);
+        match run_any_entered(&ready.case, target, start, listener, interrupt) {
             Ok(run) => {
                 record.ending = Ending::of(&run.summary);
                 record.message = record::message(&run);
@@ -291,6 +346,28 @@ impl Sweep {
             }
         }
     }
+}
+
+/// A task whose folder is kept for it until this is dropped.
+struct Ready {
+    file: CaseFile,
+    case: AnyCase,
+    target: Target,
+    start: Start,
+    _entered: Entered,
+}
+
+/// Says whose tasks a folder holds; many may say so at once, and get into each other's way.
+fn sign(own: &Owner, marker: &Path) -> Result<(), CaseError> {
+    let mut written = own.write(marker);
+    for _ in 0..20 {
+        if written.is_ok() || Owner::read(marker).as_ref() == Some(own) {
+            return Ok(());
+        }
+        std::thread::sleep(Duration::from_millis(20));
+        written = own.write(marker);
+    }
+    written
 }
 
 /// Whether a file states a sweep, well or not.

@@ -12,7 +12,7 @@ use super::{Sweep, SweepError, Task};
 use crate::check::short;
 use crate::input::CaseFile;
 use crate::mesh_study::StudySummary;
-use crate::results::atomic::write_new;
+use crate::results::atomic::write_whole;
 use crate::run::Account;
 use crate::summary::{StageOutcome, Summary};
 
@@ -114,14 +114,14 @@ impl Record {
 
     pub(super) fn write(&self, folder: &Path) -> Result<(), SweepError> {
         let path = folder.join("task.json");
-        let write = || -> std::io::Result<()> {
-            std::fs::create_dir_all(folder)?;
-            write_new(&path, serde_json::to_string_pretty(self)? + "\n")
-        };
-        write().map_err(|source| SweepError::File {
+        let file = |source| SweepError::File {
             path: path.clone(),
             source,
-        })
+        };
+        std::fs::create_dir_all(folder).map_err(file)?;
+        let text = serde_json::to_string_pretty(self).map_err(|error| file(error.into()))?;
+        // Whoever collects while tasks run finds a whole record.
+        Ok(write_whole(&path, text + "\n")?)
     }
 }
 

@@ -1,0 +1,110 @@
+//! `igimp sweep --to`.
+
+use std::path::Path;
+
+use igimp_cases::estimate::speed::Speed;
+use igimp_cases::estimate::{readable, time, watch};
+use igimp_cases::results::admission::Replace;
+use igimp_cases::sweep::{Demand, Sweep, Words, numbers};
+
+use crate::arguments::{Scheduler, SweepArguments};
+use crate::error::{Exit, ProgramError};
+use crate::output;
+use crate::run::quoted;
+
+/// Writes what a scheduler needs for the tasks that are not done, and tells how it is submitted.
+pub(crate) fn to(
+    scheduler: Scheduler,
+    sweep: &Sweep,
+    arguments: &SweepArguments,
+) -> Result<Exit, ProgramError> {
+    let left = sweep.left()?;
+    let threads = arguments.threads.unwrap_or(1);
+    let Some(demand) = sweep.demand(&left, threads, Speed::measured()?)? else {
+        output::print(&format!(
+            "all {} tasks are done; igimp collect {} gathers them",
+            sweep.tasks.len(),
+            quoted(&arguments.file.display().to_string())
+        ))?;
+        return Ok(Exit::Done);
+    };
+    let all = sweep.tasks.len();
+    output::print(&format!(
+        "{} of {all} tasks are not done: {}\neach is given {}",
+        left.len(),
+        numbers(&left),
+        given(&demand)
+    ))?;
+    if scheduler == Scheduler::Local {
+        return local(&demand, left.len(), arguments);
+    }
+    // Whose the folder is stands there before many tasks begin at once.
+    let _shared = sweep.enter(false, Replace::Finished)?;
+    let words = words(&arguments.file)?;
+    let (script, program) = match scheduler {
+        Scheduler::Hyperqueue => (sweep.write_hyperqueue(&left, &demand, &words)?, "hq"),
+        _ => (sweep.write_slurm(&left, &demand, &words)?, "sbatch"),
+    };
+    let path = script.path.display().to_string();
+    output::print(&format!("written: {path}\nsubmit it with"))?;
+    for [before, behind] in &script.submit {
+        output::print(&format!("  {before} {}{behind}", quoted(&path)))?;
+    }
+    if !is_found(program) {
+        output::complain(&format!(
+            "note: {program} is not on this computer; submit where it is, in the same folder"
+        ));
+    }
+    Ok(Exit::Done)
+}
+
+/// What a task is given, and why.
+fn given(demand: &Demand) -> String {
+    let plural = if demand.threads == 1 { "" } else { "s" };
+    format!(
+        "{} thread{plural}, {} MiB and {} min (1.5 times the memory of task {}, about {}; 3 times the time of \
+         task {}, about {} here, and 5 min)",
+        demand.threads,
+        demand.mebibytes(),
+        demand.minutes(),
+        demand.memory.task,
+        readable(demand.memory.estimate),
+        demand.time.task,
+        time::readable(demand.time.estimate),
+    )
+}
+
+/// On this computer nothing needs to be written: `--jobs` does it, with as many jobs as have room.
+fn local(demand: &Demand, left: usize, arguments: &SweepArguments) -> Result<Exit, ProgramError> {
+    let cores = rayon::current_num_threads();
+    let by_memory = watch::available().map_or(left, |free| {
+        (free / (1_048_576.0 * demand.mebibytes() as f64)) as usize
+    });
+    let jobs = (cores / demand.threads).min(by_memory).min(left).max(1);
+    output::print(&format!(
+        "nothing is written; run them with\n  igimp sweep {} --jobs {jobs} --threads {}",
+        quoted(&arguments.file.display().to_string()),
+        jobs * demand.threads
+    ))?;
+    Ok(Exit::Done)
+}
+
+/// The words of a task's command, from the folder where the program runs.
+fn words(file: &Path) -> Result<Words, ProgramError> {
+    let here = |source| ProgramError::File {
+        path: ".".into(),
+        source,
+    };
+    let program = std::env::current_exe().map_err(here)?;
+    Ok(Words {
+        program: quoted(&program.display().to_string()),
+        sweep: quoted(&file.display().to_string()),
+        folder: std::env::current_dir().map_err(here)?,
+    })
+}
+
+/// Whether a program stands in one of the folders of `PATH`.
+fn is_found(program: &str) -> bool {
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    std::env::split_paths(&path).any(|folder| folder.join(program).is_file())
+}

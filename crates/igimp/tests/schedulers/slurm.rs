@@ -1,0 +1,166 @@
+//! A real Slurm of one node, started for the test on the loopback: an array job, one task of it killed, one stopped by
+//! its time limit, and what is left submitted again.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use crate::study::{Study, is_there, said, wait};
+
+/// Controller, node daemon and munge in a folder, ended when dropped.
+struct Slurm {
+    folder: PathBuf,
+}
+
+impl Slurm {
+    fn start(folder: PathBuf) -> Self {
+        let _ = fs::remove_dir_all(&folder);
+        for part in ["state", "spool", "munge"] {
+            fs::create_dir_all(folder.join(part)).unwrap();
+        }
+        let slurm = Self { folder };
+        let text = |line: &str| {
+            let output = Command::new("sh").args(["-c", line]).output().unwrap();
+            String::from_utf8(output.stdout).unwrap().trim().to_owned()
+        };
+        let (host, user) = (text("hostname -s"), text("id -un"));
+        let at = slurm.folder.display();
+        let conf = format!(
+            "ClusterName=one\nSlurmctldHost={host}(127.0.0.1)\nSlurmUser={user}\nSlurmdUser={user}\n\
+             AuthType=auth/munge\nAuthInfo=socket={at}/munge/socket\n\
+             SlurmctldPort=16817\nSlurmdPort=16818\n\
+             StateSaveLocation={at}/state\nSlurmdSpoolDir={at}/spool\n\
+             SlurmctldPidFile={at}/slurmctld.pid\nSlurmdPidFile={at}/slurmd.pid\n\
+             SlurmctldLogFile={at}/slurmctld.log\nSlurmdLogFile={at}/slurmd.log\n\
+             ProctrackType=proctrack/linuxproc\nTaskPlugin=task/none\nSwitchType=switch/none\nMpiDefault=none\n\
+             ReturnToService=2\nSchedulerParameters=batch_sched_delay=1,sched_interval=2\n\
+             SelectType=select/cons_tres\nSelectTypeParameters=CR_Core_Memory\n\
+             JobAcctGatherType=jobacct_gather/none\nAccountingStorageType=accounting_storage/none\n\
+             NodeName={host} NodeAddr=127.0.0.1 CPUs=2 RealMemory=2000 State=UNKNOWN\n\
+             PartitionName=all Nodes={host} Default=YES MaxTime=INFINITE State=UP\n"
+        );
+        fs::write(slurm.folder.join("slurm.conf"), conf).unwrap();
+        let munge = slurm.folder.join("munge");
+        let munge = munge.display();
+        let started = text(&format!(
+            "chmod 700 {munge}; head -c 1024 /dev/urandom > {munge}/key; chmod 600 {munge}/key; \
+             munged --force --key-file={munge}/key --socket={munge}/socket --log-file={munge}/log \
+             --pid-file={munge}/pid --seed-file={munge}/seed && echo started"
+        ));
+        assert_eq!(started, "started", "munged");
+        for daemon in [&["slurmctld", "-c"][..], &["slurmd"]] {
+            let conf = slurm.folder.join("slurm.conf");
+            let output = Command::new(daemon[0])
+                .args(&daemon[1..])
+                .arg("-f")
+                .arg(conf)
+                .output()
+                .unwrap();
+            assert!(output.status.success(), "{daemon:?}: {}", said(&output));
+        }
+        wait("idle node", || {
+            slurm.says(&["sinfo", "-h", "-o", "%t"]).contains("idle")
+        });
+        slurm
+    }
+
+    fn command(&self, words: &[&str]) -> Command {
+        let mut command = Command::new(words[0]);
+        command.args(&words[1..]);
+        command.env("SLURM_CONF", self.folder.join("slurm.conf"));
+        command
+    }
+
+    fn says(&self, words: &[&str]) -> String {
+        said(&self.command(words).output().unwrap())
+    }
+
+    /// Submits from the folder of a study; the number of the job.
+    fn submit(&self, study: &Study, more: &[&str]) -> String {
+        let mut words = vec!["sbatch", "--parsable"];
+        words.extend(more);
+        words.push("out/slurm.sh");
+        let mut command = self.command(&words);
+        let output: Output = command.current_dir(&study.folder.0).output().unwrap();
+        assert!(output.status.success(), "{}", said(&output));
+        String::from_utf8(output.stdout).unwrap().trim().to_owned()
+    }
+
+    fn wait_until_empty(&self) {
+        wait("end of the jobs", || {
+            self.says(&["squeue", "-h"]).trim().is_empty()
+        });
+    }
+
+    /// State and exit code of a task of an array, as the controller remembers them.
+    fn end_of(&self, job: &str, task: usize) -> String {
+        let text = self.says(&["scontrol", "show", "job", &format!("{job}_{task}")]);
+        let of = |name: &str| {
+            let mut words = text.split_whitespace();
+            let found = words.find_map(|word| word.strip_prefix(name));
+            found.unwrap_or_default().to_owned()
+        };
+        format!("{} {}", of("JobState="), of("ExitCode="))
+    }
+}
+
+impl Drop for Slurm {
+    fn drop(&mut self) {
+        for pid in ["slurmd.pid", "slurmctld.pid", "munge/pid"] {
+            if let Ok(number) = fs::read_to_string(self.folder.join(pid)) {
+                let _ = Command::new("kill").arg(number.trim()).status();
+            }
+        }
+    }
+}
+
+#[test]
+fn an_array_of_slurm_loses_nothing() {
+    let programs = ["slurmctld", "slurmd", "sbatch", "munged"];
+    if std::env::var_os("IGIMP_SLURM").is_none() || !programs.iter().all(|name| is_there(name)) {
+        println!(
+            "skipped: IGIMP_SLURM=1 with slurmctld, slurmd, sbatch and munged runs it (four minutes)"
+        );
+        return;
+    }
+    // The last takes longer than its time limit.
+    let steps = [300, 4000, 300, 30_000];
+    let study = Study::new("slurm with blanks", steps);
+    let slurm = Slurm::start(Path::new(env!("CARGO_TARGET_TMPDIR")).join("slurm"));
+    let output = study.igimp(&["sweep", "study.toml", "--to", "slurm"]);
+    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+    // A minute is the least that Slurm knows; of the notice it is late or early by half of that.
+    let job = slurm.submit(&study, &["--time=1", "--signal=B:TERM@5"]);
+    study.wait_for_push(2);
+    let killed = slurm.says(&["scancel", "--signal=KILL", "--batch", &format!("{job}_2")]);
+    assert_eq!(killed, "");
+    study.wait_for_push(4);
+    let first_stages = [2, 4].map(|task| study.first_stage_of(task));
+    slurm.wait_until_empty();
+    assert_eq!(slurm.end_of(&job, 1), "COMPLETED 0:0");
+    assert_eq!(slurm.end_of(&job, 2), "FAILED 0:9");
+    assert_eq!(slurm.end_of(&job, 3), "COMPLETED 0:0");
+    assert_eq!(slurm.end_of(&job, 4), "FAILED 3:0");
+    let output = study.igimp(&["collect", "study.toml"]);
+    let text = said(&output);
+    assert!(
+        text.contains("running") && text.contains("interrupted"),
+        "{text}"
+    );
+    let output = study.igimp(&["sweep", "study.toml", "--to", "slurm"]);
+    let text = said(&output);
+    assert!(
+        text.starts_with("2 of 4 tasks are not done: 2,4\n"),
+        "{text}"
+    );
+    // Submitted twice by mistake: what is begun twice is computed once.
+    let jobs = [slurm.submit(&study, &[]), slurm.submit(&study, &[])];
+    slurm.wait_until_empty();
+    for job in &jobs {
+        for task in [2, 4] {
+            assert_eq!(slurm.end_of(job, task), "COMPLETED 0:0");
+        }
+    }
+    assert_eq!([2, 4].map(|task| study.first_stage_of(task)), first_stages);
+    study.is_as(&Study::left_alone("slurm-alone", steps));
+}
