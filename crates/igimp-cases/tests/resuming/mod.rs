@@ -33,7 +33,7 @@ pub(crate) fn run_into<const D: usize>(
     let interrupt = AtomicBool::new(false);
     let mut taken = 0;
     let mut listener = |event: &Event<'_, D>| {
-        if matches!(event, Event::Step { .. }) {
+        if matches!(event, Event::Equilibrium { .. }) {
             taken += 1;
             if Some(taken) == steps {
                 interrupt.store(true, Ordering::Relaxed);
