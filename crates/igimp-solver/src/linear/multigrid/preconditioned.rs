@@ -12,7 +12,7 @@ use super::krylov::{Operators, conjugate_gradients, minimal_residuals, norm};
 use super::product::Product;
 
 /// Vectors between restarts of generalised minimal residuals.
-const RESTART: usize = 100;
+const RESTART: usize = 300;
 
 /// A new start from the true residual must leave less than this of it.
 const PROGRESS: f64 = 0.5;
