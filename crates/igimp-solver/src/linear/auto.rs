@@ -330,8 +330,10 @@ impl LinearSolver for AutoSolver {
             }
             State::Iterating(most, may_fall_back) => (most, may_fall_back),
         };
-        let (tolerance, patience) = if may_fall_back {
-            (self.engine.accuracy.tolerance, most)
+        // Who asks for more than is accepted of factors, as rigid bodies do, needs it.
+        let usual = self.engine.accuracy.tolerance;
+        let (tolerance, patience) = if may_fall_back || self.asked < usual {
+            (usual, most)
         } else {
             (INEXACT, PATIENCE)
         };
