@@ -193,6 +193,12 @@ impl<'a, const D: usize> System<'a, D> {
         &self.pattern
     }
 
+    /// Whether soil resists alone and its flow is not associated: its tangents are not symmetric, and no rigid body
+    /// takes hold of it or lets go.
+    pub fn flows_without_potential(&self) -> bool {
+        !self.symmetric_particles && self.motions.is_empty()
+    }
+
     /// External force by node \[force\].
     pub fn f_ext(&self) -> &[[f64; D]] {
         &self.f_ext

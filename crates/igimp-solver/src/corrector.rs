@@ -15,6 +15,14 @@ use crate::residual_history::ResidualHistory;
 /// How often a correction is halved.
 const MOST_HALVINGS: u32 = 4;
 
+/// Growth of the residual in one correction above which half the correction is tried \[-\]: of the steps that find equilibrium
+/// by whole corrections, one in a hundred goes beyond.
+const OVERSHOOT: f64 = 20.0;
+
+/// The same in space for soil by itself whose flow is not associated: whole corrections swing near failure, and one costs
+/// as much as twenty evaluations of the residual and more.
+const OVERSHOOT_IN_SPACE: f64 = 1.0;
+
 /// Relative residual of the systems of the grid where there are rigid bodies, whose equations are made of their
 /// solutions \[-\].
 const OF_BODIES: f64 = 1e-10;
@@ -157,24 +165,38 @@ impl<'s, 'w, const D: usize> Corrector<'s, 'w, D> {
         u: &mut [[f64; D]],
         residual: &mut OutOfBalance,
     ) -> Result<(), StepFailure> {
-        self.is_current = !self.history.factors_will_suffice(self.settings.tolerance);
+        let with_tangent = !self.history.factors_will_suffice(self.settings.tolerance);
+        self.is_current = with_tangent;
         let clock = Instant::now();
         let mut halvings = 0;
-        let evaluated = loop {
-            let evaluated = self.evaluate(u, residual);
-            let too_far = match &evaluated {
-                Ok(()) => self.history.overshoots(residual),
-                Err(error) => error.is_too_far(),
-            };
-            if !too_far || halvings == MOST_HALVINGS {
-                break evaluated;
-            }
+        let mut evaluated = self.evaluate(u, residual);
+        while halvings < MOST_HALVINGS && self.is_too_far(&evaluated, residual) {
             self.take_back_half(u, halvings);
             halvings += 1;
-        };
+            // The tangent is of no use before it is known where to go.
+            self.is_current = false;
+            evaluated = self.evaluate(u, residual);
+        }
+        if with_tangent && halvings > 0 && evaluated.is_ok() {
+            self.is_current = true;
+            evaluated = self.evaluate(u, residual);
+        }
         self.times.assembly += clock.elapsed();
         evaluated?;
         self.history.record(residual, self.settings)
+    }
+
+    /// Whether a correction that came to this went too far.
+    fn is_too_far(&self, evaluated: &Result<(), AssemblyError>, residual: &OutOfBalance) -> bool {
+        let growth = if D == 3 && self.system.flows_without_potential() {
+            OVERSHOOT_IN_SPACE
+        } else {
+            OVERSHOOT
+        };
+        match evaluated {
+            Ok(()) => self.history.overshoots(residual, growth),
+            Err(error) => error.is_too_far(),
+        }
     }
 
     /// Trial and residual at `u`, with the tangent if the matrix is to be that.

@@ -7,10 +7,6 @@ use igimp_shape::Grid;
 use crate::newton::NewtonSettings;
 use crate::report::{StepFailure, padded};
 
-/// Growth of the residual in one correction above which half the correction is tried \[-\]. Of the
-/// steps that find equilibrium by whole corrections, one in a hundred goes beyond.
-const OVERSHOOT: f64 = 20.0;
-
 /// A node hardly touches soil when less of the cells around it is full than this \[-\].
 const HARDLY_FULL: f64 = 0.01;
 
@@ -76,21 +72,21 @@ impl ResidualHistory {
 
 /// When a correction went too far.
 impl ResidualHistory {
-    /// Whether the residual after a correction is so much larger than before it that the consistent
-    /// tangent told nothing of the way there, as where many particles change their regime at once. The
+    /// Whether the residual after a correction is more than `growth` times that before it: the consistent
+    /// tangent told little of the way there, as where many particles change their regime at once. The
     /// first correction, which the elastic tangent makes, may raise it.
-    pub(crate) fn overshoots(&self, residual: &OutOfBalance) -> bool {
+    pub(crate) fn overshoots(&self, residual: &OutOfBalance, growth: f64) -> bool {
         match self.residuals[..] {
-            [_, .., before] => {
-                !residual.is_round_off && residual.relative_norm > OVERSHOOT * before
-            }
+            [_, .., before] => !residual.is_round_off && residual.relative_norm > growth * before,
             _ => false,
         }
     }
 }
 
-/// Largest relative residual of a linear system \[-\].
-const LARGEST_FORCING: f64 = 1e-4;
+/// Largest relative residual of the first linear system of a step, whose solution often is equilibrium \[-\].
+const FIRST_FORCING: f64 = 1e-4;
+/// The same of all others \[-\].
+const LARGEST_FORCING: f64 = 1e-2;
 /// Share of the residual after the next correction that the linear system may leave \[-\].
 const SHARE: f64 = 0.1;
 
@@ -102,16 +98,17 @@ impl ResidualHistory {
     /// Sci. Comput. 17, 1996).
     pub(crate) fn forcing(&self, residual: &OutOfBalance, tolerance: f64) -> f64 {
         let now = residual.relative_norm;
-        let expected = match self.residuals[..] {
-            [_, .., before, last] => (last / before).powi(2),
-            _ => 1.0,
+        let (expected, largest) = match self.residuals[..] {
+            [_, .., before, last] => ((last / before).powi(2), LARGEST_FORCING),
+            [_, _] => (1.0, LARGEST_FORCING),
+            _ => (1.0, FIRST_FORCING),
         };
         let needed = if now.is_finite() {
             tolerance / now
         } else {
             0.0
         };
-        (SHARE * expected.max(needed)).min(LARGEST_FORCING)
+        (SHARE * expected.max(needed)).min(largest)
     }
 }
 

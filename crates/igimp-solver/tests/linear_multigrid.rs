@@ -287,6 +287,41 @@ fn what_does_not_converge_is_factorised_or_refused() {
     );
 }
 
+/// GOAL: where factors have no room, what leaves less than a tenth is handed out and says how much it leaves; who asks for more
+/// than factors are held to gets a solution or none, and not the last of all iterations is made for it.
+#[test]
+fn without_room_a_tenth_may_be_left() {
+    // Pillars of one cell, nearly incompressible: no grid coarser than theirs stands for them.
+    let pillars = |[x, y, z]: [usize; 3]| z > 1 && (x % 2 == 1 || y % 2 == 1);
+    let equations = equations(&ground::<3>(&elastic(0.4999), 11, 6, pillars));
+    let mut solver = AutoSolver::default().with_factor_bytes(1000);
+    solver.ask_for(1e-6);
+    let (found, report) = solve(&mut solver, &equations);
+    let mut left = vec![0.0; found.len()];
+    equations.0.multiply(&found, &mut left);
+    for (left, rhs) in left.iter_mut().zip(&equations.1) {
+        *left -= rhs;
+    }
+    let size = |of: &[f64]| of.iter().map(|own| own * own).sum::<f64>().sqrt();
+    let share = size(&left) / size(&equations.1);
+    assert!(share > 1e-6 && share < 0.1, "{share}, {report:?}");
+
+    solver.ask_for(1e-8);
+    let mut solution = vec![0.0; found.len()];
+    let refused = solver.solve(&equations.0, &equations.1, &mut solution);
+    let Err(LinearSolverError::NotConverged {
+        iterations,
+        relative_residual,
+        tolerance,
+        ..
+    }) = refused
+    else {
+        panic!("{refused:?}");
+    };
+    assert!(tolerance <= 1e-6 && relative_residual > tolerance);
+    assert!(iterations < 1500, "{iterations}");
+}
+
 /// Where the diagonal is stored.
 fn diagonal_entries(matrix: &TangentMatrix) -> Vec<usize> {
     let columns = matrix.pattern.compressed_columns();
