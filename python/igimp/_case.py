@@ -33,6 +33,8 @@ class Estimate:
         Size of the model.
     bytes : float
         Memory [bytes].
+    most_bytes : float
+        The same where an iteration is given up for factors [bytes].
     seconds : float
         Time of all planned steps [s]; an upper bound if ``open_ended``.
     threads : int
@@ -47,6 +49,7 @@ class Estimate:
     cells: int
     unknowns: int
     bytes: float
+    most_bytes: float
     seconds: float
     open_ended: bool
     threads: int

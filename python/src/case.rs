@@ -125,10 +125,11 @@ impl CaseFile {
             "cells": told.size.cells,
             "unknowns": told.size.unknowns,
             "bytes": told.size.bytes,
+            "most_bytes": told.size.most_bytes,
             "seconds": told.time.seconds,
             "open_ended": told.time.open_ended,
             "threads": told.time.threads,
-            "solver": told.solver,
+            "solver": told.size.systems.method,
         });
         Ok((told.text, numbers.to_string()))
     }

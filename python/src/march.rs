@@ -260,8 +260,8 @@ where
         if order.start == Start::Afresh {
             target.expectation = Expectation::of(case).ok();
         }
-        let bytes = target.expectation.map(|expected| expected.bytes);
-        if let Some(text) = bytes.and_then(lacks_memory) {
+        let told = target.expectation.as_ref();
+        if let Some(text) = told.and_then(|told| lacks_memory(told.bytes, told.most_bytes)) {
             let event = engine::Event::Warning { text: &text };
             engine::Listener::<D>::on_event(relay, &event);
         }

@@ -7,6 +7,7 @@ use std::path::PathBuf;
 use igimp_assembly::{AssemblyError, SurfaceError};
 use igimp_material::MaterialError;
 use igimp_shape::ShapeError;
+use igimp_solver::linear::LinearSolverError;
 
 use crate::input::InputError;
 use crate::results::checkpoint::CheckpointError;
@@ -79,6 +80,9 @@ pub enum CaseError {
     /// The body cannot be made.
     #[error("the body cannot be made")]
     Assembly(#[from] AssemblyError),
+    /// The elimination of the unknowns cannot be planned.
+    #[error(transparent)]
+    LinearSolver(#[from] LinearSolverError),
     /// A file cannot be written or read.
     #[error("cannot access {}", path.display())]
     File {

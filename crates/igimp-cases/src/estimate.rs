@@ -2,27 +2,29 @@
 //! ([`time`]).
 //!
 //! The memory model counts particles (state, trial and supports), stored entries of the tangent
-//! matrix (proportional to the unknowns $`n`$), and fill of its factors ($`n \log_2 n`$, the law of
-//! nested dissection in the plane). The bytes were fitted to the peak memory of slopes with 500 to
-//! 110 000 unknowns and 4 to 9 particles per cell. Pictures are drawn when the matrix is gone, as
-//! many at a time as there are threads: the larger of the two counts, and half of the smaller one,
-//! since not all memory that is let go serves again. A search along the reduction of strength keeps
-//! several states.
+//! matrix (proportional to the unknowns), and what the linear solver keeps ([`Systems`]). The bytes were
+//! fitted to the peak memory of slopes with 500 to 110 000 unknowns and 4 to 9 particles per cell. Pictures
+//! are drawn when the matrix is gone, as many at a time as there are threads: the larger of the two counts,
+//! and half of the smaller one, since not all memory that is let go serves again. A search along the
+//! reduction of strength keeps several states.
 
+mod couplings;
 pub mod room;
 pub mod speed;
+mod systems;
 pub mod time;
 pub mod watch;
 
 use igimp_shape::{Scratch, supports};
-use igimp_solver::linear::SolverKind;
 
 use crate::case::{Case, LoadKind, ReductionPath, Side, StageKind};
 use crate::error::CaseError;
 use crate::mesh_study::plan;
 use crate::seed::fill;
-use crate::summary::{Expected, StageSummary};
+use crate::summary::Expected;
+use couplings::Couplings;
 use speed::Speed;
+pub use systems::Systems;
 use time::Time;
 
 /// Program, tables and buffers \[bytes\].
@@ -33,23 +35,10 @@ const PER_PARTICLE: f64 = 2e3;
 const PER_SEARCHED: f64 = 2e3;
 /// Matrix, its copies and its pattern \[bytes per unknown\].
 const PER_UNKNOWN: f64 = 3e3;
-/// Factors, for each unknown and each doubling of the unknowns \[bytes\].
-const PER_FILL: f64 = 1.5e2;
 /// The same in space, where a particle touches up to 27 nodes \[bytes\].
 const PER_PARTICLE_IN_SPACE: f64 = 4e3;
 /// Matrix, its copies and its pattern in space \[bytes per unknown\].
 const PER_UNKNOWN_IN_SPACE: f64 = 7e3;
-/// Factors of a symmetric matrix in space and what waits for them \[bytes\], times $`n^{4/3}`$.
-const PER_FILL_IN_SPACE: f64 = 6.5e2;
-/// The same of an unsymmetric one, over that \[-\].
-const UNSYMMETRIC: f64 = 1.9;
-/// Factors in single precision with the vectors of the iteration, over those in double \[-\].
-const IN_SINGLE: f64 = 0.55;
-/// What an iteration with multigrid holds instead of factors \[bytes per unknown\].
-const PER_ITERATED: f64 = 4e3;
-/// Unknowns in space from which on systems are solved by iteration: cubes go over at 24 000 where the tangent is not
-/// symmetric and at 31 000 where it is.
-pub(crate) const ITERATED: usize = 30_000;
 /// A picture of 1920 x 1290 pixels of four bytes while it is drawn and packed \[bytes\].
 const PER_PICTURE: f64 = 2.1 * 1920.0 * 1290.0 * 4.0;
 /// The view in space of a report while it is packed \[bytes\]; slopes and footings of 5 000 to 9 000 particles took 42 to 89 MiB
@@ -62,7 +51,7 @@ const AGAIN: f64 = 0.5;
 const TRIALS: f64 = 9.0;
 
 /// The size of a case.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Estimate {
     /// Particles, the most that are there at once.
     pub particles: usize,
@@ -70,8 +59,14 @@ pub struct Estimate {
     pub cells: usize,
     /// Unknowns of a step with all bodies there.
     pub unknowns: usize,
+    /// How its linear systems will be solved.
+    pub systems: Systems,
+    /// Memory of a particle, and of an unknown with its share of what the linear solver keeps \[bytes\].
+    pub per_item: [f64; 2],
     /// Memory on the threads of the current pool \[bytes\].
     pub bytes: f64,
+    /// The same where an iteration is given up for factors \[bytes\]: no less.
+    pub most_bytes: f64,
     /// Steps of all stages, each trial of a strength reduction included, times unknowns \[-\].
     pub work: f64,
 }
@@ -85,6 +80,7 @@ pub fn estimate<const D: usize>(case: &Case<D>) -> Result<Estimate, CaseError> {
     let mut active = vec![false; grid.node_count()];
     let (mut scratch, mut list) = (Scratch::default(), Vec::new());
     let mut by_body = Vec::new();
+    let mut couplings = (D == 3).then(|| Couplings::new(&grid));
     for body in &case.bodies {
         let seeds = fill(&grid, &*body.region, body.per_direction, 1.0, 0)?;
         for seed in &seeds {
@@ -100,6 +96,9 @@ pub fn estimate<const D: usize>(case: &Case<D>) -> Result<Estimate, CaseError> {
             for support in &list {
                 active[support.node] = true;
             }
+            if let Some(couplings) = &mut couplings {
+                couplings.add(&seed.x, &seed.half_length);
+            }
         }
         by_body.push(seeds.len());
     }
@@ -111,18 +110,38 @@ pub fn estimate<const D: usize>(case: &Case<D>) -> Result<Estimate, CaseError> {
     let at_start: Vec<bool> = case.bodies.iter().map(|body| body.from_start).collect();
     let stages = (0..case.stages.len()).map(|stage| count(&case.bodies_after(stage)));
     let particles = stages.fold(count(&at_start), usize::max);
-    let unknowns = (0..active.len())
-        .filter(|&node| active[node])
-        .map(|node| {
-            let held = held(case, grid.node_position(node));
-            held.iter().filter(|&&held| !held).count()
+    let free: Vec<u8> = std::iter::zip(0.., &active)
+        .map(|(node, &active)| {
+            if active {
+                free(case, grid.node_position(node))
+            } else {
+                0
+            }
         })
-        .sum();
+        .collect();
+    let unknowns = free.iter().map(|free| free.count_ones() as usize).sum();
+    let systems = match couplings {
+        Some(couplings) if unknowns > 0 => Systems::in_space(case, &couplings.pattern(&free))?,
+        _ => Systems::in_plane(case, unknowns),
+    };
+    let [particle, unknown] = if D == 3 {
+        [PER_PARTICLE_IN_SPACE, PER_UNKNOWN_IN_SPACE]
+    } else {
+        [PER_PARTICLE, PER_UNKNOWN]
+    };
+    let solving = particle * particles as f64 + unknown * unknowns as f64 + systems.bytes;
+    let memory = |solving| memory(case, particles, solving);
     Ok(Estimate {
         particles,
         cells: grid.cell_count(),
         unknowns,
-        bytes: memory(case, particles, unknowns),
+        per_item: [
+            particle,
+            unknown + systems.bytes / (unknowns as f64).max(1.0),
+        ],
+        bytes: memory(solving),
+        most_bytes: memory(solving + systems.fallback_bytes),
+        systems,
         work: steps(case) * unknowns as f64,
     })
 }
@@ -138,12 +157,16 @@ pub fn together(bytes: &[f64]) -> f64 {
 }
 
 /// What a run is thought to cost on this computer; of a study of the mesh error, all its meshes.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Expectation {
     /// Time of the planned steps.
     pub time: Time,
     /// Memory \[bytes\].
     pub bytes: f64,
+    /// The same where iterations are given up for factors \[bytes\].
+    pub most_bytes: f64,
+    /// The size on every mesh, coarse ones first.
+    pub sizes: Vec<Estimate>,
     /// The speed that the time was found for.
     pub speed: Speed,
 }
@@ -156,140 +179,57 @@ impl Expectation {
     pub fn of<const D: usize>(case: &Case<D>) -> Result<Self, CaseError> {
         let speed = Speed::measured()?;
         let meshes = plan::meshes(case);
-        let mut each = Vec::new();
-        for mesh in &meshes {
-            let size = estimate(mesh)?;
-            each.push((time::time(mesh, &size, speed), size.bytes));
-        }
+        let sizes = meshes.iter().map(estimate).collect::<Result<Vec<_>, _>>()?;
+        let times: Vec<Time> = std::iter::zip(&meshes, &sizes)
+            .map(|(mesh, size)| time::time(mesh, size, speed))
+            .collect();
+        let of_all =
+            |bytes: fn(&Estimate) -> f64| together(&sizes.iter().map(bytes).collect::<Vec<_>>());
         Ok(Self {
             time: Time {
-                seconds: each.iter().map(|(time, _)| time.seconds).sum(),
-                open_ended: each.iter().any(|(time, _)| time.open_ended),
+                seconds: times.iter().map(|time| time.seconds).sum(),
+                open_ended: times.iter().any(|time| time.open_ended),
                 threads: rayon::current_num_threads(),
             },
-            bytes: together(&each.iter().map(|(_, bytes)| *bytes).collect::<Vec<_>>()),
+            bytes: of_all(|size| size.bytes),
+            most_bytes: of_all(|size| size.most_bytes),
+            sizes,
             speed,
         })
     }
 
-    /// As it is told after a run with these stages.
-    pub(crate) fn told<const D: usize>(&self, case: &Case<D>, stages: &[StageSummary]) -> Expected {
+    /// As it is told after a run, with the time of the steps that it took if that is known.
+    pub(crate) fn told(&self, seconds_of_steps_taken: Option<f64>) -> Expected {
         Expected {
             seconds: self.time.seconds,
             open_ended: self.time.open_ended,
             threads: self.time.threads,
             bytes: self.bytes,
-            seconds_of_steps_taken: time::time_of_steps_taken(case, self.speed, stages).ok(),
+            most_bytes: self.most_bytes,
+            seconds_of_steps_taken,
         }
     }
 }
 
-/// Memory of a run on the threads of the current pool \[bytes\].
-fn memory<const D: usize>(case: &Case<D>, particles: usize, unknowns: usize) -> f64 {
-    let [particle, unknown] = per_item(D, storage(case, unknowns), unknowns);
+/// Memory of a run on the threads of the current pool, of which solving takes so much \[bytes\].
+fn memory<const D: usize>(case: &Case<D>, particles: usize, solving: f64) -> f64 {
     let searches = case.stages.iter().any(|stage| {
         matches!(&stage.kind, StageKind::StrengthReduction(search)
             if search.path == ReductionPath::Reduce)
     });
-    let kept = if searches { PER_SEARCHED } else { 0.0 };
-    let solving = (particle + kept) * particles as f64 + unknown * unknowns as f64;
-    let drawing = PER_PICTURE * rayon::current_num_threads() as f64 + kept * particles as f64;
+    let kept = if searches {
+        PER_SEARCHED * particles as f64
+    } else {
+        0.0
+    };
+    let solving = solving + kept;
+    let drawing = PER_PICTURE * rayon::current_num_threads() as f64 + kept;
     let view = if D == 3 && case.output.report {
         VIEW_IN_SPACE
     } else {
         0.0
     };
     BASE + view + solving.max(drawing) + AGAIN * solving.min(drawing)
-}
-
-/// Whether the systems of a case are expected to be solved by iteration.
-pub fn is_iterated<const D: usize>(case: &Case<D>, unknowns: usize) -> bool {
-    match case.solver.linear {
-        SolverKind::Auto => D == 3 && unknowns > ITERATED,
-        SolverKind::Multigrid => true,
-        _ => false,
-    }
-}
-
-/// What the linear solver is expected to keep.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Storage {
-    /// Grids of an iteration.
-    Grids,
-    /// Factors, and how much they take over those of a symmetric matrix in double precision in space, and in the
-    /// plane \[-\].
-    Factors {
-        /// In space.
-        space: f64,
-        /// In the plane, where both kinds were counted together.
-        plane: f64,
-    },
-}
-
-/// What the linear solver of a case is expected to keep.
-pub fn storage<const D: usize>(case: &Case<D>, unknowns: usize) -> Storage {
-    if is_iterated(case, unknowns) {
-        return Storage::Grids;
-    }
-    let plane = if case.solver.linear == SolverKind::Single {
-        IN_SINGLE
-    } else {
-        1.0
-    };
-    let space = if is_symmetric(case) {
-        plane
-    } else {
-        UNSYMMETRIC * plane
-    };
-    Storage::Factors { space, plane }
-}
-
-/// Whether all tangents of a case are symmetric.
-fn is_symmetric<const D: usize>(case: &Case<D>) -> bool {
-    (case.materials.iter())
-        .all(|material| material.law().is_ok_and(|law| law.has_symmetric_tangent()))
-}
-
-/// Which linear solver a case is expected to use, and why.
-pub fn linear_solver<const D: usize>(case: &Case<D>, unknowns: usize) -> String {
-    let symmetric = is_symmetric(case);
-    let [direct, iteration] = if symmetric {
-        ["Cholesky", "conjugate gradients with multigrid"]
-    } else {
-        ["LU", "GMRES with multigrid"]
-    };
-    match case.solver.linear {
-        SolverKind::Auto if is_iterated(case, unknowns) => {
-            format!("{iteration}: in space with so many unknowns a factorisation takes longer")
-        }
-        SolverKind::Auto => direct.to_owned(),
-        SolverKind::Multigrid => format!("{iteration}, as asked for"),
-        SolverKind::Single => {
-            format!("{direct} in single precision and an iteration with it, as asked for")
-        }
-        SolverKind::FaerCholesky => "Cholesky of faer, as asked for".to_owned(),
-        SolverKind::NalgebraCholesky => "Cholesky of nalgebra, as asked for".to_owned(),
-        SolverKind::MultifrontalCholesky => "Cholesky, as asked for".to_owned(),
-        SolverKind::Multifrontal => "LU, as asked for".to_owned(),
-        SolverKind::SprsBiCgStab => "bi-conjugate gradients, as asked for".to_owned(),
-    }
-}
-
-/// Memory of a particle, and of an unknown among so many with its share of the fill \[bytes\], in so many dimensions.
-pub fn per_item(dimensions: usize, storage: Storage, unknowns: usize) -> [f64; 2] {
-    if dimensions == 3 {
-        let solver = match storage {
-            Storage::Grids => PER_ITERATED,
-            Storage::Factors { space, .. } => space * PER_FILL_IN_SPACE * (unknowns as f64).cbrt(),
-        };
-        return [PER_PARTICLE_IN_SPACE, PER_UNKNOWN_IN_SPACE + solver];
-    }
-    let doublings = (unknowns as f64).max(2.0).log2();
-    let fill = match storage {
-        Storage::Grids => 1.0,
-        Storage::Factors { plane, .. } => plane,
-    };
-    [PER_PARTICLE, PER_UNKNOWN + fill * PER_FILL * doublings]
 }
 
 /// A number of bytes as a reader likes it.
@@ -318,8 +258,8 @@ fn steps<const D: usize>(case: &Case<D>) -> f64 {
         .sum()
 }
 
-/// Which components of a node are held by supports and footings.
-fn held<const D: usize>(case: &Case<D>, x: [f64; D]) -> [bool; D] {
+/// Which components of a node are not held by supports and footings, one bit each.
+fn free<const D: usize>(case: &Case<D>, x: [f64; D]) -> u8 {
     let (lower, upper) = (case.grid.lower(), case.grid.upper());
     let cell = case.grid.smallest_cell();
     let near = |a: f64, b: f64, axis: usize| (a - b).abs() < 1e-6 * cell[axis];
@@ -359,7 +299,7 @@ fn held<const D: usize>(case: &Case<D>, x: [f64; D]) -> [bool; D] {
             }
         }
     }
-    held
+    (0..D).fold(0, |free, axis| free | u8::from(!held[axis]) << axis)
 }
 
 #[cfg(test)]
@@ -367,11 +307,6 @@ pub(crate) mod tests {
     use super::*;
     use crate::case::FixedBox;
     use crate::input::CaseFile;
-
-    const FACTORS: Storage = Storage::Factors {
-        space: 1.0,
-        plane: 1.0,
-    };
 
     pub(crate) fn case() -> Case {
         let text = "igimp = 1\n[case]\ntitle = \"block\"\ngravity = \"9.81 m/s2\"\n\
@@ -412,17 +347,21 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn memory_is_that_of_particles_and_unknowns() {
-        let [particle, unknown] = per_item(2, FACTORS, 1 << 19);
-        let sum = 1e6 * particle + f64::from(1 << 19) * unknown;
+    fn memory_is_the_larger_of_solving_and_drawing_and_half_of_the_other() {
         let drawing = PER_PICTURE * rayon::current_num_threads() as f64;
-        let expected = BASE + sum + AGAIN * drawing;
-        assert!((memory(&case(), 1_000_000, 1 << 19) - expected).abs() < 1.0);
-        assert!((unknown - PER_UNKNOWN - 19.0 * PER_FILL).abs() < 1e-9);
-        // A small case is a program that draws pictures.
-        let [particle, unknown] = per_item(2, FACTORS, 36);
-        let expected = BASE + drawing + AGAIN * (64.0 * particle + 36.0 * unknown);
-        assert!((memory(&case(), 64, 36) - expected).abs() < 1.0);
+        let [small, large] = [0.1, 10.0].map(|share| memory(&case(), 64, share * drawing));
+        assert!((small - BASE - 1.05 * drawing).abs() < 1.0);
+        assert!((large - BASE - 10.5 * drawing).abs() < 1.0);
+    }
+
+    /// What is said of an item, times the number of items, is what solving takes.
+    #[test]
+    fn items_add_up_to_what_solving_takes() {
+        let size = estimate(&case()).unwrap();
+        let [particle, unknown] = size.per_item;
+        let solving = particle * size.particles as f64 + unknown * size.unknowns as f64;
+        assert!((memory(&case(), size.particles, solving) - size.bytes).abs() < 1.0);
+        assert_eq!(size.most_bytes, size.bytes);
     }
 
     #[test]

@@ -83,6 +83,9 @@ pub struct Expected {
     pub threads: usize,
     /// Memory \[bytes\].
     pub bytes: f64,
+    /// The same where an iteration is given up for factors \[bytes\].
+    #[serde(default)]
+    pub most_bytes: f64,
     /// Time by the same model of the steps and corrections that were taken \[s\].
     pub seconds_of_steps_taken: Option<f64>,
 }

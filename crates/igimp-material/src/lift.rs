@@ -23,7 +23,7 @@ use crate::{
 };
 
 /// Which tangent a lift answers; the stress is that of the return map either way.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum TangentKind {
     /// That of the elastic part of the law at the trial state, turned with the returned stress where
     /// there was a return (theory, eq. 23a): symmetric with the stress and regular, also at the
@@ -31,6 +31,22 @@ pub enum TangentKind {
     Elastic,
     /// That of the return map, for the quadratic convergence of Newton's method.
     Consistent,
+    /// That of the return map with a share of the elastic one wherever there was a return (theory, eq. 25e): stiff
+    /// where flow without a potential leaves hardly any stiffness.
+    Regularised {
+        /// The share ω of the elastic tangent, 0 to 1 \[-\].
+        elastic: f64,
+    },
+}
+
+impl TangentKind {
+    /// The share of the elastic tangent in that of a particle with a return \[-\].
+    fn elastic_share(self) -> f64 {
+        match self {
+            Self::Regularised { elastic } => elastic,
+            Self::Elastic | Self::Consistent => 0.0,
+        }
+    }
 }
 
 /// The answer of a law to a trial tensor, in spatial axes.
@@ -199,9 +215,22 @@ fn lift<const D: usize>(
 ) -> Result<Lifted<D>, MaterialError> {
     let elasticity = law.elasticity();
     let answer = law.return_map(strain, &history)?;
+    let share = if answer.regime.is_plastic() {
+        kind.elastic_share()
+    } else {
+        0.0
+    };
     let normal = match kind {
         TangentKind::Elastic => elasticity.tangent(),
-        TangentKind::Consistent => answer.tangent,
+        TangentKind::Regularised { .. } if share > 0.0 => {
+            let elastic = elasticity.tangent();
+            std::array::from_fn(|a| {
+                std::array::from_fn(|b| {
+                    (1.0 - share) * answer.tangent[a][b] + share * elastic[a][b]
+                })
+            })
+        }
+        TangentKind::Consistent | TangentKind::Regularised { .. } => answer.tangent,
     };
     let noise = stress_noise(elasticity, strain);
     let mut shear = [[0.0; 3]; 3];
@@ -212,6 +241,10 @@ fn lift<const D: usize>(
             let consistent = secant(&answer, [a, b], x, noise);
             (shear[a][b], shear[b][a]) = match kind {
                 TangentKind::Consistent => (consistent * ab, consistent * ba),
+                TangentKind::Regularised { .. } => {
+                    let between = (1.0 - share) * consistent + share * elasticity.shear();
+                    (between * ab, between * ba)
+                }
                 TangentKind::Elastic => {
                     let elastic = elasticity.shear();
                     let excess = if answer.regime.is_plastic() {

@@ -8,7 +8,7 @@ use igimp_material::TangentKind;
 use igimp_shape::Grid;
 
 use crate::linear::{Bordered, LinearEffort, LinearSolver, LinearSolverError};
-use crate::newton::{NewtonSettings, Workspace};
+use crate::newton::{NewtonSettings, Workspace, converged};
 use crate::report::{Component, PhaseTimes, StepFailure, padded};
 use crate::residual_history::ResidualHistory;
 
@@ -23,6 +23,16 @@ const OVERSHOOT: f64 = 20.0;
 /// as much as twenty evaluations of the residual and more.
 const OVERSHOOT_IN_SPACE: f64 = 1.0;
 
+/// Share of the elastic tangent in the first regularised one of a step, and in those of corrections that do not converge yet \[-\]:
+/// with less the tangent is all but singular, and its system takes many times the iterations.
+const FIRST_SHARE: f64 = 0.01;
+const LEAST_SHARE: f64 = 0.005;
+/// The share after a halving over that before, and after a correction that was taken whole \[-\].
+const STIFFER: f64 = 2.0;
+const SOFTER: f64 = 0.5;
+/// A correction that leaves less than so much of the residual converges \[-\].
+const CONVERGING: f64 = 0.1;
+
 /// Relative residual of the systems of the grid where there are rigid bodies, whose equations are made of their
 /// solutions \[-\].
 const OF_BODIES: f64 = 1e-10;
@@ -31,7 +41,8 @@ const OF_BODIES: f64 = 1e-10;
 ///
 /// The first one uses the elastic tangent, all others the consistent tangent; the last one may use that
 /// of the correction before. One that turns a particle inside out, or raises the residual manyfold, is
-/// halved.
+/// halved. In space, where flow is not associated, the residual may not be raised at all, and the consistent
+/// tangent is regularised by a share of the elastic one that grows with the halvings.
 pub(crate) struct Corrector<'s, 'w, const D: usize> {
     system: &'s System<'s, D>,
     stencils: &'s Stencils<D>,
@@ -45,6 +56,10 @@ pub(crate) struct Corrector<'s, 'w, const D: usize> {
     bordered: Bordered,
     /// Whether the matrix is the tangent at u, or that before the last correction.
     is_current: bool,
+    /// Whether corrections are searched for along a line, and tangents regularised.
+    is_guarded: bool,
+    /// Share of the elastic tangent in a regularised one \[-\].
+    share: f64,
     /// The particles at u.
     pub(crate) trial: &'w mut Trial<D>,
     /// Number of corrections so far.
@@ -82,6 +97,8 @@ impl<'s, 'w, const D: usize> Corrector<'s, 'w, D> {
             history,
             bordered: Bordered::default(),
             is_current: true,
+            is_guarded: D == 3 && system.flows_without_potential(),
+            share: FIRST_SHARE,
             trial,
             iterations: 0,
             times: PhaseTimes {
@@ -113,9 +130,9 @@ impl<'s, 'w, const D: usize> Corrector<'s, 'w, D> {
             return Err(StepFailure::MaxIterations { iterations });
         }
         if !self.is_current && !self.history.factors_suffice(self.settings.tolerance) {
+            let kind = self.tangent();
             timed(&mut self.times.assembly, || {
-                self.system
-                    .linearise_into(u, TangentKind::Consistent, self.trial, self.matrix)
+                self.system.linearise_into(u, kind, self.trial, self.matrix)
             })?;
             self.is_current = true;
         }
@@ -177,18 +194,54 @@ impl<'s, 'w, const D: usize> Corrector<'s, 'w, D> {
             self.is_current = false;
             evaluated = self.evaluate(u, residual);
         }
+        self.regularise(halvings, residual);
         if with_tangent && halvings > 0 && evaluated.is_ok() {
             self.is_current = true;
             evaluated = self.evaluate(u, residual);
         }
         self.times.assembly += clock.elapsed();
         evaluated?;
-        self.history.record(residual, self.settings)
+        self.history.record(residual, self.settings)?;
+        let is_found = converged(residual, self.settings.tolerance);
+        if self.is_guarded && !is_found && self.history.creeps(self.settings) {
+            return Err(StepFailure::Stagnated);
+        }
+        Ok(())
+    }
+
+    /// The tangent of the corrections after the first one.
+    fn tangent(&self) -> TangentKind {
+        if self.is_guarded {
+            TangentKind::Regularised {
+                elastic: self.share,
+            }
+        } else {
+            TangentKind::Consistent
+        }
+    }
+
+    /// Chooses the share of the elastic tangent in the next one: more after a correction that was halved, less after one that
+    /// was taken whole, and as much less as the residual where corrections converge.
+    fn regularise(&mut self, halvings: u32, residual: &OutOfBalance) {
+        if self.iterations < 2 {
+            return;
+        }
+        let left = self.history.share_left(residual);
+        self.share = if halvings == 0 && left < CONVERGING {
+            self.share * left
+        } else {
+            let times = if halvings == 0 {
+                SOFTER
+            } else {
+                STIFFER.powi(halvings as i32)
+            };
+            (self.share * times).clamp(LEAST_SHARE, 1.0)
+        };
     }
 
     /// Whether a correction that came to this went too far.
     fn is_too_far(&self, evaluated: &Result<(), AssemblyError>, residual: &OutOfBalance) -> bool {
-        let growth = if D == 3 && self.system.flows_without_potential() {
+        let growth = if self.is_guarded {
             OVERSHOOT_IN_SPACE
         } else {
             OVERSHOOT
@@ -205,7 +258,7 @@ impl<'s, 'w, const D: usize> Corrector<'s, 'w, D> {
         u: &[[f64; D]],
         residual: &mut OutOfBalance,
     ) -> Result<(), AssemblyError> {
-        let kind = TangentKind::Consistent;
+        let kind = self.tangent();
         if self.is_current {
             self.system
                 .linearise_into(u, kind, self.trial, self.matrix)?;

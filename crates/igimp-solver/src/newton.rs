@@ -295,6 +295,6 @@ fn carry_prescribed_motion<const D: usize>(
 
 /// Whether a residual meets the tolerance, or is nothing but round-off; one that is not a number
 /// does neither.
-fn converged(residual: &OutOfBalance, tolerance: f64) -> bool {
+pub(crate) fn converged(residual: &OutOfBalance, tolerance: f64) -> bool {
     residual.relative_norm <= tolerance || residual.is_round_off
 }

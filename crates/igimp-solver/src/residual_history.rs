@@ -83,6 +83,32 @@ impl ResidualHistory {
     }
 }
 
+/// What the residual has to become over what it is for a step to be worth its corrections \[-\].
+const WORTHWHILE: f64 = 0.1;
+
+/// How much less the residual becomes.
+impl ResidualHistory {
+    /// Whether the residual creeps: at its pace over the last corrections it would come neither to the tolerance nor to a
+    /// tenth of itself in those that are left.
+    pub(crate) fn creeps(&self, settings: &NewtonSettings) -> bool {
+        let made = self.residuals.len() - 1;
+        // The first correction may raise the residual.
+        if made <= STAGNATION {
+            return false;
+        }
+        let (now, before) = (self.residuals[made], self.residuals[made - STAGNATION]);
+        let left = settings.max_iterations.saturating_sub(made);
+        let share = (now / before).powf(left as f64 / STAGNATION as f64);
+        now * share > settings.tolerance.max(WORTHWHILE * now)
+    }
+
+    /// A residual over that recorded last \[-\].
+    pub(crate) fn share_left(&self, residual: &OutOfBalance) -> f64 {
+        let before = self.residuals.last().copied().unwrap_or(f64::INFINITY);
+        residual.relative_norm / before
+    }
+}
+
 /// Largest relative residual of the first linear system of a step, whose solution often is equilibrium \[-\].
 const FIRST_FORCING: f64 = 1e-4;
 /// The same of all others \[-\].
@@ -135,5 +161,36 @@ impl ResidualHistory {
             }
             _ => false,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Whether residuals creep that become `share` of themselves with every correction.
+    fn creeps(corrections: usize, share: f64) -> bool {
+        let residuals = (0..=corrections).map(|k| share.powi(k as i32)).collect();
+        let history = ResidualHistory {
+            residuals,
+            ..ResidualHistory::default()
+        };
+        history.creeps(&NewtonSettings {
+            tolerance: 1e-4,
+            max_iterations: 25,
+            divergence: 1e4,
+        })
+    }
+
+    #[test]
+    fn a_residual_creeps_that_would_not_arrive() {
+        // A tenth in the sixteen that are left after nine.
+        assert!(!creeps(9, 0.1_f64.powf(1.0 / 15.0)));
+        assert!(creeps(9, 0.1_f64.powf(1.0 / 17.0)));
+        // Nobody knows the pace before.
+        assert!(!creeps(8, 0.99));
+        // The tolerance is near.
+        assert!(!creeps(20, 0.68));
+        assert!(creeps(20, 0.72));
     }
 }

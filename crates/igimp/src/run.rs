@@ -40,7 +40,8 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<Exit, ProgramError> {
         Start::Afresh => in_any_dimension!(&case, case => Expectation::of(case)).ok(),
         Start::Resume | Start::FromStage(_) => None,
     };
-    if let Some(lack) = expectation.and_then(|expected| lacks_memory(expected.bytes)) {
+    let told = expectation.as_ref();
+    if let Some(lack) = told.and_then(|told| lacks_memory(told.bytes, told.most_bytes)) {
         output::complain(&format!("warning: {lack}"));
     }
     let target = Target {

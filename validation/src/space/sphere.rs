@@ -89,13 +89,15 @@ const fn cavity(name: &'static str, shear: f64, cells: usize) -> Expansion {
     expansion
 }
 
-static EXPANSIONS: [Expansion; 6] = [
+static EXPANSIONS: [Expansion; 8] = [
     thick("thick, I_r = 100", 100.0, (3, 3), Level::Quick),
     thick("thick, I_r = 100", 100.0, (5, 3), Level::Full),
     thick("thick, I_r = 33", 100.0 / 3.0, (3, 3), Level::Default),
     thick("thick, I_r = 33", 100.0 / 3.0, (5, 3), Level::Full),
-    cavity("cavity, I_r = 100", 100.0, 2),
-    cavity("cavity, I_r = 33", 100.0 / 3.0, 2),
+    cavity("cavity, I_r = 100", 100.0, 3),
+    cavity("cavity, I_r = 100", 100.0, 4),
+    cavity("cavity, I_r = 33", 100.0 / 3.0, 3),
+    cavity("cavity, I_r = 33", 100.0 / 3.0, 4),
 ];
 
 impl Expansion {

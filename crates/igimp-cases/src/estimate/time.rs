@@ -1,8 +1,8 @@
 //! How long a case will take.
 //!
 //! A step costs its set-up and commit (proportional to the particles) and corrections; a correction
-//! is a pass over the particles, a factorisation ($`n^{3/2}`$ for $`n`$ unknowns, the law of nested
-//! dissection in the plane; an unsymmetric tangent costs half as much again) and a solution. Steps
+//! is a pass over the particles, a factorisation and a solution, or an iteration
+//! ([`Systems`](super::Systems)). Steps
 //! are those that the case plans; corrections per step are what the shipped cases take, by kind of
 //! stage. Pictures, checkpoints and rows come on top. The nanoseconds belong to the reference
 //! computer of [`Speed`], on one thread.
@@ -14,31 +14,17 @@
 use serde::{Deserialize, Serialize};
 
 use super::speed::Speed;
-use super::{Estimate, TRIALS, estimate, is_iterated};
+use super::{Estimate, TRIALS};
 use crate::case::{Case, Every, ReductionPath, Stage, StageKind};
-use crate::error::CaseError;
 use crate::summary::StageSummary;
 
 /// Set-up and commit of a step \[s per particle\].
 const STEP: f64 = 6e-7;
 /// A pass over the particles \[s per particle\].
 const PASS: f64 = 7.2e-7;
-/// Factorisation of a symmetric matrix \[s\], times $`n^{3/2}`$.
-const FACTOR: f64 = 1.8e-8;
-/// What an unsymmetric one costs of that \[-\].
-const UNSYMMETRIC: f64 = 1.5;
-/// Solution \[s per unknown\].
-const SOLVE: f64 = 3e-7;
 /// The same in space: set-up and commit, and a pass \[s per particle\].
 const STEP_IN_SPACE: f64 = 6e-6;
 const PASS_IN_SPACE: f64 = 4e-6;
-/// Factorisation of a symmetric matrix in space \[s\], times $`n^{1.88}`$; an unsymmetric one costs twice that.
-const FACTOR_IN_SPACE: f64 = 7.7e-9;
-const UNSYMMETRIC_IN_SPACE: f64 = 1.9;
-/// Solution with such factors \[s\], times $`n^{4/3}`$.
-const SOLVE_IN_SPACE: f64 = 2e-7;
-/// Solution by iteration with multigrid, set-up included \[s per unknown\].
-const ITERATED: f64 = 6e-5;
 /// Rows, progress and bookkeeping of a step \[s\].
 const ROWS: f64 = 5e-4;
 /// A picture \[s\], and its part by particle when it shows a field.
@@ -86,17 +72,14 @@ pub fn shares<const D: usize>(case: &Case<D>) -> Vec<f64> {
 
 /// The time by the same model of the steps and corrections that a run took \[s\]: what tells a computer
 /// that was slow from a case that took more steps than planned.
-///
-/// # Errors
-/// As [`estimate`].
 pub fn time_of_steps_taken<const D: usize>(
     case: &Case<D>,
+    size: &Estimate,
     speed: Speed,
     stages: &[StageSummary],
-) -> Result<f64, CaseError> {
-    let size = estimate(case)?;
+) -> f64 {
     let taken: Vec<Taken> = stages.iter().map(taken).collect();
-    Ok(of_stages(case, &size, speed, &taken))
+    of_stages(case, size, speed, &taken)
 }
 
 /// What a stage takes.
@@ -176,32 +159,18 @@ fn of_stages<const D: usize>(
     speed: Speed,
     stages: &[Taken],
 ) -> f64 {
-    let (particles, unknowns) = (size.particles as f64, size.unknowns as f64);
-    let symmetric = case
-        .materials
-        .iter()
-        .all(|material| material.law().is_ok_and(|law| law.has_symmetric_tangent()));
+    let particles = size.particles as f64;
     let [step, pass] = if D == 3 {
         [STEP_IN_SPACE, PASS_IN_SPACE]
     } else {
         [STEP, PASS]
-    };
-    // Of a correction: factorisation and solution.
-    let unsymmetric = |times: f64| if symmetric { 1.0 } else { times };
-    let correction = if is_iterated(case, size.unknowns) {
-        ITERATED * unknowns * unsymmetric(UNSYMMETRIC)
-    } else if D == 3 {
-        FACTOR_IN_SPACE * unknowns.powf(1.88) * unsymmetric(UNSYMMETRIC_IN_SPACE)
-            + SOLVE_IN_SPACE * unknowns.powf(4.0 / 3.0)
-    } else {
-        FACTOR * unknowns.powf(1.5) * unsymmetric(UNSYMMETRIC) + SOLVE * unknowns
     };
     let mut marching = 0.0;
     let mut states = stages.len() as f64;
     for stage in stages {
         let passes = stage.corrections + stage.steps;
         let assembly = particles * (step * stage.steps + pass * passes);
-        let solving = stage.corrections * correction;
+        let solving = stage.corrections * size.systems.seconds;
         marching += speed.assembly * (assembly + ROWS * stage.steps) + speed.factor * solving;
         if case.output.checkpoint_every > 0 {
             states += stage.trials + stage.steps / case.output.checkpoint_every as f64;
@@ -273,6 +242,7 @@ pub fn readable(seconds: f64) -> String {
 
 #[cfg(test)]
 mod tests {
+    use super::super::estimate;
     use super::super::tests::case;
     use super::*;
 
@@ -318,7 +288,8 @@ mod tests {
             iterations: (3.7 * steps as f64) as usize,
             ..StageSummary::default()
         };
-        let taken = time_of_steps_taken(&case, Speed::REFERENCE, &[stage]).unwrap();
+        let size = estimate(&case).unwrap();
+        let taken = time_of_steps_taken(&case, &size, Speed::REFERENCE, &[stage]);
         assert!((taken / seconds(&case) - 1.0).abs() < 0.05);
     }
 

@@ -30,7 +30,8 @@ pub fn exceeded(summary: &Summary) -> Vec<String> {
             time::readable(expected.seconds),
         ));
     }
-    let estimated = expected.bytes / 1_048_576.0;
+    let bytes = expected.bytes.max(expected.most_bytes);
+    let estimated = bytes / 1_048_576.0;
     if let Some(peak) = summary.peak_memory_mib
         && peak > FACTOR * estimated
         && peak - estimated > LEAST_MEMORY
@@ -39,19 +40,25 @@ pub fn exceeded(summary: &Summary) -> Vec<String> {
             "the run needed {} of memory, {:.1} times the estimate of {}",
             readable(peak * 1_048_576.0),
             peak / estimated,
-            readable(expected.bytes),
+            readable(bytes),
         ));
     }
     told
 }
 
-/// Says so if a run will not fit into the memory that is available.
-pub fn lacks_memory(bytes: f64) -> Option<String> {
+/// Says so if a run will not fit into the memory that is available, or not if iterations are given up for factors: what it is
+/// thought to need without and with those \[bytes\].
+pub fn lacks_memory(bytes: f64, most_bytes: f64) -> Option<String> {
     let available = available()?;
-    (bytes > available).then(|| {
+    let (needed, when) = if bytes > available {
+        (bytes, "")
+    } else {
+        (most_bytes, " where an iteration is given up for factors")
+    };
+    (needed > available).then(|| {
         format!(
-            "the run is thought to need {} of memory, and {} are available",
-            readable(bytes),
+            "the run is thought to need {} of memory{when}, and {} are available",
+            readable(needed),
             readable(available)
         )
     })
@@ -96,6 +103,7 @@ mod tests {
                 open_ended: false,
                 threads: 2,
                 bytes: 400.0 * 1_048_576.0,
+                most_bytes: 400.0 * 1_048_576.0,
                 seconds_of_steps_taken: None,
             }),
             ..Summary::default()
@@ -136,7 +144,12 @@ mod tests {
             println!("skipped: the system does not tell its memory");
             return;
         }
-        assert_eq!(lacks_memory(1.0), None);
-        assert!(lacks_memory(1e18).unwrap().contains("are available"));
+        assert_eq!(lacks_memory(1.0, 1.0), None);
+        assert!(lacks_memory(1e18, 1e18).unwrap().contains("of memory, and"));
+        assert!(
+            lacks_memory(1.0, 1e18)
+                .unwrap()
+                .contains("for factors, and")
+        );
     }
 }

@@ -21,6 +21,7 @@ use super::{
 use crate::case::{COMPONENTS, Case, StageKind};
 use crate::error::CaseError;
 use crate::estimate::Expectation;
+use crate::estimate::time::time_of_steps_taken;
 use crate::results::checkpoint::sha256;
 use crate::results::folder::{clear_meshes, refuse_foreign};
 use crate::results::setup;
@@ -151,7 +152,7 @@ impl<const D: usize> Stages<D> {
     ) -> Result<Self, CaseError> {
         let mut stages = Self {
             before,
-            expectation: target.and_then(|target| target.expectation),
+            expectation: target.and_then(|target| target.expectation.clone()),
             first: 0,
             left: None,
             state: None,
@@ -426,13 +427,15 @@ impl<const D: usize> Stages<D> {
         }
         let peak = memory::peak_mib();
         session.summary.peak_memory_mib = peak;
-        session.summary.memory = self.before.share(peak, case, &session.summary.size);
         session.summary.cpu_seconds = processor::seconds();
-        let stages = &session.summary.stages;
-        let expected = self
-            .expectation
-            .map(|expectation| expectation.told(case, stages));
-        session.summary.estimate = expected;
+        if let Some(expectation) = &self.expectation
+            && let [size] = &expectation.sizes[..]
+        {
+            session.summary.memory = self.before.share(peak, size);
+            let stages = &session.summary.stages;
+            let taken = time_of_steps_taken(case, size, expectation.speed, stages);
+            session.summary.estimate = Some(expectation.told(Some(taken)));
+        }
         session.summary.failure = self.failure.as_ref().map(ToString::to_string);
         if let Some(output) = &mut session.output {
             output.finish(case, &session.records, &mut session.summary, clock)?;

@@ -1,8 +1,7 @@
 //! Memory of a run, as the system counts it for the process; nothing where it does not tell.
 
-use crate::case::Case;
-use crate::estimate::{per_item, storage};
-use crate::summary::{MemoryShare, ModelSize};
+use crate::estimate::Estimate;
+use crate::summary::MemoryShare;
 
 /// Resident memory at the beginning of a run \[MiB\].
 #[derive(Clone, Copy, Debug)]
@@ -16,14 +15,9 @@ impl Before {
 
     /// What came on top, shared among particles and unknowns as in the model of
     /// [`estimate`](mod@crate::estimate): one number is measured, and its split is the model's.
-    pub(crate) fn share<const D: usize>(
-        self,
-        peak_mib: Option<f64>,
-        case: &Case<D>,
-        size: &ModelSize,
-    ) -> Option<MemoryShare> {
+    pub(crate) fn share(self, peak_mib: Option<f64>, size: &Estimate) -> Option<MemoryShare> {
         let used = (peak_mib? - self.0?) * 1_048_576.0;
-        let [particle, unknown] = per_item(D, storage(case, size.unknowns), size.unknowns);
+        let [particle, unknown] = size.per_item;
         let model = particle * size.particles as f64 + unknown * size.unknowns as f64;
         (used > 0.0 && size.unknowns > 0).then(|| MemoryShare {
             bytes_per_particle: particle * used / model,
@@ -47,22 +41,19 @@ fn resident_mib(name: &str) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::estimate::estimate;
     use crate::estimate::tests::case;
 
     #[test]
     fn shares_add_up_to_what_was_used() {
-        let case = case();
-        let size = ModelSize {
-            particles: 4000,
-            unknowns: 2000,
-            ..ModelSize::default()
-        };
-        let share = Before(Some(10.0)).share(Some(34.0), &case, &size).unwrap();
-        let used = share.bytes_per_particle * 4000.0 + share.bytes_per_unknown * 2000.0;
+        let size = estimate(&case()).unwrap();
+        let share = Before(Some(10.0)).share(Some(34.0), &size).unwrap();
+        let used = share.bytes_per_particle * size.particles as f64
+            + share.bytes_per_unknown * size.unknowns as f64;
         assert!((used / 1_048_576.0 - 24.0).abs() < 1e-9);
-        assert_eq!(Before(None).share(Some(34.0), &case, &size), None);
-        assert_eq!(Before(Some(10.0)).share(None, &case, &size), None);
-        assert_eq!(Before(Some(40.0)).share(Some(34.0), &case, &size), None);
+        assert_eq!(Before(None).share(Some(34.0), &size), None);
+        assert_eq!(Before(Some(10.0)).share(None, &size), None);
+        assert_eq!(Before(Some(40.0)).share(Some(34.0), &size), None);
     }
 
     #[test]

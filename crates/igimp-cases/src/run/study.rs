@@ -12,14 +12,14 @@ use super::engine::one_mesh;
 use super::{Event, Listener, Run, Start, Target, memory, processor};
 use crate::case::Case;
 use crate::error::CaseError;
-use crate::estimate::estimate;
 use crate::estimate::time::time_of_steps_taken;
 use crate::estimate::watch::side_by_side;
+use crate::estimate::{Estimate, estimate};
 use crate::mesh_study::{MeshSummary, StudySummary, check_rows, plan, study};
 use crate::results::checkpoint::sha256;
 use crate::results::folder::{self, mesh_name, write_atomically, write_summary};
 use crate::results::{pictures, report};
-use crate::summary::{Expected, Summary};
+use crate::summary::Summary;
 use crate::sweep::{Ending, on_one_line};
 
 /// Runs a case on all meshes of its study.
@@ -57,27 +57,25 @@ pub(super) fn run<const D: usize>(
             .collect(),
         results: study(case, &summaries),
     };
-    let taken: Option<f64> = target.and_then(|target| {
-        let speed = target.expectation?.speed;
-        let of_mesh = |(mesh, run): (&Case<D>, Option<&Summary>)| {
-            time_of_steps_taken(mesh, speed, &run?.stages).ok()
+    let expectation = target.and_then(|target| target.expectation.as_ref());
+    let expected = expectation.map(|expectation| {
+        let of_mesh = |((mesh, size), run): ((&Case<D>, &Estimate), Option<&Summary>)| {
+            Some(time_of_steps_taken(
+                mesh,
+                size,
+                expectation.speed,
+                &run?.stages,
+            ))
         };
-        std::iter::zip(&meshes, summaries.iter().copied())
+        let sized = std::iter::zip(&meshes, &expectation.sizes);
+        let taken: Option<f64> = std::iter::zip(sized, summaries.iter().copied())
             .map(of_mesh)
-            .sum()
+            .sum();
+        expectation.told(taken)
     });
     let mut run = together(case, runs, found)?;
     let summary = &mut run.summary;
-    summary.estimate = target.and_then(|target| {
-        let expected = target.expectation?;
-        Some(Expected {
-            seconds: expected.time.seconds,
-            open_ended: expected.time.open_ended,
-            threads: expected.time.threads,
-            bytes: expected.bytes,
-            seconds_of_steps_taken: taken,
-        })
-    });
+    summary.estimate = expected;
     summary.peak_memory_mib = memory::peak_mib();
     summary.memory = None;
     summary.cpu_seconds = processor::seconds();

@@ -99,9 +99,9 @@ fn of_case<const D: usize>(
         let size = estimate::estimate(&mesh)?;
         // Several threads run meshes side by side.
         memory = if threads > 1 {
-            memory + size.bytes
+            memory + size.most_bytes
         } else {
-            memory.max(size.bytes)
+            memory.max(size.most_bytes)
         };
         seconds += time::time(&mesh, &size, speed).seconds;
     }

@@ -8,9 +8,7 @@ use crate::check::count;
 use crate::error::CaseError;
 use crate::estimate::speed::Speed;
 use crate::estimate::watch::side_by_side;
-use crate::estimate::{
-    Estimate, estimate, linear_solver, per_item, readable, storage, time, together,
-};
+use crate::estimate::{Estimate, estimate, readable, time, together};
 use crate::mesh_study::plan;
 use crate::printable::on_a_line;
 
@@ -21,8 +19,6 @@ pub struct Told {
     pub size: Estimate,
     /// Time of the case on its own grid.
     pub time: time::Time,
-    /// How its linear systems will be solved, in words.
-    pub solver: String,
     /// All of it as it is printed.
     pub text: String,
 }
@@ -38,18 +34,16 @@ pub fn size<const D: usize>(case: &Case<D>, name: &Path) -> Result<Told, CaseErr
     let size = estimate(case)?;
     let speed = Speed::measured()?;
     let time = time::time(case, &size, speed);
-    let solver = linear_solver(case, size.unknowns);
     let cells = case.grid.cells().map(|count| count.to_string()).join(" x ");
-    let storage = storage(case, size.unknowns);
-    let [particle, unknown] = per_item(D, storage, size.unknowns).map(|bytes| count(round(bytes)));
+    let [particle, unknown] = size.per_item.map(|bytes| count(round(bytes)));
     let row = |name: &str, value: String| vec![name.to_owned(), value];
     let rows = [
         row("method", case.method.label()),
         row("particles", count(size.particles)),
         row("cells", format!("{} ({cells})", count(size.cells))),
         row("unknowns", format!("about {}", count(size.unknowns))),
-        row("solver", solver.clone()),
-        row("memory", format!("about {}", readable(size.bytes))),
+        row("solver", size.systems.method.clone()),
+        row("memory", memory(size.bytes, size.most_bytes)),
         row(
             "",
             format!("about {particle} bytes for a particle, {unknown} for an unknown"),
@@ -77,12 +71,7 @@ pub fn size<const D: usize>(case: &Case<D>, name: &Path) -> Result<Told, CaseErr
         table(&stages),
         study(case, speed)?
     );
-    Ok(Told {
-        size,
-        time,
-        solver,
-        text,
-    })
+    Ok(Told { size, time, text })
 }
 
 /// The meshes of a study of the mesh error, each with its size, and the cost of all; empty without one.
@@ -91,7 +80,7 @@ fn study<const D: usize>(case: &Case<D>, speed: Speed) -> Result<String, CaseErr
         return Ok(String::new());
     }
     let mut rows = Vec::new();
-    let (mut bytes, mut all) = (Vec::new(), None::<time::Time>);
+    let (mut bytes, mut most_bytes, mut all) = (Vec::new(), Vec::new(), None::<time::Time>);
     for (mesh, parts) in std::iter::zip(plan::meshes(case), plan::refinements(case)) {
         let size = estimate(&mesh)?;
         let own = time::time(&mesh, &size, speed);
@@ -100,10 +89,11 @@ fn study<const D: usize>(case: &Case<D>, speed: Speed) -> Result<String, CaseErr
             format!("{} particles", count(size.particles)),
             format!("{} cells", count(size.cells)),
             format!("about {} unknowns", count(size.unknowns)),
-            format!("about {}", readable(size.bytes)),
+            memory(size.bytes, size.most_bytes),
             format!("about {}", time::readable(own.seconds)),
         ]);
         bytes.push(size.bytes);
+        most_bytes.push(size.most_bytes);
         all = Some(all.map_or(own, |all| time::Time {
             seconds: all.seconds + own.seconds,
             ..own
@@ -115,11 +105,24 @@ fn study<const D: usize>(case: &Case<D>, speed: Speed) -> Result<String, CaseErr
         "one after another"
     };
     Ok(format!(
-        "\nmeshes\n{}  {how}: about {} of memory, {}\n",
+        "\nmeshes\n{}  {how}: {} of memory, {}\n",
         table(&rows),
-        readable(together(&bytes)),
+        memory(together(&bytes), together(&most_bytes)),
         all.map_or_else(String::new, |all| time::sentence(&all))
     ))
+}
+
+/// What a run is expected to need \[bytes\], and what it needs where an iteration is given up for factors.
+fn memory(bytes: f64, most_bytes: f64) -> String {
+    let about = format!("about {}", readable(bytes));
+    if most_bytes > 1.1 * bytes {
+        format!(
+            "{about}, {} where an iteration is given up for factors",
+            readable(most_bytes)
+        )
+    } else {
+        about
+    }
 }
 
 /// A number of bytes to two digits: more are not known.

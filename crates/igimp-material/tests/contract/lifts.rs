@@ -206,6 +206,41 @@ fn carried_state_belongs_to_the_stress() {
     }
 }
 
+/// GOAL: a regularised tangent has the stress of the return map, and lies by its share between the consistent tangent and
+/// that of Hencky elasticity where something was returned; elsewhere it is the consistent one to the bit.
+#[test]
+fn a_regularised_tangent_is_stiffer_where_soil_yields() {
+    for entry in all() {
+        let mut random = Random(17);
+        for _ in 0..200 {
+            let strain = entry.general(&mut random);
+            let state = Measure::Small.state(&strain, &random.rotation());
+            let lift = |kind| -> Lifted<3> { Measure::Small.lift(&*entry.law, &state, kind) };
+            let own = lift(TangentKind::Consistent);
+            let elastic = 0.3;
+            let between = lift(TangentKind::Regularised { elastic });
+            assert_eq!(between.tau, own.tau);
+            if !own.regime.is_plastic() {
+                assert_eq!(between, own);
+                continue;
+            }
+            let elasticity = entry.law.elasticity();
+            let mixed = |own: f64, stiff: f64| 0.7 * own + 0.3 * stiff;
+            let stiffest = elasticity.bulk() + elasticity.shear();
+            for a in 0..3 {
+                for b in 0..3 {
+                    let normal = mixed(own.normal[a][b], elasticity.tangent()[a][b]);
+                    assert!((between.normal[a][b] - normal).abs() < 1e-12 * stiffest);
+                    if a != b {
+                        let shear = mixed(own.shear[a][b], elasticity.shear());
+                        assert!((between.shear[a][b] - shear).abs() < 1e-12 * stiffest);
+                    }
+                }
+            }
+        }
+    }
+}
+
 /// GOAL: the elastic kind has the stress of the return map and the tangent of Hencky elasticity, to
 /// the bit where nothing was returned. Where something was, stretches are answered alike, and
 /// turns so that the tangent is symmetric together with the geometric part of the returned stress:

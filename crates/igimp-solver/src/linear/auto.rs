@@ -12,7 +12,9 @@ use igimp_assembly::{Pattern, TangentMatrix};
 use super::check::Inspection;
 use super::multifrontal::Engine;
 use super::multigrid::{Demand, Iteration};
-use super::{Accuracy, LinearEffort, LinearSolver, LinearSolverError, Reason, SolveReport};
+use super::{
+    Accuracy, Forecast, LinearEffort, LinearSolver, LinearSolverError, Reason, SolveReport,
+};
 
 /// Cost of one iteration for each stored entry, in operations of a factorisation.
 const ITERATION: f64 = 180.0;
@@ -113,9 +115,38 @@ impl AutoSolver {
         }
     }
 
-    /// What to do with a matrix, and why.
-    fn choose(&mut self, matrix: &TangentMatrix) -> Result<(State, Reason), LinearSolverError> {
-        let pattern = &matrix.pattern;
+    /// What it would do with the matrices of a pattern, before there is one: the same choice, and what factors take.
+    ///
+    /// # Errors
+    /// As [`LinearSolver::analyse`].
+    pub fn forecast(
+        &mut self,
+        pattern: &Arc<Pattern>,
+        symmetric: bool,
+    ) -> Result<Forecast, LinearSolverError> {
+        self.engine.analyse(pattern)?;
+        let (state, reason) = self.choose(pattern, symmetric)?;
+        let (factor_bytes, operations) = self.engine.cost(symmetric);
+        let fallback_bytes = match state {
+            State::Iterating(_, true) if factor_bytes <= self.factor_bytes => factor_bytes,
+            State::Iterating(_, true) => factor_bytes / 2,
+            _ => 0,
+        };
+        Ok(Forecast {
+            iterates: matches!(state, State::Iterating(..)),
+            reason,
+            factor_bytes,
+            fallback_bytes,
+            operations,
+        })
+    }
+
+    /// What to do with a matrix of a pattern that was analysed, and why.
+    fn choose(
+        &mut self,
+        pattern: &Arc<Pattern>,
+        symmetric: bool,
+    ) -> Result<(State, Reason), LinearSolverError> {
         let unknowns = pattern.unknowns();
         if self.in_single {
             return Ok(match &self.given_up {
@@ -130,7 +161,7 @@ impl AutoSolver {
         if !self.iteration.analyse(pattern)? {
             return Ok((State::Factorised, Reason::Small { unknowns }));
         }
-        let (bytes, operations) = self.engine.cost(matrix.symmetric);
+        let (bytes, operations) = self.engine.cost(symmetric);
         let stored = pattern.stored() as f64;
         let iterations = ((operations - SET_UP * stored) / (ITERATION * stored)).max(0.0) as usize;
         let (factors, allowed) = (bytes, self.factor_bytes);
@@ -289,7 +320,7 @@ impl LinearSolver for AutoSolver {
     fn factor(&mut self, matrix: &TangentMatrix) -> Result<(), LinearSolverError> {
         self.state = State::Nothing;
         self.engine.analyse(&matrix.pattern)?;
-        let (state, reason) = self.choose(matrix)?;
+        let (state, reason) = self.choose(&matrix.pattern, matrix.symmetric)?;
         self.effort.reason = reason;
         if state == State::Factorised {
             return self.factorise(matrix);

@@ -19,6 +19,21 @@ pub struct LinearEffort {
     pub lost_iterations: usize,
 }
 
+/// How the systems of a pattern are going to be solved.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Forecast {
+    /// Whether by iteration.
+    pub iterates: bool,
+    /// Why.
+    pub reason: Reason,
+    /// What factors in double precision and the contributions to them take \[bytes\].
+    pub factor_bytes: usize,
+    /// What factors take that an iteration may be given up for \[bytes\]; zero where there is no room for any.
+    pub fallback_bytes: usize,
+    /// Operations of a factorisation in double precision.
+    pub operations: f64,
+}
+
 /// Why a method was taken.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Reason {

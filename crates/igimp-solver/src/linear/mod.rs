@@ -38,7 +38,7 @@ use igimp_assembly::{Pattern, TangentMatrix};
 
 pub use auto::AutoSolver;
 pub(crate) use bordered::Bordered;
-pub use choice::{LinearEffort, Reason};
+pub use choice::{Forecast, LinearEffort, Reason};
 pub use error::LinearSolverError;
 pub use faer_cholesky::FaerCholesky;
 pub use general_lu::GeneralLu;

@@ -1,0 +1,144 @@
+//! How the linear systems of a case will be solved, and what that takes.
+//!
+//! In the plane the factors follow the law of nested dissection, $`n \log_2 n`$ entries and $`n^{3/2}`$ operations for $`n`$
+//! unknowns. In space shape decides as much as size: there the elimination is planned as the run itself plans it, on the nodes that
+//! the soil will couple, and the run's own solver is asked what it would do.
+
+use std::sync::Arc;
+
+use igimp_assembly::Pattern;
+use igimp_solver::linear::{AutoSolver, Forecast, LinearSolverError, Reason, SolverKind};
+
+use crate::case::Case;
+
+/// Factors in the plane, for each unknown and each doubling of the unknowns \[bytes\].
+const PER_FILL: f64 = 1.5e2;
+/// Factors in single precision with the vectors of the iteration, over those in double \[-\].
+const IN_SINGLE: f64 = 0.55;
+/// What an iteration with multigrid holds instead of factors \[bytes per unknown\].
+const PER_ITERATED: f64 = 4e3;
+/// Factorisation of a symmetric matrix in the plane \[s\], times $`n^{3/2}`$.
+const FACTOR: f64 = 1.8e-8;
+/// What an unsymmetric one costs of that, and an iteration \[-\].
+const UNSYMMETRIC: f64 = 1.5;
+/// Solution in the plane \[s per unknown\].
+const SOLVE: f64 = 3e-7;
+/// An operation of a factorisation in space \[s\].
+const PER_OPERATION: f64 = 1e-10;
+/// A solution in space with factors \[s per byte of these\].
+const PER_BYTE: f64 = 3e-10;
+/// Solution by iteration with multigrid, set-up included \[s per unknown\].
+const ITERATED: f64 = 6e-5;
+
+/// How the linear systems of a case will be solved, and what that takes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Systems {
+    /// The method, and why it will be taken.
+    pub method: String,
+    /// What the solver keeps \[bytes\].
+    pub bytes: f64,
+    /// What it keeps beside that where an iteration is given up for factors \[bytes\]; zero where none is, or could be.
+    pub fallback_bytes: f64,
+    /// A factorisation and a solution on one thread of the reference computer \[s\].
+    pub seconds: f64,
+}
+
+impl Systems {
+    /// Those of a case with so many unknowns in the plane.
+    pub(super) fn in_plane<const D: usize>(case: &Case<D>, unknowns: usize) -> Self {
+        let symmetric = is_symmetric(case);
+        let n = unknowns as f64;
+        let iterated = case.solver.linear == SolverKind::Multigrid;
+        let share = if case.solver.linear == SolverKind::Single {
+            IN_SINGLE
+        } else {
+            1.0
+        };
+        let more = if symmetric { 1.0 } else { UNSYMMETRIC };
+        Self {
+            method: method(case.solver.linear, symmetric, iterated),
+            bytes: share * PER_FILL * n * n.max(2.0).log2(),
+            fallback_bytes: 0.0,
+            seconds: if iterated {
+                ITERATED * n * more
+            } else {
+                FACTOR * n.powf(1.5) * more + SOLVE * n
+            },
+        }
+    }
+
+    /// Those of a case in space whose nodes will be coupled like this.
+    ///
+    /// # Errors
+    /// [`LinearSolverError`] where no elimination can be planned.
+    pub(super) fn in_space<const D: usize>(
+        case: &Case<D>,
+        pattern: &Arc<Pattern>,
+    ) -> Result<Self, LinearSolverError> {
+        let symmetric = is_symmetric(case);
+        let kind = case.solver.linear;
+        let mut solver = match kind {
+            SolverKind::Multigrid => AutoSolver::by_iteration(),
+            SolverKind::Single => AutoSolver::in_single(),
+            _ => AutoSolver::default(),
+        };
+        let Forecast {
+            iterates,
+            reason,
+            factor_bytes,
+            fallback_bytes,
+            operations,
+        } = solver.forecast(pattern, symmetric)?;
+        let iterated = iterates && matches!(kind, SolverKind::Auto | SolverKind::Multigrid);
+        let n = pattern.unknowns() as f64;
+        let factors = factor_bytes as f64;
+        let mut words = method(kind, symmetric, iterated);
+        if kind == SolverKind::Auto && reason != Reason::Asked {
+            words = format!("{words}: {reason}");
+        }
+        Ok(Self {
+            method: words,
+            bytes: if iterated {
+                PER_ITERATED * n
+            } else if kind == SolverKind::Single {
+                IN_SINGLE * factors
+            } else {
+                factors
+            },
+            fallback_bytes: if iterated { fallback_bytes as f64 } else { 0.0 },
+            seconds: if iterated {
+                ITERATED * n * if symmetric { 1.0 } else { UNSYMMETRIC }
+            } else {
+                PER_OPERATION * operations + PER_BYTE * factors
+            },
+        })
+    }
+}
+
+/// Whether all tangents of a case are symmetric.
+fn is_symmetric<const D: usize>(case: &Case<D>) -> bool {
+    (case.materials.iter())
+        .all(|material| material.law().is_ok_and(|law| law.has_symmetric_tangent()))
+}
+
+/// A method by its name.
+fn method(kind: SolverKind, symmetric: bool, iterated: bool) -> String {
+    let [direct, iteration] = if symmetric {
+        ["Cholesky", "conjugate gradients with multigrid"]
+    } else {
+        ["LU", "GMRES with multigrid"]
+    };
+    match kind {
+        SolverKind::Auto => (if iterated { iteration } else { direct }).to_owned(),
+        SolverKind::Multigrid if iterated => format!("{iteration}, as asked for"),
+        SolverKind::Multigrid => direct.to_owned(),
+        SolverKind::Single => {
+            format!("{direct} in single precision and an iteration with it, as asked for")
+        }
+        SolverKind::FaerCholesky => "Cholesky of faer, as asked for".to_owned(),
+        SolverKind::NalgebraCholesky => "Cholesky of nalgebra, as asked for".to_owned(),
+        SolverKind::MultifrontalCholesky => "Cholesky, as asked for".to_owned(),
+        SolverKind::Multifrontal => "LU, as asked for".to_owned(),
+        SolverKind::SprsBiCgStab => "bi-conjugate gradients, as asked for".to_owned(),
+    }
+}
