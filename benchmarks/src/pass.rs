@@ -25,8 +25,20 @@ impl<'a, const D: usize> Pass<'a, D> {
     /// # Errors
     /// Never: a block has one law, free nodes, and a trial displacement that all particles bear.
     pub fn new(block: &'a Block<D>, stencils: &'a Stencils<D>) -> Result<Self, AssemblyError> {
+        Self::with_tangent(block, stencils, TangentKind::Consistent)
+    }
+
+    /// The same with another tangent in the matrix.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn with_tangent(
+        block: &'a Block<D>,
+        stencils: &'a Stencils<D>,
+        kind: TangentKind,
+    ) -> Result<Self, AssemblyError> {
         let system = block.system(stencils)?;
-        let (trial, matrix) = system.linearise(&block.u, TangentKind::Consistent)?;
+        let (trial, matrix) = system.linearise(&block.u, kind)?;
         Ok(Self {
             block,
             stencils,

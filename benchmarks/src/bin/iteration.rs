@@ -10,6 +10,7 @@ use clap::Parser;
 use igimp_benchmarks::BenchResult;
 use igimp_benchmarks::block::{Block, Soil};
 use igimp_benchmarks::pass::Pass;
+use igimp_material::TangentKind;
 use igimp_solver::linear::SolverKind;
 
 /// Relative residual that is asked for \[-\].
@@ -39,6 +40,9 @@ struct Arguments {
         default_value = "multigrid,direct"
     )]
     solver: Vec<String>,
+    /// Share of the elastic tangent in that of soil that yields (theory, eq. 25e).
+    #[arg(long, value_name = "SHARE", default_value = "0")]
+    elastic: f64,
     /// Threads to use.
     #[arg(long, value_name = "N", default_value = "1")]
     threads: usize,
@@ -78,6 +82,8 @@ fn table(arguments: &Arguments) -> BenchResult {
                     solver,
                     "--threads",
                     &arguments.threads.to_string(),
+                    "--elastic",
+                    &arguments.elastic.to_string(),
                 ]);
                 own.status()?;
             }
@@ -102,7 +108,9 @@ fn row(arguments: &Arguments, state: usize) -> BenchResult {
     let block: Block<3> = Block::with_poisson(soil, poisson, cells)?;
     let (matrix, rhs) = {
         let stencils = block.stencils()?;
-        Pass::new(&block, &stencils)?.equations()?
+        let elastic = arguments.elastic;
+        let kind = TangentKind::Regularised { elastic };
+        Pass::with_tangent(&block, &stencils, kind)?.equations()?
     };
     let held = status("VmRSS")?;
     solver.ask_for(ASKED);

@@ -361,7 +361,7 @@ pub(crate) mod tests {
         let [particle, unknown] = size.per_item;
         let solving = particle * size.particles as f64 + unknown * size.unknowns as f64;
         assert!((memory(&case(), size.particles, solving) - size.bytes).abs() < 1.0);
-        assert_eq!(size.most_bytes, size.bytes);
+        assert!((size.most_bytes - size.bytes).abs() < 1.0);
     }
 
     #[test]

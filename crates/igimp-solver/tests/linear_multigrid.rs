@@ -322,6 +322,34 @@ fn without_room_a_tenth_may_be_left() {
     assert!(iterations < 1500, "{iterations}");
 }
 
+/// What is said of a pattern before there is a matrix is what is done with the matrix.
+#[test]
+fn a_forecast_comes_true() {
+    let equations = equations(&ground::<3>(&mohr_coulomb(), 9, 4, |_| false));
+    let pattern = &equations.0.pattern;
+    let forecast = |solver: &mut AutoSolver| solver.forecast(pattern, false).unwrap();
+    for bytes in [1000, 60 << 20, 8 << 30] {
+        let solver = || AutoSolver::default().with_factor_bytes(bytes);
+        let told = forecast(&mut solver());
+        let mut solver = solver();
+        let _ = solve(&mut solver, &equations);
+        let effort = solver.effort();
+        assert_eq!(told.reason, effort.reason);
+        assert_eq!(told.iterates, effort.iterations > 0);
+        assert_eq!(told.iterates, told.factor_bytes > bytes);
+        // In single precision they may fit where they do not in double.
+        let fits = told.factor_bytes / 2 <= bytes;
+        let fallback = if fits { told.factor_bytes / 2 } else { 0 };
+        assert_eq!(
+            told.fallback_bytes,
+            if told.iterates { fallback } else { 0 }
+        );
+    }
+    let single = forecast(&mut AutoSolver::in_single());
+    assert_eq!((single.iterates, &single.reason), (false, &Reason::Asked));
+    assert!(single.operations > 1e8, "{single:?}");
+}
+
 /// Where the diagonal is stored.
 fn diagonal_entries(matrix: &TangentMatrix) -> Vec<usize> {
     let columns = matrix.pattern.compressed_columns();

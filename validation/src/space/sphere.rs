@@ -27,7 +27,7 @@ use crate::oracle::{Oracle, OracleKind};
 use crate::study::{Level, RunRecord, Study};
 
 /// What the book says of the study.
-const ABOUT: &str = "A thick sphere of nearly incompressible elastic-plastic soil, an eighth of it, is expanded from within by a fifth of its radius, and a cavity in eight times as much ground across by a half. The pressure is held against the exact curve at finite strain once all of the sphere yields; before that, and of the cavity, it is told.";
+const ABOUT: &str = "A thick sphere of nearly incompressible elastic-plastic soil, an eighth of it, is expanded from within by a fifth of its radius, and a cavity in eight times as much ground across by a half. The pressure is held against the exact curve at finite strain once all of the sphere yields, and once the cavity is wider by a fifth, about a cell; before that it is told.";
 const SPHERE: Oracle = Oracle {
     kind: OracleKind::Exact,
     source: "expanding incompressible thick sphere, Hencky elasticity",
@@ -52,6 +52,9 @@ struct Expansion {
     fine: f64,
     /// Particles in a cell along one direction.
     points: usize,
+    /// Inner radius over that at the start from which on the pressure is held against the exact one although ground beyond does
+    /// not yield \[-\].
+    held_from: f64,
     /// Lowest level at which it is run.
     least: Level,
 }
@@ -76,6 +79,7 @@ const fn thick(
         cells,
         fine: f64::INFINITY,
         points,
+        held_from: f64::INFINITY,
         least,
     }
 }
@@ -86,6 +90,7 @@ const fn cavity(name: &'static str, shear: f64, cells: usize) -> Expansion {
     expansion.exact.outer = 8.0;
     expansion.to = 1.5;
     expansion.fine = 2.0;
+    expansion.held_from = 1.2;
     expansion
 }
 
@@ -94,10 +99,10 @@ static EXPANSIONS: [Expansion; 8] = [
     thick("thick, I_r = 100", 100.0, (5, 3), Level::Full),
     thick("thick, I_r = 33", 100.0 / 3.0, (3, 3), Level::Default),
     thick("thick, I_r = 33", 100.0 / 3.0, (5, 3), Level::Full),
-    cavity("cavity, I_r = 100", 100.0, 3),
     cavity("cavity, I_r = 100", 100.0, 4),
-    cavity("cavity, I_r = 33", 100.0 / 3.0, 3),
+    cavity("cavity, I_r = 100", 100.0, 5),
     cavity("cavity, I_r = 33", 100.0 / 3.0, 4),
+    cavity("cavity, I_r = 33", 100.0 / 3.0, 5),
 ];
 
 impl Expansion {
@@ -245,7 +250,8 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
                 continue;
             };
             let quantity = format!("p/s_u at a = {a} a₀ [-]");
-            if job.exact.yields_to(a) >= job.exact.outer_at(a) {
+            let all_yields = job.exact.yields_to(a) >= job.exact.outer_at(a);
+            if all_yields || a >= job.held_from {
                 let expected = SPHERE.says(row[2]);
                 study.check(run, quantity, expected, Band::Relative(SHARE), row[1]);
             } else {

@@ -126,3 +126,58 @@ impl<'g, const D: usize> Couplings<'g, D> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use igimp_assembly::{
+        Constraints, Method, ParticleSeed, Particles, SharedLaw, Stencils, StepConditions,
+        StepLoads, System,
+    };
+    use igimp_material::{Elasticity, HenckyElastic, TangentKind};
+    use igimp_shape::Axis;
+
+    /// What is foreseen is what the assembly finds for particles that have moved.
+    #[test]
+    fn couplings_are_those_of_the_assembly() {
+        let axes = [6, 4, 5].map(|cells| Axis::uniform(0.0, 1.0, cells).unwrap());
+        let grid = Grid::new(axes);
+        let middle = [3.0, 2.0, 2.5];
+        let half = 0.25;
+        let mut couplings = Couplings::new(&grid);
+        let mut seeds = Vec::new();
+        // An L: two cells are missing along its edge.
+        for part in 0..12 * 8 * 6 {
+            let place = [part % 12, part / 12 % 8, part / 96];
+            if place[0] > 7 && place[2] > 3 {
+                continue;
+            }
+            let x = place.map(|k| half + 0.5 * k as f64);
+            couplings.add(&x, &[half; 3]);
+            seeds.push(ParticleSeed {
+                x: std::array::from_fn(|a| x[a] + (MOVED * half).copysign(middle[a] - x[a])),
+                half_length: [half; 3],
+                volume: 0.125,
+                density: 2000.0,
+                law: 0,
+            });
+        }
+        let particles = Particles::new(&seeds).unwrap();
+        let law: SharedLaw = Arc::new(HenckyElastic::new(Elasticity::new(1e7, 0.3).unwrap()));
+        let mut constraints = Constraints::free(&grid);
+        constraints.fix_wall(&grid, 2, false, 2).unwrap();
+        let loads = StepLoads::gravity([0.0; 3]);
+        let conditions = StepConditions::new(grid.clone(), constraints, loads, vec![law]).unwrap();
+        let mut method = Method::default();
+        // Nodes that hardly touch soil are tied; those of before the motion alone are foreseen.
+        method.small_cuts.below = 0.0;
+        let stencils = Stencils::build(&particles, &method, &conditions).unwrap();
+        let system = System::new(&particles, &stencils, &conditions, &method).unwrap();
+        let still = vec![[0.0; 3]; grid.node_count()];
+        let (_, matrix) = system.linearise(&still, TangentKind::Elastic).unwrap();
+        let free: Vec<u8> = (0..grid.node_count())
+            .map(|node| if grid.node_place(node)[2] == 0 { 3 } else { 7 })
+            .collect();
+        assert_eq!(*couplings.pattern(&free), *matrix.pattern);
+    }
+}

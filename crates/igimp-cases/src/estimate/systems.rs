@@ -24,9 +24,9 @@ const UNSYMMETRIC: f64 = 1.5;
 /// Solution in the plane \[s per unknown\].
 const SOLVE: f64 = 3e-7;
 /// An operation of a factorisation in space \[s\].
-const PER_OPERATION: f64 = 1e-10;
+const PER_OPERATION: f64 = 2.5e-11;
 /// A solution in space with factors \[s per byte of these\].
-const PER_BYTE: f64 = 3e-10;
+const PER_BYTE: f64 = 2e-10;
 /// Solution by iteration with multigrid, set-up included \[s per unknown\].
 const ITERATED: f64 = 6e-5;
 
