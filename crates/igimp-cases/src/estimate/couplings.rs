@@ -152,7 +152,7 @@ mod tests {
             if place[0] > 7 && place[2] > 3 {
                 continue;
             }
-            let x = place.map(|k| half + 0.5 * k as f64);
+            let x = place.map(|k| half + 0.5 * f64::from(k));
             couplings.add(&x, &[half; 3]);
             seeds.push(ParticleSeed {
                 x: std::array::from_fn(|a| x[a] + (MOVED * half).copysign(middle[a] - x[a])),

@@ -130,3 +130,14 @@ fn round(bytes: f64) -> usize {
     let unit = 10.0_f64.powf(bytes.max(1.0).log10().floor() - 1.0).max(1.0);
     ((bytes / unit).round() * unit) as usize
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn memory_with_factors_is_told_beside() {
+        insta::assert_snapshot!(memory(1.7e9, 3.6e9), @"about 1.6 GiB, 3.4 GiB where an iteration is given up for factors");
+        insta::assert_snapshot!(memory(5e7, 5e7), @"about 50 MiB");
+    }
+}
