@@ -276,6 +276,19 @@ impl<const D: usize> BlockTable<D> {
         }
     }
 
+    /// The same for a node that need not be coupled, by its code alone; `None` for a column node whose couplings reach
+    /// beyond the window.
+    #[inline]
+    pub(crate) fn near_offsets(&self, column: usize) -> Option<impl Fn(u32) -> Option<usize> + '_> {
+        let column = &self.nodes[column];
+        let centre = (self.window as u32 - 1) / 2;
+        let offsets = &self.offsets[column.block as usize * self.window..][..self.window];
+        (!column.is_wide).then_some(move |code: u32| {
+            let offset = offsets[(code + centre - column.code) as usize];
+            (offset != NONE).then_some(offset as usize)
+        })
+    }
+
     /// The same for a node that need not be coupled, but is within the window.
     #[inline]
     pub(crate) fn offsets_if_coupled(&self, column: usize) -> impl Fn(u32, u32) -> Option<usize> {

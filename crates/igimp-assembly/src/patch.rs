@@ -10,15 +10,16 @@
 //! ```
 //!
 //! with factors Y, z and V p ḡ that are computed once for each particle and serve all columns. They are
-//! kept as vectors over the nodes i. Of a symmetric tangent the rows from the node of the column on are
-//! summed; the others are [their mirror image](crate::mirror).
+//! kept as vectors over the nodes i. All particles of a patch are summed into the rows of four nodes before
+//! the next four are begun, so that factors and sums stay in the nearest cache. Of a symmetric tangent the rows
+//! from the node of the column on are summed; the others are [their mirror image](crate::mirror).
 
 use igimp_shape::{Grid, Support};
 
 use crate::blocks::BlockTable;
 use crate::linearised::{Linearised, Moduli};
 use crate::matrix::Pattern;
-use crate::scatter::{Piece, Rows};
+use crate::scatter::{Piece, Rows, add as add_rows};
 
 /// Nodes that are worked on together.
 const LANES: usize = 4;
@@ -40,16 +41,39 @@ pub(crate) struct Patch<const D: usize> {
     rows: Rows,
     /// Those that the column node at hand is coupled to.
     pieces: Vec<Piece>,
-    /// Where the nodes of the particle at hand are among `nodes`.
-    places: Vec<usize>,
-    /// By lane: gradients g and ḡ of the particle at hand, zero at nodes that it does not touch.
+    /// The particles.
+    members: Vec<Member<D>>,
+    /// The nodes of one particle after the other.
+    nodes_of: Vec<NodeOf<D>>,
+    /// By particle and lane: gradients g and ḡ, zero at nodes that the particle does not touch.
     gradients: Vec<[[Lane; D]; 2]>,
-    /// By lane: what the particle at hand contributes.
-    factors: Vec<Factors<D>>,
-    /// By column node and lane: the tangent by c and a.
+    /// By column node: the tangent in the lane of rows at hand, by c and a.
     sums: Vec<[[Lane; D]; D]>,
+    /// The tangent by column, its rows filled up to full lanes.
+    columns: Vec<f64>,
     /// Whether rows before the node of their column are left out.
     is_half: bool,
+}
+
+/// A particle of a patch.
+#[derive(Debug)]
+struct Member<const D: usize> {
+    moduli: Moduli<D>,
+    /// The lanes that it touches, by [`bit`].
+    lanes: u64,
+    /// Where its nodes end in the list of all.
+    end: usize,
+}
+
+/// A node of a particle.
+#[derive(Debug)]
+struct NodeOf<const D: usize> {
+    /// Where it is among the nodes of the patch.
+    place: usize,
+    /// Gradient g.
+    g: [f64; D],
+    /// Cell-averaged gradient ḡ.
+    g_bar: [f64; D],
 }
 
 /// Factors of rows.
@@ -94,21 +118,9 @@ impl<const D: usize> Patch<D> {
         } else {
             self.nodes.extend(first.iter().map(|support| support.node));
         }
-        let lanes = self.lanes();
-        self.gradients.resize(lanes, [[[0.0; LANES]; D]; 2]);
-        let nothing = Factors {
-            y: [[[[0.0; LANES]; D]; D]; D],
-            z: [[0.0; LANES]; D],
-            w: [[0.0; LANES]; D],
-        };
-        self.factors.resize(lanes, nothing);
-        self.sums
-            .resize(self.nodes.len() * lanes, [[[0.0; LANES]; D]; D]);
-        for (j, sums) in self.sums.chunks_exact_mut(lanes).enumerate() {
-            let from = if is_half { j / LANES } else { 0 };
-            let sums = sums[from..].as_flattened_mut().as_flattened_mut();
-            sums.as_flattened_mut().fill(0.0);
-        }
+        self.members.clear();
+        self.nodes_of.clear();
+        self.gradients.clear();
         self.is_half = is_half;
         count
     }
@@ -150,59 +162,78 @@ impl<const D: usize> Patch<D> {
         Some(mask)
     }
 
-    /// Adds the tangent of one of the particles, whose gradients were pushed; `fuses` products and sums.
+    /// Takes one of the particles, whose gradients were pushed.
     #[allow(
         clippy::inline_always,
         reason = "compiled for the instructions of the caller"
     )]
     #[inline(always)]
-    pub(crate) fn add(
+    pub(crate) fn take(
         &mut self,
         supports: &[Support<D>],
         linearised: &Linearised<D>,
-        moduli: &Moduli<D>,
-        fuses: bool,
+        moduli: Moduli<D>,
     ) {
-        self.places.clear();
-        let mut place = 0;
-        for support in supports {
+        let first = self.gradients.len();
+        let nothing = [[[0.0; LANES]; D]; 2];
+        self.gradients.resize(first + self.lanes(), nothing);
+        let gradients = &mut self.gradients[first..];
+        let own = std::iter::zip(linearised.g(), linearised.g_bar());
+        let (mut place, mut touched) = (0, 0);
+        for (support, (&g, &g_bar)) in std::iter::zip(supports, own) {
             while self.nodes[place] != support.node {
                 place += 1;
             }
-            self.places.push(place);
-        }
-        // All particles of a patch have its first node.
-        let touched = place / LANES + 1;
-        let zeroed = self.gradients[..touched].as_flattened_mut();
-        zeroed.as_flattened_mut().as_flattened_mut().fill(0.0);
-        let own = std::iter::zip(linearised.g(), linearised.g_bar());
-        for (&place, (g, g_bar)) in std::iter::zip(&self.places, own.clone()) {
-            let [to, to_bar] = &mut self.gradients[place / LANES];
+            touched |= bit(place / LANES);
+            let [to, to_bar] = &mut gradients[place / LANES];
             for a in 0..D {
                 to[a][place % LANES] = g[a];
                 to_bar[a][place % LANES] = g_bar[a];
             }
+            self.nodes_of.push(NodeOf { place, g, g_bar });
         }
-        let of_lanes = std::iter::zip(&mut self.factors, &self.gradients);
-        for (factors, gradients) in of_lanes.take(touched) {
-            set(factors, gradients, moduli, fuses);
-        }
-        let lanes = self.lanes();
-        for (&place, (&g, &g_bar)) in std::iter::zip(&self.places, own) {
-            let d_3: [f64; D] = std::array::from_fn(|c| g_bar[c] - g[c]);
-            let from = if self.is_half { place / LANES } else { 0 };
-            let sums = &mut self.sums[place * lanes..][from..touched];
-            for (sums, factors) in sums.iter_mut().zip(&self.factors[from..touched]) {
-                for c in 0..D {
-                    for a in 0..D {
-                        let mut sum = sums[c][a];
-                        for d in 0..D {
-                            add(&mut sum, &factors.y[c][a][d], g[d], fuses);
-                        }
-                        add(&mut sum, &factors.z[a], d_3[c], fuses);
-                        add(&mut sum, &factors.w[c], g_bar[a], fuses);
-                        sums[c][a] = sum;
-                    }
+        let end = self.nodes_of.len();
+        self.members.push(Member {
+            moduli,
+            lanes: touched,
+            end,
+        });
+    }
+
+    /// Sums the tangents of the particles that were taken; `fuses` products and sums.
+    #[allow(
+        clippy::inline_always,
+        reason = "compiled for the instructions of the caller"
+    )]
+    #[inline(always)]
+    pub(crate) fn sum(&mut self, fuses: bool) {
+        let (lanes, nodes) = (self.lanes(), self.nodes.len());
+        self.sums.resize(nodes, [[[0.0; LANES]; D]; D]);
+        let height = lanes * LANES * D;
+        self.columns.resize(nodes * D * height, 0.0);
+        for lane in 0..lanes {
+            let end = if self.is_half {
+                nodes.min((lane + 1) * LANES)
+            } else {
+                nodes
+            };
+            let sums = &mut self.sums[..end];
+            sums.fill([[[0.0; LANES]; D]; D]);
+            let mut first = 0;
+            let gradients = self.gradients.chunks_exact(lanes);
+            for (member, gradients) in self.members.iter().zip(gradients) {
+                let columns = &self.nodes_of[first..member.end];
+                first = member.end;
+                if member.lanes & bit(lane) == 0 {
+                    continue;
+                }
+                add_lane(sums, &gradients[lane], columns, &member.moduli, fuses);
+            }
+            let columns = self.columns.chunks_exact_mut(height);
+            for (column, sum) in columns.zip(self.sums[..end].as_flattened()) {
+                let rows = column[lane * LANES * D..].as_chunks_mut::<D>().0;
+                for (k, row) in rows[..LANES].iter_mut().enumerate() {
+                    *row = std::array::from_fn(|a| sum[a][k]);
                 }
             }
         }
@@ -219,9 +250,9 @@ impl<const D: usize> Patch<D> {
         (table, pattern): (&BlockTable<D>, &Pattern),
         (start, slice): (usize, &mut [f64]),
     ) {
-        let lanes = self.lanes();
         self.rows.set(self.nodes.iter().copied(), table);
-        for (j, (&node, sums)) in self.nodes.iter().zip(self.sums.chunks(lanes)).enumerate() {
+        let stride = self.lanes() * LANES * D;
+        for (j, &node) in self.nodes.iter().enumerate() {
             let column = &table.nodes[node];
             if column.len == 0 {
                 continue;
@@ -233,27 +264,59 @@ impl<const D: usize> Patch<D> {
             self.pieces.clear();
             let nodes = (table, &self.nodes[..]);
             self.rows.coupled(nodes, node, first, &mut self.pieces);
+            let own = &self.columns[j * D * stride..][..D * stride];
             for &Piece { first, len, offset } in &self.pieces {
-                let is_full = first.is_multiple_of(D) && len.is_multiple_of(D);
-                if is_full && usize::from(column.len) == D {
-                    for (k, i) in (first / D..(first + len) / D).enumerate() {
-                        let (sums, lane) = (&sums[i / LANES], i % LANES);
-                        for c in 0..D {
-                            let values = &mut values[c * height + offset + k * D..][..D];
-                            for a in 0..D {
-                                values[a] += sums[c][a][lane];
-                            }
-                        }
+                if usize::from(column.len) == D {
+                    for c in 0..D {
+                        let sums = &mut values[c * height + offset..];
+                        add_rows(sums, &own[c * stride + first..], len);
                     }
                 } else {
                     for (rank, c) in column.components().enumerate() {
-                        let values = &mut values[rank * height + offset..][..len];
-                        for (value, row) in values.iter_mut().zip(first..) {
-                            let i = row / D;
-                            *value += sums[i / LANES][c][row % D][i % LANES];
-                        }
+                        let sums = &mut values[rank * height + offset..];
+                        add_rows(sums, &own[c * stride + first..], len);
                     }
                 }
+            }
+        }
+    }
+}
+
+/// A bit for a lane; a particle with more lanes than bits has a patch of its own, and touches them all.
+#[inline]
+fn bit(lane: usize) -> u64 {
+    1 << lane.min(63)
+}
+
+/// Adds the tangent of a particle in one lane of rows to the sums by column node.
+#[allow(
+    clippy::inline_always,
+    reason = "compiled for the instructions of the caller"
+)]
+#[inline(always)]
+fn add_lane<const D: usize>(
+    sums: &mut [[[Lane; D]; D]],
+    gradients: &[[Lane; D]; 2],
+    columns: &[NodeOf<D>],
+    moduli: &Moduli<D>,
+    fuses: bool,
+) {
+    let factors = factors(gradients, moduli, fuses);
+    for c in 0..D {
+        let (y, z, w) = (factors.y[c], factors.z, factors.w[c]);
+        for NodeOf { place, g, g_bar } in columns {
+            let Some(sums) = sums.get_mut(*place) else {
+                break;
+            };
+            let d_3 = g_bar[c] - g[c];
+            for a in 0..D {
+                let mut sum = sums[c][a];
+                for d in 0..D {
+                    add(&mut sum, &y[a][d], g[d], fuses);
+                }
+                add(&mut sum, &z[a], d_3, fuses);
+                add(&mut sum, &w, g_bar[a], fuses);
+                sums[c][a] = sum;
             }
         }
     }
@@ -281,12 +344,16 @@ fn add(sum: &mut Lane, term: &Lane, factor: f64, fuses: bool) {
     reason = "compiled for the instructions of the caller"
 )]
 #[inline(always)]
-fn set<const D: usize>(
-    factors: &mut Factors<D>,
+fn factors<const D: usize>(
     [g, g_bar]: &[[Lane; D]; 2],
     moduli: &Moduli<D>,
     fuses: bool,
-) {
+) -> Factors<D> {
+    let mut factors = Factors {
+        y: [[[[0.0; LANES]; D]; D]; D],
+        z: [[0.0; LANES]; D],
+        w: [[0.0; LANES]; D],
+    };
     for a in 0..D {
         for lane in 0..LANES {
             factors.w[a][lane] = -moduli.vp * g_bar[a][lane];
@@ -312,6 +379,7 @@ fn set<const D: usize>(
             }
         }
     }
+    factors
 }
 
 #[cfg(test)]

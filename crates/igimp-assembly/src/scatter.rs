@@ -23,8 +23,8 @@ struct Run {
     code: u32,
     block: u32,
     rank: u32,
-    /// The last node, among those listed, and how many rows of the run stand before its own.
-    last: u32,
+    /// Code of the last node, and how many rows of the run stand before its own.
+    code_of_last: u32,
     before_last: u32,
 }
 
@@ -55,7 +55,7 @@ impl Rows {
                 match self.runs.last_mut() {
                     Some(run) if here == next => {
                         if rank == 0 {
-                            run.last = i as u32;
+                            run.code_of_last = node.code;
                             run.before_last = run.len;
                         }
                         run.len += len;
@@ -66,7 +66,7 @@ impl Rows {
                         code: node.code,
                         block: node.block,
                         rank,
-                        last: i as u32,
+                        code_of_last: node.code,
                         before_last: 0,
                     }),
                 }
@@ -129,7 +129,11 @@ impl Rows {
     }
 
     /// Lists the rows from `first` on that one of the listed `nodes` is coupled to.
-    #[inline]
+    #[allow(
+        clippy::inline_always,
+        reason = "compiled for the instructions of the caller"
+    )]
+    #[inline(always)]
     pub(crate) fn coupled<const D: usize>(
         &self,
         (table, nodes): (&BlockTable<D>, &[usize]),
@@ -137,42 +141,44 @@ impl Rows {
         first: usize,
         pieces: &mut Vec<Piece>,
     ) {
-        let offset = table.offsets_if_coupled(node);
+        let near = table.near_offsets(node);
         for run in &self.runs {
             let rows = run.first as usize..(run.first + run.len) as usize;
             if rows.end <= first {
                 continue;
             }
-            let begin = offset(run.code, run.block).map(|offset| offset + run.rank as usize);
-            let last = &table.nodes[nodes[run.last as usize]];
-            let begin_of_last = match run.before_last {
-                0 => begin,
-                _ => offset(last.code, last.block),
-            };
-            let whole = begin.filter(|begin| {
-                begin_of_last.is_some_and(|last| last == begin + run.before_last as usize)
+            let whole = near.as_ref().and_then(|near| {
+                let begin = near(run.code)? + run.rank as usize;
+                let is_whole = run.before_last == 0
+                    || near(run.code_of_last) == Some(begin + run.before_last as usize);
+                is_whole.then_some(begin)
             });
+            if let Some(offset) = whole {
+                let from = rows.start.max(first);
+                pieces.push(Piece {
+                    first: from,
+                    len: rows.end - from,
+                    offset: offset + from - rows.start,
+                });
+                continue;
+            }
+            // Some nodes of the run may be coupled, and others not.
+            let offset = table.offsets_if_coupled(node);
             let mut done = rows.start;
             while done < rows.end {
-                let (own, offset) = if whole.is_some() {
-                    (rows.clone(), whole)
-                } else {
-                    // Some nodes of the run are coupled, and others are not.
-                    let i = done / D;
-                    let row = &table.nodes[nodes[i]];
-                    let rank = if done == rows.start { run.rank } else { 0 };
-                    let offset = offset(row.code, row.block).map(|offset| offset + rank as usize);
-                    (done..rows.end.min((i + 1) * D), offset)
-                };
-                done = own.end;
+                let i = done / D;
+                let row = &table.nodes[nodes[i]];
+                let rank = if done == rows.start { run.rank } else { 0 };
+                let own = done..rows.end.min((i + 1) * D);
                 let from = own.start.max(first);
-                if let Some(offset) = offset.filter(|_| from < own.end) {
+                if let Some(offset) = offset(row.code, row.block).filter(|_| from < own.end) {
                     pieces.push(Piece {
                         first: from,
                         len: own.end - from,
-                        offset: offset + from - own.start,
+                        offset: offset + rank as usize + from - own.start,
                     });
                 }
+                done = own.end;
             }
         }
     }
@@ -184,8 +190,9 @@ impl Rows {
     reason = "compiled for the instructions of the caller"
 )]
 #[inline(always)]
-fn add(sums: &mut [f64], terms: &[f64], len: usize) {
+pub(crate) fn add(sums: &mut [f64], terms: &[f64], len: usize) {
     match len {
+        3 => add_all::<3>(sums, terms),
         4 => add_all::<4>(sums, terms),
         6 => add_all::<6>(sums, terms),
         9 => add_all::<9>(sums, terms),

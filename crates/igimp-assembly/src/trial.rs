@@ -259,8 +259,9 @@ impl<const D: usize> WithSimd for Addition<'_, D> {
             // Processors with vectors fuse products and sums; without, fusing would be slow.
             let fuses = S::F64_LANES > 1;
             let moduli = Moduli::of(self.own, self.volume, self.kinematics);
-            patch.add(self.supports, linearised, &moduli, fuses);
+            patch.take(self.supports, linearised, moduli);
             if self.ends_patch {
+                patch.sum(fuses);
                 patch.scatter(self.matrix, self.values);
             }
         } else {
