@@ -86,18 +86,21 @@ impl ResidualHistory {
 /// What the residual has to become over what it is for a step to be worth its corrections \[-\].
 const WORTHWHILE: f64 = 0.1;
 
+/// Corrections that may bring a residual to the tolerance however it crept before: Newton's method arrives at once, or not.
+const LAST_CORRECTIONS: usize = 2;
+
 /// How much less the residual becomes.
 impl ResidualHistory {
     /// Whether the residual creeps: at its pace over the last corrections it would come neither to the tolerance nor to a
     /// tenth of itself in those that are left.
     pub(crate) fn creeps(&self, settings: &NewtonSettings) -> bool {
         let made = self.residuals.len() - 1;
+        let left = settings.max_iterations.saturating_sub(made);
         // The first correction may raise the residual.
-        if made <= STAGNATION {
+        if made <= STAGNATION || left <= LAST_CORRECTIONS {
             return false;
         }
         let (now, before) = (self.residuals[made], self.residuals[made - STAGNATION]);
-        let left = settings.max_iterations.saturating_sub(made);
         let share = (now / before).powf(left as f64 / STAGNATION as f64);
         now * share > settings.tolerance.max(WORTHWHILE * now)
     }
@@ -192,5 +195,8 @@ mod tests {
         // The tolerance is near.
         assert!(!creeps(20, 0.68));
         assert!(creeps(20, 0.72));
+        // The last corrections are made.
+        assert!(creeps(22, 0.99));
+        assert!(!creeps(23, 0.99));
     }
 }

@@ -1,7 +1,8 @@
 //! Products with tall panels and triangles for solves: they read every factor once, and are bound by
-//! memory. The order of the sums is fixed.
+//! memory. The order of the sums is fixed. The loops are structures and not closures, which may be compiled apart from
+//! the function that has the wide instructions.
 
-use faer::traits::pulp::Arch;
+use faer::traits::pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 use super::layout::Layout;
@@ -19,18 +20,49 @@ const LANES: usize = 16;
 
 /// y ← y − A x for a panel A stored by columns; the threads share the rows of a `large` one.
 pub(super) fn subtract_product<T: Scalar>(panel: &[T], x: &[T], y: &mut [T], large: bool) {
-    let rows = y.len();
-    if large && rows > ROWS {
+    let height = y.len();
+    let subtract = |first: usize, y: &mut [T]| {
+        Arch::new().dispatch(RowsOfPanel {
+            panel,
+            height,
+            first,
+            x,
+            y,
+        });
+    };
+    if large && height > ROWS {
         let parts = y.par_chunks_mut(ROWS).enumerate();
-        parts.for_each(|(part, y)| subtract_rows(panel, rows, part * ROWS, x, y));
-    } else if rows > 0 {
-        subtract_rows(panel, rows, 0, x, y);
+        parts.for_each(|(part, y)| subtract(part * ROWS, y));
+    } else if height > 0 {
+        subtract(0, y);
     }
 }
 
 /// The same for some rows of a panel of `height`, from the row `first` on.
-fn subtract_rows<T: Scalar>(panel: &[T], height: usize, first: usize, x: &[T], y: &mut [T]) {
-    Arch::new().dispatch(|| {
+struct RowsOfPanel<'a, T> {
+    panel: &'a [T],
+    height: usize,
+    first: usize,
+    x: &'a [T],
+    y: &'a mut [T],
+}
+
+impl<T: Scalar> WithSimd for RowsOfPanel<'_, T> {
+    type Output = ();
+
+    #[expect(
+        clippy::inline_always,
+        reason = "compiled for the instructions of the caller"
+    )]
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self {
+            panel,
+            height,
+            first,
+            x,
+            y,
+        } = self;
         let own = first..first + y.len();
         let mut groups = x.chunks_exact(WIDTH);
         let mut columns = panel.chunks_exact(WIDTH * height);
@@ -50,7 +82,7 @@ fn subtract_rows<T: Scalar>(panel: &[T], height: usize, first: usize, x: &[T], y
                 *y -= *a * *x;
             }
         }
-    });
+    }
 }
 
 /// y ← y − Aᵀ x for a panel A stored by columns; the threads share the columns of a `large` one.
@@ -61,29 +93,76 @@ pub(super) fn subtract_transposed_product<T: Scalar>(
     large: bool,
 ) {
     let rows = x.len();
+    let subtract = |panel: &[T], y: &mut [T]| {
+        Arch::new().dispatch(ColumnsOfPanel { panel, x, y });
+    };
     if large && rows > ROWS {
         let parts = y
             .par_chunks_mut(COLUMNS)
             .zip(panel.par_chunks(COLUMNS * rows));
-        parts.for_each(|(y, panel)| subtract_columns(panel, x, y));
+        parts.for_each(|(y, panel)| subtract(panel, y));
     } else if rows > 0 {
-        subtract_columns(panel, x, y);
+        subtract(panel, y);
     }
 }
 
 /// The same for some columns.
-fn subtract_columns<T: Scalar>(panel: &[T], x: &[T], y: &mut [T]) {
-    Arch::new().dispatch(|| {
+struct ColumnsOfPanel<'a, T> {
+    panel: &'a [T],
+    x: &'a [T],
+    y: &'a mut [T],
+}
+
+impl<T: Scalar> WithSimd for ColumnsOfPanel<'_, T> {
+    type Output = ();
+
+    #[expect(
+        clippy::inline_always,
+        reason = "compiled for the instructions of the caller"
+    )]
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { panel, x, y } = self;
         for (y, column) in y.iter_mut().zip(panel.chunks_exact(x.len())) {
             *y -= dot(column, x);
         }
-    });
+    }
 }
 
 /// y ← L⁻¹ y for the lower triangle of a block, with a diagonal of ones instead of its own where
 /// it is `unit`.
 pub(super) fn solve_lower<T: Scalar>(layout: Layout, block: &[T], unit: bool, y: &mut [T]) {
-    Arch::new().dispatch(|| {
+    Arch::new().dispatch(Lower {
+        layout,
+        block,
+        unit,
+        y,
+    });
+}
+
+/// What [`solve_lower`] does.
+struct Lower<'a, T> {
+    layout: Layout,
+    block: &'a [T],
+    unit: bool,
+    y: &'a mut [T],
+}
+
+impl<T: Scalar> WithSimd for Lower<'_, T> {
+    type Output = ();
+
+    #[expect(
+        clippy::inline_always,
+        reason = "compiled for the instructions of the caller"
+    )]
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self {
+            layout,
+            block,
+            unit,
+            y,
+        } = self;
         let rows = y.len();
         let mut rest = block;
         for (first, columns) in layout.strides() {
@@ -99,12 +178,31 @@ pub(super) fn solve_lower<T: Scalar>(layout: Layout, block: &[T], unit: bool, y:
                 }
             }
         }
-    });
+    }
 }
 
 /// y ← L⁻ᵀ y for the lower triangle of a block.
 pub(super) fn solve_lower_transposed<T: Scalar>(layout: Layout, block: &[T], y: &mut [T]) {
-    Arch::new().dispatch(|| {
+    Arch::new().dispatch(LowerTransposed { layout, block, y });
+}
+
+/// What [`solve_lower_transposed`] does.
+struct LowerTransposed<'a, T> {
+    layout: Layout,
+    block: &'a [T],
+    y: &'a mut [T],
+}
+
+impl<T: Scalar> WithSimd for LowerTransposed<'_, T> {
+    type Output = ();
+
+    #[expect(
+        clippy::inline_always,
+        reason = "compiled for the instructions of the caller"
+    )]
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { layout, block, y } = self;
         let rows = y.len();
         let mut rest = block;
         for (first, columns) in layout.strides().rev() {
@@ -115,12 +213,30 @@ pub(super) fn solve_lower_transposed<T: Scalar>(layout: Layout, block: &[T], y: 
                 unknown[k] = (unknown[k] - dot(&column[k + 1..], known)) / column[k];
             }
         }
-    });
+    }
 }
 
 /// y ← U⁻¹ y for the upper triangle of a square block.
 pub(super) fn solve_upper<T: Scalar>(block: &[T], y: &mut [T]) {
-    Arch::new().dispatch(|| {
+    Arch::new().dispatch(Upper { block, y });
+}
+
+/// What [`solve_upper`] does.
+struct Upper<'a, T> {
+    block: &'a [T],
+    y: &'a mut [T],
+}
+
+impl<T: Scalar> WithSimd for Upper<'_, T> {
+    type Output = ();
+
+    #[expect(
+        clippy::inline_always,
+        reason = "compiled for the instructions of the caller"
+    )]
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { block, y } = self;
         let rows = y.len();
         for (k, column) in block.chunks_exact(rows).enumerate().rev() {
             let (above, known) = y.split_at_mut(k);
@@ -129,7 +245,7 @@ pub(super) fn solve_upper<T: Scalar>(block: &[T], y: &mut [T]) {
                 *value -= known[0] * *factor;
             }
         }
-    });
+    }
 }
 
 /// The scalar product of two vectors, in lanes that are added up in the end.

@@ -1,7 +1,9 @@
 //! The product of a tangent matrix with a vector, on several threads. The order of its sums depends on the matrix
 //! alone.
 
-use faer::traits::pulp::Arch;
+use std::ops::Range;
+
+use faer::traits::pulp::{Arch, Simd, WithSimd};
 use igimp_assembly::TangentMatrix;
 use rayon::prelude::*;
 
@@ -51,30 +53,65 @@ impl Product {
                 *first = pattern.blocks[low as usize].first;
                 let end = pattern.blocks[high as usize];
                 sums.resize(end.first + end.len - *first, 0.0);
-                Arch::new().dispatch(|| {
-                    for node in own {
-                        let block = pattern.blocks[node];
-                        let height = pattern.height(node);
-                        let columns = &matrix.values[pattern.values_of(node)];
-                        for (column, entries) in columns.chunks_exact(height).enumerate() {
-                            let value = x[block.first + column];
-                            let mut entries = entries;
-                            for run in pattern.runs(node) {
-                                let (own, later) = entries.split_at(run.len());
-                                entries = later;
-                                let rows = &mut sums[run.start - *first..run.end - *first];
-                                for (row, entry) in rows.iter_mut().zip(own) {
-                                    *row += entry * value;
-                                }
-                            }
-                        }
-                    }
+                let first = *first;
+                Arch::new().dispatch(Columns {
+                    matrix,
+                    own,
+                    x,
+                    first,
+                    sums,
                 });
             });
         y.fill(0.0);
         for (first, sums) in &self.parts {
             for (y, sum) in y[*first..].iter_mut().zip(sums) {
                 *y += sum;
+            }
+        }
+    }
+}
+
+/// What some columns add to the rows from `first` on.
+struct Columns<'a> {
+    matrix: &'a TangentMatrix,
+    own: Range<usize>,
+    x: &'a [f64],
+    first: usize,
+    sums: &'a mut [f64],
+}
+
+impl WithSimd for Columns<'_> {
+    type Output = ();
+
+    #[expect(
+        clippy::inline_always,
+        reason = "compiled for the instructions of the caller"
+    )]
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self {
+            matrix,
+            own,
+            x,
+            first,
+            sums,
+        } = self;
+        let pattern = &*matrix.pattern;
+        for node in own {
+            let block = pattern.blocks[node];
+            let height = pattern.height(node);
+            let columns = &matrix.values[pattern.values_of(node)];
+            for (column, entries) in columns.chunks_exact(height).enumerate() {
+                let value = x[block.first + column];
+                let mut entries = entries;
+                for run in pattern.runs(node) {
+                    let (own, later) = entries.split_at(run.len());
+                    entries = later;
+                    let rows = &mut sums[run.start - first..run.end - first];
+                    for (row, entry) in rows.iter_mut().zip(own) {
+                        *row += entry * value;
+                    }
+                }
             }
         }
     }
@@ -95,23 +132,54 @@ fn by_rows(matrix: &TangentMatrix, x: &[f64], y: &mut [f64]) {
         parts.push((start..end, own));
     }
     parts.into_par_iter().for_each(|(own, part)| {
-        let mut gathered = Vec::new();
-        Arch::new().dispatch(|| {
-            let mut part = part;
-            for node in own {
-                gathered.clear();
-                for run in pattern.runs(node) {
-                    gathered.extend_from_slice(&x[run]);
-                }
-                let columns = &matrix.values[pattern.values_of(node)];
-                let (own, later) = std::mem::take(&mut part).split_at_mut(pattern.blocks[node].len);
-                part = later;
-                for (y, column) in own.iter_mut().zip(columns.chunks_exact(gathered.len())) {
-                    *y = dot(column, &gathered);
-                }
-            }
+        Arch::new().dispatch(Rows {
+            matrix,
+            own,
+            x,
+            part,
         });
     });
+}
+
+/// The product of the columns of some nodes of a symmetric matrix, as rows.
+struct Rows<'a> {
+    matrix: &'a TangentMatrix,
+    own: Range<usize>,
+    x: &'a [f64],
+    part: &'a mut [f64],
+}
+
+impl WithSimd for Rows<'_> {
+    type Output = ();
+
+    #[expect(
+        clippy::inline_always,
+        reason = "compiled for the instructions of the caller"
+    )]
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self {
+            matrix,
+            own,
+            x,
+            part,
+        } = self;
+        let pattern = &*matrix.pattern;
+        let mut gathered = Vec::new();
+        let mut part = part;
+        for node in own {
+            gathered.clear();
+            for run in pattern.runs(node) {
+                gathered.extend_from_slice(&x[run]);
+            }
+            let columns = &matrix.values[pattern.values_of(node)];
+            let (own, later) = std::mem::take(&mut part).split_at_mut(pattern.blocks[node].len);
+            part = later;
+            for (y, column) in own.iter_mut().zip(columns.chunks_exact(gathered.len())) {
+                *y = dot(column, &gathered);
+            }
+        }
+    }
 }
 
 #[expect(

@@ -6,7 +6,7 @@
 
 use std::ops::Range;
 
-use faer::traits::pulp::Arch;
+use faer::traits::pulp::{Arch, Simd, WithSimd};
 use igimp_assembly::{Pattern, TangentMatrix};
 use rayon::prelude::*;
 
@@ -156,19 +156,55 @@ pub(super) fn residual<const B: usize>(
         residual,
         |node| B * node,
         |nodes, part| {
-            Arch::new().dispatch(|| {
-                for (node, own) in nodes.clone().zip(part.chunks_exact_mut(B)) {
-                    let list = couplings.of(node);
-                    let first = couplings.first::<B>(node);
-                    let entries = &values[first..first + B * B * list.len()];
-                    let sums = row_products::<B>(entries, B * list.len(), 0, list, x, 0);
-                    for ((own, rhs), sum) in own.iter_mut().zip(&rhs[B * node..]).zip(sums) {
-                        *own = rhs - sum;
-                    }
-                }
+            Arch::new().dispatch(Residual::<B> {
+                couplings,
+                values,
+                rhs,
+                x,
+                nodes,
+                part,
             });
         },
     );
+}
+
+/// What [`residual`] does for some nodes.
+struct Residual<'a, const B: usize> {
+    couplings: &'a Couplings,
+    values: &'a [f32],
+    rhs: &'a [f32],
+    x: &'a [f32],
+    nodes: Range<usize>,
+    part: &'a mut [f32],
+}
+
+impl<const B: usize> WithSimd for Residual<'_, B> {
+    type Output = ();
+
+    #[expect(
+        clippy::inline_always,
+        reason = "compiled for the instructions of the caller"
+    )]
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self {
+            couplings,
+            values,
+            rhs,
+            x,
+            nodes,
+            part,
+        } = self;
+        for (node, own) in nodes.zip(part.chunks_exact_mut(B)) {
+            let list = couplings.of(node);
+            let first = couplings.first::<B>(node);
+            let entries = &values[first..first + B * B * list.len()];
+            let sums = row_products::<B>(entries, B * list.len(), 0, list, x, 0);
+            for ((own, rhs), sum) in own.iter_mut().zip(&rhs[B * node..]).zip(sums) {
+                *own = rhs - sum;
+            }
+        }
+    }
 }
 
 /// Partial sums of a product.

@@ -5,7 +5,7 @@
 //! SIAM 2003, sections 10.3 and 10.4. With the off-diagonal blocks of A itself and its diagonal it is a symmetric
 //! Gauss-Seidel sweep.
 
-use faer::traits::pulp::Arch;
+use faer::traits::pulp::{Arch, Simd, WithSimd};
 
 use super::rows::{Couplings, row_products};
 use super::slabs::{Parts, Slabs};
@@ -100,12 +100,21 @@ impl Smoother {
         let first = |node| B * node;
         for odd in [false, true] {
             slabs.each(odd, x, first, |slab, parts| {
-                Arch::new().dispatch(|| sweep.forward(slab, rhs, parts));
+                Arch::new().dispatch(Forward {
+                    sweep: &sweep,
+                    slab,
+                    rhs,
+                    parts,
+                });
             });
         }
         for odd in [true, false] {
             slabs.each(odd, x, first, |slab, parts| {
-                Arch::new().dispatch(|| sweep.backward(slab, parts));
+                Arch::new().dispatch(Backward {
+                    sweep: &sweep,
+                    slab,
+                    parts,
+                });
             });
         }
     }
@@ -204,6 +213,47 @@ impl<const B: usize> Sweep<'_, B> {
     }
 }
 
+/// A sweep through a slab.
+struct Forward<'a, 'p, const B: usize> {
+    sweep: &'a Sweep<'a, B>,
+    slab: usize,
+    rhs: &'a [f32],
+    parts: &'a mut Parts<'p, f32>,
+}
+
+impl<const B: usize> WithSimd for Forward<'_, '_, B> {
+    type Output = ();
+
+    #[expect(
+        clippy::inline_always,
+        reason = "compiled for the instructions of the caller"
+    )]
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        self.sweep.forward(self.slab, self.rhs, self.parts);
+    }
+}
+
+/// A sweep back through a slab.
+struct Backward<'a, 'p, const B: usize> {
+    sweep: &'a Sweep<'a, B>,
+    slab: usize,
+    parts: &'a mut Parts<'p, f32>,
+}
+
+impl<const B: usize> WithSimd for Backward<'_, '_, B> {
+    type Output = ();
+
+    #[expect(
+        clippy::inline_always,
+        reason = "compiled for the instructions of the caller"
+    )]
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        self.sweep.backward(self.slab, self.parts);
+    }
+}
+
 struct Elimination<'a, const B: usize> {
     couplings: &'a Couplings,
     slabs: &'a Slabs,
@@ -225,14 +275,12 @@ impl<const B: usize> Elimination<'_, B> {
                 let mut own = vec![0.0; size * nodes.len()];
                 let mut local = vec![NONE; self.couplings.len()];
                 for node in nodes.clone() {
-                    Arch::new().dispatch(|| {
-                        self.row(
-                            slab,
-                            node,
-                            parts,
-                            (known, nodes.start, &mut own),
-                            &mut local,
-                        );
+                    Arch::new().dispatch(Row {
+                        elimination: self,
+                        place: (slab, node),
+                        parts,
+                        inverses: (known, nodes.start, &mut own),
+                        local: &mut local,
                     });
                 }
                 done.lock()
@@ -342,6 +390,30 @@ impl<const B: usize> Elimination<'_, B> {
         let original = diagonal_block::<B>(self.couplings, node, self.matrix);
         let into = &mut own_inverse[(node - start) * size..][..size];
         into[B * B] = f32::from(invert::<B>(&block, &original, into));
+    }
+}
+
+/// The elimination of the row of a node in a slab.
+struct Row<'a, 'p, const B: usize> {
+    elimination: &'a Elimination<'a, B>,
+    place: (usize, usize),
+    parts: &'a mut Parts<'p, f32>,
+    inverses: (&'a [f32], usize, &'a mut [f32]),
+    local: &'a mut [u32],
+}
+
+impl<const B: usize> WithSimd for Row<'_, '_, B> {
+    type Output = ();
+
+    #[expect(
+        clippy::inline_always,
+        reason = "compiled for the instructions of the caller"
+    )]
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let (slab, node) = self.place;
+        self.elimination
+            .row(slab, node, self.parts, self.inverses, self.local);
     }
 }
 
