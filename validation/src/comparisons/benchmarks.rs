@@ -181,19 +181,26 @@ pub(super) fn cantilever(cells: usize, load: usize, steps: usize) -> Result<Case
 /// The loaded point of the cantilever before it is bent \[m\].
 const TIP: [f64; 2] = [10.0, 9.5];
 
-/// Deflection of the cantilever's tip over its length; not a number when it did not reach its load
-/// \[-\].
+/// Particles are equally far from the tip when their distances differ by less \[m\].
+const AS_FAR: f64 = 1e-6;
+
+/// Deflection of the cantilever's tip over its length, the mean of the particles that are next to it; not a number
+/// when it did not reach its load \[-\].
 pub(super) fn deflection(computed: &Computed) -> f64 {
     if reached(computed) < 1.0 {
         return f64::NAN;
     }
     let particles = computed.particles();
-    let distance = |particle: usize| {
-        let (x, u) = (particles.x[particle], particles.displacement[particle]);
-        (x[0] - u[0] - TIP[0]).hypot(x[1] - u[1] - TIP[1])
-    };
-    let tip = (0..particles.len()).min_by(|&a, &b| distance(a).total_cmp(&distance(b)));
-    tip.map_or(f64::NAN, |tip| -particles.displacement[tip][1] / TIP[0])
+    let start = std::iter::zip(&particles.x, &particles.displacement);
+    let distances: Vec<f64> = start
+        .map(|(x, u)| (x[0] - u[0] - TIP[0]).hypot(x[1] - u[1] - TIP[1]))
+        .collect();
+    let least = distances.iter().copied().fold(f64::INFINITY, f64::min);
+    let next = std::iter::zip(&distances, &particles.displacement)
+        .filter(|&(&distance, _)| distance < least + AS_FAR)
+        .map(|(_, u)| -u[1] / TIP[0]);
+    let (count, sum) = next.fold((0, 0.0), |(count, sum), share| (count + 1, sum + share));
+    sum / f64::from(count)
 }
 
 /// The drained slope of the benchmark, h = 1 m, with a search for its factor of safety alone.

@@ -10,7 +10,7 @@ use super::{LinearSolverError, SolveReport, check};
 
 /// How well the equations must hold.
 ///
-/// The default refines to 1e-10, which the tangent of soil reaches without as long as it is sound: a Newton iteration would
+/// The default refines to 1e-9, which the tangent of soil reaches without as long as it is sound: a Newton iteration would
 /// not notice more. It accepts 1e-6: close to collapse the condition of the tangent forbids more, and such a
 /// correction still serves a Newton iteration, which judges it by its own out-of-balance force.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,7 +26,7 @@ pub struct Accuracy {
 impl Default for Accuracy {
     fn default() -> Self {
         Self {
-            target: 1e-10,
+            target: 1e-9,
             tolerance: 1e-6,
             max_refinements: 10,
         }
