@@ -35,7 +35,11 @@ struct Scaled {
 
 impl Default for SprsBiCgStab {
     fn default() -> Self {
-        Self::with_accuracy(Accuracy::default())
+        // An iteration ends where it is told to: at what factors give by themselves.
+        Self::with_accuracy(Accuracy {
+            target: 1e-12,
+            ..Accuracy::default()
+        })
     }
 }
 
