@@ -10,9 +10,9 @@ use super::{LinearSolverError, SolveReport, check};
 
 /// How well the equations must hold.
 ///
-/// The default refines to 1e-9, which the tangent of soil reaches without as long as it is sound: a Newton iteration would
-/// not notice more. It accepts 1e-6: close to collapse the condition of the tangent forbids more, and such a
-/// correction still serves a Newton iteration, which judges it by its own out-of-balance force.
+/// The default refines to 1e-12, which a sound matrix reaches without, and accepts 1e-6: close to
+/// collapse the condition of the tangent forbids more, and such a correction still serves a Newton
+/// iteration, which judges it by its own out-of-balance force.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Accuracy {
     /// Relative residual at which refinement stops \[-\].
@@ -26,7 +26,7 @@ pub struct Accuracy {
 impl Default for Accuracy {
     fn default() -> Self {
         Self {
-            target: 1e-9,
+            target: 1e-12,
             tolerance: 1e-6,
             max_refinements: 10,
         }

@@ -35,11 +35,7 @@ struct Scaled {
 
 impl Default for SprsBiCgStab {
     fn default() -> Self {
-        // An iteration ends where it is told to: at what factors give by themselves.
-        Self::with_accuracy(Accuracy {
-            target: 1e-12,
-            ..Accuracy::default()
-        })
+        Self::with_accuracy(Accuracy::default())
     }
 }
 
