@@ -222,12 +222,12 @@ impl<const D: usize> Patch<D> {
             let mut first = 0;
             let gradients = self.gradients.chunks_exact(lanes);
             for (member, gradients) in self.members.iter().zip(gradients) {
-                let columns = &self.nodes_of[first..member.end];
+                let own = &self.nodes_of[first..member.end];
                 first = member.end;
                 if member.lanes & bit(lane) == 0 {
                     continue;
                 }
-                add_lane(sums, &gradients[lane], columns, &member.moduli, fuses);
+                add_lane(sums, &gradients[lane], own, &member.moduli, fuses);
             }
             let columns = self.columns.chunks_exact_mut(height);
             for (column, sum) in columns.zip(self.sums[..end].as_flattened()) {
@@ -288,7 +288,8 @@ fn bit(lane: usize) -> u64 {
     1 << lane.min(63)
 }
 
-/// Adds the tangent of a particle in one lane of rows to the sums by column node.
+/// Adds the tangent of a particle in one lane of rows to the sums by column node; its `nodes` are ascending, and those beyond
+/// the sums are left out.
 #[allow(
     clippy::inline_always,
     reason = "compiled for the instructions of the caller"
@@ -297,14 +298,14 @@ fn bit(lane: usize) -> u64 {
 fn add_lane<const D: usize>(
     sums: &mut [[[Lane; D]; D]],
     gradients: &[[Lane; D]; 2],
-    columns: &[NodeOf<D>],
+    nodes: &[NodeOf<D>],
     moduli: &Moduli<D>,
     fuses: bool,
 ) {
     let factors = factors(gradients, moduli, fuses);
     for c in 0..D {
         let (y, z, w) = (factors.y[c], factors.z, factors.w[c]);
-        for NodeOf { place, g, g_bar } in columns {
+        for NodeOf { place, g, g_bar } in nodes {
             let Some(sums) = sums.get_mut(*place) else {
                 break;
             };

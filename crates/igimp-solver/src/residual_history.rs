@@ -92,7 +92,7 @@ const LAST_CORRECTIONS: usize = 2;
 /// How much less the residual becomes.
 impl ResidualHistory {
     /// Whether the residual creeps: at its pace over the last corrections it would come neither to the tolerance nor to a
-    /// tenth of itself in those that are left.
+    /// tenth of itself in those that are left. The last ones are always made.
     pub(crate) fn creeps(&self, settings: &NewtonSettings) -> bool {
         let made = self.residuals.len() - 1;
         let left = settings.max_iterations.saturating_sub(made);
