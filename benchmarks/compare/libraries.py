@@ -325,8 +325,15 @@ class Gamg:
         return None
 
 
+class GamgByPoints(Gamg):
+    """The same smoothed with single entries of the diagonal: blocks of a coarser grid can be singular."""
+
+    OPTIONS = {**Gamg.OPTIONS, "mg_levels_pc_type": "jacobi"}
+
+
 LIBRARIES = {
     "PETSc GAMG": Gamg,
+    "PETSc GAMG, points": GamgByPoints,
     "PARDISO": Pardiso,
     "PARDISO general": GeneralPardiso,
     "CHOLMOD": Cholmod,

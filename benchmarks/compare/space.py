@@ -28,6 +28,7 @@ METHODS = {
     "igimp, multigrid": "multigrid",
     "PARDISO": None,
     "PETSc GAMG": None,
+    "PETSc GAMG, points": None,
 }
 # Systems beyond this many cells a side: factors in double precision take more memory than most have.
 LARGEST_DIRECT = 30

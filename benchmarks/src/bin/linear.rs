@@ -27,7 +27,7 @@ struct Arguments {
     /// Threads to use.
     #[arg(long, value_name = "N", default_value = "1")]
     threads: usize,
-    /// Relative residual that a solver which iterates is asked for.
+    /// Relative residual that the solver is asked for.
     #[arg(long, value_name = "R")]
     asked: Option<f64>,
     /// Rounds; times are their medians.

@@ -404,6 +404,7 @@ impl LinearSolver for AutoSolver {
 
     fn ask_for(&mut self, relative_residual: f64) {
         self.asked = relative_residual.max(self.engine.accuracy.target);
+        self.engine.ask_for(relative_residual);
     }
 
     fn effort(&self) -> LinearEffort {

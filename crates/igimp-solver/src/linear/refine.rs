@@ -12,7 +12,8 @@ use super::{LinearSolverError, SolveReport, check};
 ///
 /// The default refines to 1e-12, which a sound matrix reaches without, and accepts 1e-6: close to
 /// collapse the condition of the tangent forbids more, and such a correction still serves a Newton
-/// iteration, which judges it by its own out-of-balance force.
+/// iteration, which judges it by its own out-of-balance force. A multifrontal solver that was asked for less,
+/// by [`LinearSolver::ask_for`](super::LinearSolver::ask_for), stops there, at 1e-9 at the latest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Accuracy {
     /// Relative residual at which refinement stops \[-\].

@@ -230,13 +230,22 @@ pub(crate) fn from_dense(rows: &[&[f64]], symmetric: bool) -> TangentMatrix {
             }
         }
     }
+    chain(&entries, unknowns, symmetric)
+}
+
+/// A matrix from its entries by (column, row), each unknown a node of its own on a line.
+pub(crate) fn chain(
+    entries: &BTreeMap<(usize, usize), f64>,
+    unknowns: usize,
+    symmetric: bool,
+) -> TangentMatrix {
     let blocks = (0..unknowns).map(|first| NodeBlock {
         first,
         len: 1,
         free: 1,
         place: [first, 0, 0],
     });
-    assemble(&entries, unknowns, blocks.collect(), symmetric)
+    assemble(entries, unknowns, blocks.collect(), symmetric)
 }
 
 /// A solution to recover and the right-hand side that belongs to it.

@@ -24,10 +24,16 @@ const FALLBACK_UNKNOWNS: usize = 50_000;
 /// and not on the condition of the matrix, about which free pivoting could do nothing.
 const SUSPICIOUS_GROWTH: f64 = 1e6;
 
+/// Relative residual beyond which a solution is refined in any case \[-\]: one pass more costs little beside
+/// the factorisation, and Newton's method does not have to come back for what it leaves.
+const REFINED: f64 = 1e-9;
+
 /// Plan and factors of one matrix after the other.
 #[derive(Default)]
 pub(in crate::linear) struct Engine {
     pub(in crate::linear) accuracy: Accuracy,
+    /// The relative residual that was asked for \[-\]; the target of `accuracy` where nobody has asked.
+    asked: Option<f64>,
     pub(in crate::linear) analyses: usize,
     pub(super) plan: Option<Plan>,
     factors: Factors<f64>,
@@ -58,6 +64,21 @@ impl Engine {
         Self {
             accuracy,
             ..Self::default()
+        }
+    }
+
+    /// Asks the next solutions for a relative residual. They are refined to that, at least to [`REFINED`], and
+    /// never beyond the target of the accuracy.
+    pub(in crate::linear) fn ask_for(&mut self, relative_residual: f64) {
+        self.asked = Some(relative_residual);
+    }
+
+    /// How well solutions with factors must hold.
+    fn wanted(&self) -> Accuracy {
+        let finest = self.accuracy.target;
+        Accuracy {
+            target: (self.asked).map_or(finest, |asked| asked.min(REFINED).max(finest)),
+            ..self.accuracy
         }
     }
 
@@ -241,6 +262,7 @@ impl Engine {
         rhs: &[f64],
         solution: &mut [f64],
     ) -> Result<SolveReport, LinearSolverError> {
+        let accuracy = self.wanted();
         let plan = self.plan.as_ref().ok_or(LinearSolverError::NotFactored)?;
         let (factors, workshop) = (&self.factors, &self.workshop);
         let (vectors, scale) = (&mut self.vectors, &self.scaling.scale[..]);
@@ -248,7 +270,7 @@ impl Engine {
         let mut failure = Ok(());
         let refined = self
             .refinement
-            .solve(matrix, rhs, solution, &self.accuracy, |vector| {
+            .solve(matrix, rhs, solution, &accuracy, |vector| {
                 let solved = if by_cholesky {
                     vectors.solve::<CholeskyFactors>(plan, factors, None, workshop, vector)
                 } else {
@@ -289,7 +311,7 @@ impl Engine {
         if matrix.pattern.unknowns() > FALLBACK_UNKNOWNS {
             return Err(cause);
         }
-        let mut general = GeneralLu::with_accuracy(self.accuracy);
+        let mut general = GeneralLu::with_accuracy(self.wanted());
         match (general.factor(matrix), cause) {
             (Ok(()), _) => {
                 self.factored = Some(Factorisation::General(Box::new(general)));

@@ -78,6 +78,10 @@ impl LinearSolver for MultifrontalLu {
     fn analyses(&self) -> usize {
         self.0.analyses
     }
+
+    fn ask_for(&mut self, relative_residual: f64) {
+        self.0.ask_for(relative_residual);
+    }
 }
 
 impl LinearSolver for MultifrontalCholesky {
@@ -108,5 +112,9 @@ impl LinearSolver for MultifrontalCholesky {
 
     fn analyses(&self) -> usize {
         self.0.analyses
+    }
+
+    fn ask_for(&mut self, relative_residual: f64) {
+        self.0.ask_for(relative_residual);
     }
 }
