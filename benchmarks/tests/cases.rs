@@ -1,6 +1,6 @@
 //! GOAL: the cases of a million particles are that, with half a million unknowns in the plane, four hundred thousand in
 //! space, and an unsymmetric tangent.
-//! A hillside that cuts the cells obliquely carries its own weight.
+//! A hillside that cuts the cells obliquely carries its own weight. All cases are read without a warning.
 //! ORACLE: the area of the slope, four particles and two unknowns for every cell of it; its volume, eight and three; the
 //! same hillside with small cuts as the plane has them.
 
@@ -74,4 +74,17 @@ fn a_hillside_across_the_grid_is_not_cut() {
         plane.largest_displacement > 1.2 * own.largest_displacement,
         "{plane:?}"
     );
+}
+
+#[test]
+fn all_cases_are_read_without_warning() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases");
+    let mut read = 0;
+    for entry in folder.read_dir().unwrap() {
+        let path = entry.unwrap().path();
+        let file = CaseFile::read(&path, &[]).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(file.warnings(), "", "{}", path.display());
+        read += 1;
+    }
+    assert!(read >= 6);
 }
