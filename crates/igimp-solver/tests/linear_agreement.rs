@@ -134,8 +134,8 @@ fn stiffness_may_span_twenty_decades() {
     }
 }
 
-/// A bar of springs that hangs under its weight: rounding alone leaves more than 1e-12 of the load, which nobody
-/// removes for Newton's method, as it asks for less.
+/// A bar of springs that hangs under its weight: rounding alone leaves more than 1e-12 of the load. Whoever asks for less,
+/// as Newton's method does, is spared the refinement.
 #[test]
 fn factors_are_refined_to_what_is_asked() {
     const SPRINGS: usize = 300;

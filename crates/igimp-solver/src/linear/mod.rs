@@ -94,8 +94,8 @@ pub trait LinearSolver: Send {
     /// A step begins: what was learnt in the one before is forgotten, so that its solutions do not depend on it.
     fn start_step(&mut self) {}
 
-    /// How small ‖b − K x‖ / ‖b‖ has to become in the next solutions \[-\]. Direct solvers may do
-    /// better at no cost, and those that are not refined reach what they can.
+    /// How small ‖b − K x‖ / ‖b‖ has to become in the next solutions \[-\]. Multifrontal solvers
+    /// refine to that, and to 1e-9 at least; other direct solvers to the target of their [`Accuracy`].
     fn ask_for(&mut self, _relative_residual: f64) {}
 
     /// How the systems since the start of the step were solved, where the solver chooses among methods.
