@@ -87,6 +87,7 @@ impl<const D: usize> Listener<D> for Relay {
                 self.stage.trial += 1;
                 ("trial", json!({ "srf": trial.srf, "stable": trial.stable }))
             }
+            Event::Path { point } => ("path", json!(point)),
             Event::StageEnded { summary } => ("stage_end", json!(summary)),
             Event::Warning { text } => ("warning", json!({ "text": text })),
             Event::Prepared { .. } => ("prepared", Value::Null),

@@ -1,8 +1,8 @@
-//! The rows and columns of the tangent that belong to rigid bodies: few and long, so they stay out of the
-//! sparse matrix.
+//! The rows and columns of the tangent that belong to rigid bodies, and to a load factor that is unknown: few and
+//! long, so they stay out of the sparse matrix.
 
-/// The border of a tangent matrix: what couples the unknowns of rigid bodies to those of the grid and to
-/// one another.
+/// The border of a tangent matrix: what couples the unknowns of rigid bodies, and a load factor that is unknown, to
+/// those of the grid and to one another.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Border {
     /// By unknown of a body its column, one entry per unknown of the grid \[force/length\].
@@ -23,7 +23,25 @@ impl Border {
         }
     }
 
-    /// Number of unknowns of bodies.
+    /// Adds an unknown behind all others: its column and its row, both by unknown of the grid and then of the border,
+    /// and its entry on the diagonal.
+    ///
+    /// # Panics
+    /// If column or row are shorter than the unknowns before.
+    pub fn append(&mut self, column: &[f64], row: &[f64], corner: f64) {
+        let of_border = self.corner.len();
+        let of_grid = column.len() - of_border;
+        self.columns.push(column[..of_grid].to_vec());
+        self.rows.push(row[..of_grid].to_vec());
+        for (entries, own) in self.corner.iter_mut().zip(&column[of_grid..]) {
+            entries.push(*own);
+        }
+        let mut last = row[of_grid..].to_vec();
+        last.push(corner);
+        self.corner.push(last);
+    }
+
+    /// Number of unknowns of the border.
     pub fn len(&self) -> usize {
         self.corner.len()
     }

@@ -98,17 +98,7 @@ pub(crate) fn evaluate<const D: usize>(
     trial: &mut ParticleTrial<D>,
 ) -> Result<Linearisation<D>, AssemblyError> {
     let particle = state.particle;
-    let mut gradient = [[0.0; D]; D];
-    let mut gradient_bar = [[0.0; D]; D];
-    for support in supports {
-        let displacement = &u[support.node];
-        for a in 0..D {
-            for b in 0..D {
-                gradient[a][b] += displacement[a] * support.grad[b];
-                gradient_bar[a][b] += displacement[a] * support.grad_bar[b];
-            }
-        }
-    }
+    let (gradient, gradient_bar) = gradients(supports, u);
     let mut delta_def_grad = gradient;
     let mut delta_bar = gradient_bar;
     for a in 0..D {
@@ -137,16 +127,7 @@ pub(crate) fn evaluate<const D: usize>(
         }
         Kinematics::SmallStrain => {
             let mut strain = logarithmic_strain(state.b_e).map_err(material)?;
-            let mut difference = 0.0;
-            for a in 0..D {
-                difference += gradient_bar[a][a] - gradient[a][a];
-                for b in 0..D {
-                    strain[a][b] += 0.5 * (gradient[a][b] + gradient[b][a]);
-                }
-            }
-            for a in 0..3 {
-                strain[a][a] += difference / 3.0;
-            }
+            add_small_strain(&mut strain, &gradient, &gradient_bar);
             for (a, row) in gradient_bar.iter().enumerate() {
                 ln_volume += row[a];
             }
@@ -176,6 +157,45 @@ pub(crate) fn evaluate<const D: usize>(
         linearisation.lifted.add_mean(mean, state.pores.stiffness);
     }
     Ok(linearisation)
+}
+
+/// Gradients of nodal step displacements `u` at a particle: its own, and the cell-averaged one \[-\].
+#[inline]
+pub(crate) fn gradients<const D: usize>(
+    supports: &[Support<D>],
+    u: &[[f64; D]],
+) -> ([[f64; D]; D], [[f64; D]; D]) {
+    let mut gradient = [[0.0; D]; D];
+    let mut gradient_bar = [[0.0; D]; D];
+    for support in supports {
+        let displacement = &u[support.node];
+        for a in 0..D {
+            for b in 0..D {
+                gradient[a][b] += displacement[a] * support.grad[b];
+                gradient_bar[a][b] += displacement[a] * support.grad_bar[b];
+            }
+        }
+    }
+    (gradient, gradient_bar)
+}
+
+/// Adds the small strain of a step, with the cell-averaged dilatation (theory, eq. 9) \[-\].
+#[inline]
+pub(crate) fn add_small_strain<const D: usize>(
+    strain: &mut Tensor,
+    gradient: &[[f64; D]; D],
+    gradient_bar: &[[f64; D]; D],
+) {
+    let mut difference = 0.0;
+    for a in 0..D {
+        difference += gradient_bar[a][a] - gradient[a][a];
+        for b in 0..D {
+            strain[a][b] += 0.5 * (gradient[a][b] + gradient[b][a]);
+        }
+    }
+    for a in 0..3 {
+        strain[a][a] += difference / 3.0;
+    }
 }
 
 /// The trial tensor λ² ΔF b ΔFᵀ, with λ² b_zz out of plane.

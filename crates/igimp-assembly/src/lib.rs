@@ -41,6 +41,7 @@ mod supports;
 mod system;
 mod trial;
 mod unknowns;
+mod work;
 
 pub use border::Border;
 pub use constraints::Constraints;
@@ -64,3 +65,4 @@ pub use step_conditions::{SharedLaw, StepConditions};
 pub use system::System;
 pub use trial::Trial;
 pub use unknowns::Unknowns;
+pub use work::StepWork;

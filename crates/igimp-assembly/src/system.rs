@@ -1,5 +1,6 @@
 //! The equilibrium of one step: residual and tangent at a trial displacement.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use igimp_material::{MaterialError, TangentKind};
@@ -32,7 +33,7 @@ use crate::unknowns::Unknowns;
 pub struct System<'a, const D: usize> {
     pub(crate) particles: &'a Particles<D>,
     pub(crate) stencils: &'a Stencils<D>,
-    pub(crate) conditions: &'a StepConditions<D>,
+    pub(crate) conditions: Cow<'a, StepConditions<D>>,
     pub(crate) method: &'a Method,
     pub(crate) unknowns: Unknowns<D>,
     f_ext: Vec<[f64; D]>,
@@ -95,12 +96,7 @@ impl<'a, const D: usize> System<'a, D> {
         method: &'a Method,
     ) -> Result<Self, AssemblyError> {
         conditions.serve(particles)?;
-        let mut used = vec![false; conditions.laws.len()];
-        for &law in &particles.law {
-            used[law] = true;
-        }
-        let symmetric_particles = std::iter::zip(&conditions.laws, &used)
-            .all(|(law, &used)| !used || law.has_symmetric_tangent());
+        let symmetric_particles = are_symmetric(particles, conditions);
         let grid = &conditions.grid;
         let cuts = method.small_cuts;
         if !cuts.ghost_penalty.is_finite() {
@@ -124,22 +120,12 @@ impl<'a, const D: usize> System<'a, D> {
         let forces = beside_particles(&couplings, &contact, &reinforcement);
         let pairs: Vec<_> = forces.iter().flat_map(|force| force.pairs()).collect();
         let symmetric = symmetric_particles && forces.iter().all(|force| force.is_symmetric());
-        let mut f_ext = weight(grid, stencils, &conditions.loads);
-        let pores = Pores::fill(particles, stencils, conditions, method, &mut f_ext)?;
-        if let Some(held) = &conditions.held {
-            held.add(stencils, &mut f_ext);
-        }
-        f_ext.extend(motions.iter().map(|motion| {
-            motion.map(|drive| match drive {
-                Drive::Loaded(force) => force,
-                Drive::Moved(_) => 0.0,
-            })
-        }));
+        let (f_ext, pores) = external_force(particles, stencils, conditions, method, &motions)?;
         let (table, pattern) = BlockTable::build(grid, stencils, &unknowns, &pairs);
         Ok(Self {
             particles,
             stencils,
-            conditions,
+            conditions: Cow::Borrowed(conditions),
             method,
             unknowns,
             f_ext,
@@ -166,11 +152,70 @@ impl<'a, const D: usize> System<'a, D> {
         add_force_of_points(
             &mut self.f_ext,
             points,
-            self.conditions,
+            &self.conditions,
             self.stencils,
             &self.unknowns,
         )?;
         Ok(self)
+    }
+
+    /// Exchanges what acts on the body and its laws for those of other `conditions`, with the forces of the loaded
+    /// `points`: grid, supports, prescribed motion and contact stay as the step began with them.
+    ///
+    /// # Errors
+    /// As [`Self::new`] and [`Self::with_load_points`].
+    pub fn exchange(
+        &mut self,
+        conditions: StepConditions<D>,
+        points: &[LoadPoint<D>],
+    ) -> Result<(), AssemblyError> {
+        conditions.serve(self.particles)?;
+        self.symmetric_particles = are_symmetric(self.particles, &conditions);
+        let forces = beside_particles(&self.couplings, &self.contact, &self.reinforcement);
+        self.symmetric =
+            self.symmetric_particles && forces.iter().all(|force| force.is_symmetric());
+        self.reinforcement.control(&conditions.reinforcement);
+        self.motions = nodal_motions(self.contact.bodies(), &conditions);
+        let (mut f_ext, pores) = external_force(
+            self.particles,
+            self.stencils,
+            &conditions,
+            self.method,
+            &self.motions,
+        )?;
+        add_force_of_points(
+            &mut f_ext,
+            points,
+            &conditions,
+            self.stencils,
+            &self.unknowns,
+        )?;
+        (self.f_ext, self.pores) = (f_ext, pores);
+        self.conditions = Cow::Owned(conditions);
+        Ok(())
+    }
+
+    /// What holds during the step.
+    pub fn conditions(&self) -> &StepConditions<D> {
+        &self.conditions
+    }
+
+    /// External force by unknown \[force\].
+    pub fn external_force_by_unknown(&self) -> Vec<f64> {
+        self.by_unknown(&self.f_ext)
+    }
+
+    /// Values by node as values by unknown.
+    pub fn by_unknown(&self, values: &[[f64; D]]) -> Vec<f64> {
+        let mut out = vec![0.0; self.unknowns.len()];
+        for (node, values) in values.iter().enumerate() {
+            for (axis, value) in values.iter().enumerate() {
+                if let Some(unknown) = self.unknowns.index(node, axis) {
+                    out[unknown] = *value;
+                }
+            }
+        }
+        out
     }
 
     /// The same with an earlier pattern in place of its own, if they are equal: solvers keep their
@@ -549,6 +594,17 @@ impl<'a, const D: usize> System<'a, D> {
         self.reinforcement.accepted(u)
     }
 
+    /// The work of the external force on nodal step displacements `u` where they are unknown \[force·length\].
+    pub fn work_of_loads(&self, u: &[[f64; D]]) -> f64 {
+        let (force, u) = (self.external_force_by_unknown(), self.by_unknown(u));
+        force.iter().zip(u).map(|(force, u)| force * u).sum()
+    }
+
+    /// The work of reinforcement on the stretch of the step, and its elastic part \[force·length\].
+    pub(crate) fn work_of_reinforcement(&self, u: &[[f64; D]]) -> [f64; 2] {
+        self.reinforcement.work(u)
+    }
+
     /// The forces beside those of particles.
     fn forces(&self) -> [&dyn NodalForces<D>; 4] {
         beside_particles(&self.couplings, &self.contact, &self.reinforcement)
@@ -577,6 +633,37 @@ impl<'a, const D: usize> System<'a, D> {
             Kinematics::SmallStrain => self.particles.volume(particle),
         }
     }
+}
+
+/// Whether the tangents of all particles are symmetric.
+fn are_symmetric<const D: usize>(particles: &Particles<D>, conditions: &StepConditions<D>) -> bool {
+    let mut used = vec![false; conditions.laws.len()];
+    for &law in &particles.law {
+        used[law] = true;
+    }
+    std::iter::zip(&conditions.laws, &used).all(|(law, &used)| !used || law.has_symmetric_tangent())
+}
+
+/// External force by node without loaded points \[force\], and the water in the pores.
+fn external_force<const D: usize>(
+    particles: &Particles<D>,
+    stencils: &Stencils<D>,
+    conditions: &StepConditions<D>,
+    method: &Method,
+    motions: &[[Drive; D]],
+) -> Result<(Vec<[f64; D]>, Pores), AssemblyError> {
+    let mut f_ext = weight(&conditions.grid, stencils, &conditions.loads);
+    let pores = Pores::fill(particles, stencils, conditions, method, &mut f_ext)?;
+    if let Some(held) = &conditions.held {
+        held.add(stencils, &mut f_ext);
+    }
+    f_ext.extend(motions.iter().map(|motion| {
+        motion.map(|drive| match drive {
+            Drive::Loaded(force) => force,
+            Drive::Moved(_) => 0.0,
+        })
+    }));
+    Ok((f_ext, pores))
 }
 
 /// Ghost penalty, drag, contact and reinforcement, in the order in which they are summed.

@@ -42,7 +42,9 @@ pub use rigid::{
     RigidQuantity, RigidShape, RigidShear, components,
 };
 pub use rigid_space::RigidSolid;
-pub use stage::{Reduction, ReductionPath, RunOut, Stage, StageKind, StopWhen, StrengthReduction};
+pub use stage::{
+    Reduction, ReductionPath, RunOut, SearchMethod, Stage, StageKind, StopWhen, StrengthReduction,
+};
 pub(crate) use water::table_level;
 pub use water::{Construction, Drainage, Drained, PoreSource, WaterCondition};
 

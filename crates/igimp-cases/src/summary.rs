@@ -300,6 +300,79 @@ pub struct SafetySummary {
     pub moving_mass: Option<f64>,
     /// The trials in the order they were made.
     pub trials: Vec<TrialSummary>,
+    /// The path that was followed, of a search by continuation.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub path: Option<PathSummary>,
+}
+
+/// A path of equilibria along which strength is reduced, and what it tells of its limit.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct PathSummary {
+    /// Why it ended.
+    pub end: PathEnd,
+    /// Where the body first moves as a mechanism: 99 % of the work of a step is dissipated.
+    pub mechanism: Option<PathPoint>,
+    /// Where the rise of the factor over doublings of the work falls most.
+    pub knee: Option<PathPoint>,
+    /// Rise of the factor in the last doubling of the work, as a share of it \[-\].
+    pub rise: Option<f64>,
+    /// The displacement γH²/E that soil of this weight, height and stiffness is moved by before it fails \[m\].
+    pub displacement_scale: Option<f64>,
+    /// Its equilibria in order.
+    pub points: Vec<PathPoint>,
+}
+
+/// Why a path of equilibria ended.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum PathEnd {
+    /// The increment is a mechanism, and the factor rises no longer.
+    Limit,
+    /// The factor fell below an earlier one.
+    Fallen,
+    /// The increment is a mechanism, the body has moved far, and the factor still rises.
+    StillRising,
+    /// The displacement that the case states was exceeded.
+    Displacement,
+    /// No further equilibrium was found.
+    #[default]
+    Lost,
+}
+
+impl PathEnd {
+    /// In words.
+    pub fn sentence(self) -> &'static str {
+        match self {
+            Self::Limit => "the body moves as a mechanism, and the factor rises no longer",
+            Self::Fallen => "the factor falls behind its largest value",
+            Self::StillRising => "the body moves as a mechanism, and the factor still rises",
+            Self::Displacement => "the displacement of the case is exceeded",
+            Self::Lost => "no further equilibrium was found",
+        }
+    }
+}
+
+/// An equilibrium of a path along which strength is reduced.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct PathPoint {
+    /// Strength reduction factor \[-\].
+    pub factor: f64,
+    /// Work of the external force since the beginning of the path \[J/m; J in space\].
+    pub work: f64,
+    /// Displacement that the search looks at, since the beginning of the path \[m\].
+    #[serde(deserialize_with = "or_not_a_number")]
+    pub displacement: f64,
+    /// Share of the work of the last step that was dissipated \[-\]: 1 of a mechanism.
+    #[serde(deserialize_with = "or_not_a_number")]
+    pub dissipated: f64,
+    /// Share of particles that yielded in the last step \[-\].
+    #[serde(deserialize_with = "or_not_a_number")]
+    pub plastic_share: f64,
+    /// Newton corrections of the last step.
+    pub iterations: usize,
+    /// By how much the residual of the last step puts the factor in doubt, as a share of it \[-\].
+    #[serde(deserialize_with = "or_not_a_number")]
+    pub in_doubt: f64,
 }
 
 /// One trial of a search.

@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use igimp_assembly::{Kinematics, Particles};
 use igimp_cases::case::{
     Case, Construction, Drainage, Material, PoreSource, ReductionPath, ReinforcementKind,
-    ReinforcementPart, Stage, StageKind, StrengthReduction, WaterCondition,
+    ReinforcementPart, SearchMethod, Stage, StageKind, StrengthReduction, WaterCondition,
 };
 use igimp_cases::input::CaseFile;
 use igimp_cases::results::checkpoint;
@@ -576,6 +576,7 @@ fn a_search_by_gravity_sees_what_was_built() {
             path: ReductionPath::Gravity,
             failure_displacement: Some(1.0),
             monitor: None,
+            search: SearchMethod::Trials,
         }),
         steps: 2,
         start_from: Some(from),

@@ -7,6 +7,7 @@ use igimp_assembly::{AssemblyError, OutOfBalance, Stencils, System, TangentMatri
 use igimp_material::TangentKind;
 use igimp_shape::Grid;
 
+use crate::free_factor::FreeFactor;
 use crate::linear::{Bordered, LinearEffort, LinearSolver, LinearSolverError};
 use crate::newton::{NewtonSettings, Workspace, converged};
 use crate::report::{Component, PhaseTimes, StepFailure, padded};
@@ -19,19 +20,65 @@ const MOST_HALVINGS: u32 = 4;
 /// by whole corrections, one in a hundred goes beyond.
 const OVERSHOOT: f64 = 20.0;
 
-/// The same in space for soil by itself whose flow is not associated: whole corrections swing near failure, and one costs
-/// as much as twenty evaluations of the residual and more.
-const OVERSHOOT_IN_SPACE: f64 = 1.0;
+/// The same where corrections are guarded: in space for soil by itself whose flow is not associated, as whole corrections swing
+/// near failure and one costs as much as twenty evaluations of the residual and more; and where the load factor is unknown.
+const OVERSHOOT_GUARDED: f64 = 1.0;
 
-/// Share of the elastic tangent in the first regularised one of a step, and in those of corrections that do not converge yet \[-\]:
-/// with less the tangent is all but singular, and its system takes many times the iterations.
-const FIRST_SHARE: f64 = 0.01;
-const LEAST_SHARE: f64 = 0.005;
-/// The share after a halving over that before, and after a correction that was taken whole \[-\].
+/// The share of the elastic tangent after a halving over that before, and after a correction that was taken whole \[-\].
 const STIFFER: f64 = 2.0;
 const SOFTER: f64 = 0.5;
 /// A correction that leaves less than so much of the residual converges \[-\].
 const CONVERGING: f64 = 0.1;
+/// How often a singular tangent is regularised more.
+const MOST_REGULARISED: usize = 10;
+
+/// How closely corrections are guarded: none may raise the residual, and particles with plastic flow bring a share of the
+/// elastic tangent (theory, eq. 25e).
+#[derive(Clone, Copy, Debug)]
+struct Guard {
+    /// Share of the elastic tangent in the next correction \[-\].
+    share: f64,
+    /// Least share in corrections that do not converge yet \[-\].
+    least: f64,
+    /// A share after a halving is at least this \[-\].
+    halved: f64,
+    /// Whether a step is given up whose residual creeps.
+    gives_up: bool,
+}
+
+impl Guard {
+    /// In space, where flow is not associated: with less the tangent is all but singular, and its system takes many times
+    /// the iterations.
+    const IN_SPACE: Self = Self {
+        share: 0.01,
+        least: 0.005,
+        halved: 0.005,
+        gives_up: true,
+    };
+
+    /// Where the load factor is unknown, as on a plateau: none until a correction is halved.
+    const ON_PATH: Self = Self {
+        share: 0.0,
+        least: 0.0,
+        halved: 1e-3,
+        gives_up: false,
+    };
+
+    /// Chooses the share in the next correction: more after one that was halved, less after one that was taken whole, and
+    /// as much less as the residual where corrections converge (`left` is the share that the last one left of it).
+    fn adapt(&mut self, halvings: u32, left: f64) {
+        self.share = if halvings == 0 && left < CONVERGING {
+            self.share * left
+        } else if halvings == 0 {
+            (self.share * SOFTER).clamp(self.least, 1.0)
+        } else {
+            (self.share * STIFFER.powi(halvings as i32)).clamp(self.halved, 1.0)
+        };
+        if self.share < 0.5 * self.halved && self.least == 0.0 {
+            self.share = 0.0;
+        }
+    }
+}
 
 /// Relative residual of the systems of the grid where there are rigid bodies, whose equations are made of their
 /// solutions \[-\].
@@ -44,7 +91,8 @@ const OF_BODIES: f64 = 1e-10;
 /// halved. In space, where flow is not associated, the residual may not be raised at all, and the consistent
 /// tangent is regularised by a share of the elastic one that grows with the halvings.
 pub(crate) struct Corrector<'s, 'w, const D: usize> {
-    system: &'s System<'s, D>,
+    /// The equations of the step.
+    pub(crate) system: System<'s, D>,
     stencils: &'s Stencils<D>,
     grid: &'s Grid<D>,
     settings: &'s NewtonSettings,
@@ -56,10 +104,10 @@ pub(crate) struct Corrector<'s, 'w, const D: usize> {
     bordered: Bordered,
     /// Whether the matrix is the tangent at u, or that before the last correction.
     is_current: bool,
-    /// Whether corrections are searched for along a line, and tangents regularised.
-    is_guarded: bool,
-    /// Share of the elastic tangent in a regularised one \[-\].
-    share: f64,
+    /// How corrections are guarded, if they are.
+    guard: Option<Guard>,
+    /// The load factor, where it is unknown.
+    pub(crate) factor: Option<FreeFactor<'s, D>>,
     /// The particles at u.
     pub(crate) trial: &'w mut Trial<D>,
     /// Number of corrections so far.
@@ -71,7 +119,7 @@ pub(crate) struct Corrector<'s, 'w, const D: usize> {
 impl<'s, 'w, const D: usize> Corrector<'s, 'w, D> {
     /// One in the memory of a workspace. `set_up` is the time that system and stencils took.
     pub(crate) fn new(
-        (system, stencils): (&'s System<'s, D>, &'s Stencils<D>),
+        (system, stencils): (System<'s, D>, &'s Stencils<D>),
         grid: &'s Grid<D>,
         settings: &'s NewtonSettings,
         workspace: &'w mut Workspace<D>,
@@ -86,19 +134,20 @@ impl<'s, 'w, const D: usize> Corrector<'s, 'w, D> {
         } = workspace;
         let earlier = matrix.take();
         solver.start_step();
+        let guard = (D == 3 && system.flows_without_potential()).then_some(Guard::IN_SPACE);
         Self {
-            system,
             stencils,
             grid,
             settings,
             solver: &mut **solver,
             matrix: matrix.insert(system.matrix_from(earlier)),
+            system,
             du,
             history,
             bordered: Bordered::default(),
             is_current: true,
-            is_guarded: D == 3 && system.flows_without_potential(),
-            share: FIRST_SHARE,
+            guard,
+            factor: None,
             trial,
             iterations: 0,
             times: PhaseTimes {
@@ -108,61 +157,145 @@ impl<'s, 'w, const D: usize> Corrector<'s, 'w, D> {
         }
     }
 
-    /// The start of the step, where nothing moves yet: trial, elastic tangent and residual.
-    pub(crate) fn start(&mut self, still: &[[f64; D]]) -> Result<OutOfBalance, StepFailure> {
-        timed(&mut self.times.assembly, || {
-            self.system
-                .linearise_into(still, TangentKind::Elastic, self.trial, self.matrix)
-        })?;
-        let residual = self.system.out_of_balance(self.trial)?;
+    /// The same with a load factor that is unknown.
+    pub(crate) fn on_path(mut self, factor: FreeFactor<'s, D>) -> Self {
+        self.guard = self.guard.or(Some(Guard::ON_PATH));
+        self.factor = Some(factor);
+        self
+    }
+
+    /// The start of the step: trial, tangent and residual at `u`, the elastic tangent where nothing moves yet.
+    pub(crate) fn start(&mut self, u: &[[f64; D]]) -> Result<OutOfBalance, StepFailure> {
+        let is_still = u.as_flattened().iter().all(|u| *u == 0.0);
+        let kind = if is_still {
+            TangentKind::Elastic
+        } else {
+            self.tangent()
+        };
+        let clock = Instant::now();
+        let mut residual = OutOfBalance::default();
+        let linearised = self.linearise_at(u, kind, &mut residual);
+        self.times.assembly += clock.elapsed();
+        linearised?;
         self.history.record(&residual, self.settings)?;
         Ok(residual)
     }
 
-    /// The correction du by unknown \[length\] that the residual at `u` asks for.
-    pub(crate) fn solve(
+    /// Whether the residual at `u` is that of an equilibrium.
+    pub(crate) fn is_found(&self, u: &[[f64; D]], residual: &OutOfBalance) -> bool {
+        converged(residual, self.settings.tolerance)
+            && (self.factor.as_ref())
+                .is_none_or(|factor| factor.is_found(&self.system.by_unknown(u), residual))
+    }
+
+    /// Makes one correction of `u`, and of the load factor where it is unknown.
+    pub(crate) fn correct(
         &mut self,
-        residual: &OutOfBalance,
-        u: &[[f64; D]],
-    ) -> Result<&[f64], StepFailure> {
+        u: &mut [[f64; D]],
+        residual: &mut OutOfBalance,
+    ) -> Result<(), StepFailure> {
+        self.solve(residual, u)?;
+        self.add_correction(u)?;
+        self.linearise(u, residual)
+    }
+
+    /// The correction du by unknown \[length\] that the residual at `u` asks for.
+    fn solve(&mut self, residual: &OutOfBalance, u: &[[f64; D]]) -> Result<(), StepFailure> {
         let iterations = self.iterations;
         if iterations == self.settings.max_iterations {
             return Err(StepFailure::MaxIterations { iterations });
         }
         if !self.is_current && !self.history.factors_suffice(self.settings.tolerance) {
-            let kind = self.tangent();
-            timed(&mut self.times.assembly, || {
-                self.system.linearise_into(u, kind, self.trial, self.matrix)
-            })?;
-            self.is_current = true;
+            self.linearise_again(u)?;
         }
         self.solver.ask_for(self.demand(residual));
         if self.is_current {
-            timed(&mut self.times.factor, || self.solver.factor(self.matrix)).map_err(|error| {
-                self.history.fill_of_singular = self.fill_of_singular(&error);
-                self.named(error, u)
-            })?;
-            self.bordered = timed(&mut self.times.solve, || {
-                Bordered::factor(self.solver, self.matrix)
-            })
-            .map_err(|error| self.named(error, u))?;
+            self.factorise(u)?;
         }
-        self.du.resize(residual.force.len(), 0.0);
+        let mut force = residual.force.clone();
+        if let Some(factor) = &self.factor {
+            force.push(factor.missing(&self.system.by_unknown(u)));
+        }
+        self.du.resize(force.len(), 0.0);
         timed(&mut self.times.solve, || {
             self.bordered
-                .solve(self.solver, self.matrix, &residual.force, self.du)
+                .solve(self.solver, self.matrix, &force, self.du)
         })
         .map_err(|error| self.named(error, u))?;
         if let Some(unknown) = self.du.iter().position(|du| !du.is_finite()) {
             return Err(self.not_finite("correction", unknown));
         }
+        if let (Some(factor), Some(&correction)) = (&self.factor, self.du.last()) {
+            let share = factor.admitted(correction);
+            self.du.iter_mut().for_each(|du| *du *= share);
+        }
         self.iterations += 1;
-        Ok(self.du)
+        Ok(())
+    }
+
+    /// The tangent at `u` once more.
+    fn linearise_again(&mut self, u: &[[f64; D]]) -> Result<(), StepFailure> {
+        let clock = Instant::now();
+        let kind = self.tangent();
+        let linearised = self.linearise_at(u, kind, &mut OutOfBalance::default());
+        self.times.assembly += clock.elapsed();
+        self.is_current = true;
+        Ok(linearised?)
+    }
+
+    /// Factorises the tangent at `u`. Where the load factor is unknown a singular one is regularised.
+    fn factorise(&mut self, u: &[[f64; D]]) -> Result<(), StepFailure> {
+        for again in 0.. {
+            let factorised = timed(&mut self.times.factor, || self.solver.factor(self.matrix));
+            let Err(error) = factorised else { break };
+            let is_singular = matches!(error, LinearSolverError::Singular { .. });
+            if let (true, true, Some(guard)) = (is_singular, self.factor.is_some(), &mut self.guard)
+                && again < MOST_REGULARISED
+            {
+                guard.adapt(1, 1.0);
+                self.linearise_again(u)?;
+                continue;
+            }
+            self.history.fill_of_singular = self.fill_of_singular(&error);
+            return Err(self.named(error, u));
+        }
+        self.bordered = timed(&mut self.times.solve, || {
+            Bordered::factor(self.solver, self.matrix)
+        })
+        .map_err(|error| self.named(error, u))?;
+        Ok(())
+    }
+
+    /// Adds what `du` holds to `u`, and to the load factor where it is unknown.
+    fn add_correction(&mut self, u: &mut [[f64; D]]) -> Result<(), AssemblyError> {
+        self.system.add_correction(u, self.du);
+        if let (Some(factor), Some(by)) = (&mut self.factor, self.du.last()) {
+            factor.at += by;
+            factor.put(&mut self.system)?;
+        }
+        Ok(())
+    }
+
+    /// Trial, tangent and out-of-balance force at `u`; with row and column of the load factor where it is unknown.
+    fn linearise_at(
+        &mut self,
+        u: &[[f64; D]],
+        kind: TangentKind,
+        residual: &mut OutOfBalance,
+    ) -> Result<(), AssemblyError> {
+        self.system
+            .linearise_into(u, kind, self.trial, self.matrix)?;
+        self.system.update_out_of_balance(residual, self.trial)?;
+        match &mut self.factor {
+            Some(factor) => factor.border(&mut self.system, u, residual, self.matrix),
+            None => Ok(()),
+        }
     }
 
     /// How small the relative residual of the linear system has to become.
     fn demand(&self, residual: &OutOfBalance) -> f64 {
-        if self.matrix.border.corner.is_empty() {
+        let of_bodies = self.matrix.border.len() - usize::from(self.factor.is_some());
+        if of_bodies == 0 {
             self.history.forcing(residual, self.settings.tolerance)
         } else {
             OF_BODIES
@@ -177,7 +310,7 @@ impl<'s, 'w, const D: usize> Corrector<'s, 'w, D> {
     /// Trial and residual at `u`, to which the last correction was added, with the tangent unless the
     /// factors at hand will probably serve once more. A correction that goes too far is halved: one
     /// that turns a particle inside out, or raises the residual manyfold.
-    pub(crate) fn linearise(
+    fn linearise(
         &mut self,
         u: &mut [[f64; D]],
         residual: &mut OutOfBalance,
@@ -188,13 +321,15 @@ impl<'s, 'w, const D: usize> Corrector<'s, 'w, D> {
         let mut halvings = 0;
         let mut evaluated = self.evaluate(u, residual);
         while halvings < MOST_HALVINGS && self.is_too_far(&evaluated, residual) {
-            self.take_back_half(u, halvings);
+            self.take_back_half(u, halvings)?;
             halvings += 1;
             // The tangent is of no use before it is known where to go.
             self.is_current = false;
             evaluated = self.evaluate(u, residual);
         }
-        self.regularise(halvings, residual);
+        if let Some(guard) = self.guard.as_mut().filter(|_| self.iterations > 1) {
+            guard.adapt(halvings, self.history.share_left(residual));
+        }
         if with_tangent && halvings > 0 && evaluated.is_ok() {
             self.is_current = true;
             evaluated = self.evaluate(u, residual);
@@ -203,7 +338,8 @@ impl<'s, 'w, const D: usize> Corrector<'s, 'w, D> {
         evaluated?;
         self.history.record(residual, self.settings)?;
         let is_found = converged(residual, self.settings.tolerance);
-        if self.is_guarded && !is_found && self.history.creeps(self.settings) {
+        let gives_up = self.guard.is_some_and(|guard| guard.gives_up);
+        if gives_up && !is_found && self.history.creeps(self.settings) {
             return Err(StepFailure::Stagnated);
         }
         Ok(())
@@ -211,38 +347,16 @@ impl<'s, 'w, const D: usize> Corrector<'s, 'w, D> {
 
     /// The tangent of the corrections after the first one.
     fn tangent(&self) -> TangentKind {
-        if self.is_guarded {
-            TangentKind::Regularised {
-                elastic: self.share,
-            }
-        } else {
-            TangentKind::Consistent
+        match self.guard {
+            Some(Guard { share, .. }) if share > 0.0 => TangentKind::Regularised { elastic: share },
+            _ => TangentKind::Consistent,
         }
-    }
-
-    /// Chooses the share of the elastic tangent in the next one: more after a correction that was halved, less after one that
-    /// was taken whole, and as much less as the residual where corrections converge.
-    fn regularise(&mut self, halvings: u32, residual: &OutOfBalance) {
-        if self.iterations < 2 {
-            return;
-        }
-        let left = self.history.share_left(residual);
-        self.share = if halvings == 0 && left < CONVERGING {
-            self.share * left
-        } else {
-            let times = if halvings == 0 {
-                SOFTER
-            } else {
-                STIFFER.powi(halvings as i32)
-            };
-            (self.share * times).clamp(LEAST_SHARE, 1.0)
-        };
     }
 
     /// Whether a correction that came to this went too far.
     fn is_too_far(&self, evaluated: &Result<(), AssemblyError>, residual: &OutOfBalance) -> bool {
-        let growth = if self.is_guarded {
-            OVERSHOOT_IN_SPACE
+        let growth = if self.guard.is_some() {
+            OVERSHOOT_GUARDED
         } else {
             OVERSHOOT
         };
@@ -260,22 +374,21 @@ impl<'s, 'w, const D: usize> Corrector<'s, 'w, D> {
     ) -> Result<(), AssemblyError> {
         let kind = self.tangent();
         if self.is_current {
-            self.system
-                .linearise_into(u, kind, self.trial, self.matrix)?;
+            self.linearise_at(u, kind, residual)
         } else {
             self.system.evaluate_into(u, kind, self.trial)?;
+            self.system.update_out_of_balance(residual, self.trial)
         }
-        self.system.update_out_of_balance(residual, self.trial)
     }
 
     /// Takes back half of what is left of a correction in `u`. `du` is the correction itself, or what
     /// was taken back last.
-    fn take_back_half(&mut self, u: &mut [[f64; D]], halvings: u32) {
+    fn take_back_half(&mut self, u: &mut [[f64; D]], halvings: u32) -> Result<(), AssemblyError> {
         let share = if halvings == 0 { -0.5 } else { 0.5 };
         for component in self.du.iter_mut() {
             *component *= share;
         }
-        self.system.add_correction(u, self.du);
+        self.add_correction(u)
     }
 }
 

@@ -8,13 +8,16 @@
 pub mod linear;
 
 mod body;
+mod continuation;
 mod corrector;
+mod free_factor;
 mod march;
 mod newton;
 mod report;
 mod residual_history;
 
 pub use body::Body;
+pub use continuation::{ContinuationSettings, ContinuationState, follow};
 pub use march::{
     Accepted, LoadPath, MarchReport, MarchSettings, MarchState, Observer, Outcome, march,
     march_from,

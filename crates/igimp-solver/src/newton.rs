@@ -13,7 +13,9 @@ use igimp_shape::Grid;
 
 use crate::body::Body;
 use crate::corrector::Corrector;
+use crate::free_factor::{FreeFactor, Guess};
 use crate::linear::LinearSolver;
+use crate::march::LoadPath;
 use crate::report::{NodalForces, StepError, StepFailure, StepReport, padded};
 use crate::residual_history::ResidualHistory;
 
@@ -99,6 +101,8 @@ pub fn step<const D: usize>(
         from,
         to,
         ghost_penalty: 0.0,
+        on_path: None,
+        measures_work: false,
     };
     let mut history = ResidualHistory::default();
     let failure = match equilibrium(&attempt, body, workspace, &mut history) {
@@ -129,6 +133,65 @@ pub fn step<const D: usize>(
     })
 }
 
+/// Advances a body by one step on its path, and measures the work of the step: to the load factor `to`, or by so much
+/// work of the external force, with the load factor unknown.
+pub(crate) fn step_on_path<const D: usize>(
+    body: &mut Body<D>,
+    method: &Method,
+    load_path: &dyn LoadPath<D>,
+    (from, target): (f64, &Target<D>),
+    settings: &NewtonSettings,
+    workspace: &mut Workspace<D>,
+) -> Result<(StepConditions<D>, StepReport, NodalForces<D>), StepError> {
+    let to = match target {
+        Target::Factor(to) => *to,
+        Target::Work { guess, .. } => guess.factor,
+    };
+    let mut history = ResidualHistory::default();
+    let found = load_path
+        .conditions(from, to)
+        .map_err(StepFailure::from)
+        .and_then(|conditions| {
+            let attempt = Attempt {
+                method,
+                conditions: &conditions,
+                settings,
+                from,
+                to,
+                ghost_penalty: 0.0,
+                on_path: match target {
+                    Target::Factor(_) => None,
+                    Target::Work { work, guess } => Some((load_path, *work, guess)),
+                },
+                measures_work: true,
+            };
+            let (report, forces) = equilibrium(&attempt, body, workspace, &mut history)?;
+            let conditions = load_path.conditions(from, report.to)?;
+            Ok((conditions, report, forces))
+        });
+    found.map_err(|failure| StepError {
+        from,
+        to,
+        worst: None,
+        residuals: history.residuals,
+        failure: Box::new(failure),
+    })
+}
+
+/// What a step on a path is to reach.
+#[derive(Clone, Debug)]
+pub(crate) enum Target<const D: usize> {
+    /// A load factor \[-\].
+    Factor(f64),
+    /// Work of the external force on the step \[force·length\].
+    Work {
+        /// How much.
+        work: f64,
+        /// Where Newton's method begins.
+        guess: Guess<D>,
+    },
+}
+
 /// What one search for equilibrium is given.
 struct Attempt<'a, const D: usize> {
     method: &'a Method,
@@ -139,6 +202,10 @@ struct Attempt<'a, const D: usize> {
     to: f64,
     /// The ghost penalty of a step that is tried again \[-\].
     ghost_penalty: f64,
+    /// Where the load factor at the end is unknown: its path, the work asked for \[force·length\], and a guess.
+    on_path: Option<(&'a dyn LoadPath<D>, f64, &'a Guess<D>)>,
+    /// Whether the work of the step is measured.
+    measures_work: bool,
 }
 
 /// The Newton–Raphson loop. What makes a correction is in the [`Corrector`].
@@ -163,27 +230,37 @@ fn equilibrium<const D: usize>(
             .with_load_points(&body.load_points)?
             .sharing(workspace.pattern());
     let set_up = clock.elapsed();
-    let of_step = (&system, &stencils);
-    let mut corrector = Corrector::new(of_step, grid, settings, workspace, history, set_up);
-
     let mut u = vec![[0.0; D]; system.node_count()];
-    let mut residual = corrector.start(&u)?;
-    if system.prescribes_motion() {
-        carry_prescribed_motion(&system, &mut residual, &mut u)?;
+    let of_step = (system, &stencils);
+    let mut corrector = Corrector::new(of_step, grid, settings, workspace, history, set_up);
+    if let Some((load_path, work, guess)) = attempt.on_path {
+        let factors = (attempt.from, guess.factor);
+        let points = &body.load_points;
+        let factor = FreeFactor::new(load_path, points, &corrector.system, factors, work);
+        corrector = corrector.on_path(factor);
+        u.clone_from(&guess.u);
     }
-    while !converged(&residual, settings.tolerance) {
-        let du = corrector.solve(&residual, &u)?;
-        system.add_correction(&mut u, du);
-        corrector.linearise(&mut u, &mut residual)?;
+    let mut residual = corrector.start(&u)?;
+    if corrector.system.prescribes_motion() {
+        carry_prescribed_motion(&corrector.system, &mut residual, &mut u)?;
+    }
+    while !corrector.is_found(&u, &residual) {
+        corrector.correct(&mut u, &mut residual)?;
     }
 
     let linear = corrector.effort();
     let Corrector {
+        system,
+        factor,
         trial,
         iterations,
         mut times,
         ..
     } = corrector;
+    let to = factor.as_ref().map_or(attempt.to, |factor| factor.at);
+    let factor_in_doubt = factor.map_or(0.0, |factor| {
+        factor.doubt(&system.by_unknown(&u), &residual)
+    });
     let load_points = carried(body, method, grid, &stencils, &u)?;
     let reinforcement = system.reinforcement_at(&u);
     on_grid(&reinforcement, grid)?;
@@ -193,6 +270,10 @@ fn equilibrium<const D: usize>(
     let false_support = system.false_support(&reactions);
     let drag_share = system.drag_share(&u);
     let plastic_share = plastic_share(trial);
+    let external_work = system.work_of_loads(&u);
+    let work = (attempt.measures_work)
+        .then(|| system.work(trial, &u))
+        .transpose()?;
     let contact = system.bodies_at(&u)?;
     let pore_pressure = system.into_pore_pressure();
     body.load_points = load_points;
@@ -204,7 +285,7 @@ fn equilibrium<const D: usize>(
     times.commit = clock.elapsed();
     let report = StepReport {
         from: attempt.from,
-        to: attempt.to,
+        to,
         iterations,
         worst: history.worst(grid),
         residuals: std::mem::take(&mut history.residuals),
@@ -214,6 +295,9 @@ fn equilibrium<const D: usize>(
         false_support,
         ghost_penalty: attempt.ghost_penalty,
         drag_share,
+        work,
+        external_work,
+        factor_in_doubt,
         linear,
         times,
     };

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use igimp_assembly::{AssemblyError, Swallowed};
+use igimp_assembly::{AssemblyError, StepWork, Swallowed};
 use thiserror::Error;
 
 use crate::linear::{LinearEffort, LinearSolverError};
@@ -219,6 +219,13 @@ pub struct StepReport {
     pub worst: Option<([f64; 3], usize)>,
     /// Share of the external force that drag against motion carries; zero in equilibrium \[-\].
     pub drag_share: f64,
+    /// The work of stress on the strain of the step, of a step on a path.
+    pub work: Option<StepWork>,
+    /// The work of the external force on the step \[force·length\].
+    pub external_work: f64,
+    /// By how much the residual that was left puts the load factor in doubt where that was unknown, as a share of it
+    /// \[-\].
+    pub factor_in_doubt: f64,
     /// How the linear systems were solved.
     pub linear: LinearEffort,
     /// Time spent.

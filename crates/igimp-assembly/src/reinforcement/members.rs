@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use igimp_shape::{Linear, Scratch, supports};
 
 use super::row::{Row, length};
-use super::{Reinforcement, Station};
+use super::{Reinforcement, ReinforcementControl, Station};
 use crate::dropped::shares_of_carried;
 use crate::error::AssemblyError;
 use crate::method::{Geometry, Kinematics, Method};
@@ -88,6 +88,29 @@ impl<'a, const D: usize> Members<'a, D> {
             rows,
             is_given: method.geometry == Geometry::Given,
         })
+    }
+
+    /// Exchanges what acts on the members, in their order.
+    pub(crate) fn control(&mut self, controls: &[ReinforcementControl]) {
+        let mut rows = self.rows.iter_mut();
+        for (index, member) in self.all.iter().enumerate() {
+            let control = controls.get(index).copied().unwrap_or_default();
+            for row in rows.by_ref().take(member.segments.len()) {
+                row.control = control;
+            }
+        }
+    }
+
+    /// The work of the tension at the end of a step with nodal displacements `u` on the stretch of the step, and
+    /// its elastic part \[force·length\].
+    pub(crate) fn work(&self, u: &[[f64; D]]) -> [f64; 2] {
+        let mut sum = [0.0; 2];
+        for row in &self.rows {
+            let [whole, elastic] = row.work(u);
+            sum[0] += whole;
+            sum[1] += elastic;
+        }
+        sum
     }
 
     /// The members as nodal step displacements `u` \[length\] leave them. On a given geometry they stay

@@ -83,6 +83,16 @@ impl<const D: usize> Row<D> {
         }
     }
 
+    /// The work of the tension at the end of the step on its stretch, and the elastic part of that work
+    /// \[force·length\].
+    pub(crate) fn work(&self, u: &[[f64; D]]) -> [f64; 2] {
+        let (before, after) = (self.segment.state, self.pull(u).state);
+        let stretch = after.strain - before.strain;
+        let of_length = after.force * self.segment.length;
+        let slip = after.slack - before.slack;
+        [of_length * stretch, of_length * (stretch - slip)]
+    }
+
     /// Adds its force and, if asked for, its tangent (theory, eq. 59).
     pub(crate) fn add(
         &self,

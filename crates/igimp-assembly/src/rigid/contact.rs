@@ -127,6 +127,11 @@ impl<'a, const D: usize> Contact<'a, D> {
         &self.bodies[index]
     }
 
+    /// The bodies.
+    pub(crate) fn bodies(&self) -> &'a [RigidBody<D>] {
+        self.bodies
+    }
+
     /// Whether any soil can touch a body in this step.
     pub(crate) fn may_touch(&self, index: usize) -> bool {
         self.rows.iter().any(|row| row.body == index)

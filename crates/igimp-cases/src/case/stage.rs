@@ -86,6 +86,17 @@ pub struct StrengthReduction {
     pub failure_displacement: Option<f64>,
     /// Monitor whose displacement counts; none: the largest of all particles.
     pub monitor: Option<usize>,
+    /// How the factor is looked for.
+    pub search: SearchMethod,
+}
+
+/// How a search looks for the factor of safety.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SearchMethod {
+    /// Along the path of equilibria, the factor an unknown.
+    Continuation,
+    /// By trials, each of which stands or fails.
+    Trials,
 }
 
 /// How a trial reaches its reduced strength.

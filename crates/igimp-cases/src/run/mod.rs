@@ -45,7 +45,7 @@ use crate::estimate::Expectation;
 use crate::input::CaseFile;
 use crate::results::admission::Replace;
 use crate::results::owner::{Claim, Origin};
-use crate::summary::{ModelSize, StageSummary, Summary, TrialSummary};
+use crate::summary::{ModelSize, PathPoint, StageSummary, Summary, TrialSummary};
 use crate::table::Table;
 
 pub(crate) use engine::run_entered;
@@ -109,6 +109,11 @@ pub enum Event<'a, const D: usize = 2> {
         trial: &'a TrialSummary,
         /// Its last equilibrium.
         state: &'a State<D>,
+    },
+    /// A search along a path of equilibria reached the next one.
+    Path {
+        /// What it found.
+        point: &'a PathPoint,
     },
     /// A stage ended.
     StageEnded {

@@ -1,8 +1,10 @@
 //! The factor of safety by strength reduction: an interval, found by a search that always ends
 //! (theory, eqs. 31 to 34).
 
+mod continuation;
 mod criterion;
 mod interval;
+mod limit;
 mod remarks;
 mod trial;
 
@@ -17,9 +19,10 @@ use self::remarks::{moving_mass, remarks};
 use super::Event;
 use super::left::{End, Search};
 use super::loading::begin;
+use super::model::Model;
 use super::session::{Ended, Path, Session, march_path};
 use super::state::{Controls, State};
-use crate::case::{ReductionPath, Stage, StrengthReduction};
+use crate::case::{Case, ReductionPath, SearchMethod, Stage, StrengthReduction};
 use crate::check::short;
 use crate::error::CaseError;
 use crate::summary::{SafetySummary, StageSummary, TrialSummary};
@@ -43,6 +46,9 @@ pub(crate) fn reduce_strength<const D: usize>(
     left: Option<Search<D>>,
 ) -> Result<Ended, CaseError> {
     let stage = &session.model.case.stages[number];
+    if reduction.search == SearchMethod::Continuation {
+        return continuation::search(session, state, number, reduction, summary);
+    }
     let mut trials = Trials::new(session, state, number, stage, reduction, left)?;
     // Where gravity is raised anew the state found is none that a trial begins with.
     if trials.made.is_empty() && reduction.path == ReductionPath::Reduce {
@@ -80,11 +86,7 @@ impl<'a, const D: usize> Trials<'a, D> {
         reduction: &'a StrengthReduction,
         left: Option<Search<D>>,
     ) -> Result<Self, CaseError> {
-        let mut base = match reduction.path {
-            ReductionPath::Reduce => found.clone(),
-            ReductionPath::Gravity => session.model.undeformed(found)?,
-        };
-        base.body.particles.reset_displacements();
+        let base = undeformed_or_found(session.model, found, reduction)?;
         let limit = reduction
             .failure_displacement
             .or_else(|| default_limit(session.model, stage, &base));
@@ -349,14 +351,6 @@ impl<'a, const D: usize> Trials<'a, D> {
     /// The interval with its criterion; warns of what a reader has to know.
     fn finish(self, session: &mut Session<'_, D>) -> SafetySummary {
         let case = session.model.case;
-        let names = |reduced: bool| -> Vec<String> {
-            case.materials
-                .iter()
-                .enumerate()
-                .filter(|(k, _)| self.reduction.materials.contains(k) == reduced)
-                .map(|(_, material)| material.name.clone())
-                .collect()
-        };
         let mut criterion = match self.stage.geometry {
             Geometry::Given => "no equilibrium is found on the given geometry".to_owned(),
             Geometry::Moving => "no equilibrium is found".to_owned(),
@@ -372,10 +366,11 @@ impl<'a, const D: usize> Trials<'a, D> {
             stable,
             failed,
             criterion,
-            materials: names(true),
-            excluded: names(false),
+            materials: names(case, self.reduction, true),
+            excluded: names(case, self.reduction, false),
             moving_mass,
             trials: self.made,
+            path: None,
         };
         for text in remarks(&safety, self.reduction).into_iter().chain(slid) {
             session.warn(text);
@@ -389,6 +384,35 @@ impl<'a, const D: usize> Trials<'a, D> {
         }
         safety
     }
+}
+
+/// What a search begins with: the state found, or undeformed bodies where gravity is raised anew. Displacements count
+/// from there.
+fn undeformed_or_found<const D: usize>(
+    model: &Model<'_, D>,
+    found: &State<D>,
+    reduction: &StrengthReduction,
+) -> Result<State<D>, CaseError> {
+    let mut base = match reduction.path {
+        ReductionPath::Reduce => found.clone(),
+        ReductionPath::Gravity => model.undeformed(found)?,
+    };
+    base.body.particles.reset_displacements();
+    Ok(base)
+}
+
+/// Names of the materials that a search reduces, or of the others.
+fn names<const D: usize>(
+    case: &Case<D>,
+    reduction: &StrengthReduction,
+    reduced: bool,
+) -> Vec<String> {
+    case.materials
+        .iter()
+        .enumerate()
+        .filter(|(k, _)| reduction.materials.contains(k) == reduced)
+        .map(|(_, material)| material.name.clone())
+        .collect()
 }
 
 /// Whether a trial is the one at F = 1.

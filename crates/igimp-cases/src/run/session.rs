@@ -57,7 +57,7 @@ impl<const D: usize> Session<'_, D> {
     }
 
     /// What a march needs besides the body.
-    fn workspace(&self) -> Workspace<D> {
+    pub(super) fn workspace(&self) -> Workspace<D> {
         let solver = self.model.solver();
         Workspace::new(match &self.export {
             Some(export) => export.watch(solver),
@@ -104,7 +104,11 @@ impl<const D: usize> Session<'_, D> {
     }
 
     /// Adds an accepted step to the tally of its stage.
-    fn tally(&mut self, stage: &mut StageSummary, report: &StepReport) -> Result<(), CaseError> {
+    pub(super) fn tally(
+        &mut self,
+        stage: &mut StageSummary,
+        report: &StepReport,
+    ) -> Result<(), CaseError> {
         stage.steps += 1;
         stage.iterations += report.iterations;
         stage.at_round_off += usize::from(report.at_round_off);
@@ -149,7 +153,11 @@ impl<const D: usize> Session<'_, D> {
     }
 
     /// Adds a step that was not accepted.
-    fn tally_cut(&mut self, stage: &mut StageSummary, error: &StepError) -> Result<(), CaseError> {
+    pub(super) fn tally_cut(
+        &mut self,
+        stage: &mut StageSummary,
+        error: &StepError,
+    ) -> Result<(), CaseError> {
         stage.cuts += 1;
         self.tell(&Event::Cut { error });
         let course = (error.from, error.to, &error.residuals[..]);

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use crate::check::{count, short};
 use crate::mesh_study::plan::label;
 use crate::run::{Event, REACHED_ITS_END, worst_node};
-use crate::summary::{SafetySummary, StageOutcome, StageSummary, TrialSummary};
+use crate::summary::{PathPoint, SafetySummary, StageOutcome, StageSummary, TrialSummary};
 use igimp_solver::{StepError, StepReport};
 
 const SEARCH: &str = "strength-reduction";
@@ -63,6 +63,7 @@ impl Lines {
             )),
             Event::Cut { error } => Some(format!("  {}", cut(error))),
             Event::Trial { trial, .. } => Some(format!("  {}", self::trial(trial))),
+            Event::Path { point } => Some(format!("  {}", path_point(point))),
             Event::StageEnded { summary } => Some(format!("  {}", end(summary))),
             Event::Warning { text } => Some(format!("warning: {text}")),
             Event::OfMesh { parts, event } => self.of_mesh(*parts, event),
@@ -132,6 +133,17 @@ fn trial(trial: &TrialSummary) -> String {
         let _ = write!(line, "  ({})", trial.reason);
     }
     line
+}
+
+/// An equilibrium of a path along which strength is reduced.
+fn path_point(point: &PathPoint) -> String {
+    format!(
+        "SRF {:.4}  {} m  {:.1} % of the work dissipated  {} it",
+        point.factor,
+        short(point.displacement),
+        100.0 * point.dissipated,
+        point.iterations
+    )
 }
 
 /// The end of a stage.
@@ -225,6 +237,9 @@ mod tests {
             false_support: 0.0,
             ghost_penalty: 0.0,
             drag_share: 0.0,
+            work: None,
+            external_work: 0.0,
+            factor_in_doubt: 0.0,
             worst: Some(([31.5, 10.5, 0.0], 0)),
             linear: LinearEffort::default(),
             times: PhaseTimes::default(),

@@ -72,6 +72,9 @@ impl Whole {
     }
 }
 
+/// Share of what is left of a search that an equilibrium of its path is thought to do \[-\].
+const PATH: f64 = 0.15;
+
 impl Mesh {
     fn note<const D: usize>(&mut self, event: &Event<'_, D>) {
         match event {
@@ -83,6 +86,10 @@ impl Mesh {
                 let is_search = self.trials > 0.0;
                 let share = if is_search { TRIAL * left } else { left };
                 self.done = self.done.max(self.trials + share * progress);
+            }
+            Event::Path { .. } => {
+                self.trials += PATH * (1.0 - self.trials);
+                self.done = self.done.max(self.trials);
             }
             Event::Trial { .. } => {
                 self.trials += TRIAL * (1.0 - self.trials);

@@ -1,7 +1,7 @@
 //! Stages that reduce strength: the search for the factor of safety, and the run-out.
 
 use super::stages::Context;
-use crate::case::{Reduction, ReductionPath, RunOut, Strength, StrengthReduction};
+use crate::case::{Reduction, ReductionPath, RunOut, SearchMethod, Strength, StrengthReduction};
 use crate::input::diagnostic::Problems;
 use crate::input::text::clip;
 use crate::input::tree::Node;
@@ -104,7 +104,15 @@ pub(super) fn strength_reduction<const D: usize>(
             context.monitor(also, name, problems).ok()?,
         ),
     };
+    let search = match node.text_at("search")? {
+        "continuation" => SearchMethod::Continuation,
+        _ => SearchMethod::Trials,
+    };
+    if search == SearchMethod::Continuation {
+        on_given_geometry(node, problems);
+    }
     Some(StrengthReduction {
+        search,
         materials: materials?,
         factors: factors?,
         bracket,
@@ -113,6 +121,26 @@ pub(super) fn strength_reduction<const D: usize>(
         failure_displacement,
         monitor,
     })
+}
+
+/// Refuses what a path of equilibria has no place for.
+fn on_given_geometry(node: &Node, problems: &mut Problems) {
+    if node.text_at("geometry") == Some("moving") {
+        problems
+            .error(
+                node.place_at("geometry"),
+                "a path of equilibria is followed on the given geometry",
+            )
+            .help("write geometry = \"given\", or search = \"trials\"");
+    }
+    if !node.items_at("factors").is_empty() {
+        problems
+            .error(
+                node.place_at("factors"),
+                "a path of equilibria has factors of its own",
+            )
+            .help("leave `factors` out, or write search = \"trials\"");
+    }
 }
 
 /// A run-out.

@@ -151,6 +151,12 @@ pub(in crate::input) static STAGE: Kind = Kind::Variants(&Variants {
                     "\"reduce\"",
                     "how the reduced strength is reached",
                 ),
+                default(
+                    "search",
+                    Kind::Choice(&SEARCHES),
+                    "\"trials\"",
+                    "how the factor is looked for",
+                ),
                 geometry("\"given\""),
                 default(
                     "failure",
@@ -273,6 +279,17 @@ static PATHS: [Choice; 2] = [
     choice(
         "gravity",
         "gravity is raised on undeformed bodies of reduced strength",
+    ),
+];
+
+static SEARCHES: [Choice; 2] = [
+    choice(
+        "continuation",
+        "along the path of equilibria, the factor an unknown, until the body moves as a mechanism and the factor rises no longer",
+    ),
+    choice(
+        "trials",
+        "by trials at one factor after another, each of which finds equilibrium or not",
     ),
 ];
 

@@ -17,14 +17,22 @@ pub(super) fn default_limit<const D: usize>(
     if stage.geometry == Geometry::Given {
         return None;
     }
+    displacement_scale(model, state)
+}
+
+/// The displacement γH²/E \[m\] (theory, eq. 32a); none for bodies without weight.
+pub(super) fn displacement_scale<const D: usize>(
+    model: &Model<'_, D>,
+    state: &State<D>,
+) -> Option<f64> {
     let particles = &state.body.particles;
     let weight = particles.mass.iter().sum::<f64>() * model.case.gravity;
     let volume: f64 = particles.volume0.iter().sum();
     let soft: f64 = (particles.volume0.iter().enumerate())
         .map(|(particle, volume)| volume / particles.young(particle, &model.laws))
         .sum();
-    let limit = weight / volume * height(state).powi(2) * soft / volume;
-    (limit > 0.0).then_some(limit)
+    let scale = weight / volume * height(state).powi(2) * soft / volume;
+    (scale > 0.0).then_some(scale)
 }
 
 /// Height of the bodies \[m\].

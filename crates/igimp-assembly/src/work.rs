@@ -1,0 +1,101 @@
+//! Where the work of a step goes: into elastic strain, or into dissipation (theory, eq. 33c).
+
+use igimp_material::{MaterialError, Tensor, logarithmic_strain};
+use rayon::prelude::*;
+
+use crate::error::AssemblyError;
+use crate::kinematics::{add_small_strain, gradients};
+use crate::supports::CHUNK;
+use crate::system::System;
+use crate::trial::Trial;
+
+/// The work of effective stress and of reinforcement on the strain of a step.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct StepWork {
+    /// Work of the stress at the end of the step on the strain of the step \[force·length\].
+    pub whole: f64,
+    /// Its part on the elastic strain \[force·length\].
+    pub elastic: f64,
+    /// Its part on the plastic strain, by law \[force·length\].
+    pub dissipated: Vec<f64>,
+    /// Its part on slip and yield of reinforcement \[force·length\].
+    pub in_reinforcement: f64,
+}
+
+impl StepWork {
+    /// The share of the work that is dissipated \[-\]: 1 where stresses stay and the body moves as a mechanism.
+    pub fn dissipated_share(&self) -> f64 {
+        1.0 - (self.elastic / self.whole).abs()
+    }
+}
+
+impl<const D: usize> System<'_, D> {
+    /// The work of a step that leads to `trial` by nodal displacements `u` \[length\], in small strain.
+    ///
+    /// # Errors
+    /// [`AssemblyError::Material`] of a particle whose elastic strain cannot be told.
+    pub fn work(&self, trial: &Trial<D>, u: &[[f64; D]]) -> Result<StepWork, AssemblyError> {
+        let order = self.stencils.order();
+        let parts: Vec<Result<[f64; 2], AssemblyError>> = (0..order.len())
+            .into_par_iter()
+            .with_min_len(CHUNK)
+            .map(|slot| {
+                let particle = order[slot] as usize;
+                self.work_of_particle(trial, slot, particle, u)
+                    .map_err(|source| AssemblyError::Material { particle, source })
+            })
+            .collect();
+        let mut work = StepWork {
+            dissipated: vec![0.0; self.conditions.laws.len()],
+            ..StepWork::default()
+        };
+        for (&particle, part) in order.iter().zip(parts) {
+            let [whole, elastic] = part?;
+            work.whole += whole;
+            work.elastic += elastic;
+            work.dissipated[self.particles.law[particle as usize]] += whole - elastic;
+        }
+        let [whole, elastic] = self.work_of_reinforcement(u);
+        work.whole += whole;
+        work.elastic += elastic;
+        work.in_reinforcement = whole - elastic;
+        Ok(work)
+    }
+
+    /// The work of a particle, and its elastic part \[force·length\].
+    fn work_of_particle(
+        &self,
+        trial: &Trial<D>,
+        slot: usize,
+        particle: usize,
+        u: &[[f64; D]],
+    ) -> Result<[f64; 2], MaterialError> {
+        let own = &trial.particles[slot];
+        let (gradient, gradient_bar) = gradients(self.stencils.of(particle), u);
+        let mut strain = [[0.0; 3]; 3];
+        add_small_strain(&mut strain, &gradient, &gradient_bar);
+        let before = logarithmic_strain(&self.particles.b_e[particle])?;
+        let mut elastic = [[0.0; 3]; 3];
+        for a in 0..3 {
+            for b in 0..3 {
+                let after: f64 = (0..3)
+                    .map(|k| own.eps_e[k] * own.frame[k][a] * own.frame[k][b])
+                    .sum();
+                elastic[a][b] = after - before[a][b];
+            }
+        }
+        let volume = self.reference_volume(particle);
+        Ok([&strain, &elastic].map(|strain| volume * contracted(&own.tau, strain)))
+    }
+}
+
+/// The double contraction a : b.
+fn contracted(a: &Tensor, b: &Tensor) -> f64 {
+    let mut sum = 0.0;
+    for i in 0..3 {
+        for j in 0..3 {
+            sum += a[i][j] * b[i][j];
+        }
+    }
+    sum
+}

@@ -1,0 +1,422 @@
+//! The factor of safety as the limit of a path of equilibria, the strength reduction factor an unknown (theory,
+//! eqs. 33a to 33f).
+
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+use igimp_assembly::StepWork;
+use igimp_solver::{
+    Accepted, Body, ContinuationSettings, ContinuationState, Observer, StepError, follow,
+};
+
+use super::criterion::displacement_scale;
+use super::{limit, names, undeformed_or_found};
+use crate::case::{ReductionPath, Stage, StrengthReduction};
+use crate::check::short;
+use crate::error::CaseError;
+use crate::run::Event;
+use crate::run::left::End;
+use crate::run::loading::begin;
+use crate::run::session::{Ended, Path, Session, march_path};
+use crate::run::state::{Controls, State};
+use crate::summary::{PathEnd, PathPoint, PathSummary, SafetySummary, StageSummary};
+
+/// A path begins at no smaller factor than this \[-\]: with so many times its strength a body that falls is one that
+/// no strength holds.
+const LEAST_FACTOR: f64 = 0.01;
+
+/// A mechanism whose factor lies this share below that of the limit is worth a remark \[-\].
+const APART: f64 = 5e-3;
+
+/// Searches for the factor of safety of a state along a path of equilibria; the state is left as it was found.
+pub(super) fn search<const D: usize>(
+    session: &mut Session<'_, D>,
+    state: &State<D>,
+    number: usize,
+    reduction: &StrengthReduction,
+    summary: &mut StageSummary,
+) -> Result<Ended, CaseError> {
+    let stage = &session.model.case.stages[number];
+    if reduction.path == ReductionPath::Reduce {
+        begin(session, state, number)?;
+    }
+    let base = undeformed_or_found(session.model, state, reduction)?;
+    let scale = displacement_scale(session.model, &base);
+    let mut from = match reduction.path {
+        ReductionPath::Reduce => 1.0,
+        ReductionPath::Gravity => 0.5 * reduction.bracket[0].min(1.0),
+    };
+    let followed = loop {
+        let search = Search {
+            stage,
+            reduction,
+            found: &state.controls,
+            scale,
+        };
+        let (start, ended) = search.loaded(session, &base, from, summary)?;
+        if let Some(Ended::Interrupted) = ended {
+            return Ok(Ended::Interrupted);
+        }
+        let failed_to_load = matches!(ended, Some(Ended::NotConverged(_)));
+        if !failed_to_load {
+            let followed = search.follow(session, &start, from, summary)?;
+            let is_lost = matches!(followed.ended, Ended::NotConverged(_));
+            if !(is_lost && followed.points.is_empty()) || from <= LEAST_FACTOR {
+                break followed;
+            }
+        } else if from <= LEAST_FACTOR {
+            break Followed {
+                ended: Ended::Completed("no strength holds the body".to_owned()),
+                points: Vec::new(),
+                end: PathEnd::Lost,
+                last: None,
+            };
+        }
+        from = (0.5 * from).max(LEAST_FACTOR);
+    };
+    if matches!(followed.ended, Ended::Interrupted) {
+        return Ok(Ended::Interrupted);
+    }
+    summary.reached = 1.0;
+    finish(session, (stage, reduction), followed, scale, summary)
+}
+
+/// A search along a path.
+struct Search<'a> {
+    stage: &'a Stage,
+    reduction: &'a StrengthReduction,
+    /// Controls of the state that was found.
+    found: &'a Controls,
+    /// γH²/E \[m\].
+    scale: Option<f64>,
+}
+
+/// A path that was followed.
+struct Followed<const D: usize> {
+    ended: Ended,
+    points: Vec<PathPoint>,
+    end: PathEnd,
+    /// The last equilibrium, with that before.
+    last: Option<End<D>>,
+}
+
+impl Search<'_> {
+    /// Controls at a strength reduction factor.
+    fn at(&self, factor: f64) -> Controls {
+        let mut controls = self.found.clone();
+        controls.drained = self.stage.drained;
+        if self.reduction.path == ReductionPath::Gravity && controls.gravity == 0.0 {
+            controls.gravity = 1.0;
+        }
+        for &material in &self.reduction.materials {
+            controls.srf[material] = factor;
+        }
+        controls
+    }
+
+    /// The state in which the path begins: that found, or undeformed bodies loaded at the strength of a factor; and how
+    /// the loading ended.
+    fn loaded<const D: usize>(
+        &self,
+        session: &mut Session<'_, D>,
+        base: &State<D>,
+        factor: f64,
+        summary: &mut StageSummary,
+    ) -> Result<(State<D>, Option<Ended>), CaseError> {
+        let mut state = base.clone();
+        if self.reduction.path == ReductionPath::Reduce {
+            return Ok((state, None));
+        }
+        let mut from = base.controls.clone();
+        for &material in &self.reduction.materials {
+            from.srf[material] = factor;
+        }
+        let path = Path {
+            from: &from,
+            to: &self.at(factor),
+            drag: &|_, _| 0.0,
+            method: session.model.method(self.stage.geometry),
+            settings: session.model.march_settings(self.stage.steps),
+            held: None,
+            left: None,
+        };
+        let ended = march_path(session, &mut state, &path, summary, &mut |_, _, _| Ok(None))?;
+        state.body.particles.reset_displacements();
+        Ok((state, Some(ended)))
+    }
+
+    /// Follows the path of a state from a strength reduction factor to its end.
+    fn follow<const D: usize>(
+        &self,
+        session: &mut Session<'_, D>,
+        start: &State<D>,
+        from: f64,
+        summary: &mut StageSummary,
+    ) -> Result<Followed<D>, CaseError> {
+        let model = session.model;
+        let mut state = start.clone();
+        let lowered = model.lowered(&start.controls);
+        let load_path = |from: f64, to: f64| {
+            let controls = (&self.at(from), &self.at(to));
+            model.conditions_on(model.grid(lowered), controls, 0.0)
+        };
+        let settings = ContinuationSettings::new(model.march_settings(1).newton);
+        let mut continuation = ContinuationState::start(from, &settings);
+        let mut workspace = session.workspace();
+        let mut watch = Watch {
+            search: self,
+            before: None,
+            last: Arc::new(state.body.clone()),
+            points: Vec::new(),
+            end: PathEnd::Lost,
+            stopped: Ok(None),
+            session,
+            summary,
+        };
+        let failure = follow(
+            &mut continuation,
+            &mut state.body,
+            &model.method(self.stage.geometry),
+            &load_path,
+            &settings,
+            &mut workspace,
+            &mut watch,
+        );
+        let Watch {
+            before,
+            points,
+            end,
+            stopped,
+            ..
+        } = watch;
+        state.controls = self.at(continuation.factor);
+        let ended = match (stopped?, failure) {
+            (Some(ended), _) => ended,
+            (None, Some(error)) => Ended::NotConverged(error),
+            (None, None) => Ended::Completed("the steps of the path ran out".to_owned()),
+        };
+        let srf = continuation.factor;
+        let last = (!points.is_empty()).then_some(End { srf, state, before });
+        Ok(Followed {
+            ended,
+            points,
+            end,
+            last,
+        })
+    }
+}
+
+/// Follows a path for its search.
+struct Watch<'w, 's, const D: usize> {
+    search: &'w Search<'w>,
+    session: &'w mut Session<'s, D>,
+    summary: &'w mut StageSummary,
+    /// The equilibrium before the last one, and that.
+    before: Option<Arc<Body<D>>>,
+    last: Arc<Body<D>>,
+    points: Vec<PathPoint>,
+    end: PathEnd,
+    stopped: Result<Option<Ended>, CaseError>,
+}
+
+impl<const D: usize> Watch<'_, '_, D> {
+    fn step(&mut self, accepted: &Accepted<'_, D>) -> Result<Option<Ended>, CaseError> {
+        let report = accepted.report;
+        let number = self.summary.steps + 1;
+        self.session.tell(&Event::Equilibrium { number, accepted });
+        self.session.tally(self.summary, report)?;
+        let now = Arc::new(accepted.body.clone());
+        self.before = Some(std::mem::replace(&mut self.last, now));
+        let before = self.points.last().map_or(0.0, |point| point.work);
+        let monitor = self.search.reduction.monitor;
+        let particles = &accepted.body.particles;
+        let share = report.work.as_ref().map(StepWork::dissipated_share);
+        let point = PathPoint {
+            factor: report.to,
+            work: before + report.external_work,
+            displacement: self.session.displacement(monitor, particles),
+            dissipated: share.filter(|share| share.is_finite()).unwrap_or(0.0),
+            plastic_share: report.plastic_share,
+            iterations: report.iterations,
+            in_doubt: report.factor_in_doubt,
+        };
+        self.session.tell(&Event::Path { point: &point });
+        self.points.push(point);
+        if self.session.interrupted() {
+            return Ok(Some(Ended::Interrupted));
+        }
+        let displacement = self.search.reduction.failure_displacement;
+        let end = limit::end(&self.points, self.search.scale, displacement);
+        Ok(end.map(|end| {
+            self.end = end;
+            Ended::Completed(end.sentence().to_owned())
+        }))
+    }
+}
+
+impl<const D: usize> Observer<D> for Watch<'_, '_, D> {
+    fn on_step(&mut self, accepted: &Accepted<'_, D>) -> ControlFlow<()> {
+        if self.stopped.as_ref().is_ok_and(Option::is_none) {
+            self.stopped = self.step(accepted);
+        }
+        match self.stopped {
+            Ok(None) => ControlFlow::Continue(()),
+            _ => ControlFlow::Break(()),
+        }
+    }
+
+    fn on_cut(&mut self, error: &StepError) {
+        let told = self.session.tally_cut(self.summary, error);
+        if let (Ok(_), Err(error)) = (&self.stopped, told) {
+            self.stopped = Err(error);
+        }
+    }
+}
+
+/// The factor of safety that a path tells, with its remarks.
+fn finish<const D: usize>(
+    session: &mut Session<'_, D>,
+    (stage, reduction): (&Stage, &StrengthReduction),
+    followed: Followed<D>,
+    scale: Option<f64>,
+    summary: &mut StageSummary,
+) -> Result<Ended, CaseError> {
+    let Followed {
+        ended,
+        points,
+        end,
+        last,
+    } = followed;
+    let path = PathSummary {
+        end,
+        mechanism: limit::mechanism(&points),
+        knee: limit::knee(&points),
+        rise: limit::rise(&points),
+        displacement_scale: scale,
+        points,
+    };
+    let (stable, failed) = interval(&path, reduction);
+    for text in remarks(&path) {
+        session.warn(text);
+    }
+    if let Ended::NotConverged(cause) = &ended {
+        session.warn(format!(
+            "the path of equilibria in stage \"{}\" was lost: {}; what it reached is no limit, and search = \"trials\" \
+             asks another way",
+            stage.name, cause.failure
+        ));
+    }
+    let moving_mass = last
+        .as_ref()
+        .map(|end| super::remarks::moving_mass(&end.state));
+    session.records.factor_of_safety = match (stable, failed) {
+        (Some(stable), Some(failed)) => 0.5 * (stable + failed),
+        _ => f64::NAN,
+    };
+    if let Some(output) = &mut session.output {
+        output.keep_ends(last, None);
+    }
+    let whose = session.whose_displacement(reduction.monitor);
+    summary.safety = Some(SafetySummary {
+        stable,
+        failed,
+        criterion: criterion(reduction, &whose),
+        materials: names(session.model.case, reduction, true),
+        excluded: names(session.model.case, reduction, false),
+        moving_mass,
+        trials: Vec::new(),
+        path: Some(path),
+    });
+    Ok(match ended {
+        Ended::NotConverged(cause) => {
+            Ended::Completed(format!("the path was lost: {}", cause.failure))
+        }
+        ended => ended,
+    })
+}
+
+/// What counts as failure, in words.
+fn criterion(reduction: &StrengthReduction, whose: &str) -> String {
+    let mut text =
+        "the increment is a mechanism and the factor rises no longer, on the given geometry"
+            .to_owned();
+    if let Some(limit) = reduction.failure_displacement {
+        text += &format!(", or {whose} exceeds {} m", short(limit));
+    }
+    text
+}
+
+/// The interval of the factor of safety: from the equilibrium that tells it to where it would rise in another doubling of
+/// the work, both wider by what the residual leaves in doubt (theory, eq. 33f).
+fn interval(path: &PathSummary, reduction: &StrengthReduction) -> (Option<f64>, Option<f64>) {
+    let Some(last) = path.points.last() else {
+        return (None, None);
+    };
+    let largest = path
+        .points
+        .iter()
+        .map(|point| point.factor)
+        .fold(0.0, f64::max);
+    let doubt = path
+        .points
+        .iter()
+        .map(|point| point.in_doubt)
+        .fold(0.0, f64::max);
+    let rise = path.rise.unwrap_or(0.0).max(0.0);
+    let around = |factor: f64, above: f64| {
+        (
+            Some(factor * (1.0 - doubt)),
+            Some(factor * (1.0 + doubt + above)),
+        )
+    };
+    match path.end {
+        PathEnd::Limit | PathEnd::Fallen => around(largest, rise),
+        PathEnd::StillRising => {
+            let mechanism = path.mechanism.map_or(last.factor, |point| point.factor);
+            around(mechanism, 0.0)
+        }
+        PathEnd::Displacement => {
+            let limit = reduction.failure_displacement.unwrap_or(f64::INFINITY);
+            let at = limit::at_displacement(&path.points, limit).unwrap_or(*last);
+            around(at.factor, 0.0)
+        }
+        PathEnd::Lost => (Some(last.factor), None),
+    }
+}
+
+/// What a reader has to know of a path.
+fn remarks(path: &PathSummary) -> Vec<String> {
+    let mut remarks = Vec::new();
+    let Some(last) = path.points.last() else {
+        remarks.push(
+            "no equilibrium was found, whatever the strength: this tells nothing of the factor of safety".to_owned(),
+        );
+        return remarks;
+    };
+    if last.factor < 1.0 {
+        remarks.push(
+            "the body does not stand at full strength: the factor of safety is below 1".to_owned(),
+        );
+    }
+    let Some(mechanism) = path.mechanism else {
+        return remarks;
+    };
+    let told =
+        |point: &PathPoint| format!("{:.4} at {} m", point.factor, short(point.displacement));
+    if path.end == PathEnd::StillRising {
+        remarks.push(format!(
+            "the factor is that at which the body moves as a mechanism, {}; on the given geometry it is still rising, by \
+             {} % in the last doubling of the work, to {}",
+            told(&mechanism),
+            short(100.0 * path.rise.unwrap_or(0.0)),
+            told(last)
+        ));
+    } else if last.factor > (1.0 + APART) * mechanism.factor {
+        remarks.push(format!(
+            "the body moves as a mechanism from {} on, and the factor rises no longer from {}",
+            told(&mechanism),
+            told(last)
+        ));
+    }
+    remarks
+}

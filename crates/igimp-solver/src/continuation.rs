@@ -1,0 +1,218 @@
+//! Continuation: a body is followed along its path of equilibria, the load factor an unknown, by steps of work that
+//! grow and shrink with the effort (theory, eqs. 33a and 33b; Sysala et al. 2023, arXiv 2312.12170).
+//!
+//! Near a limit the load factor changes little and the body moves much: steps of work go on where steps of the load
+//! factor find no equilibrium.
+
+use igimp_assembly::Method;
+
+use crate::body::Body;
+use crate::free_factor::Guess;
+use crate::march::{Accepted, LoadPath, MarchState, Observer};
+use crate::newton::{NewtonSettings, Target, Workspace, step_on_path};
+use crate::report::{NodalForces, StepError, StepReport};
+
+/// How a path is followed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContinuationSettings {
+    /// First change of the load factor, as a share of it \[-\].
+    pub first_change: f64,
+    /// Changes of the load factor that begin a path, before steps of work: so many that do work.
+    pub direct_steps: usize,
+    /// Most steps in all.
+    pub most_steps: usize,
+    /// How often a step may be halved in succession.
+    pub halvings: u32,
+    /// The iteration of each step.
+    pub newton: NewtonSettings,
+}
+
+impl ContinuationSettings {
+    /// Settings with the iteration of each step.
+    pub fn new(newton: NewtonSettings) -> Self {
+        Self {
+            first_change: 0.05,
+            direct_steps: 2,
+            most_steps: 200,
+            halvings: 8,
+            newton,
+        }
+    }
+}
+
+/// Where a continuation stands between two steps: with the body, all that it needs to go on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ContinuationState<const D: usize> {
+    /// Load factor reached \[-\].
+    pub factor: f64,
+    /// Change of the load factor in the next step, while such steps are made, as a share of it \[-\].
+    pub change: f64,
+    /// Steps that did work so far.
+    pub working: usize,
+    /// Steps so far.
+    pub steps: usize,
+    /// Work of the external force since the beginning \[force·length\].
+    pub work: f64,
+    /// Work of the next step \[force·length\].
+    pub size: f64,
+    /// The last step that did work.
+    pub last: Option<LastStep<D>>,
+}
+
+/// A step that did work.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LastStep<const D: usize> {
+    /// Nodal step displacements \[length\].
+    pub u: Vec<[f64; D]>,
+    /// Change of the load factor \[-\].
+    pub change: f64,
+    /// Work of the external force \[force·length\].
+    pub work: f64,
+}
+
+impl<const D: usize> ContinuationState<D> {
+    /// The beginning of a path at a load factor.
+    pub fn start(factor: f64, settings: &ContinuationSettings) -> Self {
+        Self {
+            factor,
+            change: settings.first_change,
+            working: 0,
+            steps: 0,
+            work: 0.0,
+            size: 0.0,
+            last: None,
+        }
+    }
+
+    /// What the next step is to reach.
+    fn target(&self, settings: &ContinuationSettings) -> Target<D> {
+        match &self.last {
+            Some(last) if self.working >= settings.direct_steps => {
+                let by = self.size / last.work;
+                let most = settings.first_change * self.factor.abs();
+                let u = last.u.iter().map(|u| u.map(|u| by * u)).collect();
+                Target::Work {
+                    work: self.size,
+                    guess: Guess {
+                        u,
+                        factor: self.factor + (by * last.change).clamp(-most, most),
+                    },
+                }
+            }
+            _ => Target::Factor(self.factor * (1.0 + self.change)),
+        }
+    }
+
+    /// Takes an accepted step in.
+    fn take(
+        &mut self,
+        (step, forces, work): (&StepReport, &NodalForces<D>, f64),
+        target: &Target<D>,
+        settings: &ContinuationSettings,
+    ) {
+        self.steps += 1;
+        self.work += work;
+        self.factor = step.to;
+        let of_stress = step.work.as_ref().map_or(0.0, |work| work.whole);
+        let does_work = work > 0.0 && of_stress > 0.0 && step.plastic_share > 0.0;
+        match target {
+            Target::Work { .. } => self.size = work * growth(step.iterations),
+            Target::Factor(_) if !does_work => {
+                self.change = (2.0 * self.change).min(LARGEST_CHANGE);
+                return;
+            }
+            Target::Factor(_) => {
+                self.working += 1;
+                self.size = work;
+                self.change = self.change.min(settings.first_change);
+            }
+        }
+        self.last = Some(LastStep {
+            u: forces.u.clone(),
+            change: step.to - step.from,
+            work,
+        });
+    }
+
+    /// Halves the next step.
+    fn halve(&mut self, settings: &ContinuationSettings) {
+        self.size *= 0.5;
+        self.change *= 0.5;
+        // A limit that is nearer than the first change is approached by steps of work at once.
+        if self.last.is_some() {
+            self.working = settings.direct_steps;
+        }
+    }
+}
+
+/// Largest change of the load factor where nothing yields, as a share of it \[-\].
+const LARGEST_CHANGE: f64 = 0.4;
+
+/// Work of the next step over that of one that took so many corrections \[-\].
+fn growth(corrections: usize) -> f64 {
+    match corrections {
+        0..=6 => 2.0,
+        7..=10 => 1.5,
+        11..=15 => 1.0,
+        _ => 0.7,
+    }
+}
+
+/// Follows a body along its path from a state, until the observer ends it; the failure of the last step where no step
+/// was found, however small.
+///
+/// An observer sees each accepted step with the [`ContinuationState`] after it. A failed step leaves the body at its last
+/// equilibrium.
+pub fn follow<const D: usize>(
+    state: &mut ContinuationState<D>,
+    body: &mut Body<D>,
+    method: &Method,
+    load_path: &dyn LoadPath<D>,
+    settings: &ContinuationSettings,
+    workspace: &mut Workspace<D>,
+    observer: &mut dyn Observer<D>,
+) -> Option<StepError> {
+    let mut halvings = 0;
+    while state.steps < settings.most_steps {
+        let target = state.target(settings);
+        let on_path = (state.factor, &target);
+        match step_on_path(
+            body,
+            method,
+            load_path,
+            on_path,
+            &settings.newton,
+            workspace,
+        ) {
+            Ok((conditions, report, forces)) => {
+                halvings = 0;
+                let work = report.external_work;
+                state.take((&report, &forces, work), &target, settings);
+                let march = MarchState {
+                    at: state.factor,
+                    size: state.size,
+                    successes: 0,
+                };
+                let accepted = Accepted {
+                    body,
+                    conditions: &conditions,
+                    report: &report,
+                    forces: &forces,
+                    state: &march,
+                };
+                if observer.on_step(&accepted).is_break() {
+                    return None;
+                }
+            }
+            Err(error) => {
+                observer.on_cut(&error);
+                halvings += 1;
+                if halvings > settings.halvings || !error.failure.is_want_of_equilibrium() {
+                    return Some(error);
+                }
+                state.halve(settings);
+            }
+        }
+    }
+    None
+}
