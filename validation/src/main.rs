@@ -14,6 +14,7 @@ mod footing_contact;
 mod footing_side;
 mod laboratory;
 mod layers;
+mod limit;
 mod limit_equilibrium;
 mod manufactured;
 mod matrix;
@@ -106,6 +107,7 @@ enum Case {
     Prism,
     Elastica,
     Slopes,
+    Limit,
     TiltedLayer,
     PseudoStatic,
     Layers,
@@ -155,6 +157,7 @@ impl Case {
             Self::Prism => prism::study(out),
             Self::Elastica => elastica::study(level, out),
             Self::Slopes => slopes::study(level, out),
+            Self::Limit => limit::study(level, out),
             Self::PseudoStatic => pseudo_static::study(level, out),
             Self::TiltedLayer => tilted_layer::study(level, out),
             Self::Layers => layers::study(out),

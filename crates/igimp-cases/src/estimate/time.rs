@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 
 use super::speed::Speed;
 use super::{Estimate, TRIALS};
-use crate::case::{Case, Every, ReductionPath, Stage, StageKind};
+use crate::case::{Case, Every, ReductionPath, SearchMethod, Stage, StageKind};
 use crate::summary::StageSummary;
 
 /// Set-up and commit of a step \[s per particle\].
@@ -35,6 +35,10 @@ const STATE: [f64; 2] = [4e-3, 1.5e-6];
 const BEGINNING: f64 = 6e-2;
 /// Shares of the time that more threads divide: of marching, of output \[-\].
 const PARALLEL: [f64; 2] = [0.8, 0.6];
+/// Steps of a path of equilibria to its limit, and its corrections with those of steps that were halved.
+const PATH_STEPS: f64 = 14.0;
+const PATH_CORRECTIONS: f64 = 130.0;
+
 /// Corrections of a trial that fails, beside those of its accepted steps.
 const FAILING: f64 = 15.0;
 
@@ -98,6 +102,13 @@ fn planned(stage: &Stage) -> Taken {
             let [low, high] = search.bracket;
             let halvings = ((high - low) / search.tolerance).max(2.0).log2();
             let trials = search.factors.len() as f64 + halvings.min(TRIALS);
+            if search.search == SearchMethod::Continuation {
+                return Taken {
+                    steps: PATH_STEPS,
+                    corrections: PATH_CORRECTIONS,
+                    trials: 0.0,
+                };
+            }
             match search.path {
                 ReductionPath::Gravity => (steps * trials, trials),
                 // A march of the reduction ends within the bracket, at its upper end at the latest; small

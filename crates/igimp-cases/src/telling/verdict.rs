@@ -6,7 +6,7 @@ use std::path::Path;
 use crate::check::{count, short};
 use crate::mesh_study::{MeshSummary, StudySummary};
 use crate::printable::on_a_line;
-use crate::summary::{CheckRow, SafetySummary, Summary};
+use crate::summary::{CheckRow, PathPoint, SafetySummary, Summary};
 
 use super::{lines, table};
 
@@ -129,6 +129,23 @@ fn explain(safety: &SafetySummary) -> String {
     }
     if let Some(share) = safety.moving_mass {
         parts.push(format!("{:.0} % of the mass moves", 100.0 * share));
+    }
+    if let Some(path) = &safety.path {
+        let at = |what: &str, point: &PathPoint| {
+            format!(
+                "{what} {:.3} at {} m",
+                point.factor,
+                short(point.displacement)
+            )
+        };
+        parts.extend(path.knee.as_ref().map(|knee| at("knee", knee)));
+        parts.extend(
+            path.mechanism
+                .as_ref()
+                .map(|found| at("mechanism from", found)),
+        );
+        let scale = path.displacement_scale;
+        parts.extend(scale.map(|scale| format!("γH²/E = {} m", short(scale))));
     }
     if parts.is_empty() {
         String::new()

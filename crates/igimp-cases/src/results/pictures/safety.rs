@@ -6,7 +6,7 @@ use super::{file_name, titled, write};
 use crate::check::short;
 use crate::error::CaseError;
 use crate::results::fields::{Dimension, Scale as Unit};
-use crate::summary::{FigureNote, SafetySummary};
+use crate::summary::{FigureNote, PathPoint, PathSummary, SafetySummary};
 use igimp_figures::{Band, Colour, CurvePlot, LineStyle, Scale, Series, SeriesStyle};
 
 /// Displacements that differ by more than this factor are drawn over a logarithmic axis.
@@ -23,9 +23,11 @@ pub fn safety_picture(
     stage: &str,
     safety: &SafetySummary,
 ) -> Result<FigureNote, CaseError> {
+    let of_trials = safety.trials.iter().map(|trial| trial.displacement);
+    let on_path = safety.path.iter().flat_map(|path| &path.points);
     let unit = Unit::of(
         Dimension::Displacement,
-        safety.trials.iter().map(|trial| trial.displacement),
+        of_trials.chain(on_path.map(|point| point.displacement)),
     );
     let of = |stable: bool| {
         let mut points: Vec<[f64; 2]> = safety
@@ -48,6 +50,13 @@ pub fn safety_picture(
         .filter(|[srf, _]| safety.stable.is_some_and(|stable| *srf <= stable))
         .collect();
     course.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let points = safety.path.iter().flat_map(|path| &path.points);
+    course.extend(points.map(|point| [point.factor, point.displacement / unit.divide_by]));
+    let knots = |of: fn(&PathSummary) -> Option<PathPoint>| -> Vec<[f64; 2]> {
+        let found = safety.path.as_ref().and_then(of);
+        let place = |point: PathPoint| [point.factor, point.displacement / unit.divide_by];
+        found.map(place).into_iter().collect()
+    };
     let heights = || {
         let all = stable.iter().chain(&failed).chain(&course);
         all.map(|point| point[1])
@@ -69,10 +78,16 @@ pub fn safety_picture(
     });
     let style = SeriesStyle::LineAndMarkers(LineStyle::Solid);
     let stands = if course.is_empty() { stable } else { course };
-    let series = vec![
-        Series::new("stands", stands, style).in_colour(Colour::CURVE),
-        Series::markers("fails, last equilibrium", failed).in_colour(Colour::FAILURE),
-    ];
+    let mut series = vec![Series::new("stands", stands, style).in_colour(Colour::CURVE)];
+    series.extend(if safety.path.is_some() {
+        vec![
+            Series::markers("moves as a mechanism", knots(|path| path.mechanism))
+                .in_colour(Colour::FAILURE),
+            Series::markers("knee", knots(|path| path.knee)).in_colour(Colour::NO_VALUE),
+        ]
+    } else {
+        vec![Series::markers("fails, last equilibrium", failed).in_colour(Colour::FAILURE)]
+    });
     let plot = CurvePlot {
         title: titled(case_title, stage),
         x_label: "strength reduction factor F [−]".into(),
@@ -83,10 +98,15 @@ pub fn safety_picture(
         series,
         ..CurvePlot::default()
     };
+    let rest = match &safety.path {
+        Some(path) => format!("The path ended because {}.", path.end.sentence()),
+        None => "A trial that fails stands at the smallest factor at which \
+                 it failed, with the displacement of its last equilibrium."
+            .to_owned(),
+    };
     let caption = format!(
         "Displacement over the strength reduction factor at every equilibrium of “{stage}”; shaded: the \
-         interval of the factor of safety. A trial that fails stands at the smallest factor at which \
-         it failed, with the displacement of its last equilibrium."
+         interval of the factor of safety. {rest}"
     );
     let name = format!("safety-{}", file_name(stage));
     write(folder, &name, &plot.draw()?, caption)

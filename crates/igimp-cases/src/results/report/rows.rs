@@ -308,6 +308,17 @@ pub(super) struct SafetyView {
     stage: String,
     text: String,
     trials: Vec<TrialView>,
+    path: Vec<PathView>,
+}
+
+/// An equilibrium of a path.
+#[derive(Serialize)]
+struct PathView {
+    factor: String,
+    displacement: String,
+    dissipated: String,
+    plastic: String,
+    iterations: String,
 }
 
 /// A trial of a search.
@@ -334,7 +345,16 @@ pub(super) fn safety(summary: &Summary) -> Vec<SafetyView> {
             iterations: grouped(trial.iterations),
             cuts: grouped(trial.cuts),
         });
+        let points = safety.path.iter().flat_map(|path| &path.points);
+        let path = points.map(|point| PathView {
+            factor: format!("{:.4}", point.factor),
+            displacement: length(point.displacement),
+            dissipated: percent(point.dissipated),
+            plastic: percent(point.plastic_share),
+            iterations: grouped(point.iterations),
+        });
         Some(SafetyView {
+            path: path.collect(),
             stage: stage.name.clone(),
             text: on_safety(safety).join(" "),
             trials: trials.collect(),

@@ -4,7 +4,9 @@ use serde::Serialize;
 
 use super::rows::{interval, percent};
 use crate::check::short;
-use crate::summary::{CheckRow, SafetySummary, StageOutcome, StageSummary, Summary};
+use crate::summary::{
+    CheckRow, PathPoint, PathSummary, SafetySummary, StageOutcome, StageSummary, Summary,
+};
 
 /// A share of moving mass below this may be a failure of a small part only \[-\].
 const LOCAL: f64 = 0.05;
@@ -131,6 +133,9 @@ pub(super) fn on_safety(safety: &SafetySummary) -> Vec<String> {
     if !criterion.is_empty() {
         sentences.push(format!("Counted as failure: {criterion}."));
     }
+    if let Some(path) = &safety.path {
+        sentences.extend(on_path(path));
+    }
     if !safety.materials.is_empty() {
         let not = if safety.excluded.is_empty() {
             String::new()
@@ -153,6 +158,21 @@ pub(super) fn on_safety(safety: &SafetySummary) -> Vec<String> {
         ));
     }
     sentences
+}
+
+/// Knee, mechanism and displacement scale of a path.
+fn on_path(path: &PathSummary) -> Option<String> {
+    let at = |point: &PathPoint| format!("{:.3} at {} m", point.factor, short(point.displacement));
+    let (knee, mechanism) = (path.knee.as_ref()?, path.mechanism.as_ref()?);
+    let scale = path.displacement_scale?;
+    Some(format!(
+        "The path of equilibria has its knee at {} and is a mechanism from {} on; it ended because {}. The displacement \
+         scale γH²/E is {} m.",
+        at(knee),
+        at(mechanism),
+        path.end.sentence(),
+        short(scale)
+    ))
 }
 
 /// "a", "a and b", "a, b and c".

@@ -6,8 +6,8 @@ use igimp_assembly::Geometry;
 
 use super::{kilo, table};
 use crate::case::{
-    Case, Construction, Load, Reduction, ReductionPath, RigidDrive, RigidMove, Stage, StageKind,
-    StopWhen,
+    Case, Construction, Load, Reduction, ReductionPath, RigidDrive, RigidMove, SearchMethod, Stage,
+    StageKind, StopWhen,
 };
 use crate::check::short;
 use crate::summary::SetupTable;
@@ -96,11 +96,16 @@ fn happens<const D: usize>(case: &Case<D>, stage: &Stage) -> String {
                 ReductionPath::Reduce => "step by step",
                 ReductionPath::Gravity => "with gravity raised anew",
             };
-            format!(
-                "search for the factor of safety to within {}, strength of {} reduced {path}",
-                short(reduction.tolerance),
-                materials(&reduction.materials)
-            )
+            let strength = materials(&reduction.materials);
+            match reduction.search {
+                SearchMethod::Continuation => format!(
+                    "search for the factor of safety along the path of equilibria, strength of {strength} reduced {path}"
+                ),
+                SearchMethod::Trials => format!(
+                    "search for the factor of safety to within {}, strength of {strength} reduced {path}",
+                    short(reduction.tolerance)
+                ),
+            }
         }
         StageKind::RunOut(run_out) => {
             let by = match run_out.reduction {

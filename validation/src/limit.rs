@@ -1,0 +1,357 @@
+//! The factor of safety as the limit of a path of equilibria: held against bounds, against the search by trials, and
+//! against itself for other tolerances, stiffnesses and steps.
+
+use std::fmt::Write as _;
+use std::path::Path as Folder;
+
+use igimp_assembly::Locking;
+use igimp_cases::CaseError;
+use igimp_cases::check::{Band, short};
+use igimp_cases::summary::{PathEnd, PathPoint, PathSummary, StageSummary};
+use rayon::prelude::*;
+
+use crate::oracle::{Oracle, OracleKind};
+use crate::reference::{slope_limit_load_bounds, slope_safety_bounds};
+use crate::runs::Computed;
+use crate::slopes::problems::{Asked, Problem, drained, published, undrained};
+use crate::slopes::section::{Path, Search, Variant, YOUNG};
+use crate::study::{Level, RunRecord, Study};
+
+/// What the book says of the study.
+const ABOUT: &str = "The slopes with bounds by limit analysis, searched for along the path of equilibria, the strength reduction factor an unknown: against the bounds, against the search by trials, and against itself for other tolerances, stiffnesses and effort.";
+/// What is measured.
+const QUANTITY: &str = "factor of safety [-]";
+/// Elastic constants and the solver enter no limit load.
+const LIMIT_THEOREMS: Oracle = Oracle {
+    kind: OracleKind::Theory,
+    source: "theorems of limit analysis",
+    locator: "the limit load of a given geometry depends on strength alone; band: the rise that ends a path and a doubling more",
+};
+/// Work that is dissipated.
+const BALANCE: Oracle = Oracle {
+    kind: OracleKind::Theory,
+    source: "balance of work",
+    locator: "stresses of a mechanism stay, so all of the work is dissipated",
+};
+/// The other way to the same number.
+const TRIALS: Oracle = Oracle {
+    kind: OracleKind::IndependentProgram,
+    source: "search by trials, each of which finds equilibrium or not",
+    locator: "the same equations by steps of the factor; band: where Newton's method stops on a curve that still rises",
+};
+/// Largest spread of a factor of safety over settings of the solver, as a share of it \[-\].
+const SPREAD: f64 = 3e-3;
+/// Largest difference from the search by trials, as a share \[-\].
+const BESIDE_TRIALS: f64 = 5e-3;
+/// The slope whose settings are varied.
+const VARIED: &str = "4.5 m high, 2:1";
+
+/// A search along a path, or by trials.
+struct Sought<'p> {
+    problem: &'p Problem,
+    associated: bool,
+    cells: u32,
+}
+
+/// What it found.
+struct Found {
+    factor: f64,
+    stage: StageSummary,
+    /// Corrections, those of steps that were cut too.
+    corrections: usize,
+    seconds: f64,
+}
+
+impl Found {
+    fn of(computed: &Computed) -> Self {
+        let stage = computed
+            .run
+            .summary
+            .stages
+            .last()
+            .cloned()
+            .unwrap_or_default();
+        let ends = stage
+            .safety
+            .as_ref()
+            .and_then(|found| Some([found.stable?, found.failed?]));
+        let reports = computed.trials.iter().map(|trial| &trial.report);
+        let failures = reports
+            .chain([&computed.report])
+            .flat_map(|report| &report.failures);
+        let lost: usize = failures
+            .map(|error| error.residuals.len().saturating_sub(1))
+            .sum();
+        Self {
+            factor: ends.map_or(f64::NAN, |[stable, failed]| 0.5 * (stable + failed)),
+            corrections: stage.iterations + lost,
+            seconds: computed.elapsed.as_secs_f64(),
+            stage,
+        }
+    }
+
+    fn path(&self) -> Option<&PathSummary> {
+        self.stage.safety.as_ref()?.path.as_ref()
+    }
+
+    fn record(&self, variant: String) -> RunRecord {
+        let path = self.path();
+        RunRecord {
+            variant,
+            outcome: path.map_or_else(String::new, |path| path.end.sentence().to_owned()),
+            steps: self.stage.steps,
+            iterations: self.stage.iterations,
+            cuts: self.stage.cuts,
+            seconds: self.seconds,
+            at_round_off: self.stage.at_round_off,
+            phases: [0.0; 5],
+            stopped_by: None,
+            residuals: Vec::new(),
+        }
+    }
+}
+
+impl Sought<'_> {
+    /// The search with settings of the case.
+    fn find(
+        &self,
+        search: Search,
+        along_path: bool,
+        settings: &[String],
+    ) -> Result<Found, CaseError> {
+        let stage = match search.path {
+            Path::Reduce => 1,
+            Path::Gravity => 0,
+        };
+        let mut overrides = settings.to_vec();
+        if along_path {
+            overrides.push(format!("stages.{stage}.search=\"continuation\""));
+        }
+        let variant = Variant {
+            cells: self.cells,
+            locking: Locking::SharedStrain,
+            associated: self.associated,
+        };
+        let case = self
+            .problem
+            .section
+            .case_with(variant, search, &overrides)?;
+        Ok(Found::of(&Computed::new(case)?))
+    }
+
+    fn name(&self) -> String {
+        let flow = if self.associated { "" } else { ", ψ = 0" };
+        format!("{}{flow}, H/{}", self.problem.section.name, self.cells)
+    }
+
+    fn asked(&self) -> Asked {
+        let without = self.problem.without_dilation.filter(|_| !self.associated);
+        without.unwrap_or(self.problem.asked)
+    }
+}
+
+/// Runs the study.
+pub(crate) fn study(level: Level, out: &Folder) -> Result<Study, CaseError> {
+    let mut study = Study::new("limit", ABOUT, out)?;
+    let mut problems = undrained(&slope_limit_load_bounds().rows());
+    problems.extend(drained(&slope_safety_bounds().rows()));
+    problems.extend(published());
+    // Those that a grid of ten cells sees, with cohesion enough for its cells.
+    problems.retain(|problem| problem.known.is_some() && problem.levels[0] < Level::Full);
+    problems.retain(|problem| {
+        problem
+            .section
+            .layers
+            .iter()
+            .all(|layer| layer.cohesion > 3.0)
+    });
+    let sought = sought(&problems, level);
+    let both = sought
+        .par_iter()
+        .map(|own| {
+            let search = own.problem.search;
+            let by_path = own.find(search, true, &[])?;
+            Ok((by_path, own.find(search, false, &[])?))
+        })
+        .collect::<Result<Vec<_>, CaseError>>()?;
+    let mut note = "along the path: F; mechanism at displacement [m]; corrections against trials; F by trials\n".to_owned();
+    for (own, (path, trials)) in sought.iter().zip(&both) {
+        against_bounds(&mut study, own, path);
+        against_trials(&mut study, own, (path, trials));
+        let mechanism = path.path().and_then(|path| path.mechanism);
+        let at = |point: PathPoint| format!("{:.4} at {}", point.factor, short(point.displacement));
+        let _ = writeln!(
+            note,
+            "  {}: {:.4}; {}; {} / {}; {:.4}",
+            own.name(),
+            path.factor,
+            mechanism.map_or_else(String::new, at),
+            path.corrections,
+            trials.corrections,
+            trials.factor,
+        );
+    }
+    let sum = |of: fn(&(Found, Found)) -> usize| both.iter().map(of).sum::<usize>();
+    let (of_paths, of_trials) = (
+        sum(|(path, _)| path.corrections),
+        sum(|(_, trials)| trials.corrections),
+    );
+    let _ = writeln!(
+        note,
+        "  all corrections: {of_paths} along paths, {of_trials} by trials, a ratio of {:.2}",
+        of_paths as f64 / of_trials as f64
+    );
+    study.notes.push(note);
+    if level >= Level::Default {
+        settings(&mut study, &problems)?;
+    }
+    Ok(study)
+}
+
+/// What is searched for at a level.
+fn sought(problems: &[Problem], level: Level) -> Vec<Sought<'_>> {
+    let mut all = Vec::new();
+    for problem in problems {
+        for (mesh, &cells) in problem.meshes.iter().enumerate() {
+            let is_wanted = match level {
+                Level::Quick => mesh == 0 && problem.section.name == VARIED,
+                Level::Default => mesh == 0,
+                Level::Full => true,
+            };
+            if !is_wanted {
+                continue;
+            }
+            for associated in [true, false] {
+                if associated || problem.without_dilation.is_some() {
+                    all.push(Sought {
+                        problem,
+                        associated,
+                        cells,
+                    });
+                }
+            }
+        }
+    }
+    all
+}
+
+/// A factor against what is known, and its mechanism against the balance of work.
+fn against_bounds(study: &mut Study, own: &Sought<'_>, found: &Found) {
+    let Some([low, high]) = own.problem.known else {
+        return;
+    };
+    let asked = own.asked();
+    let mesh = own
+        .problem
+        .meshes
+        .iter()
+        .position(|&cells| cells == own.cells);
+    let above = asked.above[mesh.unwrap_or(0).min(1)];
+    let run = study.run(found.record(own.name()));
+    study.check(
+        run,
+        QUANTITY,
+        own.problem.oracle.says(0.5 * (low + high)),
+        Band::Between((1.0 - asked.below) * low, (1.0 + above) * high),
+        found.factor,
+    );
+    let last = found.path().and_then(|path| path.points.last());
+    let at_limit = found.path().is_some_and(|path| path.end == PathEnd::Limit);
+    if at_limit {
+        study.check(
+            run,
+            "share of the work that the last step dissipates [-]",
+            BALANCE.says(1.0),
+            Band::Between(0.99, 1.0),
+            last.map_or(f64::NAN, |point| point.dissipated),
+        );
+    }
+}
+
+/// A factor against that of the search by trials.
+fn against_trials(study: &mut Study, own: &Sought<'_>, (path, trials): (&Found, &Found)) {
+    let run = study.run(trials.record(format!("{}, by trials", own.name())));
+    study.check(
+        run,
+        "factor of safety along the path over that by trials [-]",
+        TRIALS.says(1.0),
+        Band::Relative(BESIDE_TRIALS),
+        path.factor / trials.factor,
+    );
+}
+
+/// One slope with other tolerances, stiffnesses and numbers of corrections.
+fn settings(study: &mut Study, problems: &[Problem]) -> Result<(), CaseError> {
+    let Some(problem) = problems.iter().find(|own| own.section.name == VARIED) else {
+        return Ok(());
+    };
+    let mut variants: Vec<(f64, Vec<String>)> = Vec::new();
+    for tolerance in ["1e-2", "1e-3", "1e-4", "1e-5", "1e-6", "1e-7"] {
+        variants.push((YOUNG, vec![format!("solver.tolerance={tolerance}")]));
+    }
+    for young in [1e4, 1e6, 1e7] {
+        variants.push((young, Vec::new()));
+    }
+    for corrections in [10, 15, 25, 40] {
+        variants.push((YOUNG, vec![format!("solver.max_iterations={corrections}")]));
+    }
+    let mut note =
+        format!("{VARIED}, along the path: flow; E [kPa], setting; F; mechanism; corrections\n");
+    for associated in [true, false] {
+        let own = Sought {
+            problem,
+            associated,
+            cells: problem.meshes[0],
+        };
+        let found = variants
+            .par_iter()
+            .map(|(young, set)| {
+                own.find(
+                    Search {
+                        young: *young,
+                        ..problem.search
+                    },
+                    true,
+                    set,
+                )
+            })
+            .collect::<Result<Vec<_>, CaseError>>()?;
+        let flow = if associated { "ψ = φ" } else { "ψ = 0" };
+        for ((young, set), found) in variants.iter().zip(&found) {
+            let mechanism = found.path().and_then(|path| path.mechanism);
+            let _ = writeln!(
+                note,
+                "  {flow}; {young}, {}; {:.4}; {:.4}; {}",
+                set.join(", "),
+                found.factor,
+                mechanism.map_or(f64::NAN, |point| point.factor),
+                found.corrections,
+            );
+        }
+        let factors = || found.iter().map(|found| found.factor);
+        let least = factors().fold(f64::INFINITY, f64::min);
+        let most = factors().fold(f64::NEG_INFINITY, f64::max);
+        let records: Vec<RunRecord> = found
+            .iter()
+            .map(|found| found.record(String::new()))
+            .collect();
+        let name = format!(
+            "{VARIED}, {flow}, tolerance 1e-2 to 1e-7, E 10 MPa to 10 GPa, 10 to 40 corrections"
+        );
+        let run = study.run(RunRecord::sum(name, &records.iter().collect::<Vec<_>>()));
+        let spread = if factors().all(f64::is_finite) {
+            most / least - 1.0
+        } else {
+            f64::NAN
+        };
+        study.check(
+            run,
+            "spread of the factor of safety [-]",
+            LIMIT_THEOREMS.says(0.0),
+            Band::AtMost(SPREAD),
+            spread,
+        );
+    }
+    study.notes.push(note);
+    Ok(())
+}
