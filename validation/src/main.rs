@@ -80,7 +80,7 @@ struct Arguments {
     #[arg(long)]
     accept: bool,
     /// Accept what an earlier run left beside the snapshots, without running anything.
-    #[arg(long, exclusive = true)]
+    #[arg(long, conflicts_with_all = ["case", "quick", "full", "accept", "matrix", "out", "threads"])]
     accept_left: bool,
     /// Rewrite the verification matrix in the book with today's results, at the full level.
     #[arg(long, requires = "full", conflicts_with = "case")]
@@ -88,6 +88,9 @@ struct Arguments {
     /// Folder for tables, pictures and the summary.
     #[arg(long, value_name = "DIR", default_value = "target/validation")]
     out: PathBuf,
+    /// Folder of the snapshots; those of the workspace when not given.
+    #[arg(long, value_name = "DIR")]
+    snapshots: Option<PathBuf>,
     /// Threads to use; all cores when not given.
     #[arg(long, value_name = "N")]
     threads: Option<usize>,
@@ -141,6 +144,18 @@ enum Case {
     ContactSphere,
     ContactCircle,
     Comparisons,
+}
+
+impl Arguments {
+    /// Folder of the snapshots, from the root of the file system: insta takes another path as one beside
+    /// the source.
+    fn snapshots(&self) -> Result<PathBuf, CaseError> {
+        let folder = self.snapshots.clone().unwrap_or_else(review::snapshots);
+        std::path::absolute(&folder).map_err(|source| CaseError::File {
+            path: folder,
+            source,
+        })
+    }
 }
 
 impl Case {
@@ -201,7 +216,7 @@ fn main() -> ExitCode {
         return again_with_update();
     }
     let ended = if arguments.accept_left {
-        accept_left()
+        accept_left(arguments.snapshots())
     } else {
         validate(&arguments)
     };
@@ -253,8 +268,8 @@ fn again_with_update() -> ExitCode {
 }
 
 /// Accepts what was left, and names it.
-fn accept_left() -> Result<u8, CaseError> {
-    let folder = review::snapshots();
+fn accept_left(folder: Result<PathBuf, CaseError>) -> Result<u8, CaseError> {
+    let folder = folder?;
     let accepted = review::accept_left(&folder).map_err(|source| CaseError::File {
         path: folder,
         source,
@@ -314,8 +329,7 @@ fn validate(arguments: &Arguments) -> Result<u8, CaseError> {
     errors.reverse();
 
     let pictures = arguments.out.join("review");
-    clear(&pictures)?;
-    let mut missed = snapshot::compare(&studies, &pictures)?;
+    let mut missed = snapshot::compare(&studies, &arguments.snapshots()?, &pictures)?;
     table::write_summary(&studies, &missed, &arguments.out)?;
     if arguments.matrix && errors.is_empty() {
         matrix::write(&studies)?;
@@ -331,17 +345,6 @@ fn validate(arguments: &Arguments) -> Result<u8, CaseError> {
         report_error(error);
     }
     Ok(errors.first().map_or(code, exit_code))
-}
-
-/// Removes the pictures of an earlier comparison.
-fn clear(pictures: &Path) -> Result<(), CaseError> {
-    match std::fs::remove_dir_all(pictures) {
-        Err(source) if source.kind() != std::io::ErrorKind::NotFound => Err(CaseError::File {
-            path: pictures.to_path_buf(),
-            source,
-        }),
-        _ => Ok(()),
-    }
 }
 
 /// Prints notes, table and what was missed; returns the exit code.

@@ -1,5 +1,5 @@
 //! What changed since the snapshots were accepted: for every curve the largest change and where it is,
-//! and a picture of old against new; and how what a run left is accepted.
+//! a picture of old against new of every curve and residual history; and how what a run left is accepted.
 
 use std::fs;
 use std::io;
@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use igimp_cases::CaseError;
 use igimp_cases::check::short;
-use igimp_figures::{CurvePlot, LineStyle, Series, SeriesStyle};
+use igimp_figures::{CurvePlot, LineStyle, Scale, Series, SeriesStyle};
 
 /// Most panels of one picture.
 const PANELS: usize = 4;
@@ -27,9 +27,23 @@ impl std::fmt::Display for Difference {
     }
 }
 
-/// Where snapshots are.
+/// Folder of the snapshots of this workspace.
 pub(crate) fn snapshots() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("snapshots")
+}
+
+/// Removes the pictures of an earlier comparison, with their folder.
+///
+/// # Errors
+/// [`CaseError::File`] if the folder cannot be removed.
+pub(crate) fn clear(pictures: &Path) -> Result<(), CaseError> {
+    match fs::remove_dir_all(pictures) {
+        Err(source) if source.kind() != io::ErrorKind::NotFound => Err(CaseError::File {
+            path: pictures.to_path_buf(),
+            source,
+        }),
+        _ => Ok(()),
+    }
 }
 
 /// The text of a snapshot that was accepted, without its head.
@@ -72,6 +86,29 @@ impl Columns {
         let points = self.rows.iter().map(|row| [row[0], row[column]]);
         points.filter(|p| p.iter().all(|v| v.is_finite())).collect()
     }
+}
+
+/// Residuals of a history, step by step.
+fn residuals(text: &str) -> Option<Vec<Vec<f64>>> {
+    let step = |line: &str| {
+        let (_, values) = line.strip_prefix("step ")?.split_once(':')?;
+        values.split_whitespace().map(|v| v.parse().ok()).collect()
+    };
+    text.trim_end().lines().map(step).collect()
+}
+
+/// Points (place, residual) of the steps of a history, one step beside the other. A step of either
+/// history has as many places as the longer of both; lines break between steps.
+fn side_by_side(steps: &[Vec<f64>], other: &[Vec<f64>]) -> Vec<[f64; 2]> {
+    let mut points = Vec::new();
+    let mut places = 1..;
+    for (number, step) in steps.iter().enumerate() {
+        let width = other.get(number).map_or(0, Vec::len).max(step.len());
+        let taken: Vec<i32> = places.by_ref().take(width).collect();
+        points.extend(taken.iter().zip(step).map(|(&x, &y)| [f64::from(x), y]));
+        points.push([f64::NAN; 2]);
+    }
+    points
 }
 
 /// A name of a column as it is said: underscores stand for spaces there.
@@ -139,10 +176,11 @@ fn first_change(old: &str, new: &str) -> String {
     }
 }
 
-/// Tells how a text differs from the snapshot of its name; draws both if they are curves.
+/// Tells how a text differs from the snapshot of its name; draws both if they are curves or residual
+/// histories. The folder of the pictures is made where it is not there.
 ///
 /// # Errors
-/// [`CaseError`] if the picture cannot be written.
+/// [`CaseError`] if a picture cannot be written.
 pub(crate) fn difference(
     folder: &Path,
     name: &str,
@@ -152,7 +190,7 @@ pub(crate) fn difference(
     let told = match accepted(folder, name) {
         None => "new; there is no snapshot of that name".to_owned(),
         Some(old) => {
-            draw(name, &old, new, &out.join(name))?;
+            write(&drawn(name, &old, new), &out.join(name))?;
             largest_change(&old, new).unwrap_or_else(|| first_change(&old, new))
         }
     };
@@ -162,36 +200,71 @@ pub(crate) fn difference(
     })
 }
 
-/// Old against new, a picture for each column that differs, as many as [`PANELS`].
-fn draw(name: &str, old: &str, new: &str, path: &Path) -> Result<(), CaseError> {
-    let (Some(old), Some(new)) = (Columns::read(old), Columns::read(new)) else {
+/// Writes pictures under one name, numbered where there are several, into a folder that is made.
+fn write(plots: &[(usize, CurvePlot)], path: &Path) -> Result<(), CaseError> {
+    let Some(folder) = path.parent().filter(|_| !plots.is_empty()) else {
         return Ok(());
     };
-    let columns = old.names.len().min(new.names.len());
-    let differs = |&column: &usize| old.points(column) != new.points(column);
-    let changed: Vec<usize> = (1..columns).filter(differs).take(PANELS).collect();
-    for &column in &changed {
-        let file = match changed.len() {
+    fs::create_dir_all(folder).map_err(|source| CaseError::File {
+        path: folder.to_path_buf(),
+        source,
+    })?;
+    for (column, plot) in plots {
+        let file = match plots.len() {
             1 => path.to_path_buf(),
             _ => PathBuf::from(format!("{}__{column}", path.display())),
         };
-        CurvePlot {
-            title: name.to_owned(),
-            x_label: said(&new.names[0]),
-            y_label: said(&new.names[column]),
-            series: vec![
-                Series::line("now", new.points(column)),
-                Series::new(
-                    "accepted",
-                    old.points(column),
-                    SeriesStyle::Line(LineStyle::Dashed),
-                ),
-            ],
-            ..CurvePlot::default()
-        }
-        .write(&file)?;
+        plot.write(&file)?;
     }
     Ok(())
+}
+
+/// Old against new with the column shown: of a table a picture for each column that differs, as many as
+/// [`PANELS`]; of a residual history one; of other texts none.
+fn drawn(name: &str, old: &str, new: &str) -> Vec<(usize, CurvePlot)> {
+    if let (Some(old), Some(new)) = (Columns::read(old), Columns::read(new)) {
+        let columns = old.names.len().min(new.names.len());
+        let differs = |&column: &usize| old.points(column) != new.points(column);
+        let plot = |column| {
+            let both = [&new, &old].map(|of| of.points(column));
+            let labels = [&new.names[0], &new.names[column]].map(|label| said(label));
+            (column, plot(name, labels, both, SeriesStyle::Line))
+        };
+        return (1..columns)
+            .filter(differs)
+            .take(PANELS)
+            .map(plot)
+            .collect();
+    }
+    if let (Some(old), Some(new)) = (residuals(old), residuals(new)) {
+        let both = [side_by_side(&new, &old), side_by_side(&old, &new)];
+        let labels = ["residuals, step beside step", "residual [-]"].map(str::to_owned);
+        let plot = CurvePlot {
+            y_scale: Scale::Log,
+            ..plot(name, labels, both, SeriesStyle::LineAndMarkers)
+        };
+        return vec![(1, plot)];
+    }
+    Vec::new()
+}
+
+/// Points that are new in a full line, those that were accepted dashed.
+fn plot(
+    name: &str,
+    [x_label, y_label]: [String; 2],
+    [new, old]: [Vec<[f64; 2]>; 2],
+    style: fn(LineStyle) -> SeriesStyle,
+) -> CurvePlot {
+    CurvePlot {
+        title: name.to_owned(),
+        x_label,
+        y_label,
+        series: vec![
+            Series::new("now", new, style(LineStyle::Solid)),
+            Series::new("accepted", old, style(LineStyle::Dashed)),
+        ],
+        ..CurvePlot::default()
+    }
 }
 
 /// Accepts what earlier runs left beside the snapshots, as `cargo insta accept` does; returns the names.
@@ -257,6 +330,23 @@ mod tests {
     }
 
     #[test]
+    fn residual_histories_are_drawn_step_beside_step() {
+        let old = residuals("step 1: 1e0 1e-3 1e-7\nstep 4: 2e0 1e-9\n").unwrap();
+        let new = residuals("step 1: 1e0 1e-7\nstep 4: 3e0 1e-9\n").unwrap();
+        let finite = |of: &[Vec<f64>], other: &[Vec<f64>]| {
+            let points = side_by_side(of, other);
+            points.into_iter().filter(|p| p[0].is_finite()).collect()
+        };
+        let points: Vec<[f64; 2]> = finite(&new, &old);
+        assert_eq!(points, [[1.0, 1.0], [2.0, 1e-7], [4.0, 3.0], [5.0, 1e-9]]);
+        let points: Vec<[f64; 2]> = finite(&old, &new);
+        assert_eq!(points.len(), 5);
+        assert_eq!(points[3..], [[4.0, 2.0], [5.0, 1e-9]]);
+        assert_eq!(residuals("steps: 40\ncuts: 0\n"), None);
+        assert!(drawn("effort", "steps: 40\n", "steps: 41\n").is_empty());
+    }
+
+    #[test]
     fn what_was_left_is_accepted_once() {
         let folder = std::env::temp_dir().join(format!("igimp-left-{}", std::process::id()));
         fs::create_dir_all(&folder).unwrap();
@@ -269,9 +359,10 @@ mod tests {
         )
         .unwrap();
         assert_eq!(accepted(&folder, "curve").unwrap(), OLD);
-        let found = difference(&folder, "curve", &new, &folder).unwrap();
+        let pictures = folder.join("out/review");
+        let found = difference(&folder, "curve", &new, &pictures).unwrap();
         assert!(found.told.contains("4.1 for 4"), "{found}");
-        assert!(folder.join("curve.svg").exists());
+        assert!(pictures.join("curve.svg").exists());
         assert_eq!(accept_left(&folder).unwrap(), ["curve"]);
         assert_eq!(accepted(&folder, "curve").unwrap(), new);
         let text = fs::read_to_string(folder.join("curve.snap")).unwrap();

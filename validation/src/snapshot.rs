@@ -19,27 +19,32 @@ const CONVERGED: f64 = 1e-9;
 /// Most rows of a curve in a snapshot.
 const ROWS: usize = 40;
 
-/// Compares studies with their snapshots and tells what differs. What is new is left beside the
-/// snapshots for review, and a picture of every curve that changed in a folder.
+/// Compares studies with the snapshots of a folder and tells what differs. What is new is left beside
+/// the snapshots for review; pictures of every curve and residual history that changed are written anew.
 ///
 /// # Errors
 /// [`CaseError`] if a picture cannot be written.
-pub(crate) fn compare(studies: &[Study], pictures: &Path) -> Result<Vec<Difference>, CaseError> {
+pub(crate) fn compare(
+    studies: &[Study],
+    folder: &Path,
+    pictures: &Path,
+) -> Result<Vec<Difference>, CaseError> {
+    review::clear(pictures)?;
     let hook = std::panic::take_hook();
     std::panic::set_hook(Box::new(|_| {}));
-    let missed: Vec<_> = studies.iter().flat_map(compare_study).collect();
+    let compared = |study| compare_study(study, folder);
+    let missed: Vec<_> = studies.iter().flat_map(compared).collect();
     std::panic::set_hook(hook);
-    let folder = review::snapshots();
-    let told = |(name, text): &(String, String)| review::difference(&folder, name, text, pictures);
+    let told = |(name, text): &(String, String)| review::difference(folder, name, text, pictures);
     missed.iter().map(told).collect()
 }
 
-/// The names and texts that differ.
-fn compare_study(study: &Study) -> Vec<(String, String)> {
+/// The names and texts that differ from the snapshots of a folder.
+fn compare_study(study: &Study, folder: &Path) -> Vec<(String, String)> {
     let mut missed = Vec::new();
     let mut hold = |name: String, text: &str, comparator: Box<dyn Comparator>| {
         let mut settings = insta::Settings::clone_current();
-        settings.set_snapshot_path(review::snapshots());
+        settings.set_snapshot_path(folder);
         settings.set_prepend_module_to_snapshot(false);
         settings.set_omit_expression(true);
         settings.set_comparator(comparator);

@@ -25,6 +25,7 @@ fn pages() -> Vec<PathBuf> {
     let mut pages = Vec::new();
     collect(&root(), false, &mut pages);
     collect(&root().join("docs/src"), true, &mut pages);
+    pages.push(root().join("benchmarks/README.md"));
     pages
 }
 

@@ -5,6 +5,8 @@ mod bench;
 mod book;
 mod campaign;
 #[cfg(test)]
+mod commands_are_run;
+#[cfg(test)]
 mod commands_on_pages;
 mod failure;
 mod fuzz;

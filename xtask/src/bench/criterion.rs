@@ -10,6 +10,15 @@ use super::row::Row;
 use crate::failure::Failure;
 use crate::process::{cargo, status};
 
+/// The programs of the benches, and the groups that each of them measures.
+const PROGRAMS: [(&str, &[&str]); 5] = [
+    ("assembly", &["assembly", "set_up", "linearise", "space"]),
+    ("basis", &["basis"]),
+    ("factorisation", &["factorisation"]),
+    ("return_map", &["return_map", "lift_small", "lift_finite"]),
+    ("whole_step", &["whole_step"]),
+];
+
 /// Where criterion keeps the newest measurement of a bench.
 const ESTIMATES: &str = "new/estimates.json";
 
@@ -23,6 +32,17 @@ const QUICK: [&str; 6] = [
     "10",
 ];
 
+/// The programs that a filter needs: of the group that its part before the first slash names, or all where
+/// that is another regular expression.
+fn programs(filter: Option<&str>) -> Vec<&'static str> {
+    let group = filter.and_then(|filter| filter.split('/').next());
+    let of = |group: &str| PROGRAMS.iter().find(|(_, groups)| groups.contains(&group));
+    match group.and_then(of) {
+        Some((program, _)) => vec![program],
+        None => PROGRAMS.iter().map(|(program, _)| *program).collect(),
+    }
+}
+
 /// Runs the benches and returns their rows in the order of their names, or the exit code of a run
 /// that failed.
 pub(crate) fn run(
@@ -34,8 +54,12 @@ pub(crate) fn run(
     let folder = target.join("criterion");
     let before = stamps(&folder);
     let mut bench = cargo();
+    bench.args(["bench", "--package", "igimp-benchmarks"]);
+    for program in programs(filter) {
+        bench.args(["--bench", program]);
+    }
     bench
-        .args(["bench", "--package", "igimp-benchmarks", "--"])
+        .arg("--")
         .env("RAYON_NUM_THREADS", threads.to_string());
     if quick {
         bench.args(QUICK).env("IGIMP_BENCH_SET", "short");
@@ -86,6 +110,33 @@ fn gather(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::process::root;
+
+    /// GOAL: only the program of a group is built and run, and every program where the filter is no group.
+    /// ORACLE: the names of files and groups in the sources of the benches.
+    #[test]
+    fn the_programs_are_those_of_the_benches() {
+        let mut files = Vec::new();
+        for entry in fs::read_dir(root().join("benchmarks/benches")).unwrap() {
+            let path = entry.unwrap().path();
+            let name = path.file_stem().unwrap().to_string_lossy().into_owned();
+            let text = fs::read_to_string(&path).unwrap();
+            let (_, groups) = PROGRAMS.iter().find(|of| of.0 == name).unwrap();
+            for group in *groups {
+                assert!(text.contains(&format!("\"{group}\"")), "{name}: {group}");
+            }
+            for (place, call) in text.match_indices("benchmark_group(\"") {
+                let rest = &text[place + call.len()..];
+                let group = rest.split('"').next().unwrap();
+                assert!(groups.contains(&group), "{name}: {group}");
+            }
+            files.push(name);
+        }
+        files.sort();
+        assert_eq!(programs(None), files);
+        assert_eq!(programs(Some("set_up/stencils")), ["assembly"]);
+        assert_eq!(programs(Some("von-mises|tresca")), files);
+    }
 
     /// GOAL: a bench that ran while the clock went back is found, one that did not run is not.
     #[test]

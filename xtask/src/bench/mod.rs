@@ -19,6 +19,7 @@ use crate::process::{cargo, output, root};
 use compare::{Comparison, is_name};
 use report::Report;
 use row::Row;
+use survey::Survey;
 
 /// What begins the names of all that the survey measures.
 const SURVEY: &str = "survey";
@@ -28,6 +29,8 @@ const SURVEY: &str = "survey";
 pub(crate) struct Arguments {
     /// Only benches whose name `group/bench/size` matches this regular expression, and parts of the
     /// survey, such as `survey/cost`, whose name contains it.
+    ///
+    /// A name of a group, by itself or before a slash, builds and runs the program of that group only.
     filter: Option<String>,
     /// Short measurements and small sizes: for a first impression, not for comparisons.
     #[arg(long)]
@@ -64,9 +67,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<u8, Failure> {
     let cores = available_parallelism().map_or(1, NonZeroUsize::get);
     let threads = arguments.threads.map_or(cores.min(2), NonZeroUsize::get);
     let (filter, quick) = (arguments.filter.as_deref(), arguments.quick);
-    let code = survey::build()?;
-    if code != 0 {
-        return Ok(code);
+    let surveys = survey::is_asked_for(filter);
+    if surveys {
+        let code = survey::build()?;
+        if code != 0 {
+            return Ok(code);
+        }
     }
     let mut rows = Vec::new();
     if !filter.is_some_and(|filter| filter.starts_with(SURVEY)) {
@@ -75,10 +81,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<u8, Failure> {
             Err(code) => return Ok(code),
         }
     }
-    let survey = match survey::run(filter, quick, threads, &folder.join(SURVEY))? {
-        Ok(survey) => survey,
-        Err(code) => return Ok(code),
-    };
+    let mut survey = Survey::default();
+    if surveys {
+        match survey::run(filter, quick, threads, &folder.join(SURVEY))? {
+            Ok(found) => survey = found,
+            Err(code) => return Ok(code),
+        }
+    }
     rows.extend_from_slice(&survey.rows);
     if rows.is_empty() {
         return Err(Failure::new(BAD_INPUT, "no bench has such a name"));

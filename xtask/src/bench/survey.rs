@@ -7,13 +7,24 @@ use super::row::{self, Row};
 use crate::failure::Failure;
 use crate::process::{cargo, status};
 
-/// How cargo finds the program.
-const PROGRAM: [&str; 5] = [
-    "--release",
+/// How cargo finds the program, built as the benches are: what both need is compiled once.
+const PROGRAM: [&str; 6] = [
+    "--profile",
+    "bench",
     "--package",
     "igimp-benchmarks",
     "--bin",
     "survey",
+];
+
+/// The parts of the survey.
+const PARTS: [&str; 6] = [
+    "survey/step",
+    "survey/cost",
+    "survey/factorisation",
+    "survey/growth",
+    "survey/memory",
+    "survey/space",
 ];
 
 /// What a survey left behind.
@@ -25,6 +36,11 @@ pub(crate) struct Survey {
     pub(crate) rows: Vec<Row>,
     /// Whether it drew the growth of times with size.
     pub(crate) has_plot: bool,
+}
+
+/// Whether a filter asks for a part of the survey.
+pub(crate) fn is_asked_for(filter: Option<&str>) -> bool {
+    filter.is_none_or(|filter| PARTS.iter().any(|part| part.contains(filter)))
 }
 
 /// Builds the survey, so that what does not compile shows before minutes of measurement; returns
@@ -73,4 +89,27 @@ pub(crate) fn run(
         rows,
         has_plot: plot.exists(),
     }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::process::root;
+
+    /// GOAL: the survey is built and run where one of its parts is asked for, and else left alone.
+    /// ORACLE: the names of the parts in its source.
+    #[test]
+    fn the_parts_are_those_of_the_survey() {
+        let source = root().join("benchmarks/src/bin/survey/main.rs");
+        let text = fs::read_to_string(source).unwrap();
+        let named = text.match_indices("(\"survey/").map(|(place, _)| {
+            let rest = &text[place + 2..];
+            rest.split('"').next().unwrap()
+        });
+        assert_eq!(named.collect::<Vec<_>>(), PARTS);
+        assert!(
+            is_asked_for(None) && is_asked_for(Some("survey/cost")) && is_asked_for(Some("space"))
+        );
+        assert!(!is_asked_for(Some("assembly")) && !is_asked_for(Some("von-mises")));
+    }
 }
