@@ -44,12 +44,13 @@ pub(super) fn end(points: &[PathPoint], scale: Option<f64>, limit: Option<f64>) 
     (far && last.dissipated >= MECHANISM).then_some(PathEnd::StillRising)
 }
 
-/// The first point at which the body moves as a mechanism, interpolated between equilibria.
+/// The point from which on the body moves as a mechanism, to the end of the path, interpolated between equilibria.
 pub(super) fn mechanism(points: &[PathPoint]) -> Option<PathPoint> {
-    let first = points
+    let last_before = points
         .iter()
-        .position(|point| point.dissipated >= MECHANISM)?;
-    let after = points[first];
+        .rposition(|point| point.dissipated < MECHANISM);
+    let first = last_before.map_or(0, |before| before + 1);
+    let after = *points.get(first)?;
     let Some(before) = first.checked_sub(1).map(|k| points[k]) else {
         return Some(after);
     };
@@ -171,6 +172,10 @@ mod tests {
             point(1.2, 2.0, 0.02, 0.98),
             point(1.25, 4.0, 0.08, 1.0),
         ];
+        let mut early = points.to_vec();
+        early.insert(0, point(0.9, 0.5, 0.001, 0.995));
+        assert_eq!(mechanism(&early), mechanism(&points));
+        assert_eq!(mechanism(&points[..2]), None);
         let found = mechanism(&points).unwrap();
         assert!((found.factor - 1.225).abs() < 1e-12);
         assert!((found.displacement - 0.04).abs() < 1e-12);
