@@ -56,7 +56,10 @@ impl Walk {
         for entry in fs::read_dir(root().join("validation/snapshots")).unwrap() {
             let path = entry.unwrap().path();
             let name = path.file_name().unwrap().to_str().unwrap();
-            if name.starts_with("column__") && name.ends_with(".snap") {
+            if name
+                .strip_suffix(".snap")
+                .is_some_and(|name| name.starts_with("column__"))
+            {
                 fs::copy(&path, self.snapshots.join(name)).unwrap();
             }
         }

@@ -91,6 +91,7 @@ pub(crate) fn safety() -> SafetySummary {
             trial(1.4375, false, 0.14),
             trial(1.3828, false, 0.12),
         ],
+        path: None,
     }
 }
 

@@ -78,7 +78,13 @@ pub(super) fn search<const D: usize>(
         return Ok(Ended::Interrupted);
     }
     summary.reached = 1.0;
-    finish(session, (stage, reduction), followed, scale, summary)
+    Ok(finish(
+        session,
+        (stage, reduction),
+        followed,
+        scale,
+        summary,
+    ))
 }
 
 /// A search along a path.
@@ -280,7 +286,7 @@ fn finish<const D: usize>(
     followed: Followed<D>,
     scale: Option<f64>,
     summary: &mut StageSummary,
-) -> Result<Ended, CaseError> {
+) -> Ended {
     let Followed {
         ended,
         points,
@@ -327,23 +333,22 @@ fn finish<const D: usize>(
         trials: Vec::new(),
         path: Some(path),
     });
-    Ok(match ended {
+    match ended {
         Ended::NotConverged(cause) => {
             Ended::Completed(format!("the path was lost: {}", cause.failure))
         }
         ended => ended,
-    })
+    }
 }
 
 /// What counts as failure, in words.
 fn criterion(reduction: &StrengthReduction, whose: &str) -> String {
-    let mut text =
-        "the increment is a mechanism and the factor rises no longer, on the given geometry"
-            .to_owned();
-    if let Some(limit) = reduction.failure_displacement {
-        text += &format!(", or {whose} exceeds {} m", short(limit));
+    let limit =
+        "the increment is a mechanism and the factor rises no longer, on the given geometry";
+    match reduction.failure_displacement {
+        Some(displacement) => format!("{limit}, or {whose} exceeds {} m", short(displacement)),
+        None => limit.to_owned(),
     }
-    text
 }
 
 /// The interval of the factor of safety: from the equilibrium that tells it to where it would rise in another doubling of
