@@ -1,6 +1,7 @@
 //! The soil in every cell of the grid: how much there is, and where its centroid lies. From it come
-//! gradients that the particles of a cell share, and which cells hold slivers only (theory, eqs. 8a to 8d).
+//! gradients that the particles of a cell share, and which cells hold slivers only (theory, eqs. 8a to 8e).
 
+use igimp_material::ConstitutiveModel;
 use igimp_shape::{CellPart, Grid, Support, cell_parts};
 use rayon::prelude::*;
 
@@ -21,8 +22,8 @@ const OWN_GIVEN: f64 = 0.02;
 /// The same on a moving one: what the mean does not see is held in every step \[-\].
 const OWN_MOVING: f64 = 0.1;
 
-/// The same where plastic flow is not associated \[-\].
-const OWN_NON_ASSOCIATED: f64 = 0.3;
+/// The same where plastic flow keeps volume although the law has friction, on both \[-\].
+const OWN_ISOCHORIC: f64 = 0.3;
 
 /// The soil of every cell, and the parts of every particle.
 pub(crate) struct CellSoil<const D: usize> {
@@ -67,7 +68,7 @@ impl<const D: usize> CellSoil<D> {
             })
             .collect::<Vec<Result<_, AssemblyError>>>();
         let parts = parts.into_iter().collect::<Result<Vec<_>, _>>()?;
-        let of_law = |law| own_share(law, method.geometry);
+        let of_law = |law: &SharedLaw| own_share(&**law, method.geometry);
         let mut soil = Self {
             parts,
             is_sliver: vec![false; grid.cell_count()],
@@ -156,15 +157,91 @@ fn of<const D: usize>(parts: &[(Vec<u32>, Vec<CellPart<D>>)], particle: usize) -
     &all[first[place] as usize..first[place + 1] as usize]
 }
 
-/// The share of its own distortion that a particle of a law keeps. Elastic soil keeps all of it: bending
-/// has to be resisted. In soil that yields the rest is shared, and what is kept holds modes that the
-/// mean does not see; they add up from step to step where the body moves. Where flow is not associated
-/// equilibrium is not unique, and sharing less keeps Newton's method on its way.
-fn own_share(law: &SharedLaw, geometry: Geometry) -> f64 {
-    match geometry {
-        _ if !law.yields() => 1.0,
-        _ if !law.has_symmetric_tangent() => OWN_NON_ASSOCIATED,
+/// The share β of its own distortion that a particle of a law keeps (theory, eqs. 8c and 8e), the same for a
+/// law and for what a reduction of its strength leaves of it. Elastic soil keeps all of it: bending has to be
+/// resisted. In soil that yields the rest is shared, and what is kept holds modes that the mean does not see;
+/// they add up from step to step where the body moves. The less flow dilates the less has to be shared, and
+/// sharing less keeps Newton's method on its way where equilibrium is not unique.
+fn own_share(law: &dyn ConstitutiveModel, geometry: Geometry) -> f64 {
+    if !law.yields() {
+        return 1.0;
+    }
+    let associated = match geometry {
         Geometry::Given => OWN_GIVEN,
         Geometry::Moving => OWN_MOVING,
+    };
+    let dilates = law.dilatancy().sqrt();
+    ((1.0 - dilates) / OWN_ISOCHORIC + dilates / associated).recip()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use igimp_material::{Elasticity, HenckyElastic, MohrCoulomb, VonMises};
+
+    use super::*;
+
+    const GEOMETRIES: [Geometry; 2] = [Geometry::Given, Geometry::Moving];
+
+    /// Soil with φ = 20° and an angle of dilation \[deg\].
+    fn soil(dilation: f64) -> MohrCoulomb {
+        let angles = [20.0_f64, dilation].map(f64::to_radians);
+        MohrCoulomb::new(elasticity(), 1e4, angles[0], angles[1]).unwrap()
+    }
+
+    fn elasticity() -> Elasticity {
+        Elasticity::new(1e7, 0.3).unwrap()
+    }
+
+    // GOAL: the ends of eq. 8e and the laws that it does not concern have the shares of eq. 8c.
+    // ORACLE: the numbers of eq. 8c.
+    #[test]
+    fn ends_are_those_of_the_theory() {
+        let von_mises = VonMises::from_undrained_strength(elasticity(), 1e4).unwrap();
+        for (geometry, associated) in std::iter::zip(GEOMETRIES, [0.02, 0.1]) {
+            let near = |law: &dyn ConstitutiveModel, share: f64| {
+                assert!((own_share(law, geometry) - share).abs() < 1e-15);
+            };
+            near(&soil(0.0), 0.3);
+            near(&soil(20.0), associated);
+            near(&von_mises, associated);
+            near(&HenckyElastic::new(elasticity()), 1.0);
+        }
+    }
+
+    // GOAL: the share falls with ψ and does not jump, up to associated flow.
+    // ORACLE: 1/β is linear in √(ψ/φ); between neighbours of a fine division of √(ψ/φ) β changes by no more
+    // than its steepest slope, β² (1/β₁ − 1/β₀) at β₀, allows.
+    #[test]
+    fn falls_with_dilation_without_a_jump() {
+        for (geometry, associated) in std::iter::zip(GEOMETRIES, [0.02, 0.1]) {
+            let shares: Vec<f64> = (0..=1000)
+                .map(|step| own_share(&soil(20.0 * (f64::from(step) / 1000.0).powi(2)), geometry))
+                .collect();
+            let steepest = 0.3 * 0.3 * (1.0 / associated - 1.0 / 0.3) / 1000.0;
+            for pair in shares.windows(2) {
+                let fall = pair[0] - pair[1];
+                assert!(fall > 0.0 && fall <= steepest * (1.0 + 1e-6), "{pair:?}");
+            }
+        }
+    }
+
+    // GOAL: a search does not change β: soil keeps its share while its strength is reduced, also beyond the
+    // factor at which the reduced φ reaches ψ and flow becomes associated.
+    // ORACLE: the law as it is given.
+    #[test]
+    fn is_that_of_the_law_as_given() {
+        for law in [soil(0.0), soil(5.0), soil(15.0), soil(20.0)] {
+            for srf in [0.5, 1.2, 1.4, 3.0] {
+                let once: Arc<dyn ConstitutiveModel> = law.reduced(srf).unwrap();
+                let twice = once.reduced(1.1).unwrap();
+                for geometry in GEOMETRIES {
+                    let given = own_share(&law, geometry).to_bits();
+                    assert_eq!(own_share(&*once, geometry).to_bits(), given);
+                    assert_eq!(own_share(&*twice, geometry).to_bits(), given);
+                }
+            }
+        }
     }
 }

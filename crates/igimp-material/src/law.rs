@@ -169,6 +169,19 @@ pub trait ConstitutiveModel: Send + Sync + Debug {
     /// Whether consistent tangents are symmetric, which is so when the flow is associated.
     fn has_symmetric_tangent(&self) -> bool;
 
+    /// How much plastic flow dilates, ψ/φ of the law as it is given \[-\]: 1 where flow is associated, 0
+    /// where it keeps volume in spite of friction. The law at reduced strength has that of the law it was made
+    /// of. Locking control goes by it (theory, eq. 8e).
+    ///
+    /// A law without ψ says by the symmetry of its tangent what its flow is.
+    fn dilatancy(&self) -> f64 {
+        if self.has_symmetric_tangent() {
+            1.0
+        } else {
+            0.0
+        }
+    }
+
     /// The law with tan φ times a ratio \[-\]; none for a law without friction, which knows no other.
     ///
     /// # Errors

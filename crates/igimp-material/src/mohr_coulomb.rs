@@ -46,6 +46,8 @@ pub struct MohrCoulomb {
     friction_angle: f64,
     dilation_angle: f64,
     tension_cutoff: Option<f64>,
+    /// ψ/φ as given, before any change of strength \[-\].
+    dilatancy: f64,
     pyramid: Pyramid,
 }
 
@@ -72,13 +74,7 @@ impl MohrCoulomb {
     /// # Errors
     /// [`MaterialError::InvalidParameter`] if `tension_cutoff` is negative or not finite.
     pub fn with_tension_cutoff(self, tension_cutoff: f64) -> Result<Self, MaterialError> {
-        Self::build(
-            *self.elasticity(),
-            self.cohesion,
-            self.friction_angle,
-            self.dilation_angle,
-            Some(tension_cutoff),
-        )
+        self.at_strength(self.cohesion, self.friction_angle, Some(tension_cutoff))
     }
 
     /// Cohesion c \[stress\].
@@ -161,7 +157,32 @@ impl MohrCoulomb {
             friction_angle,
             dilation_angle,
             tension_cutoff,
+            dilatancy: if friction_angle > 0.0 {
+                dilation_angle / friction_angle
+            } else {
+                1.0
+            },
             pyramid,
+        })
+    }
+
+    /// The law at another strength: ψ stays but never exceeds φ, and ψ/φ as given is kept.
+    fn at_strength(
+        &self,
+        cohesion: f64,
+        friction_angle: f64,
+        tension_cutoff: Option<f64>,
+    ) -> Result<Self, MaterialError> {
+        let law = Self::build(
+            *self.elasticity(),
+            cohesion,
+            friction_angle,
+            self.dilation_angle.min(friction_angle),
+            tension_cutoff,
+        )?;
+        Ok(Self {
+            dilatancy: self.dilatancy,
+            ..law
         })
     }
 }
@@ -216,6 +237,11 @@ impl ConstitutiveModel for MohrCoulomb {
         self.dilation_angle == self.friction_angle
     }
 
+    /// ψ/φ as given; 1 without friction.
+    fn dilatancy(&self) -> f64 {
+        self.dilatancy
+    }
+
     /// ψ stays but never exceeds the new φ; c and the cut-off stay.
     fn at_friction(&self, ratio: f64) -> Result<Option<Arc<dyn ConstitutiveModel>>, MaterialError> {
         required(
@@ -225,25 +251,16 @@ impl ConstitutiveModel for MohrCoulomb {
             "finite and not negative",
         )?;
         let friction_angle = (self.friction_angle.tan() * ratio).atan();
-        Ok(Some(Arc::new(Self::build(
-            *self.elasticity(),
-            self.cohesion,
-            friction_angle,
-            self.dilation_angle.min(friction_angle),
-            self.tension_cutoff,
-        )?)))
+        let law = self.at_strength(self.cohesion, friction_angle, self.tension_cutoff)?;
+        Ok(Some(Arc::new(law)))
     }
 
     /// Divides c, tan φ and the cut-off by `srf`; ψ stays but never exceeds the reduced φ.
     fn reduced(&self, srf: f64) -> Result<Arc<dyn ConstitutiveModel>, MaterialError> {
         positive("srf", srf)?;
         let friction_angle = (self.friction_angle.tan() / srf).atan();
-        Ok(Arc::new(Self::build(
-            *self.elasticity(),
-            self.cohesion / srf,
-            friction_angle,
-            self.dilation_angle.min(friction_angle),
-            self.tension_cutoff.map(|cutoff| cutoff / srf),
-        )?))
+        let cutoff = self.tension_cutoff.map(|cutoff| cutoff / srf);
+        let law = self.at_strength(self.cohesion / srf, friction_angle, cutoff)?;
+        Ok(Arc::new(law))
     }
 }

@@ -171,6 +171,10 @@ where
         self.law.has_symmetric_tangent()
     }
 
+    fn dilatancy(&self) -> f64 {
+        self.law.dilatancy()
+    }
+
     fn at_friction(&self, ratio: f64) -> Result<Option<Arc<dyn ConstitutiveModel>>, MaterialError> {
         let Some(law) = self.law.at_friction(ratio)? else {
             return Ok(None);

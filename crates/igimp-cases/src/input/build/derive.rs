@@ -37,7 +37,9 @@ pub(super) fn derive(tree: &mut Node, file: &Path) {
                 let names = names.collect();
                 stage.add_derived("materials", Value::List(names));
             }
+            derive_search(stage);
         }
+        derive_geometry(stages.items_mut());
     }
     if let Some(members) = tree.get_mut("reinforcement") {
         for member in members.items_mut() {
@@ -96,6 +98,47 @@ pub(super) fn derive(tree: &mut Node, file: &Path) {
                     axis.add_derived("label", Value::Text(label));
                 }
             }
+        }
+    }
+}
+
+/// How a stage looks for the factor of safety.
+fn derive_search(stage: &mut Node) {
+    if stage.text_at("type") != Some("strength-reduction") || stage.get("search").is_some() {
+        return;
+    }
+    let is_path = is_given(stage) && stage.items_at("factors").is_empty();
+    let search = if is_path { "continuation" } else { "trials" };
+    stage.add_derived("search", Value::Text(search.to_owned()));
+}
+
+/// Whether the steps of a stage leave the geometry as it is given.
+fn is_given(stage: &Node) -> bool {
+    stage.text_at("geometry") == Some("given")
+}
+
+/// The geometry on which gravity is raised: that of a search which goes back to it.
+fn derive_geometry(stages: &mut [Node]) {
+    let earlier = |number: usize, stage: &Node| {
+        let from = stage.text_at("start_from")?;
+        stages[..number]
+            .iter()
+            .position(|stage| stage.text_at("name") == Some(from))
+    };
+    let mut leads = vec![false; stages.len()];
+    for number in (0..stages.len()).rev() {
+        let stage = &stages[number];
+        let searches = stage.text_at("type") == Some("strength-reduction") && is_given(stage);
+        if (searches || leads[number])
+            && let Some(from) = earlier(number, stage)
+        {
+            leads[from] = true;
+        }
+    }
+    for (stage, leads) in stages.iter_mut().zip(leads) {
+        if stage.text_at("type") == Some("gravity") && stage.get("geometry").is_none() {
+            let geometry = if leads { "given" } else { "moving" };
+            stage.add_derived("geometry", Value::Text(geometry.to_owned()));
         }
     }
 }

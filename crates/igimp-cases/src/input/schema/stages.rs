@@ -52,7 +52,12 @@ pub(in crate::input) static STAGE: Kind = Kind::Variants(&Variants {
                     "it stays as it is, 0 at first",
                     "pseudo-static force upwards, as a share of the weight",
                 ),
-                geometry("\"moving\""),
+                derived(
+                    "geometry",
+                    Kind::Choice(&GEOMETRIES),
+                    "\"given\" where a search on the given geometry goes back to this stage, else \"moving\"",
+                    GEOMETRY,
+                ),
             ],
         },
         Variant {
@@ -137,13 +142,13 @@ pub(in crate::input) static STAGE: Kind = Kind::Variants(&Variants {
                     "bracket",
                     Kind::List(&FACTOR, 2, 2),
                     "[1.0, 2.0]",
-                    "a factor thought stable and one thought unstable",
+                    "where trials begin: a factor thought stable and one thought unstable",
                 ),
                 default(
                     "tolerance",
                     Kind::Number(Range::Positive),
                     "0.01",
-                    "width of the interval at which the search ends",
+                    "width of the interval at which trials end",
                 ),
                 default(
                     "path",
@@ -151,10 +156,10 @@ pub(in crate::input) static STAGE: Kind = Kind::Variants(&Variants {
                     "\"reduce\"",
                     "how the reduced strength is reached",
                 ),
-                default(
+                derived(
                     "search",
                     Kind::Choice(&SEARCHES),
-                    "\"trials\"",
+                    "\"continuation\" on the given geometry without `factors`, else \"trials\"",
                     "how the factor is looked for",
                 ),
                 geometry("\"given\""),
@@ -197,7 +202,7 @@ pub(in crate::input) static STAGE: Kind = Kind::Variants(&Variants {
             "steps",
             Kind::Integer(1, MOST_STEPS),
             "10",
-            "load steps when none is cut; in a strength reduction those of each trial by gravity, or from F = 1 to the upper end of the bracket",
+            "load steps when none is cut; in a strength reduction those by which gravity is raised, or by which trials march from F = 1 to the upper end of the bracket",
         ),
         derived(
             "start_from",
@@ -247,13 +252,15 @@ static CONSTRUCTION: [Field; 6] = {
 static LOAD_NAME: Kind = Kind::Reference("load");
 static FACTOR: Kind = Kind::Number(Range::Positive);
 
+const GEOMETRY: &str = "the geometry that its steps are computed on";
+
 /// The geometry that a stage is computed on.
 const fn geometry(value: &'static str) -> Field {
     default(
         "geometry",
         Kind::Choice(&GEOMETRIES),
         value,
-        "the geometry that its steps are computed on",
+        GEOMETRY,
     )
 }
 
