@@ -65,4 +65,4 @@ pub use step_conditions::{SharedLaw, StepConditions};
 pub use system::System;
 pub use trial::Trial;
 pub use unknowns::Unknowns;
-pub use work::StepWork;
+pub use work::{PlasticFlow, StepWork};

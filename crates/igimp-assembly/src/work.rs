@@ -1,6 +1,6 @@
-//! Where the work of a step goes: into elastic strain, or into dissipation (theory, eq. 33c).
+//! Where the work of a step goes: into elastic strain, or into dissipation (theory, eqs. 33c and 33i).
 
-use igimp_material::{MaterialError, Tensor, logarithmic_strain};
+use igimp_material::{MaterialError, Tensor, logarithmic_strain, principal_values};
 use rayon::prelude::*;
 
 use crate::error::AssemblyError;
@@ -27,6 +27,16 @@ impl StepWork {
     pub fn dissipated_share(&self) -> f64 {
         1.0 - (self.elastic / self.whole).abs()
     }
+}
+
+/// What a field of displacements would dissipate if soil flowed with it by the normality rule.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PlasticFlow {
+    /// Work of the cohesive strength of all soil that has a limit \[force·length\].
+    pub work: f64,
+    /// Work of the mean stress on the volume by which the field misses that of such flow, by magnitude
+    /// \[force·length\].
+    pub missed: f64,
 }
 
 impl<const D: usize> System<'_, D> {
@@ -62,6 +72,62 @@ impl<const D: usize> System<'_, D> {
         Ok(work)
     }
 
+    /// What nodal displacements `u` \[length\] would dissipate as plastic flow by the normality rule, at the strength
+    /// that the laws have now; mean stresses are those of `trial`.
+    ///
+    /// # Errors
+    /// [`AssemblyError::Material`] of a particle whose law cannot be told.
+    pub fn plastic_flow(
+        &self,
+        trial: &Trial<D>,
+        u: &[[f64; D]],
+    ) -> Result<PlasticFlow, AssemblyError> {
+        let order = self.stencils.order();
+        let parts: Vec<Result<PlasticFlow, AssemblyError>> = (0..order.len())
+            .into_par_iter()
+            .with_min_len(CHUNK)
+            .map(|slot| {
+                let particle = order[slot] as usize;
+                self.flow_of_particle(&trial.particles[slot].tau, particle, u)
+                    .map_err(|source| AssemblyError::Material { particle, source })
+            })
+            .collect();
+        let mut flow = PlasticFlow::default();
+        for part in parts {
+            let part = part?;
+            flow.work += part.work;
+            flow.missed += part.missed;
+        }
+        Ok(flow)
+    }
+
+    /// That of one particle.
+    fn flow_of_particle(
+        &self,
+        tau: &Tensor,
+        particle: usize,
+        u: &[[f64; D]],
+    ) -> Result<PlasticFlow, MaterialError> {
+        let strain = self.strain_of_step(particle, u);
+        let rate = principal_values::<D>(&strain);
+        let laws = &self.conditions.laws;
+        let asked = (self.particles).ask_law(particle, laws, |law| law.dissipation(&rate))?;
+        let volume = self.reference_volume(particle);
+        let trace = |tensor: &Tensor| tensor[0][0] + tensor[1][1] + tensor[2][2];
+        Ok(asked.map_or_else(PlasticFlow::default, |own| PlasticFlow {
+            work: volume * own.power,
+            missed: volume * (trace(tau) / 3.0 * (trace(&strain) - own.dilation)).abs(),
+        }))
+    }
+
+    /// The small strain of a step at a particle \[-\].
+    fn strain_of_step(&self, particle: usize, u: &[[f64; D]]) -> Tensor {
+        let (gradient, gradient_bar) = gradients(self.stencils.of(particle), u);
+        let mut strain = [[0.0; 3]; 3];
+        add_small_strain(&mut strain, &gradient, &gradient_bar);
+        strain
+    }
+
     /// The work of a particle, and its elastic part \[force·length\].
     fn work_of_particle(
         &self,
@@ -71,9 +137,7 @@ impl<const D: usize> System<'_, D> {
         u: &[[f64; D]],
     ) -> Result<[f64; 2], MaterialError> {
         let own = &trial.particles[slot];
-        let (gradient, gradient_bar) = gradients(self.stencils.of(particle), u);
-        let mut strain = [[0.0; 3]; 3];
-        add_small_strain(&mut strain, &gradient, &gradient_bar);
+        let strain = self.strain_of_step(particle, u);
         let before = logarithmic_strain(&self.particles.b_e[particle])?;
         let mut elastic = [[0.0; 3]; 3];
         for a in 0..3 {

@@ -318,8 +318,60 @@ pub struct PathSummary {
     pub rise: Option<f64>,
     /// The displacement γH²/E that soil of this weight, height and stiffness is moved by before it fails \[m\].
     pub displacement_scale: Option<f64>,
+    /// What decides the factor, where the path came to a mechanism.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shares: Option<StrengthShares>,
     /// Its equilibria in order.
     pub points: Vec<PathPoint>,
+}
+
+/// What decides a factor of safety, at the last equilibrium of its path.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct StrengthShares {
+    /// The shares of the materials that have a strength.
+    pub materials: Vec<MaterialShare>,
+    /// Share of the dissipation in reinforcement \[-\].
+    pub reinforcement: f64,
+    /// The factor by the kinematic theorem, where the displacements are nearly those of plastic flow by the normality rule.
+    pub kinematic: Option<Kinematic>,
+}
+
+impl StrengthShares {
+    /// Each strength, as the name of its material, its symbol, and the change of the factor with it \[-\].
+    pub fn strengths(&self) -> impl Iterator<Item = (&str, &'static str, f64)> {
+        self.materials.iter().flat_map(|own| {
+            let friction = own.friction.map(|friction| ("tan φ", friction));
+            std::iter::once(("c", own.cohesion))
+                .chain(friction)
+                .map(|(what, share)| (own.material.as_str(), what, share + 0.0))
+        })
+    }
+}
+
+/// The share of a material in a factor of safety.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct MaterialShare {
+    /// Its name.
+    pub material: String,
+    /// Whether its strength is reduced: changes with reduced strengths add up to 1.
+    pub is_reduced: bool,
+    /// Share of the dissipation of the last step \[-\].
+    pub dissipation: f64,
+    /// Change of the factor with its cohesion, undrained strength or yield stress, with the tension cut-off:
+    /// ∂ ln F/∂ ln c \[-\].
+    pub cohesion: f64,
+    /// Change of the factor with its friction, ∂ ln F/∂ ln tan φ \[-\]; none without friction.
+    pub friction: Option<f64>,
+}
+
+/// A factor of safety by the kinematic theorem, of the displacements of the last step.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Kinematic {
+    /// The factor \[-\].
+    pub factor: f64,
+    /// Work of the mean stress on the volume by which the field misses that of plastic flow, over the work of the step
+    /// \[-\].
+    pub missed: f64,
 }
 
 /// Why a path of equilibria ended.

@@ -73,6 +73,16 @@ pub struct ShearStrength {
     pub friction_angle: f64,
 }
 
+/// What plastic flow by the normality rule dissipates at a rate of strain, per volume.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Dissipation {
+    /// Power of the cohesive strength \[stress\].
+    pub power: f64,
+    /// Rate of volume that such flow has \[-\]: 0 without friction, else sin φ times the sum of the magnitudes of the
+    /// principal rates.
+    pub dilation: f64,
+}
+
 /// The answer of a law to a trial strain, in the order of its principal values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReturnMap {
@@ -159,6 +169,23 @@ pub trait ConstitutiveModel: Send + Sync + Debug {
     /// The shear strength, for those who look at it; none for a law without a limit.
     fn shear_strength(&self) -> Option<ShearStrength> {
         None
+    }
+
+    /// What plastic flow by the normality rule dissipates at the principal strain `rate` \[-\], whose own volume does
+    /// not matter; none for a law without a limit. With a limit on tension it is no less than what the law
+    /// dissipates.
+    ///
+    /// Of Coulomb's law, $`c \cos\varphi \sum_a |\dot\varepsilon_a|`$; a law with another surface has its own.
+    fn dissipation(&self, rate: &Principal) -> Option<Dissipation> {
+        let ShearStrength {
+            cohesive,
+            friction_angle,
+        } = self.shear_strength()?;
+        let size: f64 = rate.iter().map(|rate| rate.abs()).sum();
+        Some(Dissipation {
+            power: cohesive * friction_angle.cos() * size,
+            dilation: friction_angle.sin() * size,
+        })
     }
 
     /// Whether the law has a yield surface: locking of plastic flow concerns no other.

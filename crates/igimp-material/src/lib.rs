@@ -73,7 +73,7 @@ pub use eigen::principal_values;
 pub use elasticity::Elasticity;
 pub use error::MaterialError;
 pub use hencky::HenckyElastic;
-pub use law::{ConstitutiveModel, History, Regime, ReturnMap, ShearStrength};
+pub use law::{ConstitutiveModel, Dissipation, History, Regime, ReturnMap, ShearStrength};
 pub use lift::{
     Lifted, TangentKind, elastic_left_cauchy_green, elastic_left_cauchy_green_of, lift_finite,
     lift_small, logarithmic_strain,

@@ -5,7 +5,9 @@ use std::ops::Deref;
 use std::sync::Arc;
 
 use crate::principal::Principal;
-use crate::{ConstitutiveModel, Elasticity, History, MaterialError, ReturnMap, ShearStrength};
+use crate::{
+    ConstitutiveModel, Dissipation, Elasticity, History, MaterialError, ReturnMap, ShearStrength,
+};
 
 /// Strength, friction and stiffness of a piece of soil over those of its material.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -159,6 +161,14 @@ where
         let own = self.law.shear_strength()?;
         Some(ShearStrength {
             cohesive: self.ratios.strength * own.cohesive,
+            ..own
+        })
+    }
+
+    fn dissipation(&self, rate: &Principal) -> Option<Dissipation> {
+        let own = self.law.dissipation(rate)?;
+        Some(Dissipation {
+            power: self.ratios.strength * own.power,
             ..own
         })
     }

@@ -8,8 +8,8 @@ use crate::error::positive;
 use crate::law::{ON_SURFACE, mobilised, trial_stress};
 use crate::principal::{deviator, deviator_norm, largest, mean};
 use crate::{
-    ConstitutiveModel, Elasticity, History, MaterialError, Principal, Regime, ReturnMap,
-    ShearStrength,
+    ConstitutiveModel, Dissipation, Elasticity, History, MaterialError, Principal, Regime,
+    ReturnMap, ShearStrength,
 };
 
 /// Elastic and perfectly plastic with associated flow and the yield function
@@ -122,6 +122,14 @@ impl ConstitutiveModel for VonMises {
         Some(ShearStrength {
             cohesive: self.yield_stress / 3.0_f64.sqrt(),
             friction_angle: 0.0,
+        })
+    }
+
+    /// $`\sqrt{2/3}\, q_y\, |\mathrm{dev}\, \dot\varepsilon|`$, without a change of volume.
+    fn dissipation(&self, rate: &Principal) -> Option<Dissipation> {
+        Some(Dissipation {
+            power: self.yield_stress * deviator_norm(&deviator(rate)) / 1.5,
+            dilation: 0.0,
         })
     }
 

@@ -15,6 +15,7 @@ mod march;
 mod newton;
 mod report;
 mod residual_history;
+mod sensitivity;
 
 pub use body::Body;
 pub use continuation::{ContinuationSettings, ContinuationState, follow};
@@ -24,3 +25,4 @@ pub use march::{
 };
 pub use newton::{NewtonSettings, Workspace, step};
 pub use report::{Component, NodalForces, PhaseTimes, StepError, StepFailure, StepReport};
+pub use sensitivity::{Increment, KinematicFactor};

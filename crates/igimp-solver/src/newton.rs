@@ -71,7 +71,7 @@ impl<const D: usize> Workspace<D> {
         }
     }
 
-    fn pattern(&self) -> Option<&Arc<Pattern>> {
+    pub(crate) fn pattern(&self) -> Option<&Arc<Pattern>> {
         self.matrix.as_ref().map(|matrix| &matrix.pattern)
     }
 }

@@ -318,6 +318,7 @@ impl Section {
              name = \"strength reduction\"
              type = \"strength-reduction\"
              path = \"{path}\"
+             search = \"trials\"
              bracket = {bracket:?}
              tolerance = {TOLERANCE}
              steps = {steps}

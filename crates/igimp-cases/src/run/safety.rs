@@ -6,6 +6,7 @@ mod criterion;
 mod interval;
 mod limit;
 mod remarks;
+mod shares;
 mod trial;
 
 use std::sync::Arc;

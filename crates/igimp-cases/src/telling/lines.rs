@@ -5,7 +5,9 @@ use std::fmt::Write as _;
 use crate::check::{count, short};
 use crate::mesh_study::plan::label;
 use crate::run::{Event, REACHED_ITS_END, worst_node};
-use crate::summary::{PathPoint, SafetySummary, StageOutcome, StageSummary, TrialSummary};
+use crate::summary::{
+    Kinematic, PathPoint, SafetySummary, StageOutcome, StageSummary, StrengthShares, TrialSummary,
+};
 use igimp_solver::{StepError, StepReport};
 
 const SEARCH: &str = "strength-reduction";
@@ -157,8 +159,38 @@ fn end(summary: &StageSummary) -> String {
         summary.cuts,
         short(summary.largest_displacement)
     );
+    let path = summary
+        .safety
+        .as_ref()
+        .and_then(|safety| safety.path.as_ref());
+    if let Some(shares) = path.and_then(|path| path.shares.as_ref()) {
+        let _ = write!(line, "\n  {}", self::shares(shares));
+    }
     if let Some(linear) = &summary.linear {
         let _ = write!(line, "\n  {}", linear.sentence());
+    }
+    line
+}
+
+/// What decides a factor of safety.
+fn shares(shares: &StrengthShares) -> String {
+    let strengths: Vec<String> = (shares.strengths())
+        .map(|(name, what, share)| format!("{what} of {name} {share:.3}"))
+        .collect();
+    let mut line = format!("∂ ln F/∂ ln of the strengths: {}", strengths.join(", "));
+    if shares.reinforcement > 0.0 {
+        let _ = write!(
+            line,
+            "; {:.1} % of the dissipation in reinforcement",
+            100.0 * shares.reinforcement
+        );
+    }
+    if let Some(Kinematic { factor, missed }) = shares.kinematic {
+        let _ = write!(
+            line,
+            "; kinematic value {factor:.4}, in doubt by {:.1} % for the volume that the field misses",
+            100.0 * missed
+        );
     }
     line
 }

@@ -6,7 +6,7 @@ use std::path::Path;
 use crate::check::{count, short};
 use crate::mesh_study::{MeshSummary, StudySummary};
 use crate::printable::on_a_line;
-use crate::summary::{CheckRow, PathPoint, SafetySummary, Summary};
+use crate::summary::{CheckRow, PathPoint, SafetySummary, StrengthShares, Summary};
 
 use super::{lines, table};
 
@@ -144,6 +144,7 @@ fn explain(safety: &SafetySummary) -> String {
                 .as_ref()
                 .map(|found| at("mechanism from", found)),
         );
+        parts.extend(path.shares.as_ref().and_then(largest_share));
         let scale = path.displacement_scale;
         parts.extend(scale.map(|scale| format!("γH²/E = {} m", short(scale))));
     }
@@ -152,6 +153,13 @@ fn explain(safety: &SafetySummary) -> String {
     } else {
         format!(" ({})", parts.join("; "))
     }
+}
+
+/// The strength that the factor of safety changes most with.
+fn largest_share(shares: &StrengthShares) -> Option<String> {
+    let strengths = shares.strengths();
+    let largest = strengths.max_by(|a, b| a.2.abs().total_cmp(&b.2.abs()));
+    largest.map(|(name, what, share)| format!("most by {what} of {name}, {:.0} %", 100.0 * share))
 }
 
 #[cfg(test)]

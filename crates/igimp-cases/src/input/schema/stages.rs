@@ -256,12 +256,7 @@ const GEOMETRY: &str = "the geometry that its steps are computed on";
 
 /// The geometry that a stage is computed on.
 const fn geometry(value: &'static str) -> Field {
-    default(
-        "geometry",
-        Kind::Choice(&GEOMETRIES),
-        value,
-        GEOMETRY,
-    )
+    default("geometry", Kind::Choice(&GEOMETRIES), value, GEOMETRY)
 }
 
 static GEOMETRIES: [Choice; 2] = [

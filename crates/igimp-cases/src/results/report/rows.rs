@@ -7,7 +7,7 @@ use crate::check::{Band, short};
 use crate::mesh_study::MeshSummary;
 use crate::results::fields::{Dimension, Scale};
 use crate::summary::{
-    MemberSummary, PoreSummary, SafetySummary, StageOutcome, StageSummary, Summary,
+    MaterialShare, MemberSummary, PoreSummary, SafetySummary, StageOutcome, StageSummary, Summary,
 };
 
 /// The phases of a stage, in the order of [`StageSummary::phases`].
@@ -309,6 +309,31 @@ pub(super) struct SafetyView {
     text: String,
     trials: Vec<TrialView>,
     path: Vec<PathView>,
+    shares: Vec<ShareView>,
+}
+
+/// The share of a material in a factor of safety.
+#[derive(Serialize)]
+struct ShareView {
+    material: String,
+    dissipation: String,
+    /// Each strength: its symbol, the change of the factor with it, and that in percent for a bar.
+    strengths: Vec<(&'static str, String, f64)>,
+}
+
+impl ShareView {
+    fn of(share: &MaterialShare) -> Self {
+        let bar = |what, by: f64| (what, format!("{by:.3}"), (100.0 * by).clamp(0.0, 100.0));
+        let friction = share.friction.map(|friction| bar("tan φ", friction));
+        let kept = if share.is_reduced { "" } else { " (kept)" };
+        Self {
+            material: format!("{}{kept}", share.material),
+            dissipation: percent(share.dissipation),
+            strengths: std::iter::once(bar("c", share.cohesion))
+                .chain(friction)
+                .collect(),
+        }
+    }
 }
 
 /// An equilibrium of a path.
@@ -353,7 +378,10 @@ pub(super) fn safety(summary: &Summary) -> Vec<SafetyView> {
             plastic: percent(point.plastic_share),
             iterations: grouped(point.iterations),
         });
+        let shares = safety.path.iter().flat_map(|path| &path.shares);
+        let shares = shares.flat_map(|shares| &shares.materials);
         Some(SafetyView {
+            shares: shares.map(ShareView::of).collect(),
             path: path.collect(),
             stage: stage.name.clone(),
             text: on_safety(safety).join(" "),

@@ -5,7 +5,8 @@ use serde::Serialize;
 use super::rows::{interval, percent};
 use crate::check::short;
 use crate::summary::{
-    CheckRow, PathPoint, PathSummary, SafetySummary, StageOutcome, StageSummary, Summary,
+    CheckRow, Kinematic, PathPoint, PathSummary, SafetySummary, StageOutcome, StageSummary,
+    StrengthShares, Summary,
 };
 
 /// A share of moving mass below this may be a failure of a small part only \[-\].
@@ -167,12 +168,31 @@ fn on_path(path: &PathSummary) -> Option<String> {
     let scale = path.displacement_scale?;
     Some(format!(
         "The path of equilibria has its knee at {} and is a mechanism from {} on; it ended because {}. The displacement \
-         scale γH²/E is {} m.",
+         scale γH²/E is {} m.{}",
         at(knee),
         at(mechanism),
         path.end.sentence(),
-        short(scale)
+        short(scale),
+        path.shares.as_ref().map_or_else(String::new, on_shares)
     ))
+}
+
+/// What decides the factor: reinforcement, and the kinematic theorem.
+fn on_shares(shares: &StrengthShares) -> String {
+    let mut text = String::new();
+    if shares.reinforcement > 0.0 {
+        let share = percent(shares.reinforcement);
+        text.push_str(&format!(
+            " Of the last step {share} is dissipated in reinforcement."
+        ));
+    }
+    if let Some(Kinematic { factor, missed }) = shares.kinematic {
+        text.push_str(&format!(
+            " By the kinematic theorem its displacements give {factor:.4}, in doubt by {} for the volume that they miss.",
+            percent(missed)
+        ));
+    }
+    text
 }
 
 /// "a", "a and b", "a, b and c".

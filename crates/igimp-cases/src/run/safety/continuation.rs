@@ -6,10 +6,12 @@ use std::sync::Arc;
 
 use igimp_assembly::StepWork;
 use igimp_solver::{
-    Accepted, Body, ContinuationSettings, ContinuationState, Observer, StepError, follow,
+    Accepted, Body, ContinuationSettings, ContinuationState, Observer, StepError, StepFailure,
+    follow,
 };
 
 use super::criterion::displacement_scale;
+use super::shares::{LastStep, shares};
 use super::{limit, names, undeformed_or_found};
 use crate::case::{ReductionPath, Stage, StrengthReduction};
 use crate::check::short;
@@ -19,7 +21,9 @@ use crate::run::left::End;
 use crate::run::loading::begin;
 use crate::run::session::{Ended, Path, Session, march_path};
 use crate::run::state::{Controls, State};
-use crate::summary::{PathEnd, PathPoint, PathSummary, SafetySummary, StageSummary};
+use crate::summary::{
+    PathEnd, PathPoint, PathSummary, SafetySummary, StageSummary, StrengthShares,
+};
 
 /// A path begins at no smaller factor than this \[-\]: with so many times its strength a body that falls is one that
 /// no strength holds.
@@ -70,6 +74,7 @@ pub(super) fn search<const D: usize>(
                 points: Vec::new(),
                 end: PathEnd::Lost,
                 last: None,
+                shares: None,
             };
         }
         from = (0.5 * from).max(LEAST_FACTOR);
@@ -104,6 +109,8 @@ struct Followed<const D: usize> {
     end: PathEnd,
     /// The last equilibrium, with that before.
     last: Option<End<D>>,
+    /// What decides the factor, or why that is not known.
+    shares: Option<Result<StrengthShares, StepFailure>>,
 }
 
 impl Search<'_> {
@@ -175,14 +182,16 @@ impl Search<'_> {
             last: Arc::new(state.body.clone()),
             points: Vec::new(),
             end: PathEnd::Lost,
+            work: None,
             stopped: Ok(None),
             session,
             summary,
         };
+        let method = model.method(self.stage.geometry);
         let failure = follow(
             &mut continuation,
             &mut state.body,
-            &model.method(self.stage.geometry),
+            &method,
             &load_path,
             &settings,
             &mut workspace,
@@ -192,10 +201,30 @@ impl Search<'_> {
             before,
             points,
             end,
+            work,
             stopped,
             ..
         } = watch;
         state.controls = self.at(continuation.factor);
+        let is_mechanism = limit::mechanism(&points).is_some();
+        let shares = match (&before, &continuation.last, &work) {
+            (Some(body), Some(last), Some((work, external_work))) if is_mechanism => {
+                let step = LastStep {
+                    model,
+                    method: &method,
+                    body,
+                    u: &last.u,
+                    work,
+                    external_work: *external_work,
+                    srf: &state.controls.srf,
+                    reduced: &self.reduction.materials,
+                    factor: continuation.factor,
+                    at: &|factor| load_path(continuation.factor, factor),
+                };
+                Some(shares(&step, &mut workspace))
+            }
+            _ => None,
+        };
         let ended = match (stopped?, failure) {
             (Some(ended), _) => ended,
             (None, Some(error)) => Ended::NotConverged(error),
@@ -208,6 +237,7 @@ impl Search<'_> {
             points,
             end,
             last,
+            shares,
         })
     }
 }
@@ -222,6 +252,8 @@ struct Watch<'w, 's, const D: usize> {
     last: Arc<Body<D>>,
     points: Vec<PathPoint>,
     end: PathEnd,
+    /// What the last step did, and the work of the external force on it \[force·length\].
+    work: Option<(StepWork, f64)>,
     stopped: Result<Option<Ended>, CaseError>,
 }
 
@@ -246,6 +278,7 @@ impl<const D: usize> Watch<'_, '_, D> {
             iterations: report.iterations,
             in_doubt: report.factor_in_doubt,
         };
+        self.work = (report.work.clone()).map(|work| (work, report.external_work));
         self.session.tell(&Event::Path { point: &point });
         self.points.push(point);
         if self.session.interrupted() {
@@ -292,13 +325,26 @@ fn finish<const D: usize>(
         points,
         end,
         last,
+        shares,
     } = followed;
+    let shares = match shares {
+        Some(Err(cause)) => {
+            session.warn(format!(
+                "what decides the factor of safety in stage \"{}\" is not known: {cause}",
+                stage.name
+            ));
+            None
+        }
+        Some(Ok(shares)) => Some(shares),
+        None => None,
+    };
     let path = PathSummary {
         end,
         mechanism: limit::mechanism(&points),
         knee: limit::knee(&points),
         rise: limit::rise(&points),
         displacement_scale: scale,
+        shares,
         points,
     };
     let (stable, failed) = interval(&path, reduction);

@@ -1,6 +1,9 @@
 //! The factor of safety as the limit of a path of equilibria: held against bounds, against the search by trials, and
 //! against itself for other tolerances, stiffnesses and steps.
 
+mod dilation;
+mod strengths;
+
 use std::fmt::Write as _;
 use std::path::Path as Folder;
 
@@ -18,7 +21,7 @@ use crate::slopes::section::{Path, Search, Variant, YOUNG};
 use crate::study::{Level, RunRecord, Study};
 
 /// What the book says of the study.
-const ABOUT: &str = "The slopes with bounds by limit analysis, searched for along the path of equilibria, the strength reduction factor an unknown: against the bounds, against the search by trials, and against itself for other tolerances, stiffnesses and effort.";
+const ABOUT: &str = "The slopes with bounds by limit analysis, searched for along the path of equilibria, the strength reduction factor an unknown: against the bounds, against the search by trials, and against itself for other tolerances, stiffnesses and effort; its changes with the strengths against reruns, and its rise with dilation.";
 /// What is measured.
 const QUANTITY: &str = "factor of safety [-]";
 /// Elastic constants and the solver enter no limit load.
@@ -205,6 +208,8 @@ pub(crate) fn study(level: Level, out: &Folder) -> Result<Study, CaseError> {
     study.notes.push(note);
     if level >= Level::Default {
         settings(&mut study, &problems)?;
+        strengths::against_reruns(&mut study, &problems)?;
+        dilation::raises_to_associated(&mut study, level)?;
     }
     Ok(study)
 }

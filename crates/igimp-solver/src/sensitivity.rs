@@ -1,0 +1,177 @@
+//! What the last step of a path says of the load factor: how it changes with the conditions of the step, and what the step
+//! dissipates as plastic flow (theory, eqs. 33g to 33i).
+
+use std::sync::Arc;
+
+use igimp_assembly::{
+    AssemblyError, Method, OutOfBalance, Pattern, Stencils, StepConditions, System, Trial,
+};
+use igimp_material::TangentKind;
+
+use crate::body::Body;
+use crate::linear::{Bordered, LinearSolverError};
+use crate::newton::Workspace;
+use crate::report::StepFailure;
+
+/// Shares of the elastic tangent at which a singular tangent is tried again \[-\].
+const REGULARISED: [f64; 5] = [1e-4, 1e-3, 1e-2, 0.1, 1.0];
+
+/// Most factors that a kinematic one is looked for among, the change at which it is found, and the least share of the work
+/// in plastic flow with which the search goes on \[-\].
+const MOST_FACTORS: usize = 60;
+const SAME_FACTOR: f64 = 1e-8;
+const FEWEST: f64 = 0.05;
+
+/// A strength reduction factor by the kinematic theorem.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct KinematicFactor {
+    /// The factor \[-\].
+    pub factor: f64,
+    /// Work of the mean stress on the volume by which the field misses that of plastic flow, over the work of the step
+    /// \[-\].
+    pub missed: f64,
+}
+
+/// An accepted step, its body as it was before.
+#[derive(Debug)]
+pub struct Increment<'a, const D: usize> {
+    /// The body at the start of the step.
+    pub body: &'a Body<D>,
+    /// How the step was computed.
+    pub method: &'a Method,
+    /// What held in the step.
+    pub conditions: &'a StepConditions<D>,
+    /// Nodal step displacements \[length\].
+    pub u: &'a [[f64; D]],
+}
+
+impl<const D: usize> Increment<'_, D> {
+    /// The ratio of changes of the load factor to those of conditions that keep equilibrium at the same work of the
+    /// external force: of each of the conditions `beside` those of the step over that of the conditions at a load factor
+    /// beside, `by_factor` (theory, eq. 33g). Where both differ by the same small share of their value,
+    /// $`\partial\ln\lambda/\partial\ln p`$.
+    ///
+    /// # Errors
+    /// [`StepFailure`] of the equations or of the linear solver.
+    pub fn sensitivity(
+        &self,
+        by_factor: &StepConditions<D>,
+        beside: &[StepConditions<D>],
+        workspace: &mut Workspace<D>,
+    ) -> Result<Vec<f64>, StepFailure> {
+        let stencils = Stencils::build(&self.body.particles, self.method, self.conditions)?;
+        let mut system = self.system(&stencils, workspace.pattern())?;
+        let force = system.external_force_by_unknown();
+        let here = system.out_of_balance(&system.evaluate(self.u, TangentKind::Consistent)?)?;
+        let mut changes = Vec::with_capacity(1 + beside.len());
+        let mut trial = Trial::default();
+        for conditions in std::iter::once(by_factor).chain(beside) {
+            system.exchange(conditions.clone(), &self.body.load_points)?;
+            system.evaluate_into(self.u, TangentKind::Consistent, &mut trial)?;
+            changes.push(difference(&system.out_of_balance(&trial)?, &here));
+        }
+        system.exchange(self.conditions.clone(), &self.body.load_points)?;
+        let bordered = self.factor(&system, workspace)?;
+        let Workspace { solver, matrix, .. } = workspace;
+        let Some(matrix) = matrix else {
+            return Err(LinearSolverError::NotFactored.into());
+        };
+        let mut moved = vec![0.0; force.len()];
+        let mut works = Vec::with_capacity(changes.len());
+        for change in &changes {
+            bordered.solve(&mut **solver, matrix, change, &mut moved)?;
+            works.push(force.iter().zip(&moved).map(|(f, u)| f * u).sum::<f64>());
+        }
+        Ok(works[1..].iter().map(|work| -work / works[0]).collect())
+    }
+
+    /// The strength reduction factor at which plastic flow by the normality rule dissipates the work that the step has for
+    /// it, `work` \[force·length\]; none where no such flow has a factor (theory, eq. 33i). The search begins at `from`,
+    /// and `at` states the conditions at a factor.
+    ///
+    /// # Errors
+    /// [`StepFailure`] of the equations.
+    pub fn kinematic_factor(
+        &self,
+        work: f64,
+        from: f64,
+        at: &dyn Fn(f64) -> Result<StepConditions<D>, AssemblyError>,
+    ) -> Result<Option<KinematicFactor>, StepFailure> {
+        let stencils = Stencils::build(&self.body.particles, self.method, self.conditions)?;
+        let mut system = self.system(&stencils, None)?;
+        let trial = system.evaluate(self.u, TangentKind::Consistent)?;
+        let mut factor = from;
+        for _ in 0..MOST_FACTORS {
+            system.exchange(at(factor)?, &self.body.load_points)?;
+            let flow = system.plastic_flow(&trial, self.u)?;
+            let ratio = flow.work / work;
+            if !(FEWEST..1.0 / FEWEST).contains(&ratio) {
+                return Ok(None);
+            }
+            factor *= ratio;
+            if (ratio - 1.0).abs() <= SAME_FACTOR {
+                let missed = flow.missed / work;
+                return Ok(Some(KinematicFactor { factor, missed }));
+            }
+        }
+        Ok(None)
+    }
+
+    /// The equations of the step.
+    fn system<'s>(
+        &'s self,
+        stencils: &'s Stencils<D>,
+        pattern: Option<&Arc<Pattern>>,
+    ) -> Result<System<'s, D>, StepFailure> {
+        let Body {
+            particles,
+            load_points,
+            rigid,
+            reinforcement,
+        } = self.body;
+        let structures = (&rigid[..], &reinforcement[..]);
+        let system = System::with_structures(
+            particles,
+            structures,
+            stencils,
+            self.conditions,
+            self.method,
+        )?;
+        Ok(system.with_load_points(load_points)?.sharing(pattern))
+    }
+
+    /// Factorises the tangent of the step in the memory of a workspace; a singular one with a share of the elastic tangent.
+    fn factor(
+        &self,
+        system: &System<'_, D>,
+        workspace: &mut Workspace<D>,
+    ) -> Result<Bordered, StepFailure> {
+        let Workspace {
+            solver,
+            matrix,
+            trial,
+            ..
+        } = workspace;
+        let earlier = matrix.take();
+        let matrix = matrix.insert(system.matrix_from(earlier));
+        solver.start_step();
+        let mut kind = TangentKind::Consistent;
+        let mut shares = REGULARISED.into_iter();
+        loop {
+            system.linearise_into(self.u, kind, trial, matrix)?;
+            match (solver.factor(matrix), shares.next()) {
+                (Ok(()), _) => return Ok(Bordered::factor(&mut **solver, matrix)?),
+                (Err(LinearSolverError::Singular { .. }), Some(elastic)) => {
+                    kind = TangentKind::Regularised { elastic };
+                }
+                (Err(error), _) => return Err(error.into()),
+            }
+        }
+    }
+}
+
+/// The change of the out-of-balance force, by unknown \[force\].
+fn difference(then: &OutOfBalance, now: &OutOfBalance) -> Vec<f64> {
+    let both = then.force.iter().zip(&now.force);
+    both.map(|(then, now)| then - now).collect()
+}
