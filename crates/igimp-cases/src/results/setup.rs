@@ -269,13 +269,13 @@ mod tests {
         assert_eq!(row(&tables, "Supports", 2), "bottom | fixed | the grid's");
         assert_eq!(
             row(&tables, "Stages as planned", 1),
-            "2 | factor of safety | search for the factor of safety to within 0.02, strength of clay reduced \
-             step by step; on the geometry as it is | initial stresses | 10"
+            "2 | factor of safety | search for the factor of safety along the path of equilibria, strength of \
+             clay reduced step by step; on the geometry as it is | initial stresses | 10"
         );
         assert_eq!(
             row(&tables, "Stages as planned", 0),
-            "1 | initial stresses | gravity to its full value; displacements count from its end on | \
-             undeformed, free of stress | 10"
+            "1 | initial stresses | gravity to its full value; on the geometry as it is; displacements count from its end \
+             on | undeformed, free of stress | 10"
         );
         assert!(!tables.iter().any(|table| table.title == "Loads"));
     }

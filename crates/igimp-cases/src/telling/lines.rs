@@ -47,9 +47,13 @@ impl Lines {
             } => {
                 self.steps = *steps;
                 self.search = *kind == SEARCH;
-                let each = if self.search { " each trial" } else { "" };
+                let planned = if self.search {
+                    String::new()
+                } else {
+                    format!(", {steps} steps")
+                };
                 Some(format!(
-                    "stage {}/{of} \"{name}\" ({kind}, {steps} steps{each})",
+                    "stage {}/{of} \"{name}\" ({kind}{planned})",
                     stage + 1
                 ))
             }
@@ -396,7 +400,7 @@ mod tests {
             .filter_map(|event| lines.line(event))
             .collect();
         insta::assert_snapshot!(text.join("\n"), @r#"
-        stage 1/3 "initial stresses" (strength-reduction, 10 steps each trial)
+        stage 1/3 "initial stresses" (strength-reduction)
           SRF 1.375   stands  0.0213 m  5 steps
           SRF 1.5     fails   0.0213 m  5 steps  (no equilibrium)
           1.375 <= F < 1.500; 0 steps, 0 iterations, 0 cuts, largest displacement 0 m
