@@ -1,5 +1,5 @@
 //! The soil in every cell of the grid: how much there is, and where its centroid lies. From it come
-//! gradients that the particles of a cell share, and which cells hold slivers only (theory, eqs. 8a to 8e).
+//! gradients that the particles of a cell share, and which cells hold slivers only (theory, eqs. 8a to 8d).
 
 use igimp_material::ConstitutiveModel;
 use igimp_shape::{CellPart, Grid, Support, cell_parts};
@@ -157,7 +157,7 @@ fn of<const D: usize>(parts: &[(Vec<u32>, Vec<CellPart<D>>)], particle: usize) -
     &all[first[place] as usize..first[place + 1] as usize]
 }
 
-/// The share β of its own distortion that a particle of a law keeps (theory, eqs. 8c and 8e), the same for a
+/// The share β of its own distortion that a particle of a law keeps (theory, eq. 8c), the same for a
 /// law and for what a reduction of its strength leaves of it. Elastic soil keeps all of it: bending has to be
 /// resisted. In soil that yields the rest is shared, and what is kept holds modes that the mean does not see;
 /// they add up from step to step where the body moves. The less flow dilates the less has to be shared, and
@@ -194,7 +194,7 @@ mod tests {
         Elasticity::new(1e7, 0.3).unwrap()
     }
 
-    // GOAL: the ends of eq. 8e and the laws that it does not concern have the shares of eq. 8c.
+    // GOAL: the ends of eq. 8c and the laws that it does not concern have the shares of eq. 8c.
     // ORACLE: the numbers of eq. 8c.
     #[test]
     fn ends_are_those_of_the_theory() {

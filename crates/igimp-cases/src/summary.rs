@@ -184,6 +184,12 @@ pub struct StageSummary {
     pub settlement: Option<f64>,
     /// What a strength reduction found.
     pub safety: Option<SafetySummary>,
+    /// Work of the external force in the accepted steps \[J/m; J in space\].
+    #[serde(default)]
+    pub work: f64,
+    /// The path that was followed to a limit load.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub path: Option<PathSummary>,
     /// The reinforcement that was there at its end.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub reinforcement: Vec<MemberSummary>,
@@ -353,7 +359,7 @@ impl StrengthShares {
 pub struct MaterialShare {
     /// Its name.
     pub material: String,
-    /// Whether its strength is reduced: changes with reduced strengths add up to 1.
+    /// Whether its strength is reduced: changes with reduced strengths add up to 1 (theory, eq. 33h).
     pub is_reduced: bool,
     /// Share of the dissipation of the last step \[-\].
     pub dissipation: f64,

@@ -198,7 +198,7 @@ pub trait ConstitutiveModel: Send + Sync + Debug {
 
     /// How much plastic flow dilates, ψ/φ of the law as it is given \[-\]: 1 where flow is associated, 0
     /// where it keeps volume in spite of friction. The law at reduced strength has that of the law it was made
-    /// of. Locking control goes by it (theory, eq. 8e).
+    /// of. Locking control goes by it (theory, eq. 8c).
     ///
     /// A law without ψ says by the symmetry of its tangent what its flow is.
     fn dilatancy(&self) -> f64 {

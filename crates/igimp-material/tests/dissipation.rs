@@ -45,7 +45,7 @@ fn laws() -> Vec<Arc<dyn ConstitutiveModel>> {
 fn is_the_work_of_the_stress_on_plastic_strain() {
     for law in laws() {
         for strain in STRAINS {
-            let strain = strain.map(|strain| strain - 0.1);
+            let strain = strain.map(|strain| strain - 0.01);
             let answer = law.return_map(&strain, &History::default()).unwrap();
             assert!(answer.regime.is_plastic());
             let flow = answer.delta_eps_p;

@@ -7,7 +7,7 @@ use super::left::Resumption;
 use super::records::Moment;
 use super::session::{Ended, Path, Session, Taken, march_path};
 use super::state::{Controls, State};
-use super::{reinforcement, rigid};
+use super::{limit_load, reinforcement, rigid};
 use crate::case::{Case, RigidDrive, Stage, StageKind};
 use crate::check::short;
 use crate::error::CaseError;
@@ -102,7 +102,7 @@ pub(crate) fn let_go<const D: usize>(
         held,
         left: resumption,
     };
-    march_path(
+    let ended = march_path(
         session,
         state,
         &path,
@@ -124,7 +124,13 @@ pub(crate) fn let_go<const D: usize>(
             }
             Ok(resumption.end)
         },
-    )
+    )?;
+    match &ended {
+        Ended::NotConverged(error) if limit_load::is_sought(stage, state, summary, error) => {
+            limit_load::follow_on(session, state, (number, &from, &to), summary)
+        }
+        _ => Ok(ended),
+    }
 }
 
 /// Records the state before a stage.

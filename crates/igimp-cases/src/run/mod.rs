@@ -11,6 +11,8 @@ mod fingerprint;
 mod footing;
 mod initial;
 mod left;
+pub(crate) mod limit;
+mod limit_load;
 mod loading;
 mod memory;
 mod message;

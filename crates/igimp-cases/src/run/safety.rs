@@ -4,7 +4,6 @@
 mod continuation;
 mod criterion;
 mod interval;
-mod limit;
 mod remarks;
 mod shares;
 mod trial;
@@ -14,6 +13,7 @@ use std::sync::Arc;
 use igimp_assembly::Geometry;
 use igimp_solver::Body;
 
+pub(crate) use self::criterion::displacement_scale;
 use self::criterion::{default_limit, height};
 use self::interval::next_factor;
 use self::remarks::{moving_mass, remarks};

@@ -12,12 +12,13 @@ use igimp_solver::{
 
 use super::criterion::displacement_scale;
 use super::shares::{LastStep, shares};
-use super::{limit, names, undeformed_or_found};
+use super::{names, undeformed_or_found};
 use crate::case::{ReductionPath, Stage, StrengthReduction};
 use crate::check::short;
 use crate::error::CaseError;
 use crate::run::Event;
 use crate::run::left::End;
+use crate::run::limit;
 use crate::run::loading::begin;
 use crate::run::session::{Ended, Path, Session, march_path};
 use crate::run::state::{Controls, State};
@@ -268,16 +269,9 @@ impl<const D: usize> Watch<'_, '_, D> {
         let before = self.points.last().map_or(0.0, |point| point.work);
         let monitor = self.search.reduction.monitor;
         let particles = &accepted.body.particles;
-        let share = report.work.as_ref().map(StepWork::dissipated_share);
-        let point = PathPoint {
-            factor: report.to,
-            work: before + report.external_work,
-            displacement: self.session.displacement(monitor, particles),
-            dissipated: share.filter(|share| share.is_finite()).unwrap_or(0.0),
-            plastic_share: report.plastic_share,
-            iterations: report.iterations,
-            in_doubt: report.factor_in_doubt,
-        };
+        let displacement = self.session.displacement(monitor, particles);
+        let work = before + report.external_work;
+        let point = limit::point(report, report.to, work, displacement);
         self.work = (report.work.clone()).map(|work| (work, report.external_work));
         self.session.tell(&Event::Path { point: &point });
         self.points.push(point);
@@ -347,7 +341,7 @@ fn finish<const D: usize>(
         shares,
         points,
     };
-    let (stable, failed) = interval(&path, reduction);
+    let (stable, failed) = limit::interval(&path, reduction.failure_displacement);
     for text in remarks(&path) {
         session.warn(text);
     }
@@ -394,44 +388,6 @@ fn criterion(reduction: &StrengthReduction, whose: &str) -> String {
     match reduction.failure_displacement {
         Some(displacement) => format!("{limit}, or {whose} exceeds {} m", short(displacement)),
         None => limit.to_owned(),
-    }
-}
-
-/// The interval of the factor of safety: from the equilibrium that tells it to where it would rise in another doubling of
-/// the work, both wider by what the residual leaves in doubt (theory, eq. 33f).
-fn interval(path: &PathSummary, reduction: &StrengthReduction) -> (Option<f64>, Option<f64>) {
-    let Some(last) = path.points.last() else {
-        return (None, None);
-    };
-    let largest = path
-        .points
-        .iter()
-        .map(|point| point.factor)
-        .fold(0.0, f64::max);
-    let doubt = path
-        .points
-        .iter()
-        .map(|point| point.in_doubt)
-        .fold(0.0, f64::max);
-    let rise = path.rise.unwrap_or(0.0).max(0.0);
-    let around = |factor: f64, above: f64| {
-        (
-            Some(factor * (1.0 - doubt)),
-            Some(factor * (1.0 + doubt + above)),
-        )
-    };
-    match path.end {
-        PathEnd::Limit | PathEnd::Fallen => around(largest, rise),
-        PathEnd::StillRising => {
-            let mechanism = path.mechanism.map_or(last.factor, |point| point.factor);
-            around(mechanism, 0.0)
-        }
-        PathEnd::Displacement => {
-            let limit = reduction.failure_displacement.unwrap_or(f64::INFINITY);
-            let at = limit::at_displacement(&path.points, limit).unwrap_or(*last);
-            around(at.factor, 0.0)
-        }
-        PathEnd::Lost => (Some(last.factor), None),
     }
 }
 

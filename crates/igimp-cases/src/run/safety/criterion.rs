@@ -21,7 +21,7 @@ pub(super) fn default_limit<const D: usize>(
 }
 
 /// The displacement γH²/E \[m\] (theory, eq. 32a); none for bodies without weight.
-pub(super) fn displacement_scale<const D: usize>(
+pub(crate) fn displacement_scale<const D: usize>(
     model: &Model<'_, D>,
     state: &State<D>,
 ) -> Option<f64> {

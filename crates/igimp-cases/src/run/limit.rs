@@ -1,9 +1,12 @@
 //! What a path of equilibria says of its limit: numbers only (theory, eqs. 33e and 33f).
 
-use crate::summary::{PathEnd, PathPoint};
+use igimp_assembly::StepWork;
+use igimp_solver::StepReport;
+
+use crate::summary::{PathEnd, PathPoint, PathSummary};
 
 /// A step whose work is dissipated by this share moves the body as a mechanism \[-\].
-pub(super) const MECHANISM: f64 = 0.99;
+pub(crate) const MECHANISM: f64 = 0.99;
 
 /// The factor rises no longer where it rises by less than this share in a doubling of the work \[-\].
 const FLAT: f64 = 1e-3;
@@ -14,9 +17,23 @@ const FALLEN: f64 = 0.01;
 /// Displacement at which a factor that still rises is given up, over γH²/E \[-\].
 const FAR: f64 = 100.0;
 
+/// The equilibrium that a step came to: at a factor, after so much work since the beginning, and at a displacement.
+pub(crate) fn point(report: &StepReport, factor: f64, work: f64, displacement: f64) -> PathPoint {
+    let share = report.work.as_ref().map(StepWork::dissipated_share);
+    PathPoint {
+        factor,
+        work,
+        displacement,
+        dissipated: share.filter(|share| share.is_finite()).unwrap_or(0.0),
+        plastic_share: report.plastic_share,
+        iterations: report.iterations,
+        in_doubt: report.factor_in_doubt,
+    }
+}
+
 /// The rise of the factor in the last doubling of the work, as a share of it \[-\]: the factor at half of the work is
 /// interpolated over the logarithm of the work. None before the work has doubled once.
-pub(super) fn rise(points: &[PathPoint]) -> Option<f64> {
+pub(crate) fn rise(points: &[PathPoint]) -> Option<f64> {
     let last = points.last()?;
     let half = 0.5 * last.work;
     let after = points.iter().position(|point| point.work >= half)?;
@@ -28,7 +45,7 @@ pub(super) fn rise(points: &[PathPoint]) -> Option<f64> {
 
 /// What ends the path at its last point, if anything does. `scale` is γH²/E \[m\], `limit` a displacement at which
 /// the body counts as failed \[m\].
-pub(super) fn end(points: &[PathPoint], scale: Option<f64>, limit: Option<f64>) -> Option<PathEnd> {
+pub(crate) fn end(points: &[PathPoint], scale: Option<f64>, limit: Option<f64>) -> Option<PathEnd> {
     let last = points.last()?;
     if limit.is_some_and(|limit| last.displacement > limit) {
         return Some(PathEnd::Displacement);
@@ -45,7 +62,7 @@ pub(super) fn end(points: &[PathPoint], scale: Option<f64>, limit: Option<f64>) 
 }
 
 /// The point from which on the body moves as a mechanism, to the end of the path, interpolated between equilibria.
-pub(super) fn mechanism(points: &[PathPoint]) -> Option<PathPoint> {
+pub(crate) fn mechanism(points: &[PathPoint]) -> Option<PathPoint> {
     let last_before = points
         .iter()
         .rposition(|point| point.dissipated < MECHANISM);
@@ -59,7 +76,7 @@ pub(super) fn mechanism(points: &[PathPoint]) -> Option<PathPoint> {
 }
 
 /// The point at which a displacement was passed, interpolated between equilibria.
-pub(super) fn at_displacement(points: &[PathPoint], displacement: f64) -> Option<PathPoint> {
+pub(crate) fn at_displacement(points: &[PathPoint], displacement: f64) -> Option<PathPoint> {
     let first = (points.iter()).position(|point| point.displacement >= displacement)?;
     let after = points[first];
     let before = match first.checked_sub(1) {
@@ -91,7 +108,7 @@ fn between(a: &PathPoint, b: &PathPoint, share: f64) -> PathPoint {
 }
 
 /// The knee of a path: the point at which the rise of the factor over doublings of the work falls most.
-pub(super) fn knee(points: &[PathPoint]) -> Option<PathPoint> {
+pub(crate) fn knee(points: &[PathPoint]) -> Option<PathPoint> {
     let rises = |a: &PathPoint, b: &PathPoint| (b.factor - a.factor) / (b.work / a.work).log2();
     let falls = points.windows(3).map(|three| {
         let [a, b, c] = [&three[0], &three[1], &three[2]];
@@ -100,6 +117,44 @@ pub(super) fn knee(points: &[PathPoint]) -> Option<PathPoint> {
     let finite = falls.filter(|(fall, _)| fall.is_finite());
     let knee = finite.max_by(|(a, _), (b, _)| a.total_cmp(b))?;
     Some(knee.1)
+}
+
+/// The interval of the factor at the limit of a path: from the equilibrium that tells it to where it would rise in another doubling of
+/// the work, both wider by what the residual leaves in doubt (theory, eq. 33f).
+pub(crate) fn interval(path: &PathSummary, limit: Option<f64>) -> (Option<f64>, Option<f64>) {
+    let Some(last) = path.points.last() else {
+        return (None, None);
+    };
+    let largest = path
+        .points
+        .iter()
+        .map(|point| point.factor)
+        .fold(0.0, f64::max);
+    let doubt = path
+        .points
+        .iter()
+        .map(|point| point.in_doubt)
+        .fold(0.0, f64::max);
+    let rise = path.rise.unwrap_or(0.0).max(0.0);
+    let around = |factor: f64, above: f64| {
+        (
+            Some(factor * (1.0 - doubt)),
+            Some(factor * (1.0 + doubt + above)),
+        )
+    };
+    match path.end {
+        PathEnd::Limit | PathEnd::Fallen => around(largest, rise),
+        PathEnd::StillRising => {
+            let mechanism = path.mechanism.map_or(last.factor, |point| point.factor);
+            around(mechanism, 0.0)
+        }
+        PathEnd::Displacement => {
+            let limit = limit.unwrap_or(f64::INFINITY);
+            let at = at_displacement(&path.points, limit).unwrap_or(*last);
+            around(at.factor, 0.0)
+        }
+        PathEnd::Lost => (Some(last.factor), None),
+    }
 }
 
 #[cfg(test)]
