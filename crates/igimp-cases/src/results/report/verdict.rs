@@ -1,5 +1,7 @@
 //! The outcome of a run in a few sentences.
 
+use std::fmt::Write as _;
+
 use serde::Serialize;
 
 use super::rows::{interval, percent};
@@ -182,15 +184,17 @@ fn on_shares(shares: &StrengthShares) -> String {
     let mut text = String::new();
     if shares.reinforcement > 0.0 {
         let share = percent(shares.reinforcement);
-        text.push_str(&format!(
+        let _ = write!(
+            text,
             " Of the last step {share} is dissipated in reinforcement."
-        ));
+        );
     }
     if let Some(Kinematic { factor, missed }) = shares.kinematic {
-        text.push_str(&format!(
+        let _ = write!(
+            text,
             " By the kinematic theorem its displacements give {factor:.4}, in doubt by {} for the volume that they miss.",
             percent(missed)
-        ));
+        );
     }
     text
 }
