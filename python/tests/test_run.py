@@ -52,7 +52,7 @@ def test_a_factor_of_safety_is_an_interval(folder):
     stable, failed = folder.factor_of_safety_interval
     assert 1.2 < stable < folder.factor_of_safety < failed < 1.5
     stage = folder.stages[1]
-    assert stage.kind == "strength-reduction" and stage.details["safety"]["trials"]
+    assert stage.kind == "strength-reduction" and stage.details["safety"]["path"]["points"]
     assert folder.checks[0].met and folder.checks[0].band == "1.2 … 1.45"
     assert folder.raise_for_failure() is folder
 
