@@ -600,6 +600,23 @@ impl<'a, const D: usize> System<'a, D> {
         force.iter().zip(u).map(|(force, u)| force * u).sum()
     }
 
+    /// The gross work of the external force on nodal step displacements `u` \[force·length\]: the sum of what its
+    /// components do, by magnitude. It is not zero where as much rises as falls.
+    pub fn gross_work_of_loads(&self, u: &[[f64; D]]) -> f64 {
+        let (force, u) = (self.force_along(u), self.by_unknown(u));
+        force.iter().zip(u).map(|(force, u)| force * u).sum()
+    }
+
+    /// The external force by unknown \[force\], each component with the sign of nodal displacements `u` \[length\]: its
+    /// product with them is their gross work.
+    pub fn force_along(&self, u: &[[f64; D]]) -> Vec<f64> {
+        let mut force = self.external_force_by_unknown();
+        for (force, u) in force.iter_mut().zip(self.by_unknown(u)) {
+            *force = force.abs().copysign(u);
+        }
+        force
+    }
+
     /// The work of reinforcement on the stretch of the step, and its elastic part \[force·length\].
     pub(crate) fn work_of_reinforcement(&self, u: &[[f64; D]]) -> [f64; 2] {
         self.reinforcement.work(u)

@@ -23,9 +23,10 @@ pub struct StepWork {
 }
 
 impl StepWork {
-    /// The share of the work that is dissipated \[-\]: 1 where stresses stay and the body moves as a mechanism.
-    pub fn dissipated_share(&self) -> f64 {
-        1.0 - (self.elastic / self.whole).abs()
+    /// The share of the gross work of the external force, `gross` \[force·length\], that is not elastic \[-\]: 1 where
+    /// stresses stay and the body moves as a mechanism.
+    pub fn dissipated_share(&self, gross: f64) -> f64 {
+        1.0 - (self.elastic / gross).abs()
     }
 }
 

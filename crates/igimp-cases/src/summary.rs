@@ -184,7 +184,7 @@ pub struct StageSummary {
     pub settlement: Option<f64>,
     /// What a strength reduction found.
     pub safety: Option<SafetySummary>,
-    /// Work of the external force in the accepted steps \[J/m; J in space\].
+    /// Gross work of the external force in the accepted steps: of its components, by magnitude \[J/m; J in space\].
     #[serde(default)]
     pub work: f64,
     /// The path that was followed to a limit load.
@@ -415,12 +415,12 @@ impl PathEnd {
 pub struct PathPoint {
     /// Strength reduction factor \[-\].
     pub factor: f64,
-    /// Work of the external force since the beginning of the path \[J/m; J in space\].
+    /// Gross work of the external force since the beginning of the path: of its components, by magnitude \[J/m; J in space\].
     pub work: f64,
     /// Displacement that the search looks at, since the beginning of the path \[m\].
     #[serde(deserialize_with = "or_not_a_number")]
     pub displacement: f64,
-    /// Share of the work of the last step that was dissipated \[-\]: 1 of a mechanism.
+    /// Share of the gross work of the last step that is not elastic \[-\]: 1 of a mechanism.
     #[serde(deserialize_with = "or_not_a_number")]
     pub dissipated: f64,
     /// Share of particles that yielded in the last step \[-\].

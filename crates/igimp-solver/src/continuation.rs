@@ -51,9 +51,9 @@ pub struct ContinuationState<const D: usize> {
     pub working: usize,
     /// Steps so far.
     pub steps: usize,
-    /// Work of the external force since the beginning \[force·length\].
+    /// Gross work of the external force since the beginning \[force·length\].
     pub work: f64,
-    /// Work of the next step \[force·length\].
+    /// Gross work of the next step \[force·length\].
     pub size: f64,
     /// The last step that did work.
     pub last: Option<LastStep<D>>,
@@ -66,7 +66,7 @@ pub struct LastStep<const D: usize> {
     pub u: Vec<[f64; D]>,
     /// Change of the load factor \[-\].
     pub change: f64,
-    /// Work of the external force \[force·length\].
+    /// Gross work of the external force \[force·length\].
     pub work: f64,
 }
 
@@ -106,15 +106,16 @@ impl<const D: usize> ContinuationState<D> {
     /// Takes an accepted step in.
     fn take(
         &mut self,
-        (step, forces, work): (&StepReport, &NodalForces<D>, f64),
+        (step, forces): (&StepReport, &NodalForces<D>),
         target: &Target<D>,
         settings: &ContinuationSettings,
     ) {
+        let work = step.gross_work;
         self.steps += 1;
         self.work += work;
         self.factor = step.to;
         let of_stress = step.work.as_ref().map_or(0.0, |work| work.whole);
-        let does_work = work > 0.0 && of_stress > 0.0 && step.plastic_share > 0.0;
+        let does_work = step.external_work > 0.0 && of_stress > 0.0 && step.plastic_share > 0.0;
         match target {
             Target::Work { .. } => self.size = work * growth(step.iterations),
             Target::Factor(_) if !does_work => {
@@ -186,8 +187,7 @@ pub fn follow<const D: usize>(
         ) {
             Ok((conditions, report, forces)) => {
                 halvings = 0;
-                let work = report.external_work;
-                state.take((&report, &forces, work), &target, settings);
+                state.take((&report, &forces), &target, settings);
                 let march = MarchState {
                     at: state.factor,
                     size: state.size,

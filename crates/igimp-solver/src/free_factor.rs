@@ -1,4 +1,4 @@
-//! The load factor of a step as an unknown: the work of the external force on the step is prescribed in its place
+//! The load factor of a step as an unknown: the gross work of the external force on the step is prescribed in its place
 //! (theory, eqs. 33a and 33b).
 
 use igimp_assembly::{AssemblyError, LoadPoint, OutOfBalance, System, TangentMatrix, Trial};
@@ -35,9 +35,9 @@ pub(crate) struct FreeFactor<'p, const D: usize> {
     from: f64,
     /// Load factor at the trial \[-\].
     pub(crate) at: f64,
-    /// Work of the external force on the step that is asked for \[force·length\].
+    /// Gross work of the external force on the step that is asked for \[force·length\].
     work: f64,
-    /// External force at the start of the step, by unknown \[force\].
+    /// External force at the start of the step along the guess, by unknown \[force\].
     force: Vec<f64>,
     /// Derivative of the out-of-balance force by the load factor, by unknown \[force\].
     slope: Vec<f64>,
@@ -46,21 +46,21 @@ pub(crate) struct FreeFactor<'p, const D: usize> {
 }
 
 impl<'p, const D: usize> FreeFactor<'p, D> {
-    /// That of a step from a load factor, which is to do so much `work`.
+    /// That of a step from a load factor, which is to do so much gross `work` along the displacements of a guess.
     pub(crate) fn new(
         load_path: &'p dyn LoadPath<D>,
         points: &'p [LoadPoint<D>],
         system: &System<'_, D>,
-        (from, at): (f64, f64),
-        work: f64,
+        (from, work): (f64, f64),
+        guess: &Guess<D>,
     ) -> Self {
         Self {
             load_path,
             points,
             from,
-            at,
+            at: guess.factor,
             work,
-            force: system.external_force_by_unknown(),
+            force: system.force_along(&guess.u),
             slope: Vec::new(),
             beside: Trial::default(),
         }

@@ -183,7 +183,7 @@ pub(crate) fn step_on_path<const D: usize>(
 pub(crate) enum Target<const D: usize> {
     /// A load factor \[-\].
     Factor(f64),
-    /// Work of the external force on the step \[force·length\].
+    /// Gross work of the external force on the step \[force·length\].
     Work {
         /// How much.
         work: f64,
@@ -234,9 +234,9 @@ fn equilibrium<const D: usize>(
     let of_step = (system, &stencils);
     let mut corrector = Corrector::new(of_step, grid, settings, workspace, history, set_up);
     if let Some((load_path, work, guess)) = attempt.on_path {
-        let factors = (attempt.from, guess.factor);
         let points = &body.load_points;
-        let factor = FreeFactor::new(load_path, points, &corrector.system, factors, work);
+        let asked = (attempt.from, work);
+        let factor = FreeFactor::new(load_path, points, &corrector.system, asked, guess);
         corrector = corrector.on_path(factor);
         u.clone_from(&guess.u);
     }
@@ -271,6 +271,7 @@ fn equilibrium<const D: usize>(
     let drag_share = system.drag_share(&u);
     let plastic_share = plastic_share(trial);
     let external_work = system.work_of_loads(&u);
+    let gross_work = system.gross_work_of_loads(&u);
     let work = (attempt.measures_work)
         .then(|| system.work(trial, &u))
         .transpose()?;
@@ -297,6 +298,7 @@ fn equilibrium<const D: usize>(
         drag_share,
         work,
         external_work,
+        gross_work,
         factor_in_doubt,
         linear,
         times,

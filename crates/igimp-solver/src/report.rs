@@ -223,6 +223,8 @@ pub struct StepReport {
     pub work: Option<StepWork>,
     /// The work of the external force on the step \[force·length\].
     pub external_work: f64,
+    /// The same, with the magnitude of each component's work \[force·length\].
+    pub gross_work: f64,
     /// By how much the residual that was left puts the load factor in doubt where that was unknown, as a share of it
     /// \[-\].
     pub factor_in_doubt: f64,

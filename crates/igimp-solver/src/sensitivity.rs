@@ -46,7 +46,7 @@ pub struct Increment<'a, const D: usize> {
 }
 
 impl<const D: usize> Increment<'_, D> {
-    /// The ratio of changes of the load factor to those of conditions that keep equilibrium at the same work of the
+    /// The ratio of changes of the load factor to those of conditions that keep equilibrium at the same gross work of the
     /// external force: of each of the conditions `beside` those of the step over that of the conditions at a load factor
     /// beside, `by_factor` (theory, eq. 33g). Where both differ by the same small share of their value,
     /// $`\partial\ln\lambda/\partial\ln p`$.
@@ -61,7 +61,7 @@ impl<const D: usize> Increment<'_, D> {
     ) -> Result<Vec<f64>, StepFailure> {
         let stencils = Stencils::build(&self.body.particles, self.method, self.conditions)?;
         let mut system = self.system(&stencils, workspace.pattern())?;
-        let force = system.external_force_by_unknown();
+        let force = system.force_along(self.u);
         let here = system.out_of_balance(&system.evaluate(self.u, TangentKind::Consistent)?)?;
         let mut changes = Vec::with_capacity(1 + beside.len());
         let mut trial = Trial::default();

@@ -1,6 +1,5 @@
 //! What a path of equilibria says of its limit: numbers only (theory, eqs. 33e and 33f).
 
-use igimp_assembly::StepWork;
 use igimp_solver::StepReport;
 
 use crate::summary::{PathEnd, PathPoint, PathSummary};
@@ -19,7 +18,7 @@ const FAR: f64 = 100.0;
 
 /// The equilibrium that a step came to: at a factor, after so much work since the beginning, and at a displacement.
 pub(crate) fn point(report: &StepReport, factor: f64, work: f64, displacement: f64) -> PathPoint {
-    let share = report.work.as_ref().map(StepWork::dissipated_share);
+    let share = (report.work.as_ref()).map(|work| work.dissipated_share(report.gross_work));
     PathPoint {
         factor,
         work,

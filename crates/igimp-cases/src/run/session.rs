@@ -111,7 +111,7 @@ impl<const D: usize> Session<'_, D> {
     ) -> Result<(), CaseError> {
         stage.steps += 1;
         stage.iterations += report.iterations;
-        stage.work += report.external_work;
+        stage.work += report.gross_work;
         stage.at_round_off += usize::from(report.at_round_off);
         stage.ghost_steps += usize::from(report.ghost_penalty > 0.0);
         stage.plastic_share = report.plastic_share;

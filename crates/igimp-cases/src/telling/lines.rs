@@ -275,6 +275,7 @@ mod tests {
             drag_share: 0.0,
             work: None,
             external_work: 0.0,
+            gross_work: 0.0,
             factor_in_doubt: 0.0,
             worst: Some(([31.5, 10.5, 0.0], 0)),
             linear: LinearEffort::default(),

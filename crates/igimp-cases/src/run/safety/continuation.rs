@@ -270,7 +270,7 @@ impl<const D: usize> Watch<'_, '_, D> {
         let monitor = self.search.reduction.monitor;
         let particles = &accepted.body.particles;
         let displacement = self.session.displacement(monitor, particles);
-        let work = before + report.external_work;
+        let work = before + report.gross_work;
         let point = limit::point(report, report.to, work, displacement);
         self.work = (report.work.clone()).map(|work| (work, report.external_work));
         self.session.tell(&Event::Path { point: &point });
