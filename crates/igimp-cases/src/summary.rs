@@ -361,7 +361,7 @@ pub struct MaterialShare {
     pub material: String,
     /// Whether its strength is reduced: changes with reduced strengths add up to 1 (theory, eq. 33h).
     pub is_reduced: bool,
-    /// Share of the dissipation of the last step \[-\].
+    /// Share of the dissipation of the last step \[-\]; 0 where it dissipates nothing.
     pub dissipation: f64,
     /// Change of the factor with its cohesion, undrained strength or yield stress, with the tension cut-off:
     /// ∂ ln F/∂ ln c \[-\].

@@ -144,7 +144,7 @@ fn trial(trial: &TrialSummary) -> String {
 /// An equilibrium of a path along which strength is reduced.
 fn path_point(point: &PathPoint) -> String {
     format!(
-        "SRF {:.4}  {} m  {:.1} % of the work dissipated  {} it",
+        "SRF {:.4}  {} m  {:.1} % of the work not elastic  {} it",
         point.factor,
         short(point.displacement),
         100.0 * point.dissipated,

@@ -209,7 +209,7 @@ impl Search<'_> {
         state.controls = self.at(continuation.factor);
         let is_mechanism = limit::mechanism(&points).is_some();
         let shares = match (&before, &continuation.last, &work) {
-            (Some(body), Some(last), Some((work, external_work))) if is_mechanism => {
+            (Some(body), Some(last), Some((work, external_work, gross_work))) if is_mechanism => {
                 let step = LastStep {
                     model,
                     method: &method,
@@ -217,6 +217,7 @@ impl Search<'_> {
                     u: &last.u,
                     work,
                     external_work: *external_work,
+                    gross_work: *gross_work,
                     srf: &state.controls.srf,
                     reduced: &self.reduction.materials,
                     factor: continuation.factor,
@@ -254,7 +255,7 @@ struct Watch<'w, 's, const D: usize> {
     points: Vec<PathPoint>,
     end: PathEnd,
     /// What the last step did, and the work of the external force on it \[force·length\].
-    work: Option<(StepWork, f64)>,
+    work: Option<(StepWork, f64, f64)>,
     stopped: Result<Option<Ended>, CaseError>,
 }
 
@@ -272,7 +273,8 @@ impl<const D: usize> Watch<'_, '_, D> {
         let displacement = self.session.displacement(monitor, particles);
         let work = before + report.gross_work;
         let point = limit::point(report, report.to, work, displacement);
-        self.work = (report.work.clone()).map(|work| (work, report.external_work));
+        self.work =
+            (report.work.clone()).map(|work| (work, report.external_work, report.gross_work));
         self.session.tell(&Event::Path { point: &point });
         self.points.push(point);
         if self.session.interrupted() {

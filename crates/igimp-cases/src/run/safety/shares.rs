@@ -11,6 +11,9 @@ use crate::summary::{Kinematic, MaterialShare, StrengthShares};
 /// Relative change of a strength in a difference quotient \[-\].
 const DIFFERENCE: f64 = 1e-6;
 
+/// A step that dissipates less of its gross work than this dissipates nothing, as soil without cohesion at ψ = φ \[-\].
+const LEAST_DISSIPATED: f64 = 1e-3;
+
 /// A field that misses more of its work than this is no plastic flow by the normality rule, as where ψ < φ \[-\].
 const LARGEST_MISSED: f64 = 0.1;
 
@@ -26,6 +29,8 @@ pub(super) struct LastStep<'a, const D: usize> {
     pub(super) work: &'a StepWork,
     /// Work of the external force on it \[force·length\].
     pub(super) external_work: f64,
+    /// Gross work of the external force on it \[force·length\].
+    pub(super) gross_work: f64,
     /// Strength reduction factors, by material.
     pub(super) srf: &'a [f64],
     /// Materials whose strength is reduced.
@@ -78,13 +83,17 @@ pub(super) fn shares<const D: usize>(
     };
     let dissipated = step.dissipated();
     let whole: f64 = dissipated.iter().sum::<f64>() + step.work.in_reinforcement;
+    let share = |dissipated: f64| {
+        let is_told = whole > LEAST_DISSIPATED * step.gross_work;
+        if is_told { dissipated / whole } else { 0.0 }
+    };
     let of_material = |(number, dissipated): (usize, &f64)| {
         let strength = change(number, Parameter::Whole)?;
         let friction = change(number, Parameter::Friction);
         Some(MaterialShare {
             material: materials[number].name.clone(),
             is_reduced: step.reduced.contains(&number),
-            dissipation: dissipated / whole,
+            dissipation: share(*dissipated),
             cohesion: strength - friction.unwrap_or(0.0),
             friction,
         })
@@ -99,7 +108,7 @@ pub(super) fn shares<const D: usize>(
         materials: (dissipated.iter().enumerate())
             .filter_map(of_material)
             .collect(),
-        reinforcement: step.work.in_reinforcement / whole,
+        reinforcement: share(step.work.in_reinforcement),
         kinematic: kinematic
             .filter(|own| own.missed <= LARGEST_MISSED)
             .map(|found| Kinematic {
