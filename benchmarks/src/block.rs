@@ -212,6 +212,7 @@ fn seeds<const D: usize>(cells: usize, h: f64) -> Vec<ParticleSeed<D>> {
                 volume: (0.5 * h).powi(D as i32),
                 density: 2000.0,
                 law: 0,
+                centroid: [0.0; _],
             }
         })
         .collect()

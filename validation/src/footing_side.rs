@@ -253,6 +253,7 @@ fn without(fields: &ParticleFields<2>, marked: &[bool]) -> ParticleFields<2> {
         sigma: keep(&fields.sigma, marked),
         half_length: keep(&fields.half_length, marked),
         half_length0: keep(&fields.half_length0, marked),
+        centroid: keep(&fields.centroid, marked),
         volume0: keep(&fields.volume0, marked),
         mass: keep(&fields.mass, marked),
         pore_pressure: keep(&fields.pore_pressure, marked),

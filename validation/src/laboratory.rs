@@ -44,6 +44,7 @@ pub(crate) fn filled<const D: usize>(grid: &Grid<D>, per_direction: usize) -> Ve
                 volume: size.iter().product(),
                 density: 1.0,
                 law: 0,
+                centroid: [0.0; _],
             });
         }
     }

@@ -225,6 +225,7 @@ impl Layer {
                 volume: 0.25 * h * h,
                 density: 1.0,
                 law: 0,
+                centroid: [0.0; _],
             })
             .collect();
         let mut body = Body::new(Particles::new(&seeds).expect("the particles have a volume"));

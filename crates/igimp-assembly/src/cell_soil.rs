@@ -1,5 +1,6 @@
 //! The soil in every cell of the grid: how much there is, and where its centroid lies. From it come
-//! gradients that the particles of a cell share, and which cells hold slivers only (theory, eqs. 8a to 8d).
+//! gradients that the particles of a cell share, which cells hold slivers only, and what of the weight shared
+//! gradients do not see (theory, eqs. 8a to 8f).
 
 use igimp_material::ConstitutiveModel;
 use igimp_shape::{CellPart, Grid, Support, cell_parts};
@@ -58,10 +59,10 @@ impl<const D: usize> CellSoil<D> {
                 let (mut first, mut all) = (Vec::with_capacity(own.len() + 1), Vec::new());
                 first.push(0);
                 for particle in own {
-                    let x = &particles.x[particle];
-                    let half_length = capped_half_length(grid, x, particles.half_length[particle]);
-                    cell_parts(grid, &*method.basis, x, &half_length, &mut all)
-                        .map_err(|source| off_grid(particle, x, source))?;
+                    let (x, half_length) = soil_of(particles, particle, method.geometry);
+                    let half_length = capped_half_length(grid, &x, half_length);
+                    cell_parts(grid, &*method.basis, &x, &half_length, &mut all)
+                        .map_err(|source| off_grid(particle, &x, source))?;
                     first.push(all.len() as u32);
                 }
                 Ok((first, all))
@@ -114,22 +115,15 @@ impl<const D: usize> CellSoil<D> {
         (particle, law): (usize, usize),
         out: &mut Vec<Support<D>>,
     ) {
-        let parts = of(&self.parts, particle);
-        let cell = |part: &CellPart<D>| grid.cell_index(part.cell);
-        let kept = |part: &&CellPart<D>| !self.is_sliver[cell(part)];
-        let share: f64 = parts.iter().filter(kept).map(|part| part.share).sum();
-        let all = share <= 0.5;
-        let whole = if all { 1.0 } else { share };
         let own = match self.locking {
             Locking::SharedStrain => self.own_share[law],
             Locking::None | Locking::BBar => 1.0,
         };
         out.clear();
-        for part in parts.iter().filter(|part| all || kept(part)) {
-            let weight = part.share / whole;
+        for (part, weight) in self.kept(grid, particle) {
             let shared_at = match self.locking {
                 Locking::None => part.middle,
-                Locking::BBar | Locking::SharedStrain => self.shared_at[cell(part)],
+                Locking::BBar | Locking::SharedStrain => self.shared_at[grid.cell_index(part.cell)],
             };
             let own_tents = grid.tents(part.cell, part.middle);
             for (tent, shared) in own_tents.zip(grid.tents(part.cell, shared_at)) {
@@ -147,6 +141,81 @@ impl<const D: usize> CellSoil<D> {
         out.sort_by_key(|support| support.node);
         let count = merge_equal_nodes(out);
         out.truncate(count);
+    }
+
+    /// The parts of a particle that are not in slivers, or all if most of it is there; each with its share of what is
+    /// kept (theory, eq. 8d).
+    fn kept(&self, grid: &Grid<D>, particle: usize) -> impl Iterator<Item = (&CellPart<D>, f64)> {
+        let parts = of(&self.parts, particle);
+        let kept = |part: &CellPart<D>| !self.is_sliver[grid.cell_index(part.cell)];
+        let share: f64 = (parts.iter().filter(|part| kept(part)))
+            .map(|part| part.share)
+            .sum();
+        let all = share <= 0.5;
+        let whole = if all { 1.0 } else { share };
+        (parts.iter().filter(move |part| all || kept(part)))
+            .map(move |part| (part, part.share / whole))
+    }
+
+    /// By law and node, the moments of mass about the centroids of the cells that shared gradients do not see (theory,
+    /// eq. 8f): component a of the gradient, component b of the arm \[mass\]. Empty where strain is not shared on a
+    /// given geometry, and for laws whose particles keep all of their own distortion.
+    pub(crate) fn moments(
+        &self,
+        grid: &Grid<D>,
+        particles: &Particles<D>,
+        method: &Method,
+    ) -> Vec<Vec<[[f64; D]; D]>> {
+        if method.geometry != Geometry::Given || self.locking != Locking::SharedStrain {
+            return Vec::new();
+        }
+        let shared = |own: &f64| if *own < 1.0 { grid.node_count() } else { 0 };
+        let mut moments: Vec<Vec<[[f64; D]; D]>> = (self.own_share.iter())
+            .map(|own| vec![[[0.0; D]; D]; shared(own)])
+            .collect();
+        for particle in 0..particles.len() {
+            let law = particles.law[particle];
+            let own = &mut moments[law];
+            if own.is_empty() {
+                continue;
+            }
+            let mass = (1.0 - self.own_share[law]) * particles.mass[particle];
+            for (part, weight) in self.kept(grid, particle) {
+                let size = grid.cell_size(part.cell);
+                let shared_at = self.shared_at[grid.cell_index(part.cell)];
+                let arm: [f64; D] = std::array::from_fn(|axis| {
+                    weight * mass * (part.middle[axis] - shared_at[axis]) * size[axis]
+                });
+                let tents = grid.tents(part.cell, part.middle);
+                for (tent, shared) in tents.zip(grid.tents(part.cell, shared_at)) {
+                    let moment = &mut own[tent.0];
+                    for a in 0..D {
+                        for b in 0..D {
+                            moment[a][b] += (tent.2[a] - shared.2[a]) * arm[b];
+                        }
+                    }
+                }
+            }
+        }
+        moments
+    }
+}
+
+/// Where the soil of a particle is: its domain, and on a given geometry the largest box around the centroid of its soil
+/// within that (theory, eq. 8e).
+fn soil_of<const D: usize>(
+    particles: &Particles<D>,
+    particle: usize,
+    geometry: Geometry,
+) -> ([f64; D], [f64; D]) {
+    let (x, half_length) = (particles.x[particle], particles.half_length[particle]);
+    let centroid = particles.centroid[particle];
+    match geometry {
+        Geometry::Moving => (x, half_length),
+        Geometry::Given => (
+            std::array::from_fn(|axis| x[axis] + centroid[axis] * half_length[axis]),
+            std::array::from_fn(|axis| (1.0 - centroid[axis].abs()) * half_length[axis]),
+        ),
     }
 }
 

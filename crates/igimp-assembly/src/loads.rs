@@ -1,13 +1,14 @@
 //! What acts on a body in a step: gravity on every particle, forces on points that the soil carries
 //! along, and drag against motion (theory, eqs. 2 and 38).
 
+use igimp_material::ConstitutiveModel;
 use igimp_shape::{Grid, Linear, Scratch, Support, supports};
 
 use crate::couplings::{Coupling, Couplings};
 use crate::dropped::shares_of_carried;
 use crate::error::AssemblyError;
 use crate::stencils::Stencils;
-use crate::step_conditions::StepConditions;
+use crate::step_conditions::{SharedLaw, StepConditions};
 use crate::supports::padded;
 use crate::unknowns::Unknowns;
 
@@ -193,6 +194,34 @@ pub(crate) fn weight<const D: usize>(
     (0..grid.node_count())
         .map(|node| loads.gravity.map(|g| stencils.node_mass(node) * g))
         .collect()
+}
+
+/// Adds to the nodal external force f_ext what the variation of stress within cells carries of the weight and shared
+/// gradients do not see, by node \[force\] (theory, eq. 8f).
+pub(crate) fn add_variation_of_weight<const D: usize>(
+    stencils: &Stencils<D>,
+    laws: &[SharedLaw],
+    gravity: &[f64; D],
+    f_ext: &mut [[f64; D]],
+) {
+    for (law, moments) in laws.iter().zip(stencils.moments()) {
+        let ratio = ratio_at_failure(&**law);
+        for (node, moment) in moments.iter().enumerate() {
+            let force = &mut f_ext[stencils.master(node)];
+            for a in 0..D {
+                let along: f64 = (0..D).map(|b| moment[a][b] * gravity[b]).sum();
+                force[a] += ratio * along;
+            }
+        }
+    }
+}
+
+/// The ratio of the horizontal to the vertical stress in a long slope of soil without cohesion that fails along its face
+/// \[-\] (theory, eq. 8f): 1 without friction.
+fn ratio_at_failure(law: &dyn ConstitutiveModel) -> f64 {
+    let friction_angle = (law.shear_strength()).map_or(0.0, |strength| strength.friction_angle);
+    let square = friction_angle.sin().powi(2);
+    (1.0 - square) / (1.0 + square)
 }
 
 /// Adds the force of loaded points to the nodal external force f_ext, by node \[force\]. What falls to

@@ -24,6 +24,8 @@ pub struct ParticleSeed<const D: usize> {
     pub density: f64,
     /// Index of the constitutive law in the list of laws.
     pub law: usize,
+    /// Centroid of its soil within the domain, from the middle, over half-lengths \[-\]: zero where soil fills the domain.
+    pub centroid: [f64; D],
 }
 
 /// The arrays, one entry per particle.
@@ -44,6 +46,8 @@ pub struct ParticleFields<const D: usize> {
     pub half_length: Vec<[f64; D]>,
     /// Half-lengths as seeded \[length\].
     pub half_length0: Vec<[f64; D]>,
+    /// Centroid of its soil within the domain as seeded, from the middle, over half-lengths \[-\].
+    pub centroid: Vec<[f64; D]>,
     /// Volume as seeded V_0 \[length^D\].
     pub volume0: Vec<f64>,
     /// Mass \[mass\].
@@ -103,6 +107,7 @@ impl<const D: usize> Particles<D> {
                 sigma: vec![[[0.0; 3]; 3]; n],
                 half_length: seeds.iter().map(|seed| seed.half_length).collect(),
                 half_length0: seeds.iter().map(|seed| seed.half_length).collect(),
+                centroid: seeds.iter().map(|seed| seed.centroid).collect(),
                 volume0: seeds.iter().map(|seed| seed.volume).collect(),
                 mass: seeds
                     .iter()
@@ -140,6 +145,7 @@ impl<const D: usize> Particles<D> {
             fields.sigma.len(),
             fields.half_length.len(),
             fields.half_length0.len(),
+            fields.centroid.len(),
             fields.volume0.len(),
             fields.mass.len(),
             fields.pore_pressure.len(),
@@ -234,6 +240,7 @@ impl<const D: usize> Particles<D> {
             sigma: picked(&from.sigma, &kept),
             half_length: picked(&from.half_length, &kept),
             half_length0: picked(&from.half_length0, &kept),
+            centroid: picked(&from.centroid, &kept),
             volume0: picked(&from.volume0, &kept),
             mass: picked(&from.mass, &kept),
             pore_pressure: picked(&from.pore_pressure, &kept),
@@ -259,6 +266,7 @@ impl<const D: usize> Particles<D> {
                 sigma: joined(&a.sigma, &b.sigma),
                 half_length: joined(&a.half_length, &b.half_length),
                 half_length0: joined(&a.half_length0, &b.half_length0),
+                centroid: joined(&a.centroid, &b.centroid),
                 volume0: joined(&a.volume0, &b.volume0),
                 mass: joined(&a.mass, &b.mass),
                 pore_pressure: joined(&a.pore_pressure, &b.pore_pressure),
@@ -339,6 +347,7 @@ fn validate<const D: usize>(particle: usize, seed: &ParticleSeed<D>) -> Result<(
     let hold = |field, values: &[f64], range| require(particle, field, values, range);
     hold("x", &seed.x, Range::Finite)?;
     hold("half_length", &seed.half_length, Range::Positive)?;
+    hold("centroid", &seed.centroid, Range::WithinOne)?;
     hold("volume", &[seed.volume], Range::Positive)?;
     hold("density", &[seed.density], Range::NotNegative)
 }
@@ -373,6 +382,7 @@ fn validate_state<const D: usize>(
         &fields.half_length0[particle],
         Range::Positive,
     )?;
+    hold("centroid", &fields.centroid[particle], Range::WithinOne)?;
     hold("volume0", &[fields.volume0[particle]], Range::Positive)?;
     hold("mass", &[fields.mass[particle]], Range::NotNegative)?;
     hold(
@@ -401,6 +411,7 @@ enum Range {
     Finite,
     Positive,
     NotNegative,
+    WithinOne,
 }
 
 /// The error that names the first value out of its range.
@@ -416,6 +427,7 @@ fn require(
                 Range::Finite => true,
                 Range::Positive => value > 0.0,
                 Range::NotNegative => value >= 0.0,
+                Range::WithinOne => value.abs() < 1.0,
             }
     };
     match values.iter().find(|&&value| !holds(value)) {
@@ -428,6 +440,7 @@ fn require(
                 Range::Finite => "finite",
                 Range::Positive => "positive and finite",
                 Range::NotNegative => "zero or positive, and finite",
+                Range::WithinOne => "between -1 and 1",
             },
         }),
     }

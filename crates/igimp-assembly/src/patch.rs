@@ -409,6 +409,7 @@ mod tests {
             volume: (2.0 * half_length).powi(3),
             density: 1.0,
             law: 0,
+            centroid: [0.0; _],
         };
         let mut seeds = vec![seed([4.5; 3], 2.0)];
         for k in 0..512_usize {

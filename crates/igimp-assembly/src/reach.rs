@@ -78,6 +78,7 @@ mod tests {
                     volume: size.iter().product(),
                     density: 1.0,
                     law: 0,
+                    centroid: [0.0; _],
                 }
             })
             .collect();

@@ -137,6 +137,11 @@ impl<const D: usize> Stencils<D> {
         self.shares[node].volume / cell_volume(grid, node)
     }
 
+    /// By law and node, moments of mass that shared gradients do not see (theory, eq. 8f) \[mass\].
+    pub(crate) fn moments(&self) -> &[Vec<[[f64; D]; D]>] {
+        self.supports.moments()
+    }
+
     /// Tied nodes with the nodes that they move with.
     pub(crate) fn masters(&self) -> &BTreeMap<usize, usize> {
         &self.masters

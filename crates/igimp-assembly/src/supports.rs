@@ -20,6 +20,8 @@ pub(crate) struct Supports<const D: usize> {
     len: usize,
     /// Largest distance, in nodes along one axis, between two nodes of one particle.
     reach: usize,
+    /// By law and node, moments of mass that shared gradients do not see (theory, eq. 8f) \[mass\].
+    moments: Vec<Vec<[[f64; D]; D]>>,
 }
 
 /// The supports of `CHUNK` particles, or of the last few.
@@ -56,7 +58,13 @@ impl<const D: usize> Supports<D> {
             .collect();
         let chunks = chunks.into_iter().collect::<Result<Vec<_>, _>>()?;
         let reach = chunks.iter().map(|chunk| chunk.reach).max().unwrap_or(0);
-        Ok(Self { chunks, len, reach })
+        let moments = soil.map(|soil| soil.moments(grid, particles, method));
+        Ok(Self {
+            chunks,
+            len,
+            reach,
+            moments: moments.unwrap_or_default(),
+        })
     }
 
     /// The supports of one particle.
@@ -65,6 +73,12 @@ impl<const D: usize> Supports<D> {
         let chunk = &self.chunks[particle / CHUNK];
         let (start, count) = chunk.places[particle % CHUNK];
         &chunk.all[start as usize..(start + count) as usize]
+    }
+
+    /// By law and node, moments of mass that shared gradients do not see (theory, eq. 8f) \[mass\]: component a of the
+    /// gradient, component b of the arm. Empty where there are none.
+    pub(crate) fn moments(&self) -> &[Vec<[[f64; D]; D]>] {
+        &self.moments
     }
 
     /// Number of particles.

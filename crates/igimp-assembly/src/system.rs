@@ -12,7 +12,9 @@ use crate::error::AssemblyError;
 use crate::ghost::ghost_penalty;
 use crate::kinematics::ParticleTrial;
 use crate::linearised::{Linearised, Moduli};
-use crate::loads::{LoadPoint, add_force_of_points, finite_points, nodal_drag, weight};
+use crate::loads::{
+    LoadPoint, add_force_of_points, add_variation_of_weight, finite_points, nodal_drag, weight,
+};
 use crate::matrix::{Pattern, TangentMatrix};
 use crate::method::{Kinematics, Method};
 use crate::nodal_forces::NodalForces;
@@ -670,6 +672,8 @@ fn external_force<const D: usize>(
     motions: &[[Drive; D]],
 ) -> Result<(Vec<[f64; D]>, Pores), AssemblyError> {
     let mut f_ext = weight(&conditions.grid, stencils, &conditions.loads);
+    let gravity = &conditions.loads.gravity;
+    add_variation_of_weight(stencils, &conditions.laws, gravity, &mut f_ext);
     let pores = Pores::fill(particles, stencils, conditions, method, &mut f_ext)?;
     if let Some(held) = &conditions.held {
         held.add(stencils, &mut f_ext);

@@ -23,6 +23,7 @@ fn particles(centres: impl Iterator<Item = [f64; 2]>) -> Particles<2> {
             volume: 4.0 * HALF * HALF,
             density: 1.0,
             law: 0,
+            centroid: [0.0; _],
         })
         .collect();
     Particles::new(&seeds).unwrap()

@@ -15,6 +15,7 @@ const SEED: ParticleSeed<2> = ParticleSeed {
     volume: 0.25,
     density: 1.0,
     law: 0,
+    centroid: [0.0; _],
 };
 
 #[test]

@@ -41,6 +41,7 @@ fn block(shift: f64) -> Particles<2> {
                 volume: 0.25,
                 density: 1.0,
                 law: 0,
+                centroid: [0.0; _],
             });
         }
     }

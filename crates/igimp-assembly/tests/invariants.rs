@@ -67,6 +67,7 @@ fn sample<const D: usize>() -> impl Strategy<Value = Sample<D>> {
                     volume,
                     density,
                     law,
+                    centroid: [0.0; _],
                 })
                 .collect();
             Sample {

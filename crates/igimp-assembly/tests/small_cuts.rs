@@ -35,6 +35,7 @@ fn body(cells: &[[usize; 2]], shift: [f64; 2]) -> Particles<2> {
             volume: 0.25,
             density: 1.0,
             law: 0,
+            centroid: [0.0; _],
         })
         .collect();
     Particles::new(&seeds).unwrap()

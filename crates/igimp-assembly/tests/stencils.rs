@@ -69,6 +69,7 @@ fn sample<const D: usize>() -> impl Strategy<Value = Sample<D>> {
                     volume,
                     density,
                     law: 0,
+                    centroid: [0.0; _],
                 })
                 .collect();
             Sample {

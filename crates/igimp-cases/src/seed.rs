@@ -4,6 +4,8 @@
 
 mod nearest;
 
+use std::ops::Range;
+
 use igimp_assembly::ParticleSeed;
 use igimp_shape::Grid;
 
@@ -12,8 +14,11 @@ use crate::polygon::{Polygon, area_and_centroid, clip_to_strip};
 use crate::region::{Cover, Part, Region};
 use nearest::Nearest;
 
-/// Clipped parts smaller than this share of a whole part join the body's nearest particle \[-\].
+/// Clipped parts smaller than this share of a whole part join the nearest particle of their cell, or else of the body \[-\].
 const SLIVER: f64 = 0.1;
+
+/// The centroid of the soil of a particle lies no further out in its domain: soil that joined it may lie beyond \[-\].
+const OUTERMOST: f64 = 0.95;
 
 /// A region may reach off the grid by so much of the grid: lines are multiples of a rounded cell \[-\].
 const ROUND_OFF: f64 = 1e-9;
@@ -249,15 +254,18 @@ impl<const D: usize> Parts<D> {
                 };
                 if own.volume >= SLIVER * size.iter().product::<f64>() {
                     kept.push((seeds.len(), keep));
+                    let x = std::array::from_fn(|axis| from[axis] + 0.5 * size[axis]);
+                    let half_length = size.map(|size| 0.5 * size);
                     seeds.push(ParticleSeed {
-                        x: std::array::from_fn(|axis| from[axis] + 0.5 * size[axis]),
-                        half_length: size.map(|size| 0.5 * size),
+                        x,
+                        half_length,
                         volume: own.volume,
                         density,
                         law,
+                        centroid: within_domain(x, half_length, own.centroid),
                     });
                 } else if own.volume > 0.0 {
-                    slivers.push((own, keep));
+                    slivers.push((number, own, keep));
                 }
             }
             first.push(seeds.len());
@@ -268,14 +276,51 @@ impl<const D: usize> Parts<D> {
         if !slivers.is_empty() {
             let x: Vec<[f64; D]> = seeds.iter().map(|seed| seed.x).collect();
             let nearest = Nearest::new(self, &x, &first);
-            for (own, keep) in slivers {
-                let particle = nearest.to(own.centroid);
-                seeds[particle].volume += own.volume;
+            for (cell, own, keep) in slivers {
+                let particle = nearest_within(first[cell]..first[cell + 1], &x, own.centroid)
+                    .unwrap_or_else(|| nearest.to(own.centroid));
+                let seed = &mut seeds[particle];
+                let volume = seed.volume + own.volume;
+                let together = std::array::from_fn(|axis| {
+                    let at = seed.x[axis] + seed.centroid[axis] * seed.half_length[axis];
+                    (seed.volume * at + own.volume * own.centroid[axis]) / volume
+                });
+                seed.centroid = within_domain(seed.x, seed.half_length, together);
+                seed.volume = volume;
                 kept.push((particle, keep));
             }
         }
         Ok((seeds, kept))
     }
+}
+
+/// Of a range of particles the nearest to a point; of several the first.
+fn nearest_within<const D: usize>(
+    particles: Range<usize>,
+    x: &[[f64; D]],
+    point: [f64; D],
+) -> Option<usize> {
+    let square = |particle: usize| -> f64 {
+        let apart = std::iter::zip(x[particle], point);
+        apart.map(|(a, b)| (a - b) * (a - b)).sum()
+    };
+    particles.min_by(|&a, &b| square(a).total_cmp(&square(b)))
+}
+
+/// A centroid within a domain, from its middle, over half-lengths \[-\].
+fn within_domain<const D: usize>(
+    x: [f64; D],
+    half_length: [f64; D],
+    centroid: [f64; D],
+) -> [f64; D] {
+    std::array::from_fn(|axis| {
+        let place = (centroid[axis] - x[axis]) / half_length[axis];
+        if place.abs() < ROUND_OFF {
+            0.0
+        } else {
+            place.clamp(-OUTERMOST, OUTERMOST)
+        }
+    })
 }
 
 /// The place of a number in a box of so many, the first direction fastest.

@@ -23,6 +23,7 @@ fn body(particles: usize) -> Body<2> {
         volume: 1.0,
         density: 1.0,
         law: 0,
+        centroid: [0.0; _],
     };
     Body::new(Particles::new(&vec![seed; particles]).unwrap())
 }

@@ -37,6 +37,7 @@ fn slope(width: f64, share: f64) -> Particles<3> {
                 volume: width.powi(3),
                 density: 2000.0,
                 law: usize::from(x[2] < 3.0),
+                centroid: [0.0; _],
             });
         }
     }

@@ -64,6 +64,12 @@ impl Guard {
         gives_up: false,
     };
 
+    /// Where a system was singular: soil at the apex has no stiffness.
+    const WITHOUT_STIFFNESS: Self = Self {
+        share: 0.01,
+        ..Self::ON_PATH
+    };
+
     /// Chooses the share in the next correction: more after one that was halved, less after one that was taken whole, and
     /// as much less as the residual where corrections converge (`left` is the share that the last one left of it).
     fn adapt(&mut self, halvings: u32, left: f64) {
@@ -157,6 +163,12 @@ impl<'s, 'w, const D: usize> Corrector<'s, 'w, D> {
         }
     }
 
+    /// The same with guarded corrections and regularised tangents, where a system was singular.
+    pub(crate) fn guarded(mut self) -> Self {
+        self.guard = self.guard.or(Some(Guard::WITHOUT_STIFFNESS));
+        self
+    }
+
     /// The same with a load factor that is unknown.
     pub(crate) fn on_path(mut self, factor: FreeFactor<'s, D>) -> Self {
         self.guard = self.guard.or(Some(Guard::ON_PATH));
@@ -243,13 +255,14 @@ impl<'s, 'w, const D: usize> Corrector<'s, 'w, D> {
         Ok(linearised?)
     }
 
-    /// Factorises the tangent at `u`. Where the load factor is unknown a singular one is regularised.
+    /// Factorises the tangent at `u`. A singular one is regularised where corrections are guarded and no step is given up.
     fn factorise(&mut self, u: &[[f64; D]]) -> Result<(), StepFailure> {
         for again in 0.. {
             let factorised = timed(&mut self.times.factor, || self.solver.factor(self.matrix));
             let Err(error) = factorised else { break };
             let is_singular = matches!(error, LinearSolverError::Singular { .. });
-            if let (true, true, Some(guard)) = (is_singular, self.factor.is_some(), &mut self.guard)
+            if let (true, Some(guard)) = (is_singular, &mut self.guard)
+                && !guard.gives_up
                 && again < MOST_REGULARISED
             {
                 guard.adapt(1, 1.0);

@@ -8,7 +8,7 @@ use igimp_assembly::{
     AssemblyError, Geometry, LoadPoint, Method, OutOfBalance, Pattern, Reinforcement, Stencils,
     StepConditions, System, TangentMatrix, Trial,
 };
-use igimp_material::TangentKind;
+use igimp_material::{Regime, TangentKind};
 use igimp_shape::Grid;
 
 use crate::body::Body;
@@ -81,8 +81,9 @@ impl<const D: usize> Workspace<D> {
 /// The body is untouched unless the step is accepted.
 ///
 /// A step whose system is singular at a node that hardly touches soil is tried once more with a ghost
-/// penalty (theory, eq. 28), and the report says so. On a given geometry it is not: at a limit load the
-/// penalty would be a support.
+/// penalty (theory, eq. 28), and the report says so. On a given geometry the penalty would be a support at a limit load: where
+/// soil has no stiffness the step is tried once more with guarded corrections and regularised tangents (theory, eq. 25e),
+/// which change no equilibrium.
 ///
 /// # Errors
 /// [`StepError`] when no equilibrium was found, with the residuals so far.
@@ -101,6 +102,7 @@ pub fn step<const D: usize>(
         from,
         to,
         ghost_penalty: 0.0,
+        is_guarded: false,
         on_path: None,
         measures_work: false,
     };
@@ -110,14 +112,23 @@ pub fn step<const D: usize>(
         Err(failure) => failure,
     };
     let may_hold = method.geometry == Geometry::Moving && method.small_cuts.ghost_penalty == 0.0;
-    if may_hold && history.is_weakly_held() {
-        let mut held = method.clone();
-        held.small_cuts.ghost_penalty = GHOST_PENALTY;
-        let attempt = Attempt {
+    let mut held = method.clone();
+    held.small_cuts.ghost_penalty = GHOST_PENALTY;
+    let again = if may_hold && history.is_weakly_held() {
+        Some(Attempt {
             method: &held,
             ghost_penalty: GHOST_PENALTY,
             ..attempt
-        };
+        })
+    } else if method.geometry == Geometry::Given && has_no_stiffness(&failure, &workspace.trial) {
+        Some(Attempt {
+            is_guarded: true,
+            ..attempt
+        })
+    } else {
+        None
+    };
+    if let Some(attempt) = again {
         // What fails all the same fails for the first reason.
         let mut own = ResidualHistory::default();
         if let Ok(accepted) = equilibrium(&attempt, body, workspace, &mut own) {
@@ -131,6 +142,13 @@ pub fn step<const D: usize>(
         residuals: history.residuals,
         failure: Box::new(failure),
     })
+}
+
+/// Whether a step failed for soil without stiffness: its system was singular, or soil was at the apex of its strength, where
+/// it has none.
+fn has_no_stiffness<const D: usize>(failure: &StepFailure, trial: &Trial<D>) -> bool {
+    let at_apex = || trial.particles.iter().any(|own| own.regime == Regime::Apex);
+    failure.is_singular() || failure.is_want_of_equilibrium() && at_apex()
 }
 
 /// Advances a body by one step on its path, and measures the work of the step: to the load factor `to`, or by so much
@@ -159,6 +177,7 @@ pub(crate) fn step_on_path<const D: usize>(
                 from,
                 to,
                 ghost_penalty: 0.0,
+                is_guarded: false,
                 on_path: match target {
                     Target::Factor(_) => None,
                     Target::Work { work, guess } => Some((load_path, *work, guess)),
@@ -202,6 +221,8 @@ struct Attempt<'a, const D: usize> {
     to: f64,
     /// The ghost penalty of a step that is tried again \[-\].
     ghost_penalty: f64,
+    /// Whether corrections are guarded and tangents regularised.
+    is_guarded: bool,
     /// Where the load factor at the end is unknown: its path, the work asked for \[force·length\], and a guess.
     on_path: Option<(&'a dyn LoadPath<D>, f64, &'a Guess<D>)>,
     /// Whether the work of the step is measured.
@@ -233,6 +254,9 @@ fn equilibrium<const D: usize>(
     let mut u = vec![[0.0; D]; system.node_count()];
     let of_step = (system, &stencils);
     let mut corrector = Corrector::new(of_step, grid, settings, workspace, history, set_up);
+    if attempt.is_guarded {
+        corrector = corrector.guarded();
+    }
     if let Some((load_path, work, guess)) = attempt.on_path {
         let points = &body.load_points;
         let asked = (attempt.from, work);

@@ -138,6 +138,11 @@ impl StepFailure {
         }
     }
 
+    /// Whether a linear system had no solution: a node without soil that holds it, or soil that has lost its stiffness.
+    pub fn is_singular(&self) -> bool {
+        matches!(self, Self::Linear(LinearSolverError::Singular { .. }))
+    }
+
     /// Whether something was to be carried off the grid: a smaller step only puts that off.
     pub(crate) fn leaves_grid(&self) -> bool {
         matches!(

@@ -31,6 +31,7 @@ fn bent(cells: usize, points: usize, steps: usize, method: &Method) -> (Body<2>,
             volume: size * size,
             density: 0.0,
             law: 0,
+            centroid: [0.0; _],
         })
         .collect();
     let mut body = Body {

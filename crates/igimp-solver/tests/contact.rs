@@ -36,6 +36,7 @@ fn soil<const D: usize>(from: [usize; D], to: [usize; D]) -> Particles<D> {
             volume: 0.5_f64.powi(D as i32),
             density: 1.0,
             law: 0,
+            centroid: [0.0; _],
         })
         .collect();
     Particles::new(&seeds).unwrap()

@@ -39,6 +39,7 @@ fn soil<const D: usize>(from: [usize; D], to: [usize; D]) -> Particles<D> {
             volume: 0.5_f64.powi(D as i32),
             density: 1.0,
             law: 0,
+            centroid: [0.0; _],
         })
         .collect();
     Particles::new(&seeds).unwrap()
@@ -208,6 +209,7 @@ fn below_a_turned_plate(angle: f64, cells: usize) -> f64 {
             volume: part * part * size,
             density: 1.0,
             law: 0,
+            centroid: [0.0; _],
         }));
     }
     let normal = [-angle.sin() * cos, -angle.sin() * sin, angle.cos()];

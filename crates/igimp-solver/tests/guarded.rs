@@ -38,6 +38,7 @@ fn loaded(g: f64) -> Result<StepReport, StepError> {
             volume: (0.5 * h).powi(3),
             density: 2000.0,
             law: 0,
+            centroid: [0.0; _],
         });
     }
     let elasticity = Elasticity::new(1e7, 0.3).unwrap();

@@ -80,6 +80,7 @@ fn ground<const D: usize>(
                 volume: (0.5 * h).powi(D as i32),
                 density: 2000.0,
                 law: 0,
+                centroid: [0.0; _],
             });
         }
     }

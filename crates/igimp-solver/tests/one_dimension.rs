@@ -33,6 +33,7 @@ fn column(cells: usize) -> (Body<1>, Grid<1>) {
             volume: 0.5,
             density: 1.0,
             law: 0,
+            centroid: [0.0; _],
         })
         .collect();
     (Body::new(Particles::new(&seeds).unwrap()), grid)

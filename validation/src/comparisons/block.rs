@@ -41,6 +41,7 @@ fn square(lower: [f64; 2], side: f64, count: usize) -> Vec<ParticleSeed<2>> {
             volume: size * size,
             density: 1.0,
             law: 0,
+            centroid: [0.0; _],
         })
         .collect()
 }
@@ -265,6 +266,7 @@ fn ground_beside(side: f64) -> Vec<ParticleSeed<2>> {
                     volume: part[0] * part[1],
                     density: 1e-12,
                     law: 1,
+                    centroid: [0.0; _],
                 });
             }
         }

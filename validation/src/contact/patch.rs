@@ -50,6 +50,7 @@ fn square(offset: f64) -> Result<(RunRecord, [f64; 2]), CaseError> {
             volume: 4.0 * half[0] * half[1],
             density: 1.0,
             law: 0,
+            centroid: [0.0; _],
         });
     }
     let mut body = Body::new(Particles::new(&seeds)?);

@@ -328,6 +328,7 @@ fn split(grid: &Grid<2>, polygon: &[[f64; 2]]) -> Vec<ParticleSeed<2>> {
                 volume,
                 density: 1.0,
                 law: 0,
+                centroid: [0.0; _],
             });
         }
     }

@@ -60,6 +60,7 @@ pub fn particles<const D: usize>(grid: &Grid<D>, jitter: f64, random: &mut Rando
                 volume,
                 density: 2.0,
                 law: 0,
+                centroid: [0.0; _],
             });
         }
     }

@@ -160,6 +160,7 @@ mod tests {
                 volume: 0.125,
                 density: 2000.0,
                 law: 0,
+                centroid: [0.0; _],
             });
         }
         let particles = Particles::new(&seeds).unwrap();

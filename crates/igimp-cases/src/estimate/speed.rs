@@ -70,6 +70,7 @@ fn kernels() -> Result<[Duration; 2], CaseError> {
             volume: 0.25,
             density: 1.0,
             law: 0,
+            centroid: [0.0; _],
         })
         .collect();
     let particles = Particles::new(&seeds)?;

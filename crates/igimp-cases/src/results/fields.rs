@@ -416,6 +416,7 @@ mod tests {
             volume: 1.0,
             density: 2000.0,
             law: 0,
+            centroid: [0.0; _],
         };
         let other = ParticleSeed {
             x: [2.0, 2.0],

@@ -170,6 +170,7 @@ mod tests {
             volume: 2.0,
             density: 3.0,
             law: 4,
+            centroid: [0.0; _],
         };
         Particles::new(&[seed]).unwrap()
     }

@@ -363,6 +363,7 @@ mod tests {
             volume: 0.25,
             density: 0.0,
             law: 0,
+            centroid: [0.0; _],
         };
         let state = State {
             body: Body::new(Particles::new(&[seed]).unwrap()),

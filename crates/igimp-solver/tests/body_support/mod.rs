@@ -131,6 +131,7 @@ pub(crate) fn shifted_block(
                     volume: 0.25 * size[0] * size[1],
                     density: 1.0,
                     law: 0,
+                    centroid: [0.0; _],
                 });
             }
         }

@@ -59,6 +59,7 @@ fn level(offset: f64, angle: f64) -> Result<(RunRecord, [f64; 2]), CaseError> {
                 volume: 8.0 * half.iter().product::<f64>(),
                 density: 1.0,
                 law: 0,
+                centroid: [0.0; _],
             }
         })
         .collect();
@@ -125,6 +126,7 @@ fn turned(angle: f64, cells: usize) -> Result<(RunRecord, [f64; 2]), CaseError> 
             volume: part * part * size,
             density: 1.0,
             law: 0,
+            centroid: [0.0; _],
         }));
     }
     let mut body = Body::new(Particles::new(&seeds)?);

@@ -15,7 +15,7 @@ use super::error::{CheckpointError, at};
 use crate::results::atomic::create;
 
 /// Version of the layout; another one is not read.
-pub const FORMAT_VERSION: u64 = 4;
+pub const FORMAT_VERSION: u64 = 5;
 
 /// The program and its version, as written into checkpoints.
 pub const PROGRAM: &str = concat!("igimp ", env!("CARGO_PKG_VERSION"));
