@@ -118,13 +118,15 @@ fn mesh(mesh: &MeshSummary) -> MeshView {
 fn result(result: &StudyResult) -> ResultView {
     let value = |value: Option<f64>| value.map_or_else(|| UNKNOWN.to_owned(), short);
     let found = result.estimate;
-    let values = std::iter::zip(&result.values, &result.half_widths).map(|(&own, &width)| {
-        let width = if width > 0.0 {
-            format!(" ± {}", short(width))
+    let values = std::iter::zip(&result.values, &result.half_widths).enumerate();
+    let values = values.map(|(mesh, (&own, &width))| {
+        if result.ended_early(mesh) {
+            value(own) + " (ended early)"
+        } else if width > 0.0 {
+            format!("{} ± {}", value(own), short(width))
         } else {
-            String::new()
-        };
-        value(own) + &width
+            value(own)
+        }
     });
     ResultView {
         name: result.name.clone(),
