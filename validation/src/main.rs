@@ -6,6 +6,7 @@ mod column;
 mod comparisons;
 mod contact;
 mod cook;
+mod coverage;
 mod cylinder;
 mod elastica;
 mod exact;
@@ -355,6 +356,9 @@ fn print_report(
     seconds: f64,
 ) -> u8 {
     for note in studies.iter().flat_map(|study| &study.notes) {
+        println!("{note}\n");
+    }
+    if let Some(note) = coverage::note(studies) {
         println!("{note}\n");
     }
     println!("{}", table::checks(studies));
