@@ -19,6 +19,7 @@ mod limit;
 mod limit_equilibrium;
 mod manufactured;
 mod matrix;
+mod mesh_study;
 mod mohr_coulomb_slope;
 mod notched_strip;
 mod oracle;
@@ -112,6 +113,7 @@ enum Case {
     Elastica,
     Slopes,
     Limit,
+    MeshStudy,
     TiltedLayer,
     PseudoStatic,
     Layers,
@@ -174,6 +176,7 @@ impl Case {
             Self::Elastica => elastica::study(level, out),
             Self::Slopes => slopes::study(level, out),
             Self::Limit => limit::study(level, out),
+            Self::MeshStudy => mesh_study::study(level, out),
             Self::PseudoStatic => pseudo_static::study(level, out),
             Self::TiltedLayer => tilted_layer::study(level, out),
             Self::Layers => layers::study(out),

@@ -8,8 +8,8 @@ use igimp_cases::check::Band;
 use igimp_cases::mesh_study::{Computed, Convergence, estimate};
 use igimp_cases::table::Table;
 
-use super::Slopes;
 use super::section::Variant;
+use super::{Found, Slopes};
 use crate::coverage::Known;
 use crate::oracle::{Oracle, OracleKind};
 use crate::study::{RunRecord, Study};
@@ -64,11 +64,7 @@ pub(super) fn report(study: &mut Study, slopes: &Slopes) -> Result<(), CaseError
             let name = format!("{}{flow}, two meshes", problem.section.name);
             let truth = slopes.known[place].interval;
             let [lower, upper] = truth;
-            let values = [0, 1].map(|mesh| Computed {
-                h: f64::from(problem.meshes[mesh]).recip(),
-                value: [coarse, fine][mesh].factor(),
-                half_width: [coarse, fine][mesh].half_width(),
-            });
+            let values = values([coarse, fine], &problem.meshes);
             let known = Known {
                 convergence: Convergence::SOIL,
                 truth,
@@ -129,4 +125,13 @@ pub(super) fn report(study: &mut Study, slopes: &Slopes) -> Result<(), CaseError
     );
     study.notes.push(note);
     table.write_csv(&study.folder)
+}
+
+/// The factors on a coarse and a fine mesh.
+fn values(found: [&Found; 2], meshes: &[u32]) -> [Computed; 2] {
+    [0, 1].map(|mesh| Computed {
+        h: f64::from(meshes[mesh]).recip(),
+        value: found[mesh].factor(),
+        half_width: found[mesh].half_width(),
+    })
 }
