@@ -6,6 +6,9 @@ use igimp_cases::mesh_study::{Computed, Convergence, Estimate, estimate};
 
 use crate::study::Study;
 
+/// Least orders that are tried beside the one that is thought possible \[-\].
+const OTHERS: [f64; 4] = [0.75, 2.0 / 3.0, 0.5, 1.0 / 3.0];
+
 /// What is known of a result: how it converges, and where it lies.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Known {
@@ -20,6 +23,7 @@ pub(crate) struct Known {
 pub(crate) struct Extrapolated {
     pub(crate) name: String,
     pub(crate) known: Known,
+    pub(crate) values: Vec<Computed>,
     pub(crate) estimate: Estimate,
 }
 
@@ -33,6 +37,16 @@ impl Extrapolated {
         // Digits of printed bounds.
         let slack = 1e-9 * upper.abs();
         value - uncertainty <= upper + slack && value + uncertainty >= lower - slack
+    }
+
+    /// The same result if the least order that is thought possible were another one.
+    fn with_slowest(&self, slowest: f64) -> Option<Self> {
+        let convergence = self.known.convergence.with_slowest(slowest);
+        let estimate = estimate(&self.values, convergence)?;
+        Some(Self {
+            estimate,
+            ..self.clone()
+        })
     }
 
     /// From the lower to the upper end of the uncertainty, as a share of the value \[-\].
@@ -53,6 +67,7 @@ impl Study {
         self.extrapolated.push(Extrapolated {
             name: name.into(),
             known,
+            values: values.to_vec(),
             estimate,
         });
         Some(estimate)
@@ -99,32 +114,43 @@ pub(crate) fn median(values: &mut [f64]) -> f64 {
 pub(crate) fn note(studies: &[Study]) -> Option<String> {
     let all = || studies.iter().flat_map(|study| &study.extrapolated);
     all().next()?;
-    let kinds: [(&str, &[Convergence]); 4] = [
-        ("soil alone", &[Convergence::SOIL]),
-        (
-            "strength that varies from place to place",
-            &[Convergence::VARIED_SOIL],
-        ),
-        ("footings that hold nodes", &[Convergence::FOOTING]),
-        ("contact and reinforcement", &[Convergence::CONTACT]),
+    let kinds = [
+        ("soil alone", Convergence::SOIL),
+        ("strength that varies", Convergence::VARIED_SOIL),
+        ("footings that hold nodes", Convergence::FOOTING),
+        ("contact and reinforcement", Convergence::CONTACT),
     ];
-    let mut text =
-        "mesh error: known answers within the uncertainty; median width of it [%]\n".to_owned();
-    let mut line = |name: &str, (count, covered, width): (usize, usize, f64)| {
-        let _ = writeln!(text, "  {name}: {covered} of {count}; {:.2}", 100.0 * width);
+    let mut text = "mesh error: known answers within the uncertainty, median width of it [%]; the same with orders from \
+         3/4, 2/3, 1/2, 1/3 on\n"
+        .to_owned();
+    let told = |(count, covered, width): (usize, usize, f64)| {
+        format!("{covered} of {count}, {:.2}", 100.0 * width)
     };
-    for (name, own) in kinds {
-        let found = counted(all().filter(|result| own.contains(&result.known.convergence)));
-        if found.0 > 0 {
-            line(name, found);
+    let mut line = |name: &str, of: &[&Extrapolated]| {
+        let others = OTHERS.map(|slowest| {
+            let found: Vec<_> = (of.iter())
+                .filter_map(|own| own.with_slowest(slowest))
+                .collect();
+            told(counted(found.iter()))
+        });
+        let own = told(counted(of.iter().copied()));
+        let _ = writeln!(text, "  {name}: {own}; {}", others.join("; "));
+    };
+    for (name, convergence) in kinds {
+        let own: Vec<_> = all()
+            .filter(|result| result.known.convergence == convergence)
+            .collect();
+        if !own.is_empty() {
+            line(name, &own);
         }
     }
-    line("all", counted(all()));
+    line("all", &all().collect::<Vec<_>>());
     for result in all().filter(|result| !result.covers()) {
         let Extrapolated {
             name,
             known: Known { truth, .. },
             estimate,
+            ..
         } = result;
         let _ = writeln!(
             text,

@@ -1,13 +1,11 @@
 //! Drawn values: a limit, an error that falls with an order of convergence, and the noise of a search.
 
 use std::fmt::Write as _;
-use std::time::Duration;
 
 use igimp_cases::CaseError;
 use igimp_cases::check::Band;
 use igimp_cases::mesh_study::{Computed, Convergence, estimate};
 use igimp_cases::table::Table;
-use igimp_solver::{MarchReport, Outcome};
 
 use crate::coverage::median;
 use crate::oracle::{Oracle, OracleKind};
@@ -116,13 +114,8 @@ pub(super) fn report(study: &mut Study) -> Result<(), CaseError> {
                 100.0 * width
             );
             table.push(vec![f64::from(meshes), half_width, all, believed, width]);
-            let nothing = MarchReport {
-                outcome: Outcome::Completed,
-                steps: Vec::new(),
-                failures: Vec::new(),
-            };
             let name = format!("drawn values, {meshes} meshes, intervals of {search}");
-            let run = study.run(RunRecord::new(name, &nothing, Duration::ZERO));
+            let run = study.run(RunRecord::sum(name, &[]));
             study.check(
                 run,
                 "share covered, orders 2/3 to 2 [-]",

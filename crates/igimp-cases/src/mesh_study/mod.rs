@@ -14,6 +14,8 @@ pub mod estimate;
 #[cfg(test)]
 mod estimate_tests;
 mod found;
+#[cfg(test)]
+mod found_tests;
 mod known;
 pub mod order;
 pub mod plan;

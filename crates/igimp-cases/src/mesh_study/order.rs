@@ -51,6 +51,16 @@ impl Convergence {
     };
     /// Everything else, such as stress and displacement at a place.
     pub const OTHER: Self = Self::FOOTING;
+
+    /// The same with another least order \[-\], and no least uncertainty.
+    #[must_use]
+    pub fn with_slowest(self, slowest: f64) -> Self {
+        Self {
+            slowest,
+            least: 0.0,
+            ..self
+        }
+    }
 }
 
 /// What is known of the order of convergence.
