@@ -50,17 +50,18 @@ pub(crate) fn study(level: Level, out: &Folder) -> Result<Study, CaseError> {
     Ok(study)
 }
 
-/// The slopes of a level. That of ACADS 1(c), in layers, is of the full one.
+/// The slopes of a level. ACADS 1(c), in layers, and that of Dawson et al., whose path is lost on the fine mesh, are of the full one.
 fn problems(level: Level) -> Vec<Problem> {
     let mut problems = undrained(&slope_limit_load_bounds().rows());
     problems.extend(drained(&slope_safety_bounds().rows()));
-    let layered = level == Level::Full;
+    let is_full = level == Level::Full;
+    problems.retain(|problem| is_full || problem.section.name != "Dawson et al.");
     problems.extend(published().into_iter().filter_map(|mut problem| {
         let is_simple = problem.section.name == acads_1a().name;
         if is_simple {
             problem.known = Some(ACADS_1A);
         }
-        (problem.known.is_some() && (is_simple || layered)).then_some(problem)
+        (problem.known.is_some() && (is_simple || is_full)).then_some(problem)
     }));
     if level == Level::Quick {
         problems.retain(|problem| problem.section.name == "Griffiths and Lane 1");
