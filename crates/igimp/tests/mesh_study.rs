@@ -121,7 +121,12 @@ fn the_program_tells_of_all_meshes() {
         .unwrap();
     let said = String::from_utf8_lossy(&output.stdout);
     assert_eq!(output.status.code(), Some(0), "{said}");
-    for line in ["meshes", "mesh error", "extrapolated", "(order 1, assumed; 0.67 to 2 allowed for)"] {
+    for line in [
+        "meshes",
+        "mesh error",
+        "extrapolated",
+        "(order 1, assumed; 0.67 to 2 allowed for)",
+    ] {
         assert!(said.contains(line), "{line}: {said}");
     }
     let root = folder.0.join("out");

@@ -180,6 +180,14 @@ impl Estimate {
         unit * (uncertainty / unit - 1e-9).ceil()
     }
 
+    /// Whether the value is another one than that of the finest mesh, in words: what stands before it.
+    pub fn lead(&self) -> &'static str {
+        match self.order.used() {
+            Some(_) => "extrapolated",
+            None => "not extrapolated",
+        }
+    }
+
     /// As it is printed: the value, and how far it may be off.
     pub fn sentence(&self) -> String {
         let (value, uncertainty) = (short(self.value), short(self.rounded_uncertainty()));

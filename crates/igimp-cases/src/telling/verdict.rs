@@ -79,7 +79,7 @@ fn mesh_error(study: &StudySummary) -> String {
             }));
             row.extend(match result.estimate {
                 Some(found) => vec![
-                    format!("extrapolated {}", found.sentence()),
+                    format!("{} {}", found.lead(), found.sentence()),
                     format!("(order {})", found.order.sentence()),
                 ],
                 None => vec!["nothing is extrapolated of fewer than two values".to_owned()],

@@ -127,7 +127,7 @@ static FIELDS: [Choice; 26] = [
 static FIELD: Kind = Kind::Choice(&FIELDS);
 
 pub(in crate::input) static MONITOR: Kind = Kind::Table(&Struct {
-    doc: "The material point at a place, watched as it moves; fields there are interpolated from the particles around it.",
+    doc: "The material point at a place, watched as it moves.",
     fields: &[
         required("name", Kind::Name, "\"crest\"", "name"),
         required(

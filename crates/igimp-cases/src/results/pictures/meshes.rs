@@ -84,7 +84,7 @@ fn plot(
             lower: level(found.value - reach),
             upper: level(found.value + reach),
         });
-        let mark = Series::markers("extrapolated", vec![[0.0, found.value]]);
+        let mark = Series::markers(found.lead(), vec![[0.0, found.value]]);
         series.push(mark.in_colour(Colour::BLACK));
     }
     let lines = expected.map(|row| ReferenceLine {
@@ -113,7 +113,8 @@ fn caption(study: &StudySummary, result: &StudyResult) -> String {
         || "Of fewer than two values nothing is extrapolated.".to_owned(),
         |found| {
             format!(
-                "Extrapolated to cells of no size: {} (order {}).",
+                "By all meshes, {}: {} (order {}).",
+                found.lead(),
                 found.sentence(),
                 found.order.sentence()
             )

@@ -56,13 +56,13 @@ pub(super) fn view(study: &StudySummary) -> StudyView {
 pub(super) fn numbers(study: &StudySummary) -> Vec<Number> {
     let own = |result: &StudyResult| {
         let name = match result.kind {
-            ResultKind::FactorOfSafety => "Factor of safety, extrapolated",
-            ResultKind::LimitLoad => "Limit load, extrapolated",
+            ResultKind::FactorOfSafety => "Factor of safety",
+            ResultKind::LimitLoad => "Limit load",
             ResultKind::Check => return None,
         };
         let found = result.estimate?;
         Some(Number {
-            name: name.to_owned(),
+            name: format!("{name}, {}", found.lead()),
             value: found.sentence(),
             note: format!("with its mesh error, order {}", found.order.sentence()),
         })
@@ -81,7 +81,8 @@ pub(super) fn add_to(verdict: &mut Verdict, study: &StudySummary) {
         if let (Some(found), true) = (result.estimate, result.kind != ResultKind::Check) {
             let _ = write!(
                 verdict.text,
-                " Extrapolated to cells of no size: {}, {} (order {}).",
+                " By all meshes, {}: {}, {} (order {}).",
+                found.lead(),
                 result.name,
                 found.sentence(),
                 found.order.sentence()
