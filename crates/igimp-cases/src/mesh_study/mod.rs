@@ -35,6 +35,9 @@ pub use found::study;
 pub(crate) use found::{check_rows, remarks};
 pub use order::{Convergence, Order};
 
+/// An uncertainty below this share of its value is round-off \[-\].
+const ROUND_OFF: f64 = 1e-12;
+
 /// What a case gave on all its meshes, as written to `summary.json`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct StudySummary {
@@ -171,8 +174,11 @@ impl Estimate {
     /// The uncertainty, rounded up to two digits: more are not known.
     pub fn rounded_uncertainty(&self) -> f64 {
         let uncertainty = self.uncertainty;
-        if uncertainty <= 0.0 || !uncertainty.is_finite() {
+        if !uncertainty.is_finite() {
             return uncertainty;
+        }
+        if uncertainty <= ROUND_OFF * self.value.abs() {
+            return 0.0;
         }
         let digits = 1.0 - uncertainty.log10().floor();
         let unit = 10.0_f64.powf(-digits);
@@ -214,6 +220,8 @@ mod tests {
         assert_eq!(text(1.265, 0.1), "1.265 ± 0.1");
         assert_eq!(text(514.2, 3.001), "514.2 ± 3.1");
         assert_eq!(text(2.0, 0.0), "2 ± 0");
+        assert_eq!(text(71.5, 4.4e-12), "71.5 ± 0");
+        assert_eq!(text(0.0, 4.4e-12), "0 ± 4.400e-12");
     }
 
     #[test]
