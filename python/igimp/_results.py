@@ -123,6 +123,8 @@ class MeshResult:
         ``factor-of-safety``, ``limit-load`` or ``check``.
     values, half_widths : tuple of float
         By mesh from coarse to fine, and half the interval in which a search left each; None where there is none.
+    early : tuple of bool
+        By mesh, whether the run ended before it came to the value, which is then not extrapolated.
     extrapolated, uncertainty : float or None
         What the values say together, and how far that may be off.
     """
@@ -131,6 +133,7 @@ class MeshResult:
     kind: str
     values: tuple[float | None, ...]
     half_widths: tuple[float, ...]
+    early: tuple[bool, ...]
     extrapolated: float | None
     uncertainty: float | None
 
@@ -162,8 +165,8 @@ class MeshStudy:
 
         def result(one: dict[str, Any]) -> MeshResult:
             found = one["estimate"] or {"value": None, "uncertainty": None}
-            values, widths = tuple(one["values"]), tuple(one["half_widths"])
-            return MeshResult(one["name"], one["kind"], values, widths, found["value"], found["uncertainty"])
+            values, widths, early = (tuple(one[key]) for key in ("values", "half_widths", "early"))
+            return MeshResult(one["name"], one["kind"], values, widths, early, found["value"], found["uncertainty"])
 
         parts = [mesh["parts"] for mesh in own["meshes"]]
         return cls(

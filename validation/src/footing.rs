@@ -6,6 +6,7 @@ use igimp_cases::CaseError;
 use igimp_cases::case::Case;
 use igimp_cases::check::Band;
 use igimp_cases::measure::{displacement_norm, eps_p_eq, sigma};
+use igimp_cases::mesh_study::Convergence;
 use igimp_cases::table::Table;
 use igimp_figures::{
     Band as ShadedBand, Colour, ColourMap, CurvePlot, LineStyle, ReferenceLine, ReferenceValue,
@@ -13,6 +14,7 @@ use igimp_figures::{
 };
 use rayon::prelude::*;
 
+use crate::coverage::{self, Known, on_cells};
 use crate::oracle::{Oracle, OracleKind};
 use crate::pictures::{contours, scaled};
 use crate::reference::{footing_sequential_limit_analysis, interpolate};
@@ -338,12 +340,19 @@ fn extrapolated(study: &mut Study, pushes: &[Push], results: &[Computed]) {
         })
         .collect();
     if let [(_, coarse, before), (run, fine, end)] = found[..] {
+        let prandtl = 2.0 + std::f64::consts::PI;
+        let known = Known {
+            convergence: Convergence::FOOTING,
+            truth: [prandtl; 2],
+        };
+        let values = [on_cells(coarse, before), on_cells(fine, end)];
+        let estimate = study.extrapolate("bonded strip at small strain", known, &values);
         study.check(
             run,
             "N at small strain, B/h = 9 and 13 extrapolated to h = 0 [-]",
-            PRANDTL.says(2.0 + std::f64::consts::PI),
+            PRANDTL.says(prandtl),
             Band::Relative(0.015),
-            end + (end - before) * fine / (coarse - fine),
+            coverage::value(estimate),
         );
     }
 }

@@ -6,6 +6,7 @@ mod column;
 mod comparisons;
 mod contact;
 mod cook;
+mod coverage;
 mod cylinder;
 mod elastica;
 mod exact;
@@ -18,6 +19,7 @@ mod limit;
 mod limit_equilibrium;
 mod manufactured;
 mod matrix;
+mod mesh_study;
 mod mohr_coulomb_slope;
 mod notched_strip;
 mod oracle;
@@ -111,6 +113,7 @@ enum Case {
     Elastica,
     Slopes,
     Limit,
+    MeshStudy,
     TiltedLayer,
     PseudoStatic,
     Layers,
@@ -173,6 +176,7 @@ impl Case {
             Self::Elastica => elastica::study(level, out),
             Self::Slopes => slopes::study(level, out),
             Self::Limit => limit::study(level, out),
+            Self::MeshStudy => mesh_study::study(level, out),
             Self::PseudoStatic => pseudo_static::study(level, out),
             Self::TiltedLayer => tilted_layer::study(level, out),
             Self::Layers => layers::study(out),
@@ -355,6 +359,9 @@ fn print_report(
     seconds: f64,
 ) -> u8 {
     for note in studies.iter().flat_map(|study| &study.notes) {
+        println!("{note}\n");
+    }
+    if let Some(note) = coverage::note(studies) {
         println!("{note}\n");
     }
     println!("{}", table::checks(studies));

@@ -11,6 +11,7 @@ use igimp_assembly::{
 };
 use igimp_cases::CaseError;
 use igimp_cases::check::Band;
+use igimp_cases::mesh_study::Convergence;
 use igimp_cases::table::Table;
 use igimp_figures::{CurvePlot, ReferenceLine, ReferenceValue, Series};
 use igimp_material::{Elasticity, VonMises};
@@ -18,6 +19,7 @@ use igimp_shape::{Axis, Grid, ShapeError};
 use igimp_solver::{Accepted, Body, MarchSettings};
 use rayon::prelude::*;
 
+use crate::coverage::{self, Known, on_cells};
 use crate::laboratory::{filled, run};
 use crate::oracle::{Oracle, OracleKind};
 use crate::study::{Level, RunRecord, Study};
@@ -162,7 +164,13 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
                 study.check(run, quantity, expected, band, end);
             }
             if let Some(&[coarse, before]) = ends.last().filter(|[coarse, _]| size < *coarse) {
-                let extrapolated = end + (end - before) * size / (coarse - size);
+                let known = Known {
+                    convergence: Convergence::FOOTING,
+                    truth: [limit; 2],
+                };
+                let values = [on_cells(coarse, before), on_cells(size, end)];
+                let name = format!("notched strip, {}", study.runs[run].variant);
+                let extrapolated = coverage::value(study.extrapolate(name, known, &values));
                 let quantity = format!(
                     "net stress / σ_y, c/h = {}.5 and {cells}.5 extrapolated to h = 0 [-]",
                     cells / 2

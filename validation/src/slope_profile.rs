@@ -5,10 +5,11 @@ use std::path::Path;
 use igimp_assembly::Locking;
 use igimp_cases::CaseError;
 use igimp_cases::check::Band;
-use igimp_cases::mesh_study;
+use igimp_cases::mesh_study::{Computed as OnMesh, Convergence};
 use igimp_cases::table::Table;
 use rayon::prelude::*;
 
+use crate::coverage::{self, Known};
 use crate::oracle::{Oracle, OracleKind};
 use crate::runs::Computed;
 use crate::slopes::Found;
@@ -219,13 +220,17 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
         ],
     );
     for (number, (slope, pair)) in std::iter::zip(&slopes, found.chunks(2)).enumerate() {
-        let values = [0, 1].map(|mesh| mesh_study::Computed {
+        let values = [0, 1].map(|mesh| OnMesh {
             h: f64::from(slope.cells[mesh]).recip(),
             value: pair[mesh].factor(),
             half_width: pair[mesh].half_width(),
         });
-        let estimate = mesh_study::estimate(&values);
-        let value = estimate.map_or(f64::NAN, |estimate| estimate.value);
+        let known = Known {
+            convergence: Convergence::VARIED_SOIL,
+            truth: slope.known,
+        };
+        let estimate = study.extrapolate(slope.section.name.clone(), known, &values);
+        let value = coverage::value(estimate);
         let both = [0, 1].map(|mesh| pair[mesh].run(String::new()));
         let label = format!(
             "{}, H/h = {} and {}",

@@ -5,9 +5,11 @@ use std::path::Path;
 use igimp_cases::CaseError;
 use igimp_cases::case::Case;
 use igimp_cases::check::Band;
+use igimp_cases::mesh_study::Convergence;
 use igimp_cases::table::Table;
 use rayon::prelude::*;
 
+use crate::coverage::{self, Known, on_cells};
 use crate::oracle::{Oracle, OracleKind};
 use crate::runs::{Computed, corners, mesh, shipped_case};
 use crate::study::{Level, RunRecord, Study};
@@ -172,6 +174,12 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
             ]);
             if push.cells == push.ground.cells[1] {
                 let [wide, narrow] = push.ground.cells.map(|cells| 1.0 / f64::from(cells));
+                let known = Known {
+                    convergence: Convergence::FOOTING,
+                    truth: [lower, upper],
+                };
+                let values = [on_cells(wide, coarse), on_cells(narrow, end)];
+                let estimate = study.extrapolate(push.label(), known, &values);
                 study.check(
                     run,
                     format!(
@@ -180,7 +188,7 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
                     ),
                     BOUNDS.says(0.5 * (lower + upper)),
                     Band::Between(0.98 * lower, 1.02 * upper),
-                    end + (end - coarse) * narrow / (wide - narrow),
+                    coverage::value(estimate),
                 );
             }
             coarse = end;

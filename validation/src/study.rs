@@ -10,6 +10,7 @@ use igimp_cases::table::Table;
 use igimp_solver::{MarchReport, Outcome, PhaseTimes, StepError};
 use serde::Serialize;
 
+use crate::coverage::Extrapolated;
 use crate::oracle::{Expected, Oracle, OracleKind};
 
 /// Relative residuals below this are round-off and say nothing about the rate of convergence \[-\].
@@ -176,6 +177,8 @@ pub(crate) struct Study {
     pub(crate) tables: Vec<Table>,
     /// Residual histories that are held against snapshots: a name and its text.
     pub(crate) histories: Vec<(String, String)>,
+    /// Results on several meshes whose answer is known.
+    pub(crate) extrapolated: Vec<Extrapolated>,
     /// Paragraphs for the reader of the printed report.
     pub(crate) notes: Vec<String>,
     /// Runs that had to reach their end and did not: where and why.
@@ -202,6 +205,7 @@ impl Study {
             rows: Vec::new(),
             tables: Vec::new(),
             histories: Vec::new(),
+            extrapolated: Vec::new(),
             notes: Vec::new(),
             unfinished: Vec::new(),
         })

@@ -153,6 +153,10 @@ pub struct StageSummary {
     pub reason: String,
     /// Share of the stage that was reached \[-\].
     pub reached: f64,
+    /// Whether it ended in a way that tells no limit, though its case expects one: its path was lost, a linear system
+    /// could not be solved, or a motion that is driven found no equilibrium.
+    #[serde(default)]
+    pub lost: bool,
     /// Accepted steps.
     pub steps: usize,
     /// Newton corrections in accepted steps.

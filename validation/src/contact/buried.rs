@@ -9,6 +9,7 @@ use igimp_assembly::{
 };
 use igimp_cases::CaseError;
 use igimp_cases::check::Band;
+use igimp_cases::mesh_study::{Convergence, estimate};
 use igimp_cases::seed::fill_polygon;
 use igimp_cases::table::Table;
 use igimp_material::{Elasticity, Tresca};
@@ -17,6 +18,7 @@ use igimp_solver::{Accepted, Body, MarchSettings};
 use rayon::prelude::*;
 
 use super::{force, graded, held, weightless};
+use crate::coverage::{self, Known, on_cells};
 use crate::laboratory::run;
 use crate::oracle::Oracle;
 use crate::study::{RunRecord, Study};
@@ -204,8 +206,10 @@ pub(crate) fn answer(study: &mut Study, questions: &[Question<'_>]) -> Result<()
         );
         let expected = question.oracle.says(0.5 * (lower + upper));
         let (mut told, mut limits, mut last) = (Vec::new(), Vec::new(), 0);
+        let mut has_ended_early = false;
         for (&cells, own) in question.meshes.iter().zip(&mut pushed) {
             let limit = own.limit();
+            has_ended_early |= own.record.stopped_by.is_some();
             let end = match own.record.stopped_by {
                 None => String::new(),
                 Some(_) => format!(" ({})", own.record.outcome),
@@ -222,7 +226,20 @@ pub(crate) fn answer(study: &mut Study, questions: &[Question<'_>]) -> Result<()
             own.curve.write_csv(&study.folder)?;
         }
         if let (&[coarse, fine], &[a, b]) = (&limits[..], &question.meshes[..]) {
-            let limit = extrapolated([coarse, fine], [a, b]);
+            let [a, b] = [a, b].map(|cells| 1.0 / cells as f64);
+            let values = [on_cells(a, coarse), on_cells(b, fine)];
+            let known = Known {
+                convergence: Convergence::CONTACT,
+                truth: question.bounds,
+            };
+            // What ended early is no limit load.
+            let estimate = if has_ended_early {
+                estimate(&values, known.convergence)
+            } else {
+                let name = format!("{}, {}", study.case, question.name);
+                study.extrapolate(name, known, &values)
+            };
+            let limit = coverage::value(estimate);
             if question.claim != Claim::None {
                 study.check(last, "V/(B s_u), extrapolated [-]", expected, band, limit);
             }
@@ -236,10 +253,4 @@ pub(crate) fn answer(study: &mut Study, questions: &[Question<'_>]) -> Result<()
         ));
     }
     Ok(())
-}
-
-/// What two meshes say of none: the error taken as a share of the cell.
-fn extrapolated([coarse, fine]: [f64; 2], cells: [usize; 2]) -> f64 {
-    let [a, b] = cells.map(|cells| cells as f64);
-    fine + (fine - coarse) * a / (b - a)
 }

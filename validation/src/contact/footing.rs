@@ -4,9 +4,11 @@ use std::path::Path;
 
 use igimp_cases::CaseError;
 use igimp_cases::check::Band;
+use igimp_cases::mesh_study::Convergence;
 use igimp_cases::table::Table;
 use rayon::prelude::*;
 
+use crate::coverage::{self, Known, on_cells};
 use crate::footing::SEQUENTIAL;
 use crate::oracle::{Oracle, OracleKind};
 use crate::reference::{footing_sequential_limit_analysis, interpolate};
@@ -182,12 +184,19 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
                 mean(coarse, &sequential, depth),
                 mean(fine, &sequential, depth),
             );
+            let values = [on_cells(1.0 / a, coarse), on_cells(1.0 / b, fine)];
+            let known = Known {
+                convergence: Convergence::CONTACT,
+                truth: [expected; 2],
+            };
+            let estimate =
+                study.extrapolate(format!("contact footing at {depth} B"), known, &values);
             study.check(
                 *run,
                 format!("N around {depth} B, B/h = {a} and {b} extrapolated [-]"),
                 SEQUENTIAL.says(expected),
                 Band::Between(0.97 * expected, 1.02 * expected),
-                fine + (fine - coarse) * a / (b - a),
+                coverage::value(estimate),
             );
         }
     }

@@ -8,9 +8,11 @@ use std::path::Path;
 
 use igimp_cases::CaseError;
 use igimp_cases::check::Band;
+use igimp_cases::mesh_study::{Convergence, estimate};
 use rayon::prelude::*;
 
 use self::push::{Load, Push, Scheme};
+use crate::coverage::{self, Known, on_cells};
 use crate::oracle::{Expected, Oracle, OracleKind};
 use crate::study::{Level, RunRecord, Study};
 
@@ -154,6 +156,18 @@ fn known(push: &Push) -> (&'static str, Expected, Option<Band>, Band) {
     }
 }
 
+/// Least and greatest V/(B s_u) of a push that limit analysis knows.
+fn bounds(push: &Push) -> Option<[f64; 2]> {
+    match push.load {
+        Load::Centric { .. } => Some([2.0 + PI; 2]),
+        Load::Eccentric(e) => {
+            let row = TABLE.iter().find(|row| row.0.total_cmp(&e).is_eq())?;
+            Some(if push.rough { row.1 } else { row.2 })
+        }
+        Load::Inclined(_) | Load::Sideways => None,
+    }
+}
+
 /// The number that is held against what is known, from V/(B s_u) and H/(B s_u).
 fn measured(push: &Push, at_end: [f64; 2]) -> f64 {
     match push.load {
@@ -204,8 +218,19 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
             ..*coarse.0
         } == *push;
         if is_pair {
-            let [a, b] = [coarse.0.cells, push.cells].map(|cells| cells as f64);
-            let limit = [0, 1].map(|k| end[k] + (end[k] - coarse.1[k]) * a / (b - a));
+            let sizes = [coarse.0.cells, push.cells].map(|cells| 1.0 / cells as f64);
+            let of = |k: usize| [on_cells(sizes[0], coarse.1[k]), on_cells(sizes[1], end[k])];
+            let convergence = Convergence::CONTACT;
+            let value = |k: usize| coverage::value(estimate(&of(k), convergence));
+            let limit = match bounds(push) {
+                None => [value(0), value(1)],
+                Some(truth) => {
+                    let known = Known { convergence, truth };
+                    let name = format!("contact strip, {}", study.runs[run].variant);
+                    let vertical = study.extrapolate(name, known, &of(0));
+                    [coverage::value(vertical), value(1)]
+                }
+            };
             study.check(
                 run,
                 format!(

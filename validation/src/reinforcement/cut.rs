@@ -4,10 +4,12 @@ use std::path::Path;
 
 use igimp_cases::CaseError;
 use igimp_cases::check::Band;
+use igimp_cases::mesh_study::Convergence;
 use igimp_cases::table::Table;
 use rayon::prelude::*;
 
 use super::circle::{Cut, Nail};
+use crate::coverage::{self, Known, on_cells};
 use crate::oracle::{Oracle, OracleKind};
 use crate::runs::{Computed, mesh, shipped_case};
 use crate::study::{Level, RunRecord, Study};
@@ -130,12 +132,22 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
             ]);
             let narrow = search.cell;
             if let Some([wide, coarse]) = before {
+                let convergence = if search.has_nails {
+                    Convergence::CONTACT
+                } else {
+                    Convergence::SOIL
+                };
+                let truth = [low, high];
+                let known = Known { convergence, truth };
+                let values = [on_cells(wide, coarse), on_cells(narrow, found)];
+                let estimate =
+                    study.extrapolate(format!("cut, {nails}, h = {narrow} m"), known, &values);
                 study.check(
                     run,
                     format!("F, h = {wide} and {narrow} m extrapolated to h = 0 [-]"),
                     oracle.says(0.5 * (low + high)),
                     Band::Between(0.985 * low, 1.015 * high),
-                    found + (found - coarse) * narrow / (wide - narrow),
+                    coverage::value(estimate),
                 );
             }
             before = Some([narrow, found]);

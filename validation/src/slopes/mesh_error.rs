@@ -5,11 +5,12 @@ use std::fmt::Write as _;
 use igimp_assembly::Locking;
 use igimp_cases::CaseError;
 use igimp_cases::check::Band;
-use igimp_cases::mesh_study::{self, Estimate};
+use igimp_cases::mesh_study::{Computed, Convergence, estimate};
 use igimp_cases::table::Table;
 
 use super::section::Variant;
 use super::{Found, Slopes};
+use crate::coverage::Known;
 use crate::oracle::{Oracle, OracleKind};
 use crate::study::{RunRecord, Study};
 
@@ -59,18 +60,27 @@ pub(super) fn report(study: &mut Study, slopes: &Slopes) -> Result<(), CaseError
             let (Some(coarse), Some(fine)) = (on(0), on(1)) else {
                 continue;
             };
-            let Some(found) = estimate([coarse, fine], &problem.meshes) else {
-                continue;
-            };
-            let [lower, upper] = slopes.known[place].interval;
-            let covers = found.value - found.uncertainty <= upper
-                && found.value + found.uncertainty >= lower;
             let flow = if associated { "" } else { ", ψ = 0" };
             let name = format!("{}{flow}, two meshes", problem.section.name);
+            let truth = slopes.known[place].interval;
+            let [lower, upper] = truth;
+            let values = values([coarse, fine], &problem.meshes);
+            let known = Known {
+                convergence: Convergence::SOIL,
+                truth,
+            };
+            // ψ = 0 knows no bounds of its own.
+            let found = if associated {
+                study.extrapolate(name.clone(), known, &values)
+            } else {
+                estimate(&values, known.convergence)
+            };
+            let Some(found) = found else { continue };
+            let covers = found.value - found.uncertainty <= upper
+                && found.value + found.uncertainty >= lower;
             let both = [coarse, fine].map(|found| found.run(String::new()));
             let both = RunRecord::sum(name.clone(), &[&both[0], &both[1]]);
             let run = study.run(both.clone());
-            // ψ = 0 knows no bounds of its own.
             if associated {
                 covered += usize::from(covers);
                 runs.push(both);
@@ -117,12 +127,11 @@ pub(super) fn report(study: &mut Study, slopes: &Slopes) -> Result<(), CaseError
     table.write_csv(&study.folder)
 }
 
-/// What a coarse and a fine mesh say together.
-fn estimate(found: [&Found; 2], meshes: &[u32]) -> Option<Estimate> {
-    let values = [0, 1].map(|mesh| mesh_study::Computed {
+/// The factors on a coarse and a fine mesh.
+fn values(found: [&Found; 2], meshes: &[u32]) -> [Computed; 2] {
+    [0, 1].map(|mesh| Computed {
         h: f64::from(meshes[mesh]).recip(),
         value: found[mesh].factor(),
         half_width: found[mesh].half_width(),
-    });
-    mesh_study::estimate(&values)
+    })
 }

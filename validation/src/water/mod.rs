@@ -10,10 +10,11 @@ use igimp_assembly::Locking;
 use igimp_cases::CaseError;
 use igimp_cases::case::{Case, PoreSource, WaterCondition};
 use igimp_cases::check::Band;
-use igimp_cases::mesh_study;
+use igimp_cases::mesh_study::{Computed as OnMesh, Convergence};
 use igimp_cases::table::Table;
 use rayon::prelude::*;
 
+use crate::coverage::Known;
 use crate::oracle::{Oracle, OracleKind};
 use crate::runs::Computed;
 use crate::slopes::section::{Section, Variant};
@@ -115,7 +116,7 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
     let (mut factors, mut sums) = (Vec::new(), Vec::new());
     let mut note = String::from("bounds; coarse, fine; extrapolated\n");
     for (problem, found) in std::iter::zip(&problems, found.chunks(2)) {
-        let values = [0, 1].map(|mesh| mesh_study::Computed {
+        let values = [0, 1].map(|mesh| OnMesh {
             h: f64::from(problem.meshes[mesh]).recip(),
             value: found[mesh].factor(),
             half_width: 0.5 * (found[mesh].interval[1] - found[mesh].interval[0]),
@@ -124,7 +125,12 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
         let both = [0, 1].map(|mesh| found[mesh].run(String::new()));
         let sum = RunRecord::sum(name.clone(), &[&both[0], &both[1]]);
         let run = study.run(sum.clone());
-        let (value, uncertainty) = mesh_study::estimate(&values)
+        let known = Known {
+            convergence: Convergence::SOIL,
+            truth: problem.known,
+        };
+        let (value, uncertainty) = study
+            .extrapolate(format!("{} {name}", problem.group), known, &values)
             .map_or((f64::NAN, f64::NAN), |found| {
                 (found.value, found.uncertainty)
             });

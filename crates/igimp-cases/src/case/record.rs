@@ -3,7 +3,8 @@
 use super::{Case, ReinforcementQuantity, RigidQuantity, Stage, StageKind};
 use crate::check::Band;
 
-/// A particle that is watched: the one nearest to a point in the undeformed bodies.
+/// A material point that is watched: a point in the undeformed bodies. Fields there are interpolated from the particles around
+/// it; the displacement that ends a stage or a search is that of the nearest particle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Monitor<const D: usize = 2> {
     /// Name.
@@ -46,7 +47,7 @@ impl<const D: usize> Section<D> {
 /// Of which particles a section reads its values.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Average {
-    /// The particle nearest to each place.
+    /// Those around the place.
     #[default]
     None,
     /// All particles of each cell that the line goes through, by volume.

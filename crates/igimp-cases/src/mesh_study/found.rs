@@ -1,28 +1,61 @@
 //! What the runs of a study found, side by side.
 
-use super::{Computed, ResultKind, StudyResult, estimate, plan};
-use crate::case::{Case, CheckValue, Quantity, Stage, StageKind};
+use super::known::{of_check, of_stage};
+use super::{Computed, Convergence, ResultKind, StudyResult, estimate, plan};
+use crate::case::{Case, CheckValue, Quantity, StageKind};
+use crate::check::short;
 use crate::summary::{CheckRow, StageOutcome, StageSummary, Summary};
 
-/// A value and half the width of the interval in which a search left it.
-type Found = (f64, f64);
+/// A value of a run.
+#[derive(Clone, Copy, Debug)]
+struct Found {
+    value: f64,
+    /// Half the width of the interval in which a search left it; 0 where nothing was searched for.
+    half_width: f64,
+    /// Whether the run ended before it came to what the value stands for.
+    ended_early: bool,
+}
+
+impl Found {
+    /// A value that was computed.
+    fn computed(value: f64) -> Self {
+        Self::within(value, 0.0)
+    }
+
+    /// The middle of an interval.
+    fn within(value: f64, half_width: f64) -> Self {
+        Self {
+            value,
+            half_width,
+            ended_early: false,
+        }
+    }
+
+    /// What a run had come to when it ended.
+    fn on_the_way(value: f64) -> Self {
+        Self {
+            ended_early: true,
+            ..Self::computed(value)
+        }
+    }
+}
 
 /// Factors of safety, limit loads and checks of a case on its meshes, from the summaries of their runs;
 /// none for a mesh that has no run.
 pub fn study<const D: usize>(case: &Case<D>, runs: &[Option<&Summary>]) -> Vec<StudyResult> {
     let parts = plan::refinements(case);
     let mut results = Vec::new();
-    let mut add = |name: String, kind, found: Vec<Option<Found>>| {
-        let finite = |found: Option<Found>| found.filter(|(value, _)| value.is_finite());
+    let mut add = |name: String, (kind, known), found: Vec<Option<Found>>| {
+        let finite = |found: Option<Found>| found.filter(|found| found.value.is_finite());
         let found: Vec<Option<Found>> = found.into_iter().map(finite).collect();
         if found.iter().any(Option::is_some) {
-            results.push(result(name, kind, &found, &parts));
+            results.push(result(name, (kind, known), &found, &parts));
         }
     };
     for number in 0..case.stages.len() {
-        if let Some((name, kind)) = of_stage(case, number) {
+        if let Some((name, kind, known)) = of_stage(case, number) {
             let found = runs.iter().map(|run| at_stage(case, (*run)?, number));
-            add(name, kind, found.collect());
+            add(name, (kind, known), found.collect());
         }
     }
     let longest = runs.iter().flatten().max_by_key(|run| run.checks.len());
@@ -34,10 +67,11 @@ pub fn study<const D: usize>(case: &Case<D>, runs: &[Option<&Summary>]) -> Vec<S
         let name = &row.check.quantity;
         let found = runs.iter().map(|run| {
             let run = (*run)?;
-            let measured = nth(&run.checks, name, occurrence(longest?, number))?;
-            Some((measured.check.measured, width_of_check(case, run, name)))
+            let row = nth(&run.checks, name, occurrence(longest?, number))?;
+            Some(at_check(case, run, row))
         });
-        add(name.clone(), ResultKind::Check, found.collect());
+        let known = of_check(case, name);
+        add(name.clone(), (ResultKind::Check, known), found.collect());
     }
     results
 }
@@ -74,66 +108,56 @@ pub(crate) fn check_rows<const D: usize>(
     of.checks.iter().enumerate().map(row).collect()
 }
 
-fn result(name: String, kind: ResultKind, found: &[Option<Found>], parts: &[usize]) -> StudyResult {
+/// What a reader has to know of the results: values that do not converge as they should, and runs that ended early.
+pub(crate) fn remarks<const D: usize>(case: &Case<D>, results: &[StudyResult]) -> Vec<String> {
+    let labels: Vec<String> = (plan::refinements(case).into_iter())
+        .map(plan::label)
+        .collect();
+    let mut remarks = Vec::new();
+    for result in results {
+        for (mesh, label) in labels.iter().enumerate() {
+            if let (Some(value), true) = (result.values[mesh], result.ended_early(mesh)) {
+                remarks.push(format!(
+                    "{}: on the mesh {label} the run ended early, at {}: that is no result, and it is not extrapolated",
+                    result.name,
+                    short(value)
+                ));
+            }
+        }
+        let remark = result.estimate.and_then(|found| found.order.remark());
+        remarks.extend(remark.map(|remark| format!("{}: {remark}", result.name)));
+    }
+    remarks
+}
+
+fn result(
+    name: String,
+    (kind, known): (ResultKind, Convergence),
+    found: &[Option<Found>],
+    parts: &[usize],
+) -> StudyResult {
     let points: Vec<Computed> = std::iter::zip(found, parts)
         .filter_map(|(found, &parts)| {
-            let (value, half_width) = (*found)?;
+            let found = found.filter(|found| !found.ended_early)?;
             Some(Computed {
                 h: 1.0 / parts as f64,
-                value,
-                half_width,
+                value: found.value,
+                half_width: found.half_width,
             })
         })
         .collect();
+    let each = || found.iter();
     StudyResult {
         name,
         kind,
-        values: found
-            .iter()
-            .map(|found| found.map(|found| found.0))
+        values: each().map(|found| found.map(|found| found.value)).collect(),
+        half_widths: each()
+            .map(|found| found.map_or(0.0, |found| found.half_width))
             .collect(),
-        half_widths: found
-            .iter()
-            .map(|found| found.map_or(0.0, |found| found.1))
+        early: each()
+            .map(|found| found.is_some_and(|found| found.ended_early))
             .collect(),
-        estimate: estimate(&points),
-    }
-}
-
-/// The result that a stage is made for, if it is made for one.
-fn of_stage<const D: usize>(case: &Case<D>, number: usize) -> Option<(String, ResultKind)> {
-    let stage = &case.stages[number];
-    let name = &stage.name;
-    let searches = |stage: &&Stage| matches!(stage.kind, StageKind::StrengthReduction(_));
-    match &stage.kind {
-        StageKind::StrengthReduction(_) => {
-            let only = case.stages.iter().filter(searches).count() == 1;
-            let of = if only {
-                String::new()
-            } else {
-                format!(", \"{name}\"")
-            };
-            Some((
-                format!("factor of safety{of} [-]"),
-                ResultKind::FactorOfSafety,
-            ))
-        }
-        StageKind::Gravity { horizontal, .. } if stage.stop_when.no_equilibrium => Some((
-            match horizontal {
-                Some(_) => format!("horizontal acceleration at the end of \"{name}\" [-]"),
-                None => format!("gravity at the end of \"{name}\" [-]"),
-            },
-            ResultKind::LimitLoad,
-        )),
-        StageKind::Load { .. } if stage.stop_when.no_equilibrium => Some((
-            format!("load factor at the end of \"{name}\" [-]"),
-            ResultKind::LimitLoad,
-        )),
-        StageKind::Displacement { .. } => Some((
-            format!("largest resistance in \"{name}\" [N/m]"),
-            ResultKind::LimitLoad,
-        )),
-        _ => None,
+        estimate: estimate(&points, known),
     }
 }
 
@@ -142,7 +166,14 @@ fn at_stage<const D: usize>(case: &Case<D>, run: &Summary, number: usize) -> Opt
     let (stage, summary) = (&case.stages[number], run.stages.get(number)?);
     match &stage.kind {
         StageKind::StrengthReduction(_) => interval(summary),
-        StageKind::Displacement { .. } => Some((summary.peak_resistance?, 0.0)),
+        StageKind::Displacement { .. } => {
+            let resistance = summary.peak_resistance?;
+            Some(if is_through(summary) {
+                Found::computed(resistance)
+            } else {
+                Found::on_the_way(resistance)
+            })
+        }
         StageKind::Gravity {
             horizontal: Some(_),
             ..
@@ -157,11 +188,24 @@ fn at_stage<const D: usize>(case: &Case<D>, run: &Summary, number: usize) -> Opt
     }
 }
 
-/// Middle of the interval of a factor of safety, and half its width (theory, eq. 40g).
+/// Whether a stage came to what it was to come to.
+fn is_through(stage: &StageSummary) -> bool {
+    let ended = matches!(
+        stage.outcome,
+        StageOutcome::Completed | StageOutcome::Stopped
+    );
+    ended && !stage.lost
+}
+
+/// Middle of the interval of a factor of safety, and half its width (theory, eq. 40g); the largest factor that stands
+/// where none failed.
 fn interval(stage: &StageSummary) -> Option<Found> {
     let safety = stage.safety.as_ref()?;
-    let (stable, failed) = (safety.stable?, safety.failed?);
-    Some((0.5 * (stable + failed), 0.5 * (failed - stable).abs()))
+    let stable = safety.stable?;
+    Some(match safety.failed {
+        Some(failed) => Found::within(0.5 * (stable + failed), 0.5 * (failed - stable).abs()),
+        None => Found::on_the_way(stable),
+    })
 }
 
 /// The load at which a stage ended before its end. The smallest step that was tried lies beyond it: it
@@ -173,12 +217,20 @@ fn limit<const D: usize>(
     of: Quantity,
 ) -> Option<Found> {
     let (stage, summary) = (&case.stages[number], run.stages.get(number)?);
-    if !stage.stop_when.no_equilibrium || summary.outcome != StageOutcome::Stopped {
+    if !stage.stop_when.no_equilibrium {
         return None;
     }
-    let interval = |path| crate::run::limit::interval(path, stage.stop_when.displacement);
-    if let Some((Some(low), Some(high))) = summary.path.as_ref().map(interval) {
-        return Some((0.5 * (low + high), 0.5 * (high - low)));
+    let reached = at_end(case, run, number, of);
+    if summary.outcome != StageOutcome::Stopped || summary.lost {
+        return Some(Found::on_the_way(reached));
+    }
+    if let Some(path) = &summary.path {
+        return Some(
+            match crate::run::limit::interval(path, stage.stop_when.displacement) {
+                (Some(low), Some(high)) => Found::within(0.5 * (low + high), 0.5 * (high - low)),
+                _ => Found::on_the_way(reached),
+            },
+        );
     }
     let from = stage
         .start_from
@@ -191,7 +243,7 @@ fn limit<const D: usize>(
     };
     let smallest = solver.cut_factor.powi(cuts) / stage.steps as f64;
     let whole = (aim(&stage.kind, of)? - from).abs();
-    Some((at_end(case, run, number, of), smallest * whole))
+    Some(Found::within(reached, smallest * whole))
 }
 
 /// A multiple of gravity, an acceleration or a load factor at the end of a stage of a run.
@@ -217,20 +269,33 @@ fn aim(kind: &StageKind, of: Quantity) -> Option<f64> {
     }
 }
 
-/// Half the width of the interval in which a search left the value of a check.
-fn width_of_check<const D: usize>(case: &Case<D>, run: &Summary, name: &str) -> f64 {
-    let Some(check) = case.checks.iter().find(|check| check.name == name) else {
-        return 0.0;
+/// A check of a run: with the interval of the search that it looks at, and whether the run came to it.
+fn at_check<const D: usize>(case: &Case<D>, run: &Summary, row: &CheckRow) -> Found {
+    let (name, measured) = (&row.check.quantity, row.check.measured);
+    let gave_up = |stage: &StageSummary| !is_through(stage);
+    let Some(check) = case.checks.iter().find(|check| check.name == *name) else {
+        // A curve that came to the place is right there, whatever came after.
+        let at_place = |curve: &str| name.starts_with(&format!("{curve} at "));
+        let is_read_off = case.curves.iter().any(|curve| at_place(&curve.name));
+        return Found {
+            ended_early: !is_read_off && run.stages.iter().any(gave_up),
+            ..Found::computed(measured)
+        };
     };
-    let stage = check.stage.unwrap_or(case.stages.len().saturating_sub(1));
+    let number = check.stage.unwrap_or(case.stages.len().saturating_sub(1));
+    let stage = run.stages.get(number);
     let found = match check.of {
-        Quantity::FactorOfSafety => run.stages.get(stage).and_then(interval),
+        Quantity::FactorOfSafety => stage.and_then(interval),
         Quantity::GravityFactor | Quantity::HorizontalFactor | Quantity::LoadFactor(_) => {
-            limit(case, run, stage, check.of)
+            limit(case, run, number, check.of)
         }
         _ => None,
     };
-    found.map_or(0.0, |(_, width)| width / check.divide_by.abs())
+    Found {
+        value: measured,
+        half_width: found.map_or(0.0, |found| found.half_width) / check.divide_by.abs(),
+        ended_early: stage.is_some_and(gave_up) || found.is_some_and(|found| found.ended_early),
+    }
 }
 
 /// How many rows of the same name stand before a row.

@@ -3,6 +3,7 @@
 //! | | |
 //! |---|---|
 //! | [`mod@estimate`] | from values on two or three meshes to an extrapolated value and its uncertainty; numbers only |
+//! | [`order`] | which orders of convergence are possible, and which the values on three meshes leave; numbers only |
 //! | [`plan`] | which meshes a case is computed on, and whether they are meshes of one problem |
 //! | [`study`] | factors of safety, limit loads and checks of the runs on all meshes |
 //!
@@ -10,7 +11,13 @@
 //! more than one mesh on all of them; its [`Summary`](crate::summary::Summary) tells what was found.
 
 pub mod estimate;
+#[cfg(test)]
+mod estimate_tests;
 mod found;
+#[cfg(test)]
+mod found_tests;
+mod known;
+pub mod order;
 pub mod plan;
 
 use std::path::Path;
@@ -23,9 +30,13 @@ use crate::results::atomic::create;
 use crate::results::cells::cell;
 use crate::summary::ModelSize;
 use crate::sweep::Ending;
-pub use estimate::{Computed, Estimate, Order, estimate};
-pub(crate) use found::check_rows;
+pub use estimate::{Computed, Estimate, estimate};
 pub use found::study;
+pub(crate) use found::{check_rows, remarks};
+pub use order::{Convergence, Order};
+
+/// An uncertainty below this share of its value is round-off \[-\].
+const ROUND_OFF: f64 = 1e-12;
 
 /// What a case gave on all its meshes, as written to `summary.json`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -124,14 +135,26 @@ pub struct StudyResult {
     /// By mesh: half the width of the interval in which a search left the value; 0 where nothing was
     /// searched for.
     pub half_widths: Vec<f64>,
+    /// By mesh: whether the run ended before it came to what the value stands for; such values are not extrapolated.
+    #[serde(default)]
+    pub early: Vec<bool>,
     /// What they say together; none for less than two values.
     pub estimate: Option<Estimate>,
 }
 
 impl StudyResult {
-    /// The value on the finest mesh that has one.
+    /// Whether the run on a mesh ended before it came to the value.
+    pub fn ended_early(&self, mesh: usize) -> bool {
+        self.early.get(mesh).copied().unwrap_or_default()
+    }
+
+    /// The value on the finest mesh whose run came to it, or on the finest that has one.
     pub fn finest(&self) -> Option<f64> {
-        self.values.iter().rev().copied().flatten().next()
+        let finest = |early: bool| {
+            let mut meshes = (0..self.values.len()).rev();
+            meshes.find_map(|mesh| self.values[mesh].filter(|_| self.ended_early(mesh) == early))
+        };
+        finest(false).or_else(|| finest(true))
     }
 }
 
@@ -151,8 +174,11 @@ impl Estimate {
     /// The uncertainty, rounded up to two digits: more are not known.
     pub fn rounded_uncertainty(&self) -> f64 {
         let uncertainty = self.uncertainty;
-        if uncertainty <= 0.0 || !uncertainty.is_finite() {
+        if !uncertainty.is_finite() {
             return uncertainty;
+        }
+        if uncertainty <= ROUND_OFF * self.value.abs() {
+            return 0.0;
         }
         let digits = 1.0 - uncertainty.log10().floor();
         let unit = 10.0_f64.powf(-digits);
@@ -160,28 +186,18 @@ impl Estimate {
         unit * (uncertainty / unit - 1e-9).ceil()
     }
 
+    /// Whether the value is another one than that of the finest mesh, in words: what stands before it.
+    pub fn lead(&self) -> &'static str {
+        match self.order.used() {
+            Some(_) => "extrapolated",
+            None => "not extrapolated",
+        }
+    }
+
     /// As it is printed: the value, and how far it may be off.
     pub fn sentence(&self) -> String {
         let (value, uncertainty) = (short(self.value), short(self.rounded_uncertainty()));
         format!("{value} ± {uncertainty}")
-    }
-}
-
-impl Order {
-    /// In words for a table.
-    pub fn sentence(self) -> String {
-        let two = |value: f64| format!("{value:.2}");
-        match self {
-            Self::Assumed => "1, assumed".to_owned(),
-            Self::Observed(p) => format!("{}, observed", two(p)),
-            Self::Limited { observed, used } if observed < used => {
-                format!("below {used}: {used} taken")
-            }
-            Self::Limited { used, .. } => format!("above {used}: {used} taken"),
-            Self::Admitted => "1, within the search".to_owned(),
-            Self::Oscillating => "none: up and down".to_owned(),
-            Self::Diverging => "none: no convergence seen".to_owned(),
-        }
     }
 }
 
@@ -192,7 +208,7 @@ mod tests {
     #[test]
     fn an_uncertainty_is_rounded_up() {
         let text = |value, uncertainty| {
-            let order = Order::Assumed;
+            let order = Order::Assumed { slowest: 0.5 };
             let found = Estimate {
                 value,
                 uncertainty,
@@ -204,6 +220,8 @@ mod tests {
         assert_eq!(text(1.265, 0.1), "1.265 ± 0.1");
         assert_eq!(text(514.2, 3.001), "514.2 ± 3.1");
         assert_eq!(text(2.0, 0.0), "2 ± 0");
+        assert_eq!(text(71.5, 4.4e-12), "71.5 ± 0");
+        assert_eq!(text(0.0, 4.4e-12), "0 ± 4.400e-12");
     }
 
     #[test]

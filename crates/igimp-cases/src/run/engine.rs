@@ -301,6 +301,7 @@ impl<const D: usize> Stages<D> {
                 if stage.stop_when.no_equilibrium && error.failure.is_want_of_equilibrium() =>
             {
                 let failure = &error.failure;
+                summary.lost = failure::tells_no_limit(&stage.kind, failure, &summary);
                 summary.outcome = StageOutcome::Stopped;
                 summary.reason = format!(
                     "no equilibrium beyond {} of the stage: {failure}",

@@ -2,13 +2,33 @@
 
 use igimp_assembly::Particles;
 use igimp_material::Regime;
-use igimp_solver::StepError;
+use igimp_solver::{StepError, StepFailure};
 
 use super::session::Session;
 use super::state::State;
 use super::{Failure, advice};
-use crate::case::{Case, StageKind};
-use crate::summary::StageSummary;
+use crate::case::{Case, RigidDrive, StageKind};
+use crate::summary::{PathEnd, StageSummary};
+
+/// Whether a stage that found no equilibrium ended in a way that tells no limit: its path was lost, its linear system
+/// could not be solved, or nothing but a motion was driven, which has an equilibrium at any load.
+pub(crate) fn tells_no_limit(
+    kind: &StageKind,
+    failure: &StepFailure,
+    summary: &StageSummary,
+) -> bool {
+    let path_is_lost = (summary.path.as_ref()).is_some_and(|path| path.end == PathEnd::Lost);
+    let is_driven = match kind {
+        StageKind::Displacement { .. } => true,
+        StageKind::Rigid(moves) => {
+            let drives = || moves.iter().flat_map(|own| own.drives.iter().flatten());
+            drives().any(|drive| matches!(drive, RigidDrive::By(by) if *by != 0.0))
+                && !drives().any(|drive| matches!(drive, RigidDrive::Force(force) if *force != 0.0))
+        }
+        _ => false,
+    };
+    path_is_lost || is_driven || matches!(failure, StepFailure::Linear(_))
+}
 
 /// Describes the step that ended a stage.
 pub(crate) fn describe<const D: usize>(

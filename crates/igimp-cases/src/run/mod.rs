@@ -20,6 +20,7 @@ mod mixed_cells;
 mod model;
 mod outlines;
 mod output;
+mod place;
 mod pores;
 mod processor;
 mod records;

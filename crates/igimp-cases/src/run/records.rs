@@ -3,11 +3,11 @@
 use igimp_assembly::{Particles, Reinforcement, RigidBody, SharedLaw};
 
 use super::model::reduced;
+use super::place::Place;
 use super::state::Controls;
 use super::{reinforcement, rigid};
-use crate::case::{Case, CheckTime, Quantity};
+use crate::case::{Case, CheckTime, Field, Quantity};
 use crate::error::CaseError;
-use crate::measure::nearest;
 use crate::results::fields;
 use crate::table::Table;
 
@@ -50,7 +50,7 @@ pub(crate) fn largest_displacement<const D: usize>(particles: &Particles<D>) -> 
         .fold(0.0, f64::max)
 }
 
-/// The tables of a run, and the particles that its monitors watch.
+/// The tables of a run, and the material points that its monitors watch.
 #[derive(Debug)]
 pub(crate) struct Records {
     /// By curve of the case.
@@ -59,8 +59,8 @@ pub(crate) struct Records {
     pub(crate) monitors: Vec<Table>,
     /// By rigid body of the case.
     pub(crate) rigid: Vec<Table>,
-    /// The number of the particle that each monitor follows.
-    pub(crate) watched: Vec<usize>,
+    /// The material point that each monitor follows.
+    pub(crate) watched: Vec<Place>,
     /// By check of the case: the largest value of its quantity in its stage so far; not a number before.
     pub(crate) peaks: Vec<f64>,
     /// Middle of the interval of the factor of safety found last \[-\].
@@ -71,7 +71,7 @@ pub(crate) struct Records {
 }
 
 impl Records {
-    /// Empty tables; monitors take the nearest particle of the undeformed bodies.
+    /// Empty tables; monitors stand in the undeformed bodies.
     pub(crate) fn new<const D: usize>(
         case: &Case<D>,
         laws: &[SharedLaw],
@@ -100,9 +100,7 @@ impl Records {
             .monitors
             .iter()
             .map(|monitor| {
-                nearest(particles, &monitor.point, f64::INFINITY)
-                    .map(|particle| particles.number[particle])
-                    .ok_or(CaseError::EmptyBody)
+                Place::of(particles, &monitor.point, f64::INFINITY).ok_or(CaseError::EmptyBody)
             })
             .collect::<Result<_, _>>()?;
         Ok(Self {
@@ -132,6 +130,24 @@ impl Records {
         reduced(&self.laws, &moment.controls.srf).unwrap_or_else(|_| self.laws.clone())
     }
 
+    /// A field at the material point of a monitor; not a number while that is not there. The length of a displacement is that
+    /// of its components there.
+    fn at_monitor<const D: usize>(
+        &self,
+        monitor: usize,
+        field: Field,
+        moment: &Moment<'_, D>,
+        laws: &[SharedLaw],
+    ) -> f64 {
+        let (place, particles) = (&self.watched[monitor], moment.particles);
+        if field == Field::Displacement {
+            let component =
+                |axis: usize| place.value(particles, |p| particles.displacement[p][axis]);
+            return fields::length::<D>(&std::array::from_fn(component));
+        }
+        place.value(particles, |p| fields::value(field, particles, p, laws))
+    }
+
     /// A quantity of a moment, in SI units.
     pub(crate) fn quantity<const D: usize>(
         &self,
@@ -149,11 +165,7 @@ impl Records {
             }
             Quantity::LoadFactor(load) => controls.factors[load],
             Quantity::Monitor(monitor, field) => {
-                let laws = self.laws_at(moment);
-                let place = moment.particles.place_of(self.watched[monitor]);
-                place.map_or(f64::NAN, |particle| {
-                    fields::value(field, moment.particles, particle, &laws)
-                })
+                self.at_monitor(monitor, field, moment, &self.laws_at(moment))
             }
             Quantity::LargestDisplacement => moment.largest_displacement(),
             Quantity::GravityFactor => controls.gravity,
@@ -209,17 +221,14 @@ impl Records {
             rows.curves[k] = Some(row);
         }
         for (k, monitor) in case.monitors.iter().enumerate().filter(|_| !reopens) {
-            let place = moment.particles.place_of(self.watched[k]);
             let laws = self.laws_at(moment);
             let mut row = vec![
                 moment.stage as f64 + 1.0,
                 moment.number as f64,
                 moment.progress,
             ];
-            row.extend(monitor.record.iter().map(|&field| match place {
-                Some(particle) => fields::value(field, moment.particles, particle, &laws),
-                None => f64::NAN,
-            }));
+            let recorded = monitor.record.iter();
+            row.extend(recorded.map(|&field| self.at_monitor(k, field, moment, &laws)));
             self.monitors[k].push(row.clone());
             rows.monitors.push(row);
         }

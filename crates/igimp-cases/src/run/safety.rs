@@ -16,7 +16,7 @@ use igimp_solver::Body;
 pub(crate) use self::criterion::displacement_scale;
 use self::criterion::{default_limit, height};
 use self::interval::next_factor;
-use self::remarks::{moving_mass, remarks};
+use self::remarks::{few_cells, moving_mass, remarks};
 use super::Event;
 use super::left::{End, Search};
 use super::loading::begin;
@@ -46,10 +46,30 @@ pub(crate) fn reduce_strength<const D: usize>(
     summary: &mut StageSummary,
     left: Option<Search<D>>,
 ) -> Result<Ended, CaseError> {
-    let stage = &session.model.case.stages[number];
-    if reduction.search == SearchMethod::Continuation {
-        return continuation::search(session, state, number, reduction, summary);
+    let ended = match reduction.search {
+        SearchMethod::Continuation => {
+            continuation::search(session, state, number, reduction, summary)
+        }
+        SearchMethod::Trials => by_trials(session, state, number, reduction, summary, left),
+    };
+    if summary.safety.is_some()
+        && let Some(text) = few_cells(session.model.case, &state.body.particles)
+    {
+        session.warn(text);
     }
+    ended
+}
+
+/// Searches by trials, each of which stands or fails.
+fn by_trials<const D: usize>(
+    session: &mut Session<'_, D>,
+    state: &State<D>,
+    number: usize,
+    reduction: &StrengthReduction,
+    summary: &mut StageSummary,
+    left: Option<Search<D>>,
+) -> Result<Ended, CaseError> {
+    let stage = &session.model.case.stages[number];
     let mut trials = Trials::new(session, state, number, stage, reduction, left)?;
     // Where gravity is raised anew the state found is none that a trial begins with.
     if trials.made.is_empty() && reduction.path == ReductionPath::Reduce {

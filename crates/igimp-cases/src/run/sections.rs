@@ -6,9 +6,11 @@ use igimp_assembly::{AssemblyError, Particles, SharedLaw};
 use igimp_shape::Grid;
 
 use super::model::Model;
+use super::place::Place;
 use super::state::State;
 use crate::case::{Average, Case, Cut, Section};
 use crate::measure::nearest;
+
 use crate::results::fields;
 use crate::results::pictures::file_name;
 use crate::table::Table;
@@ -26,8 +28,8 @@ pub(super) const fn before_fields<const D: usize>() -> usize {
 /// One table per section, named `SECTION__STAGE`, with the foot of every place on the line; the share of
 /// mobilised strength is that of the strength that acts.
 ///
-/// Values are those of the particles nearest to equally spaced places along the line, each once, as the
-/// particles hold them; places without a particle within a cell are left out. Or they are means over the
+/// Values are those at the feet, on the line, of the particles nearest to equally spaced places along it, each once,
+/// interpolated from the particles around; places without a particle within a cell are left out. Or they are means over the
 /// cells of the grid that the places lie in, of all particles there by their volume.
 pub(crate) fn read<const D: usize>(
     model: &Model<'_, D>,
@@ -154,34 +156,48 @@ impl<const D: usize> Cells<D> {
     }
 }
 
-/// The mean over particles, by volume, as a row.
+/// A row: at the foot of a particle on the line, or the mean over several particles, by volume.
 fn row<const D: usize>(
     section: &Section<D>,
     group: &[usize],
     (particles, laws): (&Particles<D>, &[SharedLaw]),
 ) -> Vec<f64> {
-    let mean = |of: &dyn Fn(usize) -> f64| match group {
-        &[only] => of(only),
-        several => {
-            let volume: f64 = several.iter().map(|&p| particles.volume(p)).sum();
-            several
-                .iter()
-                .map(|&p| particles.volume(p) * of(p))
-                .sum::<f64>()
-                / volume
-        }
-    };
-    let x: [f64; D] = std::array::from_fn(|axis| mean(&|p| particles.x[p][axis]));
     let way: [f64; D] = std::array::from_fn(|axis| section.to[axis] - section.from[axis]);
-    let along: f64 = (0..D)
-        .map(|axis| (x[axis] - section.from[axis]) * way[axis])
-        .sum();
-    let mut row = vec![along / fields::length(&way)];
-    row.extend(x);
-    let values = section
-        .record
-        .iter()
-        .map(|&field| mean(&|p| fields::value(field, particles, p, laws)));
-    row.extend(values);
-    row
+    let length = fields::length(&way);
+    // How far along the line a point stands.
+    let along = |x: &[f64; D]| -> f64 {
+        let parts = (0..D).map(|axis| (x[axis] - section.from[axis]) * way[axis]);
+        parts.sum::<f64>() / length
+    };
+    let value = |field, p: usize| fields::value(field, particles, p, laws);
+    let recorded = section.record.iter();
+    match (section.average, group) {
+        (Average::None, &[only]) => {
+            let distance = along(&particles.x[only]);
+            let foot: [f64; D] =
+                std::array::from_fn(|axis| section.from[axis] + distance / length * way[axis]);
+            let place = Place::near(particles, only, &foot);
+            let values = recorded.map(|&field| place.value(particles, |p| value(field, p)));
+            std::iter::once(distance)
+                .chain(foot)
+                .chain(values)
+                .collect()
+        }
+        (_, several) => {
+            let volume: f64 = several.iter().map(|&p| particles.volume(p)).sum();
+            let mean = |of: &dyn Fn(usize) -> f64| match several {
+                &[only] => of(only),
+                several => {
+                    several
+                        .iter()
+                        .map(|&p| particles.volume(p) * of(p))
+                        .sum::<f64>()
+                        / volume
+                }
+            };
+            let x: [f64; D] = std::array::from_fn(|axis| mean(&|p| particles.x[p][axis]));
+            let values = recorded.map(|&field| mean(&|p| value(field, p)));
+            std::iter::once(along(&x)).chain(x).chain(values).collect()
+        }
+    }
 }

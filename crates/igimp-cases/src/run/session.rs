@@ -79,12 +79,12 @@ impl<const D: usize> Session<'_, D> {
         }
     }
 
-    /// The displacement that a condition looks at: of a monitor, or the largest of all \[m\].
+    /// The displacement that a condition looks at: of the particle nearest to a monitor, or the largest of all \[m\].
     pub(crate) fn displacement(&self, monitor: Option<usize>, particles: &Particles<D>) -> f64 {
         monitor.map_or_else(
             || largest_displacement(particles),
             |monitor| {
-                let place = particles.place_of(self.records.watched[monitor]);
+                let place = particles.place_of(self.records.watched[monitor].nearest);
                 place.map_or(0.0, |particle| {
                     fields::length(&particles.displacement[particle])
                 })

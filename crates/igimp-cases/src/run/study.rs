@@ -15,7 +15,7 @@ use crate::error::CaseError;
 use crate::estimate::time::time_of_steps_taken;
 use crate::estimate::watch::side_by_side;
 use crate::estimate::{Estimate, estimate};
-use crate::mesh_study::{MeshSummary, StudySummary, check_rows, plan, study};
+use crate::mesh_study::{MeshSummary, StudySummary, check_rows, plan, remarks, study};
 use crate::results::checkpoint::sha256;
 use crate::results::folder::{self, mesh_name, write_atomically, write_summary};
 use crate::results::{pictures, report};
@@ -73,8 +73,18 @@ pub(super) fn run<const D: usize>(
             .sum();
         expectation.told(taken)
     });
+    let is_whole = !summaries.iter().flatten().any(|run| run.interrupted);
+    let told = if is_whole {
+        remarks(case, &found.results)
+    } else {
+        Vec::new()
+    };
     let mut run = together(case, runs, found)?;
     let summary = &mut run.summary;
+    for text in &told {
+        listener.on_event(&Event::Warning { text });
+    }
+    summary.warnings.extend(told);
     summary.estimate = expected;
     summary.peak_memory_mib = memory::peak_mib();
     summary.memory = None;

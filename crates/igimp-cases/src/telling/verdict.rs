@@ -68,22 +68,21 @@ fn mesh_error(study: &StudySummary) -> String {
         .iter()
         .map(|result| {
             let mut row = vec![on_a_line(&result.name).into_owned()];
-            row.extend(
-                study
-                    .meshes
-                    .iter()
-                    .zip(&result.values)
-                    .map(|(mesh, value)| {
-                        let value = value.map_or_else(|| "-".to_owned(), short);
-                        format!("{} {value}", mesh.label())
-                    }),
-            );
+            row.extend(study.meshes.iter().enumerate().map(|(number, mesh)| {
+                let value = result.values[number].map_or_else(|| "-".to_owned(), short);
+                let early = if result.ended_early(number) {
+                    " (ended early)"
+                } else {
+                    ""
+                };
+                format!("{} {value}{early}", mesh.label())
+            }));
             row.extend(match result.estimate {
                 Some(found) => vec![
-                    format!("extrapolated {}", found.sentence()),
+                    format!("{} {}", found.lead(), found.sentence()),
                     format!("(order {})", found.order.sentence()),
                 ],
-                None => vec!["nothing is extrapolated of one value".to_owned()],
+                None => vec!["nothing is extrapolated of fewer than two values".to_owned()],
             });
             row
         })

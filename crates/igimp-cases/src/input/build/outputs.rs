@@ -81,7 +81,7 @@ pub(super) fn monitors<const D: usize>(
                         node.place_at("point"),
                         format!("the monitor at {} lies outside every body", point(place)),
                     )
-                    .help("the nearest material point is watched");
+                    .help("the material point nearest to it is watched");
             }
             Some(Monitor {
                 name: node.text_at("name")?.to_owned(),

@@ -127,7 +127,7 @@ static FIELDS: [Choice; 26] = [
 static FIELD: Kind = Kind::Choice(&FIELDS);
 
 pub(in crate::input) static MONITOR: Kind = Kind::Table(&Struct {
-    doc: "The material point nearest to a place, watched as it moves.",
+    doc: "The material point at a place, watched as it moves.",
     fields: &[
         required("name", Kind::Name, "\"crest\"", "name"),
         required(
@@ -179,7 +179,7 @@ pub(in crate::input) static SECTION: Kind = Kind::Table(&Struct {
 });
 
 static AVERAGES: [Choice; 2] = [
-    choice("none", "the particle nearest to each place"),
+    choice("none", "the particles around each place, interpolated"),
     choice(
         "cell",
         "all particles of each cell that the line goes through, by volume: smooths the sawtooth within cells",

@@ -57,9 +57,13 @@ fn plot(
     result: &StudyResult,
     expected: Option<&&CheckRow>,
 ) -> CurvePlot {
-    let meshes = std::iter::zip(&study.meshes, &result.values);
-    let computed: Vec<([f64; 2], f64)> = std::iter::zip(meshes, &result.half_widths)
-        .filter_map(|((mesh, value), &width)| Some(([1.0 / mesh.parts as f64, (*value)?], width)))
+    // What ended early is no value of its mesh.
+    let arrived = (study.meshes.iter().enumerate()).filter(|(mesh, _)| !result.ended_early(*mesh));
+    let computed: Vec<([f64; 2], f64)> = arrived
+        .filter_map(|(number, mesh)| {
+            let value = (*result.values.get(number)?)?;
+            Some(([1.0 / mesh.parts as f64, value], result.half_widths[number]))
+        })
         .collect();
     let points = computed.iter().map(|(point, _)| *point).collect();
     let solid = SeriesStyle::LineAndMarkers(LineStyle::Solid);
@@ -80,7 +84,7 @@ fn plot(
             lower: level(found.value - reach),
             upper: level(found.value + reach),
         });
-        let mark = Series::markers("extrapolated", vec![[0.0, found.value]]);
+        let mark = Series::markers(found.lead(), vec![[0.0, found.value]]);
         series.push(mark.in_colour(Colour::BLACK));
     }
     let lines = expected.map(|row| ReferenceLine {
@@ -100,15 +104,17 @@ fn plot(
 }
 
 fn caption(study: &StudySummary, result: &StudyResult) -> String {
-    let labels: Vec<String> = std::iter::zip(&study.meshes, &result.values)
-        .filter(|(_, value)| value.is_some())
-        .map(|(mesh, _)| mesh.label())
+    let arrived = |mesh: usize| result.values[mesh].is_some() && !result.ended_early(mesh);
+    let labels: Vec<String> = (study.meshes.iter().enumerate())
+        .filter(|(number, _)| arrived(*number))
+        .map(|(_, mesh)| mesh.label())
         .collect();
     let found = result.estimate.map_or_else(
-        || "Of one mesh nothing is extrapolated.".to_owned(),
+        || "Of fewer than two values nothing is extrapolated.".to_owned(),
         |found| {
             format!(
-                "Extrapolated to cells of no size: {} (order {}).",
+                "By all meshes, {}: {} (order {}).",
+                found.lead(),
                 found.sentence(),
                 found.order.sentence()
             )

@@ -56,13 +56,13 @@ pub(super) fn view(study: &StudySummary) -> StudyView {
 pub(super) fn numbers(study: &StudySummary) -> Vec<Number> {
     let own = |result: &StudyResult| {
         let name = match result.kind {
-            ResultKind::FactorOfSafety => "Factor of safety, extrapolated",
-            ResultKind::LimitLoad => "Limit load, extrapolated",
+            ResultKind::FactorOfSafety => "Factor of safety",
+            ResultKind::LimitLoad => "Limit load",
             ResultKind::Check => return None,
         };
         let found = result.estimate?;
         Some(Number {
-            name: name.to_owned(),
+            name: format!("{name}, {}", found.lead()),
             value: found.sentence(),
             note: format!("with its mesh error, order {}", found.order.sentence()),
         })
@@ -81,7 +81,8 @@ pub(super) fn add_to(verdict: &mut Verdict, study: &StudySummary) {
         if let (Some(found), true) = (result.estimate, result.kind != ResultKind::Check) {
             let _ = write!(
                 verdict.text,
-                " Extrapolated to cells of no size: {}, {} (order {}).",
+                " By all meshes, {}: {}, {} (order {}).",
+                found.lead(),
                 result.name,
                 found.sentence(),
                 found.order.sentence()
@@ -118,13 +119,15 @@ fn mesh(mesh: &MeshSummary) -> MeshView {
 fn result(result: &StudyResult) -> ResultView {
     let value = |value: Option<f64>| value.map_or_else(|| UNKNOWN.to_owned(), short);
     let found = result.estimate;
-    let values = std::iter::zip(&result.values, &result.half_widths).map(|(&own, &width)| {
-        let width = if width > 0.0 {
-            format!(" ± {}", short(width))
+    let values = std::iter::zip(&result.values, &result.half_widths).enumerate();
+    let values = values.map(|(mesh, (&own, &width))| {
+        if result.ended_early(mesh) {
+            value(own) + " (ended early)"
+        } else if width > 0.0 {
+            format!("{} ± {}", value(own), short(width))
         } else {
-            String::new()
-        };
-        value(own) + &width
+            value(own)
+        }
     });
     ResultView {
         name: result.name.clone(),

@@ -1,7 +1,11 @@
 //! What a reader has to know about an interval.
 
+use std::collections::HashMap;
+
+use igimp_assembly::Particles;
+
 use super::{at_full_strength, stands_nowhere};
-use crate::case::StrengthReduction;
+use crate::case::{Case, StrengthReduction};
 use crate::check::short;
 use crate::results::fields::length;
 use crate::run::records::largest_displacement;
@@ -13,6 +17,41 @@ const MOVING: f64 = 0.1;
 
 /// A moving share of the mass below this is called local \[-\].
 const LOCAL: f64 = 0.02;
+
+/// Cells over the height of a slope below which its factor of safety is not to be trusted on one mesh.
+const ENOUGH: f64 = 10.0;
+
+/// Strips of a cell in which the level of the surface is looked for.
+const STRIPS: f64 = 2.0;
+
+/// A remark where a slope is fewer than ten cells high. Its height is that of the surface of the ground, from the lowest
+/// to the highest strip of it; level ground is no slope.
+pub(super) fn few_cells<const D: usize>(
+    case: &Case<D>,
+    particles: &Particles<D>,
+) -> Option<String> {
+    let axes = &case.grid.axes;
+    let mut surface: HashMap<[i64; D], f64> = HashMap::new();
+    for (x, half_length) in std::iter::zip(&particles.x, &particles.half_length) {
+        let mut strip = [0; D];
+        for axis in 0..D - 1 {
+            strip[axis] = (STRIPS * axes[axis].place(x[axis])).floor() as i64;
+        }
+        let top = axes[D - 1].place(x[D - 1] + half_length[D - 1]);
+        let highest = surface.entry(strip).or_insert(top);
+        *highest = highest.max(top);
+    }
+    let least = surface.values().copied().fold(f64::INFINITY, f64::min);
+    let most = surface.values().copied().fold(f64::NEG_INFINITY, f64::max);
+    // A face that ends at the side of the grid leaves part of a cell in the last strip.
+    let cells = (most - least - 1e-6).ceil();
+    (cells > 1.0 && cells < ENOUGH).then(|| {
+        format!(
+            "the slope is {cells} cells high: with fewer than {ENOUGH} cells over the height a factor of safety is several \
+             per cent too high; a study of meshes (--meshes 2) tells by how much"
+        )
+    })
+}
 
 /// What a reader has to know about an interval.
 pub(super) fn remarks(safety: &SafetySummary, reduction: &StrengthReduction) -> Vec<String> {
