@@ -205,23 +205,22 @@ pub(crate) fn add_variation_of_weight<const D: usize>(
     f_ext: &mut [[f64; D]],
 ) {
     for (law, moments) in laws.iter().zip(stencils.moments()) {
-        let ratio = ratio_at_failure(&**law);
+        let gain = gain_at_failure(&**law);
         for (node, moment) in moments.iter().enumerate() {
             let force = &mut f_ext[stencils.master(node)];
             for a in 0..D {
                 let along: f64 = (0..D).map(|b| moment[a][b] * gravity[b]).sum();
-                force[a] += ratio * along;
+                force[a] += gain * along;
             }
         }
     }
 }
 
-/// The ratio of the horizontal to the vertical stress in a long slope of soil without cohesion that fails along its face
-/// \[-\] (theory, eq. 8f): 1 without friction.
-fn ratio_at_failure(law: &dyn ConstitutiveModel) -> f64 {
+/// How much of the unit weight the horizontal stress and the shear of a long slope gain across a cell where it fails along
+/// its face, cos 2φ, and none where that is negative \[-\] (theory, eq. 8f).
+fn gain_at_failure(law: &dyn ConstitutiveModel) -> f64 {
     let friction_angle = (law.shear_strength()).map_or(0.0, |strength| strength.friction_angle);
-    let square = friction_angle.sin().powi(2);
-    (1.0 - square) / (1.0 + square)
+    (2.0 * friction_angle).cos().max(0.0)
 }
 
 /// Adds the force of loaded points to the nodal external force f_ext, by node \[force\]. What falls to

@@ -89,6 +89,7 @@ fn particles<const D: usize>(side: usize) -> Particles<D> {
         sigma: (0..n).map(tensor).collect(),
         half_length: vec![[0.25; D]; n],
         half_length0: vec![[0.5; D]; n],
+        centroid: vec![[0.0; D]; n],
         volume0: vec![1.0; n],
         mass: vec![2.0; n],
         pore_pressure: (0..n).map(|k| 5e4 * number(k, 60).abs()).collect(),

@@ -43,6 +43,9 @@ impl PartialEq for GivenLaw {
     }
 }
 
+/// Least cohesion of soil with friction, over γh \[-\].
+const LEAST_COHESION: f64 = 1.0 / 400.0;
+
 /// The strength of a material.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Strength {
@@ -77,6 +80,24 @@ impl Material {
     /// # Errors
     /// [`MaterialError::InvalidParameter`].
     pub fn law(&self) -> Result<SharedLaw, MaterialError> {
+        self.law_on(0.0)
+    }
+
+    /// The cohesion that soil with friction and with less counts with on cells of a height \[m\], γh/400 \[Pa\] (theory,
+    /// eq. 8g); none for other soil.
+    pub fn least_cohesion(&self, cell: f64) -> Option<f64> {
+        let least = LEAST_COHESION * self.unit_weight * cell;
+        match self.strength {
+            Strength::MohrCoulomb { cohesion, .. } if cohesion < least => Some(least),
+            _ => None,
+        }
+    }
+
+    /// The constitutive law on cells of a height \[m\], with the least cohesion that they need.
+    ///
+    /// # Errors
+    /// [`MaterialError::InvalidParameter`].
+    pub fn law_on(&self, cell: f64) -> Result<SharedLaw, MaterialError> {
         if let Some(GivenLaw(law)) = &self.given {
             return Ok(Arc::clone(law));
         }
@@ -95,6 +116,7 @@ impl Material {
                 dilation_angle,
                 tension_cutoff,
             } => {
+                let cohesion = self.least_cohesion(cell).unwrap_or(cohesion);
                 let law = MohrCoulomb::new(elasticity, cohesion, friction_angle, dilation_angle)?;
                 match tension_cutoff {
                     Some(limit) => Arc::new(law.with_tension_cutoff(limit)?),

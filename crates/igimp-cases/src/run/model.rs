@@ -56,14 +56,9 @@ impl<'c, const D: usize> Model<'c, D> {
     /// # Errors
     /// [`CaseError`] for what cannot be made.
     pub fn new(case: &'c Case<D>) -> Result<(Self, State<D>), CaseError> {
-        let laws = case
-            .materials
-            .iter()
-            .map(crate::case::Material::law)
-            .collect::<Result<Vec<_>, _>>()?;
         let mut model = Self {
             case,
-            laws,
+            laws: Vec::new(),
             footing: Footing::of(case)?,
             followed: footing::followed(case)?,
             gaps: Vec::new(),
@@ -72,6 +67,10 @@ impl<'c, const D: usize> Model<'c, D> {
             later: None,
         };
         let grid = model.grid(0.0)?;
+        let cell = model.cell_height()?;
+        model.laws = (case.materials.iter())
+            .map(|material| material.law_on(cell))
+            .collect::<Result<Vec<_>, _>>()?;
         let gravity = gravity_of_weights(case.gravity);
         let ground = case.ground();
         let mut seeds = Vec::new();
@@ -135,6 +134,16 @@ impl<'c, const D: usize> Model<'c, D> {
         let below = |part| super::rigid::gap_below(part, &body.particles);
         model.gaps = case.rigid.iter().map(below).collect();
         Ok((model, State { body, controls }))
+    }
+
+    /// Least height of the cells \[m\].
+    ///
+    /// # Errors
+    /// As [`Self::grid`].
+    pub(crate) fn cell_height(&self) -> Result<f64, CaseError> {
+        let upward = &self.grid(0.0)?.axes[D - 1];
+        let heights = (0..upward.cell_count()).map(|cell| upward.spacing(cell));
+        Ok(heights.fold(f64::INFINITY, f64::min))
     }
 
     /// The method of the case on a geometry.

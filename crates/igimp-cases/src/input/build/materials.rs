@@ -350,7 +350,7 @@ fn mohr_coulomb(
                     place,
                     format!("`{name}` has no cohesion: without confinement it has no strength"),
                 )
-                .help("a small one helps steps converge, like cohesion = \"0.1 kPa\"");
+                .help("it counts with a cohesion of unit_weight × cell / 400, which the cells at its face need");
         }
     }
     let tension_cutoff = node.optional_number("tension_cutoff").ok()?;
