@@ -43,6 +43,16 @@ impl PartialEq for GivenLaw {
     }
 }
 
+/// How plastic flow of frictional soil follows from its angle of dilation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Flow {
+    /// By a plastic potential with ψ in place of φ (theory, eq. 21).
+    #[default]
+    Dilation,
+    /// Associated, on the strengths that soil of this ψ mobilises along lines of no extension (theory, eq. 21a).
+    Davis,
+}
+
 /// The strength of a material.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Strength {
@@ -66,6 +76,8 @@ pub enum Strength {
         friction_angle: f64,
         /// ψ \[rad\].
         dilation_angle: f64,
+        /// How plastic flow follows from ψ.
+        flow: Flow,
         /// Largest tensile stress \[Pa\]; none: the apex of the cone.
         tension_cutoff: Option<f64>,
     },
@@ -93,13 +105,18 @@ impl Material {
                 cohesion,
                 friction_angle,
                 dilation_angle,
+                flow,
                 tension_cutoff,
             } => {
-                let law = MohrCoulomb::new(elasticity, cohesion, friction_angle, dilation_angle)?;
-                match tension_cutoff {
-                    Some(limit) => Arc::new(law.with_tension_cutoff(limit)?),
-                    None => Arc::new(law),
+                let mut law =
+                    MohrCoulomb::new(elasticity, cohesion, friction_angle, dilation_angle)?;
+                if flow == Flow::Davis {
+                    law = law.with_davis_flow()?;
                 }
+                if let Some(limit) = tension_cutoff {
+                    law = law.with_tension_cutoff(limit)?;
+                }
+                Arc::new(law)
             }
         })
     }

@@ -176,8 +176,7 @@ fn limit<const D: usize>(
     if !stage.stop_when.no_equilibrium || summary.outcome != StageOutcome::Stopped {
         return None;
     }
-    let interval = |path| crate::run::limit::interval(path, stage.stop_when.displacement);
-    if let Some((Some(low), Some(high))) = summary.path.as_ref().map(interval) {
+    if let Some((Some(low), Some(high))) = summary.path.as_ref().map(crate::run::limit::interval) {
         return Some((0.5 * (low + high), 0.5 * (high - low)));
     }
     let from = stage
