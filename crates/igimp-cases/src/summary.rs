@@ -406,7 +406,9 @@ impl PathEnd {
         match self {
             Self::Limit => "the body moves as a mechanism, and the factor rises no longer",
             Self::Fallen => "the factor falls behind its largest value",
-            Self::StillRising => "the body has moved as a mechanism for long, and the factor still rises",
+            Self::StillRising => {
+                "the body has moved as a mechanism for long, and the factor still rises"
+            }
             Self::Displacement => "the displacement of the case is exceeded",
             Self::Lost => "no further equilibrium was found",
         }

@@ -90,7 +90,11 @@ impl MohrCoulomb {
     /// # Errors
     /// [`MaterialError::InvalidParameter`] if `tension_cutoff` is negative or not finite.
     pub fn with_tension_cutoff(self, tension_cutoff: f64) -> Result<Self, MaterialError> {
-        self.at_strength(self.given.cohesion, self.given.friction_angle, Some(tension_cutoff))
+        self.at_strength(
+            self.given.cohesion,
+            self.given.friction_angle,
+            Some(tension_cutoff),
+        )
     }
 
     /// The law with associated flow on the strengths of Davis (1968, eq. 21a), which soil of this ψ mobilises along lines of no
@@ -304,7 +308,11 @@ impl ConstitutiveModel for MohrCoulomb {
             "finite and not negative",
         )?;
         let friction_angle = (self.given.friction_angle.tan() * ratio).atan();
-        let law = self.at_strength(self.given.cohesion, friction_angle, self.given.tension_cutoff)?;
+        let law = self.at_strength(
+            self.given.cohesion,
+            friction_angle,
+            self.given.tension_cutoff,
+        )?;
         Ok(Some(Arc::new(law)))
     }
 

@@ -235,7 +235,10 @@ mod tests {
         let (n, end, limit) = first_end(&points).unwrap();
         assert_eq!((n, end), (10, PathEnd::Limit));
         assert!(limit.work > 256.0 && limit.work < 512.0, "{}", limit.work);
-        assert_eq!(first_end(&rises_to_a_limit(0.98)).map(|found| found.1), None);
+        assert_eq!(
+            first_end(&rises_to_a_limit(0.98)).map(|found| found.1),
+            None
+        );
         let found = rise(&points[..6], &points[5]).unwrap();
         let exact = (1.5 - 0.5 / 32.0) / (1.5 - 0.5 / 16.0) - 1.0;
         assert!((found - exact).abs() < 1e-14);
@@ -271,7 +274,11 @@ mod tests {
         // 0.99 is passed at the middle of ω = 4 and 8: four times that is 2^4.5.
         let (n, found, limit) = first_end(&rising).unwrap();
         assert_eq!((n, found), (6, PathEnd::StillRising));
-        assert!((limit.work - 2.0_f64.powf(4.5)).abs() < 1e-6, "{}", limit.work);
+        assert!(
+            (limit.work - 2.0_f64.powf(4.5)).abs() < 1e-6,
+            "{}",
+            limit.work
+        );
         assert!((limit.factor - 1.0225).abs() < 1e-9);
         let (found, limit) = end(&rising[..6], Some(20.0)).unwrap();
         assert_eq!(found, PathEnd::Displacement);

@@ -8,8 +8,8 @@ use super::AllNames;
 use super::quantities::fields;
 use super::site::Soil;
 use crate::case::{
-    Average, Cut, Every, Field, Material, Monitor, Output, Section, SectionReference,
-    SolverSettings, Stage, StageKind, Strength, Flow,
+    Average, Cut, Every, Field, Flow, Material, Monitor, Output, Section, SectionReference,
+    SolverSettings, Stage, StageKind, Strength,
 };
 use crate::input::diagnostic::Problems;
 use crate::input::text::{clip, point};

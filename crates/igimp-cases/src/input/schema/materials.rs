@@ -36,7 +36,10 @@ pub(in crate::input) static SYMBOLS: [(&str, &[&str]); 22] = [
 ];
 
 static FLOWS: [Choice; 2] = [
-    choice("dilation", "by the angle of dilation: not associated below the friction angle"),
+    choice(
+        "dilation",
+        "by the angle of dilation: not associated below the friction angle",
+    ),
     choice(
         "davis",
         "associated, on the strengths of Davis (1968): a symmetric tangent, and mostly the smaller factor",
