@@ -42,7 +42,7 @@ static FLOWS: [Choice; 2] = [
     ),
     choice(
         "davis",
-        "associated, on the strengths of Davis (1968): a symmetric tangent, and mostly the smaller factor",
+        "associated, on the strengths of Davis (1968): a symmetric tangent, and a smaller factor of safety",
     ),
 ];
 
