@@ -19,6 +19,10 @@ use crate::study::{Level, RunRecord, Study};
 /// Cases that take longest.
 const DEAR: [&str; 3] = ["dam_drawdown", "layered_slope", "landslide_3d"];
 
+/// How often steps of the stages before a search may be cut: nails in soft soil go slack and taut again as the weight is
+/// raised, which takes more than the five cuts of a case.
+const CUTS: u32 = 12;
+
 /// What is set other than in the case file.
 #[derive(Clone, Copy, Debug)]
 enum Setting {
@@ -147,6 +151,7 @@ fn searched<const D: usize>(case: &Case<D>) -> Option<Case<D>> {
     case.stages.truncate(last + 1);
     case.curves.clear();
     case.checks.clear();
+    case.solver.cuts = CUTS;
     for stage in &mut case.stages {
         if let StageKind::StrengthReduction(reduction) = &mut stage.kind {
             stage.geometry = Geometry::Given;
