@@ -65,7 +65,7 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
     wet_layers(&mut study, level);
     let slides: Vec<Slide> = layers
         .par_iter()
-        .map(|layer| layer.tilt(Pores::Dry))
+        .map(|layer| layer.tilt(&sand(), Pores::Dry))
         .collect();
     let mut table = Table::new(
         "tilt_at_sliding",
@@ -102,7 +102,7 @@ fn wet_layers(study: &mut Study, level: Level) {
     }
     let slides: Vec<Slide> = wet
         .par_iter()
-        .map(|(layer, pores)| layer.tilt(*pores))
+        .map(|(layer, pores)| layer.tilt(&sand(), *pores))
         .collect();
     for ((layer, pores), slide) in wet.iter().zip(&slides) {
         let Layer { length, cells } = *layer;
@@ -184,6 +184,25 @@ impl PoreWater<2> for Across {
     }
 }
 
+/// Dry soil without cohesion, φ = 30° and a dilation angle \[rad\].
+pub(crate) fn dry_sand(dilation_angle: f64) -> MohrCoulomb {
+    let elasticity = Elasticity::new(1e8, 0.3).expect("the soil is stiff");
+    let phi = FRICTION.to_radians();
+    MohrCoulomb::new(elasticity, 0.0, phi, dilation_angle).expect("the soil has friction")
+}
+
+/// That with associated flow.
+fn sand() -> SharedLaw {
+    Arc::new(dry_sand(FRICTION.to_radians()))
+}
+
+/// tan β at which a long layer of a law slides \[-\], and the steps to there.
+pub(crate) fn slides_at(law: &SharedLaw) -> (f64, RunRecord) {
+    let slide = Layer::new(40, 4).tilt(law, Pores::Dry);
+    let record = RunRecord::new("tilted layer".to_owned(), &slide.report, slide.elapsed);
+    (slide.strength * FRICTION.to_radians().tan(), record)
+}
+
 /// A layer of depth d on a grid.
 struct Layer {
     /// L/d.
@@ -212,7 +231,7 @@ impl Layer {
     }
 
     /// Raises gravity on the level layer and tilts it until it slides.
-    fn tilt(&self, pores: Pores) -> Slide {
+    fn tilt(&self, law: &SharedLaw, pores: Pores) -> Slide {
         let clock = Instant::now();
         let h = DEPTH / self.cells as f64;
         let [columns, rows] = [self.length * self.cells, self.cells];
@@ -229,10 +248,6 @@ impl Layer {
             })
             .collect();
         let mut body = Body::new(Particles::new(&seeds).expect("the particles have a volume"));
-        let phi = FRICTION.to_radians();
-        let elasticity = Elasticity::new(1e8, 0.3).expect("the soil is stiff");
-        let law = MohrCoulomb::new(elasticity, 0.0, phi, phi).expect("the soil has friction");
-        let law: SharedLaw = Arc::new(law);
         let mut supports = Constraints::free(&grid);
         for (normal, upper, axis) in [(1, false, 0), (1, false, 1), (0, false, 0), (0, true, 0)] {
             supports
@@ -274,7 +289,7 @@ impl Layer {
         let share = ((SLIDING - before[0]) / (after[0] - before[0])).clamp(0.0, 1.0);
         let beta = before[1] + share * (after[1] - before[1]);
         Slide {
-            strength: beta.tan() / phi.tan(),
+            strength: beta.tan() / FRICTION.to_radians().tan(),
             report,
             elapsed: clock.elapsed(),
         }

@@ -28,7 +28,7 @@ pub(crate) use axes::{front, in_space};
 pub use grid::{AxisSpec, GridSpec, MixedCells};
 pub use ground::{Ground, Layer};
 pub use load::{Load, LoadKind, Plan};
-pub use material::{GivenLaw, Material, Strength};
+pub use material::{Flow, GivenLaw, Material, Strength};
 pub use profile::{LEAST_STRENGTH, Profile, Profiles, StressShare, Variation};
 pub use raster::Raster;
 pub use record::{

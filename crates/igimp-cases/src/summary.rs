@@ -322,9 +322,12 @@ pub struct PathSummary {
     pub end: PathEnd,
     /// Where the body first moves as a mechanism: 99 % of the work of a step is dissipated.
     pub mechanism: Option<PathPoint>,
+    /// The equilibrium that tells the factor.
+    #[serde(default)]
+    pub limit: Option<PathPoint>,
     /// Where the rise of the factor over doublings of the work falls most.
     pub knee: Option<PathPoint>,
-    /// Rise of the factor in the last doubling of the work, as a share of it \[-\].
+    /// Rise of the factor in the doubling of the work up to the equilibrium that tells it, as a share of it \[-\].
     pub rise: Option<f64>,
     /// The displacement γH²/E that soil of this weight, height and stiffness is moved by before it fails \[m\].
     pub displacement_scale: Option<f64>,
@@ -392,7 +395,7 @@ pub enum PathEnd {
     Limit,
     /// The factor fell below an earlier one.
     Fallen,
-    /// The increment is a mechanism, the body has moved far, and the factor still rises.
+    /// The increment is a mechanism, has been one for two doublings of the work, and the factor still rises.
     StillRising,
     /// The displacement that the case states was exceeded.
     Displacement,
@@ -407,7 +410,9 @@ impl PathEnd {
         match self {
             Self::Limit => "the body moves as a mechanism, and the factor rises no longer",
             Self::Fallen => "the factor falls behind its largest value",
-            Self::StillRising => "the body moves as a mechanism, and the factor still rises",
+            Self::StillRising => {
+                "the body has moved as a mechanism for long, and the factor still rises"
+            }
             Self::Displacement => "the displacement of the case is exceeded",
             Self::Lost => "no further equilibrium was found",
         }

@@ -371,6 +371,7 @@ fn drainage_that_makes_no_sense() {
         &[(undrained, "undrained_poisson = 0.49")],
         &[(undrained, "drainage = \"undrianed\"")],
         &[(undrained, &with("dilation = \"5 deg\""))],
+        &[(undrained, &with("flow = \"davis\""))],
         &[
             (
                 "name = \"ground\"\nmaterial = \"sand\"",

@@ -1,5 +1,5 @@
 //! Mohr–Coulomb plasticity with non-associated flow and an optional tension cut-off (theory, eqs. 21
-//! and 31).
+//! and 31), or with associated flow on Davis's strengths in its place (eq. 21a).
 //!
 //! Exact return in principal space after Clausen, Damkilde & Andersen (2006), *Efficient return
 //! algorithms for associated plasticity with multiple yield planes*, Int. J. Numer. Meth. Engng
@@ -42,13 +42,22 @@ use crate::{
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct MohrCoulomb {
+    given: Parameters,
+    /// ψ/φ as given, before any change of strength \[-\].
+    dilatancy: f64,
+    /// What yields: the strength as given, or Davis's.
+    strength: ShearStrength,
+    pyramid: Pyramid,
+}
+
+/// The parameters of a law.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Parameters {
     cohesion: f64,
     friction_angle: f64,
     dilation_angle: f64,
     tension_cutoff: Option<f64>,
-    /// ψ/φ as given, before any change of strength \[-\].
-    dilatancy: f64,
-    pyramid: Pyramid,
+    is_davis: bool,
 }
 
 impl MohrCoulomb {
@@ -63,7 +72,14 @@ impl MohrCoulomb {
         friction_angle: f64,
         dilation_angle: f64,
     ) -> Result<Self, MaterialError> {
-        Self::build(elasticity, cohesion, friction_angle, dilation_angle, None)
+        let given = Parameters {
+            cohesion,
+            friction_angle,
+            dilation_angle,
+            tension_cutoff: None,
+            is_davis: false,
+        };
+        Self::build(elasticity, given)
     }
 
     /// The law with the largest principal stress bounded by $`\sigma_t`$ = `tension_cutoff`
@@ -74,36 +90,54 @@ impl MohrCoulomb {
     /// # Errors
     /// [`MaterialError::InvalidParameter`] if `tension_cutoff` is negative or not finite.
     pub fn with_tension_cutoff(self, tension_cutoff: f64) -> Result<Self, MaterialError> {
-        self.at_strength(self.cohesion, self.friction_angle, Some(tension_cutoff))
+        self.at_strength(
+            self.given.cohesion,
+            self.given.friction_angle,
+            Some(tension_cutoff),
+        )
     }
 
-    /// Cohesion c \[stress\].
+    /// The law with associated flow on the strengths of Davis (1968, eq. 21a), which soil of this ψ mobilises along lines of no
+    /// extension. With every change of strength they are made anew from the changed φ. A tension cut-off stays as it is.
+    ///
+    /// # Errors
+    /// None that the law did not have.
+    pub fn with_davis_flow(self) -> Result<Self, MaterialError> {
+        let given = Parameters {
+            is_davis: true,
+            ..self.given
+        };
+        Self::build(*self.elasticity(), given)
+    }
+
+    /// Cohesion c as given \[stress\].
     pub fn cohesion(&self) -> f64 {
-        self.cohesion
+        self.given.cohesion
     }
 
-    /// Friction angle φ \[radians\].
+    /// Friction angle φ as given \[radians\].
     pub fn friction_angle(&self) -> f64 {
-        self.friction_angle
+        self.given.friction_angle
     }
 
-    /// Dilation angle ψ \[radians\].
+    /// Dilation angle ψ as given \[radians\].
     pub fn dilation_angle(&self) -> f64 {
-        self.dilation_angle
+        self.given.dilation_angle
     }
 
     /// Tension cut-off $`\sigma_t`$ \[stress\], if any.
     pub fn tension_cutoff(&self) -> Option<f64> {
-        self.tension_cutoff
+        self.given.tension_cutoff
     }
 
-    fn build(
-        elasticity: Elasticity,
-        cohesion: f64,
-        friction_angle: f64,
-        dilation_angle: f64,
-        tension_cutoff: Option<f64>,
-    ) -> Result<Self, MaterialError> {
+    fn build(elasticity: Elasticity, given: Parameters) -> Result<Self, MaterialError> {
+        let Parameters {
+            cohesion,
+            friction_angle,
+            dilation_angle,
+            tension_cutoff,
+            is_davis,
+        } = given;
         let in_range = (0.0..FRAC_PI_2).contains(&friction_angle) && friction_angle.sin() < 1.0;
         required(
             "friction_angle",
@@ -144,24 +178,41 @@ impl MohrCoulomb {
         } else {
             f64::INFINITY
         };
-        let strength = Strength {
-            sin_friction: friction_angle.sin(),
-            sin_dilation: dilation_angle.sin(),
-            shear: 2.0 * cohesion * friction_angle.cos(),
+        let (strength, flows_by) = if is_davis {
+            // Both by the same share: the apex stays.
+            let mobilised = davis(friction_angle, dilation_angle);
+            let strength = ShearStrength {
+                cohesive: mobilised * cohesion,
+                friction_angle: if mobilised < 1.0 {
+                    (mobilised * friction_angle.tan()).atan()
+                } else {
+                    friction_angle
+                },
+            };
+            (strength, strength.friction_angle)
+        } else {
+            let strength = ShearStrength {
+                cohesive: cohesion,
+                friction_angle,
+            };
+            (strength, dilation_angle)
+        };
+        let surface = Strength {
+            sin_friction: strength.friction_angle.sin(),
+            sin_dilation: flows_by.sin(),
+            shear: 2.0 * strength.cohesive * strength.friction_angle.cos(),
             apex,
             tension_cutoff: tension_cutoff.filter(|&cutoff| cutoff < apex),
         };
-        let pyramid = Pyramid::new(elasticity, &strength);
+        let pyramid = Pyramid::new(elasticity, &surface);
         Ok(Self {
-            cohesion,
-            friction_angle,
-            dilation_angle,
-            tension_cutoff,
-            dilatancy: if friction_angle > 0.0 {
+            given,
+            dilatancy: if friction_angle > 0.0 && !is_davis {
                 dilation_angle / friction_angle
             } else {
                 1.0
             },
+            strength,
             pyramid,
         })
     }
@@ -173,18 +224,27 @@ impl MohrCoulomb {
         friction_angle: f64,
         tension_cutoff: Option<f64>,
     ) -> Result<Self, MaterialError> {
-        let law = Self::build(
-            *self.elasticity(),
+        let given = Parameters {
             cohesion,
             friction_angle,
-            self.dilation_angle.min(friction_angle),
+            dilation_angle: self.given.dilation_angle.min(friction_angle),
             tension_cutoff,
-        )?;
+            is_davis: self.given.is_davis,
+        };
+        let law = Self::build(*self.elasticity(), given)?;
         Ok(Self {
             dilatancy: self.dilatancy,
             ..law
         })
     }
+}
+
+/// The share of the strength that soil mobilises along lines of no extension, $`\cos\psi \cos\varphi / (1 - \sin\psi \sin\varphi)`$
+/// (Davis 1968); 1 at ψ = φ \[-\].
+fn davis(friction_angle: f64, dilation_angle: f64) -> f64 {
+    // cos(φ − ψ) = cos ψ cos φ + sin ψ sin φ: at ψ = φ this is 1 to the last bit.
+    let product = dilation_angle.sin() * friction_angle.sin();
+    ((friction_angle - dilation_angle).cos() - product) / (1.0 - product)
 }
 
 impl ConstitutiveModel for MohrCoulomb {
@@ -223,10 +283,7 @@ impl ConstitutiveModel for MohrCoulomb {
     }
 
     fn shear_strength(&self) -> Option<ShearStrength> {
-        Some(ShearStrength {
-            cohesive: self.cohesion,
-            friction_angle: self.friction_angle,
-        })
+        Some(self.strength)
     }
 
     #[expect(
@@ -234,10 +291,10 @@ impl ConstitutiveModel for MohrCoulomb {
         reason = "flow is associated only where the angles are the same"
     )]
     fn has_symmetric_tangent(&self) -> bool {
-        self.dilation_angle == self.friction_angle
+        self.given.is_davis || self.given.dilation_angle == self.given.friction_angle
     }
 
-    /// ψ/φ as given; 1 without friction.
+    /// ψ/φ as given; 1 without friction, and where flow is Davis's.
     fn dilatancy(&self) -> f64 {
         self.dilatancy
     }
@@ -250,17 +307,21 @@ impl ConstitutiveModel for MohrCoulomb {
             ratio >= 0.0,
             "finite and not negative",
         )?;
-        let friction_angle = (self.friction_angle.tan() * ratio).atan();
-        let law = self.at_strength(self.cohesion, friction_angle, self.tension_cutoff)?;
+        let friction_angle = (self.given.friction_angle.tan() * ratio).atan();
+        let law = self.at_strength(
+            self.given.cohesion,
+            friction_angle,
+            self.given.tension_cutoff,
+        )?;
         Ok(Some(Arc::new(law)))
     }
 
     /// Divides c, tan φ and the cut-off by `srf`; ψ stays but never exceeds the reduced φ.
     fn reduced(&self, srf: f64) -> Result<Arc<dyn ConstitutiveModel>, MaterialError> {
         positive("srf", srf)?;
-        let friction_angle = (self.friction_angle.tan() / srf).atan();
-        let cutoff = self.tension_cutoff.map(|cutoff| cutoff / srf);
-        let law = self.at_strength(self.cohesion / srf, friction_angle, cutoff)?;
+        let friction_angle = (self.given.friction_angle.tan() / srf).atan();
+        let cutoff = self.given.tension_cutoff.map(|cutoff| cutoff / srf);
+        let law = self.at_strength(self.given.cohesion / srf, friction_angle, cutoff)?;
         Ok(Arc::new(law))
     }
 }

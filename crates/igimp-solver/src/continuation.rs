@@ -159,6 +159,19 @@ fn growth(corrections: usize) -> f64 {
     }
 }
 
+/// Halvings in succession from which on a step is given more corrections, and how many times as many.
+const PATIENCE: (u32, usize) = (3, 3);
+
+/// The iteration of a step that was halved so often: where no step is too small to fail, the next equilibrium lies on
+/// another branch, and Newton's method finds it late.
+fn patient(newton: NewtonSettings, halvings: u32) -> NewtonSettings {
+    let (from, times) = PATIENCE;
+    NewtonSettings {
+        max_iterations: newton.max_iterations * if halvings < from { 1 } else { times },
+        ..newton
+    }
+}
+
 /// Follows a body along its path from a state, until the observer ends it; the failure of the last step where no step
 /// was found, however small.
 ///
@@ -177,14 +190,8 @@ pub fn follow<const D: usize>(
     while state.steps < settings.most_steps {
         let target = state.target(settings);
         let on_path = (state.factor, &target);
-        match step_on_path(
-            body,
-            method,
-            load_path,
-            on_path,
-            &settings.newton,
-            workspace,
-        ) {
+        let newton = patient(settings.newton, halvings);
+        match step_on_path(body, method, load_path, on_path, &newton, workspace) {
             Ok((conditions, report, forces)) => {
                 halvings = 0;
                 state.take((&report, &forces), &target, settings);

@@ -20,7 +20,7 @@ const RADENKOVIC: Oracle = Oracle {
 /// Largest factor with ψ < φ, over that with ψ = φ, less 1 \[-\].
 const ABOVE: f64 = 5e-3;
 /// Largest fall of the factor while ψ rises, as a share of it \[-\].
-const FALL: f64 = 0.01;
+const FALL: f64 = 5e-3;
 
 /// The template `slope` with two soils, on its cells and half of them.
 pub(super) fn raises_to_associated(study: &mut Study, level: Level) -> Result<(), CaseError> {

@@ -1,7 +1,9 @@
 //! The factor of safety as the limit of a path of equilibria: held against bounds, against the search by trials, and
 //! against itself for other tolerances, stiffnesses and steps.
 
+mod davis;
 mod dilation;
+mod spread;
 mod strengths;
 
 use std::fmt::Write as _;
@@ -17,11 +19,11 @@ use crate::oracle::{Oracle, OracleKind};
 use crate::reference::{slope_limit_load_bounds, slope_safety_bounds};
 use crate::runs::Computed;
 use crate::slopes::problems::{Asked, Problem, drained, published, undrained};
-use crate::slopes::section::{Path, Search, Variant, YOUNG};
+use crate::slopes::section::{Path, Search, Variant};
 use crate::study::{Level, RunRecord, Study};
 
 /// What the book says of the study.
-const ABOUT: &str = "The slopes with bounds by limit analysis, searched for along the path of equilibria, the strength reduction factor an unknown: against the bounds, against the search by trials, and against itself for other tolerances, stiffnesses and effort; its changes with the strengths against reruns, and its rise with dilation.";
+const ABOUT: &str = "The slopes with bounds by limit analysis, searched for along the path of equilibria, the strength reduction factor an unknown: against the bounds, against the search by trials, and against itself for other tolerances, stiffnesses and effort, with all searches of the shipped cases; its changes with the strengths against reruns, its rise with dilation, and associated flow on Davis's strengths beside it.";
 /// What is measured.
 const QUANTITY: &str = "factor of safety [-]";
 /// Elastic constants and the solver enter no limit load.
@@ -65,13 +67,13 @@ struct Found {
 
 impl Found {
     fn of(computed: &Computed) -> Self {
-        let stage = computed
-            .run
-            .summary
-            .stages
-            .last()
-            .cloned()
-            .unwrap_or_default();
+        let stages = &computed.run.summary.stages;
+        let nothing = StageSummary::default();
+        Self::of_stage(computed, stages.last().unwrap_or(&nothing))
+    }
+
+    /// What one of its stages found. Corrections of steps that were cut count those of all stages.
+    fn of_stage<const D: usize>(computed: &Computed<D>, stage: &StageSummary) -> Self {
         let ends = stage
             .safety
             .as_ref()
@@ -87,7 +89,7 @@ impl Found {
             factor: ends.map_or(f64::NAN, |[stable, failed]| 0.5 * (stable + failed)),
             corrections: stage.iterations + lost,
             seconds: computed.elapsed.as_secs_f64(),
-            stage,
+            stage: stage.clone(),
         }
     }
 
@@ -207,9 +209,11 @@ pub(crate) fn study(level: Level, out: &Folder) -> Result<Study, CaseError> {
     );
     study.notes.push(note);
     if level >= Level::Default {
-        settings(&mut study, &problems)?;
+        spread::of_one_slope(&mut study, &problems)?;
+        spread::of_shipped(&mut study, level)?;
         strengths::against_reruns(&mut study, &problems)?;
         dilation::raises_to_associated(&mut study, level)?;
+        davis::beside_dilation(&mut study, level)?;
     }
     Ok(study)
 }
@@ -285,80 +289,4 @@ fn against_trials(study: &mut Study, own: &Sought<'_>, (path, trials): (&Found, 
         Band::AtLeast(1.0 - SPREAD),
         path.factor / stable.unwrap_or(f64::NAN),
     );
-}
-
-/// One slope with other tolerances, stiffnesses and numbers of corrections.
-fn settings(study: &mut Study, problems: &[Problem]) -> Result<(), CaseError> {
-    let Some(problem) = problems.iter().find(|own| own.section.name == VARIED) else {
-        return Ok(());
-    };
-    let mut variants: Vec<(f64, Vec<String>)> = Vec::new();
-    for tolerance in ["1e-3", "1e-4", "1e-5", "1e-6", "1e-7"] {
-        variants.push((YOUNG, vec![format!("solver.tolerance={tolerance}")]));
-    }
-    for young in [1e4, 1e6, 1e7] {
-        variants.push((young, Vec::new()));
-    }
-    for corrections in [10, 15, 25, 40] {
-        variants.push((YOUNG, vec![format!("solver.max_iterations={corrections}")]));
-    }
-    let mut note =
-        format!("{VARIED}, along the path: flow; E [kPa], setting; F; mechanism; corrections\n");
-    for associated in [true, false] {
-        let own = Sought {
-            problem,
-            associated,
-            cells: problem.meshes[0],
-        };
-        let found = variants
-            .par_iter()
-            .map(|(young, set)| {
-                own.find(
-                    Search {
-                        young: *young,
-                        ..problem.search
-                    },
-                    true,
-                    set,
-                )
-            })
-            .collect::<Result<Vec<_>, CaseError>>()?;
-        let flow = if associated { "ψ = φ" } else { "ψ = 0" };
-        for ((young, set), found) in variants.iter().zip(&found) {
-            let mechanism = found.path().and_then(|path| path.mechanism);
-            let _ = writeln!(
-                note,
-                "  {flow}; {young}, {}; {:.4}; {:.4}; {}",
-                set.join(", "),
-                found.factor,
-                mechanism.map_or(f64::NAN, |point| point.factor),
-                found.corrections,
-            );
-        }
-        let factors = || found.iter().map(|found| found.factor);
-        let least = factors().fold(f64::INFINITY, f64::min);
-        let most = factors().fold(f64::NEG_INFINITY, f64::max);
-        let records: Vec<RunRecord> = found
-            .iter()
-            .map(|found| found.record(String::new()))
-            .collect();
-        let name = format!(
-            "{VARIED}, {flow}, tolerance 1e-3 to 1e-7, E 10 MPa to 10 GPa, 10 to 40 corrections"
-        );
-        let run = study.run(RunRecord::sum(name, &records.iter().collect::<Vec<_>>()));
-        let spread = if factors().all(f64::is_finite) {
-            most / least - 1.0
-        } else {
-            f64::NAN
-        };
-        study.check(
-            run,
-            "spread of the factor of safety [-]",
-            LIMIT_THEOREMS.says(0.0),
-            Band::AtMost(SPREAD),
-            spread,
-        );
-    }
-    study.notes.push(note);
-    Ok(())
 }

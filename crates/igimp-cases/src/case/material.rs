@@ -46,6 +46,16 @@ impl PartialEq for GivenLaw {
 /// Least cohesion of soil with friction, over γh \[-\].
 const LEAST_COHESION: f64 = 1.0 / 400.0;
 
+/// How plastic flow of frictional soil follows from its angle of dilation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Flow {
+    /// By a plastic potential with ψ in place of φ (theory, eq. 21).
+    #[default]
+    Dilation,
+    /// Associated, on the strengths that soil of this ψ mobilises along lines of no extension (theory, eq. 21a).
+    Davis,
+}
+
 /// The strength of a material.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Strength {
@@ -69,6 +79,8 @@ pub enum Strength {
         friction_angle: f64,
         /// ψ \[rad\].
         dilation_angle: f64,
+        /// How plastic flow follows from ψ.
+        flow: Flow,
         /// Largest tensile stress \[Pa\]; none: the apex of the cone.
         tension_cutoff: Option<f64>,
     },
@@ -114,14 +126,19 @@ impl Material {
                 cohesion,
                 friction_angle,
                 dilation_angle,
+                flow,
                 tension_cutoff,
             } => {
                 let cohesion = self.least_cohesion(cell).unwrap_or(cohesion);
-                let law = MohrCoulomb::new(elasticity, cohesion, friction_angle, dilation_angle)?;
-                match tension_cutoff {
-                    Some(limit) => Arc::new(law.with_tension_cutoff(limit)?),
-                    None => Arc::new(law),
+                let mut law =
+                    MohrCoulomb::new(elasticity, cohesion, friction_angle, dilation_angle)?;
+                if flow == Flow::Davis {
+                    law = law.with_davis_flow()?;
                 }
+                if let Some(limit) = tension_cutoff {
+                    law = law.with_tension_cutoff(limit)?;
+                }
+                Arc::new(law)
             }
         })
     }

@@ -225,12 +225,10 @@ fn limit<const D: usize>(
         return Some(Found::on_the_way(reached));
     }
     if let Some(path) = &summary.path {
-        return Some(
-            match crate::run::limit::interval(path, stage.stop_when.displacement) {
-                (Some(low), Some(high)) => Found::within(0.5 * (low + high), 0.5 * (high - low)),
-                _ => Found::on_the_way(reached),
-            },
-        );
+        return Some(match crate::run::limit::interval(path) {
+            (Some(low), Some(high)) => Found::within(0.5 * (low + high), 0.5 * (high - low)),
+            _ => Found::on_the_way(reached),
+        });
     }
     let from = stage
         .start_from

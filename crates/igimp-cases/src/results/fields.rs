@@ -527,6 +527,7 @@ mod tests {
             cohesion: 5e3,
             friction_angle: friction,
             dilation_angle: 0.0,
+            flow: crate::case::Flow::Dilation,
             tension_cutoff: None,
         });
         let strength = 5e3 * friction.cos() + 70e3 * friction.sin();
@@ -540,6 +541,7 @@ mod tests {
             cohesion: 5e3,
             friction_angle: 0.5,
             dilation_angle: 0.0,
+            flow: crate::case::Flow::Dilation,
             tension_cutoff: None,
         })];
         let half = Ratios {

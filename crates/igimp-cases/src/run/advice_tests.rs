@@ -52,6 +52,7 @@ fn case(kind: StageKind) -> Case {
                     cohesion: 10e3,
                     friction_angle: 20_f64.to_radians(),
                     dilation_angle: 0.0,
+                    flow: crate::case::Flow::Dilation,
                     tension_cutoff: Some(0.0),
                 },
             ),

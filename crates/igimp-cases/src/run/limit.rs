@@ -7,14 +7,18 @@ use crate::summary::{PathEnd, PathPoint, PathSummary};
 /// A step whose work is dissipated by this share moves the body as a mechanism \[-\].
 pub(crate) const MECHANISM: f64 = 0.99;
 
-/// The factor rises no longer where it rises by less than this share in a doubling of the work \[-\].
+/// The factor rises no longer where it changes by less than this share in a doubling of the work \[-\].
 const FLAT: f64 = 1e-3;
 
-/// A factor that has fallen by this share below the largest one is past a limit \[-\].
-const FALLEN: f64 = 0.01;
+/// Work up to which a mechanism whose factor still rises is followed, over that at which it began \[-\].
+const FOLLOWED: f64 = 4.0;
 
-/// Displacement at which a factor that still rises is given up, over γH²/E \[-\].
-const FAR: f64 = 100.0;
+/// A mechanism whose factor changes by more than this share in a doubling of the work is followed further \[-\]: the skin of
+/// a slope may slide long before the slope does.
+const STEEP: f64 = 1e-2;
+
+/// A factor that has fallen by this share below the largest one is past a limit \[-\].
+const FALLEN: f64 = 0.03;
 
 /// The equilibrium that a step came to: at a factor, after so much work since the beginning, and at a displacement.
 pub(crate) fn point(report: &StepReport, factor: f64, work: f64, displacement: f64) -> PathPoint {
@@ -30,34 +34,76 @@ pub(crate) fn point(report: &StepReport, factor: f64, work: f64, displacement: f
     }
 }
 
-/// The rise of the factor in the last doubling of the work, as a share of it \[-\]: the factor at half of the work is
-/// interpolated over the logarithm of the work. None before the work has doubled once.
-pub(crate) fn rise(points: &[PathPoint]) -> Option<f64> {
+/// What ends the path at its last point, if anything does: why, and the equilibrium that tells the factor. `limit` is a
+/// displacement at which the body counts as failed \[m\].
+pub(crate) fn end(points: &[PathPoint], limit: Option<f64>) -> Option<(PathEnd, PathPoint)> {
     let last = points.last()?;
-    let half = 0.5 * last.work;
-    let after = points.iter().position(|point| point.work >= half)?;
-    let (a, b) = (points.get(after.checked_sub(1)?)?, &points[after]);
-    let share = (half / a.work).ln() / (b.work / a.work).ln();
-    let then = a.factor + share * (b.factor - a.factor);
-    (a.work > 0.0).then_some(last.factor / then - 1.0)
+    if let Some(limit) = limit.filter(|&limit| last.displacement > limit) {
+        return Some((PathEnd::Displacement, at_displacement(points, limit)?));
+    }
+    let largest = points
+        .iter()
+        .copied()
+        .max_by(|a, b| a.factor.total_cmp(&b.factor))?;
+    if last.factor < (1.0 - FALLEN) * largest.factor {
+        return Some((PathEnd::Fallen, largest));
+    }
+    let begun = mechanism(points)?.work;
+    let ends_at = |work: f64| {
+        let changed = change(points, work).filter(|_| work >= 2.0 * begun)?;
+        if changed <= FLAT {
+            Some(PathEnd::Limit)
+        } else if work >= FOLLOWED * begun && changed <= STEEP {
+            Some(PathEnd::StillRising)
+        } else {
+            None
+        }
+    };
+    ends_at(last.work)?;
+    // Between the last two equilibria, so that the answer does not go by steps.
+    let mut before = points[points.len().checked_sub(2)?].work;
+    let mut after = last.work;
+    if ends_at(before).is_some() {
+        after = before;
+    }
+    while after > (1.0 + 1e-12) * before {
+        let middle = (before * after).sqrt();
+        if ends_at(middle).is_some() {
+            after = middle;
+        } else {
+            before = middle;
+        }
+    }
+    Some((ends_at(after)?, at_work(points, after)?))
 }
 
-/// What ends the path at its last point, if anything does. `scale` is γH²/E \[m\], `limit` a displacement at which
-/// the body counts as failed \[m\].
-pub(crate) fn end(points: &[PathPoint], scale: Option<f64>, limit: Option<f64>) -> Option<PathEnd> {
-    let last = points.last()?;
-    if limit.is_some_and(|limit| last.displacement > limit) {
-        return Some(PathEnd::Displacement);
-    }
-    let largest = points.iter().map(|point| point.factor).fold(0.0, f64::max);
-    if last.factor < (1.0 - FALLEN) * largest {
-        return Some(PathEnd::Fallen);
-    }
-    if last.dissipated >= MECHANISM && rise(points).is_some_and(|rise| rise <= FLAT) {
-        return Some(PathEnd::Limit);
-    }
-    let far = scale.is_some_and(|scale| last.displacement > FAR * scale);
-    (far && last.dissipated >= MECHANISM).then_some(PathEnd::StillRising)
+/// The change of the factor in the doubling of the work that ends at `work`, as a share of it: the largest over the least of
+/// the doubling, less 1 \[-\]. None before the work has doubled once.
+fn change(points: &[PathPoint], work: f64) -> Option<f64> {
+    let ends = [at_work(points, 0.5 * work)?, at_work(points, work)?];
+    let within = points
+        .iter()
+        .filter(|point| point.work > 0.5 * work && point.work < work);
+    let factors = ends.iter().chain(within).map(|point| point.factor);
+    let (least, most) = factors.fold((f64::INFINITY, 0.0_f64), |(least, most), factor| {
+        (least.min(factor), most.max(factor))
+    });
+    Some(most / least - 1.0)
+}
+
+/// The rise of the factor in the doubling of the work that ends at a point, as a share of it \[-\]. None before the work
+/// has doubled once.
+pub(crate) fn rise(points: &[PathPoint], at: &PathPoint) -> Option<f64> {
+    let half = at_work(points, 0.5 * at.work)?;
+    Some(at.factor / half.factor - 1.0)
+}
+
+/// The point at which so much work was done, interpolated over the logarithm of the work.
+fn at_work(points: &[PathPoint], work: f64) -> Option<PathPoint> {
+    let after = points.iter().position(|point| point.work >= work)?;
+    let (a, b) = (points.get(after.checked_sub(1)?)?, &points[after]);
+    let share = (work / a.work).ln() / (b.work / a.work).ln();
+    (a.work > 0.0).then(|| between(a, b, share))
 }
 
 /// The point from which on the body moves as a mechanism, to the end of the path, interpolated between equilibria.
@@ -118,42 +164,32 @@ pub(crate) fn knee(points: &[PathPoint]) -> Option<PathPoint> {
     Some(knee.1)
 }
 
-/// The interval of the factor at the limit of a path: from the equilibrium that tells it to where it would rise in another doubling of
-/// the work, both wider by what the residual leaves in doubt (theory, eq. 33f).
-pub(crate) fn interval(path: &PathSummary, limit: Option<f64>) -> (Option<f64>, Option<f64>) {
+/// The interval of the factor that a path tells: from the largest up to the equilibrium that tells it, to where it would
+/// rise in another doubling of the work, both wider by what the residual leaves in doubt (theory, eq. 33f).
+pub(crate) fn interval(path: &PathSummary) -> (Option<f64>, Option<f64>) {
     let Some(last) = path.points.last() else {
         return (None, None);
     };
-    let largest = path
-        .points
-        .iter()
-        .map(|point| point.factor)
-        .fold(0.0, f64::max);
-    let doubt = path
-        .points
-        .iter()
-        .map(|point| point.in_doubt)
-        .fold(0.0, f64::max);
-    let rise = path.rise.unwrap_or(0.0).max(0.0);
-    let around = |factor: f64, above: f64| {
-        (
-            Some(factor * (1.0 - doubt)),
-            Some(factor * (1.0 + doubt + above)),
-        )
+    let Some(limit) = path.limit else {
+        return (Some(last.factor), None);
     };
-    match path.end {
-        PathEnd::Limit | PathEnd::Fallen => around(largest, rise),
-        PathEnd::StillRising => {
-            let mechanism = path.mechanism.map_or(last.factor, |point| point.factor);
-            around(mechanism, 0.0)
-        }
-        PathEnd::Displacement => {
-            let limit = limit.unwrap_or(f64::INFINITY);
-            let at = at_displacement(&path.points, limit).unwrap_or(*last);
-            around(at.factor, 0.0)
-        }
-        PathEnd::Lost => (Some(last.factor), None),
-    }
+    let up_to = path.points.iter().filter(|point| point.work <= limit.work);
+    let factor = up_to.fold(limit.factor, |most, point| most.max(point.factor));
+    let doubts = path.points.iter().map(|point| point.in_doubt);
+    let doubt = doubts.fold(0.0, f64::max);
+    let rise = match path.end {
+        PathEnd::Displacement => 0.0,
+        _ => path.rise.unwrap_or(0.0).max(0.0),
+    };
+    let factor = if path.end == PathEnd::Displacement {
+        limit.factor
+    } else {
+        factor
+    };
+    (
+        Some(factor * (1.0 - doubt)),
+        Some(factor * (1.0 + doubt + rise)),
+    )
 }
 
 #[cfg(test)]
@@ -170,53 +206,95 @@ mod tests {
         }
     }
 
-    /// GOAL: λ = 1.5 − 0.5/ω ends where it is flat and a mechanism, and not where it is one of the two.
-    /// ORACLE: a rise of 0.5/ω over λ in the doubling to ω, by hand: flat from ω = 333 on.
+    /// λ = 1.5 − 0.5/ω at works 1, 2, 4, ...
+    fn rises_to_a_limit(dissipated: f64) -> Vec<PathPoint> {
+        (0..12)
+            .map(|k| {
+                let work = 2.0_f64.powi(k);
+                point(1.5 - 0.5 / work, work, work, dissipated)
+            })
+            .collect()
+    }
+
+    fn first_end(points: &[PathPoint]) -> Option<(usize, PathEnd, PathPoint)> {
+        (1..=points.len()).find_map(|n| {
+            let (end, limit) = end(&points[..n], None)?;
+            Some((n, end, limit))
+        })
+    }
+
+    /// GOAL: a path ends where it is a mechanism and flat, and not where it is one of the two.
+    /// ORACLE: λ rises by 0.5/ω over λ in the doubling to ω, by hand: by 1.3e-3 in that to 256, and by 6.5e-4 in that to 512.
     #[test]
     fn a_limit_is_flat_and_a_mechanism() {
-        let path = |dissipated: f64| -> Vec<PathPoint> {
-            (0..12)
+        let mut points = rises_to_a_limit(0.995);
+        for point in &mut points[..8] {
+            point.dissipated = 0.5;
+        }
+        points[7].dissipated = 0.99 - 1e-9;
+        let (n, end, limit) = first_end(&points).unwrap();
+        assert_eq!((n, end), (10, PathEnd::Limit));
+        assert!(limit.work > 256.0 && limit.work < 512.0, "{}", limit.work);
+        assert_eq!(
+            first_end(&rises_to_a_limit(0.98)).map(|found| found.1),
+            None
+        );
+        let found = rise(&points[..6], &points[5]).unwrap();
+        let exact = (1.5 - 0.5 / 32.0) / (1.5 - 0.5 / 16.0) - 1.0;
+        assert!((found - exact).abs() < 1e-14);
+    }
+
+    /// GOAL: the equilibrium that tells the factor does not go by steps.
+    /// ORACLE: the same path with twice as many points; interpolation errs by the curvature of a doubling.
+    #[test]
+    fn other_steps_tell_the_same_factor() {
+        let path = |per_doubling: i32| -> Vec<PathPoint> {
+            (0..16 * per_doubling)
                 .map(|k| {
-                    let work = 2.0_f64.powi(k);
-                    point(1.5 - 0.5 / work, work, work, dissipated)
+                    let work = 2.0_f64.powf(f64::from(k) / f64::from(per_doubling));
+                    point(1.5 - 0.05 / work, work, work, 1.0 - 0.1 / work)
                 })
                 .collect()
         };
-        let ends = |points: &[PathPoint]| {
-            (1..=points.len()).find(|&n| end(&points[..n], None, None).is_some())
-        };
-        let found = ends(&path(0.995)).unwrap();
-        let work = path(0.995)[found - 1].work;
-        assert!((work - 512.0).abs() < 1e-9, "{work}");
-        assert_eq!(end(&path(0.995)[..found], None, None), Some(PathEnd::Limit));
-        assert_eq!(ends(&path(0.98)), None);
-        let rise = rise(&path(0.995)[..6]).unwrap();
-        let last = 1.5 - 0.5 / 32.0;
-        let half = 1.5 - 0.5 / 16.0;
-        assert!((rise - (last / half - 1.0)).abs() < 1e-14);
+        let factors = [1, 2, 5].map(|per| first_end(&path(per)).unwrap().2.factor);
+        for factor in factors {
+            assert!((factor / factors[2] - 1.0).abs() < 2e-4, "{factors:?}");
+        }
     }
 
     #[test]
     fn a_factor_that_rises_on_and_one_that_falls_are_told_apart() {
         let rising: Vec<PathPoint> = (0..14)
             .map(|k| {
-                point(
-                    1.0 + 0.02 * f64::from(k),
-                    2.0_f64.powi(k),
-                    2.0_f64.powi(k),
-                    0.995,
-                )
+                let work = 2.0_f64.powi(k);
+                let dissipated = if k < 3 { 0.985 } else { 0.995 };
+                point(1.0 + 0.005 * f64::from(k), work, work, dissipated)
             })
             .collect();
-        assert_eq!(end(&rising, Some(1.0), None), Some(PathEnd::StillRising));
-        assert_eq!(end(&rising[..6], Some(1.0), None), None);
-        assert_eq!(
-            end(&rising[..6], Some(1.0), Some(20.0)),
-            Some(PathEnd::Displacement)
+        // 0.99 is passed at the middle of ω = 4 and 8: four times that is 2^4.5.
+        let (n, found, limit) = first_end(&rising).unwrap();
+        assert_eq!((n, found), (6, PathEnd::StillRising));
+        assert!(
+            (limit.work - 2.0_f64.powf(4.5)).abs() < 1e-6,
+            "{}",
+            limit.work
         );
-        let mut fallen = rising[..6].to_vec();
+        assert!((limit.factor - 1.0225).abs() < 1e-9);
+        let (found, limit) = end(&rising[..6], Some(20.0)).unwrap();
+        assert_eq!(found, PathEnd::Displacement);
+        assert!((limit.displacement - 20.0).abs() < 1e-9);
+        // A mechanism of the skin: its factor rises by 2 % in a doubling.
+        let steep: Vec<PathPoint> = (0..14)
+            .map(|k| {
+                let work = 2.0_f64.powi(k);
+                point(1.0 + 0.02 * f64::from(k), work, work, 0.995)
+            })
+            .collect();
+        assert_eq!(first_end(&steep).map(|found| found.1), None);
+        let mut fallen = steep[..6].to_vec();
         fallen.push(point(1.05, 64.0, 40.0, 0.9));
-        assert_eq!(end(&fallen, Some(1.0), None), Some(PathEnd::Fallen));
+        let (found, limit) = end(&fallen, None).unwrap();
+        assert_eq!((found, limit.factor), (PathEnd::Fallen, 1.1));
     }
 
     #[test]

@@ -84,9 +84,9 @@ pub(super) fn follow_on<const D: usize>(
         number,
         stage,
         at: &at,
-        scale: displacement_scale(model, state),
         points: vec![begins],
         end: PathEnd::Lost,
+        limit: None,
         stopped: Ok(None),
         session,
         summary,
@@ -103,6 +103,7 @@ pub(super) fn follow_on<const D: usize>(
     let Watch {
         points,
         end,
+        limit,
         stopped,
         ..
     } = watch;
@@ -116,8 +117,9 @@ pub(super) fn follow_on<const D: usize>(
     let path = PathSummary {
         end,
         mechanism: limit::mechanism(&points),
+        limit,
         knee: limit::knee(&points),
-        rise: limit::rise(&points),
+        rise: limit.and_then(|at| limit::rise(&points, &at)),
         displacement_scale: displacement_scale(model, state),
         shares: None,
         points,
@@ -131,7 +133,7 @@ pub(super) fn follow_on<const D: usize>(
 
 /// What a reader has to know of the path.
 fn remark(path: &PathSummary, stage: &str) -> Option<String> {
-    let (mechanism, last) = (path.mechanism?, path.points.last()?);
+    let (mechanism, last) = (path.mechanism?, path.limit?);
     (path.end == PathEnd::StillRising).then(|| {
         format!(
             "stage \"{stage}\": the body moves as a mechanism from load factor {} at {} m on, and on the given geometry \
@@ -151,10 +153,9 @@ struct Watch<'w, 's, const D: usize> {
     at: &'w dyn Fn(f64) -> Controls,
     session: &'w mut Session<'s, D>,
     summary: &'w mut StageSummary,
-    /// γH²/E \[m\].
-    scale: Option<f64>,
     points: Vec<PathPoint>,
     end: PathEnd,
+    limit: Option<PathPoint>,
     stopped: Result<Option<Ended>, CaseError>,
 }
 
@@ -194,9 +195,9 @@ impl<const D: usize> Watch<'_, '_, D> {
             let reason = "the limit lies beyond the load of the stage";
             return Ok(Some(Ended::Stopped(reason.to_owned())));
         }
-        let end = limit::end(&self.points, self.scale, stop.displacement);
-        Ok(end.map(|end| {
-            self.end = end;
+        let end = limit::end(&self.points, stop.displacement);
+        Ok(end.map(|(end, limit)| {
+            (self.end, self.limit) = (end, Some(limit));
             let reached = short(report.to);
             Ended::Stopped(format!("at {reached} of the stage {}", end.sentence()))
         }))

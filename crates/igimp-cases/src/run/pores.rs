@@ -118,6 +118,7 @@ mod tests {
             cohesion: 5e3,
             friction_angle: 0.5,
             dilation_angle: 0.1,
+            flow: crate::case::Flow::Dilation,
             tension_cutoff: None,
         };
         assert!(dilatant(&case).is_empty());

@@ -144,6 +144,7 @@ fn materials() -> Vec<Material> {
             cohesion: 10e3,
             friction_angle: 20_f64.to_radians(),
             dilation_angle: 0.0,
+            flow: igimp_cases::case::Flow::Dilation,
             tension_cutoff: None,
         },
         k0: None,

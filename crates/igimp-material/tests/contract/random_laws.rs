@@ -60,6 +60,9 @@ fn sample(random: &mut Random) -> Sample {
                     .with_tension_cutoff(apex * random.between(0.0, 0.95))
                     .unwrap();
             }
+            if random.below(4) == 0 {
+                law = law.with_davis_flow().unwrap();
+            }
             let is_associated = law.has_symmetric_tangent();
             (Arc::new(law), is_associated)
         }

@@ -136,6 +136,31 @@ fn reduction_divides_strength_and_keeps_elasticity() {
     }
 }
 
+/// GOAL: flow by Davis is associated flow on the strengths that eq. 21a makes of the reduced angle of friction.
+/// ORACLE: tan φ* = sin φ cos ψ / (1 − sin φ sin ψ), Davis (1968), and c* that leaves the apex c cot φ where it was.
+#[test]
+fn flow_by_davis_is_associated_on_reduced_strengths() {
+    let (cohesion, friction, dilation) = (2.0, 0.6, 0.2);
+    let given = MohrCoulomb::new(elasticity(), cohesion, friction, dilation).unwrap();
+    let davis = given.clone().with_davis_flow().unwrap();
+    for srf in [0.8, 1.0, 1.5, 3.0, 5.0] {
+        let reduced = (friction.tan() / srf).atan();
+        let dilates = dilation.min(reduced);
+        let tangent = reduced.sin() * dilates.cos() / (1.0 - reduced.sin() * dilates.sin());
+        let least = cohesion / friction.tan() * tangent;
+        let expected =
+            MohrCoulomb::new(elasticity(), least, tangent.atan(), tangent.atan()).unwrap();
+        let found = davis.reduced(srf).unwrap();
+        assert!(distance(&*found, &expected) < 1e-13, "{srf}");
+        assert!(found.has_symmetric_tangent());
+        assert!((found.dilatancy() - 1.0).abs() < 1e-15);
+        // Where the reduced angle is below that of dilation, flow was associated before.
+        if dilates < dilation {
+            assert!(distance(&*found, &*given.reduced(srf).unwrap()) < 1e-14);
+        }
+    }
+}
+
 #[test]
 fn a_cutoff_that_reduction_lifts_above_the_apex_stops_acting() {
     // The apex c cot φ stays under reduction; the cut-off is divided.

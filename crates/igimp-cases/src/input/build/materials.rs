@@ -3,7 +3,7 @@
 use super::profiles::{Extent, Property, TABLES, Terms, property};
 use std::sync::Arc;
 
-use crate::case::{BodyPart, Drainage, Ground, Layer, Material, Profile, Profiles, Strength};
+use crate::case::{BodyPart, Drainage, Flow, Ground, Layer, Material, Profile, Profiles, Strength};
 use crate::input::diagnostic::Problems;
 use crate::input::text::{clip, number};
 use crate::input::tree::{Entry, Node, Wrong};
@@ -260,6 +260,18 @@ fn drainage(
             .help("keep one of them");
         return None;
     }
+    if let Some(Strength::MohrCoulomb {
+        flow: Flow::Davis, ..
+    }) = strength
+    {
+        problems
+            .error(
+                node.place_at("flow"),
+                "flow = \"davis\" dilates as associated flow does, and undrained soil that dilates never fails",
+            )
+            .help("leave `flow` out, or model = \"tresca\" with the undrained strength");
+        return None;
+    }
     if let Some(Strength::MohrCoulomb { dilation_angle, .. }) = strength
         && dilation_angle > 0.0
     {
@@ -382,7 +394,16 @@ fn mohr_coulomb(
         cohesion: cohesion?,
         friction_angle: friction?,
         dilation_angle: dilation?.min(friction?),
+        flow: flow(node)?,
         tension_cutoff,
+    })
+}
+
+/// How plastic flow follows from ψ.
+fn flow(node: &Node) -> Option<Flow> {
+    Some(match node.text_at("flow")? {
+        "davis" => Flow::Davis,
+        _ => Flow::Dilation,
     })
 }
 

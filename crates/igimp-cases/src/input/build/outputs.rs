@@ -8,7 +8,7 @@ use super::AllNames;
 use super::quantities::fields;
 use super::site::Soil;
 use crate::case::{
-    Average, Cut, Every, Field, Material, Monitor, Output, Section, SectionReference,
+    Average, Cut, Every, Field, Flow, Material, Monitor, Output, Section, SectionReference,
     SolverSettings, Stage, StageKind, Strength,
 };
 use crate::input::diagnostic::Problems;
@@ -41,7 +41,7 @@ pub(super) fn solver(
     let unsymmetric = materials.iter().flatten().find(|material| {
         matches!(
             material.strength,
-            Strength::MohrCoulomb { friction_angle, dilation_angle, .. }
+            Strength::MohrCoulomb { friction_angle, dilation_angle, flow: Flow::Dilation, .. }
                 if dilation_angle < friction_angle
         )
     });
@@ -52,7 +52,7 @@ pub(super) fn solver(
                 "Cholesky needs a symmetric matrix, but flow is not associated",
             )
             .help(format!(
-                "`{}` has dilation below friction: linear = \"auto\" or \"lu\"",
+                "`{}` has dilation below friction: linear = \"auto\" or \"lu\", or flow = \"davis\" in the material",
                 clip(&material.name, 40)
             ));
     }

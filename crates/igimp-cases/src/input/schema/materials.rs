@@ -35,6 +35,17 @@ pub(in crate::input) static SYMBOLS: [(&str, &[&str]); 22] = [
     ("nu_u", &["undrained_poisson"]),
 ];
 
+static FLOWS: [Choice; 2] = [
+    choice(
+        "dilation",
+        "by the angle of dilation: not associated below the friction angle",
+    ),
+    choice(
+        "davis",
+        "associated, on the strengths of Davis (1968): a symmetric tangent, and a smaller factor of safety",
+    ),
+];
+
 static A_STRESS: Kind = Kind::Quantity(Stress, Range::NotNegative);
 static A_UNIT_WEIGHT: Kind = Kind::Quantity(UnitWeight, Range::NotNegative);
 static STRESSES: Kind = Kind::List(&A_STRESS, 1, MANY);
@@ -321,6 +332,12 @@ pub(in crate::input) static MATERIAL: Variants = Variants {
                     Kind::Quantity(Angle, Range::NotNegative),
                     "\"0 deg\"",
                     "dilation angle, nowhere above the friction angle",
+                ),
+                default(
+                    "flow",
+                    Kind::Choice(&FLOWS),
+                    "\"dilation\"",
+                    "how plastic flow follows from the angle of dilation",
                 ),
                 optional(
                     "tension_cutoff",

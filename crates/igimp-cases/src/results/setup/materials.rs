@@ -1,7 +1,7 @@
 //! Materials in words.
 
 use super::{NONE, kilo, table};
-use crate::case::{Case, Material, Profile, Strength, StressShare, Variation};
+use crate::case::{Case, Flow, Material, Profile, Strength, StressShare, Variation};
 use crate::check::short;
 use crate::summary::SetupTable;
 
@@ -39,6 +39,7 @@ fn material(material: &Material) -> Vec<String> {
         Strength::MohrCoulomb {
             friction_angle,
             dilation_angle,
+            flow,
             tension_cutoff,
             ..
         } => {
@@ -51,10 +52,14 @@ fn material(material: &Material) -> Vec<String> {
                 format!(", tension up to {}", kilo(limit, "Pa"))
             });
             let strength = format!(
-                "c = {}, φ = {}, ψ = {}°{cutoff}",
+                "c = {}, φ = {}, ψ = {}°{}{cutoff}",
                 cohesive(),
                 friction,
-                degrees(dilation_angle)
+                degrees(dilation_angle),
+                match flow {
+                    Flow::Dilation => "",
+                    Flow::Davis => ", flow by Davis",
+                }
             );
             ("Mohr–Coulomb", strength)
         }

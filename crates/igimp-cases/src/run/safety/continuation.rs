@@ -56,7 +56,6 @@ pub(super) fn search<const D: usize>(
             stage,
             reduction,
             found: &state.controls,
-            scale,
         };
         let (start, ended) = search.loaded(session, &base, from, summary)?;
         if let Some(Ended::Interrupted) = ended {
@@ -74,6 +73,7 @@ pub(super) fn search<const D: usize>(
                 ended: Ended::Completed("no strength holds the body".to_owned()),
                 points: Vec::new(),
                 end: PathEnd::Lost,
+                limit: None,
                 last: None,
                 shares: None,
             };
@@ -99,8 +99,6 @@ struct Search<'a> {
     reduction: &'a StrengthReduction,
     /// Controls of the state that was found.
     found: &'a Controls,
-    /// γH²/E \[m\].
-    scale: Option<f64>,
 }
 
 /// A path that was followed.
@@ -108,6 +106,8 @@ struct Followed<const D: usize> {
     ended: Ended,
     points: Vec<PathPoint>,
     end: PathEnd,
+    /// The equilibrium that tells the factor.
+    limit: Option<PathPoint>,
     /// The last equilibrium, with that before.
     last: Option<End<D>>,
     /// What decides the factor, or why that is not known.
@@ -183,6 +183,7 @@ impl Search<'_> {
             last: Arc::new(state.body.clone()),
             points: Vec::new(),
             end: PathEnd::Lost,
+            limit: None,
             work: None,
             stopped: Ok(None),
             session,
@@ -202,6 +203,7 @@ impl Search<'_> {
             before,
             points,
             end,
+            limit,
             work,
             stopped,
             ..
@@ -238,6 +240,7 @@ impl Search<'_> {
             ended,
             points,
             end,
+            limit,
             last,
             shares,
         })
@@ -254,6 +257,7 @@ struct Watch<'w, 's, const D: usize> {
     last: Arc<Body<D>>,
     points: Vec<PathPoint>,
     end: PathEnd,
+    limit: Option<PathPoint>,
     /// What the last step did, and the work of the external force on it \[force·length\].
     work: Option<(StepWork, f64, f64)>,
     stopped: Result<Option<Ended>, CaseError>,
@@ -281,9 +285,9 @@ impl<const D: usize> Watch<'_, '_, D> {
             return Ok(Some(Ended::Interrupted));
         }
         let displacement = self.search.reduction.failure_displacement;
-        let end = limit::end(&self.points, self.search.scale, displacement);
-        Ok(end.map(|end| {
-            self.end = end;
+        let end = limit::end(&self.points, displacement);
+        Ok(end.map(|(end, limit)| {
+            (self.end, self.limit) = (end, Some(limit));
             Ended::Completed(end.sentence().to_owned())
         }))
     }
@@ -320,6 +324,7 @@ fn finish<const D: usize>(
         ended,
         points,
         end,
+        limit,
         last,
         shares,
     } = followed;
@@ -337,13 +342,14 @@ fn finish<const D: usize>(
     let path = PathSummary {
         end,
         mechanism: limit::mechanism(&points),
+        limit,
         knee: limit::knee(&points),
-        rise: limit::rise(&points),
+        rise: limit.and_then(|at| limit::rise(&points, &at)),
         displacement_scale: scale,
         shares,
         points,
     };
-    let (stable, failed) = limit::interval(&path, reduction.failure_displacement);
+    let (stable, failed) = limit::interval(&path);
     for text in remarks(&path) {
         session.warn(text);
     }
@@ -412,19 +418,20 @@ fn remarks(path: &PathSummary) -> Vec<String> {
     };
     let told =
         |point: &PathPoint| format!("{:.4} at {} m", point.factor, short(point.displacement));
+    let limit = path.limit.unwrap_or(*last);
     if path.end == PathEnd::StillRising {
         remarks.push(format!(
-            "the factor is that at which the body moves as a mechanism, {}; on the given geometry it is still rising, by \
-             {} % in the last doubling of the work, to {}",
+            "the body moves as a mechanism from {} on, and the factor still rises on the given geometry: that told is the one \
+             after four times the work, {}, and the last doubling of it brought {} %",
             told(&mechanism),
+            told(&limit),
             short(100.0 * path.rise.unwrap_or(0.0)),
-            told(last)
         ));
-    } else if last.factor > (1.0 + APART) * mechanism.factor {
+    } else if limit.factor > (1.0 + APART) * mechanism.factor {
         remarks.push(format!(
             "the body moves as a mechanism from {} on, and the factor rises no longer from {}",
             told(&mechanism),
-            told(last)
+            told(&limit)
         ));
     }
     remarks
