@@ -3,6 +3,7 @@
 
 mod davis;
 mod dilation;
+mod sand;
 mod spread;
 mod strengths;
 
@@ -213,6 +214,7 @@ pub(crate) fn study(level: Level, out: &Folder) -> Result<Study, CaseError> {
         spread::of_shipped(&mut study, level)?;
         strengths::against_reruns(&mut study, &problems)?;
         dilation::raises_to_associated(&mut study, level)?;
+        sand::slides_along_its_face(&mut study, level)?;
         davis::beside_dilation(&mut study, level)?;
     }
     Ok(study)
@@ -281,12 +283,13 @@ fn against_bounds(study: &mut Study, own: &Sought<'_>, found: &Found) {
 /// A factor against the largest one at which a search by trials found equilibrium.
 fn against_trials(study: &mut Study, own: &Sought<'_>, (path, trials): (&Found, &Found)) {
     let stable = trials.stage.safety.as_ref().and_then(|found| found.stable);
+    let failed = path.stage.safety.as_ref().and_then(|found| found.failed);
     let run = study.run(trials.record(format!("{}, by trials", own.name())));
     study.check(
         run,
-        "factor of safety along the path over the largest that stands by trials [-]",
+        "upper end of the interval along the path over the largest that stands by trials [-]",
         TRIALS.says(1.0),
         Band::AtLeast(1.0 - SPREAD),
-        path.factor / stable.unwrap_or(f64::NAN),
+        failed.unwrap_or(f64::NAN) / stable.unwrap_or(f64::NAN),
     );
 }

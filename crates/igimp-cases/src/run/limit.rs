@@ -178,7 +178,7 @@ pub(crate) fn interval(path: &PathSummary) -> (Option<f64>, Option<f64>) {
     let doubts = path.points.iter().map(|point| point.in_doubt);
     let doubt = doubts.fold(0.0, f64::max);
     let rise = match path.end {
-        PathEnd::Displacement => 0.0,
+        PathEnd::Displacement | PathEnd::Fallen => 0.0,
         _ => path.rise.unwrap_or(0.0).max(0.0),
     };
     let factor = if path.end == PathEnd::Displacement {
