@@ -45,6 +45,8 @@ class Body:
         Accumulated plastic strain [-].
     half_length, half_length0 : ndarray (n, d)
         Half-lengths of the domain, now and as seeded [m].
+    centroid : ndarray (n, d)
+        Centroid of its soil within the domain as seeded, from the middle, over half-lengths [-].
     volume0 : ndarray (n,)
         Volume as seeded [m^3/m in plane strain, m^3 in space].
     mass : ndarray (n,)
@@ -69,6 +71,7 @@ class Body:
     eps_p_eq: NDArray[np.float64]
     half_length: NDArray[np.float64]
     half_length0: NDArray[np.float64]
+    centroid: NDArray[np.float64]
     volume0: NDArray[np.float64]
     mass: NDArray[np.float64]
     pore_pressure: NDArray[np.float64]

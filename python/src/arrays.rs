@@ -53,6 +53,7 @@ impl Arrays {
                     fields.half_length0.into_flattened(),
                     vec![D],
                 ),
+                ("centroid", fields.centroid.into_flattened(), vec![D]),
                 ("volume0", fields.volume0, Vec::new()),
                 ("mass", fields.mass, Vec::new()),
                 ("pore_pressure", fields.pore_pressure, Vec::new()),

@@ -181,3 +181,80 @@ fn elastic_soil_that_moves_shares_what_b_bar_shares() {
         }
     }
 }
+
+/// GOAL: weight is where the soil is, and what the variation of stress carries of it is no force and no moment (theory,
+/// eqs. 8e and 8f).
+/// ORACLE: statics: nodal forces of a bilinear basis have the sum and the first moments of the weight of the soil.
+#[test]
+fn weight_acts_at_the_centroid_of_the_soil() {
+    let mut seeds: Vec<igimp_assembly::ParticleSeed<2>> = Vec::new();
+    for (row, width) in [4, 3, 1].into_iter().enumerate() {
+        for column in 0..2 * width {
+            for half in 0..2 {
+                let is_cut = column == 2 * width - 1;
+                seeds.push(igimp_assembly::ParticleSeed {
+                    x: [
+                        2.25 + 0.5 * f64::from(column),
+                        2.25 + row as f64 + 0.5 * f64::from(half),
+                    ],
+                    half_length: [0.25; 2],
+                    volume: if is_cut { 0.125 } else { 0.25 },
+                    density: 1.0,
+                    law: 0,
+                    centroid: if is_cut { [-1.0 / 3.0; 2] } else { [0.0; 2] },
+                });
+            }
+        }
+    }
+    let particles = Particles::new(&seeds).unwrap();
+    let grid = grid();
+    let gravity = [0.3, -2.0];
+    let own = laws();
+    let sand = own.iter().position(|(_, law)| {
+        let strength = law.shear_strength();
+        strength.is_some_and(|strength| strength.friction_angle > 0.0)
+    });
+    let conditions = StepConditions::new(
+        grid.clone(),
+        Constraints::free(&grid),
+        StepLoads::gravity(gravity),
+        vec![own[sand.unwrap()].1.clone()],
+    )
+    .unwrap();
+    let forces = |locking| {
+        let method = given(locking);
+        let stencils = Stencils::build(&particles, &method, &conditions).unwrap();
+        let system = System::new(&particles, &stencils, &conditions, &method).unwrap();
+        system.f_ext().to_vec()
+    };
+    let (shared, own) = (forces(Locking::SharedStrain), forces(Locking::None));
+    let mass: f64 = seeds.iter().map(|seed| seed.volume).sum();
+    for force in [&shared, &own] {
+        for axis in 0..2 {
+            let sum: f64 = force.iter().map(|f| f[axis]).sum();
+            assert!((sum - mass * gravity[axis]).abs() < 1e-12, "{sum}");
+            for along in 0..2 {
+                let moment: f64 = (0..force.len())
+                    .map(|node| force[node][axis] * grid.node_position(node)[along])
+                    .sum();
+                let exact: f64 = seeds
+                    .iter()
+                    .map(|seed| {
+                        let place = seed.x[along] + seed.centroid[along] * seed.half_length[along];
+                        seed.volume * gravity[axis] * place
+                    })
+                    .sum();
+                assert!((moment - exact).abs() < 1e-11, "{moment} {exact}");
+            }
+        }
+    }
+    // Full cells around a node cancel, those at the stairs do not.
+    let apart = |place: [usize; 2]| {
+        let node = grid.node_index(place);
+        (0..2).fold(0.0_f64, |most, axis| {
+            most.max((shared[node][axis] - own[node][axis]).abs())
+        })
+    };
+    assert!(apart([3, 3]) < 1e-14, "{}", apart([3, 3]));
+    assert!(apart([5, 3]) > 1e-3, "{}", apart([5, 3]));
+}

@@ -358,6 +358,23 @@ mod tests {
         }
     }
 
+    /// GOAL: particles know where their soil is.
+    /// ORACLE: the centroid of the polygon; what joins a particle may lie beyond its domain, and is then taken at its edge.
+    #[test]
+    fn centroids_of_the_soil_are_those_of_the_polygon() {
+        let polygon = [[0.0, 0.0], [11.3, 0.0], [9.7, 1.1], [4.2, 4.6], [0.0, 4.6]];
+        let (area, centroid) = area_and_centroid(&polygon);
+        let seeds = fill_polygon(&grid(), &polygon, 3, 1.0, 0).unwrap();
+        for axis in 0..2 {
+            let place = |seed: &ParticleSeed<2>| {
+                seed.x[axis] + seed.centroid[axis] * seed.half_length[axis]
+            };
+            let moment: f64 = seeds.iter().map(|seed| seed.volume * place(seed)).sum();
+            assert!((moment / area - centroid[axis]).abs() < 1e-5, "{moment}");
+        }
+        assert!(seeds.iter().any(|seed| seed.centroid[0] < 0.0));
+    }
+
     #[test]
     fn pieces_make_up_the_polygon() {
         let polygon = [[0.0, 0.0], [11.3, 0.0], [9.7, 1.1], [4.2, 4.6], [0.0, 4.6]];

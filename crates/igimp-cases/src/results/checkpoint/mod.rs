@@ -12,6 +12,7 @@
 //! | `b_e` | n × 3 × 3 | elastic left Cauchy–Green tensor \[-\] |
 //! | `sigma` | n × 3 × 3 | Cauchy stress of the law, tension positive: effective where there is water \[Pa\] |
 //! | `half_length`, `half_length0` | n × 2 | half-lengths of the domain, now and as seeded \[m\] |
+//! | `centroid` | n × 2 | centroid of its soil within the domain as seeded, from the middle, over half-lengths \[-\] |
 //! | `volume0`, `mass` | n | volume as seeded \[m³/m\], mass \[kg/m\] |
 //! | `pore_pressure`, `excess` | n | given and excess pore pressure, compression positive \[Pa\] |
 //! | `number` | n | number that the particle keeps |

@@ -29,6 +29,7 @@ pub(in crate::results) fn body(n: usize) -> Body<2> {
         sigma: (0..n).map(|k| tensor(k, 15)).collect(),
         half_length: (0..n).map(|k| vector(k, 24).map(f64::abs)).collect(),
         half_length0: (0..n).map(|k| vector(k, 26).map(f64::abs)).collect(),
+        centroid: (0..n).map(|k| vector(k, 27).map(f64::sin)).collect(),
         volume0: by_particle(&|k| number(k, 28).abs()),
         mass: by_particle(&|k| number(k, 29).abs()),
         pore_pressure: by_particle(&|k| number(k, 45)),
@@ -384,7 +385,7 @@ fn refusals_say_what_to_do() {
     .unwrap();
     insta::assert_snapshot!(
         refusal(None),
-        @"the checkpoint in DIR/a has format version 5; this program reads version 4"
+        @"the checkpoint in DIR/a has format version 6; this program reads version 5"
     );
     fs::write(&file, "{}").unwrap();
     insta::assert_snapshot!(
