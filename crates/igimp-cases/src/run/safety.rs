@@ -46,6 +46,17 @@ pub(crate) fn reduce_strength<const D: usize>(
     summary: &mut StageSummary,
     left: Option<Search<D>>,
 ) -> Result<Ended, CaseError> {
+    let cell = session.model.cell_height()?;
+    for &material in &reduction.materials {
+        let material = &session.model.case.materials[material];
+        if let Some(least) = material.least_cohesion(cell) {
+            session.warn(format!(
+                "\"{}\" counts with a cohesion of {} kPa, γh/400, which the cells at its face need",
+                material.name,
+                short(1e-3 * least)
+            ));
+        }
+    }
     let ended = match reduction.search {
         SearchMethod::Continuation => {
             continuation::search(session, state, number, reduction, summary)
