@@ -159,6 +159,7 @@ mod tests {
             volume: 0.0625,
             density: 1.0,
             law: 0,
+            centroid: [0.0; _],
         };
         Particles::new(&(0..96).map(seed).collect::<Vec<_>>()).unwrap()
     }
