@@ -157,38 +157,43 @@ impl<const D: usize> CellSoil<D> {
             .map(move |part| (part, part.share / whole))
     }
 
-    /// By law and node, the moments of mass about the centroids of the cells that shared gradients do not see (theory,
-    /// eq. 8f): component a of the gradient, component b of the arm \[mass\]. Empty where strain is not shared on a
+    /// By law, the moments of mass about the centroids of the cells that shared gradients do not see (theory,
+    /// eq. 8f). Empty where strain is not shared on a
     /// given geometry, and for laws whose particles keep all of their own distortion.
     pub(crate) fn moments(
         &self,
         grid: &Grid<D>,
         particles: &Particles<D>,
         method: &Method,
-    ) -> Vec<Vec<[[f64; D]; D]>> {
+    ) -> Vec<Moments<D>> {
         if method.geometry != Geometry::Given || self.locking != Locking::SharedStrain {
             return Vec::new();
         }
         let shared = |own: &f64| if *own < 1.0 { grid.node_count() } else { 0 };
-        let mut moments: Vec<Vec<[[f64; D]; D]>> = (self.own_share.iter())
-            .map(|own| vec![[[0.0; D]; D]; shared(own)])
+        let mut moments: Vec<Moments<D>> = (self.own_share.iter())
+            .map(|own| Moments {
+                by_node: vec![[[0.0; D]; D]; shared(own)],
+                layer: 0.0,
+            })
             .collect();
         for particle in 0..particles.len() {
             let law = particles.law[particle];
             let own = &mut moments[law];
-            if own.is_empty() {
+            if own.by_node.is_empty() {
                 continue;
             }
+            let density = particles.mass[particle] / particles.volume(particle);
             let mass = (1.0 - self.own_share[law]) * particles.mass[particle];
             for (part, weight) in self.kept(grid, particle) {
                 let size = grid.cell_size(part.cell);
+                own.layer = own.layer.max(density * size[D - 1]);
                 let shared_at = self.shared_at[grid.cell_index(part.cell)];
                 let arm: [f64; D] = std::array::from_fn(|axis| {
                     weight * mass * (part.middle[axis] - shared_at[axis]) * size[axis]
                 });
                 let tents = grid.tents(part.cell, part.middle);
                 for (tent, shared) in tents.zip(grid.tents(part.cell, shared_at)) {
-                    let moment = &mut own[tent.0];
+                    let moment = &mut own.by_node[tent.0];
                     for a in 0..D {
                         for b in 0..D {
                             moment[a][b] += (tent.2[a] - shared.2[a]) * arm[b];
@@ -199,6 +204,15 @@ impl<const D: usize> CellSoil<D> {
         }
         moments
     }
+}
+
+/// What of the weight of the soil of a law shared gradients do not see (theory, eq. 8f).
+#[derive(Clone, Debug)]
+pub(crate) struct Moments<const D: usize> {
+    /// By node, component a of the gradient, component b of the arm \[mass\].
+    pub(crate) by_node: Vec<[[f64; D]; D]>,
+    /// Largest mass of a layer of one cell \[mass/length²\].
+    pub(crate) layer: f64,
 }
 
 /// Where the soil of a particle is: its domain, and on a given geometry the largest box around the centroid of its soil

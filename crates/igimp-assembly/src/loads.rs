@@ -205,8 +205,12 @@ pub(crate) fn add_variation_of_weight<const D: usize>(
     f_ext: &mut [[f64; D]],
 ) {
     for (law, moments) in laws.iter().zip(stencils.moments()) {
-        let gain = gain_at_failure(&**law);
-        for (node, moment) in moments.iter().enumerate() {
+        let weight = gravity.iter().map(|g| g * g).sum::<f64>().sqrt() * moments.layer;
+        let gain = gain_at_failure(&**law, weight);
+        if gain == 0.0 {
+            continue;
+        }
+        for (node, moment) in moments.by_node.iter().enumerate() {
             let force = &mut f_ext[stencils.master(node)];
             for a in 0..D {
                 let along: f64 = (0..D).map(|b| moment[a][b] * gravity[b]).sum();
@@ -216,11 +220,19 @@ pub(crate) fn add_variation_of_weight<const D: usize>(
     }
 }
 
+/// Cohesion over the weight of a layer of one cell from which on the variation of stress is none of the soil's
+/// concern \[-\] (theory, eq. 8f).
+const COHESIVE: f64 = 0.1;
+
 /// How much of the unit weight the horizontal stress and the shear of a long slope gain across a cell where it fails along
-/// its face, cos 2φ, and none where that is negative \[-\] (theory, eq. 8f).
-fn gain_at_failure(law: &dyn ConstitutiveModel) -> f64 {
-    let friction_angle = (law.shear_strength()).map_or(0.0, |strength| strength.friction_angle);
-    (2.0 * friction_angle).cos().max(0.0)
+/// its face, cos 2φ, and none where that is negative; less with cohesion against the weight of a layer of one cell
+/// \[force/length²\], and none from a tenth of it on \[-\] (theory, eq. 8f).
+fn gain_at_failure(law: &dyn ConstitutiveModel, weight: f64) -> f64 {
+    let Some(strength) = law.shear_strength().filter(|_| weight > 0.0) else {
+        return 0.0;
+    };
+    let without_cohesion = (1.0 - strength.cohesive / (COHESIVE * weight)).max(0.0);
+    without_cohesion * (2.0 * strength.friction_angle).cos().max(0.0)
 }
 
 /// Adds the force of loaded points to the nodal external force f_ext, by node \[force\]. What falls to

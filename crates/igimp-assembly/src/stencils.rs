@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use igimp_shape::{Grid, Support};
 use rayon::prelude::*;
 
+use crate::cell_soil::Moments;
 use crate::error::AssemblyError;
 use crate::method::{Method, Remedy};
 use crate::particles::Particles;
@@ -137,8 +138,8 @@ impl<const D: usize> Stencils<D> {
         self.shares[node].volume / cell_volume(grid, node)
     }
 
-    /// By law and node, moments of mass that shared gradients do not see (theory, eq. 8f) \[mass\].
-    pub(crate) fn moments(&self) -> &[Vec<[[f64; D]; D]>] {
+    /// By law, moments of mass that shared gradients do not see (theory, eq. 8f).
+    pub(crate) fn moments(&self) -> &[Moments<D>] {
         self.supports.moments()
     }
 

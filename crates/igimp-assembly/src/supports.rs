@@ -3,7 +3,7 @@
 use igimp_shape::{Grid, Scratch, ShapeError, Support, supports};
 use rayon::prelude::*;
 
-use crate::cell_soil::CellSoil;
+use crate::cell_soil::{CellSoil, Moments};
 use crate::error::AssemblyError;
 use crate::method::{Geometry, Locking, Method};
 use crate::particles::Particles;
@@ -20,8 +20,8 @@ pub(crate) struct Supports<const D: usize> {
     len: usize,
     /// Largest distance, in nodes along one axis, between two nodes of one particle.
     reach: usize,
-    /// By law and node, moments of mass that shared gradients do not see (theory, eq. 8f) \[mass\].
-    moments: Vec<Vec<[[f64; D]; D]>>,
+    /// By law, moments of mass that shared gradients do not see (theory, eq. 8f).
+    moments: Vec<Moments<D>>,
 }
 
 /// The supports of `CHUNK` particles, or of the last few.
@@ -75,9 +75,8 @@ impl<const D: usize> Supports<D> {
         &chunk.all[start as usize..(start + count) as usize]
     }
 
-    /// By law and node, moments of mass that shared gradients do not see (theory, eq. 8f) \[mass\]: component a of the
-    /// gradient, component b of the arm. Empty where there are none.
-    pub(crate) fn moments(&self) -> &[Vec<[[f64; D]; D]>] {
+    /// By law, moments of mass that shared gradients do not see (theory, eq. 8f). Empty where there are none.
+    pub(crate) fn moments(&self) -> &[Moments<D>] {
         &self.moments
     }
 

@@ -11,7 +11,7 @@ use common::{Random, laws, particles};
 use igimp_assembly::{
     Constraints, Geometry, Locking, Method, Particles, Stencils, StepConditions, StepLoads, System,
 };
-use igimp_material::TangentKind;
+use igimp_material::{Elasticity, MohrCoulomb, TangentKind};
 use igimp_shape::{Axis, Grid};
 
 fn grid() -> Grid<2> {
@@ -209,16 +209,14 @@ fn weight_acts_at_the_centroid_of_the_soil() {
     let particles = Particles::new(&seeds).unwrap();
     let grid = grid();
     let gravity = [0.3, -2.0];
-    let own = laws();
-    let sand = own.iter().position(|(_, law)| {
-        let strength = law.shear_strength();
-        strength.is_some_and(|strength| strength.friction_angle > 0.0)
-    });
+    let elasticity = Elasticity::new(1e7, 0.3).unwrap();
+    let friction = 0.5;
+    let sand = MohrCoulomb::new(elasticity, 0.0, friction, friction).unwrap();
     let conditions = StepConditions::new(
         grid.clone(),
         Constraints::free(&grid),
         StepLoads::gravity(gravity),
-        vec![own[sand.unwrap()].1.clone()],
+        vec![std::sync::Arc::new(sand)],
     )
     .unwrap();
     let forces = |locking| {

@@ -33,12 +33,14 @@ fn run(reached: f64, change: impl Fn(&mut StageSummary)) -> Summary {
 
 /// A path that ended like that at a factor.
 fn path(end: PathEnd, factor: f64) -> PathSummary {
+    let point = PathPoint {
+        factor,
+        ..PathPoint::default()
+    };
     PathSummary {
         end,
-        points: vec![PathPoint {
-            factor,
-            ..PathPoint::default()
-        }],
+        limit: (end != PathEnd::Lost).then_some(point),
+        points: vec![point],
         ..PathSummary::default()
     }
 }

@@ -117,7 +117,10 @@ pub(crate) fn mechanism(points: &[PathPoint]) -> Option<PathPoint> {
         return Some(after);
     };
     let share = (MECHANISM - before.dissipated) / (after.dissipated - before.dissipated);
-    Some(between(&before, &after, share))
+    Some(PathPoint {
+        displacement,
+        ..between(&before, &after, share)
+    })
 }
 
 /// The point at which a displacement was passed, interpolated between equilibria.
