@@ -20,6 +20,16 @@ const STEEP: f64 = 1e-2;
 /// A factor that has fallen by this share below the largest one is past a limit \[-\].
 const FALLEN: f64 = 0.03;
 
+/// The same where the path is lost behind it \[-\].
+const FALLEN_AND_LOST: f64 = 0.01;
+
+/// The equilibrium of the largest factor of a path that is lost behind it: the factor has fallen since.
+pub(crate) fn lost_past(points: &[PathPoint]) -> Option<PathPoint> {
+    let last = points.last()?;
+    let largest = (points.iter().copied()).max_by(|a, b| a.factor.total_cmp(&b.factor))?;
+    (last.factor < (1.0 - FALLEN_AND_LOST) * largest.factor).then_some(largest)
+}
+
 /// The equilibrium that a step came to: at a factor, after so much work since the beginning, and at a displacement.
 pub(crate) fn point(report: &StepReport, factor: f64, work: f64, displacement: f64) -> PathPoint {
     let share = (report.work.as_ref()).map(|work| work.dissipated_share(report.gross_work));
@@ -117,10 +127,7 @@ pub(crate) fn mechanism(points: &[PathPoint]) -> Option<PathPoint> {
         return Some(after);
     };
     let share = (MECHANISM - before.dissipated) / (after.dissipated - before.dissipated);
-    Some(PathPoint {
-        displacement,
-        ..between(&before, &after, share)
-    })
+    Some(between(&before, &after, share))
 }
 
 /// The point at which a displacement was passed, interpolated between equilibria.
@@ -132,7 +139,10 @@ pub(crate) fn at_displacement(points: &[PathPoint], displacement: f64) -> Option
         None => return Some(after),
     };
     let share = (displacement - before.displacement) / (after.displacement - before.displacement);
-    Some(between(&before, &after, share))
+    Some(PathPoint {
+        displacement,
+        ..between(&before, &after, share)
+    })
 }
 
 /// A point between two: linear in the share, the work and the displacement in their logarithms.

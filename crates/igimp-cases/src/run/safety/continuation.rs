@@ -202,8 +202,8 @@ impl Search<'_> {
         let Watch {
             before,
             points,
-            end,
-            limit,
+            mut end,
+            mut limit,
             work,
             stopped,
             ..
@@ -229,10 +229,14 @@ impl Search<'_> {
             }
             _ => None,
         };
-        let ended = match (stopped?, failure) {
-            (Some(ended), _) => ended,
-            (None, Some(error)) => Ended::NotConverged(error),
-            (None, None) => Ended::Completed("the steps of the path ran out".to_owned()),
+        let ended = match (stopped?, failure, limit::lost_past(&points)) {
+            (Some(ended), ..) => ended,
+            (None, Some(_), Some(largest)) => {
+                (end, limit) = (PathEnd::Fallen, Some(largest));
+                Ended::Completed(end.sentence().to_owned())
+            }
+            (None, Some(error), None) => Ended::NotConverged(error),
+            (None, None, _) => Ended::Completed("the steps of the path ran out".to_owned()),
         };
         let srf = continuation.factor;
         let last = (!points.is_empty()).then_some(End { srf, state, before });
