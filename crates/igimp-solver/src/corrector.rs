@@ -221,19 +221,11 @@ impl<'s, 'w, const D: usize> Corrector<'s, 'w, D> {
             self.linearise_again(u)?;
         }
         self.solver.ask_for(self.demand(residual));
-        if self.is_current {
-            self.factorise(u)?;
-        }
         let mut force = residual.force.clone();
         if let Some(factor) = &self.factor {
             force.push(factor.missing(&self.system.by_unknown(u)));
         }
-        self.du.resize(force.len(), 0.0);
-        timed(&mut self.times.solve, || {
-            self.bordered
-                .solve(self.solver, self.matrix, &force, self.du)
-        })
-        .map_err(|error| self.named(error, u))?;
+        self.solve_regularised(&force, u)?;
         if let Some(unknown) = self.du.iter().position(|du| !du.is_finite()) {
             return Err(self.not_finite("correction", unknown));
         }
@@ -255,13 +247,14 @@ impl<'s, 'w, const D: usize> Corrector<'s, 'w, D> {
         Ok(linearised?)
     }
 
-    /// Factorises the tangent at `u`. A singular one is regularised where corrections are guarded and no step is given up.
-    fn factorise(&mut self, u: &[[f64; D]]) -> Result<(), StepFailure> {
+    /// Solves the system for a force by unknown \[force\]. Where it is singular the tangent at `u` is regularised, if corrections
+    /// are guarded and no step is given up: without its border a mechanism leaves no digit.
+    fn solve_regularised(&mut self, force: &[f64], u: &[[f64; D]]) -> Result<(), StepFailure> {
         for again in 0.. {
-            let factorised = timed(&mut self.times.factor, || self.solver.factor(self.matrix));
-            let Err(error) = factorised else { break };
-            let is_singular = matches!(error, LinearSolverError::Singular { .. });
-            if let (true, Some(guard)) = (is_singular, &mut self.guard)
+            let Err(error) = self.solve_system(force) else {
+                break;
+            };
+            if let (true, Some(guard)) = (error.is_singular(), &mut self.guard)
                 && !guard.gives_up
                 && again < MOST_REGULARISED
             {
@@ -272,11 +265,22 @@ impl<'s, 'w, const D: usize> Corrector<'s, 'w, D> {
             self.history.fill_of_singular = self.fill_of_singular(&error);
             return Err(self.named(error, u));
         }
-        self.bordered = timed(&mut self.times.solve, || {
-            Bordered::factor(self.solver, self.matrix)
-        })
-        .map_err(|error| self.named(error, u))?;
         Ok(())
+    }
+
+    /// Solves the system for a force by unknown \[force\]: with the factors of the matrix, or with those at hand.
+    fn solve_system(&mut self, force: &[f64]) -> Result<(), LinearSolverError> {
+        if self.is_current {
+            timed(&mut self.times.factor, || self.solver.factor(self.matrix))?;
+        }
+        timed(&mut self.times.solve, || {
+            if self.is_current {
+                self.bordered = Bordered::factor(self.solver, self.matrix)?;
+            }
+            self.du.resize(force.len(), 0.0);
+            self.bordered
+                .solve(self.solver, self.matrix, force, self.du)
+        })
     }
 
     /// Adds what `du` holds to `u`, and to the load factor where it is unknown.

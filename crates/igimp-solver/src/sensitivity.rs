@@ -4,12 +4,13 @@
 use std::sync::Arc;
 
 use igimp_assembly::{
-    AssemblyError, Method, OutOfBalance, Pattern, Stencils, StepConditions, System, Trial,
+    AssemblyError, Method, OutOfBalance, Pattern, Stencils, StepConditions, System, TangentMatrix,
+    Trial,
 };
 use igimp_material::TangentKind;
 
 use crate::body::Body;
-use crate::linear::{Bordered, LinearSolverError};
+use crate::linear::{Bordered, LinearSolver, LinearSolverError};
 use crate::newton::Workspace;
 use crate::report::StepFailure;
 
@@ -71,17 +72,7 @@ impl<const D: usize> Increment<'_, D> {
             changes.push(difference(&system.out_of_balance(&trial)?, &here));
         }
         system.exchange(self.conditions.clone(), &self.body.load_points)?;
-        let bordered = self.factor(&system, workspace)?;
-        let Workspace { solver, matrix, .. } = workspace;
-        let Some(matrix) = matrix else {
-            return Err(LinearSolverError::NotFactored.into());
-        };
-        let mut moved = vec![0.0; force.len()];
-        let mut works = Vec::with_capacity(changes.len());
-        for change in &changes {
-            bordered.solve(&mut **solver, matrix, change, &mut moved)?;
-            works.push(force.iter().zip(&moved).map(|(f, u)| f * u).sum::<f64>());
-        }
+        let works = self.works((&system, &force), &changes, workspace)?;
         Ok(works[1..].iter().map(|work| -work / works[0]).collect())
     }
 
@@ -140,12 +131,14 @@ impl<const D: usize> Increment<'_, D> {
         Ok(system.with_load_points(load_points)?.sharing(pattern))
     }
 
-    /// Factorises the tangent of the step in the memory of a workspace; a singular one with a share of the elastic tangent.
-    fn factor(
+    /// The work of the external force on the displacements by which the tangent of the step answers changes of the
+    /// out-of-balance force \[force·length\]; where it is singular with a share of the elastic tangent.
+    fn works(
         &self,
-        system: &System<'_, D>,
+        (system, force): (&System<'_, D>, &[f64]),
+        changes: &[Vec<f64>],
         workspace: &mut Workspace<D>,
-    ) -> Result<Bordered, StepFailure> {
+    ) -> Result<Vec<f64>, StepFailure> {
         let Workspace {
             solver,
             matrix,
@@ -159,15 +152,34 @@ impl<const D: usize> Increment<'_, D> {
         let mut shares = REGULARISED.into_iter();
         loop {
             system.linearise_into(self.u, kind, trial, matrix)?;
-            match (solver.factor(matrix), shares.next()) {
-                (Ok(()), _) => return Ok(Bordered::factor(&mut **solver, matrix)?),
-                (Err(LinearSolverError::Singular { .. }), Some(elastic)) => {
+            let error = match works_of((matrix, force), changes, &mut **solver) {
+                Ok(works) => return Ok(works),
+                Err(error) => error,
+            };
+            match shares.next() {
+                Some(elastic) if error.is_singular() => {
                     kind = TangentKind::Regularised { elastic };
                 }
-                (Err(error), _) => return Err(error.into()),
+                _ => return Err(error.into()),
             }
         }
     }
+}
+
+/// The work of a force on what a matrix makes of each change.
+fn works_of(
+    (matrix, force): (&TangentMatrix, &[f64]),
+    changes: &[Vec<f64>],
+    solver: &mut dyn LinearSolver,
+) -> Result<Vec<f64>, LinearSolverError> {
+    solver.factor(matrix)?;
+    let bordered = Bordered::factor(solver, matrix)?;
+    let mut moved = vec![0.0; force.len()];
+    let work_of = |change: &Vec<f64>| {
+        bordered.solve(solver, matrix, change, &mut moved)?;
+        Ok(force.iter().zip(&moved).map(|(f, u)| f * u).sum())
+    };
+    changes.iter().map(work_of).collect()
 }
 
 /// The change of the out-of-balance force, by unknown \[force\].

@@ -257,6 +257,20 @@ pub struct RigidMove {
     pub drives: [Option<RigidDrive>; COMPONENTS],
 }
 
+impl RigidMove {
+    /// Whether a component is displaced or rotated.
+    pub(crate) fn is_moved(&self) -> bool {
+        let mut drives = self.drives.iter().flatten();
+        drives.any(|drive| matches!(drive, RigidDrive::By(by) if *by != 0.0))
+    }
+
+    /// Whether a force or a moment acts.
+    pub(crate) fn is_loaded(&self) -> bool {
+        let mut drives = self.drives.iter().flatten();
+        drives.any(|drive| matches!(drive, RigidDrive::Force(force) if *force != 0.0))
+    }
+}
+
 /// What drives a component of the motion of a rigid body in a stage.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum RigidDrive {

@@ -5,7 +5,7 @@ use igimp_assembly::{AssemblyError, Locking, Swallowed};
 use igimp_solver::linear::LinearSolverError;
 use igimp_solver::{Component, StepError, StepFailure};
 
-use crate::case::{BodyPart, Case, Material, RigidDrive, Side, Stage, StageKind, Strength};
+use crate::case::{BodyPart, Case, Material, RigidMove, Side, Stage, StageKind, Strength};
 use crate::check::short;
 use crate::results::fields::length;
 
@@ -307,13 +307,11 @@ fn collapse<const D: usize>(case: &Case<D>, stage: &Stage) -> Vec<String> {
             vec!["a lower bracket: this is probably collapse at the first factor".to_owned()]
         }
         StageKind::Rigid(moves) => {
-            let mut drives = moves.iter().flat_map(|own| own.drives).flatten();
-            let is_loaded =
-                drives.any(|drive| matches!(drive, RigidDrive::Force(force) if force != 0.0));
             let name = &stage.name;
             let instead = format!(
                 "a displacement in place of a force in stage \"{name}\": this is probably collapse under it"
             );
+            let is_loaded = moves.iter().any(RigidMove::is_loaded);
             is_loaded.then_some(instead).into_iter().collect()
         }
         StageKind::RunOut(_) => Vec::new(),

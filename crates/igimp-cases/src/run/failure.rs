@@ -7,7 +7,7 @@ use igimp_solver::{StepError, StepFailure};
 use super::session::Session;
 use super::state::State;
 use super::{Failure, advice};
-use crate::case::{Case, RigidDrive, StageKind};
+use crate::case::{Case, RigidMove, StageKind};
 use crate::summary::{PathEnd, StageSummary};
 
 /// Whether a stage that found no equilibrium ended in a way that tells no limit: its path was lost, its linear system
@@ -21,9 +21,7 @@ pub(crate) fn tells_no_limit(
     let is_driven = match kind {
         StageKind::Displacement { .. } => true,
         StageKind::Rigid(moves) => {
-            let drives = || moves.iter().flat_map(|own| own.drives.iter().flatten());
-            drives().any(|drive| matches!(drive, RigidDrive::By(by) if *by != 0.0))
-                && !drives().any(|drive| matches!(drive, RigidDrive::Force(force) if *force != 0.0))
+            moves.iter().any(RigidMove::is_moved) && !moves.iter().any(RigidMove::is_loaded)
         }
         _ => false,
     };

@@ -14,7 +14,7 @@ use super::records::Moment;
 use super::safety::displacement_scale;
 use super::session::{Ended, Session};
 use super::state::{Controls, State};
-use crate::case::{Stage, StageKind};
+use crate::case::{RigidMove, Stage, StageKind};
 use crate::check::short;
 use crate::error::CaseError;
 use crate::summary::{PathEnd, PathPoint, PathSummary, StageSummary};
@@ -23,26 +23,23 @@ use crate::summary::{PathEnd, PathPoint, PathSummary, StageSummary};
 const FIRST_CHANGE: f64 = 0.5;
 
 /// Whether a stage that found no equilibrium goes on along its path.
-pub(super) fn is_sought<const D: usize>(
-    stage: &Stage,
-    state: &State<D>,
-    summary: &StageSummary,
-    error: &StepError,
-) -> bool {
+pub(super) fn is_sought(stage: &Stage, summary: &StageSummary, error: &StepError) -> bool {
     stage.stop_when.no_equilibrium
         && stage.geometry == Geometry::Given
-        && matches!(
-            stage.kind,
-            StageKind::Gravity { .. } | StageKind::Load { .. }
-        )
-        && state.body.rigid.is_empty()
+        && match &stage.kind {
+            StageKind::Gravity { .. } | StageKind::Load { .. } => true,
+            StageKind::Rigid(moves) => !moves.iter().any(RigidMove::is_moved),
+            _ => false,
+        }
         && summary.reached > 0.0
         && error.failure.is_want_of_equilibrium()
 }
 
-/// The factor that a stage drives: of its first load, of gravity, or of the horizontal acceleration \[-\].
-fn load_factor(kind: &StageKind, controls: &Controls) -> f64 {
+/// The factor that a stage drives: of its first load, of gravity, of the horizontal acceleration, or of the forces on its rigid
+/// bodies, the share of them that was `reached` \[-\].
+fn load_factor(kind: &StageKind, controls: &Controls, reached: f64) -> f64 {
     match kind {
+        StageKind::Rigid(_) => reached,
         StageKind::Load { loads, .. } => loads.first().map_or(0.0, |&load| controls.factors[load]),
         StageKind::Gravity {
             horizontal: Some(_),
@@ -75,7 +72,7 @@ pub(super) fn follow_on<const D: usize>(
     let mut continuation = ContinuationState::start(summary.reached, &settings);
     let mut workspace = session.workspace();
     let begins = PathPoint {
-        factor: load_factor(&stage.kind, &state.controls),
+        factor: load_factor(&stage.kind, &state.controls, summary.reached),
         work: summary.work,
         displacement: session.displacement(stage.stop_when.monitor, &state.body.particles),
         ..PathPoint::default()
@@ -185,7 +182,7 @@ impl<const D: usize> Watch<'_, '_, D> {
         });
         let stop = &self.stage.stop_when;
         let displacement = self.session.displacement(stop.monitor, particles);
-        let factor = load_factor(&self.stage.kind, &controls);
+        let factor = load_factor(&self.stage.kind, &controls, report.to);
         let point = limit::point(report, factor, self.summary.work, displacement);
         self.points.push(point);
         if self.session.interrupted() {

@@ -126,7 +126,7 @@ pub(crate) fn let_go<const D: usize>(
         },
     )?;
     match &ended {
-        Ended::NotConverged(error) if limit_load::is_sought(stage, state, summary, error) => {
+        Ended::NotConverged(error) if limit_load::is_sought(stage, summary, error) => {
             limit_load::follow_on(session, state, (number, &from, &to), summary)
         }
         _ => Ok(ended),

@@ -92,6 +92,13 @@ pub enum LinearSolverError {
     },
 }
 
+impl LinearSolverError {
+    /// Whether the matrix is singular, or as good as singular: its solutions have no digit that is right.
+    pub(crate) fn is_singular(&self) -> bool {
+        matches!(self, Self::Singular { .. } | Self::Inaccurate { .. })
+    }
+}
+
 fn would_need(factor_bytes: Option<usize>) -> String {
     factor_bytes.map_or_else(String::new, |bytes| {
         let gibibytes = bytes as f64 / (1_u64 << 30) as f64;
