@@ -8,6 +8,7 @@
 
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
+use std::ops::Range;
 
 use igimp_cases::CaseError;
 use igimp_cases::polygon::{area_and_centroid, clip_to_box};
@@ -146,14 +147,16 @@ fn check(sample: &Sample) -> Result<(), TestCaseError> {
     Ok(())
 }
 
-/// The rule word by word: every part clips the whole polygon, every sliver looks at all particles.
+/// The rule word by word: every part clips the whole polygon, every sliver looks at all particles of its cell, or else of the
+/// polygon.
 fn check_by_rule(sample: &Sample) -> Result<(), TestCaseError> {
     let (grid, per_direction) = (&sample.grid, sample.per_direction);
-    let (mut expected, mut slivers) = (Vec::new(), Vec::new());
+    let (mut expected, mut slivers, mut first) = (Vec::new(), Vec::new(), Vec::new());
     for cell in 0..grid.cell_count() {
         let place = grid.cell_place(cell);
         let lower = grid.node_position(grid.node_index(place));
         let size = grid.cell_size(place).map(|h| h / per_direction as f64);
+        first.push(expected.len());
         for part in 0..per_direction * per_direction {
             let step = [part % per_direction, part / per_direction];
             let from: [f64; 2] = std::array::from_fn(|d| lower[d] + step[d] as f64 * size[d]);
@@ -163,15 +166,18 @@ fn check_by_rule(sample: &Sample) -> Result<(), TestCaseError> {
                 let x: [f64; 2] = std::array::from_fn(|d| from[d] + 0.5 * size[d]);
                 expected.push((x, area.abs()));
             } else if area != 0.0 {
-                slivers.push((area.abs(), centroid));
+                slivers.push((area.abs(), centroid, cell));
             }
         }
     }
-    for (area, centroid) in slivers {
+    first.push(expected.len());
+    for (area, centroid, cell) in slivers {
         let distance = |x: [f64; 2]| (x[0] - centroid[0]).hypot(x[1] - centroid[1]);
-        let nearest = (0..expected.len())
-            .min_by(|&a, &b| distance(expected[a].0).total_cmp(&distance(expected[b].0)));
-        if let Some(nearest) = nearest {
+        let nearest = |particles: Range<usize>| {
+            particles.min_by(|&a, &b| distance(expected[a].0).total_cmp(&distance(expected[b].0)))
+        };
+        let of_cell = nearest(first[cell]..first[cell + 1]);
+        if let Some(nearest) = of_cell.or_else(|| nearest(0..expected.len())) {
             expected[nearest].1 += area;
         }
     }

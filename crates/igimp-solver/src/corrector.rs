@@ -481,8 +481,9 @@ impl<const D: usize> Corrector<'_, '_, D> {
         else {
             return None;
         };
-        let (node, _) = self.system.unknowns().place(*unknown)?;
-        Some(self.stencils.node_fill(self.grid, node))
+        let (node, axis) = self.system.unknowns().place(*unknown)?;
+        let is_of_grid = self.system.rigid_body_of(node, axis).is_none();
+        is_of_grid.then(|| self.stencils.node_fill(self.grid, node))
     }
 }
 

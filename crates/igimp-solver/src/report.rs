@@ -129,18 +129,16 @@ impl StepFailure {
             | Self::TooDeep { .. }
             | Self::NotFinite { .. } => false,
             Self::Assembly(error) => error.is_too_far(),
-            Self::Linear(error) => matches!(
-                error,
-                LinearSolverError::Singular { .. }
-                    | LinearSolverError::NotPositiveDefinite { .. }
-                    | LinearSolverError::Inaccurate { .. }
-            ),
+            Self::Linear(error) => {
+                error.is_singular()
+                    || matches!(error, LinearSolverError::NotPositiveDefinite { .. })
+            }
         }
     }
 
     /// Whether a linear system had no solution: a node without soil that holds it, or soil that has lost its stiffness.
     pub fn is_singular(&self) -> bool {
-        matches!(self, Self::Linear(LinearSolverError::Singular { .. }))
+        matches!(self, Self::Linear(error) if error.is_singular())
     }
 
     /// Whether something was to be carried off the grid: a smaller step only puts that off.

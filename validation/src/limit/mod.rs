@@ -3,6 +3,7 @@
 
 mod davis;
 mod dilation;
+mod rigid;
 mod sand;
 mod spread;
 mod strengths;
@@ -214,6 +215,7 @@ pub(crate) fn study(level: Level, out: &Folder) -> Result<Study, CaseError> {
         spread::of_shipped(&mut study, level)?;
         strengths::against_reruns(&mut study, &problems)?;
         dilation::raises_to_associated(&mut study, level)?;
+        rigid::carries_as_displaced(&mut study)?;
         sand::slides_along_its_face(&mut study, level)?;
         davis::beside_dilation(&mut study, level)?;
     }

@@ -23,6 +23,8 @@ const INFINITE_SLOPE: Oracle = Oracle {
 const OFF: f64 = 0.03;
 /// Slopes: run for one down \[-\], φ \[degree\].
 const SLOPES: [(f64, f64); 3] = [(2.0, 38.0), (1.5, 40.0), (3.0, 25.0)];
+/// The same that no constant of eqs. 8f and 8g was chosen on: at one place by default.
+const BESIDE: [(f64, f64); 3] = [(2.0, 30.0), (1.75, 35.0), (2.5, 32.0)];
 /// Where crest and ground lie in their cells \[-\]: the first three by default.
 const PLACES: [[f64; 2]; 5] = [
     [0.0, 0.0],
@@ -93,19 +95,27 @@ impl Sand {
 
 /// Slopes of sand without cohesion, of several stiffnesses at the full level.
 pub(super) fn slides_along_its_face(study: &mut Study, level: Level) -> Result<(), CaseError> {
-    let count = if level == Level::Full { 5 } else { 3 };
+    let is_full = level == Level::Full;
+    let (of_chosen, of_beside) = if is_full {
+        (&PLACES[..], &PLACES[..3])
+    } else {
+        (&PLACES[..3], &PLACES[2..3])
+    };
+    let at = |(run, friction), place, young| Sand {
+        run,
+        friction,
+        place,
+        young,
+    };
     let mut all = Vec::new();
-    for (run, friction) in SLOPES {
-        let at = |place, young| Sand {
-            run,
-            friction,
-            place,
-            young,
-        };
-        all.extend(PLACES[..count].iter().map(|&place| at(place, 1e5)));
-        if level == Level::Full {
-            all.extend([1e4, 1e6].map(|young| at(PLACES[2], young)));
+    for slope in SLOPES {
+        all.extend(of_chosen.iter().map(|&place| at(slope, place, 1e5)));
+        if is_full {
+            all.extend([1e4, 1e6].map(|young| at(slope, PLACES[2], young)));
         }
+    }
+    for slope in BESIDE {
+        all.extend(of_beside.iter().map(|&place| at(slope, place, 1e5)));
     }
     let found = (all.par_iter().map(|own| own.find())).collect::<Result<Vec<_>, CaseError>>()?;
     let mut note =

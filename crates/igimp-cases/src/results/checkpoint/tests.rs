@@ -380,7 +380,7 @@ fn refusals_say_what_to_do() {
     let text = fs::read_to_string(&file).unwrap();
     fs::write(
         &file,
-        text.replace("\"format_version\": 4", "\"format_version\": 5"),
+        text.replace("\"format_version\": 5", "\"format_version\": 6"),
     )
     .unwrap();
     insta::assert_snapshot!(
