@@ -23,6 +23,9 @@ pub struct ContinuationSettings {
     pub most_steps: usize,
     /// How often a step may be halved in succession.
     pub halvings: u32,
+    /// How often a step that was halved so often may then be doubled in succession, from the size that failed first: the next
+    /// equilibrium lies on another branch.
+    pub leaps: u32,
     /// The iteration of each step.
     pub newton: NewtonSettings,
 }
@@ -35,6 +38,7 @@ impl ContinuationSettings {
             direct_steps: 2,
             most_steps: 200,
             halvings: 8,
+            leaps: 4,
             newton,
         }
     }
@@ -68,6 +72,8 @@ pub struct LastStep<const D: usize> {
     pub change: f64,
     /// Gross work of the external force \[force·length\].
     pub work: f64,
+    /// Share of that work that was not elastic \[-\].
+    pub dissipated: f64,
 }
 
 impl<const D: usize> ContinuationState<D> {
@@ -96,6 +102,7 @@ impl<const D: usize> ContinuationState<D> {
                     guess: Guess {
                         u,
                         factor: self.factor + (by * last.change).clamp(-most, most),
+                        is_mechanism: last.dissipated >= MECHANISM,
                     },
                 }
             }
@@ -132,19 +139,37 @@ impl<const D: usize> ContinuationState<D> {
             u: forces.u.clone(),
             change: step.to - step.from,
             work,
+            dissipated: (step.work.as_ref()).map_or(0.0, |own| own.dissipated_share(work)),
         });
     }
 
-    /// Halves the next step.
-    fn halve(&mut self, settings: &ContinuationSettings) {
-        self.size *= 0.5;
+    /// The next step after so many failures in succession, the first of them with `first` \[force·length\]: half of the one that
+    /// failed, or where that was done often enough twice the first, and twice that.
+    fn retry(&mut self, failures: u32, first: f64, settings: &ContinuationSettings) {
         self.change *= 0.5;
+        self.size = match failures.checked_sub(settings.halvings) {
+            None | Some(0) => 0.5 * self.size,
+            Some(leaps) => first * 2.0_f64.powi(leaps as i32),
+        };
         // A limit that is nearer than the first change is approached by steps of work at once.
         if self.last.is_some() {
             self.working = settings.direct_steps;
         }
     }
+
+    /// How often the next step may fail in succession.
+    fn most_failures(&self, settings: &ContinuationSettings) -> u32 {
+        let leaps = if self.last.is_some() {
+            settings.leaps
+        } else {
+            0
+        };
+        settings.halvings + leaps
+    }
 }
+
+/// A step whose work is dissipated by this share moves the body as a mechanism \[-\].
+pub const MECHANISM: f64 = 0.99;
 
 /// Largest change of the load factor where nothing yields, as a share of it \[-\].
 const LARGEST_CHANGE: f64 = 0.4;
@@ -159,15 +184,15 @@ fn growth(corrections: usize) -> f64 {
     }
 }
 
-/// Halvings in succession from which on a step is given more corrections, and how many times as many.
+/// Failures in succession from which on a step is given more corrections, and how many times as many.
 const PATIENCE: (u32, usize) = (3, 3);
 
-/// The iteration of a step that was halved so often: where no step is too small to fail, the next equilibrium lies on
+/// The iteration of a step that failed so often: where no step is too small to fail, the next equilibrium lies on
 /// another branch, and Newton's method finds it late.
-fn patient(newton: NewtonSettings, halvings: u32) -> NewtonSettings {
+fn patient(newton: NewtonSettings, failures: u32) -> NewtonSettings {
     let (from, times) = PATIENCE;
     NewtonSettings {
-        max_iterations: newton.max_iterations * if halvings < from { 1 } else { times },
+        max_iterations: newton.max_iterations * if failures < from { 1 } else { times },
         ..newton
     }
 }
@@ -186,14 +211,15 @@ pub fn follow<const D: usize>(
     workspace: &mut Workspace<D>,
     observer: &mut dyn Observer<D>,
 ) -> Option<StepError> {
-    let mut halvings = 0;
+    let mut failures = 0;
+    let mut first = state.size;
     while state.steps < settings.most_steps {
         let target = state.target(settings);
         let on_path = (state.factor, &target);
-        let newton = patient(settings.newton, halvings);
+        let newton = patient(settings.newton, failures);
         match step_on_path(body, method, load_path, on_path, &newton, workspace) {
             Ok((conditions, report, forces)) => {
-                halvings = 0;
+                failures = 0;
                 state.take((&report, &forces), &target, settings);
                 let march = MarchState {
                     at: state.factor,
@@ -213,13 +239,49 @@ pub fn follow<const D: usize>(
             }
             Err(error) => {
                 observer.on_cut(&error);
-                halvings += 1;
-                if halvings > settings.halvings || !error.failure.is_want_of_equilibrium() {
+                if failures == 0 {
+                    first = state.size;
+                }
+                failures += 1;
+                let is_given_up = failures > state.most_failures(settings);
+                if is_given_up || !error.failure.is_want_of_equilibrium() {
                     return Some(error);
                 }
-                state.halve(settings);
+                state.retry(failures, first, settings);
             }
         }
     }
     None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// GOAL: a step that fails is halved until it is small, and then tried larger than at first.
+    /// ORACLE: by hand.
+    #[test]
+    fn failed_steps_are_halved_and_then_leap() {
+        let settings = ContinuationSettings {
+            halvings: 2,
+            leaps: 2,
+            ..ContinuationSettings::new(NewtonSettings::default())
+        };
+        let mut state: ContinuationState<2> = ContinuationState::start(1.0, &settings);
+        assert_eq!(state.most_failures(&settings), 2);
+        state.size = 8.0;
+        state.last = Some(LastStep {
+            u: Vec::new(),
+            change: 0.1,
+            work: 8.0,
+            dissipated: 0.5,
+        });
+        let sizes = [1, 2, 3, 4].map(|failures| {
+            state.retry(failures, 8.0, &settings);
+            state.size
+        });
+        assert_eq!(sizes, [4.0, 2.0, 16.0, 32.0]);
+        assert_eq!(state.most_failures(&settings), 4);
+        assert_eq!(state.working, settings.direct_steps);
+    }
 }

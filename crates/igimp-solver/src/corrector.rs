@@ -248,13 +248,19 @@ impl<'s, 'w, const D: usize> Corrector<'s, 'w, D> {
     }
 
     /// Solves the system for a force by unknown \[force\]. Where it is singular the tangent at `u` is regularised, if corrections
-    /// are guarded and no step is given up: without its border a mechanism leaves no digit.
+    /// are guarded and no step is given up. So it is where the body moves as a mechanism and no digit is left: the tangent
+    /// without its border is singular there.
     fn solve_regularised(&mut self, force: &[f64], u: &[[f64; D]]) -> Result<(), StepFailure> {
         for again in 0.. {
             let Err(error) = self.solve_system(force) else {
                 break;
             };
-            if let (true, Some(guard)) = (error.is_singular(), &mut self.guard)
+            let moves_as_mechanism = self.factor.as_ref().is_some_and(|own| own.is_mechanism);
+            let is_singular = match error {
+                LinearSolverError::Inaccurate { .. } => moves_as_mechanism,
+                _ => error.is_singular(),
+            };
+            if let (true, Some(guard)) = (is_singular, &mut self.guard)
                 && !guard.gives_up
                 && again < MOST_REGULARISED
             {

@@ -25,6 +25,8 @@ pub(crate) struct Guess<const D: usize> {
     pub(crate) u: Vec<[f64; D]>,
     /// Load factor at its end \[-\].
     pub(crate) factor: f64,
+    /// Whether the body moved as a mechanism in the step before.
+    pub(crate) is_mechanism: bool,
 }
 
 /// The load factor of a step, unknown.
@@ -35,6 +37,8 @@ pub(crate) struct FreeFactor<'p, const D: usize> {
     from: f64,
     /// Load factor at the trial \[-\].
     pub(crate) at: f64,
+    /// Whether the body moved as a mechanism in the step before: its tangent without a border may then be singular.
+    pub(crate) is_mechanism: bool,
     /// Gross work of the external force on the step that is asked for \[force·length\].
     work: f64,
     /// External force at the start of the step along the guess, by unknown \[force\].
@@ -59,6 +63,7 @@ impl<'p, const D: usize> FreeFactor<'p, D> {
             points,
             from,
             at: guess.factor,
+            is_mechanism: guess.is_mechanism,
             work,
             force: system.force_along(&guess.u),
             slope: Vec::new(),

@@ -18,7 +18,7 @@ mod residual_history;
 mod sensitivity;
 
 pub use body::Body;
-pub use continuation::{ContinuationSettings, ContinuationState, follow};
+pub use continuation::{ContinuationSettings, ContinuationState, MECHANISM, follow};
 pub use march::{
     Accepted, LoadPath, MarchReport, MarchSettings, MarchState, Observer, Outcome, march,
     march_from,

@@ -165,35 +165,29 @@ pub(crate) fn step_on_path<const D: usize>(
         Target::Factor(to) => *to,
         Target::Work { guess, .. } => guess.factor,
     };
-    let mut find = |is_guarded: bool, history: &mut ResidualHistory, workspace: &mut _| {
-        *history = ResidualHistory::default();
-        let conditions = load_path.conditions(from, to)?;
-        let attempt = Attempt {
-            method,
-            conditions: &conditions,
-            settings,
-            from,
-            to,
-            ghost_penalty: 0.0,
-            is_guarded,
-            on_path: match target {
-                Target::Factor(_) => None,
-                Target::Work { work, guess } => Some((load_path, *work, guess)),
-            },
-            measures_work: true,
-        };
-        let (report, forces) = equilibrium(&attempt, body, workspace, history)?;
-        let conditions = load_path.conditions(from, report.to)?;
-        Ok((conditions, report, forces))
-    };
     let mut history = ResidualHistory::default();
-    let mut found = find(false, &mut history, workspace);
-    // Steps of work are guarded from their beginning.
-    if let (Target::Factor(_), Err(failure)) = (target, &found)
-        && has_no_stiffness(failure, &workspace.trial)
-    {
-        found = find(true, &mut history, workspace);
-    }
+    let found = load_path
+        .conditions(from, to)
+        .map_err(StepFailure::from)
+        .and_then(|conditions| {
+            let attempt = Attempt {
+                method,
+                conditions: &conditions,
+                settings,
+                from,
+                to,
+                ghost_penalty: 0.0,
+                is_guarded: false,
+                on_path: match target {
+                    Target::Factor(_) => None,
+                    Target::Work { work, guess } => Some((load_path, *work, guess)),
+                },
+                measures_work: true,
+            };
+            let (report, forces) = equilibrium(&attempt, body, workspace, &mut history)?;
+            let conditions = load_path.conditions(from, report.to)?;
+            Ok((conditions, report, forces))
+        });
     found.map_err(|failure| StepError {
         from,
         to,

@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use igimp_cases::CaseError;
 use igimp_cases::check::Band;
 
+use super::Found;
 use crate::oracle::{Oracle, OracleKind};
 use crate::runs::{Computed, shipped_case};
 use crate::study::{RunRecord, Study};
@@ -38,18 +39,7 @@ fn resistance(drive: &str, others: &[&str]) -> Result<(f64, RunRecord), CaseErro
         .checks
         .first()
         .map_or(f64::NAN, |row| row.check.measured);
-    let stages = &summary.stages;
-    let record = RunRecord {
-        variant: format!("rigid strip, {drive}"),
-        outcome: stages
-            .last()
-            .map_or_else(String::new, |stage| stage.reason.clone()),
-        steps: stages.iter().map(|stage| stage.steps).sum(),
-        iterations: stages.iter().map(|stage| stage.iterations).sum(),
-        cuts: stages.iter().map(|stage| stage.cuts).sum(),
-        seconds: computed.elapsed.as_secs_f64(),
-        ..RunRecord::default()
-    };
+    let record = Found::of(&computed).record(format!("rigid strip, {drive}"));
     Ok((measured, record))
 }
 

@@ -82,6 +82,9 @@ impl Sand {
         let overrides = [
             "stages.1.search=\"continuation\"",
             "bodies.0.points_per_cell=9",
+            // As shipped.
+            "solver.tolerance=1e-9",
+            "solver.max_iterations=25",
             "grid.domain.y=[\"0 m\", \"14 m\"]",
         ];
         let case = section.case_with(variant, search, &overrides.map(str::to_owned))?;

@@ -1,11 +1,8 @@
 //! What a path of equilibria says of its limit: numbers only (theory, eqs. 33e and 33f).
 
-use igimp_solver::StepReport;
+use igimp_solver::{MECHANISM, StepReport};
 
 use crate::summary::{PathEnd, PathPoint, PathSummary};
-
-/// A step whose work is dissipated by this share moves the body as a mechanism \[-\].
-pub(crate) const MECHANISM: f64 = 0.99;
 
 /// The factor rises no longer where it changes by less than this share in a doubling of the work \[-\].
 const FLAT: f64 = 1e-3;

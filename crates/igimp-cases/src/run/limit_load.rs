@@ -1,6 +1,7 @@
 //! Limit loads on the given geometry: where the march of a stage finds no equilibrium at a greater load, the path of
 //! equilibria goes on with the load factor as an unknown (theory, eqs. 33a to 33f).
 
+use std::cell::RefCell;
 use std::ops::ControlFlow;
 
 use igimp_assembly::Geometry;
@@ -11,9 +12,10 @@ use igimp_solver::{
 use super::Event;
 use super::limit;
 use super::records::Moment;
+use super::rigid;
 use super::safety::displacement_scale;
 use super::session::{Ended, Session};
-use super::state::{Controls, State};
+use super::state::{Controls, RigidTrack, State};
 use crate::case::{RigidMove, Stage, StageKind};
 use crate::check::short;
 use crate::error::CaseError;
@@ -58,7 +60,8 @@ pub(super) fn follow_on<const D: usize>(
 ) -> Result<Ended, CaseError> {
     let model = session.model;
     let stage = &model.case.stages[number];
-    let at = |reached: f64| from.towards(to, reached);
+    let tracks = RefCell::new(state.controls.tracks());
+    let at = |reached: f64| from.towards(to, reached).with_tracks(&tracks.borrow());
     let load_path = |before: f64, after: f64| {
         let grid = model.grid(model.lowered(from));
         model.conditions_on(grid, (&at(before), &at(after)), 0.0)
@@ -81,6 +84,7 @@ pub(super) fn follow_on<const D: usize>(
         number,
         stage,
         at: &at,
+        tracks: &tracks,
         points: vec![begins],
         end: PathEnd::Lost,
         limit: None,
@@ -148,6 +152,8 @@ struct Watch<'w, 's, const D: usize> {
     number: usize,
     stage: &'w Stage,
     at: &'w dyn Fn(f64) -> Controls,
+    /// What the rigid bodies did so far.
+    tracks: &'w RefCell<Vec<RigidTrack>>,
     session: &'w mut Session<'s, D>,
     summary: &'w mut StageSummary,
     points: Vec<PathPoint>,
@@ -162,6 +168,8 @@ impl<const D: usize> Watch<'_, '_, D> {
         let number = self.summary.steps + 1;
         self.session.tell(&Event::Equilibrium { number, accepted });
         self.session.tally(self.summary, report)?;
+        let tracks = rigid::tracks(self.session.model.case, &(self.at)(report.to), accepted);
+        self.tracks.replace(tracks);
         let controls = (self.at)(report.to);
         let particles = &accepted.body.particles;
         self.session.record(&Moment {

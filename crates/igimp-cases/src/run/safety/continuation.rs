@@ -30,6 +30,10 @@ use crate::summary::{
 /// no strength holds.
 const LEAST_FACTOR: f64 = 0.01;
 
+/// First changes of the factor with which a path is followed, as a share of it \[-\]: each but the first where the path before
+/// was lost.
+const FIRST_CHANGES: [f64; 3] = [0.05, 0.035, 0.025];
+
 /// A mechanism whose factor lies this share below that of the limit is worth a remark \[-\].
 const APART: f64 = 5e-3;
 
@@ -63,8 +67,8 @@ pub(super) fn search<const D: usize>(
         }
         let failed_to_load = matches!(ended, Some(Ended::NotConverged(_)));
         if !failed_to_load {
-            let followed = search.follow(session, &start, from, summary)?;
-            let is_lost = matches!(followed.ended, Ended::NotConverged(_));
+            let followed = search.follow_again(session, &start, from, summary)?;
+            let is_lost = followed.is_lost();
             if !(is_lost && followed.points.is_empty()) || from <= LEAST_FACTOR {
                 break followed;
             }
@@ -114,6 +118,18 @@ struct Followed<const D: usize> {
     shares: Option<Result<StrengthShares, StepFailure>>,
 }
 
+impl<const D: usize> Followed<D> {
+    /// Whether the path was lost: no equilibrium was found beyond its last one.
+    fn is_lost(&self) -> bool {
+        matches!(self.ended, Ended::NotConverged(_))
+    }
+
+    /// Factor of the last equilibrium \[-\].
+    fn reached(&self) -> f64 {
+        self.points.last().map_or(0.0, |point| point.factor)
+    }
+}
+
 impl Search<'_> {
     /// Controls at a strength reduction factor.
     fn at(&self, factor: f64) -> Controls {
@@ -159,12 +175,42 @@ impl Search<'_> {
         Ok((state, Some(ended)))
     }
 
-    /// Follows the path of a state from a strength reduction factor to its end.
-    fn follow<const D: usize>(
+    /// Follows the path of a state from a strength reduction factor to its end; one that is lost once more with other first
+    /// steps, and of those that are lost the one that came to the largest factor.
+    fn follow_again<const D: usize>(
         &self,
         session: &mut Session<'_, D>,
         start: &State<D>,
         from: f64,
+        summary: &mut StageSummary,
+    ) -> Result<Followed<D>, CaseError> {
+        let [usual, others @ ..] = FIRST_CHANGES;
+        let mut furthest = self.follow(session, start, (from, usual), summary)?;
+        for first_change in others {
+            if !furthest.is_lost() || furthest.points.is_empty() {
+                break;
+            }
+            session.warn(format!(
+                "the path of equilibria in stage \"{}\" was lost at {}, and is followed again with first steps of {} %",
+                self.stage.name,
+                short(furthest.reached()),
+                short(100.0 * first_change)
+            ));
+            let again = self.follow(session, start, (from, first_change), summary)?;
+            if !again.is_lost() || again.reached() > furthest.reached() {
+                furthest = again;
+            }
+        }
+        Ok(furthest)
+    }
+
+    /// Follows the path of a state from a strength reduction factor to its end, with first steps that change the factor by a
+    /// share of it.
+    fn follow<const D: usize>(
+        &self,
+        session: &mut Session<'_, D>,
+        start: &State<D>,
+        (from, first_change): (f64, f64),
         summary: &mut StageSummary,
     ) -> Result<Followed<D>, CaseError> {
         let model = session.model;
@@ -174,7 +220,10 @@ impl Search<'_> {
             let controls = (&self.at(from), &self.at(to));
             model.conditions_on(model.grid(lowered), controls, 0.0)
         };
-        let settings = ContinuationSettings::new(model.march_settings(1).newton);
+        let settings = ContinuationSettings {
+            first_change,
+            ..ContinuationSettings::new(model.march_settings(1).newton)
+        };
         let mut continuation = ContinuationState::start(from, &settings);
         let mut workspace = session.workspace();
         let mut watch = Watch {
