@@ -293,6 +293,38 @@ fn a_block_is_let_go_onto_friction_in_one_step() {
     }
 }
 
+/// GOAL: a force on a body that no soil carries ends at its limit load, whatever force was stated.
+/// ORACLE: the resistance of the same strip when it is displaced, by 5 % of its width.
+#[test]
+fn forces_on_a_body_come_to_their_limit() {
+    let pressed = |drive: &str| {
+        let overrides = [
+            "rigid.footing.reference=[\"0 m\", \"14/9 m\"]".to_owned(),
+            "stages.seat.geometry=given".to_owned(),
+            "stages.load.geometry=given".to_owned(),
+            "curves=[]".to_owned(),
+            "stages.load.steps=10".to_owned(),
+            "stages.load.stop_when={ no_equilibrium = true }".to_owned(),
+            format!("stages.load.bodies=[{{ body = \"footing\", {drive} }}]"),
+        ];
+        let shipped = igimp_cases::shipped::find("eccentric_footing").unwrap();
+        let file = shipped.case_file(overrides.to_vec()).unwrap();
+        let run = in_memory(file.case()).unwrap();
+        let stage = run.summary.stages.last().unwrap().clone();
+        (run.summary.checks[0].check.measured, stage)
+    };
+    let (displaced, _) = pressed("y = \"-0.05 m\"");
+    for force in [7.0, 12.0] {
+        let (carried, stage) = pressed(&format!("force_y = \"-{force} kN/m\""));
+        assert!(
+            (carried / displaced - 1.0).abs() < 5e-3,
+            "{carried} {displaced}"
+        );
+        let path = stage.path.unwrap();
+        assert!(path.mechanism.is_some() && stage.reached < 1.0, "{force}");
+    }
+}
+
 /// GOAL: a grid that follows a body keeps a row at its base, with the same forces as one that does not to
 /// within what the grid is worth.
 #[test]

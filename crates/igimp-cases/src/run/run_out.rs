@@ -82,7 +82,7 @@ pub(crate) fn run_out<const D: usize>(
                 .forces
                 .u
                 .iter()
-                .map(|u| u[0].hypot(u[1]))
+                .map(|u| u.iter().fold(0.0_f64, |length, own| length.hypot(*own)))
                 .fold(0.0, f64::max);
             let change = (moved / target).clamp(CHANGE[0], CHANGE[1]);
             drag.set((drag.get() * change).clamp(1e-9 * largest, largest));

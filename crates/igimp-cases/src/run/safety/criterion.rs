@@ -40,7 +40,8 @@ pub(super) fn height<const D: usize>(state: &State<D>) -> f64 {
     let particles = &state.body.particles;
     let levels = || {
         let edges = particles.x.iter().zip(&particles.half_length);
-        edges.flat_map(|(x, half_length)| [x[1] - half_length[1], x[1] + half_length[1]])
+        let up = D - 1;
+        edges.flat_map(move |(x, half_length)| [x[up] - half_length[up], x[up] + half_length[up]])
     };
     levels().fold(f64::NEG_INFINITY, f64::max) - levels().fold(f64::INFINITY, f64::min)
 }
