@@ -11,7 +11,7 @@ use crate::oracle::{Oracle, OracleKind};
 use crate::study::{Level, Study};
 
 /// What the book says of the study.
-const ABOUT: &str = "A circular bar deep in weightless Tresca soil with E/s_u = 1000, bonded, smooth or with adhesion, and a pipe wished in place at shallow depth without tension, are pushed down at small strain. The soil at a circle is a staircase of particles, so nodes with little of it are tied to others sooner than elsewhere. What lies within its band is claimed, all is told.";
+const ABOUT: &str = "A circular bar deep in weightless Tresca soil with E/s_u = 1000, bonded, smooth or with adhesion, and a pipe wished in place at shallow depth without tension, are pushed down at small strain. The soil at a circle is a staircase of particles, so nodes with little of it are tied to others sooner than elsewhere. What lies within its band is claimed, all is told: of smooth pipes every mesh of seventeen cells and more, as their values go up and down from mesh to mesh.";
 const DEEP: Oracle = Oracle {
     kind: OracleKind::Exact,
     source: "Randolph and Houlsby 1984",
@@ -141,8 +141,7 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
                 bounds,
                 beyond: 0.03,
                 claim: match name {
-                    "smooth" if fine[0] == 17 => Claim::Every,
-                    "smooth" if fine[0] == 9 && embedment < 1.0 => Claim::Extrapolated,
+                    "smooth" => Claim::Fine,
                     _ => Claim::None,
                 },
                 meshes,
