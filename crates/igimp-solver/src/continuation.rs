@@ -280,7 +280,10 @@ mod tests {
             state.retry(failures, 8.0, &settings);
             state.size
         });
-        assert_eq!(sizes, [4.0, 2.0, 16.0, 32.0]);
+        assert_eq!(
+            sizes.map(f64::to_bits),
+            [4.0_f64, 2.0, 16.0, 32.0].map(f64::to_bits)
+        );
         assert_eq!(state.most_failures(&settings), 4);
         assert_eq!(state.working, settings.direct_steps);
     }
