@@ -88,8 +88,8 @@ pub(super) fn raises_to_associated(study: &mut Study, level: Level) -> Result<()
 /// The largest value; not a number if one is not.
 fn largest(values: impl Iterator<Item = f64>) -> f64 {
     values.fold(f64::NEG_INFINITY, |most, value| {
-        if value.is_nan() {
-            value
+        if most.is_nan() || value.is_nan() {
+            f64::NAN
         } else {
             most.max(value)
         }
