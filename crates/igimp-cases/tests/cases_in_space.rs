@@ -12,7 +12,7 @@ use std::sync::atomic::AtomicBool;
 use igimp_cases::case::Case;
 use igimp_cases::input::CaseFile;
 use igimp_cases::run::{Event, Run, Start, in_memory, run};
-use igimp_cases::summary::StageOutcome;
+use igimp_cases::summary::{PathEnd, SafetySummary, StageOutcome};
 use resuming::{assert_done, assert_equal, everything, run_into};
 
 /// Ground of 3 m by 1.5 m by 1.5 m, at rest with K0 = 0.5; a cube of fill comes, and a slice of the ground goes.
@@ -376,6 +376,54 @@ fn a_slope_loses_its_strength() {
         assert!(part.summary.interrupted, "{steps}");
         written(&file, &stopped, Start::Resume, None);
         assert_same_files(&whole, &stopped, &format!("after {steps} steps"));
+    }
+}
+
+/// GOAL: whatever solves the linear systems, a path of equilibria comes to the same limit and says the same of what decides it: an
+/// iteration takes the load factor along, a factorisation eliminates it. The bits are the same on any number of threads.
+/// ORACLE: factors in double precision.
+#[test]
+fn every_linear_solver_follows_a_path() {
+    let frictional = SLOPE
+        .replace("\"tresca\"", "\"mohr-coulomb\"")
+        .replace("poisson = 0.49", "poisson = 0.3")
+        .replace(
+            "cu = \"12 kPa\"",
+            "cohesion = \"5 kPa\"\nfriction = \"25 deg\"",
+        );
+    for (text, cell) in [(SLOPE, "0.5 m"), (&frictional, "0.5 m")] {
+        let safety = |kind: &str, threads: usize| {
+            let settings = [
+                format!("grid.cell={cell}"),
+                format!("solver.linear=\"{kind}\""),
+            ];
+            let mut case = case(text, &[&settings[0], &settings[1]]);
+            case.stages.truncate(2);
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+            let run = pool.build().unwrap().install(|| in_memory(&case).unwrap());
+            let stage = run.summary.stages[1].clone();
+            let linear = stage.linear.unwrap();
+            let sentence = linear.sentence();
+            assert!(
+                kind == "auto" || linear.method.starts_with(kind),
+                "{sentence}"
+            );
+            stage.safety.unwrap()
+        };
+        let expected = safety("auto", 1);
+        let told = expected.path.as_ref().unwrap();
+        assert_eq!(told.end, PathEnd::Limit);
+        for kind in ["multigrid", "single"] {
+            let found = safety(kind, 1);
+            assert_eq!(found, safety(kind, 2), "{kind}: bits");
+            let off = found.stable.unwrap() / expected.stable.unwrap() - 1.0;
+            assert!(off.abs() < 5e-4, "{kind}: {off}");
+            let shares = |of: &SafetySummary| of.path.clone().unwrap().shares.unwrap().materials;
+            for (own, other) in shares(&found).iter().zip(&shares(&expected)) {
+                let apart = (own.cohesion - other.cohesion).abs();
+                assert!(apart < 0.02, "{kind}: {own:?} and {other:?}");
+            }
+        }
     }
 }
 

@@ -86,10 +86,6 @@ impl Guard {
     }
 }
 
-/// Relative residual of the systems of the grid where there are rigid bodies, whose equations are made of their
-/// solutions \[-\].
-const OF_BODIES: f64 = 1e-10;
-
 /// What makes the corrections of one step.
 ///
 /// The first one uses the elastic tangent, all others the consistent tangent; the last one may use that
@@ -106,7 +102,7 @@ pub(crate) struct Corrector<'s, 'w, const D: usize> {
     matrix: &'w mut TangentMatrix,
     du: &'w mut Vec<f64>,
     history: &'w mut ResidualHistory,
-    /// The unknowns of rigid bodies in the matrix factorised last.
+    /// Solutions with the matrix factorised last.
     bordered: Bordered,
     /// Whether the matrix is the tangent at u, or that before the last correction.
     is_current: bool,
@@ -114,6 +110,8 @@ pub(crate) struct Corrector<'s, 'w, const D: usize> {
     guard: Option<Guard>,
     /// The load factor, where it is unknown.
     pub(crate) factor: Option<FreeFactor<'s, D>>,
+    /// The relative residual that corrections are to come to \[-\].
+    goal: f64,
     /// The particles at u.
     pub(crate) trial: &'w mut Trial<D>,
     /// Number of corrections so far.
@@ -154,6 +152,7 @@ impl<'s, 'w, const D: usize> Corrector<'s, 'w, D> {
             is_current: true,
             guard,
             factor: None,
+            goal: settings.tolerance,
             trial,
             iterations: 0,
             times: PhaseTimes {
@@ -171,7 +170,10 @@ impl<'s, 'w, const D: usize> Corrector<'s, 'w, D> {
 
     /// The same with a load factor that is unknown.
     pub(crate) fn on_path(mut self, factor: FreeFactor<'s, D>) -> Self {
-        self.guard = self.guard.or(Some(Guard::ON_PATH));
+        self.guard = Some(match self.guard {
+            Some(_) => Guard::WITHOUT_STIFFNESS,
+            None => Guard::ON_PATH,
+        });
         self.factor = Some(factor);
         self
     }
@@ -217,10 +219,12 @@ impl<'s, 'w, const D: usize> Corrector<'s, 'w, D> {
         if iterations == self.settings.max_iterations {
             return Err(StepFailure::MaxIterations { iterations });
         }
-        if !self.is_current && !self.history.factors_suffice(self.settings.tolerance) {
+        self.goal = self.goal_at(u, residual);
+        if !self.is_current && !self.history.factors_suffice(self.goal) {
             self.linearise_again(u)?;
         }
-        self.solver.ask_for(self.demand(residual));
+        self.solver
+            .ask_for(self.history.forcing(residual, self.goal));
         let mut force = residual.force.clone();
         if let Some(factor) = &self.factor {
             force.push(factor.missing(&self.system.by_unknown(u)));
@@ -235,6 +239,16 @@ impl<'s, 'w, const D: usize> Corrector<'s, 'w, D> {
         }
         self.iterations += 1;
         Ok(())
+    }
+
+    /// The relative residual that corrections are to come to from `u`: the tolerance, and less where that leaves the load factor in
+    /// doubt.
+    fn goal_at(&self, u: &[[f64; D]], residual: &OutOfBalance) -> f64 {
+        let tolerance = self.settings.tolerance;
+        self.factor.as_ref().map_or(tolerance, |factor| {
+            let share = factor.share_wanted(&self.system.by_unknown(u), residual);
+            tolerance.min(share * residual.relative_norm)
+        })
     }
 
     /// The tangent at `u` once more.
@@ -281,7 +295,7 @@ impl<'s, 'w, const D: usize> Corrector<'s, 'w, D> {
         }
         timed(&mut self.times.solve, || {
             if self.is_current {
-                self.bordered = Bordered::factor(self.solver, self.matrix)?;
+                self.bordered = Bordered::default();
             }
             self.du.resize(force.len(), 0.0);
             self.bordered
@@ -315,16 +329,6 @@ impl<'s, 'w, const D: usize> Corrector<'s, 'w, D> {
         }
     }
 
-    /// How small the relative residual of the linear system has to become.
-    fn demand(&self, residual: &OutOfBalance) -> f64 {
-        let of_bodies = self.matrix.border.len() - usize::from(self.factor.is_some());
-        if of_bodies == 0 {
-            self.history.forcing(residual, self.settings.tolerance)
-        } else {
-            OF_BODIES
-        }
-    }
-
     /// How the linear systems were solved so far.
     pub(crate) fn effort(&self) -> LinearEffort {
         self.solver.effort()
@@ -338,7 +342,7 @@ impl<'s, 'w, const D: usize> Corrector<'s, 'w, D> {
         u: &mut [[f64; D]],
         residual: &mut OutOfBalance,
     ) -> Result<(), StepFailure> {
-        let with_tangent = !self.history.factors_will_suffice(self.settings.tolerance);
+        let with_tangent = !self.history.factors_will_suffice(self.goal);
         self.is_current = with_tangent;
         let clock = Instant::now();
         let mut halvings = 0;

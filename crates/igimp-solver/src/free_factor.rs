@@ -15,8 +15,10 @@ const LARGEST_CHANGE: f64 = 0.2;
 /// Work that a converged step may miss, as a share of what was asked for \[-\].
 const WORK_MISSED: f64 = 1e-6;
 
-/// What the residual of a converged step may make of the load factor, as a share of it \[-\].
+/// What the residual of a converged step may make of the load factor, as a share of it, in general and where corrections are
+/// guarded in space: the last digits are the dear ones there \[-\].
 const FACTOR_IN_DOUBT: f64 = 2e-5;
+const FACTOR_IN_DOUBT_IN_SPACE: f64 = 1e-4;
 
 /// A step that begins with a guess.
 #[derive(Clone, Debug)]
@@ -39,6 +41,8 @@ pub(crate) struct FreeFactor<'p, const D: usize> {
     pub(crate) at: f64,
     /// Whether the body moved as a mechanism in the step before: its tangent without a border may then be singular.
     pub(crate) is_mechanism: bool,
+    /// What the residual may make of the load factor, as a share of it \[-\].
+    in_doubt: f64,
     /// Gross work of the external force on the step that is asked for \[force·length\].
     work: f64,
     /// External force at the start of the step along the guess, by unknown \[force\].
@@ -64,6 +68,11 @@ impl<'p, const D: usize> FreeFactor<'p, D> {
             from,
             at: guess.factor,
             is_mechanism: guess.is_mechanism,
+            in_doubt: if D == 3 && system.flows_without_potential() {
+                FACTOR_IN_DOUBT_IN_SPACE
+            } else {
+                FACTOR_IN_DOUBT
+            },
             work,
             force: system.force_along(&guess.u),
             slope: Vec::new(),
@@ -127,7 +136,12 @@ impl<'p, const D: usize> FreeFactor<'p, D> {
     pub(crate) fn is_found(&self, u: &[f64], residual: &OutOfBalance) -> bool {
         let missed = (self.work - product(&self.force, u)).abs();
         let doubt = self.doubt(u, residual);
-        missed <= WORK_MISSED * self.work && (residual.is_round_off || doubt <= FACTOR_IN_DOUBT)
+        missed <= WORK_MISSED * self.work && (residual.is_round_off || doubt <= self.in_doubt)
+    }
+
+    /// What has to be left of a residual at displacements by unknown, so that it leaves no doubt in the load factor \[-\].
+    pub(crate) fn share_wanted(&self, u: &[f64], residual: &OutOfBalance) -> f64 {
+        self.in_doubt / self.doubt(u, residual)
     }
 
     /// By how much the residual puts the load factor in doubt, as a share of it: its work on the step over that of

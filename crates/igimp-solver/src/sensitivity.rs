@@ -17,6 +17,9 @@ use crate::report::StepFailure;
 /// Shares of the elastic tangent at which a singular tangent is tried again \[-\].
 const REGULARISED: [f64; 5] = [1e-4, 1e-3, 1e-2, 0.1, 1.0];
 
+/// Relative residual of their systems where they are iterated for \[-\].
+const OF_ANSWERS: f64 = 1e-6;
+
 /// Most factors that a kinematic one is looked for among, the change at which it is found, and the least share of the work
 /// in plastic flow with which the search goes on \[-\].
 const MOST_FACTORS: usize = 60;
@@ -72,8 +75,16 @@ impl<const D: usize> Increment<'_, D> {
             changes.push(difference(&system.out_of_balance(&trial)?, &here));
         }
         system.exchange(self.conditions.clone(), &self.body.load_points)?;
-        let works = self.works((&system, &force), &changes, workspace)?;
-        Ok(works[1..].iter().map(|work| -work / works[0]).collect())
+        let (by_factor, changes) = (&changes[0], &changes[1..]);
+        // Of the size of forces, and of forces over lengths, as the entries of the tangent.
+        let size = product(&force, &force).sqrt();
+        let of_column = size / product(by_factor, by_factor).sqrt();
+        let of_row = size / product(&force, &system.by_unknown(self.u));
+        let column: Vec<f64> = by_factor.iter().map(|own| -of_column * own).collect();
+        let row: Vec<f64> = force.iter().map(|own| of_row * own).collect();
+        let mut answers = self.answers(&system, (&column, &row), changes, workspace)?;
+        answers.iter_mut().for_each(|own| *own *= of_column);
+        Ok(answers)
     }
 
     /// The strength reduction factor at which plastic flow by the normality rule dissipates the work that the step has for
@@ -131,11 +142,13 @@ impl<const D: usize> Increment<'_, D> {
         Ok(system.with_load_points(load_points)?.sharing(pattern))
     }
 
-    /// The work of the external force on the displacements by which the tangent of the step answers changes of the
-    /// out-of-balance force \[force·length\]; where it is singular with a share of the elastic tangent.
-    fn works(
+    /// What keeps equilibrium at no work of the external force after each change of the out-of-balance force: by how much the
+    /// load factor answers, with the column and the row that it has beside the tangent of the step; where that is singular with a
+    /// share of the elastic tangent.
+    fn answers(
         &self,
-        (system, force): (&System<'_, D>, &[f64]),
+        system: &System<'_, D>,
+        (column, row): (&[f64], &[f64]),
         changes: &[Vec<f64>],
         workspace: &mut Workspace<D>,
     ) -> Result<Vec<f64>, StepFailure> {
@@ -152,8 +165,9 @@ impl<const D: usize> Increment<'_, D> {
         let mut shares = REGULARISED.into_iter();
         loop {
             system.linearise_into(self.u, kind, trial, matrix)?;
-            let error = match works_of((matrix, force), changes, &mut **solver) {
-                Ok(works) => return Ok(works),
+            matrix.border.append(column, row, 0.0);
+            let error = match last_of_each(matrix, changes, &mut **solver) {
+                Ok(answers) => return Ok(answers),
                 Err(error) => error,
             };
             match shares.next() {
@@ -166,24 +180,31 @@ impl<const D: usize> Increment<'_, D> {
     }
 }
 
-/// The work of a force on what a matrix makes of each change.
-fn works_of(
-    (matrix, force): (&TangentMatrix, &[f64]),
-    changes: &[Vec<f64>],
+/// The last unknown of the solution for each right-hand side, whose own last entry is zero.
+fn last_of_each(
+    matrix: &TangentMatrix,
+    sides: &[Vec<f64>],
     solver: &mut dyn LinearSolver,
 ) -> Result<Vec<f64>, LinearSolverError> {
     solver.factor(matrix)?;
-    let bordered = Bordered::factor(solver, matrix)?;
-    let mut moved = vec![0.0; force.len()];
-    let work_of = |change: &Vec<f64>| {
-        bordered.solve(solver, matrix, change, &mut moved)?;
-        Ok(force.iter().zip(&moved).map(|(f, u)| f * u).sum())
+    let mut bordered = Bordered::default();
+    let last_of = |side: &Vec<f64>| {
+        let mut rhs = side.clone();
+        rhs.push(0.0);
+        let mut solution = vec![0.0; rhs.len()];
+        solver.ask_for(OF_ANSWERS);
+        bordered.solve(solver, matrix, &rhs, &mut solution)?;
+        Ok(solution[side.len()])
     };
-    changes.iter().map(work_of).collect()
+    sides.iter().map(last_of).collect()
 }
 
 /// The change of the out-of-balance force, by unknown \[force\].
 fn difference(then: &OutOfBalance, now: &OutOfBalance) -> Vec<f64> {
     let both = then.force.iter().zip(&now.force);
     both.map(|(then, now)| then - now).collect()
+}
+
+fn product(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

@@ -183,6 +183,55 @@ fn cut_cells_cost_no_iterations() {
     }
 }
 
+/// GOAL: a border is iterated for with the grid, in hardly more iterations than the grid alone; the equations of the border are met, of
+/// which the last one is a constraint without a diagonal.
+/// ORACLE: the whole matrix itself.
+#[test]
+fn a_border_is_iterated_for_with_the_grid() {
+    for law in [elastic(0.3), von_mises(), mohr_coulomb()] {
+        let (mut matrix, force) = equations(&ground::<3>(&law, 9, 7, |_| false));
+        let alone = iterations(&(matrix.clone(), force.clone()));
+        let mut random = Random(11);
+        let mut side = |len: usize| -> Vec<f64> { (0..len).map(|_| random.symmetric()).collect() };
+        let diagonal: f64 = matrix.diagonal().fold(0.0, f64::max);
+        for corner in [diagonal, 0.0] {
+            let unknowns = force.len() + matrix.border.len();
+            let (column, row) = (side(unknowns), side(unknowns));
+            matrix.border.append(&column, &row, corner);
+        }
+        let rhs: Vec<f64> = force.iter().copied().chain([3.0, -2.0]).collect();
+        for kind in [SolverKind::Multigrid, SolverKind::Single] {
+            let mut solver = kind.build();
+            solver.ask_for(1e-10);
+            solver.factor(&matrix).unwrap();
+            let mut found = vec![0.0; rhs.len()];
+            let report = solver.iterate(&matrix, &rhs, &mut found).unwrap().unwrap();
+            assert!(
+                report.refinements <= alone + 10,
+                "{report:?}, {alone} alone"
+            );
+            let (grid, border) = found.split_at(force.len());
+            let mut product = vec![0.0; force.len()];
+            matrix.multiply(grid, &mut product);
+            let parts = &matrix.border;
+            for (column, by) in parts.columns.iter().zip(border) {
+                let own = product.iter_mut().zip(column);
+                own.for_each(|(product, entry)| *product += entry * by);
+            }
+            for (row, corner) in parts.rows.iter().zip(&parts.corner) {
+                let sums = [(&row[..], grid), (corner, border)];
+                let sums = sums.map(|(a, b)| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>());
+                product.push(sums[0] + sums[1]);
+            }
+            assert!(off(&product, &rhs) < 1e-8, "{kind:?}");
+        }
+        let mut direct = SolverKind::Multifrontal.build();
+        direct.factor(&matrix).unwrap();
+        let mut found = vec![0.0; rhs.len()];
+        assert_eq!(direct.iterate(&matrix, &rhs, &mut found), Ok(None));
+    }
+}
+
 #[test]
 fn planes_are_solved_too() {
     let slope = |[x, y]: [usize; 2]| x + y > 34;

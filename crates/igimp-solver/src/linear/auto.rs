@@ -201,7 +201,8 @@ impl AutoSolver {
         })
     }
 
-    /// Factorises after an iteration was given up: in double precision if the factors fit, else in single.
+    /// Factorises after an iteration was given up: in double precision if the factors fit or those in single did not serve, else in
+    /// single.
     fn factorise_instead(
         &mut self,
         matrix: &TangentMatrix,
@@ -209,6 +210,9 @@ impl AutoSolver {
     ) -> Result<(), LinearSolverError> {
         let (factors, allowed) = (self.engine.cost(matrix.symmetric).0, self.factor_bytes);
         self.effort.lost_iterations += iterations;
+        if self.state == State::InSingle {
+            return self.without_single(matrix, iterations);
+        }
         let in_single = factors > allowed;
         self.effort.reason = if in_single {
             Reason::OnlySingle {
@@ -228,22 +232,20 @@ impl AutoSolver {
         self.factorise(matrix)
     }
 
-    /// Solves with factors in single precision; in double precision where they do not serve and there is room.
-    fn solve_in_single(
-        &mut self,
-        matrix: &TangentMatrix,
-        rhs: &[f64],
-        solution: &mut [f64],
-    ) -> Result<SolveReport, LinearSolverError> {
-        let found = (self.engine).solve_single(matrix, rhs, solution, self.asked);
-        let iterations = match found {
-            Err(LinearSolverError::NotConverged { iterations, .. }) if self.in_single => iterations,
-            Err(error) => return Err(self.without_room(error, matrix)),
-            solved => return solved,
+    /// What an iteration of at most so many steps must come to. Who asks for more than is accepted of factors needs it.
+    fn demand(&self, most: usize, may_fall_back: bool) -> Demand {
+        let usual = self.engine.accuracy.tolerance;
+        let (tolerance, patience) = if may_fall_back || self.asked < usual {
+            (usual, most)
+        } else {
+            (INEXACT, PATIENCE)
         };
-        self.effort.lost_iterations += iterations;
-        self.without_single(matrix, iterations)?;
-        self.engine.solve(matrix, rhs, solution)
+        Demand {
+            target: self.asked,
+            tolerance,
+            patience,
+            most,
+        }
     }
 
     /// An error with what factors would take, if an iteration did not converge that they have no room beside.
@@ -347,49 +349,45 @@ impl LinearSolver for AutoSolver {
         rhs: &[f64],
         solution: &mut [f64],
     ) -> Result<SolveReport, LinearSolverError> {
-        let (most, may_fall_back) = match self.state {
-            State::Nothing => return Err(LinearSolverError::NotFactored),
-            State::Factorised => {
-                let report = self.engine.solve(matrix, rhs, solution)?;
-                self.count(&report);
-                return Ok(report);
+        if let Some(report) = self.iterate(matrix, rhs, solution)? {
+            return Ok(report);
+        }
+        let report = self.engine.solve(matrix, rhs, solution)?;
+        self.count(&report);
+        Ok(report)
+    }
+
+    fn iterate(
+        &mut self,
+        matrix: &TangentMatrix,
+        rhs: &[f64],
+        solution: &mut [f64],
+    ) -> Result<Option<SolveReport>, LinearSolverError> {
+        loop {
+            let (found, may_fall_back) = match self.state {
+                State::Nothing => return Err(LinearSolverError::NotFactored),
+                State::Factorised => return Ok(None),
+                State::InSingle => {
+                    let engine = &mut self.engine;
+                    let found = engine.solve_single(matrix, rhs, solution, self.asked);
+                    (found, self.in_single)
+                }
+                State::Iterating(most, may_fall_back) => {
+                    let demand = self.demand(most, may_fall_back);
+                    let found = self.iteration.solve(matrix, rhs, solution, &demand);
+                    (found, may_fall_back)
+                }
+            };
+            match found {
+                Ok(report) => {
+                    self.count(&report);
+                    return Ok(Some(report));
+                }
+                Err(LinearSolverError::NotConverged { iterations, .. }) if may_fall_back => {
+                    self.factorise_instead(matrix, iterations)?;
+                }
+                Err(error) => return Err(self.without_room(error, matrix)),
             }
-            State::InSingle => {
-                let report = self.solve_in_single(matrix, rhs, solution)?;
-                self.count(&report);
-                return Ok(report);
-            }
-            State::Iterating(most, may_fall_back) => (most, may_fall_back),
-        };
-        // Who asks for more than is accepted of factors, as rigid bodies do, needs it.
-        let usual = self.engine.accuracy.tolerance;
-        let (tolerance, patience) = if may_fall_back || self.asked < usual {
-            (usual, most)
-        } else {
-            (INEXACT, PATIENCE)
-        };
-        let demand = Demand {
-            target: self.asked,
-            tolerance,
-            patience,
-            most,
-        };
-        match self.iteration.solve(matrix, rhs, solution, &demand) {
-            Ok(report) => {
-                self.count(&report);
-                Ok(report)
-            }
-            Err(LinearSolverError::NotConverged { iterations, .. }) if may_fall_back => {
-                self.factorise_instead(matrix, iterations)?;
-                let report = if self.state == State::InSingle {
-                    self.solve_in_single(matrix, rhs, solution)?
-                } else {
-                    self.engine.solve(matrix, rhs, solution)?
-                };
-                self.count(&report);
-                Ok(report)
-            }
-            Err(error) => Err(self.without_room(error, matrix)),
         }
     }
 

@@ -1,35 +1,42 @@
-//! Systems with a border: the unknowns of rigid bodies, eliminated last (theory, eq. 49).
+//! Systems with a border: the unknowns of rigid bodies and the load factor, eliminated last (theory, eq. 49).
 
 use igimp_assembly::{Border, TangentMatrix};
 
 use super::refine::max_norm;
 use super::{Accuracy, LinearSolver, LinearSolverError};
 
-/// The Schur complement of the unknowns of rigid bodies, S = K_bb − K_bg K_gg⁻¹ K_gb, with what it is
-/// made of.
-#[derive(Debug, Default)]
-pub(crate) struct Bordered {
-    /// K_gg⁻¹ K_gb by unknown of a body.
+/// Relative residual of the systems of the grid by which a border is eliminated: its equations are made of their
+/// solutions \[-\].
+const OF_ELIMINATION: f64 = 1e-10;
+
+/// What solves for the unknowns of the grid, or nearly so: the second vector from the first.
+pub(super) type Inverse<'a> = dyn FnMut(&[f64], &mut [f64]) -> Result<(), LinearSolverError> + 'a;
+
+/// The Schur complement of the unknowns of a border, S = K_bb − K_bg K_gg⁻¹ K_gb, with what it is made of. With a
+/// preconditioner for K_gg⁻¹ it makes one for all unknowns, which meets the equations of the border.
+#[derive(Debug)]
+pub(super) struct Elimination {
+    /// K_gg⁻¹ K_gb by unknown of the border.
     carried: Vec<Vec<f64>>,
     /// S by rows.
     schur: Vec<Vec<f64>>,
 }
 
-impl Bordered {
-    /// Eliminates the grid from the border of the matrix that the solver factorised last.
-    pub(crate) fn factor(
-        solver: &mut dyn LinearSolver,
-        matrix: &TangentMatrix,
+impl Elimination {
+    /// Eliminates the grid from a border.
+    pub(super) fn new(
+        border: &Border,
+        inverse: &mut Inverse<'_>,
     ) -> Result<Self, LinearSolverError> {
         let Border {
             columns,
             rows,
             corner,
-        } = &matrix.border;
+        } = border;
         let mut carried = Vec::with_capacity(columns.len());
         for column in columns {
             let mut own = vec![0.0; column.len()];
-            solver.solve(matrix, column, &mut own)?;
+            inverse(column, &mut own)?;
             carried.push(own);
         }
         let mut schur = corner.clone();
@@ -41,19 +48,73 @@ impl Bordered {
         Ok(Self { carried, schur })
     }
 
-    /// Solves for all unknowns: those of the grid first, those of the bodies behind them. As for the grid alone,
-    /// the solution is checked against the whole matrix, and refined once where that helps.
-    pub(crate) fn solve(
+    /// Solves for all unknowns: those of the grid first, those of the border behind them.
+    pub(super) fn solve(
         &self,
+        border: &Border,
+        inverse: &mut Inverse<'_>,
+        rhs: &[f64],
+        solution: &mut [f64],
+    ) -> Result<(), LinearSolverError> {
+        let of_grid = rhs.len() - self.schur.len();
+        let (grid, behind) = solution.split_at_mut(of_grid);
+        inverse(&rhs[..of_grid], grid)?;
+        let left: Vec<f64> = rhs[of_grid..]
+            .iter()
+            .zip(&border.rows)
+            .map(|(force, row)| force - product(row, grid))
+            .collect();
+        let of_border =
+            eliminate(self.schur.clone(), left).map_err(|unknown| LinearSolverError::Singular {
+                unknown: Some(of_grid + unknown),
+            })?;
+        for (carried, by) in self.carried.iter().zip(&of_border) {
+            for (own, share) in grid.iter_mut().zip(carried) {
+                *own -= by * share;
+            }
+        }
+        behind.copy_from_slice(&of_border);
+        Ok(())
+    }
+}
+
+/// Solutions of systems with a border, for the matrix that a solver factorised last.
+#[derive(Debug, Default)]
+pub(crate) struct Bordered {
+    /// The border eliminated by the factors at hand, from the first solution on.
+    elimination: Option<Elimination>,
+}
+
+impl Bordered {
+    /// Solves for all unknowns: those of the grid first, those of the border behind them. What a solver does not iterate
+    /// for at once is eliminated. As for the grid alone, such a solution is checked against the whole matrix, and
+    /// refined once where that helps.
+    pub(crate) fn solve(
+        &mut self,
         solver: &mut dyn LinearSolver,
         matrix: &TangentMatrix,
         rhs: &[f64],
         solution: &mut [f64],
     ) -> Result<(), LinearSolverError> {
-        self.solve_once(solver, matrix, rhs, solution)?;
-        if self.schur.is_empty() {
+        let border = &matrix.border;
+        if border.is_empty() {
+            solver.solve(matrix, rhs, solution)?;
             return Ok(());
         }
+        if solver.iterate(matrix, rhs, solution)?.is_some() {
+            return Ok(());
+        }
+        solver.ask_for(OF_ELIMINATION);
+        let mut inverse = |force: &[f64], moved: &mut [f64]| {
+            solver.solve(matrix, force, moved)?;
+            Ok(())
+        };
+        let elimination = match self.elimination.take() {
+            Some(earlier) => earlier,
+            None => Elimination::new(border, &mut inverse)?,
+        };
+        let elimination = self.elimination.insert(elimination);
+        elimination.solve(border, &mut inverse, rhs, solution)?;
         let Accuracy {
             target, tolerance, ..
         } = Accuracy::default();
@@ -64,7 +125,7 @@ impl Bordered {
             return Ok(());
         }
         let mut refined = vec![0.0; rhs.len()];
-        self.solve_once(solver, matrix, &residual, &mut refined)?;
+        elimination.solve(border, &mut inverse, &residual, &mut refined)?;
         for (own, first) in refined.iter_mut().zip(&*solution) {
             *own += first;
         }
@@ -83,57 +144,31 @@ impl Bordered {
             })
         }
     }
+}
 
-    /// The same without the check.
-    fn solve_once(
-        &self,
-        solver: &mut dyn LinearSolver,
-        matrix: &TangentMatrix,
-        rhs: &[f64],
-        solution: &mut [f64],
-    ) -> Result<(), LinearSolverError> {
-        let of_grid = rhs.len() - self.schur.len();
-        let (of_soil, of_bodies) = solution.split_at_mut(of_grid);
-        solver.solve(matrix, &rhs[..of_grid], of_soil)?;
-        let rows = &matrix.border.rows;
-        let left: Vec<f64> = rhs[of_grid..]
-            .iter()
-            .zip(rows)
-            .map(|(force, row)| force - product(row, of_soil))
-            .collect();
-        let motion =
-            eliminate(self.schur.clone(), left).map_err(|unknown| LinearSolverError::Singular {
-                unknown: Some(of_grid + unknown),
-            })?;
-        for (carried, by) in self.carried.iter().zip(&motion) {
-            for (own, share) in of_soil.iter_mut().zip(carried) {
-                *own -= by * share;
-            }
+/// The product of a matrix and its border with all unknowns, that with the matrix of the grid being in the rows of the grid
+/// of `y`.
+pub(super) fn add_border(border: &Border, x: &[f64], y: &mut [f64]) {
+    let of_grid = x.len() - border.len();
+    let (grid, behind) = x.split_at(of_grid);
+    let (of_grid, of_border) = y.split_at_mut(of_grid);
+    for (column, by) in border.columns.iter().zip(behind) {
+        for (own, entry) in of_grid.iter_mut().zip(column) {
+            *own += by * entry;
         }
-        of_bodies.copy_from_slice(&motion);
-        Ok(())
+    }
+    for (own, (row, entries)) in (of_border.iter_mut()).zip(border.rows.iter().zip(&border.corner))
+    {
+        *own = product(row, grid) + product(entries, behind);
     }
 }
 
 /// The largest entry of b − K x over all unknowns, which is left in `residual`; infinite where it is not a
 /// number.
 fn residual_of(matrix: &TangentMatrix, rhs: &[f64], x: &[f64], residual: &mut [f64]) -> f64 {
-    let Border {
-        columns,
-        rows,
-        corner,
-    } = &matrix.border;
-    let (of_soil, of_bodies) = x.split_at(x.len() - corner.len());
-    let (soil, bodies) = residual.split_at_mut(of_soil.len());
-    matrix.multiply(of_soil, soil);
-    for (column, by) in columns.iter().zip(of_bodies) {
-        for (own, entry) in soil.iter_mut().zip(column) {
-            *own += by * entry;
-        }
-    }
-    for (own, (row, entries)) in bodies.iter_mut().zip(rows.iter().zip(corner)) {
-        *own = product(row, of_soil) + product(entries, of_bodies);
-    }
+    let of_grid = x.len() - matrix.border.len();
+    matrix.multiply(&x[..of_grid], &mut residual[..of_grid]);
+    add_border(&matrix.border, x, residual);
     for (own, rhs) in residual.iter_mut().zip(rhs) {
         *own = rhs - *own;
     }
@@ -250,8 +285,7 @@ mod tests {
         };
         let mut solver = Sloppy { error };
         let mut solution = vec![0.0; 3];
-        let bordered = Bordered::factor(&mut solver, &matrix)?;
-        bordered.solve(&mut solver, &matrix, &[1.0, 2.0, 3.0], &mut solution)?;
+        Bordered::default().solve(&mut solver, &matrix, &[1.0, 2.0, 3.0], &mut solution)?;
         Ok(solution)
     }
 

@@ -88,6 +88,20 @@ pub trait LinearSolver: Send {
         solution: &mut [f64],
     ) -> Result<SolveReport, LinearSolverError>;
 
+    /// Solves K x = `rhs` for all unknowns at once, those of the border of the matrix behind those of the grid, where the solver
+    /// iterates; nothing where it solves for the grid alone, and the border is to be eliminated.
+    ///
+    /// # Errors
+    /// As [`LinearSolver::solve`].
+    fn iterate(
+        &mut self,
+        _matrix: &TangentMatrix,
+        _rhs: &[f64],
+        _solution: &mut [f64],
+    ) -> Result<Option<SolveReport>, LinearSolverError> {
+        Ok(None)
+    }
+
     /// How many patterns were analysed since construction: shows that symbolic work is reused.
     fn analyses(&self) -> usize;
 

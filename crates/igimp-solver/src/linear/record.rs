@@ -50,6 +50,20 @@ impl Record {
         self.kept().take()
     }
 
+    /// Keeps a system if it is the one that is wanted, or comes before it.
+    fn keep(&self, matrix: &TangentMatrix, rhs: &[f64], solution: &[f64]) {
+        let mut kept = self.kept();
+        let solved = number(kept.as_ref());
+        if solved < self.wanted {
+            *kept = Some(SolvedSystem {
+                number: solved + 1,
+                matrix: matrix.clone(),
+                rhs: rhs.to_vec(),
+                solution: solution.to_vec(),
+            });
+        }
+    }
+
     /// What is kept is whole at any moment, also after a panic elsewhere.
     fn kept(&self) -> MutexGuard<'_, Option<SolvedSystem>> {
         self.kept.lock().unwrap_or_else(PoisonError::into_inner)
@@ -91,15 +105,19 @@ impl LinearSolver for Recorded {
         solution: &mut [f64],
     ) -> Result<SolveReport, LinearSolverError> {
         let report = self.solver.solve(matrix, rhs, solution)?;
-        let mut kept = self.record.kept();
-        let solved = number(kept.as_ref());
-        if solved < self.record.wanted {
-            *kept = Some(SolvedSystem {
-                number: solved + 1,
-                matrix: matrix.clone(),
-                rhs: rhs.to_vec(),
-                solution: solution.to_vec(),
-            });
+        self.record.keep(matrix, rhs, solution);
+        Ok(report)
+    }
+
+    fn iterate(
+        &mut self,
+        matrix: &TangentMatrix,
+        rhs: &[f64],
+        solution: &mut [f64],
+    ) -> Result<Option<SolveReport>, LinearSolverError> {
+        let report = self.solver.iterate(matrix, rhs, solution)?;
+        if report.is_some() {
+            self.record.keep(matrix, rhs, solution);
         }
         Ok(report)
     }

@@ -6,6 +6,7 @@
 
 use igimp_assembly::TangentMatrix;
 
+use super::super::bordered::{Elimination, add_border};
 use super::super::refine::max_norm;
 use super::super::{LinearSolverError, SolveReport, check};
 use super::krylov::{Operators, conjugate_gradients, minimal_residuals, norm};
@@ -48,8 +49,8 @@ pub(in crate::linear) struct Preconditioned {
 }
 
 impl Preconditioned {
-    /// Solves K x = b with `precondition`, which makes z ≈ K⁻¹ r of r. The error of one that did not converge leaves open what
-    /// factors would take.
+    /// Solves K x = b with `precondition`, which makes z ≈ K⁻¹ r of r: for the grid, or for all unknowns where b has those of the
+    /// border too. The error of one that did not converge leaves open what factors would take.
     pub(in crate::linear) fn solve(
         &mut self,
         (matrix, rhs): (&TangentMatrix, &[f64]),
@@ -58,7 +59,9 @@ impl Preconditioned {
         method: Method,
         precondition: &mut dyn FnMut(&[f64], &mut [f64]),
     ) -> Result<SolveReport, LinearSolverError> {
-        let unknowns = matrix.pattern.unknowns();
+        let of_grid = matrix.pattern.unknowns();
+        let with_border = rhs.len() > of_grid;
+        let unknowns = of_grid + if with_border { matrix.border.len() } else { 0 };
         check::length("the right-hand side", rhs.len(), unknowns)?;
         check::length("the solution", solution.len(), unknowns)?;
         check::finite("right-hand side", rhs)?;
@@ -68,6 +71,7 @@ impl Preconditioned {
             mut by_gradients,
             names: [gradients, residuals],
         } = method;
+        by_gradients &= !with_border;
         let name = if by_gradients { gradients } else { residuals };
         let mut report = SolveReport::new(name, 0.0, 0);
         if largest == 0.0 {
@@ -85,7 +89,12 @@ impl Preconditioned {
             matrix,
             product,
             precondition,
+            elimination: None,
+            failure: Ok(()),
         };
+        if with_border {
+            both.eliminate()?;
+        }
         let (mut reached, mut patience) = (1.0, demand.patience);
         loop {
             let is_patient = report.refinements < patience;
@@ -105,6 +114,7 @@ impl Preconditioned {
             } else {
                 minimal_residuals(&mut both, residual, change, (goal, left), RESTART)
             };
+            std::mem::replace(&mut both.failure, Ok(()))?;
             report.refinements += done.iterations;
             for (x, change) in solution.iter_mut().zip(&*change) {
                 *x += change;
@@ -150,12 +160,26 @@ struct Both<'a> {
     matrix: &'a TangentMatrix,
     product: &'a mut Product,
     precondition: &'a mut dyn FnMut(&[f64], &mut [f64]),
+    /// The border of the matrix, eliminated by the preconditioner, where it is solved for.
+    elimination: Option<Elimination>,
+    /// What went wrong with it.
+    failure: Result<(), LinearSolverError>,
 }
 
 impl Both<'_> {
+    /// Eliminates the border by the preconditioner.
+    fn eliminate(&mut self) -> Result<(), LinearSolverError> {
+        let mut inverse = |r: &[f64], z: &mut [f64]| {
+            (self.precondition)(r, z);
+            Ok(())
+        };
+        self.elimination = Some(Elimination::new(&self.matrix.border, &mut inverse)?);
+        Ok(())
+    }
+
     /// b − K x.
     fn residual(&mut self, rhs: &[f64], x: &[f64], residual: &mut [f64]) {
-        self.product.multiply(self.matrix, x, residual);
+        self.multiply(x, residual);
         for (residual, rhs) in residual.iter_mut().zip(rhs) {
             *residual = rhs - *residual;
         }
@@ -164,10 +188,25 @@ impl Both<'_> {
 
 impl Operators for Both<'_> {
     fn multiply(&mut self, x: &[f64], y: &mut [f64]) {
-        self.product.multiply(self.matrix, x, y);
+        let of_grid = self.matrix.pattern.unknowns();
+        (self.product).multiply(self.matrix, &x[..of_grid], &mut y[..of_grid]);
+        if self.elimination.is_some() {
+            add_border(&self.matrix.border, x, y);
+        }
     }
 
     fn precondition(&mut self, r: &[f64], z: &mut [f64]) {
-        (self.precondition)(r, z);
+        let Some(elimination) = &self.elimination else {
+            return (self.precondition)(r, z);
+        };
+        let mut inverse = |r: &[f64], z: &mut [f64]| {
+            (self.precondition)(r, z);
+            Ok(())
+        };
+        let solved = elimination.solve(&self.matrix.border, &mut inverse, r, z);
+        if solved.is_err() {
+            z.fill(0.0);
+            self.failure = solved;
+        }
     }
 }
