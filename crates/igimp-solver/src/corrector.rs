@@ -64,8 +64,9 @@ impl Guard {
         gives_up: false,
     };
 
-    /// Where a system was singular: soil at the apex has no stiffness.
-    const WITHOUT_STIFFNESS: Self = Self {
+    /// A share that fades with corrections that are taken whole: where a system was singular, as soil at the apex has no stiffness;
+    /// and where the load factor is unknown in space and flow is not associated.
+    const FADING: Self = Self {
         share: 0.01,
         ..Self::ON_PATH
     };
@@ -164,14 +165,14 @@ impl<'s, 'w, const D: usize> Corrector<'s, 'w, D> {
 
     /// The same with guarded corrections and regularised tangents, where a system was singular.
     pub(crate) fn guarded(mut self) -> Self {
-        self.guard = self.guard.or(Some(Guard::WITHOUT_STIFFNESS));
+        self.guard = self.guard.or(Some(Guard::FADING));
         self
     }
 
     /// The same with a load factor that is unknown.
     pub(crate) fn on_path(mut self, factor: FreeFactor<'s, D>) -> Self {
         self.guard = Some(match self.guard {
-            Some(_) => Guard::WITHOUT_STIFFNESS,
+            Some(_) => Guard::FADING,
             None => Guard::ON_PATH,
         });
         self.factor = Some(factor);

@@ -82,9 +82,8 @@ impl<const D: usize> Increment<'_, D> {
         let of_row = size / product(&force, &system.by_unknown(self.u));
         let column: Vec<f64> = by_factor.iter().map(|own| -of_column * own).collect();
         let row: Vec<f64> = force.iter().map(|own| of_row * own).collect();
-        let mut answers = self.answers(&system, (&column, &row), changes, workspace)?;
-        answers.iter_mut().for_each(|own| *own *= of_column);
-        Ok(answers)
+        let answers = self.answers(&system, (&column, &row), changes, workspace)?;
+        Ok(answers.into_iter().map(|own| own * of_column).collect())
     }
 
     /// The strength reduction factor at which plastic flow by the normality rule dissipates the work that the step has for
