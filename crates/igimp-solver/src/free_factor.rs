@@ -157,6 +157,7 @@ impl<'p, const D: usize> FreeFactor<'p, D> {
     }
 }
 
-fn product(a: &[f64], b: &[f64]) -> f64 {
+/// The scalar product of two vectors by unknown.
+pub(crate) fn product(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

@@ -10,6 +10,7 @@ use igimp_assembly::{
 use igimp_material::TangentKind;
 
 use crate::body::Body;
+use crate::free_factor::product;
 use crate::linear::{Bordered, LinearSolver, LinearSolverError};
 use crate::newton::Workspace;
 use crate::report::StepFailure;
@@ -202,8 +203,4 @@ fn last_of_each(
 fn difference(then: &OutOfBalance, now: &OutOfBalance) -> Vec<f64> {
     let both = then.force.iter().zip(&now.force);
     both.map(|(then, now)| then - now).collect()
-}
-
-fn product(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
