@@ -7,7 +7,7 @@ use criterion::{BatchSize, BenchmarkId, Criterion};
 use igimp_benchmarks::block::Block;
 use igimp_benchmarks::equations::{Direct, Equations};
 use igimp_benchmarks::{BenchResult, Set, elements, made, run};
-use igimp_solver::linear::NestedDissection;
+use igimp_linear::NestedDissection;
 
 /// Cells along a side: 5000, 20 000 and 80 000 unknowns.
 const SIZES: [usize; 3] = [50, 100, 200];

@@ -1,7 +1,7 @@
 //! Linear equations as assembly makes them: tangent and out-of-balance force of a block.
 
-use igimp_assembly::TangentMatrix;
-use igimp_solver::linear::{LinearSolver, LinearSolverError, MultifrontalLu, SolverKind};
+use igimp_linear::TangentMatrix;
+use igimp_linear::{LinearSolver, LinearSolverError, MultifrontalLu, SolverKind};
 
 use crate::BenchResult;
 use crate::block::{Block, Soil};

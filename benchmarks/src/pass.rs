@@ -2,7 +2,8 @@
 
 use std::mem::size_of;
 
-use igimp_assembly::{AssemblyError, ParticleTrial, Stencils, System, TangentMatrix, Trial};
+use igimp_assembly::{AssemblyError, ParticleTrial, Stencils, System, Trial};
+use igimp_linear::TangentMatrix;
 use igimp_material::{History, TangentKind, Tensor};
 use igimp_shape::Support;
 

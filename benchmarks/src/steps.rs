@@ -8,7 +8,7 @@ use igimp_assembly::{Method, StepConditions};
 use igimp_cases::case::{Case, StageKind};
 use igimp_cases::run::{Controls, Model};
 use igimp_cases::shipped::find;
-use igimp_solver::linear::SolverKind;
+use igimp_linear::SolverKind;
 use igimp_solver::{
     Accepted, Body, NewtonSettings, Outcome, PhaseTimes, StepReport, Workspace, march, step,
 };

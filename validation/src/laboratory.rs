@@ -5,8 +5,8 @@ use std::ops::ControlFlow;
 use std::time::Instant;
 
 use igimp_assembly::{Method, ParticleSeed};
+use igimp_linear::SolverKind;
 use igimp_shape::{Axis, Grid, ShapeError};
-use igimp_solver::linear::SolverKind;
 use igimp_solver::{
     Accepted, Body, LoadPath, MarchReport, MarchSettings, Observer, Workspace, march,
 };

@@ -10,7 +10,7 @@ use igimp_benchmarks::BenchResult;
 use igimp_benchmarks::block::{Block, Soil};
 use igimp_benchmarks::pass::Pass;
 use igimp_cases::results::linear_system::{About, LinearSystem};
-use igimp_solver::linear::SolvedSystem;
+use igimp_linear::SolvedSystem;
 
 /// Writes the tangent of a cube of soil.
 #[derive(Debug, Parser)]

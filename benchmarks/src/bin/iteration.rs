@@ -10,8 +10,8 @@ use clap::Parser;
 use igimp_benchmarks::BenchResult;
 use igimp_benchmarks::block::{Block, Soil};
 use igimp_benchmarks::pass::Pass;
+use igimp_linear::SolverKind;
 use igimp_material::TangentKind;
-use igimp_solver::linear::SolverKind;
 
 /// Relative residual that is asked for \[-\].
 const ASKED: f64 = 1e-8;

@@ -9,9 +9,9 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use clap::Parser;
-use igimp_assembly::TangentMatrix;
 use igimp_cases::results::linear_system::LinearSystem;
-use igimp_solver::linear::{
+use igimp_linear::TangentMatrix;
+use igimp_linear::{
     LinearSolver, LinearSolverError, MultifrontalCholesky, MultifrontalLu, SolveReport, SolverKind,
 };
 use serde_json::{Value, json};

@@ -5,10 +5,10 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use igimp_shape::{Grid, Support};
 
-use crate::matrix::{NodeBlock, Pattern};
 use crate::reach::{SMALL_REACH, common_reach, furthest};
 use crate::stencils::Stencils;
 use crate::unknowns::Unknowns;
+use igimp_linear::{NodeBlock, Pattern};
 
 /// Marks a pair of nodes without a block, or a node without unknowns.
 const NONE: u32 = u32::MAX;

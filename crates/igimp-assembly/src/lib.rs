@@ -9,7 +9,6 @@
 
 mod batches;
 mod blocks;
-mod border;
 mod cell_soil;
 mod commit;
 mod constraints;
@@ -20,7 +19,6 @@ mod ghost;
 mod kinematics;
 mod linearised;
 mod loads;
-mod matrix;
 mod method;
 mod mirror;
 mod nodal_forces;
@@ -43,12 +41,10 @@ mod trial;
 mod unknowns;
 mod work;
 
-pub use border::Border;
 pub use constraints::Constraints;
 pub use error::AssemblyError;
 pub use kinematics::ParticleTrial;
 pub use loads::{LoadPoint, StepLoads};
-pub use matrix::{CompressedColumns, NodeBlock, Pattern, TangentMatrix};
 pub use method::{DomainUpdate, Geometry, Kinematics, Locking, Method, Remedy, SmallCuts};
 pub use particles::{ParticleFields, ParticleSeed, Particles};
 pub use pore_water::{HeldForces, PoreSite, PoreState, PoreWater, Water};

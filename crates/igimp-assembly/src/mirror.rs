@@ -4,8 +4,8 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use crate::matrix::Pattern;
 use crate::strips::split;
+use igimp_linear::Pattern;
 
 /// Columns of at least so many blocks are handled together.
 const LEAST_BLOCKS: usize = 256;

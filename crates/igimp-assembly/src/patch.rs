@@ -18,8 +18,8 @@ use igimp_shape::{Grid, Support};
 
 use crate::blocks::BlockTable;
 use crate::linearised::{Linearised, Moduli};
-use crate::matrix::Pattern;
 use crate::scatter::{Piece, Rows, add as add_rows};
+use igimp_linear::Pattern;
 
 /// Nodes that are worked on together.
 const LANES: usize = 4;

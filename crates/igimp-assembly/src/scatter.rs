@@ -5,7 +5,7 @@ use igimp_shape::Support;
 
 use crate::blocks::BlockTable;
 use crate::linearised::Linearised;
-use crate::matrix::Pattern;
+use igimp_linear::Pattern;
 
 /// The unknown rows of one particle.
 #[derive(Debug, Default)]

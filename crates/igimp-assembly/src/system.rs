@@ -6,7 +6,6 @@ use std::sync::Arc;
 use igimp_material::{MaterialError, TangentKind};
 
 use crate::blocks::BlockTable;
-use crate::border::Border;
 use crate::couplings::Couplings;
 use crate::error::AssemblyError;
 use crate::ghost::ghost_penalty;
@@ -15,7 +14,6 @@ use crate::linearised::{Linearised, Moduli};
 use crate::loads::{
     LoadPoint, add_force_of_points, add_variation_of_weight, finite_points, nodal_drag, weight,
 };
-use crate::matrix::{Pattern, TangentMatrix};
 use crate::method::{Kinematics, Method};
 use crate::nodal_forces::NodalForces;
 use crate::particles::Particles;
@@ -29,6 +27,8 @@ use crate::stencils::Stencils;
 use crate::step_conditions::StepConditions;
 use crate::trial::Trial;
 use crate::unknowns::Unknowns;
+use igimp_linear::Border;
+use igimp_linear::{Pattern, TangentMatrix};
 
 /// One step's system of equations. Borrows the state at the step's start and never changes it.
 #[derive(Debug)]

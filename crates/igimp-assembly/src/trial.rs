@@ -14,13 +14,13 @@ use crate::blocks::BlockTable;
 use crate::error::AssemblyError;
 use crate::kinematics::{Linearisation, ParticleState, ParticleTrial, evaluate};
 use crate::linearised::{Linearised, Moduli};
-use crate::matrix::Pattern;
 use crate::method::Kinematics;
 use crate::mirror::mirror;
 use crate::patch::Patch;
 use crate::scatter::Rows;
 use crate::strips::split;
 use crate::system::System;
+use igimp_linear::Pattern;
 
 /// All particles at a trial displacement. Its memory is used again from one trial to the next.
 #[derive(Clone, Debug, Default)]

@@ -10,8 +10,9 @@ use std::f64::consts::FRAC_PI_4;
 use common::{Random, displacements, grid, laws, particles};
 use igimp_assembly::{
     Constraints, ContactNode, Drive, Interface, Method, Particles, Pose, RigidBody, RigidMotion,
-    SharedLaw, Shear, Stencils, StepConditions, StepLoads, Surface, System, TangentMatrix, Tension,
+    SharedLaw, Shear, Stencils, StepConditions, StepLoads, Surface, System, Tension,
 };
+use igimp_linear::TangentMatrix;
 use igimp_material::TangentKind;
 use igimp_shape::Grid;
 

@@ -9,8 +9,9 @@ mod common;
 use common::{Random, by_particle, displacements, laws, methods};
 use igimp_assembly::{
     Constraints, Kinematics, LoadPoint, Method, ParticleSeed, Particles, Remedy, SharedLaw,
-    Stencils, StepConditions, StepLoads, System, TangentMatrix, Trial,
+    Stencils, StepConditions, StepLoads, System, Trial,
 };
+use igimp_linear::TangentMatrix;
 use igimp_material::TangentKind;
 use igimp_shape::{Axis, Grid};
 use nalgebra_sparse::na::{DMatrix, DVector};

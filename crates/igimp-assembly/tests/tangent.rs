@@ -5,7 +5,8 @@
 mod common;
 
 use common::{Random, conditions, displacements, grid, laws, methods, particles};
-use igimp_assembly::{Kinematics, Method, Particles, SharedLaw, Stencils, System, TangentMatrix};
+use igimp_assembly::{Kinematics, Method, Particles, SharedLaw, Stencils, System};
+use igimp_linear::TangentMatrix;
 use igimp_material::TangentKind;
 use igimp_shape::{Axis, Grid};
 

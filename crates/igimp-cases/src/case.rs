@@ -21,7 +21,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use igimp_assembly::Method;
-use igimp_solver::linear::SolverKind;
+use igimp_linear::SolverKind;
 use serde::{Deserialize, Serialize};
 
 pub(crate) use axes::{front, in_space};

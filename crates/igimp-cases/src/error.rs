@@ -5,9 +5,9 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use igimp_assembly::{AssemblyError, SurfaceError};
+use igimp_linear::LinearSolverError;
 use igimp_material::MaterialError;
 use igimp_shape::ShapeError;
-use igimp_solver::linear::LinearSolverError;
 
 use crate::input::InputError;
 use crate::results::checkpoint::CheckpointError;

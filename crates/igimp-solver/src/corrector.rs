@@ -3,15 +3,16 @@
 
 use std::time::{Duration, Instant};
 
-use igimp_assembly::{AssemblyError, OutOfBalance, Stencils, System, TangentMatrix, Trial};
+use igimp_assembly::{AssemblyError, OutOfBalance, Stencils, System, Trial};
+use igimp_linear::TangentMatrix;
 use igimp_material::TangentKind;
 use igimp_shape::Grid;
 
 use crate::free_factor::FreeFactor;
-use crate::linear::{Bordered, LinearEffort, LinearSolver, LinearSolverError};
 use crate::newton::{NewtonSettings, Workspace, converged};
 use crate::report::{Component, PhaseTimes, StepFailure, padded};
 use crate::residual_history::ResidualHistory;
+use igimp_linear::{Bordered, LinearEffort, LinearSolver, LinearSolverError};
 
 /// How often a correction is halved.
 const MOST_HALVINGS: u32 = 4;

@@ -1,7 +1,8 @@
 //! The load factor of a step as an unknown: the gross work of the external force on the step is prescribed in its place
 //! (theory, eqs. 33a and 33b).
 
-use igimp_assembly::{AssemblyError, LoadPoint, OutOfBalance, System, TangentMatrix, Trial};
+use igimp_assembly::{AssemblyError, LoadPoint, OutOfBalance, System, Trial};
+use igimp_linear::TangentMatrix;
 use igimp_material::TangentKind;
 
 use crate::march::LoadPath;

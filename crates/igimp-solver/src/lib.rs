@@ -1,11 +1,9 @@
-//! From one equilibrium to the next: Newton–Raphson iteration, load marching with step cutting,
-//! and the sparse linear solvers behind one trait.
+//! From one equilibrium to the next: Newton–Raphson iteration, load marching with step cutting, and paths of
+//! equilibria.
 //!
 //! [`step`] finds the equilibrium of one load step, [`march`] drives a body through many. A state
 //! is written only when a step is accepted, so nothing is ever rolled back, and why a march
 //! stopped is data ([`Outcome`]).
-
-pub mod linear;
 
 mod body;
 mod continuation;

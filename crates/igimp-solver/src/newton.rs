@@ -5,19 +5,20 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use igimp_assembly::{
-    AssemblyError, Geometry, LoadPoint, Method, OutOfBalance, Pattern, Reinforcement, Stencils,
-    StepConditions, System, TangentMatrix, Trial,
+    AssemblyError, Geometry, LoadPoint, Method, OutOfBalance, Reinforcement, Stencils,
+    StepConditions, System, Trial,
 };
+use igimp_linear::{Pattern, TangentMatrix};
 use igimp_material::{Regime, TangentKind};
 use igimp_shape::Grid;
 
 use crate::body::Body;
 use crate::corrector::Corrector;
 use crate::free_factor::{FreeFactor, Guess};
-use crate::linear::LinearSolver;
 use crate::march::LoadPath;
 use crate::report::{NodalForces, StepError, StepFailure, StepReport, padded};
 use crate::residual_history::ResidualHistory;
+use igimp_linear::LinearSolver;
 
 /// The ghost penalty of a step that is singular at a node which hardly touches soil \[-\].
 const GHOST_PENALTY: f64 = 1e-3;

@@ -5,7 +5,7 @@ use std::time::Duration;
 use igimp_assembly::{AssemblyError, StepWork, Swallowed};
 use thiserror::Error;
 
-use crate::linear::{LinearEffort, LinearSolverError};
+use igimp_linear::{LinearEffort, LinearSolverError};
 
 /// A component of the motion of a rigid body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

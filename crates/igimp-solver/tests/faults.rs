@@ -11,12 +11,10 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use body_support::{bits, distance, elastic, loaded, von_mises};
-use igimp_assembly::{
-    AssemblyError, Method, ParticleFields, Particles, Pattern, SharedLaw, StepConditions,
-    TangentMatrix,
-};
+use igimp_assembly::{AssemblyError, Method, ParticleFields, Particles, SharedLaw, StepConditions};
+use igimp_linear::{LinearSolver, LinearSolverError, SolveReport, SolverKind};
+use igimp_linear::{Pattern, TangentMatrix};
 use igimp_material::{ConstitutiveModel, Elasticity, History, MaterialError, Principal, ReturnMap};
-use igimp_solver::linear::{LinearSolver, LinearSolverError, SolveReport, SolverKind};
 use igimp_solver::{
     Body, MarchSettings, NewtonSettings, Outcome, StepError, StepFailure, Workspace, march, step,
 };

@@ -8,9 +8,9 @@ use std::sync::Arc;
 use igimp_assembly::{
     Constraints, Method, ParticleSeed, Particles, SharedLaw, StepConditions, StepLoads,
 };
+use igimp_linear::SolverKind;
 use igimp_material::{Elasticity, MohrCoulomb};
 use igimp_shape::{Axis, Grid};
-use igimp_solver::linear::SolverKind;
 use igimp_solver::{Body, NewtonSettings, StepError, StepFailure, StepReport, Workspace, step};
 
 /// A step of `g` \[m/s²\] on the block, from no load, to a relative residual of 1e-12.

@@ -10,13 +10,12 @@ use std::sync::Arc;
 
 use igimp_assembly::{
     Constraints, Method, ParticleSeed, Particles, SharedLaw, Stencils, StepConditions, StepLoads,
-    System, TangentMatrix,
+    System,
 };
+use igimp_linear::TangentMatrix;
+use igimp_linear::{AutoSolver, LinearSolver, LinearSolverError, Reason, SolveReport, SolverKind};
 use igimp_material::{Elasticity, HenckyElastic, MohrCoulomb, TangentKind, VonMises};
 use igimp_shape::{Axis, Grid};
-use igimp_solver::linear::{
-    AutoSolver, LinearSolver, LinearSolverError, Reason, SolveReport, SolverKind,
-};
 use igimp_solver::{Body, NewtonSettings, Workspace, step};
 use proptest::prelude::*;
 use rayon::ThreadPoolBuilder;

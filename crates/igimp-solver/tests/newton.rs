@@ -13,11 +13,11 @@ use body_support::{
     loaded, methods, pressed, shifted_block, solve, standing, unit_grid, von_mises,
 };
 use igimp_assembly::{
-    Constraints, Kinematics, LoadPoint, Method, Pattern, Remedy, SharedLaw, Stencils, System,
-    TangentMatrix,
+    Constraints, Kinematics, LoadPoint, Method, Remedy, SharedLaw, Stencils, System,
 };
+use igimp_linear::{LinearSolver, LinearSolverError, SolveReport, SolverKind};
+use igimp_linear::{Pattern, TangentMatrix};
 use igimp_material::{Elasticity, HenckyElastic, TangentKind};
-use igimp_solver::linear::{LinearSolver, LinearSolverError, SolveReport, SolverKind};
 use igimp_solver::{Body, NewtonSettings, NodalForces, StepFailure, Workspace, step};
 
 /// Iterates to round-off.

@@ -13,9 +13,9 @@ use body_support::{
     unit_grid, von_mises,
 };
 use igimp_assembly::{AssemblyError, Constraints, LoadPoint, Method, SharedLaw, StepConditions};
+use igimp_linear::LinearSolverError;
 use igimp_material::MaterialError;
 use igimp_shape::Grid;
-use igimp_solver::linear::LinearSolverError;
 use igimp_solver::{Body, NewtonSettings, StepError, StepFailure};
 
 /// Tries the step with every variant of the method: it must fail as `expected`, with a chain of

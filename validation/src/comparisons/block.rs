@@ -11,9 +11,9 @@ use igimp_assembly::{
     StepConditions, StepLoads, System,
 };
 use igimp_cases::CaseError;
+use igimp_linear::SolverKind;
 use igimp_material::{Elasticity, HenckyElastic, TangentKind};
 use igimp_shape::{Axis, Grid};
-use igimp_solver::linear::SolverKind;
 use igimp_solver::{Accepted, Body, MarchReport, MarchSettings, Workspace, march};
 use nalgebra::DMatrix;
 

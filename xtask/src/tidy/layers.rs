@@ -3,13 +3,22 @@
 use crate::metadata::{Metadata, Package};
 
 /// Crates of the project with those that they may depend on, for tests too.
-const LAYERS: [(&str, &[&str]); 11] = [
+const LAYERS: [(&str, &[&str]); 12] = [
     ("igimp-shape", &[]),
     ("igimp-material", &[]),
-    ("igimp-assembly", &["igimp-shape", "igimp-material"]),
+    ("igimp-linear", &[]),
+    (
+        "igimp-assembly",
+        &["igimp-shape", "igimp-material", "igimp-linear"],
+    ),
     (
         "igimp-solver",
-        &["igimp-shape", "igimp-material", "igimp-assembly"],
+        &[
+            "igimp-shape",
+            "igimp-material",
+            "igimp-linear",
+            "igimp-assembly",
+        ],
     ),
     ("igimp-figures", &[]),
     (
@@ -17,6 +26,7 @@ const LAYERS: [(&str, &[&str]); 11] = [
         &[
             "igimp-shape",
             "igimp-material",
+            "igimp-linear",
             "igimp-assembly",
             "igimp-solver",
             "igimp-figures",
@@ -33,6 +43,7 @@ const LAYERS: [(&str, &[&str]); 11] = [
 pub(super) const BELOW_CASES: &[&str] = &[
     "igimp-shape",
     "igimp-material",
+    "igimp-linear",
     "igimp-assembly",
     "igimp-solver",
 ];
@@ -40,6 +51,7 @@ pub(super) const BELOW_CASES: &[&str] = &[
 const LIBRARIES: &[&str] = &[
     "igimp-shape",
     "igimp-material",
+    "igimp-linear",
     "igimp-assembly",
     "igimp-solver",
     "igimp-figures",
@@ -109,9 +121,10 @@ mod tests {
 
     type Row<'a> = (&'a str, bool, Option<&'a str>, &'a [&'a str]);
 
-    const SOUND: [Row<'_>; 12] = [
+    const SOUND: [Row<'_>; 13] = [
         ("igimp-shape", true, None, &["thiserror"]),
         ("igimp-material", true, None, &[]),
+        ("igimp-linear", true, None, &[]),
         (
             "igimp-assembly",
             true,

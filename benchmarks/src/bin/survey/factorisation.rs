@@ -4,7 +4,7 @@
 use igimp_benchmarks::BenchResult;
 use igimp_benchmarks::equations::{Direct, Equations};
 use igimp_benchmarks::threads;
-use igimp_solver::linear::NestedDissection;
+use igimp_linear::NestedDissection;
 
 use super::plot::Curve;
 use super::rounds::{Rounds, exponent, timed};

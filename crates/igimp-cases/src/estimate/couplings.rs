@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use igimp_assembly::{NodeBlock, Pattern};
+use igimp_linear::{NodeBlock, Pattern};
 use igimp_shape::Grid;
 
 /// Nodes along an axis that a particle no wider than a cell touches at most.

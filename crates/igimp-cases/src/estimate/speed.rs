@@ -11,9 +11,9 @@ use igimp_assembly::{
     Constraints, Method, ParticleSeed, Particles, SharedLaw, Stencils, StepConditions, StepLoads,
     System, Trial,
 };
+use igimp_linear::{LinearSolver as _, MultifrontalCholesky};
 use igimp_material::{Elasticity, TangentKind, VonMises};
 use igimp_shape::{Axis, Grid};
-use igimp_solver::linear::{LinearSolver as _, MultifrontalCholesky};
 
 use crate::error::CaseError;
 

@@ -6,8 +6,8 @@
 
 use std::sync::Arc;
 
-use igimp_assembly::Pattern;
-use igimp_solver::linear::{AutoSolver, Forecast, LinearSolverError, Reason, SolverKind};
+use igimp_linear::Pattern;
+use igimp_linear::{AutoSolver, Forecast, LinearSolverError, Reason, SolverKind};
 
 use crate::case::Case;
 

@@ -14,9 +14,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use igimp_assembly::{Border, Constraints, NodeBlock, Pattern, TangentMatrix};
+use igimp_assembly::Constraints;
+use igimp_linear::SolvedSystem;
+use igimp_linear::{Border, NodeBlock, Pattern, TangentMatrix};
 use igimp_shape::Grid;
-use igimp_solver::linear::SolvedSystem;
 use serde::{Deserialize, Serialize};
 
 use super::atomic::{at, write_atomically};

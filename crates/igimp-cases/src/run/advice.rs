@@ -2,7 +2,7 @@
 //! first. Every rule looks at the failure and at the case, and says nothing when it is of no use.
 
 use igimp_assembly::{AssemblyError, Locking, Swallowed};
-use igimp_solver::linear::LinearSolverError;
+use igimp_linear::LinearSolverError;
 use igimp_solver::{Component, StepError, StepFailure};
 
 use crate::case::{BodyPart, Case, Material, RigidMove, Side, Stage, StageKind, Strength};

@@ -7,7 +7,7 @@
 use std::path::{Path, PathBuf};
 
 use igimp_assembly::StepConditions;
-use igimp_solver::linear::{LinearSolver, Record};
+use igimp_linear::{LinearSolver, Record};
 
 use crate::error::CaseError;
 use crate::results::admission::refuse_link;

@@ -39,7 +39,7 @@ mod water;
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 
-use igimp_solver::linear::LinearSolverError;
+use igimp_linear::LinearSolverError;
 use igimp_solver::{Accepted, Body, StepError, StepFailure, StepReport};
 
 use crate::case::{AnyCase, Case};

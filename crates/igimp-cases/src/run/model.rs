@@ -6,9 +6,9 @@ use igimp_assembly::{
     AssemblyError, Constraints, Geometry, LoadPoint, Method, ParticleSeed, Particles, PoreWater,
     SharedLaw, StepConditions, StepLoads, Water,
 };
+use igimp_linear::LinearSolver;
 use igimp_material::Ratios;
 use igimp_shape::{Grid, ShapeError};
-use igimp_solver::linear::LinearSolver;
 use igimp_solver::{Body, MarchSettings, NewtonSettings};
 
 use super::footing::{self, Footing};

@@ -246,7 +246,7 @@ pub fn residual(value: Option<f64>) -> String {
 mod tests {
     use crate::run::{Controls, State};
     use igimp_assembly::{ParticleSeed, Particles};
-    use igimp_solver::linear::LinearEffort;
+    use igimp_linear::LinearEffort;
     use igimp_solver::{Body, PhaseTimes, StepFailure};
 
     use super::*;

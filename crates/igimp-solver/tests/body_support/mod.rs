@@ -7,12 +7,12 @@ use std::sync::{Arc, LazyLock};
 use igimp_assembly::{
     Constraints, Kinematics, Method, ParticleSeed, Particles, SharedLaw, StepConditions, StepLoads,
 };
+use igimp_linear::SolverKind;
 use igimp_material::{
     ConstitutiveModel, Elasticity, HenckyElastic, History, MaterialError, MohrCoulomb, Principal,
     ReturnMap, Tresca, VonMises,
 };
 use igimp_shape::{Axis, Grid};
-use igimp_solver::linear::SolverKind;
 use igimp_solver::{Body, NewtonSettings, NodalForces, StepError, StepReport, Workspace, step};
 
 /// Random numbers (Vigna's splitmix64), the same in every run.

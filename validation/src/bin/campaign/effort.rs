@@ -3,7 +3,7 @@
 use igimp_assembly::AssemblyError;
 use igimp_cases::case::Case;
 use igimp_cases::run::{Event, Model};
-use igimp_solver::linear::LinearSolverError;
+use igimp_linear::LinearSolverError;
 use igimp_solver::{Accepted, Body, StepError, StepFailure, StepReport};
 
 use crate::bodies::outline::Outline;

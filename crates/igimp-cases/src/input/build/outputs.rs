@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use igimp_solver::linear::SolverKind;
+use igimp_linear::SolverKind;
 
 use super::AllNames;
 use super::quantities::fields;

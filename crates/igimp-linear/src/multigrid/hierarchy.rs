@@ -1,0 +1,280 @@
+//! The grids of a matrix, and one cycle over them.
+
+use std::sync::Arc;
+
+use crate::{Pattern, TangentMatrix};
+
+use super::super::{LinearSolverError, check};
+use super::dense::Dense;
+use super::galerkin;
+use super::rows::{Couplings, convert, residual, slots};
+use super::slabs::Slabs;
+use super::smoother::{Kind, Smoother};
+use super::transfer::Transfer;
+
+/// Nodes at which a grid is coarse enough to be solved directly.
+const COARSEST: usize = 150;
+
+/// Shares by which the diagonal is raised until an incomplete elimination has sound pivots \[-\] (T. A. Manteuffel,
+/// *An incomplete factorization technique for positive definite linear systems*, Math. Comp. 34, 1980).
+const SHIFTS: [f32; 6] = [0.0, 0.05, 0.1, 0.2, 0.4, 0.8];
+/// Largest eigenvalue of M⁻¹ A of a smoother M that is used: a cycle is positive definite below 2 \[-\].
+const MOST_GROWTH: f32 = 2.0;
+/// The same after damping.
+const DAMPED: f32 = 1.7;
+/// Steps of the power method.
+const POWERS: usize = 10;
+
+/// What approximates K⁻¹.
+pub(super) trait Preconditioner: Send {
+    /// Takes over the values of a matrix with the pattern that it was made for.
+    fn set(&mut self, matrix: &TangentMatrix, diagonal: &[f64]);
+
+    /// z ← M⁻¹ r.
+    fn apply(&mut self, r: &[f64], z: &mut [f64]);
+
+    /// Number of unknowns.
+    fn unknowns(&self) -> usize;
+
+    /// Number of grids.
+    fn levels(&self) -> usize;
+}
+
+/// One for a pattern.
+pub(super) fn new(pattern: &Arc<Pattern>) -> Result<Box<dyn Preconditioner>, LinearSolverError> {
+    let used = pattern
+        .blocks
+        .iter()
+        .fold(0_u8, |used, block| used | block.free);
+    let most = pattern
+        .blocks
+        .iter()
+        .map(|block| block.len)
+        .max()
+        .unwrap_or(1);
+    let width = most.max(8 - used.leading_zeros() as usize);
+    Ok(match width {
+        1 => Box::new(Hierarchy::<1>::new(pattern)?),
+        2 => Box::new(Hierarchy::<2>::new(pattern)?),
+        _ => Box::new(Hierarchy::<3>::new(pattern)?),
+    })
+}
+
+#[derive(Default)]
+struct Level {
+    couplings: Couplings,
+    slabs: Slabs,
+    values: Vec<f32>,
+    smoother: Smoother,
+    /// To the next coarser level.
+    transfer: Transfer,
+    rhs: Vec<f32>,
+    x: Vec<f32>,
+    work: Vec<f32>,
+    change: Vec<f32>,
+}
+
+struct Hierarchy<const B: usize> {
+    slots: Vec<u32>,
+    mirrored: Vec<u32>,
+    levels: Vec<Level>,
+    dense: Dense,
+    /// What the values are multiplied with.
+    scale: f64,
+}
+
+impl<const B: usize> Hierarchy<B> {
+    fn new(pattern: &Arc<Pattern>) -> Result<Self, LinearSolverError> {
+        let mirrored = check::mirrored(pattern)?;
+        let mut places: Vec<[usize; 3]> = pattern.blocks.iter().map(|block| block.place).collect();
+        let mut couplings = Couplings::new(pattern.starts.clone(), pattern.coupled.clone());
+        let mut levels = Vec::new();
+        loop {
+            let slabs = Slabs::new(&places, &couplings);
+            let n = B * places.len();
+            let mut level = Level {
+                slabs,
+                rhs: vec![0.0; n],
+                x: vec![0.0; n],
+                work: vec![0.0; n],
+                change: vec![0.0; n],
+                ..Level::default()
+            };
+            if places.len() <= COARSEST {
+                level.couplings = couplings;
+                levels.push(level);
+                break;
+            }
+            let (transfer, coarse) = Transfer::new(&places);
+            if 4 * coarse.len() > 3 * places.len() {
+                level.couplings = couplings;
+                levels.push(level);
+                break;
+            }
+            let coarser = transfer.coarse_couplings(&couplings);
+            level.transfer = transfer;
+            level.couplings = couplings;
+            levels.push(level);
+            couplings = coarser;
+            places = coarse;
+        }
+        Ok(Self {
+            slots: slots::<B>(pattern),
+            mirrored,
+            levels,
+            dense: Dense::default(),
+            scale: 1.0,
+        })
+    }
+
+    /// x ← about A⁻¹ b on a level: smoothed, corrected on the next coarser grid, and smoothed again.
+    fn cycle(levels: &mut [Level], dense: &Dense) {
+        let Some((level, coarser)) = levels.split_first_mut() else {
+            return;
+        };
+        let Level {
+            couplings,
+            slabs,
+            values,
+            smoother,
+            transfer,
+            rhs,
+            x,
+            work,
+            change,
+        } = level;
+        let Some(coarse) = coarser.first_mut() else {
+            dense.solve(rhs, x);
+            return;
+        };
+        smoother.apply::<B>(couplings, slabs, values, rhs, x);
+        let omega = smoother.omega;
+        for x in &mut *x {
+            *x *= omega;
+        }
+        residual::<B>(couplings, values, rhs, x, work);
+        transfer.restrict::<B>(work, &mut coarse.rhs);
+        Self::cycle(coarser, dense);
+        transfer.add_interpolated::<B>(&coarser[0].x, x);
+        residual::<B>(couplings, values, rhs, x, work);
+        smoother.apply::<B>(couplings, slabs, values, work, change);
+        for (x, change) in x.iter_mut().zip(change) {
+            *x += omega * *change;
+        }
+    }
+}
+
+/// The largest eigenvalue of M⁻¹ A for a smoother M, from a few steps of the power method \[-\].
+fn growth<const B: usize>(
+    (couplings, slabs, values): (&Couplings, &Slabs, &[f32]),
+    smoother: &Smoother,
+    x: &mut [f32],
+    work: &mut [f32],
+    change: &mut [f32],
+) -> f32 {
+    let nothing = vec![0.0; x.len()];
+    for (k, x) in x.iter_mut().enumerate() {
+        // Without a pattern that a grid could have.
+        *x = (k * 7919 % 101) as f32 / 50.0 - 1.0;
+    }
+    let mut found = f32::NAN;
+    for _ in 0..POWERS {
+        residual::<B>(couplings, values, &nothing, x, work);
+        smoother.apply::<B>(couplings, slabs, values, work, change);
+        let (mut own, mut next) = (0.0, 0.0);
+        for ((work, x), change) in work.iter().zip(&*x).zip(&*change) {
+            own -= f64::from(*work) * f64::from(*x);
+            next += f64::from(*work) * f64::from(*change);
+        }
+        found = (next / own).abs() as f32;
+        if found > MOST_GROWTH {
+            break;
+        }
+        let size = change.iter().fold(0.0_f32, |most, own| most.max(own.abs()));
+        for (x, change) in x.iter_mut().zip(&*change) {
+            *x = change / size;
+        }
+    }
+    found
+}
+
+impl<const B: usize> Preconditioner for Hierarchy<B> {
+    fn set(&mut self, matrix: &TangentMatrix, diagonal: &[f64]) {
+        let largest = diagonal
+            .iter()
+            .fold(0.0, |most: f64, entry| most.max(entry.abs()));
+        self.scale = 1.0 / largest;
+        let fine = &mut self.levels[0];
+        convert::<B>(
+            matrix,
+            &fine.couplings,
+            &self.slots,
+            &self.mirrored,
+            self.scale,
+            &mut fine.values,
+        );
+        let mut levels = &mut self.levels[..];
+        while let Some((level, coarser)) = levels.split_first_mut() {
+            let Level {
+                couplings,
+                slabs,
+                values,
+                smoother,
+                transfer,
+                x,
+                work,
+                change,
+                ..
+            } = level;
+            if let Some(coarse) = coarser.first_mut() {
+                let mut is_sound = |shift| {
+                    smoother.set::<B>(Kind::Incomplete, shift, couplings, slabs, values);
+                    smoother.replaced == 0 && {
+                        let growth =
+                            growth::<B>((couplings, slabs, values), smoother, x, work, change);
+                        smoother.omega = (DAMPED / growth).min(1.0);
+                        growth <= MOST_GROWTH
+                    }
+                };
+                if !SHIFTS.into_iter().any(&mut is_sound) {
+                    smoother.set::<B>(Kind::GaussSeidel, 0.0, couplings, slabs, values);
+                }
+                galerkin::product::<B>(
+                    transfer,
+                    (couplings, values),
+                    &coarse.couplings,
+                    &mut coarse.values,
+                );
+            } else {
+                self.dense.set::<B>(couplings, values);
+            }
+            levels = coarser;
+        }
+    }
+
+    fn apply(&mut self, r: &[f64], z: &mut [f64]) {
+        let size = r.iter().fold(0.0, |most: f64, entry| most.max(entry.abs()));
+        if size == 0.0 {
+            z.fill(0.0);
+            return;
+        }
+        let fine = &mut self.levels[0];
+        for (&slot, &value) in self.slots.iter().zip(r) {
+            fine.rhs[slot as usize] = (value / size) as f32;
+        }
+        Self::cycle(&mut self.levels, &self.dense);
+        let back = self.scale * size;
+        let x = &self.levels[0].x;
+        for (z, &slot) in z.iter_mut().zip(&self.slots) {
+            *z = f64::from(x[slot as usize]) * back;
+        }
+    }
+
+    fn unknowns(&self) -> usize {
+        self.slots.len()
+    }
+
+    fn levels(&self) -> usize {
+        self.levels.len()
+    }
+}

@@ -1,0 +1,212 @@
+//! Iteration with a preconditioner, from restart to restart.
+//!
+//! The preconditioner may be what it likes and in single precision: matrix, residual and iterates are in double precision
+//! (N. J. Higham & T. Mary, *Mixed precision algorithms in numerical linear algebra*, Acta Numerica 31 (2022), section 5). The residual
+//! that counts is computed from the matrix itself, in the end and after every restart.
+
+use crate::TangentMatrix;
+
+use super::super::bordered::{Elimination, add_border};
+use super::super::refine::max_norm;
+use super::super::{LinearSolverError, SolveReport, check};
+use super::krylov::{Operators, conjugate_gradients, minimal_residuals, norm};
+use super::product::Product;
+
+/// Vectors between restarts of generalised minimal residuals.
+const RESTART: usize = 300;
+
+/// A new start from the true residual must leave less than this of it.
+const PROGRESS: f64 = 0.5;
+
+/// What an iterative solution must come to.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Demand {
+    /// ‖b − K x‖ / ‖b‖ at which the iteration stops \[-\].
+    pub(crate) target: f64,
+    /// The same of a solution that is handed out where it stops before \[-\].
+    pub(crate) tolerance: f64,
+    /// Iterations after which that is all that is wanted.
+    pub(crate) patience: usize,
+    /// Largest number of iterations.
+    pub(crate) most: usize,
+}
+
+/// Which iteration it is.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Method {
+    /// Conjugate gradients, as long as matrix and preconditioner turn out positive definite; else generalised minimal residuals.
+    pub(crate) by_gradients: bool,
+    /// What the two are called.
+    pub(crate) names: [&'static str; 2],
+}
+
+/// Vectors and sums, kept from solution to solution.
+#[derive(Default)]
+pub(crate) struct Preconditioned {
+    product: Product,
+    residual: Vec<f64>,
+    change: Vec<f64>,
+}
+
+impl Preconditioned {
+    /// Solves K x = b with `precondition`, which makes z ≈ K⁻¹ r of r: for the grid, or for all unknowns where b has those of the
+    /// border too. The error of one that did not converge leaves open what factors would take.
+    pub(crate) fn solve(
+        &mut self,
+        (matrix, rhs): (&TangentMatrix, &[f64]),
+        solution: &mut [f64],
+        demand: &Demand,
+        method: Method,
+        precondition: &mut dyn FnMut(&[f64], &mut [f64]),
+    ) -> Result<SolveReport, LinearSolverError> {
+        let of_grid = matrix.pattern.unknowns();
+        let with_border = rhs.len() > of_grid;
+        let unknowns = of_grid + if with_border { matrix.border.len() } else { 0 };
+        check::length("the right-hand side", rhs.len(), unknowns)?;
+        check::length("the solution", solution.len(), unknowns)?;
+        check::finite("right-hand side", rhs)?;
+        solution.fill(0.0);
+        let (scale, largest) = (norm(rhs), max_norm(rhs));
+        let Method {
+            mut by_gradients,
+            names: [gradients, residuals],
+        } = method;
+        by_gradients &= !with_border;
+        let name = if by_gradients { gradients } else { residuals };
+        let mut report = SolveReport::new(name, 0.0, 0);
+        if largest == 0.0 {
+            return Ok(report);
+        }
+        let Self {
+            product,
+            residual,
+            change,
+        } = self;
+        residual.clear();
+        residual.extend_from_slice(rhs);
+        change.resize(unknowns, 0.0);
+        let mut both = Both {
+            matrix,
+            product,
+            precondition,
+            elimination: None,
+            failure: Ok(()),
+        };
+        if with_border {
+            both.eliminate()?;
+        }
+        let (mut reached, mut patience) = (1.0, demand.patience);
+        loop {
+            let is_patient = report.refinements < patience;
+            let (wanted, most) = if is_patient {
+                (demand.target, patience.min(demand.most))
+            } else {
+                (demand.target.max(demand.tolerance), demand.most)
+            };
+            // Written so that what is not a number goes no further.
+            if !(reached > wanted && report.refinements < most) {
+                break;
+            }
+            let goal = 0.9 * wanted / reached;
+            let left = most - report.refinements;
+            let done = if by_gradients {
+                conjugate_gradients(&mut both, residual, change, goal, left)
+            } else {
+                minimal_residuals(&mut both, residual, change, (goal, left), RESTART)
+            };
+            std::mem::replace(&mut both.failure, Ok(()))?;
+            report.refinements += done.iterations;
+            for (x, change) in solution.iter_mut().zip(&*change) {
+                *x += change;
+            }
+            both.residual(rhs, solution, residual);
+            let before = std::mem::replace(&mut reached, norm(residual) / scale);
+            // Written so that what is not a number is no progress.
+            let progress = reached <= PROGRESS * before;
+            if !progress && reached >= before {
+                // What made it worse is taken back.
+                for (x, change) in solution.iter_mut().zip(&*change) {
+                    *x -= change;
+                }
+                both.residual(rhs, solution, residual);
+                reached = norm(residual) / scale;
+            }
+            if done.broken && by_gradients {
+                by_gradients = false;
+                report.method = residuals;
+            } else if !progress && is_patient && patience < demand.most {
+                patience = 0;
+            } else if !progress {
+                break;
+            }
+        }
+        report.relative_residual = max_norm(residual) / largest;
+        // Written so that what is not a number does not pass.
+        if reached <= demand.target.max(demand.tolerance) {
+            check::finite("solution", solution)?;
+            return Ok(report);
+        }
+        Err(LinearSolverError::NotConverged {
+            iterations: report.refinements,
+            relative_residual: reached,
+            tolerance: demand.target.max(demand.tolerance),
+            factor_bytes: None,
+        })
+    }
+}
+
+/// A matrix and its preconditioner.
+struct Both<'a> {
+    matrix: &'a TangentMatrix,
+    product: &'a mut Product,
+    precondition: &'a mut dyn FnMut(&[f64], &mut [f64]),
+    /// The border of the matrix, eliminated by the preconditioner, where it is solved for.
+    elimination: Option<Elimination>,
+    /// What went wrong with it.
+    failure: Result<(), LinearSolverError>,
+}
+
+impl Both<'_> {
+    /// Eliminates the border by the preconditioner.
+    fn eliminate(&mut self) -> Result<(), LinearSolverError> {
+        let mut inverse = |r: &[f64], z: &mut [f64]| {
+            (self.precondition)(r, z);
+            Ok(())
+        };
+        self.elimination = Some(Elimination::new(&self.matrix.border, &mut inverse)?);
+        Ok(())
+    }
+
+    /// b − K x.
+    fn residual(&mut self, rhs: &[f64], x: &[f64], residual: &mut [f64]) {
+        self.multiply(x, residual);
+        for (residual, rhs) in residual.iter_mut().zip(rhs) {
+            *residual = rhs - *residual;
+        }
+    }
+}
+
+impl Operators for Both<'_> {
+    fn multiply(&mut self, x: &[f64], y: &mut [f64]) {
+        let of_grid = self.matrix.pattern.unknowns();
+        (self.product).multiply(self.matrix, &x[..of_grid], &mut y[..of_grid]);
+        if self.elimination.is_some() {
+            add_border(&self.matrix.border, x, y);
+        }
+    }
+
+    fn precondition(&mut self, r: &[f64], z: &mut [f64]) {
+        let Some(elimination) = &self.elimination else {
+            return (self.precondition)(r, z);
+        };
+        let mut inverse = |r: &[f64], z: &mut [f64]| {
+            (self.precondition)(r, z);
+            Ok(())
+        };
+        let solved = elimination.solve(&self.matrix.border, &mut inverse, r, z);
+        if solved.is_err() {
+            z.fill(0.0);
+            self.failure = solved;
+        }
+    }
+}

@@ -1,0 +1,197 @@
+//! The skin of a body: nodes that carry little soil, solved for directly before and after each cycle of multigrid (theory,
+//! eq. 25d).
+//!
+//! Where a surface cuts cells, few particles hold several nodes, and some motions of those nodes strain none of
+//! them or hardly: next to nothing resists. No smoother sees such motions, and no coarse grid has them. They are local, so
+//! that a factorisation of the rows of these nodes alone, in double precision, takes them out. F. de Prenter et al., *Multigrid solvers for
+//! immersed finite element methods and immersed isogeometric analysis*, Comput. Mech. 65 (2020), smooth by patches of cells
+//! for the same reason.
+
+use std::sync::Arc;
+
+use crate::{NodeBlock, Pattern, TangentMatrix};
+
+use super::super::multifrontal::Engine;
+use super::super::refine::Accuracy;
+
+/// A node whose diagonal is less than this of the largest one that it is coupled to belongs to the skin \[-\].
+const WEAK: f64 = 0.3;
+/// Factors of a skin that are larger than this are not made \[bytes\].
+const MOST_BYTES: usize = 2 << 30;
+/// A solution is taken as the factors give it.
+const ONCE: Accuracy = Accuracy {
+    target: 1.0,
+    tolerance: 1.0,
+    max_refinements: 0,
+};
+
+/// The nodes of the skin and the factors of their rows.
+#[derive(Default)]
+pub(super) struct Skin {
+    /// Blocks of the pattern, ascending.
+    nodes: Vec<u32>,
+    engine: Engine,
+    /// Rows and columns of the skin, while they are factorised.
+    matrix: Option<TangentMatrix>,
+    /// Whether the rows of the skin of a symmetric matrix are not positive definite: then it is not, either.
+    pub(super) is_indefinite: bool,
+    rhs: Vec<f64>,
+    change: Vec<f64>,
+}
+
+impl Skin {
+    /// Finds the skin of a matrix and factorises its rows; where that fails, there is none.
+    pub(super) fn set(&mut self, matrix: &TangentMatrix, diagonal: &[f64]) {
+        self.matrix = None;
+        self.is_indefinite = false;
+        self.find(&matrix.pattern, diagonal);
+        if self.nodes.is_empty() {
+            return;
+        }
+        let part = self.part(matrix);
+        self.engine.accuracy = ONCE;
+        let analysed = self.engine.analyse(&part.pattern);
+        if analysed.is_err() || self.engine.cost(matrix.symmetric).0 > MOST_BYTES {
+            return;
+        }
+        let definite = matrix.symmetric && self.engine.factor_cholesky(&part).is_ok();
+        self.is_indefinite = matrix.symmetric && !definite;
+        if definite || self.engine.factor_lu(&part).is_ok() {
+            self.matrix = Some(part);
+        }
+    }
+
+    /// Finds the nodes whose diagonal is small beside those of their neighbours.
+    fn find(&mut self, pattern: &Pattern, diagonal: &[f64]) {
+        let largest = |entries: &[f64]| entries.iter().fold(0.0, |most: f64, own| most.max(*own));
+        let size = |block: &NodeBlock| largest(&diagonal[block.first..block.first + block.len]);
+        let sizes: Vec<f64> = pattern.blocks.iter().map(size).collect();
+        let is_weak = |&node: &u32| {
+            let near = pattern.coupled_to(node as usize).iter();
+            let most = near.fold(0.0, |most: f64, &other| most.max(sizes[other as usize]));
+            sizes[node as usize] < WEAK * most
+        };
+        self.nodes.clear();
+        self.nodes.extend((0..sizes.len() as u32).filter(is_weak));
+    }
+
+    /// Rows and columns of the skin.
+    fn part(&self, matrix: &TangentMatrix) -> TangentMatrix {
+        let pattern = &*matrix.pattern;
+        let mut index = vec![u32::MAX; pattern.blocks.len()];
+        let mut blocks = Vec::with_capacity(self.nodes.len());
+        let mut first = 0;
+        for (own, &node) in self.nodes.iter().enumerate() {
+            index[node as usize] = own as u32;
+            let block = pattern.blocks[node as usize];
+            blocks.push(NodeBlock { first, ..block });
+            first += block.len;
+        }
+        let (mut starts, mut coupled, mut values) = (vec![0], Vec::new(), Vec::new());
+        for &node in &self.nodes {
+            let list = pattern.coupled_to(node as usize);
+            let known = list.iter().map(|&other| index[other as usize]);
+            coupled.extend(known.filter(|&own| own != u32::MAX));
+            starts.push(coupled.len());
+            let columns = &matrix.values[pattern.values_of(node as usize)];
+            for column in columns.chunks_exact(pattern.height(node as usize)) {
+                let mut at = 0;
+                for &other in list {
+                    let len = pattern.blocks[other as usize].len;
+                    if index[other as usize] != u32::MAX {
+                        values.extend_from_slice(&column[at..at + len]);
+                    }
+                    at += len;
+                }
+            }
+        }
+        let pattern = Pattern::new(blocks, starts, coupled, pattern.reach);
+        TangentMatrix {
+            values,
+            ..TangentMatrix::zeros(Arc::new(pattern), matrix.symmetric)
+        }
+    }
+
+    /// Whether there is a skin.
+    pub(super) fn is_there(&self) -> bool {
+        self.matrix.is_some()
+    }
+
+    /// Solves for the skin alone: `z` gets the solution for the rows of the skin of `r`, and `r` becomes r − K z.
+    pub(super) fn before(&mut self, matrix: &TangentMatrix, r: &mut [f64]) {
+        self.rhs.clear();
+        let pattern = &*matrix.pattern;
+        for &node in &self.nodes {
+            let block = pattern.blocks[node as usize];
+            self.rhs
+                .extend_from_slice(&r[block.first..block.first + block.len]);
+        }
+        self.solve();
+        let mut own = 0;
+        for &node in &self.nodes {
+            let columns = &matrix.values[pattern.values_of(node as usize)];
+            for column in columns.chunks_exact(pattern.height(node as usize)) {
+                let value = self.change[own];
+                own += 1;
+                let mut left = column;
+                for run in pattern.runs(node as usize) {
+                    let (entries, later) = left.split_at(run.len());
+                    left = later;
+                    for (r, entry) in r[run].iter_mut().zip(entries) {
+                        *r -= entry * value;
+                    }
+                }
+            }
+        }
+    }
+
+    /// z ← z + the change that was found.
+    pub(super) fn add(&self, matrix: &TangentMatrix, z: &mut [f64]) {
+        let mut own = 0;
+        for &node in &self.nodes {
+            let block = matrix.pattern.blocks[node as usize];
+            for z in &mut z[block.first..block.first + block.len] {
+                *z += self.change[own];
+                own += 1;
+            }
+        }
+    }
+
+    /// Solves for the skin with what is left of its rows; the matrix is symmetric.
+    pub(super) fn after(&mut self, matrix: &TangentMatrix, r: &[f64], z: &mut [f64]) {
+        self.rhs.clear();
+        let pattern = &*matrix.pattern;
+        for &node in &self.nodes {
+            let block = pattern.blocks[node as usize];
+            let columns = &matrix.values[pattern.values_of(node as usize)];
+            let height = pattern.height(node as usize);
+            for (column, r) in columns.chunks_exact(height).zip(&r[block.first..]) {
+                let mut left = column;
+                let mut sum = *r;
+                for run in pattern.runs(node as usize) {
+                    let (entries, later) = left.split_at(run.len());
+                    left = later;
+                    for (z, entry) in z[run].iter().zip(entries) {
+                        sum -= entry * z;
+                    }
+                }
+                self.rhs.push(sum);
+            }
+        }
+        self.solve();
+        self.add(matrix, z);
+    }
+
+    fn solve(&mut self) {
+        self.change.clear();
+        self.change.resize(self.rhs.len(), 0.0);
+        if let Some(matrix) = &self.matrix
+            && self
+                .engine
+                .solve(matrix, &self.rhs, &mut self.change)
+                .is_err()
+        {
+            self.change.fill(0.0);
+        }
+    }
+}
