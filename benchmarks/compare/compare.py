@@ -80,7 +80,7 @@ def main():
     target = build()
     sizes = chosen.sizes or (matrices.SIZES[:2] if chosen.quick else matrices.SIZES)
     programs = target / "release"
-    cases = ROOT / "crates/igimp-cases/cases"
+    cases = ROOT / "crates/igimp-input/cases"
     systems = target / "bench/matrices"
     systems.mkdir(parents=True, exist_ok=True)
     threads = [1, 2] if (os.cpu_count() or 1) > 1 else [1]

@@ -15,7 +15,7 @@ import tempfile
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
-CASES = HERE.parents[1] / "crates/igimp-cases/cases"
+CASES = HERE.parents[1] / "crates/igimp-input/cases"
 PLAIN = ["output.figures=[]", "output.report=false", 'output.paraview={ every = "never" }']
 
 # Name; words for Kratos; case file and settings for igimp; what of its summary is compared.

@@ -5,10 +5,10 @@ use std::ops::ControlFlow;
 use std::time::Duration;
 
 use igimp_assembly::{Method, StepConditions};
-use igimp_cases::case::{Case, StageKind};
 use igimp_cases::run::{Controls, Model};
-use igimp_cases::shipped::find;
+use igimp_input::shipped::find;
 use igimp_linear::SolverKind;
+use igimp_model::{Case, StageKind};
 use igimp_solver::{
     Accepted, Body, NewtonSettings, Outcome, PhaseTimes, StepReport, Workspace, march, step,
 };

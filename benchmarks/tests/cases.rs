@@ -7,9 +7,9 @@
 use std::path::Path;
 
 use igimp_cases::estimate::estimate;
-use igimp_cases::input::CaseFile;
 use igimp_cases::run::in_memory;
-use igimp_cases::summary::StageSummary;
+use igimp_input::CaseFile;
+use igimp_results::summary::StageSummary;
 
 #[test]
 fn the_million_is_a_million() {

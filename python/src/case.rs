@@ -2,11 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use igimp_cases::in_any_dimension;
-use igimp_cases::input;
-use igimp_cases::shipped::{SHIPPED, find, nearest};
-use igimp_cases::sweep::is_sweep;
-use igimp_cases::telling::{size, table};
+use igimp_model::in_any_dimension;
+use igimp_input;
+use igimp_input::shipped::{SHIPPED, find, nearest};
+use igimp_study::sweep::is_sweep;
+use igimp_study::telling::{size, table};
 use pyo3::prelude::*;
 use serde_json::json;
 
@@ -62,8 +62,8 @@ impl CaseFile {
     #[getter]
     fn dimensions(&self) -> usize {
         match self.file.any_case() {
-            igimp_cases::case::AnyCase::Plane(_) => 2,
-            igimp_cases::case::AnyCase::Space(_) => 3,
+            igimp_model::AnyCase::Plane(_) => 2,
+            igimp_model::AnyCase::Space(_) => 3,
         }
     }
 

@@ -4,7 +4,7 @@ use std::fmt;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use igimp_cases::case::{Case, GivenLaw};
+use igimp_model::{Case, GivenLaw};
 use igimp_material::{
     ConstitutiveModel, Elasticity, History, MaterialError, Principal, Regime, ReturnMap,
 };

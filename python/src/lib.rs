@@ -11,8 +11,8 @@ mod march;
 mod raised;
 mod relay;
 
-use igimp_cases::sweep::Ending;
-use igimp_cases::telling;
+use igimp_results::summary::Ending;
+use igimp_study::telling;
 use pyo3::prelude::*;
 
 /// The engine; use the package `igimp`.

@@ -2,9 +2,10 @@
 
 use std::error::Error;
 
-use igimp_cases::input::{Diagnostic, InputError};
-use igimp_cases::results::checkpoint::CheckpointError;
-use igimp_cases::sweep::Ending;
+use igimp_input::{Diagnostic, InputError};
+use igimp_results::ResultsError;
+use igimp_results::checkpoint::CheckpointError;
+use igimp_results::summary::Ending;
 use igimp_cases::{CaseError, chain, is_of_the_system};
 use pyo3::prelude::*;
 use serde_json::json;
@@ -97,13 +98,13 @@ impl From<CaseError> for Raised {
             other => other,
         };
         let help = match &error {
-            CaseError::OtherResults { .. } => {
+            CaseError::Results(ResultsError::OtherResults { .. }) => {
                 "out=... chooses another folder, overwrite=True replaces them"
             }
-            CaseError::Unfinished { .. } => {
+            CaseError::Results(ResultsError::Unfinished { .. }) => {
                 "resume=True goes on with a run of the same input, overwrite=True begins afresh"
             }
-            CaseError::Checkpoint(CheckpointError::Damaged { .. }) => {
+            CaseError::Results(ResultsError::Checkpoint(CheckpointError::Damaged { .. })) => {
                 "without that folder, resume=True goes on from the one before it; overwrite=True begins afresh"
             }
             _ => "",

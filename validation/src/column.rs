@@ -3,11 +3,11 @@
 use std::path::Path;
 
 use igimp_cases::CaseError;
-use igimp_cases::case::Case;
-use igimp_cases::check::Band;
 use igimp_cases::exact;
-use igimp_cases::table::Table;
 use igimp_figures::{Colour, CurvePlot, LineStyle, Scale, Series, SeriesStyle};
+use igimp_model::Case;
+use igimp_model::check::Band;
+use igimp_results::table::Table;
 use rayon::prelude::*;
 
 use crate::oracle::{Oracle, OracleKind};

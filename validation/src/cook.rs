@@ -10,14 +10,15 @@ use igimp_assembly::{
     StepLoads,
 };
 use igimp_cases::CaseError;
-use igimp_cases::check::{Band, short};
-use igimp_cases::seed::fill_polygon;
-use igimp_cases::table::Table;
 use igimp_figures::{
     CurvePlot, LineStyle, ReferenceLine, ReferenceValue, Scale, Series, SeriesStyle,
 };
+use igimp_geometry::seed::fill_polygon;
 use igimp_material::{Elasticity, HenckyElastic};
+use igimp_model::check::Band;
+use igimp_results::table::Table;
 use igimp_solver::{Accepted, Body, MarchSettings};
+use igimp_text::short;
 use rayon::prelude::*;
 
 use crate::laboratory::{grid_of, run};

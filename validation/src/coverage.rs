@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use igimp_cases::mesh_study::{Computed, Convergence, Estimate, estimate};
+use igimp_results::mesh_study::{Computed, Convergence, Estimate, estimate};
 
 use crate::study::Study;
 

@@ -9,11 +9,11 @@ use igimp_assembly::{
     AssemblyError, Constraints, Locking, Method, Particles, SharedLaw, StepConditions, StepLoads,
 };
 use igimp_cases::CaseError;
-use igimp_cases::check::Band;
-use igimp_cases::seed::fill_polygon;
-use igimp_cases::table::Table;
 use igimp_figures::{Colour, CurvePlot, ReferenceLine, ReferenceValue, Series};
+use igimp_geometry::seed::fill_polygon;
 use igimp_material::{Elasticity, VonMises};
+use igimp_model::check::Band;
+use igimp_results::table::Table;
 use igimp_shape::Grid;
 use igimp_solver::{Accepted, Body, MarchSettings};
 use rayon::prelude::*;
@@ -355,7 +355,7 @@ fn cavity(
         ..CurvePlot::default()
     }
     .write(&study.folder.join("cavity"))?;
-    curve.write_csv(&study.folder)
+    Ok(curve.write_csv(&study.folder)?)
 }
 
 fn picture(study: &Study, mut shown: Vec<Series>) -> Result<(), CaseError> {

@@ -8,11 +8,11 @@ use igimp_assembly::{
     Constraints, LoadPoint, Locking, Method, Particles, SharedLaw, StepConditions, StepLoads,
 };
 use igimp_cases::CaseError;
-use igimp_cases::check::Band;
-use igimp_cases::seed::fill_polygon;
-use igimp_cases::table::Table;
 use igimp_figures::{Colour, CurvePlot, LineStyle, Scale, Series, SeriesStyle};
+use igimp_geometry::seed::fill_polygon;
 use igimp_material::{Elasticity, HenckyElastic};
+use igimp_model::check::Band;
+use igimp_results::table::Table;
 use igimp_shape::{Axis, Grid};
 use igimp_solver::{Accepted, Body, MarchSettings};
 use rayon::prelude::*;

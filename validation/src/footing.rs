@@ -3,15 +3,15 @@
 use std::path::Path;
 
 use igimp_cases::CaseError;
-use igimp_cases::case::Case;
-use igimp_cases::check::Band;
-use igimp_cases::measure::{displacement_norm, eps_p_eq, sigma};
-use igimp_cases::mesh_study::Convergence;
-use igimp_cases::table::Table;
 use igimp_figures::{
     Band as ShadedBand, Colour, ColourMap, CurvePlot, LineStyle, ReferenceLine, ReferenceValue,
     Series, SeriesStyle,
 };
+use igimp_model::Case;
+use igimp_model::check::Band;
+use igimp_results::measure::{displacement_norm, eps_p_eq, sigma};
+use igimp_results::mesh_study::Convergence;
+use igimp_results::table::Table;
 use rayon::prelude::*;
 
 use crate::coverage::{self, Known, on_cells};
@@ -441,7 +441,7 @@ fn figures(study: &Study, pushes: &[Push], results: &[Computed]) -> Result<(), C
             let title = format!(
                 "{}, w = {} B",
                 push.label,
-                igimp_cases::check::short(reached(result))
+                igimp_text::short(reached(result))
             );
             contours(title, particles, values, label, map, range)
                 .write(&study.folder.join(format!("{name}_{}", push.name)))?;

@@ -6,13 +6,13 @@
 use std::path::Path;
 
 use igimp_cases::CaseError;
-use igimp_cases::check::Band;
-use igimp_cases::measure::sigma;
-use igimp_cases::table::Table;
 use igimp_figures::{
     Band as ShadedBand, Colour, ColourMap, CurvePlot, FieldPanel, FieldPlot, LineStyle, Outline,
     OutlineStyle, Series, SeriesStyle,
 };
+use igimp_model::check::Band;
+use igimp_results::measure::sigma;
+use igimp_results::table::Table;
 use rayon::prelude::*;
 
 use crate::footing_side::{Beside, Pushed, push};

@@ -10,9 +10,9 @@ use std::time::{Duration, Instant};
 
 use igimp_assembly::{AssemblyError, ParticleFields, Particles, SharedLaw};
 use igimp_cases::CaseError;
-use igimp_cases::case::{Case, LoadKind, Strength};
 use igimp_cases::run::{Controls, Model, State};
 use igimp_material::{Elasticity, MohrCoulomb};
+use igimp_model::{Case, LoadKind, Strength};
 use igimp_shape::Grid;
 use igimp_solver::{Accepted, MarchReport, Outcome, Workspace, march};
 

@@ -48,7 +48,8 @@ use std::process::{Command, ExitCode};
 use std::time::Instant;
 
 use clap::{Parser, ValueEnum};
-use igimp_cases::CaseError;
+use igimp_cases::{CaseError, is_of_the_system};
+use igimp_results::ResultsError;
 use rayon::prelude::*;
 
 use crate::review::Difference;
@@ -154,10 +155,11 @@ impl Arguments {
     /// the source.
     fn snapshots(&self) -> Result<PathBuf, CaseError> {
         let folder = self.snapshots.clone().unwrap_or_else(review::snapshots);
-        std::path::absolute(&folder).map_err(|source| CaseError::File {
+        let absolute = std::path::absolute(&folder).map_err(|source| ResultsError::File {
             path: folder,
             source,
-        })
+        });
+        Ok(absolute?)
     }
 }
 
@@ -243,9 +245,10 @@ fn report_error(error: &CaseError) {
 }
 
 fn exit_code(error: &CaseError) -> u8 {
-    match error {
-        CaseError::File { .. } | CaseError::Table { .. } | CaseError::Figure(_) => INPUT_OUTPUT,
-        _ => BAD_INPUT,
+    if is_of_the_system(error) {
+        INPUT_OUTPUT
+    } else {
+        BAD_INPUT
     }
 }
 
@@ -274,7 +277,7 @@ fn again_with_update() -> ExitCode {
 /// Accepts what was left, and names it.
 fn accept_left(folder: Result<PathBuf, CaseError>) -> Result<u8, CaseError> {
     let folder = folder?;
-    let accepted = review::accept_left(&folder).map_err(|source| CaseError::File {
+    let accepted = review::accept_left(&folder).map_err(|source| ResultsError::File {
         path: folder,
         source,
     })?;
@@ -295,7 +298,7 @@ fn validate(arguments: &Arguments) -> Result<u8, CaseError> {
             .num_threads(threads)
             .build_global();
     }
-    std::fs::create_dir_all(&arguments.out).map_err(|source| CaseError::File {
+    std::fs::create_dir_all(&arguments.out).map_err(|source| ResultsError::File {
         path: arguments.out.clone(),
         source,
     })?;
@@ -383,8 +386,8 @@ fn print_report(
             check.case,
             check.variant,
             check.quantity,
-            igimp_cases::check::short(check.measured),
-            igimp_cases::check::short(check.expected),
+            igimp_text::short(check.measured),
+            igimp_text::short(check.expected),
             check.source,
             check.band,
         );

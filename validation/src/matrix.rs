@@ -5,7 +5,8 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use igimp_cases::CaseError;
-use igimp_cases::check::short;
+use igimp_results::ResultsError;
+use igimp_text::short;
 
 use crate::oracle::OracleKind;
 use crate::snapshot::within;
@@ -214,7 +215,7 @@ pub(crate) fn drift(
     all_cases: bool,
 ) -> Result<Vec<String>, CaseError> {
     let path = Path::new(PAGE);
-    let page = std::fs::read_to_string(path).map_err(|source| CaseError::File {
+    let page = std::fs::read_to_string(path).map_err(|source| ResultsError::File {
         path: path.to_owned(),
         source,
     })?;
@@ -264,7 +265,7 @@ fn differences(on_page: &[Printed], studies: &[Study], complete: bool) -> Vec<St
 /// Writes the matrix between its marks.
 pub(crate) fn write(studies: &[Study]) -> Result<(), CaseError> {
     let path = Path::new(PAGE);
-    let file = |source| CaseError::File {
+    let file = |source| ResultsError::File {
         path: path.to_owned(),
         source,
     };
@@ -274,17 +275,18 @@ pub(crate) fn write(studies: &[Study]) -> Result<(), CaseError> {
         return Err(file(std::io::Error::new(
             std::io::ErrorKind::InvalidData,
             missing,
-        )));
+        ))
+        .into());
     };
     let page = page.replacen(old, &format!("\n\n{}", text(studies)), 1);
-    std::fs::write(path, page).map_err(file)
+    Ok(std::fs::write(path, page).map_err(file)?)
 }
 
 #[cfg(test)]
 mod tests {
     use std::time::Duration;
 
-    use igimp_cases::check::Band;
+    use igimp_model::check::Band;
     use igimp_solver::{MarchReport, Outcome};
 
     use super::*;

@@ -5,13 +5,13 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use igimp_cases::CaseError;
-use igimp_cases::check::Band;
-use igimp_cases::measure::{displacement_norm, eps_p_eq};
-use igimp_cases::summary::TrialSummary;
-use igimp_cases::table::Table;
 use igimp_figures::{
     ColourMap, CurvePlot, FieldPanel, LineStyle, ReferenceLine, ReferenceValue, Series, SeriesStyle,
 };
+use igimp_model::check::Band;
+use igimp_results::measure::{displacement_norm, eps_p_eq};
+use igimp_results::summary::TrialSummary;
+use igimp_results::table::Table;
 use igimp_solver::Outcome;
 use rayon::prelude::*;
 

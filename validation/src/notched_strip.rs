@@ -10,11 +10,11 @@ use igimp_assembly::{
     Constraints, Locking, Method, Particles, SharedLaw, StepConditions, StepLoads,
 };
 use igimp_cases::CaseError;
-use igimp_cases::check::Band;
-use igimp_cases::mesh_study::Convergence;
-use igimp_cases::table::Table;
 use igimp_figures::{CurvePlot, ReferenceLine, ReferenceValue, Series};
 use igimp_material::{Elasticity, VonMises};
+use igimp_model::check::Band;
+use igimp_results::mesh_study::Convergence;
+use igimp_results::table::Table;
 use igimp_shape::{Axis, Grid, ShapeError};
 use igimp_solver::{Accepted, Body, MarchSettings};
 use rayon::prelude::*;

@@ -1,8 +1,8 @@
 //! Pictures that several studies draw: contours on particle domains.
 
 use igimp_assembly::Particles;
-use igimp_cases::measure::domains;
 use igimp_figures::{ColourMap, FieldPlot, Outline};
+use igimp_results::measure::domains;
 
 /// Contours of a particle field, compression and sign as the label says.
 pub(crate) fn contours(

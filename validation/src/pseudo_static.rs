@@ -4,10 +4,10 @@ use std::path::Path;
 
 use igimp_assembly::Locking;
 use igimp_cases::CaseError;
-use igimp_cases::case::{Case, Stage, StageKind};
-use igimp_cases::check::Band;
-use igimp_cases::input::CaseFile;
-use igimp_cases::table::Table;
+use igimp_input::CaseFile;
+use igimp_model::check::Band;
+use igimp_model::{Case, Stage, StageKind};
+use igimp_results::table::Table;
 use rayon::prelude::*;
 
 use crate::limit_equilibrium::rotation;
@@ -253,7 +253,7 @@ fn slopes(study: &mut Study, level: Level) -> Result<(), CaseError> {
             value,
         ]);
     }
-    table.write_csv(&study.folder)
+    Ok(table.write_csv(&study.folder)?)
 }
 
 /// The force on the slope of Loukidis et al. is raised until it fails.
@@ -315,5 +315,5 @@ fn critical(study: &mut Study, level: Level) -> Result<(), CaseError> {
         );
         table.push(vec![f64::from(*cells), value]);
     }
-    table.write_csv(&study.folder)
+    Ok(table.write_csv(&study.folder)?)
 }

@@ -6,8 +6,9 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use igimp_cases::CaseError;
-use igimp_cases::check::short;
 use igimp_figures::{CurvePlot, LineStyle, Scale, Series, SeriesStyle};
+use igimp_results::ResultsError;
+use igimp_text::short;
 
 /// Most panels of one picture.
 const PANELS: usize = 4;
@@ -35,13 +36,14 @@ pub(crate) fn snapshots() -> PathBuf {
 /// Removes the pictures of an earlier comparison, with their folder.
 ///
 /// # Errors
-/// [`CaseError::File`] if the folder cannot be removed.
+/// [`ResultsError::File`](igimp_results::ResultsError::File) if the folder cannot be removed.
 pub(crate) fn clear(pictures: &Path) -> Result<(), CaseError> {
     match fs::remove_dir_all(pictures) {
-        Err(source) if source.kind() != io::ErrorKind::NotFound => Err(CaseError::File {
+        Err(source) if source.kind() != io::ErrorKind::NotFound => Err(ResultsError::File {
             path: pictures.to_path_buf(),
             source,
-        }),
+        }
+        .into()),
         _ => Ok(()),
     }
 }
@@ -205,7 +207,7 @@ fn write(plots: &[(usize, CurvePlot)], path: &Path) -> Result<(), CaseError> {
     let Some(folder) = path.parent().filter(|_| !plots.is_empty()) else {
         return Ok(());
     };
-    fs::create_dir_all(folder).map_err(|source| CaseError::File {
+    fs::create_dir_all(folder).map_err(|source| ResultsError::File {
         path: folder.to_path_buf(),
         source,
     })?;

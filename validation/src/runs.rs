@@ -6,11 +6,11 @@ use std::time::{Duration, Instant};
 
 use igimp_assembly::Particles;
 use igimp_cases::CaseError;
-use igimp_cases::case::Case;
 use igimp_cases::run::{self, Event, Listener, Start};
-use igimp_cases::shipped;
-use igimp_cases::summary::{SafetySummary, TrialSummary};
-use igimp_cases::table::Table;
+use igimp_input::shipped;
+use igimp_model::Case;
+use igimp_results::summary::{SafetySummary, TrialSummary};
+use igimp_results::table::Table;
 use igimp_solver::{MarchReport, Outcome};
 
 /// The shipped case of a name, changed by overrides such as `grid.locking=none`.

@@ -6,12 +6,10 @@ use std::path::Path;
 
 use igimp_assembly::Geometry;
 use igimp_cases::CaseError;
-use igimp_cases::case::{
-    Case, Construction, Drainage, PoreSource, Stage, StageKind, WaterCondition,
-};
-use igimp_cases::check::Band;
-use igimp_cases::input::CaseFile;
 use igimp_cases::run::Run;
+use igimp_input::CaseFile;
+use igimp_model::check::Band;
+use igimp_model::{Case, Construction, Drainage, PoreSource, Stage, StageKind, WaterCondition};
 
 use crate::oracle::{Oracle, OracleKind};
 use crate::runs::{Computed, corners};

@@ -5,8 +5,9 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use igimp_cases::CaseError;
-use igimp_cases::check::{Band, Check};
-use igimp_cases::table::Table;
+use igimp_model::check::{Band, Check};
+use igimp_results::ResultsError;
+use igimp_results::table::Table;
 use igimp_solver::{MarchReport, Outcome, PhaseTimes, StepError};
 use serde::Serialize;
 
@@ -193,7 +194,7 @@ impl Study {
         out: &Path,
     ) -> Result<Self, CaseError> {
         let folder = out.join(case);
-        std::fs::create_dir_all(&folder).map_err(|source| CaseError::File {
+        std::fs::create_dir_all(&folder).map_err(|source| ResultsError::File {
             path: folder.clone(),
             source,
         })?;

@@ -4,7 +4,8 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use igimp_cases::CaseError;
-use igimp_cases::check::short;
+use igimp_results::ResultsError;
+use igimp_text::short;
 
 use crate::review::Difference;
 use crate::study::{Row, Study};
@@ -117,7 +118,7 @@ pub(crate) fn write_summary(
     });
     let path = out.join("summary.json");
     let text = format!("{summary:#}\n");
-    std::fs::write(&path, text).map_err(|source| CaseError::File { path, source })
+    Ok(std::fs::write(&path, text).map_err(|source| ResultsError::File { path, source })?)
 }
 
 #[cfg(test)]

@@ -10,11 +10,11 @@ use igimp_assembly::{
     StepConditions, StepLoads, Water,
 };
 use igimp_cases::CaseError;
-use igimp_cases::check::Band;
-use igimp_cases::table::Table;
 use igimp_figures::{CurvePlot, LineStyle, ReferenceLine, ReferenceValue, Series, SeriesStyle};
 use igimp_linear::SolverKind;
 use igimp_material::{Elasticity, MohrCoulomb};
+use igimp_model::check::Band;
+use igimp_results::table::Table;
 use igimp_shape::{Axis, Grid};
 use igimp_solver::{Accepted, Body, MarchReport, MarchSettings, Workspace, march};
 use rayon::prelude::*;

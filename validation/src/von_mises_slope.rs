@@ -3,13 +3,13 @@
 use std::path::Path;
 
 use igimp_cases::CaseError;
-use igimp_cases::case::{Case, Strength};
-use igimp_cases::check::Band;
-use igimp_cases::measure::{along_line, displacement_norm, oscillation, sigma};
-use igimp_cases::table::Table;
 use igimp_figures::{
     ColourMap, CurvePlot, FieldPanel, Outline, OutlineStyle, ReferenceLine, ReferenceValue, Series,
 };
+use igimp_model::check::Band;
+use igimp_model::{Case, Strength};
+use igimp_results::measure::{along_line, displacement_norm, oscillation, sigma};
+use igimp_results::table::Table;
 use igimp_solver::Outcome;
 use rayon::prelude::*;
 

@@ -9,8 +9,8 @@ use clap::Parser;
 use igimp_benchmarks::BenchResult;
 use igimp_benchmarks::block::{Block, Soil};
 use igimp_benchmarks::pass::Pass;
-use igimp_cases::results::linear_system::{About, LinearSystem};
 use igimp_linear::SolvedSystem;
+use igimp_results::linear_system::{About, LinearSystem};
 
 /// Writes the tangent of a cube of soil.
 #[derive(Debug, Parser)]

@@ -9,11 +9,11 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use clap::Parser;
-use igimp_cases::results::linear_system::LinearSystem;
 use igimp_linear::TangentMatrix;
 use igimp_linear::{
     LinearSolver, LinearSolverError, MultifrontalCholesky, MultifrontalLu, SolveReport, SolverKind,
 };
+use igimp_results::linear_system::LinearSystem;
 use serde_json::{Value, json};
 
 /// Times a linear solver on an exported system.
@@ -258,7 +258,7 @@ fn median(mut values: Vec<f64>) -> f64 {
 #[cfg(test)]
 mod tests {
     use igimp_cases::run::{Event, Start, Target, run};
-    use igimp_cases::shipped::find;
+    use igimp_input::shipped::find;
 
     use super::*;
 

@@ -4,9 +4,9 @@
 use std::error::Error;
 use std::sync::atomic::AtomicBool;
 
-use igimp_cases::results::admission::Replace;
 use igimp_cases::run::{Event, Start, Target, run};
-use igimp_cases::shipped::find;
+use igimp_input::shipped::find;
+use igimp_results::admission::Replace;
 
 fn main() -> Result<(), Box<dyn Error>> {
     // `CaseFile::read(path, &overrides)` takes a file of your own in the same way.

@@ -2,33 +2,34 @@
 
 use std::error::Error;
 use std::fmt::Write as _;
-use std::path::PathBuf;
 
 use igimp_assembly::{AssemblyError, SurfaceError};
 use igimp_linear::LinearSolverError;
 use igimp_material::MaterialError;
 use igimp_shape::ShapeError;
 
-use crate::input::InputError;
-use crate::results::checkpoint::CheckpointError;
-use crate::results::npy::NpyError;
 use igimp_figures::FigureError;
+use igimp_geometry::SeedError;
+use igimp_input::InputError;
+use igimp_report::ReportError;
+use igimp_results::ResultsError;
+use igimp_results::checkpoint::CheckpointError;
 
 /// Errors of stating or running a case.
 #[derive(Debug, thiserror::Error)]
 pub enum CaseError {
+    /// A body cannot be seeded.
+    #[error(transparent)]
+    Seed(#[from] SeedError),
+    /// Results cannot be written or read.
+    #[error(transparent)]
+    Results(#[from] ResultsError),
+    /// A report or a picture cannot be made.
+    #[error(transparent)]
+    Report(#[from] ReportError),
     /// A case file states no case.
     #[error(transparent)]
     Input(#[from] InputError),
-    /// A body reaches beyond the grid.
-    #[error("the body reaches {}, outside the grid domain", place(corner))]
-    OutsideGrid {
-        /// The corner \[length\].
-        corner: Vec<f64>,
-    },
-    /// A body has no volume.
-    #[error("the body is empty: it has no volume on the grid")]
-    EmptyBody,
     /// The case has more than one rigid footing.
     #[error("the case has more than one rigid footing, but the grid can follow only one")]
     SeveralFootings,
@@ -83,36 +84,6 @@ pub enum CaseError {
     /// The elimination of the unknowns cannot be planned.
     #[error(transparent)]
     LinearSolver(#[from] LinearSolverError),
-    /// A file cannot be written or read.
-    #[error("cannot access {}", path.display())]
-    File {
-        /// The file or folder.
-        path: PathBuf,
-        /// What the system said.
-        #[source]
-        source: std::io::Error,
-    },
-    /// A table cannot be written.
-    #[error("cannot write the table {}", path.display())]
-    Table {
-        /// The file.
-        path: PathBuf,
-        /// What the writer said.
-        #[source]
-        source: csv::Error,
-    },
-    /// A picture cannot be drawn.
-    #[error("cannot draw a picture")]
-    Figure(#[from] FigureError),
-    /// The folder for results holds something else.
-    #[error(
-        "{} is not empty and was not written by igimp; choose another folder for the results",
-        path.display()
-    )]
-    ForeignFolder {
-        /// The folder.
-        path: PathBuf,
-    },
     /// The run cannot have the memory that it needs.
     #[error(
         "the run is thought to need {needed} of memory, and {limit} can be had, {by}; a larger cell, \
@@ -126,77 +97,6 @@ pub enum CaseError {
         /// Who sets the limit.
         by: &'static str,
     },
-    /// Another program writes into the folder for results.
-    #[error(
-        "another igimp writes into {}; wait until it has ended, or choose another folder for the results",
-        path.display()
-    )]
-    InUse {
-        /// The folder.
-        path: PathBuf,
-    },
-    /// The folder for results holds those of another case.
-    #[error(
-        "{} holds results of {}: --out chooses another folder, --overwrite replaces them",
-        path.display(),
-        whose(case, title)
-    )]
-    OtherResults {
-        /// The folder.
-        path: PathBuf,
-        /// Where that case comes from, as seen from the folder; empty if it is not known.
-        case: String,
-        /// Its title.
-        title: String,
-    },
-    /// The folder for results holds a run that was stopped and can go on.
-    #[error(
-        "{} holds a run that was stopped and can go on{} --overwrite begins afresh, --out chooses \
-         another folder",
-        path.display(),
-        if *same_input { ": --resume goes on with it," } else { " with the input that it had:" }
-    )]
-    Unfinished {
-        /// The folder.
-        path: PathBuf,
-        /// Whether it was made of the same input, so that it can go on as it is.
-        same_input: bool,
-    },
-    /// A file or folder that is written is a link.
-    #[error(
-        "{} is a link that leads elsewhere; remove it, or choose another folder for the results",
-        path.display()
-    )]
-    Link {
-        /// The link.
-        path: PathBuf,
-    },
-    /// A folder that should hold results of an earlier run does not.
-    #[error("{} holds no results of igimp", path.display())]
-    NoResults {
-        /// The folder.
-        path: PathBuf,
-    },
-    /// A file of an earlier run cannot be continued or read.
-    #[error("cannot go on with {}: {why}", path.display())]
-    Unusable {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong with it.
-        why: String,
-    },
-    /// An array file cannot be read.
-    #[error("cannot read the array {}", path.display())]
-    Npy {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong with it.
-        #[source]
-        source: NpyError,
-    },
-    /// The state of a run cannot be saved or taken up again.
-    #[error(transparent)]
-    Checkpoint(#[from] CheckpointError),
 }
 
 /// Whether files, memory or another program stand in the way, rather than the input.
@@ -206,7 +106,7 @@ pub fn is_of_the_system(error: &(dyn Error + 'static)) -> bool {
         let is_file = error.is::<std::io::Error>() || error.is::<csv::Error>();
         let refused = error
             .downcast_ref::<CaseError>()
-            .is_some_and(|own| matches!(own, CaseError::InUse { .. } | CaseError::Memory { .. }));
+            .is_some_and(|own| matches!(own, CaseError::Memory { .. }) || own.is_in_use());
         if is_file || refused {
             return true;
         }
@@ -215,19 +115,37 @@ pub fn is_of_the_system(error: &(dyn Error + 'static)) -> bool {
     false
 }
 
+impl CaseError {
+    /// What is wrong with results, if that is what stands in the way.
+    pub fn of_results(&self) -> Option<&ResultsError> {
+        match self {
+            Self::Results(error) | Self::Report(ReportError::Results(error)) => Some(error),
+            _ => None,
+        }
+    }
+
+    /// Whether another program writes into the folder for results.
+    pub fn is_in_use(&self) -> bool {
+        matches!(self.of_results(), Some(ResultsError::InUse { .. }))
+    }
+}
+
+impl From<FigureError> for CaseError {
+    fn from(error: FigureError) -> Self {
+        Self::Report(error.into())
+    }
+}
+
+impl From<CheckpointError> for CaseError {
+    fn from(error: CheckpointError) -> Self {
+        Self::Results(error.into())
+    }
+}
+
 /// A point in a message.
 fn place(point: &[f64]) -> String {
     let numbers: Vec<String> = point.iter().map(f64::to_string).collect();
     format!("({}) m", numbers.join(", "))
-}
-
-/// Another case in a message.
-fn whose(case: &str, title: &str) -> String {
-    match (case, title) {
-        ("", _) => "an input that is not known".to_owned(),
-        (case, "") => format!("another input, {case}"),
-        (case, title) => format!("another input, {case} (\"{title}\")"),
-    }
 }
 
 /// An error and its causes, a line each.
@@ -236,6 +154,17 @@ pub fn chain(error: &dyn Error) -> String {
     let mut cause = error.source();
     while let Some(next) = cause {
         let _ = write!(text, "\n  because: {next}");
+        cause = next.source();
+    }
+    text
+}
+
+/// An error and its causes on one line.
+pub fn on_one_line(error: &dyn Error) -> String {
+    let mut text = error.to_string();
+    let mut cause = error.source();
+    while let Some(next) = cause {
+        text = format!("{text}: {next}");
         cause = next.source();
     }
     text

@@ -17,12 +17,12 @@ pub mod watch;
 
 use igimp_shape::{Scratch, supports};
 
-use crate::case::{Case, LoadKind, ReductionPath, Side, StageKind};
 use crate::error::CaseError;
-use crate::mesh_study::plan;
-use crate::seed::fill;
-use crate::summary::Expected;
 use couplings::Couplings;
+use igimp_geometry::seed::fill;
+use igimp_model::meshes;
+use igimp_model::{Case, LoadKind, ReductionPath, Side, StageKind};
+use igimp_results::summary::Expected;
 use speed::Speed;
 pub use systems::Systems;
 use time::Time;
@@ -178,7 +178,7 @@ impl Expectation {
     /// As [`estimate`] and [`Speed::measured`].
     pub fn of<const D: usize>(case: &Case<D>) -> Result<Self, CaseError> {
         let speed = Speed::measured()?;
-        let meshes = plan::meshes(case);
+        let meshes = meshes::meshes(case);
         let sizes = meshes.iter().map(estimate).collect::<Result<Vec<_>, _>>()?;
         let times: Vec<Time> = std::iter::zip(&meshes, &sizes)
             .map(|(mesh, size)| time::time(mesh, size, speed))
@@ -305,19 +305,11 @@ fn free<const D: usize>(case: &Case<D>, x: [f64; D]) -> u8 {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
-    use crate::case::FixedBox;
-    use crate::input::CaseFile;
+    use igimp_input::CaseFile;
+    use igimp_model::FixedBox;
 
     pub(crate) fn case() -> Case {
-        let text = "igimp = 1\n[case]\ntitle = \"block\"\ngravity = \"9.81 m/s2\"\n\
-            [grid]\ncell = \"0.5 m\"\ndomain = { x = [\"0 m\", \"4 m\"], y = [\"0 m\", \"4 m\"] }\n\
-            [materials.clay]\nmodel = \"elastic\"\nunit_weight = \"18 kN/m3\"\n\
-            young = \"10 MPa\"\npoisson = 0.3\n\
-            [[bodies]]\nname = \"block\"\nmaterial = \"clay\"\npoints_per_cell = 4\n\
-            polygon = [[\"0 m\", \"0 m\"], [\"2 m\", \"0 m\"], [\"2 m\", \"2 m\"], \
-            [\"0 m\", \"2 m\"]]\n\
-            [boundaries]\nleft = \"roller\"\nright = \"roller\"\nbottom = \"fixed\"\n\
-            [[stages]]\nname = \"own weight\"\ntype = \"gravity\"\nsteps = 5\n";
+        let text = include_str!("../tests/data/block.toml");
         CaseFile::parse("block.toml", text, &[])
             .unwrap()
             .case()

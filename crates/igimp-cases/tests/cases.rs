@@ -4,11 +4,11 @@
 use std::error::Error;
 
 use igimp_assembly::Remedy;
-use igimp_cases::case::{Case, GridSpec, LoadKind, Strength};
 use igimp_cases::exact;
 use igimp_cases::run::in_memory;
-use igimp_cases::shipped::find;
-use igimp_cases::summary::StageOutcome;
+use igimp_input::shipped::find;
+use igimp_model::{Case, GridSpec, LoadKind, Strength};
+use igimp_results::summary::StageOutcome;
 
 /// The error and all its causes on one line.
 fn chain(error: &dyn Error) -> String {

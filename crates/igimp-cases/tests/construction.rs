@@ -9,13 +9,13 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use igimp_assembly::{Kinematics, Particles};
-use igimp_cases::case::{
+use igimp_cases::run::{Run, Start, in_memory};
+use igimp_input::CaseFile;
+use igimp_model::{
     Case, Construction, Drainage, Material, PoreSource, ReductionPath, ReinforcementKind,
     ReinforcementPart, SearchMethod, Stage, StageKind, StrengthReduction, WaterCondition,
 };
-use igimp_cases::input::CaseFile;
-use igimp_cases::results::checkpoint;
-use igimp_cases::run::{Run, Start, in_memory};
+use igimp_results::checkpoint;
 use resuming::{assert_done, assert_equal, everything, run_into};
 
 const TEXT: &str = r#"

@@ -7,8 +7,8 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use igimp_cases::case::Case;
-use igimp_cases::input::CaseFile;
+use igimp_input::CaseFile;
+use igimp_model::Case;
 
 const TEXT: &str = r#"
 igimp = 1

@@ -4,9 +4,9 @@
 
 use std::sync::atomic::AtomicBool;
 
-use igimp_cases::input::CaseFile;
 use igimp_cases::run::{Event, Run, Start, run};
-use igimp_cases::summary::StageOutcome;
+use igimp_input::CaseFile;
+use igimp_results::summary::StageOutcome;
 
 /// Level ground, 4 m wide: 3 m of clay on 2 m of sand, and 1 m of free grid above.
 const GROUND: &str = r#"

@@ -6,12 +6,12 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use igimp_assembly::SharedLaw;
-use igimp_cases::case::{Case, GivenLaw};
 use igimp_cases::run::in_memory;
-use igimp_cases::shipped::find;
+use igimp_input::shipped::find;
 use igimp_material::{
     ConstitutiveModel, Elasticity, History, MaterialError, Principal, ReturnMap, ShearStrength,
 };
+use igimp_model::{Case, GivenLaw};
 
 /// Another law, asked in batches.
 #[derive(Debug)]

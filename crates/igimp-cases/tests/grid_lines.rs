@@ -1,8 +1,8 @@
 //! GOAL: grid lines go where the case file wants them, cells between them are stated, and what sits
 //! badly on the grid is told with its place and a remedy.
 
-use igimp_cases::case::AxisSpec;
-use igimp_cases::input::CaseFile;
+use igimp_input::CaseFile;
+use igimp_model::AxisSpec;
 
 /// Level ground of two soils, the boundary at mid-cell, with further lines in the grid.
 fn ground(grid: &str) -> String {

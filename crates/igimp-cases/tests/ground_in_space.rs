@@ -7,9 +7,9 @@ mod resuming;
 use std::fmt::Write as _;
 use std::path::Path;
 
-use igimp_cases::case::Case;
-use igimp_cases::input::CaseFile;
 use igimp_cases::run::{Run, Start, in_memory};
+use igimp_input::CaseFile;
+use igimp_model::Case;
 use resuming::{assert_done, assert_equal, everything, folder, run_into};
 
 fn parsed(text: &str) -> CaseFile {

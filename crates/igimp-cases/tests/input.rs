@@ -9,8 +9,8 @@
 use igimp_assembly::Locking;
 use std::fmt::Write;
 
-use igimp_cases::input::{CaseFile, InputError, json_schema, reference_markdown};
-use igimp_cases::shipped::SHIPPED;
+use igimp_input::shipped::SHIPPED;
+use igimp_input::{CaseFile, InputError, json_schema, reference_markdown};
 
 const SLOPE: (&str, &str) = ("slope.toml", include_str!("data/slope.toml"));
 const FOOTING: (&str, &str) = ("footing.toml", include_str!("data/footing.toml"));
@@ -664,7 +664,7 @@ fn pressure_acts_into_the_soil_whichever_way_its_segment_runs() {
         let file =
             CaseFile::parse("footing.toml", &text, &[]).unwrap_or_else(|error| panic!("{error}"));
         match file.case().loads[1].kind {
-            igimp_cases::case::LoadKind::Pressure { traction, .. } => traction,
+            igimp_model::LoadKind::Pressure { traction, .. } => traction,
             ref kind => panic!("{kind:?}"),
         }
     };

@@ -8,8 +8,8 @@ use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use igimp_assembly::{ParticleSeed, Particles};
-use igimp_cases::results::checkpoint::{self, Checkpoint, Meta};
-use igimp_cases::results::folder::write_atomically;
+use igimp_results::checkpoint::{self, Checkpoint, Meta};
+use igimp_results::folder::write_atomically;
 use igimp_solver::Body;
 use serde_json::json;
 

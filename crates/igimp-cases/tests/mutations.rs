@@ -4,7 +4,7 @@
 use std::panic::catch_unwind;
 use std::path::Path;
 
-use igimp_cases::input::{CaseFile, InputError};
+use igimp_input::{CaseFile, InputError};
 
 /// A small generator of numbers, the same in every run (xorshift, Marsaglia 2003).
 struct Random(u64);
@@ -154,7 +154,7 @@ fn mutate(text: &str, kind: usize, random: &mut Random) -> Vec<u8> {
 #[test]
 fn damaged_files_are_accepted_or_explained() {
     const MUTATIONS: usize = 480;
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases");
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../igimp-input/cases");
     let mut files = 0;
     let mut outcomes = [0, 0];
     for entry in std::fs::read_dir(folder).unwrap() {

@@ -3,11 +3,12 @@
 
 use std::fmt::Write;
 
-use igimp_cases::case::{Case, Field, Variation};
-use igimp_cases::input::CaseFile;
-use igimp_cases::results::{fields, setup};
 use igimp_cases::run::Model;
 use igimp_cases::run::in_memory;
+use igimp_input::CaseFile;
+use igimp_model::{Case, Field, Variation};
+use igimp_report::setup;
+use igimp_results::fields;
 
 const TEXT: &str = r#"
 igimp = 1

@@ -1,9 +1,9 @@
 //! Pseudo-static acceleration in case files: a bar pushed along itself is a column under its own weight, and the push stays
 //! from stage to stage.
 
-use igimp_cases::case::StageKind;
-use igimp_cases::input::CaseFile;
 use igimp_cases::run::{Run, in_memory};
+use igimp_input::CaseFile;
+use igimp_model::StageKind;
 
 /// A bar of 8 m by 1 m between `sides`, held at the left or at the bottom.
 fn bar(size: [f64; 2], boundaries: &str, stages: &str) -> Run {

@@ -4,10 +4,10 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::PathBuf;
 
-use igimp_cases::case::{Case, Profile};
-use igimp_cases::input::CaseFile;
-use igimp_cases::results::setup;
 use igimp_cases::run::Model;
+use igimp_input::CaseFile;
+use igimp_model::{Case, Profile};
+use igimp_report::setup;
 
 const TEXT: &str = r#"
 igimp = 1

@@ -2,9 +2,9 @@
 
 use std::fmt::Write;
 
-use igimp_cases::case::{RigidDrive, RigidShape, StageKind};
-use igimp_cases::input::CaseFile;
 use igimp_cases::run::{Run, in_memory};
+use igimp_input::CaseFile;
+use igimp_model::{RigidDrive, RigidShape, StageKind};
 
 const TEXT: &str = include_str!("data/two_bodies.toml");
 const PIPE: &str = "type = \"circle\"\ncentre = [\"4.5 m\", \"2.4 m\"]\nradius = \"0.4 m\"";
@@ -307,7 +307,7 @@ fn forces_on_a_body_come_to_their_limit() {
             "stages.load.stop_when={ no_equilibrium = true }".to_owned(),
             format!("stages.load.bodies=[{{ body = \"footing\", {drive} }}]"),
         ];
-        let shipped = igimp_cases::shipped::find("eccentric_footing").unwrap();
+        let shipped = igimp_input::shipped::find("eccentric_footing").unwrap();
         let file = shipped.case_file(overrides.to_vec()).unwrap();
         let run = in_memory(file.case()).unwrap();
         let stage = run.summary.stages.last().unwrap().clone();

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 use std::sync::atomic::AtomicBool;
 
-use igimp_cases::input::CaseFile;
 use igimp_cases::run::{Event, Run, Start, Target, run};
+use igimp_input::CaseFile;
 
 const TEXT: &str = include_str!("data/two_bodies.toml");
 

@@ -10,9 +10,9 @@ use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 use std::ops::Range;
 
-use igimp_cases::CaseError;
-use igimp_cases::polygon::{area_and_centroid, clip_to_box};
-use igimp_cases::seed::fill_polygon;
+use igimp_geometry::SeedError;
+use igimp_geometry::polygon::{area_and_centroid, clip_to_box};
+use igimp_geometry::seed::fill_polygon;
 use igimp_shape::{Axis, Grid};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -106,7 +106,7 @@ fn check(sample: &Sample) -> Result<(), TestCaseError> {
     let area = shoelace(polygon).abs();
     let seeds = match fill_polygon(grid, polygon, *per_direction, 2.0, 3) {
         Ok(seeds) => seeds,
-        Err(CaseError::EmptyBody) => {
+        Err(SeedError::EmptyBody) => {
             // All parts are slivers of less than a tenth.
             prop_assert!(area < 0.1 * whole, "{area} of {whole}");
             return Ok(());

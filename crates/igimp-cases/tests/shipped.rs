@@ -3,11 +3,11 @@
 
 use std::sync::atomic::AtomicBool;
 
-use igimp_cases::case::Case;
-use igimp_cases::input::CaseFile;
 use igimp_cases::run::{Nobody, Run, Start, run};
-use igimp_cases::shipped::{SHIPPED, find};
-use igimp_cases::summary::StageOutcome::{self, Completed, Stopped};
+use igimp_input::CaseFile;
+use igimp_input::shipped::{SHIPPED, find};
+use igimp_model::Case;
+use igimp_results::summary::StageOutcome::{self, Completed, Stopped};
 
 /// A shipped case after a run in memory.
 struct Ran<const D: usize = 2> {

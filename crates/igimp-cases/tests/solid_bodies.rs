@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::PathBuf;
 
-use igimp_cases::input::CaseFile;
+use igimp_input::CaseFile;
 
 const TEXT: &str = r#"
 igimp = 1

@@ -7,9 +7,9 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 use igimp_assembly::ParticleSeed;
-use igimp_cases::region::{Cover, Crossing, Part, Region};
-use igimp_cases::seed::fill;
-use igimp_cases::solid::{
+use igimp_geometry::region::{Cover, Crossing, Part, Region};
+use igimp_geometry::seed::fill;
+use igimp_geometry::solid::{
     ClosedSurface, ClosedSurfaceError, Cylinder, Difference, Height, Layer, LayerError, Prism,
     Solid, Sphere, Terrain, TerrainError,
 };
@@ -385,7 +385,7 @@ fn layers_between_planes_are_exact() {
         [0.1, 0.3],
         [-2.2, 2.0],
     ];
-    let (area, [x, y]) = igimp_cases::polygon::area_and_centroid(&plan);
+    let (area, [x, y]) = igimp_geometry::polygon::area_and_centroid(&plan);
     for (which, top) in planes([0.12, -0.07, 0.4]).into_iter().enumerate() {
         let bottom = planes([-0.05, 0.02, -1.3])[1 - which].clone();
         let gap = 0.17 * x - 0.09 * y + 1.7;

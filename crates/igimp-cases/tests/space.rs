@@ -6,13 +6,13 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use igimp_assembly::{ParticleFields, ParticleSeed, Particles};
-use igimp_cases::case::Field;
-use igimp_cases::results::particles::{Extras, of_particles};
-use igimp_cases::results::pictures::{InSpace, Shown};
-use igimp_cases::results::pvd::{Collection, PARTICLES};
-use igimp_cases::results::report::write_report;
-use igimp_cases::results::skin::{Boxes, Skin};
-use igimp_cases::summary::Summary;
+use igimp_model::Field;
+use igimp_report::pictures::{InSpace, Shown};
+use igimp_report::report::write_report;
+use igimp_report::skin::{Boxes, Skin};
+use igimp_results::particles::{Extras, of_particles};
+use igimp_results::pvd::{Collection, PARTICLES};
+use igimp_results::summary::Summary;
 
 /// Height of the ground of a slope that falls along x \[m\].
 fn ground(x: f64) -> f64 {

@@ -5,9 +5,9 @@
 
 use std::fmt::Write;
 
-use igimp_cases::case::{Case, Drainage, PoreSource, StageKind};
-use igimp_cases::input::CaseFile;
-use igimp_cases::results::setup;
+use igimp_input::CaseFile;
+use igimp_model::{Case, Drainage, PoreSource, StageKind};
+use igimp_report::setup;
 
 const TEXT: &str = r#"
 igimp = 1

@@ -1,9 +1,9 @@
 //! `igimp check` and `igimp explain`.
 
-use igimp_cases::in_any_dimension;
-use igimp_cases::input::CaseFile;
-use igimp_cases::sweep::is_sweep;
-use igimp_cases::telling::size::size;
+use igimp_input::CaseFile;
+use igimp_model::in_any_dimension;
+use igimp_study::sweep::is_sweep;
+use igimp_study::telling::size::size;
 
 use crate::arguments::CaseArguments;
 use crate::error::{Exit, ProgramError};

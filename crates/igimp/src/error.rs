@@ -4,10 +4,13 @@ use std::error::Error;
 use std::io::ErrorKind;
 use std::path::PathBuf;
 
-use igimp_cases::input::InputError;
-use igimp_cases::results::checkpoint::CheckpointError;
-use igimp_cases::sweep::{Ending, SweepError};
 use igimp_cases::{CaseError, is_of_the_system};
+use igimp_input::InputError;
+use igimp_report::ReportError;
+use igimp_results::ResultsError;
+use igimp_results::checkpoint::CheckpointError;
+use igimp_results::summary::Ending;
+use igimp_study::sweep::SweepError;
 use thiserror::Error;
 
 /// Exit codes; part of the contract with callers. Ordered by how bad they are.
@@ -59,6 +62,18 @@ pub(crate) enum ProgramError {
     Output(#[source] std::io::Error),
 }
 
+impl From<ResultsError> for ProgramError {
+    fn from(error: ResultsError) -> Self {
+        Self::Case(error.into())
+    }
+}
+
+impl From<ReportError> for ProgramError {
+    fn from(error: ReportError) -> Self {
+        Self::Case(error.into())
+    }
+}
+
 impl ProgramError {
     pub(crate) fn usage(what: impl Into<String>, help: impl Into<String>) -> Self {
         Self::Usage {
@@ -97,7 +112,9 @@ impl ProgramError {
             }) => format!("error: {self}"),
             Self::Usage { what, help } if help.is_empty() => format!("error: {what}"),
             Self::Usage { what, help } => format!("error: {what}\n  help: {help}"),
-            Self::Case(CaseError::Checkpoint(CheckpointError::Damaged { .. })) => format!(
+            Self::Case(CaseError::Results(ResultsError::Checkpoint(
+                CheckpointError::Damaged { .. },
+            ))) => format!(
                 "{}\n  help: without that folder, --resume goes on from the one before it; --overwrite \
                  begins afresh",
                 igimp_cases::chain(self)
@@ -120,6 +137,7 @@ pub(crate) fn of_error(error: &(dyn Error + 'static)) -> Exit {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use igimp_geometry::SeedError;
 
     fn denied() -> std::io::Error {
         ErrorKind::PermissionDenied.into()
@@ -141,7 +159,7 @@ mod tests {
         let invalid = ProgramError::from(invalid);
         assert_eq!(invalid.exit(), Exit::BadInput);
         assert_eq!(invalid.render(), "error: no");
-        let case = CaseError::File {
+        let case = ResultsError::File {
             path,
             source: denied(),
         };
@@ -153,7 +171,7 @@ mod tests {
              because: permission denied"
         );
         assert_eq!(
-            ProgramError::from(CaseError::EmptyBody).exit(),
+            ProgramError::from(CaseError::Seed(SeedError::EmptyBody)).exit(),
             Exit::BadInput
         );
     }

@@ -21,7 +21,7 @@ use std::borrow::Cow;
 use std::process::ExitCode;
 
 use clap::Parser;
-use igimp_cases::printable::on_lines;
+use igimp_text::on_lines;
 
 use crate::arguments::{Command, CommandLine};
 use crate::error::{Exit, ProgramError};

@@ -3,9 +3,9 @@
 
 use std::io::{ErrorKind, Write};
 
-use igimp_cases::CaseError;
-use igimp_cases::case::AnyCase;
-use igimp_cases::printable::on_lines;
+use igimp_model::AnyCase;
+use igimp_results::ResultsError;
+use igimp_text::on_lines;
 
 use crate::error::ProgramError;
 
@@ -48,7 +48,7 @@ pub(crate) fn warn(warnings: &str) {
 pub(crate) fn stage_named(case: &AnyCase, name: &str) -> Result<usize, ProgramError> {
     let names = || case.stages().iter().map(|stage| stage.name.as_str());
     names().position(|own| own == name).ok_or_else(|| {
-        let help = igimp_cases::shipped::closest(name, names()).map_or_else(
+        let help = igimp_input::shipped::closest(name, names()).map_or_else(
             || {
                 let quoted: Vec<String> = names().map(|name| format!("\"{name}\"")).collect();
                 format!("stages: {}", quoted.join(", "))
@@ -72,7 +72,7 @@ pub(crate) fn use_threads(threads: Option<usize>) {
 /// A folder that can be written into, made now rather than after an hour of computing.
 pub(crate) fn writable(folder: &std::path::Path) -> Result<(), ProgramError> {
     std::fs::create_dir_all(folder).map_err(|source| {
-        CaseError::File {
+        ResultsError::File {
             path: folder.to_owned(),
             source,
         }

@@ -3,11 +3,11 @@
 use std::io::IsTerminal;
 use std::time::Duration;
 
-use igimp_cases::case::AnyCase;
-use igimp_cases::printable::{on_a_line, on_lines};
 use igimp_cases::run::{Event, Listener};
-use igimp_cases::telling::lines::{self, Lines};
-use igimp_cases::telling::whole::Whole;
+use igimp_model::AnyCase;
+use igimp_study::telling::lines::{self, Lines};
+use igimp_study::telling::whole::Whole;
+use igimp_text::{on_a_line, on_lines};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::output;

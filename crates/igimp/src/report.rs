@@ -1,6 +1,6 @@
 //! `igimp report`.
 
-use igimp_cases::results::report::write_report;
+use igimp_report::report::write_report;
 
 use crate::arguments::Report;
 use crate::error::{Exit, ProgramError};

@@ -5,11 +5,12 @@ use std::path::Path;
 use igimp_cases::estimate::Expectation;
 use igimp_cases::estimate::room::refuse_beyond;
 use igimp_cases::estimate::watch::{exceeded, lacks_memory};
-use igimp_cases::results::admission::Replace;
 use igimp_cases::run::{self as engine, Start, Target};
-use igimp_cases::sweep::{Ending, Sweep, Turn};
-use igimp_cases::telling::verdict;
-use igimp_cases::{CaseError, in_any_dimension};
+use igimp_model::in_any_dimension;
+use igimp_results::admission::Replace;
+use igimp_results::summary::Ending;
+use igimp_study::sweep::{Sweep, Turn};
+use igimp_study::telling::verdict;
 
 use crate::arguments::RunArguments;
 use crate::error::{Exit, ProgramError};
@@ -65,7 +66,7 @@ fn give_up(error: &ProgramError, folder: &Path, arguments: &RunArguments) -> Exi
     output::complain(&error.render());
     let kept =
         std::fs::read_dir(folder.join("checkpoint")).is_ok_and(|mut saved| saved.next().is_some());
-    let entered = !matches!(error, ProgramError::Case(CaseError::InUse { .. }));
+    let entered = !matches!(error, ProgramError::Case(error) if error.is_in_use());
     if error.exit() == Exit::InputOutput && kept && entered {
         output::complain(&format!(
             "what was computed is kept; to go on later: {}",

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use igimp_cases::estimate::speed::Speed;
 use igimp_cases::estimate::{readable, time, watch};
-use igimp_cases::results::admission::Replace;
-use igimp_cases::sweep::{Demand, Sweep, Words, numbers};
+use igimp_results::admission::Replace;
+use igimp_study::sweep::{Demand, Sweep, Words, numbers};
 
 use crate::arguments::{Scheduler, SweepArguments};
 use crate::error::{Exit, ProgramError};

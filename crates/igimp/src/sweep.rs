@@ -3,10 +3,11 @@
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-use igimp_cases::results::admission::Replace;
 use igimp_cases::run::{Nobody, Start};
-use igimp_cases::sweep::{self, Ending, Task};
-use igimp_cases::telling::lines;
+use igimp_results::admission::Replace;
+use igimp_results::summary::Ending;
+use igimp_study::sweep::{self, Task};
+use igimp_study::telling::lines;
 
 use crate::arguments::{Collect, SweepArguments};
 use crate::error::{Exit, ProgramError};

@@ -1,14 +1,14 @@
 //! `igimp validate`: the cases that come with the program, held against their references.
 
-use igimp_cases::case::AnyCase;
 use igimp_cases::estimate::estimate;
-use igimp_cases::in_any_dimension;
-use igimp_cases::input::CaseFile;
-use igimp_cases::results::admission::Replace;
 use igimp_cases::run::{self, Nobody, Start, Target};
-use igimp_cases::shipped::{SHIPPED, Shipped, find, nearest};
-use igimp_cases::sweep::Ending;
-use igimp_cases::telling::verdict;
+use igimp_input::CaseFile;
+use igimp_input::shipped::{SHIPPED, Shipped, find, nearest};
+use igimp_model::AnyCase;
+use igimp_model::in_any_dimension;
+use igimp_results::admission::Replace;
+use igimp_results::summary::Ending;
+use igimp_study::telling::verdict;
 
 use crate::arguments::Validate;
 use crate::error::{Exit, ProgramError};

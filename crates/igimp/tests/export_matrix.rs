@@ -7,8 +7,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use igimp_cases::results::linear_system::LinearSystem;
-use igimp_cases::results::npy::{Array, Values};
+use igimp_results::linear_system::LinearSystem;
+use igimp_results::npy::{Array, Values};
 
 const VON_MISES: &str = "model = \"von-mises\"\ncu = \"12 kPa\"";
 const MOHR_COULOMB: &str =

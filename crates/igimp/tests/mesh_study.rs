@@ -8,12 +8,12 @@ mod run_support;
 use std::path::PathBuf;
 use std::process::Command;
 
-use igimp_cases::case::Case;
-use igimp_cases::input::CaseFile;
-use igimp_cases::mesh_study::{Order, ResultKind, StudyResult};
 use igimp_cases::run::in_memory;
-use igimp_cases::shipped::find;
-use igimp_cases::summary::Summary;
+use igimp_input::CaseFile;
+use igimp_input::shipped::find;
+use igimp_model::Case;
+use igimp_results::mesh_study::{Order, ResultKind, StudyResult};
+use igimp_results::summary::Summary;
 use run_support::{Folder, differing};
 
 /// A shipped case with settings.

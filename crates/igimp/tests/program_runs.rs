@@ -132,7 +132,7 @@ fn memory_is_shared_among_particles_and_unknowns() {
 #[test]
 fn the_estimate_stands_beside_what_was_used() {
     for name in ["column", "cantilever", "mohr_coulomb_slope"] {
-        let case = igimp_cases::shipped::find(name).unwrap();
+        let case = igimp_input::shipped::find(name).unwrap();
         let folder = Folder::new(&format!("estimate-{name}"), case.text);
         let words = ["run", "case.toml", "--out", "results", "--threads", "1"];
         let (code, _, err) = parts(&folder.igimp(&words));
@@ -337,7 +337,7 @@ fn the_date_of_a_run_can_be_set() {
     assert_eq!(read("a/monitors/top.csv"), read("b/monitors/top.csv"));
     let hash = summary["input_sha256"].as_str().unwrap();
     let completed = std::fs::read(folder.0.join("b/case.completed.toml")).unwrap();
-    assert_eq!(hash, igimp_cases::results::checkpoint::sha256(&completed));
+    assert_eq!(hash, igimp_results::checkpoint::sha256(&completed));
     let (code, _, err) = parts(&at("yesterday", "c"));
     assert_eq!(code, 2, "{err}");
     assert!(
@@ -349,7 +349,7 @@ fn the_date_of_a_run_can_be_set() {
 /// GOAL: a search for a factor of safety leaves the line along which the slope begins to fail.
 #[test]
 fn a_search_leaves_its_slip_line() {
-    let slope = igimp_cases::shipped::find("slope").unwrap();
+    let slope = igimp_input::shipped::find("slope").unwrap();
     let folder = Folder::new("slip", slope.text);
     let (code, out, err) = parts(&folder.igimp(&[
         "run",

@@ -8,7 +8,7 @@
 //! - an accepted case makes its laws;
 //! - `igimp explain` prints the same case, and once more the same text.
 
-use igimp_cases::input::{CaseFile, Diagnostic, InputError};
+use igimp_input::{CaseFile, Diagnostic, InputError};
 
 use super::{Verdict, holds};
 

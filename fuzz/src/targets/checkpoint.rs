@@ -13,10 +13,8 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use igimp_cases::results::checkpoint::{
-    self, Checkpoint, Files, PROGRAM, from_files, sha256, to_files,
-};
-use igimp_cases::results::npy::Array;
+use igimp_results::checkpoint::{self, Checkpoint, Files, PROGRAM, from_files, sha256, to_files};
+use igimp_results::npy::Array;
 use serde_json::{Value, json};
 
 use super::{Verdict, holds};

@@ -2,9 +2,9 @@
 
 use igimp_assembly::{DomainUpdate, Kinematics};
 use igimp_cases::CaseError;
-use igimp_cases::case::Case;
-use igimp_cases::measure::{oscillation, sigma};
-use igimp_cases::table::Table;
+use igimp_model::Case;
+use igimp_results::measure::{oscillation, sigma};
+use igimp_results::table::Table;
 use rayon::prelude::*;
 
 use crate::footing;
@@ -122,7 +122,7 @@ impl<'a> Results<'a> {
 /// Writes a table that is not held against a snapshot: its states lie past failure or behind cut
 /// steps, and hang on round-off.
 pub(super) fn written(study: &Study, table: &Table) -> Result<(), CaseError> {
-    table.write_csv(&study.folder)
+    Ok(table.write_csv(&study.folder)?)
 }
 
 /// Newton corrections per accepted step \[-\].

@@ -3,10 +3,10 @@
 
 use igimp_assembly::{DomainUpdate, Method};
 use igimp_cases::CaseError;
-use igimp_cases::check::Band;
-use igimp_cases::measure::oscillation;
-use igimp_cases::table::Table;
 use igimp_figures::{CurvePlot, LineStyle, Scale, Series, SeriesStyle};
+use igimp_model::check::Band;
+use igimp_results::measure::oscillation;
+use igimp_results::table::Table;
 
 use crate::column::{self, ColumnResult};
 use crate::comparisons::benchmarks::{

@@ -2,11 +2,11 @@
 
 use igimp_assembly::{Kinematics, Method, SmallCuts};
 use igimp_cases::CaseError;
-use igimp_cases::check::Band;
-use igimp_cases::table::Table;
 use igimp_figures::{
     CurvePlot, LineStyle, ReferenceLine, ReferenceValue, Scale, Series, SeriesStyle,
 };
+use igimp_model::check::Band;
+use igimp_results::table::Table;
 use rayon::prelude::*;
 
 use crate::column::{self, ColumnResult, HENCKY_COLUMN};

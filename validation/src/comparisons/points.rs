@@ -1,9 +1,9 @@
 //! Two, three and four particles per cell and direction: column, soft slope, footing.
 
 use igimp_cases::CaseError;
-use igimp_cases::check::Band;
-use igimp_cases::table::Table;
 use igimp_figures::{CurvePlot, LineStyle, Scale, Series, SeriesStyle};
+use igimp_model::check::Band;
+use igimp_results::table::Table;
 
 use crate::column::{self, ColumnResult};
 use crate::comparisons::benchmarks::{

@@ -3,9 +3,9 @@
 
 use igimp_assembly::{Method, SmallCuts};
 use igimp_cases::CaseError;
-use igimp_cases::check::Band;
-use igimp_cases::table::Table;
 use igimp_figures::{CurvePlot, LineStyle, Scale, Series, SeriesStyle};
+use igimp_model::check::Band;
+use igimp_results::table::Table;
 use rayon::prelude::*;
 
 use crate::comparisons::benchmarks::written;

@@ -3,8 +3,8 @@
 
 use igimp_assembly::{Remedy, SmallCuts};
 use igimp_cases::CaseError;
-use igimp_cases::case::Case;
-use igimp_cases::check::Band;
+use igimp_model::Case;
+use igimp_model::check::Band;
 
 use crate::column::{self, ColumnResult};
 use crate::comparisons::benchmarks::{

@@ -8,11 +8,11 @@ use igimp_assembly::{
     Surface,
 };
 use igimp_cases::CaseError;
-use igimp_cases::check::Band;
-use igimp_cases::mesh_study::{Convergence, estimate};
-use igimp_cases::seed::fill_polygon;
-use igimp_cases::table::Table;
+use igimp_geometry::seed::fill_polygon;
 use igimp_material::{Elasticity, Tresca};
+use igimp_model::check::Band;
+use igimp_results::mesh_study::{Convergence, estimate};
+use igimp_results::table::Table;
 use igimp_shape::{Axis, Grid};
 use igimp_solver::{Accepted, Body, MarchSettings};
 use rayon::prelude::*;

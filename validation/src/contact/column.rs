@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use igimp_assembly::{Constraints, Interface, Method, Particles, RigidMotion, SharedLaw};
 use igimp_cases::CaseError;
-use igimp_cases::check::Band;
 use igimp_material::{Elasticity, HenckyElastic};
+use igimp_model::check::Band;
 use igimp_solver::{Body, MarchSettings};
 
 use super::{Ground, closed, penetration, polygon, weightless};

@@ -9,9 +9,9 @@ use igimp_assembly::{
     StepConditions, StepLoads, Tension,
 };
 use igimp_cases::CaseError;
-use igimp_cases::check::Band;
-use igimp_cases::seed::fill_polygon;
+use igimp_geometry::seed::fill_polygon;
 use igimp_material::{Elasticity, HenckyElastic};
+use igimp_model::check::Band;
 use igimp_shape::{Axis, Grid};
 use igimp_solver::{Accepted, Body, MarchSettings};
 

@@ -7,10 +7,10 @@ use igimp_assembly::{
     Constraints, Interface, Method, ParticleSeed, Particles, RigidMotion, SharedLaw,
 };
 use igimp_cases::CaseError;
-use igimp_cases::check::Band;
-use igimp_cases::seed::fill_polygon;
-use igimp_cases::table::Table;
+use igimp_geometry::seed::fill_polygon;
 use igimp_material::{Elasticity, HenckyElastic};
+use igimp_model::check::Band;
+use igimp_results::table::Table;
 use igimp_shape::{Axis, Grid};
 use igimp_solver::{Body, MarchSettings};
 

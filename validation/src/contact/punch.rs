@@ -7,9 +7,9 @@ use std::sync::Arc;
 
 use igimp_assembly::{Drive, Interface, Method, Particles, Penalty, RigidMotion, SharedLaw};
 use igimp_cases::CaseError;
-use igimp_cases::check::Band;
-use igimp_cases::table::Table;
 use igimp_material::{Elasticity, HenckyElastic};
+use igimp_model::check::Band;
+use igimp_results::table::Table;
 use igimp_solver::{Accepted, Body, MarchSettings};
 
 use super::{Ground, force, graded, polygon, weightless};

@@ -7,8 +7,8 @@ use std::f64::consts::PI;
 use std::path::Path;
 
 use igimp_cases::CaseError;
-use igimp_cases::check::Band;
-use igimp_cases::mesh_study::{Convergence, estimate};
+use igimp_model::check::Band;
+use igimp_results::mesh_study::{Convergence, estimate};
 use rayon::prelude::*;
 
 use self::push::{Load, Push, Scheme};

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use igimp_cases::CaseError;
-use igimp_cases::check::Band;
+use igimp_model::check::Band;
 use rayon::prelude::*;
 
 use crate::oracle::{Oracle, OracleKind};

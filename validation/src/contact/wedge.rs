@@ -8,10 +8,10 @@ use igimp_assembly::{
     AssemblyError, Constraints, Interface, Method, Particles, RigidBody, RigidMotion, SharedLaw,
 };
 use igimp_cases::CaseError;
-use igimp_cases::check::Band;
-use igimp_cases::seed::fill_polygon;
-use igimp_cases::table::Table;
+use igimp_geometry::seed::fill_polygon;
 use igimp_material::{Elasticity, Tresca};
+use igimp_model::check::Band;
+use igimp_results::table::Table;
 use igimp_shape::{Axis, Grid};
 use igimp_solver::{Accepted, Body, MarchSettings};
 use rayon::prelude::*;
@@ -355,7 +355,7 @@ mod tests {
             assert!((field.force() - force).abs() < 1e-4);
             assert!((field.lip() - lip).abs() < 1e-4);
             let soil = field.soil(6.0, 4.0);
-            let (area, _) = igimp_cases::polygon::area_and_centroid(&soil);
+            let (area, _) = igimp_geometry::polygon::area_and_centroid(&soil);
             assert!((area.abs() - 24.0).abs() < 1e-3, "{beta}: {area}");
         }
     }

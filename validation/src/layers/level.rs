@@ -1,7 +1,7 @@
 //! Level ground of two soils under its own weight, the boundary anywhere in a cell.
 
 use igimp_cases::CaseError;
-use igimp_cases::input::CaseFile;
+use igimp_input::CaseFile;
 
 use crate::runs::Computed;
 use crate::study::RunRecord;

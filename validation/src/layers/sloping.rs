@@ -11,8 +11,8 @@ use igimp_assembly::{
     StepLoads,
 };
 use igimp_cases::CaseError;
-use igimp_cases::polygon::{area_and_centroid, bounding_box, clip_to_box};
-use igimp_cases::seed::fill_polygon;
+use igimp_geometry::polygon::{area_and_centroid, bounding_box, clip_to_box};
+use igimp_geometry::seed::fill_polygon;
 use igimp_material::{Elasticity, HenckyElastic};
 use igimp_shape::Grid;
 use igimp_solver::{Body, MarchSettings};

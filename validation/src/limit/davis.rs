@@ -6,8 +6,8 @@ use std::sync::Arc;
 
 use igimp_assembly::SharedLaw;
 use igimp_cases::CaseError;
-use igimp_cases::check::Band;
 use igimp_material::ConstitutiveModel;
+use igimp_model::check::Band;
 use rayon::prelude::*;
 
 use super::Found;

@@ -13,8 +13,9 @@ use std::path::Path as Folder;
 
 use igimp_assembly::Locking;
 use igimp_cases::CaseError;
-use igimp_cases::check::{Band, short};
-use igimp_cases::summary::{PathEnd, PathPoint, PathSummary, StageSummary};
+use igimp_model::check::Band;
+use igimp_results::summary::{PathEnd, PathPoint, PathSummary, StageSummary};
+use igimp_text::short;
 use rayon::prelude::*;
 
 use crate::oracle::{Oracle, OracleKind};

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use igimp_assembly::Locking;
 use igimp_cases::CaseError;
-use igimp_cases::check::Band;
+use igimp_model::check::Band;
 use rayon::prelude::*;
 
 use super::Found;

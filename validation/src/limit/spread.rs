@@ -5,9 +5,9 @@ use std::fmt::Write as _;
 
 use igimp_assembly::Geometry;
 use igimp_cases::CaseError;
-use igimp_cases::case::{AnyCase, Case, SearchMethod, StageKind};
-use igimp_cases::check::Band;
-use igimp_cases::shipped::SHIPPED;
+use igimp_input::shipped::SHIPPED;
+use igimp_model::check::Band;
+use igimp_model::{AnyCase, Case, SearchMethod, StageKind};
 use rayon::prelude::*;
 
 use super::{Found, LIMIT_THEOREMS, SPREAD, Sought, VARIED};

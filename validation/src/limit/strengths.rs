@@ -4,8 +4,8 @@
 use std::fmt::Write as _;
 
 use igimp_cases::CaseError;
-use igimp_cases::check::Band;
-use igimp_cases::summary::StrengthShares;
+use igimp_model::check::Band;
+use igimp_results::summary::StrengthShares;
 
 use super::{Found, Sought, VARIED};
 use crate::oracle::{Oracle, OracleKind};

@@ -4,7 +4,7 @@
 //! Velocities are parallel to the slip line and to the joints between blocks, since undrained soil
 //! keeps its volume. F is dissipation over the power of the weight.
 
-use igimp_cases::polygon::area_and_centroid;
+use igimp_geometry::polygon::area_and_centroid;
 
 use super::search::least;
 use crate::slopes::section::Section;

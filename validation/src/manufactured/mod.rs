@@ -11,10 +11,10 @@ use igimp_assembly::{
     Constraints, LoadPoint, Method, Particles, SharedLaw, StepConditions, StepLoads,
 };
 use igimp_cases::CaseError;
-use igimp_cases::check::Band;
-use igimp_cases::table::Table;
 use igimp_figures::{CurvePlot, LineStyle, Scale, Series, SeriesStyle};
 use igimp_material::{Elasticity, HenckyElastic};
+use igimp_model::check::Band;
+use igimp_results::table::Table;
 use igimp_shape::Grid;
 use igimp_solver::{Body, MarchSettings};
 use rayon::prelude::*;

@@ -3,9 +3,9 @@
 use std::fmt::Write as _;
 
 use igimp_cases::CaseError;
-use igimp_cases::check::Band;
-use igimp_cases::mesh_study::{Computed, Convergence, estimate};
-use igimp_cases::table::Table;
+use igimp_model::check::Band;
+use igimp_results::mesh_study::{Computed, Convergence, estimate};
+use igimp_results::table::Table;
 
 use crate::coverage::median;
 use crate::oracle::{Oracle, OracleKind};
@@ -134,5 +134,5 @@ pub(super) fn report(study: &mut Study) -> Result<(), CaseError> {
         }
     }
     study.notes.push(note);
-    table.write_csv(&study.folder)
+    Ok(table.write_csv(&study.folder)?)
 }

@@ -8,10 +8,11 @@ use std::path::Path as Folder;
 
 use igimp_assembly::Locking;
 use igimp_cases::CaseError;
-use igimp_cases::check::{Band, short};
-use igimp_cases::mesh_study::{Computed, Convergence, ResultKind, StudyResult};
 use igimp_cases::run::in_memory;
-use igimp_cases::summary::Summary;
+use igimp_model::check::Band;
+use igimp_results::mesh_study::{Computed, Convergence, ResultKind, StudyResult};
+use igimp_results::summary::Summary;
+use igimp_text::short;
 use rayon::prelude::*;
 
 use crate::coverage::{Extrapolated, Known, counted};

@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use igimp_cases::CaseError;
-use igimp_cases::check::Band;
-use igimp_cases::mesh_study::Convergence;
-use igimp_cases::table::Table;
+use igimp_model::check::Band;
+use igimp_results::mesh_study::Convergence;
+use igimp_results::table::Table;
 use rayon::prelude::*;
 
 use super::circle::{Cut, Nail};

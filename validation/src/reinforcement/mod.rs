@@ -6,8 +6,8 @@ pub(crate) mod cut;
 pub(crate) mod seam;
 
 use igimp_cases::CaseError;
-use igimp_cases::case::Case;
-use igimp_cases::input::CaseFile;
+use igimp_input::CaseFile;
+use igimp_model::Case;
 
 /// A case file of these studies, changed by overrides.
 fn case(name: &str, text: &str, overrides: &[String]) -> Result<Case, CaseError> {

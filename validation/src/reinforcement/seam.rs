@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use igimp_cases::CaseError;
-use igimp_cases::check::Band;
-use igimp_cases::table::Table;
+use igimp_model::check::Band;
+use igimp_results::table::Table;
 use rayon::prelude::*;
 
 use super::case;

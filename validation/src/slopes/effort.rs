@@ -5,8 +5,8 @@ use std::fmt::Write as _;
 
 use igimp_assembly::Locking;
 use igimp_cases::CaseError;
-use igimp_cases::check::Band;
-use igimp_cases::table::Table;
+use igimp_model::check::Band;
+use igimp_results::table::Table;
 use rayon::prelude::*;
 
 use super::problems::Problem;
@@ -138,5 +138,5 @@ pub(super) fn report(study: &mut Study, slopes: &Slopes) -> Result<(), CaseError
         corrections,
     );
     study.notes.push(note);
-    table.write_csv(&study.folder)
+    Ok(table.write_csv(&study.folder)?)
 }

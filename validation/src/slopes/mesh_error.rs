@@ -4,9 +4,9 @@ use std::fmt::Write as _;
 
 use igimp_assembly::Locking;
 use igimp_cases::CaseError;
-use igimp_cases::check::Band;
-use igimp_cases::mesh_study::{Computed, Convergence, estimate};
-use igimp_cases::table::Table;
+use igimp_model::check::Band;
+use igimp_results::mesh_study::{Computed, Convergence, estimate};
+use igimp_results::table::Table;
 
 use super::section::Variant;
 use super::{Found, Slopes};
@@ -124,7 +124,7 @@ pub(super) fn report(study: &mut Study, slopes: &Slopes) -> Result<(), CaseError
         covered as f64 / counted as f64,
     );
     study.notes.push(note);
-    table.write_csv(&study.folder)
+    Ok(table.write_csv(&study.folder)?)
 }
 
 /// The factors on a coarse and a fine mesh.

@@ -13,8 +13,8 @@ use std::path::Path;
 
 use igimp_assembly::Locking;
 use igimp_cases::CaseError;
-use igimp_cases::check::Band;
-use igimp_cases::table::Table;
+use igimp_model::check::Band;
+use igimp_results::table::Table;
 use rayon::prelude::*;
 
 use crate::limit_equilibrium::{bishop, rotation, sliding};
@@ -307,7 +307,7 @@ fn summary(study: &mut Study, slopes: &Slopes) -> Result<(), CaseError> {
         );
     }
     study.notes.push(note);
-    table.write_csv(&study.folder)
+    Ok(table.write_csv(&study.folder)?)
 }
 
 /// Slope, method, mesh and flow rule in words.

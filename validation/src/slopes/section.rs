@@ -5,8 +5,8 @@ use std::fmt::Write as _;
 
 use igimp_assembly::Locking;
 use igimp_cases::CaseError;
-use igimp_cases::case::Case;
-use igimp_cases::input::CaseFile;
+use igimp_input::CaseFile;
+use igimp_model::Case;
 
 use crate::runs::corners;
 
@@ -379,7 +379,7 @@ fn contains(polygon: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use igimp_cases::polygon::area_and_centroid;
+    use igimp_geometry::polygon::area_and_centroid;
 
     use super::*;
 

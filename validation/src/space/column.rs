@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use igimp_cases::CaseError;
-use igimp_cases::check::Band;
-use igimp_cases::input::CaseFile;
-use igimp_cases::table::Table;
+use igimp_input::CaseFile;
+use igimp_model::check::Band;
+use igimp_results::table::Table;
 
 use crate::oracle::{Oracle, OracleKind};
 use crate::runs::Computed;

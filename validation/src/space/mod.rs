@@ -9,8 +9,8 @@ pub(crate) mod sphere;
 pub(crate) mod torsion;
 pub(crate) mod walls;
 
-use igimp_cases::region::{Cover, Crossing, Part, Region};
-use igimp_cases::solid::Solid;
+use igimp_geometry::region::{Cover, Crossing, Part, Region};
+use igimp_geometry::solid::Solid;
 
 /// What of a solid around the origin lies at positive coordinates: the part of it that symmetry leaves.
 #[derive(Debug)]

@@ -5,8 +5,8 @@ use std::path::Path;
 
 use igimp_assembly::Particles;
 use igimp_cases::CaseError;
-use igimp_cases::check::Band;
-use igimp_cases::input::CaseFile;
+use igimp_input::CaseFile;
+use igimp_model::check::Band;
 use rayon::prelude::*;
 
 use crate::oracle::{Oracle, OracleKind};

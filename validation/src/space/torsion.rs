@@ -9,11 +9,11 @@ use igimp_assembly::{
     AssemblyError, Constraints, Method, Particles, SharedLaw, StepConditions, StepLoads,
 };
 use igimp_cases::CaseError;
-use igimp_cases::check::Band;
-use igimp_cases::seed::fill;
-use igimp_cases::solid::{Cylinder, Solid};
-use igimp_cases::table::Table;
+use igimp_geometry::seed::fill;
+use igimp_geometry::solid::{Cylinder, Solid};
 use igimp_material::{Elasticity, VonMises};
+use igimp_model::check::Band;
+use igimp_results::table::Table;
 use igimp_shape::Grid;
 use igimp_solver::{Accepted, Body, MarchSettings};
 use rayon::prelude::*;

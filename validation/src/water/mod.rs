@@ -8,10 +8,10 @@ use std::path::Path;
 
 use igimp_assembly::Locking;
 use igimp_cases::CaseError;
-use igimp_cases::case::{Case, PoreSource, WaterCondition};
-use igimp_cases::check::Band;
-use igimp_cases::mesh_study::{Computed as OnMesh, Convergence};
-use igimp_cases::table::Table;
+use igimp_model::check::Band;
+use igimp_model::{Case, PoreSource, WaterCondition};
+use igimp_results::mesh_study::{Computed as OnMesh, Convergence};
+use igimp_results::table::Table;
 use rayon::prelude::*;
 
 use crate::coverage::Known;

@@ -3,7 +3,7 @@
 //!
 //! Where a source is in feet and pounds its numbers stand as metres, kN/m³ and kPa: a factor of safety knows no units.
 
-use igimp_cases::case::PoreSource;
+use igimp_model::PoreSource;
 
 use crate::oracle::{Oracle, OracleKind};
 use crate::slopes::section::{Layer, Path, Search, Section, YOUNG};

@@ -1,9 +1,9 @@
 //! Soil that cannot drain: its undrained strength from effective parameters, in a specimen and in a slope.
 
 use igimp_cases::CaseError;
-use igimp_cases::case::{Case, Drainage};
-use igimp_cases::check::Band;
-use igimp_cases::input::CaseFile;
+use igimp_input::CaseFile;
+use igimp_model::check::Band;
+use igimp_model::{Case, Drainage};
 
 use crate::oracle::{Oracle, OracleKind};
 use crate::runs::Computed;

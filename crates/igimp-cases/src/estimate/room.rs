@@ -1,9 +1,9 @@
 //! The memory that a run can have at all: beyond it the system ends a program without a word.
 
 use super::readable;
-use crate::case::Case;
 use crate::error::CaseError;
-use crate::mesh_study::plan;
+use igimp_model::Case;
+use igimp_model::meshes;
 
 /// An estimate is trusted to this factor: a run that is thought to need more than so many times what
 /// can be had is not begun \[-\].
@@ -25,7 +25,7 @@ pub fn refuse_beyond<const D: usize>(case: &Case<D>) -> Result<(), CaseError> {
     let Some(limit) = limit() else {
         return Ok(());
     };
-    for mesh in plan::meshes(case) {
+    for mesh in meshes::meshes(case) {
         check(super::estimate(&mesh)?.bytes, limit)?;
     }
     Ok(())

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use igimp_linear::Pattern;
 use igimp_linear::{AutoSolver, Forecast, LinearSolverError, Reason, SolverKind};
 
-use crate::case::Case;
+use igimp_model::Case;
 
 /// Factors in the plane, for each unknown and each doubling of the unknowns \[bytes\].
 const PER_FILL: f64 = 1.5e2;

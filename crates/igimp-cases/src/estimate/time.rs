@@ -15,8 +15,8 @@ use serde::{Deserialize, Serialize};
 
 use super::speed::Speed;
 use super::{Estimate, TRIALS};
-use crate::case::{Case, Every, ReductionPath, SearchMethod, Stage, StageKind};
-use crate::summary::StageSummary;
+use igimp_model::{Case, Every, ReductionPath, SearchMethod, Stage, StageKind};
+use igimp_results::summary::StageSummary;
 
 /// Set-up and commit of a step \[s per particle\].
 const STEP: f64 = 6e-7;

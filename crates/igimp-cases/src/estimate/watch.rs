@@ -1,7 +1,7 @@
 //! Whether a run kept to its estimate, and whether the computer has the memory for it.
 
 use super::{readable, time};
-use crate::summary::Summary;
+use igimp_results::summary::Summary;
 
 /// A run may cost this many times its estimate before anything is said \[-\].
 const FACTOR: f64 = 1.5;
@@ -91,7 +91,7 @@ pub fn available() -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::summary::Expected;
+    use igimp_results::summary::Expected;
 
     fn summary(cpu_seconds: f64, peak_memory_mib: f64) -> Summary {
         Summary {

@@ -1,10 +1,11 @@
 //! What the runs of a study found, side by side.
 
 use super::known::{of_check, of_stage};
-use super::{Computed, Convergence, ResultKind, StudyResult, estimate, plan};
-use crate::case::{Case, CheckValue, Quantity, StageKind};
-use crate::check::short;
-use crate::summary::{CheckRow, StageOutcome, StageSummary, Summary};
+use igimp_model::meshes;
+use igimp_model::{Case, CheckValue, Quantity, StageKind};
+use igimp_results::mesh_study::{Computed, Convergence, ResultKind, StudyResult, estimate};
+use igimp_results::summary::{CheckRow, StageOutcome, StageSummary, Summary};
+use igimp_text::short;
 
 /// A value of a run.
 #[derive(Clone, Copy, Debug)]
@@ -43,7 +44,7 @@ impl Found {
 /// Factors of safety, limit loads and checks of a case on its meshes, from the summaries of their runs;
 /// none for a mesh that has no run.
 pub fn study<const D: usize>(case: &Case<D>, runs: &[Option<&Summary>]) -> Vec<StudyResult> {
-    let parts = plan::refinements(case);
+    let parts = meshes::refinements(case);
     let mut results = Vec::new();
     let mut add = |name: String, (kind, known), found: Vec<Option<Found>>| {
         let finite = |found: Option<Found>| found.filter(|found| found.value.is_finite());
@@ -110,8 +111,8 @@ pub(crate) fn check_rows<const D: usize>(
 
 /// What a reader has to know of the results: values that do not converge as they should, and runs that ended early.
 pub(crate) fn remarks<const D: usize>(case: &Case<D>, results: &[StudyResult]) -> Vec<String> {
-    let labels: Vec<String> = (plan::refinements(case).into_iter())
-        .map(plan::label)
+    let labels: Vec<String> = (meshes::refinements(case).into_iter())
+        .map(meshes::label)
         .collect();
     let mut remarks = Vec::new();
     for result in results {

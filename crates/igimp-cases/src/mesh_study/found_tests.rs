@@ -1,7 +1,8 @@
-use super::{Convergence, Order, remarks, study};
-use crate::case::Case;
-use crate::check::{Band, Check};
-use crate::summary::{
+use super::{remarks, study};
+use igimp_model::Case;
+use igimp_model::check::{Band, Check};
+use igimp_results::mesh_study::{Convergence, Order};
+use igimp_results::summary::{
     CheckRow, PathEnd, PathPoint, PathSummary, StageOutcome, StageSummary, Summary,
 };
 
@@ -9,7 +10,7 @@ use crate::summary::{
 fn case(name: &str, settings: &[&str]) -> Case {
     let settings = settings.iter().copied().chain(["mesh_study.meshes=2"]);
     let settings: Vec<String> = settings.map(str::to_owned).collect();
-    let shipped = crate::shipped::find(name).unwrap();
+    let shipped = igimp_input::shipped::find(name).unwrap();
     shipped.case_file(settings).unwrap().into_case()
 }
 

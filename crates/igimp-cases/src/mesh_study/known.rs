@@ -1,7 +1,7 @@
 //! What is known beforehand of how the results of a case converge: by what they are, and by what is in the case.
 
-use super::{Convergence, ResultKind};
-use crate::case::{Case, LoadKind, Material, Quantity, Stage, StageKind};
+use igimp_model::{Case, LoadKind, Material, Quantity, Stage, StageKind};
+use igimp_results::mesh_study::{Convergence, ResultKind};
 
 /// The result that a stage is made for, if it is made for one: its name, what it is, and how it converges.
 pub(super) fn of_stage<const D: usize>(
@@ -67,7 +67,7 @@ pub(super) fn of_check<const D: usize>(case: &Case<D>, name: &str) -> Convergenc
 /// How factors of safety and limit loads of soil converge in a case.
 fn of_loads<const D: usize>(case: &Case<D>) -> Convergence {
     let holds_nodes =
-        |load: &crate::case::Load<D>| matches!(load.kind, LoadKind::RigidFooting { .. });
+        |load: &igimp_model::Load<D>| matches!(load.kind, LoadKind::RigidFooting { .. });
     let varies =
         |own: &Material| own.profiles.strength.is_some() || own.profiles.friction.is_some();
     if has_contact(case) {

@@ -5,9 +5,9 @@ use igimp_assembly::{AssemblyError, Locking, Swallowed};
 use igimp_linear::LinearSolverError;
 use igimp_solver::{Component, StepError, StepFailure};
 
-use crate::case::{BodyPart, Case, Material, RigidMove, Side, Stage, StageKind, Strength};
-use crate::check::short;
-use crate::results::fields::length;
+use igimp_model::{BodyPart, Case, Material, RigidMove, Side, Stage, StageKind, Strength};
+use igimp_results::fields::length;
+use igimp_text::short;
 
 /// Most suggestions that a reader will try.
 const MOST: usize = 4;

@@ -6,7 +6,7 @@ use igimp_assembly::{Geometry, Locking};
 use std::sync::Arc;
 
 use super::*;
-use crate::case::{
+use igimp_model::{
     BodyPart, Boundaries, Every, GridSpec, MeshStudy, Output, Profiles, Reduction, RunOut,
     SolverSettings, StopWhen, TitleBlock,
 };
@@ -22,7 +22,7 @@ fn case(kind: StageKind) -> Case {
         k0: None,
         profiles: Profiles::default(),
         saturated: None,
-        drainage: crate::case::Drainage::Drained,
+        drainage: igimp_model::Drainage::Drained,
         given: None,
     };
     let body = |name: &str, material, lower, upper| BodyPart {
@@ -52,7 +52,7 @@ fn case(kind: StageKind) -> Case {
                     cohesion: 10e3,
                     friction_angle: 20_f64.to_radians(),
                     dilation_angle: 0.0,
-                    flow: crate::case::Flow::Dilation,
+                    flow: igimp_model::Flow::Dilation,
                     tension_cutoff: Some(0.0),
                 },
             ),

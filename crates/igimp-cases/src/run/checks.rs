@@ -2,11 +2,11 @@
 
 use super::records::{Moment, Records};
 use super::sections::before_fields;
-use crate::case::{Case, CheckTime, Reference, ReferenceValues};
-use crate::check::{Band, Check};
-use crate::results::fields;
-use crate::summary::CheckRow;
-use crate::table::Table;
+use igimp_model::check::{Band, Check};
+use igimp_model::{Case, CheckTime, Reference, ReferenceValues};
+use igimp_results::fields;
+use igimp_results::summary::CheckRow;
+use igimp_results::table::Table;
 
 /// The checks that the case asks for at the end of a stage.
 pub(crate) fn at_end_of_stage<const D: usize>(

@@ -16,10 +16,10 @@ use super::loading::let_go;
 use super::model::{Model, gravity_of_weights};
 use super::session::{Ended, Session};
 use super::state::State;
-use crate::case::{Construction, Drainage, Ground, StageKind};
-use crate::check::short;
 use crate::error::CaseError;
-use crate::summary::StageSummary;
+use igimp_model::{Construction, Drainage, Ground, StageKind};
+use igimp_results::summary::StageSummary;
+use igimp_text::short;
 
 /// Marches a state to the end of a construction stage; one that an earlier run left within it began with `start`.
 pub(crate) fn build<const D: usize>(

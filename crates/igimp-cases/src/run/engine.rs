@@ -18,15 +18,15 @@ use super::{
     checks, construction, failure, initial, loading, pores, processor, reinforcement, run_out,
     safety, sections, study,
 };
-use crate::case::{COMPONENTS, Case, StageKind};
 use crate::error::CaseError;
 use crate::estimate::Expectation;
 use crate::estimate::time::time_of_steps_taken;
-use crate::results::checkpoint::sha256;
-use crate::results::folder::{clear_meshes, refuse_foreign};
-use crate::results::setup;
-use crate::summary::{StageOutcome, StageSummary, Summary};
-use crate::table::Table;
+use igimp_model::{COMPONENTS, Case, StageKind};
+use igimp_report::setup;
+use igimp_results::checkpoint::sha256;
+use igimp_results::folder::{clear_meshes, refuse_foreign};
+use igimp_results::summary::{StageOutcome, StageSummary, Summary};
+use igimp_results::table::Table;
 use igimp_solver::StepError;
 
 /// Runs a case. With a target everything is written as it is computed.
@@ -305,7 +305,7 @@ impl<const D: usize> Stages<D> {
                 summary.outcome = StageOutcome::Stopped;
                 summary.reason = format!(
                     "no equilibrium beyond {} of the stage: {failure}",
-                    crate::check::short(summary.reached)
+                    igimp_text::short(summary.reached)
                 );
                 None
             }

@@ -4,13 +4,13 @@
 use std::path::Path;
 
 use super::{Start, Target, fingerprint};
-use crate::case::Case;
 use crate::error::CaseError;
-use crate::results::admission::{admit, refuse_links};
-use crate::results::checkpoint::CheckpointError;
-use crate::results::folder::{self, holds_checkpoints, owner, refuse_foreign};
-use crate::results::lock::Lock;
-use crate::results::owner::Owner;
+use igimp_model::Case;
+use igimp_results::admission::{admit, refuse_links};
+use igimp_results::checkpoint::CheckpointError;
+use igimp_results::folder::{self, holds_checkpoints, owner, refuse_foreign};
+use igimp_results::lock::Lock;
+use igimp_results::owner::Owner;
 
 /// Whether a folder holds a run of this very input that was stopped and can go on.
 pub fn can_go_on<const D: usize>(case: &Case<D>, root: &Path) -> bool {
@@ -21,7 +21,7 @@ pub fn can_go_on<const D: usize>(case: &Case<D>, root: &Path) -> bool {
 /// A results folder that a run may write into, and that of its linear systems, kept for it until this is
 /// dropped.
 #[derive(Debug)]
-pub(crate) struct Entered {
+pub struct Entered {
     _locks: Vec<Lock>,
 }
 
@@ -29,10 +29,10 @@ impl Entered {
     /// Enters the folder of a run.
     ///
     /// # Errors
-    /// [`CaseError::InUse`], [`CaseError::ForeignFolder`], [`CaseError::Link`],
-    /// [`CaseError::OtherResults`], [`CaseError::Unfinished`]; [`CheckpointError::OtherCase`] for
+    /// [`ResultsError::InUse`](igimp_results::ResultsError::InUse), [`ResultsError::ForeignFolder`](igimp_results::ResultsError::ForeignFolder), [`ResultsError::Link`](igimp_results::ResultsError::Link),
+    /// [`ResultsError::OtherResults`](igimp_results::ResultsError::OtherResults), [`ResultsError::Unfinished`](igimp_results::ResultsError::Unfinished); [`CheckpointError::OtherCase`] for
     /// checkpoints of other input to go on from.
-    pub(crate) fn new<const D: usize>(
+    pub fn new<const D: usize>(
         case: &Case<D>,
         target: &Target,
         start: Start,

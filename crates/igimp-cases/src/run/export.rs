@@ -10,11 +10,11 @@ use igimp_assembly::StepConditions;
 use igimp_linear::{LinearSolver, Record};
 
 use crate::error::CaseError;
-use crate::results::admission::refuse_link;
-use crate::results::atomic::at;
-use crate::results::folder::claim;
-use crate::results::linear_system::{About, LinearSystem, remove};
-use crate::summary::{StageSummary, Summary};
+use igimp_results::admission::refuse_link;
+use igimp_results::atomic::at;
+use igimp_results::folder::claim;
+use igimp_results::linear_system::{About, LinearSystem, remove};
+use igimp_results::summary::{StageSummary, Summary};
 
 /// The correction whose system is written.
 const CORRECTION: usize = 2;
@@ -82,7 +82,7 @@ impl Export {
     /// Writes the last system of a stage, numbered from 0.
     pub(crate) fn end_of_stage(&mut self, number: usize) -> Result<(), CaseError> {
         match self.last.take() {
-            Some(system) => system.write(&self.folder.join(name(number))),
+            Some(system) => Ok(system.write(&self.folder.join(name(number)))?),
             None => Ok(()),
         }
     }

@@ -7,8 +7,8 @@ use igimp_solver::{StepError, StepFailure};
 use super::session::Session;
 use super::state::State;
 use super::{Failure, advice};
-use crate::case::{Case, RigidMove, StageKind};
-use crate::summary::{PathEnd, StageSummary};
+use igimp_model::{Case, RigidMove, StageKind};
+use igimp_results::summary::{PathEnd, StageSummary};
 
 /// Whether a stage that found no equilibrium ended in a way that tells no limit: its path was lost, its linear system
 /// could not be solved, or nothing but a motion was driven, which has an equilibrium at any load.

@@ -1,7 +1,7 @@
 //! Fingerprints of cases: a saved state is taken up only for the input that it came from.
 
-use crate::case::{Case, Every, Output, TitleBlock};
-use crate::results::checkpoint::sha256;
+use igimp_model::{Case, Every, Output, TitleBlock};
+use igimp_results::checkpoint::sha256;
 
 /// Of everything but where and how often results are written, and for whom.
 pub(crate) fn of_case<const D: usize>(case: &Case<D>) -> String {

@@ -7,8 +7,8 @@
 use igimp_assembly::{AssemblyError, Constraints};
 use igimp_shape::{Axis, Grid, ShapeError};
 
-use crate::case::{AxisSpec, Case, LoadKind};
 use crate::error::CaseError;
+use igimp_model::{AxisSpec, Case, LoadKind};
 
 /// The footing of a case, as columns and rows of its grid.
 #[derive(Clone, Copy, Debug)]

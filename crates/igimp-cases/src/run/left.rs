@@ -10,8 +10,8 @@ use serde::{Deserialize, Serialize};
 use super::saved_body::SavedBody;
 use super::saved_reinforcement::SavedMember;
 use super::state::{Controls, State};
-use crate::results::checkpoint::{CheckpointError, Meta};
-use crate::summary::{CheckRow, FigureNote, StageSummary, TrialSummary};
+use igimp_results::checkpoint::{CheckpointError, Meta};
+use igimp_results::summary::{CheckRow, FigureNote, StageSummary, TrialSummary};
 
 /// Where a march was left: with the body, all that it needs to go on.
 #[derive(Clone, Debug, Serialize, Deserialize)]

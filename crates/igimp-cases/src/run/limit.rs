@@ -2,7 +2,7 @@
 
 use igimp_solver::{MECHANISM, StepReport};
 
-use crate::summary::{PathEnd, PathPoint, PathSummary};
+use igimp_results::summary::{PathEnd, PathPoint, PathSummary};
 
 /// The factor rises no longer where it changes by less than this share in a doubling of the work \[-\].
 const FLAT: f64 = 1e-3;

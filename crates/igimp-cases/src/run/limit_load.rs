@@ -16,10 +16,10 @@ use super::rigid;
 use super::safety::displacement_scale;
 use super::session::{Ended, Session};
 use super::state::{Controls, RigidTrack, State};
-use crate::case::{RigidMove, Stage, StageKind};
-use crate::check::short;
 use crate::error::CaseError;
-use crate::summary::{PathEnd, PathPoint, PathSummary, StageSummary};
+use igimp_model::{RigidMove, Stage, StageKind};
+use igimp_results::summary::{PathEnd, PathPoint, PathSummary, StageSummary};
+use igimp_text::short;
 
 /// The first change of the load over the smallest one at which the march found no equilibrium \[-\].
 const FIRST_CHANGE: f64 = 0.5;

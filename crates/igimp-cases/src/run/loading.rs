@@ -8,10 +8,10 @@ use super::records::Moment;
 use super::session::{Ended, Path, Session, Taken, march_path};
 use super::state::{Controls, State};
 use super::{limit_load, reinforcement, rigid};
-use crate::case::{Case, RigidDrive, Stage, StageKind};
-use crate::check::short;
 use crate::error::CaseError;
-use crate::summary::StageSummary;
+use igimp_model::{Case, RigidDrive, Stage, StageKind};
+use igimp_results::summary::StageSummary;
+use igimp_text::short;
 
 /// The controls at the end of a stage that begins with `start`.
 pub(crate) fn target<const D: usize>(case: &Case<D>, stage: &Stage, start: &Controls) -> Controls {

@@ -1,7 +1,7 @@
 //! Memory of a run, as the system counts it for the process; nothing where it does not tell.
 
 use crate::estimate::Estimate;
-use crate::summary::MemoryShare;
+use igimp_results::summary::MemoryShare;
 
 /// Resident memory at the beginning of a run \[MiB\].
 #[derive(Clone, Copy, Debug)]

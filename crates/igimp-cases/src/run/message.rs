@@ -6,8 +6,8 @@ use std::path::Path;
 use igimp_solver::StepFailure;
 
 use super::Failure;
-use crate::check::{count, short};
 use crate::error::chain;
+use igimp_text::{count, short};
 
 /// Residuals shown before the gap; the last one follows it.
 const SHOWN: usize = 5;

@@ -4,8 +4,8 @@ use igimp_assembly::{ParticleSeed, SharedLaw};
 use igimp_material::Ratios;
 use igimp_shape::Grid;
 
-use crate::case::{Case, Material};
 use crate::error::CaseError;
+use igimp_model::{Case, Material};
 
 /// Volume and compliances of the soils in a cell.
 #[derive(Clone, Copy, Debug)]

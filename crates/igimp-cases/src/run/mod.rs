@@ -42,18 +42,18 @@ use std::sync::atomic::AtomicBool;
 use igimp_linear::LinearSolverError;
 use igimp_solver::{Accepted, Body, StepError, StepFailure, StepReport};
 
-use crate::case::{AnyCase, Case};
 use crate::error::CaseError;
 use crate::estimate::Expectation;
-use crate::input::CaseFile;
-use crate::results::admission::Replace;
-use crate::results::owner::{Claim, Origin};
-use crate::summary::{ModelSize, PathPoint, StageSummary, Summary, TrialSummary};
-use crate::table::Table;
+use igimp_input::CaseFile;
+use igimp_model::{AnyCase, Case};
+use igimp_results::admission::Replace;
+use igimp_results::owner::{Claim, Origin};
+use igimp_results::summary::{ModelSize, PathPoint, StageSummary, Summary, TrialSummary};
+use igimp_results::table::Table;
 
 pub(crate) use engine::run_entered;
 pub use engine::{in_memory, run};
-pub(crate) use entry::Entered;
+pub use entry::Entered;
 pub use entry::can_go_on;
 pub use message::worst_node;
 pub use model::Model;
@@ -180,7 +180,7 @@ pub fn run_any(
 }
 
 /// The same in a results folder that was entered.
-pub(crate) fn run_any_entered(
+pub fn run_any_entered(
     case: &AnyCase,
     target: Option<&Target>,
     start: Start,
@@ -227,7 +227,7 @@ pub struct Target {
     pub completed: String,
     /// Folder for a linear system of every stage ([`linear_system`]), if they are wanted.
     ///
-    /// [`linear_system`]: crate::results::linear_system
+    /// [`linear_system`]: igimp_results::linear_system
     pub systems: Option<PathBuf>,
     /// Day and time of the run, for its report. The library reads no time of day: who starts a run says it.
     pub date: Option<String>,

@@ -14,11 +14,11 @@ use igimp_solver::{Body, MarchSettings, NewtonSettings};
 use super::footing::{self, Footing};
 use super::state::{Controls, State};
 use super::water::{GroundWater, Seeded};
-use crate::case::{Case, Drainage, LoadKind, Material, MixedCells, Side};
 use crate::error::CaseError;
-use crate::results::fields;
-use crate::seed::fill;
-use crate::summary::ModelSize;
+use igimp_geometry::seed::fill;
+use igimp_model::{Case, Drainage, LoadKind, Material, MixedCells, Side};
+use igimp_results::fields;
+use igimp_results::summary::ModelSize;
 
 /// Acceleration of gravity that turns unit weights of a case with this one into densities \[m/s²\]: that of the earth where
 /// the case has none.

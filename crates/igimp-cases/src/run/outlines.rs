@@ -8,13 +8,13 @@ use igimp_solver::Body;
 
 use super::rigid;
 use super::state::{Controls, State};
-use crate::case::{Case, LoadKind};
-use crate::results::frames::Structures;
-use crate::results::pictures::Over;
-use crate::results::pictures::rigid::{POINTS_OF_CIRCLE, block};
-use crate::results::pictures::water;
-use crate::results::reinforcement;
-use crate::results::rigid::Standing;
+use igimp_model::{Case, LoadKind};
+use igimp_report::pictures::Over;
+use igimp_report::pictures::rigid::{POINTS_OF_CIRCLE, block};
+use igimp_report::pictures::water;
+use igimp_results::frames::Structures;
+use igimp_results::reinforcement;
+use igimp_results::rigid::Standing;
 
 /// What is drawn over a state: everything rigid in it, as far as it lies within the grid, the water tables that act, and
 /// reinforcement. `body_of` has the body of each particle by its number.

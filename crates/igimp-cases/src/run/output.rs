@@ -15,19 +15,19 @@ use super::records::{Records, Rows};
 use super::sections;
 use super::session::Taken;
 use super::state::State;
-use crate::case::{Case, Every};
 use crate::error::CaseError;
-use crate::pieces::Pieces;
-use crate::results::atomic::write_whole;
-use crate::results::checkpoint;
-use crate::results::folder::{self, Folder, write_summary};
-use crate::results::frames::Frames;
-use crate::results::owner::Claim;
-use crate::results::pictures::{self, Shown};
-use crate::results::report;
-use crate::results::rows::RowWriter;
-use crate::summary::{FigureNote, StageSummary, Summary};
-use crate::table::Table;
+use igimp_model::{Case, Every};
+use igimp_report::pictures::{self, Shown};
+use igimp_report::pieces::Pieces;
+use igimp_report::report;
+use igimp_results::atomic::write_whole;
+use igimp_results::checkpoint;
+use igimp_results::folder::{self, Folder, write_summary};
+use igimp_results::frames::Frames;
+use igimp_results::owner::Claim;
+use igimp_results::rows::RowWriter;
+use igimp_results::summary::{FigureNote, StageSummary, Summary};
+use igimp_results::table::Table;
 
 mod drawn;
 mod saved;
@@ -433,7 +433,7 @@ impl<const D: usize> Output<D> {
     }
 
     fn write_summary(&self, summary: &Summary) -> Result<(), CaseError> {
-        write_summary(self.folder.root(), summary)
+        Ok(write_summary(self.folder.root(), summary)?)
     }
 }
 

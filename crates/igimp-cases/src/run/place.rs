@@ -3,7 +3,7 @@
 
 use igimp_assembly::Particles;
 
-use crate::measure::nearest;
+use igimp_results::measure::nearest;
 
 /// Particles are around another one as far as their domains reach, and by this share further \[-\].
 const MARGIN: f64 = 0.25;

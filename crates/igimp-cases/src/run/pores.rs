@@ -2,9 +2,9 @@
 
 use igimp_assembly::Particles;
 
-use crate::case::{Case, Drainage, Strength};
-use crate::check::short;
-use crate::summary::PoreSummary;
+use igimp_model::{Case, Drainage, Strength};
+use igimp_results::summary::PoreSummary;
+use igimp_text::short;
 
 /// Soil floats where the pore pressure exceeds the total vertical stress by more than this share of the largest pore
 /// pressure \[-\].
@@ -58,7 +58,7 @@ pub(crate) fn dilatant<const D: usize>(case: &Case<D>) -> Vec<String> {
     if case.stages.iter().all(|stage| stage.drained) {
         return Vec::new();
     }
-    let remark = |material: &crate::case::Material| {
+    let remark = |material: &igimp_model::Material| {
         let Strength::MohrCoulomb { dilation_angle, .. } = material.strength else {
             return None;
         };
@@ -118,7 +118,7 @@ mod tests {
             cohesion: 5e3,
             friction_angle: 0.5,
             dilation_angle: 0.1,
-            flow: crate::case::Flow::Dilation,
+            flow: igimp_model::Flow::Dilation,
             tension_cutoff: None,
         };
         assert!(dilatant(&case).is_empty());

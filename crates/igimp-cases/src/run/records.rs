@@ -1,15 +1,16 @@
 //! What a run records: curves and the histories at monitors, one row per recorded moment.
 
 use igimp_assembly::{Particles, Reinforcement, RigidBody, SharedLaw};
+use igimp_geometry::SeedError;
 
 use super::model::reduced;
 use super::place::Place;
 use super::state::Controls;
 use super::{reinforcement, rigid};
-use crate::case::{Case, CheckTime, Field, Quantity};
 use crate::error::CaseError;
-use crate::results::fields;
-use crate::table::Table;
+use igimp_model::{Case, CheckTime, Field, Quantity};
+use igimp_results::fields;
+use igimp_results::table::Table;
 
 /// A state that is recorded: the end of a step, or of a trial in a strength reduction.
 #[derive(Clone, Copy, Debug)]
@@ -100,7 +101,8 @@ impl Records {
             .monitors
             .iter()
             .map(|monitor| {
-                Place::of(particles, &monitor.point, f64::INFINITY).ok_or(CaseError::EmptyBody)
+                Place::of(particles, &monitor.point, f64::INFINITY)
+                    .ok_or(CaseError::Seed(SeedError::EmptyBody))
             })
             .collect::<Result<_, _>>()?;
         Ok(Self {

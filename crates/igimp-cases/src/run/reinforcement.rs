@@ -3,9 +3,9 @@
 use igimp_assembly::{Hold, Reinforcement, ReinforcementControl, Segment, SegmentState, Station};
 
 use super::state::{Controls, ReinforcementControls, State};
-use crate::case::{Case, ReinforcementPart, ReinforcementQuantity, Stage, distance};
-use crate::results::reinforcement::Installed;
-use crate::summary::MemberSummary;
+use igimp_model::{Case, ReinforcementPart, ReinforcementQuantity, Stage, distance};
+use igimp_results::reinforcement::Installed;
+use igimp_results::summary::MemberSummary;
 
 /// Stations per cell along a bonded length.
 const STATIONS_PER_CELL: f64 = 4.0;

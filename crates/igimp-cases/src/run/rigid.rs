@@ -6,13 +6,13 @@ use igimp_solver::{Accepted, StepFailure};
 use super::model::Model;
 use super::records::Moment;
 use super::state::{Controls, RigidTrack, State};
-use crate::case::{
+use crate::error::CaseError;
+use igimp_model::{
     Adhesion, COMPONENTS, Case, RigidDrive, RigidInterface, RigidMove, RigidPart, RigidQuantity,
     RigidShear, components, in_space,
 };
-use crate::check::short;
-use crate::error::CaseError;
-use crate::table::Table;
+use igimp_results::table::Table;
+use igimp_text::short;
 
 /// A body is not set down by less than this share of a cell \[-\].
 const LEAST_SHIFT: f64 = 1e-9;

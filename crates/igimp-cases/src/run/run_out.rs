@@ -16,10 +16,10 @@ use super::loading::begin;
 use super::model::Model;
 use super::session::{Ended, Path, Session, march_path};
 use super::state::State;
-use crate::case::{Reduction, RunOut};
-use crate::check::short;
 use crate::error::CaseError;
-use crate::summary::StageSummary;
+use igimp_model::{Reduction, RunOut};
+use igimp_results::summary::StageSummary;
+use igimp_text::short;
 
 /// Bounds of the change of drag from step to step \[-\].
 const CHANGE: [f64; 2] = [0.25, 4.0];

@@ -23,10 +23,10 @@ use super::loading::begin;
 use super::model::Model;
 use super::session::{Ended, Path, Session, march_path};
 use super::state::{Controls, State};
-use crate::case::{Case, ReductionPath, SearchMethod, Stage, StrengthReduction};
-use crate::check::short;
 use crate::error::CaseError;
-use crate::summary::{SafetySummary, StageSummary, TrialSummary};
+use igimp_model::{Case, ReductionPath, SearchMethod, Stage, StrengthReduction};
+use igimp_results::summary::{SafetySummary, StageSummary, TrialSummary};
+use igimp_text::short;
 
 /// Most trials that a search makes before it reports the interval that it has.
 const MOST_TRIALS: usize = 40;

@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 
 use super::rigid;
 use super::state::Controls;
-use crate::case::Case;
 use crate::error::CaseError;
+use igimp_model::Case;
 
 /// What steps change of a rigid body.
 #[derive(Clone, Debug, Serialize, Deserialize)]

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::reinforcement;
 use super::state::Controls;
-use crate::case::Case;
+use igimp_model::Case;
 
 /// What steps change of a member.
 #[derive(Clone, Debug, Serialize, Deserialize)]

@@ -8,12 +8,12 @@ use igimp_shape::Grid;
 use super::model::Model;
 use super::place::Place;
 use super::state::State;
-use crate::case::{Average, Case, Cut, Section};
-use crate::measure::nearest;
+use igimp_model::{Average, Case, Cut, Section};
+use igimp_results::measure::nearest;
 
-use crate::results::fields;
-use crate::results::pictures::file_name;
-use crate::table::Table;
+use igimp_report::pictures::file_name;
+use igimp_results::fields;
+use igimp_results::table::Table;
 
 /// Number and name of a stage as part of a file name.
 pub(super) fn stage_name<const D: usize>(case: &Case<D>, stage: usize) -> String {

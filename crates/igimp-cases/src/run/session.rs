@@ -20,10 +20,10 @@ use super::records::{Moment, Records, largest_displacement};
 use super::rigid;
 use super::state::{Controls, RigidTrack, State};
 use super::{Event, Listener, REACHED_ITS_END};
-use crate::check::short;
 use crate::error::CaseError;
-use crate::results::fields;
-use crate::summary::{StageSummary, Summary};
+use igimp_results::fields;
+use igimp_results::summary::{StageSummary, Summary};
+use igimp_text::short;
 
 /// Share of the load from which on a false support at dropped nodes is worth a warning \[-\].
 const FALSE_SUPPORT: f64 = 1e-3;

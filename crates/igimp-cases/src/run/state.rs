@@ -3,7 +3,7 @@
 use igimp_solver::Body;
 use serde::{Deserialize, Serialize};
 
-use crate::case::{COMPONENTS, Case};
+use igimp_model::{COMPONENTS, Case};
 
 /// What acts on the body: everything that a stage can change.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

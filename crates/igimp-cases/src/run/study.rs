@@ -10,17 +10,20 @@ use std::time::Instant;
 
 use super::engine::one_mesh;
 use super::{Event, Listener, Run, Start, Target, memory, processor};
-use crate::case::Case;
 use crate::error::CaseError;
 use crate::estimate::time::time_of_steps_taken;
 use crate::estimate::watch::side_by_side;
 use crate::estimate::{Estimate, estimate};
-use crate::mesh_study::{MeshSummary, StudySummary, check_rows, plan, remarks, study};
-use crate::results::checkpoint::sha256;
-use crate::results::folder::{self, mesh_name, write_atomically, write_summary};
-use crate::results::{pictures, report};
-use crate::summary::Summary;
-use crate::sweep::{Ending, on_one_line};
+use crate::mesh_study::{check_rows, remarks, study};
+use crate::on_one_line;
+use igimp_model::Case;
+use igimp_model::meshes;
+use igimp_report::{pictures, report};
+use igimp_results::checkpoint::sha256;
+use igimp_results::folder::{self, mesh_name, write_atomically, write_summary};
+use igimp_results::mesh_study::{MeshSummary, StudySummary};
+use igimp_results::summary::Ending;
+use igimp_results::summary::Summary;
 
 /// Runs a case on all meshes of its study.
 pub(super) fn run<const D: usize>(
@@ -31,7 +34,7 @@ pub(super) fn run<const D: usize>(
     interrupt: &AtomicBool,
 ) -> Result<Run<D>, CaseError> {
     let clock = Instant::now();
-    let meshes = plan::meshes(case);
+    let meshes = meshes::meshes(case);
     if let Some(target) = target {
         folder::of_study(&target.folder, &target.claim(case), start == Start::Afresh)?;
         write_atomically(&target.folder.join("case.toml"), &target.source)?;
@@ -43,7 +46,7 @@ pub(super) fn run<const D: usize>(
     let targets: Vec<Option<Target>> = (0..meshes.len())
         .map(|number| target.map(|target| of_mesh(target, number)))
         .collect();
-    let parts = plan::refinements(case);
+    let parts = meshes::refinements(case);
     let runs = all(&meshes, &targets, &parts, start, listener, interrupt);
 
     let summaries: Vec<Option<&Summary>> = runs

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use igimp_assembly::{PoreSite, PoreState, PoreWater};
 
 use super::model::gravity_of_weights;
-use crate::case::{Case, Drainage, Ground, Material, PoreSource, Raster, WaterCondition};
+use igimp_model::{Case, Drainage, Ground, Material, PoreSource, Raster, WaterCondition};
 
 /// Points and weights of Gauss, three on −1 to 1.
 const ALONG: [(f64, f64); 3] = [
@@ -296,10 +296,10 @@ impl<const D: usize> PoreWater<D> for GroundWater<D> {
 
 #[cfg(test)]
 mod tests {
-    use crate::case::{PoreSource, WaterCondition};
     use crate::estimate::tests::case;
     use crate::run::Model;
     use igimp_assembly::{PoreState, PoreWater as _};
+    use igimp_model::{PoreSource, WaterCondition};
 
     /// GOAL: a case without gravity may say that it is dry.
     #[test]

@@ -5,16 +5,16 @@ use std::sync::Arc;
 
 use igimp_assembly::Geometry;
 use igimp_assembly::{Method, ParticleFields, Particles, SharedLaw};
-use igimp_cases::case::{
+use igimp_geometry::seed::fill_polygon;
+use igimp_model::{
     Average, BodyPart, Boundaries, Case, Curve, CurveAxis, Drainage, Every, Field, FixedBox,
     GridSpec, Load, LoadKind, Material, MeshStudy, Monitor, Output, Profiles, Quantity, Reference,
     ReferenceValues, Section, Side, SolverSettings, Stage, StageKind, StopWhen, Strength,
     TitleBlock,
 };
-use igimp_cases::pieces::Pieces;
-use igimp_cases::results::pictures::{self, Canvas, Shown};
-use igimp_cases::seed::fill_polygon;
-use igimp_cases::summary::{FigureNote, Summary};
+use igimp_report::pictures::{self, Canvas, Shown};
+use igimp_report::pieces::Pieces;
+use igimp_results::summary::{FigureNote, Summary};
 
 use crate::findings;
 
@@ -144,7 +144,7 @@ fn materials() -> Vec<Material> {
             cohesion: 10e3,
             friction_angle: 20_f64.to_radians(),
             dilation_angle: 0.0,
-            flow: igimp_cases::case::Flow::Dilation,
+            flow: igimp_model::Flow::Dilation,
             tension_cutoff: None,
         },
         k0: None,

@@ -1,12 +1,12 @@
 //! What the made-up run found: tables, trials, the summary, the convergence.
 
-use igimp_cases::case::{Monitor, Section};
-use igimp_cases::check::{Band, Check};
-use igimp_cases::results::fields;
-use igimp_cases::summary::{
+use igimp_model::check::{Band, Check};
+use igimp_model::{Monitor, Section};
+use igimp_results::fields;
+use igimp_results::summary::{
     CheckRow, ModelSize, SafetySummary, StageSummary, Summary, TrialSummary,
 };
-use igimp_cases::table::Table;
+use igimp_results::table::Table;
 
 use crate::example::case;
 

@@ -7,14 +7,15 @@ mod findings;
 use std::path::Path;
 
 use igimp_assembly::Particles;
-use igimp_cases::CaseError;
-use igimp_cases::case::{Field, ReferenceValues, TitleBlock};
-use igimp_cases::pieces::Pieces;
-use igimp_cases::results::pictures::{self, Canvas, Shown};
-use igimp_cases::results::report::write_report;
-use igimp_cases::results::setup;
-use igimp_cases::summary::{FigureNote, SafetySummary, SetupTable, StageOutcome, Summary};
-use igimp_cases::table::Table;
+use igimp_model::{Field, ReferenceValues, TitleBlock};
+use igimp_report::ReportError;
+use igimp_report::pictures::{self, Canvas, Shown};
+use igimp_report::pieces::Pieces;
+use igimp_report::report::write_report;
+use igimp_report::setup;
+use igimp_results::ResultsError;
+use igimp_results::summary::{FigureNote, SafetySummary, SetupTable, StageOutcome, Summary};
+use igimp_results::table::Table;
 
 fn page(folder: &Path) -> String {
     let path = write_report(folder).unwrap();
@@ -271,9 +272,14 @@ fn a_bare_summary_is_enough() {
 fn a_folder_without_summary_is_refused_by_name() {
     let folder = example::folder("none");
     let error = write_report(&folder).unwrap_err();
-    assert!(matches!(&error, CaseError::File { path, .. } if path.ends_with("summary.json")));
+    assert!(
+        matches!(&error, ReportError::Results(ResultsError::File { path, .. }) if path.ends_with("summary.json"))
+    );
     std::fs::write(folder.join("summary.json"), "{").unwrap();
-    assert!(matches!(write_report(&folder), Err(CaseError::File { .. })));
+    assert!(matches!(
+        write_report(&folder),
+        Err(ReportError::Results(ResultsError::File { .. }))
+    ));
 }
 
 /// GOAL: tables without rows or columns make pictures, not panics.
@@ -325,7 +331,7 @@ fn empty_tables_make_empty_pictures() {
         2
     );
     pictures::safety_picture(&folder, "", "", &SafetySummary::default()).unwrap();
-    let nothing = igimp_cases::case::Case {
+    let nothing = igimp_model::Case {
         bodies: Vec::new(),
         materials: Vec::new(),
         ..case
@@ -387,7 +393,7 @@ fn every_field_has_a_picture() {
         pieces: &pieces,
     };
     let state = (&particles, laws.as_slice());
-    for field in igimp_cases::results::fields::ALL {
+    for field in igimp_results::fields::ALL {
         let shown = Shown::end_of_stage(&case, 0);
         let note = pictures::field_picture(
             &canvas,

@@ -5,11 +5,11 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use igimp_cases::case::Case;
-use igimp_cases::input::CaseFile;
-use igimp_cases::results::admission::Replace;
 use igimp_cases::run::{Event, Run, Start, Target, run};
-use igimp_cases::summary::{StageOutcome, Summary};
+use igimp_input::CaseFile;
+use igimp_model::Case;
+use igimp_results::admission::Replace;
+use igimp_results::summary::{StageOutcome, Summary};
 use serde_json::Value;
 
 /// A folder that is not there yet.

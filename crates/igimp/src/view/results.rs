@@ -4,10 +4,10 @@ use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::time::UNIX_EPOCH;
 
-use igimp_cases::case::{AnyCase, Every, StageKind};
-use igimp_cases::input::CaseFile;
-use igimp_cases::results::viewer::{self, Keep};
-use igimp_cases::summary::Summary;
+use igimp_input::CaseFile;
+use igimp_model::{AnyCase, Every, StageKind};
+use igimp_report::viewer::{self, Keep};
+use igimp_results::summary::Summary;
 use serde_json::{Value, json};
 
 use crate::error::ProgramError;

@@ -5,7 +5,7 @@ use std::io;
 use std::net::{Ipv4Addr, TcpListener, TcpStream};
 use std::sync::Arc;
 
-use igimp_cases::results::viewer;
+use igimp_report::viewer;
 
 use super::http::{self, Body, Request, Status};
 use super::results::Results;

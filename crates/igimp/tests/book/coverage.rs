@@ -37,7 +37,7 @@ fn all_pages() -> Vec<PathBuf> {
 
 /// Whether the documentation tests of the crate include a page.
 fn is_doctested(page: &Path) -> bool {
-    let source = include_str!("../../../igimp-cases/src/lib.rs");
+    let source = include_str!("../../../igimp-study/src/lib.rs");
     let path = page.strip_prefix(root()).unwrap().display().to_string();
     source.contains(&format!("include_str!(\"../../../{path}\")"))
 }

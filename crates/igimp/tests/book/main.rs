@@ -37,8 +37,8 @@ mod results;
 use std::fmt::Write as _;
 use std::fs;
 
-use igimp_cases::input::{CaseFile, reference_markdown};
-use igimp_cases::shipped::{SHIPPED, find};
+use igimp_input::shipped::{SHIPPED, find};
+use igimp_input::{CaseFile, reference_markdown};
 
 use crate::page::{blocks, comment, hold, pages, root};
 

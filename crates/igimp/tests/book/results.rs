@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-use igimp_cases::results::checkpoint;
+use igimp_results::checkpoint;
 
 use crate::commands::{can_import, folder, has_shell, said, shell};
 use crate::page::root;

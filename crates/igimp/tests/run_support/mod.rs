@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use igimp_cases::shipped::SHIPPED;
+use igimp_input::shipped::SHIPPED;
 use serde_json::Value;
 
 /// Coarse, with a checkpoint after every other step and a frame after every tenth.

@@ -1,9 +1,9 @@
 //! What a run costs and whether its steps were accepted rightly, gathered from its events.
 
 use igimp_assembly::AssemblyError;
-use igimp_cases::case::Case;
 use igimp_cases::run::{Event, Model};
 use igimp_linear::LinearSolverError;
+use igimp_model::Case;
 use igimp_solver::{Accepted, Body, StepError, StepFailure, StepReport};
 
 use crate::bodies::outline::Outline;

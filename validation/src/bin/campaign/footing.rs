@@ -1,9 +1,9 @@
 //! Footings of many stiffnesses and Poisson's ratios, pushed one width deep.
 
 use igimp_cases::CaseError;
-use igimp_cases::case::Case;
-use igimp_cases::shipped;
-use igimp_cases::table::Table;
+use igimp_input::shipped;
+use igimp_model::Case;
+use igimp_results::table::Table;
 
 /// E/s_u of the grid \[-\].
 pub(crate) const STIFFNESSES: [f64; 5] = [50.0, 100.0, 200.0, 500.0, 1000.0];

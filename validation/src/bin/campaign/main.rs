@@ -22,8 +22,9 @@ use std::process::ExitCode;
 use std::time::Duration;
 
 use clap::{Parser, ValueEnum};
-use igimp_cases::input::CaseFile;
-use igimp_cases::{CaseError, chain};
+use igimp_cases::{CaseError, chain, is_of_the_system};
+use igimp_input::CaseFile;
+use igimp_results::ResultsError;
 
 use crate::bodies::Scene;
 use crate::footing::Footing;
@@ -101,9 +102,10 @@ fn main() -> ExitCode {
         Ok(code) => ExitCode::from(code),
         Err(error) => {
             eprintln!("{}", chain(&error));
-            ExitCode::from(match error {
-                CaseError::File { .. } | CaseError::Table { .. } => INPUT_OUTPUT,
-                _ => BAD_INPUT,
+            ExitCode::from(if is_of_the_system(&error) {
+                INPUT_OUTPUT
+            } else {
+                BAD_INPUT
             })
         }
     }
@@ -114,7 +116,7 @@ fn campaign(arguments: &Arguments) -> Result<u8, CaseError> {
     let _ = rayon::ThreadPoolBuilder::new()
         .num_threads(arguments.threads)
         .build_global();
-    std::fs::create_dir_all(&arguments.out).map_err(|source| CaseError::File {
+    std::fs::create_dir_all(&arguments.out).map_err(|source| ResultsError::File {
         path: arguments.out.clone(),
         source,
     })?;

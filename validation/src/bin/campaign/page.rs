@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use igimp_cases::CaseError;
+use igimp_results::ResultsError;
 
 /// Where the tables stand in the book.
 pub(crate) const PAGE: &str = "docs/src/hard-numerics.md";
@@ -26,10 +27,8 @@ pub(crate) fn fill(path: &Path, name: &str, table: &str) -> Result<(), CaseError
 }
 
 fn file(path: &Path, source: std::io::Error) -> CaseError {
-    CaseError::File {
-        path: path.to_owned(),
-        source,
-    }
+    let path = path.to_owned();
+    ResultsError::File { path, source }.into()
 }
 
 /// The page with another text between the marks of a name.

@@ -6,7 +6,7 @@
 //! the traction that the step left on them, and are in equilibrium themselves.
 
 use igimp_assembly::{Drive, Stencils};
-use igimp_cases::case::Case;
+use igimp_model::Case;
 use igimp_solver::{Accepted, Body};
 
 use crate::bodies::forces::{Begun, forces};

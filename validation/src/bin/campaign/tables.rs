@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-use igimp_cases::check::short;
+use igimp_text::short;
 
 use crate::distribution::spread;
 use crate::footing::{DEPTHS, Footing, depth_reached, resistance_at};

@@ -3,7 +3,7 @@
 
 use std::time::Duration;
 
-use igimp_cases::input::CaseFile;
+use igimp_input::CaseFile;
 
 use crate::bodies::Scene;
 use crate::footing::{Footing, depth_reached, resistance_at};

@@ -8,11 +8,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::{Duration, Instant};
 
-use igimp_cases::case::Case;
 use igimp_cases::chain;
 use igimp_cases::run::{self, Event, Listener, Run, Start};
-use igimp_cases::summary::{SafetySummary, StageOutcome};
-use igimp_cases::table::Table;
+use igimp_model::Case;
+use igimp_results::summary::{SafetySummary, StageOutcome};
+use igimp_results::table::Table;
 
 use crate::effort::{Cut, Effort, Follower};
 

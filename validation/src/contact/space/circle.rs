@@ -8,9 +8,9 @@ use igimp_assembly::{
     Geometry, Interface, Method, Particles, RigidBody, RigidMotion, SharedLaw, Surface,
 };
 use igimp_cases::CaseError;
-use igimp_cases::check::Band;
-use igimp_cases::table::Table;
 use igimp_material::{Elasticity, Tresca};
+use igimp_model::check::Band;
+use igimp_results::table::Table;
 use igimp_solver::{Accepted, Body, MarchSettings};
 use rayon::prelude::*;
 

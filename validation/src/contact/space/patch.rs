@@ -7,9 +7,9 @@ use igimp_assembly::{
     Surface,
 };
 use igimp_cases::CaseError;
-use igimp_cases::check::Band;
-use igimp_cases::table::Table;
 use igimp_material::{Elasticity, HenckyElastic};
+use igimp_model::check::Band;
+use igimp_results::table::Table;
 use igimp_shape::{Axis, Grid};
 use igimp_solver::{Body, MarchSettings};
 

@@ -8,8 +8,8 @@ use igimp_assembly::{
     SharedLaw, Shear, StepConditions, StepLoads, Surface, Tension,
 };
 use igimp_cases::CaseError;
-use igimp_cases::check::Band;
 use igimp_material::{Elasticity, HenckyElastic};
+use igimp_model::check::Band;
 use igimp_shape::{Axis, Grid};
 use igimp_solver::{Accepted, Body, MarchSettings};
 

@@ -9,9 +9,9 @@ use igimp_assembly::{
     Interface, Method, Particles, Penalty, RigidBody, RigidMotion, SharedLaw, Surface,
 };
 use igimp_cases::CaseError;
-use igimp_cases::check::Band;
-use igimp_cases::table::Table;
 use igimp_material::{Elasticity, HenckyElastic};
+use igimp_model::check::Band;
+use igimp_results::table::Table;
 use igimp_solver::{Accepted, Body, MarchSettings};
 
 use super::super::{closed, force, graded, weightless};

@@ -7,8 +7,8 @@ use igimp_assembly::{
     Drive, Geometry, Interface, Method, Particles, RigidBody, RigidMotion, SharedLaw, Surface,
 };
 use igimp_cases::CaseError;
-use igimp_cases::table::Table;
 use igimp_material::{Elasticity, Tresca};
+use igimp_results::table::Table;
 use igimp_solver::{Accepted, Body, MarchSettings};
 
 use super::super::{Ground, force, graded, weightless};

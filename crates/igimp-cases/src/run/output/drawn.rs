@@ -7,17 +7,17 @@ use igimp_assembly::SharedLaw;
 use rayon::prelude::*;
 
 use super::Output;
-use crate::case::{Case, Every};
 use crate::error::CaseError;
-use crate::pieces::Pieces;
-use crate::plane::in_plane;
-use crate::results::pictures::{self, Canvas, Failing, Seen, Shown, mechanism};
-use crate::results::rigid;
 use crate::run::left::End;
 use crate::run::model::Model;
 use crate::run::outlines;
 use crate::run::state::State;
-use crate::summary::StageSummary;
+use igimp_model::in_plane;
+use igimp_model::{Case, Every};
+use igimp_report::pictures::{self, Canvas, Failing, Seen, Shown, mechanism};
+use igimp_report::pieces::Pieces;
+use igimp_results::rigid;
+use igimp_results::summary::StageSummary;
 
 impl<const D: usize> Output<D> {
     /// Frames and pictures of the states at the ends of a search, and of the way in which the body fails.

@@ -2,19 +2,20 @@
 
 use std::collections::BTreeMap;
 
+use igimp_results::ResultsError;
 use igimp_solver::Body;
 use rayon::prelude::*;
 
 use super::Output;
-use crate::case::Case;
 use crate::error::CaseError;
-use crate::results::checkpoint::{self, Meta};
-use crate::results::rows::RowWriter;
 use crate::run::fingerprint;
 use crate::run::left::{Notes, end_of_stage};
 use crate::run::state::Controls;
 use crate::run::{saved_body, saved_reinforcement};
-use crate::summary::Summary;
+use igimp_model::Case;
+use igimp_results::checkpoint::{self, Meta};
+use igimp_results::rows::RowWriter;
+use igimp_results::summary::Summary;
 
 impl<const D: usize> Output<D> {
     pub(super) fn notes(
@@ -73,7 +74,7 @@ impl<const D: usize> Output<D> {
             reinforcement: members.collect(),
             ..notes.clone()
         };
-        let data = serde_json::to_value(notes).map_err(|source| CaseError::File {
+        let data = serde_json::to_value(notes).map_err(|source| ResultsError::File {
             path: self.folder.checkpoint(),
             source: source.into(),
         })?;

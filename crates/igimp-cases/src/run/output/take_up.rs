@@ -3,22 +3,23 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
+use igimp_results::ResultsError;
 use igimp_solver::Body;
 
 use super::{BEFORE, Output, csv};
-use crate::case::Case;
 use crate::error::CaseError;
-use crate::results::atomic::write_whole;
-use crate::results::checkpoint::{self, CheckpointError};
-use crate::results::folder::{self, Folder};
-use crate::results::owner::Claim;
-use crate::results::rows;
 use crate::run::Target;
 use crate::run::fingerprint;
 use crate::run::left::{End, Left, Notes, Resumption, Search, end_of_stage, notes_of};
 use crate::run::records::Records;
 use crate::run::state::{Controls, State};
 use crate::run::{saved_body, saved_reinforcement};
+use igimp_model::Case;
+use igimp_results::atomic::write_whole;
+use igimp_results::checkpoint::{self, CheckpointError};
+use igimp_results::folder::{self, Folder};
+use igimp_results::owner::Claim;
+use igimp_results::rows;
 
 impl<const D: usize> Output<D> {
     /// A results folder taken up at its newest checkpoint; without one the run begins afresh.
@@ -29,10 +30,10 @@ impl<const D: usize> Output<D> {
     ) -> Result<(Self, Option<Left<D>>), CaseError> {
         let folder = match Folder::open(&target.folder) {
             Ok(folder) => folder,
-            Err(CaseError::NoResults { .. }) => {
+            Err(ResultsError::NoResults { .. }) => {
                 return Ok((Self::create(target, case, records)?, None));
             }
-            Err(error) => return Err(error),
+            Err(error) => return Err(error.into()),
         };
         let Some(path) = checkpoint::newest(&folder.checkpoint())? else {
             return Ok((Self::create(target, case, records)?, None));

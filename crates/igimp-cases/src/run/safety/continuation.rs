@@ -13,8 +13,6 @@ use igimp_solver::{
 use super::criterion::displacement_scale;
 use super::shares::{LastStep, shares};
 use super::{names, undeformed_or_found};
-use crate::case::{ReductionPath, Stage, StrengthReduction};
-use crate::check::short;
 use crate::error::CaseError;
 use crate::run::Event;
 use crate::run::left::End;
@@ -22,9 +20,11 @@ use crate::run::limit;
 use crate::run::loading::begin;
 use crate::run::session::{Ended, Path, Session, march_path};
 use crate::run::state::{Controls, State};
-use crate::summary::{
+use igimp_model::{ReductionPath, Stage, StrengthReduction};
+use igimp_results::summary::{
     PathEnd, PathPoint, PathSummary, SafetySummary, StageSummary, StrengthShares,
 };
+use igimp_text::short;
 
 /// A path begins at no smaller factor than this \[-\]: with so many times its strength a body that falls is one that
 /// no strength holds.

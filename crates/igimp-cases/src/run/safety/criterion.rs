@@ -2,9 +2,9 @@
 
 use igimp_assembly::Geometry;
 
-use crate::case::Stage;
 use crate::run::model::Model;
 use crate::run::state::State;
+use igimp_model::Stage;
 
 /// The displacement γH²/E at which a body of moving geometry counts as failed when the case states none
 /// \[m\] (theory, eq. 32a), with means over the volume: the mean unit weight and the mean of 1/E. None on

@@ -5,12 +5,12 @@ use std::collections::HashMap;
 use igimp_assembly::Particles;
 
 use super::{at_full_strength, stands_nowhere};
-use crate::case::{Case, StrengthReduction};
-use crate::check::short;
-use crate::results::fields::length;
 use crate::run::records::largest_displacement;
 use crate::run::state::State;
-use crate::summary::SafetySummary;
+use igimp_model::{Case, StrengthReduction};
+use igimp_results::fields::length;
+use igimp_results::summary::SafetySummary;
+use igimp_text::short;
 
 /// A particle moves when its displacement exceeds this share of the largest \[-\].
 const MOVING: f64 = 0.1;

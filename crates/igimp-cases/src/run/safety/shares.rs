@@ -6,7 +6,7 @@ use igimp_material::{ConstitutiveModel, MaterialError};
 use igimp_solver::{Body, Increment, StepFailure, Workspace};
 
 use crate::run::model::Model;
-use crate::summary::{Kinematic, MaterialShare, StrengthShares};
+use igimp_results::summary::{Kinematic, MaterialShare, StrengthShares};
 
 /// Relative change of a strength in a difference quotient \[-\].
 const DIFFERENCE: f64 = 1e-6;

@@ -3,13 +3,13 @@
 use igimp_solver::{MarchSettings, StepError};
 
 use super::Trials;
-use crate::case::ReductionPath;
-use crate::check::short;
 use crate::error::CaseError;
 use crate::run::model::Model;
 use crate::run::records::Moment;
 use crate::run::session::Session;
 use crate::run::state::{Controls, State};
+use igimp_model::ReductionPath;
+use igimp_text::short;
 
 impl<const D: usize> Trials<'_, D> {
     /// What acts at the end of a trial: what was found with strength reduced, and gravity in full

@@ -2,7 +2,7 @@
 //! all points as far from it as its corners are rounded.
 
 use igimp_assembly::Pose;
-use igimp_cases::case::{RigidPart, RigidShape};
+use igimp_model::{RigidPart, RigidShape};
 
 /// An outline in the frame of its body: a core, and a radius around it. The core of a circle is its centre.
 #[derive(Clone, Debug)]

@@ -2,7 +2,7 @@
 //! that its sides can carry.
 
 use igimp_assembly::{Particles, RigidBody, Shear, Tension};
-use igimp_cases::case::Case;
+use igimp_model::Case;
 
 use super::outline::{Outline, in_frame};
 

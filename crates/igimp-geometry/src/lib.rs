@@ -1,0 +1,15 @@
+//! What bodies fill: polygons in the plane, solids in space, and the particles that are seeded in them.
+//!
+//! | module | what to find |
+//! |---|---|
+//! | [`region`] | the seam: what lies of a body in a box, and where lines cross it |
+//! | [`polygon`], [`solid`] | regions of the plane and of space |
+//! | [`seed`] | particles from regions |
+
+mod error;
+pub mod polygon;
+pub mod region;
+pub mod seed;
+pub mod solid;
+
+pub use error::SeedError;

@@ -1,0 +1,125 @@
+//! A case of either analysis from its parts: what the analyses do alike.
+
+use std::path::Path;
+
+use super::grid::{self, Frame};
+use super::sequence::Sequence;
+use super::stages::{self, Context};
+use super::{AllNames, all, checks, construction, curves, materials, outputs, study, title_block};
+use crate::diagnostic::Problems;
+use crate::tree::Node;
+use igimp_assembly::Method;
+use igimp_model::{
+    BodyPart, Boundaries, Case, GridSpec, Material, ReinforcementPart, RigidPart, Stage,
+    WaterCondition,
+};
+
+/// What everything else is held against.
+pub(super) struct Basics<const D: usize> {
+    pub(super) frame: Option<Frame<D>>,
+    pub(super) bodies: Vec<Option<BodyPart<D>>>,
+    pub(super) materials: Vec<Option<Material>>,
+    pub(super) sequence: Sequence,
+    method: Option<Method>,
+    grid: Option<GridSpec<D>>,
+}
+
+impl<const D: usize> Basics<D> {
+    pub(super) fn new(
+        tree: &Node,
+        names: &AllNames,
+        bodies: Vec<Option<BodyPart<D>>>,
+        problems: &mut Problems,
+    ) -> Self {
+        let mut frame = grid::frame(tree, problems);
+        let materials = materials::materials(tree, &bodies, problems);
+        let grid = grid::grid(tree, frame.as_ref(), &bodies, problems);
+        if let (Some(frame), Some(grid)) = (&mut frame, &grid) {
+            frame.axes.clone_from(&grid.axes);
+        }
+        Self {
+            frame,
+            method: grid::method(tree),
+            grid,
+            materials,
+            sequence: Sequence::new(tree, names, &bodies),
+            bodies,
+        }
+    }
+}
+
+/// What stands in the ground and on it.
+pub(super) struct Upon<const D: usize> {
+    pub(super) boundaries: Option<Boundaries<D>>,
+    pub(super) rigid: Vec<Option<RigidPart<D>>>,
+    pub(super) water: Vec<Option<WaterCondition>>,
+    pub(super) reinforcement: Vec<Option<ReinforcementPart<D>>>,
+}
+
+/// The stages, with the checks of what they use.
+pub(super) fn stages_of<const D: usize>(
+    context: &Context<'_, D>,
+    problems: &mut Problems,
+) -> Vec<Option<Stage>> {
+    let stages = stages::stages(context, problems);
+    stages::check_use(context, problems);
+    construction::check(context, problems);
+    stages
+}
+
+/// The case; `None` only when a problem was reported, here or before.
+pub(super) fn assemble<const D: usize>(
+    (context, file): (&Context<'_, D>, &Path),
+    basics: &Basics<D>,
+    upon: Upon<D>,
+    stages: Vec<Option<Stage>>,
+    problems: &mut Problems,
+) -> Option<Case<D>> {
+    let Context {
+        tree,
+        names,
+        loads,
+        soil,
+        ..
+    } = *context;
+    let solver = outputs::solver(tree, &basics.materials, problems);
+    let monitors = outputs::monitors(tree, soil, problems);
+    let about = outputs::About {
+        names,
+        stages: &stages,
+        file,
+    };
+    let sections = outputs::sections(tree, &about, soil, problems);
+    let curves = curves::curves(tree, names, loads, file, problems);
+    let checks = checks::checks(tree, names, loads, &stages, problems);
+    let output = outputs::output::<D>(tree, problems);
+    let mesh_study = study::mesh_study(tree);
+
+    let case = tree.get("case")?;
+    let case = Case {
+        water_unit_weight: case.number_at("water_unit_weight")?,
+        water: all(upon.water)?,
+        title: case.text_at("title")?.to_owned(),
+        title_block: title_block(case),
+        gravity: case.number_at("gravity")?,
+        grid: basics.grid.clone()?,
+        method: basics.method.clone()?,
+        materials: all(basics.materials.clone())?,
+        bodies: all(basics.bodies.clone())?,
+        boundaries: upon.boundaries?,
+        loads: all(loads.to_vec())?,
+        rigid: all(upon.rigid)?,
+        reinforcement: all(upon.reinforcement)?,
+        stages: all(stages)?,
+        solver: solver?,
+        monitors: all(monitors)?,
+        sections: all(sections)?,
+        curves: all(curves)?,
+        checks: all(checks)?,
+        mesh_study: mesh_study?,
+        output: output?,
+    };
+    let case = case.refined(tree.get("grid")?.count_at("refine")?);
+    study::check(tree, &case, problems);
+    Some(case)
+}

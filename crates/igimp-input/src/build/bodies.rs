@@ -1,0 +1,263 @@
+//! Bodies: polygons on the grid, apart from each other, held from below.
+
+use std::sync::Arc;
+
+use super::AllNames;
+use super::grid::MOST;
+use super::sequence::{Sequence, placed};
+use super::site::Site;
+use crate::diagnostic::Problems;
+use crate::geometry::{distinct, near_edge, overlap, self_crossing};
+use crate::text::{clip, count, number, point};
+use crate::tree::Node;
+use igimp_geometry::polygon::contains;
+use igimp_geometry::polygon::{area_and_centroid, bounding_box};
+use igimp_model::{BodyPart, Boundaries, Side};
+
+/// Most corners of all bodies together.
+const MOST_CORNERS: usize = 5000;
+
+/// The bodies, as far as each is right by itself.
+pub(super) fn bodies(
+    tree: &Node,
+    names: &AllNames,
+    problems: &mut Problems,
+) -> Vec<Option<BodyPart>> {
+    let items = tree.items_at("bodies");
+    let corners: usize = items
+        .iter()
+        .map(|body| body.items_at("polygon").len())
+        .sum();
+    if corners > MOST_CORNERS {
+        problems
+            .error(
+                tree.place_at("bodies"),
+                format!("the bodies have {corners} corners together"),
+            )
+            .help(format!("at most {MOST_CORNERS} are possible"));
+        return vec![None; items.len()];
+    }
+    let later = placed(tree);
+    items
+        .iter()
+        .map(|body| part(body, names, &later, problems))
+        .collect()
+}
+
+fn part(
+    node: &Node,
+    names: &AllNames,
+    later: &[&str],
+    problems: &mut Problems,
+) -> Option<BodyPart> {
+    let name = node.text_at("name").unwrap_or("?");
+    let material = node.get("material").and_then(|material| {
+        let who = format!("body `{}` uses", clip(name, 40));
+        names.materials.find(material, &who, problems)
+    });
+    let polygon = node
+        .get("polygon")
+        .filter(|polygon| !polygon.is_invalid())
+        .and_then(|polygon| corners(polygon, name, problems));
+    let points = node.count_at("points_per_cell")?;
+    Some(BodyPart {
+        from_start: !later.contains(&name),
+        name: node.text_at("name")?.to_owned(),
+        material: material?,
+        per_direction: points.isqrt(),
+        region: Arc::new(polygon?),
+    })
+}
+
+pub(super) fn corners(node: &Node, name: &str, problems: &mut Problems) -> Option<Vec<[f64; 2]>> {
+    let written: Option<Vec<_>> = node.items().iter().map(Node::pair).collect();
+    let written = written?;
+    let largest = written
+        .iter()
+        .flatten()
+        .fold(0.0, |largest: f64, x| largest.max(x.abs()));
+    let round_off = 1e-9 * largest;
+    let corners = distinct(&written, round_off);
+    let name = clip(name, 40);
+    if corners.len() < 3 {
+        problems
+            .error(
+                node.place,
+                format!("the polygon of `{name}` has fewer than 3 different corners"),
+            )
+            .help("name the corners in order");
+        return None;
+    }
+    if let Some(at) = self_crossing(&corners, round_off) {
+        problems
+            .error(
+                node.place,
+                format!("the polygon of `{name}` crosses itself at {}", point(at)),
+            )
+            .help("name the corners in order, one way round");
+        return None;
+    }
+    let (lower, upper) = bounding_box(&corners);
+    let area = area_and_centroid(&corners).0.abs();
+    let size = (upper[0] - lower[0]).max(upper[1] - lower[1]);
+    if area.is_nan() || area <= 1e-9 * size * size {
+        problems
+            .error(node.place, format!("the polygon of `{name}` has no area"))
+            .help("its corners lie on one line");
+        return None;
+    }
+    Some(corners)
+}
+
+/// Checks the bodies against the domain and each other.
+pub(super) fn check(
+    tree: &Node,
+    names: &AllNames,
+    (bodies, sequence): (&[Option<BodyPart>], &Sequence),
+    site: &Site,
+    problems: &mut Problems,
+) {
+    let items = tree.items_at("bodies");
+    let place = |index: usize| items[index].place_at("polygon");
+    if let Some(frame) = &site.frame {
+        let mut particles = 0.0;
+        for (index, body) in bodies.iter().enumerate() {
+            let Some(body) = body else { continue };
+            let outside = body.polygon().iter().find(|corner| {
+                (0..2).any(|axis| {
+                    corner[axis] < frame.lower[axis] - site.round_off
+                        || corner[axis] > frame.upper[axis] + site.round_off
+                })
+            });
+            if let Some(&corner) = outside {
+                problems
+                    .error(
+                        place(index),
+                        format!(
+                            "body `{}` reaches {}, outside the grid domain",
+                            body.name,
+                            point(corner)
+                        ),
+                    )
+                    .help("extend [grid] domain");
+                continue;
+            }
+            let (lower, upper) = bounding_box(body.polygon());
+            // Cells of the box around the body, times its share of the box.
+            let cells = area_and_centroid(body.polygon()).0.abs()
+                * (0..2)
+                    .map(|axis| {
+                        let [from, to] = [lower, upper].map(|x| frame.axes[axis].place(x[axis]));
+                        (to - from) / (upper[axis] - lower[axis])
+                    })
+                    .product::<f64>();
+            let points = (body.per_direction * body.per_direction) as f64;
+            particles += cells * points;
+        }
+        let cells = (0..2)
+            .map(|axis| frame.axes[axis].place(frame.upper[axis]))
+            .product::<f64>();
+        // Too many cells are reported as such.
+        if particles > MOST && cells <= MOST {
+            let message = format!("the bodies would have {} particles", count(particles));
+            problems
+                .error(tree.get("grid").map(|grid| grid.place_at("cell")), message)
+                .help(format!(
+                    "at most {} are possible: use larger cells or fewer points_per_cell",
+                    count(MOST)
+                ));
+        }
+    }
+    for (second, b) in bodies.iter().enumerate() {
+        for (first, a) in bodies[..second].iter().enumerate() {
+            let (Some(a), Some(b)) = (a, b) else { continue };
+            if !sequence.are_together(first, second) {
+                continue;
+            }
+            if let Some(at) = overlap(a.polygon(), b.polygon(), site.round_off) {
+                problems
+                    .error(
+                        place(second),
+                        format!(
+                            "body `{}` overlaps body `{}` near {}",
+                            names.bodies.name(second),
+                            names.bodies.name(first),
+                            point(at)
+                        ),
+                    )
+                    .help("bodies may share edges only");
+            }
+        }
+    }
+}
+
+/// Warns of bodies that nothing holds from below.
+pub(super) fn check_support(
+    tree: &Node,
+    bodies: &[Option<BodyPart>],
+    boundaries: Option<&Boundaries>,
+    site: &Site,
+    problems: &mut Problems,
+) {
+    let (Some(boundaries), Some(frame), true) = (boundaries, &site.frame, site.is_complete) else {
+        return;
+    };
+    let [x, y] = frame.axes.each_ref().map(|axis| axis.extremes()[1]);
+    let reach = x.max(y);
+    let polygons = &site.polygons;
+    let held = |polygon: &Vec<[f64; 2]>| {
+        let (lower, upper) = bounding_box(polygon);
+        let boxed = boundaries.boxes.iter().any(|part| {
+            part.fix[1]
+                && (0..2).all(|axis| {
+                    part.lower[axis] <= upper[axis] + reach
+                        && lower[axis] <= part.upper[axis] + reach
+                })
+        });
+        boxed
+            || boundaries.sides[1][0] != Side::Free && lower[1] < frame.lower[1] + reach
+            || boundaries.sides[0][0] == Side::Fixed && lower[0] < frame.lower[0] + reach
+            || boundaries.sides[0][1] == Side::Fixed && upper[0] > frame.upper[0] - reach
+            || boundaries.sides[1][1] != Side::Free && upper[1] > frame.upper[1] - reach
+    };
+    let mut is_held: Vec<bool> = polygons.iter().map(held).collect();
+    let mut queue: Vec<usize> = (0..polygons.len()).filter(|&k| is_held[k]).collect();
+    while let Some(from) = queue.pop() {
+        for k in 0..polygons.len() {
+            if !is_held[k] && touch(&polygons[from], &polygons[k], reach) {
+                is_held[k] = true;
+                queue.push(k);
+            }
+        }
+    }
+    let items = tree.items_at("bodies");
+    for (k, body) in bodies.iter().flatten().enumerate() {
+        if !is_held[k] {
+            let lowest = bounding_box(body.polygon()).0[1];
+            problems
+                .warning(
+                    items[k].place_at("polygon"),
+                    format!("nothing holds body `{}` from below", body.name),
+                )
+                .help(format!(
+                    "its lowest point is at y = {} m, the bottom of the grid at {} m",
+                    number(lowest),
+                    number(frame.lower[1])
+                ));
+        }
+    }
+}
+
+/// Whether two polygons come closer than a distance.
+fn touch(a: &[[f64; 2]], b: &[[f64; 2]], distance: f64) -> bool {
+    let ((a_low, a_high), (b_low, b_high)) = (bounding_box(a), bounding_box(b));
+    let apart = |axis: usize| {
+        a_high[axis] + distance < b_low[axis] || b_high[axis] + distance < a_low[axis]
+    };
+    let near = |polygon: &[[f64; 2]], corners: &[[f64; 2]]| {
+        corners
+            .iter()
+            .any(|&corner| contains(polygon, corner) || near_edge(polygon, corner, distance))
+    };
+    !(apart(0) || apart(1)) && (near(a, b) || near(b, a))
+}

@@ -1,0 +1,181 @@
+//! Values that follow from the rest of the file: the stage before, the materials with strength,
+//! the results folder, labels.
+
+use std::path::Path;
+
+use super::quantities::unit_of;
+use crate::schema::SPACE;
+use crate::tree::{Node, Value};
+
+/// Puts them into the tree.
+pub(super) fn derive(tree: &mut Node, file: &Path) {
+    let strong = strong_materials(tree);
+    let place = tree.place;
+    if let Some(stages) = tree.get_mut("stages") {
+        let names: Vec<_> = stages
+            .items()
+            .iter()
+            .map(|stage| stage.text_at("name").map(str::to_owned))
+            .collect();
+        for (number, stage) in stages.items_mut().iter_mut().enumerate() {
+            if stage.get("start_from").is_none()
+                && number > 0
+                && let Some(name) = &names[number - 1]
+            {
+                stage.add_derived("start_from", Value::Text(name.clone()));
+            }
+            let reduces = matches!(
+                stage.text_at("type"),
+                Some("strength-reduction" | "run-out")
+            );
+            if reduces && stage.get("materials").is_none() && !strong.is_empty() {
+                let names = strong.iter().map(|name| {
+                    let mut node = Node::written(Value::Text(name.clone()), place);
+                    node.written = false;
+                    node
+                });
+                let names = names.collect();
+                stage.add_derived("materials", Value::List(names));
+            }
+            derive_search(stage);
+        }
+        derive_geometry(stages.items_mut());
+    }
+    if let Some(members) = tree.get_mut("reinforcement") {
+        for member in members.items_mut() {
+            let is_anchor = member.text_at("type") == Some("anchor");
+            if is_anchor
+                && member.get("head_capacity").is_none()
+                && let Some(Value::Quantity(value, text)) =
+                    member.get("capacity").map(|node| &node.value)
+            {
+                let value = Value::Quantity(*value, text.clone());
+                member.add_derived("head_capacity", value);
+            }
+        }
+    }
+    if let Some(water) = tree.get_mut("water") {
+        for condition in water.items_mut() {
+            if condition.get("pond").is_none() {
+                let is_meant = ["level", "outside"]
+                    .iter()
+                    .any(|key| condition.get(key).is_some());
+                condition.add_derived("pond", Value::Flag(is_meant));
+            }
+        }
+    }
+    if let Some(materials) = tree.get_mut("materials") {
+        for material in materials.entries_mut().into_iter().flatten() {
+            let node = &mut material.node;
+            if node.get("drainage").is_none()
+                && let Some(model) = node.text_at("model")
+            {
+                let drainage = match model {
+                    "tresca" | "von-mises" => "total",
+                    _ => "drained",
+                };
+                node.add_derived("drainage", Value::Text(drainage.to_owned()));
+            }
+        }
+    }
+    if let Some(output) = tree.get_mut("output")
+        && output.get("folder").is_none()
+    {
+        let stem = file.file_stem().map(|stem| stem.to_string_lossy());
+        let stem = stem.filter(|stem| !stem.is_empty());
+        let folder = format!("results/{}", stem.as_deref().unwrap_or("case"));
+        output.add_derived("folder", Value::Text(folder));
+    }
+    let analysis = tree.get("case").and_then(|case| case.text_at("analysis"));
+    let dimensions = if analysis == Some(SPACE) { 3 } else { 2 };
+    if let Some(curves) = tree.get_mut("curves") {
+        for curve in curves.items_mut() {
+            for axis in ["x", "y"] {
+                if let Some(axis) = curve.get_mut(axis)
+                    && axis.get("label").is_none()
+                    && let Some(label) = label(dimensions, axis)
+                {
+                    axis.add_derived("label", Value::Text(label));
+                }
+            }
+        }
+    }
+}
+
+/// How a stage looks for the factor of safety.
+fn derive_search(stage: &mut Node) {
+    if stage.text_at("type") != Some("strength-reduction") || stage.get("search").is_some() {
+        return;
+    }
+    let is_path = is_given(stage) && stage.items_at("factors").is_empty();
+    let search = if is_path { "continuation" } else { "trials" };
+    stage.add_derived("search", Value::Text(search.to_owned()));
+}
+
+/// Whether the steps of a stage leave the geometry as it is given.
+fn is_given(stage: &Node) -> bool {
+    stage.text_at("geometry") == Some("given")
+}
+
+/// The geometry on which gravity is raised: that of a search which goes back to it.
+fn derive_geometry(stages: &mut [Node]) {
+    let earlier = |number: usize, stage: &Node| {
+        let from = stage.text_at("start_from")?;
+        stages[..number]
+            .iter()
+            .position(|stage| stage.text_at("name") == Some(from))
+    };
+    let mut leads = vec![false; stages.len()];
+    for number in (0..stages.len()).rev() {
+        let stage = &stages[number];
+        let searches = stage.text_at("type") == Some("strength-reduction") && is_given(stage);
+        if (searches || leads[number])
+            && let Some(from) = earlier(number, stage)
+        {
+            leads[from] = true;
+        }
+    }
+    for (stage, leads) in stages.iter_mut().zip(leads) {
+        if stage.text_at("type") == Some("gravity") && stage.get("geometry").is_none() {
+            let geometry = if leads { "given" } else { "moving" };
+            stage.add_derived("geometry", Value::Text(geometry.to_owned()));
+        }
+    }
+}
+
+/// Names of the materials of bodies that have a strength.
+fn strong_materials(tree: &Node) -> Vec<String> {
+    let changes = tree.items_at("stages").iter();
+    let changes = changes
+        .filter(|stage| stage.text_at("type") == Some("construction"))
+        .flat_map(|stage| stage.items_at("materials"));
+    let used: Vec<_> = (tree.items_at("bodies").iter().chain(changes))
+        .filter_map(|body| body.text_at("material"))
+        .collect();
+    let materials = tree.get("materials").map_or(&[][..], Node::entries);
+    materials
+        .iter()
+        .filter(|material| used.contains(&material.key.as_str()))
+        .filter(|material| material.node.text_at("model") != Some("elastic"))
+        .map(|material| material.key.clone())
+        .collect()
+}
+
+/// The quantity and its unit, as in `footing.settlement [m]`.
+fn label(dimensions: usize, axis: &Node) -> Option<String> {
+    let of = axis.text_at("of")?;
+    let divisors = axis.items_at("divide_by");
+    if divisors.is_empty() {
+        return Some(format!("{of} [{}]", unit_of(dimensions, of)));
+    }
+    let mut label = of.to_owned();
+    for divisor in divisors {
+        let text = match &divisor.value {
+            Value::Quantity(_, text) => text.clone(),
+            _ => crate::text::number(divisor.number()?),
+        };
+        label.push_str(" / ");
+        label.push_str(&text);
+    }
+    Some(label)
+}

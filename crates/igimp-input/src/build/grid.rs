@@ -1,0 +1,369 @@
+//! The grid and the variant of the method.
+
+use std::sync::Arc;
+
+use igimp_assembly::{DomainUpdate, Geometry, Kinematics, Locking, Method, Remedy, SmallCuts};
+use igimp_shape::{Basis, Gimp, Linear};
+
+use super::lines::{Wish, Zone, largest_jump};
+use crate::diagnostic::Problems;
+use crate::text::{count, number};
+use crate::tree::Node;
+use igimp_model::{AxisSpec, BodyPart, GridSpec, MixedCells};
+use igimp_text::short;
+
+/// Most cells, and most particles.
+pub(super) const MOST: f64 = 5e7;
+/// Most lines in a direction that has them at places of its own.
+const MOST_LINES: f64 = 2e4;
+/// Least ratio of neighbouring cells that can be asked for \[-\].
+const LEAST_GROWTH: f64 = 1.05;
+/// Ratio of neighbouring cells beyond which a warning is given \[-\].
+const MOST_JUMP: f64 = 2.0;
+/// The keys of the directions.
+const DIRECTIONS: [&str; 3] = ["x", "y", "z"];
+
+/// Extent of the grid and its axes, for the checks of what lies on it \[m\].
+#[derive(Clone, Debug)]
+pub(super) struct Frame<const D: usize = 2> {
+    /// Corner of the lowest coordinates.
+    pub(super) lower: [f64; D],
+    /// Corner of the highest coordinates.
+    pub(super) upper: [f64; D],
+    /// The axes; equal cells as written as long as the grid is not known.
+    pub(super) axes: [AxisSpec; D],
+}
+
+/// The frame, if its numbers make sense.
+pub(super) fn frame<const D: usize>(tree: &Node, problems: &mut Problems) -> Option<Frame<D>> {
+    let grid = tree.get("grid")?;
+    let mut cell = [0.0; D];
+    for (own, key) in std::iter::zip(&mut cell, DIRECTIONS) {
+        *own = match grid.get("cell")? {
+            table if table.get("x").is_some() => table.number_at(key)?,
+            one => one.number()?,
+        };
+    }
+    let domain = grid.get("domain")?;
+    let (mut lower, mut upper) = ([0.0; D], [0.0; D]);
+    let mut is_right = true;
+    for (axis, key) in DIRECTIONS.into_iter().take(D).enumerate() {
+        let [from, to] = domain.pair_at(key)?;
+        (lower[axis], upper[axis]) = (from, to);
+        if from >= to || !(to - from).is_finite() {
+            problems
+                .error(
+                    domain.place_at(key),
+                    format!("the domain in {key} has no extent"),
+                )
+                .help("write the lower end first");
+            is_right = false;
+        }
+    }
+    let axes = std::array::from_fn(|axis| AxisSpec::Equal {
+        lower: lower[axis],
+        cell: cell[axis],
+        cells: ((upper[axis] - lower[axis]) / cell[axis]).round().max(1.0) as usize,
+    });
+    is_right.then_some(Frame { lower, upper, axes })
+}
+
+/// The grid; reports a domain that is not a whole number of cells, lines off the domain, and too
+/// many cells.
+pub(super) fn grid<const D: usize>(
+    tree: &Node,
+    frame: Option<&Frame<D>>,
+    bodies: &[Option<BodyPart<D>>],
+    problems: &mut Problems,
+) -> Option<GridSpec<D>> {
+    let node = tree.get("grid")?;
+    let Frame { lower, upper, axes } = frame?;
+    let cell: [f64; D] = std::array::from_fn(|axis| axes[axis].cell_at(lower[axis]));
+    let extent: [f64; D] = std::array::from_fn(|axis| upper[axis] - lower[axis]);
+    let total: f64 = (0..D)
+        .map(|axis| (extent[axis] / cell[axis]).max(1.0))
+        .product();
+    if total.is_nan() || total > MOST {
+        too_many(node, &count(total), problems);
+        return None;
+    }
+    let levels = match node.text_at("fit")? {
+        "layers" => levels(bodies, 1e-9 * extent[D - 1].max(upper[D - 1].abs())),
+        _ => Vec::new(),
+    };
+    let found: [Option<AxisSpec>; D] = std::array::from_fn(|axis| {
+        let key = DIRECTIONS[axis];
+        if cell[axis] < 1e-9 * lower[axis].abs().max(upper[axis].abs()) {
+            problems
+                .error(
+                    node.get("domain")?.place_at(key),
+                    format!("the coordinates in {key} are too large for cells this small"),
+                )
+                .help("move the origin to the model");
+            return None;
+        }
+        let ends = [lower[axis], upper[axis]];
+        let levels = if axis == D - 1 { &levels[..] } else { &[] };
+        match wish(node, axis, ends, cell[axis], levels, problems)? {
+            Some(wish) => with_lines(node, key, &wish, problems),
+            None => equal_cells(node, key, ends, cell[axis], problems),
+        }
+    });
+    let axes: Option<Vec<AxisSpec>> = found.into_iter().collect();
+    let grid = GridSpec {
+        axes: axes?.try_into().ok()?,
+        mixed_cells: match node.text_at("mixed_cells")? {
+            "mean" => MixedCells::Mean,
+            _ => MixedCells::Own,
+        },
+    };
+    let total: f64 = grid.cells().iter().map(|&cells| cells as f64).product();
+    if total > MOST {
+        too_many(node, &count(total), problems);
+        return None;
+    }
+    Some(grid)
+}
+
+fn too_many(node: &Node, cells: &str, problems: &mut Problems) {
+    problems
+        .error(
+            node.place_at("cell"),
+            format!("the grid would have {cells} cells"),
+        )
+        .help(format!(
+            "at most {} are possible: use larger cells or a smaller domain",
+            count(MOST)
+        ));
+}
+
+/// An axis of equal cells that fill the domain.
+fn equal_cells(
+    node: &Node,
+    key: &str,
+    [lower, upper]: [f64; 2],
+    cell: f64,
+    problems: &mut Problems,
+) -> Option<AxisSpec> {
+    let extent = upper - lower;
+    let cells = extent / cell;
+    let whole = cells.round().max(1.0);
+    if (cells - whole).abs() > 1e-6 {
+        let end = number(lower + whole * cell);
+        let size = number(extent / whole);
+        problems
+            .error(
+                node.get("domain")?.place_at(key),
+                format!(
+                    "the domain in {key} is not a whole number of cells: {} m / {} m = {}",
+                    number(extent),
+                    number(cell),
+                    number(cells)
+                ),
+            )
+            .help(format!(
+                "the nearest that is: {key} = [\"{} m\", \"{end} m\"], or a cell of {size} m",
+                number(lower)
+            ));
+        return None;
+    }
+    Some(AxisSpec::Equal {
+        lower,
+        // The cell that fits, to the last digit.
+        cell: extent / whole,
+        cells: whole as usize,
+    })
+}
+
+/// An axis with lines where they are wanted; warns of neighbouring cells that differ too much.
+fn with_lines(node: &Node, key: &str, wish: &Wish, problems: &mut Problems) -> Option<AxisSpec> {
+    let Some(axis) = wish.axis(MOST_LINES) else {
+        problems
+            .error(
+                node.place_at("cell"),
+                format!(
+                    "the grid would have more than {} lines in {key}",
+                    count(MOST_LINES)
+                ),
+            )
+            .help("use larger cells, or shorter zones");
+        return None;
+    };
+    let (jump, at) = largest_jump(&axis);
+    if jump > MOST_JUMP + 1e-9 {
+        problems
+            .warning(
+                node.place_at("growth"),
+                format!(
+                    "neighbouring cells at {key} = {} m differ by a factor of {}",
+                    number(at),
+                    short(jump)
+                ),
+            )
+            .help(format!(
+                "neighbours should not differ by more than {MOST_JUMP}: \
+                 move lines or zones, or let cells grow more slowly"
+            ));
+    }
+    Some(axis)
+}
+
+/// What is wanted of an axis beyond equal cells; none within: nothing. None: something is wrong.
+#[allow(
+    clippy::option_option,
+    reason = "wrong, nothing and something are three answers"
+)]
+fn wish(
+    node: &Node,
+    axis: usize,
+    ends: [f64; 2],
+    cell: f64,
+    levels: &[f64],
+    problems: &mut Problems,
+) -> Option<Option<Wish>> {
+    let key = DIRECTIONS[axis];
+    let growth = node.number_at("growth")?;
+    let mut is_right = true;
+    if !(LEAST_GROWTH..=MOST_JUMP).contains(&growth) {
+        let message = format!("`growth` must be from {LEAST_GROWTH} to {MOST_JUMP}");
+        problems
+            .error(node.place_at("growth"), message)
+            .help("1.3 is usual");
+        is_right = false;
+    }
+    let round_off = 1e-9 * ends[0].abs().max(ends[1].abs());
+    let is_inside = |x: f64| ends[0] - round_off <= x && x <= ends[1] + round_off;
+    let mut lines = Vec::new();
+    for line in node.get("lines")?.items_at(key) {
+        let x = line.number()?;
+        if is_inside(x) {
+            lines.push(x);
+        } else {
+            problems
+                .error(
+                    line.place,
+                    format!(
+                        "this line at {key} = {} m is off the grid domain",
+                        number(x)
+                    ),
+                )
+                .help("extend [grid] domain, or leave the line out");
+            is_right = false;
+        }
+    }
+    let mut zones = Vec::new();
+    for zone in node.get("zones")?.items_at(key) {
+        let own = Zone {
+            ends: [zone.number_at("from")?, zone.number_at("to")?],
+            cell: zone.number_at("cell")?,
+        };
+        let wrong = if own.ends[0] >= own.ends[1] {
+            Some((
+                "from",
+                "this zone has no extent",
+                "write the lower end first",
+            ))
+        } else if !own.ends.into_iter().all(is_inside) {
+            Some((
+                "from",
+                "this zone reaches off the grid domain",
+                "extend [grid] domain",
+            ))
+        } else if own.cell >= cell {
+            let help = "write the size of the coarse cells as `cell` of the grid";
+            Some((
+                "cell",
+                "the cells of this zone are no finer than those of the grid",
+                help,
+            ))
+        } else if own.cell < round_off {
+            let help = "move the origin to the model";
+            Some((
+                "cell",
+                "the coordinates are too large for cells this small",
+                help,
+            ))
+        } else {
+            None
+        };
+        if let Some((at, message, help)) = wrong {
+            problems.error(zone.place_at(at), message).help(help);
+            is_right = false;
+        } else {
+            zones.push(own);
+        }
+    }
+    let levels: Vec<f64> = levels.iter().copied().filter(|&y| is_inside(y)).collect();
+    let is_equal = lines.is_empty() && zones.is_empty() && levels.is_empty();
+    is_right.then(|| {
+        (!is_equal).then_some(Wish {
+            ends,
+            cell,
+            lines,
+            levels,
+            zones,
+            growth,
+        })
+    })
+}
+
+/// Level edges of bodies, the longest first \[m\].
+fn levels<const D: usize>(bodies: &[Option<BodyPart<D>>], round_off: f64) -> Vec<f64> {
+    let mut levels: Vec<(f64, f64)> = Vec::new();
+    for body in bodies.iter().flatten() {
+        let polygon = body.region.polygon();
+        for (k, p) in polygon.iter().enumerate() {
+            let q = polygon[(k + 1) % polygon.len()];
+            if (p[1] - q[1]).abs() > round_off {
+                continue;
+            }
+            let length = (p[0] - q[0]).abs();
+            match levels
+                .iter_mut()
+                .find(|(y, _)| (y - p[1]).abs() <= round_off)
+            {
+                Some((_, known)) => *known += length,
+                None => levels.push((p[1], length)),
+            }
+        }
+    }
+    levels.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.total_cmp(&b.0)));
+    levels.into_iter().map(|(y, _)| y).collect()
+}
+
+/// The variant of the method.
+pub(super) fn method(tree: &Node) -> Option<Method> {
+    let grid = tree.get("grid")?;
+    let cuts = grid.get("small_cuts")?;
+    let basis: Arc<dyn Basis> = match grid.text_at("basis")? {
+        "linear" => Arc::new(Linear),
+        _ => Arc::new(Gimp),
+    };
+    Some(Method {
+        basis,
+        locking: match grid.text_at("locking")? {
+            "none" => Locking::None,
+            "shared-strain" => Locking::SharedStrain,
+            _ => Locking::BBar,
+        },
+        geometry: Geometry::Moving,
+        kinematics: match grid.text_at("kinematics")? {
+            "small" => Kinematics::SmallStrain,
+            _ => Kinematics::FiniteStrain,
+        },
+        domain_update: match grid.text_at("domain_update")? {
+            "fixed" => DomainUpdate::Fixed,
+            "diagonal-f" => DomainUpdate::DiagonalF,
+            "root-j" => DomainUpdate::RootJ,
+            _ => DomainUpdate::DiagonalU,
+        },
+        small_cuts: SmallCuts {
+            below: cuts.number_at("below")?,
+            remedy: match cuts.text_at("remedy")? {
+                "drop" => Remedy::Drop,
+                _ => Remedy::Tie,
+            },
+            ghost_penalty: cuts.number_at("ghost_penalty")?,
+        },
+    })
+}

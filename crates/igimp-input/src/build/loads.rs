@@ -1,0 +1,318 @@
+//! Loads, and whether there is soil where they act.
+
+use super::grid::Frame;
+use super::site::{Site, Soil};
+use crate::diagnostic::Problems;
+use crate::geometry::cover;
+use crate::text::{clip, number, point};
+use crate::tree::Node;
+use igimp_model::{AxisSpec, Load, LoadKind};
+
+/// The loads.
+pub(super) fn loads(tree: &Node, site: &Site, problems: &mut Problems) -> Vec<Option<Load>> {
+    let mut has_footing = false;
+    let items = tree.items_at("loads");
+    items
+        .iter()
+        .map(|node| {
+            let name = node.text_at("name")?;
+            let kind = match node.text_at("type")? {
+                "rigid-footing" => footing(node, name, site, problems),
+                "pressure" => pressure(node, name, site, problems),
+                "patch" => {
+                    problems
+                        .error(node.place_at("type"), "a patch is a load in space")
+                        .help("in plane strain use a load of type pressure");
+                    None
+                }
+                _ => at_point(node, name, site, problems),
+            }?;
+            if let LoadKind::RigidFooting { .. } = kind
+                && std::mem::replace(&mut has_footing, true)
+            {
+                problems
+                    .error(node.place_at("type"), "this is a second rigid footing")
+                    .help("the grid follows the footing, and it can follow only one");
+            }
+            Some(Load {
+                name: name.to_owned(),
+                kind,
+            })
+        })
+        .collect()
+}
+
+fn footing(node: &Node, name: &str, site: &Site, problems: &mut Problems) -> Option<LoadKind> {
+    let (a, b) = (node.pair_at("from")?, node.pair_at("to")?);
+    let (from, to) = if a[0] <= b[0] { (a, b) } else { (b, a) };
+    let (rough, reaction_factor) = (
+        node.text_at("interface")? == "rough",
+        node.number_at("reaction_factor")?,
+    );
+    let shown = clip(name, 40);
+    if (from[1] - to[1]).abs() > site.round_off {
+        problems
+            .error(
+                node.place_at("to"),
+                format!("the base of the footing `{shown}` is not level"),
+            )
+            .help(format!(
+                "give both ends the same y, like \"{} m\"",
+                number(a[1])
+            ));
+        return None;
+    }
+    if to[0] - from[0] <= site.round_off {
+        problems.error(
+            node.place_at("to"),
+            format!("the footing `{shown}` has no width"),
+        );
+        return None;
+    }
+    if let Some(frame) = &site.frame {
+        let is_outside = [from, to].iter().any(|end| {
+            (0..2).any(|k| {
+                end[k] < frame.lower[k] - site.round_off || end[k] > frame.upper[k] + site.round_off
+            })
+        });
+        if is_outside {
+            problems
+                .error(
+                    node.place_at("from"),
+                    format!("the footing `{shown}` lies outside the grid domain"),
+                )
+                .help("extend [grid] domain");
+            return None;
+        }
+        on_grid(node, &shown, from, to, frame, site, problems);
+    }
+    if site.is_complete {
+        let mut tops: Vec<_> = site
+            .surface()
+            .iter()
+            .filter(|edge| {
+                edge.iter()
+                    .all(|end| (end[1] - from[1]).abs() <= site.round_off)
+            })
+            .map(|edge| [edge[0][0], edge[1][0]])
+            .collect();
+        if !cover(&mut tops, from[0], to[0], site.round_off) {
+            let mut levels: Vec<_> = (site.surface().iter())
+                .filter(|edge| (edge[0][1] - edge[1][1]).abs() <= site.round_off)
+                .map(|edge| {
+                    format!(
+                        "y = {} m from x = {} m to {} m",
+                        number(edge[0][1]),
+                        number(edge[0][0]),
+                        number(edge[1][0])
+                    )
+                })
+                .collect();
+            levels.truncate(4);
+            let problem = problems.error(
+                node.place_at("from"),
+                format!("the footing `{shown}` does not stand on top of a body all along"),
+            );
+            if levels.is_empty() {
+                problem.help("no body has a level top");
+            } else {
+                problem.help(format!("level ground: {}", levels.join("; ")));
+            }
+        }
+    }
+    Some(LoadKind::RigidFooting {
+        from,
+        to,
+        rough,
+        reaction_factor,
+    })
+}
+
+/// Checks a footing against the lines of the grid.
+fn on_grid(
+    node: &Node,
+    name: &str,
+    from: [f64; 2],
+    to: [f64; 2],
+    frame: &Frame,
+    site: &Site,
+    problems: &mut Problems,
+) {
+    let Frame { lower, upper, axes } = frame;
+    let place = node.place_at("from");
+    let row = axes[1].place(from[1]);
+    if (row - row.round()).abs() > 1e-6 {
+        let depth = from[1] - lower[1];
+        let problem = problems.error(
+            place,
+            format!(
+                "the base of the footing `{name}` is not on a line of the grid: \
+                     it lies {} cells above the bottom",
+                number(row)
+            ),
+        );
+        if let AxisSpec::Equal { .. } = axes[1] {
+            problem.help(format!(
+                "a cell of height {} m has a line there",
+                number(depth / row.round().max(1.0))
+            ));
+        }
+        problem.help(format!(
+            "lines = {{ y = [\"{} m\"] }} in [grid] puts one there",
+            number(from[1])
+        ));
+    }
+    for key in ["from", "to"] {
+        let Some([x, _]) = node.pair_at(key) else {
+            continue;
+        };
+        if x - lower[0] <= site.round_off || upper[0] - x <= site.round_off {
+            continue;
+        }
+        let column = axes[0].place(x);
+        if (column - column.floor() - 0.5).abs() > 1e-6 {
+            let problem = problems.warning(
+                node.place_at(key),
+                format!(
+                    "the edge of the footing `{name}` at x = {} m is not in the middle of a cell",
+                    number(x)
+                ),
+            );
+            problem.help("the footing then acts up to half a cell wider");
+            if let Some(help) = better_cell(x - lower[0], [from[0], to[0]], frame) {
+                problem.help(help);
+            }
+        }
+    }
+}
+
+/// A width of cells that has the edges of a footing mid-cell and fills the domain.
+fn better_cell(edge: f64, ends: [f64; 2], frame: &Frame) -> Option<String> {
+    let Frame { lower, upper, axes } = frame;
+    let AxisSpec::Equal { cell, .. } = axes[0] else {
+        return None;
+    };
+    let extent = upper[0] - lower[0];
+    let fits = |halves: f64| {
+        let width = 2.0 * edge / halves;
+        let near = |x: f64, to: f64| (x - to).abs() < 1e-6;
+        let columns = extent / width;
+        near(columns, columns.round())
+            && ends.iter().all(|end| {
+                let column = (end - lower[0]) / width;
+                let is_side = near(column, 0.0) || near(column, columns);
+                is_side || near(column - column.floor(), 0.5)
+            })
+    };
+    let now = 2.0 * edge / cell;
+    let odd = 2.0 * (0.5 * now).floor() + 1.0;
+    let mut candidates: Vec<f64> = (-20..=20)
+        .map(|k| odd + 2.0 * f64::from(k))
+        .filter(|&halves| halves >= 1.0 && fits(halves))
+        .collect();
+    let off = |halves: &f64| (2.0 * edge / halves - cell).abs();
+    candidates.sort_by(|a, b| off(a).total_cmp(&off(b)));
+    let halves = candidates.first()?;
+    let width = format!("{}/{} m", number(2.0 * edge), number(*halves));
+    Some(format!(
+        "with cell = {{ x = \"{width}\", y = \"{} m\" }} it is",
+        number(axes[1].extremes()[1])
+    ))
+}
+
+fn pressure(node: &Node, name: &str, site: &Site, problems: &mut Problems) -> Option<LoadKind> {
+    let (from, to) = (node.pair_at("from")?, node.pair_at("to")?);
+    let pressure = node.number_at("pressure")?;
+    let is_down = node.text_at("direction")? == "down";
+    let along = [to[0] - from[0], to[1] - from[1]];
+    let length = along[0].hypot(along[1]);
+    let shown = clip(name, 40);
+    if length <= site.round_off {
+        problems.error(
+            node.place_at("to"),
+            format!("the segment of the pressure `{shown}` has no length"),
+        );
+        return None;
+    }
+    let left = [-along[1] / length, along[0] / length];
+    let mut inward = is_down.then_some([0.0, -1.0]);
+    if site.is_complete {
+        let normal = soil_side(node, &shown, [from, to], left, site, problems)?;
+        inward = inward.or(Some(normal));
+    }
+    let inward = inward?;
+    Some(LoadKind::Pressure {
+        from,
+        to,
+        traction: inward.map(|component| component * pressure + 0.0),
+    })
+}
+
+/// The normal of a segment that points into the soil; reports a segment that is not on a surface.
+fn soil_side(
+    node: &Node,
+    name: &str,
+    [from, to]: [[f64; 2]; 2],
+    left: [f64; 2],
+    site: &Site,
+    problems: &mut Problems,
+) -> Option<[f64; 2]> {
+    const SAMPLES: u32 = 21;
+    let length = (to[0] - from[0]).hypot(to[1] - from[1]);
+    let step = 1e-2 * site.cell().min(length);
+    let (mut on_left, mut on_right, mut buried) = (0, 0, 0);
+    for k in 0..SAMPLES {
+        let t = (f64::from(k) + 0.5) / f64::from(SAMPLES);
+        let at = [
+            from[0] + t * (to[0] - from[0]),
+            from[1] + t * (to[1] - from[1]),
+        ];
+        let beside = |side: f64| [at[0] + side * step * left[0], at[1] + side * step * left[1]];
+        match (site.is_inside(beside(1.0)), site.is_inside(beside(-1.0))) {
+            (true, true) => buried += 1,
+            (true, false) => on_left += 1,
+            (false, true) => on_right += 1,
+            (false, false) => {}
+        }
+    }
+    if on_left == SAMPLES {
+        return Some(left);
+    }
+    if on_right == SAMPLES {
+        return Some(left.map(|component| -component));
+    }
+    let message = if buried + on_left + on_right == 0 {
+        format!("no body lies along the segment of the pressure `{name}`")
+    } else if buried > 0 {
+        format!("the segment of the pressure `{name}` lies inside the soil, not on its surface")
+    } else {
+        format!("only a part of the segment of the pressure `{name}` lies on the surface of a body")
+    };
+    problems
+        .error(node.place_at("from"), message)
+        .help("the segment follows the edge of a body, from one point of it to another");
+    None
+}
+
+/// A force at a point of a body.
+pub(super) fn at_point<const D: usize>(
+    node: &Node,
+    name: &str,
+    soil: &impl Soil<D>,
+    problems: &mut Problems,
+) -> Option<LoadKind<D>> {
+    let (at, force) = (node.point_at("at")?, node.point_at("force")?);
+    if soil.is_known() && !soil.holds_point(&at, 1e-2 * soil.cell()) {
+        problems
+            .error(
+                node.place_at("at"),
+                format!(
+                    "there is no body at {}, where `{}` acts",
+                    point(at),
+                    clip(name, 40)
+                ),
+            )
+            .help("move the load onto a body");
+    }
+    Some(LoadKind::Point { at, force })
+}

@@ -1,0 +1,215 @@
+//! Builds a [`Case`] from a completed tree, with the checks that need more than one value.
+//!
+//! Every part is built as far as it can be, so that all problems are found at once.
+
+mod assemble;
+mod bodies;
+mod boundaries;
+mod checks;
+mod construction;
+mod curves;
+mod derive;
+mod grid;
+mod ground;
+mod ground_space;
+mod layers;
+mod level;
+mod lines;
+mod loads;
+mod loads_space;
+mod materials;
+mod outputs;
+mod profiles;
+mod quantities;
+mod reinforcement;
+mod reinforcement_space;
+mod rigid;
+mod rigid_plane;
+mod rigid_space;
+mod rigid_stage;
+mod safety;
+mod sequence;
+mod site;
+mod solids;
+mod space;
+mod stages;
+mod study;
+mod surfaces;
+mod water;
+mod water_checks;
+
+use std::path::Path;
+
+use super::diagnostic::Problems;
+use super::names::Names;
+use super::schema::{FORMAT, SPACE};
+use super::tree::Node;
+use igimp_model::{AnyCase, Case, TitleBlock};
+
+use assemble::{Basics, Upon};
+use layers::Layers;
+pub(super) use quantities::QUANTITY_DOCS;
+use site::Site;
+
+/// The names in a file, by what they name.
+struct AllNames {
+    materials: Names,
+    bodies: Names,
+    loads: Names,
+    rigid: Names,
+    water: Names,
+    reinforcement: Names,
+    stages: Names,
+    monitors: Names,
+}
+
+impl AllNames {
+    fn new(tree: &Node, problems: &mut Problems) -> Self {
+        let materials = tree.get("materials").map_or(&[][..], Node::entries);
+        let materials = materials
+            .iter()
+            .map(|entry| (Some(entry.key.as_str()), entry.key_place));
+        let boxes = tree.get("boundaries").and_then(|part| part.get("boxes"));
+        Names::of_list("box", boxes, problems);
+        for (of, key) in [
+            ("section", "sections"),
+            ("curve", "curves"),
+            ("check", "checks"),
+        ] {
+            Names::of_list(of, tree.get(key), problems);
+        }
+        Self {
+            materials: Names::new("material", materials, problems),
+            bodies: Names::of_list("body", tree.get("bodies"), problems),
+            loads: Names::of_list("load", tree.get("loads"), problems),
+            rigid: Names::of_list("rigid body", tree.get("rigid"), problems),
+            water: Names::of_list("water condition", tree.get("water"), problems),
+            reinforcement: Names::of_list("reinforcement", tree.get("reinforcement"), problems),
+            stages: Names::of_list("stage", tree.get("stages"), problems),
+            monitors: Names::of_list("monitor", tree.get("monitors"), problems),
+        }
+    }
+}
+
+/// The case that a completed tree states; values that follow from others are put into the tree.
+///
+/// `None` only when a problem was reported, here or before.
+pub(super) fn build(tree: &mut Node, file: &Path, problems: &mut Problems) -> Option<AnyCase> {
+    derive::derive(tree, file);
+    let tree = &*tree;
+    let names = AllNames::new(tree, problems);
+    header(tree, problems);
+    if tree.get("case")?.text_at("analysis") == Some(SPACE) {
+        space::build(tree, &names, file, problems).map(AnyCase::Space)
+    } else {
+        in_plane(tree, &names, file, problems).map(AnyCase::Plane)
+    }
+}
+
+/// The same for a case in plane strain.
+fn in_plane(tree: &Node, names: &AllNames, file: &Path, problems: &mut Problems) -> Option<Case> {
+    let basics = Basics::new(tree, names, bodies::bodies(tree, names, problems), problems);
+    let Basics {
+        bodies,
+        materials,
+        sequence,
+        ..
+    } = &basics;
+    let site = Site::new(basics.frame.clone(), bodies, sequence);
+    bodies::check(tree, names, (bodies, sequence), &site, problems);
+    let boundaries = boundaries::boundaries(tree, site.frame.as_ref(), problems);
+    bodies::check_support(tree, bodies, boundaries.as_ref(), &site, problems);
+    let layers = Layers {
+        tree,
+        bodies,
+        materials,
+        site: &site,
+        sequence,
+    };
+    layers::check(&layers, problems);
+    let loads = loads::loads(tree, &site, problems);
+    let around = rigid_plane::Around {
+        site: &site,
+        materials,
+        loads: &loads,
+        tree,
+        sequence,
+    };
+    let rigid = rigid_plane::rigid(tree, &around, problems);
+    rigid_stage::check_use(tree, names, problems);
+    let around = water::Around {
+        tree,
+        names,
+        earth: &site,
+        bodies,
+        materials,
+        sequence,
+    };
+    let water = water::conditions(&around, problems);
+    water_checks::check(&around, &water, problems);
+    let reinforcement = reinforcement::reinforcement(tree, &site, problems);
+    reinforcement::check_searches(tree, names, problems);
+    let context = stages::Context {
+        tree,
+        names,
+        materials,
+        bodies,
+        loads: &loads,
+        soil: &site,
+        site: Some(&site),
+        sequence,
+    };
+    let stages = assemble::stages_of(&context, problems);
+    let gravity = tree.get("case").and_then(|case| case.number_at("gravity"));
+    layers::check_stiffness(&layers, &stages, gravity, problems);
+    let upon = Upon {
+        boundaries,
+        rigid,
+        water,
+        reinforcement,
+    };
+    assemble::assemble((&context, file), &basics, upon, stages, problems)
+}
+
+/// The head of the report.
+fn title_block(case: &Node) -> TitleBlock {
+    let words = |key| case.text_at(key).map(str::to_owned);
+    TitleBlock {
+        project: words("project"),
+        client: words("client"),
+        author: words("author"),
+        revision: words("revision"),
+    }
+}
+
+fn all<T>(parts: Vec<Option<T>>) -> Option<Vec<T>> {
+    parts.into_iter().collect()
+}
+
+/// Checks the version of the format, and that gravity is there where it is raised.
+fn header(tree: &Node, problems: &mut Problems) {
+    if let Some(version) = tree.number_at("igimp")
+        && version > FORMAT as f64
+    {
+        problems
+            .error(
+                tree.place_at("igimp"),
+                format!("this file has input format {version}, newer than this program's"),
+            )
+            .help(format!("this program reads igimp = {FORMAT}"));
+    }
+    let Some(case) = tree.get("case") else { return };
+    if case.number_at("gravity") == Some(0.0) {
+        let stages = tree.get("stages").map_or(&[][..], Node::items);
+        for stage in stages {
+            if let Some(kind @ ("gravity" | "k0")) = stage.text_at("type") {
+                problems
+                    .warning(
+                        stage.place_at("type"),
+                        format!("this stage of type {kind} does nothing: gravity is 0"),
+                    )
+                    .help("set gravity in [case], or remove the stage");
+            }
+        }
+    }
+}

@@ -1,0 +1,328 @@
+//! A case in space from a completed tree: what plane strain has, without what is drawn in the plane.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use super::assemble::{self, Basics, Upon};
+use super::grid::Frame;
+use super::sequence::{Sequence, placed};
+use super::site::Soil;
+use super::{
+    AllNames, boundaries, loads_space, reinforcement, reinforcement_space, rigid_space,
+    rigid_stage, solids, stages, water, water_checks,
+};
+use crate::diagnostic::Problems;
+use crate::text::{clip, count, number, point};
+use crate::tree::Node;
+use igimp_geometry::region::Region;
+use igimp_model::{BodyPart, Case, Ground, LoadKind, Material};
+
+/// Most particles.
+const MOST: f64 = 5e7;
+
+/// The bodies, for the checks of places.
+pub(super) struct Solids {
+    pub(super) regions: Vec<Arc<dyn Region<3>>>,
+    pub(super) is_complete: bool,
+    pub(super) round_off: f64,
+    /// Smallest side of a cell \[m\].
+    pub(super) cell: f64,
+    /// Extent of the grid \[m\].
+    pub(super) lower: [f64; 3],
+    pub(super) upper: [f64; 3],
+}
+
+impl Solids {
+    fn new(bodies: &[Option<BodyPart<3>>], frame: Option<&Frame<3>>) -> Self {
+        let regions: Vec<_> = bodies
+            .iter()
+            .flatten()
+            .map(|body| Arc::clone(&body.region))
+            .collect();
+        let ends = frame
+            .iter()
+            .flat_map(|frame| frame.lower.iter().chain(&frame.upper));
+        let largest = ends.fold(0.0, |largest: f64, x| largest.max(x.abs()));
+        let round_off = 1e-9 * largest;
+        let cells = frame.iter().flat_map(|frame| frame.axes.iter());
+        Self {
+            is_complete: frame.is_some() && regions.len() == bodies.len() && !bodies.is_empty(),
+            regions,
+            round_off,
+            lower: frame.map_or([0.0; 3], |frame| frame.lower),
+            upper: frame.map_or([0.0; 3], |frame| frame.upper),
+            cell: cells
+                .map(|axis| axis.extremes()[0])
+                .fold(f64::INFINITY, f64::min),
+        }
+    }
+}
+
+impl Soil<3> for Solids {
+    fn is_known(&self) -> bool {
+        self.is_complete
+    }
+
+    fn holds_point(&self, point: &[f64; 3], margin: f64) -> bool {
+        let margin = margin.max(self.round_off);
+        self.regions
+            .iter()
+            .any(|region| near(&**region, point, margin))
+    }
+
+    fn bears(&self, body: usize, load: &LoadKind<3>) -> bool {
+        let Some(region) = self.regions.get(body).filter(|_| self.is_complete) else {
+            return false;
+        };
+        let margin = (1e-2 * self.cell).max(self.round_off);
+        let places = match load {
+            LoadKind::RigidFooting { .. } => Vec::new(),
+            LoadKind::Pressure { from, to, .. } => loads_space::samples(from, to),
+            LoadKind::Patch { plan, level, .. } => loads_space::places(plan, *level, self),
+            LoadKind::Point { at, .. } => vec![*at],
+        };
+        places.iter().any(|at| near(&**region, at, margin))
+    }
+
+    fn round_off(&self) -> f64 {
+        self.round_off
+    }
+
+    fn cell(&self) -> f64 {
+        self.cell
+    }
+}
+
+/// Whether a place lies in a region, or not further outside than a margin.
+fn near(region: &dyn Region<3>, point: &[f64; 3], margin: f64) -> bool {
+    let beside = (0..6).map(|side| {
+        let mut at = *point;
+        at[side / 2] += if side % 2 == 0 { margin } else { -margin };
+        at
+    });
+    let mut places = std::iter::once(*point).chain(beside);
+    places.any(|at| region.encloses(at))
+}
+
+/// The case; `None` only when a problem was reported, here or before.
+pub(super) fn build(
+    tree: &Node,
+    names: &AllNames,
+    file: &Path,
+    problems: &mut Problems,
+) -> Option<Case<3>> {
+    refuse_what_is_of_the_plane(tree, problems);
+    let basics = Basics::new(tree, names, bodies(tree, names, problems), problems);
+    let Basics {
+        frame,
+        bodies,
+        materials,
+        sequence,
+        ..
+    } = &basics;
+    let frame = frame.as_ref();
+    let soil = Solids::new(bodies, frame);
+    check_bodies(tree, frame, (bodies, sequence), &soil, problems);
+    let boundaries = boundaries::boundaries(tree, frame, problems);
+    let loads = loads_space::loads(tree, &soil, problems);
+    let rigid = rigid_space::rigid(tree, frame, materials, problems);
+    rigid_stage::check_use(tree, names, problems);
+    let around = water::Around {
+        tree,
+        names,
+        earth: &soil,
+        bodies,
+        materials,
+        sequence,
+    };
+    let water = water::conditions(&around, problems);
+    water_checks::check(&around, &water, problems);
+    let reinforcement = reinforcement_space::reinforcement(tree, &soil, problems);
+    reinforcement::check_searches(tree, names, problems);
+    let context = stages::Context {
+        tree,
+        names,
+        materials,
+        bodies,
+        loads: &loads,
+        soil: &soil,
+        site: None,
+        sequence,
+    };
+    let stages = assemble::stages_of(&context, problems);
+    check_level(tree, (bodies, materials), &soil, problems);
+    let upon = Upon {
+        boundaries,
+        rigid,
+        water,
+        reinforcement,
+    };
+    assemble::assemble((&context, file), &basics, upon, stages, problems)
+}
+
+/// Reports what case files can say of the plane only.
+fn refuse_what_is_of_the_plane(tree: &Node, problems: &mut Problems) {
+    for load in tree.items_at("loads") {
+        if load.text_at("type") == Some("rigid-footing") {
+            problems
+                .error(
+                    load.place_at("type"),
+                    "a rigid footing that the grid follows is one of plane strain",
+                )
+                .help("in space footings are [[rigid]] bodies, or pressures");
+        }
+    }
+    let fit = tree.get("grid").and_then(|grid| grid.get("fit"));
+    if let Some(fit) = fit.filter(|fit| fit.text() == Some("layers")) {
+        problems
+            .error(fit.place, "lines are fitted to layers in plane strain only")
+            .help("write lines = { z = [...] }");
+    }
+}
+
+/// The bodies, as far as each is right by itself.
+fn bodies(tree: &Node, names: &AllNames, problems: &mut Problems) -> Vec<Option<BodyPart<3>>> {
+    let later = placed(tree);
+    let items = tree.items_at("bodies").iter();
+    let part = |node: &Node| {
+        let name = node.text_at("name").unwrap_or("?");
+        let material = node.get("material").and_then(|material| {
+            let who = format!("body `{}` uses", clip(name, 40));
+            names.materials.find(material, &who, problems)
+        });
+        let solid = solids::solid(node, name, problems);
+        let points = node.count_at("points_per_cell")?;
+        Some(BodyPart {
+            from_start: !later.contains(&name),
+            name: node.text_at("name")?.to_owned(),
+            material: material?,
+            per_direction: (1..=4).find(|count: &usize| count.pow(3) >= points)?,
+            region: Arc::new(solid?),
+        })
+    };
+    items.map(part).collect()
+}
+
+/// Checks the bodies against the domain and each other.
+fn check_bodies(
+    tree: &Node,
+    frame: Option<&Frame<3>>,
+    (bodies, sequence): (&[Option<BodyPart<3>>], &Sequence),
+    soil: &Solids,
+    problems: &mut Problems,
+) {
+    let items = tree.items_at("bodies");
+    let Some(frame) = frame else { return };
+    let slack = soil.round_off;
+    let (lower, upper) = (
+        frame.lower.map(|x| x - slack),
+        frame.upper.map(|x| x + slack),
+    );
+    let mut particles = 0.0;
+    for (body, node) in std::iter::zip(bodies, items) {
+        let Some(body) = body else { continue };
+        if let Some(at) = body.region.beyond(lower, upper) {
+            let name = clip(&body.name, 40);
+            let message = format!(
+                "body `{name}` reaches {}, outside the grid domain",
+                point(at)
+            );
+            problems
+                .error(node.place, message)
+                .help("extend [grid] domain");
+            continue;
+        }
+        let (from, to) = body.region.bounds();
+        let cells: f64 = (0..3)
+            .map(|axis| frame.axes[axis].place(to[axis]) - frame.axes[axis].place(from[axis]))
+            .product();
+        let around: f64 = (0..3).map(|axis| to[axis] - from[axis]).product();
+        let share = body.region.volume() / around;
+        particles += cells * share * (body.per_direction as f64).powi(3);
+    }
+    if particles > MOST {
+        let message = format!("the bodies would have {} particles", count(particles));
+        problems
+            .error(tree.get("grid").map(|grid| grid.place_at("cell")), message)
+            .help(format!(
+                "at most {} are possible: use larger cells or fewer points_per_cell",
+                count(MOST)
+            ));
+    }
+    for (second, b) in bodies.iter().enumerate() {
+        for (first, a) in bodies[..second].iter().enumerate() {
+            let (Some(a), Some(b)) = (a, b) else { continue };
+            if !sequence.are_together(first, second) {
+                continue;
+            }
+            if let Some(at) = solids::overlap(&*a.region, &*b.region) {
+                problems
+                    .error(
+                        items[second].place,
+                        format!(
+                            "body `{}` overlaps body `{}` near {}",
+                            clip(&b.name, 40),
+                            clip(&a.name, 40),
+                            point(at)
+                        ),
+                    )
+                    .help("bodies may share faces only");
+            }
+        }
+    }
+}
+
+/// Refuses stresses of level ground in ground that is not level.
+fn check_level(
+    tree: &Node,
+    (bodies, materials): (&[Option<BodyPart<3>>], &[Option<Material>]),
+    soil: &Solids,
+    problems: &mut Problems,
+) {
+    let first = tree.items_at("stages").first();
+    let Some(stage) = first.filter(|stage| stage.text_at("type") == Some("k0")) else {
+        return;
+    };
+    let parts: Option<Vec<_>> = (bodies.iter())
+        .map(|body| {
+            let body = body.as_ref()?;
+            Some((body, materials.get(body.material)?.as_ref()?))
+        })
+        .collect();
+    let Some(parts) = parts else { return };
+    let ground = Ground::new(parts.iter().copied());
+    let levels = parts
+        .iter()
+        .filter(|(body, _)| body.from_start)
+        .flat_map(|(body, _)| {
+            let places = ground.places(&*body.region);
+            let levels = places
+                .iter()
+                .filter_map(|place| Some((ground.surface(place)?, *place)));
+            levels.collect::<Vec<_>>()
+        });
+    let levels: Vec<(f64, [f64; 3])> = levels.collect();
+    let by_level = |a: &&(f64, [f64; 3]), b: &&(f64, [f64; 3])| a.0.total_cmp(&b.0);
+    let (Some(low), Some(high)) = (
+        levels.iter().min_by(by_level),
+        levels.iter().max_by(by_level),
+    ) else {
+        return;
+    };
+    if high.0 - low.0 > 1e-6 * soil.cell {
+        // Places are taken a little beside edges.
+        let near = |x: f64| number((1e6 * x).round() / 1e6);
+        problems
+            .error(stage.place_at("type"), "a k0 stage needs level ground")
+            .help(format!(
+                "the surface is at z = {} m above ({} m, {} m) and at z = {} m above ({} m, {} m)",
+                number(low.0),
+                near(low.1[0]),
+                near(low.1[1]),
+                number(high.0),
+                near(high.1[0]),
+                near(high.1[1])
+            ))
+            .help("for a slope use a stage of type gravity");
+    }
+}

@@ -1,0 +1,364 @@
+//! Lines of one layer of a drawing in ASCII DXF: LWPOLYLINE, POLYLINE and LINE, joined where their ends meet.
+//!
+//! DXF is pairs of lines, a group code and a value. Code 0 begins an entity, 8 is its layer, 10 and 20 (11 and 21) are
+//! coordinates, 42 is the bulge of a polyline, 70 its flags (AutoCAD DXF reference, "entities section").
+
+use super::Trouble;
+use crate::text::{clip, number, row};
+
+/// How a binary drawing begins.
+const BINARY: &str = "AutoCAD Binary DXF";
+/// Ends closer than this share of the drawing's extent meet \[-\].
+const MEET: f64 = 1e-6;
+/// Most pieces of a line.
+const MOST: usize = 5000;
+/// What may stand beside lines on a layer: it has no shape.
+const WORDS: [&str; 3] = ["TEXT", "MTEXT", "ATTDEF"];
+
+/// A line of a drawing in its own unit.
+#[derive(Debug, PartialEq)]
+pub(super) struct Line {
+    /// Its corners; the first is not repeated in a closed one.
+    pub(super) points: Vec<[f64; 2]>,
+    /// Whether it ends where it began.
+    pub(super) is_closed: bool,
+}
+
+/// Something drawn.
+struct Entity<'t> {
+    kind: &'t str,
+    line: usize,
+    groups: Vec<(i32, &'t str, usize)>,
+}
+
+impl<'t> Entity<'t> {
+    fn text(&self, code: i32) -> Option<&'t str> {
+        let group = self.groups.iter().find(|group| group.0 == code)?;
+        Some(group.1)
+    }
+
+    fn flags(&self) -> i64 {
+        self.text(70)
+            .and_then(|text| text.parse().ok())
+            .unwrap_or(0)
+    }
+
+    fn layer(&self) -> &'t str {
+        self.text(8).unwrap_or("0")
+    }
+
+    /// The points of two codes; a bulge between them is refused.
+    fn points(&self, [x, y]: [i32; 2]) -> Result<Vec<[f64; 2]>, Trouble> {
+        let mut points: Vec<[f64; 2]> = Vec::new();
+        for &(code, text, line) in &self.groups {
+            if code != x && code != y && code != 42 {
+                continue;
+            }
+            let value: Option<f64> = text.parse().ok().filter(|value: &f64| value.is_finite());
+            let Some(value) = value else {
+                let message = format!("line {line}, `{}`, is not a number", clip(text, 40));
+                return Err(Trouble::new(message, "is it an ASCII DXF file?"));
+            };
+            if code == x {
+                points.push([value, f64::NAN]);
+            } else if code == 42 {
+                if value != 0.0 {
+                    return Err(self.curved(line, "with a bulge (an arc)"));
+                }
+            } else if let Some(last) = points.last_mut() {
+                last[1] = value;
+            }
+        }
+        if points.iter().any(|point| point[1].is_nan()) {
+            let message = format!("the {} of line {} has no y", self.kind, self.line);
+            return Err(Trouble::new(message, "is it an ASCII DXF file?"));
+        }
+        Ok(points)
+    }
+
+    fn curved(&self, line: usize, how: &str) -> Trouble {
+        Trouble::new(
+            format_args!(
+                "line {line}: {} {how} on layer `{}`",
+                self.kind,
+                clip(self.layer(), 40)
+            ),
+            "straight lines are read: LWPOLYLINE, POLYLINE and LINE; draw the curve as a chain of them",
+        )
+    }
+}
+
+/// The line on a layer of a drawing: one polyline, or several and lines that join to one.
+pub(super) fn line_on(text: &str, layer: Option<&str>) -> Result<Line, Trouble> {
+    if text.starts_with(BINARY) {
+        return Err(Trouble::new(
+            "it is a binary DXF file",
+            "save it as ASCII DXF",
+        ));
+    }
+    let entities = entities(text)?;
+    let mut layers: Vec<&str> = Vec::new();
+    for entity in &entities {
+        let own = entity.layer();
+        if !layers.iter().any(|known| is_same(known, own)) {
+            layers.push(own);
+        }
+    }
+    let known = || {
+        format!(
+            "layers with something on them: {}",
+            row(layers.iter().copied())
+        )
+    };
+    let Some(layer) = layer else {
+        return Err(Trouble::new(
+            "a drawing needs the name of a layer",
+            format_args!("add layer = \"NAME\"; {}", known()),
+        ));
+    };
+    let of_layer = |entity: &&Entity<'_>| {
+        is_same(entity.layer(), layer) && entity.text(67).is_none_or(|space| space != "1")
+    };
+    let mut pieces = Vec::new();
+    let mut own = entities.iter().peekable();
+    while let Some(entity) = own.next() {
+        // The vertices of a polyline follow it, whatever their layer.
+        let mut vertices = Vec::new();
+        if entity.kind == "POLYLINE" {
+            while let Some(vertex) = own.next_if(|next| next.kind == "VERTEX") {
+                vertices.push(vertex);
+            }
+            own.next_if(|next| next.kind == "SEQEND");
+        }
+        if of_layer(&entity) {
+            piece(entity, &vertices, &mut pieces)?;
+        }
+    }
+    if pieces.is_empty() {
+        return Err(Trouble::new(
+            format_args!("there is no line on layer `{}`", clip(layer, 40)),
+            known(),
+        ));
+    }
+    joined(pieces).map_err(|message| {
+        Trouble::new(
+            format_args!("the lines on layer `{}` {message}", clip(layer, 40)),
+            "draw one line on a layer of its own",
+        )
+    })
+}
+
+/// Names of layers are the same in capitals.
+fn is_same(a: &str, b: &str) -> bool {
+    a.to_lowercase() == b.to_lowercase()
+}
+
+/// What the section of entities holds.
+fn entities(text: &str) -> Result<Vec<Entity<'_>>, Trouble> {
+    let mut lines = text.lines().enumerate();
+    let mut entities: Vec<Entity<'_>> = Vec::new();
+    let (mut opens, mut is_inside, mut was_there) = (false, false, false);
+    while let (Some((at, code)), Some((_, value))) = (lines.next(), lines.next()) {
+        let (Ok(code), value) = (code.trim().parse::<i32>(), value.trim()) else {
+            let message = format!("line {}, `{}`, is no group code", at + 1, clip(code, 40));
+            return Err(Trouble::new(message, "is it an ASCII DXF file?"));
+        };
+        match (code, value) {
+            (0, "ENDSEC" | "EOF") => is_inside = false,
+            (0, "SECTION") => opens = true,
+            (2, "ENTITIES") if opens => (is_inside, was_there, opens) = (true, true, false),
+            (0, kind) if is_inside => entities.push(Entity {
+                kind,
+                line: at + 2,
+                groups: Vec::new(),
+            }),
+            _ => {
+                opens = false;
+                if let Some(entity) = entities.last_mut().filter(|_| is_inside) {
+                    entity.groups.push((code, value, at + 2));
+                }
+            }
+        }
+    }
+    if was_there {
+        Ok(entities)
+    } else {
+        Err(Trouble::new(
+            "it has no section of entities",
+            "is it an ASCII DXF file?",
+        ))
+    }
+}
+
+/// Adds the piece of line that an entity draws.
+fn piece(
+    entity: &Entity<'_>,
+    vertices: &[&Entity<'_>],
+    pieces: &mut Vec<Line>,
+) -> Result<(), Trouble> {
+    let is_closed = entity.flags() & 1 == 1;
+    let (points, is_closed) = match entity.kind {
+        "LWPOLYLINE" => (entity.points([10, 20])?, is_closed),
+        // 2 and 4: fitted curves; 16 and 64: meshes.
+        "POLYLINE" if entity.flags() & (2 + 4 + 16 + 64) != 0 => {
+            return Err(entity.curved(entity.line, "that is a fitted curve or a mesh"));
+        }
+        "POLYLINE" => {
+            let mut points = Vec::with_capacity(vertices.len());
+            for vertex in vertices {
+                points.extend(vertex.points([10, 20])?);
+            }
+            (points, is_closed)
+        }
+        "LINE" => {
+            let mut points = entity.points([10, 20])?;
+            points.extend(entity.points([11, 21])?);
+            (points, false)
+        }
+        kind if WORDS.contains(&kind) => return Ok(()),
+        _ => return Err(entity.curved(entity.line, "found")),
+    };
+    if points.len() >= 2 {
+        pieces.push(Line { points, is_closed });
+    }
+    Ok(())
+}
+
+/// One line of all pieces.
+fn joined(mut pieces: Vec<Line>) -> Result<Line, String> {
+    if pieces.len() > MOST {
+        return Err(format!(
+            "are {} pieces; at most {MOST} are joined",
+            pieces.len()
+        ));
+    }
+    let all = || pieces.iter().flat_map(|piece| &piece.points);
+    let extent = (0..2)
+        .map(|k| {
+            let (least, most) = all().fold((f64::MAX, f64::MIN), |(least, most), point| {
+                (least.min(point[k]), most.max(point[k]))
+            });
+            most - least
+        })
+        .fold(0.0, f64::max);
+    let meet = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]) <= MEET * extent;
+    let first = pieces.remove(0);
+    let mut chain = first.points;
+    let mut is_closed = first.is_closed;
+    while !is_closed {
+        let (head, tail) = (chain[0], chain[chain.len() - 1]);
+        if chain.len() > 2 && meet(head, tail) {
+            chain.pop();
+            is_closed = true;
+            break;
+        }
+        let ends = |piece: &Line| [piece.points[0], piece.points[piece.points.len() - 1]];
+        let next = pieces.iter().position(|piece| {
+            !piece.is_closed
+                && ends(piece)
+                    .iter()
+                    .any(|&end| meet(end, tail) || meet(end, head))
+        });
+        let Some(next) = next else { break };
+        let mut piece = pieces.remove(next).points;
+        if meet(piece[0], head) || meet(piece[piece.len() - 1], head) && !meet(piece[0], tail) {
+            chain.reverse();
+        }
+        if !meet(piece[0], chain[chain.len() - 1]) {
+            piece.reverse();
+        }
+        chain.extend(piece.into_iter().skip(1));
+    }
+    match pieces.first() {
+        None => Ok(Line {
+            points: chain,
+            is_closed,
+        }),
+        Some(other) => {
+            let [a, b] = [chain[chain.len() - 1], other.points[0]];
+            let at = |p: [f64; 2]| format!("({}, {})", number(p[0]), number(p[1]));
+            let first = if is_closed { "closes at" } else { "ends at" };
+            Err(format!(
+                "are several: one {first} {}, another begins at {}",
+                at(a),
+                at(b)
+            ))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::line_on;
+
+    fn drawn(entities: &str) -> String {
+        format!("0\nSECTION\n2\nENTITIES\n{entities}0\nENDSEC\n0\nEOF\n")
+    }
+
+    fn line(from: [f64; 2], to: [f64; 2]) -> String {
+        let [[a, b], [c, d]] = [from, to];
+        format!("0\nLINE\n8\nclay\n10\n{a}\n20\n{b}\n30\n0\n11\n{c}\n21\n{d}\n31\n0\n")
+    }
+
+    /// GOAL: lines join to a closed one from both ends, whichever way each of them runs.
+    #[test]
+    fn lines_join_where_their_ends_meet() {
+        let corners = [[0.0, 0.0], [4.0, 0.0], [4.0, 3.0], [0.0, 3.0]];
+        let side = |k: usize| (corners[k], corners[(k + 1) % 4]);
+        for order in [[0, 1, 2, 3], [2, 0, 3, 1], [3, 1, 0, 2]] {
+            for turned in 0..16_usize {
+                let sides = order.iter().map(|&k| {
+                    let (a, b) = side(k);
+                    if turned >> k & 1 == 1 {
+                        line(b, a)
+                    } else {
+                        line(a, b)
+                    }
+                });
+                let found = line_on(&drawn(&sides.collect::<String>()), Some("clay"));
+                let Ok(found) = found else {
+                    panic!("{order:?}, {turned}")
+                };
+                assert!(found.is_closed);
+                assert_eq!(found.points.len(), 4);
+                assert!(
+                    (igimp_geometry::polygon::area_and_centroid(&found.points)
+                        .0
+                        .abs()
+                        - 12.0)
+                        .abs()
+                        < 1e-12
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_line_within_a_block_or_on_paper_does_not_count() {
+        let paper = line([0.0, 0.0], [1.0, 0.0]).replace("8\nclay", "67\n1\n8\nclay");
+        let model = line([0.0, 2.0], [1.0, 2.0]);
+        let block = format!("0\nSECTION\n2\nBLOCKS\n{model}0\nENDSEC\n");
+        let text = block + &drawn(&format!("{paper}{model}"));
+        let found = line_on(&text, Some("Clay"))
+            .map_err(|trouble| trouble.message)
+            .unwrap();
+        assert_eq!(found.points, [[0.0, 2.0], [1.0, 2.0]]);
+        assert!(!found.is_closed);
+    }
+
+    /// GOAL: a damaged drawing is read or refused, and nothing else.
+    #[test]
+    fn damaged_drawings_do_no_harm() {
+        let whole = include_str!("../../../igimp-cases/tests/data/drawings/r12.dxf");
+        for at in (0..whole.len()).filter(|&at| whole.is_char_boundary(at)) {
+            let (before, after) = whole.split_at(at);
+            let rest = after.get(1..).unwrap_or_default();
+            for damage in ["", "9", "-", "\n", " ", "x", "1e999", "\0", "é"] {
+                for layer in [None, Some("clay"), Some("sand")] {
+                    let _ = line_on(&format!("{before}{damage}{rest}"), layer);
+                    let _ = line_on(before, layer);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,147 @@
+//! A property of a material by points in the plane, from CSV: x, y and the value, on the lines of a rectangular grid.
+
+use std::path::Path;
+
+use super::columns::{Columns, columns};
+use super::{LARGEST, Named, Trouble, quantity, text_of, unit_of};
+use crate::diagnostic::Problems;
+use crate::quantity::Dimension;
+use crate::text::{clip, number};
+use crate::tree::{Entry, Node, Value};
+
+/// What the file has.
+const COLUMNS: [&str; 3] = ["x", "y", "value"];
+/// Most points.
+const MOST: usize = 100_000;
+/// Coordinates closer than this share of the extent are one \[-\].
+const SAME: f64 = 1e-9;
+
+/// Puts the points in place of the file that has them, in a table that names one in `raster`.
+pub(super) fn resolve(property: &mut Node, key: &str, folder: &Path, problems: &mut Problems) {
+    let Some(value) = property.get("raster") else {
+        return;
+    };
+    let Some(file) = Named::new(value, folder) else {
+        property.value = Value::Invalid;
+        return;
+    };
+    property.value = match points(&file, property, key) {
+        Ok(entries) => Value::Table(entries),
+        Err(trouble) => {
+            file.report(value, trouble, problems);
+            Value::Invalid
+        }
+    };
+}
+
+/// The table with its points.
+fn points(file: &Named, table: &Node, key: &str) -> Result<Vec<Entry>, Trouble> {
+    let own = ["raster", "unit", "length_unit"];
+    let mut others = table.entries().iter().map(|entry| entry.key.as_str());
+    if let Some(other) = others.find(|other| !own.contains(other)) {
+        return Err(Trouble::new(
+            format_args!("`{key}` is stated by `raster` and by `{other}`"),
+            "keep one of them",
+        ));
+    }
+    let dimension = match key {
+        "unit_weight" => Dimension::UnitWeight,
+        "friction" => Dimension::Angle,
+        _ => Dimension::Stress,
+    };
+    let text = text_of(&file.path, LARGEST)
+        .map_err(|error| Trouble::new(error, "its path starts from the case file"))?;
+    let found = columns(&text, &COLUMNS)?;
+    let unit = |key: &str, column: usize, dimension| {
+        let header = found.units[column].as_deref();
+        unit_of(
+            (key, table.text_at(key)),
+            (COLUMNS[column], header),
+            dimension,
+        )
+    };
+    let units = [
+        unit("length_unit", 0, Dimension::Length)?,
+        unit("length_unit", 1, Dimension::Length)?,
+        unit("unit", 2, dimension)?,
+    ];
+    let [x, y] = [0, 1].map(|column| lines(&found, column));
+    let rows = rows(&found, &x, &y)?;
+    let list = |numbers: &[f64], unit: &str, dimension| -> Result<Node, Trouble> {
+        let items = numbers
+            .iter()
+            .map(|&own| quantity(own, unit, dimension, table));
+        let items = items.collect::<Result<Vec<_>, _>>()?;
+        Ok(Node::written(Value::List(items), table.place))
+    };
+    let rows = rows.iter().map(|row| list(row, &units[2], dimension));
+    let rows = rows.collect::<Result<Vec<_>, _>>()?;
+    let entry = |key: &str, node| Entry {
+        key: key.to_owned(),
+        key_place: table.place,
+        node,
+    };
+    Ok(vec![
+        entry("x", list(&x, &units[0], Dimension::Length)?),
+        entry("y", list(&y, &units[1], Dimension::Length)?),
+        entry("rows", Node::written(Value::List(rows), table.place)),
+    ])
+}
+
+/// The coordinates that points have, ascending, each once.
+fn lines(found: &Columns, column: usize) -> Vec<f64> {
+    let mut all: Vec<f64> = found.rows.iter().map(|row| row[column]).collect();
+    all.sort_by(f64::total_cmp);
+    let extent = all.last().unwrap_or(&0.0) - all.first().unwrap_or(&0.0);
+    all.dedup_by(|next, kept| *next - *kept <= SAME * extent);
+    all
+}
+
+/// Values by y, then by x: every pair once.
+fn rows(found: &Columns, x: &[f64], y: &[f64]) -> Result<Vec<Vec<f64>>, Trouble> {
+    let help = "every x goes with every y, each pair once";
+    let count = found.rows.len();
+    if count > MOST {
+        let message = format!("it has {count} points; at most {MOST} are possible");
+        return Err(Trouble::new(message, "take fewer of them"));
+    }
+    // The last line that is not beyond a coordinate, but for round-off.
+    let nearest = |lines: &[f64], at: f64| {
+        let after = lines.partition_point(|line| *line <= at);
+        after.saturating_sub(1)
+    };
+    let mut line_of = std::collections::BTreeMap::new();
+    for (row, line) in found.rows.iter().zip(&found.lines) {
+        let place = [nearest(y, row[1]), nearest(x, row[0])];
+        if let Some((first, _)) = line_of.insert(place, (*line, row[2])) {
+            return Err(Trouble::new(
+                format_args!(
+                    "line {line}: the point ({}, {}) is in line {first} already",
+                    number(row[0]),
+                    number(row[1])
+                ),
+                help,
+            ));
+        }
+    }
+    if count != x.len() * y.len() {
+        let missing = (0..y.len()).find_map(|j| {
+            let empty = |i: &usize| !line_of.contains_key(&[j, *i]);
+            (0..x.len()).find(empty).map(|i| [x[i], y[j]])
+        });
+        let [a, b] = missing.unwrap_or([f64::NAN; 2]);
+        return Err(Trouble::new(
+            format_args!(
+                "its points fill no rectangle: {} x and {} y make {} points, {count} are there, and none is at ({}, {})",
+                x.len(),
+                y.len(),
+                x.len() * y.len(),
+                clip(&number(a), 20),
+                clip(&number(b), 20)
+            ),
+            help,
+        ));
+    }
+    let values: Vec<f64> = line_of.into_values().map(|(_, value)| value).collect();
+    Ok(values.chunks(x.len()).map(<[f64]>::to_vec).collect())
+}

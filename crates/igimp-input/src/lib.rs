@@ -1,0 +1,48 @@
+//! Case files: from TOML to a [`Case`](igimp_model::Case), with messages that name place, text and remedy.
+//!
+//! A file is parsed into a tree whose values know their places (`tree`), changed by overrides,
+//! checked against the schema and completed with its defaults (`complete`), given what it takes from
+//! other files (`files`), and built into a [`Case`](igimp_model::Case) with the checks that need more than one value (`build`). The schema
+//! is declared once (`schema`) and also drives [`CaseFile::explain`], [`json_schema`] and
+//! [`reference_markdown`]. Every problem is collected on the way and shown in the order of the
+//! file.
+//!
+//! ```
+//! use crate::CaseFile;
+//!
+//! let text = include_str!("../cases/slope.toml");
+//! let overrides = ["materials.clay.cohesoin=12 kPa".to_owned()];
+//! let error = CaseFile::parse("slope.toml", text, &overrides).unwrap_err();
+//! assert!(error.to_string().contains("did you mean `cohesion`?"));
+//! ```
+
+mod build;
+pub mod bytes;
+mod complete;
+mod diagnostic;
+mod explain;
+mod files;
+mod geometry;
+mod json_schema;
+mod names;
+mod overrides;
+pub mod quantity;
+mod read;
+mod reference;
+mod schema;
+pub mod shipped;
+mod source;
+mod spec;
+mod suggest;
+mod syntax;
+mod text;
+pub mod toml_text;
+mod tree;
+mod units;
+mod value;
+
+pub use diagnostic::{Diagnostic, DiagnosticPlace};
+pub use json_schema::json_schema;
+pub use quantity::{Dimension, Quantity, QuantityError};
+pub use read::{CaseFile, InputError};
+pub use reference::reference_markdown;

@@ -1,0 +1,313 @@
+//! The vocabulary in which the schema of a case file is declared: see [`super::schema`].
+//!
+//! One declaration drives the checks, the defaults, `explain`, the JSON Schema and the reference.
+
+use super::quantity::Dimension;
+
+/// A table with known keys.
+#[derive(Debug)]
+pub(super) struct Struct {
+    /// What it is about, in a line.
+    pub(super) doc: &'static str,
+    /// Its keys.
+    pub(super) fields: &'static [Field],
+}
+
+/// A key.
+#[derive(Debug)]
+pub(super) struct Field {
+    /// The key.
+    pub(super) key: &'static str,
+    /// What its value may be.
+    pub kind: Kind,
+    /// Whether it has to be written.
+    pub(super) presence: Presence,
+    /// What it means, in a line.
+    pub(super) doc: &'static str,
+    /// The analyses that know it.
+    pub(super) scope: Scope,
+}
+
+/// The analyses that know a key.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Scope {
+    /// All.
+    Any,
+    /// Plane strain.
+    Plane,
+    /// Space.
+    Space,
+}
+
+impl Field {
+    /// Whether an analysis in space, or else one in plane strain, knows the key.
+    pub(super) fn applies(&self, in_space: bool) -> bool {
+        match self.scope {
+            Scope::Any => true,
+            Scope::Plane => !in_space,
+            Scope::Space => in_space,
+        }
+    }
+}
+
+/// Whether a key has to be written.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Presence {
+    /// It has, as in this example value (TOML).
+    Required(&'static str),
+    /// It has this value (TOML) when it is not written.
+    Default(&'static str),
+    /// Its value follows from the rest of the file, in these words.
+    Derived(&'static str),
+    /// It may be missing, and then means this.
+    Optional(&'static str),
+}
+
+/// A table with a key that says which further keys there are.
+#[derive(Debug)]
+pub(super) struct Variants {
+    /// What it is about, in a line.
+    pub(super) doc: &'static str,
+    /// The key that tells the variants apart.
+    pub(super) tag: &'static str,
+    /// What that key means.
+    pub(super) tag_doc: &'static str,
+    /// Keys of all variants that stand before the tag.
+    pub(super) before: &'static [Field],
+    /// Keys of all variants that stand after those of the variant.
+    pub(super) after: &'static [Field],
+    /// The variants.
+    pub(super) cases: &'static [Variant],
+}
+
+/// One of several forms of a table.
+#[derive(Debug)]
+pub(super) struct Variant {
+    /// Value of the tag.
+    pub name: &'static str,
+    /// What it is, in a line.
+    pub(super) doc: &'static str,
+    /// Its own keys.
+    pub(super) fields: &'static [Field],
+}
+
+/// A text out of a few.
+#[derive(Debug)]
+pub(super) struct Choice {
+    /// The text.
+    pub name: &'static str,
+    /// What it means.
+    pub(super) doc: &'static str,
+}
+
+/// A range of numbers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Range {
+    /// Any finite number.
+    Any,
+    /// Above zero.
+    Positive,
+    /// Not below zero.
+    NotNegative,
+    /// Above zero and below one.
+    Share,
+}
+
+impl Range {
+    /// Whether a number lies in the range.
+    pub(super) fn holds(self, value: f64) -> bool {
+        value.is_finite()
+            && match self {
+                Self::Any => true,
+                Self::Positive => value > 0.0,
+                Self::NotNegative => value >= 0.0,
+                Self::Share => 0.0 < value && value < 1.0,
+            }
+    }
+
+    /// What the range asks for; reads on from "must be".
+    pub(super) fn requirement(self) -> &'static str {
+        match self {
+            Self::Any => "finite",
+            Self::Positive => "positive",
+            Self::NotNegative => "zero or positive",
+            Self::Share => "between 0 and 1, the ends excluded",
+        }
+    }
+}
+
+/// What a value may be.
+#[derive(Debug)]
+pub(super) enum Kind {
+    /// Any text.
+    Text,
+    /// A text that is the name of something, and may become a file name.
+    Name,
+    /// The name of something defined elsewhere, such as a material.
+    Reference(&'static str),
+    /// true or false.
+    Flag,
+    /// A whole number from, to.
+    Integer(i64, i64),
+    /// One of these whole numbers.
+    IntegerOf(&'static [i64]),
+    /// A plain number.
+    Number(Range),
+    /// A quantity of this dimension.
+    Quantity(Dimension, Range),
+    /// A quantity of any dimension, or a plain number.
+    AnyQuantity,
+    /// A text out of a few.
+    Choice(&'static [Choice]),
+    /// Either of these, told apart by their types.
+    Either(&'static [Kind]),
+    /// A vector: as many values as the analysis has dimensions.
+    Vector(&'static Kind),
+    /// A list: of what, at least and at most so many.
+    List(&'static Kind, usize, usize),
+    /// A table.
+    Table(&'static Struct),
+    /// Tables by the name of a thing such as a material.
+    Map(&'static str, &'static Variants),
+    /// A table in one of several forms.
+    Variants(&'static Variants),
+}
+
+impl Kind {
+    /// What is expected, with an article and an example.
+    pub(super) fn expectation(&self) -> String {
+        match self {
+            Self::Text => "a text in quotes".to_owned(),
+            Self::Name => "a name in quotes".to_owned(),
+            Self::Reference(of) => format!("the name of a {of} in quotes"),
+            Self::Flag => "true or false".to_owned(),
+            Self::Integer(..) | Self::IntegerOf(_) => "a whole number".to_owned(),
+            Self::Number(_) => "a number without a unit".to_owned(),
+            Self::Quantity(dimension, _) => {
+                format!("{} such as \"{}\"", dimension.name(), dimension.example())
+            }
+            Self::AnyQuantity => "a number, or a quantity such as \"25 kPa\"".to_owned(),
+            Self::Choice(choices) => one_of(choices.iter().map(|choice| choice.name)),
+            Self::Either(kinds) => {
+                let parts: Vec<_> = kinds.iter().map(Self::expectation).collect();
+                parts.join(", or ")
+            }
+            Self::Vector(_) => "a list of values, one for each axis".to_owned(),
+            Self::List(of, least, most) => match of {
+                Self::Table(_) | Self::Variants(_) => "a list of tables".to_owned(),
+                _ if least == most => format!("a list of {least} values"),
+                _ => "a list of values".to_owned(),
+            },
+            Self::Table(_) | Self::Variants(_) => "a table".to_owned(),
+            Self::Map(..) => "a table of named tables".to_owned(),
+        }
+    }
+}
+
+/// `"a"`, `"b"` or `"c"`.
+pub(super) fn one_of<'a>(names: impl Iterator<Item = &'a str>) -> String {
+    let quoted: Vec<_> = names.map(|name| format!("\"{name}\"")).collect();
+    match quoted.split_last() {
+        Some((last, [])) => last.clone(),
+        Some((last, rest)) => format!("{} or {last}", rest.join(", ")),
+        None => String::new(),
+    }
+}
+
+impl Variants {
+    /// The variant of this name.
+    pub(super) fn find(&self, name: &str) -> Option<&'static Variant> {
+        self.cases.iter().find(|case| case.name == name)
+    }
+
+    /// The keys of a variant in the order in which they are printed, without the tag.
+    pub(super) fn fields(&self, variant: &'static Variant) -> impl Iterator<Item = &'static Field> {
+        let (before, after) = (self.before, self.after);
+        before.iter().chain(variant.fields).chain(after)
+    }
+}
+
+/// A key that has to be written.
+pub(super) const fn required(
+    key: &'static str,
+    kind: Kind,
+    example: &'static str,
+    doc: &'static str,
+) -> Field {
+    Field {
+        key,
+        kind,
+        presence: Presence::Required(example),
+        doc,
+        scope: Scope::Any,
+    }
+}
+
+/// A key with a default.
+pub(super) const fn default(
+    key: &'static str,
+    kind: Kind,
+    value: &'static str,
+    doc: &'static str,
+) -> Field {
+    Field {
+        key,
+        kind,
+        presence: Presence::Default(value),
+        doc,
+        scope: Scope::Any,
+    }
+}
+
+/// A key whose value follows from the rest of the file.
+pub(super) const fn derived(
+    key: &'static str,
+    kind: Kind,
+    from: &'static str,
+    doc: &'static str,
+) -> Field {
+    Field {
+        key,
+        kind,
+        presence: Presence::Derived(from),
+        doc,
+        scope: Scope::Any,
+    }
+}
+
+/// A key that may be missing.
+pub(super) const fn optional(
+    key: &'static str,
+    kind: Kind,
+    meaning: &'static str,
+    doc: &'static str,
+) -> Field {
+    Field {
+        key,
+        kind,
+        presence: Presence::Optional(meaning),
+        doc,
+        scope: Scope::Any,
+    }
+}
+
+/// A key that only plane strain knows.
+pub(super) const fn in_plane(field: Field) -> Field {
+    Field {
+        scope: Scope::Plane,
+        ..field
+    }
+}
+
+/// A key that only space knows.
+pub(super) const fn in_space(field: Field) -> Field {
+    Field {
+        scope: Scope::Space,
+        ..field
+    }
+}
+
+/// A choice.
+pub(super) const fn choice(name: &'static str, doc: &'static str) -> Choice {
+    Choice { name, doc }
+}

@@ -1,0 +1,342 @@
+//! A problem as data: what a case file says, with names resolved and numbers in SI units.
+//!
+//! Lengths are in m, stresses in Pa, unit weights in N/m³, angles in rad, forces in N/m (plane
+//! strain, per metre run). The second axis points up; gravity acts along its negative direction.
+
+mod axes;
+pub mod check;
+mod grid;
+mod ground;
+mod load;
+mod material;
+pub mod meshes;
+mod plane;
+mod profile;
+mod raster;
+mod record;
+mod reinforcement;
+mod rigid;
+mod rigid_space;
+mod stage;
+mod water;
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use igimp_assembly::Method;
+use igimp_linear::SolverKind;
+use serde::{Deserialize, Serialize};
+
+pub use axes::{front, in_space};
+pub use grid::{AxisSpec, GridSpec, MixedCells};
+pub use ground::{Ground, Layer};
+pub use load::{Load, LoadKind, Plan};
+pub use material::{Flow, GivenLaw, Material, Strength};
+pub use plane::in_plane;
+pub use profile::{LEAST_STRENGTH, Profile, Profiles, StressShare, Variation};
+pub use raster::Raster;
+pub use record::{
+    Average, CaseCheck, CheckTime, CheckValue, Curve, CurveAxis, Field, Monitor, Quantity,
+    Reference, ReferenceValues, Section, SectionReference,
+};
+pub use reinforcement::{ReinforcementKind, ReinforcementPart, ReinforcementQuantity, distance};
+pub use rigid::{
+    Adhesion, COMPONENTS, RigidDrive, RigidForm, RigidInterface, RigidMove, RigidPart,
+    RigidQuantity, RigidShape, RigidShear, components,
+};
+pub use rigid_space::RigidSolid;
+pub use stage::{
+    Reduction, ReductionPath, RunOut, SearchMethod, Stage, StageKind, StopWhen, StrengthReduction,
+};
+pub use water::{Construction, Drainage, Drained, PoreSource, WaterCondition, table_level};
+
+use igimp_geometry::region::Region;
+
+/// A problem in plane strain (D = 2) or in space (D = 3), and how it is solved.
+#[derive(Clone, Debug)]
+pub struct Case<const D: usize = 2> {
+    /// Title for reports and figures.
+    pub title: String,
+    /// Whom and what it is for.
+    pub title_block: TitleBlock,
+    /// Acceleration of gravity \[m/s²\], positive; it acts downwards.
+    pub gravity: f64,
+    /// Background grid.
+    pub grid: GridSpec<D>,
+    /// Variant of the method.
+    pub method: Method,
+    /// Unit weight of water \[N/m³\].
+    pub water_unit_weight: f64,
+    /// Conditions of the water; stages name them by index. The first holds from the start; without any all is dry.
+    pub water: Vec<WaterCondition>,
+    /// Materials; bodies name them by index.
+    pub materials: Vec<Material>,
+    /// Bodies.
+    pub bodies: Vec<BodyPart<D>>,
+    /// Supports.
+    pub boundaries: Boundaries<D>,
+    /// Loads; stages name them by index.
+    pub loads: Vec<Load<D>>,
+    /// Rigid bodies; stages name them by index.
+    pub rigid: Vec<RigidPart<D>>,
+    /// Reinforcement; stages name it by index.
+    pub reinforcement: Vec<ReinforcementPart<D>>,
+    /// What happens, in order.
+    pub stages: Vec<Stage>,
+    /// Newton, step cutting, linear solver.
+    pub solver: SolverSettings,
+    /// Points whose history is recorded in every step.
+    pub monitors: Vec<Monitor<D>>,
+    /// Lines along which results are written at the end of every stage.
+    pub sections: Vec<Section<D>>,
+    /// One recorded quantity against another.
+    pub curves: Vec<Curve>,
+    /// Results that are held against outside values.
+    pub checks: Vec<CaseCheck>,
+    /// On how many meshes the case is computed, for the error of the mesh.
+    pub mesh_study: MeshStudy,
+    /// What is written, and where.
+    pub output: Output,
+}
+
+impl<const D: usize> Case<D> {
+    /// The same problem on a grid whose cells are cut into `n` in each direction.
+    ///
+    /// Places, lengths and steps stay. What a file states by the cell (particles, small cuts, the stride
+    /// of a run-out) goes by the small cells.
+    #[must_use]
+    pub fn refined(&self, n: usize) -> Self {
+        Self {
+            grid: self.grid.refined(n),
+            ..self.clone()
+        }
+    }
+}
+
+/// A case in the dimension that its file states.
+#[derive(Clone, Debug)]
+pub enum AnyCase {
+    /// In plane strain.
+    Plane(Case<2>),
+    /// In space.
+    Space(Case<3>),
+}
+
+/// Does the same with a case of any dimension: `in_any_dimension!(any, case => what(case))`.
+#[macro_export]
+macro_rules! in_any_dimension {
+    ($any:expr, $case:ident => $what:expr) => {
+        match $any {
+            $crate::AnyCase::Plane($case) => $what,
+            $crate::AnyCase::Space($case) => $what,
+        }
+    };
+}
+
+impl AnyCase {
+    /// Title.
+    pub fn title(&self) -> &str {
+        in_any_dimension!(self, case => &case.title)
+    }
+
+    /// What happens, in order.
+    pub fn stages(&self) -> &[Stage] {
+        in_any_dimension!(self, case => &case.stages)
+    }
+
+    /// Materials.
+    pub fn materials(&self) -> &[Material] {
+        in_any_dimension!(self, case => &case.materials)
+    }
+
+    /// Curves.
+    pub fn curves(&self) -> &[Curve] {
+        in_any_dimension!(self, case => &case.curves)
+    }
+
+    /// Checks.
+    pub fn checks(&self) -> &[CaseCheck] {
+        in_any_dimension!(self, case => &case.checks)
+    }
+
+    /// On how many meshes it is computed.
+    pub fn mesh_study(&self) -> MeshStudy {
+        in_any_dimension!(self, case => case.mesh_study)
+    }
+
+    /// What is written, and where.
+    pub fn output(&self) -> &Output {
+        in_any_dimension!(self, case => &case.output)
+    }
+
+    /// What is written, and where, to be changed.
+    pub fn output_mut(&mut self) -> &mut Output {
+        in_any_dimension!(self, case => &mut case.output)
+    }
+}
+
+/// What stands in the head of a report beside its title. Nothing that is computed depends on it.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct TitleBlock {
+    /// Project.
+    pub project: Option<String>,
+    /// Client.
+    pub client: Option<String>,
+    /// Author.
+    pub author: Option<String>,
+    /// Revision.
+    pub revision: Option<String>,
+}
+
+/// A study of the mesh error: the case on its grid and on finer ones ([`meshes`]).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MeshStudy {
+    /// Meshes, that of the case among them; 1: no study.
+    pub meshes: usize,
+}
+
+impl Default for MeshStudy {
+    fn default() -> Self {
+        Self { meshes: 1 }
+    }
+}
+
+/// A region of one material, filled with particles.
+#[derive(Clone, Debug)]
+pub struct BodyPart<const D: usize = 2> {
+    /// Name.
+    pub name: String,
+    /// Index of the material.
+    pub material: usize,
+    /// Particles per cell in each direction.
+    pub per_direction: usize,
+    /// What it fills.
+    pub region: Arc<dyn Region<D>>,
+    /// Whether it is there from the start, rather than from the stage that places it.
+    pub from_start: bool,
+}
+
+impl BodyPart {
+    /// Corners of its polygon in order, either way round \[m\].
+    pub fn polygon(&self) -> &[[f64; 2]] {
+        self.region.polygon()
+    }
+}
+
+/// What a side of the grid does to the soil that reaches it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Side {
+    /// Nothing.
+    #[default]
+    Free,
+    /// Holds the displacement across the side.
+    Roller,
+    /// Holds all displacements.
+    Fixed,
+}
+
+/// Supports: the sides of the grid, and boxes of fixed nodes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Boundaries<const D: usize = 2> {
+    /// By axis: the side of its lowest and of its highest coordinate.
+    pub sides: [[Side; 2]; D],
+    /// Boxes of nodes.
+    pub boxes: Vec<FixedBox<D>>,
+}
+
+impl<const D: usize> Default for Boundaries<D> {
+    fn default() -> Self {
+        Self {
+            sides: [[Side::Free; 2]; D],
+            boxes: Vec::new(),
+        }
+    }
+}
+
+/// Nodes in a box (edges included) that are held.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FixedBox<const D: usize = 2> {
+    /// Name.
+    pub name: String,
+    /// Corner of the lowest coordinates \[m\].
+    pub lower: [f64; D],
+    /// Corner of the highest coordinates \[m\].
+    pub upper: [f64; D],
+    /// Which components are held.
+    pub fix: [bool; D],
+}
+
+/// Newton's method, step cutting and the linear solver.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SolverSettings {
+    /// Accepted out-of-balance force over external force and reactions \[-\].
+    pub tolerance: f64,
+    /// Most corrections per step.
+    pub max_iterations: usize,
+    /// How often a step is cut in succession.
+    pub cuts: u32,
+    /// Factor on a cut step \[-\].
+    pub cut_factor: f64,
+    /// Linear solver.
+    pub linear: SolverKind,
+}
+
+impl Default for SolverSettings {
+    fn default() -> Self {
+        Self {
+            tolerance: 1e-9,
+            max_iterations: 25,
+            cuts: 5,
+            cut_factor: 0.5,
+            linear: SolverKind::Auto,
+        }
+    }
+}
+
+/// What is written, and where.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Output {
+    /// Results folder.
+    pub folder: PathBuf,
+    /// When particles are written for ParaView.
+    pub paraview: Every,
+    /// Fields drawn at the end of every stage.
+    pub figures: Vec<Field>,
+    /// Planes in which they are drawn as well, in space; none: upright ones through the middle of the bodies.
+    pub cuts: Vec<Cut>,
+    /// Whether `report.html` is written.
+    pub report: bool,
+    /// Steps between checkpoints; 0: only at the end of stages.
+    pub checkpoint_every: usize,
+    /// Checkpoints kept within a stage.
+    pub checkpoint_keep: usize,
+}
+
+/// A plane across an axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cut {
+    /// 0, 1 or 2.
+    pub axis: usize,
+    /// Where it stands \[m\].
+    pub at: f64,
+}
+
+impl Cut {
+    /// What the names of its pictures and tables begin with: `cut-y-3`.
+    pub fn name(&self) -> String {
+        let place = format!("{:.3}", self.at);
+        let place = place.trim_end_matches('0').trim_end_matches('.');
+        format!("cut-{}-{place}", ["x", "y", "z"][self.axis])
+    }
+}
+
+/// How often.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Every {
+    /// Never.
+    Never,
+    /// At the end of every stage.
+    Stage,
+    /// Every so many steps, and at the end of every stage.
+    Steps(usize),
+}

@@ -1,0 +1,261 @@
+//! What is recorded, and what it is held against: monitors, sections, curves and checks.
+
+use super::{Case, ReinforcementQuantity, RigidQuantity, Stage, StageKind};
+use crate::check::Band;
+
+/// A material point that is watched: a point in the undeformed bodies. Fields there are interpolated from the particles around
+/// it; the displacement that ends a stage or a search is that of the nearest particle.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Monitor<const D: usize = 2> {
+    /// Name.
+    pub name: String,
+    /// Point \[m\].
+    pub point: [f64; D],
+    /// What is recorded.
+    pub record: Vec<Field>,
+}
+
+/// A line along which fields are read at the end of every stage.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Section<const D: usize = 2> {
+    /// Name.
+    pub name: String,
+    /// One end \[m\].
+    pub from: [f64; D],
+    /// Other end \[m\].
+    pub to: [f64; D],
+    /// Number of equally spaced places.
+    pub points: usize,
+    /// What is read.
+    pub record: Vec<Field>,
+    /// Of which particles.
+    pub average: Average,
+    /// What the values are held against.
+    pub references: Vec<SectionReference>,
+}
+
+impl<const D: usize> Section<D> {
+    /// What the values at the end of a stage are held against.
+    pub fn references_at(&self, case: &Case<D>, stage: usize) -> Vec<&SectionReference> {
+        let read = |stage: &Stage| !matches!(stage.kind, StageKind::StrengthReduction(_));
+        let last = case.stages.iter().rposition(read);
+        let wanted = |reference: &&SectionReference| reference.stage.or(last) == Some(stage);
+        self.references.iter().filter(wanted).collect()
+    }
+}
+
+/// Of which particles a section reads its values.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Average {
+    /// Those around the place.
+    #[default]
+    None,
+    /// All particles of each cell that the line goes through, by volume.
+    Cell,
+}
+
+/// A reference for a field along a section.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SectionReference {
+    /// The field.
+    pub of: Field,
+    /// The stage at whose end it is read; none: the last that is read along sections.
+    pub stage: Option<usize>,
+    /// Values over the distance along the section \[m\], in SI units.
+    pub reference: Reference,
+}
+
+/// A field on particles, as it is printed: stress compression positive.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Field {
+    /// Length of the displacement \[m\].
+    Displacement,
+    /// Displacement in x \[m\].
+    DisplacementX,
+    /// Displacement in y \[m\].
+    DisplacementY,
+    /// Displacement in z \[m\]; in space.
+    DisplacementZ,
+    /// Position x \[m\].
+    X,
+    /// Position y \[m\].
+    Y,
+    /// Position z \[m\]; in space.
+    Z,
+    /// −σ_xx of total stress \[Pa\].
+    SigmaXx,
+    /// −σ_yy of total stress \[Pa\].
+    SigmaYy,
+    /// −σ_zz of total stress \[Pa\].
+    SigmaZz,
+    /// −τ_xy \[Pa\].
+    TauXy,
+    /// −τ_yz \[Pa\]; in space.
+    TauYz,
+    /// −τ_xz \[Pa\]; in space.
+    TauXz,
+    /// Mean pressure p = −tr σ/3 of total stress \[Pa\].
+    P,
+    /// −σ′_xx of effective stress: the stress that the law speaks of \[Pa\].
+    SigmaEffXx,
+    /// −σ′_yy of effective stress \[Pa\].
+    SigmaEffYy,
+    /// −σ′_zz of effective stress \[Pa\].
+    SigmaEffZz,
+    /// Mean effective pressure p′ = −tr σ′/3 \[Pa\].
+    PEff,
+    /// Pore pressure u, given and excess \[Pa\].
+    U,
+    /// Excess pore pressure that undrained soil made itself \[Pa\].
+    UExcess,
+    /// Deviatoric stress q = √(3/2)‖s‖ \[Pa\].
+    Q,
+    /// Accumulated plastic strain invariant \[-\].
+    PlasticStrain,
+    /// Share of the strength that is mobilised \[-\].
+    Utilisation,
+    /// Undrained strength or cohesion \[Pa\]; none of soil without a strength limit.
+    Strength,
+    /// Angle of friction \[rad\]; none of soil without a strength limit.
+    Friction,
+    /// Young's modulus \[Pa\].
+    Young,
+}
+
+impl Field {
+    /// Whether there is such a number in so many dimensions.
+    pub fn exists_in(self, dimensions: usize) -> bool {
+        let in_space = matches!(
+            self,
+            Self::DisplacementZ | Self::Z | Self::TauYz | Self::TauXz
+        );
+        dimensions == 3 || !in_space
+    }
+}
+
+/// A number that every step has.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Quantity {
+    /// Settlement of a rigid footing \[m\].
+    Settlement(usize),
+    /// Resistance of a rigid footing times its reaction factor, compression positive \[N/m\].
+    Reaction(usize),
+    /// A number of a rigid body.
+    Rigid(usize, RigidQuantity),
+    /// A number of a member of reinforcement.
+    Reinforcement(usize, ReinforcementQuantity),
+    /// Factor on a load \[-\].
+    LoadFactor(usize),
+    /// A field at a monitor.
+    Monitor(usize, Field),
+    /// Largest particle displacement \[m\].
+    LargestDisplacement,
+    /// Multiple of gravity \[-\].
+    GravityFactor,
+    /// Pseudo-static force to the right over the weight \[-\].
+    HorizontalFactor,
+    /// Strength reduction factor \[-\].
+    ReductionFactor,
+    /// Number of the step in its stage.
+    Step,
+    /// Share of particles that yield \[-\].
+    PlasticShare,
+    /// Middle of the interval of the factor of safety; known at the end of its stage \[-\].
+    FactorOfSafety,
+    /// Height of the highest particle's upper edge \[m\].
+    Top,
+}
+
+/// One recorded quantity against another, one point per accepted step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Curve {
+    /// Name, also of its file.
+    pub name: String,
+    /// Abscissa.
+    pub x: CurveAxis,
+    /// Ordinate.
+    pub y: CurveAxis,
+    /// The stage that is recorded; none: all.
+    pub stage: Option<usize>,
+    /// What it is held against.
+    pub reference: Option<Reference>,
+}
+
+/// A quantity as plotted.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CurveAxis {
+    /// The quantity.
+    pub of: Quantity,
+    /// It is divided by this \[SI units\].
+    pub divide_by: f64,
+    /// Label with unit, as in `d / B [-]`.
+    pub label: String,
+}
+
+/// A reference for a curve.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reference {
+    /// Label, with the source.
+    pub label: String,
+    /// Values.
+    pub values: ReferenceValues,
+    /// Accepted relative deviation; none: drawn only \[-\].
+    pub tolerance: Option<f64>,
+}
+
+/// Values of a reference, in the units of the plot.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ReferenceValues {
+    /// The ordinate at the end of the curve, or at an abscissa.
+    Level {
+        /// Ordinate.
+        y: f64,
+        /// Abscissa at which the curve is read; none: its end.
+        at: Option<f64>,
+    },
+    /// Points; the curve is held against each that it spans.
+    Points(Vec<[f64; 2]>),
+}
+
+/// A result held against an outside value.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CaseCheck {
+    /// Name.
+    pub name: String,
+    /// What is measured.
+    pub of: Quantity,
+    /// It is divided by this \[SI units\].
+    pub divide_by: f64,
+    /// The stage; none: the last.
+    pub stage: Option<usize>,
+    /// When in the stage.
+    pub at: CheckTime,
+    /// Which value is held against it.
+    pub value: CheckValue,
+    /// Outside value \[SI units after division\].
+    pub expected: f64,
+    /// What is accepted.
+    pub band: Band,
+    /// Where the value comes from.
+    pub source: String,
+}
+
+/// When in its stage a check looks at its quantity.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum CheckTime {
+    /// At the end.
+    #[default]
+    End,
+    /// When it was largest.
+    Peak,
+}
+
+/// Which value a check looks at.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum CheckValue {
+    /// That of the mesh; of the finest in a study of the mesh error.
+    #[default]
+    Computed,
+    /// The one extrapolated from the meshes of a study; without a study that of the mesh.
+    Extrapolated,
+}

@@ -1,0 +1,307 @@
+//! Rigid bodies that soil touches, and how stages move them.
+
+use std::fmt::Debug;
+use std::sync::Arc;
+
+use igimp_assembly::{Surface, SurfaceError, Tension};
+
+use igimp_text::short;
+
+/// A rigid body that soil touches, slides along and leaves.
+#[derive(Clone, Debug)]
+pub struct RigidPart<const D: usize = 2> {
+    /// Name.
+    pub name: String,
+    /// Where it starts, and its shape.
+    pub shape: Arc<dyn RigidForm<D>>,
+    /// The point that its displacement, its forces and its moment are told of, as the body starts \[m\].
+    pub reference: [f64; D],
+    /// What its sides are like; one for each side of the shape.
+    pub interfaces: Vec<RigidInterface>,
+    /// Normal stiffness of contact in units of E/h \[-\].
+    pub stiffness: f64,
+    /// Radius of its corners as a share of the cell \[-\]; a rounding carries nothing.
+    pub rounding: f64,
+    /// Own weight of the whole body, which acts at the reference point with gravity \[N/m\], in space \[N\].
+    pub weight: f64,
+    /// The whole body over the part that is modelled, 2 for half a body \[-\]: forces that stages state
+    /// and that are reported are those of the whole body.
+    pub force_factor: f64,
+    /// Whether the rows of the grid follow its vertical displacement.
+    pub grid_follows: bool,
+    /// Whether it is there from the start, rather than from the first stage that moves it.
+    pub from_start: bool,
+    /// Penetration that ends a run, as a share of the cell \[-\].
+    pub most_penetration: f64,
+}
+
+/// Components of the motion of a rigid body in space: displacements along x, y and z, and rotations about x, y and z. In
+/// the plane the first three are in use: x, y, rotation (anticlockwise).
+pub const COMPONENTS: usize = 6;
+
+/// The components of the motion of a rigid body in D dimensions.
+pub const fn components<const D: usize>() -> usize {
+    D * (D + 1) / 2
+}
+
+/// The shape of a rigid body where it starts.
+pub trait RigidForm<const D: usize>: Debug + Send + Sync {
+    /// Its surface about a point \[m\], its edges rounded by a radius \[m\], in cells of a size \[m\].
+    ///
+    /// # Errors
+    /// [`SurfaceError`].
+    fn surface(
+        &self,
+        about: [f64; D],
+        rounding: f64,
+        cell: f64,
+    ) -> Result<Surface<D>, SurfaceError>;
+
+    /// Corners of the lowest and of the highest coordinates of the box around it \[m\].
+    fn bounds(&self) -> ([f64; D], [f64; D]);
+
+    /// The shape, of a body in the plane.
+    fn in_plane(&self) -> Option<&RigidShape> {
+        None
+    }
+
+    /// The lowest level of the body above or below a box, given by the corners of its lowest and of its highest
+    /// coordinates \[m\]; infinite beside the body.
+    fn underside(&self, lower: &[f64; D], upper: &[f64; D]) -> f64;
+
+    /// What it is and where, and how large it is, in words.
+    fn words(&self) -> [String; 2];
+
+    /// Names of its sides, in their order; none where they are numbered.
+    fn sides(&self) -> &'static [&'static str] {
+        &[]
+    }
+}
+
+impl<const D: usize> RigidPart<D> {
+    /// Its surface about the reference point, in cells of a size \[m\].
+    ///
+    /// # Errors
+    /// [`SurfaceError`].
+    pub fn surface(&self, cell: f64) -> Result<Surface<D>, SurfaceError> {
+        (self.shape).surface(self.reference, self.rounding * cell, cell)
+    }
+
+    /// Its extent where it starts: corners of the lowest and of the highest coordinates \[m\].
+    pub fn bounds(&self) -> ([f64; D], [f64; D]) {
+        self.shape.bounds()
+    }
+
+    /// Its outline where it starts, as corners \[m\]; a circle as so many points, and nothing of a body in space.
+    pub fn outline(&self, points_of_circle: usize) -> Vec<[f64; 2]> {
+        match self.shape.in_plane() {
+            Some(RigidShape::Polygon(corners)) => corners.clone(),
+            Some(RigidShape::Circle { centre, radius }) => (0..points_of_circle)
+                .map(|point| {
+                    let angle = std::f64::consts::TAU * point as f64 / points_of_circle as f64;
+                    let (sin, cos) = angle.sin_cos();
+                    [centre[0] + radius * cos, centre[1] + radius * sin]
+                })
+                .collect(),
+            None => Vec::new(),
+        }
+    }
+}
+
+/// The shape of a rigid body in the plane, where it starts.
+#[derive(Clone, Debug, PartialEq)]
+pub enum RigidShape {
+    /// A polygon with corners in order, either way round \[m\]; side k runs from corner k to the next.
+    Polygon(Vec<[f64; 2]>),
+    /// A circle: one side.
+    Circle {
+        /// Centre \[m\].
+        centre: [f64; 2],
+        /// Radius \[m\].
+        radius: f64,
+    },
+}
+
+impl RigidForm<2> for RigidShape {
+    fn surface(
+        &self,
+        about: [f64; 2],
+        rounding: f64,
+        cell: f64,
+    ) -> Result<Surface<2>, SurfaceError> {
+        match self {
+            Self::Polygon(corners) => {
+                let [x, y] = about;
+                let own: Vec<_> = corners.iter().map(|at| [at[0] - x, at[1] - y]).collect();
+                Surface::polygon(&own, rounding, cell)
+            }
+            Self::Circle { radius, .. } => Surface::circle(*radius, cell),
+        }
+    }
+
+    fn bounds(&self) -> ([f64; 2], [f64; 2]) {
+        match self {
+            Self::Polygon(corners) => igimp_geometry::polygon::bounding_box(corners),
+            Self::Circle { centre, radius } => {
+                (centre.map(|x| x - radius), centre.map(|x| x + radius))
+            }
+        }
+    }
+
+    fn in_plane(&self) -> Option<&RigidShape> {
+        Some(self)
+    }
+
+    fn underside(&self, lower: &[f64; 2], upper: &[f64; 2]) -> f64 {
+        let (left, right) = (lower[0], upper[0]);
+        let lowest = |places: &mut dyn Iterator<Item = f64>| {
+            let levels = [left, right].into_iter().chain(places);
+            levels
+                .map(|x| self.underside_at(x))
+                .fold(f64::INFINITY, f64::min)
+        };
+        match self {
+            Self::Polygon(corners) => {
+                let within = corners.iter().map(|corner| corner[0]);
+                lowest(&mut within.filter(|at| left < *at && *at < right))
+            }
+            Self::Circle { centre, .. } => {
+                lowest(&mut std::iter::once(centre[0].clamp(left, right)))
+            }
+        }
+    }
+
+    fn words(&self) -> [String; 2] {
+        let point = |[x, y]: [f64; 2]| format!("({}, {})", short(x), short(y));
+        match self {
+            Self::Polygon(own) => {
+                let (lower, upper) = self.bounds();
+                let [width, height] = [0, 1].map(|axis| short(upper[axis] - lower[axis]));
+                let corners: Vec<String> = own.iter().copied().map(point).collect();
+                [corners.join(" "), format!("{width} × {height}")]
+            }
+            Self::Circle { centre, radius } => [
+                format!("circle about {}", point(*centre)),
+                format!("radius {}", short(*radius)),
+            ],
+        }
+    }
+}
+
+impl RigidShape {
+    /// The lowest place on an upright line \[m\].
+    fn underside_at(&self, x: f64) -> f64 {
+        match self {
+            Self::Polygon(corners) => {
+                let next = corners.iter().cycle().skip(1);
+                let edges = std::iter::zip(corners, next);
+                let crossed = edges.filter(|(p, q)| p[0].min(q[0]) <= x && x <= p[0].max(q[0]));
+                crossed
+                    .map(|(p, q)| {
+                        let run = q[0] - p[0];
+                        if run == 0.0 {
+                            p[1].min(q[1])
+                        } else {
+                            p[1] + (x - p[0]) / run * (q[1] - p[1])
+                        }
+                    })
+                    .fold(f64::INFINITY, f64::min)
+            }
+            Self::Circle { centre, radius } => {
+                centre[1] - (radius * radius - (x - centre[0]).powi(2)).max(0.0).sqrt()
+            }
+        }
+    }
+}
+
+/// What a side of a rigid body is like.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RigidInterface {
+    /// What it carries along the side.
+    pub shear: RigidShear,
+    /// What it carries when soil is pulled off.
+    pub tension: Tension,
+}
+
+/// What a side of a rigid body carries along itself.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum RigidShear {
+    /// Nothing.
+    Smooth,
+    /// Whatever the soil can, while it touches.
+    Rough,
+    /// At most adhesion and friction.
+    Limited {
+        /// Coefficient of friction \[-\].
+        friction: f64,
+        /// Adhesion while soil touches.
+        adhesion: Adhesion,
+    },
+}
+
+/// Adhesion of a side of a rigid body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Adhesion {
+    /// A stress \[Pa\].
+    Stress(f64),
+    /// A share of the undrained strength, or of the cohesion, of the soil that touches \[-\].
+    Share(f64),
+}
+
+/// How a stage moves a rigid body. What it does not mention goes on as before.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RigidMove {
+    /// Index of the body.
+    pub body: usize,
+    /// By component.
+    pub drives: [Option<RigidDrive>; COMPONENTS],
+}
+
+impl RigidMove {
+    /// Whether a component is displaced or rotated.
+    pub fn is_moved(&self) -> bool {
+        let mut drives = self.drives.iter().flatten();
+        drives.any(|drive| matches!(drive, RigidDrive::By(by) if *by != 0.0))
+    }
+
+    /// Whether a force or a moment acts.
+    pub fn is_loaded(&self) -> bool {
+        let mut drives = self.drives.iter().flatten();
+        drives.any(|drive| matches!(drive, RigidDrive::Force(force) if *force != 0.0))
+    }
+}
+
+/// What drives a component of the motion of a rigid body in a stage.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum RigidDrive {
+    /// A further displacement \[m\] or rotation \[rad\] by the end of the stage.
+    By(f64),
+    /// A force \[N/m\] or moment about the reference point \[N\] at the end of the stage, on the whole
+    /// body, raised evenly from what acted before. It stays; zero leaves the body free.
+    Force(f64),
+}
+
+/// A number that a rigid body has. In the plane its rotation and its moment are anticlockwise, components 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RigidQuantity {
+    /// Displacement of the reference point along an axis \[m\].
+    Displacement(usize),
+    /// Downwards \[m\].
+    Settlement,
+    /// Rotation about an axis \[rad\].
+    Rotation(usize),
+    /// Force on the body from outside along an axis \[N/m\], in space \[N\].
+    Force(usize),
+    /// Downwards \[N/m\], in space \[N\].
+    Resistance,
+    /// Moment on the body from outside about the reference point, about an axis \[N\], in space \[N m\].
+    Moment(usize),
+    /// Length of its sides that soil touches \[m\]; in space their area \[m²\].
+    ContactWidth,
+    /// Largest penetration as a share of the cell \[-\].
+    Penetration,
+    /// Number of points that soil touches.
+    Closed,
+    /// Number of points that soil slips along.
+    Slipping,
+}

@@ -1,0 +1,295 @@
+//! A field on the particles at the end of a stage.
+
+use std::path::Path;
+
+use igimp_assembly::{Particles, SharedLaw};
+
+use super::{file_name, sentence, titled, water, write};
+use crate::error::ReportError;
+use crate::pieces::Pieces;
+use igimp_figures::{ColourMap, FieldPlot, Outline, OutlineStyle};
+use igimp_model::{Case, Field};
+use igimp_results::fields::{self, Scale};
+use igimp_results::summary::FigureNote;
+
+/// A range this many times that of all but [`FEW`] of the values is cut to theirs.
+const OUTLYING: f64 = 1.2;
+/// Share of values at either end that may lie beyond the colour bar.
+const FEW: f64 = 0.005;
+
+/// The state that a picture shows.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Shown {
+    /// Part of the names of its files.
+    pub name: String,
+    /// Part of the title.
+    pub title: String,
+    /// When that was; reads on from "Displacement".
+    pub when: String,
+}
+
+impl Shown {
+    /// The end of stage number `stage` of a case.
+    pub fn end_of_stage<const D: usize>(case: &Case<D>, stage: usize) -> Self {
+        let name = case.stages.get(stage).map_or("", |stage| &stage.name);
+        Self {
+            name: format!("{}-{}", stage + 1, file_name(name)),
+            title: name.to_owned(),
+            when: format!("at the end of stage “{name}”"),
+        }
+    }
+}
+
+/// What the pictures of a run have in common.
+#[derive(Clone, Copy, Debug)]
+pub struct Canvas<'a> {
+    /// The results folder.
+    pub folder: &'a Path,
+    /// The case.
+    pub case: &'a Case,
+    /// Its bodies in pieces.
+    pub pieces: &'a Pieces,
+}
+
+/// What is drawn over a field: structures where they stand.
+#[derive(Clone, Debug, Default)]
+pub struct Over {
+    /// Lines.
+    pub outlines: Vec<Outline>,
+    /// Words beside points (x, y) \[m\].
+    pub labels: Vec<([f64; 2], String)>,
+}
+
+/// Particles, and the laws that they refer to.
+pub type Seen<'a, const D: usize = 2> = (&'a Particles<D>, &'a [SharedLaw]);
+
+/// The picture of a field in a state: the bodies in pieces, coloured by their particles, their edges as
+/// they moved and as they were, and structures `over` them where they stand.
+///
+/// Unit and colours are those of the state and of the states that it is `compared` with.
+///
+/// # Errors
+/// [`ResultsError::File`](igimp_results::ResultsError::File) and [`ReportError::Figure`].
+pub fn field_picture(
+    canvas: &Canvas<'_>,
+    shown: &Shown,
+    field: Field,
+    (particles, laws): Seen<'_>,
+    compared: &[Seen<'_>],
+    over: &Over,
+) -> Result<FigureNote, ReportError> {
+    let case = canvas.case;
+    let values = fields::values(field, particles, laws);
+    let mut all = values.clone();
+    for (particles, laws) in compared {
+        all.extend(fields::values(field, particles, laws));
+    }
+    let scale = Scale::of(fields::dimension(field), all.iter().copied());
+    let colours = Colours::of(field, &scale.apply(&all));
+    let (domains, whose) = canvas.pieces.now(particles);
+    let total = if case.has_pore_water() && fields::is_total(field) {
+        "total "
+    } else {
+        ""
+    };
+    let plot = FieldPlot {
+        title: titled(&case.title, &shown.title),
+        domains,
+        values: whose.iter().map(|&k| values[k] / scale.divide_by).collect(),
+        label: format!("{total}{}{}", fields::label(field, scale), colours.told()),
+        range: colours.range,
+        map: colours.map,
+        outlines: edges(canvas, particles)
+            .into_iter()
+            .chain(over.outlines.iter().cloned())
+            .collect(),
+        labels: over.labels.clone(),
+        ..FieldPlot::default()
+    };
+    let same = if compared.is_empty() {
+        ""
+    } else {
+        " Colours and unit are the same in both states of the search."
+    };
+    let members = if over.labels.is_empty() {
+        ""
+    } else {
+        " Heavy lines: reinforcement, its tension beside it, the largest of each in numbers."
+    };
+    let caption = format!(
+        "{} {}. Lines: the edges of the bodies; dashed: before they moved{}.{members}{same}",
+        sentence(&format!("{total}{}", fields::plain(fields::title(field)))),
+        shown.when,
+        water::told(&over.outlines),
+    );
+    let name = format!("field-{}-{}", shown.name, fields::name(field));
+    write(canvas.folder, &name, &plot.draw()?, caption)
+}
+
+/// The edges of the bodies as they were, and as the particles carry them.
+pub(super) fn edges(canvas: &Canvas<'_>, particles: &Particles<2>) -> Vec<Outline> {
+    let there = canvas.pieces.there(particles);
+    let former = std::iter::zip(body_outlines(canvas.case), there);
+    let former = former
+        .filter(|(_, there)| *there)
+        .map(|(outline, _)| Outline {
+            style: OutlineStyle::Former,
+            ..outline
+        });
+    let moved = canvas.pieces.edges(particles).into_iter();
+    let moved = moved.map(|points| Outline {
+        points,
+        style: OutlineStyle::Edge,
+    });
+    former.chain(moved).collect()
+}
+
+/// The edges of the undeformed bodies.
+pub(super) fn body_outlines(case: &Case) -> impl Iterator<Item = Outline> {
+    case.bodies.iter().map(|body| Outline {
+        points: body
+            .polygon()
+            .iter()
+            .chain(body.polygon().first())
+            .copied()
+            .collect(),
+        style: OutlineStyle::Edge,
+    })
+}
+
+/// How values become colours.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Colours {
+    pub(super) map: ColourMap,
+    pub(super) range: Option<(f64, f64)>,
+    /// Whether the range leaves out the outermost values at its low and at its high end.
+    cut: (bool, bool),
+}
+
+impl Colours {
+    /// From zero where a field has no sign, about zero where both signs matter, without the few values
+    /// that would pale all others.
+    pub(super) fn of(field: Field, values: &[f64]) -> Self {
+        let mut sorted: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
+        sorted.sort_by(f64::total_cmp);
+        let whole = Self {
+            map: ColourMap::Sequential,
+            range: None,
+            cut: (false, false),
+        };
+        let (Some(&low), Some(&high)) = (sorted.first(), sorted.last()) else {
+            return whole;
+        };
+        let at = |share: f64| sorted[(share * (sorted.len() - 1) as f64).round() as usize];
+        let (inner_low, inner_high) = (at(FEW), at(1.0 - FEW));
+        let signed = matches!(
+            field,
+            Field::DisplacementX
+                | Field::DisplacementY
+                | Field::DisplacementZ
+                | Field::TauXy
+                | Field::TauYz
+                | Field::TauXz
+                | Field::UExcess
+        );
+        if signed && -low.min(0.0) > 0.1 * high && high.max(0.0) > -0.1 * low {
+            let (reach, inner) = (
+                low.abs().max(high.abs()),
+                inner_low.abs().max(inner_high.abs()),
+            );
+            let cut = inner > 0.0 && reach > OUTLYING * inner;
+            return Self {
+                map: ColourMap::Diverging,
+                range: cut.then_some((-inner, inner)),
+                cut: (cut && low < -inner, cut && high > inner),
+            };
+        }
+        match field {
+            Field::Utilisation => Self {
+                range: Some((0.0, 1.0)),
+                ..whole
+            },
+            Field::PlasticStrain | Field::Displacement => {
+                let cut = inner_high > 0.0 && high > OUTLYING * inner_high;
+                let top = if cut { inner_high } else { high };
+                Self {
+                    range: Some((0.0, if top > 0.0 { top } else { 1.0 })),
+                    cut: (false, cut),
+                    ..whole
+                }
+            }
+            _ => {
+                let width = inner_high - inner_low;
+                let cut = (
+                    inner_low - low > (OUTLYING - 1.0) * width,
+                    high - inner_high > (OUTLYING - 1.0) * width,
+                );
+                let range = (
+                    if cut.0 { inner_low } else { low },
+                    if cut.1 { inner_high } else { high },
+                );
+                let some = width > 0.0 && (cut.0 || cut.1);
+                Self {
+                    range: some.then_some(range),
+                    cut: (some && cut.0, some && cut.1),
+                    ..whole
+                }
+            }
+        }
+    }
+
+    /// What the colour bar says of values beyond it.
+    pub(super) fn told(&self) -> &'static str {
+        match self.cut {
+            (false, false) => "",
+            (true, false) => "; bar from 0.5 % of the particles",
+            (false, true) => "; bar to 99.5 % of the particles",
+            (true, true) => "; bar from 0.5 to 99.5 % of the particles",
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn colours_follow_the_signs_of_a_field() {
+        let both = [-3.0, 0.0, 2.0];
+        let map = |field, values: &[f64]| Colours::of(field, values).map;
+        assert_eq!(map(Field::TauXy, &both), ColourMap::Diverging);
+        assert_eq!(map(Field::TauXy, &[1.0, 2.0]), ColourMap::Sequential);
+        assert_eq!(map(Field::SigmaYy, &both), ColourMap::Sequential);
+        let range = |field, values: &[f64]| Colours::of(field, values).range;
+        assert_eq!(range(Field::Utilisation, &both), Some((0.0, 1.0)));
+        assert_eq!(range(Field::PlasticStrain, &[0.0]), Some((0.0, 1.0)));
+        assert_eq!(range(Field::P, &[f64::NAN]), None);
+    }
+
+    /// GOAL: a single particle neither pales a field nor goes unsaid, whatever the field.
+    #[test]
+    fn a_few_wild_values_do_not_hide_the_others() {
+        let mut values: Vec<f64> = (0..1000).map(f64::from).collect();
+        for field in fields::ALL {
+            assert_eq!(Colours::of(field, &values).told(), "", "{field:?}");
+        }
+        values[500] = 1e6;
+        let of = |field| Colours::of(field, &values);
+        let stress = of(Field::SigmaYy);
+        assert_eq!(
+            (stress.range, stress.cut),
+            (Some((0.0, 995.0)), (false, true))
+        );
+        assert!(stress.told().contains("99.5 %"));
+        for field in [Field::Displacement, Field::PlasticStrain] {
+            assert_eq!(
+                (of(field).range, of(field).cut),
+                (Some((0.0, 995.0)), (false, true))
+            );
+        }
+        values[400] = -1e6;
+        let shear = Colours::of(Field::TauXy, &values);
+        assert_eq!((shear.map, shear.cut), (ColourMap::Diverging, (true, true)));
+        assert_eq!(shear.range, Some((-995.0, 995.0)));
+    }
+}

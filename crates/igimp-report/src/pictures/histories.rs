@@ -1,0 +1,372 @@
+//! Histories at monitors and fields along sections: one picture for the fields of a kind.
+
+use std::path::Path;
+
+use super::{file_name, points, style, titled, write};
+use crate::error::ReportError;
+use igimp_figures::{
+    Band, Colour, CurvePlot, LineStyle, ReferenceLine, ReferenceValue, Series, SeriesStyle,
+};
+use igimp_model::{Average, Case, Field, Monitor, ReferenceValues, Section, SectionReference};
+use igimp_results::fields::{self, Dimension, Scale};
+use igimp_results::summary::FigureNote;
+use igimp_results::table::Table;
+use igimp_text::short;
+
+/// Most changes of stage that are marked in a history.
+const MOST_MARKS: usize = 12;
+
+/// The pictures of a monitor: what its table holds under the [headers](fields::header) of the
+/// recorded fields, over the accepted steps. Where a column `stage` changes stands a line, and what does
+/// not go on there is not joined: displacements that count anew, a stage that starts from another one
+/// than that before it.
+///
+/// # Errors
+/// [`ResultsError::File`](igimp_results::ResultsError::File) and [`ReportError::Figure`].
+pub fn monitor_pictures<const D: usize>(
+    folder: &Path,
+    case: &Case<D>,
+    monitor: &Monitor<D>,
+    table: &Table,
+) -> Result<Vec<FigureNote>, ReportError> {
+    let along: Vec<f64> = (1..=table.rows.len()).map(|row| row as f64).collect();
+    let marks = stage_marks(table);
+    let marked = if marks.is_empty() {
+        ""
+    } else {
+        "; upright lines: a new stage begins"
+    };
+    let mut notes = Vec::new();
+    for group in groups(&monitor.record, table) {
+        let breaks = breaks(case, table, group.dimension);
+        let broken = if breaks.is_empty() {
+            ""
+        } else {
+            "; lines are broken where a quantity begins anew"
+        };
+        let (label, series) = group.series(table, &along, &breaks, false);
+        let plot = CurvePlot {
+            title: titled(&case.title, &format!("monitor {}", monitor.name)),
+            x_label: "accepted step".into(),
+            y_label: label,
+            lines: marks.clone(),
+            series,
+            ..CurvePlot::default()
+        };
+        let caption = format!(
+            "{} at monitor “{}” over the accepted steps{marked}{broken}.",
+            group.words(),
+            monitor.name
+        );
+        let name = format!("monitor-{}-{}", file_name(&monitor.name), group.slug());
+        notes.push(write(folder, &name, &plot.draw()?, caption)?);
+    }
+    Ok(notes)
+}
+
+/// The changes of stage of a table: the row before, and the stages before and after, from 1.
+fn changes(table: &Table) -> Vec<(usize, [usize; 2])> {
+    let Some(column) = table
+        .header
+        .iter()
+        .position(|header| header.starts_with("stage"))
+    else {
+        return Vec::new();
+    };
+    let stage = |row: &Vec<f64>| row.get(column).map_or(0, |&stage| stage as usize);
+    let pairs = table.rows.windows(2).enumerate();
+    pairs
+        .map(|(row, pair)| (row, [stage(&pair[0]), stage(&pair[1])]))
+        .filter(|(_, [before, after])| before != after)
+        .collect()
+}
+
+/// The rows after which a quantity of this kind begins anew.
+fn breaks<const D: usize>(case: &Case<D>, table: &Table, of: Dimension) -> Vec<usize> {
+    let anew = |&(_, [before, after]): &(usize, [usize; 2])| {
+        let stage = |number: usize| case.stages.get(number.checked_sub(1)?);
+        let (Some(ended), Some(begun)) = (stage(before), stage(after)) else {
+            return false;
+        };
+        let reset = ended.reset_displacements && of == Dimension::Displacement;
+        reset || begun.start_from != Some(before - 1)
+    };
+    changes(table)
+        .into_iter()
+        .filter(anew)
+        .map(|(row, _)| row)
+        .collect()
+}
+
+/// Lines between rows of different stages.
+fn stage_marks(table: &Table) -> Vec<ReferenceLine> {
+    let marks: Vec<_> = changes(table)
+        .into_iter()
+        .map(|(row, _)| ReferenceLine {
+            label: String::new(),
+            at: ReferenceValue::X(row as f64 + 1.5),
+        })
+        .collect();
+    if marks.len() > MOST_MARKS {
+        Vec::new()
+    } else {
+        marks
+    }
+}
+
+/// The pictures of a section at the end of a stage, with what it is held against. The distance along the section stands in the
+/// first column whose header begins with `distance` (else the first of all). An upright section is
+/// drawn upright, over the height.
+///
+/// # Errors
+/// [`ResultsError::File`](igimp_results::ResultsError::File) and [`ReportError::Figure`].
+pub fn section_pictures<const D: usize>(
+    folder: &Path,
+    case_title: &str,
+    section: &Section<D>,
+    (stage, references): (&str, &[&SectionReference]),
+    table: &Table,
+) -> Result<Vec<FigureNote>, ReportError> {
+    let mut headers = table.header.iter();
+    let column = headers
+        .position(|header| header.starts_with("distance"))
+        .unwrap_or(0);
+    let distance = points(table, column, column)
+        .into_iter()
+        .map(|point| point[0]);
+    let [dx, dy] = [0, 1].map(|axis| section.to[axis] - section.from[axis]);
+    let upright = dx.abs() <= 1e-6 * dy.abs() && dy != 0.0;
+    let along: Vec<f64> = if upright {
+        distance
+            .map(|s| section.from[1] + dy.signum() * s)
+            .collect()
+    } else {
+        distance.collect()
+    };
+    let mut notes = Vec::new();
+    for group in groups(&section.record, table) {
+        let (label, mut series) = group.series(table, &along, &[], upright);
+        let held = references.iter().filter(|held| group.has(held.of));
+        let scale = group.scale(table);
+        let mut bands = Vec::new();
+        let mut sources = String::new();
+        for held in held {
+            let height = |s: f64| {
+                if upright {
+                    section.from[1] + dy.signum() * s
+                } else {
+                    s
+                }
+            };
+            let (points, band) = reference(held, &along, scale, &height);
+            let turned = |points: &[[f64; 2]]| -> Vec<[f64; 2]> {
+                let turn = |&[a, b]: &[f64; 2]| if upright { [b, a] } else { [a, b] };
+                points.iter().map(turn).collect()
+            };
+            if let Some(band) = band {
+                bands.push(Band {
+                    lower: turned(&band.lower),
+                    upper: turned(&band.upper),
+                    ..band
+                });
+            }
+            let style = SeriesStyle::LineAndMarkers(LineStyle::Dashed);
+            let name = held.reference.label.clone();
+            sources = format!("{sources} Reference: {}.", fields::plain(&name));
+            series.push(Series::new(name, turned(&points), style).in_colour(Colour::BLACK));
+        }
+        let (x_label, y_label) = if upright {
+            (label, "height y [m]".to_owned())
+        } else {
+            (format!("distance along {} [m]", section.name), label)
+        };
+        let plot = CurvePlot {
+            title: titled(case_title, &format!("section {}, {stage}", section.name)),
+            x_label,
+            y_label,
+            series,
+            bands,
+            ..CurvePlot::default()
+        };
+        let of = match section.average {
+            Average::None => "",
+            Average::Cell => ", means over cells",
+        };
+        let caption = format!(
+            "{} along section “{}” at the end of stage “{stage}”{of}.{sources}",
+            group.words(),
+            section.name
+        );
+        let name = format!(
+            "section-{}-{}-{}",
+            file_name(&section.name),
+            file_name(stage),
+            group.slug()
+        );
+        notes.push(write(folder, &name, &plot.draw()?, caption)?);
+    }
+    Ok(notes)
+}
+
+/// The points of a reference over the distance, or the height, along a section, in the unit of the plot,
+/// and the band of its tolerance.
+fn reference(
+    held: &SectionReference,
+    along: &[f64],
+    scale: Scale,
+    height: &dyn Fn(f64) -> f64,
+) -> (Vec<[f64; 2]>, Option<Band>) {
+    let points: Vec<[f64; 2]> = match &held.reference.values {
+        ReferenceValues::Level { y, at: Some(at) } => vec![[height(*at), y / scale.divide_by]],
+        ReferenceValues::Level { y, at: None } => {
+            let end = along.last().copied();
+            end.map(|end| [end, y / scale.divide_by])
+                .into_iter()
+                .collect()
+        }
+        ReferenceValues::Points(points) => {
+            let place = |&[s, y]: &[f64; 2]| [height(s), y / scale.divide_by];
+            points.iter().map(place).collect()
+        }
+    };
+    let band = held.reference.tolerance.filter(|_| points.len() > 1);
+    let band =
+        band.map(|share| Band::around(format!("±{} %", short(100.0 * share)), &points, share));
+    (points, band)
+}
+
+/// Recorded fields of one kind, with their columns.
+struct Group {
+    dimension: Dimension,
+    columns: Vec<(Field, usize)>,
+}
+
+/// The recorded fields that the table holds, by kind, in the order of the record.
+fn groups(record: &[Field], table: &Table) -> Vec<Group> {
+    let mut groups: Vec<Group> = Vec::new();
+    for &field in record {
+        let wanted = fields::header(field);
+        let Some(column) = table.header.iter().position(|header| *header == wanted) else {
+            continue;
+        };
+        let dimension = fields::dimension(field);
+        match groups.iter_mut().find(|group| group.dimension == dimension) {
+            Some(group) => group.columns.push((field, column)),
+            None => groups.push(Group {
+                dimension,
+                columns: vec![(field, column)],
+            }),
+        }
+    }
+    groups
+}
+
+impl Group {
+    fn has(&self, field: Field) -> bool {
+        self.columns.iter().any(|&(own, _)| own == field)
+    }
+
+    /// The unit of its values.
+    fn scale(&self, table: &Table) -> Scale {
+        let values = |column: usize| table.rows.iter().filter_map(move |row| row.get(column));
+        let all = self.columns.iter().flat_map(|&(_, column)| values(column));
+        Scale::of(self.dimension, all.copied())
+    }
+
+    /// The label of the common axis, and a series for every field, broken after some rows.
+    fn series(
+        &self,
+        table: &Table,
+        along: &[f64],
+        breaks: &[usize],
+        upright: bool,
+    ) -> (String, Vec<Series>) {
+        let values = |column: usize| table.rows.iter().filter_map(move |row| row.get(column));
+        let scale = self.scale(table);
+        let make = |&(field, column): &(Field, usize)| {
+            let mut points: Vec<[f64; 2]> = std::iter::zip(along, values(column))
+                .map(|(&along, value)| [along, value / scale.divide_by])
+                .map(|[a, b]| if upright { [b, a] } else { [a, b] })
+                .collect();
+            for &row in breaks.iter().rev() {
+                points.insert((row + 1).min(points.len()), [f64::NAN; 2]);
+            }
+            let style = style(points.len());
+            Series::new(fields::title(field), points, style)
+        };
+        match self.columns.as_slice() {
+            [only] => {
+                let series = Series {
+                    label: String::new(),
+                    ..make(only)
+                };
+                (fields::label(only.0, scale), vec![series])
+            }
+            several => {
+                let label = format!("{} [{}]{}", self.noun(), scale.unit, self.sign());
+                (label, several.iter().map(make).collect())
+            }
+        }
+    }
+
+    fn noun(&self) -> &'static str {
+        match self.dimension {
+            Dimension::Displacement => "displacement",
+            Dimension::Position => "position",
+            Dimension::Stress => "stress",
+            Dimension::Strain => "strain",
+            Dimension::Share => "share",
+            Dimension::Angle => "angle",
+        }
+    }
+
+    fn sign(&self) -> &'static str {
+        if self.dimension == Dimension::Stress {
+            ", compression positive"
+        } else {
+            ""
+        }
+    }
+
+    fn slug(&self) -> &'static str {
+        self.noun()
+    }
+
+    fn words(&self) -> String {
+        let titles: Vec<String> = self
+            .columns
+            .iter()
+            .map(|&(field, _)| fields::plain(fields::title(field)))
+            .collect();
+        super::sentence(&titles.join(", "))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use igimp_input::CaseFile;
+    use igimp_input::shipped::SHIPPED;
+
+    /// GOAL: a fall to zero that nothing made is not drawn: the slope's displacements count anew after its
+    /// first stage, and its run-out starts from there.
+    #[test]
+    fn lines_end_where_a_quantity_begins_anew() {
+        let slope = SHIPPED.iter().find(|case| case.name == "slope").unwrap();
+        let file = CaseFile::parse("slope.toml", slope.text, &[]).unwrap();
+        let mut case = file.case().clone();
+        let mut table = Table::new("crest", &["stage", "step", "displacement_[m]"]);
+        for (stage, displacement) in [(1.0, 0.1), (1.0, 0.2), (3.0, 0.01), (3.0, 0.02)] {
+            table.push(vec![stage, 1.0, displacement]);
+        }
+        assert_eq!(breaks(&case, &table, Dimension::Displacement), [1]);
+        assert!(breaks(&case, &table, Dimension::Stress).is_empty());
+        case.stages[2].start_from = Some(1);
+        assert_eq!(breaks(&case, &table, Dimension::Stress), [1]);
+        let group = &groups(&[Field::Displacement], &table)[0];
+        let (_, series) = group.series(&table, &[1.0, 2.0, 3.0, 4.0], &[1], false);
+        let points = &series[0].points;
+        assert_eq!(points.len(), 5);
+        assert!(points[2][0].is_nan() && points[1][0] < 3.0 && points[3][0] > 2.0);
+    }
+}

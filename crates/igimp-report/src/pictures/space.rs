@@ -1,0 +1,253 @@
+//! Fields of a body in space: its surface, lit, and cuts through it.
+
+use std::path::Path;
+
+use igimp_figures::{Face, FieldPlot, SpacePlot, View};
+
+use super::field::Colours;
+use super::{Seen, Shown, sentence, titled, water, write};
+use crate::error::ReportError;
+use crate::skin::{Boxes, Skin};
+use igimp_model::{Cut, Field, PoreSource};
+use igimp_results::fields::{self, Scale};
+use igimp_results::summary::FigureNote;
+
+/// How much the direction of a face itself counts beside that of the surface around it.
+const OWN: f64 = 0.3;
+
+/// A state in space that is drawn field by field; its surface is found once.
+#[derive(Debug)]
+pub struct InSpace<'a> {
+    folder: &'a Path,
+    /// Title of the case.
+    title: &'a str,
+    /// Whether total and effective stress are told apart.
+    pore_water: bool,
+    state: Seen<'a, 3>,
+    /// Triangles of rigid bodies.
+    bodies: Vec<[[f64; 3]; 3]>,
+    /// What water tables are drawn.
+    water: Vec<PoreSource>,
+    low: Vec<[f64; 3]>,
+    high: Vec<[f64; 3]>,
+    skin: Skin,
+}
+
+/// How a field is coloured.
+struct Coloured {
+    values: Vec<f64>,
+    colours: Colours,
+    label: String,
+    /// What it is, for captions.
+    what: String,
+}
+
+impl<'a> InSpace<'a> {
+    /// The state of a case of that title, for its results folder, with the triangles of rigid bodies.
+    pub fn new(
+        (folder, title, pore_water): (&'a Path, &'a str, bool),
+        state: Seen<'a, 3>,
+        bodies: Vec<[[f64; 3]; 3]>,
+    ) -> Self {
+        let corner = |sign: f64| {
+            let domains = std::iter::zip(&state.0.x, &state.0.half_length);
+            domains
+                .map(|(x, half)| [0, 1, 2].map(|axis| x[axis] + sign * half[axis]))
+                .collect::<Vec<_>>()
+        };
+        let (low, high) = (corner(-1.0), corner(1.0));
+        let skin = Skin::of(Boxes {
+            low: &low,
+            high: &high,
+        });
+        Self {
+            folder,
+            title,
+            pore_water,
+            state,
+            bodies,
+            water: Vec::new(),
+            low,
+            high,
+            skin,
+        }
+    }
+
+    /// The same, with water tables over the cuts.
+    #[must_use]
+    pub fn with_water(self, water: Vec<PoreSource>) -> Self {
+        Self { water, ..self }
+    }
+
+    /// Upright planes across either level axis, through that particle which was nearest to the middle of the
+    /// body before it moved: so they run through domains and not between them.
+    pub fn middle(&self) -> Vec<Cut> {
+        let particles = self.state.0;
+        let plane = |axis: usize| {
+            let moved = std::iter::zip(&particles.x, &particles.displacement);
+            let places: Vec<f64> = moved.map(|(x, u)| x[axis] - u[axis]).collect();
+            let finite = places.iter().copied().filter(|x| x.is_finite());
+            let ends = finite.fold([f64::MAX, f64::MIN], |[a, b], x| [a.min(x), b.max(x)]);
+            let middle = 0.5 * (ends[0] + ends[1]);
+            let from = |x: &f64| (x - middle).abs();
+            let finite = places.iter().copied().filter(|x| x.is_finite());
+            let at = finite.min_by(|a, b| from(a).total_cmp(&from(b)))?;
+            Some(Cut { axis, at })
+        };
+        [1, 0].into_iter().filter_map(plane).collect()
+    }
+
+    /// The surface coloured by a field, and cuts along planes, all with the same unit and colours: those of the
+    /// state and of the states that it is `compared` with.
+    ///
+    /// # Errors
+    /// [`ResultsError::File`](igimp_results::ResultsError::File) and [`ReportError::Figure`].
+    pub fn pictures(
+        &self,
+        shown: &Shown,
+        field: Field,
+        compared: &[Seen<'_, 3>],
+        planes: &[Cut],
+    ) -> Result<Vec<FigureNote>, ReportError> {
+        let own = self.coloured(field, compared);
+        let title = titled(self.title, &shown.title);
+        let plot = SpacePlot {
+            title: title.clone(),
+            faces: self.faces(&own.values),
+            bodies: self.bodies.clone(),
+            view: View::default(),
+            label: own.label.clone(),
+            range: own.colours.range,
+            map: own.colours.map,
+        };
+        let same = if compared.is_empty() {
+            ""
+        } else {
+            " Colours and unit are the same in both states of the search."
+        };
+        let bodies = if self.bodies.is_empty() {
+            ""
+        } else {
+            " Grey: rigid bodies."
+        };
+        let name = |what: &str| format!("{what}-{}-{}", shown.name, fields::name(field));
+        let caption = format!(
+            "{} {}: the surface of the particles' domains.{bodies}{same}",
+            own.what, shown.when
+        );
+        let mut notes = vec![write(self.folder, &name("space"), &plot.draw()?, caption)?];
+        for plane in planes {
+            let letter = ["x", "y", "z"][plane.axis];
+            let at = format!("{letter} = {} m", rounded(plane.at));
+            let plot = self.cut(*plane, &own, titled(&title, &at));
+            let caption = format!(
+                "{} {} in the plane {at}: the domains that it crosses{}.{same}",
+                own.what,
+                shown.when,
+                water::told(&plot.outlines)
+            );
+            let same_axis = planes.iter().filter(|own| own.axis == plane.axis);
+            // More of them across an axis are told apart by their places.
+            let name = if same_axis.count() > 1 {
+                name(&plane.name())
+            } else {
+                name(&format!("cut-{letter}"))
+            };
+            notes.push(write(self.folder, &name, &plot.draw()?, caption)?);
+        }
+        Ok(notes)
+    }
+
+    fn coloured(&self, field: Field, compared: &[Seen<'_, 3>]) -> Coloured {
+        let of = |(particles, laws): Seen<'_, 3>| fields::values(field, particles, laws);
+        let values = of(self.state);
+        let mut all = values.clone();
+        all.extend(compared.iter().flat_map(|seen| of(*seen)));
+        let scale = Scale::of(fields::dimension(field), all.iter().copied());
+        let colours = Colours::of(field, &scale.apply(&all));
+        let is_total = self.pore_water && fields::is_total(field);
+        let total = if is_total { "total " } else { "" };
+        let title = fields::plain(fields::title_in(3, field));
+        Coloured {
+            values: scale.apply(&values),
+            label: format!(
+                "{total}{}{}",
+                fields::label_in(3, field, scale),
+                colours.told()
+            ),
+            what: sentence(&format!("{total}{title}")),
+            colours,
+        }
+    }
+
+    fn faces(&self, values: &[f64]) -> Vec<Face> {
+        let mut faces = Vec::with_capacity(self.skin.count());
+        for (k, &value) in values.iter().enumerate() {
+            let lie = self.skin.lie[k];
+            for face in (0..6).filter(|face| self.skin.faces[k] & (1 << face) != 0) {
+                let mut normal = lie.normal;
+                normal[face / 2] += OWN * [-1.0, 1.0][face % 2];
+                let length = normal.iter().map(|n| n * n).sum::<f64>().sqrt();
+                faces.push(Face {
+                    corners: corners(&self.low[k], &self.high[k], face),
+                    normal: normal.map(|n| n / length.max(f64::MIN_POSITIVE)),
+                    open: lie.open,
+                    value,
+                });
+            }
+        }
+        faces
+    }
+
+    /// The sections of the domains that a plane crosses.
+    fn cut(&self, plane: Cut, own: &Coloured, title: String) -> FieldPlot {
+        let [across, up] = [[1, 2], [0, 2], [0, 1]][plane.axis];
+        let letters = ["x [m]", "y [m]", "z [m]"];
+        let crossed = (0..self.low.len()).filter(|&k| {
+            // Of domains that meet in the plane, those beyond it.
+            self.low[k][plane.axis] <= plane.at && plane.at < self.high[k][plane.axis]
+        });
+        let (domains, values): (Vec<_>, Vec<_>) = crossed
+            .map(|k| {
+                let (low, high) = (self.low[k], self.high[k]);
+                let corners = vec![
+                    [low[across], low[up]],
+                    [high[across], low[up]],
+                    [high[across], high[up]],
+                    [low[across], high[up]],
+                ];
+                (corners, own.values[k])
+            })
+            .unzip();
+        FieldPlot {
+            title,
+            outlines: water::over_cut(&self.water, plane, &domains),
+            domains,
+            values,
+            label: own.label.clone(),
+            range: own.colours.range,
+            map: own.colours.map,
+            x_label: letters[across].to_owned(),
+            y_label: letters[up].to_owned(),
+            ..FieldPlot::default()
+        }
+    }
+}
+
+/// The corners of a face of a box, in turn.
+fn corners(low: &[f64; 3], high: &[f64; 3], face: usize) -> [[f64; 3]; 4] {
+    let axis = face / 2;
+    let (one, two) = ((axis + 1) % 3, (axis + 2) % 3);
+    [[low, low], [high, low], [high, high], [low, high]].map(|[a, b]| {
+        let mut corner = [low, high][face % 2].to_owned();
+        corner[one] = a[one];
+        corner[two] = b[two];
+        corner
+    })
+}
+
+/// A place in few digits.
+fn rounded(at: f64) -> String {
+    let text = format!("{at:.3}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}

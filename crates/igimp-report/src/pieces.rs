@@ -1,0 +1,242 @@
+//! The bodies as they are drawn: pieces that tile them, carried and deformed by their particles.
+//!
+//! A particle stands for the part of its body within its part of a cell. That piece is cut by the edges
+//! of the body as it was seeded, and moves with the particle: a corner X goes to
+//! x_p + F_p (X − X_p) (theory, eq. 41). Corners that neighbours share meet in the middle of where these
+//! carry them, so that soil has no gaps; where it parts they go their own ways.
+
+use std::collections::HashMap;
+use std::ops::Range;
+
+use igimp_assembly::Particles;
+
+use crate::error::ReportError;
+use igimp_geometry::polygon::Polygon;
+use igimp_geometry::seed::{Piece, fill_in_pieces};
+use igimp_model::Case;
+
+/// Corners that a particle carries further from their middle than so many times its size have
+/// parted \[-\].
+const PARTED: f64 = 1.5;
+/// Corners closer than this share of the smallest cell are one \[-\].
+const SAME: f64 = 1e-6;
+
+/// A corner of a piece.
+#[derive(Clone, Copy, Debug)]
+struct Corner {
+    /// Number of the particle, which it keeps.
+    particle: usize,
+    /// Its place seen from the particle's, before both moved.
+    offset: [f64; 2],
+    /// Number of the place, which it may share with corners of other pieces.
+    place: usize,
+}
+
+impl Corner {
+    /// Where its particle carries it, if that is there.
+    fn carried(&self, there: &There<'_>) -> Option<[f64; 2]> {
+        let particle = there.place_of(self.particle)?;
+        let (x, f) = (
+            there.particles.x[particle],
+            there.particles.def_grad[particle],
+        );
+        let [dx, dy] = self.offset;
+        Some([0, 1].map(|a| x[a] + f[a][0] * dx + f[a][1] * dy))
+    }
+}
+
+/// The particles that are there, found by their numbers: bodies are placed and taken away.
+struct There<'a> {
+    particles: &'a Particles<2>,
+    /// Place by number.
+    places: Vec<Option<usize>>,
+}
+
+impl<'a> There<'a> {
+    fn new(particles: &'a Particles<2>) -> Self {
+        let count = particles.number.iter().max().map_or(0, |last| last + 1);
+        let mut places = vec![None; count];
+        for (place, &number) in particles.number.iter().enumerate() {
+            places[number] = Some(place);
+        }
+        Self { particles, places }
+    }
+
+    fn place_of(&self, number: usize) -> Option<usize> {
+        self.places.get(number).copied().flatten()
+    }
+
+    /// Whether the body of a line of corners is there.
+    fn has(&self, corners: &[Corner]) -> bool {
+        let is_there = |corner: &Corner| self.place_of(corner.particle).is_some();
+        corners.iter().all(is_there)
+    }
+}
+
+/// The pieces of all bodies of a case, and their edges.
+#[derive(Clone, Debug)]
+pub struct Pieces {
+    particles: Vec<usize>,
+    corners: Vec<Vec<Corner>>,
+    places: usize,
+    /// Closed lines; the first corner stands at the end once more.
+    edges: Vec<Vec<Corner>>,
+    /// By body: the numbers of its particles.
+    bodies: Vec<Range<usize>>,
+}
+
+impl Pieces {
+    /// Cuts the bodies of a case as they are seeded.
+    ///
+    /// # Errors
+    /// [`ReportError`] for bodies that cannot be seeded.
+    pub fn of(case: &Case) -> Result<Self, ReportError> {
+        let grid = case.grid.grid()?;
+        let [width, height] = case.grid.smallest_cell();
+        let near = SAME * width.min(height);
+        let mut numbers: HashMap<[i64; 2], usize> = HashMap::new();
+        let mut all = Self {
+            particles: Vec::new(),
+            corners: Vec::new(),
+            places: 0,
+            edges: Vec::new(),
+            bodies: Vec::new(),
+        };
+        let mut first = 0;
+        for body in &case.bodies {
+            let (seeds, pieces) =
+                fill_in_pieces(&grid, body.polygon(), body.per_direction, 0.0, 0)?;
+            let own = all.corners.len();
+            for Piece { particle, polygon } in pieces {
+                let mut corners: Vec<Corner> = Vec::with_capacity(polygon.len());
+                for at in polygon {
+                    let next = numbers.len();
+                    let place = *numbers
+                        .entry(at.map(|x| (x / near).round() as i64))
+                        .or_insert(next);
+                    if corners.last().is_none_or(|last| last.place != place) {
+                        corners.push(Corner {
+                            particle: first + particle,
+                            offset: [0, 1].map(|axis| at[axis] - seeds[particle].x[axis]),
+                            place,
+                        });
+                    }
+                }
+                all.particles.push(first + particle);
+                all.corners.push(corners);
+            }
+            all.edges.extend(outline(&all.corners[own..]));
+            all.bodies.push(first..first + seeds.len());
+            first += seeds.len();
+        }
+        all.places = numbers.len();
+        Ok(all)
+    }
+
+    /// The pieces of the bodies that are there as the particles carry them, each with the place of its particle.
+    pub fn now(&self, particles: &Particles<2>) -> (Vec<Polygon>, Vec<usize>) {
+        let there = There::new(particles);
+        let met = self.met(&there);
+        std::iter::zip(&self.corners, &self.particles)
+            .filter_map(|(corners, &number)| {
+                let place = there.place_of(number)?;
+                Some((moved(corners, &met, &there), place))
+            })
+            .unzip()
+    }
+
+    /// The edges of the bodies that are there as the particles carry them, closed lines.
+    pub fn edges(&self, particles: &Particles<2>) -> Vec<Polygon> {
+        let there = There::new(particles);
+        let met = self.met(&there);
+        let edges = self.edges.iter().filter(|edge| there.has(edge));
+        edges.map(|edge| moved(edge, &met, &there)).collect()
+    }
+
+    /// By body of the case: whether it is there.
+    pub fn there(&self, particles: &Particles<2>) -> Vec<bool> {
+        let there = There::new(particles);
+        let is_there = |own: &Range<usize>| {
+            let mut numbers = own.clone();
+            numbers.any(|number| there.place_of(number).is_some())
+        };
+        self.bodies.iter().map(is_there).collect()
+    }
+
+    /// By place: where its corners meet, if they have not parted.
+    fn met(&self, there: &There<'_>) -> Vec<Option<[f64; 2]>> {
+        let carried = |corner: &Corner| Some((*corner, corner.carried(there)?));
+        let all = || self.corners.iter().flatten().filter_map(carried);
+        let mut sums = vec![([0.0; 2], 0.0); self.places];
+        for (corner, at) in all() {
+            let (sum, count) = &mut sums[corner.place];
+            *sum = [sum[0] + at[0], sum[1] + at[1]];
+            *count += 1.0;
+        }
+        let mut met: Vec<Option<[f64; 2]>> = sums
+            .into_iter()
+            .map(|(sum, count)| Some(sum.map(|sum| sum / count)))
+            .collect();
+        for (corner, at) in all() {
+            let reach = PARTED
+                * there
+                    .place_of(corner.particle)
+                    .map_or(0.0, |place| size(there.particles, place));
+            met[corner.place] = met[corner.place]
+                .filter(|middle| (middle[0] - at[0]).hypot(middle[1] - at[1]) <= reach);
+        }
+        met
+    }
+}
+
+/// The sum of the two sides of a particle as F makes them, and no less than as they were.
+fn size(particles: &Particles<2>, particle: usize) -> f64 {
+    let f = particles.def_grad[particle];
+    let sides = particles.half_length0[particle].map(|half| 2.0 * half);
+    let side = |axis: usize| sides[axis] * f[0][axis].hypot(f[1][axis]).max(1.0);
+    side(0) + side(1)
+}
+
+fn moved(corners: &[Corner], met: &[Option<[f64; 2]>], there: &There<'_>) -> Polygon {
+    let now = |corner: &Corner| met[corner.place].or_else(|| corner.carried(there));
+    corners.iter().filter_map(now).collect()
+}
+
+/// The closed lines around pieces: sides that no other piece goes along the other way.
+fn outline(pieces: &[Vec<Corner>]) -> Vec<Vec<Corner>> {
+    let sides = || {
+        pieces.iter().flat_map(|corners| {
+            (0..corners.len()).map(move |k| [corners[k], corners[(k + 1) % corners.len()]])
+        })
+    };
+    let mut ways: HashMap<[usize; 2], usize> = HashMap::new();
+    for [from, to] in sides() {
+        *ways.entry([from.place, to.place]).or_default() += 1;
+    }
+    let mut ahead: HashMap<usize, Vec<[Corner; 2]>> = HashMap::new();
+    let mut starts = Vec::new();
+    for side in sides() {
+        let [from, to] = side.map(|corner| corner.place);
+        if from != to && !ways.contains_key(&[to, from]) {
+            ahead.entry(from).or_default().push(side);
+            starts.push(from);
+        }
+    }
+    let mut lines = Vec::new();
+    for start in starts {
+        let mut line: Vec<Corner> = Vec::new();
+        let mut at = start;
+        while let Some([from, to]) = ahead.get_mut(&at).and_then(Vec::pop) {
+            line.push(from);
+            at = to.place;
+            if at == start {
+                line.push(to);
+                break;
+            }
+        }
+        if line.len() > 2 {
+            lines.push(line);
+        }
+    }
+    lines
+}

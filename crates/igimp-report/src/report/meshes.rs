@@ -1,0 +1,141 @@
+//! The study of the mesh error as the rows of a report.
+
+use std::fmt::Write as _;
+
+use serde::Serialize;
+
+use super::rows::{Number, UNKNOWN, grouped, time};
+use super::verdict::Verdict;
+use igimp_results::mesh_study::{MeshSummary, ResultKind, StudyResult, StudySummary};
+use igimp_results::summary::Ending;
+use igimp_text::short;
+
+/// A study.
+#[derive(Serialize)]
+pub(super) struct StudyView {
+    meshes: Vec<MeshView>,
+    rows: Vec<ResultView>,
+    /// The mesh whose stages and pictures are shown.
+    shown: String,
+}
+
+/// A mesh.
+#[derive(Serialize)]
+struct MeshView {
+    label: String,
+    class: &'static str,
+    ending: String,
+    message: String,
+    cells: String,
+    particles: String,
+    unknowns: String,
+    steps: String,
+    time: String,
+    folder: String,
+}
+
+/// A result on all meshes.
+#[derive(Serialize)]
+struct ResultView {
+    name: String,
+    values: Vec<String>,
+    extrapolated: String,
+    uncertainty: String,
+    order: String,
+}
+
+pub(super) fn view(study: &StudySummary) -> StudyView {
+    StudyView {
+        meshes: study.meshes.iter().map(mesh).collect(),
+        rows: study.results.iter().map(result).collect(),
+        shown: study.shown().map_or_else(String::new, MeshSummary::label),
+    }
+}
+
+/// Factors of safety and limit loads as extrapolated.
+pub(super) fn numbers(study: &StudySummary) -> Vec<Number> {
+    let own = |result: &StudyResult| {
+        let name = match result.kind {
+            ResultKind::FactorOfSafety => "Factor of safety",
+            ResultKind::LimitLoad => "Limit load",
+            ResultKind::Check => return None,
+        };
+        let found = result.estimate?;
+        Some(Number {
+            name: format!("{name}, {}", found.lead()),
+            value: found.sentence(),
+            note: format!("with its mesh error, order {}", found.order.sentence()),
+        })
+    };
+    study.results.iter().filter_map(own).collect()
+}
+
+/// Tells in the verdict what the study found, and that a mesh went wrong if one did.
+pub(super) fn add_to(verdict: &mut Verdict, study: &StudySummary) {
+    match study.ending() {
+        Ending::NotConverged => (verdict.class, verdict.word) = ("bad", "Not converged"),
+        Ending::Failed => (verdict.class, verdict.word) = ("bad", "A mesh failed"),
+        _ => {}
+    }
+    for result in &study.results {
+        if let (Some(found), true) = (result.estimate, result.kind != ResultKind::Check) {
+            let _ = write!(
+                verdict.text,
+                " By all meshes, {}: {}, {} (order {}).",
+                found.lead(),
+                result.name,
+                found.sentence(),
+                found.order.sentence()
+            );
+        }
+    }
+    for mesh in &study.meshes {
+        if let Some(message) = mesh.message.as_ref().and_then(|text| text.lines().next()) {
+            let _ = write!(verdict.text, " Mesh {}: {message}", mesh.label());
+        }
+    }
+}
+
+fn mesh(mesh: &MeshSummary) -> MeshView {
+    let class = match mesh.ending {
+        Ending::Done | Ending::Missed => "good",
+        Ending::NotConverged | Ending::Failed => "bad",
+        Ending::Running | Ending::Interrupted => "fair",
+    };
+    MeshView {
+        label: mesh.label(),
+        class,
+        ending: mesh.ending.to_string(),
+        message: mesh.message.clone().unwrap_or_default(),
+        cells: grouped(mesh.size.cells),
+        particles: grouped(mesh.size.particles),
+        unknowns: grouped(mesh.size.unknowns),
+        steps: grouped(mesh.steps),
+        time: time(mesh.seconds),
+        folder: mesh.folder.clone(),
+    }
+}
+
+fn result(result: &StudyResult) -> ResultView {
+    let value = |value: Option<f64>| value.map_or_else(|| UNKNOWN.to_owned(), short);
+    let found = result.estimate;
+    let values = std::iter::zip(&result.values, &result.half_widths).enumerate();
+    let values = values.map(|(mesh, (&own, &width))| {
+        if result.ended_early(mesh) {
+            value(own) + " (ended early)"
+        } else if width > 0.0 {
+            format!("{} ± {}", value(own), short(width))
+        } else {
+            value(own)
+        }
+    });
+    ResultView {
+        name: result.name.clone(),
+        values: values.collect(),
+        extrapolated: value(found.map(|found| found.value)),
+        uncertainty: found.map_or_else(String::new, |found| {
+            format!("± {}", short(found.rounded_uncertainty()))
+        }),
+        order: found.map_or_else(String::new, |found| found.order.sentence()),
+    }
+}

@@ -1,0 +1,499 @@
+//! The rows of the tables of a report, as text.
+
+use serde::Serialize;
+
+use super::verdict::on_safety;
+use igimp_model::check::Band;
+use igimp_results::fields::{Dimension, Scale};
+use igimp_results::mesh_study::MeshSummary;
+use igimp_results::summary::{
+    MaterialShare, MemberSummary, PoreSummary, SafetySummary, StageOutcome, StageSummary, Summary,
+};
+use igimp_text::short;
+
+/// The phases of a stage, in the order of [`StageSummary::phases`].
+pub(super) const PHASES: [&str; 5] = ["set-up", "assembly", "factorisation", "solution", "commit"];
+
+/// What is said of a result whose mesh error nobody asked for.
+const MESH_ERROR_UNKNOWN: &str = "mesh error not known: igimp run --meshes 2 finds it";
+
+/// Stands for what is not a number.
+pub(super) const UNKNOWN: &str = "–";
+
+/// A number with its name, and what a reader has to know of it.
+#[derive(Serialize)]
+pub(super) struct Number {
+    pub name: String,
+    pub(super) value: String,
+    pub(super) note: String,
+}
+
+/// What an engineer looks for first: factors of safety, resistances, displacements, checks.
+pub(super) fn headline(summary: &Summary) -> Vec<Number> {
+    let mut numbers = Vec::new();
+    let mut add = |name: String, value: String, note: String| {
+        numbers.push(Number { name, value, note });
+    };
+    let several = |has: fn(&StageSummary) -> bool, stage: &StageSummary, name: &str| {
+        if summary.stages.iter().filter(|stage| has(stage)).count() > 1 {
+            format!("{name}, {}", stage.name)
+        } else {
+            name.to_owned()
+        }
+    };
+    let mesh_error = match &summary.mesh_study {
+        Some(study) => {
+            let shown = study.shown().map_or_else(String::new, MeshSummary::label);
+            format!("on the mesh {shown}; its error is that of the extrapolated value")
+        }
+        None => MESH_ERROR_UNKNOWN.to_owned(),
+    };
+    for stage in &summary.stages {
+        if let Some(safety) = &stage.safety {
+            let bound = |factor: Option<f64>| factor.map_or_else(|| "?".to_owned(), short);
+            let (from, to) = (bound(safety.stable), bound(safety.failed));
+            let name = several(|stage| stage.safety.is_some(), stage, "Factor of safety");
+            let value = format!("{from}\u{a0}…\u{a0}{to}");
+            add(name, value, mesh_error.clone());
+        }
+    }
+    for stage in &summary.stages {
+        if let Some(peak) = stage.peak_resistance {
+            let name = several(
+                |stage| stage.peak_resistance.is_some(),
+                stage,
+                "Peak resistance",
+            );
+            add(name, quantity(peak, force(summary)), mesh_error.clone());
+        }
+        if let Some(settlement) = stage.settlement {
+            let name = several(|stage| stage.settlement.is_some(), stage, "Settlement");
+            let note = format!("of the footing, at the end of “{}”", stage.name);
+            add(name, length(settlement), note);
+        }
+    }
+    let moved = |stage: &&StageSummary| stage.safety.is_none();
+    if let Some(stage) = summary.stages.iter().rev().find(moved) {
+        let note = format!("of all particles, at the end of “{}”", stage.name);
+        let value = length(stage.largest_displacement);
+        add("Largest displacement".to_owned(), value, note);
+    }
+    if let Some((stage, pores)) = last_pores(summary) {
+        let note = format!(
+            "of any particle, compression positive, at the end of “{}”",
+            stage.name
+        );
+        let value = quantity(pores.largest, "Pa");
+        add("Largest pore pressure".to_owned(), value, note.clone());
+        if let Some([least, most]) = pores.excess {
+            let value = format!("{} to {}", quantity(least, "Pa"), quantity(most, "Pa"));
+            let value = value.replace('-', "−");
+            add("Excess pore pressure".to_owned(), value, note);
+        }
+    }
+    if !summary.checks.is_empty() {
+        let met = summary.checks.iter().filter(|row| row.pass).count();
+        let value = format!("{met} of {}", summary.checks.len());
+        let note = "against references from outside".to_owned();
+        add("Checks met".to_owned(), value, note);
+    }
+    numbers
+}
+
+/// A member of reinforcement at the end of a stage.
+#[derive(Serialize)]
+pub(super) struct MemberView {
+    stage: String,
+    name: String,
+    force: String,
+    head_force: String,
+    at_limit: String,
+    /// Whether forces are those per metre run.
+    per_metre: bool,
+}
+
+/// The tension of reinforcement at the end of the stages that changed it.
+pub(super) fn reinforcement(summary: &Summary) -> Vec<MemberView> {
+    let stages = summary.stages.iter().filter(|own| own.safety.is_none());
+    let per_metre = !summary.size.is_in_space();
+    let unit = force(summary);
+    let view = |(stage, member): (&StageSummary, &MemberSummary)| MemberView {
+        per_metre,
+        stage: stage.name.clone(),
+        name: member.name.clone(),
+        force: quantity(member.force, unit),
+        head_force: quantity(member.head_force, unit),
+        at_limit: format!("{} %", short(100.0 * member.at_limit)),
+    };
+    stages
+        .flat_map(|stage| stage.reinforcement.iter().map(move |own| (stage, own)))
+        .map(view)
+        .collect()
+}
+
+/// Unit of forces: per metre run in the plane.
+fn force(summary: &Summary) -> &'static str {
+    if summary.size.is_in_space() {
+        "N"
+    } else {
+        "N/m"
+    }
+}
+
+/// The last stage that left water in the pores.
+fn last_pores(summary: &Summary) -> Option<(&StageSummary, &PoreSummary)> {
+    let stage = summary
+        .stages
+        .iter()
+        .rfind(|stage| stage.pore_water.is_some())?;
+    Some((stage, stage.pore_water.as_ref()?))
+}
+
+/// What the answer cost.
+pub(super) fn effort(summary: &Summary) -> Vec<Number> {
+    let mut numbers = Vec::new();
+    let mut add = |name: &str, value: String| {
+        let (name, note) = (name.to_owned(), String::new());
+        numbers.push(Number { name, value, note });
+    };
+    let (stages, size) = (&summary.stages, &summary.size);
+    let sum = |of: fn(&StageSummary) -> usize| grouped(stages.iter().map(of).sum());
+    add("Steps", sum(|stage| stage.steps));
+    add("Newton iterations", sum(|stage| stage.iterations));
+    add("Particles", grouped(size.particles));
+    add("Grid cells", grouped(size.cells));
+    add("Most unknowns", grouped(size.unknowns));
+    add("Weight", quantity(size.weight, force(summary)));
+    let volume = if size.is_in_space() { "m³" } else { "m³/m" };
+    add("Volume", format!("{} {volume}", short(size.volume)));
+    add("Time", time(summary.seconds));
+    if summary.output_seconds > 0.0 {
+        add("Of that, writing", time(summary.output_seconds));
+    }
+    if let Some(memory) = summary.peak_memory_mib {
+        add("Most memory", format!("{memory:.0} MiB"));
+    }
+    numbers
+}
+
+/// An entry of the head of the report.
+#[derive(Serialize)]
+pub(super) struct HeadView {
+    name: &'static str,
+    value: String,
+    /// Whether the value is a long code.
+    code: bool,
+}
+
+/// Project, client, author, revision, date, and what the results were made from and with.
+pub(super) fn head(summary: &Summary) -> Vec<HeadView> {
+    let block = &summary.title_block;
+    let entries = [
+        ("Project", &block.project, false),
+        ("Client", &block.client, false),
+        ("Author", &block.author, false),
+        ("Revision", &block.revision, false),
+        ("Date of the run", &summary.date, false),
+        ("Input, SHA-256", &summary.input_sha256, true),
+    ];
+    let program = Some(summary.program.clone()).filter(|program| !program.is_empty());
+    entries
+        .into_iter()
+        .chain([("Program", &program, false)])
+        .filter_map(|(name, value, code)| {
+            let value = value.clone()?;
+            Some(HeadView { name, value, code })
+        })
+        .collect()
+}
+
+/// A check.
+#[derive(Serialize)]
+pub(super) struct CheckView {
+    pass: bool,
+    quantity: String,
+    about: String,
+    measured: String,
+    expected: String,
+    band: String,
+    deviation: String,
+    source: String,
+}
+
+pub(super) fn checks(summary: &Summary) -> Vec<CheckView> {
+    let view = |row: &igimp_results::summary::CheckRow| {
+        let check = &row.check;
+        let share = (check.measured - check.expected) / check.expected.abs();
+        let deviation = match check.band {
+            Band::Relative(_) if share.is_finite() => format!("{:+.2} %", 100.0 * share),
+            _ => String::new(),
+        };
+        CheckView {
+            pass: row.pass,
+            quantity: check.quantity.clone(),
+            about: check.variant.trim().to_owned(),
+            measured: short(check.measured),
+            expected: short(check.expected),
+            band: check.band.to_string(),
+            deviation: deviation.replace('-', "−"),
+            source: check.source.clone(),
+        }
+    };
+    summary.checks.iter().map(view).collect()
+}
+
+/// A stage.
+#[derive(Serialize)]
+pub(super) struct StageView {
+    name: String,
+    kind: String,
+    class: &'static str,
+    outcome: &'static str,
+    reason: String,
+    reached: String,
+    steps: String,
+    at_round_off: usize,
+    cuts: String,
+    iterations: String,
+    displacement: String,
+    plastic: String,
+    time: String,
+    /// Shares in percent; empty where no time was measured.
+    phases: Vec<f64>,
+    phases_text: String,
+}
+
+pub(super) fn stages(summary: &Summary) -> Vec<StageView> {
+    summary.stages.iter().map(stage).collect()
+}
+
+fn stage(stage: &StageSummary) -> StageView {
+    let (class, outcome) = match stage.outcome {
+        StageOutcome::Completed => ("good", "completed"),
+        StageOutcome::Stopped => ("good", "stopped as asked"),
+        StageOutcome::NotConverged => ("bad", "not converged"),
+        StageOutcome::Interrupted => ("fair", "interrupted"),
+    };
+    let all: f64 = stage.phases.iter().sum();
+    let phases: Vec<f64> = if all > 0.0 && all.is_finite() {
+        let share = |seconds: &f64| (1000.0 * seconds / all).round() / 10.0;
+        stage.phases.iter().map(share).collect()
+    } else {
+        Vec::new()
+    };
+    let text: Vec<String> = std::iter::zip(PHASES, &phases)
+        .map(|(name, share)| format!("{name} {share:.0} %"))
+        .collect();
+    StageView {
+        name: stage.name.clone(),
+        kind: stage.kind.clone(),
+        class,
+        outcome,
+        reason: stage.reason.clone(),
+        reached: percent(stage.reached),
+        steps: grouped(stage.steps),
+        at_round_off: stage.at_round_off,
+        cuts: grouped(stage.cuts),
+        iterations: grouped(stage.iterations),
+        displacement: length(stage.largest_displacement),
+        plastic: percent(stage.plastic_share),
+        time: time(stage.seconds),
+        phases,
+        phases_text: text.join(", "),
+    }
+}
+
+/// A search for a factor of safety.
+#[derive(Serialize)]
+pub(super) struct SafetyView {
+    stage: String,
+    text: String,
+    trials: Vec<TrialView>,
+    path: Vec<PathView>,
+    shares: Vec<ShareView>,
+}
+
+/// The share of a material in a factor of safety.
+#[derive(Serialize)]
+struct ShareView {
+    material: String,
+    dissipation: String,
+    /// Each strength: its symbol, the change of the factor with it, and that in percent for a bar.
+    strengths: Vec<(&'static str, String, f64)>,
+}
+
+impl ShareView {
+    fn of(share: &MaterialShare) -> Self {
+        let bar = |what, by: f64| (what, format!("{by:.3}"), (100.0 * by).clamp(0.0, 100.0));
+        let friction = share.friction.map(|friction| bar("tan φ", friction));
+        let kept = if share.is_reduced { "" } else { " (kept)" };
+        Self {
+            material: format!("{}{kept}", share.material),
+            dissipation: percent(share.dissipation),
+            strengths: std::iter::once(bar("c", share.cohesion))
+                .chain(friction)
+                .collect(),
+        }
+    }
+}
+
+/// An equilibrium of a path.
+#[derive(Serialize)]
+struct PathView {
+    factor: String,
+    displacement: String,
+    dissipated: String,
+    plastic: String,
+    iterations: String,
+}
+
+/// A trial of a search.
+#[derive(Serialize)]
+struct TrialView {
+    srf: String,
+    stable: bool,
+    reason: String,
+    displacement: String,
+    steps: String,
+    iterations: String,
+    cuts: String,
+}
+
+pub(super) fn safety(summary: &Summary) -> Vec<SafetyView> {
+    let view = |stage: &StageSummary| {
+        let safety = stage.safety.as_ref()?;
+        let trials = safety.trials.iter().map(|trial| TrialView {
+            srf: format!("{:.4}", trial.srf),
+            stable: trial.stable,
+            reason: trial.reason.clone(),
+            displacement: length(trial.displacement),
+            steps: grouped(trial.steps),
+            iterations: grouped(trial.iterations),
+            cuts: grouped(trial.cuts),
+        });
+        let points = safety.path.iter().flat_map(|path| &path.points);
+        let path = points.map(|point| PathView {
+            factor: format!("{:.4}", point.factor),
+            displacement: length(point.displacement),
+            dissipated: percent(point.dissipated),
+            plastic: percent(point.plastic_share),
+            iterations: grouped(point.iterations),
+        });
+        let shares = safety.path.iter().flat_map(|path| &path.shares);
+        let shares = shares.flat_map(|shares| &shares.materials);
+        Some(SafetyView {
+            shares: shares.map(ShareView::of).collect(),
+            path: path.collect(),
+            stage: stage.name.clone(),
+            text: on_safety(safety).join(" "),
+            trials: trials.collect(),
+        })
+    };
+    summary.stages.iter().filter_map(view).collect()
+}
+
+/// The factor of safety in words.
+pub(super) fn interval(safety: &SafetySummary) -> String {
+    match (safety.stable, safety.failed) {
+        (Some(stable), Some(failed)) => format!(
+            "The factor of safety lies between {} and {}",
+            short(stable),
+            short(failed)
+        ),
+        (Some(stable), None) => format!(
+            "The factor of safety is at least {}; no factor was found that fails",
+            short(stable)
+        ),
+        (None, Some(failed)) => format!(
+            "The factor of safety is below {}; no factor was found that stands",
+            short(failed)
+        ),
+        (None, None) => "No factor of safety was found".to_owned(),
+    }
+}
+
+/// A share as a percentage.
+pub(super) fn percent(share: f64) -> String {
+    let percent = 100.0 * share;
+    if !percent.is_finite() {
+        return UNKNOWN.to_owned();
+    }
+    if percent.abs() < 9.95 && percent.round().to_string() != format!("{percent}") {
+        format!("{percent:.1} %")
+    } else {
+        format!("{percent:.0} %")
+    }
+}
+
+/// A length in mm or m.
+fn length(metres: f64) -> String {
+    if !metres.is_finite() {
+        return UNKNOWN.to_owned();
+    }
+    let scale = Scale::of(Dimension::Displacement, [metres]);
+    format!("{} {}", short(metres / scale.divide_by), scale.unit)
+}
+
+/// A number with a prefix of its unit.
+fn quantity(value: f64, unit: &str) -> String {
+    let magnitude = value.abs();
+    let (divide_by, prefix) = if magnitude >= 1e6 {
+        (1e6, "M")
+    } else if magnitude >= 1e3 {
+        (1e3, "k")
+    } else {
+        (1.0, "")
+    };
+    format!("{} {prefix}{unit}", short(value / divide_by))
+}
+
+/// A wall-clock time.
+pub(super) fn time(seconds: f64) -> String {
+    if !seconds.is_finite() || seconds < 0.0 {
+        return UNKNOWN.to_owned();
+    }
+    let whole = seconds.round() as u64;
+    match whole {
+        0..60 => format!("{} s", short((10.0 * seconds).round() / 10.0)),
+        60..3600 => format!("{} min {} s", whole / 60, whole % 60),
+        _ => format!("{} h {} min", whole / 3600, whole % 3600 / 60),
+    }
+}
+
+/// A count with narrow no-break spaces between thousands.
+pub(super) fn grouped(count: usize) -> String {
+    let digits = count.to_string();
+    let mut text = String::with_capacity(digits.len() + 4);
+    for (place, digit) in digits.chars().enumerate() {
+        if place > 0 && (digits.len() - place).is_multiple_of(3) {
+            text.push('\u{202f}');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_read_well() {
+        assert_eq!(
+            [0.0, 0.034, 0.5, 1.0].map(percent),
+            ["0 %", "3.4 %", "50 %", "100 %"]
+        );
+        assert_eq!(grouped(1_234_567), "1\u{202f}234\u{202f}567");
+        assert_eq!(grouped(123), "123");
+        assert_eq!(
+            [0.04, 12.34, 61.0, 7325.0].map(time),
+            ["0 s", "12.3 s", "1 min 1 s", "2 h 2 min"]
+        );
+        assert_eq!(length(0.0123), "12.3 mm");
+        assert_eq!(quantity(2.5e7, "N/m"), "25 MN/m");
+        assert_eq!(
+            [time, length, percent].map(|text| text(f64::NAN)),
+            [UNKNOWN; 3]
+        );
+    }
+}

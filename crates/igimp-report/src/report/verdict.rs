@@ -1,0 +1,209 @@
+//! The outcome of a run in a few sentences.
+
+use std::fmt::Write as _;
+
+use serde::Serialize;
+
+use super::rows::{interval, percent};
+use igimp_results::summary::{
+    CheckRow, Kinematic, PathPoint, PathSummary, SafetySummary, StageOutcome, StageSummary,
+    StrengthShares, Summary,
+};
+use igimp_text::short;
+
+/// A share of moving mass below this may be a failure of a small part only \[-\].
+const LOCAL: f64 = 0.05;
+
+/// The first thing that a reader sees.
+#[derive(Debug, PartialEq, Serialize)]
+pub(super) struct Verdict {
+    /// `good`, `fair` or `bad`.
+    pub(super) class: &'static str,
+    pub(super) word: &'static str,
+    pub(super) text: String,
+}
+
+/// The verdict on a run: how it ended, what the checks say, and the factor of safety.
+pub(super) fn verdict(summary: &Summary) -> Verdict {
+    let missed: Vec<&CheckRow> = summary.checks.iter().filter(|row| !row.pass).collect();
+    let failed = |stage: &&StageSummary| stage.outcome == StageOutcome::NotConverged;
+    let (class, word) = if summary.stages.iter().any(|stage| failed(&stage)) {
+        ("bad", "Not converged")
+    } else if is_interrupted(summary) {
+        ("fair", "Interrupted")
+    } else if !missed.is_empty() {
+        ("bad", "Reference missed")
+    } else if summary.stages.is_empty() {
+        ("fair", "Nothing ran")
+    } else {
+        ("good", "Done")
+    };
+    let mut sentences = vec![ending(summary)];
+    sentences.extend(on_checks(summary, &missed));
+    for stage in &summary.stages {
+        if let Some(safety) = &stage.safety {
+            sentences.extend(on_safety(safety));
+        }
+    }
+    Verdict {
+        class,
+        word,
+        text: sentences.join(" "),
+    }
+}
+
+fn is_interrupted(summary: &Summary) -> bool {
+    let interrupted = |stage: &StageSummary| stage.outcome == StageOutcome::Interrupted;
+    summary.interrupted || summary.stages.iter().any(interrupted)
+}
+
+/// How the stages ended.
+fn ending(summary: &Summary) -> String {
+    let with = |outcome| summary.stages.iter().find(|stage| stage.outcome == outcome);
+    if let Some(stage) = with(StageOutcome::NotConverged) {
+        return format!(
+            "Stage “{}” found no equilibrium beyond {} of its way{}. What was computed until then \
+             is kept.",
+            stage.name,
+            percent(stage.reached),
+            because(&stage.reason)
+        );
+    }
+    if let Some(stage) = with(StageOutcome::Interrupted) {
+        return format!(
+            "The run was interrupted in stage “{}” at {} of its way; it can be resumed.",
+            stage.name,
+            percent(stage.reached)
+        );
+    }
+    if summary.interrupted {
+        return "The run was interrupted; it can be resumed.".to_owned();
+    }
+    let whole = match summary.stages.len() {
+        0 => return "No stage was run.".to_owned(),
+        1 => format!("Stage “{}” was completed.", summary.stages[0].name),
+        count => format!("All {count} stages were completed."),
+    };
+    match with(StageOutcome::Stopped) {
+        None => whole,
+        Some(stage) => format!(
+            "{whole} Stage “{}” was ended by its own condition at {} of its way{}.",
+            stage.name,
+            percent(stage.reached),
+            because(&stage.reason)
+        ),
+    }
+}
+
+/// A reason after a colon, without its full stop.
+fn because(reason: &str) -> String {
+    match reason.trim().trim_end_matches('.') {
+        "" => String::new(),
+        reason => format!(": {reason}"),
+    }
+}
+
+fn on_checks(summary: &Summary, missed: &[&CheckRow]) -> Option<String> {
+    let count = summary.checks.len();
+    match (missed, count) {
+        (_, 0) => None,
+        ([], 1) => Some("The one check holds.".to_owned()),
+        ([], _) => Some(format!("All {count} checks hold.")),
+        ([first, rest @ ..], _) => {
+            let check = &first.check;
+            let others = match rest.len() {
+                0 => String::new(),
+                1 => ", and another one".to_owned(),
+                more => format!(", and {more} others"),
+            };
+            Some(format!(
+                "{} of {count} checks {}: {} is {}, expected {} ({}){others}.",
+                missed.len(),
+                if missed.len() == 1 { "fails" } else { "fail" },
+                check.quantity,
+                short(check.measured),
+                short(check.expected),
+                check.band
+            ))
+        }
+    }
+}
+
+/// The factor of safety with what belongs to it.
+pub(super) fn on_safety(safety: &SafetySummary) -> Vec<String> {
+    let mut sentences = vec![format!("{}.", interval(safety))];
+    let criterion = safety.criterion.trim().trim_end_matches('.');
+    if !criterion.is_empty() {
+        sentences.push(format!("Counted as failure: {criterion}."));
+    }
+    if let Some(path) = &safety.path {
+        sentences.extend(on_path(path));
+    }
+    if !safety.materials.is_empty() {
+        let not = if safety.excluded.is_empty() {
+            String::new()
+        } else {
+            format!(", not in {}", list(&safety.excluded))
+        };
+        let materials = list(&safety.materials);
+        sentences.push(format!("Strength was reduced in {materials}{not}."));
+    }
+    if let Some(share) = safety.moving_mass {
+        let local = if share < LOCAL {
+            ": so little may be a local failure; exclude its material to find the global one"
+        } else {
+            ""
+        };
+        sentences.push(format!(
+            "In the first unstable state {} of the mass moves by more than a tenth of the largest \
+             displacement{local}.",
+            percent(share)
+        ));
+    }
+    sentences
+}
+
+/// Knee, mechanism and displacement scale of a path.
+fn on_path(path: &PathSummary) -> Option<String> {
+    let at = |point: &PathPoint| format!("{:.3} at {} m", point.factor, short(point.displacement));
+    let (knee, mechanism) = (path.knee.as_ref()?, path.mechanism.as_ref()?);
+    let scale = path.displacement_scale?;
+    Some(format!(
+        "The path of equilibria has its knee at {} and is a mechanism from {} on; it ended because {}. The displacement \
+         scale γH²/E is {} m.{}",
+        at(knee),
+        at(mechanism),
+        path.end.sentence(),
+        short(scale),
+        path.shares.as_ref().map_or_else(String::new, on_shares)
+    ))
+}
+
+/// What decides the factor: reinforcement, and the kinematic theorem.
+fn on_shares(shares: &StrengthShares) -> String {
+    let mut text = String::new();
+    if shares.reinforcement > 0.0 {
+        let share = percent(shares.reinforcement);
+        let _ = write!(
+            text,
+            " Of the last step {share} is dissipated in reinforcement."
+        );
+    }
+    if let Some(Kinematic { factor, missed }) = shares.kinematic {
+        let _ = write!(
+            text,
+            " By the kinematic theorem its displacements give {factor:.4}, in doubt by {} for the volume that they miss.",
+            percent(missed)
+        );
+    }
+    text
+}
+
+/// "a", "a and b", "a, b and c".
+fn list(names: &[String]) -> String {
+    match names {
+        [] => String::new(),
+        [one] => one.clone(),
+        [some @ .., last] => format!("{} and {last}", some.join(", ")),
+    }
+}

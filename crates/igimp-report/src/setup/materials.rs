@@ -1,0 +1,171 @@
+//! Materials in words.
+
+use super::{NONE, kilo, table};
+use igimp_model::{Case, Flow, Material, Profile, Strength, StressShare, Variation};
+use igimp_results::summary::SetupTable;
+use igimp_text::short;
+
+pub(super) fn materials<const D: usize>(case: &Case<D>) -> SetupTable {
+    let header = [
+        "Material",
+        "Law",
+        "Unit weight [kN/m³]",
+        "E [MPa]",
+        "ν [−]",
+        "Strength",
+        "K₀ [−]",
+    ];
+    table(
+        "Materials",
+        &header,
+        case.materials.iter().map(material).collect(),
+    )
+}
+
+fn material(material: &Material) -> Vec<String> {
+    let own = &material.profiles;
+    let cohesive = || match &own.strength {
+        Some(profile) => in_words(profile, over(1e3), " kPa"),
+        None => kilo(material.cohesive(), "Pa"),
+    };
+    let or_constant = |profile: &Option<Profile>, constant: f64, scale: f64| match profile {
+        Some(profile) => in_words(profile, over(scale), ""),
+        None => short(constant / scale),
+    };
+    let (law, strength) = match material.strength {
+        Strength::Elastic => ("elastic", "no limit".to_owned()),
+        Strength::VonMises { .. } => ("von Mises", format!("c_u = {}", cohesive())),
+        Strength::Tresca { .. } => ("Tresca", format!("c_u = {}", cohesive())),
+        Strength::MohrCoulomb {
+            friction_angle,
+            dilation_angle,
+            flow,
+            tension_cutoff,
+            ..
+        } => {
+            let degrees = |angle: f64| short(angle.to_degrees());
+            let friction = own.friction.as_ref().map_or_else(
+                || format!("{}°", degrees(friction_angle)),
+                |profile| in_words(profile, |tangent| degrees(tangent.atan()), "°"),
+            );
+            let cutoff = tension_cutoff.map_or_else(String::new, |limit| {
+                format!(", tension up to {}", kilo(limit, "Pa"))
+            });
+            let strength = format!(
+                "c = {}, φ = {}, ψ = {}°{}{cutoff}",
+                cohesive(),
+                friction,
+                degrees(dilation_angle),
+                match flow {
+                    Flow::Dilation => "",
+                    Flow::Davis => ", flow by Davis",
+                }
+            );
+            ("Mohr–Coulomb", strength)
+        }
+    };
+    vec![
+        material.name.clone(),
+        law.to_owned(),
+        or_constant(&own.unit_weight, material.unit_weight, 1e3),
+        or_constant(&own.young, material.young, 1e6),
+        short(material.poisson),
+        strength,
+        material.k0.map_or_else(|| NONE.to_owned(), short),
+    ]
+}
+
+/// Most rows of a profile that are told one by one.
+const MOST_ROWS: usize = 6;
+
+/// Prints a value divided by a scale.
+fn over(scale: f64) -> impl Fn(f64) -> String {
+    move |value| short(value / scale)
+}
+
+/// A profile in words, its values as they are `printed` before a unit.
+fn in_words(profile: &Profile, printed: impl Fn(f64) -> String, unit: &str) -> String {
+    let (variation, is_by_depth) = match profile {
+        Profile::Level(variation) => (variation, false),
+        Profile::Depth(variation) => (variation, true),
+        Profile::StressShare(share) => return share_in_words(share),
+        Profile::Raster(raster) => {
+            let values = raster.values.iter().flatten().copied();
+            let least = values.clone().fold(f64::INFINITY, f64::min);
+            let greatest = values.fold(f64::NEG_INFINITY, f64::max);
+            return format!(
+                "{}{unit} to {}{unit} by a raster of {} by {} points",
+                printed(least),
+                printed(greatest),
+                raster.x.len(),
+                raster.y.len()
+            );
+        }
+    };
+    let place = |level: f64| {
+        if is_by_depth {
+            format!("at a depth of {} m", short(0.0 - level))
+        } else {
+            format!("at y = {} m", short(level))
+        }
+    };
+    match variation {
+        Variation::Gradient {
+            from,
+            at_top,
+            gradient,
+        } => {
+            let place = if is_by_depth {
+                "at the surface".to_owned()
+            } else {
+                format!("down to y = {} m", short(*from))
+            };
+            format!(
+                "{}{unit} {place}, {}{unit} per metre {} below",
+                printed(*at_top),
+                printed(gradient.abs()),
+                if *gradient < 0.0 { "less" } else { "more" }
+            )
+        }
+        Variation::Table(rows) if rows.len() <= MOST_ROWS => {
+            let row =
+                |[level, value]: &[f64; 2]| format!("{}{unit} {}", printed(*value), place(*level));
+            let rows: Vec<String> = rows.iter().rev().map(row).collect();
+            rows.join(", ")
+        }
+        Variation::Table(rows) => {
+            let ([low, deepest], [high, highest]) = (rows[0], rows[rows.len() - 1]);
+            format!(
+                "{}{unit} {} to {}{unit} {} by a table of {} {}",
+                printed(highest),
+                place(high),
+                printed(deepest),
+                place(low),
+                rows.len(),
+                if is_by_depth { "depths" } else { "levels" }
+            )
+        }
+    }
+}
+
+/// A strength that follows the stress, in words.
+fn share_in_words(share: &StressShare) -> String {
+    let ocr = match &share.ocr_profile {
+        Some(profile) => in_words(profile, short, ""),
+        None => short(share.ocr),
+    };
+    let consolidated = if share.ocr_profile.is_none() && share.ocr.total_cmp(&1.0).is_eq() {
+        String::new()
+    } else {
+        format!(" OCR^{}, OCR = {ocr}", short(share.exponent))
+    };
+    let least = if share.at_least > 0.0 {
+        format!(", at least {}", kilo(share.at_least, "Pa"))
+    } else {
+        String::new()
+    };
+    let water = share.water_level.map_or_else(String::new, |level| {
+        format!(", water at rest to y = {} m", short(level))
+    });
+    format!("{} σ′_v0{consolidated}{least}{water}", short(share.ratio))
+}

@@ -1,0 +1,224 @@
+//! Stages in words.
+
+use std::fmt::Write as _;
+
+use igimp_assembly::Geometry;
+
+use super::{kilo, table};
+use igimp_model::{
+    Case, Construction, Load, Reduction, ReductionPath, RigidDrive, RigidMove, SearchMethod, Stage,
+    StageKind, StopWhen,
+};
+use igimp_results::summary::SetupTable;
+use igimp_text::short;
+
+pub(super) fn stages<const D: usize>(case: &Case<D>) -> SetupTable {
+    let rows = case.stages.iter().enumerate().map(|(number, stage)| {
+        let from = stage.start_from.map_or_else(
+            || "undeformed, free of stress".to_owned(),
+            |from| case.stages[from].name.clone(),
+        );
+        let mut what = vec![happens(case, stage)];
+        for &member in &stage.install {
+            what.push(format!("{} installed", case.reinforcement[member].name));
+        }
+        if stage.geometry == Geometry::Given {
+            what.push("on the geometry as it is".to_owned());
+        }
+        what.extend(ends(case, &stage.stop_when));
+        if stage.drained {
+            what.push("all soil drains".to_owned());
+        }
+        if stage.reset_displacements {
+            what.push("displacements count from its end on".to_owned());
+        }
+        vec![
+            (number + 1).to_string(),
+            stage.name.clone(),
+            what.join("; "),
+            from,
+            stage.steps.to_string(),
+        ]
+    });
+    let header = ["", "Stage", "What happens", "Starts from", "Steps"];
+    table("Stages as planned", &header, rows.collect())
+}
+
+fn happens<const D: usize>(case: &Case<D>, stage: &Stage) -> String {
+    let materials = |which: &[usize]| {
+        let names: Vec<&str> = which
+            .iter()
+            .map(|&k| case.materials[k].name.as_str())
+            .collect();
+        names.join(", ")
+    };
+    match &stage.kind {
+        StageKind::Gravity {
+            factor,
+            horizontal,
+            across,
+            vertical,
+        } => {
+            let mut told = format!("gravity to {}", times(*factor, "value"));
+            let shares = [
+                (horizontal, "to the right"),
+                (across, "backwards"),
+                (vertical, "upwards"),
+            ];
+            for (share, whither) in shares {
+                if let Some(share) = share {
+                    let _ = write!(
+                        told,
+                        ", pseudo-static force of {} % of the weight {whither}",
+                        short(100.0 * share)
+                    );
+                }
+            }
+            told
+        }
+        StageKind::K0 => "stresses of level ground at rest (K₀), then equilibrium".to_owned(),
+        StageKind::Load { loads, factor } => {
+            let name = |&k: &usize| case.loads[k].name.as_str();
+            let names: Vec<&str> = loads.iter().map(name).collect();
+            format!("{} to {}", names.join(", "), times(*factor, "size"))
+        }
+        StageKind::Displacement { load, settlement } => {
+            let Load { name, .. } = &case.loads[*load];
+            format!("{name} pushed down by {} m", short(*settlement))
+        }
+        StageKind::Construction(own) => construction_in_words(case, own),
+        StageKind::Rigid(moves) => {
+            let told: Vec<String> = moves.iter().map(|own| moves_in_words(case, own)).collect();
+            told.join("; ")
+        }
+        StageKind::StrengthReduction(reduction) => {
+            let path = match reduction.path {
+                ReductionPath::Reduce => "step by step",
+                ReductionPath::Gravity => "with gravity raised anew",
+            };
+            let strength = materials(&reduction.materials);
+            match reduction.search {
+                SearchMethod::Continuation => format!(
+                    "search for the factor of safety along the path of equilibria, strength of {strength} reduced {path}"
+                ),
+                SearchMethod::Trials => format!(
+                    "search for the factor of safety to within {}, strength of {strength} reduced {path}",
+                    short(reduction.tolerance)
+                ),
+            }
+        }
+        StageKind::RunOut(run_out) => {
+            let by = match run_out.reduction {
+                Reduction::TimesFos(times) => {
+                    format!("{} times the factor of safety", short(times))
+                }
+                Reduction::Factor(factor) => short(factor),
+            };
+            format!(
+                "motion until rest, strength of {} divided by {by}",
+                materials(&run_out.materials)
+            )
+        }
+    }
+}
+
+/// What a construction stage changes, in words.
+fn construction_in_words<const D: usize>(case: &Case<D>, own: &Construction) -> String {
+    let names = |which: &[usize]| {
+        let names: Vec<&str> = which.iter().map(|&k| &*case.bodies[k].name).collect();
+        names.join(", ")
+    };
+    let mut parts = Vec::new();
+    if !own.place.is_empty() {
+        parts.push(format!("{} placed", names(&own.place)));
+    }
+    if !own.remove.is_empty() {
+        parts.push(format!("{} taken away", names(&own.remove)));
+    }
+    for &(body, material) in &own.materials {
+        let (body, material) = (&case.bodies[body].name, &case.materials[material].name);
+        parts.push(format!("{body} becomes {material}"));
+    }
+    if let Some(water) = own.water {
+        parts.push(format!("water: {}", case.water[water].name));
+    }
+    if own.dissipate {
+        parts.push("excess pore pressure gone".to_owned());
+    }
+    parts.join("; ")
+}
+
+/// What a stage does to a rigid body, in words.
+fn moves_in_words<const D: usize>(case: &Case<D>, own: &RigidMove) -> String {
+    let name = &case.rigid[own.body].name;
+    format!("{name}: {}", drives_in_words::<D>(own))
+}
+
+/// What drives the components of the motion of a rigid body in a stage, in words.
+pub(super) fn drives_in_words<const D: usize>(own: &RigidMove) -> String {
+    let (names, force, moment): (&[&str], _, _) = if D == 2 {
+        (&["x", "y", "rotation"], "N/m", "N m/m")
+    } else {
+        let names = &[
+            "x",
+            "y",
+            "z",
+            "rotation about x",
+            "rotation about y",
+            "rotation about z",
+        ];
+        (names, "N", "N m")
+    };
+    let parts: Vec<String> = std::iter::zip(names, own.drives)
+        .filter_map(|(name, drive)| {
+            let about = name.strip_prefix("rotation");
+            Some(match (drive?, about) {
+                (RigidDrive::By(by), Some(_)) => format!("{name} by {} rad", short(by)),
+                (RigidDrive::By(by), None) => format!("{name} by {} m", short(by)),
+                (RigidDrive::Force(0.0), _) => format!("{name} free"),
+                (RigidDrive::Force(own), Some(about)) => {
+                    format!("moment{about} to {}", kilo(own, moment))
+                }
+                (RigidDrive::Force(own), None) => {
+                    format!("force in {name} to {}", kilo(own, force))
+                }
+            })
+        })
+        .collect();
+    if parts.is_empty() {
+        "held".to_owned()
+    } else {
+        parts.join(", ")
+    }
+}
+
+/// A multiple in words.
+fn times(factor: f64, of: &str) -> String {
+    if (factor - 1.0).abs() < 1e-12 {
+        format!("its full {of}")
+    } else {
+        format!("{} times its {of}", short(factor))
+    }
+}
+
+/// The conditions that end a stage early.
+fn ends<const D: usize>(case: &Case<D>, stop: &StopWhen) -> Vec<String> {
+    let mut words = Vec::new();
+    if let Some(limit) = stop.displacement {
+        let whose = stop.monitor.map_or_else(
+            || "the largest displacement".to_owned(),
+            |monitor| format!("the displacement of {}", case.monitors[monitor].name),
+        );
+        words.push(format!("ends when {whose} is {} m", short(limit)));
+    }
+    if stop.no_equilibrium {
+        words.push("ends for want of equilibrium".to_owned());
+    }
+    if let Some(share) = stop.load_grows_less_than {
+        let share = short(100.0 * share);
+        words.push(format!(
+            "ends when the load grows by less than {share} % in a step"
+        ));
+    }
+    words
+}

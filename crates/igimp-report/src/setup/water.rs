@@ -1,0 +1,116 @@
+//! Conditions of the water, and what the soil does with it, as tables.
+
+use super::{NONE, kilo, point, table};
+use igimp_model::{Case, Drainage, Material, PoreSource, StageKind, WaterCondition};
+use igimp_results::summary::SetupTable;
+use igimp_text::short;
+
+/// Most points of a line that are listed one by one.
+const MOST_POINTS: usize = 12;
+
+/// The conditions of the water.
+pub(super) fn conditions<const D: usize>(case: &Case<D>) -> SetupTable {
+    let rows = case.water.iter().enumerate();
+    let rows = rows.map(|(index, own)| condition(case, index, own));
+    let header = [
+        "Water",
+        "Pore pressure",
+        "Bodies with their own",
+        "In force",
+        "Unit weight [kN/m³]",
+    ];
+    table("Water", &header, rows.collect())
+}
+
+fn condition<const D: usize>(case: &Case<D>, index: usize, own: &WaterCondition) -> Vec<String> {
+    let mut pressure = source::<D>(&own.source);
+    if own.carried {
+        pressure.push_str("; carried along by the soil");
+    }
+    let bodies = own.bodies.iter();
+    let bodies: Vec<String> = bodies
+        .map(|(body, own)| format!("{}: {}", case.bodies[*body].name, source::<D>(own)))
+        .collect();
+    let calls = case.stages.iter().filter(
+        |stage| matches!(&stage.kind, StageKind::Construction(own) if own.water == Some(index)),
+    );
+    let start = (index == 0).then(|| "from the start".to_owned());
+    let calls = calls.map(|stage| format!("from stage {} on", stage.name));
+    let force: Vec<String> = start.into_iter().chain(calls).collect();
+    let or_none = |list: &[String]| match list {
+        [] => NONE.to_owned(),
+        list => list.join("; "),
+    };
+    vec![
+        own.name.clone(),
+        pressure,
+        or_none(&bodies),
+        or_none(&force),
+        short(case.water_unit_weight / 1e3),
+    ]
+}
+
+fn source<const D: usize>(own: &PoreSource) -> String {
+    match own {
+        PoreSource::Dry => "dry".to_owned(),
+        PoreSource::Points(raster) => {
+            let values = raster.values.iter().flatten().copied();
+            format!(
+                "up to {} kPa by a raster of {} by {} points",
+                short(values.fold(0.0, f64::max) / 1e3),
+                raster.x.len(),
+                raster.y.len()
+            )
+        }
+        PoreSource::Surface(terrain) => {
+            let (lower, upper) = terrain.bounds();
+            format!(
+                "table by a surface from z = {} m to {} m",
+                short(lower[2]),
+                short(upper[2])
+            )
+        }
+        PoreSource::Drained(own) => format!(
+            "table level at z = {} m within the ground, along its surface, and at z = {} m outside",
+            short(own.inside()),
+            short(own.outside())
+        ),
+        PoreSource::Ratio(ratio) => format!("r_u = {}", short(*ratio)),
+        PoreSource::Table(points) => match points.as_slice() {
+            [only] => {
+                let up = if D == 2 { "y" } else { "z" };
+                format!("table level at {up} = {} m", short(only[1]))
+            }
+            points if points.len() <= MOST_POINTS => {
+                let points: Vec<String> = points.iter().map(|&at| point(at)).collect();
+                format!("table through {} m", points.join(" "))
+            }
+            points => format!("table through {} points", points.len()),
+        },
+    }
+}
+
+/// What materials do with water; nothing where there is none, and no soil that makes pore pressure.
+pub(super) fn soils<const D: usize>(case: &Case<D>) -> SetupTable {
+    let is_undrained = |own: &Material| matches!(own.drainage, Drainage::Undrained { .. });
+    let is_told = !case.water.is_empty() || case.materials.iter().any(is_undrained);
+    let soils = case.materials.iter().filter(|_| is_told);
+    let rows = soils.map(|own| {
+        let drainage = match own.drainage {
+            Drainage::Drained => "drained; strength by effective stress".to_owned(),
+            Drainage::Undrained { stiffness } => format!(
+                "undrained; strength by effective stress, water of K_w/n = {}",
+                kilo(stiffness, "Pa")
+            ),
+            Drainage::Total => "strength by total stress".to_owned(),
+        };
+        let saturated = own.saturated.unwrap_or(own.unit_weight);
+        vec![own.name.clone(), short(saturated / 1e3), drainage]
+    });
+    let header = [
+        "Material",
+        "Unit weight below the table [kN/m³]",
+        "Drainage",
+    ];
+    table("Soil and water", &header, rows.collect())
+}

@@ -1,0 +1,149 @@
+//! Parts of pages that show frames in a browser: `igimp view`, and the frames of a report.
+//!
+//! The script draws plane and space alike, and needs no other script and no network. It takes frames as
+//! [`packed`] makes them of those in `paraview/`.
+
+mod packed;
+
+use std::fmt::Write as _;
+use std::fs;
+use std::path::Path;
+
+use igimp_figures::ColourMap;
+use rayon::prelude::*;
+use serde::Serialize;
+
+use igimp_results::pvd;
+pub use packed::{Keep, packed};
+
+/// What stands in the section `soil` of a page: choices, canvas, slider.
+pub const SECTION: &str = include_str!("viewer/soil.html");
+
+/// The style of that section; the page gives the colours `--card`, `--line` and `--soft`.
+pub const STYLE: &str = include_str!("viewer/viewer.css");
+
+/// The script in parts.
+const PARTS: [&str; 7] = [
+    include_str!("viewer/frame.js"),
+    include_str!("viewer/camera.js"),
+    include_str!("viewer/gl.js"),
+    include_str!("viewer/axes.js"),
+    include_str!("viewer/scene.js"),
+    include_str!("viewer/pointing.js"),
+    include_str!("viewer/viewer.js"),
+];
+
+/// Most bytes of the last frame of a report, and of all its frames together.
+const MOST_OF_LAST: usize = 14_000_000;
+const MOST: usize = 4_000_000;
+
+/// Largest file of a frame that is read \[bytes\].
+const LARGEST_FILE: u64 = 2_000_000_000;
+
+/// The script that makes the section work, by its class `Viewer`.
+pub fn script() -> String {
+    let mut text = String::new();
+    let ends = [("grey", vec![[245, 245, 245], [20, 20, 20]])];
+    let maps = [
+        ("viridis", ColourMap::Sequential),
+        ("diverging", ColourMap::Diverging),
+    ]
+    .map(|(name, map)| {
+        let colours = (0..=10).map(|k| map.at(f64::from(k) / 10.0).0);
+        (name, colours.collect::<Vec<_>>())
+    });
+    text += "// Colours from the low end to the high end, those of the pictures.\nconst MAPS = {\n";
+    for (name, colours) in maps.iter().chain(&ends) {
+        let _ = writeln!(text, "  {name}: {colours:?},");
+    }
+    text += "};\n\n";
+    for part in PARTS {
+        text += part;
+        text.push('\n');
+    }
+    text
+}
+
+/// A frame of a results folder as pages take it, by its file; none where it cannot be read.
+pub fn frame(file: &Path, keep: Keep) -> Option<String> {
+    let about = fs::symlink_metadata(file).ok()?;
+    if !about.is_file() || about.len() > LARGEST_FILE {
+        return None;
+    }
+    packed(&fs::read_to_string(file).ok()?, keep)
+}
+
+/// The frames of a results folder, as a report holds them.
+#[derive(Debug, Serialize)]
+pub(super) struct Held {
+    section: &'static str,
+    style: &'static str,
+    script: String,
+    /// Those that fit into a page, the last among them; none if that one is too large.
+    frames: Vec<HeldFrame>,
+    /// How many there are.
+    all: usize,
+    /// The size of the frames in words, or that of the last frame where there is none.
+    size: String,
+}
+
+/// A frame within a page.
+#[derive(Debug, Serialize)]
+struct HeldFrame {
+    /// What it is called.
+    label: String,
+    data: String,
+    /// The rigid bodies of that frame, where the case has some.
+    bodies: Option<String>,
+}
+
+/// The last frame of particles, and as many before it as there is room for; none if it cannot be read.
+pub(super) fn held(folder: &Path) -> Option<Held> {
+    let folder = folder.join("paraview");
+    let particles = pvd::frames(&folder, pvd::PARTICLES)?;
+    let bodies = pvd::frames(&folder, pvd::RIGID).unwrap_or_default();
+    let all = particles.len();
+    let of = |k: usize, keep| {
+        let body = bodies.get(k);
+        Some(HeldFrame {
+            label: format!(
+                "Frame {} of {all}, after {} steps and trials",
+                k + 1,
+                particles[k].time
+            ),
+            data: frame(&folder.join(&particles[k].file), keep)?,
+            bodies: body.and_then(|body| frame(&folder.join(&body.file), keep)),
+        })
+    };
+    let last = all.checked_sub(1)?;
+    let mut end = of(last, Keep::MUCH)?;
+    if end.data.len() > MOST {
+        end = of(last, Keep::LITTLE)?;
+    }
+    let mut size = end.data.len();
+    let mut frames = Vec::new();
+    if size <= MOST_OF_LAST {
+        // The first, and others at equal distances.
+        let probe = (last > 0 && size < MOST)
+            .then(|| of(0, Keep::LITTLE))
+            .flatten();
+        let room = probe.as_ref().map_or(0, |first| {
+            let most = first.data.len().max(end.data.len() / 2).max(1);
+            (MOST - size) / most
+        });
+        let count = room.min(last);
+        let before: Vec<usize> = (0..count).map(|k| k * last / count).collect();
+        let read = |&k: &usize| of(k, Keep::LITTLE);
+        frames = before.par_iter().filter_map(read).collect();
+        frames.push(end);
+        size = frames.iter().map(|frame| frame.data.len()).sum();
+    }
+    Some(Held {
+        section: SECTION,
+        style: STYLE,
+        script: script() + "\n" + include_str!("viewer/held.js"),
+        frames,
+        all,
+        size: format!("{:.1} MB", size as f64 / 1e6),
+    })
+}

@@ -1,0 +1,118 @@
+//! What can stand in the way of results: of their folder, and of the files in it.
+
+use std::path::PathBuf;
+
+use crate::checkpoint::CheckpointError;
+use crate::npy::NpyError;
+
+/// Errors of writing, reading and replacing results.
+#[derive(Debug, thiserror::Error)]
+pub enum ResultsError {
+    /// A file cannot be written or read.
+    #[error("cannot access {}", path.display())]
+    File {
+        /// The file or folder.
+        path: PathBuf,
+        /// What the system said.
+        #[source]
+        source: std::io::Error,
+    },
+    /// A table cannot be written.
+    #[error("cannot write the table {}", path.display())]
+    Table {
+        /// The file.
+        path: PathBuf,
+        /// What the writer said.
+        #[source]
+        source: csv::Error,
+    },
+    /// The folder for results holds something else.
+    #[error(
+        "{} is not empty and was not written by igimp; choose another folder for the results",
+        path.display()
+    )]
+    ForeignFolder {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// Another program writes into the folder for results.
+    #[error(
+        "another igimp writes into {}; wait until it has ended, or choose another folder for the results",
+        path.display()
+    )]
+    InUse {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// The folder for results holds those of another case.
+    #[error(
+        "{} holds results of {}: --out chooses another folder, --overwrite replaces them",
+        path.display(),
+        whose(case, title)
+    )]
+    OtherResults {
+        /// The folder.
+        path: PathBuf,
+        /// Where that case comes from, as seen from the folder; empty if it is not known.
+        case: String,
+        /// Its title.
+        title: String,
+    },
+    /// The folder for results holds a run that was stopped and can go on.
+    #[error(
+        "{} holds a run that was stopped and can go on{} --overwrite begins afresh, --out chooses \
+         another folder",
+        path.display(),
+        if *same_input { ": --resume goes on with it," } else { " with the input that it had:" }
+    )]
+    Unfinished {
+        /// The folder.
+        path: PathBuf,
+        /// Whether it was made of the same input, so that it can go on as it is.
+        same_input: bool,
+    },
+    /// A file or folder that is written is a link.
+    #[error(
+        "{} is a link that leads elsewhere; remove it, or choose another folder for the results",
+        path.display()
+    )]
+    Link {
+        /// The link.
+        path: PathBuf,
+    },
+    /// A folder that should hold results of an earlier run does not.
+    #[error("{} holds no results of igimp", path.display())]
+    NoResults {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// A file of an earlier run cannot be continued or read.
+    #[error("cannot go on with {}: {why}", path.display())]
+    Unusable {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        why: String,
+    },
+    /// An array file cannot be read.
+    #[error("cannot read the array {}", path.display())]
+    Npy {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        #[source]
+        source: NpyError,
+    },
+    /// The state of a run cannot be saved or taken up again.
+    #[error(transparent)]
+    Checkpoint(#[from] CheckpointError),
+}
+
+/// Another case in a message.
+fn whose(case: &str, title: &str) -> String {
+    match (case, title) {
+        ("", _) => "an input that is not known".to_owned(),
+        (case, "") => format!("another input, {case}"),
+        (case, title) => format!("another input, {case} (\"{title}\")"),
+    }
+}

@@ -1,0 +1,534 @@
+//! What a run found, as written to `summary.json`.
+
+use std::fmt;
+use std::fmt::Write as _;
+
+use serde::{Deserialize, Serialize};
+
+use crate::mesh_study::StudySummary;
+use igimp_model::TitleBlock;
+use igimp_model::check::{Check, or_not_a_number};
+
+/// The outcome of a run.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Summary {
+    /// `igimp` and its version.
+    pub program: String,
+    /// Title of the case.
+    pub title: String,
+    /// Project, client, author and revision.
+    #[serde(default)]
+    pub title_block: TitleBlock,
+    /// Day and time of the run, as whoever started it said.
+    #[serde(default)]
+    pub date: Option<String>,
+    /// SHA-256 of `case.completed.toml`, the case with every default.
+    #[serde(default)]
+    pub input_sha256: Option<String>,
+    /// Variant of the method.
+    pub method: String,
+    /// Size of the model.
+    pub size: ModelSize,
+    /// The case in words: materials, bodies, supports, loads, stages.
+    #[serde(default)]
+    pub setup: Vec<SetupTable>,
+    /// Stages in the order they ran.
+    pub stages: Vec<StageSummary>,
+    /// Checks of curves and results.
+    pub checks: Vec<CheckRow>,
+    /// Warnings, for the reader.
+    pub warnings: Vec<String>,
+    /// The message of the step that ended the run for want of equilibrium, if one did.
+    pub failure: Option<String>,
+    /// Pictures in the order in which a report shows them.
+    pub figures: Vec<FigureNote>,
+    /// Wall-clock time \[s\].
+    pub seconds: f64,
+    /// Of that, time spent writing results \[s\].
+    pub output_seconds: f64,
+    /// Time of all processors together \[s\], where the system tells.
+    pub cpu_seconds: Option<f64>,
+    /// Largest resident memory \[MiB\], where the system tells.
+    pub peak_memory_mib: Option<f64>,
+    /// Memory by particle and by unknown, where the system tells.
+    pub memory: Option<MemoryShare>,
+    /// What the run was thought to cost before it began, to be held against `seconds` and
+    /// `peak_memory_mib`.
+    pub estimate: Option<Expected>,
+    /// Whether the run was interrupted and can be resumed.
+    pub interrupted: bool,
+    /// What a study of the mesh error found on all its meshes; stages and pictures are then those of
+    /// the finest mesh that came to its end.
+    pub mesh_study: Option<StudySummary>,
+}
+
+/// A table that tells a part of the case.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct SetupTable {
+    /// What it tells.
+    pub title: String,
+    /// Names of its columns, with units.
+    pub header: Vec<String>,
+    /// Rows, as text.
+    pub rows: Vec<Vec<String>>,
+}
+
+/// The estimate of a run before it began.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Expected {
+    /// Time of all planned steps, pictures and files \[s\].
+    pub seconds: f64,
+    /// Whether a stage may end before its planned steps are used up: `seconds` is then an upper bound.
+    pub open_ended: bool,
+    /// Threads that it holds for.
+    pub threads: usize,
+    /// Memory \[bytes\].
+    pub bytes: f64,
+    /// The same where an iteration is given up for factors \[bytes\].
+    #[serde(default)]
+    pub most_bytes: f64,
+    /// Time by the same model of the steps and corrections that were taken \[s\].
+    pub seconds_of_steps_taken: Option<f64>,
+}
+
+/// A picture of a results folder.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct FigureNote {
+    /// Path within the results folder without extension, such as `figures/curve-load-settlement`;
+    /// it exists as `.svg` and `.png`.
+    pub file: String,
+    /// Caption.
+    pub caption: String,
+}
+
+/// What the largest resident memory leaves when that at the beginning of the run is taken away, split
+/// in the proportions of the estimate.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MemoryShare {
+    /// State, trial and supports of a particle \[bytes\].
+    pub bytes_per_particle: f64,
+    /// Matrix and factors, fill included, for an unknown \[bytes\].
+    pub bytes_per_unknown: f64,
+}
+
+/// Numbers that tell the size of a model.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ModelSize {
+    /// Dimensions of the analysis: 2 in plane strain, 3 in space.
+    #[serde(default = "plane")]
+    pub dimensions: usize,
+    /// Particles, the most that are there at once.
+    pub particles: usize,
+    /// Cells of the grid.
+    pub cells: usize,
+    /// Most unknowns of a step.
+    pub unknowns: usize,
+    /// Total mass times gravity at the start \[N/m; N in space\].
+    pub weight: f64,
+    /// Total volume at the start \[m³/m; m³ in space\].
+    pub volume: f64,
+}
+
+/// Summaries that do not say it are of plane strain.
+fn plane() -> usize {
+    2
+}
+
+impl ModelSize {
+    /// Whether forces and volumes are those of the whole body, and not per metre run.
+    pub fn is_in_space(&self) -> bool {
+        self.dimensions == 3
+    }
+}
+
+/// How a stage went.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct StageSummary {
+    /// Name.
+    pub name: String,
+    /// Kind, such as `gravity`.
+    pub kind: String,
+    /// How it ended.
+    pub outcome: StageOutcome,
+    /// Why, in words.
+    pub reason: String,
+    /// Share of the stage that was reached \[-\].
+    pub reached: f64,
+    /// Whether it ended in a way that tells no limit, though its case expects one: its path was lost, a linear system
+    /// could not be solved, or a motion that is driven found no equilibrium.
+    #[serde(default)]
+    pub lost: bool,
+    /// Accepted steps.
+    pub steps: usize,
+    /// Newton corrections in accepted steps.
+    pub iterations: usize,
+    /// Steps that were tried and cut.
+    pub cuts: usize,
+    /// Steps accepted above the tolerance, at round-off.
+    pub at_round_off: usize,
+    /// Wall-clock time \[s\].
+    pub seconds: f64,
+    /// Time by phase \[s\]: set-up, assembly, factorisation, solution, commit.
+    pub phases: [f64; 5],
+    /// Largest particle displacement at the end \[m\].
+    #[serde(deserialize_with = "or_not_a_number")]
+    pub largest_displacement: f64,
+    /// Share of particles that yielded in the last step \[-\].
+    #[serde(deserialize_with = "or_not_a_number")]
+    pub plastic_share: f64,
+    /// Largest share of the load, in any step, that dropped nodes took without a support \[-\].
+    #[serde(default)]
+    pub false_support: f64,
+    /// Steps that a ghost penalty held at nodes which hardly touch soil.
+    #[serde(default)]
+    pub ghost_steps: usize,
+    /// Largest resistance of a footing that the stage pushed \[N/m\].
+    pub peak_resistance: Option<f64>,
+    /// Settlement of that footing at the end \[m\].
+    #[serde(default)]
+    pub settlement: Option<f64>,
+    /// What a strength reduction found.
+    pub safety: Option<SafetySummary>,
+    /// Gross work of the external force in the accepted steps: of its components, by magnitude \[J/m; J in space\].
+    #[serde(default)]
+    pub work: f64,
+    /// The path that was followed to a limit load.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub path: Option<PathSummary>,
+    /// The reinforcement that was there at its end.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub reinforcement: Vec<MemberSummary>,
+    /// Water in the pores at the end, where there is some.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pore_water: Option<PoreSummary>,
+    /// How its linear systems were solved, in space.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub linear: Option<LinearSummary>,
+}
+
+/// How the linear systems of a stage were solved.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct LinearSummary {
+    /// The method of the last step.
+    pub method: String,
+    /// Why it was taken, in words.
+    pub reason: String,
+    /// Solutions found in accepted steps.
+    pub solutions: usize,
+    /// Iterations of all of them; of a direct method none.
+    pub iterations: usize,
+    /// Iterations of the one that took most.
+    pub most_iterations: usize,
+    /// Iterations that were given up for a factorisation.
+    pub lost_iterations: usize,
+}
+
+impl LinearSummary {
+    /// In a sentence.
+    pub fn sentence(&self) -> String {
+        let Self {
+            method,
+            reason,
+            solutions,
+            iterations,
+            most_iterations,
+            lost_iterations,
+        } = self;
+        let mut text = format!("linear systems by {method} ({reason})");
+        if *iterations > 0 {
+            let each = (*iterations as f64 / (*solutions).max(1) as f64).round();
+            let _ = write!(
+                text,
+                ": {solutions} solutions, {each} iterations each, at most {most_iterations}"
+            );
+        }
+        if *lost_iterations > 0 {
+            let _ = write!(
+                text,
+                "; {lost_iterations} iterations given up for a factorisation"
+            );
+        }
+        text
+    }
+}
+
+/// The tension of a member of reinforcement at the end of a stage.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct MemberSummary {
+    /// Name.
+    pub name: String,
+    /// Largest tension along it \[N/m\].
+    pub force: f64,
+    /// Tension at its head \[N/m\].
+    pub head_force: f64,
+    /// Share of its length on which tension is at its limit \[-\].
+    pub at_limit: f64,
+}
+
+/// Water in the pores at the end of a stage; pressure compression positive.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PoreSummary {
+    /// Largest pore pressure of any particle, given and excess \[Pa\].
+    pub largest: f64,
+    /// Least and largest excess pore pressure, where soil made some \[Pa\].
+    pub excess: Option<[f64; 2]>,
+    /// Particles whose pore pressure exceeds the total vertical stress.
+    pub floating: usize,
+    /// All particles.
+    pub particles: usize,
+}
+
+/// How a stage ended.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum StageOutcome {
+    /// It reached its end.
+    #[default]
+    Completed,
+    /// A condition of the case ended it.
+    Stopped,
+    /// No equilibrium was found.
+    NotConverged,
+    /// The user interrupted it.
+    Interrupted,
+}
+
+/// A factor of safety as an interval, and how it was found.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct SafetySummary {
+    /// Largest factor found stable \[-\].
+    pub stable: Option<f64>,
+    /// Smallest factor found failed \[-\].
+    pub failed: Option<f64>,
+    /// What counts as failure.
+    pub criterion: String,
+    /// Materials that were reduced.
+    pub materials: Vec<String>,
+    /// Materials that kept their strength.
+    pub excluded: Vec<String>,
+    /// Share of the mass that moves by more than a tenth of the largest displacement in the first
+    /// unstable state \[-\].
+    pub moving_mass: Option<f64>,
+    /// The trials in the order they were made.
+    pub trials: Vec<TrialSummary>,
+    /// The path that was followed, of a search by continuation.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub path: Option<PathSummary>,
+}
+
+/// A path of equilibria along which strength is reduced, and what it tells of its limit.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct PathSummary {
+    /// Why it ended.
+    pub end: PathEnd,
+    /// Where the body first moves as a mechanism: 99 % of the work of a step is dissipated.
+    pub mechanism: Option<PathPoint>,
+    /// The equilibrium that tells the factor.
+    #[serde(default)]
+    pub limit: Option<PathPoint>,
+    /// Where the rise of the factor over doublings of the work falls most.
+    pub knee: Option<PathPoint>,
+    /// Rise of the factor in the doubling of the work up to the equilibrium that tells it, as a share of it \[-\].
+    pub rise: Option<f64>,
+    /// The displacement γH²/E that soil of this weight, height and stiffness is moved by before it fails \[m\].
+    pub displacement_scale: Option<f64>,
+    /// What decides the factor, where the path came to a mechanism.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shares: Option<StrengthShares>,
+    /// Its equilibria in order.
+    pub points: Vec<PathPoint>,
+}
+
+/// What decides a factor of safety, at the last equilibrium of its path.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct StrengthShares {
+    /// The shares of the materials that have a strength.
+    pub materials: Vec<MaterialShare>,
+    /// Share of the dissipation in reinforcement \[-\].
+    pub reinforcement: f64,
+    /// The factor by the kinematic theorem, where the displacements are nearly those of plastic flow by the normality rule.
+    pub kinematic: Option<Kinematic>,
+}
+
+impl StrengthShares {
+    /// Each strength, as the name of its material, its symbol, and the change of the factor with it \[-\].
+    pub fn strengths(&self) -> impl Iterator<Item = (&str, &'static str, f64)> {
+        self.materials.iter().flat_map(|own| {
+            let friction = own.friction.map(|friction| ("tan φ", friction));
+            std::iter::once(("c", own.cohesion))
+                .chain(friction)
+                .map(|(what, share)| (own.material.as_str(), what, share + 0.0))
+        })
+    }
+}
+
+/// The share of a material in a factor of safety.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct MaterialShare {
+    /// Its name.
+    pub material: String,
+    /// Whether its strength is reduced: changes with reduced strengths add up to 1 (theory, eq. 33h).
+    pub is_reduced: bool,
+    /// Share of the dissipation of the last step \[-\]; 0 where it dissipates nothing.
+    pub dissipation: f64,
+    /// Change of the factor with its cohesion, undrained strength or yield stress, with the tension cut-off:
+    /// ∂ ln F/∂ ln c \[-\].
+    pub cohesion: f64,
+    /// Change of the factor with its friction, ∂ ln F/∂ ln tan φ \[-\]; none without friction.
+    pub friction: Option<f64>,
+}
+
+/// A factor of safety by the kinematic theorem, of the displacements of the last step.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Kinematic {
+    /// The factor \[-\].
+    pub factor: f64,
+    /// Work of the mean stress on the volume by which the field misses that of plastic flow, over the work of the step
+    /// \[-\].
+    pub missed: f64,
+}
+
+/// Why a path of equilibria ended.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum PathEnd {
+    /// The increment is a mechanism, and the factor rises no longer.
+    Limit,
+    /// The factor fell below an earlier one.
+    Fallen,
+    /// The increment is a mechanism, has been one for two doublings of the work, and the factor still rises.
+    StillRising,
+    /// The displacement that the case states was exceeded.
+    Displacement,
+    /// No further equilibrium was found.
+    #[default]
+    Lost,
+}
+
+impl PathEnd {
+    /// In words.
+    pub fn sentence(self) -> &'static str {
+        match self {
+            Self::Limit => "the body moves as a mechanism, and the factor rises no longer",
+            Self::Fallen => "the factor falls behind its largest value",
+            Self::StillRising => {
+                "the body has moved as a mechanism for long, and the factor still rises"
+            }
+            Self::Displacement => "the displacement of the case is exceeded",
+            Self::Lost => "no further equilibrium was found",
+        }
+    }
+}
+
+/// An equilibrium of a path along which strength is reduced.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct PathPoint {
+    /// Strength reduction factor \[-\].
+    pub factor: f64,
+    /// Gross work of the external force since the beginning of the path: of its components, by magnitude \[J/m; J in space\].
+    pub work: f64,
+    /// Displacement that the search looks at, since the beginning of the path \[m\].
+    #[serde(deserialize_with = "or_not_a_number")]
+    pub displacement: f64,
+    /// Share of the gross work of the last step that is not elastic \[-\]: 1 of a mechanism.
+    #[serde(deserialize_with = "or_not_a_number")]
+    pub dissipated: f64,
+    /// Share of particles that yielded in the last step \[-\].
+    #[serde(deserialize_with = "or_not_a_number")]
+    pub plastic_share: f64,
+    /// Newton corrections of the last step.
+    pub iterations: usize,
+    /// By how much the residual of the last step puts the factor in doubt, as a share of it \[-\].
+    #[serde(deserialize_with = "or_not_a_number")]
+    pub in_doubt: f64,
+}
+
+/// One trial of a search.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct TrialSummary {
+    /// Strength reduction factor \[-\].
+    pub srf: f64,
+    /// Whether the body stands.
+    pub stable: bool,
+    /// Why.
+    pub reason: String,
+    /// Displacement that the criterion looks at \[m\].
+    #[serde(deserialize_with = "or_not_a_number")]
+    pub displacement: f64,
+    /// Accepted steps.
+    pub steps: usize,
+    /// Newton corrections.
+    pub iterations: usize,
+    /// Steps that were cut.
+    pub cuts: usize,
+    /// Strength reduction factor \[-\] and that displacement \[m\] at every equilibrium of a trial that
+    /// reduces strength step by step.
+    #[serde(default)]
+    pub course: Vec<[f64; 2]>,
+}
+
+/// A check and whether it passed.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CheckRow {
+    /// The check.
+    pub check: Check,
+    /// Whether the band is met.
+    pub pass: bool,
+}
+
+/// How a run ended.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Ending {
+    /// It began and has not ended yet, or was stopped hard.
+    #[default]
+    Running,
+    /// Done, and references met.
+    Done,
+    /// Done, and a reference missed.
+    Missed,
+    /// A stage found no equilibrium.
+    NotConverged,
+    /// The user interrupted it.
+    Interrupted,
+    /// It could not be set up, or its results could not be written.
+    Failed,
+}
+
+impl Ending {
+    /// How a run with this summary ended.
+    pub fn of(summary: &Summary) -> Self {
+        let stage = |outcome| summary.stages.iter().any(|stage| stage.outcome == outcome);
+        let meshes = summary.mesh_study.as_ref();
+        let meshes = meshes.map_or(Self::Done, StudySummary::ending);
+        if meshes != Self::Done {
+            meshes
+        } else if summary.interrupted || stage(StageOutcome::Interrupted) {
+            Self::Interrupted
+        } else if stage(StageOutcome::NotConverged) {
+            Self::NotConverged
+        } else if summary.checks.iter().any(|row| !row.pass) {
+            Self::Missed
+        } else {
+            Self::Done
+        }
+    }
+
+    /// Whether running the task again would tell nothing new.
+    pub fn is_verdict(self) -> bool {
+        matches!(self, Self::Done | Self::Missed | Self::NotConverged)
+    }
+}
+
+impl fmt::Display for Ending {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::Running => "running",
+            Self::Done => "done",
+            Self::Missed => "reference missed",
+            Self::NotConverged => "not converged",
+            Self::Interrupted => "interrupted",
+            Self::Failed => "failed",
+        })
+    }
+}

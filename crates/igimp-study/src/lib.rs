@@ -1,0 +1,24 @@
+//! Many runs, and what is said of one: parameter studies, and the texts of the program and of Python.
+//!
+//! | module | what to find |
+//! |---|---|
+//! | [`sweep`] | many cases that differ in a few values |
+//! | [`telling`] | what is said of a case and of its run, as text |
+
+pub mod sweep;
+pub mod telling;
+
+/// The examples of the book, run as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../../docs/src/tour.md")]
+struct Tour;
+
+/// The examples of the developer notes, run as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../../docs/src/developer.md")]
+struct DeveloperNotes;
+
+/// The example of the user guide, run as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../../../docs/src/guide/library.md")]
+struct UserGuide;

@@ -1,0 +1,143 @@
+//! What a case will cost, as it is told before it runs.
+
+use std::path::Path;
+
+use super::table;
+use igimp_cases::CaseError;
+use igimp_cases::estimate::speed::Speed;
+use igimp_cases::estimate::watch::side_by_side;
+use igimp_cases::estimate::{Estimate, estimate, readable, time, together};
+use igimp_model::Case;
+use igimp_model::meshes;
+use igimp_text::count;
+use igimp_text::on_a_line;
+
+/// The size of a case and what it will cost.
+#[derive(Clone, Debug)]
+pub struct Told {
+    /// Particles, cells, unknowns and memory.
+    pub size: Estimate,
+    /// Time of the case on its own grid.
+    pub time: time::Time,
+    /// All of it as it is printed.
+    pub text: String,
+}
+
+/// Estimates a case; `name` is that of its file.
+///
+/// # Errors
+/// [`CaseError`] for a case that cannot be set up.
+pub fn size<const D: usize>(case: &Case<D>, name: &Path) -> Result<Told, CaseError> {
+    for material in &case.materials {
+        material.law()?;
+    }
+    let size = estimate(case)?;
+    let speed = Speed::measured()?;
+    let time = time::time(case, &size, speed);
+    let cells = case.grid.cells().map(|count| count.to_string()).join(" x ");
+    let [particle, unknown] = size.per_item.map(|bytes| count(round(bytes)));
+    let row = |name: &str, value: String| vec![name.to_owned(), value];
+    let rows = [
+        row("method", case.method.label()),
+        row("particles", count(size.particles)),
+        row("cells", format!("{} ({cells})", count(size.cells))),
+        row("unknowns", format!("about {}", count(size.unknowns))),
+        row("solver", size.systems.method.clone()),
+        row("memory", memory(size.bytes, size.most_bytes)),
+        row(
+            "",
+            format!("about {particle} bytes for a particle, {unknown} for an unknown"),
+        ),
+        row("time", time::sentence(&time)),
+        row("results", case.output.folder.display().to_string()),
+    ];
+    let stages: Vec<Vec<String>> = case
+        .stages
+        .iter()
+        .enumerate()
+        .map(|(index, stage)| {
+            vec![
+                format!("{}. {}", index + 1, stage.name),
+                stage.kind.name().to_owned(),
+                format!("{} steps", stage.steps),
+            ]
+        })
+        .collect();
+    let text = format!(
+        "{} is fine\n  {}\n\n{}\nstages\n{}{}",
+        name.display(),
+        on_a_line(&case.title),
+        table(&rows),
+        table(&stages),
+        study(case, speed)?
+    );
+    Ok(Told { size, time, text })
+}
+
+/// The meshes of a study of the mesh error, each with its size, and the cost of all; empty without one.
+fn study<const D: usize>(case: &Case<D>, speed: Speed) -> Result<String, CaseError> {
+    if case.mesh_study.meshes < 2 {
+        return Ok(String::new());
+    }
+    let mut rows = Vec::new();
+    let (mut bytes, mut most_bytes, mut all) = (Vec::new(), Vec::new(), None::<time::Time>);
+    for (mesh, parts) in std::iter::zip(meshes::meshes(case), meshes::refinements(case)) {
+        let size = estimate(&mesh)?;
+        let own = time::time(&mesh, &size, speed);
+        rows.push(vec![
+            meshes::label(parts),
+            format!("{} particles", count(size.particles)),
+            format!("{} cells", count(size.cells)),
+            format!("about {} unknowns", count(size.unknowns)),
+            memory(size.bytes, size.most_bytes),
+            format!("about {}", time::readable(own.seconds)),
+        ]);
+        bytes.push(size.bytes);
+        most_bytes.push(size.most_bytes);
+        all = Some(all.map_or(own, |all| time::Time {
+            seconds: all.seconds + own.seconds,
+            ..own
+        }));
+    }
+    let how = if side_by_side(&bytes) > 1 {
+        "side by side"
+    } else {
+        "one after another"
+    };
+    Ok(format!(
+        "\nmeshes\n{}  {how}: {} of memory, {}\n",
+        table(&rows),
+        memory(together(&bytes), together(&most_bytes)),
+        all.map_or_else(String::new, |all| time::sentence(&all))
+    ))
+}
+
+/// What a run is expected to need \[bytes\], and what it needs where an iteration is given up for factors.
+fn memory(bytes: f64, most_bytes: f64) -> String {
+    let about = format!("about {}", readable(bytes));
+    if most_bytes > 1.1 * bytes {
+        format!(
+            "{about}, {} where an iteration is given up for factors",
+            readable(most_bytes)
+        )
+    } else {
+        about
+    }
+}
+
+/// A number of bytes to two digits: more are not known.
+fn round(bytes: f64) -> usize {
+    let unit = 10.0_f64.powf(bytes.max(1.0).log10().floor() - 1.0).max(1.0);
+    ((bytes / unit).round() * unit) as usize
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn memory_with_factors_is_told_beside() {
+        insta::assert_snapshot!(memory(1.7e9, 3.6e9), @"about 1.6 GiB, 3.4 GiB where an iteration is given up for factors");
+        insta::assert_snapshot!(memory(5e7, 5e7), @"about 50 MiB");
+    }
+}

@@ -1,0 +1,226 @@
+//! What is said at the end of a run.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use igimp_results::mesh_study::{MeshSummary, StudySummary};
+use igimp_results::summary::{CheckRow, PathPoint, SafetySummary, StrengthShares, Summary};
+use igimp_text::on_a_line;
+use igimp_text::{count, short};
+
+use super::{lines, table};
+
+/// Stages and checks of a run; no times, so that two runs give equal texts.
+pub fn stages_and_checks(summary: &Summary) -> String {
+    let rows: Vec<Vec<String>> = summary
+        .stages
+        .iter()
+        .map(|stage| {
+            let found = stage.safety.as_ref().map(explain).unwrap_or_default();
+            vec![
+                stage.name.clone(),
+                stage.kind.clone(),
+                format!("{} steps", stage.steps),
+                lines::outcome(stage) + &found,
+            ]
+        })
+        .collect();
+    let mut text = match summary.mesh_study.as_ref() {
+        Some(study) => {
+            let shown = study.shown().map_or_else(String::new, MeshSummary::label);
+            let meshes = table(&study.meshes.iter().map(mesh).collect::<Vec<_>>());
+            format!("meshes\n{meshes}stages ({shown})\n")
+        }
+        None => "stages\n".to_owned(),
+    };
+    text += &table(&rows);
+    let at_round_off: usize = summary.stages.iter().map(|stage| stage.at_round_off).sum();
+    if at_round_off > 0 {
+        let _ = writeln!(
+            text,
+            "  {at_round_off} steps were accepted above the tolerance, at round-off"
+        );
+    }
+    if let Some(study) = &summary.mesh_study {
+        let _ = write!(text, "mesh error\n{}", mesh_error(study));
+    }
+    if !summary.checks.is_empty() {
+        let _ = write!(text, "checks\n{}", checks(&summary.checks));
+    }
+    text
+}
+
+/// A mesh of a study: its size, and how its run ended.
+fn mesh(mesh: &MeshSummary) -> Vec<String> {
+    vec![
+        mesh.label(),
+        mesh.folder.clone(),
+        format!("{} particles", count(mesh.size.particles)),
+        format!("{} cells", count(mesh.size.cells)),
+        mesh.ending.to_string(),
+    ]
+}
+
+/// The results of a study: the values on all meshes, and what they say together.
+fn mesh_error(study: &StudySummary) -> String {
+    let rows: Vec<Vec<String>> = study
+        .results
+        .iter()
+        .map(|result| {
+            let mut row = vec![on_a_line(&result.name).into_owned()];
+            row.extend(study.meshes.iter().enumerate().map(|(number, mesh)| {
+                let value = result.values[number].map_or_else(|| "-".to_owned(), short);
+                let early = if result.ended_early(number) {
+                    " (ended early)"
+                } else {
+                    ""
+                };
+                format!("{} {value}{early}", mesh.label())
+            }));
+            row.extend(match result.estimate {
+                Some(found) => vec![
+                    format!("{} {}", found.lead(), found.sentence()),
+                    format!("(order {})", found.order.sentence()),
+                ],
+                None => vec!["nothing is extrapolated of fewer than two values".to_owned()],
+            });
+            row
+        })
+        .collect();
+    table(&rows)
+}
+
+/// The last line: where the results are, and the time taken.
+pub fn results(summary: &Summary, folder: &Path) -> String {
+    format!("results in {} ({:.1} s)", folder.display(), summary.seconds)
+}
+
+/// Checks as a table, with the source of each expected value.
+pub fn checks(rows: &[CheckRow]) -> String {
+    let rows: Vec<Vec<String>> = rows
+        .iter()
+        .map(|row| {
+            let check = &row.check;
+            vec![
+                if row.pass { "met" } else { "MISSED" }.to_owned(),
+                on_a_line(&check.quantity).into_owned(),
+                short(check.measured),
+                format!("expected {}", short(check.expected)),
+                check.band.to_string(),
+                format!("({})", on_a_line(&check.source)),
+            ]
+        })
+        .collect();
+    table(&rows)
+}
+
+/// What stands behind a factor of safety: the criterion, the materials, how much moves.
+fn explain(safety: &SafetySummary) -> String {
+    let mut parts = Vec::new();
+    if !safety.criterion.is_empty() {
+        parts.push(format!("fails when {}", safety.criterion));
+    }
+    if !safety.materials.is_empty() {
+        parts.push(format!("materials {}", safety.materials.join(", ")));
+    }
+    if !safety.excluded.is_empty() {
+        parts.push(format!("without {}", safety.excluded.join(", ")));
+    }
+    if let Some(share) = safety.moving_mass {
+        parts.push(format!("{:.0} % of the mass moves", 100.0 * share));
+    }
+    if let Some(path) = &safety.path {
+        let at = |what: &str, point: &PathPoint| {
+            format!(
+                "{what} {:.3} at {} m",
+                point.factor,
+                short(point.displacement)
+            )
+        };
+        parts.extend(path.knee.as_ref().map(|knee| at("knee", knee)));
+        parts.extend(
+            path.mechanism
+                .as_ref()
+                .map(|found| at("mechanism from", found)),
+        );
+        parts.extend(path.shares.as_ref().and_then(largest_share));
+        let scale = path.displacement_scale;
+        parts.extend(scale.map(|scale| format!("γH²/E = {} m", short(scale))));
+    }
+    if parts.is_empty() {
+        String::new()
+    } else {
+        format!(" ({})", parts.join("; "))
+    }
+}
+
+/// The strength that the factor of safety changes most with.
+fn largest_share(shares: &StrengthShares) -> Option<String> {
+    let strengths = shares.strengths();
+    let largest = strengths.max_by(|a, b| a.2.abs().total_cmp(&b.2.abs()));
+    largest.map(|(name, what, share)| format!("most by {what} of {name}, {:.0} %", 100.0 * share))
+}
+
+#[cfg(test)]
+mod tests {
+    use igimp_model::check::{Band, Check};
+    use igimp_results::summary::{StageOutcome, StageSummary};
+
+    use super::*;
+
+    #[test]
+    fn the_verdict_is_short() {
+        let stage = |name: &str, kind: &str| StageSummary {
+            name: name.into(),
+            kind: kind.into(),
+            steps: 10,
+            ..StageSummary::default()
+        };
+        let summary = Summary {
+            stages: vec![
+                stage("initial stresses", "gravity"),
+                StageSummary {
+                    safety: Some(SafetySummary {
+                        stable: Some(1.366),
+                        failed: Some(1.375),
+                        criterion: "no equilibrium is found".into(),
+                        materials: vec!["clay".into()],
+                        excluded: vec!["rock".into()],
+                        moving_mass: Some(0.342),
+                        ..SafetySummary::default()
+                    }),
+                    ..stage("factor of safety", "strength-reduction")
+                },
+                StageSummary {
+                    outcome: StageOutcome::Stopped,
+                    reason: "displacement reached 0.5 m".into(),
+                    ..stage("load", "load")
+                },
+            ],
+            checks: vec![CheckRow {
+                check: Check {
+                    case: "slope".into(),
+                    variant: "iGIMP".into(),
+                    quantity: "F [-]".into(),
+                    expected: 1.38,
+                    source: "Griffiths and Lane 1999".into(),
+                    band: Band::Relative(0.02),
+                    measured: 1.371,
+                },
+                pass: true,
+            }],
+            seconds: 12.34,
+            ..Summary::default()
+        };
+        let text = stages_and_checks(&summary) + &results(&summary, Path::new("results/slope"));
+        insta::assert_snapshot!(text, @r#"
+        stages
+          initial stresses  gravity             10 steps  completed
+          factor of safety  strength-reduction  10 steps  1.366 <= F < 1.375 (fails when no equilibrium is found; materials clay; without rock; 34 % of the mass moves)
+          load              load                10 steps  stopped: displacement reached 0.5 m
+        checks
+          met  F [-]  1.371  expected 1.38  ± 2 %  (Griffiths and Lane 1999)
+        results in results/slope (12.3 s)
+        "#);
+    }
+}
