@@ -53,7 +53,8 @@ fn only_what_is_there_is_drawn() {
     let area_of_hill = area_and_centroid(hill.polygon()).0;
     case.bodies.push(hill);
     let all = Model::new(&case).unwrap().1.body.particles;
-    let of_hill = |particle: usize| all.x[particle][1] > 1.7;
+    let below = Model::new(&slope()).unwrap().1.body.particles.len();
+    let of_hill = |particle: usize| all.number[particle] >= below;
     let pieces = Pieces::of(&case).unwrap();
     assert_eq!(pieces.there(&all), [true, true]);
     let left = all.keeping(of_hill).unwrap();

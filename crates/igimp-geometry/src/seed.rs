@@ -84,6 +84,9 @@ pub fn fill_polygon(
 
 /// The same, with the pieces of the polygon: one for each particle in their order, then the slivers,
 /// each with the particle that it joined. Together they are the polygon.
+///
+/// # Errors
+/// As [`fill_polygon`].
 pub fn fill_in_pieces(
     grid: &Grid<2>,
     polygon: &[[f64; 2]],

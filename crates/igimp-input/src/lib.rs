@@ -8,7 +8,7 @@
 //! file.
 //!
 //! ```
-//! use crate::CaseFile;
+//! use igimp_input::CaseFile;
 //!
 //! let text = include_str!("../cases/slope.toml");
 //! let overrides = ["materials.clay.cohesoin=12 kPa".to_owned()];

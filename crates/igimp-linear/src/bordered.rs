@@ -89,6 +89,9 @@ impl Bordered {
     /// Solves for all unknowns: those of the grid first, those of the border behind them. What a solver does not iterate
     /// for at once is eliminated. As for the grid alone, such a solution is checked against the whole matrix, and
     /// refined once where that helps.
+    ///
+    /// # Errors
+    /// As [`LinearSolver::solve`].
     pub fn solve(
         &mut self,
         solver: &mut dyn LinearSolver,

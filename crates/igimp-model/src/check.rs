@@ -70,6 +70,9 @@ impl Check {
 }
 
 /// A number, or NaN where JSON has `null` for want of a better word.
+///
+/// # Errors
+/// What is neither a number nor `null`.
 pub fn or_not_a_number<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
     Ok(Option::deserialize(deserializer)?.unwrap_or(f64::NAN))
 }

@@ -3,39 +3,25 @@
 use crate::metadata::{Metadata, Package};
 
 /// Crates of the project with those that they may depend on, for tests too.
-const LAYERS: [(&str, &[&str]); 12] = [
+const LAYERS: [(&str, &[&str]); 19] = [
     ("igimp-shape", &[]),
     ("igimp-material", &[]),
     ("igimp-linear", &[]),
-    (
-        "igimp-assembly",
-        &["igimp-shape", "igimp-material", "igimp-linear"],
-    ),
-    (
-        "igimp-solver",
-        &[
-            "igimp-shape",
-            "igimp-material",
-            "igimp-linear",
-            "igimp-assembly",
-        ],
-    ),
+    ("igimp-assembly", BELOW_CASES.split_at(3).0),
+    ("igimp-solver", BELOW_CASES.split_at(4).0),
     ("igimp-figures", &[]),
-    (
-        "igimp-cases",
-        &[
-            "igimp-shape",
-            "igimp-material",
-            "igimp-linear",
-            "igimp-assembly",
-            "igimp-solver",
-            "igimp-figures",
-        ],
-    ),
+    ("igimp-text", &[]),
+    ("igimp-geometry", LIBRARIES.split_at(7).0),
+    ("igimp-model", LIBRARIES.split_at(8).0),
+    ("igimp-results", LIBRARIES.split_at(9).0),
+    ("igimp-input", LIBRARIES.split_at(10).0),
+    ("igimp-report", LIBRARIES.split_at(11).0),
+    ("igimp-cases", LIBRARIES.split_at(12).0),
+    ("igimp-study", LIBRARIES.split_at(13).0),
     ("igimp", LIBRARIES),
     ("igimp-benchmarks", LIBRARIES),
     ("igimp-validation", LIBRARIES),
-    ("igimp-fuzz", &["igimp-cases"]),
+    ("igimp-fuzz", &["igimp-input", "igimp-results"]),
     ("xtask", &[]),
 ];
 
@@ -48,6 +34,7 @@ pub(super) const BELOW_CASES: &[&str] = &[
     "igimp-solver",
 ];
 
+/// All libraries, lowest first: none depends on one behind it.
 const LIBRARIES: &[&str] = &[
     "igimp-shape",
     "igimp-material",
@@ -55,7 +42,14 @@ const LIBRARIES: &[&str] = &[
     "igimp-assembly",
     "igimp-solver",
     "igimp-figures",
+    "igimp-text",
+    "igimp-geometry",
+    "igimp-model",
+    "igimp-results",
+    "igimp-input",
+    "igimp-report",
     "igimp-cases",
+    "igimp-study",
 ];
 
 /// Packages for files, command lines and pictures, which the method must not need, not even
@@ -121,7 +115,7 @@ mod tests {
 
     type Row<'a> = (&'a str, bool, Option<&'a str>, &'a [&'a str]);
 
-    const SOUND: [Row<'_>; 13] = [
+    const SOUND: [Row<'_>; 20] = [
         ("igimp-shape", true, None, &["thiserror"]),
         ("igimp-material", true, None, &[]),
         ("igimp-linear", true, None, &[]),
@@ -133,16 +127,18 @@ mod tests {
         ),
         ("igimp-solver", true, None, &["igimp-assembly"]),
         ("igimp-figures", true, None, &[]),
-        (
-            "igimp-cases",
-            true,
-            None,
-            &["igimp-solver", "igimp-figures"],
-        ),
+        ("igimp-text", true, None, &[]),
+        ("igimp-geometry", true, None, &["igimp-text"]),
+        ("igimp-model", true, None, &["igimp-geometry"]),
+        ("igimp-results", true, None, &["igimp-model"]),
+        ("igimp-input", true, None, &["igimp-results"]),
+        ("igimp-report", true, None, &["igimp-figures"]),
+        ("igimp-cases", true, None, &["igimp-solver", "igimp-report"]),
+        ("igimp-study", true, None, &["igimp-cases"]),
         ("igimp", true, None, &["igimp-cases"]),
         ("igimp-benchmarks", true, None, &["igimp-cases"]),
         ("igimp-validation", true, None, &["igimp-cases"]),
-        ("igimp-fuzz", true, None, &["igimp-cases"]),
+        ("igimp-fuzz", true, None, &["igimp-input"]),
         ("xtask", true, None, &["serde"]),
         ("serde", false, None, &[]),
     ];

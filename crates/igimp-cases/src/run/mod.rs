@@ -180,6 +180,9 @@ pub fn run_any(
 }
 
 /// The same in a results folder that was entered.
+///
+/// # Errors
+/// As [`run`](fn@run).
 pub fn run_any_entered(
     case: &AnyCase,
     target: Option<&Target>,

@@ -56,6 +56,9 @@ impl StudySummary {
     }
 
     /// Writes the results as a table, a row each: values and half-widths by mesh, estimate, order.
+    ///
+    /// # Errors
+    /// [`ResultsError::Table`] if it cannot be written.
     pub fn write_table(&self, path: &Path) -> Result<(), ResultsError> {
         let labels = || self.meshes.iter().map(MeshSummary::label);
         let mut header = vec!["result".to_owned()];
