@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use igimp_model::in_any_dimension;
 use igimp_input;
 use igimp_input::shipped::{SHIPPED, find, nearest};
+use igimp_model::in_any_dimension;
 use igimp_study::sweep::is_sweep;
 use igimp_study::telling::{size, table};
 use pyo3::prelude::*;

@@ -7,19 +7,19 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-use igimp_model::{AnyCase, Case};
 use igimp_cases::estimate::Expectation;
 use igimp_cases::estimate::room::refuse_beyond;
 use igimp_cases::estimate::watch::lacks_memory;
+use igimp_cases::run::{self as engine, Start, Target};
+use igimp_cases::{CaseError, chain};
+use igimp_model::in_any_dimension;
+use igimp_model::{AnyCase, Case};
 use igimp_results::ResultsError;
 use igimp_results::admission::Replace;
-use igimp_cases::run::{self as engine, Start, Target};
 use igimp_results::summary::Ending;
 use igimp_results::table::Table;
 use igimp_study::telling::lines::Lines;
 use igimp_study::telling::whole::Whole;
-use igimp_cases::{CaseError, chain};
-use igimp_model::in_any_dimension;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 

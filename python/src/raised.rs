@@ -2,11 +2,11 @@
 
 use std::error::Error;
 
+use igimp_cases::{CaseError, chain, is_of_the_system};
 use igimp_input::{Diagnostic, InputError};
 use igimp_results::ResultsError;
 use igimp_results::checkpoint::CheckpointError;
 use igimp_results::summary::Ending;
-use igimp_cases::{CaseError, chain, is_of_the_system};
 use pyo3::prelude::*;
 use serde_json::json;
 

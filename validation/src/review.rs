@@ -36,7 +36,7 @@ pub(crate) fn snapshots() -> PathBuf {
 /// Removes the pictures of an earlier comparison, with their folder.
 ///
 /// # Errors
-/// [`ResultsError::File`](igimp_results::ResultsError::File) if the folder cannot be removed.
+/// [`ResultsError::File`] if the folder cannot be removed.
 pub(crate) fn clear(pictures: &Path) -> Result<(), CaseError> {
     match fs::remove_dir_all(pictures) {
         Err(source) if source.kind() != io::ErrorKind::NotFound => Err(ResultsError::File {

@@ -25,7 +25,7 @@ const TEMPLATE: &str = include_str!("report.html");
 /// take part as far as they exist. Pictures are embedded, tables are linked by relative paths.
 ///
 /// # Errors
-/// [`ResultsError::File`](igimp_results::ResultsError::File) if the summary cannot be read or the report cannot be written.
+/// [`ResultsError::File`] if the summary cannot be read or the report cannot be written.
 pub fn write_report(folder: &Path) -> Result<PathBuf, ReportError> {
     let path = folder.join("summary.json");
     let summary = std::fs::read(&path)

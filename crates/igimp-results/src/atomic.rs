@@ -66,7 +66,7 @@ pub(crate) fn create(path: &Path) -> io::Result<File> {
     }
 }
 
-/// Writes a new file, as [`create`] makes it, and leaves it to the system when the disk has it.
+/// Writes a new file, as `create` makes it, and leaves it to the system when the disk has it.
 ///
 /// # Errors
 /// What the system says.

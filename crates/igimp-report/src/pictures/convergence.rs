@@ -33,7 +33,7 @@ pub struct History {
 /// where the iteration does not rise or another of the columns changes.
 ///
 /// # Errors
-/// [`ResultsError::Table`](igimp_results::ResultsError::Table) if the file cannot be read.
+/// [`ResultsError::Table`] if the file cannot be read.
 pub fn histories(path: &Path) -> Result<Vec<History>, ReportError> {
     let table = |source| ResultsError::Table {
         path: path.to_owned(),
@@ -191,7 +191,7 @@ pub(crate) fn convergence_caption(stage: &str, histories: &[&History]) -> String
 /// The pictures of the convergence of every stage in the `convergence.csv` of a results folder.
 ///
 /// # Errors
-/// [`ResultsError::Table`](igimp_results::ResultsError::Table), [`ResultsError::File`](igimp_results::ResultsError::File) and [`ReportError::Figure`].
+/// [`ResultsError::Table`], [`ResultsError::File`] and [`ReportError::Figure`].
 pub fn convergence_pictures(
     folder: &Path,
     case_title: &str,

@@ -215,9 +215,9 @@ impl Sweep {
     /// Enters the folder of all tasks: alone, for all of them, or together with those who run one each.
     ///
     /// # Errors
-    /// [`ResultsError::InUse`](igimp_results::ResultsError::InUse) when another program runs tasks there; [`ResultsError::OtherResults`](igimp_results::ResultsError::OtherResults) when they
-    /// are those of another sweep file and not to be replaced; [`ResultsError::Link`](igimp_results::ResultsError::Link),
-    /// [`ResultsError::File`](igimp_results::ResultsError::File).
+    /// [`ResultsError::InUse`] when another program runs tasks there; [`ResultsError::OtherResults`] when they
+    /// are those of another sweep file and not to be replaced; [`ResultsError::Link`],
+    /// [`ResultsError::File`].
     pub fn enter(&self, alone: bool, replace: Replace) -> Result<Lock, CaseError> {
         let root = &self.folder;
         let lock = if alone { Lock::alone } else { Lock::shared }(root)?;
