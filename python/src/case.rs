@@ -2,7 +2,6 @@
 
 use std::path::{Path, PathBuf};
 
-use igimp_input;
 use igimp_input::shipped::{SHIPPED, find, nearest};
 use igimp_model::in_any_dimension;
 use igimp_study::sweep::is_sweep;
@@ -16,7 +15,7 @@ use crate::raised::{Raised, as_json};
 #[pyclass(frozen, module = "igimp._igimp")]
 #[derive(Debug)]
 pub(crate) struct CaseFile {
-    pub(crate) file: input::CaseFile,
+    pub(crate) file: igimp_input::CaseFile,
     pub(crate) name: PathBuf,
 }
 
@@ -26,7 +25,7 @@ impl CaseFile {
     #[staticmethod]
     fn read(py: Python<'_>, path: PathBuf, settings: Vec<String>) -> PyResult<Self> {
         let read = py.detach(|| {
-            let file = input::CaseFile::read(&path, &settings);
+            let file = igimp_input::CaseFile::read(&path, &settings);
             if file.is_err() && is_sweep(&path) {
                 return Err(Raised::bad_input(format!(
                     "error: {0} is a sweep, not a case\n  help: igimp sweep {0} runs it in a shell",
@@ -43,7 +42,7 @@ impl CaseFile {
     fn parse(py: Python<'_>, name: PathBuf, text: String, settings: Vec<String>) -> PyResult<Self> {
         let read = py.detach(|| {
             let shown = name.display().to_string();
-            Ok(input::CaseFile::read_from(
+            Ok(igimp_input::CaseFile::read_from(
                 &shown,
                 text.as_bytes(),
                 &settings,
@@ -138,7 +137,7 @@ impl CaseFile {
 impl CaseFile {
     fn found(
         py: Python<'_>,
-        read: Result<input::CaseFile, Raised>,
+        read: Result<igimp_input::CaseFile, Raised>,
         name: PathBuf,
     ) -> PyResult<Self> {
         let file = read.map_err(|raised| raised.exception(py))?;

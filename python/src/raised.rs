@@ -91,6 +91,12 @@ impl From<InputError> for Raised {
     }
 }
 
+impl From<ResultsError> for Raised {
+    fn from(error: ResultsError) -> Self {
+        CaseError::from(error).into()
+    }
+}
+
 impl From<CaseError> for Raised {
     fn from(error: CaseError) -> Self {
         let error = match error {
