@@ -1,6 +1,6 @@
 //! Words of the formats, for mutations that keep near to what is understood.
 
-use igimp_input::{Dimension, json_schema};
+use igimp_schema::{Dimension, json_schema};
 use serde_json::Value;
 
 const DIMENSIONS: [Dimension; 9] = [

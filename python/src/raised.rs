@@ -3,7 +3,8 @@
 use std::error::Error;
 
 use igimp_cases::{CaseError, chain, is_of_the_system};
-use igimp_input::{Diagnostic, InputError};
+use igimp_schema::Diagnostic;
+use igimp_input::InputError;
 use igimp_results::ResultsError;
 use igimp_results::checkpoint::CheckpointError;
 use igimp_results::summary::Ending;

@@ -10,7 +10,8 @@ use igimp_assembly::Locking;
 use std::fmt::Write;
 
 use igimp_input::shipped::SHIPPED;
-use igimp_input::{CaseFile, InputError, json_schema, reference_markdown};
+use igimp_input::{CaseFile, InputError};
+use igimp_schema::{json_schema, reference_markdown};
 
 const SLOPE: (&str, &str) = ("slope.toml", include_str!("data/slope.toml"));
 const FOOTING: (&str, &str) = ("footing.toml", include_str!("data/footing.toml"));

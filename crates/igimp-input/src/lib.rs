@@ -18,31 +18,9 @@
 
 mod build;
 pub mod bytes;
-mod complete;
-mod diagnostic;
-mod explain;
 mod files;
 mod geometry;
-mod json_schema;
-mod names;
-mod overrides;
-pub mod quantity;
 mod read;
-mod reference;
-mod schema;
 pub mod shipped;
-mod source;
-mod spec;
-mod suggest;
-mod syntax;
-mod text;
-pub mod toml_text;
-mod tree;
-mod units;
-mod value;
 
-pub use diagnostic::{Diagnostic, DiagnosticPlace};
-pub use json_schema::json_schema;
-pub use quantity::{Dimension, Quantity, QuantityError};
 pub use read::{CaseFile, InputError};
-pub use reference::reference_markdown;

@@ -7,17 +7,17 @@ use thiserror::Error;
 
 use super::build::build;
 use super::bytes;
-use super::complete::complete;
-use super::diagnostic::{Diagnostic, Problems};
-use super::explain::explain;
 use super::files;
-use super::overrides::apply;
-use super::source::{Place, Source};
-use super::syntax::parse;
-use super::tree::{Node, Value};
 use igimp_model::meshes;
 use igimp_model::{AnyCase, Case};
 use igimp_results::owner::Origin;
+use igimp_schema::complete::complete;
+use igimp_schema::diagnostic::{Diagnostic, Problems};
+use igimp_schema::explain::explain;
+use igimp_schema::overrides::apply;
+use igimp_schema::source::{Place, Source};
+use igimp_schema::syntax::parse;
+use igimp_schema::tree::{Node, Value};
 
 /// Most bytes of a case file.
 const LARGEST: usize = 8 << 20;

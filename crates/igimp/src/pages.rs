@@ -7,7 +7,7 @@ use crate::error::{Exit, ProgramError};
 use crate::output;
 
 pub(crate) fn schema() -> Result<Exit, ProgramError> {
-    output::print(&format!("{:#}", igimp_input::json_schema()))?;
+    output::print(&format!("{:#}", igimp_schema::json_schema()))?;
     Ok(Exit::Done)
 }
 

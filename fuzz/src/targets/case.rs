@@ -8,7 +8,8 @@
 //! - an accepted case makes its laws;
 //! - `igimp explain` prints the same case, and once more the same text.
 
-use igimp_input::{CaseFile, Diagnostic, InputError};
+use igimp_input::{CaseFile, InputError};
+use igimp_schema::Diagnostic;
 
 use super::{Verdict, holds};
 

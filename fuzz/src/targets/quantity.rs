@@ -7,7 +7,7 @@
 //! - it is accepted for its own dimension and for no other, with the same value;
 //! - what is refused is refused with a message of bounded length and with help.
 
-use igimp_input::Quantity;
+use igimp_schema::Quantity;
 
 use super::{Verdict, holds};
 use crate::input::Input;

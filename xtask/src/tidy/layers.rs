@@ -3,7 +3,7 @@
 use crate::metadata::{Metadata, Package};
 
 /// Crates of the project with those that they may depend on, for tests too.
-const LAYERS: [(&str, &[&str]); 19] = [
+const LAYERS: [(&str, &[&str]); 20] = [
     ("igimp-shape", &[]),
     ("igimp-material", &[]),
     ("igimp-linear", &[]),
@@ -11,17 +11,21 @@ const LAYERS: [(&str, &[&str]); 19] = [
     ("igimp-solver", BELOW_CASES.split_at(4).0),
     ("igimp-figures", &[]),
     ("igimp-text", &[]),
-    ("igimp-geometry", LIBRARIES.split_at(7).0),
-    ("igimp-model", LIBRARIES.split_at(8).0),
-    ("igimp-results", LIBRARIES.split_at(9).0),
-    ("igimp-input", LIBRARIES.split_at(10).0),
-    ("igimp-report", LIBRARIES.split_at(11).0),
-    ("igimp-cases", LIBRARIES.split_at(12).0),
-    ("igimp-study", LIBRARIES.split_at(13).0),
+    ("igimp-schema", &["igimp-text"]),
+    ("igimp-geometry", LIBRARIES.split_at(8).0),
+    ("igimp-model", LIBRARIES.split_at(9).0),
+    ("igimp-results", LIBRARIES.split_at(10).0),
+    ("igimp-input", LIBRARIES.split_at(11).0),
+    ("igimp-report", LIBRARIES.split_at(12).0),
+    ("igimp-cases", LIBRARIES.split_at(13).0),
+    ("igimp-study", LIBRARIES.split_at(14).0),
     ("igimp", LIBRARIES),
     ("igimp-benchmarks", LIBRARIES),
     ("igimp-validation", LIBRARIES),
-    ("igimp-fuzz", &["igimp-input", "igimp-results"]),
+    (
+        "igimp-fuzz",
+        &["igimp-input", "igimp-results", "igimp-schema"],
+    ),
     ("xtask", &[]),
 ];
 
@@ -43,6 +47,7 @@ const LIBRARIES: &[&str] = &[
     "igimp-solver",
     "igimp-figures",
     "igimp-text",
+    "igimp-schema",
     "igimp-geometry",
     "igimp-model",
     "igimp-results",

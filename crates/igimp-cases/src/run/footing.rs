@@ -91,7 +91,7 @@ impl Footing {
     }
 
     /// Row of nodes of the base.
-    pub(crate) fn row(&self) -> usize {
+    pub fn row(&self) -> usize {
         self.row
     }
 

@@ -28,7 +28,7 @@ pub(crate) fn lost_past(points: &[PathPoint]) -> Option<PathPoint> {
 }
 
 /// The equilibrium that a step came to: at a factor, after so much work since the beginning, and at a displacement.
-pub(crate) fn point(report: &StepReport, factor: f64, work: f64, displacement: f64) -> PathPoint {
+pub fn point(report: &StepReport, factor: f64, work: f64, displacement: f64) -> PathPoint {
     let share = (report.work.as_ref()).map(|work| work.dissipated_share(report.gross_work));
     PathPoint {
         factor,

@@ -17,7 +17,7 @@ const FLAT: f64 = 1e-12;
 /// A place in a body: its nearest particle, and those of the same soil around that. Directions that a plane problem does not
 /// have are zero.
 #[derive(Clone, Debug)]
-pub(crate) struct Place {
+pub struct Place {
     /// The number of the nearest particle.
     pub(crate) nearest: usize,
     /// From that particle to the place \[m\].
@@ -74,7 +74,7 @@ impl Place {
     }
 
     /// The value of a field of particles at the place; not a number where its particle is not there.
-    pub(crate) fn value<const D: usize>(
+    pub fn value<const D: usize>(
         &self,
         particles: &Particles<D>,
         field: impl Fn(usize) -> f64,

@@ -18,7 +18,7 @@ pub(crate) struct Moment<'a, const D: usize = 2> {
     /// Number of the stage, from 0.
     pub(crate) stage: usize,
     /// Number of the step (or trial) in its stage, from 1; 0 before the first.
-    pub(crate) number: usize,
+    pub number: usize,
     /// Share of the stage that is done \[-\].
     pub(crate) progress: f64,
     /// The particles.

@@ -301,11 +301,7 @@ pub(crate) fn table<const D: usize>(name: &str) -> Table {
 }
 
 /// The row of a rigid body that is there.
-pub(crate) fn row<const D: usize>(
-    case: &Case<D>,
-    moment: &Moment<'_, D>,
-    index: usize,
-) -> Vec<f64> {
+pub fn row<const D: usize>(case: &Case<D>, moment: &Moment<'_, D>, index: usize) -> Vec<f64> {
     let (controls, bodies) = (moment.controls, moment.rigid);
     let slot = controls.placed().take_while(|&k| k < index).count();
     let mut row = vec![

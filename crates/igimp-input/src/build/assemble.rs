@@ -6,13 +6,13 @@ use super::grid::{self, Frame};
 use super::sequence::Sequence;
 use super::stages::{self, Context};
 use super::{AllNames, all, checks, construction, curves, materials, outputs, study, title_block};
-use crate::diagnostic::Problems;
-use crate::tree::Node;
 use igimp_assembly::Method;
 use igimp_model::{
     BodyPart, Boundaries, Case, GridSpec, Material, ReinforcementPart, RigidPart, Stage,
     WaterCondition,
 };
+use igimp_schema::diagnostic::Problems;
+use igimp_schema::tree::Node;
 
 /// What everything else is held against.
 pub(super) struct Basics<const D: usize> {

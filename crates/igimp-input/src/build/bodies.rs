@@ -6,13 +6,13 @@ use super::AllNames;
 use super::grid::MOST;
 use super::sequence::{Sequence, placed};
 use super::site::Site;
-use crate::diagnostic::Problems;
 use crate::geometry::{distinct, near_edge, overlap, self_crossing};
-use crate::text::{clip, count, number, point};
-use crate::tree::Node;
 use igimp_geometry::polygon::contains;
 use igimp_geometry::polygon::{area_and_centroid, bounding_box};
 use igimp_model::{BodyPart, Boundaries, Side};
+use igimp_schema::diagnostic::Problems;
+use igimp_schema::text::{clip, count, number, point};
+use igimp_schema::tree::Node;
 
 /// Most corners of all bodies together.
 const MOST_CORNERS: usize = 5000;

@@ -1,9 +1,9 @@
 //! Supports.
 
 use super::grid::Frame;
-use crate::diagnostic::Problems;
-use crate::tree::Node;
 use igimp_model::{Boundaries, FixedBox, Side};
+use igimp_schema::diagnostic::Problems;
+use igimp_schema::tree::Node;
 
 /// The supports.
 pub(super) fn boundaries<const D: usize>(

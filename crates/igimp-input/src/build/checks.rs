@@ -2,11 +2,11 @@
 
 use super::AllNames;
 use super::quantities::{divisor, quantity};
-use crate::diagnostic::Problems;
-use crate::text::clip;
-use crate::tree::{Node, Wrong};
 use igimp_model::check::Band;
 use igimp_model::{CaseCheck, CheckTime, CheckValue, Load, Quantity, Stage, StageKind};
+use igimp_schema::diagnostic::Problems;
+use igimp_schema::text::clip;
+use igimp_schema::tree::{Node, Wrong};
 
 /// The checks.
 pub(super) fn checks<const D: usize>(

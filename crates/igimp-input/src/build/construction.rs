@@ -1,10 +1,10 @@
 //! Construction stages: what they may do to what is there.
 
 use super::stages::Context;
-use crate::diagnostic::Problems;
-use crate::text::{clip, row};
-use crate::tree::Node;
 use igimp_model::{Construction, Drainage, LoadKind, StageKind};
+use igimp_schema::diagnostic::Problems;
+use igimp_schema::text::{clip, row};
+use igimp_schema::tree::Node;
 
 /// A construction stage.
 pub(super) fn stage<const D: usize>(

@@ -4,11 +4,11 @@ use std::path::Path;
 
 use super::AllNames;
 use super::quantities::{divisor, quantity};
-use crate::diagnostic::Problems;
 use crate::files::text_of;
-use crate::text::clip;
-use crate::tree::Node;
 use igimp_model::{Curve, CurveAxis, Load, Quantity, Reference, ReferenceValues};
+use igimp_schema::diagnostic::Problems;
+use igimp_schema::text::clip;
+use igimp_schema::tree::Node;
 
 /// Most bytes of a reference file.
 const LARGEST: u64 = 1 << 20;

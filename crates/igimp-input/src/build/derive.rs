@@ -4,8 +4,8 @@
 use std::path::Path;
 
 use super::quantities::unit_of;
-use crate::schema::SPACE;
-use crate::tree::{Node, Value};
+use igimp_schema::schema::SPACE;
+use igimp_schema::tree::{Node, Value};
 
 /// Puts them into the tree.
 pub(super) fn derive(tree: &mut Node, file: &Path) {
@@ -172,7 +172,7 @@ fn label(dimensions: usize, axis: &Node) -> Option<String> {
     for divisor in divisors {
         let text = match &divisor.value {
             Value::Quantity(_, text) => text.clone(),
-            _ => crate::text::number(divisor.number()?),
+            _ => igimp_schema::text::number(divisor.number()?),
         };
         label.push_str(" / ");
         label.push_str(&text);

@@ -6,10 +6,10 @@ use igimp_assembly::{DomainUpdate, Geometry, Kinematics, Locking, Method, Remedy
 use igimp_shape::{Basis, Gimp, Linear};
 
 use super::lines::{Wish, Zone, largest_jump};
-use crate::diagnostic::Problems;
-use crate::text::{count, number};
-use crate::tree::Node;
 use igimp_model::{AxisSpec, BodyPart, GridSpec, MixedCells};
+use igimp_schema::diagnostic::Problems;
+use igimp_schema::text::{count, number};
+use igimp_schema::tree::Node;
 use igimp_text::short;
 
 /// Most cells, and most particles.

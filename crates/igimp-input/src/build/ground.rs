@@ -1,9 +1,9 @@
 //! The surface of the ground, straight from place to place, and how water tables lie to it.
 
 use super::site::Site;
-use crate::text::number;
 use igimp_geometry::polygon::contains;
 use igimp_model::{BodyPart, PoreSource, Raster, table_level};
+use igimp_schema::text::number;
 
 /// What conditions of the water ask of the ground.
 pub(super) trait Earth<const D: usize> {

@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use super::ground::{Above, Earth, Surface, UprightFace};
 use super::space::Solids;
-use crate::text::number;
 use igimp_geometry::region::Region;
 use igimp_model::{BodyPart, Drained, PoreSource, Raster};
+use igimp_schema::text::number;
 
 /// Most places of the lattice along an axis.
 const MOST: usize = 80;

@@ -4,14 +4,14 @@
 use super::grid::Frame;
 use super::sequence::Sequence;
 use super::site::Site;
-use crate::diagnostic::Problems;
 use crate::geometry::{facing, largest_run};
-use crate::source::Place;
-use crate::text::{clip, number, point};
-use crate::tree::Node;
 use igimp_geometry::polygon::bounding_box;
 use igimp_geometry::polygon::contains;
 use igimp_model::{BodyPart, Ground, Material, Stage, StageKind, Strength};
+use igimp_schema::diagnostic::Problems;
+use igimp_schema::source::Place;
+use igimp_schema::text::{clip, number, point};
+use igimp_schema::tree::Node;
 use igimp_text::short;
 
 /// Error of the stress beside a boundary that is worth a warning \[-\].

@@ -1,7 +1,7 @@
 //! Level ground, which K₀ stresses need.
 
 use super::site::Site;
-use crate::text::point;
+use igimp_schema::text::point;
 
 /// Why the ground is not level; `None` when it is.
 pub(super) fn uneven(site: &Site) -> Option<String> {

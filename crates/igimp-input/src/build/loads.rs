@@ -2,11 +2,11 @@
 
 use super::grid::Frame;
 use super::site::{Site, Soil};
-use crate::diagnostic::Problems;
 use crate::geometry::cover;
-use crate::text::{clip, number, point};
-use crate::tree::Node;
 use igimp_model::{AxisSpec, Load, LoadKind};
+use igimp_schema::diagnostic::Problems;
+use igimp_schema::text::{clip, number, point};
+use igimp_schema::tree::Node;
 
 /// The loads.
 pub(super) fn loads(tree: &Node, site: &Site, problems: &mut Problems) -> Vec<Option<Load>> {

@@ -2,11 +2,11 @@
 
 use super::loads::at_point;
 use super::space::Solids;
-use crate::diagnostic::Problems;
 use crate::geometry::{distinct, self_crossing};
-use crate::text::{clip, point};
-use crate::tree::Node;
 use igimp_model::{Load, LoadKind, Plan};
+use igimp_schema::diagnostic::Problems;
+use igimp_schema::text::{clip, point};
+use igimp_schema::tree::Node;
 
 /// Places along each side of a loaded rectangle at which soil is looked for.
 const SAMPLES: usize = 7;

@@ -40,15 +40,14 @@ mod water_checks;
 
 use std::path::Path;
 
-use super::diagnostic::Problems;
-use super::names::Names;
-use super::schema::{FORMAT, SPACE};
-use super::tree::Node;
 use igimp_model::{AnyCase, Case, TitleBlock};
+use igimp_schema::diagnostic::Problems;
+use igimp_schema::names::Names;
+use igimp_schema::schema::{FORMAT, SPACE};
+use igimp_schema::tree::Node;
 
 use assemble::{Basics, Upon};
 use layers::Layers;
-pub(super) use quantities::QUANTITY_DOCS;
 use site::Site;
 
 /// The names in a file, by what they name.

@@ -7,14 +7,14 @@ use igimp_linear::SolverKind;
 use super::AllNames;
 use super::quantities::fields;
 use super::site::Soil;
-use crate::diagnostic::Problems;
-use crate::text::{clip, point};
-use crate::tree::Node;
 use igimp_model::{
     Average, Cut, Every, Field, Flow, Material, Monitor, Output, Section, SectionReference,
     SolverSettings, Stage, StageKind, Strength,
 };
 use igimp_results::fields::length;
+use igimp_schema::diagnostic::Problems;
+use igimp_schema::text::{clip, point};
+use igimp_schema::tree::Node;
 
 /// Newton's method, step cutting, linear solver.
 pub(super) fn solver(

@@ -1,11 +1,11 @@
 //! Properties of materials that vary with the level, with the depth, with the stress or in the plane.
 
-use crate::diagnostic::Problems;
-use crate::text::{clip, number, point};
-use crate::tree::{Node, Wrong};
 use igimp_geometry::polygon::Polygon;
 use igimp_model::in_plane;
 use igimp_model::{BodyPart, Ground, Profile, Raster, StressShare, Variation, front};
+use igimp_schema::diagnostic::Problems;
+use igimp_schema::text::{clip, number, point};
+use igimp_schema::tree::{Node, Wrong};
 
 /// A property of a material as a case file states it.
 pub(super) struct Property {

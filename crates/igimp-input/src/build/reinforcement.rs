@@ -3,10 +3,10 @@
 use super::AllNames;
 use super::site::{Site, Soil};
 use super::stages::Context;
-use crate::diagnostic::Problems;
-use crate::text::{clip, number, point};
-use crate::tree::Node;
 use igimp_model::{ReinforcementKind, ReinforcementPart, distance};
+use igimp_schema::diagnostic::Problems;
+use igimp_schema::text::{clip, number, point};
+use igimp_schema::tree::Node;
 
 /// Places along a member at which soil is looked for.
 const SAMPLES: u32 = 40;

@@ -3,9 +3,9 @@
 use super::reinforcement::part;
 use super::site::Soil as _;
 use super::space::Solids;
-use crate::diagnostic::Problems;
-use crate::tree::Node;
 use igimp_model::ReinforcementPart;
+use igimp_schema::diagnostic::Problems;
+use igimp_schema::tree::Node;
 
 /// How far beside a head the surface is looked for, as a share of the cell \[-\].
 const BESIDE: f64 = 0.02;

@@ -5,10 +5,10 @@ use std::sync::Arc;
 use igimp_assembly::{SurfaceError, Tension};
 
 use super::grid::Frame;
-use crate::diagnostic::Problems;
-use crate::text::{clip, number};
-use crate::tree::Node;
 use igimp_model::{Adhesion, Material, RigidForm, RigidInterface, RigidPart, RigidShear, Strength};
+use igimp_schema::diagnostic::Problems;
+use igimp_schema::text::{clip, number};
+use igimp_schema::tree::Node;
 
 /// A body is at least so many cells thick.
 const LEAST_CELLS: f64 = 2.0;
@@ -25,7 +25,7 @@ pub(super) struct Basis<const D: usize> {
 
 /// The sides of a shape.
 pub(super) struct Sides {
-    pub(super) count: usize,
+    pub count: usize,
     /// Names of the first ones, in their order.
     pub(super) names: &'static [&'static str],
 }

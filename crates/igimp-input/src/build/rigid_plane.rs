@@ -5,12 +5,12 @@ use std::sync::Arc;
 use super::rigid::{Basis, Sides, follow_once, part_of};
 use super::sequence::Sequence;
 use super::site::Site;
-use crate::diagnostic::Problems;
 use crate::geometry::{distinct, overlap, self_crossing};
-use crate::text::{clip, point};
-use crate::tree::Node;
 use igimp_geometry::polygon::area_and_centroid;
 use igimp_model::{Load, LoadKind, Material, RigidPart, RigidShape};
+use igimp_schema::diagnostic::Problems;
+use igimp_schema::text::{clip, point};
+use igimp_schema::tree::Node;
 
 /// Corners of a circle where it is looked at as a polygon.
 const POINTS_OF_CIRCLE: usize = 90;

@@ -5,10 +5,10 @@ use std::sync::Arc;
 use super::grid::Frame;
 use super::rigid::{Basis, Sides, follow_once, part_of};
 use super::surfaces::closed_surface;
-use crate::diagnostic::Problems;
-use crate::text::clip;
-use crate::tree::Node;
 use igimp_model::{Material, RigidForm as _, RigidPart, RigidSolid};
+use igimp_schema::diagnostic::Problems;
+use igimp_schema::text::clip;
+use igimp_schema::tree::Node;
 
 /// The rigid bodies.
 pub(super) fn rigid(

@@ -2,10 +2,10 @@
 
 use super::AllNames;
 use super::stages::Context;
-use crate::diagnostic::Problems;
-use crate::text::clip;
-use crate::tree::{Node, Wrong};
 use igimp_model::{COMPONENTS, RigidDrive, RigidMove, StageKind};
+use igimp_schema::diagnostic::Problems;
+use igimp_schema::text::clip;
+use igimp_schema::tree::{Node, Wrong};
 
 /// A stage that moves rigid bodies.
 pub(super) fn stage<const D: usize>(

@@ -1,10 +1,10 @@
 //! Stages that reduce strength: the search for the factor of safety, and the run-out.
 
 use super::stages::Context;
-use crate::diagnostic::Problems;
-use crate::text::clip;
-use crate::tree::Node;
 use igimp_model::{Reduction, ReductionPath, RunOut, SearchMethod, Strength, StrengthReduction};
+use igimp_schema::diagnostic::Problems;
+use igimp_schema::text::clip;
+use igimp_schema::tree::Node;
 
 /// Indices of the materials whose strength is reduced.
 fn materials<const D: usize>(

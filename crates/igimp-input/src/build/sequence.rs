@@ -5,8 +5,8 @@
 use std::rc::Rc;
 
 use super::AllNames;
-use crate::tree::Node;
 use igimp_model::BodyPart;
+use igimp_schema::tree::Node;
 
 /// What is there at a time.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -4,11 +4,11 @@ use std::fmt::{self, Display, Formatter};
 
 use super::bodies::corners;
 use super::surfaces::{closed_surface, ground};
-use crate::diagnostic::Problems;
-use crate::text::{clip, number};
-use crate::tree::Node;
 use igimp_geometry::region::{Cover, Part, Region};
 use igimp_geometry::solid::{Cylinder, Difference, Prism, Solid, Sphere};
+use igimp_schema::diagnostic::Problems;
+use igimp_schema::text::{clip, number};
+use igimp_schema::tree::Node;
 
 /// The keys that say a shape.
 const SHAPES: [&str; 6] = ["box", "polygon", "plan", "cylinder", "sphere", "surface"];

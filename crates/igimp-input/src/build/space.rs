@@ -11,11 +11,11 @@ use super::{
     AllNames, boundaries, loads_space, reinforcement, reinforcement_space, rigid_space,
     rigid_stage, solids, stages, water, water_checks,
 };
-use crate::diagnostic::Problems;
-use crate::text::{clip, count, number, point};
-use crate::tree::Node;
 use igimp_geometry::region::Region;
 use igimp_model::{BodyPart, Case, Ground, LoadKind, Material};
+use igimp_schema::diagnostic::Problems;
+use igimp_schema::text::{clip, count, number, point};
+use igimp_schema::tree::Node;
 
 /// Most particles.
 const MOST: f64 = 5e7;

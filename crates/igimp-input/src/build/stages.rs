@@ -8,10 +8,10 @@ use super::level::uneven;
 use super::safety::{run_out, strength_reduction};
 use super::sequence::Sequence;
 use super::site::{Site, Soil};
-use crate::diagnostic::Problems;
-use crate::text::{clip, number, row};
-use crate::tree::{Node, Wrong};
 use igimp_model::{BodyPart, Load, LoadKind, Material, Stage, StageKind, StopWhen, Strength};
+use igimp_schema::diagnostic::Problems;
+use igimp_schema::text::{clip, number, row};
+use igimp_schema::tree::{Node, Wrong};
 
 /// What stages refer to.
 pub(super) struct Context<'a, const D: usize = 2> {

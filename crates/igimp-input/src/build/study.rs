@@ -1,11 +1,11 @@
 //! The study of the mesh error.
 
 use super::grid::MOST;
-use crate::diagnostic::Problems;
-use crate::text::{clip, count};
-use crate::tree::Node;
 use igimp_model::meshes;
 use igimp_model::{Case, CheckValue, MeshStudy, StageKind};
+use igimp_schema::diagnostic::Problems;
+use igimp_schema::text::{clip, count};
+use igimp_schema::tree::Node;
 
 /// The study that the file asks for.
 pub(super) fn mesh_study(tree: &Node) -> Option<MeshStudy> {

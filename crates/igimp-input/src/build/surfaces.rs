@@ -5,13 +5,13 @@ use std::sync::Arc;
 
 use super::bodies::corners;
 use super::solids::Who;
-use crate::diagnostic::Problems;
-use crate::text::number;
-use crate::tree::Node;
 use igimp_geometry::solid::{
     ClosedSurface, ClosedSurfaceError, Height, Layer, LayerError, Prism, Solid, Terrain,
     TerrainError,
 };
+use igimp_schema::diagnostic::Problems;
+use igimp_schema::text::number;
+use igimp_schema::tree::Node;
 
 /// The closed surface of a table.
 pub(super) fn closed_surface(

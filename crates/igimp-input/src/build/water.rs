@@ -4,10 +4,10 @@ use super::AllNames;
 use super::ground::{Earth, Surface, UprightFace};
 use super::sequence::{Scene, Sequence};
 use super::surfaces::terrain;
-use crate::diagnostic::Problems;
-use crate::text::{clip, number};
-use crate::tree::Node;
 use igimp_model::{BodyPart, Material, PoreSource, WaterCondition};
+use igimp_schema::diagnostic::Problems;
+use igimp_schema::text::{clip, number};
+use igimp_schema::tree::Node;
 
 /// What conditions of the water are held against.
 pub(super) struct Around<'a, const D: usize = 2> {

@@ -6,11 +6,11 @@ use super::ground::{Above, Earth, Surface, UprightFace};
 use super::profiles::reach;
 use super::sequence::Scene;
 use super::water::Around;
-use crate::diagnostic::Problems;
-use crate::source::Place;
-use crate::text::{clip, number};
-use crate::tree::Node;
 use igimp_model::{BodyPart, Drainage, PoreSource, Raster, Strength, WaterCondition};
+use igimp_schema::diagnostic::Problems;
+use igimp_schema::source::Place;
+use igimp_schema::text::{clip, number};
+use igimp_schema::tree::Node;
 
 /// Refuses tables that stand above the ground unmeant, and what water cannot do to materials; warns of conditions that
 /// do nothing.

@@ -1,7 +1,7 @@
 //! Columns of numbers in CSV files: a header that may say units, `#` before comments.
 
 use super::Trouble;
-use crate::text::clip;
+use igimp_schema::text::clip;
 
 /// What a file holds.
 #[derive(Debug)]

@@ -4,7 +4,7 @@
 //! coordinates, 42 is the bulge of a polyline, 70 its flags (AutoCAD DXF reference, "entities section").
 
 use super::Trouble;
-use crate::text::{clip, number, row};
+use igimp_schema::text::{clip, number, row};
 
 /// How a binary drawing begins.
 const BINARY: &str = "AutoCAD Binary DXF";

@@ -4,10 +4,10 @@ use std::path::Path;
 
 use super::columns::columns;
 use super::{LARGEST, Named, Trouble, quantity, text_of, unit_beside, unit_of};
-use crate::diagnostic::Problems;
-use crate::quantity::Dimension;
-use crate::text::clip;
-use crate::tree::{Entry, Node, Value};
+use igimp_schema::diagnostic::Problems;
+use igimp_schema::quantity::Dimension;
+use igimp_schema::text::clip;
+use igimp_schema::tree::{Entry, Node, Value};
 
 /// Most points.
 const MOST: usize = 100_000;

@@ -15,10 +15,10 @@ use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
 use super::bytes;
-use super::diagnostic::Problems;
-use super::quantity::{Dimension, Quantity};
-use super::text::clip;
-use super::tree::{Node, Value};
+use igimp_schema::diagnostic::Problems;
+use igimp_schema::quantity::{Dimension, Quantity};
+use igimp_schema::text::clip;
+use igimp_schema::tree::{Node, Value};
 
 /// Most bytes of a file.
 const LARGEST: u64 = 32 << 20;

@@ -5,9 +5,9 @@ use std::path::Path;
 use super::columns::columns;
 use super::dxf::{self, Line};
 use super::{LARGEST, Named, Trouble, quantity, text_of, unit_of};
-use crate::diagnostic::Problems;
-use crate::quantity::Dimension;
-use crate::tree::{Node, Value, Wrong};
+use igimp_schema::diagnostic::Problems;
+use igimp_schema::quantity::Dimension;
+use igimp_schema::tree::{Node, Value, Wrong};
 
 /// Ends of two lines closer than this share of their extent are one \[-\].
 const SAME: f64 = 1e-9;
@@ -83,8 +83,8 @@ fn between(table: &Node, folder: &Path, problems: &mut Problems) -> Result<Vec<N
                     table.place,
                     format!(
                         "the lines above and below do not end together on the {side}: at x = {} m and at x = {} m",
-                        crate::text::number(a[0]),
-                        crate::text::number(b[0])
+                        igimp_schema::text::number(a[0]),
+                        igimp_schema::text::number(b[0])
                     ),
                 )
                 .help("let both run from one side of the ground to the other");

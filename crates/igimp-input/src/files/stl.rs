@@ -6,10 +6,10 @@ use std::path::Path;
 
 use super::{LARGEST, Named, Trouble, quantity, unit_beside};
 use crate::bytes;
-use crate::diagnostic::Problems;
-use crate::quantity::Dimension;
-use crate::text::clip;
-use crate::tree::{Entry, Node, Value};
+use igimp_schema::diagnostic::Problems;
+use igimp_schema::quantity::Dimension;
+use igimp_schema::text::clip;
+use igimp_schema::tree::{Entry, Node, Value};
 
 /// Most triangles.
 const MOST: usize = 100_000;

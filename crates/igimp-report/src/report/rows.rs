@@ -24,7 +24,7 @@ pub(super) const UNKNOWN: &str = "–";
 #[derive(Serialize)]
 pub(super) struct Number {
     pub name: String,
-    pub(super) value: String,
+    pub value: String,
     pub(super) note: String,
 }
 

@@ -20,7 +20,7 @@ pub(super) struct Verdict {
     /// `good`, `fair` or `bad`.
     pub(super) class: &'static str,
     pub(super) word: &'static str,
-    pub(super) text: String,
+    pub text: String,
 }
 
 /// The verdict on a run: how it ended, what the checks say, and the factor of safety.

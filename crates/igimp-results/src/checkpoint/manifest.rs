@@ -126,7 +126,7 @@ struct FileEntry {
 }
 
 impl Manifest {
-    pub(super) fn new(name: &str, sequence: u64, meta: &Meta, states: Vec<StateEntry>) -> Self {
+    pub fn new(name: &str, sequence: u64, meta: &Meta, states: Vec<StateEntry>) -> Self {
         let Meta {
             program,
             fingerprint,

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use igimp_input::quantity::{Quantity, split};
 use igimp_results::cells::cell;
+use igimp_schema::quantity::{Quantity, split};
 use igimp_text::on_a_line;
 
 /// A parameter in a table: its header, and its cell in each row.

@@ -8,7 +8,7 @@ use toml::de::{DeTable, DeValue};
 
 use super::{Sweep, SweepError, Task};
 use igimp_input::shipped::closest;
-use igimp_input::toml_text::{self, quoted};
+use igimp_schema::toml_text::{self, quoted};
 
 /// Most tasks of a study; more are a slip of the keyboard.
 const MOST_TASKS: usize = 100_000;

@@ -37,8 +37,9 @@ mod results;
 use std::fmt::Write as _;
 use std::fs;
 
+use igimp_input::CaseFile;
 use igimp_input::shipped::{SHIPPED, find};
-use igimp_input::{CaseFile, reference_markdown};
+use igimp_schema::reference_markdown;
 
 use crate::page::{blocks, comment, hold, pages, root};
 

@@ -6,31 +6,31 @@ use super::quantity::Dimension;
 
 /// A table with known keys.
 #[derive(Debug)]
-pub(super) struct Struct {
+pub struct Struct {
     /// What it is about, in a line.
-    pub(super) doc: &'static str,
+    pub doc: &'static str,
     /// Its keys.
-    pub(super) fields: &'static [Field],
+    pub fields: &'static [Field],
 }
 
 /// A key.
 #[derive(Debug)]
-pub(super) struct Field {
+pub struct Field {
     /// The key.
-    pub(super) key: &'static str,
+    pub key: &'static str,
     /// What its value may be.
     pub kind: Kind,
     /// Whether it has to be written.
-    pub(super) presence: Presence,
+    pub presence: Presence,
     /// What it means, in a line.
-    pub(super) doc: &'static str,
+    pub doc: &'static str,
     /// The analyses that know it.
-    pub(super) scope: Scope,
+    pub scope: Scope,
 }
 
 /// The analyses that know a key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Scope {
+pub enum Scope {
     /// All.
     Any,
     /// Plane strain.
@@ -41,7 +41,7 @@ pub(super) enum Scope {
 
 impl Field {
     /// Whether an analysis in space, or else one in plane strain, knows the key.
-    pub(super) fn applies(&self, in_space: bool) -> bool {
+    pub fn applies(&self, in_space: bool) -> bool {
         match self.scope {
             Scope::Any => true,
             Scope::Plane => !in_space,
@@ -52,7 +52,7 @@ impl Field {
 
 /// Whether a key has to be written.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Presence {
+pub enum Presence {
     /// It has, as in this example value (TOML).
     Required(&'static str),
     /// It has this value (TOML) when it is not written.
@@ -65,44 +65,44 @@ pub(super) enum Presence {
 
 /// A table with a key that says which further keys there are.
 #[derive(Debug)]
-pub(super) struct Variants {
+pub struct Variants {
     /// What it is about, in a line.
-    pub(super) doc: &'static str,
+    pub doc: &'static str,
     /// The key that tells the variants apart.
-    pub(super) tag: &'static str,
+    pub tag: &'static str,
     /// What that key means.
-    pub(super) tag_doc: &'static str,
+    pub tag_doc: &'static str,
     /// Keys of all variants that stand before the tag.
-    pub(super) before: &'static [Field],
+    pub before: &'static [Field],
     /// Keys of all variants that stand after those of the variant.
-    pub(super) after: &'static [Field],
+    pub after: &'static [Field],
     /// The variants.
-    pub(super) cases: &'static [Variant],
+    pub cases: &'static [Variant],
 }
 
 /// One of several forms of a table.
 #[derive(Debug)]
-pub(super) struct Variant {
+pub struct Variant {
     /// Value of the tag.
     pub name: &'static str,
     /// What it is, in a line.
-    pub(super) doc: &'static str,
+    pub doc: &'static str,
     /// Its own keys.
-    pub(super) fields: &'static [Field],
+    pub fields: &'static [Field],
 }
 
 /// A text out of a few.
 #[derive(Debug)]
-pub(super) struct Choice {
+pub struct Choice {
     /// The text.
     pub name: &'static str,
     /// What it means.
-    pub(super) doc: &'static str,
+    pub doc: &'static str,
 }
 
 /// A range of numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Range {
+pub enum Range {
     /// Any finite number.
     Any,
     /// Above zero.
@@ -115,7 +115,7 @@ pub(super) enum Range {
 
 impl Range {
     /// Whether a number lies in the range.
-    pub(super) fn holds(self, value: f64) -> bool {
+    pub fn holds(self, value: f64) -> bool {
         value.is_finite()
             && match self {
                 Self::Any => true,
@@ -126,7 +126,7 @@ impl Range {
     }
 
     /// What the range asks for; reads on from "must be".
-    pub(super) fn requirement(self) -> &'static str {
+    pub fn requirement(self) -> &'static str {
         match self {
             Self::Any => "finite",
             Self::Positive => "positive",
@@ -138,7 +138,7 @@ impl Range {
 
 /// What a value may be.
 #[derive(Debug)]
-pub(super) enum Kind {
+pub enum Kind {
     /// Any text.
     Text,
     /// A text that is the name of something, and may become a file name.
@@ -175,7 +175,7 @@ pub(super) enum Kind {
 
 impl Kind {
     /// What is expected, with an article and an example.
-    pub(super) fn expectation(&self) -> String {
+    pub fn expectation(&self) -> String {
         match self {
             Self::Text => "a text in quotes".to_owned(),
             Self::Name => "a name in quotes".to_owned(),
@@ -205,7 +205,7 @@ impl Kind {
 }
 
 /// `"a"`, `"b"` or `"c"`.
-pub(super) fn one_of<'a>(names: impl Iterator<Item = &'a str>) -> String {
+pub fn one_of<'a>(names: impl Iterator<Item = &'a str>) -> String {
     let quoted: Vec<_> = names.map(|name| format!("\"{name}\"")).collect();
     match quoted.split_last() {
         Some((last, [])) => last.clone(),
@@ -216,19 +216,19 @@ pub(super) fn one_of<'a>(names: impl Iterator<Item = &'a str>) -> String {
 
 impl Variants {
     /// The variant of this name.
-    pub(super) fn find(&self, name: &str) -> Option<&'static Variant> {
+    pub fn find(&self, name: &str) -> Option<&'static Variant> {
         self.cases.iter().find(|case| case.name == name)
     }
 
     /// The keys of a variant in the order in which they are printed, without the tag.
-    pub(super) fn fields(&self, variant: &'static Variant) -> impl Iterator<Item = &'static Field> {
+    pub fn fields(&self, variant: &'static Variant) -> impl Iterator<Item = &'static Field> {
         let (before, after) = (self.before, self.after);
         before.iter().chain(variant.fields).chain(after)
     }
 }
 
 /// A key that has to be written.
-pub(super) const fn required(
+pub const fn required(
     key: &'static str,
     kind: Kind,
     example: &'static str,
@@ -244,7 +244,7 @@ pub(super) const fn required(
 }
 
 /// A key with a default.
-pub(super) const fn default(
+pub const fn default(
     key: &'static str,
     kind: Kind,
     value: &'static str,
@@ -260,7 +260,7 @@ pub(super) const fn default(
 }
 
 /// A key whose value follows from the rest of the file.
-pub(super) const fn derived(
+pub const fn derived(
     key: &'static str,
     kind: Kind,
     from: &'static str,
@@ -276,7 +276,7 @@ pub(super) const fn derived(
 }
 
 /// A key that may be missing.
-pub(super) const fn optional(
+pub const fn optional(
     key: &'static str,
     kind: Kind,
     meaning: &'static str,
@@ -292,7 +292,7 @@ pub(super) const fn optional(
 }
 
 /// A key that only plane strain knows.
-pub(super) const fn in_plane(field: Field) -> Field {
+pub const fn in_plane(field: Field) -> Field {
     Field {
         scope: Scope::Plane,
         ..field
@@ -300,7 +300,7 @@ pub(super) const fn in_plane(field: Field) -> Field {
 }
 
 /// A key that only space knows.
-pub(super) const fn in_space(field: Field) -> Field {
+pub const fn in_space(field: Field) -> Field {
     Field {
         scope: Scope::Space,
         ..field
@@ -308,6 +308,6 @@ pub(super) const fn in_space(field: Field) -> Field {
 }
 
 /// A choice.
-pub(super) const fn choice(name: &'static str, doc: &'static str) -> Choice {
+pub const fn choice(name: &'static str, doc: &'static str) -> Choice {
     Choice { name, doc }
 }

@@ -37,7 +37,7 @@ pub fn quoted(text: &str) -> String {
 }
 
 /// A value on one line; the keys of tables in the order of the schema.
-pub(super) fn inline(node: &Node, kind: &Kind) -> String {
+pub fn inline(node: &Node, kind: &Kind) -> String {
     match &node.value {
         Value::Text(text) | Value::Quantity(_, text) | Value::Date(text) => quoted(text),
         Value::Integer(value) => value.to_string(),

@@ -10,7 +10,7 @@ use crate::spec::{
 };
 
 /// What books call a field, and its keys here: of these the one that the material has is meant.
-pub(crate) static SYMBOLS: [(&str, &[&str]); 22] = [
+pub static SYMBOLS: [(&str, &[&str]); 22] = [
     ("gamma", &["unit_weight"]),
     ("γ", &["unit_weight"]),
     ("weight", &["unit_weight"]),
@@ -98,7 +98,7 @@ const fn profile(
 }
 
 /// The keys of values by points in the plane.
-pub(super) const fn in_plane(lists: &'static Kind) -> [Field; 6] {
+pub const fn in_plane(lists: &'static Kind) -> [Field; 6] {
     [
         optional(
             "raster",
@@ -290,7 +290,7 @@ const CU: Field = required(
 );
 
 /// A material, by model.
-pub(crate) static MATERIAL: Variants = Variants {
+pub static MATERIAL: Variants = Variants {
     doc: "A material.",
     tag: "model",
     tag_doc: "constitutive law",

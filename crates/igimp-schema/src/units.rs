@@ -130,17 +130,17 @@ enum Scale {
 
 /// A unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Unit {
+pub struct Unit {
     /// As it is written, with plain digits for powers.
-    pub(super) symbol: &'static str,
+    pub symbol: &'static str,
     /// What it measures.
-    pub(super) dimension: Dimension,
+    pub dimension: Dimension,
     scale: Scale,
 }
 
 impl Unit {
     /// A number of this unit in SI units.
-    pub(super) fn to_si(self, number: f64) -> f64 {
+    pub fn to_si(self, number: f64) -> f64 {
         match self.scale {
             Scale::Ten(power) if power < 0 => number / 10_f64.powi(-power),
             Scale::Ten(power) => number * 10_f64.powi(power),
@@ -150,13 +150,13 @@ impl Unit {
     }
 
     /// The unit of this spelling: `²`, `³`, `^2`, `^3` and `**2` are powers, spaces do not count.
-    pub(super) fn find(spelling: &str) -> Option<Self> {
+    pub fn find(spelling: &str) -> Option<Self> {
         let plain = plain(spelling);
         UNITS.iter().find(|unit| unit.symbol == plain).copied()
     }
 
     /// The unit that a spelling may have meant.
-    pub(crate) fn nearest(spelling: &str, dimension: Dimension) -> Option<&'static str> {
+    pub fn nearest(spelling: &str, dimension: Dimension) -> Option<&'static str> {
         let plain = plain(spelling);
         let folded = plain.to_lowercase();
         let same = |unit: &&Self| unit.symbol.to_lowercase() == folded;

@@ -9,7 +9,7 @@ use super::text::clip;
 use super::tree::{Node, from_document};
 
 /// The tree of a file; reports what is not TOML.
-pub(super) fn parse(source: &Source, problems: &mut Problems) -> Node {
+pub fn parse(source: &Source, problems: &mut Problems) -> Node {
     let (document, errors) = DeTable::parse_recoverable(&source.text);
     let mut errors: Vec<&Error> = errors.iter().collect();
     errors.sort_by_key(|error| error.span().map_or(usize::MAX, |span| span.start));

@@ -10,7 +10,7 @@ use igimp_text::on_a_line;
 
 /// Whether the case can be run all the same.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Severity {
+pub enum Severity {
     /// It cannot.
     Error,
     /// It can.
@@ -19,7 +19,7 @@ pub(super) enum Severity {
 
 /// One problem.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Problem {
+pub struct Problem {
     severity: Severity,
     message: String,
     place: Option<Place>,
@@ -28,7 +28,7 @@ pub(super) struct Problem {
 
 impl Problem {
     /// Adds a line of help.
-    pub(super) fn help(&mut self, text: impl Into<String>) -> &mut Self {
+    pub fn help(&mut self, text: impl Into<String>) -> &mut Self {
         self.help.push(printable(text.into()));
         self
     }
@@ -72,7 +72,7 @@ impl From<&Problem> for Diagnostic {
 
 /// Problems in the order in which they were found.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Problems {
+pub struct Problems {
     list: Vec<Problem>,
     errors: usize,
     warnings: usize,
@@ -87,7 +87,7 @@ const KEPT: usize = 1000;
 
 impl Problems {
     /// Reports an error.
-    pub(crate) fn error(
+    pub fn error(
         &mut self,
         place: impl Into<Option<Place>>,
         message: impl Into<String>,
@@ -96,7 +96,7 @@ impl Problems {
     }
 
     /// Reports a warning.
-    pub(super) fn warning(
+    pub fn warning(
         &mut self,
         place: impl Into<Option<Place>>,
         message: impl Into<String>,
@@ -129,22 +129,22 @@ impl Problems {
     }
 
     /// Number of errors.
-    pub(super) fn errors(&self) -> usize {
+    pub fn errors(&self) -> usize {
         self.errors
     }
 
     /// Whether there are so many that help with another one is not worth its while.
-    pub(super) fn are_many(&self) -> bool {
+    pub fn are_many(&self) -> bool {
         self.list.len() >= 2 * MOST
     }
 
     /// The problems that are kept, in the order in which they were found.
-    pub(super) fn diagnostics(&self) -> Vec<Diagnostic> {
+    pub fn diagnostics(&self) -> Vec<Diagnostic> {
         self.list.iter().map(Diagnostic::from).collect()
     }
 
     /// All problems and a line that counts them; empty when there are none.
-    pub(super) fn render(&self, sources: &[Source]) -> String {
+    pub fn render(&self, sources: &[Source]) -> String {
         if self.list.is_empty() {
             return String::new();
         }

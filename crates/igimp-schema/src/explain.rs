@@ -13,7 +13,7 @@ const COMMENT: usize = 44;
 const WIDTH: usize = 80;
 
 /// The file with every default; it states the same case.
-pub(super) fn explain(completed: &Node) -> String {
+pub fn explain(completed: &Node) -> String {
     let mut out = String::new();
     let analysis = completed.get("case");
     let analysis = analysis.and_then(|case| case.text_at("analysis"));

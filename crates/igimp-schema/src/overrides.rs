@@ -22,7 +22,7 @@ struct Part {
 }
 
 /// Changes a tree as an override says; the override is the source of this index.
-pub(super) fn apply(tree: &mut Node, sources: &[Source], index: usize, problems: &mut Problems) {
+pub fn apply(tree: &mut Node, sources: &[Source], index: usize, problems: &mut Problems) {
     let Some(source) = sources.get(index) else {
         return;
     };

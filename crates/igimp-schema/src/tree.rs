@@ -7,18 +7,18 @@ use super::source::Place;
 
 /// A value and where it stands.
 #[derive(Clone, Debug)]
-pub(super) struct Node {
+pub struct Node {
     /// The value.
-    pub(super) value: Value,
+    pub value: Value,
     /// Where it stands; of a defaulted value, where its table stands.
-    pub(super) place: Place,
+    pub place: Place,
     /// Whether it is written down, rather than a default.
-    pub(super) written: bool,
+    pub written: bool,
 }
 
 /// A value.
 #[derive(Clone, Debug)]
-pub(super) enum Value {
+pub enum Value {
     /// Text.
     Text(String),
     /// A whole number.
@@ -41,18 +41,18 @@ pub(super) enum Value {
 
 /// A key and its value.
 #[derive(Clone, Debug)]
-pub(super) struct Entry {
+pub struct Entry {
     /// The key.
-    pub(super) key: String,
+    pub key: String,
     /// Where the key stands.
-    pub(super) key_place: Place,
+    pub key_place: Place,
     /// The value.
-    pub(super) node: Node,
+    pub node: Node,
 }
 
 impl Node {
     /// A value that is written down.
-    pub(super) fn written(value: Value, place: Place) -> Self {
+    pub fn written(value: Value, place: Place) -> Self {
         Self {
             value,
             place,
@@ -61,27 +61,27 @@ impl Node {
     }
 
     /// A value that was found wrong.
-    pub(super) fn invalid(place: Place) -> Self {
+    pub fn invalid(place: Place) -> Self {
         Self::written(Value::Invalid, place)
     }
 
     /// Whether the value was found wrong.
-    pub(super) fn is_invalid(&self) -> bool {
+    pub fn is_invalid(&self) -> bool {
         matches!(self.value, Value::Invalid)
     }
 
     /// The value of a key, for a table that has it.
-    pub(super) fn get(&self, key: &str) -> Option<&Self> {
+    pub fn get(&self, key: &str) -> Option<&Self> {
         self.entry(key).map(|entry| &entry.node)
     }
 
     /// The entry of a key, for a table that has it.
-    pub(super) fn entry(&self, key: &str) -> Option<&Entry> {
+    pub fn entry(&self, key: &str) -> Option<&Entry> {
         self.entries().iter().find(|entry| entry.key == key)
     }
 
     /// The entries of a table; nothing for other values.
-    pub(super) fn entries(&self) -> &[Entry] {
+    pub fn entries(&self) -> &[Entry] {
         match &self.value {
             Value::Table(entries) => entries,
             _ => &[],
@@ -89,7 +89,7 @@ impl Node {
     }
 
     /// The items of a list; nothing for other values.
-    pub(super) fn items(&self) -> &[Self] {
+    pub fn items(&self) -> &[Self] {
         match &self.value {
             Value::List(items) => items,
             _ => &[],
@@ -97,7 +97,7 @@ impl Node {
     }
 
     /// The text, if it is one.
-    pub(super) fn text(&self) -> Option<&str> {
+    pub fn text(&self) -> Option<&str> {
         match &self.value {
             Value::Text(text) => Some(text),
             _ => None,
@@ -105,7 +105,7 @@ impl Node {
     }
 
     /// The number in SI units, if it is one.
-    pub(super) fn number(&self) -> Option<f64> {
+    pub fn number(&self) -> Option<f64> {
         match self.value {
             Value::Quantity(value, _) | Value::Number(value) => Some(value),
             Value::Integer(value) => Some(value as f64),
@@ -114,7 +114,7 @@ impl Node {
     }
 
     /// The whole number, if it is one that counts something.
-    pub(super) fn count(&self) -> Option<usize> {
+    pub fn count(&self) -> Option<usize> {
         match self.value {
             Value::Integer(value) => usize::try_from(value).ok(),
             _ => None,
@@ -122,7 +122,7 @@ impl Node {
     }
 
     /// Yes or no, if it is that.
-    pub(super) fn flag(&self) -> Option<bool> {
+    pub fn flag(&self) -> Option<bool> {
         match self.value {
             Value::Flag(value) => Some(value),
             _ => None,
@@ -130,7 +130,7 @@ impl Node {
     }
 
     /// What kind of value it is, with an article.
-    pub(crate) fn kind(&self) -> &'static str {
+    pub fn kind(&self) -> &'static str {
         match &self.value {
             Value::Text(_) | Value::Quantity(..) => "a text",
             Value::Integer(_) => "a whole number",
@@ -145,13 +145,13 @@ impl Node {
 }
 
 /// The tree of a parsed document.
-pub(super) fn from_document(document: &Spanned<DeTable<'_>>, source: usize) -> Node {
+pub fn from_document(document: &Spanned<DeTable<'_>>, source: usize) -> Node {
     let place = Place::new(source, &(0..0));
     Node::written(Value::Table(entries(document.get_ref(), source)), place)
 }
 
 /// The tree of a parsed value.
-pub(super) fn from_value(value: &Spanned<DeValue<'_>>, source: usize) -> Node {
+pub fn from_value(value: &Spanned<DeValue<'_>>, source: usize) -> Node {
     let converted = match value.get_ref() {
         DeValue::String(text) => Value::Text(text.clone().into_owned()),
         DeValue::Integer(integer) => {
@@ -186,7 +186,7 @@ fn entries(table: &DeTable<'_>, source: usize) -> Vec<Entry> {
 }
 
 /// Moves everything that stands in a source to the right.
-pub(super) fn shift(node: &mut Node, by: usize) {
+pub fn shift(node: &mut Node, by: usize) {
     node.place = node.place.shifted(by);
     match &mut node.value {
         Value::List(items) => items.iter_mut().for_each(|item| shift(item, by)),
@@ -202,17 +202,17 @@ pub(super) fn shift(node: &mut Node, by: usize) {
 
 /// Something that was found wrong, and reported.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Wrong;
+pub struct Wrong;
 
 /// Values of keys, when the table has them and they were found right.
 impl Node {
     /// The number of a key in SI units.
-    pub(super) fn number_at(&self, key: &str) -> Option<f64> {
+    pub fn number_at(&self, key: &str) -> Option<f64> {
         self.get(key)?.number()
     }
 
     /// The number of a key that may be missing.
-    pub(super) fn optional_number(&self, key: &str) -> Result<Option<f64>, Wrong> {
+    pub fn optional_number(&self, key: &str) -> Result<Option<f64>, Wrong> {
         match self.get(key) {
             None => Ok(None),
             Some(value) => value.number().map(Some).ok_or(Wrong),
@@ -220,33 +220,33 @@ impl Node {
     }
 
     /// The count of a key.
-    pub(super) fn count_at(&self, key: &str) -> Option<usize> {
+    pub fn count_at(&self, key: &str) -> Option<usize> {
         self.get(key)?.count()
     }
 
     /// The flag of a key.
-    pub(super) fn flag_at(&self, key: &str) -> Option<bool> {
+    pub fn flag_at(&self, key: &str) -> Option<bool> {
         self.get(key)?.flag()
     }
 
     /// The text of a key.
-    pub(super) fn text_at(&self, key: &str) -> Option<&str> {
+    pub fn text_at(&self, key: &str) -> Option<&str> {
         self.get(key)?.text()
     }
 
     /// The coordinates of a point.
-    pub(super) fn point<const D: usize>(&self) -> Option<[f64; D]> {
+    pub fn point<const D: usize>(&self) -> Option<[f64; D]> {
         let numbers: Option<Vec<f64>> = self.items().iter().map(Self::number).collect();
         numbers?.try_into().ok()
     }
 
     /// The coordinates of the point of a key.
-    pub(super) fn point_at<const D: usize>(&self, key: &str) -> Option<[f64; D]> {
+    pub fn point_at<const D: usize>(&self, key: &str) -> Option<[f64; D]> {
         self.get(key)?.point()
     }
 
     /// Two numbers.
-    pub(super) fn pair(&self) -> Option<[f64; 2]> {
+    pub fn pair(&self) -> Option<[f64; 2]> {
         match self.items() {
             [x, y] => Some([x.number()?, y.number()?]),
             _ => None,
@@ -254,22 +254,22 @@ impl Node {
     }
 
     /// The two numbers of a key.
-    pub(super) fn pair_at(&self, key: &str) -> Option<[f64; 2]> {
+    pub fn pair_at(&self, key: &str) -> Option<[f64; 2]> {
         self.get(key)?.pair()
     }
 
     /// Where the value of a key stands; the table itself when it is missing.
-    pub(super) fn place_at(&self, key: &str) -> Place {
+    pub fn place_at(&self, key: &str) -> Place {
         self.get(key).map_or(self.place, |node| node.place)
     }
 
     /// The items of the list of a key.
-    pub(super) fn items_at(&self, key: &str) -> &[Self] {
+    pub fn items_at(&self, key: &str) -> &[Self] {
         self.get(key).map_or(&[], Self::items)
     }
 
     /// The entries of a table that can grow.
-    pub(super) fn entries_mut(&mut self) -> Option<&mut Vec<Entry>> {
+    pub fn entries_mut(&mut self) -> Option<&mut Vec<Entry>> {
         match &mut self.value {
             Value::Table(entries) => Some(entries),
             _ => None,
@@ -277,14 +277,14 @@ impl Node {
     }
 
     /// The value of a key, to change.
-    pub(super) fn get_mut(&mut self, key: &str) -> Option<&mut Self> {
+    pub fn get_mut(&mut self, key: &str) -> Option<&mut Self> {
         let entries = self.entries_mut()?;
         let entry = entries.iter_mut().find(|entry| entry.key == key)?;
         Some(&mut entry.node)
     }
 
     /// The items of a list, to change.
-    pub(super) fn items_mut(&mut self) -> &mut [Self] {
+    pub fn items_mut(&mut self) -> &mut [Self] {
         match &mut self.value {
             Value::List(items) => items,
             _ => &mut [],
@@ -292,7 +292,7 @@ impl Node {
     }
 
     /// Adds a value that follows from others.
-    pub(super) fn add_derived(&mut self, key: &str, value: Value) {
+    pub fn add_derived(&mut self, key: &str, value: Value) {
         let place = self.place;
         if let Some(entries) = self.entries_mut() {
             let mut node = Self::written(value, place);

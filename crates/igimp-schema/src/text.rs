@@ -1,7 +1,7 @@
 //! Numbers and lists as messages print them.
 
 /// A number with at most ten significant digits, without idle zeros.
-pub(super) fn number(value: f64) -> String {
+pub fn number(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return format!("{}", value + 0.0);
     }
@@ -24,12 +24,12 @@ fn trimmed(text: &str) -> &str {
 }
 
 /// A point as messages print it.
-pub(super) fn point<const D: usize>(point: [f64; D]) -> String {
+pub fn point<const D: usize>(point: [f64; D]) -> String {
     format!("({})", point.map(|x| format!("{} m", number(x))).join(", "))
 }
 
 /// A whole number in groups of three digits.
-pub(super) fn count(value: f64) -> String {
+pub fn count(value: f64) -> String {
     if !value.is_finite() {
         return "infinitely many".to_owned();
     }
@@ -48,7 +48,7 @@ pub(super) fn count(value: f64) -> String {
 }
 
 /// A text with at most so many characters; the rest is an ellipsis.
-pub(super) fn clip(text: &str, most: usize) -> String {
+pub fn clip(text: &str, most: usize) -> String {
     if text.chars().count() <= most {
         text.to_owned()
     } else {
@@ -58,7 +58,7 @@ pub(super) fn clip(text: &str, most: usize) -> String {
 }
 
 /// `1 error`, `2 errors`.
-pub(super) fn plural(count: usize, noun: &str) -> String {
+pub fn plural(count: usize, noun: &str) -> String {
     if count == 1 {
         format!("1 {noun}")
     } else {
@@ -67,7 +67,7 @@ pub(super) fn plural(count: usize, noun: &str) -> String {
 }
 
 /// Names in a row, for messages; a long row is cut.
-pub(super) fn row<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
+pub fn row<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
     let names: Vec<_> = names.into_iter().map(|name| clip(name, 40)).collect();
     match names.len() {
         0 => "none".to_owned(),

@@ -9,10 +9,10 @@ use super::text::{clip, row};
 use super::tree::{Node, Wrong};
 
 /// Most characters of a name.
-pub(super) const LONGEST: usize = 60;
+pub const LONGEST: usize = 60;
 
 /// Whether a text can be a name; reports why not.
-pub(super) fn check_name(name: &str, place: Place, problems: &mut Problems) -> bool {
+pub fn check_name(name: &str, place: Place, problems: &mut Problems) -> bool {
     let allowed = |c: char| c.is_alphanumeric() || " -_+()".contains(c);
     let shown = clip(name, 40);
     let reason = if name.is_empty() {
@@ -34,7 +34,7 @@ pub(super) fn check_name(name: &str, place: Place, problems: &mut Problems) -> b
 
 /// The names of one kind of thing, by index.
 #[derive(Debug)]
-pub(super) struct Names {
+pub struct Names {
     /// What is named, such as `material`.
     of: &'static str,
     list: Vec<Option<String>>,
@@ -45,7 +45,7 @@ pub(super) struct Names {
 
 impl Names {
     /// Collects names; reports those that are used twice.
-    pub(super) fn new<'a>(
+    pub fn new<'a>(
         of: &'static str,
         names: impl Iterator<Item = (Option<&'a str>, Place)>,
         problems: &mut Problems,
@@ -77,7 +77,7 @@ impl Names {
     }
 
     /// The names of the items of a list of tables.
-    pub(super) fn of_list(of: &'static str, list: Option<&Node>, problems: &mut Problems) -> Self {
+    pub fn of_list(of: &'static str, list: Option<&Node>, problems: &mut Problems) -> Self {
         let items = list.map_or(&[][..], Node::items);
         let named = items.iter().map(|item| {
             let name = item.get("name");
@@ -92,17 +92,17 @@ impl Names {
     }
 
     /// The index of a name, without a word when there is none.
-    pub(super) fn position(&self, name: &str) -> Option<usize> {
+    pub fn position(&self, name: &str) -> Option<usize> {
         self.index.get(name).copied()
     }
 
     /// The names that are known.
-    pub(super) fn known(&self) -> impl Iterator<Item = &str> {
+    pub fn known(&self) -> impl Iterator<Item = &str> {
         self.list.iter().flatten().map(String::as_str)
     }
 
     /// The name at an index.
-    pub(crate) fn name(&self, index: usize) -> &str {
+    pub fn name(&self, index: usize) -> &str {
         self.list
             .get(index)
             .and_then(Option::as_deref)
@@ -111,7 +111,7 @@ impl Names {
 
     /// The index that the value of a key names, when the table has the key; reports, in the name
     /// of `who`, when there is none.
-    pub(super) fn find_optional(
+    pub fn find_optional(
         &self,
         table: &Node,
         key: &str,
@@ -125,7 +125,7 @@ impl Names {
     }
 
     /// The index that a value names; reports, in the name of `who`, when there is none.
-    pub(super) fn find(&self, value: &Node, who: &str, problems: &mut Problems) -> Option<usize> {
+    pub fn find(&self, value: &Node, who: &str, problems: &mut Problems) -> Option<usize> {
         let name = value.text()?;
         if let Some(index) = self.position(name) {
             return Some(index);

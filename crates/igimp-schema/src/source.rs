@@ -6,30 +6,30 @@ use igimp_text::is_odd;
 
 /// A text with its name.
 #[derive(Clone, Debug)]
-pub(super) struct Source {
+pub struct Source {
     /// File name, or the override as given.
     pub name: String,
     /// The text.
-    pub(super) text: String,
+    pub text: String,
     /// Whether it is an override from the command line.
-    pub(super) is_override: bool,
+    pub is_override: bool,
     line_starts: Vec<usize>,
 }
 
 /// A stretch of a source.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) struct Place {
+pub struct Place {
     /// Index of the source: 0 is the file, overrides follow.
-    pub(super) source: usize,
+    pub source: usize,
     /// First byte.
-    pub(super) start: usize,
+    pub start: usize,
     /// One past the last byte.
-    pub(super) end: usize,
+    pub end: usize,
 }
 
 impl Place {
     /// A stretch of a source.
-    pub(super) fn new(source: usize, span: &Range<usize>) -> Self {
+    pub fn new(source: usize, span: &Range<usize>) -> Self {
         Self {
             source,
             start: span.start,
@@ -38,7 +38,7 @@ impl Place {
     }
 
     /// The same stretch moved to the right.
-    pub(super) fn shifted(self, by: usize) -> Self {
+    pub fn shifted(self, by: usize) -> Self {
         Self {
             start: self.start + by,
             end: self.end + by,
@@ -49,17 +49,17 @@ impl Place {
 
 /// A line as it is shown, and the stretch of it that is marked.
 #[derive(Debug, PartialEq, Eq)]
-pub(super) struct Snippet {
+pub struct Snippet {
     /// Line number from 1.
-    pub(super) line: usize,
+    pub line: usize,
     /// Column in characters from 1.
-    pub(super) column: usize,
+    pub column: usize,
     /// The line, tabs expanded, cut when it is long.
-    pub(super) text: String,
+    pub text: String,
     /// Characters of `text` before the marks.
-    pub(super) indent: usize,
+    pub indent: usize,
     /// Number of marks.
-    pub(super) marks: usize,
+    pub marks: usize,
 }
 
 /// Characters of a line that are shown.
@@ -69,7 +69,7 @@ const TAB: usize = 4;
 
 impl Source {
     /// A source of this name.
-    pub(super) fn new(name: &str, text: &str, is_override: bool) -> Self {
+    pub fn new(name: &str, text: &str, is_override: bool) -> Self {
         let line_starts = std::iter::once(0)
             .chain(text.match_indices('\n').map(|(at, _)| at + 1))
             .collect();
@@ -82,12 +82,12 @@ impl Source {
     }
 
     /// The text of a stretch; empty when it is not of this text.
-    pub(super) fn slice(&self, place: Place) -> &str {
+    pub fn slice(&self, place: Place) -> &str {
         self.text.get(place.start..place.end).unwrap_or("")
     }
 
     /// Where a stretch stands and what to show of it.
-    pub(super) fn snippet(&self, place: Place) -> Snippet {
+    pub fn snippet(&self, place: Place) -> Snippet {
         let start = self.boundary(place.start);
         let row = self.line_starts.partition_point(|&at| at <= start) - 1;
         let from = self.line_starts[row];

@@ -90,7 +90,7 @@ fn quantities(out: &mut String) {
         "## Quantities\n\nWhat curves and checks name in `of`, in SI units.\n\n\
          | name | meaning |\n|---|---|\n",
     );
-    for (name, doc) in super::build::QUANTITY_DOCS {
+    for (name, doc) in super::quantity_names::QUANTITY_DOCS {
         let _ = writeln!(out, "| `{name}` | {} |", cell(doc));
     }
 }

@@ -3,7 +3,7 @@
 mod loads;
 mod materials;
 
-pub(super) use materials::SYMBOLS;
+pub use materials::SYMBOLS;
 mod outputs;
 mod reinforcement;
 mod rigid;
@@ -17,12 +17,12 @@ use super::spec::{
 };
 
 /// Version of the input format that this program reads.
-pub(super) const FORMAT: i64 = 1;
+pub const FORMAT: i64 = 1;
 
 /// Most items in a list of small things, such as corners and points.
 const MANY: usize = 100_000;
 /// Most things of one kind.
-pub(super) const MOST_THINGS: usize = 1000;
+pub const MOST_THINGS: usize = 1000;
 /// Most bodies.
 const MOST_BODIES: usize = 5000;
 /// Most curves.
@@ -38,7 +38,7 @@ const PAIR: Kind = Kind::List(&LENGTH, 2, 2);
 static CORNER: Kind = PAIR;
 
 /// The whole file.
-pub(super) static ROOT: Struct = Struct {
+pub static ROOT: Struct = Struct {
     doc: "A case: a problem in plane strain and how it is solved.",
     fields: &[
         required(
@@ -207,7 +207,7 @@ static CASE: Struct = Struct {
 };
 
 /// Name of the analysis in space.
-pub(super) const SPACE: &str = "3d";
+pub const SPACE: &str = "3d";
 
 static ANALYSES: [Choice; 2] = [
     choice("plane-strain", "per metre run; x points right, y up"),
