@@ -1,8 +1,8 @@
 //! Particles as arrays. The memory of the engine is handed over to numpy, not copied.
 
 use igimp_assembly::ParticleFields;
-use igimp_results::regime;
-use igimp_results::table::Table;
+use igimp_results::fields::regime;
+use igimp_results::tables::table::Table;
 use numpy::{Element, PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;

@@ -7,13 +7,13 @@ use igimp_cases::exact;
 use igimp_figures::{Colour, CurvePlot, LineStyle, Scale, Series, SeriesStyle};
 use igimp_model::Case;
 use igimp_model::check::Band;
-use igimp_results::table::Table;
+use igimp_results::tables::table::Table;
 use rayon::prelude::*;
 
-use crate::oracle::{Oracle, OracleKind};
-use crate::reference::column_stress_error;
+use crate::harness::oracle::{Oracle, OracleKind};
+use crate::harness::reference::column_stress_error;
+use crate::harness::study::{RunRecord, Study};
 use crate::runs::{Computed, corners, mesh, method, shipped_case, unwatched};
-use crate::study::{RunRecord, Study};
 
 /// What the book says of the study.
 const ABOUT: &str = "A column of soft soil one cell wide settles under its own weight. Mean stress error against the exact solution, under refinement: iGIMP converges with second order, iMPM does not.";

@@ -1,5 +1,8 @@
 //! The rigid footing: resistance against penetration, and fields at one width of penetration.
 
+pub(crate) mod contact;
+pub(crate) mod side;
+
 use std::path::Path;
 
 use igimp_cases::CaseError;
@@ -11,15 +14,15 @@ use igimp_model::Case;
 use igimp_model::check::Band;
 use igimp_results::measure::{displacement_norm, eps_p_eq, sigma};
 use igimp_results::mesh_study::Convergence;
-use igimp_results::table::Table;
+use igimp_results::tables::table::Table;
 use rayon::prelude::*;
 
-use crate::coverage::{self, Known, on_cells};
-use crate::oracle::{Oracle, OracleKind};
+use crate::harness::coverage::{self, Known, on_cells};
+use crate::harness::oracle::{Oracle, OracleKind};
+use crate::harness::reference::{footing_sequential_limit_analysis, interpolate};
+use crate::harness::study::{Level, RunRecord, Study};
 use crate::pictures::{contours, scaled};
-use crate::reference::{footing_sequential_limit_analysis, interpolate};
 use crate::runs::{Computed, mesh, method, shipped_case};
-use crate::study::{Level, RunRecord, Study};
 
 /// What the book says of the study.
 const ABOUT: &str = "A rigid strip footing in undrained soil, pushed one width deep: resistance against penetration. The soil can leave the footing; where nothing else is said it is bonded for comparison, as nodes that are prescribed.";

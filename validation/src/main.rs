@@ -5,39 +5,25 @@
 mod column;
 mod comparisons;
 mod contact;
-mod cook;
-mod coverage;
-mod cylinder;
-mod elastica;
+mod continuum;
 mod exact;
 mod footing;
-mod footing_contact;
-mod footing_side;
-mod laboratory;
+mod harness;
 mod layers;
 mod limit;
 mod limit_equilibrium;
 mod manufactured;
-mod matrix;
 mod mesh_study;
 mod mohr_coulomb_slope;
-mod notched_strip;
-mod oracle;
 mod pictures;
-mod prism;
 mod pseudo_static;
-mod reference;
 mod reinforcement;
-mod review;
 mod runs;
 mod slope_profile;
 mod slopes;
-mod snapshot;
 mod space;
 mod stages;
 mod strength_profile;
-mod study;
-mod table;
 mod tilted_layer;
 mod von_mises_slope;
 mod water;
@@ -52,8 +38,8 @@ use igimp_cases::{CaseError, is_of_the_system};
 use igimp_results::ResultsError;
 use rayon::prelude::*;
 
-use crate::review::Difference;
-use crate::study::{Level, Study};
+use crate::harness::review::Difference;
+use crate::harness::study::{Level, Study};
 
 /// Exit codes; part of the contract with callers.
 const REFERENCE_MISSED: u8 = 1;
@@ -154,7 +140,10 @@ impl Arguments {
     /// Folder of the snapshots, from the root of the file system: insta takes another path as one beside
     /// the source.
     fn snapshots(&self) -> Result<PathBuf, CaseError> {
-        let folder = self.snapshots.clone().unwrap_or_else(review::snapshots);
+        let folder = self
+            .snapshots
+            .clone()
+            .unwrap_or_else(harness::review::snapshots);
         let absolute = std::path::absolute(&folder).map_err(|source| ResultsError::File {
             path: folder,
             source,
@@ -171,11 +160,11 @@ impl Case {
             Self::MohrCoulombSlope => mohr_coulomb_slope::study(level, out),
             Self::Footing => footing::study(level, out),
             Self::Manufactured => manufactured::study(level, out),
-            Self::Cylinder => cylinder::study(level, out),
-            Self::Cook => cook::study(level, out),
-            Self::NotchedStrip => notched_strip::study(level, out),
-            Self::Prism => prism::study(out),
-            Self::Elastica => elastica::study(level, out),
+            Self::Cylinder => continuum::cylinder::study(level, out),
+            Self::Cook => continuum::cook::study(level, out),
+            Self::NotchedStrip => continuum::notched_strip::study(level, out),
+            Self::Prism => continuum::prism::study(out),
+            Self::Elastica => continuum::elastica::study(level, out),
             Self::Slopes => slopes::study(level, out),
             Self::Limit => limit::study(level, out),
             Self::MeshStudy => mesh_study::study(level, out),
@@ -189,7 +178,7 @@ impl Case {
             Self::ReinforcementCut => reinforcement::cut::study(level, out),
             Self::Water => water::study(level, out),
             Self::Stages => stages::study(out),
-            Self::FootingContact => footing_contact::study(level, out),
+            Self::FootingContact => footing::contact::study(level, out),
             Self::ContactFooting => contact::footing::study(level, out),
             Self::ContactColumn => contact::column::study(out),
             Self::ContactIncline => contact::incline::study(out),
@@ -277,7 +266,7 @@ fn again_with_update() -> ExitCode {
 /// Accepts what was left, and names it.
 fn accept_left(folder: Result<PathBuf, CaseError>) -> Result<u8, CaseError> {
     let folder = folder?;
-    let accepted = review::accept_left(&folder).map_err(|source| ResultsError::File {
+    let accepted = harness::review::accept_left(&folder).map_err(|source| ResultsError::File {
         path: folder,
         source,
     })?;
@@ -336,13 +325,13 @@ fn validate(arguments: &Arguments) -> Result<u8, CaseError> {
     errors.reverse();
 
     let pictures = arguments.out.join("review");
-    let mut missed = snapshot::compare(&studies, &arguments.snapshots()?, &pictures)?;
-    table::write_summary(&studies, &missed, &arguments.out)?;
+    let mut missed = harness::snapshot::compare(&studies, &arguments.snapshots()?, &pictures)?;
+    harness::table::write_summary(&studies, &missed, &arguments.out)?;
     if arguments.matrix && errors.is_empty() {
-        matrix::write(&studies)?;
+        harness::matrix::write(&studies)?;
     }
     let all_cases = arguments.case.is_empty() && errors.is_empty();
-    let drift = matrix::drift(&studies, level, all_cases)?;
+    let drift = harness::matrix::drift(&studies, level, all_cases)?;
     missed.extend(drift.into_iter().map(|told| Difference {
         name: "verification matrix".to_owned(),
         told,
@@ -364,10 +353,10 @@ fn print_report(
     for note in studies.iter().flat_map(|study| &study.notes) {
         println!("{note}\n");
     }
-    if let Some(note) = coverage::note(studies) {
+    if let Some(note) = harness::coverage::note(studies) {
         println!("{note}\n");
     }
-    println!("{}", table::checks(studies));
+    println!("{}", harness::table::checks(studies));
     let rows = || studies.iter().flat_map(|study| &study.rows);
     let failed = rows().filter(|row| !row.pass).count();
     println!(

@@ -11,15 +11,15 @@ use igimp_figures::{
 use igimp_model::check::Band;
 use igimp_results::measure::{displacement_norm, eps_p_eq};
 use igimp_results::summary::TrialSummary;
-use igimp_results::table::Table;
+use igimp_results::tables::table::Table;
 use igimp_solver::Outcome;
 use rayon::prelude::*;
 
-use crate::oracle::{Oracle, OracleKind};
+use crate::harness::oracle::{Oracle, OracleKind};
+use crate::harness::reference::griffiths_lane;
+use crate::harness::study::{Level, RunRecord, Study};
 use crate::pictures::contours;
-use crate::reference::griffiths_lane;
 use crate::runs::{Computed, Trial, mesh, method, shipped_case};
-use crate::study::{Level, RunRecord, Study};
 
 /// What the book says of the study.
 const ABOUT: &str = "A 2:1 slope in drained soil, φ = 20°, ψ = 0: displacement against strength reduction factor, and the factor of safety.";

@@ -10,7 +10,7 @@ use igimp_cases::run::{self, Event, Listener, Start};
 use igimp_input::shipped;
 use igimp_model::Case;
 use igimp_results::summary::{SafetySummary, TrialSummary};
-use igimp_results::table::Table;
+use igimp_results::tables::table::Table;
 use igimp_solver::{MarchReport, Outcome};
 
 /// The shipped case of a name, changed by overrides such as `grid.locking=none`.

@@ -11,9 +11,9 @@ use igimp_input::CaseFile;
 use igimp_model::check::Band;
 use igimp_model::{Case, Construction, Drainage, PoreSource, Stage, StageKind, WaterCondition};
 
-use crate::oracle::{Oracle, OracleKind};
+use crate::harness::oracle::{Oracle, OracleKind};
+use crate::harness::study::{RunRecord, Study};
 use crate::runs::{Computed, corners};
-use crate::study::{RunRecord, Study};
 
 /// What the book says of the study.
 const ABOUT: &str = "Construction stages: fill in lifts, excavation in slices and at once, water that is lowered, undrained loading and its dissipation. Columns between smooth sides have exact stresses; elastic ground that was cut in slices is that cut at once, and that which never was anything else.";

@@ -6,13 +6,13 @@ use igimp_cases::CaseError;
 use igimp_model::Case;
 use igimp_model::check::Band;
 use igimp_results::mesh_study::Convergence;
-use igimp_results::table::Table;
+use igimp_results::tables::table::Table;
 use rayon::prelude::*;
 
-use crate::coverage::{self, Known, on_cells};
-use crate::oracle::{Oracle, OracleKind};
+use crate::harness::coverage::{self, Known, on_cells};
+use crate::harness::oracle::{Oracle, OracleKind};
+use crate::harness::study::{Level, RunRecord, Study};
 use crate::runs::{Computed, corners, mesh, shipped_case};
-use crate::study::{Level, RunRecord, Study};
 
 /// What the book says of the study.
 const ABOUT: &str = "A rigid strip on weightless Tresca soil whose strength grows with depth from c_0, bonded, rough and smooth, on the given geometry with shared strain. Limit loads on two meshes are extrapolated to no width of the cell. Mechanisms grow thin as kB/c_0 grows: 6 and 10 take finer cells.";

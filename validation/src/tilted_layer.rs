@@ -14,13 +14,13 @@ use igimp_figures::{CurvePlot, LineStyle, ReferenceLine, ReferenceValue, Series,
 use igimp_linear::SolverKind;
 use igimp_material::{Elasticity, MohrCoulomb};
 use igimp_model::check::Band;
-use igimp_results::table::Table;
+use igimp_results::tables::table::Table;
 use igimp_shape::{Axis, Grid};
 use igimp_solver::{Accepted, Body, MarchReport, MarchSettings, Workspace, march};
 use rayon::prelude::*;
 
-use crate::oracle::{Oracle, OracleKind};
-use crate::study::{Level, RunRecord, Study};
+use crate::harness::oracle::{Oracle, OracleKind};
+use crate::harness::study::{Level, RunRecord, Study};
 
 /// What the book says of the study.
 const ABOUT: &str = "The infinite slope: a layer of dry soil without cohesion, φ = 30°, is tilted between two smooth ends until it slides. It does at tan β = tan φ, once the layer is long enough for its ends not to matter; with water that seeps along it, and with r_u, at tilts that are known as well.";

@@ -9,15 +9,15 @@ use igimp_figures::{
 use igimp_model::check::Band;
 use igimp_model::{Case, Strength};
 use igimp_results::measure::{along_line, displacement_norm, oscillation, sigma};
-use igimp_results::table::Table;
+use igimp_results::tables::table::Table;
 use igimp_solver::Outcome;
 use rayon::prelude::*;
 
-use crate::oracle::{Oracle, OracleKind};
+use crate::harness::oracle::{Oracle, OracleKind};
+use crate::harness::reference::slope_limit_load_bounds;
+use crate::harness::study::{Level, RunRecord, Study};
 use crate::pictures::{contours, scaled, with_outlines};
-use crate::reference::slope_limit_load_bounds;
 use crate::runs::{Computed, corners, mesh, method, shipped_case, unwatched};
-use crate::study::{Level, RunRecord, Study};
 
 /// What the book says of the study.
 const ABOUT: &str = "A 45° slope in undrained soil: smoothness of stress in soft soil that crosses cells, and the collapse load of stiff soil, for the four variants of the method.";

@@ -7,58 +7,32 @@
 //!
 //! Nothing here iterates, cuts a step, reads a file or prints.
 
-mod batches;
-mod blocks;
-mod cell_soil;
-mod commit;
-mod constraints;
-mod couplings;
-mod dropped;
+mod body;
+mod contributions;
+mod equations;
 mod error;
-mod ghost;
-mod kinematics;
-mod linearised;
-mod loads;
 mod method;
-mod mirror;
-mod nodal_forces;
-mod particles;
-mod patch;
-mod pore_water;
-mod reach;
-mod reinforcement;
-mod residual;
-mod rigid;
-mod scatter;
 mod small;
-mod small_cuts;
-mod stencils;
-mod step_conditions;
-mod strips;
-mod supports;
-mod system;
-mod trial;
-mod unknowns;
-mod work;
+mod step;
 
-pub use constraints::Constraints;
-pub use error::AssemblyError;
-pub use kinematics::ParticleTrial;
-pub use loads::{LoadPoint, StepLoads};
-pub use method::{DomainUpdate, Geometry, Kinematics, Locking, Method, Remedy, SmallCuts};
-pub use particles::{ParticleFields, ParticleSeed, Particles};
-pub use pore_water::{HeldForces, PoreSite, PoreState, PoreWater, Water};
-pub use reinforcement::{
+pub use body::particles::{ParticleFields, ParticleSeed, Particles};
+pub use body::work::{PlasticFlow, StepWork};
+pub use contributions::pore_water::{HeldForces, PoreSite, PoreState, PoreWater, Water};
+pub use contributions::reinforcement::{
     Hold, Reinforcement, ReinforcementControl, Segment, SegmentState, Station,
 };
-pub use residual::OutOfBalance;
-pub use rigid::{
+pub use contributions::rigid::{
     AcceptedContact, CarryingTriangle, ContactNode, ContactState, Drive, Interface, Penalty, Pose,
     RigidBody, RigidMotion, Shear, Surface, SurfaceError, SurfaceTriangle, Swallowed, Tension,
 };
-pub use stencils::Stencils;
-pub use step_conditions::{SharedLaw, StepConditions};
-pub use system::System;
-pub use trial::Trial;
-pub use unknowns::Unknowns;
-pub use work::{PlasticFlow, StepWork};
+pub use equations::kinematics::ParticleTrial;
+pub use equations::residual::OutOfBalance;
+pub use equations::system::System;
+pub use equations::trial::Trial;
+pub use equations::unknowns::Unknowns;
+pub use error::AssemblyError;
+pub use method::{DomainUpdate, Geometry, Kinematics, Locking, Method, Remedy, SmallCuts};
+pub use step::constraints::Constraints;
+pub use step::loads::{LoadPoint, StepLoads};
+pub use step::stencils::Stencils;
+pub use step::step_conditions::{SharedLaw, StepConditions};

@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicBool;
 
 use igimp_cases::run::{Event, Start, Target, run};
 use igimp_input::shipped::find;
-use igimp_results::admission::Replace;
+use igimp_results::folder::overwrite_guard::Replace;
 
 fn main() -> Result<(), Box<dyn Error>> {
     // `CaseFile::read(path, &overrides)` takes a file of your own in the same way.

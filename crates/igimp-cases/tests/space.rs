@@ -10,8 +10,8 @@ use igimp_model::Field;
 use igimp_report::pictures::{InSpace, Shown};
 use igimp_report::report::write_report;
 use igimp_report::skin::{Boxes, Skin};
-use igimp_results::particles::{Extras, of_particles};
-use igimp_results::pvd::{Collection, PARTICLES};
+use igimp_results::paraview::particles::{Extras, of_particles};
+use igimp_results::paraview::pvd::{Collection, PARTICLES};
 use igimp_results::summary::Summary;
 
 /// Height of the ground of a slope that falls along x \[m\].

@@ -1,7 +1,9 @@
 //! One axis: its range, and the way from a value to a place in the picture.
 
-use super::font;
-use super::ticks::{self, Ticks};
+pub(crate) mod ticks;
+
+use crate::drawing::font;
+use ticks::Ticks;
 
 /// How values spread along an axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -1,11 +1,15 @@
 //! Curves: results as lines or markers, bounds as shaded bands, reference values as straight lines.
 
+pub(crate) mod frame;
+pub(crate) mod marker;
+pub(crate) mod sheet;
+
 use std::path::Path;
 
 use super::FigureError;
 use super::axis::Scale;
 use super::colour::Colour;
-use super::curve_sheet;
+
 use super::drawing::Drawing;
 
 /// Pattern of a line.
@@ -185,7 +189,7 @@ impl CurvePlot {
     /// # Errors
     /// If a given range cannot be drawn on its axis.
     pub fn draw(&self) -> Result<Drawing, FigureError> {
-        curve_sheet::draw(self)
+        sheet::draw(self)
     }
 
     /// Writes `<path>.svg` and `<path>.png`; the folder must exist.

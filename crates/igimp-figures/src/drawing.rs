@@ -2,14 +2,17 @@
 //!
 //! Every figure is first laid out as a [`Drawing`]; both files are written from it, so they agree.
 
+pub(crate) mod font;
+pub(crate) mod raster;
+pub(crate) mod svg;
+
 use std::path::{Path, PathBuf};
 
 use super::FigureError;
 use super::colour::Colour;
-use super::font;
+
 use super::geometry::{Point, Rect};
 use super::space::Image;
-use super::{raster, svg};
 
 /// Pixels per point in the PNG: 288 dots per inch at the nominal size.
 pub const PIXELS_PER_POINT: u32 = 3;

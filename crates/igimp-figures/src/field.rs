@@ -1,11 +1,18 @@
 //! Fields: one filled domain per particle, coloured by a value.
 
+pub(crate) mod colour_bar;
+pub(crate) mod domains;
+pub(crate) mod key;
+pub(crate) mod layout;
+pub(crate) mod outline;
+pub(crate) mod sheet;
+
 use std::path::Path;
 
 use super::FigureError;
 use super::colour::ColourMap;
 use super::drawing::Drawing;
-use super::field_sheet::{self, Sheet};
+use sheet::Sheet;
 
 /// Corners (x, y) of a domain in order, either way round; GIMP domains are rectangles.
 pub type Polygon = Vec<[f64; 2]>;
@@ -150,7 +157,7 @@ impl FieldPlot {
     /// If values and domains differ in number, or a given range cannot be drawn.
     pub fn draw(&self) -> Result<Drawing, FigureError> {
         let plots = std::slice::from_ref(self);
-        field_sheet::draw(&Sheet {
+        sheet::draw(&Sheet {
             title: &self.title,
             plots,
             columns: 1,
@@ -214,7 +221,7 @@ impl FieldPanel {
             });
         }
         let columns = (*columns).min(plots.len());
-        field_sheet::draw(&Sheet {
+        sheet::draw(&Sheet {
             title,
             plots,
             columns,

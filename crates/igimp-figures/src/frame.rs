@@ -3,9 +3,9 @@
 use super::axis::Axis;
 use super::colour::Colour;
 use super::drawing::{Anchor, Drawing, Stroke};
-use super::font::{self, CAP_HEIGHT, LINE_HEIGHT};
 use super::geometry::Rect;
-use super::ticks::Ticks;
+use crate::axis::ticks::Ticks;
+use crate::drawing::font::{self, CAP_HEIGHT, LINE_HEIGHT};
 
 /// Font size \[pt\] of titles.
 pub(super) const TITLE: f64 = 14.0;

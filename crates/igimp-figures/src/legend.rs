@@ -2,10 +2,10 @@
 
 use super::colour::Colour;
 use super::drawing::{Anchor, Contour, Drawing, Item, Shape, Stroke};
-use super::font::{self, CAP_HEIGHT, LINE_HEIGHT};
 use super::frame::{GAP, TICK};
 use super::geometry::{Point, Rect};
-use super::marker::Marker;
+use crate::curve::marker::Marker;
+use crate::drawing::font::{self, CAP_HEIGHT, LINE_HEIGHT};
 
 const SAMPLE_WIDTH: f64 = 26.0;
 const INSET: f64 = 8.0;

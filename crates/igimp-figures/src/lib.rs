@@ -22,31 +22,16 @@
 
 mod axis;
 mod colour;
-mod colour_bar;
 mod curve;
-mod curve_frame;
-mod curve_sheet;
-mod domains;
 mod drawing;
 mod error;
 mod field;
-mod field_layout;
-mod field_sheet;
-mod font;
 mod frame;
 mod geometry;
-mod key;
 mod legend;
-mod marker;
-mod outline;
-mod raster;
 mod space;
-mod space_raster;
-mod svg;
 #[cfg(test)]
 mod tests;
-mod ticks;
-mod view;
 
 pub use axis::Scale;
 pub use colour::{Colour, ColourMap};

@@ -3,21 +3,24 @@
 //! The surface is filled into pixels with a depth for each; axes, colour bar and texts are drawn over it as in
 //! every other figure.
 
+pub(crate) mod raster;
+pub(crate) mod view;
+
 use std::path::Path;
 
 use super::FigureError;
 use super::axis;
 use super::colour::{Colour, ColourMap};
-use super::colour_bar::{ColourBar, ColourScale};
 use super::drawing::{Anchor, Drawing, Stroke};
-use super::font::{self, CAP_HEIGHT};
 use super::frame::{self, GAP, LABEL, MARGIN, TICK, TITLE};
 use super::geometry::{Point, Rect};
-use super::space_raster::Painter;
-use super::ticks;
-use super::view::Projection;
+use crate::axis::ticks;
+use crate::drawing::font::{self, CAP_HEIGHT};
+use crate::field::colour_bar::{ColourBar, ColourScale};
+use raster::Painter;
+use view::Projection;
 
-pub use super::view::View;
+pub use view::View;
 
 /// Width \[pt\] of the picture, and the greatest height of the body in it.
 const WIDTH: f64 = 640.0;

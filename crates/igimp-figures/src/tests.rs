@@ -95,9 +95,9 @@ fn svg_holds_every_domain_and_one_path_per_colour() {
     // Domains, bar colours, and two frames are closed; 19 different sums make 19 paths.
     let paths = || svg.lines().filter(|line| line.starts_with("<path"));
     let closed: usize = paths().map(|path| path.matches('z').count()).sum();
-    assert_eq!(closed, 100 + colour_bar::LEVELS + 2);
+    assert_eq!(closed, 100 + crate::field::colour_bar::LEVELS + 2);
     let filled = paths().filter(|path| path.contains("fill=\"#")).count();
-    assert_eq!(filled, 19 + colour_bar::LEVELS);
+    assert_eq!(filled, 19 + crate::field::colour_bar::LEVELS);
 }
 
 #[test]

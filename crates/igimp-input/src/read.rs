@@ -10,7 +10,7 @@ use super::bytes;
 use super::files;
 use igimp_model::meshes;
 use igimp_model::{AnyCase, Case};
-use igimp_results::owner::Origin;
+use igimp_results::folder::provenance::Origin;
 use igimp_schema::complete::complete;
 use igimp_schema::diagnostic::{Diagnostic, Problems};
 use igimp_schema::explain::explain;

@@ -25,17 +25,14 @@ mod bordered;
 mod check;
 mod choice;
 mod error;
-mod faer_cholesky;
-mod general_lu;
+mod libraries;
 mod matrix;
 mod multifrontal;
 mod multigrid;
-mod nalgebra_cholesky;
 mod ordering;
 mod reach;
 mod record;
 mod refine;
-mod sprs_bicgstab;
 
 use std::sync::Arc;
 
@@ -44,15 +41,15 @@ pub use border::Border;
 pub use bordered::Bordered;
 pub use choice::{Forecast, LinearEffort, Reason};
 pub use error::LinearSolverError;
-pub use faer_cholesky::FaerCholesky;
-pub use general_lu::GeneralLu;
+pub use libraries::faer_cholesky::FaerCholesky;
+pub use libraries::general_lu::GeneralLu;
+pub use libraries::nalgebra_cholesky::NalgebraCholesky;
+pub use libraries::sprs_bicgstab::SprsBiCgStab;
 pub use matrix::{CompressedColumns, NodeBlock, Pattern, TangentMatrix};
 pub use multifrontal::{MultifrontalCholesky, MultifrontalLu};
-pub use nalgebra_cholesky::NalgebraCholesky;
 pub use ordering::NestedDissection;
 pub use record::{Record, SolvedSystem};
 pub use refine::Accuracy;
-pub use sprs_bicgstab::SprsBiCgStab;
 
 /// A solver for K x = b that reuses its symbolic work while the pattern of K stays the same.
 pub trait LinearSolver: Send {

@@ -2,7 +2,7 @@
 
 use crate::MaterialError;
 use crate::error::{positive, required};
-use crate::principal::{Principal, deviator, mean};
+use crate::spectral::principal::{Principal, deviator, mean};
 
 /// Isotropic linear relation between elastic Hencky strain and Kirchhoff stress,
 ///

@@ -20,7 +20,7 @@
 //! $`g = b_1\times b_2`$. Each is the target of one region of trial states, bounded by
 //! planes; the signs of a few linear forms, here called gates, tell which region holds a state.
 
-use crate::principal::{Principal, apply, cross, dot};
+use crate::spectral::principal::{Principal, apply, cross, dot};
 use crate::{Elasticity, Regime};
 
 /// A yield plane `normal` · τ ≤ `strength`, with the direction of plastic flow.

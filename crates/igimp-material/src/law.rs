@@ -7,7 +7,7 @@
 use std::fmt::Debug;
 use std::sync::Arc;
 
-use crate::principal::{Principal, deviator, dot};
+use crate::spectral::principal::{Principal, deviator, dot};
 use crate::{Elasticity, MaterialError};
 
 /// What a law remembers of the past.

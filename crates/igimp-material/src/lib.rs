@@ -53,34 +53,31 @@
 //! - W. T. Koiter (1953), *Stress–strain relations, uniqueness and variational theorems for
 //!   elastic-plastic materials with a singular yield surface*, Q. Appl. Math. 11, 350–354.
 
-mod eigen;
 mod elasticity;
 mod error;
 mod hencky;
 mod koiter;
 mod law;
-mod lift;
 mod mohr_coulomb;
-mod principal;
 mod pyramid;
 mod scaled;
-mod spatial;
+mod spectral;
 mod surface;
 mod tresca;
 mod von_mises;
 
-pub use eigen::principal_values;
 pub use elasticity::Elasticity;
 pub use error::MaterialError;
 pub use hencky::HenckyElastic;
 pub use law::{ConstitutiveModel, Dissipation, History, Regime, ReturnMap, ShearStrength};
-pub use lift::{
+pub use mohr_coulomb::MohrCoulomb;
+pub use scaled::{Ratios, ScaledLaw};
+pub use spectral::eigen::principal_values;
+pub use spectral::lift::{
     Lifted, TangentKind, elastic_left_cauchy_green, elastic_left_cauchy_green_of, lift_finite,
     lift_small, logarithmic_strain,
 };
-pub use mohr_coulomb::MohrCoulomb;
-pub use principal::{Principal, Tensor};
-pub use scaled::{Ratios, ScaledLaw};
-pub use spatial::SpatialTangent;
+pub use spectral::principal::{Principal, Tensor};
+pub use spectral::spatial::SpatialTangent;
 pub use tresca::Tresca;
 pub use von_mises::VonMises;

@@ -7,7 +7,7 @@
 
 use crate::koiter::Plane;
 use crate::law::{ON_SURFACE, mobilised, trial_stress};
-use crate::principal::{Principal, descending, sorted, unsorted};
+use crate::spectral::principal::{Principal, descending, sorted, unsorted};
 use crate::surface::PlanarSurface;
 use crate::{Elasticity, History, MaterialError, Regime, ReturnMap};
 

@@ -4,7 +4,7 @@ use std::fmt::Debug;
 use std::ops::Deref;
 use std::sync::Arc;
 
-use crate::principal::Principal;
+use crate::spectral::principal::Principal;
 use crate::{
     ConstitutiveModel, Dissipation, Elasticity, History, MaterialError, ReturnMap, ShearStrength,
 };

@@ -4,7 +4,7 @@
 //! edges and vertices around that sector of principal space are listed.
 
 use crate::koiter::{Plane, Region};
-use crate::principal::{Principal, largest};
+use crate::spectral::principal::{Principal, largest};
 use crate::{Elasticity, Regime};
 
 /// Share of the stress scale by which a returned stress may exceed a plane: round-off, and less

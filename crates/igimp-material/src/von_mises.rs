@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use crate::error::positive;
 use crate::law::{ON_SURFACE, mobilised, trial_stress};
-use crate::principal::{deviator, deviator_norm, largest, mean};
+use crate::spectral::principal::{deviator, deviator_norm, largest, mean};
 use crate::{
     ConstitutiveModel, Dissipation, Elasticity, History, MaterialError, Principal, Regime,
     ReturnMap, ShearStrength,

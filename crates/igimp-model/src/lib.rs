@@ -11,12 +11,9 @@ mod load;
 mod material;
 pub mod meshes;
 mod plane;
-mod profile;
-mod raster;
 mod record;
 mod reinforcement;
 mod rigid;
-mod rigid_space;
 mod stage;
 mod water;
 
@@ -31,20 +28,20 @@ pub use axes::{front, in_space};
 pub use grid::{AxisSpec, GridSpec, MixedCells};
 pub use ground::{Ground, Layer};
 pub use load::{Load, LoadKind, Plan};
+pub use material::profile::{LEAST_STRENGTH, Profile, Profiles, StressShare, Variation};
+pub use material::raster::Raster;
 pub use material::{Flow, GivenLaw, Material, Strength};
 pub use plane::in_plane;
-pub use profile::{LEAST_STRENGTH, Profile, Profiles, StressShare, Variation};
-pub use raster::Raster;
 pub use record::{
     Average, CaseCheck, CheckTime, CheckValue, Curve, CurveAxis, Field, Monitor, Quantity,
     Reference, ReferenceValues, Section, SectionReference,
 };
 pub use reinforcement::{ReinforcementKind, ReinforcementPart, ReinforcementQuantity, distance};
+pub use rigid::space::RigidSolid;
 pub use rigid::{
     Adhesion, COMPONENTS, RigidDrive, RigidForm, RigidInterface, RigidMove, RigidPart,
     RigidQuantity, RigidShape, RigidShear, components,
 };
-pub use rigid_space::RigidSolid;
 pub use stage::{
     Reduction, ReductionPath, RunOut, SearchMethod, Stage, StageKind, StopWhen, StrengthReduction,
 };

@@ -1,5 +1,8 @@
 //! Materials: stiffness, strength and weight.
 
+pub(crate) mod profile;
+pub(crate) mod raster;
+
 use std::sync::Arc;
 
 use igimp_assembly::SharedLaw;

@@ -1,5 +1,7 @@
 //! Rigid bodies that soil touches, and how stages move them.
 
+pub(crate) mod space;
+
 use std::fmt::Debug;
 use std::sync::Arc;
 

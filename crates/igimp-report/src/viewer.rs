@@ -13,7 +13,7 @@ use igimp_figures::ColourMap;
 use rayon::prelude::*;
 use serde::Serialize;
 
-use igimp_results::pvd;
+use igimp_results::paraview::pvd;
 pub use packed::{Keep, packed};
 
 /// What stands in the section `soil` of a page: choices, canvas, slider.

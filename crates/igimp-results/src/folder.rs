@@ -12,21 +12,27 @@
 //! | `checkpoint/`, `last-converged/` | states ([`checkpoint`]) |
 //! | `mesh-1/`, `mesh-2/`, … | of a study of the mesh error: a folder like this for each mesh |
 //! | `mesh_study.csv` | its results on all meshes |
-//! | `.igimp` | says that igimp made the folder, and for which case ([`owner`](super::owner)) |
+//! | `.igimp` | says that igimp made the folder, and for which case ([`owner`](crate::folder::provenance)) |
 //! | `.igimp.lock` | keeps a second run out ([`lock`]) |
+
+pub mod atomic;
+pub mod lock;
+pub mod overwrite_guard;
+pub mod provenance;
 
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use super::admission::refuse_links;
-use super::atomic::{at, temporary_name};
-use super::owner::{Claim, Owner};
-use super::{checkpoint, lock, pvd};
+use super::checkpoint;
 use crate::error::ResultsError;
+use crate::paraview::pvd;
 use crate::summary::Summary;
+use atomic::{at, temporary_name};
+use overwrite_guard::refuse_links;
+use provenance::{Claim, Owner};
 
-pub use super::atomic::write_atomically;
+pub use atomic::write_atomically;
 
 const MARKER: &str = ".igimp";
 const MARKER_TEXT: &str = "igimp writes its results here.\n";

@@ -20,9 +20,9 @@ use igimp_linear::{Border, NodeBlock, Pattern, TangentMatrix};
 use igimp_shape::Grid;
 use serde::{Deserialize, Serialize};
 
-use super::atomic::{at, write_atomically};
 use super::npy::{Array, Values};
 use crate::error::ResultsError;
+use crate::folder::atomic::{at, write_atomically};
 
 /// File that says what system it is; written last.
 const ABOUT: &str = "matrix.json";

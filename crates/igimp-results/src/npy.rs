@@ -8,8 +8,8 @@ use std::path::Path;
 
 use thiserror::Error;
 
-use super::atomic::{at, write_atomically};
 use crate::error::ResultsError;
+use crate::folder::atomic::{at, write_atomically};
 
 mod header;
 

@@ -26,9 +26,9 @@ pub fn complete(tree: &Node, sources: &[Source], problems: &mut Problems) -> Nod
 }
 
 /// Carries the texts and collects the problems.
-pub struct Completer<'a> {
-    pub sources: &'a [Source],
-    pub problems: &'a mut Problems,
+pub(crate) struct Completer<'a> {
+    pub(crate) sources: &'a [Source],
+    pub(crate) problems: &'a mut Problems,
     /// Whether the analysis is one in space.
     in_space: bool,
 }
@@ -44,7 +44,7 @@ fn of_other(in_space: bool, key: &str) -> String {
 
 impl Completer<'_> {
     /// The text of a value as it is written.
-    pub fn slice(&self, place: Place) -> String {
+    pub(crate) fn slice(&self, place: Place) -> String {
         let text = self
             .sources
             .get(place.source)
@@ -53,7 +53,7 @@ impl Completer<'_> {
     }
 
     /// A value of a key, completed.
-    pub fn value(&mut self, node: &Node, kind: &'static Kind, key: &str) -> Node {
+    pub(crate) fn value(&mut self, node: &Node, kind: &'static Kind, key: &str) -> Node {
         match (kind, &node.value) {
             (_, Value::Invalid) => node.clone(),
             (Kind::Table(of), Value::Table(_)) => self.table(node, of, Some(key)),
@@ -91,7 +91,7 @@ impl Completer<'_> {
     }
 
     /// Reports a value of the wrong type.
-    pub fn wrong_type(&mut self, node: &Node, kind: &Kind, key: &str) -> Node {
+    pub(crate) fn wrong_type(&mut self, node: &Node, kind: &Kind, key: &str) -> Node {
         let message = format!("expected {}, found {}", kind.expectation(), node.kind());
         let problem = self.problems.error(node.place, message);
         match (kind, &node.value) {
@@ -354,7 +354,7 @@ impl Completer<'_> {
     }
 
     /// Reports a text that is none of the choices.
-    pub fn unknown_choice(&mut self, node: &Node, text: &str, key: &str, names: Vec<&str>) {
+    pub(crate) fn unknown_choice(&mut self, node: &Node, text: &str, key: &str, names: Vec<&str>) {
         let message = format!("`{}` is not a choice for `{key}`", clip(text, 40));
         let near = nearest(text, names.iter().copied());
         let problem = self.problems.error(node.place, message);

@@ -111,6 +111,9 @@ impl Names {
 
     /// The index that the value of a key names, when the table has the key; reports, in the name
     /// of `who`, when there is none.
+    ///
+    /// # Errors
+    /// [`Wrong`] when the table has the key and its value names nothing; the problem is reported.
     pub fn find_optional(
         &self,
         table: &Node,

@@ -1,7 +1,7 @@
 //! The quantities that curves and checks name, such as `footing.reaction`, as the reference lists them.
 
 /// Quantities and what they mean, for the reference.
-pub const QUANTITY_DOCS: [(&str, &str); 23] = [
+pub(crate) const QUANTITY_DOCS: [(&str, &str); 23] = [
     ("FOOTING.settlement", "settlement of a rigid footing [m]"),
     (
         "FOOTING.reaction",

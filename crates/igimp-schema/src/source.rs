@@ -38,6 +38,7 @@ impl Place {
     }
 
     /// The same stretch moved to the right.
+    #[must_use]
     pub fn shifted(self, by: usize) -> Self {
         Self {
             start: self.start + by,

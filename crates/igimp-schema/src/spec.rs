@@ -205,7 +205,7 @@ impl Kind {
 }
 
 /// `"a"`, `"b"` or `"c"`.
-pub fn one_of<'a>(names: impl Iterator<Item = &'a str>) -> String {
+pub(crate) fn one_of<'a>(names: impl Iterator<Item = &'a str>) -> String {
     let quoted: Vec<_> = names.map(|name| format!("\"{name}\"")).collect();
     match quoted.split_last() {
         Some((last, [])) => last.clone(),
@@ -228,7 +228,7 @@ impl Variants {
 }
 
 /// A key that has to be written.
-pub const fn required(
+pub(crate) const fn required(
     key: &'static str,
     kind: Kind,
     example: &'static str,
@@ -244,7 +244,7 @@ pub const fn required(
 }
 
 /// A key with a default.
-pub const fn default(
+pub(crate) const fn default(
     key: &'static str,
     kind: Kind,
     value: &'static str,
@@ -260,7 +260,7 @@ pub const fn default(
 }
 
 /// A key whose value follows from the rest of the file.
-pub const fn derived(
+pub(crate) const fn derived(
     key: &'static str,
     kind: Kind,
     from: &'static str,
@@ -276,7 +276,7 @@ pub const fn derived(
 }
 
 /// A key that may be missing.
-pub const fn optional(
+pub(crate) const fn optional(
     key: &'static str,
     kind: Kind,
     meaning: &'static str,
@@ -292,7 +292,7 @@ pub const fn optional(
 }
 
 /// A key that only plane strain knows.
-pub const fn in_plane(field: Field) -> Field {
+pub(crate) const fn in_plane(field: Field) -> Field {
     Field {
         scope: Scope::Plane,
         ..field
@@ -300,7 +300,7 @@ pub const fn in_plane(field: Field) -> Field {
 }
 
 /// A key that only space knows.
-pub const fn in_space(field: Field) -> Field {
+pub(crate) const fn in_space(field: Field) -> Field {
     Field {
         scope: Scope::Space,
         ..field
@@ -308,6 +308,6 @@ pub const fn in_space(field: Field) -> Field {
 }
 
 /// A choice.
-pub const fn choice(name: &'static str, doc: &'static str) -> Choice {
+pub(crate) const fn choice(name: &'static str, doc: &'static str) -> Choice {
     Choice { name, doc }
 }

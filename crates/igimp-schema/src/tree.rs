@@ -212,6 +212,9 @@ impl Node {
     }
 
     /// The number of a key that may be missing.
+    ///
+    /// # Errors
+    /// [`Wrong`] when the value of the key is no number; the problem is reported already.
     pub fn optional_number(&self, key: &str) -> Result<Option<f64>, Wrong> {
         match self.get(key) {
             None => Ok(None),

@@ -130,7 +130,7 @@ enum Scale {
 
 /// A unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Unit {
+pub(crate) struct Unit {
     /// As it is written, with plain digits for powers.
     pub symbol: &'static str,
     /// What it measures.
@@ -140,7 +140,7 @@ pub struct Unit {
 
 impl Unit {
     /// A number of this unit in SI units.
-    pub fn to_si(self, number: f64) -> f64 {
+    pub(crate) fn to_si(self, number: f64) -> f64 {
         match self.scale {
             Scale::Ten(power) if power < 0 => number / 10_f64.powi(-power),
             Scale::Ten(power) => number * 10_f64.powi(power),
@@ -150,13 +150,13 @@ impl Unit {
     }
 
     /// The unit of this spelling: `²`, `³`, `^2`, `^3` and `**2` are powers, spaces do not count.
-    pub fn find(spelling: &str) -> Option<Self> {
+    pub(crate) fn find(spelling: &str) -> Option<Self> {
         let plain = plain(spelling);
         UNITS.iter().find(|unit| unit.symbol == plain).copied()
     }
 
     /// The unit that a spelling may have meant.
-    pub fn nearest(spelling: &str, dimension: Dimension) -> Option<&'static str> {
+    pub(crate) fn nearest(spelling: &str, dimension: Dimension) -> Option<&'static str> {
         let plain = plain(spelling);
         let folded = plain.to_lowercase();
         let same = |unit: &&Self| unit.symbol.to_lowercase() == folded;

@@ -8,7 +8,7 @@ use super::text::{clip, row};
 use super::tree::{Node, Value};
 
 /// A single value, checked.
-pub fn check_value(
+pub(crate) fn check_value(
     completer: &mut Completer<'_>,
     node: &Node,
     kind: &'static Kind,

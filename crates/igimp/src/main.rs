@@ -2,20 +2,13 @@
 //! they do is in the library.
 
 mod arguments;
-mod cases;
 mod clock;
+mod commands;
 mod error;
 mod interrupt;
 mod output;
-mod pages;
 mod progress;
-mod report;
-mod run;
 mod scheduler;
-mod sweep;
-mod template;
-mod validate;
-mod view;
 
 use std::borrow::Cow;
 use std::process::ExitCode;
@@ -52,17 +45,17 @@ fn main() -> ExitCode {
 
 fn obey(command: &Command) -> Result<Exit, ProgramError> {
     match command {
-        Command::New(arguments) => template::new(arguments),
-        Command::Check(arguments) => cases::check(arguments),
-        Command::Explain(arguments) => cases::explain(arguments),
-        Command::Run(arguments) => run::run(arguments),
-        Command::Report(arguments) => report::report(arguments),
-        Command::View(arguments) => view::view(arguments),
-        Command::Sweep(arguments) => sweep::sweep(arguments),
-        Command::Collect(arguments) => sweep::collect(arguments),
-        Command::Validate(arguments) => validate::validate(arguments),
-        Command::Schema => pages::schema(),
-        Command::Completions(arguments) => pages::completions(arguments),
-        Command::Man(arguments) => pages::man(arguments),
+        Command::New(arguments) => commands::template::new(arguments),
+        Command::Check(arguments) => commands::cases::check(arguments),
+        Command::Explain(arguments) => commands::cases::explain(arguments),
+        Command::Run(arguments) => commands::run::run(arguments),
+        Command::Report(arguments) => commands::report::report(arguments),
+        Command::View(arguments) => commands::view::view(arguments),
+        Command::Sweep(arguments) => commands::sweep::sweep(arguments),
+        Command::Collect(arguments) => commands::sweep::collect(arguments),
+        Command::Validate(arguments) => commands::validate::validate(arguments),
+        Command::Schema => commands::pages::schema(),
+        Command::Completions(arguments) => commands::pages::completions(arguments),
+        Command::Man(arguments) => commands::pages::man(arguments),
     }
 }

@@ -4,13 +4,13 @@ use std::path::Path;
 
 use igimp_cases::estimate::speed::Speed;
 use igimp_cases::estimate::{readable, time, watch};
-use igimp_results::admission::Replace;
+use igimp_results::folder::overwrite_guard::Replace;
 use igimp_study::sweep::{Demand, Sweep, Words, numbers};
 
 use crate::arguments::{Scheduler, SweepArguments};
+use crate::commands::run::quoted;
 use crate::error::{Exit, ProgramError};
 use crate::output;
-use crate::run::quoted;
 
 /// Writes what a scheduler needs for the tasks that are not done, and tells how it is submitted.
 pub(crate) fn to(

@@ -4,12 +4,12 @@ use igimp_assembly::{DomainUpdate, Kinematics};
 use igimp_cases::CaseError;
 use igimp_model::Case;
 use igimp_results::measure::{oscillation, sigma};
-use igimp_results::table::Table;
+use igimp_results::tables::table::Table;
 use rayon::prelude::*;
 
 use crate::footing;
+use crate::harness::study::{RunRecord, Study};
 use crate::runs::{Computed, corners, mesh, shipped_case, unwatched};
-use crate::study::{RunRecord, Study};
 
 /// One choice: what it changes in a case.
 pub(super) struct Variant {
@@ -307,7 +307,7 @@ impl Footings {
 
     /// N at a penetration w/B; not a number beyond the end of a push \[-\].
     pub(super) fn resistance_at(&self, push: &str, penetration: f64) -> f64 {
-        crate::reference::interpolate(&footing::resistance(self.of(push)), penetration)
+        crate::harness::reference::interpolate(&footing::resistance(self.of(push)), penetration)
     }
 
     /// Scatter of N beyond 0.3 B: root mean square of its second differences over √6, which is the

@@ -6,7 +6,7 @@ use igimp_cases::CaseError;
 use igimp_figures::{CurvePlot, LineStyle, Scale, Series, SeriesStyle};
 use igimp_model::check::Band;
 use igimp_results::measure::oscillation;
-use igimp_results::table::Table;
+use igimp_results::tables::table::Table;
 
 use crate::column::{self, ColumnResult};
 use crate::comparisons::benchmarks::{
@@ -14,9 +14,9 @@ use crate::comparisons::benchmarks::{
 };
 use crate::comparisons::block::turn;
 use crate::footing;
-use crate::oracle::{Oracle, OracleKind};
+use crate::harness::oracle::{Oracle, OracleKind};
+use crate::harness::study::{Level, RunRecord, Study};
 use crate::runs::Computed;
-use crate::study::{Level, RunRecord, Study};
 
 /// The stress errors of the column.
 const COLUMN: Oracle = Oracle {

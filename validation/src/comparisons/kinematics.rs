@@ -6,7 +6,7 @@ use igimp_figures::{
     CurvePlot, LineStyle, ReferenceLine, ReferenceValue, Scale, Series, SeriesStyle,
 };
 use igimp_model::check::Band;
-use igimp_results::table::Table;
+use igimp_results::tables::table::Table;
 use rayon::prelude::*;
 
 use crate::column::{self, ColumnResult, HENCKY_COLUMN};
@@ -17,9 +17,9 @@ use crate::comparisons::benchmarks::{
 };
 use crate::comparisons::block::{QUARTER, small_strain_turned, turn};
 use crate::footing;
-use crate::oracle::{Oracle, OracleKind};
+use crate::harness::oracle::{Oracle, OracleKind};
+use crate::harness::study::{RunRecord, Study};
 use crate::runs::Computed;
-use crate::study::{RunRecord, Study};
 use crate::von_mises_slope::{BOUNDS, Collapse, bounds, limit, slope_to_collapse};
 
 /// The height in small strain, steps without end.

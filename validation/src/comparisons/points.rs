@@ -3,7 +3,7 @@
 use igimp_cases::CaseError;
 use igimp_figures::{CurvePlot, LineStyle, Scale, Series, SeriesStyle};
 use igimp_model::check::Band;
-use igimp_results::table::Table;
+use igimp_results::tables::table::Table;
 
 use crate::column::{self, ColumnResult};
 use crate::comparisons::benchmarks::{
@@ -11,10 +11,10 @@ use crate::comparisons::benchmarks::{
     factor_of_safety, largest_displacement, roughness, soft_slope, work, written,
 };
 use crate::footing::{self, SEQUENTIAL};
-use crate::oracle::{Oracle, OracleKind};
-use crate::reference::{footing_sequential_limit_analysis, interpolate};
+use crate::harness::oracle::{Oracle, OracleKind};
+use crate::harness::reference::{footing_sequential_limit_analysis, interpolate};
+use crate::harness::study::{Level, Study};
 use crate::runs::Computed;
-use crate::study::{Level, Study};
 
 /// The error of the column.
 const SECOND_ORDER: Oracle = Oracle {

@@ -5,14 +5,14 @@ use igimp_assembly::{Method, SmallCuts};
 use igimp_cases::CaseError;
 use igimp_figures::{CurvePlot, LineStyle, Scale, Series, SeriesStyle};
 use igimp_model::check::Band;
-use igimp_results::table::Table;
+use igimp_results::tables::table::Table;
 use rayon::prelude::*;
 
 use crate::comparisons::benchmarks::written;
 use crate::comparisons::block::{Beside, Settled, let_down, settle};
 use crate::comparisons::small_cuts::{DROPPED, NONE, REMEDIES, TIED, VARIANTS};
-use crate::oracle::{Oracle, OracleKind};
-use crate::study::{RunRecord, Study};
+use crate::harness::oracle::{Oracle, OracleKind};
+use crate::harness::study::{RunRecord, Study};
 
 /// The force on the base of the block.
 const EQUILIBRIUM: Oracle = Oracle {

@@ -12,9 +12,9 @@ use crate::comparisons::benchmarks::{
     largest_displacement, reached, soft_slope, written,
 };
 use crate::comparisons::sliding_block;
-use crate::oracle::{Oracle, OracleKind};
+use crate::harness::oracle::{Oracle, OracleKind};
+use crate::harness::study::{Level, Study};
 use crate::runs::Computed;
-use crate::study::{Level, Study};
 use crate::von_mises_slope::{BOUNDS, Collapse, bounds, limit, slope_to_collapse};
 
 /// The stress error of the column.

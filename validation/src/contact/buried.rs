@@ -12,16 +12,16 @@ use igimp_geometry::seed::fill_polygon;
 use igimp_material::{Elasticity, Tresca};
 use igimp_model::check::Band;
 use igimp_results::mesh_study::{Convergence, estimate};
-use igimp_results::table::Table;
+use igimp_results::tables::table::Table;
 use igimp_shape::{Axis, Grid};
 use igimp_solver::{Accepted, Body, MarchSettings};
 use rayon::prelude::*;
 
 use super::{force, graded, held, weightless};
-use crate::coverage::{self, Known, on_cells};
-use crate::laboratory::run;
-use crate::oracle::Oracle;
-use crate::study::{RunRecord, Study};
+use crate::continuum::laboratory::run;
+use crate::harness::coverage::{self, Known, on_cells};
+use crate::harness::oracle::Oracle;
+use crate::harness::study::{RunRecord, Study};
 
 /// Young's modulus over undrained strength \[-\].
 const YOUNG: f64 = 1e3;

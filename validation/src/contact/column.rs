@@ -10,9 +10,9 @@ use igimp_model::check::Band;
 use igimp_solver::{Body, MarchSettings};
 
 use super::{Ground, closed, penetration, polygon, weightless};
-use crate::laboratory::{run, unobserved};
-use crate::oracle::{Oracle, OracleKind};
-use crate::study::{RunRecord, Study};
+use crate::continuum::laboratory::{run, unobserved};
+use crate::harness::oracle::{Oracle, OracleKind};
+use crate::harness::study::{RunRecord, Study};
 
 /// What the book says of the study.
 const ABOUT: &str = "A rigid plate presses an elastic column that cannot widen from 0.8 m to 0.6 m. The stress is the exact one of the height that the penetration leaves, whatever the stiffness of contact.";

@@ -5,15 +5,15 @@ use std::path::Path;
 use igimp_cases::CaseError;
 use igimp_model::check::Band;
 use igimp_results::mesh_study::Convergence;
-use igimp_results::table::Table;
+use igimp_results::tables::table::Table;
 use rayon::prelude::*;
 
-use crate::coverage::{self, Known, on_cells};
 use crate::footing::SEQUENTIAL;
-use crate::oracle::{Oracle, OracleKind};
-use crate::reference::{footing_sequential_limit_analysis, interpolate};
+use crate::harness::coverage::{self, Known, on_cells};
+use crate::harness::oracle::{Oracle, OracleKind};
+use crate::harness::reference::{footing_sequential_limit_analysis, interpolate};
+use crate::harness::study::{Level, RunRecord, Study};
 use crate::runs::{Computed, shipped_case};
-use crate::study::{Level, RunRecord, Study};
 
 /// What the book says of the study.
 const ABOUT: &str = "The footing of the benchmark in stiffer soil (E/s_u = 300, contact that lets go, rough base, smooth side), pushed one width deep, against sequential limit analysis. N is the mean over a twentieth of the width on either side. With its edge at three quarters of a cell the footing acts as wide as it is on every mesh; with its edge in the middle of a cell it acts wider by a share of the cell, and two meshes are extrapolated.";

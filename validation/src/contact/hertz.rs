@@ -10,13 +10,13 @@ use igimp_assembly::{
 use igimp_cases::CaseError;
 use igimp_material::{Elasticity, HenckyElastic};
 use igimp_model::check::Band;
-use igimp_results::table::Table;
+use igimp_results::tables::table::Table;
 use igimp_solver::{Accepted, Body, MarchSettings};
 
 use super::{Ground, closed, force, graded, weightless};
-use crate::laboratory::run;
-use crate::oracle::{Oracle, OracleKind};
-use crate::study::{Level, RunRecord, Study};
+use crate::continuum::laboratory::run;
+use crate::harness::oracle::{Oracle, OracleKind};
+use crate::harness::study::{Level, RunRecord, Study};
 
 /// What the book says of the study.
 const ABOUT: &str = "A rigid cylinder is pressed onto an elastic half-plane, smooth, and with friction pushed sideways. Half-width and pressure are Hertz's, the stick zone is that of Cattaneo and Mindlin.";

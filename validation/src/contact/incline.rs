@@ -16,9 +16,9 @@ use igimp_shape::{Axis, Grid};
 use igimp_solver::{Accepted, Body, MarchSettings};
 
 use super::{force, polygon, weightless};
-use crate::laboratory::{filled, grid_of, run, unobserved};
-use crate::oracle::{Oracle, OracleKind};
-use crate::study::{RunRecord, Study};
+use crate::continuum::laboratory::{filled, grid_of, run, unobserved};
+use crate::harness::oracle::{Oracle, OracleKind};
+use crate::harness::study::{RunRecord, Study};
 
 /// What the book says of the study.
 const ABOUT: &str = "An elastic block stands on a rigid floor while gravity turns, until it slides: at tan β = μ. A rigid plate is pressed onto elastic ground and pushed sideways: it slides at H = μ V + a B.";

@@ -23,7 +23,7 @@ use igimp_cases::CaseError;
 use igimp_shape::{Axis, Grid, ShapeError};
 use igimp_solver::Accepted;
 
-use crate::laboratory::filled;
+use crate::continuum::laboratory::filled;
 
 /// Level ground with its surface at y = 0, and the grid around it.
 pub(crate) struct Ground {

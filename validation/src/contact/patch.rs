@@ -10,14 +10,14 @@ use igimp_cases::CaseError;
 use igimp_geometry::seed::fill_polygon;
 use igimp_material::{Elasticity, HenckyElastic};
 use igimp_model::check::Band;
-use igimp_results::table::Table;
+use igimp_results::tables::table::Table;
 use igimp_shape::{Axis, Grid};
 use igimp_solver::{Body, MarchSettings};
 
 use super::{polygon, weightless};
-use crate::laboratory::{run, unobserved};
-use crate::oracle::{Oracle, OracleKind};
-use crate::study::{RunRecord, Study};
+use crate::continuum::laboratory::{run, unobserved};
+use crate::harness::oracle::{Oracle, OracleKind};
+use crate::harness::study::{RunRecord, Study};
 
 /// What the book says of the study.
 const ABOUT: &str = "A smooth plate presses an elastic block evenly. With its surface anywhere in its cell the stress is exact; below a plate that is turned against the grid, the stepped edge of the particles leaves an error that falls with the cell.";

@@ -7,8 +7,8 @@ use igimp_assembly::{Geometry, Interface, Locking, Shear, Surface, Tension};
 use igimp_cases::CaseError;
 
 use super::buried::{Buried, Claim, Question, adhesive, answer};
-use crate::oracle::{Oracle, OracleKind};
-use crate::study::{Level, Study};
+use crate::harness::oracle::{Oracle, OracleKind};
+use crate::harness::study::{Level, Study};
 
 /// What the book says of the study.
 const ABOUT: &str = "A circular bar deep in weightless Tresca soil with E/s_u = 1000, bonded, smooth or with adhesion, and a pipe wished in place at shallow depth without tension, are pushed down at small strain. The soil at a circle is a staircase of particles, so nodes with little of it are tied to others sooner than elsewhere. What lies within its band is claimed, all is told: of smooth pipes every mesh of seventeen cells and more, as their values go up and down from mesh to mesh.";

@@ -9,13 +9,13 @@ use igimp_assembly::{Drive, Interface, Method, Particles, Penalty, RigidMotion, 
 use igimp_cases::CaseError;
 use igimp_material::{Elasticity, HenckyElastic};
 use igimp_model::check::Band;
-use igimp_results::table::Table;
+use igimp_results::tables::table::Table;
 use igimp_solver::{Accepted, Body, MarchSettings};
 
 use super::{Ground, force, graded, polygon, weightless};
-use crate::laboratory::run;
-use crate::oracle::{Oracle, OracleKind};
-use crate::study::{Level, RunRecord, Study};
+use crate::continuum::laboratory::run;
+use crate::harness::oracle::{Oracle, OracleKind};
+use crate::harness::study::{Level, RunRecord, Study};
 
 /// What the book says of the study.
 const ABOUT: &str = "A rigid smooth punch of width B on an elastic half-plane is pushed down at an eccentricity, free to tilt. Beyond B/4 it lifts off; contact width and rotation are exact.";

@@ -12,9 +12,9 @@ use igimp_results::mesh_study::{Convergence, estimate};
 use rayon::prelude::*;
 
 use self::push::{Load, Push, Scheme};
-use crate::coverage::{self, Known, on_cells};
-use crate::oracle::{Expected, Oracle, OracleKind};
-use crate::study::{Level, RunRecord, Study};
+use crate::harness::coverage::{self, Known, on_cells};
+use crate::harness::oracle::{Expected, Oracle, OracleKind};
+use crate::harness::study::{Level, RunRecord, Study};
 
 /// What the book says of the study.
 const ABOUT: &str = "A rigid strip on weightless Tresca soil, on the given geometry: pushed down with its edges anywhere in their cell, under an eccentric load, free to tilt and to lift off, and at an angle. Shared strain with sharp edges is held against limit analysis mesh by mesh, B-bar with edges rounded by half a cell, as case files have it, by two meshes.";

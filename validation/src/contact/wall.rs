@@ -6,9 +6,9 @@ use igimp_cases::CaseError;
 use igimp_model::check::Band;
 use rayon::prelude::*;
 
-use crate::oracle::{Oracle, OracleKind};
+use crate::harness::oracle::{Oracle, OracleKind};
+use crate::harness::study::{Level, RunRecord, Study};
 use crate::runs::{Computed, shipped_case};
-use crate::study::{Level, RunRecord, Study};
 
 /// What the book says of the study.
 const ABOUT: &str = "A smooth wall beside level ground, moved away from it and into it: sand of the template (φ = ψ = 30°, with its cohesion of 0.1 kPa) without tension, and clay (s_u = γH/8) bonded to the wall. The field of stress is uniform but for weight, and exact. Then sand along a wall with friction (δ = 15°), and clay along one with adhesion s_u, pushed into it. They are computed with B-bar, with which they reach their end. Their ground stands on a base that is rough but for the first cell beside the wall, which slides: a base held up to the toe carries part of the force, along a smooth wall as along a rough one. With friction the claim is that of eight cells over the height and no more: on sixteen the active force lies 5 % below its bounds.";

@@ -11,15 +11,15 @@ use igimp_cases::CaseError;
 use igimp_geometry::seed::fill_polygon;
 use igimp_material::{Elasticity, Tresca};
 use igimp_model::check::Band;
-use igimp_results::table::Table;
+use igimp_results::tables::table::Table;
 use igimp_shape::{Axis, Grid};
 use igimp_solver::{Accepted, Body, MarchSettings};
 use rayon::prelude::*;
 
 use super::{closed, force, graded, polygon, weightless};
-use crate::laboratory::run;
-use crate::oracle::{Oracle, OracleKind};
-use crate::study::{Level, RunRecord, Study};
+use crate::continuum::laboratory::run;
+use crate::harness::oracle::{Oracle, OracleKind};
+use crate::harness::study::{Level, RunRecord, Study};
 
 /// What the book says of the study.
 const ABOUT: &str = "A smooth rigid wedge that stands in weightless Tresca soil with E/s_u = 300, with the lip that it has thrown up, is pushed deeper by a fifth (in full also by a half, where the lip is told and not claimed: at 30° it comes out 5.05 % too high on c/h = 8). The motion is self-similar: force and height of the lip over the depth, and the pressure, stay those of Hill, Lee and Tupper. The height is thrice that of the centroid of the soil above the old ground, as of a triangle; the highest soil is told beside it. Half of the wedge is modelled, with knots of contact two cells apart, a ghost penalty of 0.001, and no support on those nodes of the axis of symmetry that stand in the wedge: they belong to soil beside it that has left the axis. With the support the same run must miss.";

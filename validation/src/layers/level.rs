@@ -3,8 +3,8 @@
 use igimp_cases::CaseError;
 use igimp_input::CaseFile;
 
+use crate::harness::study::RunRecord;
 use crate::runs::Computed;
-use crate::study::RunRecord;
 
 /// Height of the lower soil, to the line of the grid below the boundary, and of the upper \[m\].
 const HEIGHTS: [f64; 2] = [8.0, 9.0];

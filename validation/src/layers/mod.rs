@@ -7,11 +7,11 @@ use std::path::Path;
 
 use igimp_cases::CaseError;
 use igimp_model::check::Band;
-use igimp_results::table::Table;
+use igimp_results::tables::table::Table;
 use rayon::prelude::*;
 
-use crate::oracle::{Oracle, OracleKind};
-use crate::study::{RunRecord, Study};
+use crate::harness::oracle::{Oracle, OracleKind};
+use crate::harness::study::{RunRecord, Study};
 use level::{Cells, Ground};
 use sloping::{Way, patch};
 

@@ -17,8 +17,8 @@ use igimp_material::{Elasticity, HenckyElastic};
 use igimp_shape::Grid;
 use igimp_solver::{Body, MarchSettings};
 
-use crate::laboratory::{grid_of, run, unobserved};
-use crate::study::RunRecord;
+use crate::continuum::laboratory::{grid_of, run, unobserved};
+use crate::harness::study::RunRecord;
 
 /// Side of the block \[m\].
 const SIDE: f64 = 1.0;

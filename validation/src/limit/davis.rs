@@ -11,9 +11,9 @@ use igimp_model::check::Band;
 use rayon::prelude::*;
 
 use super::Found;
-use crate::oracle::{Oracle, OracleKind};
+use crate::harness::oracle::{Oracle, OracleKind};
+use crate::harness::study::{Level, RunRecord, Study};
 use crate::runs::{Computed, shipped_case};
-use crate::study::{Level, RunRecord, Study};
 use crate::tilted_layer::{dry_sand, slides_at};
 
 /// Shear along lines of no extension.

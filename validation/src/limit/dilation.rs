@@ -7,9 +7,9 @@ use igimp_model::check::Band;
 use rayon::prelude::*;
 
 use super::Found;
-use crate::oracle::{Oracle, OracleKind};
+use crate::harness::oracle::{Oracle, OracleKind};
+use crate::harness::study::{Level, RunRecord, Study};
 use crate::runs::{Computed, shipped_case};
-use crate::study::{Level, RunRecord, Study};
 
 /// Non-associated flow carries no more.
 const RADENKOVIC: Oracle = Oracle {

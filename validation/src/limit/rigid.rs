@@ -6,9 +6,9 @@ use igimp_cases::CaseError;
 use igimp_model::check::Band;
 
 use super::Found;
-use crate::oracle::{Oracle, OracleKind};
+use crate::harness::oracle::{Oracle, OracleKind};
+use crate::harness::study::{RunRecord, Study};
 use crate::runs::{Computed, shipped_case};
-use crate::study::{RunRecord, Study};
 
 /// A displacement that is prescribed has an equilibrium whatever the load.
 const DISPLACED: Oracle = Oracle {

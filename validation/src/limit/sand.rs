@@ -8,10 +8,10 @@ use igimp_model::check::Band;
 use rayon::prelude::*;
 
 use super::Found;
-use crate::oracle::{Oracle, OracleKind};
+use crate::harness::oracle::{Oracle, OracleKind};
+use crate::harness::study::{Level, Study};
 use crate::runs::Computed;
 use crate::slopes::section::{Path, Search, Section, Variant};
-use crate::study::{Level, Study};
 
 /// All depths slide together.
 const INFINITE_SLOPE: Oracle = Oracle {

@@ -11,10 +11,10 @@ use igimp_model::{AnyCase, Case, SearchMethod, StageKind};
 use rayon::prelude::*;
 
 use super::{Found, LIMIT_THEOREMS, SPREAD, Sought, VARIED};
+use crate::harness::study::{Level, RunRecord, Study};
 use crate::runs::Computed;
 use crate::slopes::problems::Problem;
 use crate::slopes::section::{Search, YOUNG};
-use crate::study::{Level, RunRecord, Study};
 
 /// Cases that take longest.
 const DEAR: [&str; 3] = ["dam_drawdown", "layered_slope", "landslide_3d"];

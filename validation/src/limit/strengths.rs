@@ -8,10 +8,10 @@ use igimp_model::check::Band;
 use igimp_results::summary::StrengthShares;
 
 use super::{Found, Sought, VARIED};
-use crate::oracle::{Oracle, OracleKind};
+use crate::harness::oracle::{Oracle, OracleKind};
+use crate::harness::study::{RunRecord, Study};
 use crate::runs::{Computed, shipped_case};
 use crate::slopes::problems::Problem;
-use crate::study::{RunRecord, Study};
 
 /// Strength is divided by the factor.
 const HOMOGENEITY: Oracle = Oracle {

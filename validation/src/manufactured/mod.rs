@@ -14,16 +14,16 @@ use igimp_cases::CaseError;
 use igimp_figures::{CurvePlot, LineStyle, Scale, Series, SeriesStyle};
 use igimp_material::{Elasticity, HenckyElastic};
 use igimp_model::check::Band;
-use igimp_results::table::Table;
+use igimp_results::tables::table::Table;
 use igimp_shape::Grid;
 use igimp_solver::{Body, MarchSettings};
 use rayon::prelude::*;
 
 use self::field::Field;
 use self::stress::Moduli;
-use crate::laboratory::{filled, grid_of, run, unobserved};
-use crate::oracle::{Oracle, OracleKind};
-use crate::study::{Level, RunRecord, Study};
+use crate::continuum::laboratory::{filled, grid_of, run, unobserved};
+use crate::harness::oracle::{Oracle, OracleKind};
+use crate::harness::study::{Level, RunRecord, Study};
 
 /// What the book says of the study.
 const ABOUT: &str = "A smooth field with stretches from 0.7 to 1.3 is prescribed by its own body force on the unit square and cube. Errors of displacement and stress under refinement, in one step and in ten: second order in displacement and first in stress until particles cross cells, where iMPM stalls and iGIMP goes on.";

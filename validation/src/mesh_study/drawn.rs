@@ -5,11 +5,11 @@ use std::fmt::Write as _;
 use igimp_cases::CaseError;
 use igimp_model::check::Band;
 use igimp_results::mesh_study::{Computed, Convergence, estimate};
-use igimp_results::table::Table;
+use igimp_results::tables::table::Table;
 
-use crate::coverage::median;
-use crate::oracle::{Oracle, OracleKind};
-use crate::study::{RunRecord, Study};
+use crate::harness::coverage::median;
+use crate::harness::oracle::{Oracle, OracleKind};
+use crate::harness::study::{RunRecord, Study};
 
 /// How many values are drawn.
 const DRAWS: usize = 20_000;

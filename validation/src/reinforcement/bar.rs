@@ -4,12 +4,12 @@ use std::path::Path;
 
 use igimp_cases::CaseError;
 use igimp_model::check::Band;
-use igimp_results::table::Table;
+use igimp_results::tables::table::Table;
 
 use super::case;
-use crate::oracle::{Oracle, OracleKind};
+use crate::harness::oracle::{Oracle, OracleKind};
+use crate::harness::study::{RunRecord, Study};
 use crate::runs::Computed;
-use crate::study::{RunRecord, Study};
 
 /// What the book says of the study.
 const ABOUT: &str = "A strip of elastic soil, one cell high and without Poisson's ratio, is pulled or pressed with a member of reinforcement in it: elastic, at its capacity, slack, with a bond that lets its ends slip, and stressed by a jack and locked off. Soil and member share the load by their stiffness, cell by cell.";

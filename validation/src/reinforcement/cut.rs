@@ -5,14 +5,14 @@ use std::path::Path;
 use igimp_cases::CaseError;
 use igimp_model::check::Band;
 use igimp_results::mesh_study::Convergence;
-use igimp_results::table::Table;
+use igimp_results::tables::table::Table;
 use rayon::prelude::*;
 
 use super::circle::{Cut, Nail};
-use crate::coverage::{self, Known, on_cells};
-use crate::oracle::{Oracle, OracleKind};
+use crate::harness::coverage::{self, Known, on_cells};
+use crate::harness::oracle::{Oracle, OracleKind};
+use crate::harness::study::{Level, RunRecord, Study};
 use crate::runs::{Computed, mesh, shipped_case};
-use crate::study::{Level, RunRecord, Study};
 
 /// What the book says of the study.
 const ABOUT: &str = "The shipped cut of 5 m in undrained clay on rock, γH/c_u = 4, held by three rows of nails and a facing, and the same cut without them. Factors of safety on two meshes are extrapolated to no width of the cell. Reinforcement that pulls weakens no soil, so the lower bound without nails holds; circles through the nails, least over all of them, give the upper bound.";

@@ -6,15 +6,15 @@ use std::fmt::Write as _;
 use igimp_assembly::Locking;
 use igimp_cases::CaseError;
 use igimp_model::check::Band;
-use igimp_results::table::Table;
+use igimp_results::tables::table::Table;
 use rayon::prelude::*;
 
 use super::problems::Problem;
 use super::section::{Search, Variant};
 use super::{Found, Slopes};
-use crate::oracle::{Oracle, OracleKind};
+use crate::harness::oracle::{Oracle, OracleKind};
+use crate::harness::study::{RunRecord, Study};
 use crate::runs::Computed;
-use crate::study::{RunRecord, Study};
 
 /// Shared strain must not make Newton's method worse.
 const AS_BBAR: Oracle = Oracle {

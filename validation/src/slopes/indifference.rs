@@ -10,9 +10,9 @@ use rayon::prelude::*;
 use super::Found;
 use super::problems::Problem;
 use super::section::{Search, TOLERANCE, Variant};
-use crate::oracle::{Oracle, OracleKind};
+use crate::harness::oracle::{Oracle, OracleKind};
+use crate::harness::study::{RunRecord, Study};
 use crate::runs::Computed;
-use crate::study::{RunRecord, Study};
 
 /// Elastic constants enter no limit load.
 const LIMIT_THEOREMS: Oracle = Oracle {

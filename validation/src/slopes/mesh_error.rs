@@ -6,13 +6,13 @@ use igimp_assembly::Locking;
 use igimp_cases::CaseError;
 use igimp_model::check::Band;
 use igimp_results::mesh_study::{Computed, Convergence, estimate};
-use igimp_results::table::Table;
+use igimp_results::tables::table::Table;
 
 use super::section::Variant;
 use super::{Found, Slopes};
-use crate::coverage::Known;
-use crate::oracle::{Oracle, OracleKind};
-use crate::study::{RunRecord, Study};
+use crate::harness::coverage::Known;
+use crate::harness::oracle::{Oracle, OracleKind};
+use crate::harness::study::{RunRecord, Study};
 
 /// What is extrapolated.
 const EXTRAPOLATED: &str = "factor of safety, extrapolated from two meshes [-]";

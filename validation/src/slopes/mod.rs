@@ -14,17 +14,17 @@ use std::path::Path;
 use igimp_assembly::Locking;
 use igimp_cases::CaseError;
 use igimp_model::check::Band;
-use igimp_results::table::Table;
+use igimp_results::tables::table::Table;
 use rayon::prelude::*;
 
+use crate::harness::reference::{slope_limit_load_bounds, slope_safety_bounds};
+use crate::harness::study::{Level, RunRecord, Study};
 use crate::limit_equilibrium::{bishop, rotation, sliding};
-use crate::reference::{slope_limit_load_bounds, slope_safety_bounds};
 use crate::runs::Computed;
 use crate::slopes::problems::{
     Asked, Opinion, Problem, drained, published, undrained, weak_layer_edges,
 };
 use crate::slopes::section::{Variant, YOUNG};
-use crate::study::{Level, RunRecord, Study};
 
 /// What the book says of the study.
 const ABOUT: &str = "Slopes of undrained and drained soil, homogeneous and in layers, whose factor of safety is bounded by limit analysis or published; the factor of safety of the given geometry is searched for on two meshes, with its mesh error, and every slope has a second opinion by hand calculation.";

@@ -2,8 +2,8 @@
 //! of safety.
 
 use super::section::{Layer, Path, Search, Section, YOUNG};
-use crate::oracle::{Oracle, OracleKind};
-use crate::study::Level;
+use crate::harness::oracle::{Oracle, OracleKind};
+use crate::harness::study::Level;
 
 /// Undrained bounds.
 pub(crate) const UNDRAINED_BOUNDS: Oracle = Oracle {

@@ -5,11 +5,11 @@ use std::path::Path;
 use igimp_cases::CaseError;
 use igimp_input::CaseFile;
 use igimp_model::check::Band;
-use igimp_results::table::Table;
+use igimp_results::tables::table::Table;
 
-use crate::oracle::{Oracle, OracleKind};
+use crate::harness::oracle::{Oracle, OracleKind};
+use crate::harness::study::{RunRecord, Study};
 use crate::runs::Computed;
-use crate::study::{RunRecord, Study};
 
 /// What the book says of the study.
 const ABOUT: &str = "A soft column of two cells in space settles under its own weight, as in the tutorial of another program for the method: the vertical stress at its particles, at all four heights.";

@@ -5,13 +5,13 @@ use std::path::Path;
 use igimp_assembly::Locking;
 use igimp_cases::CaseError;
 use igimp_model::check::Band;
-use igimp_results::table::Table;
+use igimp_results::tables::table::Table;
 use rayon::prelude::*;
 
-use crate::oracle::{Oracle, OracleKind};
+use crate::harness::oracle::{Oracle, OracleKind};
+use crate::harness::study::{Level, RunRecord, Study};
 use crate::runs::Computed;
 use crate::slopes::section::{Ends, Path as Way, Search, Section, Variant, YOUNG};
-use crate::study::{Level, RunRecord, Study};
 
 /// What the book says of the study.
 const ABOUT: &str = "The factor of safety of slices in space between smooth ends is that of the plane on the same mesh: a vertical cut in undrained clay, and the first example of Griffiths and Lane.";

@@ -9,9 +9,9 @@ use igimp_input::CaseFile;
 use igimp_model::check::Band;
 use rayon::prelude::*;
 
-use crate::oracle::{Oracle, OracleKind};
+use crate::harness::oracle::{Oracle, OracleKind};
+use crate::harness::study::{RunRecord, Study};
 use crate::runs::{Computed, corners};
-use crate::study::{RunRecord, Study};
 
 /// What the book says of the study.
 const ABOUT: &str = "Cases of plane strain are computed again as slices in space, one cell across, between smooth sides: a soft column, slopes of three soils that yield under their weight, a strip of pressure; slopes with water tables, ratios and given pressures, drained and undrained, with drawdown; ground that is dug, filled and treated; a face with an anchor and nails, one of each across the slice. Displacements and stresses, pore pressures and tensions are the plane's.";

@@ -4,8 +4,8 @@ use igimp_cases::CaseError;
 use rayon::prelude::*;
 
 use super::slice::{check_pair, computed, differences};
+use crate::harness::study::Study;
 use crate::runs::Computed;
-use crate::study::Study;
 
 /// A case of both: `(x, y)` stands for a point, `@across` for the thickness of a body, `@m` for the unit of a force per metre.
 struct Pair {

@@ -14,17 +14,17 @@ use igimp_geometry::seed::fill;
 use igimp_geometry::solid::{Difference, Solid, Sphere};
 use igimp_material::{Elasticity, VonMises};
 use igimp_model::check::Band;
-use igimp_results::table::Table;
+use igimp_results::tables::table::Table;
 use igimp_shape::{Axis, Grid};
 use igimp_solver::{Accepted, Body, MarchSettings};
 use rayon::prelude::*;
 
 use super::Octant;
 use crate::contact::graded;
+use crate::continuum::laboratory::run;
 use crate::exact::sphere::ThickSphere;
-use crate::laboratory::run;
-use crate::oracle::{Oracle, OracleKind};
-use crate::study::{Level, RunRecord, Study};
+use crate::harness::oracle::{Oracle, OracleKind};
+use crate::harness::study::{Level, RunRecord, Study};
 
 /// What the book says of the study.
 const ABOUT: &str = "A thick sphere of nearly incompressible elastic-plastic soil, an eighth of it, is expanded from within by a fifth of its radius, and a cavity in eight times as much ground across by a half. The pressure is held against the exact curve at finite strain once all of the sphere yields, and once the cavity is wider by a fifth, about a cell; before that it is told.";

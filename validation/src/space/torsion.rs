@@ -13,15 +13,15 @@ use igimp_geometry::seed::fill;
 use igimp_geometry::solid::{Cylinder, Solid};
 use igimp_material::{Elasticity, VonMises};
 use igimp_model::check::Band;
-use igimp_results::table::Table;
+use igimp_results::tables::table::Table;
 use igimp_shape::Grid;
 use igimp_solver::{Accepted, Body, MarchSettings};
 use rayon::prelude::*;
 
 use super::Octant;
-use crate::laboratory::{grid_of, run};
-use crate::oracle::{Oracle, OracleKind};
-use crate::study::{Level, RunRecord, Study};
+use crate::continuum::laboratory::{grid_of, run};
+use crate::harness::oracle::{Oracle, OracleKind};
+use crate::harness::study::{Level, RunRecord, Study};
 
 /// What the book says of the study.
 const ABOUT: &str = "A quarter of a bar, round or square, is twisted: its ends turn, and their sections are free to warp. The torque is held against the exact one, elastic, in between, and fully plastic.";

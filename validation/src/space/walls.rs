@@ -5,14 +5,14 @@ use std::path::Path;
 use igimp_assembly::Locking;
 use igimp_cases::CaseError;
 use igimp_model::check::Band;
-use igimp_results::table::Table;
+use igimp_results::tables::table::Table;
 use rayon::prelude::*;
 
 use super::safety::{interval, middle};
-use crate::oracle::{Oracle, OracleKind};
+use crate::harness::oracle::{Oracle, OracleKind};
+use crate::harness::study::{Level, RunRecord, Study};
 use crate::runs::Computed;
 use crate::slopes::section::{Ends, Path as Way, Search, Section, Variant, YOUNG};
-use crate::study::{Level, RunRecord, Study};
 
 /// What the book says of the study.
 const ABOUT: &str = "An undrained slope of 45°, on a rigid base at its toe (D = 1) or as deep again below it (D = 2), between two end walls L apart. With rough walls γH/c_u lies between the lower bound of plane strain and the least upper bound of circular cylinders with flat ends; with smooth walls it is the plane's on the same mesh. One half is computed, up to the plane of symmetry, on the given geometry with shared strain.";

@@ -11,14 +11,14 @@ use igimp_cases::CaseError;
 use igimp_model::check::Band;
 use igimp_model::{Case, PoreSource, WaterCondition};
 use igimp_results::mesh_study::{Computed as OnMesh, Convergence};
-use igimp_results::table::Table;
+use igimp_results::tables::table::Table;
 use rayon::prelude::*;
 
-use crate::coverage::Known;
-use crate::oracle::{Oracle, OracleKind};
+use crate::harness::coverage::Known;
+use crate::harness::oracle::{Oracle, OracleKind};
+use crate::harness::study::{Level, RunRecord, Study};
 use crate::runs::Computed;
 use crate::slopes::section::{Section, Variant};
-use crate::study::{Level, RunRecord, Study};
 use problems::Problem;
 
 /// What the book says of the study.

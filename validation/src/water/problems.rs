@@ -5,9 +5,9 @@
 
 use igimp_model::PoreSource;
 
-use crate::oracle::{Oracle, OracleKind};
+use crate::harness::oracle::{Oracle, OracleKind};
+use crate::harness::study::Level;
 use crate::slopes::section::{Layer, Path, Search, Section, YOUNG};
-use crate::study::Level;
 
 /// Unit weight of water \[kN/m³, pcf\].
 const SI: f64 = 9.81;

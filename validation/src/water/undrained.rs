@@ -5,9 +5,9 @@ use igimp_input::CaseFile;
 use igimp_model::check::Band;
 use igimp_model::{Case, Drainage};
 
-use crate::oracle::{Oracle, OracleKind};
+use crate::harness::oracle::{Oracle, OracleKind};
+use crate::harness::study::{Level, RunRecord, Study};
 use crate::runs::Computed;
-use crate::study::{Level, RunRecord, Study};
 
 const STRENGTH: Oracle = Oracle {
     kind: OracleKind::Exact,

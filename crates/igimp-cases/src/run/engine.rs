@@ -4,20 +4,20 @@ use std::collections::HashMap;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
-use super::entry::Entered;
-use super::export::Export;
-use super::left::{Left, Resumption, Search};
-use super::memory::{self, Before};
 use super::model::Model;
 use super::output::Output;
-use super::records::{Moment, Records, largest_displacement};
+use super::output::entry::Entered;
+use super::output::export::Export;
+use super::output::records::{Moment, Records, largest_displacement};
+use super::output::{checks, sections};
+use super::resources::memory::{self, Before};
+use super::resources::processor;
+use super::resume::{Left, Resumption, Search};
 use super::session::{Ended, Session};
+use super::stages::{construction, initial, loading, run_out, safety};
 use super::state::State;
 use super::{Event, Failure, Listener, Run, Start, Target};
-use super::{
-    checks, construction, failure, initial, loading, pores, processor, reinforcement, run_out,
-    safety, sections, study,
-};
+use super::{failure, pores, reinforcement, study};
 use crate::error::CaseError;
 use crate::estimate::Expectation;
 use crate::estimate::time::time_of_steps_taken;
@@ -26,7 +26,7 @@ use igimp_report::setup;
 use igimp_results::checkpoint::sha256;
 use igimp_results::folder::{clear_meshes, refuse_foreign};
 use igimp_results::summary::{StageOutcome, StageSummary, Summary};
-use igimp_results::table::Table;
+use igimp_results::tables::table::Table;
 use igimp_solver::StepError;
 
 /// Runs a case. With a target everything is written as it is computed.

@@ -1,12 +1,15 @@
 //! What is known of a step that found no equilibrium, and what may help.
 
+pub(super) mod advice;
+pub(crate) mod message;
+
 use igimp_assembly::Particles;
 use igimp_material::Regime;
 use igimp_solver::{StepError, StepFailure};
 
+use super::Failure;
 use super::session::Session;
 use super::state::State;
-use super::{Failure, advice};
 use igimp_model::{Case, RigidMove, StageKind};
 use igimp_results::summary::{PathEnd, StageSummary};
 

@@ -1,37 +1,17 @@
 //! Runs a case: stage by stage, step by step, with its records and checks.
 
-pub mod advice;
-mod checks;
-mod construction;
 mod engine;
-mod entry;
-mod export;
 mod failure;
-mod fingerprint;
-mod footing;
-mod initial;
-mod left;
-pub(crate) mod limit;
-mod limit_load;
-mod loading;
-mod memory;
-mod message;
 mod mixed_cells;
 mod model;
-mod outlines;
 mod output;
-mod place;
 mod pores;
-mod processor;
-mod records;
 mod reinforcement;
+mod resources;
+mod resume;
 mod rigid;
-mod run_out;
-mod safety;
-mod saved_body;
-mod saved_reinforcement;
-mod sections;
 mod session;
+pub(crate) mod stages;
 mod state;
 mod study;
 mod water;
@@ -46,17 +26,17 @@ use crate::error::CaseError;
 use crate::estimate::Expectation;
 use igimp_input::CaseFile;
 use igimp_model::{AnyCase, Case};
-use igimp_results::admission::Replace;
-use igimp_results::owner::{Claim, Origin};
+use igimp_results::folder::overwrite_guard::Replace;
+use igimp_results::folder::provenance::{Claim, Origin};
 use igimp_results::summary::{ModelSize, PathPoint, StageSummary, Summary, TrialSummary};
-use igimp_results::table::Table;
+use igimp_results::tables::table::Table;
 
 pub(crate) use engine::run_entered;
 pub use engine::{in_memory, run};
-pub use entry::Entered;
-pub use entry::can_go_on;
-pub use message::worst_node;
+pub use failure::message::worst_node;
 pub use model::Model;
+pub use output::entry::Entered;
+pub use output::entry::can_go_on;
 pub use rigid::outlines as rigid_outlines;
 pub use state::{Controls, ReinforcementControls, RigidControls, RigidTrack, State};
 
@@ -267,7 +247,7 @@ impl Target {
         Claim {
             origin: self.origin.clone(),
             title: case.title.clone(),
-            input: fingerprint::of_case(case),
+            input: resume::fingerprint::of_case(case),
         }
     }
 }

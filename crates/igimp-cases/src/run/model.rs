@@ -11,7 +11,7 @@ use igimp_material::Ratios;
 use igimp_shape::{Grid, ShapeError};
 use igimp_solver::{Body, MarchSettings, NewtonSettings};
 
-use super::footing::{self, Footing};
+use super::stages::footing::{self, Footing};
 use super::state::{Controls, State};
 use super::water::{GroundWater, Seeded};
 use crate::error::CaseError;

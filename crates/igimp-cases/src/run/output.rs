@@ -8,11 +8,11 @@ use igimp_solver::Body;
 use rayon::prelude::*;
 
 use super::Target;
-use super::left::{End, Notes, Resumption, Search};
 use super::model::Model;
-use super::outlines;
-use super::records::{Records, Rows};
-use super::sections;
+use super::resume::{End, Notes, Resumption, Search};
+
+use records::{Records, Rows};
+
 use super::session::Taken;
 use super::state::State;
 use crate::error::CaseError;
@@ -20,17 +20,24 @@ use igimp_model::{Case, Every};
 use igimp_report::pictures::{self, Shown};
 use igimp_report::pieces::Pieces;
 use igimp_report::report;
-use igimp_results::atomic::write_whole;
 use igimp_results::checkpoint;
+use igimp_results::folder::atomic::write_whole;
+use igimp_results::folder::provenance::Claim;
 use igimp_results::folder::{self, Folder, write_summary};
-use igimp_results::frames::Frames;
-use igimp_results::owner::Claim;
-use igimp_results::rows::RowWriter;
+use igimp_results::paraview::frames::Frames;
 use igimp_results::summary::{FigureNote, StageSummary, Summary};
-use igimp_results::table::Table;
+use igimp_results::tables::rows::RowWriter;
+use igimp_results::tables::table::Table;
 
+pub(crate) mod checks;
 mod drawn;
+pub(crate) mod entry;
+pub(crate) mod export;
+pub(crate) mod outlines;
+pub(crate) mod place;
+pub(crate) mod records;
 mod saved;
+pub(crate) mod sections;
 mod take_up;
 
 /// The files of a run, open.

@@ -4,14 +4,14 @@ use igimp_assembly::{Drive, Interface, Particles, RigidBody, RigidMotion, Shear}
 use igimp_solver::{Accepted, StepFailure};
 
 use super::model::Model;
-use super::records::Moment;
+use super::output::records::Moment;
 use super::state::{Controls, RigidTrack, State};
 use crate::error::CaseError;
 use igimp_model::{
     Adhesion, COMPONENTS, Case, RigidDrive, RigidInterface, RigidMove, RigidPart, RigidQuantity,
     RigidShear, components, in_space,
 };
-use igimp_results::table::Table;
+use igimp_results::tables::table::Table;
 use igimp_text::short;
 
 /// A body is not set down by less than this share of a cell \[-\].
@@ -301,7 +301,11 @@ pub(crate) fn table<const D: usize>(name: &str) -> Table {
 }
 
 /// The row of a rigid body that is there.
-pub fn row<const D: usize>(case: &Case<D>, moment: &Moment<'_, D>, index: usize) -> Vec<f64> {
+pub(super) fn row<const D: usize>(
+    case: &Case<D>,
+    moment: &Moment<'_, D>,
+    index: usize,
+) -> Vec<f64> {
     let (controls, bodies) = (moment.controls, moment.rigid);
     let slot = controls.placed().take_while(|&k| k < index).count();
     let mut row = vec![

@@ -12,11 +12,11 @@ use igimp_solver::{
     march_from,
 };
 
-use super::export::Export;
-use super::left::Resumption;
 use super::model::Model;
 use super::output::Output;
-use super::records::{Moment, Records, largest_displacement};
+use super::output::export::Export;
+use super::output::records::{Moment, Records, largest_displacement};
+use super::resume::Resumption;
 use super::rigid;
 use super::state::{Controls, RigidTrack, State};
 use super::{Event, Listener, REACHED_ITS_END};

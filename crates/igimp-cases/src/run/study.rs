@@ -9,7 +9,8 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::Instant;
 
 use super::engine::one_mesh;
-use super::{Event, Listener, Run, Start, Target, memory, processor};
+use super::resources::{memory, processor};
+use super::{Event, Listener, Run, Start, Target};
 use crate::error::CaseError;
 use crate::estimate::time::time_of_steps_taken;
 use crate::estimate::watch::side_by_side;

@@ -6,7 +6,7 @@ use igimp_results::fields;
 use igimp_results::summary::{
     CheckRow, ModelSize, SafetySummary, StageSummary, Summary, TrialSummary,
 };
-use igimp_results::table::Table;
+use igimp_results::tables::table::Table;
 
 use crate::example::case;
 

@@ -15,7 +15,7 @@ use igimp_report::report::write_report;
 use igimp_report::setup;
 use igimp_results::ResultsError;
 use igimp_results::summary::{FigureNote, SafetySummary, SetupTable, StageOutcome, Summary};
-use igimp_results::table::Table;
+use igimp_results::tables::table::Table;
 
 fn page(folder: &Path) -> String {
     let path = write_report(folder).unwrap();

@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use igimp_cases::run::{Event, Run, Start, Target, run};
 use igimp_input::CaseFile;
 use igimp_model::Case;
-use igimp_results::admission::Replace;
+use igimp_results::folder::overwrite_guard::Replace;
 use igimp_results::summary::{StageOutcome, Summary};
 use serde_json::Value;
 

@@ -59,7 +59,7 @@ struct Block<const D: usize> {
 
 impl<'a, const D: usize> Nearest<'a, D> {
     /// Of particles at these places, one or more, in the order of the cells.
-    pub fn new(parts: &Parts<D>, x: &'a [[f64; D]], first: &'a [usize]) -> Self {
+    pub(super) fn new(parts: &Parts<D>, x: &'a [[f64; D]], first: &'a [usize]) -> Self {
         let lines = std::array::from_fn(|axis| {
             let lower = parts.cells[axis].iter().map(|[lower, _]| *lower);
             lower.chain([parts.end[axis]]).collect()

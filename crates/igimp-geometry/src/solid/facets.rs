@@ -28,7 +28,7 @@ pub(super) struct Face {
 }
 
 impl Face {
-    pub fn new(corners: &[Point]) -> Self {
+    pub(super) fn new(corners: &[Point]) -> Self {
         let mut face = Self {
             corners: [[0.0; 3]; MOST_CORNERS],
             count: 0,
@@ -259,7 +259,7 @@ pub(super) struct Facets {
 
 impl Facets {
     /// Sorts triangles between points, one or more.
-    pub fn new(points: Vec<Point>, triangles: Vec<[u32; 3]>) -> Self {
+    pub(super) fn new(points: Vec<Point>, triangles: Vec<[u32; 3]>) -> Self {
         let (mut lower, mut upper) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
         for &corner in triangles.iter().flatten() {
             for axis in 0..3 {

@@ -31,7 +31,7 @@ struct Seen {
 
 impl Standing {
     /// Of what `each` calls with: faces within the rectangle, seen from its corner `origin`, and their sense.
-    pub fn new(
+    pub(super) fn new(
         origin: [f64; 3],
         size: [f64; 2],
         each: impl FnOnce(&mut dyn FnMut(&Face, f64)),

@@ -3,9 +3,11 @@
 use std::path::Path;
 
 use super::grid::{self, Frame};
-use super::sequence::Sequence;
+use super::outputs::{checks, curves, study};
+use super::stages::construction;
+use super::stages::sequence::Sequence;
 use super::stages::{self, Context};
-use super::{AllNames, all, checks, construction, curves, materials, outputs, study, title_block};
+use super::{AllNames, all, materials, outputs, title_block};
 use igimp_assembly::Method;
 use igimp_model::{
     BodyPart, Boundaries, Case, GridSpec, Material, ReinforcementPart, RigidPart, Stage,

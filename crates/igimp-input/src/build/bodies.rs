@@ -1,11 +1,13 @@
 //! Bodies: polygons on the grid, apart from each other, held from below.
 
+pub(crate) mod site;
+pub(crate) mod solids;
+
 use std::sync::Arc;
 
 use super::AllNames;
 use super::grid::MOST;
-use super::sequence::{Sequence, placed};
-use super::site::Site;
+use super::stages::sequence::{Sequence, placed};
 use crate::geometry::{distinct, near_edge, overlap, self_crossing};
 use igimp_geometry::polygon::contains;
 use igimp_geometry::polygon::{area_and_centroid, bounding_box};
@@ -13,6 +15,7 @@ use igimp_model::{BodyPart, Boundaries, Side};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::text::{clip, count, number, point};
 use igimp_schema::tree::Node;
+use site::Site;
 
 /// Most corners of all bodies together.
 const MOST_CORNERS: usize = 5000;

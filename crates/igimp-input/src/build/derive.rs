@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use super::quantities::unit_of;
+use super::outputs::quantities::unit_of;
 use igimp_schema::schema::SPACE;
 use igimp_schema::tree::{Node, Value};
 

@@ -1,6 +1,11 @@
 //! The surface of the ground, straight from place to place, and how water tables lie to it.
 
-use super::site::Site;
+pub(crate) mod layers;
+pub(crate) mod level;
+pub(crate) mod space;
+pub(crate) mod surfaces;
+
+use super::bodies::site::Site;
 use igimp_geometry::polygon::contains;
 use igimp_model::{BodyPart, PoreSource, Raster, table_level};
 use igimp_schema::text::number;

@@ -1,7 +1,9 @@
 //! Loads, and whether there is soil where they act.
 
+pub(crate) mod space;
+
+use super::bodies::site::{Site, Soil};
 use super::grid::Frame;
-use super::site::{Site, Soil};
 use crate::geometry::cover;
 use igimp_model::{AxisSpec, Load, LoadKind};
 use igimp_schema::diagnostic::Problems;

@@ -1,6 +1,8 @@
 //! Materials and the limits of their parameters.
 
-use super::profiles::{Extent, Property, TABLES, Terms, property};
+pub(crate) mod profiles;
+
+use profiles::{Extent, Property, TABLES, Terms, property};
 use std::sync::Arc;
 
 use igimp_model::{BodyPart, Drainage, Flow, Ground, Layer, Material, Profile, Profiles, Strength};

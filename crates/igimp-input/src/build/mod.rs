@@ -5,38 +5,17 @@
 mod assemble;
 mod bodies;
 mod boundaries;
-mod checks;
-mod construction;
-mod curves;
 mod derive;
 mod grid;
 mod ground;
-mod ground_space;
-mod layers;
-mod level;
-mod lines;
 mod loads;
-mod loads_space;
 mod materials;
 mod outputs;
-mod profiles;
-mod quantities;
 mod reinforcement;
-mod reinforcement_space;
 mod rigid;
-mod rigid_plane;
-mod rigid_space;
-mod rigid_stage;
-mod safety;
-mod sequence;
-mod site;
-mod solids;
 mod space;
 mod stages;
-mod study;
-mod surfaces;
 mod water;
-mod water_checks;
 
 use std::path::Path;
 
@@ -47,8 +26,8 @@ use igimp_schema::schema::{FORMAT, SPACE};
 use igimp_schema::tree::Node;
 
 use assemble::{Basics, Upon};
-use layers::Layers;
-use site::Site;
+use bodies::site::Site;
+use ground::layers::Layers;
 
 /// The names in a file, by what they name.
 struct AllNames {
@@ -125,17 +104,17 @@ fn in_plane(tree: &Node, names: &AllNames, file: &Path, problems: &mut Problems)
         site: &site,
         sequence,
     };
-    layers::check(&layers, problems);
+    ground::layers::check(&layers, problems);
     let loads = loads::loads(tree, &site, problems);
-    let around = rigid_plane::Around {
+    let around = rigid::plane::Around {
         site: &site,
         materials,
         loads: &loads,
         tree,
         sequence,
     };
-    let rigid = rigid_plane::rigid(tree, &around, problems);
-    rigid_stage::check_use(tree, names, problems);
+    let rigid = rigid::plane::rigid(tree, &around, problems);
+    rigid::stage::check_use(tree, names, problems);
     let around = water::Around {
         tree,
         names,
@@ -145,7 +124,7 @@ fn in_plane(tree: &Node, names: &AllNames, file: &Path, problems: &mut Problems)
         sequence,
     };
     let water = water::conditions(&around, problems);
-    water_checks::check(&around, &water, problems);
+    water::checks::check(&around, &water, problems);
     let reinforcement = reinforcement::reinforcement(tree, &site, problems);
     reinforcement::check_searches(tree, names, problems);
     let context = stages::Context {
@@ -160,7 +139,7 @@ fn in_plane(tree: &Node, names: &AllNames, file: &Path, problems: &mut Problems)
     };
     let stages = assemble::stages_of(&context, problems);
     let gravity = tree.get("case").and_then(|case| case.number_at("gravity"));
-    layers::check_stiffness(&layers, &stages, gravity, problems);
+    ground::layers::check_stiffness(&layers, &stages, gravity, problems);
     let upon = Upon {
         boundaries,
         rigid,

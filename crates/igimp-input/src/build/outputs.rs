@@ -1,12 +1,16 @@
 //! Solver, monitors, sections and output.
 
+pub(crate) mod checks;
+pub(crate) mod curves;
+pub(crate) mod quantities;
+pub(crate) mod study;
+
 use std::path::{Path, PathBuf};
 
 use igimp_linear::SolverKind;
 
 use super::AllNames;
-use super::quantities::fields;
-use super::site::Soil;
+use super::bodies::site::Soil;
 use igimp_model::{
     Average, Cut, Every, Field, Flow, Material, Monitor, Output, Section, SectionReference,
     SolverSettings, Stage, StageKind, Strength,
@@ -15,6 +19,7 @@ use igimp_results::fields::length;
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::text::{clip, point};
 use igimp_schema::tree::Node;
+use quantities::fields;
 
 /// Newton's method, step cutting, linear solver.
 pub(super) fn solver(
@@ -190,7 +195,7 @@ fn section_reference<const D: usize>(
             .help("name the stage before it");
         return None;
     }
-    let reference = super::curves::reference(node, about.file, problems);
+    let reference = super::outputs::curves::reference(node, about.file, problems);
     Some(SectionReference {
         of,
         stage: stage.ok()?,

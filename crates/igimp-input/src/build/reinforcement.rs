@@ -1,7 +1,9 @@
 //! Reinforcement: its lines, whether soil holds them, and which stages install it.
 
+pub(crate) mod space;
+
 use super::AllNames;
-use super::site::{Site, Soil};
+use super::bodies::site::{Site, Soil};
 use super::stages::Context;
 use igimp_model::{ReinforcementKind, ReinforcementPart, distance};
 use igimp_schema::diagnostic::Problems;

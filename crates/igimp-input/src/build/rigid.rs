@@ -1,5 +1,9 @@
 //! Rigid bodies: what their sides are like, and whether the grid has a place for them.
 
+pub(crate) mod plane;
+pub(crate) mod space;
+pub(crate) mod stage;
+
 use std::sync::Arc;
 
 use igimp_assembly::{SurfaceError, Tension};

@@ -4,13 +4,11 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::assemble::{self, Basics, Upon};
+use super::bodies::site::Soil;
+use super::bodies::solids;
 use super::grid::Frame;
-use super::sequence::{Sequence, placed};
-use super::site::Soil;
-use super::{
-    AllNames, boundaries, loads_space, reinforcement, reinforcement_space, rigid_space,
-    rigid_stage, solids, stages, water, water_checks,
-};
+use super::stages::sequence::{Sequence, placed};
+use super::{AllNames, boundaries, loads, reinforcement, rigid, stages, water};
 use igimp_geometry::region::Region;
 use igimp_model::{BodyPart, Case, Ground, LoadKind, Material};
 use igimp_schema::diagnostic::Problems;
@@ -77,8 +75,8 @@ impl Soil<3> for Solids {
         let margin = (1e-2 * self.cell).max(self.round_off);
         let places = match load {
             LoadKind::RigidFooting { .. } => Vec::new(),
-            LoadKind::Pressure { from, to, .. } => loads_space::samples(from, to),
-            LoadKind::Patch { plan, level, .. } => loads_space::places(plan, *level, self),
+            LoadKind::Pressure { from, to, .. } => loads::space::samples(from, to),
+            LoadKind::Patch { plan, level, .. } => loads::space::places(plan, *level, self),
             LoadKind::Point { at, .. } => vec![*at],
         };
         places.iter().any(|at| near(&**region, at, margin))
@@ -124,9 +122,9 @@ pub(super) fn build(
     let soil = Solids::new(bodies, frame);
     check_bodies(tree, frame, (bodies, sequence), &soil, problems);
     let boundaries = boundaries::boundaries(tree, frame, problems);
-    let loads = loads_space::loads(tree, &soil, problems);
-    let rigid = rigid_space::rigid(tree, frame, materials, problems);
-    rigid_stage::check_use(tree, names, problems);
+    let loads = loads::space::loads(tree, &soil, problems);
+    let rigid = rigid::space::rigid(tree, frame, materials, problems);
+    rigid::stage::check_use(tree, names, problems);
     let around = water::Around {
         tree,
         names,
@@ -136,8 +134,8 @@ pub(super) fn build(
         sequence,
     };
     let water = water::conditions(&around, problems);
-    water_checks::check(&around, &water, problems);
-    let reinforcement = reinforcement_space::reinforcement(tree, &soil, problems);
+    water::checks::check(&around, &water, problems);
+    let reinforcement = reinforcement::space::reinforcement(tree, &soil, problems);
     reinforcement::check_searches(tree, names, problems);
     let context = stages::Context {
         tree,

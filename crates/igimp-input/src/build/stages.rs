@@ -1,17 +1,21 @@
 //! Stages: what each needs from loads, materials and the stages before it.
 
+pub(crate) mod construction;
+pub(crate) mod safety;
+pub(crate) mod sequence;
+
 use igimp_assembly::Geometry;
 
 use super::AllNames;
-use super::construction;
-use super::level::uneven;
-use super::safety::{run_out, strength_reduction};
-use super::sequence::Sequence;
-use super::site::{Site, Soil};
+
+use super::bodies::site::{Site, Soil};
+use super::ground::level::uneven;
 use igimp_model::{BodyPart, Load, LoadKind, Material, Stage, StageKind, StopWhen, Strength};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::text::{clip, number, row};
 use igimp_schema::tree::{Node, Wrong};
+use safety::{run_out, strength_reduction};
+use sequence::Sequence;
 
 /// What stages refer to.
 pub(super) struct Context<'a, const D: usize = 2> {
@@ -96,7 +100,7 @@ fn stage<const D: usize>(
         }
         "load" => load(context, index, node, &name, problems),
         "displacement" => displacement(context, index, node, &name, problems),
-        "rigid" => super::rigid_stage::stage(context, node, &name, problems),
+        "rigid" => super::rigid::stage::stage(context, node, &name, problems),
         "construction" => construction::stage(context, index, node, &name, problems),
         "strength-reduction" => strength_reduction(context, index, node, &name, problems)
             .map(StageKind::StrengthReduction),

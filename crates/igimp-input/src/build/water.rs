@@ -1,9 +1,11 @@
 //! Conditions of the water.
 
+pub(crate) mod checks;
+
 use super::AllNames;
+use super::ground::surfaces::terrain;
 use super::ground::{Earth, Surface, UprightFace};
-use super::sequence::{Scene, Sequence};
-use super::surfaces::terrain;
+use super::stages::sequence::{Scene, Sequence};
 use igimp_model::{BodyPart, Material, PoreSource, WaterCondition};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::text::{clip, number};
@@ -182,7 +184,7 @@ fn source_of(node: &Node, form: &str, who: &str, problems: &mut Problems) -> Opt
             }
             PoreSource::Ratio(ratio)
         }
-        "u" => PoreSource::Points(super::profiles::points(value, "u", problems).ok()?),
+        "u" => PoreSource::Points(super::materials::profiles::points(value, "u", problems).ok()?),
         _ => PoreSource::Dry,
     })
 }

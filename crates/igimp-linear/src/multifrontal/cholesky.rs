@@ -25,18 +25,18 @@ use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
 use faer::{Accum, MatMut, MatRef, Par, Spec};
 
 use super::super::LinearSolverError;
-use super::dense_lu::PivotRecord;
-use super::extend_add::{Target, triangle_column};
-use super::kernel::{Contribution, Kernel, Room, Shape, Substitution};
-use super::layout::{Layout, STRIDE};
-use super::panels::{
+use super::dense::dense_lu::PivotRecord;
+use super::dense::kernel::{Contribution, Kernel, Room, Shape, Substitution};
+use super::dense::layout::{Layout, STRIDE};
+use super::dense::panels::{
     solve_lower, solve_lower_transposed, subtract_product, subtract_transposed_product,
 };
-use super::plan::{Front, Plan};
-use super::scalar::Scalar;
-use super::tasks::Extent;
-use super::tiles::{TILE, by_columns, tile_width};
-use super::workshop::make_room;
+use super::dense::scalar::Scalar;
+use super::dense::tiles::{TILE, by_columns, tile_width};
+use super::extend_add::{Target, triangle_column};
+use super::scratch::make_room;
+use super::tree::plan::{Front, Plan};
+use super::tree::tasks::Extent;
 
 /// Elimination of K, with its diagonal by unknown.
 pub(super) struct Cholesky<'a> {

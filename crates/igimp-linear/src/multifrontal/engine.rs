@@ -8,14 +8,14 @@ use super::super::check::{self, Inspection};
 use super::super::refine::{Accuracy, Refinement, probe};
 use super::super::{GeneralLu, LinearSolver, LinearSolverError, SolveReport};
 use super::cholesky::{Cholesky, CholeskyFactors};
+use super::dense::kernel::Kernel;
 use super::factors::Factors;
-use super::kernel::Kernel;
 use super::lu::{Lu, LuFactors};
-use super::plan::Plan;
 use super::scaling::Scaling;
+use super::scratch::Workshop;
 use super::single::Single;
 use super::substitution::Vectors;
-use super::workshop::Workshop;
+use super::tree::plan::Plan;
 
 /// Largest system that [`GeneralLu`] is tried on: it needs ten times the memory and the time.
 const FALLBACK_UNKNOWNS: usize = 50_000;

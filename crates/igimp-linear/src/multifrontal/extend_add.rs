@@ -6,9 +6,9 @@
 
 use std::ops::Range;
 
-use super::layout::Layout;
-use super::plan::{Front, Plan};
-use super::scalar::Scalar;
+use super::dense::layout::Layout;
+use super::dense::scalar::Scalar;
+use super::tree::plan::{Front, Plan};
 
 /// Consecutive border unknowns of a child that are consecutive in the parent.
 #[derive(Clone, Copy)]

@@ -5,13 +5,13 @@
 //! subtree is worked on nor on the number of threads. A front is loaded before its first child contributes to it.
 
 use super::super::LinearSolverError;
-use super::dense_lu::PivotRecord;
+use super::dense::dense_lu::PivotRecord;
+use super::dense::kernel::{Contribution, Kernel, Room};
+use super::dense::scalar::Scalar;
 use super::extend_add::{BorderMap, Waiting};
-use super::kernel::{Contribution, Kernel, Room};
-use super::plan::{Front, Plan};
-use super::scalar::Scalar;
-use super::tasks::Task;
-use super::workshop::{Tools, Workshop, make_room};
+use super::scratch::{Tools, Workshop, make_room};
+use super::tree::plan::{Front, Plan};
+use super::tree::tasks::Task;
 
 /// Factors in the order of elimination.
 #[derive(Default)]

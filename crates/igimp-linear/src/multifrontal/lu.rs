@@ -21,16 +21,18 @@ use faer::linalg::triangular_solve::{
 use faer::{Accum, MatMut, MatRef, Par};
 
 use super::super::LinearSolverError;
-use super::dense_lu::{PivotRecord, exchange, exchange_columns, factor_block};
+use super::dense::dense_lu::{PivotRecord, exchange, exchange_columns, factor_block};
+use super::dense::kernel::{Contribution, Kernel, Room, Shape, Substitution};
+use super::dense::layout::Layout;
+use super::dense::panels::{
+    solve_lower, solve_upper, subtract_product, subtract_transposed_product,
+};
+use super::dense::scalar::Scalar;
+use super::dense::tiles::{TILE, by_columns, tile_width};
 use super::extend_add::Target;
-use super::kernel::{Contribution, Kernel, Room, Shape, Substitution};
-use super::layout::Layout;
-use super::panels::{solve_lower, solve_upper, subtract_product, subtract_transposed_product};
-use super::plan::{Front, Plan};
-use super::scalar::Scalar;
-use super::tasks::Extent;
-use super::tiles::{TILE, by_columns, tile_width};
-use super::workshop::make_room;
+use super::scratch::make_room;
+use super::tree::plan::{Front, Plan};
+use super::tree::tasks::Extent;
 
 /// Elimination of S K S, with the diagonal of S by unknown.
 pub(super) struct Lu<'a> {

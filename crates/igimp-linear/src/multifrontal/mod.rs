@@ -19,25 +19,17 @@
 //! | [`engine`], [`solvers`] | the whole, and the solvers to choose from |
 
 mod cholesky;
-mod dense_lu;
+mod dense;
 mod engine;
 mod extend_add;
 mod factors;
-mod kernel;
-mod layout;
 mod lu;
-mod neighbours;
-mod panels;
-mod plan;
-mod scalar;
 mod scaling;
+pub(crate) mod scratch;
 mod single;
 mod solvers;
 mod substitution;
-mod supernodes;
-mod tasks;
-mod tiles;
-mod workshop;
+mod tree;
 
 pub(super) use engine::Engine;
 pub use solvers::{MultifrontalCholesky, MultifrontalLu};

@@ -8,9 +8,9 @@ use super::super::{LinearSolverError, SolveReport};
 use super::cholesky::{Cholesky, CholeskyFactors};
 use super::factors::Factors;
 use super::lu::{Lu, LuFactors};
-use super::plan::Plan;
+use super::scratch::Workshop;
 use super::substitution::Vectors;
-use super::workshop::Workshop;
+use super::tree::plan::Plan;
 
 /// Largest number of iterations: more would say that the factors are of no use.
 const MOST: usize = 60;

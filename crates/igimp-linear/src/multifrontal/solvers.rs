@@ -6,7 +6,7 @@ use crate::{Pattern, TangentMatrix};
 
 use super::super::{Accuracy, LinearSolver, LinearSolverError, SolveReport};
 use super::engine::Engine;
-use super::plan::Plan;
+use super::tree::plan::Plan;
 use super::{cholesky::Cholesky, lu::Lu};
 
 /// Multifrontal LU for structurally symmetric patterns.

@@ -5,12 +5,12 @@
 //! threads.
 
 use super::super::LinearSolverError;
+use super::dense::kernel::Substitution;
+use super::dense::scalar::Scalar;
 use super::factors::Factors;
-use super::kernel::Substitution;
-use super::plan::{Front, Plan};
-use super::scalar::Scalar;
-use super::tasks::{Extent, Task};
-use super::workshop::{Tools, Workshop, make_room};
+use super::scratch::{Tools, Workshop, make_room};
+use super::tree::plan::{Front, Plan};
+use super::tree::tasks::{Extent, Task};
 
 /// Vectors for solves, kept from solve to solve.
 #[derive(Default)]

@@ -9,8 +9,8 @@ use igimp_figures::{
     SeriesStyle,
 };
 use igimp_results::ResultsError;
-use igimp_results::cells::text_of;
 use igimp_results::summary::FigureNote;
+use igimp_results::tables::cells::text_of;
 
 /// Most steps of a kind that are drawn; of more, as many are picked evenly.
 const MOST: usize = 40;

@@ -10,7 +10,7 @@ use igimp_figures::{
 use igimp_model::{Curve, Reference, ReferenceValues};
 use igimp_results::fields::plain;
 use igimp_results::summary::FigureNote;
-use igimp_results::table::Table;
+use igimp_results::tables::table::Table;
 use igimp_text::short;
 
 /// The picture of a curve: the first two columns of its table over each other, with the reference

@@ -10,7 +10,7 @@ use igimp_figures::{
 use igimp_model::{Average, Case, Field, Monitor, ReferenceValues, Section, SectionReference};
 use igimp_results::fields::{self, Dimension, Scale};
 use igimp_results::summary::FigureNote;
-use igimp_results::table::Table;
+use igimp_results::tables::table::Table;
 use igimp_text::short;
 
 /// Most changes of stage that are marked in a history.

@@ -11,7 +11,7 @@ use igimp_geometry::polygon::bounding_box;
 use igimp_model::Case;
 use igimp_results::measure::Buckets;
 use igimp_results::summary::FigureNote;
-use igimp_results::table::Table;
+use igimp_results::tables::table::Table;
 use igimp_text::short;
 
 /// Arrows stand so many to the longer side of the picture.

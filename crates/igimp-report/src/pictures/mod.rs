@@ -45,7 +45,7 @@ use crate::error::ReportError;
 use igimp_figures::{Drawing, LineStyle, SeriesStyle};
 use igimp_results::ResultsError;
 use igimp_results::summary::FigureNote;
-use igimp_results::table::Table;
+use igimp_results::tables::table::Table;
 
 /// Folder of the pictures within a results folder.
 pub const FOLDER: &str = "figures";

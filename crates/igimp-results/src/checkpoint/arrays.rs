@@ -4,8 +4,8 @@ use igimp_assembly::{AssemblyError, LoadPoint, ParticleFields, Particles};
 use igimp_material::{History, Ratios};
 use igimp_solver::Body;
 
+use crate::fields::regime;
 use crate::npy::{Array, Values};
-use crate::regime;
 
 /// The arrays of a body by name.
 pub(super) fn of_body<const D: usize>(body: &Body<D>) -> Vec<(&'static str, Array)> {

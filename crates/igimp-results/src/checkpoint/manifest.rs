@@ -12,7 +12,7 @@ use serde_json::Value;
 use sha2::{Digest as _, Sha256};
 
 use super::error::{CheckpointError, at};
-use crate::atomic::create;
+use crate::folder::atomic::create;
 
 /// Version of the layout; another one is not read.
 pub const FORMAT_VERSION: u64 = 5;
@@ -126,7 +126,7 @@ struct FileEntry {
 }
 
 impl Manifest {
-    pub fn new(name: &str, sequence: u64, meta: &Meta, states: Vec<StateEntry>) -> Self {
+    pub(super) fn new(name: &str, sequence: u64, meta: &Meta, states: Vec<StateEntry>) -> Self {
         let Meta {
             program,
             fingerprint,

@@ -17,7 +17,7 @@
 //! | `pore_pressure`, `excess` | n | given and excess pore pressure, compression positive \[Pa\] |
 //! | `number` | n | number that the particle keeps |
 //! | `ratios` | n × 2 | strength and stiffness over those of the law |
-//! | `law`, `regime` | n | index of the law; code of the regime ([`regime`](super::regime)) |
+//! | `law`, `regime` | n | index of the law; code of the regime ([`regime`](crate::fields::regime)) |
 //! | `eps_p_eq` | n | accumulated plastic strain \[-\] |
 //! | `load_point_x`, `load_point_force` | m × 2 | loaded points \[m\], forces at factor 1 \[N/m\] |
 //! | `load_point_load` | m | index of the load |
@@ -34,8 +34,8 @@ use std::path::{Path, PathBuf};
 use igimp_solver::Body;
 use rayon::prelude::*;
 
-use super::atomic::{create, sync_folder, sync_together};
 use crate::error::ResultsError;
+use crate::folder::atomic::{create, sync_folder, sync_together};
 
 mod arrays;
 mod error;

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::checkpoint::tests::{body, meta};
-use crate::owner::Origin;
+use crate::folder::provenance::Origin;
 use crate::scratch::Scratch;
 
 pub(crate) fn claim_of(case: &str) -> Claim {

@@ -14,11 +14,11 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use crate::atomic::create;
-use crate::cells::cell;
 use crate::error::ResultsError;
+use crate::folder::atomic::create;
 use crate::summary::Ending;
 use crate::summary::ModelSize;
+use crate::tables::cells::cell;
 pub use estimate::{Computed, Estimate, estimate};
 use igimp_text::short;
 pub use order::{Convergence, Order};

@@ -35,7 +35,7 @@ static DIRECTIONS: [Choice; 2] = [
 ];
 
 /// A load, by type.
-pub static LOAD: Kind = Kind::Variants(&Variants {
+pub(super) static LOAD: Kind = Kind::Variants(&Variants {
     doc: "A load that stages apply.",
     tag: "type",
     tag_doc: "kind of load",

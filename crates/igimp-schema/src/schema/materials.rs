@@ -98,7 +98,7 @@ const fn profile(
 }
 
 /// The keys of values by points in the plane.
-pub const fn in_plane(lists: &'static Kind) -> [Field; 6] {
+pub(super) const fn in_plane(lists: &'static Kind) -> [Field; 6] {
     [
         optional(
             "raster",
@@ -290,7 +290,7 @@ const CU: Field = required(
 );
 
 /// A material, by model.
-pub static MATERIAL: Variants = Variants {
+pub(super) static MATERIAL: Variants = Variants {
     doc: "A material.",
     tag: "model",
     tag_doc: "constitutive law",

@@ -5,7 +5,7 @@ use crate::spec::{
     Choice, Kind, Range, Struct, choice, default, derived, in_space, optional, required,
 };
 
-pub static SOLVER: Struct = Struct {
+pub(super) static SOLVER: Struct = Struct {
     doc: "Newton's method, step cutting, linear solver.",
     fields: &[
         default(
@@ -126,7 +126,7 @@ static FIELDS: [Choice; 26] = [
 ];
 static FIELD: Kind = Kind::Choice(&FIELDS);
 
-pub static MONITOR: Kind = Kind::Table(&Struct {
+pub(super) static MONITOR: Kind = Kind::Table(&Struct {
     doc: "The material point at a place, watched as it moves.",
     fields: &[
         required("name", Kind::Name, "\"crest\"", "name"),
@@ -145,7 +145,7 @@ pub static MONITOR: Kind = Kind::Table(&Struct {
     ],
 });
 
-pub static SECTION: Kind = Kind::Table(&Struct {
+pub(super) static SECTION: Kind = Kind::Table(&Struct {
     doc: "A line along which results are written at the end of every stage.",
     fields: &[
         required("name", Kind::Name, "\"A-A\"", "name"),
@@ -246,7 +246,7 @@ static DIVISOR: Kind = Kind::AnyQuantity;
 static ANY_QUANTITY: Kind = Kind::AnyQuantity;
 const DIVISORS: Kind = Kind::List(&DIVISOR, 0, 16);
 
-pub static CURVE: Kind = Kind::Table(&Struct {
+pub(super) static CURVE: Kind = Kind::Table(&Struct {
     doc: "One recorded quantity against another, a point per step.",
     fields: &[
         required(
@@ -345,7 +345,7 @@ static REFERENCE: Struct = Struct {
 
 const NUMBER_OF_PLOT: Kind = Kind::Number(Range::Any);
 
-pub static CHECK: Kind = Kind::Table(&Struct {
+pub(super) static CHECK: Kind = Kind::Table(&Struct {
     doc: "A result held against an outside value.",
     fields: &[
         required("name", Kind::Name, "\"factor of safety\"", "name"),
@@ -427,7 +427,7 @@ static VALUES: [Choice; 2] = [
     ),
 ];
 
-pub static MESH_STUDY: Struct = Struct {
+pub(super) static MESH_STUDY: Struct = Struct {
     doc: "The case on its grid and on finer ones: the error of the mesh.",
     fields: &[default(
         "meshes",
@@ -437,7 +437,7 @@ pub static MESH_STUDY: Struct = Struct {
     )],
 };
 
-pub static OUTPUT: Struct = Struct {
+pub(super) static OUTPUT: Struct = Struct {
     doc: "What is written, and where.",
     fields: &[
         derived(

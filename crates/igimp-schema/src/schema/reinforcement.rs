@@ -42,7 +42,7 @@ const PLATE: Field = default(
 );
 
 /// A member, by type.
-pub static REINFORCEMENT: Kind = Kind::Variants(&Variants {
+pub(super) static REINFORCEMENT: Kind = Kind::Variants(&Variants {
     doc: "A member that pulls and neither bends nor pushes. In plane strain all forces are per metre run: those of one, over the spacing. In space it is one anchor or nail.",
     tag: "type",
     tag_doc: "kind of reinforcement",

@@ -108,7 +108,7 @@ const fn a_length(key: &'static str, example: &'static str, doc: &'static str) -
 }
 
 /// A rigid body, by type of shape.
-pub static RIGID: Kind = Kind::Variants(&Variants {
+pub(super) static RIGID: Kind = Kind::Variants(&Variants {
     doc: "A rigid body that soil touches, slides along and leaves.",
     tag: "type",
     tag_doc: "shape",
@@ -311,7 +311,7 @@ const fn load(key: &'static str, dimension: Dimension, doc: &'static str) -> Fie
 }
 
 /// How a stage moves a rigid body.
-pub static MOVE: Kind = Kind::Table(&Struct {
+pub(super) static MOVE: Kind = Kind::Table(&Struct {
     doc: "How a rigid body moves in a stage. What is not mentioned goes on as before: held, or under its force.",
     fields: &[
         required(

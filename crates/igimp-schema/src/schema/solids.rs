@@ -12,53 +12,54 @@ static HOLE: Kind = Kind::List(&INDEX, 2, 2);
 static ROW: Kind = Kind::List(&LENGTH, 2, MANY);
 
 const OTHER: &str = "another shape is stated";
-pub const POLYGON: Kind = Kind::Either(&[Kind::List(&CORNER, 3, MANY), Kind::Table(&OUTLINE)]);
+pub(super) const POLYGON: Kind =
+    Kind::Either(&[Kind::List(&CORNER, 3, MANY), Kind::Table(&OUTLINE)]);
 
-pub const BOX: Field = optional(
+pub(super) const BOX: Field = optional(
     "box",
     Kind::Table(&BOX_TABLE),
     OTHER,
     "box with its sides along the axes",
 );
-pub const SECTION: Field = optional(
+pub(super) const SECTION: Field = optional(
     "polygon",
     POLYGON,
     OTHER,
     "corners of a polygon in x and z, either way round, or where they come from; `across` makes it a slice",
 );
-pub const ACROSS: Field = optional(
+pub(super) const ACROSS: Field = optional(
     "across",
     PAIR,
     "`polygon` is not stated",
     "from where to where on y the polygon reaches",
 );
-pub const PLAN: Field = optional(
+pub(super) const PLAN: Field = optional(
     "plan",
     POLYGON,
     OTHER,
     "corners of a polygon in plan, x and y, either way round, or where they come from; `between` says how high",
 );
-pub const BETWEEN: Field = optional(
+pub(super) const BETWEEN: Field = optional(
     "between",
     Kind::List(&HEIGHT, 2, 2),
     "`plan` is not stated",
     "bottom and top over the plan: levels z, or surfaces of the ground",
 );
-pub const CYLINDER: Field = optional(
+pub(super) const CYLINDER: Field = optional(
     "cylinder",
     Kind::Table(&CYLINDER_TABLE),
     OTHER,
     "circular cylinder along an axis",
 );
-pub const SPHERE: Field = optional("sphere", Kind::Table(&SPHERE_TABLE), OTHER, "sphere");
-pub const SURFACE: Field = optional(
+pub(super) const SPHERE: Field = optional("sphere", Kind::Table(&SPHERE_TABLE), OTHER, "sphere");
+pub(super) const SURFACE: Field = optional(
     "surface",
     Kind::Table(&SURFACE_TABLE),
     OTHER,
     "closed surface of triangles",
 );
 
-pub const MINUS: Field = default(
+pub(super) const MINUS: Field = default(
     "minus",
     Kind::List(&TAKEN, 0, MOST_THINGS),
     "[]",
@@ -134,7 +135,7 @@ static SPHERE_TABLE: Struct = Struct {
     ],
 };
 
-pub static SURFACE_TABLE: Struct = Struct {
+pub(super) static SURFACE_TABLE: Struct = Struct {
     doc: "A closed surface: an STL file, or corners and the triangles between them.",
     fields: &[
         optional(
@@ -166,7 +167,7 @@ pub static SURFACE_TABLE: Struct = Struct {
 
 static HEIGHT: Kind = Kind::Either(&[Kind::Quantity(Length, Range::Any), Kind::Table(&TERRAIN)]);
 
-pub static TERRAIN: Struct = Struct {
+pub(super) static TERRAIN: Struct = Struct {
     doc: "A surface of the ground: an ESRI ASCII grid, points from a CSV file, points, or heights on lines.",
     fields: &[
         optional(

@@ -18,7 +18,7 @@ const MONITOR: Field = optional(
 );
 
 /// A stage, by type.
-pub static STAGE: Kind = Kind::Variants(&Variants {
+pub(super) static STAGE: Kind = Kind::Variants(&Variants {
     doc: "One thing that happens.",
     tag: "type",
     tag_doc: "kind of stage",

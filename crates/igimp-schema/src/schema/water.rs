@@ -60,7 +60,7 @@ static OWN: Kind = Kind::Table(&Struct {
 });
 
 /// A condition of the water.
-pub static WATER: Kind = Kind::Table(&Struct {
+pub(super) static WATER: Kind = Kind::Table(&Struct {
     doc: "A condition of the water: one of `level`, `line`, in space `surface`, `inside` with `outside`, `r_u`, `u` and `dry`. The first holds from the \
           start, the others from the stages that name them.",
     fields: &[
@@ -120,7 +120,7 @@ static CHANGE: Kind = Kind::Table(&Struct {
 });
 
 /// The keys of a construction stage, without its geometry.
-pub const CONSTRUCTION: [Field; 5] = [
+pub(super) const CONSTRUCTION: [Field; 5] = [
     default(
         "place",
         Kind::List(&BODY_NAME, 0, MOST_THINGS),

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use igimp_results::cells::cell;
+use igimp_results::tables::cells::cell;
 use igimp_schema::quantity::{Quantity, split};
 use igimp_text::on_a_line;
 

@@ -38,10 +38,10 @@ use igimp_input::{CaseFile, InputError, bytes};
 use igimp_model::AnyCase;
 use igimp_report::ReportError;
 use igimp_results::ResultsError;
-use igimp_results::admission::{Replace, refuse_link};
 use igimp_results::folder;
-use igimp_results::lock::Lock;
-use igimp_results::owner::{Claim, Origin, Owner};
+use igimp_results::folder::lock::Lock;
+use igimp_results::folder::overwrite_guard::{Replace, refuse_link};
+use igimp_results::folder::provenance::{Claim, Origin, Owner};
 use igimp_results::summary::Ending;
 
 pub use collect::{Collected, aligned, collect};

@@ -11,7 +11,7 @@ use super::{Sweep, SweepError, Task};
 use igimp_cases::on_one_line;
 use igimp_cases::run::Account;
 use igimp_input::CaseFile;
-use igimp_results::atomic::write_whole;
+use igimp_results::folder::atomic::write_whole;
 use igimp_results::summary::Ending;
 use igimp_text::short;
 

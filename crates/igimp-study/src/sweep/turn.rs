@@ -12,7 +12,7 @@ use super::{Sweep, SweepError, Task};
 use igimp_cases::CaseError;
 use igimp_cases::run::{Account, AnyListener};
 use igimp_results::ResultsError;
-use igimp_results::admission::Replace;
+use igimp_results::folder::overwrite_guard::Replace;
 use igimp_results::summary::Ending;
 
 /// How long to wait before a folder is tried again.

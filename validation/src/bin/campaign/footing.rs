@@ -3,7 +3,7 @@
 use igimp_cases::CaseError;
 use igimp_input::shipped;
 use igimp_model::Case;
-use igimp_results::table::Table;
+use igimp_results::tables::table::Table;
 
 /// E/s_u of the grid \[-\].
 pub(crate) const STIFFNESSES: [f64; 5] = [50.0, 100.0, 200.0, 500.0, 1000.0];

@@ -12,7 +12,7 @@ use igimp_cases::chain;
 use igimp_cases::run::{self, Event, Listener, Run, Start};
 use igimp_model::Case;
 use igimp_results::summary::{SafetySummary, StageOutcome};
-use igimp_results::table::Table;
+use igimp_results::tables::table::Table;
 
 use crate::effort::{Cut, Effort, Follower};
 

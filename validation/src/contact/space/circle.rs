@@ -10,15 +10,15 @@ use igimp_assembly::{
 use igimp_cases::CaseError;
 use igimp_material::{Elasticity, Tresca};
 use igimp_model::check::Band;
-use igimp_results::table::Table;
+use igimp_results::tables::table::Table;
 use igimp_solver::{Accepted, Body, MarchSettings};
 use rayon::prelude::*;
 
 use super::super::{force, graded, weightless};
 use super::Quarter;
-use crate::laboratory::run;
-use crate::oracle::{Expected, Oracle, OracleKind};
-use crate::study::{Level, RunRecord, Study};
+use crate::continuum::laboratory::run;
+use crate::harness::oracle::{Expected, Oracle, OracleKind};
+use crate::harness::study::{Level, RunRecord, Study};
 
 /// What the book says of the study.
 const ABOUT: &str = "A circular footing on weightless Tresca soil, smooth and rough, and a rough square one, pushed down by contact in a quarter, on the given geometry, with shared strain and sharp edges: bearing capacity over s_u, mesh by mesh, and by two meshes.";

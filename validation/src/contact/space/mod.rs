@@ -11,8 +11,8 @@ use igimp_assembly::{Constraints, ParticleSeed};
 use igimp_cases::CaseError;
 use igimp_shape::{Axis, Grid, ShapeError};
 
-use crate::laboratory::filled;
-use crate::study::{Level, Study};
+use crate::continuum::laboratory::filled;
+use crate::harness::study::{Level, Study};
 
 /// What the book says of the study.
 const ABOUT: &str = "Contact in space, in the bands of the plane: a smooth plate that is turned about the vertical presses a block evenly, with its surface anywhere in its cell; below a plate that is turned about all axes the error falls with the cell; a block slides down an incline in any direction at tan β = μ, and a plate that is pressed and pushed in any direction at H = μ V + a A.";

@@ -9,14 +9,14 @@ use igimp_assembly::{
 use igimp_cases::CaseError;
 use igimp_material::{Elasticity, HenckyElastic};
 use igimp_model::check::Band;
-use igimp_results::table::Table;
+use igimp_results::tables::table::Table;
 use igimp_shape::{Axis, Grid};
 use igimp_solver::{Body, MarchSettings};
 
 use super::super::{closed, weightless};
-use crate::laboratory::{run, unobserved};
-use crate::oracle::{Oracle, OracleKind};
-use crate::study::{Level, RunRecord, Study};
+use crate::continuum::laboratory::{run, unobserved};
+use crate::harness::oracle::{Oracle, OracleKind};
+use crate::harness::study::{Level, RunRecord, Study};
 
 const UNIFORM: Oracle = Oracle {
     kind: OracleKind::Exact,

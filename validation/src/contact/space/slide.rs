@@ -14,9 +14,9 @@ use igimp_shape::{Axis, Grid};
 use igimp_solver::{Accepted, Body, MarchSettings};
 
 use super::super::{force, weightless};
-use crate::laboratory::{filled, grid_of, run, unobserved};
-use crate::oracle::{Oracle, OracleKind};
-use crate::study::{RunRecord, Study};
+use crate::continuum::laboratory::{filled, grid_of, run, unobserved};
+use crate::harness::oracle::{Oracle, OracleKind};
+use crate::harness::study::{RunRecord, Study};
 
 const COULOMB: Oracle = Oracle {
     kind: OracleKind::Exact,

@@ -11,14 +11,14 @@ use igimp_assembly::{
 use igimp_cases::CaseError;
 use igimp_material::{Elasticity, HenckyElastic};
 use igimp_model::check::Band;
-use igimp_results::table::Table;
+use igimp_results::tables::table::Table;
 use igimp_solver::{Accepted, Body, MarchSettings};
 
 use super::super::{closed, force, graded, weightless};
 use super::Quarter;
-use crate::laboratory::run;
-use crate::oracle::{Oracle, OracleKind};
-use crate::study::{Level, RunRecord, Study};
+use crate::continuum::laboratory::run;
+use crate::harness::oracle::{Oracle, OracleKind};
+use crate::harness::study::{Level, RunRecord, Study};
 
 /// What the book says of the study.
 const ABOUT: &str = "A rigid smooth sphere is pressed onto an elastic half-space, in a quarter. The radius of contact is Hertz's for the force that was needed; largest pressure and approach, which err by a share of the cell, are told beside it.";

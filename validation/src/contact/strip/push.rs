@@ -8,12 +8,12 @@ use igimp_assembly::{
 };
 use igimp_cases::CaseError;
 use igimp_material::{Elasticity, Tresca};
-use igimp_results::table::Table;
+use igimp_results::tables::table::Table;
 use igimp_solver::{Accepted, Body, MarchSettings};
 
 use super::super::{Ground, force, graded, weightless};
-use crate::laboratory::run;
-use crate::study::RunRecord;
+use crate::continuum::laboratory::run;
+use crate::harness::study::RunRecord;
 
 /// Young's modulus over undrained strength \[-\].
 const YOUNG: f64 = 1e4;

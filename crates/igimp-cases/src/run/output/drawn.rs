@@ -8,9 +8,9 @@ use rayon::prelude::*;
 
 use super::Output;
 use crate::error::CaseError;
-use crate::run::left::End;
 use crate::run::model::Model;
-use crate::run::outlines;
+use crate::run::output::outlines;
+use crate::run::resume::End;
 use crate::run::state::State;
 use igimp_model::in_plane;
 use igimp_model::{Case, Every};

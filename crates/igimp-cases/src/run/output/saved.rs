@@ -8,14 +8,14 @@ use rayon::prelude::*;
 
 use super::Output;
 use crate::error::CaseError;
-use crate::run::fingerprint;
-use crate::run::left::{Notes, end_of_stage};
+use crate::run::resume::fingerprint;
+use crate::run::resume::{Notes, end_of_stage};
+use crate::run::resume::{reinforcement, rigid};
 use crate::run::state::Controls;
-use crate::run::{saved_body, saved_reinforcement};
 use igimp_model::Case;
 use igimp_results::checkpoint::{self, Meta};
-use igimp_results::rows::RowWriter;
 use igimp_results::summary::Summary;
+use igimp_results::tables::rows::RowWriter;
 
 impl<const D: usize> Output<D> {
     pub(super) fn notes(
@@ -61,12 +61,12 @@ impl<const D: usize> Output<D> {
         states: &[(&str, &Body<D>)],
     ) -> Result<Meta, CaseError> {
         let with_bodies = states.iter().filter(|(_, body)| !body.rigid.is_empty());
-        let saved = with_bodies.map(|(name, body)| ((*name).to_owned(), saved_body::all(body)));
+        let saved = with_bodies.map(|(name, body)| ((*name).to_owned(), rigid::all(body)));
         let with_members = states
             .iter()
             .filter(|(_, body)| !body.reinforcement.is_empty());
         let members = with_members.map(|(name, body)| {
-            let own = saved_reinforcement::all(body);
+            let own = reinforcement::all(body);
             ((*name).to_owned(), own)
         });
         let notes = Notes {

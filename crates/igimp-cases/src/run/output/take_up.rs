@@ -9,17 +9,17 @@ use igimp_solver::Body;
 use super::{BEFORE, Output, csv};
 use crate::error::CaseError;
 use crate::run::Target;
-use crate::run::fingerprint;
-use crate::run::left::{End, Left, Notes, Resumption, Search, end_of_stage, notes_of};
-use crate::run::records::Records;
+use crate::run::output::records::Records;
+use crate::run::resume::fingerprint;
+use crate::run::resume::{End, Left, Notes, Resumption, Search, end_of_stage, notes_of};
+use crate::run::resume::{reinforcement, rigid};
 use crate::run::state::{Controls, State};
-use crate::run::{saved_body, saved_reinforcement};
 use igimp_model::Case;
-use igimp_results::atomic::write_whole;
 use igimp_results::checkpoint::{self, CheckpointError};
+use igimp_results::folder::atomic::write_whole;
+use igimp_results::folder::provenance::Claim;
 use igimp_results::folder::{self, Folder};
-use igimp_results::owner::Claim;
-use igimp_results::rows;
+use igimp_results::tables::rows;
 
 impl<const D: usize> Output<D> {
     /// A results folder taken up at its newest checkpoint; without one the run begins afresh.
@@ -99,10 +99,10 @@ impl<const D: usize> Output<D> {
             let missing = || damaged(name.to_owned(), "the state is missing".to_owned());
             let mut body = own.map(|(_, body)| body.clone()).ok_or_else(missing)?;
             let saved = notes.rigid.get(name).map_or(&[][..], Vec::as_slice);
-            body.rigid = saved_body::taken_up(case, laws, controls, saved)?
+            body.rigid = rigid::taken_up(case, laws, controls, saved)?
                 .map_err(|why| damaged("meta.json".to_owned(), why))?;
             let saved = notes.reinforcement.get(name).map_or(&[][..], Vec::as_slice);
-            body.reinforcement = saved_reinforcement::taken_up(case, controls, saved)
+            body.reinforcement = reinforcement::taken_up(case, controls, saved)
                 .map_err(|why| damaged("meta.json".to_owned(), why))?;
             Ok(body)
         };
@@ -209,12 +209,11 @@ impl<const D: usize> Output<D> {
                     file: "meta.json".to_owned(),
                     why,
                 };
-                body.rigid =
-                    saved_body::taken_up(case, laws, &controls, saved)?.map_err(damaged)?;
+                body.rigid = rigid::taken_up(case, laws, &controls, saved)?.map_err(damaged)?;
                 let saved = notes.reinforcement.get(&name);
                 let saved = saved.map_or(&[][..], Vec::as_slice);
                 body.reinforcement =
-                    saved_reinforcement::taken_up(case, &controls, saved).map_err(damaged)?;
+                    reinforcement::taken_up(case, &controls, saved).map_err(damaged)?;
                 ends.insert(number, State { body, controls });
             }
         }

@@ -1,0 +1,196 @@
+//! The one place where the state of particles changes: an accepted step (theory, eq. 10 with small
+//! strain, eq. 15 with finite strain, eq. 29 for the domains).
+
+use igimp_material::Tensor;
+use igimp_shape::Grid;
+use rayon::prelude::*;
+
+use crate::body::particles::Particles;
+use crate::contributions::rigid::{RigidBody, seeded_too_close};
+use crate::equations::kinematics::ParticleTrial;
+use crate::equations::trial::Trial;
+use crate::method::{DomainUpdate, Geometry, Kinematics, Method};
+use crate::small::{congruence, determinant, identity, multiply, rotation, transpose};
+use crate::step::stencils::Stencils;
+use crate::step::supports::CHUNK;
+
+impl<const D: usize> Particles<D> {
+    /// Accepts a converged trial: x, F, b_e, σ, l_p and history become those at nodal step
+    /// displacements `u` \[length\]. On a given geometry x, F and l_p stay.
+    pub fn commit(
+        &mut self,
+        stencils: &Stencils<D>,
+        method: &Method,
+        trial: &Trial<D>,
+        u: &[[f64; D]],
+    ) {
+        let mut slots = vec![0_u32; self.len()];
+        for (slot, &particle) in stencils.order().iter().enumerate() {
+            slots[particle as usize] = slot as u32;
+        }
+        let fields = self.fields_mut();
+        let moving = (
+            &mut fields.x,
+            &mut fields.displacement,
+            &mut fields.half_length,
+            &fields.half_length0,
+            &mut fields.def_grad,
+        );
+        let stressed = (
+            &mut fields.b_e,
+            &mut fields.sigma,
+            &mut fields.history,
+            &mut fields.regime,
+            &mut fields.excess,
+        );
+        let particles = moving.into_par_iter().zip(stressed.into_par_iter());
+        particles
+            .zip(slots)
+            .enumerate()
+            .with_min_len(CHUNK)
+            .for_each(|(particle, ((moving, stressed), slot))| {
+                let (x, displacement, half_length, half_length0, def_grad) = moving;
+                let (b_e, sigma, history, regime, excess) = stressed;
+                let own = &trial.particles[slot as usize];
+                let step = interpolate(stencils, particle, u);
+                for axis in 0..D {
+                    displacement[axis] += step[axis];
+                }
+                match method.geometry {
+                    Geometry::Moving => {
+                        for axis in 0..D {
+                            x[axis] += step[axis];
+                        }
+                        *def_grad = multiply(&own.delta_def_grad, def_grad);
+                        let update = method.domain_update;
+                        *half_length = updated_half_length(update, half_length0, def_grad);
+                        (*b_e, *sigma) =
+                            stress_state(method.kinematics, own, determinant(def_grad));
+                    }
+                    Geometry::Given => {
+                        *b_e = own.b_e();
+                        *sigma = match method.kinematics {
+                            Kinematics::FiniteStrain => divided(&own.tau, determinant(def_grad)),
+                            Kinematics::SmallStrain => own.tau,
+                        };
+                    }
+                }
+                *excess = match method.kinematics {
+                    _ if own.excess == 0.0 => 0.0,
+                    Kinematics::FiniteStrain => own.excess / determinant(def_grad),
+                    Kinematics::SmallStrain => own.excess,
+                };
+                *history = own.history;
+                *regime = own.regime;
+            });
+    }
+
+    /// Moves particles that stand too close to rigid bodies, or within them, off these, as [`System::bodies_at`]
+    /// does after a step: for bodies that are put where a side cuts the parts of cells that soil is seeded in.
+    /// Nothing but their place changes. How many were moved.
+    ///
+    /// [`System::bodies_at`]: crate::System::bodies_at
+    pub fn clear_of(&mut self, bodies: &[RigidBody<D>]) -> usize {
+        let ways = seeded_too_close(bodies, self);
+        self.put_back(&ways);
+        ways.len()
+    }
+
+    /// Keeps the given pore pressure of an accepted step, by particle; an empty one is none \[force/length²\].
+    pub fn fill_pores(&mut self, pressure: &[f64]) {
+        let fields = self.fields_mut();
+        if pressure.is_empty() {
+            fields.pore_pressure.fill(0.0);
+        } else {
+            fields.pore_pressure.copy_from_slice(pressure);
+        }
+    }
+
+    /// Moves particles of an accepted step, such as those that stand too close to a rigid body; nothing
+    /// but their place changes.
+    pub fn put_back(&mut self, by: &[(usize, [f64; D])]) {
+        let fields = self.fields_mut();
+        for (particle, way) in by {
+            for axis in 0..D {
+                fields.x[*particle][axis] += way[axis];
+                fields.displacement[*particle][axis] += way[axis];
+            }
+        }
+    }
+
+    /// The first particle that nodal step displacements `u` would carry off the grid, with its
+    /// new position \[length\].
+    pub fn leaving(
+        &self,
+        grid: &Grid<D>,
+        stencils: &Stencils<D>,
+        u: &[[f64; D]],
+    ) -> Option<(usize, [f64; D])> {
+        (0..self.len())
+            .into_par_iter()
+            .with_min_len(CHUNK)
+            .find_map_first(|particle| {
+                let displacement = interpolate(stencils, particle, u);
+                let x: [f64; D] =
+                    std::array::from_fn(|axis| self.x[particle][axis] + displacement[axis]);
+                (!grid.contains(&x)).then_some((particle, x))
+            })
+    }
+}
+
+/// The displacement of a particle, Σ_i S_i u_i.
+fn interpolate<const D: usize>(
+    stencils: &Stencils<D>,
+    particle: usize,
+    u: &[[f64; D]],
+) -> [f64; D] {
+    let mut displacement = [0.0; D];
+    for support in stencils.of(particle) {
+        for axis in 0..D {
+            displacement[axis] += support.value * u[support.node][axis];
+        }
+    }
+    displacement
+}
+
+/// b_e and σ of an accepted particle. In small strain both are rotated with the step.
+fn stress_state<const D: usize>(
+    kinematics: Kinematics,
+    own: &ParticleTrial<D>,
+    det_f: f64,
+) -> (Tensor, Tensor) {
+    match kinematics {
+        Kinematics::FiniteStrain => (own.b_e(), divided(&own.tau, det_f)),
+        Kinematics::SmallStrain => {
+            let in_plane = rotation(&own.delta_def_grad);
+            let mut turn = identity::<3>();
+            for a in 0..D {
+                turn[a][..D].copy_from_slice(&in_plane[a]);
+            }
+            (congruence(&turn, &own.b_e()), congruence(&turn, &own.tau))
+        }
+    }
+}
+
+/// Cauchy stress of a Kirchhoff stress.
+fn divided(tau: &Tensor, det_f: f64) -> Tensor {
+    tau.map(|row| row.map(|component| component / det_f))
+}
+
+/// Half-lengths after the deformation F \[length\].
+fn updated_half_length<const D: usize>(
+    update: DomainUpdate,
+    half_length0: &[f64; D],
+    def_grad: &[[f64; D]; D],
+) -> [f64; D] {
+    let stretch: [f64; D] = match update {
+        DomainUpdate::Fixed => [1.0; D],
+        DomainUpdate::DiagonalF => std::array::from_fn(|axis| def_grad[axis][axis].abs()),
+        DomainUpdate::DiagonalU => {
+            let right_stretch = multiply(&transpose(&rotation(def_grad)), def_grad);
+            std::array::from_fn(|axis| right_stretch[axis][axis])
+        }
+        DomainUpdate::RootJ => [determinant(def_grad).powf(1.0 / D as f64); D],
+    };
+    std::array::from_fn(|axis| half_length0[axis] * stretch[axis])
+}

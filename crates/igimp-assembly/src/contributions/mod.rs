@@ -1,0 +1,8 @@
+//! What acts at the nodes beside the stress of the soil: ghost penalty, water, reinforcement, rigid bodies.
+
+pub(crate) mod couplings;
+pub(crate) mod ghost;
+pub(crate) mod nodal_forces;
+pub(crate) mod pore_water;
+pub(crate) mod reinforcement;
+pub(crate) mod rigid;

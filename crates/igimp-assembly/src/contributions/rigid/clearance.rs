@@ -1,0 +1,183 @@
+//! How close particles may come to rigid bodies (theory, after eq. 50): contact holds the mean around a
+//! knot, and single particles creep across a surface.
+
+use thiserror::Error;
+
+use super::RigidBody;
+use super::vectors::{minus, norm};
+use crate::body::particles::Particles;
+use crate::step::supports::padded;
+
+/// The centre of a particle stands at least so far off a body, in half-lengths as seeded \[-\].
+const LEAST_HEIGHT: f64 = 0.5;
+
+/// A step carries a centre at most so far into a body, in half-lengths as seeded \[-\].
+const MOST_DEPTH: f64 = 1.0;
+
+/// In a notch, or between two bodies, the way off one side leads to another: the sides are looked at so often.
+const MOST_PASSES: usize = 20;
+
+/// What is missing to the least height after the first pass is round-off, as a share of it \[-\].
+const ROUND_OFF: f64 = 1e-9;
+
+/// A particle would be carried into a rigid body, or through it.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[error(
+    "particle {particle} would be carried {depth:.2} of its half-length into the rigid body \
+     \"{body}\" on its way to {position:?} m"
+)]
+pub struct Swallowed {
+    /// Number of the particle, from 0.
+    pub particle: usize,
+    /// Name of the body.
+    pub body: String,
+    /// How deep, in half-lengths of the particle as seeded \[-\].
+    pub depth: f64,
+    /// Where its centre would be in the end \[length\], axes beyond the dimension 0.
+    pub position: [f64; 3],
+}
+
+/// A body with its extent in its own frame \[length\].
+struct Extent<'a, const D: usize> {
+    body: &'a RigidBody<D>,
+    lower: [f64; D],
+    upper: [f64; D],
+}
+
+impl<'a, const D: usize> Extent<'a, D> {
+    fn all(bodies: &'a [RigidBody<D>]) -> Vec<Self> {
+        let of = |body: &'a RigidBody<D>| {
+            let (lower, upper) = body.surface.extent();
+            Self { body, lower, upper }
+        };
+        bodies.iter().map(of).collect()
+    }
+
+    /// Whether a way between two points in the frame of the body may lead nearer to it than a distance.
+    fn may_reach(&self, from: &[f64; D], to: &[f64; D], within: f64) -> bool {
+        (0..D).all(|axis| {
+            from[axis].max(to[axis]) >= self.lower[axis] - within
+                && from[axis].min(to[axis]) <= self.upper[axis] + within
+        })
+    }
+}
+
+/// Particles that stand too close to a body, with the way off it \[length\].
+pub(crate) type WaysOff<const D: usize> = Vec<(usize, [f64; D])>;
+
+/// The particles that a step leaves too close to bodies, with the way back. The step carries a particle to
+/// `place` and bodies from `before` to `after`.
+///
+/// # Errors
+/// [`Swallowed`] for the first particle that it would carry into a body, or through it.
+pub(crate) fn put_back<const D: usize>(
+    before: &[RigidBody<D>],
+    after: &[RigidBody<D>],
+    particles: &Particles<D>,
+    place: impl Fn(usize) -> [f64; D],
+) -> Result<WaysOff<D>, Swallowed> {
+    let mut out = Vec::new();
+    if after.is_empty() {
+        return Ok(out);
+    }
+    let extents = Extent::all(after);
+    for particle in 0..particles.len() {
+        let x = place(particle);
+        let half = smallest(&particles.half_length0[particle]);
+        for (extent, old) in extents.iter().zip(before) {
+            let from = old.pose.into_body(&particles.x[particle]);
+            let depth = deepest(extent, &from, &x, half);
+            if depth > MOST_DEPTH * half {
+                return Err(Swallowed {
+                    particle,
+                    body: extent.body.name.clone(),
+                    depth: depth / half,
+                    position: padded(&x),
+                });
+            }
+        }
+        out.extend(way_off(&extents, &x, half).map(|way| (particle, way)));
+    }
+    Ok(out)
+}
+
+/// Particles that stand too close to bodies, or within them by no more than their domains reach, with the way
+/// off: soil is seeded in the middle of parts of a cell, which the side of a body may cut.
+pub(crate) fn seeded_too_close<const D: usize>(
+    bodies: &[RigidBody<D>],
+    particles: &Particles<D>,
+) -> WaysOff<D> {
+    let extents = Extent::all(bodies);
+    let of = |particle: usize| {
+        let (x, seeded) = (&particles.x[particle], &particles.half_length0[particle]);
+        let is_cut = bodies.iter().all(|body| {
+            let (distance, normal) = body.nearest(x);
+            let reach: f64 = (0..D).map(|axis| seeded[axis] * normal[axis].abs()).sum();
+            distance > -reach
+        });
+        let way = is_cut.then(|| way_off(&extents, x, smallest(seeded)));
+        way.flatten().map(|way| (particle, way))
+    };
+    (0..particles.len()).filter_map(of).collect()
+}
+
+fn smallest<const D: usize>(half_length: &[f64; D]) -> f64 {
+    half_length.iter().copied().fold(f64::INFINITY, f64::min)
+}
+
+/// How deep a step carries a centre into a body, from a point in its frame to one of space, the places on
+/// the way no more than a half-length apart \[length\].
+fn deepest<const D: usize>(
+    extent: &Extent<'_, D>,
+    from: &[f64; D],
+    x: &[f64; D],
+    half: f64,
+) -> f64 {
+    let to = extent.body.pose.into_body(x);
+    if !extent.may_reach(from, &to, 0.0) {
+        return f64::NEG_INFINITY;
+    }
+    let way = minus(&to, from);
+    let places = (norm(&way) / half).ceil().max(1.0) as usize;
+    (1..=places)
+        .map(|k| {
+            let share = k as f64 / places as f64;
+            let at = std::array::from_fn(|axis| from[axis] + share * way[axis]);
+            -extent.body.surface.distance(&at).0
+        })
+        .fold(f64::NEG_INFINITY, f64::max)
+}
+
+/// The way of a centre off the bodies that it stands too close to \[length\].
+fn way_off<const D: usize>(extents: &[Extent<'_, D>], x: &[f64; D], half: f64) -> Option<[f64; D]> {
+    let least = LEAST_HEIGHT * half;
+    let mut way = [0.0; D];
+    let mut is_close = false;
+    for pass in 0..MOST_PASSES {
+        let enough = if pass == 0 {
+            least
+        } else {
+            (1.0 - ROUND_OFF) * least
+        };
+        let mut is_clear = true;
+        for extent in extents {
+            let at = std::array::from_fn(|axis| x[axis] + way[axis]);
+            let own = extent.body.pose.into_body(&at);
+            if !extent.may_reach(&own, &own, least) {
+                continue;
+            }
+            let (distance, normal) = extent.body.nearest(&at);
+            if distance < enough {
+                for axis in 0..D {
+                    way[axis] += (least - distance) * normal[axis];
+                }
+                is_clear = false;
+            }
+        }
+        is_close |= !is_clear;
+        if is_clear {
+            break;
+        }
+    }
+    is_close.then_some(way)
+}

@@ -1,0 +1,246 @@
+//! Contact between soil and rigid bodies over one step: what touches, and the forces that it makes
+//! (theory, eqs. 45 to 48).
+
+use std::collections::BTreeMap;
+
+use super::clearance::{Swallowed, put_back};
+use super::gathering::Gathering;
+use super::interface::{Interface, Tension};
+use super::mosaic::tents_within;
+use super::motion::rotations;
+use super::row::{Functional, Row};
+use super::{ContactNode, ContactState, NODES_PER_BODY, RigidBody};
+use crate::body::particles::Particles;
+use crate::contributions::nodal_forces::{AddBlock, NodalForces};
+use crate::equations::unknowns::Unknowns;
+use crate::method::Geometry;
+use crate::step::stencils::Stencils;
+use crate::step::step_conditions::StepConditions;
+
+/// A knot of space that soil covers by a smaller share of the largest one has none: round-off beyond a plane of
+/// symmetry \[-\].
+const LEAST_COVER: f64 = 1e-10;
+
+/// Contact of one step, with directions and weights frozen at its start.
+#[derive(Debug)]
+pub(crate) struct Contact<'a, const D: usize> {
+    bodies: &'a [RigidBody<D>],
+    rows: Vec<Row<D>>,
+    /// The first of the nodes that stand for bodies.
+    first_node: usize,
+}
+
+/// Rigid bodies and the soil near them as an accepted step leaves them.
+#[derive(Clone, Debug, Default)]
+pub struct AcceptedContact<const D: usize> {
+    /// The bodies.
+    pub bodies: Vec<RigidBody<D>>,
+    /// Particles that stand too close to a body, with the way back \[length\]: contact holds the mean around
+    /// a knot, and lets single particles creep across the surface.
+    pub put_back: Vec<(usize, [f64; D])>,
+}
+
+impl<'a, const D: usize> Contact<'a, D> {
+    /// Finds what touches at the start of a step.
+    pub(crate) fn find(
+        bodies: &'a [RigidBody<D>],
+        particles: &Particles<D>,
+        stencils: &Stencils<D>,
+        conditions: &StepConditions<D>,
+        unknowns: &Unknowns<D>,
+    ) -> Self {
+        let first_node = conditions.grid.node_count();
+        let mut contact = Self {
+            bodies,
+            rows: Vec::new(),
+            first_node,
+        };
+        for body in 0..bodies.len() {
+            contact.find_of(body, particles, stencils, conditions, unknowns);
+        }
+        contact
+    }
+
+    fn find_of(
+        &mut self,
+        index: usize,
+        particles: &Particles<D>,
+        stencils: &Stencils<D>,
+        conditions: &StepConditions<D>,
+        unknowns: &Unknowns<D>,
+    ) {
+        let body = &self.bodies[index];
+        let surface = &*body.surface;
+        let tents = match surface.space() {
+            Some(space) => tents_within(body, space, &conditions.grid),
+            None => surface.tents(),
+        };
+        let least = match surface.space() {
+            Some(_) => LEAST_COVER * tents.iter().copied().fold(0.0, f64::max),
+            None => 0.0,
+        };
+        let node = self.first_node + NODES_PER_BODY * index;
+        let knots = Gathering::new(body, node, particles, stencils, conditions, unknowns).sums();
+        for (knot, sums) in knots {
+            let area = sums.area.min(tents[knot]);
+            if area <= least {
+                continue;
+            }
+            let mean = |sum: f64| sum / sums.area;
+            let functional = |sum: &BTreeMap<usize, [f64; D]>| -> Functional<D> {
+                let terms = sum.iter();
+                terms
+                    .map(|(&node, share)| (node, share.map(mean)))
+                    .collect()
+            };
+            let mut before = body.contact.knots[knot];
+            // Soil that comes near is as far off as it stands, and touches if it overlaps; from then on the
+            // gap follows its motion. Where it is bonded it touches at once.
+            let interface = &body.interfaces[surface.side_of(knot)];
+            if before.area == 0.0 {
+                let bonds = interface.tension != Tension::None && !before.is_broken;
+                before.gap = if bonds { 0.0 } else { mean(sums.gap).max(0.0) };
+                before.is_closed = before.gap == 0.0;
+            } else if !before.is_closed && sums.area > before.area {
+                // More of the soil around the knot has come near, the last of it from further off.
+                before.gap = before.gap.max(mean(sums.gap));
+            }
+            let mut row = Row {
+                body: index,
+                knot,
+                area,
+                gap: before.gap,
+                cell: mean(sums.cell),
+                young: mean(sums.young),
+                adhesion: mean(sums.adhesion),
+                opening: functional(&sums.opening),
+                slip: [functional(&sums.slip[0]), functional(&sums.slip[1])],
+                before,
+            };
+            row.carry_force(interface, &body.penalty);
+            self.rows.push(row);
+        }
+    }
+
+    /// A body.
+    pub(crate) fn body(&self, index: usize) -> &RigidBody<D> {
+        &self.bodies[index]
+    }
+
+    /// The bodies.
+    pub(crate) fn bodies(&self) -> &'a [RigidBody<D>] {
+        self.bodies
+    }
+
+    /// Whether any soil can touch a body in this step.
+    pub(crate) fn may_touch(&self, index: usize) -> bool {
+        self.rows.iter().any(|row| row.body == index)
+    }
+
+    /// What contact leaves behind when nodal step displacements `u` are accepted: the bodies at their
+    /// new places. On a given geometry they stay.
+    pub(crate) fn accepted(
+        &self,
+        u: &[[f64; D]],
+        particles: &Particles<D>,
+        stencils: &Stencils<D>,
+        geometry: Geometry,
+    ) -> Result<AcceptedContact<D>, Swallowed> {
+        let mut moved: Vec<RigidBody<D>> = self.bodies.to_vec();
+        for (index, body) in moved.iter_mut().enumerate() {
+            let node = self.first_node + NODES_PER_BODY * index;
+            let mut rotation = [0.0; 3];
+            for (k, angle) in rotation.iter_mut().enumerate().take(rotations(D)) {
+                *angle = u[node + 1][k] / body.surface.size();
+            }
+            body.pose = body.pose.moved(&u[node], &rotation);
+            let knots = body.contact.knots.len();
+            body.contact = ContactState::none(knots);
+            for (own, before) in body
+                .contact
+                .knots
+                .iter_mut()
+                .zip(&self.bodies[index].contact.knots)
+            {
+                own.is_broken = before.is_broken;
+            }
+        }
+        for row in &self.rows {
+            let body = &self.bodies[row.body];
+            let side = body.surface.side_of(row.knot);
+            let traction = row.traction(&body.interfaces[side], &body.penalty, u);
+            let bonded = body.interfaces[side].tension != Tension::None;
+            let is_broken = row.before.is_broken || traction.breaks;
+            let gap = row.gap_at(u);
+            let is_closed = traction.pressure > 0.0
+                || (bonded && !is_broken && (row.before.is_closed || gap <= 0.0));
+            moved[row.body].contact.knots[row.knot] = ContactNode {
+                pressure: traction.pressure,
+                shear: if is_closed { traction.shear } else { [0.0; 2] },
+                area: row.area,
+                gap,
+                is_closed,
+                slips: traction.slips && is_closed,
+                is_broken,
+            };
+        }
+        // On a given geometry nothing goes anywhere.
+        if geometry == Geometry::Given {
+            for (body, before) in moved.iter_mut().zip(self.bodies) {
+                body.pose = before.pose.clone();
+            }
+            return Ok(AcceptedContact {
+                bodies: moved,
+                put_back: Vec::new(),
+            });
+        }
+        let put_back = put_back(self.bodies, &moved, particles, |particle| {
+            let mut x = particles.x[particle];
+            for support in stencils.of(particle) {
+                for axis in 0..D {
+                    x[axis] += support.value * u[support.node][axis];
+                }
+            }
+            x
+        })?;
+        Ok(AcceptedContact {
+            bodies: moved,
+            put_back,
+        })
+    }
+}
+
+impl<const D: usize> NodalForces<D> for Contact<'_, D> {
+    fn pairs(&self) -> Vec<(usize, usize)> {
+        let mut pairs = Vec::new();
+        for row in &self.rows {
+            let nodes: Vec<usize> = row
+                .opening
+                .iter()
+                .map(|&(node, _)| node)
+                .filter(|&node| node < self.first_node)
+                .collect();
+            for &a in &nodes {
+                pairs.extend(nodes.iter().map(|&b| (a, b)));
+            }
+        }
+        pairs
+    }
+
+    fn is_symmetric(&self) -> bool {
+        let interfaces = self.bodies.iter().flat_map(|body| &body.interfaces);
+        interfaces.into_iter().all(Interface::is_symmetric)
+    }
+
+    fn add(&self, u: &[[f64; D]], f: &mut [[f64; D]], mut blocks: Option<&mut AddBlock<'_, D>>) {
+        for row in &self.rows {
+            let body = &self.bodies[row.body];
+            let interface = &body.interfaces[body.surface.side_of(row.knot)];
+            let traction = row.traction(interface, &body.penalty, u);
+            match &mut blocks {
+                Some(blocks) => row.add(&traction, f, Some(&mut **blocks)),
+                None => row.add(&traction, f, None),
+            }
+        }
+    }
+}

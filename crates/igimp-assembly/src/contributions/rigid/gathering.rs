@@ -1,0 +1,307 @@
+//! What soil does around the knots of a rigid body: sums over the faces that particles turn to it (theory,
+//! eq. 45).
+
+use std::collections::BTreeMap;
+
+use igimp_shape::Grid;
+
+use super::RigidBody;
+use super::face::Face;
+use super::mosaic::{Piece, pieces};
+use super::surface::Space;
+use super::vectors::cross;
+use crate::body::particles::Particles;
+use crate::equations::unknowns::Unknowns;
+use crate::step::stencils::Stencils;
+use crate::step::step_conditions::StepConditions;
+use crate::step::supports::padded;
+
+/// A node with a smaller share of a point has none: round-off on a line of the grid \[-\].
+const LEAST_SHARE: f64 = 1e-9;
+
+/// What is summed at a knot.
+#[derive(Default)]
+pub(crate) struct Sums<const D: usize> {
+    pub(crate) area: f64,
+    pub(crate) gap: f64,
+    pub(crate) young: f64,
+    pub(crate) adhesion: f64,
+    pub(crate) cell: f64,
+    pub(crate) opening: BTreeMap<usize, [f64; D]>,
+    pub(crate) slip: [BTreeMap<usize, [f64; D]>; 2],
+}
+
+/// The sums of a body while they are made.
+pub(crate) struct Gathering<'a, const D: usize> {
+    body: &'a RigidBody<D>,
+    /// The first of the two nodes that stand for it.
+    node: usize,
+    particles: &'a Particles<D>,
+    stencils: &'a Stencils<D>,
+    conditions: &'a StepConditions<D>,
+    unknowns: &'a Unknowns<D>,
+    knots: BTreeMap<usize, Sums<D>>,
+}
+
+/// A face with what the soil behind it is like.
+struct Soil<'f, const D: usize> {
+    face: &'f Face<D>,
+    young: f64,
+    adhesion: f64,
+}
+
+impl<'a, const D: usize> Gathering<'a, D> {
+    pub(crate) fn new(
+        body: &'a RigidBody<D>,
+        node: usize,
+        particles: &'a Particles<D>,
+        stencils: &'a Stencils<D>,
+        conditions: &'a StepConditions<D>,
+        unknowns: &'a Unknowns<D>,
+    ) -> Self {
+        Self {
+            body,
+            node,
+            particles,
+            stencils,
+            conditions,
+            unknowns,
+            knots: BTreeMap::new(),
+        }
+    }
+
+    /// The sums by knot, over all particles.
+    pub(crate) fn sums(mut self) -> BTreeMap<usize, Sums<D>> {
+        let (body, particles) = (self.body, self.particles);
+        let (surface, pose) = (&*body.surface, &body.pose);
+        let (lower, upper) = surface.bounds();
+        let places: Vec<[f64; D]> = if let Some(space) = surface.space() {
+            space.outer.iter().map(|x| pose.into_space(x)).collect()
+        } else {
+            let knots = surface.knots().into_iter();
+            knots.map(|(knot, _)| pose.into_space(&knot)).collect()
+        };
+        for particle in 0..particles.len() {
+            let (x, half) = (&particles.x[particle], &particles.half_length[particle]);
+            let margin = 2.0 * half.iter().sum::<f64>();
+            let own = pose.into_body(x);
+            if (0..D).any(|a| own[a] < lower[a] - margin || own[a] > upper[a] + margin) {
+                continue;
+            }
+            for side in 0..surface.side_count() {
+                let Some(face) = Face::of(body, side, x, half) else {
+                    continue;
+                };
+                let law = particles.law[particle];
+                let soil = Soil {
+                    face: &face,
+                    young: particles.young(particle, &self.conditions.laws),
+                    adhesion: body.interfaces[side].adhesion(law, particles.ratios[particle]),
+                };
+                match surface.space() {
+                    Some(space) => self.add_pieces(&soil, half, space, &places),
+                    None => self.add_points(&soil, &places),
+                }
+            }
+        }
+        self.knots
+    }
+
+    /// Adds a face of the plane point by point.
+    fn add_points(&mut self, soil: &Soil<'_, D>, places: &[[f64; D]]) {
+        let grid = &self.conditions.grid;
+        for point in soil.face.points(self.body, places, grid) {
+            let Some(own) = soil_at(grid, self.stencils, self.unknowns, &point.x) else {
+                continue;
+            };
+            for (knot, tent) in point.knots {
+                self.add(soil, knot, point.area * tent, &own, &soil.face.along);
+            }
+        }
+    }
+
+    /// Adds a face of space piece by piece: a piece lies in one cell, so that its soil is that of the same
+    /// nodes.
+    fn add_pieces(
+        &mut self,
+        soil: &Soil<'_, D>,
+        half: &[f64; D],
+        space: &Space<D>,
+        places: &[[f64; D]],
+    ) {
+        let (body, face) = (self.body, soil.face);
+        for piece in pieces(face, half, body, space, places, &self.conditions.grid) {
+            for (corner, (weight, own)) in self.means(&piece).into_iter().enumerate() {
+                for &(knot, share) in &space.shares[piece.corners[corner]] {
+                    let tangents = space.tangents_at(knot, &face.facing);
+                    let tangents = tangents.map(|own| body.pose.direction(&own));
+                    self.add(soil, knot, share * weight, &own, &tangents);
+                }
+            }
+        }
+    }
+
+    /// By corner of its facet the area of a piece that belongs to it, and the mean of the soil there.
+    fn means(&self, piece: &Piece<D>) -> Vec<(f64, SoilPoint<D>)> {
+        let grid = &self.conditions.grid;
+        let none = || SoilPoint {
+            shares: Vec::new(),
+            place: [0.0; D],
+            cell: 0.0,
+        };
+        let mut sums: Vec<(f64, SoilPoint<D>)> = (0..3).map(|_| (0.0, none())).collect();
+        for (x, area, shares) in &piece.points {
+            let Some(own) = soil_at(grid, self.stencils, self.unknowns, x) else {
+                continue;
+            };
+            for ((weight, mean), share) in sums.iter_mut().zip(shares) {
+                let by = area * share;
+                *weight += by;
+                mean.cell += by * own.cell;
+                for axis in 0..D {
+                    mean.place[axis] += by * own.place[axis];
+                }
+                for &(node, share) in &own.shares {
+                    match mean.shares.iter_mut().find(|(known, _)| *known == node) {
+                        Some((_, sum)) => *sum += by * share,
+                        None => mean.shares.push((node, by * share)),
+                    }
+                }
+            }
+        }
+        for (weight, mean) in &mut sums {
+            if *weight > 0.0 {
+                mean.cell /= *weight;
+                mean.place = mean.place.map(|own| own / *weight);
+                for (_, share) in &mut mean.shares {
+                    *share /= *weight;
+                }
+            }
+        }
+        sums
+    }
+
+    /// Adds to a knot the soil at a place that stands for an area.
+    fn add(
+        &mut self,
+        soil: &Soil<'_, D>,
+        knot: usize,
+        weight: f64,
+        SoilPoint {
+            shares,
+            place,
+            cell,
+        }: &SoilPoint<D>,
+        tangents: &[[f64; D]; 2],
+    ) {
+        if weight <= 0.0 {
+            return;
+        }
+        let (body, node) = (self.body, self.node);
+        let sums = self.knots.entry(knot).or_default();
+        sums.area += weight;
+        sums.gap += weight * soil.face.gap;
+        sums.young += weight * soil.young;
+        sums.adhesion += weight * soil.adhesion;
+        sums.cell += weight * cell;
+        let of_body = |direction: &[f64; D]| rigid_shares(body, place, direction, node);
+        let normal = &soil.face.normal;
+        add(&mut sums.opening, weight, normal, shares, of_body(normal));
+        for (slip, tangent) in std::iter::zip(&mut sums.slip, tangents).take(D - 1) {
+            add(slip, weight, tangent, shares, of_body(tangent));
+        }
+    }
+}
+
+/// The soil's displacement at a point, as shares of nodes that carry soil.
+struct SoilPoint<const D: usize> {
+    /// They sum to one.
+    shares: Vec<(usize, f64)>,
+    /// The place that the shares stand for, the point itself if all of its nodes carry soil. Seen from there
+    /// a rotation of body and soil together opens no gap, and moments balance \[length\].
+    place: [f64; D],
+    /// Size of the cell \[length\].
+    cell: f64,
+}
+
+/// The soil at a point by the tent functions; none where no node carries soil.
+fn soil_at<const D: usize>(
+    grid: &Grid<D>,
+    stencils: &Stencils<D>,
+    unknowns: &Unknowns<D>,
+    x: &[f64; D],
+) -> Option<SoilPoint<D>> {
+    let cell = grid.cell_at(x)?;
+    let size = grid.cell_size(cell);
+    let node = grid.node_position(grid.node_index(cell));
+    let within = std::array::from_fn(|a| (x[a] - node[a]) / size[a]);
+    let mut shares: Vec<(usize, f64)> = Vec::with_capacity(1 << D);
+    let mut sum = 0.0;
+    for (node, share, _) in grid.tents(cell, within) {
+        let node = stencils.master(node);
+        if share > LEAST_SHARE && unknowns.is_active(node) {
+            shares.push((node, share));
+            sum += share;
+        }
+    }
+    if shares.is_empty() {
+        return None;
+    }
+    let mut place = [0.0; D];
+    for (node, share) in &mut shares {
+        *share /= sum;
+        let own = grid.node_position(*node);
+        for axis in 0..D {
+            place[axis] += *share * own[axis];
+        }
+    }
+    Some(SoilPoint {
+        shares,
+        place,
+        cell: size.into_iter().fold(f64::INFINITY, f64::min),
+    })
+}
+
+/// Minus the displacement of a body at a point in a direction: shares of its two nodes.
+fn rigid_shares<const D: usize>(
+    body: &RigidBody<D>,
+    x: &[f64; D],
+    direction: &[f64; D],
+    node: usize,
+) -> [(usize, [f64; D]); 2] {
+    let arm: [f64; D] = std::array::from_fn(|a| x[a] - body.pose.origin[a]);
+    let size = body.surface.size();
+    let mut turning = [0.0; D];
+    if D == 2 {
+        turning[0] = -(arm[0] * direction[1] - arm[1] * direction[0]) / size;
+    } else {
+        let (r, n) = (padded(&arm), padded(direction));
+        let moment = cross(&r, &n);
+        for a in 0..D {
+            turning[a] = -moment[a] / size;
+        }
+    }
+    [(node, direction.map(|n| -n)), (node + 1, turning)]
+}
+
+/// Adds a weight times the relative displacement along a direction to a sum.
+fn add<const D: usize>(
+    sum: &mut BTreeMap<usize, [f64; D]>,
+    weight: f64,
+    direction: &[f64; D],
+    shares: &[(usize, f64)],
+    of_body: [(usize, [f64; D]); 2],
+) {
+    for &(node, share) in shares {
+        let own = sum.entry(node).or_insert([0.0; D]);
+        for axis in 0..D {
+            own[axis] += weight * share * direction[axis];
+        }
+    }
+    for (node, share) in of_body {
+        let own = sum.entry(node).or_insert([0.0; D]);
+        for axis in 0..D {
+            own[axis] += weight * share[axis];
+        }
+    }
+}

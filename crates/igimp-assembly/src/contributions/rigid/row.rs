@@ -1,0 +1,218 @@
+//! Contact at one knot of a surface: the mean gap and the mean slip around it as linear functions of
+//! the step's displacements, and what they cause.
+
+use super::interface::{Shear, Tension};
+use super::{ContactNode, Interface, Penalty};
+use crate::contributions::nodal_forces::AddBlock;
+
+/// Traction grows at most so much from step to step where soil covers less and less of a knot \[-\].
+const MOST_GROWTH: f64 = 2.0;
+
+/// Shear this near to its limit still sticks: what slipped in the last step begins the next one with the
+/// tangent of sticking, whatever round-off says \[-\].
+const ON_THE_LIMIT: f64 = 1e-12;
+
+/// A linear function of nodal displacements.
+pub(crate) type Functional<const D: usize> = Vec<(usize, [f64; D])>;
+
+/// Contact at one knot of a surface.
+#[derive(Clone, Debug)]
+pub(crate) struct Row<const D: usize> {
+    /// The body and the knot.
+    pub(crate) body: usize,
+    pub(crate) knot: usize,
+    /// Area that soil covers \[length^(D-1)\].
+    pub(crate) area: f64,
+    /// Mean gap at the step's start \[length\].
+    pub(crate) gap: f64,
+    /// Size of the cells \[length\].
+    pub(crate) cell: f64,
+    /// Young's modulus of the soil \[stress\].
+    pub(crate) young: f64,
+    /// Adhesion of the soil that touches \[stress\].
+    pub(crate) adhesion: f64,
+    /// Opening of the mean gap.
+    pub(crate) opening: Functional<D>,
+    /// Slip of the soil along the tangents.
+    pub(crate) slip: [Functional<D>; 2],
+    /// As the last step left it.
+    pub(crate) before: ContactNode,
+}
+
+/// Traction at a knot with its derivatives by gap and slip.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Traction {
+    /// Pressure, positive when pressed \[stress\].
+    pub(crate) pressure: f64,
+    /// Shear on the soil \[stress\].
+    pub(crate) shear: [f64; 2],
+    /// ∂p/∂g \[stress/length\].
+    pub(crate) by_gap: f64,
+    /// ∂τ/∂g \[stress/length\].
+    pub(crate) shear_by_gap: [f64; 2],
+    /// ∂τ/∂s \[stress/length\].
+    pub(crate) shear_by_slip: [[f64; 2]; 2],
+    pub(crate) slips: bool,
+    pub(crate) breaks: bool,
+}
+
+impl<const D: usize> Row<D> {
+    /// Begins the step with the force that the last one left, on the area that is covered now (theory, eq.
+    /// 50): soil that flows along a side hands its place on to other soil.
+    pub(crate) fn carry_force(&mut self, interface: &Interface, penalty: &Penalty) {
+        if self.before.area == 0.0 || !self.before.is_closed {
+            return;
+        }
+        let growth = (self.before.area / self.area).min(MOST_GROWTH);
+        self.before.pressure *= growth;
+        self.before.shear = self.before.shear.map(|shear| growth * shear);
+        let stiffness = penalty.stiffness * self.young / self.cell;
+        let smoothing = penalty.smoothing * self.cell;
+        let pressure = self.before.pressure;
+        let holds = interface.tension != Tension::None && !self.before.is_broken;
+        self.gap = if holds {
+            -pressure / stiffness
+        } else if pressure > 0.5 * stiffness * smoothing {
+            -pressure / stiffness - 0.5 * smoothing
+        } else {
+            -(2.0 * pressure.max(0.0) * smoothing / stiffness).sqrt()
+        };
+    }
+
+    /// The mean gap after nodal step displacements `u`.
+    pub(crate) fn gap_at(&self, u: &[[f64; D]]) -> f64 {
+        self.gap + value(&self.opening, u)
+    }
+
+    /// Traction at nodal step displacements `u` (theory, eqs. 46 to 48).
+    pub(crate) fn traction(
+        &self,
+        interface: &Interface,
+        penalty: &Penalty,
+        u: &[[f64; D]],
+    ) -> Traction {
+        let stiffness = penalty.stiffness * self.young / self.cell;
+        let gap = self.gap_at(u);
+        let holds = !self.before.is_broken && self.before.is_closed;
+        let mut out = Traction::default();
+        match interface.tension {
+            Tension::Bonded if holds || gap < 0.0 => {
+                out.pressure = -stiffness * gap;
+                out.by_gap = -stiffness;
+            }
+            Tension::Limit(limit) if holds && -stiffness * gap > -limit => {
+                out.pressure = -stiffness * gap;
+                out.by_gap = -stiffness;
+            }
+            Tension::Limit(limit) if holds => {
+                out.pressure = -limit;
+                out.breaks = true;
+            }
+            _ => {
+                let smoothing = penalty.smoothing * self.cell;
+                (out.pressure, out.by_gap) = if gap >= 0.0 {
+                    (0.0, 0.0)
+                } else if gap > -smoothing {
+                    (
+                        0.5 * stiffness * gap * gap / smoothing,
+                        stiffness * gap / smoothing,
+                    )
+                } else {
+                    (stiffness * (-gap - 0.5 * smoothing), -stiffness)
+                };
+            }
+        }
+        let held = penalty.tangential * stiffness;
+        let slip: [f64; 2] = [0, 1].map(|k| value(&self.slip[k], u));
+        let trial = [0, 1].map(|k| self.before.shear[k] - held * slip[k]);
+        match &interface.shear {
+            Shear::Rough if self.before.is_closed => {
+                out.shear = trial;
+                out.shear_by_slip = [[-held, 0.0], [0.0, -held]];
+            }
+            Shear::Smooth | Shear::Rough => {}
+            Shear::Limited { friction, .. } => {
+                let adhesion = if self.before.is_closed {
+                    self.adhesion
+                } else {
+                    0.0
+                };
+                let limit = adhesion + friction * out.pressure.max(0.0);
+                let size = trial[0].hypot(trial[1]);
+                if limit <= 0.0 {
+                    out.slips = true;
+                } else if size <= (1.0 + ON_THE_LIMIT) * limit {
+                    out.shear = trial;
+                    out.shear_by_slip = [[-held, 0.0], [0.0, -held]];
+                } else {
+                    let along = trial.map(|t| t / size);
+                    out.slips = true;
+                    out.shear = along.map(|a| limit * a);
+                    if out.pressure > 0.0 {
+                        out.shear_by_gap = along.map(|a| friction * out.by_gap * a);
+                    }
+                    for k in 0..2 {
+                        for l in 0..2 {
+                            let across = f64::from(u8::from(k == l)) - along[k] * along[l];
+                            out.shear_by_slip[k][l] = -held * limit / size * across;
+                        }
+                    }
+                }
+            }
+        }
+        out
+    }
+
+    /// Adds the internal force at nodal step displacements `u`, −A (p ∂g/∂u + τ ∂s/∂u), and hands its
+    /// derivative on by blocks of nodes (row, column).
+    pub(crate) fn add(
+        &self,
+        traction: &Traction,
+        f: &mut [[f64; D]],
+        blocks: Option<&mut AddBlock<'_, D>>,
+    ) {
+        let tangents = D - 1;
+        add(&self.opening, -self.area * traction.pressure, f);
+        for k in 0..tangents {
+            add(&self.slip[k], -self.area * traction.shear[k], f);
+        }
+        let Some(blocks) = blocks else {
+            return;
+        };
+        let mut outer = |a: &Functional<D>, b: &Functional<D>, factor: f64| {
+            if factor == 0.0 {
+                return;
+            }
+            for (row, left) in a {
+                for (column, right) in b {
+                    blocks(*row, *column, &left.map(|l| right.map(|r| factor * l * r)));
+                }
+            }
+        };
+        outer(&self.opening, &self.opening, -self.area * traction.by_gap);
+        for k in 0..tangents {
+            let by_gap = -self.area * traction.shear_by_gap[k];
+            outer(&self.slip[k], &self.opening, by_gap);
+            for l in 0..tangents {
+                let by_slip = -self.area * traction.shear_by_slip[k][l];
+                outer(&self.slip[k], &self.slip[l], by_slip);
+            }
+        }
+    }
+}
+
+/// The value of a linear function of nodal displacements.
+pub(crate) fn value<const D: usize>(function: &Functional<D>, u: &[[f64; D]]) -> f64 {
+    let terms = function.iter();
+    terms
+        .map(|(node, share)| (0..D).map(|axis| share[axis] * u[*node][axis]).sum::<f64>())
+        .sum()
+}
+
+fn add<const D: usize>(function: &Functional<D>, factor: f64, f: &mut [[f64; D]]) {
+    for (node, share) in function {
+        for axis in 0..D {
+            f[*node][axis] += factor * share[axis];
+        }
+    }
+}

@@ -1,0 +1,252 @@
+//! From nodal step displacements to stress at one particle: the two kinematics, each with the
+//! cell-averaged dilatation of B-bar.
+//!
+//! Finite strain (theory, eq. 12–15):
+//!
+//! ```math
+//! \Delta F = I + \sum_i u_i \otimes \nabla S_i,\quad
+//! \Delta F_c = I + \sum_i u_i \otimes \nabla \bar S_i,\quad
+//! \lambda = (\det\Delta F_c / \det\Delta F)^{1/3},\quad
+//! b_e^{tr} = \lambda^2\, \Delta F\, b_e\, \Delta F^T
+//! ```
+//!
+//! with the power 1/3 and the factor λ in zz also in plane strain. Small strain (theory, eq. 9):
+//! the symmetric gradient plus a third of the difference of the two divergences on xx, yy and zz.
+
+use igimp_material::{
+    ConstitutiveModel, History, Lifted, MaterialError, Principal, Regime, TangentKind, Tensor,
+    elastic_left_cauchy_green, lift_finite, lift_small, logarithmic_strain,
+};
+use igimp_shape::Support;
+
+use crate::contributions::pore_water::PoreResponse;
+use crate::error::AssemblyError;
+use crate::method::{Geometry, Kinematics, Method};
+use crate::small::{congruence, determinant, identity, inverse};
+
+/// An elastic Hencky strain beyond this makes b_e = exp(2 ε_e) leave the floating-point numbers \[-\].
+const LARGEST_STRAIN: f64 = 300.0;
+
+/// A particle at a trial displacement: never committed by itself.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ParticleTrial<const D: usize> {
+    /// ΔF, the deformation gradient of the step \[-\].
+    pub delta_def_grad: [[f64; D]; D],
+    /// Kirchhoff stress τ (Cauchy stress in small strain) that the law answers \[force/length²\], tension positive.
+    pub tau: Tensor,
+    /// Principal elastic Hencky strain after the return \[-\], extension positive.
+    pub eps_e: Principal,
+    /// Principal axes: `frame[a]` is the unit vector of principal value `a`.
+    pub frame: Tensor,
+    /// History of the law.
+    pub history: History,
+    /// Where on the yield surface the stress is.
+    pub regime: Regime,
+    /// Excess pore pressure, in the stress that τ is in; compression positive \[force/length²\].
+    pub excess: f64,
+}
+
+impl<const D: usize> ParticleTrial<D> {
+    /// A particle at rest without stress: what is there before the first evaluation.
+    pub(crate) fn at_rest() -> Self {
+        Self {
+            delta_def_grad: identity(),
+            tau: [[0.0; 3]; 3],
+            eps_e: [0.0; 3],
+            frame: identity(),
+            history: History::default(),
+            regime: Regime::Elastic,
+            excess: 0.0,
+        }
+    }
+
+    /// The elastic left Cauchy–Green tensor to carry to the next step.
+    pub fn b_e(&self) -> Tensor {
+        elastic_left_cauchy_green::<D>(&self.eps_e, &self.frame)
+    }
+}
+
+/// What the linearisation of a particle needs beside its stress.
+#[derive(Clone, Debug)]
+pub(crate) struct Linearisation<const D: usize> {
+    /// ΔF⁻¹; the identity in small strain, where gradients are not pushed forward.
+    pub(crate) push: [[f64; D]; D],
+    /// ΔF_c⁻¹ of the cell-averaged gradient; the identity in small strain.
+    pub(crate) push_bar: [[f64; D]; D],
+    /// Stress and tangent in spatial axes, those of the water in the pores included.
+    pub(crate) lifted: Lifted<D>,
+}
+
+/// The state of a particle at the start of a step, with its law.
+#[derive(Clone, Copy)]
+pub(crate) struct ParticleState<'a> {
+    pub(crate) particle: usize,
+    pub(crate) b_e: &'a Tensor,
+    pub(crate) history: &'a History,
+    pub(crate) law: &'a dyn ConstitutiveModel,
+    pub(crate) pores: PoreResponse,
+}
+
+/// Evaluates one particle at nodal step displacements `u`; writes its `trial`.
+#[inline]
+pub(crate) fn evaluate<const D: usize>(
+    state: ParticleState<'_>,
+    supports: &[Support<D>],
+    u: &[[f64; D]],
+    method: &Method,
+    kind: TangentKind,
+    trial: &mut ParticleTrial<D>,
+) -> Result<Linearisation<D>, AssemblyError> {
+    let particle = state.particle;
+    let (gradient, gradient_bar) = gradients(supports, u);
+    let mut delta_def_grad = gradient;
+    let mut delta_bar = gradient_bar;
+    for a in 0..D {
+        delta_def_grad[a][a] += 1.0;
+        delta_bar[a][a] += 1.0;
+    }
+    let material = |source| AssemblyError::Material { particle, source };
+    if method.geometry == Geometry::Moving {
+        positive(particle, determinant(&delta_def_grad))?;
+    }
+    let mut ln_volume = 0.0;
+    let mut linearisation = match method.kinematics_of_step() {
+        Kinematics::FiniteStrain => {
+            let det = determinant(&delta_def_grad);
+            let det_bar = positive(particle, determinant(&delta_bar))?;
+            let lambda = (det_bar / det).cbrt();
+            if state.pores.stiffness != 0.0 {
+                ln_volume = det_bar.ln();
+            }
+            let b_trial = pushed_forward(state.b_e, &delta_def_grad, lambda * lambda);
+            Linearisation {
+                push: inverse(&delta_def_grad, det),
+                push_bar: inverse(&delta_bar, det_bar),
+                lifted: lift_finite(state.law, &b_trial, state.history, kind).map_err(material)?,
+            }
+        }
+        Kinematics::SmallStrain => {
+            let mut strain = logarithmic_strain(state.b_e).map_err(material)?;
+            add_small_strain(&mut strain, &gradient, &gradient_bar);
+            for (a, row) in gradient_bar.iter().enumerate() {
+                ln_volume += row[a];
+            }
+            Linearisation {
+                push: identity(),
+                push_bar: identity(),
+                lifted: lift_small(state.law, &strain, state.history, kind).map_err(material)?,
+            }
+        }
+    };
+    let lifted = &linearisation.lifted;
+    finite(lifted).map_err(material)?;
+    if let Some(&strain) = lifted.eps_e.iter().find(|eps| eps.abs() >= LARGEST_STRAIN) {
+        return Err(AssemblyError::Overstrained { particle, strain });
+    }
+    *trial = ParticleTrial {
+        delta_def_grad,
+        tau: lifted.tau,
+        eps_e: lifted.eps_e,
+        frame: lifted.frame,
+        history: lifted.history,
+        regime: lifted.regime,
+        excess: state.pores.excess_after(ln_volume),
+    };
+    if !state.pores.is_none() {
+        let mean = state.pores.given - trial.excess;
+        linearisation.lifted.add_mean(mean, state.pores.stiffness);
+    }
+    Ok(linearisation)
+}
+
+/// Gradients of nodal step displacements `u` at a particle: its own, and the cell-averaged one \[-\].
+#[inline]
+pub(crate) fn gradients<const D: usize>(
+    supports: &[Support<D>],
+    u: &[[f64; D]],
+) -> ([[f64; D]; D], [[f64; D]; D]) {
+    let mut gradient = [[0.0; D]; D];
+    let mut gradient_bar = [[0.0; D]; D];
+    for support in supports {
+        let displacement = &u[support.node];
+        for a in 0..D {
+            for b in 0..D {
+                gradient[a][b] += displacement[a] * support.grad[b];
+                gradient_bar[a][b] += displacement[a] * support.grad_bar[b];
+            }
+        }
+    }
+    (gradient, gradient_bar)
+}
+
+/// Adds the small strain of a step, with the cell-averaged dilatation (theory, eq. 9) \[-\].
+#[inline]
+pub(crate) fn add_small_strain<const D: usize>(
+    strain: &mut Tensor,
+    gradient: &[[f64; D]; D],
+    gradient_bar: &[[f64; D]; D],
+) {
+    let mut difference = 0.0;
+    for a in 0..D {
+        difference += gradient_bar[a][a] - gradient[a][a];
+        for b in 0..D {
+            strain[a][b] += 0.5 * (gradient[a][b] + gradient[b][a]);
+        }
+    }
+    for a in 0..3 {
+        strain[a][a] += difference / 3.0;
+    }
+}
+
+/// The trial tensor λ² ΔF b ΔFᵀ, with λ² b_zz out of plane.
+#[inline]
+fn pushed_forward<const D: usize>(
+    b: &Tensor,
+    delta_def_grad: &[[f64; D]; D],
+    lambda2: f64,
+) -> Tensor {
+    let mut in_plane = [[0.0; D]; D];
+    for a in 0..D {
+        in_plane[a].copy_from_slice(&b[a][..D]);
+    }
+    let pushed = congruence(delta_def_grad, &in_plane);
+    let mut out = [[0.0; 3]; 3];
+    for a in 0..3 {
+        for c in 0..3 {
+            out[a][c] = lambda2
+                * if a < D && c < D {
+                    pushed[a][c]
+                } else {
+                    b[a][c]
+                };
+        }
+    }
+    out
+}
+
+/// What a law answers is checked here, whatever law it is, so that the particle can be named.
+#[inline]
+fn finite<const D: usize>(lifted: &Lifted<D>) -> Result<(), MaterialError> {
+    let quantity = if !lifted.tau.iter().flatten().all(|tau| tau.is_finite()) {
+        "stress"
+    } else if !lifted.eps_e.iter().all(|eps| eps.is_finite()) {
+        "elastic strain"
+    } else if !lifted.history.eps_p_eq.is_finite() {
+        "accumulated plastic strain"
+    } else {
+        return Ok(());
+    };
+    Err(MaterialError::NonFinite { quantity })
+}
+
+#[inline]
+fn positive(particle: usize, determinant: f64) -> Result<f64, AssemblyError> {
+    if determinant > 0.0 && determinant.is_finite() {
+        Ok(determinant)
+    } else {
+        Err(AssemblyError::Inverted {
+            particle,
+            determinant,
+        })
+    }
+}

@@ -1,0 +1,162 @@
+//! Which degrees of freedom are unknown.
+
+use igimp_shape::Grid;
+
+use crate::error::AssemblyError;
+use crate::step::constraints::Constraints;
+use crate::step::small_cuts::cell_volume;
+use crate::step::stencils::Stencils;
+
+/// Marks a degree of freedom without an unknown.
+const NONE: u32 = u32::MAX;
+
+/// The unknowns of a step: free degrees of freedom of active nodes, nodes ascending, and then those of
+/// rigid bodies.
+#[derive(Clone, Debug)]
+pub struct Unknowns<const D: usize> {
+    /// Number of unknowns on nodes before each node; length nodes + 1.
+    first: Vec<u32>,
+    /// Rank of each component among the node's unknowns.
+    rank: Vec<[u32; D]>,
+    /// Number of nodes with unknowns before each node; length nodes + 1.
+    blocks_before: Vec<u32>,
+    /// Active nodes: with volume, not dropped as a small cut.
+    active: Vec<bool>,
+    /// Unknowns of the grid; those of rigid bodies follow.
+    of_grid: usize,
+    len: usize,
+}
+
+impl<const D: usize> Unknowns<D> {
+    /// Numbers the unknowns. Nodes whose volume is below `drop_below` of their cells' volume are
+    /// dropped: their displacement is zero. (Tied nodes carry no volume any more.) Behind the nodes of the
+    /// grid stand those of rigid bodies, each with its free components.
+    ///
+    /// # Errors
+    /// [`AssemblyError::NoUnknowns`].
+    pub(crate) fn number(
+        grid: &Grid<D>,
+        stencils: &Stencils<D>,
+        constraints: &Constraints<D>,
+        drop_below: f64,
+        of_bodies: &[[bool; D]],
+    ) -> Result<Self, AssemblyError> {
+        let nodes = grid.node_count();
+        let all = nodes + of_bodies.len();
+        let mut first = Vec::with_capacity(all + 1);
+        let mut rank = vec![[NONE; D]; all];
+        let mut active = vec![false; nodes];
+        let mut blocks_before = Vec::with_capacity(nodes + 1);
+        let mut blocks = 0;
+        let mut len: u32 = 0;
+        for node in 0..nodes {
+            first.push(len);
+            blocks_before.push(blocks);
+            let volume = stencils.node_volume(node);
+            active[node] = volume > 0.0 && volume >= drop_below * cell_volume(grid, node);
+            if !active[node] {
+                continue;
+            }
+            let mut own = 0;
+            for axis in 0..D {
+                if constraints.of(node, axis).is_none() {
+                    rank[node][axis] = own;
+                    own += 1;
+                }
+            }
+            len += own;
+            blocks += u32::from(own > 0);
+        }
+        blocks_before.push(blocks);
+        if len == 0 {
+            return Err(AssemblyError::NoUnknowns);
+        }
+        let of_grid = len as usize;
+        for (free, rank) in of_bodies.iter().zip(&mut rank[nodes..]) {
+            first.push(len);
+            let mut own = 0;
+            for axis in (0..D).filter(|&axis| free[axis]) {
+                rank[axis] = own;
+                own += 1;
+            }
+            len += own;
+        }
+        first.push(len);
+        Ok(Self {
+            first,
+            rank,
+            blocks_before,
+            active,
+            of_grid,
+            len: len as usize,
+        })
+    }
+
+    /// Number of unknowns.
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Number of unknowns of the grid; those of rigid bodies follow.
+    pub fn of_grid(&self) -> usize {
+        self.of_grid
+    }
+
+    /// Whether there is no unknown: never, by construction.
+    pub fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
+    /// The unknown of a node's component, if it is free.
+    #[inline]
+    pub fn index(&self, node: usize, axis: usize) -> Option<usize> {
+        let rank = self.rank[node][axis];
+        (rank != NONE).then(|| (self.first[node] + rank) as usize)
+    }
+
+    /// The node and the axis of an unknown, if there is such an unknown.
+    pub fn place(&self, unknown: usize) -> Option<(usize, usize)> {
+        let after = self
+            .first
+            .partition_point(|&first| first as usize <= unknown);
+        let node = after.checked_sub(1).filter(|_| unknown < self.len)?;
+        let axis = (0..D).find(|&axis| self.index(node, axis) == Some(unknown))?;
+        Some((node, axis))
+    }
+
+    /// Whether a node takes part: it carries enough volume.
+    pub fn is_active(&self, node: usize) -> bool {
+        self.active[node]
+    }
+
+    /// Number of unknowns on nodes before `node`.
+    pub(crate) fn before(&self, node: usize) -> usize {
+        self.first[node] as usize
+    }
+
+    /// Number of nodes with unknowns before `node`.
+    pub(crate) fn blocks_before(&self, node: usize) -> usize {
+        self.blocks_before[node] as usize
+    }
+
+    /// The free components of a node with their unknowns.
+    #[inline]
+    pub(crate) fn of(&self, node: usize) -> impl Iterator<Item = (usize, usize)> + '_ {
+        (0..D).filter_map(move |axis| self.index(node, axis).map(|unknown| (axis, unknown)))
+    }
+
+    /// The free components of a node, one bit each.
+    #[inline]
+    pub(crate) fn free(&self, node: usize) -> u8 {
+        let mut free = 0;
+        for axis in 0..D {
+            free |= u8::from(self.rank[node][axis] != NONE) << axis;
+        }
+        free
+    }
+
+    /// Number of unknowns of a node.
+    pub(crate) fn count(&self, node: usize) -> u32 {
+        self.first[node + 1] - self.first[node]
+    }
+}

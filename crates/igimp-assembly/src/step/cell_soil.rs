@@ -1,0 +1,330 @@
+//! The soil in every cell of the grid: how much there is, and where its centroid lies. From it come
+//! gradients that the particles of a cell share, which cells hold slivers only, and what of the weight shared
+//! gradients do not see (theory, eqs. 8a to 8f).
+
+use igimp_material::ConstitutiveModel;
+use igimp_shape::{CellPart, Grid, Support, cell_parts};
+use rayon::prelude::*;
+
+use crate::body::particles::Particles;
+use crate::error::AssemblyError;
+use crate::method::{Geometry, Locking, Method};
+use crate::step::step_conditions::SharedLaw;
+use crate::step::supports::{CHUNK, capped_half_length, merge_equal_nodes, off_grid};
+
+/// A cell that is filled to less than this share holds a sliver of soil that reached over its face
+/// \[-\].
+const SLIVER: f64 = 0.02;
+
+/// Share β of its own distortion that a particle keeps where plastic flow is associated, on a given
+/// geometry \[-\].
+const OWN_GIVEN: f64 = 0.02;
+
+/// The same on a moving one: what the mean does not see is held in every step \[-\].
+const OWN_MOVING: f64 = 0.1;
+
+/// The same where plastic flow keeps volume although the law has friction, on both \[-\].
+const OWN_ISOCHORIC: f64 = 0.3;
+
+/// The soil of every cell, and the parts of every particle.
+pub(crate) struct CellSoil<const D: usize> {
+    /// The parts of `CHUNK` particles after `CHUNK` particles: where those of each begin, and all.
+    parts: Vec<(Vec<u32>, Vec<CellPart<D>>)>,
+    /// Whether a cell holds no more than a sliver, by cell.
+    is_sliver: Vec<bool>,
+    /// Where the tents of a cell give the gradients that its particles share, from 0 to 1 in each
+    /// direction, by cell: the centre X = 1/2, or the centroid of the soil \[-\].
+    shared_at: Vec<[f64; D]>,
+    /// Share β of its own distortion that a particle keeps, by law \[-\].
+    own_share: Vec<f64>,
+    locking: Locking,
+}
+
+impl<const D: usize> CellSoil<D> {
+    /// Lays the particles over a grid.
+    ///
+    /// # Errors
+    /// [`AssemblyError::Shape`] names the first particle whose centre left the grid.
+    pub(crate) fn build(
+        grid: &Grid<D>,
+        particles: &Particles<D>,
+        method: &Method,
+        laws: &[SharedLaw],
+    ) -> Result<Self, AssemblyError> {
+        let len = particles.len();
+        let parts = (0..len.div_ceil(CHUNK))
+            .into_par_iter()
+            .map(|chunk| {
+                let own = chunk * CHUNK..len.min((chunk + 1) * CHUNK);
+                let (mut first, mut all) = (Vec::with_capacity(own.len() + 1), Vec::new());
+                first.push(0);
+                for particle in own {
+                    let (x, half_length) = soil_of(particles, particle, method.geometry);
+                    let half_length = capped_half_length(grid, &x, half_length);
+                    cell_parts(grid, &*method.basis, &x, &half_length, &mut all)
+                        .map_err(|source| off_grid(particle, &x, source))?;
+                    first.push(all.len() as u32);
+                }
+                Ok((first, all))
+            })
+            .collect::<Vec<Result<_, AssemblyError>>>();
+        let parts = parts.into_iter().collect::<Result<Vec<_>, _>>()?;
+        let of_law = |law: &SharedLaw| own_share(&**law, method.geometry);
+        let mut soil = Self {
+            parts,
+            is_sliver: vec![false; grid.cell_count()],
+            shared_at: vec![[0.5; D]; grid.cell_count()],
+            own_share: laws.iter().map(of_law).collect(),
+            locking: method.locking,
+        };
+        if method.geometry == Geometry::Given {
+            soil.find_soil(grid, particles);
+        }
+        Ok(soil)
+    }
+
+    /// Finds slivers, and the centroid of the soil of every cell: sums of volumes and first moments in
+    /// the order of the particles.
+    fn find_soil(&mut self, grid: &Grid<D>, particles: &Particles<D>) {
+        let mut volume = vec![0.0; grid.cell_count()];
+        let mut moment = vec![[0.0; D]; grid.cell_count()];
+        for particle in 0..particles.len() {
+            for part in of(&self.parts, particle) {
+                let cell = grid.cell_index(part.cell);
+                let own = part.share * particles.volume(particle);
+                volume[cell] += own;
+                for axis in 0..D {
+                    moment[cell][axis] += own * part.middle[axis];
+                }
+            }
+        }
+        for (cell, (volume, moment)) in volume.into_iter().zip(moment).enumerate() {
+            if volume > 0.0 && self.locking == Locking::SharedStrain {
+                self.shared_at[cell] = moment.map(|moment| moment / volume);
+            }
+            let size: f64 = grid.cell_size(grid.cell_place(cell)).iter().product();
+            self.is_sliver[cell] = volume < SLIVER * size;
+        }
+    }
+
+    /// Replaces `out` with the supports of a particle of law number `law` (theory, eq. 8b), nodes
+    /// ascending. On a given geometry slivers are cut off, unless there is nothing else.
+    pub(crate) fn supports(
+        &self,
+        grid: &Grid<D>,
+        (particle, law): (usize, usize),
+        out: &mut Vec<Support<D>>,
+    ) {
+        let own = match self.locking {
+            Locking::SharedStrain => self.own_share[law],
+            Locking::None | Locking::BBar => 1.0,
+        };
+        out.clear();
+        for (part, weight) in self.kept(grid, particle) {
+            let shared_at = match self.locking {
+                Locking::None => part.middle,
+                Locking::BBar | Locking::SharedStrain => self.shared_at[grid.cell_index(part.cell)],
+            };
+            let own_tents = grid.tents(part.cell, part.middle);
+            for (tent, shared) in own_tents.zip(grid.tents(part.cell, shared_at)) {
+                let (node, value, grad) = tent;
+                out.push(Support {
+                    node,
+                    value: weight * value,
+                    grad: std::array::from_fn(|axis| {
+                        weight * (own * grad[axis] + (1.0 - own) * shared.2[axis])
+                    }),
+                    grad_bar: shared.2.map(|slope| weight * slope),
+                });
+            }
+        }
+        out.sort_by_key(|support| support.node);
+        let count = merge_equal_nodes(out);
+        out.truncate(count);
+    }
+
+    /// The parts of a particle that are not in slivers, or all if most of it is there; each with its share of what is
+    /// kept (theory, eq. 8d).
+    fn kept(&self, grid: &Grid<D>, particle: usize) -> impl Iterator<Item = (&CellPart<D>, f64)> {
+        let parts = of(&self.parts, particle);
+        let kept = |part: &CellPart<D>| !self.is_sliver[grid.cell_index(part.cell)];
+        let share: f64 = (parts.iter().filter(|part| kept(part)))
+            .map(|part| part.share)
+            .sum();
+        let all = share <= 0.5;
+        let whole = if all { 1.0 } else { share };
+        (parts.iter().filter(move |part| all || kept(part)))
+            .map(move |part| (part, part.share / whole))
+    }
+
+    /// By law, the moments of mass about the centroids of the cells that shared gradients do not see (theory,
+    /// eq. 8f). Empty where strain is not shared on a
+    /// given geometry, and for laws whose particles keep all of their own distortion.
+    pub(crate) fn moments(
+        &self,
+        grid: &Grid<D>,
+        particles: &Particles<D>,
+        method: &Method,
+    ) -> Vec<Moments<D>> {
+        if method.geometry != Geometry::Given || self.locking != Locking::SharedStrain {
+            return Vec::new();
+        }
+        let shared = |own: &f64| if *own < 1.0 { grid.node_count() } else { 0 };
+        let mut moments: Vec<Moments<D>> = (self.own_share.iter())
+            .map(|own| Moments {
+                by_node: vec![[[0.0; D]; D]; shared(own)],
+                layer: 0.0,
+            })
+            .collect();
+        for particle in 0..particles.len() {
+            let law = particles.law[particle];
+            let own = &mut moments[law];
+            if own.by_node.is_empty() {
+                continue;
+            }
+            let density = particles.mass[particle] / particles.volume(particle);
+            let mass = (1.0 - self.own_share[law]) * particles.mass[particle];
+            for (part, weight) in self.kept(grid, particle) {
+                let size = grid.cell_size(part.cell);
+                own.layer = own.layer.max(density * size[D - 1]);
+                let shared_at = self.shared_at[grid.cell_index(part.cell)];
+                let arm: [f64; D] = std::array::from_fn(|axis| {
+                    weight * mass * (part.middle[axis] - shared_at[axis]) * size[axis]
+                });
+                let tents = grid.tents(part.cell, part.middle);
+                for (tent, shared) in tents.zip(grid.tents(part.cell, shared_at)) {
+                    let moment = &mut own.by_node[tent.0];
+                    for a in 0..D {
+                        for b in 0..D {
+                            moment[a][b] += (tent.2[a] - shared.2[a]) * arm[b];
+                        }
+                    }
+                }
+            }
+        }
+        moments
+    }
+}
+
+/// What of the weight of the soil of a law shared gradients do not see (theory, eq. 8f).
+#[derive(Clone, Debug)]
+pub(crate) struct Moments<const D: usize> {
+    /// By node, component a of the gradient, component b of the arm \[mass\].
+    pub(crate) by_node: Vec<[[f64; D]; D]>,
+    /// Largest mass of a layer of one cell \[mass/length²\].
+    pub(crate) layer: f64,
+}
+
+/// Where the soil of a particle is: its domain, and on a given geometry the largest box around the centroid of its soil
+/// within that (theory, eq. 8e).
+fn soil_of<const D: usize>(
+    particles: &Particles<D>,
+    particle: usize,
+    geometry: Geometry,
+) -> ([f64; D], [f64; D]) {
+    let (x, half_length) = (particles.x[particle], particles.half_length[particle]);
+    let centroid = particles.centroid[particle];
+    match geometry {
+        Geometry::Moving => (x, half_length),
+        Geometry::Given => (
+            std::array::from_fn(|axis| x[axis] + centroid[axis] * half_length[axis]),
+            std::array::from_fn(|axis| (1.0 - centroid[axis].abs()) * half_length[axis]),
+        ),
+    }
+}
+
+/// The parts of one particle.
+fn of<const D: usize>(parts: &[(Vec<u32>, Vec<CellPart<D>>)], particle: usize) -> &[CellPart<D>] {
+    let (first, all) = &parts[particle / CHUNK];
+    let place = particle % CHUNK;
+    &all[first[place] as usize..first[place + 1] as usize]
+}
+
+/// The share β of its own distortion that a particle of a law keeps (theory, eq. 8c), the same for a
+/// law and for what a reduction of its strength leaves of it. Elastic soil keeps all of it: bending has to be
+/// resisted. In soil that yields the rest is shared, and what is kept holds modes that the mean does not see;
+/// they add up from step to step where the body moves. The less flow dilates the less has to be shared, and
+/// sharing less keeps Newton's method on its way where equilibrium is not unique.
+fn own_share(law: &dyn ConstitutiveModel, geometry: Geometry) -> f64 {
+    if !law.yields() {
+        return 1.0;
+    }
+    let associated = match geometry {
+        Geometry::Given => OWN_GIVEN,
+        Geometry::Moving => OWN_MOVING,
+    };
+    let dilates = law.dilatancy().sqrt();
+    ((1.0 - dilates) / OWN_ISOCHORIC + dilates / associated).recip()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use igimp_material::{Elasticity, HenckyElastic, MohrCoulomb, VonMises};
+
+    use super::*;
+
+    const GEOMETRIES: [Geometry; 2] = [Geometry::Given, Geometry::Moving];
+
+    /// Soil with φ = 20° and an angle of dilation \[deg\].
+    fn soil(dilation: f64) -> MohrCoulomb {
+        let angles = [20.0_f64, dilation].map(f64::to_radians);
+        MohrCoulomb::new(elasticity(), 1e4, angles[0], angles[1]).unwrap()
+    }
+
+    fn elasticity() -> Elasticity {
+        Elasticity::new(1e7, 0.3).unwrap()
+    }
+
+    // GOAL: the ends of eq. 8c and the laws that it does not concern have the shares of eq. 8c.
+    // ORACLE: the numbers of eq. 8c.
+    #[test]
+    fn ends_are_those_of_the_theory() {
+        let von_mises = VonMises::from_undrained_strength(elasticity(), 1e4).unwrap();
+        for (geometry, associated) in std::iter::zip(GEOMETRIES, [0.02, 0.1]) {
+            let near = |law: &dyn ConstitutiveModel, share: f64| {
+                assert!((own_share(law, geometry) - share).abs() < 1e-15);
+            };
+            near(&soil(0.0), 0.3);
+            near(&soil(20.0), associated);
+            near(&von_mises, associated);
+            near(&HenckyElastic::new(elasticity()), 1.0);
+        }
+    }
+
+    // GOAL: the share falls with ψ and does not jump, up to associated flow.
+    // ORACLE: 1/β is linear in √(ψ/φ); between neighbours of a fine division of √(ψ/φ) β changes by no more
+    // than its steepest slope, β² (1/β₁ − 1/β₀) at β₀, allows.
+    #[test]
+    fn falls_with_dilation_without_a_jump() {
+        for (geometry, associated) in std::iter::zip(GEOMETRIES, [0.02, 0.1]) {
+            let shares: Vec<f64> = (0..=1000)
+                .map(|step| own_share(&soil(20.0 * (f64::from(step) / 1000.0).powi(2)), geometry))
+                .collect();
+            let steepest = 0.3 * 0.3 * (1.0 / associated - 1.0 / 0.3) / 1000.0;
+            for pair in shares.windows(2) {
+                let fall = pair[0] - pair[1];
+                assert!(fall > 0.0 && fall <= steepest * (1.0 + 1e-6), "{pair:?}");
+            }
+        }
+    }
+
+    // GOAL: a search does not change β: soil keeps its share while its strength is reduced, also beyond the
+    // factor at which the reduced φ reaches ψ and flow becomes associated.
+    // ORACLE: the law as it is given.
+    #[test]
+    fn is_that_of_the_law_as_given() {
+        for law in [soil(0.0), soil(5.0), soil(15.0), soil(20.0)] {
+            for srf in [0.5, 1.2, 1.4, 3.0] {
+                let once: Arc<dyn ConstitutiveModel> = law.reduced(srf).unwrap();
+                let twice = once.reduced(1.1).unwrap();
+                for geometry in GEOMETRIES {
+                    let given = own_share(&law, geometry).to_bits();
+                    assert_eq!(own_share(&*once, geometry).to_bits(), given);
+                    assert_eq!(own_share(&*twice, geometry).to_bits(), given);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,188 @@
+//! Who touches what: the supports of every particle, frozen for one step, with small cuts tied,
+//! and what follows from them for the nodes.
+
+use std::collections::BTreeMap;
+
+use igimp_shape::{Grid, Support};
+use rayon::prelude::*;
+
+use crate::body::particles::Particles;
+use crate::error::AssemblyError;
+use crate::method::{Method, Remedy};
+use crate::step::cell_soil::Moments;
+use crate::step::small_cuts::{cell_volume, masters_of_cuts};
+use crate::step::step_conditions::StepConditions;
+use crate::step::strips::{Strips, split};
+use crate::step::supports::{Supports, bounds};
+
+/// Basis values S, gradients ∇S and cell-averaged centre gradients ∇S̄ of all particles.
+///
+/// Without B-bar, ∇S̄ is replaced by ∇S, so that the four variants of the method run through the
+/// same code.
+#[derive(Clone, Debug)]
+pub struct Stencils<const D: usize> {
+    supports: Supports<D>,
+    shares: Vec<NodeShare>,
+    masters: BTreeMap<usize, usize>,
+    strips: Strips,
+}
+
+/// What a node represents of the body.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct NodeShare {
+    /// Σ S V \[length^D\].
+    pub(crate) volume: f64,
+    /// Σ S m \[mass\].
+    pub(crate) mass: f64,
+    /// Whether any particle has it among its supports, if only by its gradient.
+    pub(crate) is_touched: bool,
+}
+
+impl<const D: usize> Stencils<D> {
+    /// Evaluates the basis of a method at all particles on the grid of a step, and ties nodes that are small cuts to
+    /// their neighbours if the method says so.
+    ///
+    /// Half-lengths count up to one cell: a domain stretched further would couple ever more nodes
+    /// without gain.
+    ///
+    /// # Errors
+    /// [`AssemblyError::Shape`] names the first particle whose centre left the grid,
+    /// [`AssemblyError::UnknownLaw`] one whose law is not there; [`AssemblyError::OtherGrid`] if the
+    /// constraints were made for another grid.
+    pub fn build(
+        particles: &Particles<D>,
+        method: &Method,
+        conditions: &StepConditions<D>,
+    ) -> Result<Self, AssemblyError> {
+        let StepConditions {
+            grid,
+            constraints,
+            laws,
+            ..
+        } = conditions;
+        conditions.serve(particles)?;
+        let mut supports = Supports::build(grid, particles, method, laws)?;
+        let mut strips = Strips::build(grid, &supports);
+        let mut shares = node_shares(grid, particles, &supports, &strips);
+        let mut masters = BTreeMap::new();
+        let cuts = method.small_cuts;
+        if cuts.remedy == Remedy::Tie {
+            masters = masters_of_cuts(grid, &supports, &shares, constraints, cuts.below);
+            if !masters.is_empty() {
+                let mut tied = vec![false; grid.node_count()];
+                for (&node, &master) in &masters {
+                    tied[node] = true;
+                    let share = std::mem::take(&mut shares[node]);
+                    shares[master].volume += share.volume;
+                    shares[master].mass += share.mass;
+                }
+                let master = |node| masters.get(&node).copied().unwrap_or(node);
+                for particle in supports.touching(&tied) {
+                    supports.tie(grid, particle, master);
+                }
+                strips = Strips::build(grid, &supports);
+            }
+        }
+        Ok(Self {
+            supports,
+            shares,
+            masters,
+            strips,
+        })
+    }
+
+    /// The supports of one particle, nodes ascending.
+    #[inline]
+    pub fn of(&self, particle: usize) -> &[Support<D>] {
+        self.supports.of(particle)
+    }
+
+    /// The particles in the order in which sums run: by the first node of their supports.
+    pub fn order(&self) -> &[u32] {
+        self.strips.order()
+    }
+
+    /// The lowest place and the extent, in nodes along each axis, of a particle's supports.
+    pub(crate) fn box_of(&self, grid: &Grid<D>, particle: usize) -> ([usize; D], [usize; D]) {
+        bounds(grid, self.of(particle))
+    }
+
+    /// Number of particles.
+    pub fn len(&self) -> usize {
+        self.supports.len()
+    }
+
+    /// Whether there is no particle: never, by construction.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Largest distance, in nodes along one axis, between two nodes of one particle.
+    pub fn reach(&self) -> usize {
+        self.supports.reach()
+    }
+
+    /// Volume that a grid node represents, Σ_p S_i V_p \[length^D\].
+    pub fn node_volume(&self, node: usize) -> f64 {
+        self.shares[node].volume
+    }
+
+    /// Mass that a grid node represents, Σ_p S_i m_p \[mass\].
+    pub fn node_mass(&self, node: usize) -> f64 {
+        self.shares[node].mass
+    }
+
+    /// Volume that a grid node represents over the mean volume of the cells around it \[-\]: 1 within a
+    /// full body, and next to nothing at a small cut.
+    pub fn node_fill(&self, grid: &Grid<D>, node: usize) -> f64 {
+        self.shares[node].volume / cell_volume(grid, node)
+    }
+
+    /// By law, moments of mass that shared gradients do not see (theory, eq. 8f).
+    pub(crate) fn moments(&self) -> &[Moments<D>] {
+        self.supports.moments()
+    }
+
+    /// Tied nodes with the nodes that they move with.
+    pub(crate) fn masters(&self) -> &BTreeMap<usize, usize> {
+        &self.masters
+    }
+
+    /// The node that a node moves with: itself unless it is tied.
+    pub fn master(&self, node: usize) -> usize {
+        self.masters.get(&node).copied().unwrap_or(node)
+    }
+
+    /// Particles grouped by strips of node rows, for sums that are the same for any thread count.
+    pub(crate) fn strips(&self) -> &Strips {
+        &self.strips
+    }
+}
+
+/// Sums volume and mass into the nodes.
+fn node_shares<const D: usize>(
+    grid: &Grid<D>,
+    particles: &Particles<D>,
+    supports: &Supports<D>,
+    strips: &Strips,
+) -> Vec<NodeShare> {
+    let mut shares = vec![NodeShare::default(); grid.node_count()];
+    for parity in 0..2 {
+        let own = strips.of_parity(parity);
+        let slices = split(&mut shares, own.clone().map(|(nodes, _)| nodes.clone()));
+        let tasks: Vec<_> = own.zip(slices).collect();
+        tasks.into_par_iter().for_each(|((nodes, slots), slice)| {
+            for &particle in &strips.order()[slots.clone()] {
+                let particle = particle as usize;
+                let (volume, mass) = (particles.volume(particle), particles.mass[particle]);
+                for support in supports.of(particle) {
+                    let share = &mut slice[support.node - nodes.start];
+                    share.volume += support.value * volume;
+                    share.mass += support.value * mass;
+                    share.is_touched = true;
+                }
+            }
+        });
+    }
+    shares
+}

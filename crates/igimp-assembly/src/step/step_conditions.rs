@@ -1,0 +1,150 @@
+//! What holds during one step, besides the particles.
+
+use std::sync::Arc;
+
+use igimp_material::ConstitutiveModel;
+use igimp_shape::Grid;
+
+use crate::body::particles::Particles;
+use crate::contributions::pore_water::{HeldForces, Water};
+use crate::contributions::reinforcement::ReinforcementControl;
+use crate::contributions::rigid::RigidMotion;
+use crate::error::AssemblyError;
+use crate::step::constraints::Constraints;
+use crate::step::loads::StepLoads;
+
+/// A constitutive law that several bodies and threads share.
+pub type SharedLaw = Arc<dyn ConstitutiveModel>;
+
+/// What holds during one step, besides the particles.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct StepConditions<const D: usize> {
+    /// The background grid of this step.
+    pub grid: Grid<D>,
+    /// Prescribed step displacements.
+    pub constraints: Constraints<D>,
+    /// External force at the end of the step.
+    pub loads: StepLoads<D>,
+    /// Laws at the end of the step, as the particles number them.
+    pub laws: Vec<SharedLaw>,
+    /// How rigid bodies move, in their order; one that is not listed is held.
+    pub motions: Vec<RigidMotion<D>>,
+    /// What acts on reinforcement, in its order; what is not listed stretches with the ground, with its
+    /// whole bond.
+    pub reinforcement: Vec<ReinforcementControl>,
+    /// Water in the pores at the end of the step.
+    pub water: Water<D>,
+    /// What still holds the body where a change has put it out of balance.
+    pub held: Option<HeldForces<D>>,
+}
+
+impl<const D: usize> StepConditions<D> {
+    /// Conditions that agree with one another.
+    ///
+    /// # Errors
+    /// [`AssemblyError::OtherGrid`] for constraints that were made for another grid,
+    /// [`AssemblyError::NonFinite`] for loads that are not finite.
+    pub fn new(
+        grid: Grid<D>,
+        constraints: Constraints<D>,
+        loads: StepLoads<D>,
+        laws: Vec<SharedLaw>,
+    ) -> Result<Self, AssemblyError> {
+        let conditions = Self {
+            grid,
+            constraints,
+            loads,
+            laws,
+            motions: Vec::new(),
+            reinforcement: Vec::new(),
+            water: Water::default(),
+            held: None,
+        };
+        conditions.agree()?;
+        Ok(conditions)
+    }
+
+    /// The same with rigid bodies that move, in their order.
+    ///
+    /// # Errors
+    /// [`AssemblyError::NonFinite`] for a motion that is not finite.
+    pub fn with_motions(mut self, motions: Vec<RigidMotion<D>>) -> Result<Self, AssemblyError> {
+        self.motions = motions;
+        self.agree()?;
+        Ok(self)
+    }
+
+    /// The same with what acts on reinforcement, in its order.
+    ///
+    /// # Errors
+    /// [`AssemblyError::NonFinite`] for a jack or a reduction that is none.
+    pub fn with_reinforcement(
+        mut self,
+        controls: Vec<ReinforcementControl>,
+    ) -> Result<Self, AssemblyError> {
+        self.reinforcement = controls;
+        self.agree()?;
+        Ok(self)
+    }
+
+    /// The same with water in the pores.
+    ///
+    /// # Errors
+    /// [`AssemblyError::NonFinite`] for water that is not finite.
+    pub fn with_water(mut self, water: Water<D>) -> Result<Self, AssemblyError> {
+        self.water = water;
+        self.agree()?;
+        Ok(self)
+    }
+
+    /// The same with forces that hold the body; they belong to the nodes of its grid.
+    ///
+    /// # Errors
+    /// [`AssemblyError::NonFinite`] for a force that is not finite, or forces of another number of nodes.
+    pub fn held_by(mut self, held: Option<HeldForces<D>>) -> Result<Self, AssemblyError> {
+        self.held = held;
+        self.agree()?;
+        Ok(self)
+    }
+
+    /// Refuses conditions that do not agree.
+    fn agree(&self) -> Result<(), AssemblyError> {
+        self.constraints.belong_to(&self.grid)?;
+        if let Some(index) = self.motions.iter().position(|motion| !motion.is_finite()) {
+            let what = "motion of a rigid body";
+            return Err(AssemblyError::NonFinite { what, index });
+        }
+        let sound = |control: &ReinforcementControl| control.is_sound();
+        if let Some(index) = self.reinforcement.iter().position(|own| !sound(own)) {
+            let what = "jack or reduction of a reinforcement";
+            return Err(AssemblyError::NonFinite { what, index });
+        }
+        if let Some(held) = &self.held {
+            let bad = |force: &[f64; D]| !force.iter().all(|own| (own * held.share).is_finite());
+            let nodes = self.grid.node_count();
+            let other = (held.forces.len() != nodes).then_some(nodes);
+            if let Some(index) = other.or_else(|| held.forces.iter().position(bad)) {
+                let what = "force that holds the body at node";
+                return Err(AssemblyError::NonFinite { what, index });
+            }
+        }
+        self.water.is_finite()?;
+        self.loads.are_finite()
+    }
+
+    /// Refuses conditions that do not agree, for a field may have been changed since they were made,
+    /// and particles whose law is not among them.
+    pub(crate) fn serve(&self, particles: &Particles<D>) -> Result<(), AssemblyError> {
+        self.agree()?;
+        let laws = self.laws.len();
+        match particles.law.iter().position(|&law| law >= laws) {
+            Some(particle) => Err(AssemblyError::UnknownLaw {
+                particle,
+                law: particles.law[particle],
+                laws,
+            }),
+            None => Ok(()),
+        }
+    }
+}

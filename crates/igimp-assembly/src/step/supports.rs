@@ -1,0 +1,240 @@
+//! The supports of all particles, frozen for one step.
+
+use igimp_shape::{Grid, Scratch, ShapeError, Support, supports};
+use rayon::prelude::*;
+
+use crate::body::particles::Particles;
+use crate::error::AssemblyError;
+use crate::method::{Geometry, Locking, Method};
+use crate::step::cell_soil::{CellSoil, Moments};
+use crate::step::step_conditions::SharedLaw;
+
+/// Particles that are handled together: fixed, so that results do not depend on the number of
+/// threads.
+pub(crate) const CHUNK: usize = 1024;
+
+/// The supports of each particle, nodes ascending.
+#[derive(Clone, Debug)]
+pub(crate) struct Supports<const D: usize> {
+    chunks: Vec<Chunk<D>>,
+    len: usize,
+    /// Largest distance, in nodes along one axis, between two nodes of one particle.
+    reach: usize,
+    /// By law, moments of mass that shared gradients do not see (theory, eq. 8f).
+    moments: Vec<Moments<D>>,
+}
+
+/// The supports of `CHUNK` particles, or of the last few.
+#[derive(Clone, Debug)]
+struct Chunk<const D: usize> {
+    /// Where the supports of each particle begin, and how many there are.
+    places: Vec<(u32, u32)>,
+    all: Vec<Support<D>>,
+    reach: usize,
+}
+
+impl<const D: usize> Supports<D> {
+    /// Evaluates the basis of a method at all particles. Here alone is decided of which gradients the
+    /// strain of a particle is made: without locking control ∇S̄ is replaced by ∇S; shared strain and
+    /// a given geometry take both from the cells (theory, eqs. 8a to 8e).
+    ///
+    /// # Errors
+    /// [`AssemblyError::Shape`] names the first particle whose centre left the grid.
+    pub(crate) fn build(
+        grid: &Grid<D>,
+        particles: &Particles<D>,
+        method: &Method,
+        laws: &[SharedLaw],
+    ) -> Result<Self, AssemblyError> {
+        let len = particles.len();
+        let by_cells =
+            method.locking == Locking::SharedStrain || method.geometry == Geometry::Given;
+        let soil = by_cells
+            .then(|| CellSoil::build(grid, particles, method, laws))
+            .transpose()?;
+        let chunks: Vec<Result<Chunk<D>, AssemblyError>> = (0..len.div_ceil(CHUNK))
+            .into_par_iter()
+            .map(|chunk| Chunk::build(grid, particles, method, soil.as_ref(), chunk * CHUNK))
+            .collect();
+        let chunks = chunks.into_iter().collect::<Result<Vec<_>, _>>()?;
+        let reach = chunks.iter().map(|chunk| chunk.reach).max().unwrap_or(0);
+        let moments = soil.map(|soil| soil.moments(grid, particles, method));
+        Ok(Self {
+            chunks,
+            len,
+            reach,
+            moments: moments.unwrap_or_default(),
+        })
+    }
+
+    /// The supports of one particle.
+    #[inline]
+    pub(crate) fn of(&self, particle: usize) -> &[Support<D>] {
+        let chunk = &self.chunks[particle / CHUNK];
+        let (start, count) = chunk.places[particle % CHUNK];
+        &chunk.all[start as usize..(start + count) as usize]
+    }
+
+    /// By law, moments of mass that shared gradients do not see (theory, eq. 8f). Empty where there are none.
+    pub(crate) fn moments(&self) -> &[Moments<D>] {
+        &self.moments
+    }
+
+    /// Number of particles.
+    pub(crate) fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Largest distance, in nodes along one axis, between two nodes of one particle.
+    pub(crate) fn reach(&self) -> usize {
+        self.reach
+    }
+
+    /// The particles that touch a marked node, ascending.
+    pub(crate) fn touching(&self, marked: &[bool]) -> Vec<usize> {
+        let lists: Vec<Vec<usize>> = (0..self.chunks.len())
+            .into_par_iter()
+            .map(|chunk| {
+                let particles = chunk * CHUNK..self.len.min((chunk + 1) * CHUNK);
+                let touches = |&particle: &usize| {
+                    let mut own = self.of(particle).iter();
+                    own.any(|support| marked[support.node])
+                };
+                particles.filter(touches).collect()
+            })
+            .collect();
+        lists.concat()
+    }
+
+    /// Replaces the nodes of one particle by the nodes that they move with, and adds up supports
+    /// that come together.
+    pub(crate) fn tie(&mut self, grid: &Grid<D>, particle: usize, master: impl Fn(usize) -> usize) {
+        let chunk = &mut self.chunks[particle / CHUNK];
+        let (start, count) = &mut chunk.places[particle % CHUNK];
+        let own = &mut chunk.all[*start as usize..(*start + *count) as usize];
+        for support in &mut *own {
+            support.node = master(support.node);
+        }
+        own.sort_by_key(|support| support.node);
+        *count = merge_equal_nodes(own) as u32;
+        let (_, extent) = bounds(grid, self.of(particle));
+        self.reach = extent.into_iter().fold(self.reach, usize::max);
+    }
+}
+
+impl<const D: usize> Chunk<D> {
+    fn build(
+        grid: &Grid<D>,
+        particles: &Particles<D>,
+        method: &Method,
+        soil: Option<&CellSoil<D>>,
+        first: usize,
+    ) -> Result<Self, AssemblyError> {
+        let range = first..particles.len().min(first + CHUNK);
+        let mut chunk = Self {
+            places: Vec::with_capacity(range.len()),
+            all: Vec::with_capacity(range.len() * 3_usize.pow(D as u32)),
+            reach: 0,
+        };
+        let mut scratch = Scratch::default();
+        let mut own = Vec::new();
+        for particle in range {
+            if let Some(soil) = soil {
+                soil.supports(grid, (particle, particles.law[particle]), &mut own);
+                let (_, extent) = bounds(grid, &own);
+                chunk.reach = extent.into_iter().fold(chunk.reach, usize::max);
+            } else {
+                let x = particles.x[particle];
+                let half_length = capped_half_length(grid, &x, particles.half_length[particle]);
+                let basis = &*method.basis;
+                supports(grid, basis, &x, &half_length, &mut scratch, &mut own)
+                    .map_err(|source| off_grid(particle, &x, source))?;
+                if method.locking == Locking::None {
+                    for support in &mut own {
+                        support.grad_bar = support.grad;
+                    }
+                }
+                for count in scratch.counts() {
+                    chunk.reach = chunk.reach.max(count - 1);
+                }
+            }
+            chunk
+                .places
+                .push((chunk.all.len() as u32, own.len() as u32));
+            chunk.all.extend_from_slice(&own);
+        }
+        Ok(chunk)
+    }
+}
+
+/// The lowest place of supports, and how far they extend along each axis.
+pub(crate) fn bounds<const D: usize>(
+    grid: &Grid<D>,
+    own: &[Support<D>],
+) -> ([usize; D], [usize; D]) {
+    let mut lower = [usize::MAX; D];
+    let mut upper = [0; D];
+    for support in own {
+        let place = grid.node_place(support.node);
+        for axis in 0..D {
+            lower[axis] = lower[axis].min(place[axis]);
+            upper[axis] = upper[axis].max(place[axis]);
+        }
+    }
+    (lower, std::array::from_fn(|axis| upper[axis] - lower[axis]))
+}
+
+/// Adds up neighbouring supports of the same node; returns how many are left at the front.
+pub(crate) fn merge_equal_nodes<const D: usize>(own: &mut [Support<D>]) -> usize {
+    let mut kept = 0;
+    for k in 1..own.len() {
+        let support = own[k];
+        if own[kept].node == support.node {
+            let sum = &mut own[kept];
+            sum.value += support.value;
+            for axis in 0..D {
+                sum.grad[axis] += support.grad[axis];
+                sum.grad_bar[axis] += support.grad_bar[axis];
+            }
+        } else {
+            kept += 1;
+            own[kept] = support;
+        }
+    }
+    kept + 1
+}
+
+/// Half-lengths limited to the size of the cell that holds the centre.
+pub(crate) fn capped_half_length<const D: usize>(
+    grid: &Grid<D>,
+    x: &[f64; D],
+    mut half_length: [f64; D],
+) -> [f64; D] {
+    if let Some(cell) = grid.cell_at(x) {
+        let size = grid.cell_size(cell);
+        for axis in 0..D {
+            half_length[axis] = half_length[axis].min(size[axis]);
+        }
+    }
+    half_length
+}
+
+/// What is said of a particle whose centre or domain has no place on the grid.
+pub(crate) fn off_grid<const D: usize>(
+    particle: usize,
+    x: &[f64; D],
+    source: ShapeError,
+) -> AssemblyError {
+    AssemblyError::Shape {
+        particle,
+        position: padded(x),
+        source,
+    }
+}
+
+/// A position with zeros beyond the dimension, for messages.
+pub(crate) fn padded<const D: usize>(x: &[f64; D]) -> [f64; 3] {
+    let mut out = [0.0; 3];
+    out[..D].copy_from_slice(x);
+    out
+}

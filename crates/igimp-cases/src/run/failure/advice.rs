@@ -1,0 +1,425 @@
+//! What may help after a step without equilibrium, in the words of the case file, most promising
+//! first. Every rule looks at the failure and at the case, and says nothing when it is of no use.
+
+use igimp_assembly::{AssemblyError, Locking, Swallowed};
+use igimp_linear::LinearSolverError;
+use igimp_solver::{Component, StepError, StepFailure};
+
+use igimp_model::{BodyPart, Case, Material, RigidMove, Side, Stage, StageKind, Strength};
+use igimp_results::fields::length;
+use igimp_text::short;
+
+/// Most suggestions that a reader will try.
+const MOST: usize = 4;
+/// Share of particles at the worst node that yield, from which on collapse is likely \[-\].
+const COLLAPSE: f64 = 0.5;
+/// Share of particles at the worst node that return to an apex, from which on tension is the
+/// likely cause \[-\].
+const APEX_RICH: f64 = 0.02;
+/// A worst node with fewer particles within a cell of it is hardly covered by soil.
+const HARDLY_COVERED: usize = 4;
+/// Poisson's ratio from which on the bulk modulus dwarfs the shear modulus \[-\].
+const NEARLY_INCOMPRESSIBLE: f64 = 0.49;
+
+/// What may help, most promising first. `near_worst` counts the particles within a cell of the
+/// worst node, those that yield, and those that returned to an apex or a corner in tension.
+pub(crate) fn advice<const D: usize>(
+    case: &Case<D>,
+    stage: usize,
+    error: &StepError,
+    near_worst: Option<[usize; 3]>,
+) -> Vec<String> {
+    let Some(stage) = case.stages.get(stage) else {
+        return Vec::new();
+    };
+    let yielding = near_worst.is_some_and(|[all, yielding, _]| share(yielding, all) >= COLLAPSE);
+    let mut try_this = match &*error.failure {
+        StepFailure::LeavesGrid { position, .. }
+        | StepFailure::LoadPointLeavesGrid { position, .. }
+        | StepFailure::ReinforcementLeavesGrid { position, .. } => off_grid(case, stage, *position),
+        // Soil that flows away can also turn a particle inside out, or leave a singular matrix.
+        StepFailure::Assembly(
+            AssemblyError::Inverted { .. }
+            | AssemblyError::Overstrained { .. }
+            | AssemblyError::Material { .. },
+        )
+        | StepFailure::Linear(
+            LinearSolverError::Singular { .. }
+            | LinearSolverError::NotPositiveDefinite { .. }
+            | LinearSolverError::Inaccurate { .. },
+        ) if yielding => no_equilibrium(case, stage, error, near_worst),
+        StepFailure::Assembly(assembly) => unformed(case, stage, assembly),
+        StepFailure::Linear(linear) => unsolved(case, linear),
+        StepFailure::TooDeep { body, .. } => too_deep(case, stage, body),
+        StepFailure::Swallowed(Swallowed { body, position, .. }) => {
+            swallowed(case, stage, body, *position)
+        }
+        StepFailure::NotHeld {
+            body,
+            component,
+            touches,
+        } => not_held(stage, body, *component, *touches),
+        StepFailure::NotFinite { .. } => vec![more_steps(stage), finer_cell(case)],
+        StepFailure::MaxIterations { .. } | StepFailure::Diverged | StepFailure::Stagnated => {
+            no_equilibrium(case, stage, error, near_worst)
+        }
+    };
+    try_this.truncate(MOST);
+    try_this
+}
+
+fn share(count: usize, of: usize) -> f64 {
+    count as f64 / of.max(1) as f64
+}
+
+/// The iteration ended without equilibrium.
+fn no_equilibrium<const D: usize>(
+    case: &Case<D>,
+    stage: &Stage,
+    error: &StepError,
+    near_worst: Option<[usize; 3]>,
+) -> Vec<String> {
+    let yielding = near_worst.map_or(0.0, |[all, yielding, _]| share(yielding, all));
+    let apex = near_worst.map_or(0.0, |[all, _, apex]| share(apex, all));
+    let worst = error.worst.map_or([f64::NAN; 3], |(x, _)| x);
+    let material = material_at(case, std::array::from_fn(|axis| worst[axis]));
+    let mut out = Vec::new();
+
+    out.extend(round_off(case, error));
+    out.extend(still_falling(case, error));
+    if yielding >= COLLAPSE {
+        out.extend(collapse(case, stage));
+    }
+    out.push(more_steps(stage));
+    if apex >= APEX_RICH {
+        out.extend(material.and_then(tension));
+    }
+    if near_worst.is_some_and(|[all, ..]| all < HARDLY_COVERED) {
+        out.push(ghost_penalty());
+    }
+    out.extend(material.and_then(|material| incompressible(case, material)));
+    out.push(finer_cell(case));
+    out
+}
+
+fn off_grid<const D: usize>(case: &Case<D>, stage: &Stage, position: [f64; 3]) -> Vec<String> {
+    let (lower, upper) = (case.grid.lower(), case.grid.upper());
+    let mut out = Vec::new();
+    for (axis, name) in ["x", "y"].into_iter().enumerate() {
+        let at = position[axis];
+        let spec = &case.grid.axes[axis];
+        if !(lower[axis] + spec.rise(1)..=upper[axis] - spec.last_cell()).contains(&at) {
+            let side = if at > 0.5 * (lower[axis] + upper[axis]) {
+                format!("above {name} = {}", metres(upper[axis]))
+            } else {
+                format!("below {name} = {}", metres(lower[axis]))
+            };
+            out.push(format!("a larger domain in [grid]: extend it {side}"));
+        }
+    }
+    if out.is_empty() {
+        out.push("a larger domain in [grid]".to_owned());
+    }
+    out.push(format!(
+        "stop_when = {{ displacement = \"…\" }} in stage \"{}\", to end it before the soil gets there",
+        stage.name
+    ));
+    out
+}
+
+/// Soil went too far into a rigid body.
+fn too_deep<const D: usize>(case: &Case<D>, stage: &Stage, body: &str) -> Vec<String> {
+    let Some(part) = case.rigid.iter().find(|part| part.name == body) else {
+        return vec![more_steps(stage)];
+    };
+    let (name, stiffness, most) = (&part.name, part.stiffness, part.most_penetration);
+    vec![
+        format!(
+            "stiffness = {} of the rigid body \"{name}\" (now {})",
+            short(2.0 * stiffness),
+            short(stiffness)
+        ),
+        finer_cell(case),
+        format!(
+            "most_penetration = {} of the rigid body \"{name}\" (now {}), if so much is no matter",
+            short(2.0 * most),
+            short(most)
+        ),
+    ]
+}
+
+/// A particle would get into a rigid body, or through it.
+fn swallowed<const D: usize>(
+    case: &Case<D>,
+    stage: &Stage,
+    body: &str,
+    [x, y, _]: [f64; 3],
+) -> Vec<String> {
+    vec![
+        more_steps(stage),
+        format!(
+            "a finer cell near ({}, {}) m, where the rigid body \"{body}\" catches soil: {}",
+            short(x),
+            short(y),
+            finer_cell(case)
+        ),
+        format!("a greater rounding of the rigid body \"{body}\", or corners that are less sharp"),
+    ]
+}
+
+/// A rigid body that is free, or has a force, where nothing holds it.
+fn not_held(stage: &Stage, body: &str, component: Component, touches: bool) -> Vec<String> {
+    let name = &stage.name;
+    let (key, by, force) = match component {
+        Component::Displacement(0) => ("x", "0 m", "force_x"),
+        Component::Displacement(_) => ("y", "0 m", "force_y"),
+        Component::Rotation(_) => ("rotation", "0 deg", "moment"),
+    };
+    let hold = format!(
+        "{key} = \"{by}\" for it in stage \"{name}\", in place of {force} or free: that holds it"
+    );
+    if touches {
+        return vec![
+            hold,
+            format!(
+                "a stage before \"{name}\" that presses it on: bodies = [{{ body = \"{body}\", y = \"-1 mm\" }}]"
+            ),
+            "an interface with friction or adhesion, if it slides".to_owned(),
+        ];
+    }
+    vec![
+        format!(
+            "a stage before \"{name}\" that moves it until soil touches it: bodies = [{{ body = \"{body}\", \
+             y = \"-1 mm\" }}]"
+        ),
+        hold,
+    ]
+}
+
+fn unformed<const D: usize>(case: &Case<D>, stage: &Stage, error: &AssemblyError) -> Vec<String> {
+    match error {
+        AssemblyError::Shape { position, .. } => off_grid(case, stage, *position),
+        AssemblyError::LoadPoint { .. } => vec!["a larger domain in [grid]".to_owned()],
+        AssemblyError::UnsupportedLoad { position, .. } => vec![format!(
+            "moving the load that acts at ({}, {}) m onto soil",
+            short(position[0]),
+            short(position[1])
+        )],
+        AssemblyError::UnsupportedReinforcement { name, position } => vec![format!(
+            "soil around ({}, {}) m, where the reinforcement \"{name}\" is, in the stage that installs it and after",
+            short(position[0]),
+            short(position[1])
+        )],
+        AssemblyError::NoUnknowns => {
+            vec!["a free or roller side in [boundaries]: every node is held".to_owned()]
+        }
+        AssemblyError::Inverted { .. }
+        | AssemblyError::Overstrained { .. }
+        | AssemblyError::Material { .. } => {
+            vec![more_steps(stage), finer_cell(case)]
+        }
+        _ => vec![more_steps(stage)],
+    }
+}
+
+fn unsolved<const D: usize>(case: &Case<D>, error: &LinearSolverError) -> Vec<String> {
+    if matches!(error, LinearSolverError::OutOfMemory { .. }) {
+        return vec!["a coarser cell in [grid], or a computer with more memory".to_owned()];
+    }
+    let sides = &case.boundaries;
+    let mut out = Vec::new();
+    if sides.sides[D - 1][0] == Side::Free && sides.boxes.is_empty() {
+        out.push("bottom = \"fixed\" in [boundaries]".to_owned());
+    }
+    out.push(ghost_penalty());
+    out.push("supports in [boundaries] that hold every body".to_owned());
+    out
+}
+
+/// The smallest residual is small, but above the tolerance.
+fn round_off<const D: usize>(case: &Case<D>, error: &StepError) -> Option<String> {
+    let best = error.residuals.iter().copied().fold(f64::NAN, f64::min);
+    let stagnated = matches!(*error.failure, StepFailure::Stagnated);
+    let (tolerance, limit) = (case.solver.tolerance, 1e-6);
+    (stagnated && best > tolerance && best < limit).then(|| {
+        let enough = 10_f64.powf(best.log10().ceil());
+        format!("--set solver.tolerance={enough:e}, as the residual reaches {best:.0e}")
+    })
+}
+
+/// The residual was still falling when the corrections ran out.
+fn still_falling<const D: usize>(case: &Case<D>, error: &StepError) -> Option<String> {
+    let falling = error.residuals.last_chunk::<4>().is_some_and(|last| {
+        last.windows(2).all(|pair| pair[1] < pair[0]) && last[3] < 0.5 * last[0]
+    });
+    let ran_out = matches!(*error.failure, StepFailure::MaxIterations { .. });
+    (ran_out && falling).then(|| {
+        let more = 2 * case.solver.max_iterations;
+        format!("--set solver.max_iterations={more}, as the residual still falls")
+    })
+}
+
+/// Most soil at the worst node yields: there may be no equilibrium to find.
+fn collapse<const D: usize>(case: &Case<D>, stage: &Stage) -> Vec<String> {
+    match &stage.kind {
+        StageKind::Gravity {
+            horizontal: Some(share),
+            ..
+        } if *share != 0.0 => vec![format!(
+            "horizontal = {} in stage \"{}\": this is probably collapse under the pseudo-static force",
+            short(0.5 * share),
+            stage.name
+        )],
+        StageKind::Gravity { factor, .. } => vec![
+            format!(
+                "factor = {} in stage \"{}\": this is probably collapse under gravity itself",
+                short(0.5 * factor),
+                stage.name
+            ),
+            "a strength-reduction stage with path = \"gravity\", to find the factor of safety"
+                .to_owned(),
+        ],
+        StageKind::Load { loads, factor } => {
+            let name = loads
+                .first()
+                .and_then(|&load| case.loads.get(load))
+                .map_or("the load", |load| load.name.as_str());
+            vec![format!(
+                "factor below {} in stage \"{}\": this is probably collapse under \"{name}\"",
+                short(*factor),
+                stage.name
+            )]
+        }
+        StageKind::K0 => {
+            vec!["a k0 closer to 1: this is probably collapse of the initial state".to_owned()]
+        }
+        StageKind::Displacement { .. } => vec![format!(
+            "stop_when = {{ load_grows_less_than = 0.001 }} in stage \"{}\": this is probably \
+             collapse, with the limit load reached",
+            stage.name
+        )],
+        StageKind::Construction(_) => vec![format!(
+            "more steps in stage \"{}\", or less that is placed, removed or drawn down at once: this is \
+             probably collapse of what was built",
+            stage.name
+        )],
+        StageKind::StrengthReduction(_) => {
+            vec!["a lower bracket: this is probably collapse at the first factor".to_owned()]
+        }
+        StageKind::Rigid(moves) => {
+            let name = &stage.name;
+            let instead = format!(
+                "a displacement in place of a force in stage \"{name}\": this is probably collapse under it"
+            );
+            let is_loaded = moves.iter().any(RigidMove::is_loaded);
+            is_loaded.then_some(instead).into_iter().collect()
+        }
+        StageKind::RunOut(_) => Vec::new(),
+    }
+}
+
+fn more_steps(stage: &Stage) -> String {
+    match &stage.kind {
+        StageKind::RunOut(run_out) => format!(
+            "move_per_step = {} in stage \"{}\" (now {})",
+            short(0.5 * run_out.move_per_step),
+            stage.name,
+            short(run_out.move_per_step)
+        ),
+        _ => format!("steps = {} for this stage", 2 * stage.steps.max(1)),
+    }
+}
+
+/// A tension cut-off where soil comes apart.
+fn tension(material: &Material) -> Option<String> {
+    let Strength::MohrCoulomb {
+        cohesion,
+        friction_angle,
+        tension_cutoff,
+        ..
+    } = material.strength
+    else {
+        return None;
+    };
+    let name = &material.name;
+    let apex = cohesion / friction_angle.tan();
+    match tension_cutoff {
+        _ if material.profiles.strength.is_some() || material.profiles.friction.is_some() => {
+            Some(match tension_cutoff {
+                None => {
+                    format!("tension_cutoff = \"0 kPa\" in \"{name}\", which comes apart there")
+                }
+                Some(_) => format!("more cohesion in \"{name}\", which comes apart there"),
+            })
+        }
+        Some(0.0) => Some(format!("tension_cutoff > 0 in \"{name}\"")),
+        Some(_) => Some(format!(
+            "more cohesion in \"{name}\", which comes apart there"
+        )),
+        None if apex.is_finite() && apex > 0.0 => Some(format!(
+            "tension_cutoff in \"{name}\", below its apex at {} kPa",
+            short(1e-3 * apex)
+        )),
+        None => Some(format!(
+            "a little cohesion in \"{name}\", which comes apart there"
+        )),
+    }
+}
+
+fn incompressible<const D: usize>(case: &Case<D>, material: &Material) -> Option<String> {
+    if case.method.locking == Locking::None && material.poisson >= 0.4 {
+        return Some("locking = \"b-bar\" in [grid], against volumetric locking".to_owned());
+    }
+    (material.poisson > NEARLY_INCOMPRESSIBLE)
+        .then(|| format!("poisson = {NEARLY_INCOMPRESSIBLE} in \"{}\"", material.name))
+}
+
+fn ghost_penalty() -> String {
+    "small_cuts = { ghost_penalty = 1e-3 } in [grid], for nodes that hardly touch soil".to_owned()
+}
+
+fn finer_cell<const D: usize>(case: &Case<D>) -> String {
+    let cell = case.grid.largest_cell().map(|cell| 0.5 * cell);
+    if cell
+        .iter()
+        .all(|own| (own - cell[0]).abs() < 1e-9 * cell[0])
+    {
+        return format!("cell = \"{}\"", metres(cell[0]));
+    }
+    let each = std::iter::zip(["x", "y", "z"], cell);
+    let each: Vec<String> = each
+        .map(|(axis, cell)| format!("{axis} = \"{}\"", metres(cell)))
+        .collect();
+    format!("cell = {{ {} }}", each.join(", "))
+}
+
+fn metres(length: f64) -> String {
+    format!("{} m", short(length))
+}
+
+/// The material at a place in the undeformed bodies; beside all bodies, that of the nearest body.
+fn material_at<const D: usize>(case: &Case<D>, x: [f64; D]) -> Option<&Material> {
+    let half = case.grid.cell_at(x).map(|cell| 0.5 * cell);
+    let lower = std::array::from_fn(|axis| x[axis] - half[axis]);
+    let upper = std::array::from_fn(|axis| x[axis] + half[axis]);
+    let share = |body: &BodyPart<D>| body.region.within(lower, upper).volume;
+    let distance = |body: &BodyPart<D>| {
+        let corners = body.region.corners().into_iter();
+        corners
+            .map(|corner| {
+                length(&std::array::from_fn::<_, D, _>(|axis| {
+                    corner[axis] - x[axis]
+                }))
+            })
+            .fold(f64::INFINITY, f64::min)
+    };
+    let bodies = || case.bodies.iter();
+    let most = bodies().max_by(|a, b| share(a).total_cmp(&share(b)));
+    let nearest = bodies().min_by(|a, b| distance(a).total_cmp(&distance(b)));
+    let body = most.filter(|body| share(body) > 0.0).or(nearest)?;
+    case.materials.get(body.material)
+}
+
+#[cfg(test)]
+#[path = "advice_tests.rs"]
+mod tests;

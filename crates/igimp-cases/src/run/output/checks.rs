@@ -1,0 +1,142 @@
+//! Holds what a run found against the references of its case.
+
+use super::records::{Moment, Records};
+use super::sections::before_fields;
+use igimp_model::check::{Band, Check};
+use igimp_model::{Case, CheckTime, Reference, ReferenceValues};
+use igimp_results::fields;
+use igimp_results::summary::CheckRow;
+use igimp_results::tables::table::Table;
+
+/// The checks that the case asks for at the end of a stage.
+pub(crate) fn at_end_of_stage<const D: usize>(
+    case: &Case<D>,
+    records: &Records,
+    moment: &Moment<'_, D>,
+) -> Vec<CheckRow> {
+    let last = case.stages.len() - 1;
+    case.checks
+        .iter()
+        .enumerate()
+        .filter(|(_, check)| check.stage.unwrap_or(last) == moment.stage)
+        .map(|(k, check)| {
+            let found = match check.at {
+                CheckTime::End => records.quantity(case, check.of, moment),
+                CheckTime::Peak => records.peaks[k],
+            };
+            row(Check {
+                case: case.title.clone(),
+                variant: case.method.label(),
+                quantity: check.name.clone(),
+                expected: check.expected,
+                source: check.source.clone(),
+                band: check.band,
+                measured: found / check.divide_by,
+            })
+        })
+        .collect()
+}
+
+/// The checks of curves against their references. A curve that was not recorded misses its own.
+pub(crate) fn of_curves<const D: usize>(case: &Case<D>, tables: &[Table]) -> Vec<CheckRow> {
+    let mut rows = Vec::new();
+    for (curve, table) in case.curves.iter().zip(tables) {
+        if let Some(reference) = &curve.reference {
+            rows.extend(against(case, &curve.name, &table.points(0, 1), reference));
+        }
+    }
+    rows
+}
+
+/// The checks of fields along sections at the end of a stage; `tables` are those of the sections.
+pub(crate) fn of_sections<const D: usize>(
+    case: &Case<D>,
+    stage: usize,
+    tables: &[Table],
+) -> Vec<CheckRow> {
+    let mut rows = Vec::new();
+    for (section, table) in case.sections.iter().zip(tables) {
+        for held in section.references_at(case, stage) {
+            let Some(recorded) = section.record.iter().position(|&field| field == held.of) else {
+                continue;
+            };
+            let name = format!("{}, {}", section.name, fields::name(held.of));
+            let points = table.points(0, before_fields::<D>() + recorded);
+            rows.extend(against(case, &name, &points, &held.reference));
+        }
+    }
+    rows
+}
+
+/// Points held against a reference; nothing where it is drawn only.
+fn against<const D: usize>(
+    case: &Case<D>,
+    name: &str,
+    points: &[[f64; 2]],
+    reference: &Reference,
+) -> Vec<CheckRow> {
+    let Some(tolerance) = reference.tolerance else {
+        return Vec::new();
+    };
+    let check = |quantity: String, expected: f64, measured: f64| {
+        row(Check {
+            case: case.title.clone(),
+            variant: case.method.label(),
+            quantity,
+            expected,
+            source: reference.label.clone(),
+            band: Band::Relative(tolerance),
+            measured,
+        })
+    };
+    match &reference.values {
+        ReferenceValues::Level { y, at: None } => {
+            let last = points.last().map_or(f64::NAN, |point| point[1]);
+            vec![check(format!("{name}, end"), *y, last)]
+        }
+        ReferenceValues::Level { y, at: Some(x) } => {
+            let measured = at(points, *x).unwrap_or(f64::NAN);
+            vec![check(format!("{name} at {x}"), *y, measured)]
+        }
+        ReferenceValues::Points(expected) => expected
+            .iter()
+            .filter_map(|&[x, y]| Some(check(format!("{name} at {x}"), y, at(points, x)?)))
+            .collect(),
+    }
+}
+
+fn row(check: Check) -> CheckRow {
+    CheckRow {
+        pass: check.passes(),
+        check,
+    }
+}
+
+/// The ordinate of a curve where it first passes an abscissa, linear between points.
+pub(crate) fn at(points: &[[f64; 2]], x: f64) -> Option<f64> {
+    let near = 1e-9 * x.abs().max(1e-12);
+    if let Some(point) = points.iter().find(|point| (point[0] - x).abs() <= near) {
+        return Some(point[1]);
+    }
+    points
+        .windows(2)
+        .find(|pair| (pair[0][0] - x) * (pair[1][0] - x) < 0.0)
+        .map(|pair| {
+            let t = (x - pair[0][0]) / (pair[1][0] - pair[0][0]);
+            pair[0][1] + t * (pair[1][1] - pair[0][1])
+        })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::at;
+
+    #[test]
+    fn a_curve_is_read_where_it_first_passes() {
+        let curve = [[0.0, 1.0], [2.0, 3.0], [1.0, 10.0]];
+        assert_eq!(at(&curve, 1.0), Some(10.0));
+        assert_eq!(at(&curve, 0.5), Some(1.5));
+        assert_eq!(at(&curve, 2.0), Some(3.0));
+        assert_eq!(at(&curve, 2.1), None);
+    }
+}

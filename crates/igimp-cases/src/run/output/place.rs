@@ -1,0 +1,211 @@
+//! Fields at a place that is no particle: the nearest particle's value, and from there on along the plane that fits it and
+//! the particles around it best (theory, eq. 40h). Fields that are linear are exact.
+
+use igimp_assembly::Particles;
+
+use igimp_results::measure::nearest;
+
+/// Particles are around another one as far as their domains reach, and by this share further \[-\].
+const MARGIN: f64 = 0.25;
+
+/// The farthest place from a particle at which its value is carried on, over the half-lengths of its domain \[-\].
+const FARTHEST: f64 = 2.0;
+
+/// Least change of a field for a unit of length that the particles can tell, as a share of their spread \[-\].
+const FLAT: f64 = 1e-12;
+
+/// A place in a body: its nearest particle, and those of the same soil around that. Directions that a plane problem does not
+/// have are zero.
+#[derive(Clone, Debug)]
+pub(crate) struct Place {
+    /// The number of the nearest particle.
+    pub(crate) nearest: usize,
+    /// From that particle to the place \[m\].
+    offset: [f64; 3],
+    /// Numbers of those around it, and the way to them \[m\].
+    around: Vec<(usize, [f64; 3])>,
+}
+
+impl Place {
+    /// The place of a point \[m\], where the particles stand now; none without a particle within reach \[m\].
+    pub(crate) fn of<const D: usize>(
+        particles: &Particles<D>,
+        point: &[f64; D],
+        reach: f64,
+    ) -> Option<Self> {
+        nearest(particles, point, reach).map(|particle| Self::near(particles, particle, point))
+    }
+
+    /// The place of a point near a particle.
+    pub(crate) fn near<const D: usize>(
+        particles: &Particles<D>,
+        particle: usize,
+        point: &[f64; D],
+    ) -> Self {
+        let (x, half_length) = (&particles.x, &particles.half_length);
+        let way = |to: &[f64; D]| {
+            let mut way = [0.0; 3];
+            for axis in 0..D {
+                way[axis] = to[axis] - x[particle][axis];
+            }
+            way
+        };
+        let is_around = |other: usize| {
+            other != particle
+                && particles.law[other] == particles.law[particle]
+                && (0..D).all(|axis| {
+                    let reach = half_length[particle][axis] + half_length[other][axis];
+                    (x[other][axis] - x[particle][axis]).abs() <= (1.0 + MARGIN) * reach
+                })
+        };
+        let mut offset = way(point);
+        for axis in 0..D {
+            let farthest = FARTHEST * half_length[particle][axis];
+            offset[axis] = offset[axis].clamp(-farthest, farthest);
+        }
+        Self {
+            nearest: particles.number[particle],
+            offset,
+            around: (0..particles.len())
+                .filter(|&other| is_around(other))
+                .map(|other| (particles.number[other], way(&x[other])))
+                .collect(),
+        }
+    }
+
+    /// The value of a field of particles at the place; not a number where its particle is not there.
+    pub(crate) fn value<const D: usize>(
+        &self,
+        particles: &Particles<D>,
+        field: impl Fn(usize) -> f64,
+    ) -> f64 {
+        let Some(particle) = particles.place_of(self.nearest) else {
+            return f64::NAN;
+        };
+        let own = field(particle);
+        if self.offset.iter().all(|&offset| offset == 0.0) {
+            return own;
+        }
+        let changes = self.around.iter().filter_map(|(number, way)| {
+            let change = field(particles.place_of(*number)?) - own;
+            change.is_finite().then_some((*way, change))
+        });
+        own + along_plane(&self.offset, &changes.collect::<Vec<_>>())
+    }
+}
+
+/// How much a field changes on the way to an offset \[m\], from its changes on the ways to others: along the plane with the
+/// least squares, and by no more than on any of the ways. Directions that no way has have no slope.
+fn along_plane(offset: &[f64; 3], changes: &[([f64; 3], f64)]) -> f64 {
+    let (mut squares, mut products) = ([[0.0; 3]; 3], [0.0; 3]);
+    for (way, change) in changes {
+        for row in 0..3 {
+            products[row] += way[row] * change;
+            for column in 0..3 {
+                squares[row][column] += way[row] * way[column];
+            }
+        }
+    }
+    let spread: f64 = (0..3).map(|axis| squares[axis][axis]).sum();
+    if spread <= 0.0 {
+        return 0.0;
+    }
+    for axis in 0..3 {
+        squares[axis][axis] += FLAT * spread;
+    }
+    let slope = solved(squares, products);
+    let change: f64 = std::iter::zip(slope, offset).map(|(s, o)| s * o).sum();
+    let largest = changes
+        .iter()
+        .fold(0.0, |largest: f64, (_, change)| largest.max(change.abs()));
+    change.clamp(-largest, largest)
+}
+
+/// The solution of a symmetric positive system, by elimination.
+fn solved(mut matrix: [[f64; 3]; 3], mut right: [f64; 3]) -> [f64; 3] {
+    for pivot in 0..3 {
+        for row in pivot + 1..3 {
+            let factor = matrix[row][pivot] / matrix[pivot][pivot];
+            for column in pivot..3 {
+                matrix[row][column] -= factor * matrix[pivot][column];
+            }
+            right[row] -= factor * right[pivot];
+        }
+    }
+    let mut solution = [0.0; 3];
+    for row in (0..3).rev() {
+        let known: f64 = (row + 1..3)
+            .map(|column| matrix[row][column] * solution[column])
+            .sum();
+        solution[row] = (right[row] - known) / matrix[row][row];
+    }
+    solution
+}
+
+#[cfg(test)]
+mod tests {
+    use igimp_assembly::ParticleSeed;
+
+    use super::*;
+
+    /// Two by two points in each of six by four cells of 0.5 m.
+    fn body() -> Particles<2> {
+        let seed = |k: usize| ParticleSeed {
+            x: [
+                0.125 + 0.25 * (k % 12) as f64,
+                0.125 + 0.25 * (k / 12) as f64,
+            ],
+            half_length: [0.125; 2],
+            volume: 0.0625,
+            density: 1.0,
+            law: 0,
+            centroid: [0.0; _],
+        };
+        Particles::new(&(0..96).map(seed).collect::<Vec<_>>()).unwrap()
+    }
+
+    /// GOAL: a linear field is exact anywhere in the body: within, at its sides and in its corners.
+    #[test]
+    fn a_linear_field_is_exact() {
+        let particles = body();
+        let linear = |x: &[f64; 2]| 70.0 + 3.0 * x[0] - 18.0 * x[1];
+        for point in [
+            [1.3, 0.77],
+            [0.0, 1.1],
+            [3.0, 2.0],
+            [0.0, 0.0],
+            [1.125, 0.875],
+        ] {
+            let place = Place::of(&particles, &point, 1.0).unwrap();
+            let value = place.value(&particles, |p| linear(&particles.x[p]));
+            assert!((value - linear(&point)).abs() < 1e-9, "{point:?}: {value}");
+        }
+    }
+
+    /// GOAL: at a particle the value is its own; between particles it stays between those around it.
+    #[test]
+    fn a_jump_is_not_overshot() {
+        let particles = body();
+        let jump = |p: usize| f64::from(u8::from(particles.x[p][0] > 1.5));
+        let at = |x: f64| {
+            let place = Place::of(&particles, &[x, 0.9], 1.0).unwrap();
+            place.value(&particles, jump)
+        };
+        for k in 0..60 {
+            let value = at(0.05 * f64::from(k));
+            assert!((-1.0..=2.0).contains(&value), "{value}");
+        }
+        let at_particle = Place::of(&particles, &[1.375, 0.875], 1.0).unwrap();
+        assert!(at_particle.value(&particles, jump).abs() < 1e-15);
+        assert!(Place::of(&particles, &[9.0, 0.9], 1.0).is_none());
+    }
+
+    /// GOAL: soil of another law across a line does not count, and a row of particles knows its own direction.
+    #[test]
+    fn what_is_not_known_is_flat() {
+        let offset = [0.1, 0.2, 0.0];
+        let row = [([0.5, 0.0, 0.0], 1.0), ([-0.5, 0.0, 0.0], -1.0)];
+        assert!((along_plane(&offset, &row) - 0.2).abs() < 1e-9);
+        assert!(along_plane(&offset, &[]).abs() < 1e-15);
+    }
+}

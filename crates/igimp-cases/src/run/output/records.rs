@@ -1,0 +1,257 @@
+//! What a run records: curves and the histories at monitors, one row per recorded moment.
+
+use igimp_assembly::{Particles, Reinforcement, RigidBody, SharedLaw};
+use igimp_geometry::SeedError;
+
+use super::place::Place;
+use crate::error::CaseError;
+use crate::run::model::reduced;
+use crate::run::state::Controls;
+use crate::run::{reinforcement, rigid};
+use igimp_model::{Case, CheckTime, Field, Quantity};
+use igimp_results::fields;
+use igimp_results::tables::table::Table;
+
+/// A state that is recorded: the end of a step, or of a trial in a strength reduction.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Moment<'a, const D: usize = 2> {
+    /// Number of the stage, from 0.
+    pub(crate) stage: usize,
+    /// Number of the step (or trial) in its stage, from 1; 0 before the first.
+    pub number: usize,
+    /// Share of the stage that is done \[-\].
+    pub(crate) progress: f64,
+    /// The particles.
+    pub(crate) particles: &'a Particles<D>,
+    /// The rigid bodies that are there.
+    pub(crate) rigid: &'a [RigidBody<D>],
+    /// The reinforcement that is there.
+    pub(crate) reinforcement: &'a [Reinforcement<D>],
+    /// What acts on them.
+    pub(crate) controls: &'a Controls,
+    /// Resistance of the footing \[N/m\].
+    pub(crate) resistance: f64,
+    /// Share of particles that yield \[-\].
+    pub(crate) plastic_share: f64,
+}
+
+impl<const D: usize> Moment<'_, D> {
+    /// Length of the largest particle displacement \[m\].
+    pub(crate) fn largest_displacement(&self) -> f64 {
+        largest_displacement(self.particles)
+    }
+}
+
+/// Length of the largest particle displacement \[m\].
+pub(crate) fn largest_displacement<const D: usize>(particles: &Particles<D>) -> f64 {
+    particles
+        .displacement
+        .iter()
+        .map(fields::length)
+        .fold(0.0, f64::max)
+}
+
+/// The tables of a run, and the material points that its monitors watch.
+#[derive(Debug)]
+pub(crate) struct Records {
+    /// By curve of the case.
+    pub(crate) curves: Vec<Table>,
+    /// By monitor of the case.
+    pub(crate) monitors: Vec<Table>,
+    /// By rigid body of the case.
+    pub(crate) rigid: Vec<Table>,
+    /// The material point that each monitor follows.
+    pub(crate) watched: Vec<Place>,
+    /// By check of the case: the largest value of its quantity in its stage so far; not a number before.
+    pub(crate) peaks: Vec<f64>,
+    /// Middle of the interval of the factor of safety found last \[-\].
+    pub(crate) factor_of_safety: f64,
+    laws: Vec<SharedLaw>,
+    /// Particles of all bodies, also of those that come later.
+    seeded: usize,
+}
+
+impl Records {
+    /// Empty tables; monitors stand in the undeformed bodies.
+    pub(crate) fn new<const D: usize>(
+        case: &Case<D>,
+        laws: &[SharedLaw],
+        particles: &Particles<D>,
+    ) -> Result<Self, CaseError> {
+        let curves = case
+            .curves
+            .iter()
+            .map(|curve| Table::new(&*curve.name, &[&curve.x.label, &curve.y.label]))
+            .collect();
+        let monitors = case
+            .monitors
+            .iter()
+            .map(|monitor| {
+                let mut header = vec!["stage".into(), "step".into(), "progress_[-]".into()];
+                header.extend(monitor.record.iter().map(|&field| fields::header(field)));
+                Table {
+                    name: monitor.name.clone(),
+                    header,
+                    rows: Vec::new(),
+                }
+            })
+            .collect();
+        let rigid = case.rigid.iter().map(|part| rigid::table::<D>(&part.name));
+        let watched = case
+            .monitors
+            .iter()
+            .map(|monitor| {
+                Place::of(particles, &monitor.point, f64::INFINITY)
+                    .ok_or(CaseError::Seed(SeedError::EmptyBody))
+            })
+            .collect::<Result<_, _>>()?;
+        Ok(Self {
+            curves,
+            monitors,
+            rigid: rigid.collect(),
+            watched,
+            peaks: vec![f64::NAN; case.checks.len()],
+            factor_of_safety: f64::NAN,
+            laws: laws.to_vec(),
+            seeded: particles.len(),
+        })
+    }
+
+    /// How many particles the case has numbers for.
+    pub(crate) fn seeded(&self) -> usize {
+        self.seeded
+    }
+
+    /// How many laws particles number.
+    pub(crate) fn law_count(&self) -> usize {
+        self.laws.len()
+    }
+
+    /// The laws at the strength that acts; full strength where none can be made of it.
+    fn laws_at<const D: usize>(&self, moment: &Moment<'_, D>) -> Vec<SharedLaw> {
+        reduced(&self.laws, &moment.controls.srf).unwrap_or_else(|_| self.laws.clone())
+    }
+
+    /// A field at the material point of a monitor; not a number while that is not there. The length of a displacement is that
+    /// of its components there.
+    fn at_monitor<const D: usize>(
+        &self,
+        monitor: usize,
+        field: Field,
+        moment: &Moment<'_, D>,
+        laws: &[SharedLaw],
+    ) -> f64 {
+        let (place, particles) = (&self.watched[monitor], moment.particles);
+        if field == Field::Displacement {
+            let component =
+                |axis: usize| place.value(particles, |p| particles.displacement[p][axis]);
+            return fields::length::<D>(&std::array::from_fn(component));
+        }
+        place.value(particles, |p| fields::value(field, particles, p, laws))
+    }
+
+    /// A quantity of a moment, in SI units.
+    pub(crate) fn quantity<const D: usize>(
+        &self,
+        case: &Case<D>,
+        of: Quantity,
+        moment: &Moment<'_, D>,
+    ) -> f64 {
+        let controls = moment.controls;
+        match of {
+            Quantity::Settlement(_) => controls.settlement,
+            Quantity::Reaction(_) => moment.resistance,
+            Quantity::Rigid(body, of) => rigid::quantity(case, controls, moment.rigid, body, of),
+            Quantity::Reinforcement(member, of) => {
+                reinforcement::quantity(controls, moment.reinforcement, member, of)
+            }
+            Quantity::LoadFactor(load) => controls.factors[load],
+            Quantity::Monitor(monitor, field) => {
+                self.at_monitor(monitor, field, moment, &self.laws_at(moment))
+            }
+            Quantity::LargestDisplacement => moment.largest_displacement(),
+            Quantity::GravityFactor => controls.gravity,
+            Quantity::HorizontalFactor => controls.acceleration[0],
+            Quantity::ReductionFactor => controls.reduction(),
+            Quantity::Step => moment.number as f64,
+            Quantity::PlasticShare => moment.plastic_share,
+            Quantity::FactorOfSafety => self.factor_of_safety,
+            Quantity::Top => std::iter::zip(&moment.particles.x, &moment.particles.half_length)
+                .map(|(x, l)| x[D - 1] + l[D - 1])
+                .fold(f64::NEG_INFINITY, f64::max),
+        }
+    }
+
+    /// Takes a moment into the peaks of the checks that look for one in its stage.
+    fn raise_peaks<const D: usize>(&mut self, case: &Case<D>, moment: &Moment<'_, D>) {
+        let last = case.stages.len() - 1;
+        for (k, check) in case.checks.iter().enumerate() {
+            if check.at == CheckTime::Peak && check.stage.unwrap_or(last) == moment.stage {
+                // The larger of two, and the number where only one is one.
+                self.peaks[k] = self.peaks[k].max(self.quantity(case, check.of, moment));
+            }
+        }
+    }
+
+    /// Records a moment: the rows for the curves and the monitors that it belongs to, which are
+    /// also kept. The moment before a later stage belongs to the curves of that stage alone.
+    pub(crate) fn record<const D: usize>(
+        &mut self,
+        case: &Case<D>,
+        moment: &Moment<'_, D>,
+    ) -> Rows {
+        let reopens = moment.number == 0 && moment.stage > 0;
+        self.raise_peaks(case, moment);
+        let mut rows = Rows {
+            curves: vec![None; case.curves.len()],
+            monitors: Vec::new(),
+            rigid: vec![None; case.rigid.len()],
+            peaks: self.peaks.clone(),
+        };
+        for (k, curve) in case.curves.iter().enumerate() {
+            let belongs = match curve.stage {
+                Some(stage) => stage == moment.stage,
+                None => !reopens,
+            };
+            if !belongs {
+                continue;
+            }
+            let row = [&curve.x, &curve.y]
+                .map(|axis| self.quantity(case, axis.of, moment) / axis.divide_by)
+                .to_vec();
+            self.curves[k].push(row.clone());
+            rows.curves[k] = Some(row);
+        }
+        for (k, monitor) in case.monitors.iter().enumerate().filter(|_| !reopens) {
+            let laws = self.laws_at(moment);
+            let mut row = vec![
+                moment.stage as f64 + 1.0,
+                moment.number as f64,
+                moment.progress,
+            ];
+            let recorded = monitor.record.iter();
+            row.extend(recorded.map(|&field| self.at_monitor(k, field, moment, &laws)));
+            self.monitors[k].push(row.clone());
+            rows.monitors.push(row);
+        }
+        for body in moment.controls.placed().filter(|_| !reopens) {
+            let row = rigid::row(case, moment, body);
+            self.rigid[body].push(row.clone());
+            rows.rigid[body] = Some(row);
+        }
+        rows
+    }
+}
+
+/// The rows of one moment.
+#[derive(Debug)]
+pub(crate) struct Rows {
+    /// By curve; none where the curve does not record the stage.
+    pub(crate) curves: Vec<Option<Vec<f64>>>,
+    /// By monitor.
+    pub(crate) monitors: Vec<Vec<f64>>,
+    /// By rigid body; none where it is not there.
+    pub(crate) rigid: Vec<Option<Vec<f64>>>,
+    /// By check: the peak so far.
+    pub(crate) peaks: Vec<f64>,
+}

@@ -1,0 +1,119 @@
+//! Rigid bodies as checkpoints keep them: where they stand, and what contact has left behind. What they
+//! are is in the case.
+
+use igimp_assembly::{ContactNode, RigidBody};
+use igimp_solver::Body;
+use serde::{Deserialize, Serialize};
+
+use crate::error::CaseError;
+use crate::run::rigid;
+use crate::run::state::Controls;
+use igimp_model::Case;
+
+/// What steps change of a rigid body.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(crate) struct SavedBody {
+    origin: Vec<f64>,
+    turn: Vec<Vec<f64>>,
+    angle: [f64; 3],
+    knots: Vec<SavedKnot>,
+}
+
+/// What steps change of a knot of its surface.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+struct SavedKnot {
+    pressure: f64,
+    shear: [f64; 2],
+    area: f64,
+    gap: f64,
+    is_closed: bool,
+    slips: bool,
+    is_broken: bool,
+}
+
+/// The rigid bodies of a state.
+pub(crate) fn all<const D: usize>(body: &Body<D>) -> Vec<SavedBody> {
+    body.rigid.iter().map(SavedBody::of).collect()
+}
+
+impl SavedBody {
+    fn of<const D: usize>(body: &RigidBody<D>) -> Self {
+        let knots = body.contact.knots.iter();
+        Self {
+            origin: body.pose.origin.to_vec(),
+            turn: body.pose.turn.iter().map(|row| row.to_vec()).collect(),
+            angle: body.pose.angle,
+            knots: knots
+                .map(|knot| {
+                    let &ContactNode {
+                        pressure,
+                        shear,
+                        area,
+                        gap,
+                        is_closed,
+                        slips,
+                        is_broken,
+                    } = knot;
+                    SavedKnot {
+                        pressure,
+                        shear,
+                        area,
+                        gap,
+                        is_closed,
+                        slips,
+                        is_broken,
+                    }
+                })
+                .collect(),
+        }
+    }
+}
+
+/// The rigid bodies that are there under controls, as they were saved; or why they cannot be.
+pub(crate) fn taken_up<const D: usize>(
+    case: &Case<D>,
+    laws: usize,
+    controls: &Controls,
+    saved: &[SavedBody],
+) -> Result<Result<Vec<RigidBody<D>>, String>, CaseError> {
+    if controls.rigid.len() != case.rigid.len() || controls.placed().count() != saved.len() {
+        let (there, bodies) = (saved.len(), case.rigid.len());
+        return Ok(Err(format!(
+            "{there} rigid bodies were saved, which do not fit the {bodies} of the case"
+        )));
+    }
+    let mut bodies = Vec::with_capacity(saved.len());
+    for (index, own) in std::iter::zip(controls.placed(), saved) {
+        let mut body = rigid::made(case, index, laws)?;
+        if own.knots.len() != body.contact.knots.len() {
+            let (found, knots) = (own.knots.len(), body.contact.knots.len());
+            return Ok(Err(format!(
+                "rigid body {index} was saved with {found} knots, and has {knots}"
+            )));
+        }
+        let rows: Option<Vec<[f64; D]>> = (own.turn.iter())
+            .map(|row| row.as_slice().try_into().ok())
+            .collect();
+        let turn = rows.and_then(|rows| rows.try_into().ok());
+        let (Some(turn), Ok(origin)) = (turn, own.origin.as_slice().try_into()) else {
+            return Ok(Err(format!(
+                "rigid body {index} was not saved in {D} dimensions"
+            )));
+        };
+        (body.pose.origin, body.pose.turn) = (origin, turn);
+        body.pose.angle = own.angle;
+        for (knot, own) in body.contact.knots.iter_mut().zip(&own.knots) {
+            *knot = ContactNode {
+                pressure: own.pressure,
+                shear: own.shear,
+                area: own.area,
+                gap: own.gap,
+                is_closed: own.is_closed,
+                slips: own.slips,
+                is_broken: own.is_broken,
+            };
+        }
+        bodies.push(body);
+    }
+    Ok(Ok(bodies))
+}

@@ -1,0 +1,212 @@
+//! Construction stages: bodies come and go, consist of something else, water rises and falls.
+//!
+//! Whatever a stage changes is changed at its beginning. The nodal forces that would then keep the ground where it is
+//! hold it, and are let go over the steps of the stage (theory, eq. 55): the weight of a fill comes on, the support that
+//! removed soil gave goes, and each step ends in equilibrium.
+
+use std::sync::Arc;
+
+use igimp_assembly::{
+    Kinematics, ParticleFields, Particles, PoreSite, PoreWater as _, Stencils, System,
+};
+use igimp_material::{ConstitutiveModel, ScaledLaw, TangentKind, elastic_left_cauchy_green_of};
+
+use super::loading::let_go;
+use crate::error::CaseError;
+use crate::run::model::{Model, gravity_of_weights};
+use crate::run::resume::Resumption;
+use crate::run::session::{Ended, Session};
+use crate::run::state::State;
+use igimp_model::{Construction, Drainage, Ground, StageKind};
+use igimp_results::summary::StageSummary;
+use igimp_text::short;
+
+/// Marches a state to the end of a construction stage; one that an earlier run left within it began with `start`.
+pub(crate) fn build<const D: usize>(
+    session: &mut Session<'_, D>,
+    (start, state): (Option<&State<D>>, &mut State<D>),
+    number: usize,
+    summary: &mut StageSummary,
+    resumption: Option<&Resumption>,
+) -> Result<Ended, CaseError> {
+    let model = session.model;
+    let stage = &model.case.stages[number];
+    let StageKind::Construction(own) = &stage.kind else {
+        return Ok(Ended::Completed(crate::run::REACHED_ITS_END.to_owned()));
+    };
+    let changed = changed(model, start.unwrap_or(state), own)?;
+    let held = holding(model, &changed, number)?;
+    if resumption.is_none() {
+        for &body in &own.place {
+            if let Some(text) = moved_below(model, state, body) {
+                session.warn(text);
+            }
+        }
+        *state = changed;
+    }
+    let_go(
+        session,
+        state,
+        (number, Some(Arc::new(held))),
+        summary,
+        resumption,
+    )
+}
+
+/// A state with everything that a stage changes.
+fn changed<const D: usize>(
+    model: &Model<'_, D>,
+    start: &State<D>,
+    own: &Construction,
+) -> Result<State<D>, CaseError> {
+    let case = model.case;
+    let mut state = start.clone();
+    let body_of =
+        |particles: &Particles<D>, particle: usize| model.seeded.body[particles.number[particle]];
+    if !own.place.is_empty()
+        && let Some(later) = &model.later
+    {
+        let placed = later.keeping(|particle| own.place.contains(&body_of(later, particle)))?;
+        state.body.particles = state.body.particles.joined_by(&placed);
+        state.body.particles.clear_of(&state.body.rigid);
+    }
+    if !own.remove.is_empty() {
+        let particles = &state.body.particles;
+        let stays = |particle| !own.remove.contains(&body_of(particles, particle));
+        state.body.particles = particles.keeping(stays)?;
+    }
+    let mut fields = (*state.body.particles).clone();
+    let materials = case.materials.len();
+    let ground = case.ground();
+    for particle in 0..fields.x.len() {
+        let body = model.seeded.body[fields.number[particle]];
+        if own.dissipate {
+            fields.excess[particle] = 0.0;
+        }
+        let new = own.materials.iter().find(|(of, _)| *of == body);
+        if let Some(&(_, material)) = new {
+            let law = fields.law[particle];
+            fields.law[particle] = law - law % materials + material;
+            // What is placed is free of stress, whatever its law speaks of.
+            if !own.place.contains(&body) {
+                drain_as(model, &state, &mut fields, particle, law);
+            }
+            let stretch = match case.method.kinematics {
+                Kinematics::FiniteStrain => state.body.particles.volume_ratio(particle),
+                Kinematics::SmallStrain => 1.0,
+            };
+            become_soil_of((model, &ground), &mut fields, (particle, stretch), material)?;
+        }
+    }
+    state.body.particles = Particles::from_fields(fields)?;
+    state.controls.water = own.water.or(state.controls.water);
+    Ok(state)
+}
+
+/// Makes the stress of a particle that had another law before that of which its law speaks, total or effective; the total
+/// stress stays. The excess pressure of soil that drains from now on goes, and what it bore is out of balance.
+fn drain_as<const D: usize>(
+    model: &Model<'_, D>,
+    state: &State<D>,
+    fields: &mut ParticleFields<D>,
+    particle: usize,
+    law_before: usize,
+) {
+    let materials = &model.case.materials;
+    let law = fields.law[particle];
+    let [before, drainage] = [law_before, law].map(|law| materials[law % materials.len()].drainage);
+    if (before == Drainage::Total) != (drainage == Drainage::Total) {
+        let water = state.controls.water.and_then(|k| model.ground_water(k));
+        let given = water.map_or(0.0, |water| {
+            let site = PoreSite {
+                law,
+                ..state.body.particles.pore_site(particle)
+            };
+            state.controls.gravity * water.at(site).pressure
+        });
+        let taken_over = given - (fields.pore_pressure[particle] + fields.excess[particle]);
+        for axis in 0..3 {
+            fields.sigma[particle][axis][axis] += taken_over;
+        }
+        fields.pore_pressure[particle] = given;
+    }
+    if !matches!(drainage, Drainage::Undrained { .. }) {
+        fields.excess[particle] = 0.0;
+    }
+}
+
+/// Gives a particle weight, strength and stiffness of a material; its stress stays, of which `stretch` makes that which goes with
+/// the elastic strain (theory, eq. 15).
+fn become_soil_of<const D: usize>(
+    (model, ground): (&Model<'_, D>, &Ground<D>),
+    fields: &mut ParticleFields<D>,
+    (particle, stretch): (usize, f64),
+    material: usize,
+) -> Result<(), CaseError> {
+    let case = model.case;
+    let gravity = gravity_of_weights(case.gravity);
+    let place = fields.x[particle];
+    let soil = &case.materials[material];
+    let before = model.laws[fields.law[particle]].elasticity().young();
+    let shared = (before / soil.young - 1.0).abs() > 1e-12;
+    let mut ratios = soil.ratios_at(&place, ground);
+    if shared {
+        // In cells of several soils all have one stiffness, that of the cell.
+        ratios.stiffness = 1.0;
+    }
+    fields.ratios[particle] = ratios;
+    fields.mass[particle] =
+        fields.volume0[particle] * soil.unit_weight_at(&place, ground) / gravity;
+    let tau = fields.sigma[particle].map(|row| row.map(|stress| stress * stretch));
+    let law = ScaledLaw::new(&*model.laws[fields.law[particle]], ratios)?;
+    let b_e = elastic_left_cauchy_green_of::<D>(law.elasticity(), &tau);
+    fields.b_e[particle] = b_e;
+    Ok(())
+}
+
+/// The nodal forces that keep a changed state where it is \[N/m\].
+fn holding<const D: usize>(
+    model: &Model<'_, D>,
+    state: &State<D>,
+    stage: usize,
+) -> Result<Vec<[f64; D]>, CaseError> {
+    let method = model.method(model.case.stages[stage].geometry);
+    let conditions = model.conditions(&state.controls, &state.controls, 0.0)?;
+    let particles = &state.body.particles;
+    let stencils = Stencils::build(particles, &method, &conditions)?;
+    let structures = (&state.body.rigid[..], &state.body.reinforcement[..]);
+    let system = System::with_structures(particles, structures, &stencils, &conditions, &method)?
+        .with_load_points(&state.body.load_points)?;
+    let still = vec![[0.0; D]; system.node_count()];
+    let trial = system.evaluate(&still, TangentKind::Elastic)?;
+    Ok(system.holding_forces(&trial))
+}
+
+/// What is to be said where the ground has moved by more than a quarter of a cell around a body that is placed where the
+/// case draws it.
+fn moved_below<const D: usize>(
+    model: &Model<'_, D>,
+    start: &State<D>,
+    body: usize,
+) -> Option<String> {
+    let part = &model.case.bodies[body];
+    let cell = model.case.grid.smallest_cell();
+    let (lower, upper) = part.region.bounds();
+    let near = |x: &[f64; D]| {
+        (0..D).all(|axis| (lower[axis] - cell[axis]..=upper[axis] + cell[axis]).contains(&x[axis]))
+    };
+    let particles = &start.body.particles;
+    let moved = (0..particles.len())
+        .filter(|&particle| near(&particles.x[particle]))
+        .map(|particle| particles.displacement[particle][D - 1].abs())
+        .fold(0.0, f64::max);
+    (moved > 0.25 * cell[D - 1]).then(|| {
+        format!(
+            "\"{}\" is placed where it is drawn, but the ground around it has moved by up to {} m upwards or \
+             downwards; draw it to the level that it is to be filled from, or set reset_displacements in the stage \
+             before if that is meant",
+            part.name,
+            short(moved)
+        )
+    })
+}

@@ -1,0 +1,65 @@
+//! The stresses of level ground: the weight above, and K₀ times that sideways (theory, eqs. 36
+//! and 37).
+
+use igimp_assembly::{Particles, PoreWater as _};
+use igimp_material::ConstitutiveModel;
+
+use crate::error::CaseError;
+use crate::run::model::Model;
+use crate::run::state::State;
+
+/// Sets the stresses of level ground under full gravity in an undeformed body.
+///
+/// The vertical stress is the weight of the ground above a particle, layer by layer, less the pressure of water in the
+/// pores where the law speaks of effective stress; the horizontal ones are K₀ times that. The elastic strain follows from the stress, so that the
+/// state is what the law would have returned; deformation counts from here.
+pub(crate) fn level_ground<const D: usize>(
+    model: &Model<'_, D>,
+    state: &mut State<D>,
+) -> Result<(), CaseError> {
+    let case = model.case;
+    let ground = case.ground();
+    let water = state.controls.water.and_then(|k| model.ground_water(k));
+    let mut fields = (*state.body.particles).clone();
+    for particle in 0..fields.x.len() {
+        let x = fields.x[particle];
+        let material = &case.materials[fields.law[particle] % case.materials.len()];
+        let number = fields.number[particle];
+        let vertical = match &water {
+            None => -ground.weight_above(&x),
+            Some(water) => water.effective_weight(&ground, number, material, &x),
+        };
+        let k0 = material
+            .k0
+            .unwrap_or(material.poisson / (1.0 - material.poisson));
+        let mut sigma = [k0 * vertical; 3];
+        sigma[D - 1] = vertical;
+        let answer = |law: &dyn ConstitutiveModel| {
+            let excess = law.yield_function(&sigma, &fields.history[particle]);
+            (excess <= 1e-9 * law.stress_scale(&sigma)).then(|| law.elasticity().strain(&sigma))
+        };
+        let strain = state
+            .body
+            .particles
+            .ask_law(particle, &model.laws, answer)?;
+        let Some(strain) = strain else {
+            return Err(CaseError::InitialStress {
+                material: material.name.clone(),
+                position: x.to_vec(),
+                k0,
+            });
+        };
+        if let Some(water) = &water {
+            let site = state.body.particles.pore_site(particle);
+            // At full gravity, as the stress.
+            fields.pore_pressure[particle] = water.at(site).pressure;
+        }
+        for axis in 0..3 {
+            fields.sigma[particle][axis][axis] = sigma[axis];
+            fields.b_e[particle][axis][axis] = (2.0 * strain[axis]).exp();
+        }
+    }
+    state.body.particles = Particles::from_fields(fields)?;
+    state.controls.gravity = 1.0;
+    Ok(())
+}

@@ -1,0 +1,229 @@
+//! Limit loads on the given geometry: where the march of a stage finds no equilibrium at a greater load, the path of
+//! equilibria goes on with the load factor as an unknown (theory, eqs. 33a to 33f).
+
+use std::cell::RefCell;
+use std::ops::ControlFlow;
+
+use igimp_assembly::Geometry;
+use igimp_solver::{
+    Accepted, ContinuationSettings, ContinuationState, Observer, StepError, follow,
+};
+
+use super::limit;
+use super::safety::displacement_scale;
+use crate::error::CaseError;
+use crate::run::Event;
+use crate::run::output::records::Moment;
+use crate::run::rigid;
+use crate::run::session::{Ended, Session};
+use crate::run::state::{Controls, RigidTrack, State};
+use igimp_model::{RigidMove, Stage, StageKind};
+use igimp_results::summary::{PathEnd, PathPoint, PathSummary, StageSummary};
+use igimp_text::short;
+
+/// The first change of the load over the smallest one at which the march found no equilibrium \[-\].
+const FIRST_CHANGE: f64 = 0.5;
+
+/// Whether a stage that found no equilibrium goes on along its path.
+pub(crate) fn is_sought(stage: &Stage, summary: &StageSummary, error: &StepError) -> bool {
+    stage.stop_when.no_equilibrium
+        && stage.geometry == Geometry::Given
+        && match &stage.kind {
+            StageKind::Gravity { .. } | StageKind::Load { .. } => true,
+            StageKind::Rigid(moves) => !moves.iter().any(RigidMove::is_moved),
+            _ => false,
+        }
+        && summary.reached > 0.0
+        && error.failure.is_want_of_equilibrium()
+}
+
+/// The factor that a stage drives: of its first load, of gravity, of the horizontal acceleration, or of the forces on its rigid
+/// bodies, the share of them that was `reached` \[-\].
+fn load_factor(kind: &StageKind, controls: &Controls, reached: f64) -> f64 {
+    match kind {
+        StageKind::Rigid(_) => reached,
+        StageKind::Load { loads, .. } => loads.first().map_or(0.0, |&load| controls.factors[load]),
+        StageKind::Gravity {
+            horizontal: Some(_),
+            ..
+        } => controls.acceleration[0],
+        _ => controls.gravity,
+    }
+}
+
+/// Follows the path of a stage on from the last equilibrium of its march, from controls to controls.
+pub(crate) fn follow_on<const D: usize>(
+    session: &mut Session<'_, D>,
+    state: &mut State<D>,
+    (number, from, to): (usize, &Controls, &Controls),
+    summary: &mut StageSummary,
+) -> Result<Ended, CaseError> {
+    let model = session.model;
+    let stage = &model.case.stages[number];
+    let tracks = RefCell::new(state.controls.tracks());
+    let at = |reached: f64| from.towards(to, reached).with_tracks(&tracks.borrow());
+    let load_path = |before: f64, after: f64| {
+        let grid = model.grid(model.lowered(from));
+        model.conditions_on(grid, (&at(before), &at(after)), 0.0)
+    };
+    let march = model.march_settings(stage.steps);
+    let smallest = march.cut_factor.powi(march.cuts as i32) / stage.steps as f64;
+    let settings = ContinuationSettings {
+        first_change: FIRST_CHANGE * smallest / summary.reached,
+        ..ContinuationSettings::new(march.newton)
+    };
+    let mut continuation = ContinuationState::start(summary.reached, &settings);
+    let mut workspace = session.workspace();
+    let begins = PathPoint {
+        factor: load_factor(&stage.kind, &state.controls, summary.reached),
+        work: summary.work,
+        displacement: session.displacement(stage.stop_when.monitor, &state.body.particles),
+        ..PathPoint::default()
+    };
+    let mut watch = Watch {
+        number,
+        stage,
+        at: &at,
+        tracks: &tracks,
+        points: vec![begins],
+        end: PathEnd::Lost,
+        limit: None,
+        stopped: Ok(None),
+        session,
+        summary,
+    };
+    let failure = follow(
+        &mut continuation,
+        &mut state.body,
+        &model.method(stage.geometry),
+        &load_path,
+        &settings,
+        &mut workspace,
+        &mut watch,
+    );
+    let Watch {
+        points,
+        end,
+        limit,
+        stopped,
+        ..
+    } = watch;
+    state.controls = at(continuation.factor);
+    summary.reached = continuation.factor;
+    let ended = match (stopped?, failure) {
+        (Some(ended), _) => ended,
+        (None, Some(error)) => Ended::NotConverged(error),
+        (None, None) => Ended::Stopped("the steps of the path ran out".to_owned()),
+    };
+    let path = PathSummary {
+        end,
+        mechanism: limit::mechanism(&points),
+        limit,
+        knee: limit::knee(&points),
+        rise: limit.and_then(|at| limit::rise(&points, &at)),
+        displacement_scale: displacement_scale(model, state),
+        shares: None,
+        points,
+    };
+    if let Some(text) = remark(&path, &stage.name) {
+        session.warn(text);
+    }
+    summary.path = Some(path);
+    Ok(ended)
+}
+
+/// What a reader has to know of the path.
+fn remark(path: &PathSummary, stage: &str) -> Option<String> {
+    let (mechanism, last) = (path.mechanism?, path.limit?);
+    (path.end == PathEnd::StillRising).then(|| {
+        format!(
+            "stage \"{stage}\": the body moves as a mechanism from load factor {} at {} m on, and on the given geometry \
+             the load still rises, by {} % in the last doubling of the work",
+            short(mechanism.factor),
+            short(mechanism.displacement),
+            short(100.0 * path.rise.unwrap_or(0.0)),
+        )
+        + &format!(", to {} at {} m", short(last.factor), short(last.displacement))
+    })
+}
+
+/// Follows a path for its stage.
+struct Watch<'w, 's, const D: usize> {
+    number: usize,
+    stage: &'w Stage,
+    at: &'w dyn Fn(f64) -> Controls,
+    /// What the rigid bodies did so far.
+    tracks: &'w RefCell<Vec<RigidTrack>>,
+    session: &'w mut Session<'s, D>,
+    summary: &'w mut StageSummary,
+    points: Vec<PathPoint>,
+    end: PathEnd,
+    limit: Option<PathPoint>,
+    stopped: Result<Option<Ended>, CaseError>,
+}
+
+impl<const D: usize> Watch<'_, '_, D> {
+    fn step(&mut self, accepted: &Accepted<'_, D>) -> Result<Option<Ended>, CaseError> {
+        let report = accepted.report;
+        let number = self.summary.steps + 1;
+        self.session.tell(&Event::Equilibrium { number, accepted });
+        self.session.tally(self.summary, report)?;
+        let tracks = rigid::tracks(self.session.model.case, &(self.at)(report.to), accepted);
+        self.tracks.replace(tracks);
+        let controls = (self.at)(report.to);
+        let particles = &accepted.body.particles;
+        self.session.record(&Moment {
+            stage: self.number,
+            number: self.summary.steps,
+            progress: report.to,
+            particles,
+            rigid: &accepted.body.rigid,
+            reinforcement: &accepted.body.reinforcement,
+            controls: &controls,
+            resistance: 0.0,
+            plastic_share: report.plastic_share,
+        })?;
+        self.session.tell(&Event::Step {
+            number,
+            progress: report.to,
+            report,
+        });
+        let stop = &self.stage.stop_when;
+        let displacement = self.session.displacement(stop.monitor, particles);
+        let factor = load_factor(&self.stage.kind, &controls, report.to);
+        let point = limit::point(report, factor, self.summary.work, displacement);
+        self.points.push(point);
+        if self.session.interrupted() {
+            return Ok(Some(Ended::Interrupted));
+        }
+        if report.to >= 1.0 {
+            let reason = "the limit lies beyond the load of the stage";
+            return Ok(Some(Ended::Stopped(reason.to_owned())));
+        }
+        let end = limit::end(&self.points, stop.displacement);
+        Ok(end.map(|(end, limit)| {
+            (self.end, self.limit) = (end, Some(limit));
+            let reached = short(report.to);
+            Ended::Stopped(format!("at {reached} of the stage {}", end.sentence()))
+        }))
+    }
+}
+
+impl<const D: usize> Observer<D> for Watch<'_, '_, D> {
+    fn on_step(&mut self, accepted: &Accepted<'_, D>) -> ControlFlow<()> {
+        if self.stopped.as_ref().is_ok_and(Option::is_none) {
+            self.stopped = self.step(accepted);
+        }
+        match self.stopped {
+            Ok(None) => ControlFlow::Continue(()),
+            _ => ControlFlow::Break(()),
+        }
+    }
+
+    fn on_cut(&mut self, error: &StepError) {
+        let told = self.session.tally_cut(self.summary, error);
+        if let (Ok(_), Err(error)) = (&self.stopped, told) {
+            self.stopped = Err(error);
+        }
+    }
+}

@@ -1,0 +1,184 @@
+//! Stages that move the controls from where they are to where the case wants them: gravity, loads,
+//! settlement, level ground.
+
+use std::sync::Arc;
+
+use super::limit_load;
+use crate::error::CaseError;
+use crate::run::output::records::Moment;
+use crate::run::resume::Resumption;
+use crate::run::session::{Ended, Path, Session, Taken, march_path};
+use crate::run::state::{Controls, State};
+use crate::run::{reinforcement, rigid};
+use igimp_model::{Case, RigidDrive, Stage, StageKind};
+use igimp_results::summary::StageSummary;
+use igimp_text::short;
+
+/// The controls at the end of a stage that begins with `start`.
+pub(crate) fn target<const D: usize>(case: &Case<D>, stage: &Stage, start: &Controls) -> Controls {
+    let mut end = start.clone();
+    for &member in &stage.install {
+        end.reinforcement[member].jack = case.reinforcement[member].prestress;
+    }
+    match &stage.kind {
+        StageKind::Gravity {
+            factor,
+            horizontal,
+            across,
+            vertical,
+        } => {
+            end.gravity = *factor;
+            let stated = [horizontal, across, vertical];
+            for (own, stated) in end.acceleration.iter_mut().zip(stated) {
+                *own = stated.unwrap_or(*own);
+            }
+        }
+        StageKind::Load { loads, factor } => {
+            for &load in loads {
+                end.factors[load] = *factor;
+            }
+        }
+        StageKind::Displacement { settlement, .. } => end.settlement += settlement,
+        StageKind::Rigid(moves) => {
+            for own in moves {
+                let body = &mut end.rigid[own.body];
+                for (k, drive) in own.drives.iter().enumerate() {
+                    match drive {
+                        Some(RigidDrive::By(by)) => body.moved[k] += by,
+                        Some(RigidDrive::Force(force)) => body.loaded[k] = Some(*force),
+                        None => {}
+                    }
+                }
+            }
+        }
+        StageKind::Construction(own) => end.water = own.water.or(end.water),
+        StageKind::K0 | StageKind::StrengthReduction(_) | StageKind::RunOut(_) => {}
+    }
+    end.drained =
+        stage.drained || matches!(&stage.kind, StageKind::Construction(own) if own.dissipate);
+    end
+}
+
+/// Marches a state to the end of a loading stage, or on from where an earlier run left it.
+pub(crate) fn load<const D: usize>(
+    session: &mut Session<'_, D>,
+    state: &mut State<D>,
+    number: usize,
+    summary: &mut StageSummary,
+    resumption: Option<&Resumption>,
+) -> Result<Ended, CaseError> {
+    let_go(session, state, (number, None), summary, resumption)
+}
+
+/// The same with forces by node that hold the body at first and are let go on the way \[N/m\].
+pub(crate) fn let_go<const D: usize>(
+    session: &mut Session<'_, D>,
+    state: &mut State<D>,
+    (number, held): (usize, Option<Arc<Vec<[f64; D]>>>),
+    summary: &mut StageSummary,
+    resumption: Option<&Resumption>,
+) -> Result<Ended, CaseError> {
+    let model = session.model;
+    let stage = &model.case.stages[number];
+    if let (StageKind::Rigid(moves), None) = (&stage.kind, resumption) {
+        for text in rigid::begin(model, state, moves)? {
+            session.warn(text);
+        }
+    }
+    if resumption.is_none() {
+        reinforcement::begin(model.case, state, stage);
+    }
+    let from = resumption.map_or_else(|| state.controls.clone(), |left| left.from.clone());
+    let to = target(model.case, stage, &from);
+    let mut resistance = resumption.map_or(0.0, |left| left.resistance);
+    if resumption.is_none() {
+        begin(session, state, number)?;
+    }
+    let path = Path {
+        from: &from,
+        to: &to,
+        drag: &|_, _| 0.0,
+        method: model.method(stage.geometry),
+        settings: model.march_settings(stage.steps),
+        held,
+        left: resumption,
+    };
+    let ended = march_path(
+        session,
+        state,
+        &path,
+        summary,
+        &mut |session, summary, taken| {
+            session.record(&taken.moment(number, summary.steps))?;
+            let end = reason_to_stop(session, stage, resistance, taken);
+            resistance = taken.resistance;
+            let resumption = Resumption {
+                from: from.clone(),
+                march: *taken.accepted.state,
+                resistance,
+                drag: 0.0,
+                end,
+            };
+            if let Some(output) = &mut session.output {
+                let run = &session.summary;
+                output.after_step(number, model, summary, taken, &resumption, run)?;
+            }
+            Ok(resumption.end)
+        },
+    )?;
+    match &ended {
+        Ended::NotConverged(error) if limit_load::is_sought(stage, summary, error) => {
+            limit_load::follow_on(session, state, (number, &from, &to), summary)
+        }
+        _ => Ok(ended),
+    }
+}
+
+/// Records the state before a stage.
+pub(crate) fn begin<const D: usize>(
+    session: &mut Session<'_, D>,
+    state: &State<D>,
+    number: usize,
+) -> Result<(), CaseError> {
+    session.record(&Moment {
+        stage: number,
+        number: 0,
+        progress: 0.0,
+        particles: &state.body.particles,
+        rigid: &state.body.rigid,
+        reinforcement: &state.body.reinforcement,
+        controls: &state.controls,
+        resistance: 0.0,
+        plastic_share: 0.0,
+    })
+}
+
+/// The condition of the case that ends the stage after a step, if one does.
+fn reason_to_stop<const D: usize>(
+    session: &Session<'_, D>,
+    stage: &Stage,
+    resistance_before: f64,
+    taken: &Taken<'_, D>,
+) -> Option<String> {
+    let stop = &stage.stop_when;
+    let particles = &taken.accepted.body.particles;
+    if let Some(limit) = stop.displacement
+        && session.displacement(stop.monitor, particles) > limit
+    {
+        let whose = session.whose_displacement(stop.monitor);
+        return Some(format!("{whose} exceeds {} m", short(limit)));
+    }
+    if let Some(limit) = stop.load_grows_less_than {
+        // A step that was cut may grow by its share of the limit.
+        let report = taken.accepted.report;
+        let share = (report.to - report.from) * stage.steps as f64;
+        let growth = taken.resistance - resistance_before;
+        if resistance_before > 0.0 && growth < limit * share * resistance_before {
+            return Some(format!(
+                "the resistance grows by less than {} % in a step",
+                short(100.0 * limit)
+            ));
+        }
+    }
+    None
+}

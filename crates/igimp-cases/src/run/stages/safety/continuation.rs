@@ -1,0 +1,491 @@
+//! The factor of safety as the limit of a path of equilibria, the strength reduction factor an unknown (theory,
+//! eqs. 33a to 33f).
+
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+use igimp_assembly::StepWork;
+use igimp_solver::{
+    Accepted, Body, ContinuationSettings, ContinuationState, Observer, StepError, StepFailure,
+    follow,
+};
+
+use super::criterion::displacement_scale;
+use super::shares::{LastStep, shares};
+use super::{names, undeformed_or_found};
+use crate::error::CaseError;
+use crate::run::Event;
+use crate::run::resume::End;
+use crate::run::session::{Ended, Path, Session, march_path};
+use crate::run::stages::limit;
+use crate::run::stages::loading::begin;
+use crate::run::state::{Controls, State};
+use igimp_model::{ReductionPath, Stage, StrengthReduction};
+use igimp_results::summary::{
+    PathEnd, PathPoint, PathSummary, SafetySummary, StageSummary, StrengthShares,
+};
+use igimp_text::short;
+
+/// A path begins at no smaller factor than this \[-\]: with so many times its strength a body that falls is one that
+/// no strength holds.
+const LEAST_FACTOR: f64 = 0.01;
+
+/// First changes of the factor with which a path is followed, as a share of it \[-\]: each but the first where the path before
+/// was lost.
+const FIRST_CHANGES: [f64; 3] = [0.05, 0.035, 0.025];
+
+/// A mechanism whose factor lies this share below that of the limit is worth a remark \[-\].
+const APART: f64 = 5e-3;
+
+/// Searches for the factor of safety of a state along a path of equilibria; the state is left as it was found.
+pub(super) fn search<const D: usize>(
+    session: &mut Session<'_, D>,
+    state: &State<D>,
+    number: usize,
+    reduction: &StrengthReduction,
+    summary: &mut StageSummary,
+) -> Result<Ended, CaseError> {
+    let stage = &session.model.case.stages[number];
+    if reduction.path == ReductionPath::Reduce {
+        begin(session, state, number)?;
+    }
+    let base = undeformed_or_found(session.model, state, reduction)?;
+    let scale = displacement_scale(session.model, &base);
+    let mut from = match reduction.path {
+        ReductionPath::Reduce => 1.0,
+        ReductionPath::Gravity => 0.5 * reduction.bracket[0].min(1.0),
+    };
+    let followed = loop {
+        let search = Search {
+            stage,
+            reduction,
+            found: &state.controls,
+        };
+        let (start, ended) = search.loaded(session, &base, from, summary)?;
+        if let Some(Ended::Interrupted) = ended {
+            return Ok(Ended::Interrupted);
+        }
+        let failed_to_load = matches!(ended, Some(Ended::NotConverged(_)));
+        if !failed_to_load {
+            let followed = search.follow_again(session, &start, from, summary)?;
+            let is_lost = followed.is_lost();
+            if !(is_lost && followed.points.is_empty()) || from <= LEAST_FACTOR {
+                break followed;
+            }
+        } else if from <= LEAST_FACTOR {
+            break Followed {
+                ended: Ended::Completed("no strength holds the body".to_owned()),
+                points: Vec::new(),
+                end: PathEnd::Lost,
+                limit: None,
+                last: None,
+                shares: None,
+            };
+        }
+        from = (0.5 * from).max(LEAST_FACTOR);
+    };
+    if matches!(followed.ended, Ended::Interrupted) {
+        return Ok(Ended::Interrupted);
+    }
+    summary.reached = 1.0;
+    Ok(finish(
+        session,
+        (stage, reduction),
+        followed,
+        scale,
+        summary,
+    ))
+}
+
+/// A search along a path.
+struct Search<'a> {
+    stage: &'a Stage,
+    reduction: &'a StrengthReduction,
+    /// Controls of the state that was found.
+    found: &'a Controls,
+}
+
+/// A path that was followed.
+struct Followed<const D: usize> {
+    ended: Ended,
+    points: Vec<PathPoint>,
+    end: PathEnd,
+    /// The equilibrium that tells the factor.
+    limit: Option<PathPoint>,
+    /// The last equilibrium, with that before.
+    last: Option<End<D>>,
+    /// What decides the factor, or why that is not known.
+    shares: Option<Result<StrengthShares, StepFailure>>,
+}
+
+impl<const D: usize> Followed<D> {
+    /// Whether the path was lost: no equilibrium was found beyond its last one.
+    fn is_lost(&self) -> bool {
+        matches!(self.ended, Ended::NotConverged(_))
+    }
+
+    /// Factor of the last equilibrium \[-\].
+    fn reached(&self) -> f64 {
+        self.points.last().map_or(0.0, |point| point.factor)
+    }
+}
+
+impl Search<'_> {
+    /// Controls at a strength reduction factor.
+    fn at(&self, factor: f64) -> Controls {
+        let mut controls = self.found.clone();
+        controls.drained = self.stage.drained;
+        if self.reduction.path == ReductionPath::Gravity && controls.gravity == 0.0 {
+            controls.gravity = 1.0;
+        }
+        for &material in &self.reduction.materials {
+            controls.srf[material] = factor;
+        }
+        controls
+    }
+
+    /// The state in which the path begins: that found, or undeformed bodies loaded at the strength of a factor; and how
+    /// the loading ended.
+    fn loaded<const D: usize>(
+        &self,
+        session: &mut Session<'_, D>,
+        base: &State<D>,
+        factor: f64,
+        summary: &mut StageSummary,
+    ) -> Result<(State<D>, Option<Ended>), CaseError> {
+        let mut state = base.clone();
+        if self.reduction.path == ReductionPath::Reduce {
+            return Ok((state, None));
+        }
+        let mut from = base.controls.clone();
+        for &material in &self.reduction.materials {
+            from.srf[material] = factor;
+        }
+        let path = Path {
+            from: &from,
+            to: &self.at(factor),
+            drag: &|_, _| 0.0,
+            method: session.model.method(self.stage.geometry),
+            settings: session.model.march_settings(self.stage.steps),
+            held: None,
+            left: None,
+        };
+        let ended = march_path(session, &mut state, &path, summary, &mut |_, _, _| Ok(None))?;
+        state.body.particles.reset_displacements();
+        Ok((state, Some(ended)))
+    }
+
+    /// Follows the path of a state from a strength reduction factor to its end; one that is lost once more with other first
+    /// steps, and of those that are lost the one that came to the largest factor.
+    fn follow_again<const D: usize>(
+        &self,
+        session: &mut Session<'_, D>,
+        start: &State<D>,
+        from: f64,
+        summary: &mut StageSummary,
+    ) -> Result<Followed<D>, CaseError> {
+        let [usual, others @ ..] = FIRST_CHANGES;
+        let mut furthest = self.follow(session, start, (from, usual), summary)?;
+        for first_change in others {
+            if !furthest.is_lost() || furthest.points.is_empty() {
+                break;
+            }
+            session.warn(format!(
+                "the path of equilibria in stage \"{}\" was lost at {}, and is followed again with first steps of {} %",
+                self.stage.name,
+                short(furthest.reached()),
+                short(100.0 * first_change)
+            ));
+            let again = self.follow(session, start, (from, first_change), summary)?;
+            if !again.is_lost() || again.reached() > furthest.reached() {
+                furthest = again;
+            }
+        }
+        Ok(furthest)
+    }
+
+    /// Follows the path of a state from a strength reduction factor to its end, with first steps that change the factor by a
+    /// share of it.
+    fn follow<const D: usize>(
+        &self,
+        session: &mut Session<'_, D>,
+        start: &State<D>,
+        (from, first_change): (f64, f64),
+        summary: &mut StageSummary,
+    ) -> Result<Followed<D>, CaseError> {
+        let model = session.model;
+        let mut state = start.clone();
+        let lowered = model.lowered(&start.controls);
+        let load_path = |from: f64, to: f64| {
+            let controls = (&self.at(from), &self.at(to));
+            model.conditions_on(model.grid(lowered), controls, 0.0)
+        };
+        let settings = ContinuationSettings {
+            first_change,
+            ..ContinuationSettings::new(model.march_settings(1).newton)
+        };
+        let mut continuation = ContinuationState::start(from, &settings);
+        let mut workspace = session.workspace();
+        let mut watch = Watch {
+            search: self,
+            before: None,
+            last: Arc::new(state.body.clone()),
+            points: Vec::new(),
+            end: PathEnd::Lost,
+            limit: None,
+            work: None,
+            stopped: Ok(None),
+            session,
+            summary,
+        };
+        let method = model.method(self.stage.geometry);
+        let failure = follow(
+            &mut continuation,
+            &mut state.body,
+            &method,
+            &load_path,
+            &settings,
+            &mut workspace,
+            &mut watch,
+        );
+        let Watch {
+            before,
+            points,
+            mut end,
+            mut limit,
+            work,
+            stopped,
+            ..
+        } = watch;
+        state.controls = self.at(continuation.factor);
+        let is_mechanism = limit::mechanism(&points).is_some();
+        let shares = match (&before, &continuation.last, &work) {
+            (Some(body), Some(last), Some((work, external_work, gross_work))) if is_mechanism => {
+                let step = LastStep {
+                    model,
+                    method: &method,
+                    body,
+                    u: &last.u,
+                    work,
+                    external_work: *external_work,
+                    gross_work: *gross_work,
+                    srf: &state.controls.srf,
+                    reduced: &self.reduction.materials,
+                    factor: continuation.factor,
+                    at: &|factor| load_path(continuation.factor, factor),
+                };
+                Some(shares(&step, &mut workspace))
+            }
+            _ => None,
+        };
+        let ended = match (stopped?, failure, limit::lost_past(&points)) {
+            (Some(ended), ..) => ended,
+            (None, Some(_), Some(largest)) => {
+                (end, limit) = (PathEnd::Fallen, Some(largest));
+                Ended::Completed(end.sentence().to_owned())
+            }
+            (None, Some(error), None) => Ended::NotConverged(error),
+            (None, None, _) => Ended::Completed("the steps of the path ran out".to_owned()),
+        };
+        let srf = continuation.factor;
+        let last = (!points.is_empty()).then_some(End { srf, state, before });
+        Ok(Followed {
+            ended,
+            points,
+            end,
+            limit,
+            last,
+            shares,
+        })
+    }
+}
+
+/// Follows a path for its search.
+struct Watch<'w, 's, const D: usize> {
+    search: &'w Search<'w>,
+    session: &'w mut Session<'s, D>,
+    summary: &'w mut StageSummary,
+    /// The equilibrium before the last one, and that.
+    before: Option<Arc<Body<D>>>,
+    last: Arc<Body<D>>,
+    points: Vec<PathPoint>,
+    end: PathEnd,
+    limit: Option<PathPoint>,
+    /// What the last step did, and the work of the external force on it \[force·length\].
+    work: Option<(StepWork, f64, f64)>,
+    stopped: Result<Option<Ended>, CaseError>,
+}
+
+impl<const D: usize> Watch<'_, '_, D> {
+    fn step(&mut self, accepted: &Accepted<'_, D>) -> Result<Option<Ended>, CaseError> {
+        let report = accepted.report;
+        let number = self.summary.steps + 1;
+        self.session.tell(&Event::Equilibrium { number, accepted });
+        self.session.tally(self.summary, report)?;
+        let now = Arc::new(accepted.body.clone());
+        self.before = Some(std::mem::replace(&mut self.last, now));
+        let before = self.points.last().map_or(0.0, |point| point.work);
+        let monitor = self.search.reduction.monitor;
+        let particles = &accepted.body.particles;
+        let displacement = self.session.displacement(monitor, particles);
+        let work = before + report.gross_work;
+        let point = limit::point(report, report.to, work, displacement);
+        self.work =
+            (report.work.clone()).map(|work| (work, report.external_work, report.gross_work));
+        self.session.tell(&Event::Path { point: &point });
+        self.points.push(point);
+        if self.session.interrupted() {
+            return Ok(Some(Ended::Interrupted));
+        }
+        let displacement = self.search.reduction.failure_displacement;
+        let end = limit::end(&self.points, displacement);
+        Ok(end.map(|(end, limit)| {
+            (self.end, self.limit) = (end, Some(limit));
+            Ended::Completed(end.sentence().to_owned())
+        }))
+    }
+}
+
+impl<const D: usize> Observer<D> for Watch<'_, '_, D> {
+    fn on_step(&mut self, accepted: &Accepted<'_, D>) -> ControlFlow<()> {
+        if self.stopped.as_ref().is_ok_and(Option::is_none) {
+            self.stopped = self.step(accepted);
+        }
+        match self.stopped {
+            Ok(None) => ControlFlow::Continue(()),
+            _ => ControlFlow::Break(()),
+        }
+    }
+
+    fn on_cut(&mut self, error: &StepError) {
+        let told = self.session.tally_cut(self.summary, error);
+        if let (Ok(_), Err(error)) = (&self.stopped, told) {
+            self.stopped = Err(error);
+        }
+    }
+}
+
+/// The factor of safety that a path tells, with its remarks.
+fn finish<const D: usize>(
+    session: &mut Session<'_, D>,
+    (stage, reduction): (&Stage, &StrengthReduction),
+    followed: Followed<D>,
+    scale: Option<f64>,
+    summary: &mut StageSummary,
+) -> Ended {
+    let Followed {
+        ended,
+        points,
+        end,
+        limit,
+        last,
+        shares,
+    } = followed;
+    let shares = match shares {
+        Some(Err(cause)) => {
+            session.warn(format!(
+                "what decides the factor of safety in stage \"{}\" is not known: {cause}",
+                stage.name
+            ));
+            None
+        }
+        Some(Ok(shares)) => Some(shares),
+        None => None,
+    };
+    let path = PathSummary {
+        end,
+        mechanism: limit::mechanism(&points),
+        limit,
+        knee: limit::knee(&points),
+        rise: limit.and_then(|at| limit::rise(&points, &at)),
+        displacement_scale: scale,
+        shares,
+        points,
+    };
+    let (stable, failed) = limit::interval(&path);
+    for text in remarks(&path) {
+        session.warn(text);
+    }
+    if let Ended::NotConverged(cause) = &ended {
+        session.warn(format!(
+            "the path of equilibria in stage \"{}\" was lost: {}; what it reached is no limit, and search = \"trials\" \
+             asks another way",
+            stage.name, cause.failure
+        ));
+    }
+    let moving_mass = last
+        .as_ref()
+        .map(|end| super::remarks::moving_mass(&end.state));
+    session.records.factor_of_safety = match (stable, failed) {
+        (Some(stable), Some(failed)) => 0.5 * (stable + failed),
+        _ => f64::NAN,
+    };
+    if let Some(output) = &mut session.output {
+        output.keep_ends(last, None);
+    }
+    let whose = session.whose_displacement(reduction.monitor);
+    summary.safety = Some(SafetySummary {
+        stable,
+        failed,
+        criterion: criterion(reduction, &whose),
+        materials: names(session.model.case, reduction, true),
+        excluded: names(session.model.case, reduction, false),
+        moving_mass,
+        trials: Vec::new(),
+        path: Some(path),
+    });
+    match ended {
+        Ended::NotConverged(cause) => {
+            Ended::Completed(format!("the path was lost: {}", cause.failure))
+        }
+        ended => ended,
+    }
+}
+
+/// What counts as failure, in words.
+fn criterion(reduction: &StrengthReduction, whose: &str) -> String {
+    let limit =
+        "the increment is a mechanism and the factor rises no longer, on the given geometry";
+    match reduction.failure_displacement {
+        Some(displacement) => format!("{limit}, or {whose} exceeds {} m", short(displacement)),
+        None => limit.to_owned(),
+    }
+}
+
+/// What a reader has to know of a path.
+fn remarks(path: &PathSummary) -> Vec<String> {
+    let mut remarks = Vec::new();
+    let Some(last) = path.points.last() else {
+        remarks.push(
+            "no equilibrium was found, whatever the strength: this tells nothing of the factor of safety".to_owned(),
+        );
+        return remarks;
+    };
+    if last.factor < 1.0 {
+        remarks.push(
+            "the body does not stand at full strength: the factor of safety is below 1".to_owned(),
+        );
+    }
+    let Some(mechanism) = path.mechanism else {
+        return remarks;
+    };
+    let told =
+        |point: &PathPoint| format!("{:.4} at {} m", point.factor, short(point.displacement));
+    let limit = path.limit.unwrap_or(*last);
+    if path.end == PathEnd::StillRising {
+        remarks.push(format!(
+            "the body moves as a mechanism from {} on, and the factor still rises on the given geometry: that told is the one \
+             after four times the work, {}, and the last doubling of it brought {} %",
+            told(&mechanism),
+            told(&limit),
+            short(100.0 * path.rise.unwrap_or(0.0)),
+        ));
+    } else if limit.factor > (1.0 + APART) * mechanism.factor {
+        remarks.push(format!(
+            "the body moves as a mechanism from {} on, and the factor rises no longer from {}",
+            told(&mechanism),
+            told(&limit)
+        ));
+    }
+    remarks
+}

@@ -1,0 +1,370 @@
+//! Warnings about how bodies sit on the grid and by each other: boundaries of layers within cells,
+//! gaps, bodies thinner than three cells, and stiffness out of proportion to the weight.
+
+use crate::build::bodies::site::Site;
+use crate::build::grid::Frame;
+use crate::build::stages::sequence::Sequence;
+use crate::geometry::{facing, largest_run};
+use igimp_geometry::polygon::bounding_box;
+use igimp_geometry::polygon::contains;
+use igimp_model::{BodyPart, Ground, Material, Stage, StageKind, Strength};
+use igimp_schema::diagnostic::Problems;
+use igimp_schema::source::Place;
+use igimp_schema::text::{clip, number, point};
+use igimp_schema::tree::Node;
+use igimp_text::short;
+
+/// Error of the stress beside a boundary that is worth a warning \[-\].
+const WORTH: f64 = 0.04;
+/// Gaps narrower than this share of the smallest cell are warned of \[-\].
+const NARROW: f64 = 0.25;
+/// Cells across a layer that resolve its strength.
+const ENOUGH: f64 = 3.0;
+/// γH/E beyond which the ground has another shape when its weight acts \[-\].
+const SOFT: f64 = 0.05;
+/// γH/E below which round-off shows in the strains \[-\].
+const STIFF: f64 = 1e-6;
+
+/// What the warnings look at.
+pub(crate) struct Layers<'a> {
+    /// The file.
+    pub(crate) tree: &'a Node,
+    /// Its bodies.
+    pub(crate) bodies: &'a [Option<BodyPart>],
+    /// Its materials.
+    pub(crate) materials: &'a [Option<Material>],
+    /// Bodies on the grid.
+    pub(crate) site: &'a Site,
+    /// Which of them are there at the same time.
+    pub(crate) sequence: &'a Sequence,
+}
+
+/// Warns of boundaries within cells, gaps and thin bodies.
+pub(crate) fn check(layers: &Layers<'_>, problems: &mut Problems) {
+    let (Some(frame), true) = (&layers.site.frame, layers.site.is_complete) else {
+        return;
+    };
+    let (Some(bodies), Some(materials)) = (complete(layers.bodies), complete(layers.materials))
+    else {
+        return;
+    };
+    let ground = ground_of(&bodies, &materials);
+    let neighbours = check_pairs(layers, frame, (&bodies, &materials, &ground), problems);
+    check_thickness(layers, frame, &bodies, &neighbours, problems);
+}
+
+fn complete<T>(parts: &[Option<T>]) -> Option<Vec<&T>> {
+    parts.iter().map(Option::as_ref).collect()
+}
+
+/// The ground of bodies and materials.
+fn ground_of<'a>(bodies: &[&'a BodyPart], materials: &[&'a Material]) -> Ground {
+    Ground::new(bodies.iter().map(|body| (*body, materials[body.material])))
+}
+
+/// The modulus of compression without lateral strain at a place.
+fn constrained(material: &Material, place: [f64; 2], ground: &Ground) -> f64 {
+    let nu = material.poisson;
+    material.young_at(&place, ground) * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu))
+}
+
+/// Boundaries within cells and gaps; tells which bodies touch a stiffer one, or one of their own
+/// material, or nothing.
+fn check_pairs(
+    layers: &Layers<'_>,
+    frame: &Frame,
+    (bodies, materials, ground): (&[&BodyPart], &[&Material], &Ground),
+    problems: &mut Problems,
+) -> Vec<Neighbours> {
+    let [width, height] = frame.axes.each_ref().map(|axis| axis.extremes()[0]);
+    let narrow = NARROW * width.min(height);
+    let items = layers.tree.items_at("bodies");
+    let grid = layers.tree.get("grid");
+    let is_fitted = grid.and_then(|grid| grid.text_at("fit")) == Some("layers");
+    let is_shared = grid.and_then(|grid| grid.text_at("mixed_cells")) == Some("mean");
+    let mut neighbours = vec![Neighbours::default(); bodies.len()];
+    for (second, b) in bodies.iter().enumerate() {
+        for (first, a) in bodies[..second].iter().enumerate() {
+            if !layers.sequence.are_together(first, second) {
+                continue;
+            }
+            let pieces = facing(a.polygon(), b.polygon(), narrow);
+            let place = items[second].place_at("polygon");
+            let gap = pieces.iter().find(|piece| {
+                piece.distance > layers.site.round_off && !layers.site.is_inside(piece.middle)
+            });
+            if let Some(gap) = gap {
+                problems
+                    .warning(
+                        place,
+                        format!(
+                            "a gap of {} m parts body `{}` from body `{}` at {}",
+                            short(gap.distance),
+                            clip(&b.name, 40),
+                            clip(&a.name, 40),
+                            point(gap.middle)
+                        ),
+                    )
+                    .help("bodies closer than a cell stick all the same: let them share the edge");
+            }
+            let middle = pieces.first().map_or([0.0; 2], |piece| piece.middle);
+            let moduli = [a, b].map(|body| constrained(materials[body.material], middle, ground));
+            let mut touching = pieces
+                .iter()
+                .filter(|piece| piece.distance <= layers.site.round_off)
+                .peekable();
+            if touching.peek().is_none() {
+                continue;
+            }
+            for (own, other) in [(first, second), (second, first)] {
+                let [mine, its] = [own, other].map(|k| moduli[usize::from(k == second)]);
+                neighbours[own].has_any = true;
+                neighbours[own].has_stiffer |= its > mine;
+                neighbours[own].has_same |= bodies[own].material == bodies[other].material;
+            }
+            let round_off = layers.site.round_off;
+            let within = touching.filter_map(|piece| Within::of(piece.ends, frame, round_off));
+            // One warning for two bodies: of the boundary that matters most.
+            let worst = within
+                .map(|within| {
+                    let is_first = contains(a.polygon(), within.beside());
+                    let ordered = if is_first {
+                        moduli
+                    } else {
+                        [moduli[1], moduli[0]]
+                    };
+                    (within.error(ordered), within)
+                })
+                .max_by(|a, b| a.0.total_cmp(&b.0));
+            if let Some((error, within)) = worst.filter(|(error, _)| *error > WORTH && !is_shared) {
+                let names = [&a.name, &b.name].map(|name| clip(name, 40));
+                within.warn(&names, error, is_fitted, Report { place, problems });
+            }
+        }
+    }
+    neighbours
+}
+
+/// What a body touches.
+#[derive(Clone, Copy, Debug, Default)]
+struct Neighbours {
+    has_any: bool,
+    has_stiffer: bool,
+    has_same: bool,
+}
+
+/// A stretch of a boundary that lies within cells.
+#[derive(Clone, Copy, Debug)]
+struct Within {
+    ends: [[f64; 2]; 2],
+    /// For a level or an upright boundary: the axis across it, and the share of the cell below it or
+    /// on its left.
+    across: Option<(usize, f64)>,
+}
+
+impl Within {
+    fn of(ends: [[f64; 2]; 2], frame: &Frame, round_off: f64) -> Option<Self> {
+        let across = [1, 0]
+            .into_iter()
+            .find(|&axis| (ends[0][axis] - ends[1][axis]).abs() <= round_off);
+        let Some(axis) = across else {
+            return Some(Self { ends, across: None });
+        };
+        let place = frame.axes[axis].place(ends[0][axis]);
+        let is_on_line = (place - place.round()).abs() < 1e-6;
+        (!is_on_line).then(|| Self {
+            ends,
+            across: Some((axis, place - place.floor())),
+        })
+    }
+
+    /// A place just below the boundary or on its left.
+    fn beside(&self) -> [f64; 2] {
+        let [p, q] = self.ends;
+        let middle = [0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1])];
+        let off = 1e-3 * (p[0] - q[0]).hypot(p[1] - q[1]);
+        match self.across {
+            Some((0, _)) => [middle[0] - off, middle[1]],
+            _ => [middle[0], middle[1] - off],
+        }
+    }
+
+    /// The larger error of the stress across the boundary (theory, eq. 37a), with the moduli on the
+    /// lower or left side and on the other \[-\]. A sloping boundary is taken to halve its cells.
+    fn error(&self, moduli: [f64; 2]) -> f64 {
+        let share = self.across.map_or(0.5, |(_, share)| share);
+        let mean = share * moduli[0] + (1.0 - share) * moduli[1];
+        let errors = moduli.map(|own| (own / mean - 1.0).abs());
+        errors[0].max(errors[1])
+    }
+
+    fn warn(&self, names: &[String; 2], error: f64, is_fitted: bool, problem: Report<'_>) {
+        let Report { place, problems } = problem;
+        let at = self.ends[0];
+        let percent = short(100.0 * error);
+        let between = format!("between `{}` and `{}`", names[0], names[1]);
+        let Some((axis, _)) = self.across else {
+            problems
+                .warning(
+                    place,
+                    format!(
+                        "the boundary {between} slopes through cells at {}",
+                        point(at)
+                    ),
+                )
+                .help(format!(
+                    "where it halves a cell, the stress across it is {percent} % off at particles"
+                ))
+                .help("mixed_cells = \"mean\" in [grid] shares one stiffness in such cells; finer cells narrow the band");
+            return;
+        };
+        let key = ["x", "y"][axis];
+        let at = number(at[axis]);
+        problems
+            .warning(
+                place,
+                format!("the boundary {between} at {key} = {at} m lies within cells"),
+            )
+            .help(format!(
+                "particles beside it have a stress across it up to {percent} % off"
+            ))
+            .help(if axis == 1 && !is_fitted {
+                "fit = \"layers\" in [grid] moves a line of the grid onto it".to_owned()
+            } else {
+                format!(
+                    "lines = {{ {key} = [\"{at} m\"] }} in [grid] puts a line of the grid there"
+                )
+            });
+    }
+}
+
+/// Where a warning goes.
+struct Report<'a> {
+    place: Place,
+    problems: &'a mut Problems,
+}
+
+/// Warns of bodies thinner than three cells that are alone or softer than what they touch.
+fn check_thickness(
+    layers: &Layers<'_>,
+    frame: &Frame,
+    bodies: &[&BodyPart],
+    neighbours: &[Neighbours],
+    problems: &mut Problems,
+) {
+    let items = layers.tree.items_at("bodies");
+    for (index, body) in bodies.iter().enumerate() {
+        let Neighbours {
+            has_any,
+            has_stiffer,
+            has_same,
+        } = neighbours[index];
+        if has_same || has_any && !has_stiffer {
+            continue;
+        }
+        let thinnest = [0, 1]
+            .into_iter()
+            .filter_map(|axis| {
+                let [from, to] = largest_run(body.polygon(), axis);
+                let spans = from <= frame.lower[axis] + layers.site.round_off
+                    && to >= frame.upper[axis] - layers.site.round_off;
+                let own = &frame.axes[axis];
+                let is_single = own.cells() == 1;
+                (!spans && !is_single).then(|| (own.place(to) - own.place(from), to - from))
+            })
+            .min_by(|a, b| a.0.total_cmp(&b.0));
+        let Some((cells, thickness)) = thinnest.filter(|(cells, _)| *cells < ENOUGH - 1e-6) else {
+            continue;
+        };
+        problems
+            .warning(
+                items[index].place_at("polygon"),
+                format!(
+                    "body `{}` is {} cells thick, where three are needed",
+                    clip(&body.name, 40),
+                    short(cells)
+                ),
+            )
+            .help("neither its bending nor sliding along it is resolved")
+            .help(format!(
+                "a zone in [grid] with cells of {} m, or smaller cells throughout",
+                short(thickness / ENOUGH)
+            ));
+    }
+}
+
+/// Warns of materials whose stiffness is out of proportion to the weight.
+pub(crate) fn check_stiffness(
+    layers: &Layers<'_>,
+    stages: &[Option<Stage>],
+    gravity: Option<f64>,
+    problems: &mut Problems,
+) {
+    let (Some(bodies), Some(materials)) = (complete(layers.bodies), complete(layers.materials))
+    else {
+        return;
+    };
+    let kinds = || stages.iter().flatten().map(|stage| &stage.kind);
+    let raises = kinds().any(|kind| {
+        matches!(
+            kind,
+            StageKind::Gravity { .. } | StageKind::StrengthReduction(_)
+        )
+    });
+    let searches = kinds().any(|kind| matches!(kind, StageKind::StrengthReduction(_)));
+    if !raises || gravity.is_none_or(|gravity| gravity <= 0.0) {
+        return;
+    }
+    let ground = ground_of(&bodies, &materials);
+    let levels = |body: &BodyPart| {
+        let (lower, upper) = bounding_box(body.polygon());
+        [lower[1], upper[1]]
+    };
+    let top = bodies
+        .iter()
+        .map(|body| levels(body)[1])
+        .fold(f64::MIN, f64::max);
+    let file = layers.tree.get("materials");
+    for (index, material) in materials.iter().enumerate() {
+        let own = bodies.iter().filter(|body| body.material == index);
+        let Some(body) = own.min_by(|a, b| levels(a)[0].total_cmp(&levels(b)[0])) else {
+            continue;
+        };
+        let lowest = levels(body)[0];
+        let (lower, upper) = bounding_box(body.polygon());
+        let middle = [0.5 * (lower[0] + upper[0]), 0.5 * (top + lowest)];
+        let weight = material.unit_weight_at(&middle, &ground);
+        let young = material.young_at(&middle, &ground);
+        let ratio = weight * (top - lowest) / young;
+        let place = file
+            .and_then(|file| file.get(&material.name))
+            .map(|node| node.place_at("young"));
+        let name = clip(&material.name, 40);
+        if ratio > SOFT && searches && material.strength != Strength::Elastic {
+            problems
+                .warning(
+                    place,
+                    format!("`{name}` is soft: unit_weight * height / young = {}", short(ratio)),
+                )
+                .help("its weight changes the shape of the ground, and the factor of safety is that of the new shape")
+                .help(format!(
+                    "a factor of safety hardly depends on young: from {} kPa on the shape stays",
+                    short(1e-3 * young * ratio / SOFT)
+                ));
+        } else if ratio > 0.0 && ratio < STIFF {
+            problems
+                .warning(
+                    place,
+                    format!(
+                        "`{name}` is stiff: unit_weight * height / young = {}",
+                        short(ratio)
+                    ),
+                )
+                .help("its strains are so small that round-off shows in the residual")
+                .help(format!(
+                    "young of {} kPa or less is stiff enough for any soil or rock",
+                    short(1e-3 * young * ratio / STIFF)
+                ));
+        }
+    }
+}

@@ -1,0 +1,213 @@
+//! Surfaces in space: closed ones of triangles, and those of the ground.
+
+use std::fmt::Display;
+use std::sync::Arc;
+
+use crate::build::bodies::corners;
+use crate::build::bodies::solids::Who;
+use igimp_geometry::solid::{
+    ClosedSurface, ClosedSurfaceError, Height, Layer, LayerError, Prism, Solid, Terrain,
+    TerrainError,
+};
+use igimp_schema::diagnostic::Problems;
+use igimp_schema::text::number;
+use igimp_schema::tree::Node;
+
+/// The closed surface of a table.
+pub(crate) fn closed_surface(
+    node: &Node,
+    who: &dyn Display,
+    problems: &mut Problems,
+) -> Option<Arc<ClosedSurface>> {
+    let (Some(vertices), Some(triangles)) = (node.get("vertices"), node.get("triangles")) else {
+        problems
+            .error(node.place, format!("the surface of {who} is not stated"))
+            .help("write surface = { file = \"block.stl\", unit = \"m\" }, or its vertices and triangles");
+        return None;
+    };
+    let points: Option<Vec<[f64; 3]>> = vertices.items().iter().map(Node::point).collect();
+    let points = points?;
+    let mut faces = Vec::with_capacity(triangles.items().len());
+    for triangle in triangles.items() {
+        let numbers: Option<Vec<usize>> = triangle.items().iter().map(Node::count).collect();
+        let numbers: [usize; 3] = numbers?.try_into().ok()?;
+        if let Some(wrong) = numbers.iter().find(|number| **number >= points.len()) {
+            problems
+                .error(triangle.place, format!("there is no vertex {wrong}"))
+                .help(format!(
+                    "vertices are numbered from 0 to {}",
+                    points.len() - 1
+                ));
+            return None;
+        }
+        faces.push(numbers.map(|number| points[number]));
+    }
+    match ClosedSurface::new(&faces) {
+        Ok(surface) => Some(Arc::new(surface)),
+        Err(error) => {
+            let help = match error {
+                ClosedSurfaceError::Open { .. } => {
+                    "close it in the program that made it; a body has a triangle on both sides of every edge"
+                }
+                ClosedSurfaceError::Twisted { .. } | ClosedSurfaceError::Inverted { .. } => {
+                    "turn the triangles so that all face outwards: in most programs, recalculate normals"
+                }
+                ClosedSurfaceError::Branched { .. } => {
+                    "parts that touch along an edge, or inner walls, are to be joined or parted"
+                }
+                ClosedSurfaceError::Flat { .. } => "merge double vertices, and export it once more",
+                ClosedSurfaceError::TooFew(_) | ClosedSurfaceError::NotFinite { .. } => {
+                    "export it once more"
+                }
+            };
+            let message = format!("the surface of {who} encloses no body: {error}");
+            problems.error(node.place, message).help(help);
+            None
+        }
+    }
+}
+
+/// A polygon in plan between two heights.
+pub(crate) fn ground(
+    plan: &Node,
+    between: &Node,
+    who: &Who<'_>,
+    problems: &mut Problems,
+) -> Option<Solid> {
+    let polygon = corners(plan, who.name, problems);
+    let heights: Vec<Option<Height>> = (between.items().iter())
+        .map(|own| height(own, who, problems))
+        .collect();
+    let [bottom, top]: [Height; 2] = heights
+        .into_iter()
+        .collect::<Option<Vec<_>>>()?
+        .try_into()
+        .ok()?;
+    let polygon = polygon?;
+    if let (Height::Level(from), Height::Level(to)) = (&bottom, &top) {
+        let (from, to) = (*from, *to);
+        if from >= to {
+            problems
+                .error(
+                    between.place,
+                    format!(
+                        "{who} reaches from {} m up to {} m",
+                        number(from),
+                        number(to)
+                    ),
+                )
+                .help("the first is the bottom");
+            return None;
+        }
+        return Some(Solid::Prism(Prism::new(polygon, 2, [from, to])));
+    }
+    match Layer::new(&polygon, bottom, top) {
+        Ok(layer) => Some(Solid::Layer(Arc::new(layer))),
+        Err(error) => {
+            let help = match error {
+                LayerError::NotCovered { .. } => {
+                    "make the plan smaller, or take a survey that reaches further and has no holes there"
+                }
+                LayerError::Crossing { .. } => {
+                    "surfaces may touch, where a layer ends, and not cross: raise the top or lower the bottom there"
+                }
+                LayerError::Empty => "the top is above the bottom",
+                LayerError::NoArea => "its corners lie on one line",
+            };
+            problems
+                .error(between.place, format!("{who} cannot be made: {error}"))
+                .help(help);
+            None
+        }
+    }
+}
+
+fn height(node: &Node, who: &dyn Display, problems: &mut Problems) -> Option<Height> {
+    if node.is_invalid() {
+        return None;
+    }
+    if let Some(level) = node.number() {
+        return Some(Height::Level(level));
+    }
+    terrain(node, who, problems).map(Height::Terrain)
+}
+
+/// A surface of the ground, or of water in it.
+pub(crate) fn terrain(
+    node: &Node,
+    who: &dyn Display,
+    problems: &mut Problems,
+) -> Option<Arc<Terrain>> {
+    if node.is_invalid() {
+        return None;
+    }
+    let mut refuse = |error: &dyn Display, help: &str| {
+        let message = format!("a surface of {who} cannot be used: {error}");
+        problems.error(node.place, message).help(help);
+    };
+    let lengths = |key: &str| -> Option<Vec<f64>> {
+        node.get(key)?.items().iter().map(Node::number).collect()
+    };
+    let stated = ["points", "x", "y", "rows"].map(|key| node.get(key).is_some());
+    let terrain = match stated {
+        [true, false, false, false] => {
+            let points = node.items_at("points").iter().map(Node::point);
+            let points: Option<Vec<[f64; 3]>> = points.collect();
+            Terrain::through(&points?)
+        }
+        [false, true, true, true] => {
+            let (x, y) = (lengths("x")?, lengths("y")?);
+            let rows = node.items_at("rows").iter();
+            let rows: Option<Vec<Vec<f64>>> = rows
+                .map(|row| row.items().iter().map(Node::number).collect())
+                .collect();
+            let rows = rows?;
+            let rises = |lines: &[f64]| lines.windows(2).all(|pair| pair[0] < pair[1]);
+            if rows.len() != y.len()
+                || rows.iter().any(|row| row.len() != x.len())
+                || !(rises(&x) && rises(&y))
+            {
+                let wrong = format!("{} x and {} y do not go with its rows", x.len(), y.len());
+                refuse(
+                    &wrong,
+                    "x and y ascend; there is a row for every y, with a height for every x",
+                );
+                return None;
+            }
+            let mut rows: Vec<Vec<Option<f64>>> = rows
+                .into_iter()
+                .map(|row| row.into_iter().map(Some).collect())
+                .collect();
+            for hole in node.items_at("holes") {
+                let place: Option<Vec<usize>> = hole.items().iter().map(Node::count).collect();
+                let [i, j]: [usize; 2] = place?.try_into().ok()?;
+                let Some(height) = rows.get_mut(j).and_then(|row| row.get_mut(i)) else {
+                    let wrong = format!("it has no column {i} and row {j}");
+                    refuse(&wrong, "they are counted from 0");
+                    return None;
+                };
+                *height = None;
+            }
+            Terrain::on_lines(&x, &y, &rows)
+        }
+        _ => {
+            refuse(
+                &"it is not stated",
+                "write { raster = \"ground.asc\", unit = \"m\" }, { points = \"ground.csv\", unit = \"m\" }, or x, y and rows",
+            );
+            return None;
+        }
+    };
+    match terrain {
+        Ok(terrain) => Some(Arc::new(terrain)),
+        Err(error) => {
+            let help = match error {
+                TerrainError::TwoHeights { .. } => "keep one of them",
+                TerrainError::Flat => "three points or more that do not lie on one line in plan",
+                TerrainError::Number(_) => "every coordinate is a number of a usual size",
+            };
+            refuse(&error, help);
+            None
+        }
+    }
+}

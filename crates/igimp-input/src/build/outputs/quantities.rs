@@ -1,0 +1,270 @@
+//! The quantities that curves and checks name, such as `footing.reaction`.
+
+use crate::build::AllNames;
+use igimp_model::{Field, Load, LoadKind, Quantity, ReinforcementQuantity, RigidQuantity};
+use igimp_schema::diagnostic::Problems;
+use igimp_schema::suggest::nearest;
+use igimp_schema::text::{clip, row};
+use igimp_schema::tree::Node;
+
+/// Fields by their names.
+const FIELDS: [(&str, Field, &str); 26] = [
+    ("displacement", Field::Displacement, "m"),
+    ("displacement_x", Field::DisplacementX, "m"),
+    ("displacement_y", Field::DisplacementY, "m"),
+    ("displacement_z", Field::DisplacementZ, "m"),
+    ("x", Field::X, "m"),
+    ("y", Field::Y, "m"),
+    ("z", Field::Z, "m"),
+    ("sigma_xx", Field::SigmaXx, "Pa"),
+    ("sigma_yy", Field::SigmaYy, "Pa"),
+    ("sigma_zz", Field::SigmaZz, "Pa"),
+    ("tau_xy", Field::TauXy, "Pa"),
+    ("tau_yz", Field::TauYz, "Pa"),
+    ("tau_xz", Field::TauXz, "Pa"),
+    ("p", Field::P, "Pa"),
+    ("sigma_eff_xx", Field::SigmaEffXx, "Pa"),
+    ("sigma_eff_yy", Field::SigmaEffYy, "Pa"),
+    ("sigma_eff_zz", Field::SigmaEffZz, "Pa"),
+    ("p_eff", Field::PEff, "Pa"),
+    ("u", Field::U, "Pa"),
+    ("u_excess", Field::UExcess, "Pa"),
+    ("q", Field::Q, "Pa"),
+    ("plastic_strain", Field::PlasticStrain, "-"),
+    ("utilisation", Field::Utilisation, "-"),
+    ("strength", Field::Strength, "Pa"),
+    ("friction", Field::Friction, "rad"),
+    ("young", Field::Young, "Pa"),
+];
+
+/// What the names of quantities of rigid bodies begin with.
+const RIGID_PREFIX: &str = "rigid.";
+
+/// Quantities of a rigid body, and in how many dimensions they are; none: in any.
+const RIGID: [(&str, RigidQuantity, &str, Option<usize>); 21] = [
+    ("x", RigidQuantity::Displacement(0), "m", None),
+    ("y", RigidQuantity::Displacement(1), "m", None),
+    ("z", RigidQuantity::Displacement(2), "m", Some(3)),
+    ("settlement", RigidQuantity::Settlement, "m", None),
+    ("rotation", RigidQuantity::Rotation(0), "rad", Some(2)),
+    ("rotation_x", RigidQuantity::Rotation(0), "rad", Some(3)),
+    ("rotation_y", RigidQuantity::Rotation(1), "rad", Some(3)),
+    ("rotation_z", RigidQuantity::Rotation(2), "rad", Some(3)),
+    ("force_x", RigidQuantity::Force(0), "N/m", None),
+    ("force_y", RigidQuantity::Force(1), "N/m", None),
+    ("force_z", RigidQuantity::Force(2), "N/m", Some(3)),
+    ("resistance", RigidQuantity::Resistance, "N/m", None),
+    ("moment", RigidQuantity::Moment(0), "N m/m", Some(2)),
+    ("moment_x", RigidQuantity::Moment(0), "N m/m", Some(3)),
+    ("moment_y", RigidQuantity::Moment(1), "N m/m", Some(3)),
+    ("moment_z", RigidQuantity::Moment(2), "N m/m", Some(3)),
+    ("contact_width", RigidQuantity::ContactWidth, "m", Some(2)),
+    ("contact_area", RigidQuantity::ContactWidth, "m2", Some(3)),
+    ("penetration", RigidQuantity::Penetration, "-", None),
+    ("closed", RigidQuantity::Closed, "-", None),
+    ("slipping", RigidQuantity::Slipping, "-", None),
+];
+
+/// The quantity of a rigid body under a name in so many dimensions, and its unit in plane strain.
+fn of_rigid(dimensions: usize, name: &str) -> Option<(RigidQuantity, &'static str)> {
+    let found = RIGID
+        .iter()
+        .find(|(known, _, _, only)| *known == name && only.is_none_or(|only| only == dimensions));
+    found.map(|(_, quantity, unit, _)| (*quantity, *unit))
+}
+
+/// What the names of quantities of reinforcement begin with.
+const REINFORCEMENT_PREFIX: &str = "reinforcement.";
+
+/// Quantities of a member of reinforcement.
+const REINFORCEMENT: [(&str, ReinforcementQuantity, &str); 3] = [
+    ("force", ReinforcementQuantity::Force, "N/m"),
+    ("head_force", ReinforcementQuantity::HeadForce, "N/m"),
+    ("at_limit", ReinforcementQuantity::AtLimit, "-"),
+];
+
+/// Quantities of the whole model.
+const GLOBAL: [(&str, Quantity, &str); 8] = [
+    ("largest_displacement", Quantity::LargestDisplacement, "m"),
+    ("gravity_factor", Quantity::GravityFactor, "-"),
+    ("horizontal_factor", Quantity::HorizontalFactor, "-"),
+    ("reduction_factor", Quantity::ReductionFactor, "-"),
+    ("step", Quantity::Step, "-"),
+    ("plastic_share", Quantity::PlasticShare, "-"),
+    ("top", Quantity::Top, "m"),
+    ("factor_of_safety", Quantity::FactorOfSafety, "-"),
+];
+
+/// The field of a name.
+pub(crate) fn field(name: &str) -> Option<Field> {
+    let found = FIELDS.iter().find(|(known, ..)| *known == name)?;
+    Some(found.1)
+}
+
+/// The fields of a list of names; reports those that there are in space only.
+pub(crate) fn fields<const D: usize>(
+    names: &[Node],
+    problems: &mut Problems,
+) -> Option<Vec<Field>> {
+    let mut fields = Vec::with_capacity(names.len());
+    for name in names {
+        let field = field(name.text()?)?;
+        if !field.exists_in(D) {
+            let message = format!("there is no {} in plane strain", name.text()?);
+            problems
+                .error(name.place, message)
+                .help("it is a field of cases with analysis = \"3d\"");
+            return None;
+        }
+        if !fields.contains(&field) {
+            fields.push(field);
+        }
+    }
+    Some(fields)
+}
+
+/// SI unit of a quantity by its name.
+pub(crate) fn unit_of(dimensions: usize, name: &str) -> &'static str {
+    match (dimensions, unit_in_plane(dimensions, name)) {
+        (3, "N/m") => "N",
+        (3, "N m/m") => "N m",
+        (_, unit) => unit,
+    }
+}
+
+fn unit_in_plane(dimensions: usize, name: &str) -> &'static str {
+    if let Some((_, _, unit)) = GLOBAL.iter().find(|(known, ..)| *known == name) {
+        return unit;
+    }
+    match name.rsplit_once('.').map_or("", |(_, last)| last) {
+        "settlement" => "m",
+        "reaction" => "N/m",
+        last if name.starts_with(RIGID_PREFIX) => {
+            of_rigid(dimensions, last).map_or("-", |(_, unit)| unit)
+        }
+        last if name.starts_with(REINFORCEMENT_PREFIX) => REINFORCEMENT
+            .iter()
+            .find(|(known, ..)| *known == last)
+            .map_or("-", |(_, _, unit)| unit),
+        last => FIELDS
+            .iter()
+            .find(|(known, ..)| *known == last)
+            .map_or("-", |(_, _, unit)| unit),
+    }
+}
+
+/// The quantity that a value names; reports when there is none.
+pub(crate) fn quantity<const D: usize>(
+    value: &Node,
+    names: &AllNames,
+    loads: &[Option<Load<D>>],
+    problems: &mut Problems,
+) -> Option<Quantity> {
+    let name = value.text()?;
+    if let Some((_, quantity, _)) = GLOBAL.iter().find(|(known, ..)| *known == name) {
+        return Some(*quantity);
+    }
+    if let Some((owner, what)) = name.rsplit_once('.') {
+        let body = owner.strip_prefix(RIGID_PREFIX);
+        let body = body.and_then(|body| names.rigid.position(body));
+        if let (Some(body), Some((quantity, _))) = (body, of_rigid(D, what)) {
+            return Some(Quantity::Rigid(body, quantity));
+        }
+        let member = owner.strip_prefix(REINFORCEMENT_PREFIX);
+        let member = member.and_then(|member| names.reinforcement.position(member));
+        let of_member = REINFORCEMENT.iter().find(|(known, ..)| *known == what);
+        if let (Some(member), Some((_, quantity, _))) = (member, of_member) {
+            return Some(Quantity::Reinforcement(member, *quantity));
+        }
+        let monitor = names.monitors.position(owner);
+        let there = |field: &Field| field.exists_in(D);
+        if let (Some(monitor), Some(field)) = (monitor, field(what).filter(there)) {
+            return Some(Quantity::Monitor(monitor, field));
+        }
+        if let Some(load) = names.loads.position(owner) {
+            let is_footing = loads
+                .get(load)
+                .and_then(Option::as_ref)
+                .map(|load| matches!(load.kind, LoadKind::RigidFooting { .. }));
+            match (what, is_footing) {
+                ("factor", Some(false)) => return Some(Quantity::LoadFactor(load)),
+                ("settlement", Some(true)) => return Some(Quantity::Settlement(load)),
+                ("reaction", Some(true)) => return Some(Quantity::Reaction(load)),
+                // The load itself was found wrong.
+                (_, None) => return None,
+                _ => {}
+            }
+        }
+    }
+    let message = format!("there is no quantity `{}`", clip(name, 60));
+    if problems.are_many() {
+        problems.error(value.place, message);
+        return None;
+    }
+    let known = known(names, loads);
+    let problem = problems.error(value.place, message);
+    if let Some(near) = nearest(name, known.iter().map(String::as_str)) {
+        problem.help(format!("did you mean `{near}`?"));
+    }
+    problem.help(format!(
+        "quantities here: {}",
+        row(known.iter().map(String::as_str))
+    ));
+    None
+}
+
+/// The quantities that a file has.
+fn known<const D: usize>(names: &AllNames, loads: &[Option<Load<D>>]) -> Vec<String> {
+    let mut known = Vec::new();
+    for load in loads.iter().flatten() {
+        match load.kind {
+            LoadKind::RigidFooting { .. } => {
+                known.push(format!("{}.settlement", load.name));
+                known.push(format!("{}.reaction", load.name));
+            }
+            _ => known.push(format!("{}.factor", load.name)),
+        }
+    }
+    for body in names.rigid.known() {
+        let of_body = RIGID
+            .iter()
+            .filter(|(.., only)| only.is_none_or(|only| only == D));
+        known.extend(of_body.map(|(what, ..)| format!("{RIGID_PREFIX}{body}.{what}")));
+    }
+    for member in names.reinforcement.known() {
+        let of_member = REINFORCEMENT.iter();
+        known.extend(of_member.map(|(what, ..)| format!("{REINFORCEMENT_PREFIX}{member}.{what}")));
+    }
+    known.extend(GLOBAL.iter().map(|(name, ..)| (*name).to_owned()));
+    for monitor in names.monitors.known() {
+        known.extend(
+            FIELDS
+                .iter()
+                .filter(|(_, field, _)| field.exists_in(D))
+                .map(|(field, ..)| format!("{monitor}.{field}")),
+        );
+    }
+    known
+}
+
+/// The product of the divisors; reports one that is zero.
+pub(crate) fn divisor(table: &Node, problems: &mut Problems) -> Option<f64> {
+    let mut product = 1.0;
+    for divisor in table.items_at("divide_by") {
+        let value = divisor.number()?;
+        if value == 0.0 {
+            problems.error(divisor.place, "a divisor is zero");
+            return None;
+        }
+        product *= value;
+    }
+    if f64::is_normal(product) {
+        Some(product)
+    } else {
+        problems.error(
+            table.place_at("divide_by"),
+            "the product of the divisors is not a finite number",
+        );
+        None
+    }
+}

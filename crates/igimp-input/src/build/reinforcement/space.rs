@@ -1,0 +1,119 @@
+//! Reinforcement in space: lines, and square plates on the surface of the soil.
+
+use super::part;
+use crate::build::bodies::site::Soil as _;
+use crate::build::space::Solids;
+use igimp_model::ReinforcementPart;
+use igimp_schema::diagnostic::Problems;
+use igimp_schema::tree::Node;
+
+/// How far beside a head the surface is looked for, as a share of the cell \[-\].
+const BESIDE: f64 = 0.02;
+/// Halvings until the surface is found.
+const HALVINGS: usize = 60;
+
+/// The members.
+pub(crate) fn reinforcement(
+    tree: &Node,
+    soil: &Solids,
+    problems: &mut Problems,
+) -> Vec<Option<ReinforcementPart<3>>> {
+    let nodes = tree.items_at("reinforcement").iter();
+    let member = |node: &Node| {
+        if node.text_at("type") == Some("geotextile") {
+            problems
+                .error(
+                    node.place_at("type"),
+                    "a geotextile is a sheet, and in space reinforcement is a line",
+                )
+                .help("compute a slice with analysis = \"plane-strain\", or state strips as nails");
+            return None;
+        }
+        let mut own = part(tree, node, soil, problems)?;
+        let width = node.optional_number("plate").ok()?;
+        if let Some(width) = width.filter(|&width| width > 0.0) {
+            own.plate = Some(plate(&own, width, soil));
+        }
+        Some(own)
+    };
+    nodes.map(member).collect()
+}
+
+/// Three corners of a square about the head: on the surface of the soil, else across the member. One of its sides is level.
+fn plate(part: &ReinforcementPart<3>, width: f64, soil: &Solids) -> Vec<[f64; 3]> {
+    let (head, next) = (part.line[0], part.line[1]);
+    let normal = surface_at(&head, soil);
+    let normal = normal.or_else(|| unit(less(head, next)));
+    let normal = normal.unwrap_or([0.0, 0.0, 1.0]);
+    let level = unit(cross([0.0, 0.0, 1.0], normal)).unwrap_or([1.0, 0.0, 0.0]);
+    let up = cross(normal, level);
+    let corner = |along: f64, upwards: f64| {
+        let half = 0.5 * width;
+        std::array::from_fn(|k| head[k] + half * (along * level[k] + upwards * up[k]))
+    };
+    vec![corner(-1.0, -1.0), corner(1.0, -1.0), corner(-1.0, 1.0)]
+}
+
+/// The outward normal of the surface of the soil near a place, where it is flat.
+fn surface_at(at: &[f64; 3], soil: &Solids) -> Option<[f64; 3]> {
+    let reach = BESIDE * soil.cell();
+    let step = |along: [f64; 3], by: f64| [0, 1, 2].map(|k| at[k] + by * along[k]);
+    let is_soil = |place: [f64; 3]| soil.regions.iter().any(|own| own.encloses(place));
+    let mut outwards = [0.0; 3];
+    for k in 0..27 {
+        let along = [k % 3, k / 3 % 3, k / 9].map(|own| f64::from(own) - 1.0);
+        let Some(along) = unit(along) else { continue };
+        let side = if is_soil(step(along, reach)) {
+            -1.0
+        } else {
+            1.0
+        };
+        outwards = [0, 1, 2].map(|k| outwards[k] + side * along[k]);
+    }
+    let outwards = unit(outwards)?;
+    let axis = (0..3).min_by(|&a, &b| outwards[a].abs().total_cmp(&outwards[b].abs()))?;
+    let mut other = [0.0; 3];
+    other[axis] = 1.0;
+    let beside = unit(cross(outwards, other))?;
+    let across = cross(outwards, beside);
+    let corners = [[1.0, 0.0], [-0.5, 0.75], [-0.5, -0.75]].map(|[a, b]| {
+        let along = [0, 1, 2].map(|k| a * beside[k] + b * across[k]);
+        let foot = step(along, reach);
+        let on_line = |by: f64| [0, 1, 2].map(|k| foot[k] + by * outwards[k]);
+        let (mut inside, mut outside) = (-2.0 * reach, 2.0 * reach);
+        if !is_soil(on_line(inside)) || is_soil(on_line(outside)) {
+            return None;
+        }
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (inside + outside);
+            if is_soil(on_line(middle)) {
+                inside = middle;
+            } else {
+                outside = middle;
+            }
+        }
+        Some(on_line(inside))
+    });
+    let [a, b, c] = [corners[0]?, corners[1]?, corners[2]?];
+    let normal = unit(cross(less(b, a), less(c, a)))?;
+    let side: f64 = (0..3).map(|k| normal[k] * outwards[k]).sum();
+    Some(normal.map(|own| own * side.signum()))
+}
+
+fn less(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [0, 1, 2].map(|k| a[k] - b[k])
+}
+
+fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
+}
+
+/// A direction of length 1, if there is one.
+fn unit(of: [f64; 3]) -> Option<[f64; 3]> {
+    let length = of.iter().map(|own| own * own).sum::<f64>().sqrt();
+    (length > 1e-12).then(|| of.map(|own| own / length))
+}

@@ -1,0 +1,305 @@
+//! Whether the ground can be wet as conditions of the water say.
+
+use std::collections::HashMap;
+
+use super::Around;
+use crate::build::ground::{Above, Earth, Surface, UprightFace};
+use crate::build::materials::profiles::reach;
+use crate::build::stages::sequence::Scene;
+use igimp_model::{BodyPart, Drainage, PoreSource, Raster, Strength, WaterCondition};
+use igimp_schema::diagnostic::Problems;
+use igimp_schema::source::Place;
+use igimp_schema::text::{clip, number};
+use igimp_schema::tree::Node;
+
+/// Refuses tables that stand above the ground unmeant, and what water cannot do to materials; warns of conditions that
+/// do nothing.
+pub(crate) fn check<const D: usize>(
+    around: &Around<'_, D>,
+    conditions: &[Option<WaterCondition>],
+    problems: &mut Problems,
+) {
+    let Around {
+        earth, sequence, ..
+    } = around;
+    if !earth.is_complete() || conditions.is_empty() {
+        return;
+    }
+    let mut checker = Checker {
+        around,
+        conditions,
+        surfaces: HashMap::new(),
+        seen: Vec::new(),
+        told: Vec::new(),
+    };
+    checker.scene(&sequence.start, None, problems);
+    for (index, end) in sequence.ends.iter().enumerate() {
+        if end != sequence.before(index) {
+            checker.scene(end, Some(index), problems);
+        }
+    }
+    let mut called = around.tree.items_at("stages").iter();
+    let is_slip = |name: &str| around.names.water.position(name).is_none();
+    if called.any(|stage| stage.text_at("water").is_some_and(is_slip)) {
+        // A name that is not defined may be a slip for one that is not used.
+        return;
+    }
+    for (index, node) in around.tree.items_at("water").iter().enumerate() {
+        let is_used = sequence.scenes().any(|scene| scene.water == Some(index));
+        let name = clip(node.text_at("name").unwrap_or("?"), 40);
+        if !is_used {
+            problems
+                .warning(
+                    node.place_at("name"),
+                    format!("no stage calls for the water `{name}`"),
+                )
+                .help("write water = \"NAME\" in a stage of type construction; the first condition holds from the start");
+        }
+    }
+}
+
+struct Checker<'a, const D: usize> {
+    around: &'a Around<'a, D>,
+    conditions: &'a [Option<WaterCondition>],
+    surfaces: HashMap<Vec<bool>, Box<dyn Surface>>,
+    /// Conditions that have been found wrong: of each one place is enough.
+    seen: Vec<usize>,
+    /// Materials whose friction by total stress has been told.
+    told: Vec<usize>,
+}
+
+impl<const D: usize> Checker<'_, D> {
+    /// Checks what is there at the start, or at the end of a stage.
+    fn scene(&mut self, scene: &Scene, stage: Option<usize>, problems: &mut Problems) {
+        let around = self.around;
+        let Some(index) = scene.water else { return };
+        let Some(condition) = self.conditions.get(index).and_then(Option::as_ref) else {
+            return;
+        };
+        if self.seen.contains(&index) || !scene.present.contains(&true) {
+            return;
+        }
+        let node = &around.tree.items_at("water")[index];
+        let surface = (self.surfaces)
+            .entry(scene.present.clone())
+            .or_insert_with(|| around.surface(scene));
+        let before = problems.errors();
+        let who = format!("the water `{}`", clip(&condition.name, 40));
+        let (place, when) = when(around.tree, node, stage);
+        match &condition.source {
+            PoreSource::Dry => {}
+            PoreSource::Points(raster) => points(
+                raster,
+                (around, scene, &**surface),
+                (node, &who, &when),
+                problems,
+            ),
+            PoreSource::Table(_) | PoreSource::Surface(_) | PoreSource::Drained(_) => {
+                let is_meant = node.flag_at("pond") != Some(false);
+                let [highest, sloping] = surface.above(&condition.source);
+                if let Some(at) = surface.uncovered(&condition.source) {
+                    problems
+                        .error(
+                            place,
+                            format!("the surface of {who} does not reach the ground at {at}{when}"),
+                        )
+                        .help("take a survey that reaches over all bodies, and has no holes there");
+                } else if let Some(above) = highest.filter(|_| !is_meant) {
+                    above_ground(&above, place, (&who, &when), problems);
+                } else if let Some(above) = sloping {
+                    problems
+                        .error(
+                            place,
+                            format!(
+                                "{who} is not level where it stands above the ground{when}: {} m above it at {}",
+                                number(above.by),
+                                above.at
+                            ),
+                        )
+                        .help("a pond is level: let the line meet the ground before it goes up or down");
+                }
+            }
+            PoreSource::Ratio(_) => {
+                if let Some(UprightFace { at, levels }) = surface.upright_face() {
+                    let up = if D == 2 { "y" } else { "z" };
+                    problems
+                        .error(
+                            place,
+                            format!(
+                                "r_u puts pressure behind the upright face at {at}, from {up} = {} m to {} m{when}",
+                                number(levels[0]),
+                                number(levels[1])
+                            ),
+                        )
+                        .help("nothing would hold the water there: slope the face, or draw the table as line = [...]");
+                }
+            }
+        }
+        let bodies = std::iter::zip(around.bodies, &scene.present);
+        let mut there = bodies.filter_map(|(part, present)| part.as_ref().filter(|_| *present));
+        let is_table = matches!(
+            condition.source,
+            PoreSource::Table(_) | PoreSource::Surface(_) | PoreSource::Drained(_)
+        );
+        if is_table && !there.any(|part| is_wet(around.earth, &condition.source, part)) {
+            problems
+                .warning(
+                    place,
+                    format!("{who} lies below all bodies, and wets none{when}"),
+                )
+                .help("write dry = true if that is meant");
+        }
+        self.materials(scene, condition, (node, &who), problems);
+        if problems.errors() > before {
+            self.seen.push(index);
+        }
+    }
+
+    /// Checks what the condition does to the materials of the bodies that are there.
+    fn materials(
+        &mut self,
+        scene: &Scene,
+        condition: &WaterCondition,
+        (node, who): (&Node, &str),
+        problems: &mut Problems,
+    ) {
+        let around = self.around;
+        for (body, part) in around.bodies.iter().enumerate() {
+            let Some(part) = part.as_ref().filter(|_| scene.present[body]) else {
+                continue;
+            };
+            let material =
+                scene.material[body].and_then(|k| Some((k, around.materials[k].as_ref()?)));
+            let Some((number, material)) =
+                material.filter(|(_, material)| material.drainage == Drainage::Total)
+            else {
+                continue;
+            };
+            let own = condition
+                .bodies
+                .iter()
+                .position(|(named, _)| *named == body);
+            if let Some(own) = own
+                && condition.bodies[own].1 != PoreSource::Dry
+            {
+                problems
+                    .error(
+                        node.items_at("bodies")[own].place,
+                        format!(
+                            "{who} gives `{}` a pore pressure of its own, but `{}` has strength by total stress, where there is none",
+                            clip(&part.name, 40),
+                            clip(&material.name, 40)
+                        ),
+                    )
+                    .help("write dry = true there, or drainage = \"drained\" or \"undrained\" in the material, with strength by effective stress");
+                continue;
+            }
+            let has_friction = matches!(
+                material.strength,
+                Strength::MohrCoulomb { friction_angle, .. } if friction_angle > 0.0
+            );
+            let is_wet = || own.is_none() && is_wet(around.earth, &condition.source, part);
+            if has_friction && !self.told.contains(&number) && is_wet() {
+                self.told.push(number);
+                let entries = around.tree.get("materials").map_or(&[][..], Node::entries);
+                let place = entries
+                    .get(number)
+                    .map(|entry| entry.node.place_at("drainage"));
+                problems
+                    .error(
+                        place,
+                        format!(
+                            "{who} wets `{}`, and `{}` has friction by total stress: the water would make it stronger",
+                            clip(&part.name, 40),
+                            clip(&material.name, 40)
+                        ),
+                    )
+                    .help("friction goes with effective stress: drainage = \"drained\", or \"undrained\" where water cannot leave")
+                    .help("for undrained strength by total stress use model = \"tresca\" with cu");
+            }
+        }
+    }
+}
+
+/// Share of the greatest pressure on the ground that is told \[-\].
+const ON_GROUND: f64 = 0.02;
+
+/// Refuses points that do not reach over the soil; warns of pressure on the ground that is not said to be free water.
+fn points<const D: usize>(
+    raster: &Raster,
+    (around, scene, surface): (&Around<'_, D>, &Scene, &dyn Surface),
+    (node, who, when): (&Node, &str, &str),
+    problems: &mut Problems,
+) {
+    let Some(value) = node.get("u") else { return };
+    let parts = std::iter::zip(around.bodies, &scene.present);
+    let there = parts.filter_map(|(part, present)| part.as_ref().filter(|_| *present));
+    let outlines: Vec<_> = there.map(|part| around.earth.front_outline(part)).collect();
+    let polygons: Vec<&[[f64; 2]]> = outlines.iter().map(|own| &own[..]).collect();
+    let of = format!("the soil that {who} is for{when}");
+    if reach(raster, (value, "u"), (&polygons, &of), problems).is_err() {
+        return;
+    }
+    let greatest = raster.values.iter().flatten().copied().fold(0.0, f64::max);
+    let most = surface.most_on_ground(raster);
+    let is_meant = node.flag_at("pond") == Some(true);
+    if let Some((at, pressure)) =
+        most.filter(|(_, pressure)| !is_meant && *pressure > ON_GROUND * greatest)
+    {
+        problems
+            .warning(
+                value.place,
+                format!(
+                    "{who} presses on the ground with {} kPa at {at}{when}, as free water would",
+                    number((pressure / 1e2).round() / 1e1)
+                ),
+            )
+            .help("write pond = true if free water stands there; else let the points have no pressure on the ground");
+    }
+}
+
+/// Where a condition is told wrong, and when.
+fn when(tree: &Node, node: &Node, stage: Option<usize>) -> (Place, String) {
+    let own = ["line", "level", "surface", "inside", "r_u", "u"];
+    let own = own.iter().find(|key| node.get(key).is_some());
+    let own = own.map_or(node.place, |key| node.place_at(key));
+    let Some(stage) = stage.map(|index| &tree.items_at("stages")[index]) else {
+        return (own, String::new());
+    };
+    let name = clip(stage.text_at("name").unwrap_or("?"), 40);
+    if stage.get("water").is_some() {
+        return (own, format!(" in stage `{name}`"));
+    }
+    let changed = ["remove", "place"];
+    let changed = changed.iter().find(|key| !stage.items_at(key).is_empty());
+    (
+        stage.place_at(changed.unwrap_or(&"name")),
+        format!(" after stage `{name}`"),
+    )
+}
+
+fn above_ground(above: &Above, place: Place, (who, when): (&str, &str), problems: &mut Problems) {
+    problems
+        .error(
+            place,
+            format!(
+                "{who} stands {} m above the ground at {}{when}",
+                number(above.by),
+                above.at
+            ),
+        )
+        .help("a line above the ground presses on it as a pond does: draw it along the surface there, or below")
+        .help("write pond = true if free water stands there");
+}
+
+/// Whether there is pressure in a body.
+fn is_wet<const D: usize>(earth: &dyn Earth<D>, source: &PoreSource, part: &BodyPart<D>) -> bool {
+    match source {
+        PoreSource::Dry => false,
+        PoreSource::Ratio(ratio) => *ratio > 0.0,
+        PoreSource::Points(_)
+        | PoreSource::Table(_)
+        | PoreSource::Surface(_)
+        | PoreSource::Drained(_) => earth.wets(source, part),
+    }
+}

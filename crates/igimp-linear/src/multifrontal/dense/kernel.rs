@@ -1,0 +1,96 @@
+//! What the two kinds of elimination, LU and Cholesky, have in common.
+
+use super::dense_lu::PivotRecord;
+use super::scalar::Scalar;
+use crate::LinearSolverError;
+use crate::multifrontal::extend_add::{BorderMap, Waiting, triangle};
+use crate::multifrontal::tree::plan::{Front, Plan};
+use crate::multifrontal::tree::tasks::Extent;
+
+/// A kind of elimination, on given values.
+pub(crate) trait Kernel<T: Scalar>: Sync {
+    /// How contributions are stored.
+    const SHAPE: Shape;
+
+    /// Entries of the factors of fronts of this extent.
+    fn entries(extent: &Extent) -> usize;
+
+    /// Sets the factors of a front to the entries of the matrix in its rows and columns. `local` gives
+    /// the first row in the border of each border node, by rank.
+    fn load(&self, plan: &Plan, front: &Front, factors: &mut [T], local: &[u32]);
+
+    /// Eliminates the pivots. The threads share the work on a `large` front; `exchanges` are those of rows
+    /// within the pivot block.
+    ///
+    /// # Errors
+    /// [`LinearSolverError::NotPositiveDefinite`], where that matters.
+    fn eliminate(
+        &self,
+        plan: &Plan,
+        front: &Front,
+        factors: &mut [T],
+        exchanges: &mut [u32],
+        large: bool,
+    ) -> Result<PivotRecord, LinearSolverError>;
+
+    /// Works out what a front contributes to its parent: adds to the factors of the parent what falls on
+    /// its pivots, and leaves the rest.
+    ///
+    /// # Errors
+    /// [`LinearSolverError::OutOfMemory`].
+    fn contribute(
+        contribution: Contribution<'_, T>,
+        room: Room<'_, T>,
+        scratch: &mut Vec<T>,
+        large: bool,
+    ) -> Result<(), LinearSolverError>;
+}
+
+/// What a front contributes to its parent: the product of its factors, and what its own children left.
+pub(crate) struct Contribution<'a, T> {
+    pub(crate) front: &'a Front,
+    pub(crate) factors: &'a [T],
+    pub(crate) children: &'a [Waiting<'a, T>],
+    /// Where its border lies in the parent.
+    pub(crate) map: &'a BorderMap,
+}
+
+/// Where a contribution goes.
+pub(crate) struct Room<'a, T> {
+    pub(crate) parent: &'a Front,
+    /// Factors of the parent, loaded.
+    pub(crate) factors: &'a mut [T],
+    /// What the parent will pass on, see [`Shape`].
+    pub(crate) waiting: &'a mut [T],
+}
+
+/// How the contribution of a front is stored.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Shape {
+    /// Border × border entries, by columns.
+    Square,
+    /// The entries from the diagonal on, by columns.
+    Triangle,
+}
+
+impl Shape {
+    /// Entries for a border with so many unknowns.
+    pub(crate) fn entries(self, border: usize) -> usize {
+        match self {
+            Self::Square => border * border,
+            Self::Triangle => triangle(border),
+        }
+    }
+}
+
+/// What the factors of a front are used for in a solve.
+pub(crate) trait Substitution<T: Scalar>: Sync {
+    /// As [`Kernel::entries`].
+    fn entries(extent: &Extent) -> usize;
+
+    /// y ← L⁻¹ P y for the pivots, and `product` = −L y for the border. The threads share the work on a `large` front.
+    fn forward(factors: &[T], exchanges: &[u32], y: &mut [T], product: &mut [T], large: bool);
+
+    /// y ← U⁻¹ (y − Uᵀ border).
+    fn backward(factors: &[T], y: &mut [T], border: &[T], large: bool);
+}

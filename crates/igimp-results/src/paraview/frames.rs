@@ -1,0 +1,187 @@
+//! What a run writes for ParaView: the particles, the grid, rigid bodies and reinforcement, frame by frame.
+
+use std::fs::File;
+use std::path::{Path, PathBuf};
+
+use igimp_assembly::{Particles, SharedLaw};
+use igimp_shape::Grid;
+
+use super::particles::{Extras, of_grid, of_particles};
+use super::pvd::{self, Collection};
+use super::vtu::UnstructuredGrid;
+use crate::error::ResultsError;
+use crate::fields;
+use crate::folder::atomic::{at, sync_folder, sync_together};
+use crate::reinforcement::{self, Installed};
+use crate::rigid::{self, Standing};
+use igimp_model::{Case, Field};
+
+/// Structures that are there in a frame.
+#[derive(Clone, Debug, Default)]
+pub struct Structures<'a, const D: usize = 2> {
+    /// Rigid bodies.
+    pub rigid: Vec<Standing<'a, D>>,
+    /// Reinforcement.
+    pub reinforcement: Vec<Installed<'a, D>>,
+}
+
+/// The frames of a run.
+#[derive(Debug)]
+pub struct Frames {
+    folder: PathBuf,
+    particles: Collection,
+    grid: Collection,
+    /// Of a case with rigid bodies.
+    rigid: Option<Collection>,
+    /// Of a case with reinforcement.
+    reinforcement: Option<Collection>,
+    /// Whether there is pore water to write of.
+    pore_water: bool,
+    /// Frames that the disk is known to have.
+    synced: usize,
+}
+
+impl Frames {
+    /// Goes on after the first `frames` frames of a folder that exists; 0 begins anew. Rigid bodies and
+    /// reinforcement have frames in cases that have some, and effective stress and pore pressure are written
+    /// where there is water.
+    ///
+    /// # Errors
+    /// [`ResultsError::Unusable`], [`ResultsError::File`].
+    pub fn open<const D: usize>(
+        folder: &Path,
+        frames: usize,
+        case: &Case<D>,
+    ) -> Result<Self, ResultsError> {
+        let of = |stem, is_there: bool| {
+            let opened = is_there.then(|| Collection::resume(folder, stem, frames));
+            opened.transpose()
+        };
+        Ok(Self {
+            rigid: of(pvd::RIGID, !case.rigid.is_empty())?,
+            reinforcement: of(pvd::REINFORCEMENT, !case.reinforcement.is_empty())?,
+            pore_water: case.has_pore_water(),
+            folder: folder.to_path_buf(),
+            particles: Collection::resume(folder, pvd::PARTICLES, frames)?,
+            grid: Collection::resume(folder, pvd::GRID, frames)?,
+            synced: frames,
+        })
+    }
+
+    /// Adds a frame at a pseudo-time.
+    ///
+    /// # Errors
+    /// [`ResultsError::File`].
+    pub fn add<const D: usize>(
+        &mut self,
+        time: f64,
+        (particles, laws): (&Particles<D>, &[SharedLaw]),
+        grid: &Grid<D>,
+        structures: &Structures<'_, D>,
+    ) -> Result<(), ResultsError> {
+        let cells = self.cells(particles, laws);
+        self.particles.add(time, &cells)?;
+        self.grid.add(time, &of_grid(grid, None))?;
+        if let Some(collection) = &mut self.rigid {
+            collection.add(time, &rigid::cells(&structures.rigid))?;
+        }
+        if let Some(collection) = &mut self.reinforcement {
+            collection.add(time, &reinforcement::lines(&structures.reinforcement))?;
+        }
+        Ok(())
+    }
+
+    /// Writes particles beside the frames, as `NAME.vtu`, rigid bodies as `NAME-rigid.vtu`, and
+    /// reinforcement as `NAME-reinforcement.vtu`.
+    ///
+    /// # Errors
+    /// [`ResultsError::File`].
+    pub fn beside<const D: usize>(
+        &self,
+        name: &str,
+        (particles, laws): (&Particles<D>, &[SharedLaw]),
+        structures: &Structures<'_, D>,
+    ) -> Result<(), ResultsError> {
+        let file = |of| self.folder.join(format!("{name}{of}.vtu"));
+        if self.rigid.is_some() {
+            rigid::cells(&structures.rigid).write(&file(pvd::OF_BODIES))?;
+        }
+        if self.reinforcement.is_some() {
+            let lines = reinforcement::lines(&structures.reinforcement);
+            lines.write(&file(pvd::OF_REINFORCEMENT))?;
+        }
+        let path = self.folder.join(name).with_extension("vtu");
+        self.cells(particles, laws).write(&path)
+    }
+
+    fn cells<const D: usize>(
+        &self,
+        particles: &Particles<D>,
+        laws: &[SharedLaw],
+    ) -> UnstructuredGrid {
+        let utilisation = fields::values(Field::Utilisation, particles, laws);
+        let carried = carried(particles, laws);
+        let extras = Extras {
+            utilisation: Some(&utilisation),
+            carried: &carried,
+            def_grad: true,
+            pore_water: self.pore_water,
+        };
+        of_particles(particles, &extras)
+    }
+
+    /// Waits until the disk has every frame: before a checkpoint that counts on them.
+    ///
+    /// # Errors
+    /// [`ResultsError::File`].
+    pub fn sync(&mut self) -> Result<(), ResultsError> {
+        let new = |collection: &Collection| -> Vec<PathBuf> {
+            let frames = collection.frames()[self.synced..].iter();
+            let files = frames.map(|frame| self.folder.join(&frame.file));
+            files.chain([collection.path()]).collect()
+        };
+        if self.synced == self.len() {
+            return Ok(());
+        }
+        let open = |path: PathBuf| {
+            let file = File::open(&path).map_err(at(&path))?;
+            Ok((path, file))
+        };
+        let collections = [&self.particles, &self.grid].into_iter();
+        let collections = collections.chain(&self.rigid).chain(&self.reinforcement);
+        let files: Vec<_> = collections
+            .flat_map(new)
+            .map(open)
+            .collect::<Result<_, ResultsError>>()?;
+        sync_together(&files, |path, error| at(path)(error))?;
+        sync_folder(&self.folder).map_err(at(&self.folder))?;
+        self.synced = self.len();
+        Ok(())
+    }
+
+    /// Number of frames.
+    pub fn len(&self) -> usize {
+        self.particles.frames().len()
+    }
+
+    /// Whether there is no frame yet.
+    pub fn is_empty(&self) -> bool {
+        self.particles.frames().is_empty()
+    }
+}
+/// Strength and stiffness of the particles, where they are not those of the materials everywhere.
+fn carried<const D: usize>(
+    particles: &Particles<D>,
+    laws: &[SharedLaw],
+) -> Vec<(&'static str, Vec<f64>)> {
+    let varies = particles.ratios.iter().any(|ratios| !ratios.are_one());
+    let arrays = [
+        ("strength [Pa]", Field::Strength),
+        ("friction angle [rad]", Field::Friction),
+        ("Young's modulus [Pa]", Field::Young),
+    ];
+    let arrays = arrays.into_iter().filter(|_| varies);
+    arrays
+        .map(|(name, field)| (name, fields::values(field, particles, laws)))
+        .collect()
+}

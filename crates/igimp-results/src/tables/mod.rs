@@ -1,0 +1,5 @@
+//! Tables as CSV.
+
+pub mod cells;
+pub mod rows;
+pub mod table;

@@ -1,0 +1,10 @@
+//! What every study shares: outside values, snapshots, the tables and the matrix.
+
+pub(crate) mod coverage;
+pub(crate) mod matrix;
+pub(crate) mod oracle;
+pub(crate) mod reference;
+pub(crate) mod review;
+pub(crate) mod snapshot;
+pub(crate) mod study;
+pub(crate) mod table;
