@@ -158,3 +158,10 @@ impl AssemblyError {
         matches!(self, Self::Inverted { .. } | Self::Overstrained { .. })
     }
 }
+
+/// A position with zeros beyond the dimension, for messages.
+pub(crate) fn padded<const D: usize>(x: &[f64; D]) -> [f64; 3] {
+    let mut out = [0.0; 3];
+    out[..D].copy_from_slice(x);
+    out
+}

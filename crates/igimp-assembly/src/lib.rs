@@ -8,31 +8,37 @@
 //! Nothing here iterates, cuts a step, reads a file or prints.
 
 mod body;
+pub(crate) mod commit;
+pub(crate) mod conditions;
 mod contributions;
 mod equations;
 mod error;
+mod laws;
 mod method;
 mod small;
 mod step;
+pub(crate) mod work;
 
 pub use body::particles::{ParticleFields, ParticleSeed, Particles};
-pub use body::work::{PlasticFlow, StepWork};
-pub use contributions::pore_water::{HeldForces, PoreSite, PoreState, PoreWater, Water};
-pub use contributions::reinforcement::{
-    Hold, Reinforcement, ReinforcementControl, Segment, SegmentState, Station,
-};
+pub use conditions::StepConditions;
+pub use conditions::constraints::Constraints;
+pub use conditions::held::HeldForces;
+pub use conditions::loads::{LoadPoint, StepLoads};
+pub use conditions::reinforcement::ReinforcementControl;
+pub use conditions::rigid_motion::{Drive, RigidMotion};
+pub use conditions::water::{PoreSite, PoreState, PoreWater, Water};
+pub use contributions::reinforcement::{Hold, Reinforcement, Segment, SegmentState, Station};
 pub use contributions::rigid::{
-    AcceptedContact, CarryingTriangle, ContactNode, ContactState, Drive, Interface, Penalty, Pose,
-    RigidBody, RigidMotion, Shear, Surface, SurfaceError, SurfaceTriangle, Swallowed, Tension,
+    AcceptedContact, CarryingTriangle, ContactNode, ContactState, Interface, Penalty, Pose,
+    RigidBody, Shear, Surface, SurfaceError, SurfaceTriangle, Swallowed, Tension,
 };
 pub use equations::kinematics::ParticleTrial;
 pub use equations::residual::OutOfBalance;
 pub use equations::system::System;
 pub use equations::trial::Trial;
-pub use equations::unknowns::Unknowns;
 pub use error::AssemblyError;
+pub use laws::SharedLaw;
 pub use method::{DomainUpdate, Geometry, Kinematics, Locking, Method, Remedy, SmallCuts};
-pub use step::constraints::Constraints;
-pub use step::loads::{LoadPoint, StepLoads};
 pub use step::stencils::Stencils;
-pub use step::step_conditions::{SharedLaw, StepConditions};
+pub use step::unknowns::Unknowns;
+pub use work::{PlasticFlow, StepWork};

@@ -8,8 +8,12 @@ use igimp_material::{
 };
 
 use crate::error::AssemblyError;
+use crate::laws::SharedLaw;
 use crate::small::{determinant, identity};
-use crate::step::step_conditions::SharedLaw;
+
+/// Particles that are handled together: fixed, so that results do not depend on the number of
+/// threads.
+pub(crate) const CHUNK: usize = 1024;
 
 /// What is known of a particle before the first step.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -5,9 +5,10 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use igimp_shape::{Grid, Support};
 
+use crate::equations::reach::same_nodes;
 use crate::equations::reach::{SMALL_REACH, common_reach, furthest};
-use crate::equations::unknowns::Unknowns;
 use crate::step::stencils::Stencils;
+use crate::step::unknowns::Unknowns;
 use igimp_linear::{NodeBlock, Pattern};
 
 /// Marks a pair of nodes without a block, or a node without unknowns.
@@ -319,12 +320,6 @@ impl<const D: usize> BlockTable<D> {
         let centre = (self.window as u32 - 1) / 2;
         column.block as usize * self.window + (row.code + centre - column.code) as usize
     }
-}
-
-/// Whether two lists of supports have the same nodes.
-#[inline]
-pub(crate) fn same_nodes<const D: usize>(a: &[Support<D>], b: &[Support<D>]) -> bool {
-    a.len() == b.len() && std::iter::zip(a, b).all(|(a, b)| a.node == b.node)
 }
 
 /// The nodes of a box from its first one on, ascending.

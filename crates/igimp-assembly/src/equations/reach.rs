@@ -3,9 +3,8 @@
 
 use igimp_shape::{Grid, Support};
 
-use crate::equations::blocks::same_nodes;
+use crate::step::domain::bounds;
 use crate::step::stencils::Stencils;
-use crate::step::supports::bounds;
 
 /// A reach up to this is that of all nodes: its window is small.
 pub(crate) const SMALL_REACH: usize = 3;
@@ -48,6 +47,12 @@ pub(crate) fn common_reach(furthest: &[usize], most: usize) -> (usize, Vec<bool>
         .find(|&reach| beyond(reach) * NODES_PER_WIDE <= carrying)
         .unwrap_or(most);
     (near, furthest.iter().map(|&own| own > near).collect())
+}
+
+/// Whether two lists of supports have the same nodes.
+#[inline]
+pub(crate) fn same_nodes<const D: usize>(a: &[Support<D>], b: &[Support<D>]) -> bool {
+    a.len() == b.len() && std::iter::zip(a, b).all(|(a, b)| a.node == b.node)
 }
 
 #[cfg(test)]

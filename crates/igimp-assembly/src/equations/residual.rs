@@ -3,12 +3,12 @@
 
 use rayon::prelude::*;
 
+use crate::body::particles::CHUNK;
 use crate::body::particles::Particles;
-use crate::equations::unknowns::Unknowns;
+use crate::conditions::StepConditions;
 use crate::error::AssemblyError;
 use crate::step::stencils::Stencils;
-use crate::step::step_conditions::StepConditions;
-use crate::step::supports::CHUNK;
+use crate::step::unknowns::Unknowns;
 
 /// Size of the round-off in the strain of a particle \[-\].
 const STRAIN_ROUND_OFF: f64 = 8.0 * f64::EPSILON;

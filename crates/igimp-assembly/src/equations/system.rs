@@ -6,27 +6,28 @@ use std::sync::Arc;
 use igimp_material::{MaterialError, TangentKind};
 
 use crate::body::particles::Particles;
+use crate::conditions::StepConditions;
+use crate::conditions::loads::{LoadPoint, finite_points};
+use crate::conditions::rigid_motion::{Drive, RigidMotion, rotations};
 use crate::contributions::couplings::Couplings;
 use crate::contributions::ghost::ghost_penalty;
+use crate::contributions::loads::add_held_forces;
+use crate::contributions::loads::{
+    add_force_of_points, add_variation_of_weight, nodal_drag, weight,
+};
 use crate::contributions::nodal_forces::NodalForces;
 use crate::contributions::pore_water::Pores;
 use crate::contributions::reinforcement::{Members, Reinforcement};
-use crate::contributions::rigid::{
-    AcceptedContact, Contact, Drive, NODES_PER_BODY, RigidBody, RigidMotion, Swallowed, rotations,
-};
+use crate::contributions::rigid::{AcceptedContact, Contact, NODES_PER_BODY, RigidBody, Swallowed};
 use crate::equations::blocks::BlockTable;
 use crate::equations::kinematics::ParticleTrial;
 use crate::equations::linearised::{Linearised, Moduli};
 use crate::equations::residual::{OutOfBalance, force_of_round_off};
 use crate::equations::trial::Trial;
-use crate::equations::unknowns::Unknowns;
 use crate::error::AssemblyError;
 use crate::method::{Kinematics, Method};
-use crate::step::loads::{
-    LoadPoint, add_force_of_points, add_variation_of_weight, finite_points, nodal_drag, weight,
-};
 use crate::step::stencils::Stencils;
-use crate::step::step_conditions::StepConditions;
+use crate::step::unknowns::Unknowns;
 use igimp_linear::Border;
 use igimp_linear::{Pattern, TangentMatrix};
 
@@ -676,7 +677,7 @@ fn external_force<const D: usize>(
     add_variation_of_weight(stencils, &conditions.laws, gravity, &mut f_ext);
     let pores = Pores::fill(particles, stencils, conditions, method, &mut f_ext)?;
     if let Some(held) = &conditions.held {
-        held.add(stencils, &mut f_ext);
+        add_held_forces(held, stencils, &mut f_ext);
     }
     f_ext.extend(motions.iter().map(|motion| {
         motion.map(|drive| match drive {

@@ -6,11 +6,12 @@ use igimp_material::ConstitutiveModel;
 use igimp_shape::{CellPart, Grid, Support, cell_parts};
 use rayon::prelude::*;
 
+use crate::body::particles::CHUNK;
 use crate::body::particles::Particles;
 use crate::error::AssemblyError;
+use crate::laws::SharedLaw;
 use crate::method::{Geometry, Locking, Method};
-use crate::step::step_conditions::SharedLaw;
-use crate::step::supports::{CHUNK, capped_half_length, merge_equal_nodes, off_grid};
+use crate::step::domain::{capped_half_length, merge_equal_nodes, off_grid};
 
 /// A cell that is filled to less than this share holds a sliver of soil that reached over its face
 /// \[-\].

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 
 use igimp_shape::Grid;
 
-use crate::step::constraints::Constraints;
-use crate::step::stencils::NodeShare;
+use crate::conditions::constraints::Constraints;
+use crate::step::node_shares::NodeShare;
 use crate::step::supports::Supports;
 
 /// The master of every node that is a small cut, its volume being less than `below` of its cell's:

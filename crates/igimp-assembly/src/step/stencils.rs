@@ -7,13 +7,16 @@ use igimp_shape::{Grid, Support};
 use rayon::prelude::*;
 
 use crate::body::particles::Particles;
+use crate::conditions::StepConditions;
 use crate::error::AssemblyError;
 use crate::method::{Method, Remedy};
 use crate::step::cell_soil::Moments;
+use crate::step::domain::bounds;
+use crate::step::node_shares::NodeShare;
+use crate::step::node_shares::node_shares;
 use crate::step::small_cuts::{cell_volume, masters_of_cuts};
-use crate::step::step_conditions::StepConditions;
-use crate::step::strips::{Strips, split};
-use crate::step::supports::{Supports, bounds};
+use crate::step::strips::Strips;
+use crate::step::supports::Supports;
 
 /// Basis values S, gradients ∇S and cell-averaged centre gradients ∇S̄ of all particles.
 ///
@@ -25,17 +28,6 @@ pub struct Stencils<const D: usize> {
     shares: Vec<NodeShare>,
     masters: BTreeMap<usize, usize>,
     strips: Strips,
-}
-
-/// What a node represents of the body.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct NodeShare {
-    /// Σ S V \[length^D\].
-    pub(crate) volume: f64,
-    /// Σ S m \[mass\].
-    pub(crate) mass: f64,
-    /// Whether any particle has it among its supports, if only by its gradient.
-    pub(crate) is_touched: bool,
 }
 
 impl<const D: usize> Stencils<D> {
@@ -157,32 +149,4 @@ impl<const D: usize> Stencils<D> {
     pub(crate) fn strips(&self) -> &Strips {
         &self.strips
     }
-}
-
-/// Sums volume and mass into the nodes.
-fn node_shares<const D: usize>(
-    grid: &Grid<D>,
-    particles: &Particles<D>,
-    supports: &Supports<D>,
-    strips: &Strips,
-) -> Vec<NodeShare> {
-    let mut shares = vec![NodeShare::default(); grid.node_count()];
-    for parity in 0..2 {
-        let own = strips.of_parity(parity);
-        let slices = split(&mut shares, own.clone().map(|(nodes, _)| nodes.clone()));
-        let tasks: Vec<_> = own.zip(slices).collect();
-        tasks.into_par_iter().for_each(|((nodes, slots), slice)| {
-            for &particle in &strips.order()[slots.clone()] {
-                let particle = particle as usize;
-                let (volume, mass) = (particles.volume(particle), particles.mass[particle]);
-                for support in supports.of(particle) {
-                    let share = &mut slice[support.node - nodes.start];
-                    share.volume += support.value * volume;
-                    share.mass += support.value * mass;
-                    share.is_touched = true;
-                }
-            }
-        });
-    }
-    shares
 }

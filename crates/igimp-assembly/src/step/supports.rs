@@ -1,17 +1,18 @@
 //! The supports of all particles, frozen for one step.
 
-use igimp_shape::{Grid, Scratch, ShapeError, Support, supports};
+use igimp_shape::{Grid, Scratch, Support, supports};
 use rayon::prelude::*;
 
+use crate::body::particles::CHUNK;
 use crate::body::particles::Particles;
 use crate::error::AssemblyError;
+use crate::laws::SharedLaw;
 use crate::method::{Geometry, Locking, Method};
 use crate::step::cell_soil::{CellSoil, Moments};
-use crate::step::step_conditions::SharedLaw;
-
-/// Particles that are handled together: fixed, so that results do not depend on the number of
-/// threads.
-pub(crate) const CHUNK: usize = 1024;
+use crate::step::domain::bounds;
+use crate::step::domain::capped_half_length;
+use crate::step::domain::merge_equal_nodes;
+use crate::step::domain::off_grid;
 
 /// The supports of each particle, nodes ascending.
 #[derive(Clone, Debug)]
@@ -165,76 +166,4 @@ impl<const D: usize> Chunk<D> {
         }
         Ok(chunk)
     }
-}
-
-/// The lowest place of supports, and how far they extend along each axis.
-pub(crate) fn bounds<const D: usize>(
-    grid: &Grid<D>,
-    own: &[Support<D>],
-) -> ([usize; D], [usize; D]) {
-    let mut lower = [usize::MAX; D];
-    let mut upper = [0; D];
-    for support in own {
-        let place = grid.node_place(support.node);
-        for axis in 0..D {
-            lower[axis] = lower[axis].min(place[axis]);
-            upper[axis] = upper[axis].max(place[axis]);
-        }
-    }
-    (lower, std::array::from_fn(|axis| upper[axis] - lower[axis]))
-}
-
-/// Adds up neighbouring supports of the same node; returns how many are left at the front.
-pub(crate) fn merge_equal_nodes<const D: usize>(own: &mut [Support<D>]) -> usize {
-    let mut kept = 0;
-    for k in 1..own.len() {
-        let support = own[k];
-        if own[kept].node == support.node {
-            let sum = &mut own[kept];
-            sum.value += support.value;
-            for axis in 0..D {
-                sum.grad[axis] += support.grad[axis];
-                sum.grad_bar[axis] += support.grad_bar[axis];
-            }
-        } else {
-            kept += 1;
-            own[kept] = support;
-        }
-    }
-    kept + 1
-}
-
-/// Half-lengths limited to the size of the cell that holds the centre.
-pub(crate) fn capped_half_length<const D: usize>(
-    grid: &Grid<D>,
-    x: &[f64; D],
-    mut half_length: [f64; D],
-) -> [f64; D] {
-    if let Some(cell) = grid.cell_at(x) {
-        let size = grid.cell_size(cell);
-        for axis in 0..D {
-            half_length[axis] = half_length[axis].min(size[axis]);
-        }
-    }
-    half_length
-}
-
-/// What is said of a particle whose centre or domain has no place on the grid.
-pub(crate) fn off_grid<const D: usize>(
-    particle: usize,
-    x: &[f64; D],
-    source: ShapeError,
-) -> AssemblyError {
-    AssemblyError::Shape {
-        particle,
-        position: padded(x),
-        source,
-    }
-}
-
-/// A position with zeros beyond the dimension, for messages.
-pub(crate) fn padded<const D: usize>(x: &[f64; D]) -> [f64; 3] {
-    let mut out = [0.0; 3];
-    out[..D].copy_from_slice(x);
-    out
 }

@@ -6,15 +6,16 @@ use std::collections::BTreeMap;
 use igimp_shape::{Linear, Scratch, supports};
 
 use super::row::{Row, length};
-use super::{Reinforcement, ReinforcementControl, Station};
+use super::{Reinforcement, Station};
+use crate::conditions::StepConditions;
+use crate::conditions::reinforcement::ReinforcementControl;
+use crate::contributions::dropped::shares_of_carried;
 use crate::contributions::nodal_forces::{AddBlock, NodalForces};
-use crate::equations::unknowns::Unknowns;
 use crate::error::AssemblyError;
+use crate::error::padded;
 use crate::method::{Geometry, Kinematics, Method};
-use crate::step::dropped::shares_of_carried;
 use crate::step::stencils::Stencils;
-use crate::step::step_conditions::StepConditions;
-use crate::step::supports::padded;
+use crate::step::unknowns::Unknowns;
 
 /// A node without soil that has a smaller share of a point has none: round-off on a line of the grid \[-\].
 const LEAST_SHARE: f64 = 1e-9;

@@ -1,6 +1,7 @@
 //! One bar of a member over a step.
 
-use super::{ReinforcementControl, Segment, SegmentState};
+use super::{Segment, SegmentState};
+use crate::conditions::reinforcement::ReinforcementControl;
 use crate::contributions::nodal_forces::AddBlock;
 
 /// A bar, with its shares of nodes frozen at the start of the step.

@@ -6,7 +6,7 @@ use thiserror::Error;
 use super::RigidBody;
 use super::vectors::{minus, norm};
 use crate::body::particles::Particles;
-use crate::step::supports::padded;
+use crate::error::padded;
 
 /// The centre of a particle stands at least so far off a body, in half-lengths as seeded \[-\].
 const LEAST_HEIGHT: f64 = 0.5;

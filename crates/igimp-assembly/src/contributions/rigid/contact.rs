@@ -7,15 +7,15 @@ use super::clearance::{Swallowed, put_back};
 use super::gathering::Gathering;
 use super::interface::{Interface, Tension};
 use super::mosaic::tents_within;
-use super::motion::rotations;
 use super::row::{Functional, Row};
 use super::{ContactNode, ContactState, NODES_PER_BODY, RigidBody};
 use crate::body::particles::Particles;
+use crate::conditions::StepConditions;
+use crate::conditions::rigid_motion::rotations;
 use crate::contributions::nodal_forces::{AddBlock, NodalForces};
-use crate::equations::unknowns::Unknowns;
 use crate::method::Geometry;
 use crate::step::stencils::Stencils;
-use crate::step::step_conditions::StepConditions;
+use crate::step::unknowns::Unknowns;
 
 /// A knot of space that soil covers by a smaller share of the largest one has none: round-off beyond a plane of
 /// symmetry \[-\].

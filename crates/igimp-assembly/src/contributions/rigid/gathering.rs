@@ -11,10 +11,10 @@ use super::mosaic::{Piece, pieces};
 use super::surface::Space;
 use super::vectors::cross;
 use crate::body::particles::Particles;
-use crate::equations::unknowns::Unknowns;
+use crate::conditions::StepConditions;
+use crate::error::padded;
 use crate::step::stencils::Stencils;
-use crate::step::step_conditions::StepConditions;
-use crate::step::supports::padded;
+use crate::step::unknowns::Unknowns;
 
 /// A node with a smaller share of a point has none: round-off on a line of the grid \[-\].
 const LEAST_SHARE: f64 = 1e-9;

@@ -10,7 +10,6 @@ mod face;
 mod gathering;
 mod interface;
 mod mosaic;
-mod motion;
 mod pose;
 mod row;
 mod state;
@@ -18,7 +17,6 @@ mod surface;
 mod vectors;
 
 pub use interface::{Interface, Penalty, Shear, Tension};
-pub use motion::{Drive, RigidMotion};
 pub use pose::Pose;
 pub use state::{ContactNode, ContactState};
 pub use surface::{CarryingTriangle, Surface, SurfaceError, SurfaceTriangle};
@@ -28,7 +26,6 @@ pub use contact::AcceptedContact;
 pub use clearance::Swallowed;
 pub(crate) use clearance::seeded_too_close;
 pub(crate) use contact::Contact;
-pub(crate) use motion::rotations;
 
 use std::sync::Arc;
 

@@ -4,13 +4,8 @@
 use igimp_material::ConstitutiveModel;
 use igimp_shape::{Grid, Linear, Scratch, Support, supports};
 
-use crate::contributions::couplings::{Coupling, Couplings};
-use crate::equations::unknowns::Unknowns;
 use crate::error::AssemblyError;
-use crate::step::dropped::shares_of_carried;
-use crate::step::stencils::Stencils;
-use crate::step::step_conditions::{SharedLaw, StepConditions};
-use crate::step::supports::padded;
+use crate::error::padded;
 
 /// A force on a point that moves with the soil. Its direction stays (dead load).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -95,7 +90,11 @@ impl<const D: usize> LoadPoint<D> {
     }
 
     /// The nodes that take the force: linear shares, so that resultant and moment are kept.
-    fn supports(&self, grid: &Grid<D>, point: usize) -> Result<Vec<Support<D>>, AssemblyError> {
+    pub(crate) fn supports(
+        &self,
+        grid: &Grid<D>,
+        point: usize,
+    ) -> Result<Vec<Support<D>>, AssemblyError> {
         let mut own = Vec::new();
         supports(
             grid,
@@ -183,112 +182,4 @@ pub(crate) fn finite_points<const D: usize>(points: &[LoadPoint<D>]) -> Result<(
         finite("force of a load point", index, &point.force)?;
     }
     Ok(())
-}
-
-/// The weight of the body, by node \[force\].
-pub(crate) fn weight<const D: usize>(
-    grid: &Grid<D>,
-    stencils: &Stencils<D>,
-    loads: &StepLoads<D>,
-) -> Vec<[f64; D]> {
-    (0..grid.node_count())
-        .map(|node| loads.gravity.map(|g| stencils.node_mass(node) * g))
-        .collect()
-}
-
-/// Adds to the nodal external force f_ext what the variation of stress within cells carries of the weight and shared
-/// gradients do not see, by node \[force\] (theory, eq. 8f).
-pub(crate) fn add_variation_of_weight<const D: usize>(
-    stencils: &Stencils<D>,
-    laws: &[SharedLaw],
-    gravity: &[f64; D],
-    f_ext: &mut [[f64; D]],
-) {
-    for (law, moments) in laws.iter().zip(stencils.moments()) {
-        let weight = gravity.iter().map(|g| g * g).sum::<f64>().sqrt() * moments.layer;
-        let gain = gain_at_failure(&**law, weight);
-        if gain == 0.0 {
-            continue;
-        }
-        for (node, moment) in moments.by_node.iter().enumerate() {
-            let force = &mut f_ext[stencils.master(node)];
-            for a in 0..D {
-                let along: f64 = (0..D).map(|b| moment[a][b] * gravity[b]).sum();
-                force[a] += gain * along;
-            }
-        }
-    }
-}
-
-/// Cohesion over the weight of a layer of one cell from which on the variation of stress is none of the soil's
-/// concern \[-\] (theory, eq. 8f).
-const COHESIVE: f64 = 0.1;
-
-/// How much of the unit weight the horizontal stress and the shear of a long slope gain across a cell where it fails along
-/// its face, cos 2φ, and none where that is negative; less with cohesion against the weight of a layer of one cell
-/// \[force/length²\], and none from a tenth of it on \[-\] (theory, eq. 8f).
-fn gain_at_failure(law: &dyn ConstitutiveModel, weight: f64) -> f64 {
-    let Some(strength) = law.shear_strength().filter(|_| weight > 0.0) else {
-        return 0.0;
-    };
-    let without_cohesion = (1.0 - strength.cohesive / (COHESIVE * weight)).max(0.0);
-    without_cohesion * (2.0 * strength.friction_angle).cos().max(0.0)
-}
-
-/// Adds the force of loaded points to the nodal external force f_ext, by node \[force\]. What falls to
-/// dropped nodes is handed on: no force is lost.
-pub(crate) fn add_force_of_points<const D: usize>(
-    f_ext: &mut [[f64; D]],
-    points: &[LoadPoint<D>],
-    conditions: &StepConditions<D>,
-    stencils: &Stencils<D>,
-    unknowns: &Unknowns<D>,
-) -> Result<(), AssemblyError> {
-    let StepConditions {
-        grid,
-        constraints,
-        loads,
-        ..
-    } = conditions;
-    let held = |node: usize| (0..D).all(|axis| constraints.of(node, axis).is_some());
-    let is_dropped = |node: usize| !unknowns.is_active(node) && !held(node);
-    for (index, point) in points.iter().enumerate() {
-        let factor = loads.factors.get(point.load).copied().unwrap_or(0.0);
-        if factor == 0.0 {
-            continue;
-        }
-        let unsupported = || AssemblyError::UnsupportedLoad {
-            point: index,
-            position: padded(&point.x),
-        };
-        let mut own = point.supports(grid, index)?;
-        for support in &mut own {
-            support.node = stencils.master(support.node);
-            if support.value > 0.0 && stencils.node_volume(support.node) == 0.0 {
-                return Err(unsupported());
-            }
-        }
-        let shares = shares_of_carried(grid, unknowns, is_dropped, &point.x, &own);
-        for (node, share) in shares.ok_or_else(unsupported)? {
-            for axis in 0..D {
-                f_ext[node][axis] += share * factor * point.force[axis];
-            }
-        }
-    }
-    Ok(())
-}
-
-/// Drag by node: force per step displacement \[force/length\]. Nodes without mass have none.
-pub(crate) fn nodal_drag<const D: usize>(
-    grid: &Grid<D>,
-    stencils: &Stencils<D>,
-    drag: f64,
-) -> Couplings {
-    let nodes = 0..grid.node_count();
-    let own = nodes.map(|node| Coupling {
-        row: node,
-        column: node,
-        stiffness: drag * stencils.node_mass(node),
-    });
-    Couplings(own.filter(|own| own.stiffness > 0.0).collect())
 }

@@ -1,20 +1,24 @@
 //! What holds during one step, besides the particles.
 
-use std::sync::Arc;
+pub(crate) mod constraints;
+pub(crate) mod held;
+pub(crate) mod loads;
+pub(crate) mod reinforcement;
+pub(crate) mod rigid_motion;
+pub(crate) mod water;
 
 use igimp_material::ConstitutiveModel;
 use igimp_shape::Grid;
 
 use crate::body::particles::Particles;
-use crate::contributions::pore_water::{HeldForces, Water};
-use crate::contributions::reinforcement::ReinforcementControl;
-use crate::contributions::rigid::RigidMotion;
+use crate::conditions::held::HeldForces;
+use crate::conditions::reinforcement::ReinforcementControl;
+use crate::conditions::rigid_motion::RigidMotion;
+use crate::conditions::water::Water;
 use crate::error::AssemblyError;
-use crate::step::constraints::Constraints;
-use crate::step::loads::StepLoads;
-
-/// A constitutive law that several bodies and threads share.
-pub type SharedLaw = Arc<dyn ConstitutiveModel>;
+use crate::laws::SharedLaw;
+use constraints::Constraints;
+use loads::StepLoads;
 
 /// What holds during one step, besides the particles.
 #[derive(Clone, Debug)]

@@ -2,8 +2,8 @@
 
 use igimp_shape::Grid;
 
+use crate::conditions::constraints::Constraints;
 use crate::error::AssemblyError;
-use crate::step::constraints::Constraints;
 use crate::step::small_cuts::cell_volume;
 use crate::step::stencils::Stencils;
 

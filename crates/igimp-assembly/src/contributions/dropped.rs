@@ -3,7 +3,7 @@
 
 use igimp_shape::{Grid, Support};
 
-use crate::equations::unknowns::Unknowns;
+use crate::step::unknowns::Unknowns;
 
 /// Pivots smaller than this count as none: the nodes at hand lie on a line or a plane \[-\].
 const NO_PIVOT: f64 = 1e-9;

@@ -5,6 +5,7 @@ use igimp_material::Tensor;
 use igimp_shape::Grid;
 use rayon::prelude::*;
 
+use crate::body::particles::CHUNK;
 use crate::body::particles::Particles;
 use crate::contributions::rigid::{RigidBody, seeded_too_close};
 use crate::equations::kinematics::ParticleTrial;
@@ -12,7 +13,6 @@ use crate::equations::trial::Trial;
 use crate::method::{DomainUpdate, Geometry, Kinematics, Method};
 use crate::small::{congruence, determinant, identity, multiply, rotation, transpose};
 use crate::step::stencils::Stencils;
-use crate::step::supports::CHUNK;
 
 impl<const D: usize> Particles<D> {
     /// Accepts a converged trial: x, F, b_e, σ, l_p and history become those at nodal step

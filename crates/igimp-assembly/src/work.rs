@@ -3,11 +3,11 @@
 use igimp_material::{MaterialError, Tensor, logarithmic_strain, principal_values};
 use rayon::prelude::*;
 
+use crate::body::particles::CHUNK;
 use crate::equations::kinematics::{add_small_strain, gradients};
 use crate::equations::system::System;
 use crate::equations::trial::Trial;
 use crate::error::AssemblyError;
-use crate::step::supports::CHUNK;
 
 /// The work of effective stress and of reinforcement on the strain of a step.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -1,0 +1,127 @@
+//! Given water in the pores of soil, as a step finds it (theory, eqs. 51 to 54).
+//!
+//! Pore pressure u is positive in compression, as everywhere in soil mechanics.
+
+use std::fmt::Debug;
+use std::sync::Arc;
+
+use crate::body::particles::Particles;
+use crate::error::AssemblyError;
+
+/// What given water is at a particle, at full gravity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PoreState<const D: usize> {
+    /// Mean pore pressure u over the domain; zero where the law is one of total stress \[force/length²\].
+    pub pressure: f64,
+    /// Mean of the reference pressure over the domain \[force/length²\].
+    pub reference: f64,
+    /// Mean gradient of the reference pressure over the domain \[force/length³\].
+    pub gradient: [f64; D],
+    /// By how much the water in the pores raises the density as seeded \[mass/length³\].
+    pub added_density: f64,
+    /// Density of the water that a change of volume takes in or gives off: that of water in full pores, zero in others
+    /// \[mass/length³\].
+    pub water_density: f64,
+}
+
+impl<const D: usize> PoreState<D> {
+    /// No water.
+    pub fn dry() -> Self {
+        Self {
+            pressure: 0.0,
+            reference: 0.0,
+            gradient: [0.0; D],
+            added_density: 0.0,
+            water_density: 0.0,
+        }
+    }
+}
+
+/// A particle that asks for its water.
+#[derive(Clone, Copy, Debug)]
+pub struct PoreSite<'a, const D: usize> {
+    /// Its [`number`](crate::ParticleFields::number).
+    pub number: usize,
+    /// Index of its law.
+    pub law: usize,
+    /// Centre of its domain \[length\].
+    pub x: &'a [f64; D],
+    /// Half-lengths of its domain \[length\].
+    pub half_length: &'a [f64; D],
+    /// Its volume as seeded over that of its domain as seeded, which stretching does not change: less than 1 where the surface cuts the domain \[-\].
+    pub filled: f64,
+}
+
+impl<const D: usize> Particles<D> {
+    /// How a particle asks for its water.
+    ///
+    /// # Panics
+    /// If there is no such particle.
+    #[inline]
+    pub fn pore_site(&self, particle: usize) -> PoreSite<'_, D> {
+        let domain0: f64 = (self.half_length0[particle].iter())
+            .map(|half_length| 2.0 * half_length)
+            .product();
+        PoreSite {
+            number: self.number[particle],
+            law: self.law[particle],
+            x: &self.x[particle],
+            half_length: &self.half_length[particle],
+            filled: self.volume0[particle] / domain0,
+        }
+    }
+}
+
+/// Given water. Pure: the same particle at the same place finds the same.
+pub trait PoreWater<const D: usize>: Debug + Send + Sync {
+    /// What water is in the domain of a particle.
+    fn at(&self, site: PoreSite<'_, D>) -> PoreState<D>;
+}
+
+/// The water of a step.
+#[derive(Clone, Debug)]
+pub struct Water<const D: usize> {
+    /// The given field; none: dry.
+    pub given: Option<Arc<dyn PoreWater<D>>>,
+    /// Factor on its pressure, the multiple of gravity \[-\].
+    pub factor: f64,
+    /// Bulk modulus of the water over the porosity, K_w/n, by law; zero or absent where water leaves as it likes
+    /// \[force/length²\].
+    pub stiffness: Vec<f64>,
+}
+
+impl<const D: usize> Default for Water<D> {
+    /// Dry.
+    fn default() -> Self {
+        Self {
+            given: None,
+            factor: 0.0,
+            stiffness: Vec::new(),
+        }
+    }
+}
+
+impl<const D: usize> Water<D> {
+    /// K_w/n of a particle \[force/length²\].
+    #[inline]
+    pub(crate) fn stiffness_of(&self, particles: &Particles<D>, particle: usize) -> f64 {
+        let own = self.stiffness.get(particles.law[particle]);
+        own.map_or(0.0, |own| own * particles.ratios[particle].stiffness)
+    }
+
+    /// Refuses numbers that are not finite.
+    pub(crate) fn is_finite(&self) -> Result<(), AssemblyError> {
+        if !self.factor.is_finite() {
+            let what = "factor on pore pressure";
+            return Err(AssemblyError::NonFinite { what, index: 0 });
+        }
+        let bad = |own: &f64| !(own.is_finite() && *own >= 0.0);
+        match self.stiffness.iter().position(bad) {
+            Some(index) => {
+                let what = "bulk modulus of pore water";
+                Err(AssemblyError::NonFinite { what, index })
+            }
+            None => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,266 @@
+//! One pass over the particles: from nodal step displacements to stress, internal force and, when
+//! it is asked for, the tangent matrix. Nothing is kept of a particle's tangent: it goes straight
+//! into the matrix.
+
+use std::ops::Range;
+
+use igimp_material::{ConstitutiveModel, ReturnMap, TangentKind};
+use igimp_shape::Support;
+use pulp::{Arch, Simd, WithSimd};
+use rayon::prelude::*;
+
+use crate::Trial;
+use crate::equations::batches::Answered;
+use crate::equations::blocks::BlockTable;
+use crate::equations::kinematics::{Linearisation, ParticleState, ParticleTrial, evaluate};
+use crate::equations::linearised::{Linearised, Moduli};
+use crate::equations::mirror::mirror;
+use crate::equations::patch::Patch;
+use crate::equations::scatter::Rows;
+use crate::equations::system::System;
+use crate::error::AssemblyError;
+use crate::method::Kinematics;
+use crate::step::strips::split;
+use igimp_linear::Pattern;
+
+/// Scratch of one task.
+#[derive(Debug, Default)]
+pub(crate) struct Scratch<const D: usize> {
+    pub(crate) linearised: Linearised<D>,
+    pub(crate) rows: Rows,
+    pub(crate) patch: Patch<D>,
+}
+
+/// The part of a pass that belongs to one strip.
+struct StripTask<'a, const D: usize> {
+    slots: Range<usize>,
+    particles: &'a mut [ParticleTrial<D>],
+    first_node: usize,
+    f_int: &'a mut [[f64; D]],
+    /// Where the values of the strip begin, and the values; none when no tangent is asked for.
+    values: Option<(usize, &'a mut [f64])>,
+}
+
+impl<const D: usize> System<'_, D> {
+    /// Sets `trial`, and the stored `values` of the tangent if any, to nodal step displacements
+    /// `u`.
+    pub(crate) fn pass(
+        &self,
+        u: &[[f64; D]],
+        kind: TangentKind,
+        trial: &mut Trial<D>,
+        mut values: Option<&mut [f64]>,
+    ) -> Result<(), AssemblyError> {
+        trial
+            .particles
+            .resize(self.particles.len(), ParticleTrial::at_rest());
+        trial.f_int.clear();
+        trial.f_int.resize(u.len(), [0.0; D]);
+        if let Some(values) = &mut values {
+            values.fill(0.0);
+        }
+        let answers = self.answers(u)?;
+        for parity in 0..2 {
+            let strips = self.stencils.strips().of_parity(parity);
+            let slots = strips.clone().map(|(_, slots)| slots.clone());
+            let nodes = strips.clone().map(|(nodes, _)| nodes.clone());
+            let stored = nodes.clone().map(|nodes| self.values_of(&nodes));
+            let values: Vec<Option<(usize, &mut [f64])>> = match &mut values {
+                Some(values) => std::iter::zip(stored.clone(), split(values, stored))
+                    .map(|(range, slice)| Some((range.start, slice)))
+                    .collect(),
+                None => nodes.clone().map(|_| None).collect(),
+            };
+            let f_int = split(&mut trial.f_int, nodes.clone());
+            let particles = split(&mut trial.particles, slots);
+            let parts = strips.zip(particles).zip(f_int).zip(values);
+            let tasks: Vec<StripTask<'_, D>> = parts
+                .map(|((((nodes, slots), particles), f_int), values)| StripTask {
+                    slots: slots.clone(),
+                    particles,
+                    first_node: nodes.start,
+                    f_int,
+                    values,
+                })
+                .collect();
+            let failures: Vec<Option<(usize, AssemblyError)>> = tasks
+                .into_par_iter()
+                .map_init(Scratch::default, |scratch, strip| {
+                    self.pass_strip(u, kind, &answers, strip, scratch).err()
+                })
+                .collect();
+            let failures = failures.into_iter().flatten();
+            if let Some((_, error)) = failures.min_by_key(|&(particle, _)| particle) {
+                return Err(error);
+            }
+        }
+        if let Some(values) = values.filter(|_| D == 3 && self.symmetric_particles) {
+            mirror(&self.pattern, values);
+        }
+        Ok(())
+    }
+
+    /// The particles of one strip; the particle that fails and why.
+    #[inline]
+    fn pass_strip(
+        &self,
+        u: &[[f64; D]],
+        kind: TangentKind,
+        answers: &[Option<ReturnMap>],
+        mut strip: StripTask<'_, D>,
+        scratch: &mut Scratch<D>,
+    ) -> Result<(), (usize, AssemblyError)> {
+        let order = &self.stencils.order()[strip.slots];
+        let (arch, kinematics) = (Arch::new(), self.method.kinematics_of_step());
+        let mut end_of_patch = 0;
+        for (slot, (&particle, trial)) in order.iter().zip(strip.particles).enumerate() {
+            let particle = particle as usize;
+            let supports = self.stencils.of(particle);
+            let answer = answers.get(particle).and_then(Option::as_ref);
+            let own = self
+                .evaluate_answered(particle, u, kind, answer, trial)
+                .map_err(|error| (particle, error))?;
+            let volume = self.reference_volume(particle);
+            scratch.linearised.push(supports, &own);
+            let forces = scratch.linearised.forces(&own, volume);
+            for (support, force) in supports.iter().zip(forces) {
+                let sum = &mut strip.f_int[support.node - strip.first_node];
+                for axis in 0..D {
+                    sum[axis] += force[axis];
+                }
+            }
+            let Some((start, values)) = &mut strip.values else {
+                continue;
+            };
+            if D == 3 && slot == end_of_patch {
+                let next = order[slot..].iter();
+                let next = next.map(|&particle| self.stencils.of(particle as usize));
+                let (grid, near) = (&self.conditions.grid, self.table.near);
+                let patch = &mut scratch.patch;
+                end_of_patch += patch.begin(grid, near, next, self.symmetric_particles);
+            }
+            arch.dispatch(Addition {
+                supports,
+                own: &own,
+                volume,
+                kinematics,
+                ends_patch: slot + 1 == end_of_patch,
+                scratch,
+                matrix: (&self.table, &self.pattern),
+                values: (*start, values),
+            });
+        }
+        Ok(())
+    }
+
+    /// One particle at nodal step displacements `u`.
+    #[inline]
+    pub(crate) fn evaluate_particle(
+        &self,
+        particle: usize,
+        u: &[[f64; D]],
+        kind: TangentKind,
+        trial: &mut ParticleTrial<D>,
+    ) -> Result<Linearisation<D>, AssemblyError> {
+        let evaluated =
+            |law: &dyn ConstitutiveModel| self.evaluate_by(law, particle, u, kind, trial);
+        self.particles
+            .ask_law(particle, &self.conditions.laws, evaluated)
+            .map_err(|source| AssemblyError::Material { particle, source })?
+    }
+
+    /// The same where the answer of its law may be known.
+    #[inline]
+    fn evaluate_answered(
+        &self,
+        particle: usize,
+        u: &[[f64; D]],
+        kind: TangentKind,
+        answer: Option<&ReturnMap>,
+        trial: &mut ParticleTrial<D>,
+    ) -> Result<Linearisation<D>, AssemblyError> {
+        let Some(answer) = answer else {
+            return self.evaluate_particle(particle, u, kind, trial);
+        };
+        let law = &*self.conditions.laws[self.particles.law[particle]];
+        self.evaluate_by(&Answered { law, answer }, particle, u, kind, trial)
+    }
+
+    /// One particle by a law.
+    #[inline]
+    pub(crate) fn evaluate_by(
+        &self,
+        law: &dyn ConstitutiveModel,
+        particle: usize,
+        u: &[[f64; D]],
+        kind: TangentKind,
+        trial: &mut ParticleTrial<D>,
+    ) -> Result<Linearisation<D>, AssemblyError> {
+        let state = ParticleState {
+            particle,
+            b_e: &self.particles.b_e[particle],
+            history: &self.particles.history[particle],
+            law,
+            pores: self.pores.response(
+                self.particles,
+                &self.conditions.water,
+                self.method,
+                particle,
+            ),
+        };
+        let supports = self.stencils.of(particle);
+        evaluate(state, supports, u, self.method, kind, trial)
+    }
+
+    /// The stored values of the columns of some nodes.
+    fn values_of(&self, nodes: &Range<usize>) -> Range<usize> {
+        let first = |node: usize| self.pattern.first_value[self.unknowns.blocks_before(node)];
+        first(nodes.start)..first(nodes.end)
+    }
+}
+
+/// The tangent of one particle on its way into the matrix, with wider instructions where the processor has them.
+struct Addition<'a, const D: usize> {
+    supports: &'a [Support<D>],
+    own: &'a Linearisation<D>,
+    volume: f64,
+    kinematics: Kinematics,
+    /// Whether it is the last one of its patch.
+    ends_patch: bool,
+    scratch: &'a mut Scratch<D>,
+    matrix: (&'a BlockTable<D>, &'a Pattern),
+    /// Where the values of the strip begin, and the values.
+    values: (usize, &'a mut [f64]),
+}
+
+impl<const D: usize> WithSimd for Addition<'_, D> {
+    type Output = ();
+
+    #[allow(
+        clippy::inline_always,
+        reason = "compiled for the instructions of the caller"
+    )]
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Scratch {
+            linearised,
+            rows,
+            patch,
+        } = self.scratch;
+        if D == 3 {
+            // Processors with vectors fuse products and sums; without, fusing would be slow.
+            let fuses = S::F64_LANES > 1;
+            let moduli = Moduli::of(self.own, self.volume, self.kinematics);
+            patch.take(self.supports, linearised, moduli);
+            if self.ends_patch {
+                patch.sum(fuses);
+                patch.scatter(self.matrix, self.values);
+            }
+        } else {
+            let nodes = self.supports.iter().map(|support| support.node);
+            rows.set(nodes, self.matrix.0);
+            linearised.linearise(&Moduli::of(self.own, self.volume, self.kinematics));
+            rows.scatter(self.supports, self.matrix, linearised, self.values);
+        }
+    }
+}

@@ -1,0 +1,47 @@
+//! What every node represents of the body: volume and mass.
+
+use igimp_shape::Grid;
+use rayon::prelude::*;
+
+use crate::body::particles::Particles;
+use crate::step::strips::{Strips, split};
+use crate::step::supports::Supports;
+
+/// What a node represents of the body.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct NodeShare {
+    /// Σ S V \[length^D\].
+    pub(crate) volume: f64,
+    /// Σ S m \[mass\].
+    pub(crate) mass: f64,
+    /// Whether any particle has it among its supports, if only by its gradient.
+    pub(crate) is_touched: bool,
+}
+
+/// Sums volume and mass into the nodes.
+pub(crate) fn node_shares<const D: usize>(
+    grid: &Grid<D>,
+    particles: &Particles<D>,
+    supports: &Supports<D>,
+    strips: &Strips,
+) -> Vec<NodeShare> {
+    let mut shares = vec![NodeShare::default(); grid.node_count()];
+    for parity in 0..2 {
+        let own = strips.of_parity(parity);
+        let slices = split(&mut shares, own.clone().map(|(nodes, _)| nodes.clone()));
+        let tasks: Vec<_> = own.zip(slices).collect();
+        tasks.into_par_iter().for_each(|((nodes, slots), slice)| {
+            for &particle in &strips.order()[slots.clone()] {
+                let particle = particle as usize;
+                let (volume, mass) = (particles.volume(particle), particles.mass[particle]);
+                for support in supports.of(particle) {
+                    let share = &mut slice[support.node - nodes.start];
+                    share.volume += support.value * volume;
+                    share.mass += support.value * mass;
+                    share.is_touched = true;
+                }
+            }
+        });
+    }
+    shares
+}
