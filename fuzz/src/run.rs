@@ -1,19 +1,18 @@
 //! A run: many executions of a target on several threads.
 
-use std::any::Any;
-use std::cell::RefCell;
 use std::fmt::Write as _;
 use std::fs;
 use std::io;
-use std::panic::{self, AssertUnwindSafe, catch_unwind};
 use std::path::Path;
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::sync::{Mutex, Once};
 use std::thread;
 use std::time::{Duration, Instant};
 
 use crate::input::Input;
 use crate::minimise::minimise;
+use crate::targets::outcome::catch_words;
+use crate::targets::outcome::outcome;
 use crate::targets::{Material, Target, Verdict};
 use crate::watch::{LONGEST, MOST_MEMORY, Worker, memory};
 
@@ -211,39 +210,6 @@ fn kind(what: &str) -> String {
         .filter(|c| !c.is_ascii_digit())
         .take(80)
         .collect()
-}
-
-/// What a reader makes of an input; a panic is a failure.
-///
-/// # Errors
-/// What does not hold, or the words of the panic and where it was.
-pub fn outcome(target: Target, input: &Input) -> Result<Verdict, String> {
-    catch_unwind(AssertUnwindSafe(|| target.check(input))).unwrap_or_else(|payload| {
-        let place = WORDS.with(RefCell::take);
-        Err(format!("panic at {place}: {}", words_of(&*payload)))
-    })
-}
-
-fn words_of(payload: &(dyn Any + Send)) -> &str {
-    let text = payload.downcast_ref::<String>().map(String::as_str);
-    text.or_else(|| payload.downcast_ref::<&str>().copied())
-        .unwrap_or("no words")
-}
-
-thread_local! {
-    /// Where the last panic of this thread was.
-    static WORDS: RefCell<String> = const { RefCell::new(String::new()) };
-}
-
-/// Panics of workers are caught and told in the report; nothing is printed.
-fn catch_words() {
-    static ONCE: Once = Once::new();
-    ONCE.call_once(|| {
-        panic::set_hook(Box::new(|information| {
-            let place = information.location().map(ToString::to_string);
-            WORDS.with(|words| *words.borrow_mut() = place.unwrap_or_default());
-        }));
-    });
 }
 
 /// Watches the workers, and ends the program when one hangs or memory runs out.

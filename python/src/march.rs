@@ -16,7 +16,7 @@ use igimp_model::in_any_dimension;
 use igimp_model::{AnyCase, Case};
 use igimp_results::ResultsError;
 use igimp_results::folder::overwrite_guard::Replace;
-use igimp_results::summary::Ending;
+use igimp_results::ending::Ending;
 use igimp_results::tables::table::Table;
 use igimp_study::telling::lines::Lines;
 use igimp_study::telling::whole::Whole;
@@ -288,7 +288,7 @@ fn code<const D: usize>(run: &engine::Run<D>) -> u8 {
     let code = match &run.failure {
         Some(failure) if failure.is_want_of_memory() => 4,
         Some(_) => 3,
-        None => raised::code(Ending::of(&run.summary)),
+        None => raised::code(run.summary.ending()),
     };
     let of_lost = |error: &CaseError| {
         if igimp_cases::is_of_the_system(error) {

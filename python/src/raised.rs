@@ -7,7 +7,7 @@ use igimp_schema::Diagnostic;
 use igimp_input::InputError;
 use igimp_results::ResultsError;
 use igimp_results::checkpoint::CheckpointError;
-use igimp_results::summary::Ending;
+use igimp_results::ending::Ending;
 use pyo3::prelude::*;
 use serde_json::json;
 

@@ -17,9 +17,9 @@ use igimp_results::mesh_study::Convergence;
 use igimp_results::tables::table::Table;
 use rayon::prelude::*;
 
-use crate::harness::coverage::{self, Known, on_cells};
 use crate::harness::oracle::{Oracle, OracleKind};
 use crate::harness::reference::{footing_sequential_limit_analysis, interpolate};
+use crate::harness::study::coverage::{self, Known, on_cells};
 use crate::harness::study::{Level, RunRecord, Study};
 use crate::pictures::{contours, scaled};
 use crate::runs::{Computed, mesh, method, shipped_case};

@@ -353,7 +353,7 @@ fn print_report(
     for note in studies.iter().flat_map(|study| &study.notes) {
         println!("{note}\n");
     }
-    if let Some(note) = harness::coverage::note(studies) {
+    if let Some(note) = harness::study::coverage::note(studies) {
         println!("{note}\n");
     }
     println!("{}", harness::table::checks(studies));

@@ -13,8 +13,8 @@ use rayon::prelude::*;
 use crate::harness::oracle::{Oracle, OracleKind};
 use crate::harness::study::{Level, RunRecord, Study};
 use crate::limit_equilibrium::rotation;
+use crate::limit_equilibrium::section::{self, Search, Section, Variant, YOUNG};
 use crate::runs::Computed;
-use crate::slopes::section::{self, Search, Section, Variant, YOUNG};
 
 /// What the book says of the study.
 const ABOUT: &str = "A pseudo-static force as a share of the weight. A level layer of dry soil without cohesion is pushed along its rough base: the infinite slope, whose factor of safety is known. Slopes with k = 0.1 are held against rotating blocks, and the force on the slope of Loukidis et al. is raised until it fails. Soil dilates with ψ = φ, and the geometry is given.";

@@ -9,12 +9,12 @@ use igimp_results::mesh_study::{Computed as OnMesh, Convergence};
 use igimp_results::tables::table::Table;
 use rayon::prelude::*;
 
-use crate::harness::coverage::{self, Known};
 use crate::harness::oracle::{Oracle, OracleKind};
+use crate::harness::study::coverage::{self, Known};
 use crate::harness::study::{Level, RunRecord, Study};
+use crate::limit_equilibrium::section::{self, Layer, Search, Section, Variant, YOUNG};
 use crate::runs::Computed;
 use crate::slopes::Found;
-use crate::slopes::section::{self, Layer, Search, Section, Variant, YOUNG};
 
 /// What the book says of the study.
 const ABOUT: &str = "Undrained slopes whose strength grows with depth from nothing or from c_0 at the crest, and an embankment with friction on clay whose strength grows with depth: factors of safety of the given geometry with shared strain on two meshes, extrapolated. Circles bound the slopes from above, half a percent to two above the truth; limit analysis bounds the embankment on both sides.";

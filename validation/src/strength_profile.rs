@@ -9,8 +9,8 @@ use igimp_results::mesh_study::Convergence;
 use igimp_results::tables::table::Table;
 use rayon::prelude::*;
 
-use crate::harness::coverage::{self, Known, on_cells};
 use crate::harness::oracle::{Oracle, OracleKind};
+use crate::harness::study::coverage::{self, Known, on_cells};
 use crate::harness::study::{Level, RunRecord, Study};
 use crate::runs::{Computed, corners, mesh, shipped_case};
 

@@ -7,7 +7,6 @@ pub(crate) mod reinforcement;
 pub(crate) mod rigid_motion;
 pub(crate) mod water;
 
-use igimp_material::ConstitutiveModel;
 use igimp_shape::Grid;
 
 use crate::body::particles::Particles;

@@ -21,6 +21,7 @@
 
 pub mod estimate;
 pub mod exact;
+pub(crate) mod limit;
 pub mod mesh_study;
 pub mod run;
 

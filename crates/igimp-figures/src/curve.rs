@@ -1,7 +1,6 @@
 //! Curves: results as lines or markers, bounds as shaded bands, reference values as straight lines.
 
 pub(crate) mod frame;
-pub(crate) mod marker;
 pub(crate) mod sheet;
 
 use std::path::Path;

@@ -12,7 +12,6 @@ use super::FigureError;
 use super::colour::Colour;
 
 use super::geometry::{Point, Rect};
-use super::space::Image;
 
 /// Pixels per point in the PNG: 288 dots per inch at the nominal size.
 pub const PIXELS_PER_POINT: u32 = 3;
@@ -225,4 +224,14 @@ fn write_new(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
         _ => {}
     }
     std::io::Write::write_all(&mut std::fs::File::create_new(path)?, bytes)
+}
+
+/// Where the image of a surface lies in a drawing, and its pixels.
+#[derive(Debug)]
+pub(crate) struct Image {
+    pub(crate) area: Rect,
+    pub(crate) width: u32,
+    pub(crate) height: u32,
+    /// Red, green, blue and opacity of the pixels, row by row; colours are not multiplied by opacity.
+    pub(crate) rgba: Vec<u8>,
 }

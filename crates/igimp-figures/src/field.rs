@@ -12,7 +12,7 @@ use std::path::Path;
 use super::FigureError;
 use super::colour::ColourMap;
 use super::drawing::Drawing;
-use sheet::Sheet;
+use crate::field::layout::Sheet;
 
 /// Corners (x, y) of a domain in order, either way round; GIMP domains are rectangles.
 pub type Polygon = Vec<[f64; 2]>;

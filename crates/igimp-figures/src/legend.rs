@@ -4,8 +4,8 @@ use super::colour::Colour;
 use super::drawing::{Anchor, Contour, Drawing, Item, Shape, Stroke};
 use super::frame::{GAP, TICK};
 use super::geometry::{Point, Rect};
-use crate::curve::marker::Marker;
 use crate::drawing::font::{self, CAP_HEIGHT, LINE_HEIGHT};
+use crate::marker::Marker;
 
 const SAMPLE_WIDTH: f64 = 26.0;
 const INSET: f64 = 8.0;

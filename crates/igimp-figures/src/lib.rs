@@ -29,6 +29,7 @@ mod field;
 mod frame;
 mod geometry;
 mod legend;
+pub(crate) mod marker;
 mod space;
 #[cfg(test)]
 mod tests;

@@ -13,7 +13,7 @@ use super::axis;
 use super::colour::{Colour, ColourMap};
 use super::drawing::{Anchor, Drawing, Stroke};
 use super::frame::{self, GAP, LABEL, MARGIN, TICK, TITLE};
-use super::geometry::{Point, Rect};
+use super::geometry::Point;
 use crate::axis::ticks;
 use crate::drawing::font::{self, CAP_HEIGHT};
 use crate::field::colour_bar::{ColourBar, ColourScale};
@@ -249,14 +249,4 @@ fn draw_axes(drawing: &mut Drawing, projection: &Projection) {
         let anchor = if is_upright { Anchor::End } else { anchor };
         drawing.text(at, anchor, LABEL, Colour::INK, &name);
     }
-}
-
-/// Where the image of a surface lies in a drawing, and its pixels.
-#[derive(Debug)]
-pub(super) struct Image {
-    pub(super) area: Rect,
-    pub(super) width: u32,
-    pub(super) height: u32,
-    /// Red, green, blue and opacity of the pixels, row by row; colours are not multiplied by opacity.
-    pub(super) rgba: Vec<u8>,
 }

@@ -25,6 +25,7 @@ mod bordered;
 mod check;
 mod choice;
 mod error;
+mod krylov;
 mod libraries;
 mod matrix;
 mod multifrontal;

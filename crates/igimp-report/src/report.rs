@@ -2,6 +2,7 @@
 
 mod files;
 mod meshes;
+mod numbers;
 mod rows;
 mod verdict;
 
@@ -36,7 +37,7 @@ pub fn write_report(folder: &Path) -> Result<PathBuf, ReportError> {
         path: path.clone(),
         source: std::io::Error::other(source),
     })?;
-    igimp_results::folder::atomic::write_new(&path, page).map_err(|source| ResultsError::File {
+    igimp_results::atomic::write_new(&path, page).map_err(|source| ResultsError::File {
         path: path.clone(),
         source,
     })?;

@@ -1,12 +1,14 @@
 //! What can stand in the way of results: of their folder, and of the files in it.
 
-use std::path::PathBuf;
+pub(crate) mod checkpoint;
 
-use crate::checkpoint::CheckpointError;
-use crate::npy::NpyError;
+use std::path::PathBuf;
+use thiserror::Error;
+
+use checkpoint::CheckpointError;
 
 /// Errors of writing, reading and replacing results.
-#[derive(Debug, thiserror::Error)]
+#[derive(Debug, Error)]
 pub enum ResultsError {
     /// A file cannot be written or read.
     #[error("cannot access {}", path.display())]
@@ -115,4 +117,46 @@ fn whose(case: &str, title: &str) -> String {
         (case, "") => format!("another input, {case}"),
         (case, title) => format!("another input, {case} (\"{title}\")"),
     }
+}
+
+/// Why bytes are no array that igimp reads.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+pub enum NpyError {
+    /// The first bytes are wrong.
+    #[error("this is not a .npy file")]
+    NotNpy,
+    /// Another version of the format.
+    #[error("format version {major}.{minor}; only 1.0 is read")]
+    Version {
+        /// Major number.
+        major: u8,
+        /// Minor number.
+        minor: u8,
+    },
+    /// The file ends within its header.
+    #[error("the file ends within its header")]
+    CutHeader,
+    /// The header is not the literal it should be.
+    #[error("the header is not understood: {why}")]
+    Header {
+        /// What is wrong.
+        why: &'static str,
+    },
+    /// Numbers of a kind that is not read.
+    #[error("numbers of type `{descr}`; only `<f8`, `<u8`, `<i4` and `|u1` are read")]
+    Type {
+        /// The type as the header names it.
+        descr: String,
+    },
+    /// Columns first.
+    #[error("the array is in Fortran order; save numpy.ascontiguousarray(a) instead")]
+    FortranOrder,
+    /// The shape does not fit the length of the file.
+    #[error("the shape {shape:?} does not fit the {bytes} bytes of numbers")]
+    Length {
+        /// The shape.
+        shape: Vec<usize>,
+        /// Bytes after the header.
+        bytes: usize,
+    },
 }

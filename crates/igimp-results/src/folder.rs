@@ -15,7 +15,6 @@
 //! | `.igimp` | says that igimp made the folder, and for which case ([`owner`](crate::folder::provenance)) |
 //! | `.igimp.lock` | keeps a second run out ([`lock`]) |
 
-pub mod atomic;
 pub mod lock;
 pub mod overwrite_guard;
 pub mod provenance;
@@ -25,14 +24,14 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use super::checkpoint;
+use crate::atomic::{at, temporary_name};
 use crate::error::ResultsError;
 use crate::paraview::pvd;
 use crate::summary::Summary;
-use atomic::{at, temporary_name};
 use overwrite_guard::refuse_links;
 use provenance::{Claim, Owner};
 
-pub use atomic::write_atomically;
+pub use crate::atomic::write_atomically;
 
 const MARKER: &str = ".igimp";
 const MARKER_TEXT: &str = "igimp writes its results here.\n";

@@ -21,8 +21,8 @@ use igimp_shape::Grid;
 use serde::{Deserialize, Serialize};
 
 use super::npy::{Array, Values};
+use crate::atomic::{at, write_atomically};
 use crate::error::ResultsError;
-use crate::folder::atomic::{at, write_atomically};
 
 /// File that says what system it is; written last.
 const ABOUT: &str = "matrix.json";

@@ -6,13 +6,12 @@
 
 use std::path::Path;
 
-use thiserror::Error;
-
+use crate::atomic::{at, write_atomically};
 use crate::error::ResultsError;
-use crate::folder::atomic::{at, write_atomically};
 
 mod header;
 
+use crate::error::NpyError;
 use header::Header;
 
 /// An array of numbers.
@@ -33,48 +32,6 @@ pub enum Values {
     I32(Vec<i32>),
     /// `|u1`.
     U8(Vec<u8>),
-}
-
-/// Why bytes are no array that igimp reads.
-#[derive(Clone, Debug, Error, PartialEq, Eq)]
-pub enum NpyError {
-    /// The first bytes are wrong.
-    #[error("this is not a .npy file")]
-    NotNpy,
-    /// Another version of the format.
-    #[error("format version {major}.{minor}; only 1.0 is read")]
-    Version {
-        /// Major number.
-        major: u8,
-        /// Minor number.
-        minor: u8,
-    },
-    /// The file ends within its header.
-    #[error("the file ends within its header")]
-    CutHeader,
-    /// The header is not the literal it should be.
-    #[error("the header is not understood: {why}")]
-    Header {
-        /// What is wrong.
-        why: &'static str,
-    },
-    /// Numbers of a kind that is not read.
-    #[error("numbers of type `{descr}`; only `<f8`, `<u8`, `<i4` and `|u1` are read")]
-    Type {
-        /// The type as the header names it.
-        descr: String,
-    },
-    /// Columns first.
-    #[error("the array is in Fortran order; save numpy.ascontiguousarray(a) instead")]
-    FortranOrder,
-    /// The shape does not fit the length of the file.
-    #[error("the shape {shape:?} does not fit the {bytes} bytes of numbers")]
-    Length {
-        /// The shape.
-        shape: Vec<usize>,
-        /// Bytes after the header.
-        bytes: usize,
-    },
 }
 
 impl Values {

@@ -3,8 +3,8 @@
 use igimp_assembly::Reinforcement;
 use igimp_figures::{Outline, OutlineStyle};
 
-use crate::paraview::vtu::{CellKind, DataArray, UnstructuredGrid, padded};
 use crate::tables::table::Table;
+use crate::vtu::{CellKind, DataArray, UnstructuredGrid, padded};
 use igimp_model::{ReinforcementPart, front};
 use igimp_text::short;
 

@@ -2,8 +2,8 @@
 
 use igimp_assembly::{ContactNode, RigidBody};
 
-use crate::paraview::vtu::{CellKind, DataArray, UnstructuredGrid, padded};
 use crate::tables::table::Table;
+use crate::vtu::{CellKind, DataArray, UnstructuredGrid, padded};
 use igimp_model::in_plane;
 use igimp_model::{RigidPart, RigidShape};
 

@@ -1,11 +1,12 @@
 //! What a run found, as written to `summary.json`.
 
-use std::fmt;
 use std::fmt::Write as _;
 
 use serde::{Deserialize, Serialize};
 
+use crate::ending::Ending;
 use crate::mesh_study::StudySummary;
+use crate::model_size::ModelSize;
 use igimp_model::TitleBlock;
 use igimp_model::check::{Check, or_not_a_number};
 
@@ -62,6 +63,26 @@ pub struct Summary {
     pub mesh_study: Option<StudySummary>,
 }
 
+impl Summary {
+    /// How the run ended.
+    pub fn ending(&self) -> Ending {
+        let stage = |outcome| self.stages.iter().any(|stage| stage.outcome == outcome);
+        let meshes = self.mesh_study.as_ref();
+        let meshes = meshes.map_or(Ending::Done, StudySummary::ending);
+        if meshes != Ending::Done {
+            meshes
+        } else if self.interrupted || stage(StageOutcome::Interrupted) {
+            Ending::Interrupted
+        } else if stage(StageOutcome::NotConverged) {
+            Ending::NotConverged
+        } else if self.checks.iter().any(|row| !row.pass) {
+            Ending::Missed
+        } else {
+            Ending::Done
+        }
+    }
+}
+
 /// A table that tells a part of the case.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SetupTable {
@@ -109,36 +130,6 @@ pub struct MemoryShare {
     pub bytes_per_particle: f64,
     /// Matrix and factors, fill included, for an unknown \[bytes\].
     pub bytes_per_unknown: f64,
-}
-
-/// Numbers that tell the size of a model.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct ModelSize {
-    /// Dimensions of the analysis: 2 in plane strain, 3 in space.
-    #[serde(default = "plane")]
-    pub dimensions: usize,
-    /// Particles, the most that are there at once.
-    pub particles: usize,
-    /// Cells of the grid.
-    pub cells: usize,
-    /// Most unknowns of a step.
-    pub unknowns: usize,
-    /// Total mass times gravity at the start \[N/m; N in space\].
-    pub weight: f64,
-    /// Total volume at the start \[m³/m; m³ in space\].
-    pub volume: f64,
-}
-
-/// Summaries that do not say it are of plane strain.
-fn plane() -> usize {
-    2
-}
-
-impl ModelSize {
-    /// Whether forces and volumes are those of the whole body, and not per metre run.
-    pub fn is_in_space(&self) -> bool {
-        self.dimensions == 3
-    }
 }
 
 /// How a stage went.
@@ -474,61 +465,4 @@ pub struct CheckRow {
     pub check: Check,
     /// Whether the band is met.
     pub pass: bool,
-}
-
-/// How a run ended.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Ending {
-    /// It began and has not ended yet, or was stopped hard.
-    #[default]
-    Running,
-    /// Done, and references met.
-    Done,
-    /// Done, and a reference missed.
-    Missed,
-    /// A stage found no equilibrium.
-    NotConverged,
-    /// The user interrupted it.
-    Interrupted,
-    /// It could not be set up, or its results could not be written.
-    Failed,
-}
-
-impl Ending {
-    /// How a run with this summary ended.
-    pub fn of(summary: &Summary) -> Self {
-        let stage = |outcome| summary.stages.iter().any(|stage| stage.outcome == outcome);
-        let meshes = summary.mesh_study.as_ref();
-        let meshes = meshes.map_or(Self::Done, StudySummary::ending);
-        if meshes != Self::Done {
-            meshes
-        } else if summary.interrupted || stage(StageOutcome::Interrupted) {
-            Self::Interrupted
-        } else if stage(StageOutcome::NotConverged) {
-            Self::NotConverged
-        } else if summary.checks.iter().any(|row| !row.pass) {
-            Self::Missed
-        } else {
-            Self::Done
-        }
-    }
-
-    /// Whether running the task again would tell nothing new.
-    pub fn is_verdict(self) -> bool {
-        matches!(self, Self::Done | Self::Missed | Self::NotConverged)
-    }
-}
-
-impl fmt::Display for Ending {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(match self {
-            Self::Running => "running",
-            Self::Done => "done",
-            Self::Missed => "reference missed",
-            Self::NotConverged => "not converged",
-            Self::Interrupted => "interrupted",
-            Self::Failed => "failed",
-        })
-    }
 }

@@ -2,6 +2,8 @@
 //!
 //! What is wrong becomes [`Value::Invalid`], so that one slip is reported once.
 
+pub(crate) mod value;
+
 use toml::de::DeValue;
 
 use super::diagnostic::Problems;
@@ -12,7 +14,7 @@ use super::spec::{Field, Kind, Presence, Struct, Variants};
 use super::suggest::nearest;
 use super::text::{clip, row};
 use super::tree::{Entry, Node, Value, from_value};
-use super::value::check_value;
+use value::check_value;
 
 /// The completed tree of a case file.
 pub fn complete(tree: &Node, sources: &[Source], problems: &mut Problems) -> Node {

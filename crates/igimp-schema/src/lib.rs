@@ -22,7 +22,6 @@ pub mod text;
 pub mod toml_text;
 pub mod tree;
 mod units;
-mod value;
 
 pub use diagnostic::{Diagnostic, DiagnosticPlace};
 pub use json_schema::json_schema;

@@ -8,9 +8,12 @@ use igimp_assembly::Method;
 
 use crate::body::Body;
 use crate::free_factor::Guess;
-use crate::march::{Accepted, LoadPath, MarchState, Observer};
-use crate::newton::{NewtonSettings, Target, Workspace, step_on_path};
+use crate::load_path::LoadPath;
+use crate::march::{Accepted, MarchState, Observer};
+use crate::newton::{Target, step_on_path};
 use crate::report::{NodalForces, StepError, StepReport};
+use crate::settings::NewtonSettings;
+use crate::workspace::Workspace;
 
 /// How a path is followed.
 #[derive(Clone, Copy, Debug, PartialEq)]

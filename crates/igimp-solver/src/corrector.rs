@@ -9,9 +9,11 @@ use igimp_material::TangentKind;
 use igimp_shape::Grid;
 
 use crate::free_factor::FreeFactor;
-use crate::newton::{NewtonSettings, Workspace, converged};
 use crate::report::{Component, PhaseTimes, StepFailure, padded};
 use crate::residual_history::ResidualHistory;
+use crate::settings::NewtonSettings;
+use crate::settings::converged;
+use crate::workspace::Workspace;
 use igimp_linear::{Bordered, LinearEffort, LinearSolver, LinearSolverError};
 
 /// How often a correction is halved.

@@ -5,7 +5,7 @@ use igimp_assembly::{AssemblyError, LoadPoint, OutOfBalance, System, Trial};
 use igimp_linear::TangentMatrix;
 use igimp_material::TangentKind;
 
-use crate::march::LoadPath;
+use crate::load_path::LoadPath;
 
 /// Relative change of the load factor in a difference quotient \[-\].
 const DIFFERENCE: f64 = 1e-6;

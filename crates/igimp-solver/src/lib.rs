@@ -9,18 +9,23 @@ mod body;
 mod continuation;
 mod corrector;
 mod free_factor;
+mod load_path;
 mod march;
 mod newton;
 mod report;
 mod residual_history;
 mod sensitivity;
+mod settings;
+mod workspace;
 
+pub use crate::load_path::LoadPath;
+pub use crate::settings::NewtonSettings;
+pub use crate::workspace::Workspace;
 pub use body::Body;
 pub use continuation::{ContinuationSettings, ContinuationState, MECHANISM, follow};
 pub use march::{
-    Accepted, LoadPath, MarchReport, MarchSettings, MarchState, Observer, Outcome, march,
-    march_from,
+    Accepted, MarchReport, MarchSettings, MarchState, Observer, Outcome, march, march_from,
 };
-pub use newton::{NewtonSettings, Workspace, step};
+pub use newton::step;
 pub use report::{Component, NodalForces, PhaseTimes, StepError, StepFailure, StepReport};
 pub use sensitivity::{Increment, KinematicFactor};

@@ -5,21 +5,15 @@ use std::ops::ControlFlow;
 
 use igimp_assembly::{AssemblyError, Method, StepConditions};
 
+use crate::LoadPath;
 use crate::body::Body;
-use crate::newton::{NewtonSettings, Workspace, step};
+use crate::newton::step;
 use crate::report::{NodalForces, PhaseTimes, StepError, StepFailure, StepReport};
+use crate::settings::NewtonSettings;
+use crate::workspace::Workspace;
 
 /// Successes in a row after which a cut step grows again.
 const SUCCESSES_TO_GROW: usize = 2;
-
-/// What holds between two load factors. Closures are load paths.
-pub trait LoadPath<const D: usize> {
-    /// Grid, constraints, loads and laws of the step from load factor `from` to `to`.
-    ///
-    /// # Errors
-    /// [`AssemblyError`] when the conditions cannot be stated.
-    fn conditions(&self, from: f64, to: f64) -> Result<StepConditions<D>, AssemblyError>;
-}
 
 impl<const D: usize, F> LoadPath<D> for F
 where

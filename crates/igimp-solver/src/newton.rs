@@ -1,81 +1,26 @@
 //! One load step: the Newton–Raphson iteration to equilibrium (theory, eqs. 24 and 25; Yuan et al.
 //! 2021, section 2).
 
-use std::sync::Arc;
 use std::time::Instant;
 
 use igimp_assembly::{
     AssemblyError, Geometry, LoadPoint, Method, OutOfBalance, Reinforcement, Stencils,
     StepConditions, System, Trial,
 };
-use igimp_linear::{Pattern, TangentMatrix};
 use igimp_material::{Regime, TangentKind};
 use igimp_shape::Grid;
 
+use crate::NewtonSettings;
+use crate::Workspace;
 use crate::body::Body;
 use crate::corrector::Corrector;
 use crate::free_factor::{FreeFactor, Guess};
-use crate::march::LoadPath;
+use crate::load_path::LoadPath;
 use crate::report::{NodalForces, StepError, StepFailure, StepReport, padded};
 use crate::residual_history::ResidualHistory;
-use igimp_linear::LinearSolver;
 
 /// The ghost penalty of a step that is singular at a node which hardly touches soil \[-\].
 const GHOST_PENALTY: f64 = 1e-3;
-
-/// When a step counts as converged, and when it is given up.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct NewtonSettings {
-    /// Accepted ‖f_ext − f_int‖ / (‖f_ext‖ + ‖f_react‖) \[-\].
-    pub tolerance: f64,
-    /// Largest number of corrections.
-    pub max_iterations: usize,
-    /// A residual this many times the smallest one so far counts as divergence \[-\].
-    pub divergence: f64,
-}
-
-impl Default for NewtonSettings {
-    fn default() -> Self {
-        Self {
-            tolerance: 1e-9,
-            max_iterations: 25,
-            divergence: 1e4,
-        }
-    }
-}
-
-/// What lasts from step to step besides the body: the solver with its symbolic work, and the memory
-/// of the matrix and of the trial. It holds nothing that a result depends on.
-pub struct Workspace<const D: usize> {
-    pub(crate) solver: Box<dyn LinearSolver>,
-    pub(crate) matrix: Option<TangentMatrix>,
-    pub(crate) trial: Trial<D>,
-    pub(crate) du: Vec<f64>,
-}
-
-impl<const D: usize> std::fmt::Debug for Workspace<D> {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Workspace")
-            .field("solver", &self.solver.name())
-            .finish_non_exhaustive()
-    }
-}
-
-impl<const D: usize> Workspace<D> {
-    /// A workspace around a linear solver.
-    pub fn new(solver: Box<dyn LinearSolver>) -> Self {
-        Self {
-            solver,
-            matrix: None,
-            trial: Trial::default(),
-            du: Vec::new(),
-        }
-    }
-
-    pub(crate) fn pattern(&self) -> Option<&Arc<Pattern>> {
-        self.matrix.as_ref().map(|matrix| &matrix.pattern)
-    }
-}
 
 /// Advances a body by one load step, from load factor `from` to `to`: the step displacements
 /// that bring internal and external force into balance are found, and the particles are moved.
@@ -402,10 +347,4 @@ fn carry_prescribed_motion<const D: usize>(
     residual.is_round_off = false;
     *u = system.prescribed_motion();
     Ok(())
-}
-
-/// Whether a residual meets the tolerance, or is nothing but round-off; one that is not a number
-/// does neither.
-pub(crate) fn converged(residual: &OutOfBalance, tolerance: f64) -> bool {
-    residual.relative_norm <= tolerance || residual.is_round_off
 }

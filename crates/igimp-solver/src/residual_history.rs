@@ -4,8 +4,8 @@
 use igimp_assembly::OutOfBalance;
 use igimp_shape::Grid;
 
-use crate::newton::NewtonSettings;
 use crate::report::{StepFailure, padded};
+use crate::settings::NewtonSettings;
 
 /// A node hardly touches soil when less of the cells around it is full than this \[-\].
 const HARDLY_FULL: f64 = 0.01;

@@ -11,8 +11,8 @@ use igimp_material::TangentKind;
 
 use crate::body::Body;
 use crate::free_factor::product;
-use crate::newton::Workspace;
 use crate::report::StepFailure;
+use crate::workspace::Workspace;
 use igimp_linear::{Bordered, LinearSolver, LinearSolverError};
 
 /// Shares of the elastic tangent at which a singular tangent is tried again \[-\].

@@ -9,7 +9,7 @@ use igimp_input::InputError;
 use igimp_report::ReportError;
 use igimp_results::ResultsError;
 use igimp_results::checkpoint::CheckpointError;
-use igimp_results::summary::Ending;
+use igimp_results::ending::Ending;
 use igimp_study::sweep::SweepError;
 use thiserror::Error;
 

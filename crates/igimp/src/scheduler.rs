@@ -8,9 +8,9 @@ use igimp_results::folder::overwrite_guard::Replace;
 use igimp_study::sweep::{Demand, Sweep, Words, numbers};
 
 use crate::arguments::{Scheduler, SweepArguments};
-use crate::commands::run::quoted;
 use crate::error::{Exit, ProgramError};
 use crate::output;
+use crate::output::quoted;
 
 /// Writes what a scheduler needs for the tasks that are not done, and tells how it is submitted.
 pub(crate) fn to(

@@ -6,11 +6,12 @@ use std::path::Path;
 use crate::input::{Input, entries};
 use crate::mutate::damage;
 use crate::random::Random;
-use crate::run::outcome;
+use crate::targets::outcome::outcome;
 use crate::words;
 
 pub mod case;
 pub mod checkpoint;
+pub mod outcome;
 pub mod quantity;
 
 /// A reader.

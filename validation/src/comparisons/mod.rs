@@ -6,7 +6,6 @@ mod block;
 mod domains;
 mod kinematics;
 mod points;
-mod sliding_block;
 mod small_cuts;
 
 use std::path::Path;

@@ -1,6 +1,8 @@
 //! Remedies for small cuts: tying, dropping, ghost penalty, soft ground, none; on the column, a block
 //! whose sides slide over the cells, the stiff slope at collapse and the soft slope.
 
+pub(crate) mod sliding_block;
+
 use igimp_assembly::{Remedy, SmallCuts};
 use igimp_cases::CaseError;
 use igimp_model::Case;
@@ -11,7 +13,7 @@ use crate::comparisons::benchmarks::{
     Results, Variant, corrections, corrections_of_trials, cuts, drained_slope, factor_of_safety,
     largest_displacement, reached, soft_slope, written,
 };
-use crate::comparisons::sliding_block;
+
 use crate::harness::oracle::{Oracle, OracleKind};
 use crate::harness::study::{Level, Study};
 use crate::runs::Computed;

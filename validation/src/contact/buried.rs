@@ -19,8 +19,8 @@ use rayon::prelude::*;
 
 use super::{force, graded, held, weightless};
 use crate::continuum::laboratory::run;
-use crate::harness::coverage::{self, Known, on_cells};
 use crate::harness::oracle::Oracle;
+use crate::harness::study::coverage::{self, Known, on_cells};
 use crate::harness::study::{RunRecord, Study};
 
 /// Young's modulus over undrained strength \[-\].

@@ -9,9 +9,9 @@ use igimp_results::tables::table::Table;
 use rayon::prelude::*;
 
 use crate::footing::SEQUENTIAL;
-use crate::harness::coverage::{self, Known, on_cells};
 use crate::harness::oracle::{Oracle, OracleKind};
 use crate::harness::reference::{footing_sequential_limit_analysis, interpolate};
+use crate::harness::study::coverage::{self, Known, on_cells};
 use crate::harness::study::{Level, RunRecord, Study};
 use crate::runs::{Computed, shipped_case};
 

@@ -12,8 +12,8 @@ use igimp_results::mesh_study::{Convergence, estimate};
 use rayon::prelude::*;
 
 use self::push::{Load, Push, Scheme};
-use crate::harness::coverage::{self, Known, on_cells};
 use crate::harness::oracle::{Expected, Oracle, OracleKind};
+use crate::harness::study::coverage::{self, Known, on_cells};
 use crate::harness::study::{Level, RunRecord, Study};
 
 /// What the book says of the study.

@@ -20,8 +20,8 @@ use igimp_solver::{Accepted, Body, MarchSettings};
 use rayon::prelude::*;
 
 use crate::continuum::laboratory::{filled, run};
-use crate::harness::coverage::{self, Known, on_cells};
 use crate::harness::oracle::{Oracle, OracleKind};
+use crate::harness::study::coverage::{self, Known, on_cells};
 use crate::harness::study::{Level, RunRecord, Study};
 
 /// What the book says of the study.

@@ -1,6 +1,5 @@
 //! What every study shares: outside values, snapshots, the tables and the matrix.
 
-pub(crate) mod coverage;
 pub(crate) mod matrix;
 pub(crate) mod oracle;
 pub(crate) mod reference;

@@ -1,5 +1,7 @@
 //! What a study of one case hands back: runs, checks and tables.
 
+pub(crate) mod coverage;
+
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -11,8 +13,8 @@ use igimp_results::tables::table::Table;
 use igimp_solver::{MarchReport, Outcome, PhaseTimes, StepError};
 use serde::Serialize;
 
-use crate::harness::coverage::Extrapolated;
 use crate::harness::oracle::{Expected, Oracle, OracleKind};
+use coverage::Extrapolated;
 
 /// Relative residuals below this are round-off and say nothing about the rate of convergence \[-\].
 const ROUND_OFF: f64 = 1e-12;

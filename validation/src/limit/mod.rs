@@ -21,9 +21,9 @@ use rayon::prelude::*;
 use crate::harness::oracle::{Oracle, OracleKind};
 use crate::harness::reference::{slope_limit_load_bounds, slope_safety_bounds};
 use crate::harness::study::{Level, RunRecord, Study};
+use crate::limit_equilibrium::section::{Path, Search, Variant};
 use crate::runs::Computed;
 use crate::slopes::problems::{Asked, Problem, drained, published, undrained};
-use crate::slopes::section::{Path, Search, Variant};
 
 /// What the book says of the study.
 const ABOUT: &str = "The slopes with bounds by limit analysis, searched for along the path of equilibria, the strength reduction factor an unknown: against the bounds, against the search by trials, and against itself for other tolerances, stiffnesses and effort, with all searches of the shipped cases; its changes with the strengths against reruns, its rise with dilation, and associated flow on Davis's strengths beside it.";

@@ -10,8 +10,8 @@ use rayon::prelude::*;
 use super::Found;
 use crate::harness::oracle::{Oracle, OracleKind};
 use crate::harness::study::{Level, Study};
+use crate::limit_equilibrium::section::{Path, Search, Section, Variant};
 use crate::runs::Computed;
-use crate::slopes::section::{Path, Search, Section, Variant};
 
 /// All depths slide together.
 const INFINITE_SLOPE: Oracle = Oracle {

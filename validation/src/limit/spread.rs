@@ -12,9 +12,9 @@ use rayon::prelude::*;
 
 use super::{Found, LIMIT_THEOREMS, SPREAD, Sought, VARIED};
 use crate::harness::study::{Level, RunRecord, Study};
+use crate::limit_equilibrium::section::{Search, YOUNG};
 use crate::runs::Computed;
 use crate::slopes::problems::Problem;
-use crate::slopes::section::{Search, YOUNG};
 
 /// Cases that take longest.
 const DEAR: [&str; 3] = ["dam_drawdown", "layered_slope", "landslide_3d"];

@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 
 use super::rotation::Spiral;
 use super::search::least;
-use crate::slopes::section::Section;
+use crate::limit_equilibrium::section::Section;
 
 /// Slices are left out of the search when a base is steeper than this: m loses its meaning \[-\].
 const LEAST_M: f64 = 0.2;

@@ -9,4 +9,5 @@
 pub(crate) mod bishop;
 pub(crate) mod rotation;
 pub(crate) mod search;
+pub(crate) mod section;
 pub(crate) mod sliding;

@@ -8,7 +8,7 @@
 use std::f64::consts::PI;
 
 use super::search::least;
-use crate::slopes::section::Section;
+use crate::limit_equilibrium::section::Section;
 
 /// Parts that a slip line is divided into.
 const PARTS: usize = 60;

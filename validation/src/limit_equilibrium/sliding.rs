@@ -7,7 +7,7 @@
 use igimp_geometry::polygon::area_and_centroid;
 
 use super::search::least;
-use crate::slopes::section::Section;
+use crate::limit_equilibrium::section::Section;
 
 /// Parts over which the strength along a line is summed.
 const PARTS: usize = 100;

@@ -7,8 +7,8 @@ use igimp_model::check::Band;
 use igimp_results::mesh_study::{Computed, Convergence, estimate};
 use igimp_results::tables::table::Table;
 
-use crate::harness::coverage::median;
 use crate::harness::oracle::{Oracle, OracleKind};
+use crate::harness::study::coverage::median;
 use crate::harness::study::{RunRecord, Study};
 
 /// How many values are drawn.

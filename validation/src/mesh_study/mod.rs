@@ -15,13 +15,14 @@ use igimp_results::summary::Summary;
 use igimp_text::short;
 use rayon::prelude::*;
 
-use crate::harness::coverage::{Extrapolated, Known, counted};
 use crate::harness::oracle::{Oracle, OracleKind};
 use crate::harness::reference::{slope_limit_load_bounds, slope_safety_bounds};
+use crate::harness::study::coverage::Extrapolated;
+use crate::harness::study::coverage::{Known, counted};
 use crate::harness::study::{Level, RunRecord, Study};
+use crate::limit_equilibrium::section::{Path, Variant};
 use crate::runs::shipped_case;
 use crate::slopes::problems::{Problem, acads_1a, drained, published, undrained};
-use crate::slopes::section::{Path, Variant};
 
 /// What the book says of the study.
 const ABOUT: &str = "What a study of two meshes says of its own error: slopes whose factor of safety is bounded, searched for along the path of equilibria as case files do it; stress at a place in ground at rest that is no particle's; and drawn values of known limit and order. How often the truth lies within the uncertainty, and how wide that is.";

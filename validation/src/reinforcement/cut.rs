@@ -9,8 +9,8 @@ use igimp_results::tables::table::Table;
 use rayon::prelude::*;
 
 use super::circle::{Cut, Nail};
-use crate::harness::coverage::{self, Known, on_cells};
 use crate::harness::oracle::{Oracle, OracleKind};
+use crate::harness::study::coverage::{self, Known, on_cells};
 use crate::harness::study::{Level, RunRecord, Study};
 use crate::runs::{Computed, mesh, shipped_case};
 

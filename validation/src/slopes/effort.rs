@@ -10,10 +10,10 @@ use igimp_results::tables::table::Table;
 use rayon::prelude::*;
 
 use super::problems::Problem;
-use super::section::{Search, Variant};
 use super::{Found, Slopes};
 use crate::harness::oracle::{Oracle, OracleKind};
 use crate::harness::study::{RunRecord, Study};
+use crate::limit_equilibrium::section::{Search, Variant};
 use crate::runs::Computed;
 
 /// Shared strain must not make Newton's method worse.

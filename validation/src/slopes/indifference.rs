@@ -9,9 +9,9 @@ use rayon::prelude::*;
 
 use super::Found;
 use super::problems::Problem;
-use super::section::{Search, TOLERANCE, Variant};
 use crate::harness::oracle::{Oracle, OracleKind};
 use crate::harness::study::{RunRecord, Study};
+use crate::limit_equilibrium::section::{Search, TOLERANCE, Variant};
 use crate::runs::Computed;
 
 /// Elastic constants enter no limit load.

@@ -8,11 +8,11 @@ use igimp_model::check::Band;
 use igimp_results::mesh_study::{Computed, Convergence, estimate};
 use igimp_results::tables::table::Table;
 
-use super::section::Variant;
 use super::{Found, Slopes};
-use crate::harness::coverage::Known;
 use crate::harness::oracle::{Oracle, OracleKind};
+use crate::harness::study::coverage::Known;
 use crate::harness::study::{RunRecord, Study};
+use crate::limit_equilibrium::section::Variant;
 
 /// What is extrapolated.
 const EXTRAPOLATED: &str = "factor of safety, extrapolated from two meshes [-]";

@@ -6,7 +6,6 @@ mod indifference;
 mod mesh_error;
 mod picture;
 pub(crate) mod problems;
-pub(crate) mod section;
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -19,12 +18,12 @@ use rayon::prelude::*;
 
 use crate::harness::reference::{slope_limit_load_bounds, slope_safety_bounds};
 use crate::harness::study::{Level, RunRecord, Study};
+use crate::limit_equilibrium::section::{Variant, YOUNG};
 use crate::limit_equilibrium::{bishop, rotation, sliding};
 use crate::runs::Computed;
 use crate::slopes::problems::{
     Asked, Opinion, Problem, drained, published, undrained, weak_layer_edges,
 };
-use crate::slopes::section::{Variant, YOUNG};
 
 /// What the book says of the study.
 const ABOUT: &str = "Slopes of undrained and drained soil, homogeneous and in layers, whose factor of safety is bounded by limit analysis or published; the factor of safety of the given geometry is searched for on two meshes, with its mesh error, and every slope has a second opinion by hand calculation.";

@@ -7,7 +7,7 @@ use igimp_cases::CaseError;
 use igimp_figures::{Band, CurvePlot, ReferenceLine, ReferenceValue, Series};
 
 use super::Known;
-use super::section::Variant;
+use crate::limit_equilibrium::section::Variant;
 
 /// Factors of safety over the middle of what is known: the slope's number, mesh and method, factor.
 pub(crate) fn write(

@@ -1,9 +1,9 @@
 //! The slopes: geometry and strength as their sources state them, and what is known of their factor
 //! of safety.
 
-use super::section::{Layer, Path, Search, Section, YOUNG};
 use crate::harness::oracle::{Oracle, OracleKind};
 use crate::harness::study::Level;
+use crate::limit_equilibrium::section::{Layer, Path, Search, Section, YOUNG};
 
 /// Undrained bounds.
 pub(crate) const UNDRAINED_BOUNDS: Oracle = Oracle {

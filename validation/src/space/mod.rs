@@ -4,7 +4,6 @@
 pub(crate) mod column;
 pub(crate) mod safety;
 pub(crate) mod slice;
-mod slice_ground;
 pub(crate) mod sphere;
 pub(crate) mod torsion;
 pub(crate) mod walls;

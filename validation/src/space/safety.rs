@@ -10,8 +10,8 @@ use rayon::prelude::*;
 
 use crate::harness::oracle::{Oracle, OracleKind};
 use crate::harness::study::{Level, RunRecord, Study};
+use crate::limit_equilibrium::section::{Ends, Path as Way, Search, Section, Variant, YOUNG};
 use crate::runs::Computed;
-use crate::slopes::section::{Ends, Path as Way, Search, Section, Variant, YOUNG};
 
 /// What the book says of the study.
 const ABOUT: &str = "The factor of safety of slices in space between smooth ends is that of the plane on the same mesh: a vertical cut in undrained clay, and the first example of Griffiths and Lane.";

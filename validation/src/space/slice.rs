@@ -1,5 +1,7 @@
 //! Cases of plane strain as slices in space with smooth sides: the same to round-off.
 
+pub(crate) mod ground;
+
 use std::collections::HashMap;
 use std::path::Path;
 
@@ -268,6 +270,6 @@ pub(crate) fn study(out: &Path) -> Result<Study, CaseError> {
         let found = [("displacement", displacement), ("stress", stress)];
         check_pair(&mut study, sheet.name, (&plane, &space), &found);
     }
-    super::slice_ground::add(&mut study)?;
+    super::slice::ground::add(&mut study)?;
     Ok(study)
 }

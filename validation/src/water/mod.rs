@@ -14,11 +14,11 @@ use igimp_results::mesh_study::{Computed as OnMesh, Convergence};
 use igimp_results::tables::table::Table;
 use rayon::prelude::*;
 
-use crate::harness::coverage::Known;
 use crate::harness::oracle::{Oracle, OracleKind};
+use crate::harness::study::coverage::Known;
 use crate::harness::study::{Level, RunRecord, Study};
+use crate::limit_equilibrium::section::{Section, Variant};
 use crate::runs::Computed;
-use crate::slopes::section::{Section, Variant};
 use problems::Problem;
 
 /// What the book says of the study.
@@ -194,11 +194,11 @@ fn minimum_lies_inside(
 fn submerged(study: &mut Study) -> Result<(), CaseError> {
     let section = Section::homogeneous("submerged", (2.0, 1.0), (10.0, 20.0), [12.0, 0.0]);
     let with = |water: Option<f64>| -> Result<Found, CaseError> {
-        let search = crate::slopes::section::Search {
+        let search = crate::limit_equilibrium::section::Search {
             bracket: [1.0, 2.0],
-            path: crate::slopes::section::Path::Reduce,
+            path: crate::limit_equilibrium::section::Path::Reduce,
             steps: 10,
-            young: crate::slopes::section::YOUNG,
+            young: crate::limit_equilibrium::section::YOUNG,
         };
         let variant = Variant {
             cells: 10,

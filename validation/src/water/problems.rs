@@ -7,7 +7,7 @@ use igimp_model::PoreSource;
 
 use crate::harness::oracle::{Oracle, OracleKind};
 use crate::harness::study::Level;
-use crate::slopes::section::{Layer, Path, Search, Section, YOUNG};
+use crate::limit_equilibrium::section::{Layer, Path, Search, Section, YOUNG};
 
 /// Unit weight of water \[kN/m³, pcf\].
 const SI: f64 = 9.81;

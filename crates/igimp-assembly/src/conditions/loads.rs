@@ -1,7 +1,6 @@
 //! What acts on a body in a step: gravity on every particle, forces on points that the soil carries
 //! along, and drag against motion (theory, eqs. 2 and 38).
 
-use igimp_material::ConstitutiveModel;
 use igimp_shape::{Grid, Linear, Scratch, Support, supports};
 
 use crate::error::AssemblyError;

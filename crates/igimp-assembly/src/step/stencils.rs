@@ -4,7 +4,6 @@
 use std::collections::BTreeMap;
 
 use igimp_shape::{Grid, Support};
-use rayon::prelude::*;
 
 use crate::body::particles::Particles;
 use crate::conditions::StepConditions;

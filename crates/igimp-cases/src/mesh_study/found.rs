@@ -226,7 +226,7 @@ fn limit<const D: usize>(
         return Some(Found::on_the_way(reached));
     }
     if let Some(path) = &summary.path {
-        return Some(match crate::run::stages::limit::interval(path) {
+        return Some(match crate::limit::interval(path) {
             (Some(low), Some(high)) => Found::within(0.5 * (low + high), 0.5 * (high - low)),
             _ => Found::on_the_way(reached),
         });

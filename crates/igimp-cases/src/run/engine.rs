@@ -6,7 +6,6 @@ use std::time::Instant;
 
 use super::model::Model;
 use super::output::Output;
-use super::output::entry::Entered;
 use super::output::export::Export;
 use super::output::records::{Moment, Records, largest_displacement};
 use super::output::{checks, sections};
@@ -17,7 +16,7 @@ use super::session::{Ended, Session};
 use super::stages::{construction, initial, loading, run_out, safety};
 use super::state::State;
 use super::{Event, Failure, Listener, Run, Start, Target};
-use super::{failure, pores, reinforcement, study};
+use super::{failure, pores, reinforcement};
 use crate::error::CaseError;
 use crate::estimate::Expectation;
 use crate::estimate::time::time_of_steps_taken;
@@ -28,45 +27,6 @@ use igimp_results::folder::{clear_meshes, refuse_foreign};
 use igimp_results::summary::{StageOutcome, StageSummary, Summary};
 use igimp_results::tables::table::Table;
 use igimp_solver::StepError;
-
-/// Runs a case. With a target everything is written as it is computed.
-///
-/// A case with a [`mesh_study`](Case::mesh_study) of several meshes is run on each of them, and what
-/// they say together is told in the [`Summary`]; the rest of the [`Run`] is that of the finest mesh that
-/// came to its end.
-///
-/// Want of equilibrium is a result ([`Run::failure`]), and so is an interruption: when `interrupt`
-/// becomes true the run ends after its step, with everything saved. Nobody else writes into the results
-/// folder meanwhile, and what is there is replaced as far as [`Target::replace`] allows.
-///
-/// # Errors
-/// [`CaseError`] for a case that cannot be set up, and for files that cannot be written or read.
-pub fn run<const D: usize>(
-    case: &Case<D>,
-    target: Option<&Target>,
-    start: Start,
-    listener: &mut dyn Listener<D>,
-    interrupt: &AtomicBool,
-) -> Result<Run<D>, CaseError> {
-    let _entered = target
-        .map(|target| Entered::new(case, target, start))
-        .transpose()?;
-    run_entered(case, target, start, listener, interrupt)
-}
-
-/// Runs a case whose results folder was entered.
-pub(crate) fn run_entered<const D: usize>(
-    case: &Case<D>,
-    target: Option<&Target>,
-    start: Start,
-    listener: &mut dyn Listener<D>,
-    interrupt: &AtomicBool,
-) -> Result<Run<D>, CaseError> {
-    if case.mesh_study.meshes > 1 {
-        return study::run(case, target, start, listener, interrupt);
-    }
-    one_mesh(case, target, start, listener, interrupt)
-}
 
 /// Runs a case on its own grid.
 pub(super) fn one_mesh<const D: usize>(
@@ -114,21 +74,6 @@ pub(super) fn one_mesh<const D: usize>(
     session.tell(&Event::Prepared { size: &size });
     stages.run(&mut session, &initial)?;
     stages.finish(session, initial, clock)
-}
-
-/// Runs a case from its beginning and keeps what it finds in memory.
-///
-/// # Errors
-/// [`CaseError`] for a case that cannot be set up.
-pub fn in_memory<const D: usize>(case: &Case<D>) -> Result<Run<D>, CaseError> {
-    let never = AtomicBool::new(false);
-    run(
-        case,
-        None,
-        Start::Afresh,
-        &mut |_: &Event<'_, D>| {},
-        &never,
-    )
 }
 
 /// The stages of a run, one after another.

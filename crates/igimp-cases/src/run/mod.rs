@@ -2,6 +2,7 @@
 
 mod engine;
 mod failure;
+pub(crate) mod footing;
 mod mixed_cells;
 mod model;
 mod output;
@@ -12,6 +13,7 @@ mod resume;
 mod rigid;
 mod session;
 pub(crate) mod stages;
+mod start;
 mod state;
 mod study;
 mod water;
@@ -28,11 +30,12 @@ use igimp_input::CaseFile;
 use igimp_model::{AnyCase, Case};
 use igimp_results::folder::overwrite_guard::Replace;
 use igimp_results::folder::provenance::{Claim, Origin};
-use igimp_results::summary::{ModelSize, PathPoint, StageSummary, Summary, TrialSummary};
+use igimp_results::model_size::ModelSize;
+use igimp_results::summary::{PathPoint, StageSummary, Summary, TrialSummary};
 use igimp_results::tables::table::Table;
 
-pub(crate) use engine::run_entered;
-pub use engine::{in_memory, run};
+pub(crate) use crate::run::start::run_entered;
+pub use crate::run::start::{in_memory, run};
 pub use failure::message::worst_node;
 pub use model::Model;
 pub use output::entry::Entered;

@@ -11,20 +11,15 @@ use igimp_material::Ratios;
 use igimp_shape::{Grid, ShapeError};
 use igimp_solver::{Body, MarchSettings, NewtonSettings};
 
-use super::stages::footing::{self, Footing};
+use super::footing::{self, Footing};
 use super::state::{Controls, State};
 use super::water::{GroundWater, Seeded};
 use crate::error::CaseError;
+use crate::run::state::gravity_of_weights;
 use igimp_geometry::seed::fill;
 use igimp_model::{Case, Drainage, LoadKind, Material, MixedCells, Side};
 use igimp_results::fields;
-use igimp_results::summary::ModelSize;
-
-/// Acceleration of gravity that turns unit weights of a case with this one into densities \[m/s²\]: that of the earth where
-/// the case has none.
-pub(super) fn gravity_of_weights(gravity: f64) -> f64 {
-    if gravity > 0.0 { gravity } else { 9.81 }
-}
+use igimp_results::model_size::ModelSize;
 
 /// Load points per cell along a loaded segment.
 const POINTS_PER_CELL: f64 = 4.0;
@@ -415,4 +410,30 @@ fn load_points<const D: usize>(case: &Case<D>) -> Vec<LoadPoint<D>> {
         }
     }
     points
+}
+
+/// The displacement γH²/E \[m\] (theory, eq. 32a); none for bodies without weight.
+pub(crate) fn displacement_scale<const D: usize>(
+    model: &Model<'_, D>,
+    state: &State<D>,
+) -> Option<f64> {
+    let particles = &state.body.particles;
+    let weight = particles.mass.iter().sum::<f64>() * model.case.gravity;
+    let volume: f64 = particles.volume0.iter().sum();
+    let soft: f64 = (particles.volume0.iter().enumerate())
+        .map(|(particle, volume)| volume / particles.young(particle, &model.laws))
+        .sum();
+    let scale = weight / volume * height(state).powi(2) * soft / volume;
+    (scale > 0.0).then_some(scale)
+}
+
+/// Height of the bodies \[m\].
+pub(crate) fn height<const D: usize>(state: &State<D>) -> f64 {
+    let particles = &state.body.particles;
+    let levels = || {
+        let edges = particles.x.iter().zip(&particles.half_length);
+        let up = D - 1;
+        edges.flat_map(move |(x, half_length)| [x[up] - half_length[up], x[up] + half_length[up]])
+    };
+    levels().fold(f64::NEG_INFINITY, f64::max) - levels().fold(f64::INFINITY, f64::min)
 }

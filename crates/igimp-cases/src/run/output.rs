@@ -13,15 +13,15 @@ use super::resume::{End, Notes, Resumption, Search};
 
 use records::{Records, Rows};
 
-use super::session::Taken;
 use super::state::State;
 use crate::error::CaseError;
+use crate::run::output::records::Taken;
 use igimp_model::{Case, Every};
 use igimp_report::pictures::{self, Shown};
 use igimp_report::pieces::Pieces;
 use igimp_report::report;
+use igimp_results::atomic::write_whole;
 use igimp_results::checkpoint;
-use igimp_results::folder::atomic::write_whole;
 use igimp_results::folder::provenance::Claim;
 use igimp_results::folder::{self, Folder, write_summary};
 use igimp_results::paraview::frames::Frames;

@@ -3,19 +3,13 @@
 use igimp_assembly::{Drive, Interface, Particles, RigidBody, RigidMotion, Shear};
 use igimp_solver::{Accepted, StepFailure};
 
-use super::model::Model;
-use super::output::records::Moment;
 use super::state::{Controls, RigidTrack, State};
 use crate::error::CaseError;
 use igimp_model::{
-    Adhesion, COMPONENTS, Case, RigidDrive, RigidInterface, RigidMove, RigidPart, RigidQuantity,
-    RigidShear, components, in_space,
+    Adhesion, COMPONENTS, Case, RigidInterface, RigidPart, RigidQuantity, RigidShear, components,
+    in_space,
 };
 use igimp_results::tables::table::Table;
-use igimp_text::short;
-
-/// A body is not set down by less than this share of a cell \[-\].
-const LEAST_SHIFT: f64 = 1e-9;
 
 /// The smallest cell that a rigid body starts in \[m\].
 pub(crate) fn cell_near<const D: usize>(case: &Case<D>, part: &RigidPart<D>) -> f64 {
@@ -138,61 +132,6 @@ pub(crate) fn tracks<const D: usize>(
     tracks
 }
 
-/// Prepares a state for a stage that moves rigid bodies: those that are not there are placed, and what
-/// held a component hands over to the force that will drive it. Tells of bodies that were shifted.
-pub(crate) fn begin<const D: usize>(
-    model: &Model<'_, D>,
-    state: &mut State<D>,
-    moves: &[RigidMove],
-) -> Result<Vec<String>, CaseError> {
-    let mut told = Vec::new();
-    for own in moves {
-        if !state.controls.rigid[own.body].placed {
-            told.extend(place(model, state, own.body)?);
-        }
-        let body = &mut state.controls.rigid[own.body];
-        for (k, drive) in own.drives.iter().enumerate() {
-            match drive {
-                Some(RigidDrive::By(_)) => body.loaded[k] = None,
-                Some(RigidDrive::Force(_)) => {
-                    body.loaded[k] = body.loaded[k].or(Some(body.track.force[k]));
-                }
-                None => {}
-            }
-        }
-    }
-    Ok(told)
-}
-
-/// Puts a rigid body where it starts, or by as much lower as the soil beneath it settled.
-fn place<const D: usize>(
-    model: &Model<'_, D>,
-    state: &mut State<D>,
-    index: usize,
-) -> Result<Option<String>, CaseError> {
-    let case = model.case;
-    let part = &case.rigid[index];
-    let mut body = made(case, index, model.laws.len())?;
-    let settled = gap_below(part, &state.body.particles) - model.gaps[index];
-    let is_shifted = settled.is_finite() && settled.abs() > LEAST_SHIFT * cell_near(case, part);
-    if is_shifted {
-        body.pose.origin[D - 1] -= settled;
-        state.controls.rigid[index].track.lowered = settled;
-    }
-    let slot = state.controls.placed().take_while(|&k| k < index).count();
-    state.body.rigid.insert(slot, body);
-    state.controls.rigid[index].placed = true;
-    state.body.particles.clear_of(&state.body.rigid);
-    let way = if settled > 0.0 { "down" } else { "up" };
-    Ok(is_shifted.then(|| {
-        format!(
-            "the rigid body \"{}\" was set {way} by {} m, as far as the soil beneath it went",
-            part.name,
-            short(settled.abs())
-        )
-    }))
-}
-
 /// The smallest vertical distance from soil up to a body where it starts \[m\]; infinite where no soil
 /// lies beneath it.
 pub(crate) fn gap_below<const D: usize>(part: &RigidPart<D>, particles: &Particles<D>) -> f64 {
@@ -251,7 +190,7 @@ pub(crate) fn quantity<const D: usize>(
 }
 
 /// What is recorded of a rigid body, under these labels.
-fn recorded<const D: usize>() -> Vec<(String, RigidQuantity)> {
+pub(crate) fn recorded<const D: usize>() -> Vec<(String, RigidQuantity)> {
     let per_run = if D == 2 { "/m" } else { "" };
     let mut recorded = Vec::new();
     let mut add = |label: String, of| recorded.push((label, of));
@@ -298,25 +237,6 @@ pub(crate) fn table<const D: usize>(name: &str) -> Table {
         header: header.chain(labels).collect(),
         rows: Vec::new(),
     }
-}
-
-/// The row of a rigid body that is there.
-pub(super) fn row<const D: usize>(
-    case: &Case<D>,
-    moment: &Moment<'_, D>,
-    index: usize,
-) -> Vec<f64> {
-    let (controls, bodies) = (moment.controls, moment.rigid);
-    let slot = controls.placed().take_while(|&k| k < index).count();
-    let mut row = vec![
-        moment.stage as f64 + 1.0,
-        moment.number as f64,
-        moment.progress,
-    ];
-    row.extend(bodies[slot].pose.origin);
-    let recorded = recorded::<D>().into_iter();
-    row.extend(recorded.map(|(_, of)| quantity(case, controls, bodies, index, of)));
-    row
 }
 
 /// The failure of a step that left soil further in a body than the case allows.

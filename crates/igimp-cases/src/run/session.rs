@@ -21,6 +21,7 @@ use super::rigid;
 use super::state::{Controls, RigidTrack, State};
 use super::{Event, Listener, REACHED_ITS_END};
 use crate::error::CaseError;
+use crate::run::output::records::Taken;
 use igimp_results::fields;
 use igimp_results::summary::{StageSummary, Summary};
 use igimp_text::short;
@@ -195,35 +196,6 @@ pub(crate) struct Path<'a, const D: usize = 2> {
     pub(crate) held: Option<Arc<Vec<[f64; D]>>>,
     /// Where an earlier run left the march.
     pub(crate) left: Option<&'a Resumption>,
-}
-
-/// An accepted step as a stage sees it.
-pub(crate) struct Taken<'a, const D: usize = 2> {
-    /// The step in the solver's terms.
-    pub(crate) accepted: &'a Accepted<'a, D>,
-    /// What acts on the body now.
-    pub(crate) controls: &'a Controls,
-    /// Resistance of the footing \[N/m\].
-    pub(crate) resistance: f64,
-    /// Whether the user wants the run to end here.
-    pub(crate) interrupted: bool,
-}
-
-impl<'a, const D: usize> Taken<'a, D> {
-    /// The step as a moment to be recorded.
-    pub(crate) fn moment(&self, stage: usize, number: usize) -> Moment<'a, D> {
-        Moment {
-            stage,
-            number,
-            progress: self.accepted.report.to,
-            particles: &self.accepted.body.particles,
-            rigid: &self.accepted.body.rigid,
-            reinforcement: &self.accepted.body.reinforcement,
-            controls: self.controls,
-            resistance: self.resistance,
-            plastic_share: self.accepted.report.plastic_share,
-        }
-    }
 }
 
 /// How a march ended.

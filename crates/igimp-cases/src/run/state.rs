@@ -182,3 +182,9 @@ pub struct State<const D: usize = 2> {
     /// What acts on it.
     pub controls: Controls,
 }
+
+/// Acceleration of gravity that turns unit weights of a case with this one into densities \[m/s²\]: that of the earth where
+/// the case has none.
+pub(crate) fn gravity_of_weights(gravity: f64) -> f64 {
+    if gravity > 0.0 { gravity } else { 9.81 }
+}

@@ -21,9 +21,9 @@ use igimp_model::Case;
 use igimp_model::meshes;
 use igimp_report::{pictures, report};
 use igimp_results::checkpoint::sha256;
+use igimp_results::ending::Ending;
 use igimp_results::folder::{self, mesh_name, write_atomically, write_summary};
 use igimp_results::mesh_study::{MeshSummary, StudySummary};
-use igimp_results::summary::Ending;
 use igimp_results::summary::Summary;
 
 /// Runs a case on all meshes of its study.
@@ -202,7 +202,7 @@ fn mesh_summary<const D: usize>(
     match run {
         Ok(run) => {
             let summary = &run.summary;
-            let ending = match Ending::of(summary) {
+            let ending = match summary.ending() {
                 Ending::Missed => Ending::Done,
                 other => other,
             };

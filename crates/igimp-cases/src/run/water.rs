@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use igimp_assembly::{PoreSite, PoreState, PoreWater};
 
-use super::model::gravity_of_weights;
+use crate::run::state::gravity_of_weights;
 use igimp_model::{Case, Drainage, Ground, Material, PoreSource, Raster, WaterCondition};
 
 /// Points and weights of Gauss, three on −1 to 1.

@@ -3,9 +3,8 @@
 use igimp_model::check::{Band, Check};
 use igimp_model::{Monitor, Section};
 use igimp_results::fields;
-use igimp_results::summary::{
-    CheckRow, ModelSize, SafetySummary, StageSummary, Summary, TrialSummary,
-};
+use igimp_results::model_size::ModelSize;
+use igimp_results::summary::{CheckRow, SafetySummary, StageSummary, Summary, TrialSummary};
 use igimp_results::tables::table::Table;
 
 use crate::example::case;

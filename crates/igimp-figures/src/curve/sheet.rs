@@ -3,7 +3,6 @@
 use super::frame::{
     HEIGHT, WIDTH, frame_of, hidden_points, shows, title_lines, x_label_lines, y_label_lines,
 };
-use super::marker::Marker;
 use super::{CurvePlot, LineStyle, ReferenceLine, ReferenceValue, Series};
 use crate::FigureError;
 use crate::axis::ticks;
@@ -14,6 +13,7 @@ use crate::drawing::{Anchor, Contour, Drawing, Item, Shape, Stroke, Text};
 use crate::frame::{self, Frame, GAP, LABEL, MARGIN, TICK, TITLE};
 use crate::geometry::{Point, Rect};
 use crate::legend::{Legend, Occupancy, Sample};
+use crate::marker::Marker;
 
 const BAND_OPACITY: f64 = 0.35;
 

@@ -9,8 +9,8 @@ use super::font::{self, Pen};
 use super::{Anchor, Contour, Drawing, Item, PIXELS_PER_POINT, Shape, Text};
 use crate::FigureError;
 use crate::colour::Colour;
+use crate::drawing::Image;
 use crate::geometry::Point;
-use crate::space::Image;
 
 const NO_CLIP: Option<&Mask> = None;
 

@@ -13,8 +13,8 @@ use super::font;
 use super::raster;
 use super::{Anchor, Contour, Drawing, Item, Shape, Stroke, Text};
 use crate::colour::Colour;
+use crate::drawing::Image;
 use crate::geometry::{Point, Rect};
-use crate::space::Image;
 
 /// The whole document.
 pub(crate) fn document(drawing: &Drawing) -> String {

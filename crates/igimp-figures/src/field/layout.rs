@@ -2,7 +2,6 @@
 
 use super::FieldPlot;
 use super::colour_bar::{ColourBar, ColourScale};
-use super::sheet::Sheet;
 use crate::axis::ticks::Ticks;
 use crate::axis::{Axis, Scale};
 use crate::drawing::font::{self, LINE_HEIGHT};
@@ -238,4 +237,15 @@ impl<'a> Layout<'a> {
     pub(crate) fn bar_top(&self) -> f64 {
         self.below_axis() + frame::lines_height(&self.x_label_lines(), LABEL) + GAP
     }
+}
+
+/// What is to be laid out.
+pub(crate) struct Sheet<'a> {
+    pub(crate) title: &'a str,
+    /// At least one plot.
+    pub(crate) plots: &'a [FieldPlot],
+    /// At least one column, and no more than plots.
+    pub(crate) columns: usize,
+    /// Whether each plot carries its own title.
+    pub(crate) panel_titles: bool,
 }

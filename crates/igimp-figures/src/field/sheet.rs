@@ -10,21 +10,11 @@ use crate::axis::{self, Scale};
 use crate::colour::Colour;
 use crate::drawing::font::{self, CAP_HEIGHT, LINE_HEIGHT};
 use crate::drawing::{Anchor, Drawing};
+use crate::field::Sheet;
 use crate::frame::{self, GAP, LABEL, MARGIN, NOTE, TITLE};
 
 /// Plots lower than this \[pt\] have their colour bar below.
 const LEAST_BAR: f64 = 150.0;
-
-/// What is to be laid out.
-pub(crate) struct Sheet<'a> {
-    pub(crate) title: &'a str,
-    /// At least one plot.
-    pub(crate) plots: &'a [FieldPlot],
-    /// At least one column, and no more than plots.
-    pub(crate) columns: usize,
-    /// Whether each plot carries its own title.
-    pub(crate) panel_titles: bool,
-}
 
 /// Lays the whole picture out.
 pub(crate) fn draw(sheet: &Sheet<'_>) -> Result<Drawing, FigureError> {

@@ -1,9 +1,10 @@
 //! The surface of a body filled into pixels: of every face the part that no other one hides.
 
+use super::Face;
 use super::view::{Projection, dot};
-use super::{Face, Image};
 use crate::FigureError;
 use crate::colour::Colour;
+use crate::drawing::Image;
 use crate::drawing::PIXELS_PER_POINT;
 use crate::field::colour_bar::ColourScale;
 

@@ -2,12 +2,13 @@
 
 use std::path::Path;
 
+use super::bodies::sequence::Sequence;
 use super::grid::{self, Frame};
 use super::outputs::{checks, curves, study};
+use super::stages;
 use super::stages::construction;
-use super::stages::sequence::Sequence;
-use super::stages::{self, Context};
 use super::{AllNames, all, materials, outputs, title_block};
+use crate::build::context::Context;
 use igimp_assembly::Method;
 use igimp_model::{
     BodyPart, Boundaries, Case, GridSpec, Material, ReinforcementPart, RigidPart, Stage,

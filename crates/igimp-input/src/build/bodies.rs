@@ -1,13 +1,14 @@
 //! Bodies: polygons on the grid, apart from each other, held from below.
 
+pub(crate) mod sequence;
 pub(crate) mod site;
 pub(crate) mod solids;
+pub(crate) mod surfaces;
 
 use std::sync::Arc;
 
 use super::AllNames;
 use super::grid::MOST;
-use super::stages::sequence::{Sequence, placed};
 use crate::geometry::{distinct, near_edge, overlap, self_crossing};
 use igimp_geometry::polygon::contains;
 use igimp_geometry::polygon::{area_and_centroid, bounding_box};
@@ -15,6 +16,7 @@ use igimp_model::{BodyPart, Boundaries, Side};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::text::{clip, count, number, point};
 use igimp_schema::tree::Node;
+use sequence::{Sequence, placed};
 use site::Site;
 
 /// Most corners of all bodies together.

@@ -1,5 +1,6 @@
 //! The grid and the variant of the method.
 
+pub(crate) mod boundaries;
 pub(crate) mod lines;
 
 use std::sync::Arc;

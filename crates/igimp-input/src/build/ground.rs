@@ -3,7 +3,6 @@
 pub(crate) mod layers;
 pub(crate) mod level;
 pub(crate) mod space;
-pub(crate) mod surfaces;
 
 use super::bodies::site::Site;
 use igimp_geometry::polygon::contains;

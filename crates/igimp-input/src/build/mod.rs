@@ -4,7 +4,7 @@
 
 mod assemble;
 mod bodies;
-mod boundaries;
+mod context;
 mod derive;
 mod grid;
 mod ground;
@@ -25,8 +25,10 @@ use igimp_schema::names::Names;
 use igimp_schema::schema::{FORMAT, SPACE};
 use igimp_schema::tree::Node;
 
+use crate::build::grid::boundaries;
 use assemble::{Basics, Upon};
 use bodies::site::Site;
+use context::Context;
 use ground::layers::Layers;
 
 /// The names in a file, by what they name.
@@ -127,7 +129,7 @@ fn in_plane(tree: &Node, names: &AllNames, file: &Path, problems: &mut Problems)
     water::checks::check(&around, &water, problems);
     let reinforcement = reinforcement::reinforcement(tree, &site, problems);
     reinforcement::check_searches(tree, names, problems);
-    let context = stages::Context {
+    let context = Context {
         tree,
         names,
         materials,

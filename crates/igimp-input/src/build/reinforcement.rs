@@ -4,7 +4,7 @@ pub(crate) mod space;
 
 use super::AllNames;
 use super::bodies::site::{Site, Soil};
-use super::stages::Context;
+use crate::build::context::Context;
 use igimp_model::{ReinforcementKind, ReinforcementPart, distance};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::text::{clip, number, point};

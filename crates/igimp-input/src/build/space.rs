@@ -4,11 +4,14 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::assemble::{self, Basics, Upon};
+use super::bodies::sequence::{Sequence, placed};
 use super::bodies::site::Soil;
 use super::bodies::solids;
 use super::grid::Frame;
-use super::stages::sequence::{Sequence, placed};
-use super::{AllNames, boundaries, loads, reinforcement, rigid, stages, water};
+use super::grid::boundaries;
+use super::{AllNames, loads, reinforcement, rigid, water};
+use crate::build::bodies::site::Solids;
+use crate::build::context::Context;
 use igimp_geometry::region::Region;
 use igimp_model::{BodyPart, Case, Ground, LoadKind, Material};
 use igimp_schema::diagnostic::Problems;
@@ -17,44 +20,6 @@ use igimp_schema::tree::Node;
 
 /// Most particles.
 const MOST: f64 = 5e7;
-
-/// The bodies, for the checks of places.
-pub(super) struct Solids {
-    pub(super) regions: Vec<Arc<dyn Region<3>>>,
-    pub(super) is_complete: bool,
-    pub(super) round_off: f64,
-    /// Smallest side of a cell \[m\].
-    pub(super) cell: f64,
-    /// Extent of the grid \[m\].
-    pub(super) lower: [f64; 3],
-    pub(super) upper: [f64; 3],
-}
-
-impl Solids {
-    fn new(bodies: &[Option<BodyPart<3>>], frame: Option<&Frame<3>>) -> Self {
-        let regions: Vec<_> = bodies
-            .iter()
-            .flatten()
-            .map(|body| Arc::clone(&body.region))
-            .collect();
-        let ends = frame
-            .iter()
-            .flat_map(|frame| frame.lower.iter().chain(&frame.upper));
-        let largest = ends.fold(0.0, |largest: f64, x| largest.max(x.abs()));
-        let round_off = 1e-9 * largest;
-        let cells = frame.iter().flat_map(|frame| frame.axes.iter());
-        Self {
-            is_complete: frame.is_some() && regions.len() == bodies.len() && !bodies.is_empty(),
-            regions,
-            round_off,
-            lower: frame.map_or([0.0; 3], |frame| frame.lower),
-            upper: frame.map_or([0.0; 3], |frame| frame.upper),
-            cell: cells
-                .map(|axis| axis.extremes()[0])
-                .fold(f64::INFINITY, f64::min),
-        }
-    }
-}
 
 impl Soil<3> for Solids {
     fn is_known(&self) -> bool {
@@ -137,7 +102,7 @@ pub(super) fn build(
     water::checks::check(&around, &water, problems);
     let reinforcement = reinforcement::space::reinforcement(tree, &soil, problems);
     reinforcement::check_searches(tree, names, problems);
-    let context = stages::Context {
+    let context = Context {
         tree,
         names,
         materials,

@@ -2,78 +2,16 @@
 
 pub(crate) mod construction;
 pub(crate) mod safety;
-pub(crate) mod sequence;
 
 use igimp_assembly::Geometry;
 
-use super::AllNames;
-
-use super::bodies::site::{Site, Soil};
 use super::ground::level::uneven;
-use igimp_model::{BodyPart, Load, LoadKind, Material, Stage, StageKind, StopWhen, Strength};
+use crate::build::context::Context;
+use igimp_model::{LoadKind, Stage, StageKind, StopWhen, Strength};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::text::{clip, number, row};
 use igimp_schema::tree::{Node, Wrong};
 use safety::{run_out, strength_reduction};
-use sequence::Sequence;
-
-/// What stages refer to.
-pub(super) struct Context<'a, const D: usize = 2> {
-    pub(super) tree: &'a Node,
-    pub(super) names: &'a AllNames,
-    pub(super) materials: &'a [Option<Material>],
-    pub(super) bodies: &'a [Option<BodyPart<D>>],
-    pub(super) loads: &'a [Option<Load<D>>],
-    pub(super) soil: &'a dyn Soil<D>,
-    /// The ground of the plane; none in space.
-    pub(super) site: Option<&'a Site>,
-    pub(super) sequence: &'a Sequence,
-}
-
-impl<const D: usize> Context<'_, D> {
-    /// The stages that a stage follows, from the one that it starts from.
-    pub(super) fn before(&self, index: usize) -> impl Iterator<Item = &Node> {
-        let before = move |index: usize| {
-            let named = self.stage_nodes().get(index)?.text_at("start_from");
-            let named = named.and_then(|name| self.names.stages.position(name));
-            named.filter(|&k| k < index).or(index.checked_sub(1))
-        };
-        let all = std::iter::successors(before(index), move |&index| before(index));
-        all.filter_map(|index| self.stage_nodes().get(index))
-    }
-
-    pub(super) fn stage_nodes(&self) -> &[Node] {
-        self.tree.items_at("stages")
-    }
-
-    /// Type of a stage.
-    pub(super) fn type_of(&self, index: usize) -> Option<&str> {
-        self.stage_nodes().get(index)?.text_at("type")
-    }
-
-    /// Index of the monitor that a table names, if it names one.
-    pub(super) fn monitor(
-        &self,
-        table: &Node,
-        who: &str,
-        problems: &mut Problems,
-    ) -> Result<Option<usize>, Wrong> {
-        let who = format!("stage `{who}` watches");
-        let monitors = &self.names.monitors;
-        monitors.find_optional(table, "monitor", &who, problems)
-    }
-
-    /// Whether a material is that of a body.
-    pub(super) fn is_used(&self, material: usize) -> bool {
-        let mut scenes = self.sequence.scenes();
-        scenes.any(|scene| {
-            scene
-                .material
-                .iter()
-                .any(|own| own.is_none_or(|own| own == material))
-        })
-    }
-}
 
 /// The stages.
 pub(super) fn stages<const D: usize>(

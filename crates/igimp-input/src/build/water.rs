@@ -3,9 +3,9 @@
 pub(crate) mod checks;
 
 use super::AllNames;
-use super::ground::surfaces::terrain;
+use super::bodies::sequence::{Scene, Sequence};
+use super::bodies::surfaces::terrain;
 use super::ground::{Earth, Surface, UprightFace};
-use super::stages::sequence::{Scene, Sequence};
 use igimp_model::{BodyPart, Material, PoreSource, WaterCondition};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::text::{clip, number};

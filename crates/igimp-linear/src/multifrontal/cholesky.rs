@@ -26,7 +26,6 @@ use faer::{Accum, MatMut, MatRef, Par, Spec};
 
 use super::super::LinearSolverError;
 use super::dense::dense_lu::PivotRecord;
-use super::dense::kernel::{Contribution, Kernel, Room, Shape, Substitution};
 use super::dense::layout::{Layout, STRIDE};
 use super::dense::panels::{
     solve_lower, solve_lower_transposed, subtract_product, subtract_transposed_product,
@@ -34,9 +33,12 @@ use super::dense::panels::{
 use super::dense::scalar::Scalar;
 use super::dense::tiles::{TILE, by_columns, tile_width};
 use super::extend_add::{Target, triangle_column};
+use super::kernel::{Contribution, Kernel, Room, Substitution};
 use super::scratch::make_room;
-use super::tree::plan::{Front, Plan};
-use super::tree::tasks::Extent;
+use super::tree::plan::Plan;
+use crate::multifrontal::dense::layout::Shape;
+use crate::multifrontal::tree::front::Extent;
+use crate::multifrontal::tree::front::Front;
 
 /// Elimination of K, with its diagonal by unknown.
 pub(super) struct Cholesky<'a> {

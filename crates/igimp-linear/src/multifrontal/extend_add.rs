@@ -8,7 +8,8 @@ use std::ops::Range;
 
 use super::dense::layout::Layout;
 use super::dense::scalar::Scalar;
-use super::tree::plan::{Front, Plan};
+use super::tree::plan::Plan;
+use crate::multifrontal::tree::front::Front;
 
 /// Consecutive border unknowns of a child that are consecutive in the parent.
 #[derive(Clone, Copy)]
@@ -290,11 +291,6 @@ impl<T: Scalar> Target<'_, T> {
             }
         }
     }
-}
-
-/// Entries of the lower triangle of a symmetric block with so many rows, stored by columns from the diagonal on.
-pub(super) fn triangle(rows: usize) -> usize {
-    rows * (rows + 1) / 2
 }
 
 /// As many entries of such a triangle as a column has rows, of which those from the diagonal on are the column.

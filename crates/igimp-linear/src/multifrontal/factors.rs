@@ -6,12 +6,13 @@
 
 use super::super::LinearSolverError;
 use super::dense::dense_lu::PivotRecord;
-use super::dense::kernel::{Contribution, Kernel, Room};
 use super::dense::scalar::Scalar;
 use super::extend_add::{BorderMap, Waiting};
+use super::kernel::{Contribution, Kernel, Room};
 use super::scratch::{Tools, Workshop, make_room};
-use super::tree::plan::{Front, Plan};
+use super::tree::plan::Plan;
 use super::tree::tasks::Task;
+use crate::multifrontal::tree::front::Front;
 
 /// Factors in the order of elimination.
 #[derive(Default)]

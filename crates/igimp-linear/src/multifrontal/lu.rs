@@ -22,7 +22,6 @@ use faer::{Accum, MatMut, MatRef, Par};
 
 use super::super::LinearSolverError;
 use super::dense::dense_lu::{PivotRecord, exchange, exchange_columns, factor_block};
-use super::dense::kernel::{Contribution, Kernel, Room, Shape, Substitution};
 use super::dense::layout::Layout;
 use super::dense::panels::{
     solve_lower, solve_upper, subtract_product, subtract_transposed_product,
@@ -30,9 +29,12 @@ use super::dense::panels::{
 use super::dense::scalar::Scalar;
 use super::dense::tiles::{TILE, by_columns, tile_width};
 use super::extend_add::Target;
+use super::kernel::{Contribution, Kernel, Room, Substitution};
 use super::scratch::make_room;
-use super::tree::plan::{Front, Plan};
-use super::tree::tasks::Extent;
+use super::tree::plan::Plan;
+use crate::multifrontal::dense::layout::Shape;
+use crate::multifrontal::tree::front::Extent;
+use crate::multifrontal::tree::front::Front;
 
 /// Elimination of S K S, with the diagonal of S by unknown.
 pub(super) struct Lu<'a> {

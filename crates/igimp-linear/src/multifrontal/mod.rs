@@ -23,6 +23,7 @@ mod dense;
 mod engine;
 mod extend_add;
 mod factors;
+pub(crate) mod kernel;
 mod lu;
 mod scaling;
 pub(crate) mod scratch;

@@ -2,7 +2,6 @@
 
 use crate::TangentMatrix;
 
-use super::super::multigrid::{Demand, Method, Preconditioned};
 use super::super::refine::max_norm;
 use super::super::{LinearSolverError, SolveReport};
 use super::cholesky::{Cholesky, CholeskyFactors};
@@ -11,6 +10,7 @@ use super::lu::{Lu, LuFactors};
 use super::scratch::Workshop;
 use super::substitution::Vectors;
 use super::tree::plan::Plan;
+use crate::krylov::preconditioned::{Demand, Method, Preconditioned};
 
 /// Largest number of iterations: more would say that the factors are of no use.
 const MOST: usize = 60;

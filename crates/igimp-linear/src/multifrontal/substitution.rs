@@ -5,12 +5,14 @@
 //! threads.
 
 use super::super::LinearSolverError;
-use super::dense::kernel::Substitution;
 use super::dense::scalar::Scalar;
 use super::factors::Factors;
+use super::kernel::Substitution;
 use super::scratch::{Tools, Workshop, make_room};
-use super::tree::plan::{Front, Plan};
-use super::tree::tasks::{Extent, Task};
+use super::tree::plan::Plan;
+use super::tree::tasks::Task;
+use crate::multifrontal::tree::front::Extent;
+use crate::multifrontal::tree::front::Front;
 
 /// Vectors for solves, kept from solve to solve.
 #[derive(Default)]

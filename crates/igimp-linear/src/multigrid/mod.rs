@@ -11,9 +11,6 @@
 mod dense;
 mod galerkin;
 mod hierarchy;
-mod krylov;
-mod preconditioned;
-mod product;
 mod rows;
 mod skin;
 mod slabs;
@@ -21,5 +18,5 @@ mod smoother;
 mod solver;
 mod transfer;
 
-pub(super) use preconditioned::{Demand, Method, Preconditioned};
+pub(super) use crate::krylov::preconditioned::Demand;
 pub(super) use solver::Iteration;

@@ -6,8 +6,8 @@ use crate::{Pattern, TangentMatrix};
 
 use super::super::{LinearSolverError, SolveReport, check};
 use super::hierarchy::{self, Preconditioner};
-use super::preconditioned::{Demand, Method, Preconditioned};
 use super::skin::Skin;
+use crate::krylov::preconditioned::{Demand, Method, Preconditioned};
 
 /// Names of the methods.
 const NAMES: [&str; 2] = ["multigrid-cg", "multigrid-gmres"];

@@ -4,10 +4,11 @@ use std::fmt::Write as _;
 
 use serde::Serialize;
 
-use super::rows::{Number, UNKNOWN, grouped, time};
+use super::rows::{Number, grouped, time};
 use super::verdict::Verdict;
+use crate::report::numbers::UNKNOWN;
+use igimp_results::ending::Ending;
 use igimp_results::mesh_study::{MeshSummary, ResultKind, StudyResult, StudySummary};
-use igimp_results::summary::Ending;
 use igimp_text::short;
 
 /// A study.

@@ -3,11 +3,13 @@
 use serde::Serialize;
 
 use super::verdict::on_safety;
+use crate::report::numbers::UNKNOWN;
+use crate::report::numbers::percent;
 use igimp_model::check::Band;
 use igimp_results::fields::{Dimension, Scale};
 use igimp_results::mesh_study::MeshSummary;
 use igimp_results::summary::{
-    MaterialShare, MemberSummary, PoreSummary, SafetySummary, StageOutcome, StageSummary, Summary,
+    MaterialShare, MemberSummary, PoreSummary, StageOutcome, StageSummary, Summary,
 };
 use igimp_text::short;
 
@@ -16,9 +18,6 @@ pub(super) const PHASES: [&str; 5] = ["set-up", "assembly", "factorisation", "so
 
 /// What is said of a result whose mesh error nobody asked for.
 const MESH_ERROR_UNKNOWN: &str = "mesh error not known: igimp run --meshes 2 finds it";
-
-/// Stands for what is not a number.
-pub(super) const UNKNOWN: &str = "–";
 
 /// A number with its name, and what a reader has to know of it.
 #[derive(Serialize)]
@@ -390,39 +389,6 @@ pub(super) fn safety(summary: &Summary) -> Vec<SafetyView> {
         })
     };
     summary.stages.iter().filter_map(view).collect()
-}
-
-/// The factor of safety in words.
-pub(super) fn interval(safety: &SafetySummary) -> String {
-    match (safety.stable, safety.failed) {
-        (Some(stable), Some(failed)) => format!(
-            "The factor of safety lies between {} and {}",
-            short(stable),
-            short(failed)
-        ),
-        (Some(stable), None) => format!(
-            "The factor of safety is at least {}; no factor was found that fails",
-            short(stable)
-        ),
-        (None, Some(failed)) => format!(
-            "The factor of safety is below {}; no factor was found that stands",
-            short(failed)
-        ),
-        (None, None) => "No factor of safety was found".to_owned(),
-    }
-}
-
-/// A share as a percentage.
-pub(super) fn percent(share: f64) -> String {
-    let percent = 100.0 * share;
-    if !percent.is_finite() {
-        return UNKNOWN.to_owned();
-    }
-    if percent.abs() < 9.95 && percent.round().to_string() != format!("{percent}") {
-        format!("{percent:.1} %")
-    } else {
-        format!("{percent:.0} %")
-    }
 }
 
 /// A length in mm or m.

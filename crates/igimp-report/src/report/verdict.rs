@@ -4,7 +4,8 @@ use std::fmt::Write as _;
 
 use serde::Serialize;
 
-use super::rows::{interval, percent};
+use crate::report::numbers::interval;
+use crate::report::numbers::percent;
 use igimp_results::summary::{
     CheckRow, Kinematic, PathPoint, PathSummary, SafetySummary, StageOutcome, StageSummary,
     StrengthShares, Summary,

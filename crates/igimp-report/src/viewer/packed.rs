@@ -14,8 +14,8 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::skin::{Boxes, Lie, Skin};
-use igimp_results::paraview::vtu::CellKind;
-use igimp_results::paraview::vtu::read::{Frame, Stored};
+use igimp_results::vtu::CellKind;
+use igimp_results::vtu::read::{Frame, Stored};
 
 /// Numbers of planes across each axis that are tried, most first.
 const PLANES: [usize; 4] = [9, 5, 3, 1];

@@ -11,14 +11,10 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use sha2::{Digest as _, Sha256};
 
-use super::error::{CheckpointError, at};
-use crate::folder::atomic::create;
-
-/// Version of the layout; another one is not read.
-pub const FORMAT_VERSION: u64 = 5;
-
-/// The program and its version, as written into checkpoints.
-pub const PROGRAM: &str = concat!("igimp ", env!("CARGO_PKG_VERSION"));
+use crate::atomic::create;
+use crate::error::checkpoint::FORMAT_VERSION;
+use crate::error::checkpoint::PROGRAM;
+use crate::error::checkpoint::{CheckpointError, at};
 
 const FORMAT: &str = "igimp checkpoint";
 pub(super) const FILE: &str = "meta.json";

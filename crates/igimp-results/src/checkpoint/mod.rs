@@ -34,19 +34,20 @@ use std::path::{Path, PathBuf};
 use igimp_solver::Body;
 use rayon::prelude::*;
 
+use crate::atomic::{create, sync_folder, sync_together};
 use crate::error::ResultsError;
-use crate::folder::atomic::{create, sync_folder, sync_together};
 
 mod arrays;
-mod error;
 mod in_memory;
 mod manifest;
 
-pub use error::CheckpointError;
-use error::at;
+pub use crate::error::checkpoint::CheckpointError;
+pub use crate::error::checkpoint::FORMAT_VERSION;
+pub use crate::error::checkpoint::PROGRAM;
+use crate::error::checkpoint::at;
 pub use in_memory::{Files, from_files, to_files};
-pub use manifest::{FORMAT_VERSION, Meta, PROGRAM, seal, sha256};
 use manifest::{Manifest, StateEntry};
+pub use manifest::{Meta, seal, sha256};
 
 const TEMPORARY: &str = ".tmp-";
 const REPLACED: &str = ".previous";

@@ -7,7 +7,7 @@ use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, ErrorKind};
 use std::path::Path;
 
-use super::atomic::at;
+use crate::atomic::at;
 use crate::error::ResultsError;
 
 /// The file that is locked.

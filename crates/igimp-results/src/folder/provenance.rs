@@ -4,7 +4,7 @@ use std::path::{Component, Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::atomic::{at, write_whole};
+use crate::atomic::{at, write_whole};
 use crate::error::ResultsError;
 
 /// Where a case comes from.

@@ -14,10 +14,10 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
+use crate::atomic::create;
+use crate::ending::Ending;
 use crate::error::ResultsError;
-use crate::folder::atomic::create;
-use crate::summary::Ending;
-use crate::summary::ModelSize;
+use crate::model_size::ModelSize;
 use crate::tables::cells::cell;
 pub use estimate::{Computed, Estimate, estimate};
 use igimp_text::short;

@@ -1,6 +1,6 @@
 //! The header of a `.npy` file: a Python dictionary of three entries.
 
-use super::NpyError;
+use crate::error::NpyError;
 
 const MAGIC: &[u8] = b"\x93NUMPY";
 

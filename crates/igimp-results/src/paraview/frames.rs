@@ -8,12 +8,12 @@ use igimp_shape::Grid;
 
 use super::particles::{Extras, of_grid, of_particles};
 use super::pvd::{self, Collection};
-use super::vtu::UnstructuredGrid;
+use crate::atomic::{at, sync_folder, sync_together};
 use crate::error::ResultsError;
 use crate::fields;
-use crate::folder::atomic::{at, sync_folder, sync_together};
 use crate::reinforcement::{self, Installed};
 use crate::rigid::{self, Standing};
+use crate::vtu::UnstructuredGrid;
 use igimp_model::{Case, Field};
 
 /// Structures that are there in a frame.

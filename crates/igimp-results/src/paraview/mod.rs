@@ -3,4 +3,3 @@
 pub mod frames;
 pub mod particles;
 pub mod pvd;
-pub mod vtu;

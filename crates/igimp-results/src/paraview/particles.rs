@@ -5,9 +5,9 @@ use igimp_assembly::Particles;
 use igimp_material::Tensor;
 use igimp_shape::Grid;
 
-use super::vtu::{CellKind, DataArray, UnstructuredGrid, padded};
 use crate::fields::regime;
 use crate::fields::{deviatoric_stress, mean_pressure};
+use crate::vtu::{CellKind, DataArray, UnstructuredGrid, padded};
 
 /// What is written beyond the state of the particles.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

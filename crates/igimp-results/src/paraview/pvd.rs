@@ -8,9 +8,9 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::vtu::{UnstructuredGrid, escaped};
+use crate::atomic::{at, write_whole};
 use crate::error::ResultsError;
-use crate::folder::atomic::{at, write_whole};
+use crate::vtu::{UnstructuredGrid, escaped};
 
 /// Name of the frames of particles.
 pub const PARTICLES: &str = "particles";

@@ -6,8 +6,8 @@ use std::io::{self, BufRead as _, BufReader, Read as _, Write as _};
 use std::path::{Path, PathBuf};
 
 use super::cells::{cell, text_of};
+use crate::atomic::{at, create, temporary_name};
 use crate::error::ResultsError;
-use crate::folder::atomic::{at, create, temporary_name};
 use crate::tables::table::Table;
 
 /// A CSV file that is appended to.

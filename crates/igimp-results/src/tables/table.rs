@@ -3,8 +3,8 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
+use crate::atomic::create;
 use crate::error::ResultsError;
-use crate::folder::atomic::create;
 use crate::tables::cells::cell;
 
 /// A named table of numbers.

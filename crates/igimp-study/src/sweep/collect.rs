@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::columns::{Column, column};
 use super::{Record, Sweep, SweepError, Task};
-use igimp_results::folder::atomic::write_whole;
+use igimp_results::atomic::write_whole;
 use igimp_results::summary::Summary;
 use igimp_results::tables::cells::cell;
 use igimp_text::on_a_line;

@@ -38,11 +38,11 @@ use igimp_input::{CaseFile, InputError, bytes};
 use igimp_model::AnyCase;
 use igimp_report::ReportError;
 use igimp_results::ResultsError;
+use igimp_results::ending::Ending;
 use igimp_results::folder;
 use igimp_results::folder::lock::Lock;
 use igimp_results::folder::overwrite_guard::{Replace, refuse_link};
 use igimp_results::folder::provenance::{Claim, Origin, Owner};
-use igimp_results::summary::Ending;
 
 pub use collect::{Collected, aligned, collect};
 pub use demand::{Demand, Largest};
@@ -347,7 +347,7 @@ impl Sweep {
         let (target, start) = (Some(&ready.target), ready.start);
         match run_any_entered(&ready.case, target, start, listener, interrupt) {
             Ok(run) => {
-                record.ending = Ending::of(&run.summary);
+                record.ending = run.summary.ending();
                 record.message = record::message(&run);
                 record.write(&task.folder)?;
                 Ok((run, record.ending))

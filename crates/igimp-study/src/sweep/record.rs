@@ -11,8 +11,8 @@ use super::{Sweep, SweepError, Task};
 use igimp_cases::on_one_line;
 use igimp_cases::run::Account;
 use igimp_input::CaseFile;
-use igimp_results::folder::atomic::write_whole;
-use igimp_results::summary::Ending;
+use igimp_results::atomic::write_whole;
+use igimp_results::ending::Ending;
 use igimp_text::short;
 
 /// The content of `task.json`.

@@ -233,12 +233,12 @@ fn an_unknown_case_names_the_task() {
 #[test]
 fn endings_follow_the_summary() {
     let mut summary = summary(1.0);
-    assert_eq!(Ending::of(&summary), Ending::Done);
+    assert_eq!(summary.ending(), Ending::Done);
     summary.checks[0].pass = false;
-    assert_eq!(Ending::of(&summary), Ending::Missed);
+    assert_eq!(summary.ending(), Ending::Missed);
     summary.stages[0].outcome = igimp_results::summary::StageOutcome::NotConverged;
-    assert_eq!(Ending::of(&summary), Ending::NotConverged);
+    assert_eq!(summary.ending(), Ending::NotConverged);
     summary.interrupted = true;
-    assert_eq!(Ending::of(&summary), Ending::Interrupted);
+    assert_eq!(summary.ending(), Ending::Interrupted);
     assert!(!Ending::Interrupted.is_verdict());
 }

@@ -7,14 +7,15 @@ use igimp_cases::estimate::room::refuse_beyond;
 use igimp_cases::estimate::watch::{exceeded, lacks_memory};
 use igimp_cases::run::{self as engine, Start, Target};
 use igimp_model::in_any_dimension;
+use igimp_results::ending::Ending;
 use igimp_results::folder::overwrite_guard::Replace;
-use igimp_results::summary::Ending;
 use igimp_study::sweep::{Sweep, Turn};
 use igimp_study::telling::verdict;
 
 use crate::arguments::RunArguments;
 use crate::commands::cases;
 use crate::error::{Exit, ProgramError};
+use crate::output::quoted;
 use crate::progress::Progress;
 use crate::{clock, interrupt, output};
 
@@ -144,7 +145,7 @@ fn tell(
     arguments: &RunArguments,
 ) -> Result<Exit, ProgramError> {
     let summary = &run.summary;
-    let ending = Ending::of(summary);
+    let ending = summary.ending();
     if arguments.quiet {
         for warning in &summary.warnings {
             output::complain(&format!("warning: {warning}"));
@@ -202,16 +203,6 @@ fn again(arguments: &RunArguments) -> String {
     }
     words.push("--resume".to_owned());
     words.join(" ")
-}
-
-/// A word as a shell reads it back.
-pub(crate) fn quoted(word: &str) -> String {
-    let plain = |letter: char| letter.is_alphanumeric() || "_-./=:,+@%".contains(letter);
-    if !word.is_empty() && word.chars().all(plain) {
-        word.to_owned()
-    } else {
-        format!("'{}'", word.replace('\'', r"'\''"))
-    }
 }
 
 #[cfg(test)]

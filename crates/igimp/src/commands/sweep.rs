@@ -4,8 +4,8 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use igimp_cases::run::{Nobody, Start};
+use igimp_results::ending::Ending;
 use igimp_results::folder::overwrite_guard::Replace;
-use igimp_results::summary::Ending;
 use igimp_study::sweep::{self, Task};
 use igimp_study::telling::lines;
 

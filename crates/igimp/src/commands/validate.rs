@@ -6,8 +6,8 @@ use igimp_input::CaseFile;
 use igimp_input::shipped::{SHIPPED, Shipped, find, nearest};
 use igimp_model::AnyCase;
 use igimp_model::in_any_dimension;
+use igimp_results::ending::Ending;
 use igimp_results::folder::overwrite_guard::Replace;
-use igimp_results::summary::Ending;
 use igimp_study::telling::verdict;
 
 use crate::arguments::Validate;
@@ -42,7 +42,7 @@ pub(crate) fn validate(arguments: &Validate) -> Result<Exit, ProgramError> {
             case.output_mut().folder.clone_from(&target.folder);
         }
         let run = run::run_any(&case, target.as_ref(), Start::Afresh, &mut Nobody, &flag)?;
-        let ending = Ending::of(&run.summary);
+        let ending = run.summary.ending();
         output::say(&format!("{}: {ending}", shipped.name))?;
         output::say(&verdict::checks(&run.summary.checks))?;
         if let Some(failure) = &run.failure {

@@ -10,7 +10,7 @@ use igimp_assembly::StepConditions;
 use igimp_linear::{LinearSolver, Record};
 
 use crate::error::CaseError;
-use igimp_results::folder::atomic::at;
+use igimp_results::atomic::at;
 use igimp_results::folder::claim;
 use igimp_results::folder::overwrite_guard::refuse_link;
 use igimp_results::linear_system::{About, LinearSystem, remove};

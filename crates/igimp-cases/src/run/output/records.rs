@@ -2,6 +2,7 @@
 
 use igimp_assembly::{Particles, Reinforcement, RigidBody, SharedLaw};
 use igimp_geometry::SeedError;
+use igimp_solver::Accepted;
 
 use super::place::Place;
 use crate::error::CaseError;
@@ -235,7 +236,7 @@ impl Records {
             rows.monitors.push(row);
         }
         for body in moment.controls.placed().filter(|_| !reopens) {
-            let row = rigid::row(case, moment, body);
+            let row = rigid_row(case, moment, body);
             self.rigid[body].push(row.clone());
             rows.rigid[body] = Some(row);
         }
@@ -254,4 +255,52 @@ pub(crate) struct Rows {
     pub(crate) rigid: Vec<Option<Vec<f64>>>,
     /// By check: the peak so far.
     pub(crate) peaks: Vec<f64>,
+}
+
+/// An accepted step as a stage sees it.
+pub(crate) struct Taken<'a, const D: usize = 2> {
+    /// The step in the solver's terms.
+    pub(crate) accepted: &'a Accepted<'a, D>,
+    /// What acts on the body now.
+    pub(crate) controls: &'a Controls,
+    /// Resistance of the footing \[N/m\].
+    pub(crate) resistance: f64,
+    /// Whether the user wants the run to end here.
+    pub(crate) interrupted: bool,
+}
+
+impl<'a, const D: usize> Taken<'a, D> {
+    /// The step as a moment to be recorded.
+    pub(crate) fn moment(&self, stage: usize, number: usize) -> Moment<'a, D> {
+        Moment {
+            stage,
+            number,
+            progress: self.accepted.report.to,
+            particles: &self.accepted.body.particles,
+            rigid: &self.accepted.body.rigid,
+            reinforcement: &self.accepted.body.reinforcement,
+            controls: self.controls,
+            resistance: self.resistance,
+            plastic_share: self.accepted.report.plastic_share,
+        }
+    }
+}
+
+/// The row of a rigid body that is there.
+pub(crate) fn rigid_row<const D: usize>(
+    case: &Case<D>,
+    moment: &Moment<'_, D>,
+    index: usize,
+) -> Vec<f64> {
+    let (controls, bodies) = (moment.controls, moment.rigid);
+    let slot = controls.placed().take_while(|&k| k < index).count();
+    let mut row = vec![
+        moment.stage as f64 + 1.0,
+        moment.number as f64,
+        moment.progress,
+    ];
+    row.extend(bodies[slot].pose.origin);
+    let recorded = rigid::recorded::<D>().into_iter();
+    row.extend(recorded.map(|(_, of)| rigid::quantity(case, controls, bodies, index, of)));
+    row
 }

@@ -15,8 +15,8 @@ use crate::run::resume::{End, Left, Notes, Resumption, Search, end_of_stage, not
 use crate::run::resume::{reinforcement, rigid};
 use crate::run::state::{Controls, State};
 use igimp_model::Case;
+use igimp_results::atomic::write_whole;
 use igimp_results::checkpoint::{self, CheckpointError};
-use igimp_results::folder::atomic::write_whole;
 use igimp_results::folder::provenance::Claim;
 use igimp_results::folder::{self, Folder};
 use igimp_results::tables::rows;

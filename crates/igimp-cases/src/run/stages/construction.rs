@@ -13,10 +13,11 @@ use igimp_material::{ConstitutiveModel, ScaledLaw, TangentKind, elastic_left_cau
 
 use super::loading::let_go;
 use crate::error::CaseError;
-use crate::run::model::{Model, gravity_of_weights};
+use crate::run::model::Model;
 use crate::run::resume::Resumption;
 use crate::run::session::{Ended, Session};
 use crate::run::state::State;
+use crate::run::state::gravity_of_weights;
 use igimp_model::{Construction, Drainage, Ground, StageKind};
 use igimp_results::summary::StageSummary;
 use igimp_text::short;

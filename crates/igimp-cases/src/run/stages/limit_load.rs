@@ -9,10 +9,10 @@ use igimp_solver::{
     Accepted, ContinuationSettings, ContinuationState, Observer, StepError, follow,
 };
 
-use super::limit;
-use super::safety::displacement_scale;
 use crate::error::CaseError;
+use crate::limit;
 use crate::run::Event;
+use crate::run::model::displacement_scale;
 use crate::run::output::records::Moment;
 use crate::run::rigid;
 use crate::run::session::{Ended, Session};

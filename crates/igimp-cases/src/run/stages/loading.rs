@@ -4,12 +4,14 @@
 use std::sync::Arc;
 
 use super::limit_load;
+use super::rigid_begin;
 use crate::error::CaseError;
 use crate::run::output::records::Moment;
+use crate::run::output::records::Taken;
+use crate::run::reinforcement;
 use crate::run::resume::Resumption;
-use crate::run::session::{Ended, Path, Session, Taken, march_path};
+use crate::run::session::{Ended, Path, Session, march_path};
 use crate::run::state::{Controls, State};
-use crate::run::{reinforcement, rigid};
 use igimp_model::{Case, RigidDrive, Stage, StageKind};
 use igimp_results::summary::StageSummary;
 use igimp_text::short;
@@ -81,7 +83,7 @@ pub(crate) fn let_go<const D: usize>(
     let model = session.model;
     let stage = &model.case.stages[number];
     if let (StageKind::Rigid(moves), None) = (&stage.kind, resumption) {
-        for text in rigid::begin(model, state, moves)? {
+        for text in rigid_begin::begin(model, state, moves)? {
             session.warn(text);
         }
     }

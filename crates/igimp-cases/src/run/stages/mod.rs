@@ -1,10 +1,9 @@
 //! What the stages of a case do.
 
 pub(crate) mod construction;
-pub(crate) mod footing;
 pub(crate) mod initial;
-pub(crate) mod limit;
 pub(crate) mod limit_load;
 pub(crate) mod loading;
+pub(crate) mod rigid_begin;
 pub(crate) mod run_out;
 pub(crate) mod safety;

@@ -13,14 +13,14 @@ use std::sync::Arc;
 use igimp_assembly::Geometry;
 use igimp_solver::Body;
 
-pub(crate) use self::criterion::displacement_scale;
-use self::criterion::{default_limit, height};
+use self::criterion::default_limit;
 use self::interval::next_factor;
 use self::remarks::{few_cells, moving_mass, remarks};
 use super::loading::begin;
 use crate::error::CaseError;
 use crate::run::Event;
 use crate::run::model::Model;
+use crate::run::model::height;
 use crate::run::resume::{End, Search};
 use crate::run::session::{Ended, Path, Session, march_path};
 use crate::run::state::{Controls, State};

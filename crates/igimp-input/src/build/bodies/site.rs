@@ -1,11 +1,13 @@
 //! The bodies on the grid, for the checks that look at them.
 
+use crate::build::bodies::sequence::Sequence;
 use crate::build::grid::Frame;
-use crate::build::stages::sequence::Sequence;
 use crate::geometry::{near_edge, top_edges};
 use igimp_geometry::polygon::bounding_box;
 use igimp_geometry::polygon::contains;
+use igimp_geometry::region::Region;
 use igimp_model::{BodyPart, LoadKind};
+use std::sync::Arc;
 
 /// Bodies and grid as far as they were found right.
 pub(crate) struct Site {
@@ -207,5 +209,43 @@ impl Site {
             }
         }
         edges
+    }
+}
+
+/// The bodies, for the checks of places.
+pub(crate) struct Solids {
+    pub(crate) regions: Vec<Arc<dyn Region<3>>>,
+    pub(crate) is_complete: bool,
+    pub(crate) round_off: f64,
+    /// Smallest side of a cell \[m\].
+    pub(crate) cell: f64,
+    /// Extent of the grid \[m\].
+    pub(crate) lower: [f64; 3],
+    pub(crate) upper: [f64; 3],
+}
+
+impl Solids {
+    pub(crate) fn new(bodies: &[Option<BodyPart<3>>], frame: Option<&Frame<3>>) -> Self {
+        let regions: Vec<_> = bodies
+            .iter()
+            .flatten()
+            .map(|body| Arc::clone(&body.region))
+            .collect();
+        let ends = frame
+            .iter()
+            .flat_map(|frame| frame.lower.iter().chain(&frame.upper));
+        let largest = ends.fold(0.0, |largest: f64, x| largest.max(x.abs()));
+        let round_off = 1e-9 * largest;
+        let cells = frame.iter().flat_map(|frame| frame.axes.iter());
+        Self {
+            is_complete: frame.is_some() && regions.len() == bodies.len() && !bodies.is_empty(),
+            regions,
+            round_off,
+            lower: frame.map_or([0.0; 3], |frame| frame.lower),
+            upper: frame.map_or([0.0; 3], |frame| frame.upper),
+            cell: cells
+                .map(|axis| axis.extremes()[0])
+                .fold(f64::INFINITY, f64::min),
+        }
     }
 }

@@ -1,9 +1,8 @@
 //! Bodies in space: what their keys say, made into solids.
 
-use std::fmt::{self, Display, Formatter};
-
 use super::corners;
-use crate::build::ground::surfaces::{closed_surface, ground};
+use crate::build::bodies::surfaces::Who;
+use crate::build::bodies::surfaces::{closed_surface, ground};
 use igimp_geometry::region::{Cover, Part, Region};
 use igimp_geometry::solid::{Cylinder, Difference, Prism, Solid, Sphere};
 use igimp_schema::diagnostic::Problems;
@@ -16,24 +15,6 @@ const SHAPES: [&str; 6] = ["box", "polygon", "plan", "cylinder", "sphere", "surf
 const DEPTH: u32 = 5;
 /// Solids overlap in a box if they have more than this share of it together \[-\].
 const SHARED: f64 = 1.01;
-
-/// Whose shape it is.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Who<'a> {
-    /// Name of the body.
-    pub name: &'a str,
-    /// The number of what is taken out of it, from 1.
-    taken: Option<usize>,
-}
-
-impl Display for Who<'_> {
-    fn fmt(&self, to: &mut Formatter<'_>) -> fmt::Result {
-        match self.taken {
-            None => write!(to, "body `{}`", self.name),
-            Some(number) => write!(to, "no. {number} of `minus` of body `{}`", self.name),
-        }
-    }
-}
 
 /// The solid of a body, less what is taken out of it.
 pub(crate) fn solid(node: &Node, name: &str, problems: &mut Problems) -> Option<Solid> {

@@ -1,9 +1,9 @@
 //! Warnings about how bodies sit on the grid and by each other: boundaries of layers within cells,
 //! gaps, bodies thinner than three cells, and stiffness out of proportion to the weight.
 
+use crate::build::bodies::sequence::Sequence;
 use crate::build::bodies::site::Site;
 use crate::build::grid::Frame;
-use crate::build::stages::sequence::Sequence;
 use crate::geometry::{facing, largest_run};
 use igimp_geometry::polygon::bounding_box;
 use igimp_geometry::polygon::contains;

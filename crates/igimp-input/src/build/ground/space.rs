@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::{Above, Earth, Surface, UprightFace};
-use crate::build::space::Solids;
+use crate::build::bodies::site::Solids;
 use igimp_geometry::region::Region;
 use igimp_model::{BodyPart, Drained, PoreSource, Raster};
 use igimp_schema::text::number;

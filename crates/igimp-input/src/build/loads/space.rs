@@ -1,7 +1,7 @@
 //! Loads in space, and whether there is soil where they act.
 
 use super::at_point;
-use crate::build::space::Solids;
+use crate::build::bodies::site::Solids;
 use crate::geometry::{distinct, self_crossing};
 use igimp_model::{Load, LoadKind, Plan};
 use igimp_schema::diagnostic::Problems;

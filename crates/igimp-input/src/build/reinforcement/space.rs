@@ -2,7 +2,7 @@
 
 use super::part;
 use crate::build::bodies::site::Soil as _;
-use crate::build::space::Solids;
+use crate::build::bodies::site::Solids;
 use igimp_model::ReinforcementPart;
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::tree::Node;

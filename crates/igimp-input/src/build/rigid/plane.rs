@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use super::{Basis, Sides, follow_once, part_of};
+use crate::build::bodies::sequence::Sequence;
 use crate::build::bodies::site::Site;
-use crate::build::stages::sequence::Sequence;
 use crate::geometry::{distinct, overlap, self_crossing};
 use igimp_geometry::polygon::area_and_centroid;
 use igimp_model::{Load, LoadKind, Material, RigidPart, RigidShape};

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use super::{Basis, Sides, follow_once, part_of};
+use crate::build::bodies::surfaces::closed_surface;
 use crate::build::grid::Frame;
-use crate::build::ground::surfaces::closed_surface;
 use igimp_model::{Material, RigidForm as _, RigidPart, RigidSolid};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::text::clip;

@@ -1,7 +1,7 @@
 //! Stages that move rigid bodies.
 
 use crate::build::AllNames;
-use crate::build::stages::Context;
+use crate::build::context::Context;
 use igimp_model::{COMPONENTS, RigidDrive, RigidMove, StageKind};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::text::clip;

@@ -1,6 +1,6 @@
 //! Construction stages: what they may do to what is there.
 
-use super::Context;
+use crate::build::context::Context;
 use igimp_model::{Construction, Drainage, LoadKind, StageKind};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::text::{clip, row};

@@ -1,6 +1,6 @@
 //! Stages that reduce strength: the search for the factor of safety, and the run-out.
 
-use super::Context;
+use crate::build::context::Context;
 use igimp_model::{Reduction, ReductionPath, RunOut, SearchMethod, Strength, StrengthReduction};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::text::clip;

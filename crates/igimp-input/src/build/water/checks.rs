@@ -3,9 +3,9 @@
 use std::collections::HashMap;
 
 use super::Around;
+use crate::build::bodies::sequence::Scene;
 use crate::build::ground::{Above, Earth, Surface, UprightFace};
 use crate::build::materials::profiles::reach;
-use crate::build::stages::sequence::Scene;
 use igimp_model::{BodyPart, Drainage, PoreSource, Raster, Strength, WaterCondition};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::source::Place;

@@ -67,6 +67,30 @@ impl Layout {
     }
 }
 
+/// How the contribution of a front is stored.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Shape {
+    /// Border × border entries, by columns.
+    Square,
+    /// The entries from the diagonal on, by columns.
+    Triangle,
+}
+
+impl Shape {
+    /// Entries for a border with so many unknowns.
+    pub(crate) fn entries(self, border: usize) -> usize {
+        match self {
+            Self::Square => border * border,
+            Self::Triangle => triangle(border),
+        }
+    }
+}
+
+/// Entries of the lower triangle of a symmetric block with so many rows, stored by columns from the diagonal on.
+pub(crate) fn triangle(rows: usize) -> usize {
+    rows * (rows + 1) / 2
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,5 +1,6 @@
 //! The elimination tree: which front eliminates what, and when.
 
+pub(crate) mod front;
 pub(crate) mod neighbours;
 pub(crate) mod plan;
 pub(crate) mod supernodes;

@@ -12,59 +12,14 @@ use crate::Pattern;
 
 use super::neighbours::{NONE, Neighbours};
 use super::supernodes::Supernodes;
-use super::tasks::{Extent, Task, cut};
-use crate::multifrontal::dense::kernel::Shape;
-use crate::multifrontal::dense::layout::Layout;
+use super::tasks::{Task, cut};
+use crate::multifrontal::dense::layout::Shape;
+use crate::multifrontal::tree::front::Front;
 use crate::reach::Reach;
 use crate::{LinearSolverError, NestedDissection, check};
 
 /// Stands for the parent of a root.
 pub(crate) const NO_FRONT: usize = usize::MAX;
-
-/// One dense elimination: `pivots` unknowns, coupled to `border` later ones.
-pub(crate) struct Front {
-    /// Position of the first pivot in the order of elimination.
-    pub(crate) first: usize,
-    /// Number of unknowns eliminated.
-    pub(crate) pivots: usize,
-    /// Number of later unknowns that they are coupled to.
-    pub(crate) border: usize,
-    /// Ranks of the nodes that are eliminated.
-    pub(crate) columns: Range<usize>,
-    /// Later nodes: a range of [`Plan::borders`].
-    pub(crate) rows: Range<usize>,
-    /// The front that it contributes to, or [`NO_FRONT`].
-    pub(crate) parent: usize,
-    /// First front of the subtree, whose fronts are contiguous and end with this one.
-    pub(crate) subtree: usize,
-    /// The fronts that contribute to this one: a range of [`Plan::children`].
-    pub(crate) children: Range<usize>,
-    /// Unknowns of the border that the parent does not eliminate: what falls on them waits for the parent.
-    pub(crate) passed_on: usize,
-    /// Which of the two stacks holds what waits: a front and its parent use different ones, so that each
-    /// stays last in, first out.
-    pub(crate) stack: usize,
-    /// Where in that stack it lies, for each shape of contributions.
-    pub(crate) contribution: [Range<usize>; 2],
-}
-
-impl Front {
-    /// Position of the first unknown after the pivots.
-    pub(crate) fn end(&self) -> usize {
-        self.first + self.pivots
-    }
-
-    /// What the front takes of the shared arrays.
-    pub(crate) fn extent(&self) -> Extent {
-        Extent {
-            pivots: self.pivots,
-            squares: self.pivots * self.pivots,
-            halves: Layout::lower(self.pivots).entries(),
-            panels: self.pivots * self.border,
-            outer: 0,
-        }
-    }
-}
 
 /// Everything that a factorisation needs to know besides the values.
 pub(crate) struct Plan {

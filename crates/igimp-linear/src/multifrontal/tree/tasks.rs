@@ -6,8 +6,9 @@
 
 use std::ops::Range;
 
-use super::plan::Front;
-use crate::multifrontal::dense::kernel::Shape;
+use crate::multifrontal::dense::layout::Shape;
+use crate::multifrontal::tree::front::Extent;
+use crate::multifrontal::tree::front::Front;
 
 /// Subtrees with less than this part of all operations are not cut further.
 const FINEST: f64 = 1.0 / 40.0;
@@ -65,21 +66,6 @@ impl Task {
             (task.fronts.end - 1, end - task.own.outer..end)
         })
     }
-}
-
-/// Sizes that add up over fronts.
-#[derive(Clone, Copy, Default)]
-pub(crate) struct Extent {
-    /// Unknowns eliminated.
-    pub(crate) pivots: usize,
-    /// Entries of the pivot blocks.
-    pub(crate) squares: usize,
-    /// Entries of their lower halves, as they are stored.
-    pub(crate) halves: usize,
-    /// Entries of the blocks below the pivots.
-    pub(crate) panels: usize,
-    /// Unknowns of the borders by which tasks are coupled to those above.
-    pub(crate) outer: usize,
 }
 
 impl Extent {

@@ -1,5 +1,5 @@
 use super::*;
-use igimp_results::paraview::vtu::{DataArray, UnstructuredGrid, padded};
+use igimp_results::vtu::{DataArray, UnstructuredGrid, padded};
 
 /// n³ boxes of width 1 with a scalar and a vector.
 fn cube(n: usize) -> UnstructuredGrid {

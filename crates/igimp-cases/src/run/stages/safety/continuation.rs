@@ -10,14 +10,14 @@ use igimp_solver::{
     follow,
 };
 
-use super::criterion::displacement_scale;
 use super::shares::{LastStep, shares};
 use super::{names, undeformed_or_found};
 use crate::error::CaseError;
+use crate::limit;
 use crate::run::Event;
+use crate::run::model::displacement_scale;
 use crate::run::resume::End;
 use crate::run::session::{Ended, Path, Session, march_path};
-use crate::run::stages::limit;
 use crate::run::stages::loading::begin;
 use crate::run::state::{Controls, State};
 use igimp_model::{ReductionPath, Stage, StrengthReduction};

@@ -197,7 +197,7 @@ fn unescaped(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::paraview::vtu::{DataArray, UnstructuredGrid};
+    use crate::vtu::{DataArray, UnstructuredGrid};
 
     fn grid(cells: usize) -> UnstructuredGrid {
         let points: Vec<[f64; 3]> = (0..4 * cells).map(|k| [k as f64, 0.5, -1.0]).collect();

@@ -16,14 +16,14 @@ const LANES: usize = 8;
 
 /// Memory for products.
 #[derive(Default)]
-pub(super) struct Product {
+pub(crate) struct Product {
     /// What each part of the columns adds to its rows, and the first of them.
     parts: Vec<(usize, Vec<f64>)>,
 }
 
 impl Product {
     /// y ← K x.
-    pub(super) fn multiply(&mut self, matrix: &TangentMatrix, x: &[f64], y: &mut [f64]) {
+    pub(crate) fn multiply(&mut self, matrix: &TangentMatrix, x: &[f64], y: &mut [f64]) {
         if matrix.symmetric {
             by_rows(matrix, x, y);
         } else {
@@ -187,7 +187,7 @@ impl WithSimd for Rows<'_> {
     reason = "it takes the vector instructions of its caller"
 )]
 #[inline(always)]
-pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
+pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     let mut lanes = [0.0; LANES];
     let (mut a, mut b) = (a.chunks_exact(LANES), b.chunks_exact(LANES));
     for (a, b) in a.by_ref().zip(b.by_ref()) {

@@ -14,22 +14,22 @@ const LOOK: usize = 100;
 
 /// What an iteration came to.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Iterated {
-    pub(super) iterations: usize,
+pub(crate) struct Iterated {
+    pub(crate) iterations: usize,
     /// ‖b − K x‖ / ‖b‖, as the recurrences have it \[-\].
-    pub(super) residual: f64,
+    pub(crate) residual: f64,
     /// Whether the method broke down: K or its preconditioner is not positive definite.
-    pub(super) broken: bool,
+    pub(crate) broken: bool,
 }
 
 /// The matrix and its preconditioner.
-pub(super) trait Operators {
+pub(crate) trait Operators {
     fn multiply(&mut self, x: &[f64], y: &mut [f64]);
     fn precondition(&mut self, r: &[f64], z: &mut [f64]);
 }
 
 /// Conjugate gradients in the flexible form of Polak and Ribière, from x = 0.
-pub(super) fn conjugate_gradients(
+pub(crate) fn conjugate_gradients(
     operators: &mut dyn Operators,
     rhs: &[f64],
     x: &mut [f64],
@@ -122,7 +122,7 @@ impl Direction {
 }
 
 /// Flexible generalised minimal residuals, restarted, from x = 0.
-pub(super) fn minimal_residuals(
+pub(crate) fn minimal_residuals(
     operators: &mut dyn Operators,
     rhs: &[f64],
     x: &mut [f64],
@@ -220,6 +220,6 @@ fn is_hopeless([before, now, goal]: [f64; 3], made: usize, left: usize) -> bool 
 }
 
 /// Euclidean norm.
-pub(super) fn norm(values: &[f64]) -> f64 {
+pub(crate) fn norm(values: &[f64]) -> f64 {
     dot(values, values).sqrt()
 }

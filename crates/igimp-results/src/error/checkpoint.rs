@@ -5,8 +5,6 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-use super::manifest::{FORMAT_VERSION, PROGRAM};
-
 /// Errors of saving and loading the state of a run.
 #[derive(Debug, Error)]
 pub enum CheckpointError {
@@ -81,7 +79,13 @@ pub enum CheckpointError {
 }
 
 /// Adds a path to what the system said.
-pub(super) fn at(path: &Path) -> impl FnOnce(io::Error) -> CheckpointError {
+pub(crate) fn at(path: &Path) -> impl FnOnce(io::Error) -> CheckpointError {
     let path = path.to_path_buf();
     move |source| CheckpointError::File { path, source }
 }
+
+/// Version of the layout; another one is not read.
+pub const FORMAT_VERSION: u64 = 5;
+
+/// The program and its version, as written into checkpoints.
+pub const PROGRAM: &str = concat!("igimp ", env!("CARGO_PKG_VERSION"));

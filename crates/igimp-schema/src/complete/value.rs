@@ -1,11 +1,11 @@
 //! Checks single values against their kind: texts, numbers, quantities, choices.
 
-use super::complete::Completer;
-use super::names::check_name;
-use super::quantity::{Dimension, Quantity, QuantityError};
-use super::spec::{Kind, Range};
-use super::text::{clip, row};
-use super::tree::{Node, Value};
+use super::Completer;
+use crate::names::check_name;
+use crate::quantity::{Dimension, Quantity, QuantityError};
+use crate::spec::{Kind, Range};
+use crate::text::{clip, row};
+use crate::tree::{Node, Value};
 
 /// A single value, checked.
 pub(crate) fn check_value(

@@ -4,7 +4,6 @@ use std::fmt::Display;
 use std::sync::Arc;
 
 use crate::build::bodies::corners;
-use crate::build::bodies::solids::Who;
 use igimp_geometry::solid::{
     ClosedSurface, ClosedSurfaceError, Height, Layer, LayerError, Prism, Solid, Terrain,
     TerrainError,
@@ -12,6 +11,8 @@ use igimp_geometry::solid::{
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::text::number;
 use igimp_schema::tree::Node;
+use std::fmt;
+use std::fmt::Formatter;
 
 /// The closed surface of a table.
 pub(crate) fn closed_surface(
@@ -208,6 +209,24 @@ pub(crate) fn terrain(
             };
             refuse(&error, help);
             None
+        }
+    }
+}
+
+/// Whose shape it is.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Who<'a> {
+    /// Name of the body.
+    pub name: &'a str,
+    /// The number of what is taken out of it, from 1.
+    pub(crate) taken: Option<usize>,
+}
+
+impl Display for Who<'_> {
+    fn fmt(&self, to: &mut Formatter<'_>) -> fmt::Result {
+        match self.taken {
+            None => write!(to, "body `{}`", self.name),
+            Some(number) => write!(to, "no. {number} of `minus` of body `{}`", self.name),
         }
     }
 }

@@ -15,8 +15,8 @@ use flate2::Compression;
 use flate2::write::ZlibEncoder;
 use rayon::prelude::*;
 
+use crate::atomic::write_whole;
 use crate::error::ResultsError;
-use crate::folder::atomic::write_whole;
 use crate::npy::Values;
 
 mod array;

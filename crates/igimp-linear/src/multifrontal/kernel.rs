@@ -1,14 +1,16 @@
 //! What the two kinds of elimination, LU and Cholesky, have in common.
 
-use super::dense_lu::PivotRecord;
-use super::scalar::Scalar;
+use super::dense::dense_lu::PivotRecord;
+use super::dense::scalar::Scalar;
 use crate::LinearSolverError;
-use crate::multifrontal::extend_add::{BorderMap, Waiting, triangle};
-use crate::multifrontal::tree::plan::{Front, Plan};
-use crate::multifrontal::tree::tasks::Extent;
+use crate::multifrontal::dense::layout::Shape;
+use crate::multifrontal::extend_add::{BorderMap, Waiting};
+use crate::multifrontal::tree::front::Extent;
+use crate::multifrontal::tree::front::Front;
+use crate::multifrontal::tree::plan::Plan;
 
 /// A kind of elimination, on given values.
-pub(crate) trait Kernel<T: Scalar>: Sync {
+pub(super) trait Kernel<T: Scalar>: Sync {
     /// How contributions are stored.
     const SHAPE: Shape;
 
@@ -47,44 +49,25 @@ pub(crate) trait Kernel<T: Scalar>: Sync {
 }
 
 /// What a front contributes to its parent: the product of its factors, and what its own children left.
-pub(crate) struct Contribution<'a, T> {
-    pub(crate) front: &'a Front,
-    pub(crate) factors: &'a [T],
-    pub(crate) children: &'a [Waiting<'a, T>],
+pub(super) struct Contribution<'a, T> {
+    pub(super) front: &'a Front,
+    pub(super) factors: &'a [T],
+    pub(super) children: &'a [Waiting<'a, T>],
     /// Where its border lies in the parent.
-    pub(crate) map: &'a BorderMap,
+    pub(super) map: &'a BorderMap,
 }
 
 /// Where a contribution goes.
-pub(crate) struct Room<'a, T> {
-    pub(crate) parent: &'a Front,
+pub(super) struct Room<'a, T> {
+    pub(super) parent: &'a Front,
     /// Factors of the parent, loaded.
-    pub(crate) factors: &'a mut [T],
+    pub(super) factors: &'a mut [T],
     /// What the parent will pass on, see [`Shape`].
-    pub(crate) waiting: &'a mut [T],
-}
-
-/// How the contribution of a front is stored.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Shape {
-    /// Border × border entries, by columns.
-    Square,
-    /// The entries from the diagonal on, by columns.
-    Triangle,
-}
-
-impl Shape {
-    /// Entries for a border with so many unknowns.
-    pub(crate) fn entries(self, border: usize) -> usize {
-        match self {
-            Self::Square => border * border,
-            Self::Triangle => triangle(border),
-        }
-    }
+    pub(super) waiting: &'a mut [T],
 }
 
 /// What the factors of a front are used for in a solve.
-pub(crate) trait Substitution<T: Scalar>: Sync {
+pub(super) trait Substitution<T: Scalar>: Sync {
     /// As [`Kernel::entries`].
     fn entries(extent: &Extent) -> usize;
 

@@ -6,11 +6,11 @@
 
 use crate::TangentMatrix;
 
-use super::super::bordered::{Elimination, add_border};
-use super::super::refine::max_norm;
-use super::super::{LinearSolverError, SolveReport, check};
-use super::krylov::{Operators, conjugate_gradients, minimal_residuals, norm};
+use super::iterations::{Operators, conjugate_gradients, minimal_residuals, norm};
 use super::product::Product;
+use crate::bordered::{Elimination, add_border};
+use crate::refine::max_norm;
+use crate::{LinearSolverError, SolveReport, check};
 
 /// Vectors between restarts of generalised minimal residuals.
 const RESTART: usize = 300;

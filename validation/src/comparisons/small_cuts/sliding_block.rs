@@ -33,7 +33,7 @@ const MOST: f64 = 1e10;
 type Of = fn(&Settled) -> f64;
 
 /// A block whose upper and right sides reach any distance into the next cells, under its own weight.
-pub(super) fn settling(study: &mut Study) -> Result<(), CaseError> {
+pub(crate) fn settling(study: &mut Study) -> Result<(), CaseError> {
     let mut remedies: Vec<(&str, SmallCuts, Beside)> = VARIANTS
         .iter()
         .zip(REMEDIES)
@@ -114,7 +114,7 @@ pub(super) fn settling(study: &mut Study) -> Result<(), CaseError> {
 }
 
 /// The same block with its base let down: what holds it up beside its base?
-pub(super) fn sinking(study: &mut Study) -> Result<(), CaseError> {
+pub(crate) fn sinking(study: &mut Study) -> Result<(), CaseError> {
     let offsets = &OFFSETS[1..];
     let mut header = vec!["offset_[cells]".to_owned()];
     header.extend(

@@ -3,7 +3,7 @@
 use igimp_cases::CaseError;
 use rayon::prelude::*;
 
-use super::slice::{check_pair, computed, differences};
+use super::{check_pair, computed, differences};
 use crate::harness::study::Study;
 use crate::runs::Computed;
 
@@ -291,7 +291,7 @@ fn of_sorted(mut plane: Vec<f64>, mut space: Vec<f64>) -> f64 {
 }
 
 /// Adds the pairs to the study of slices.
-pub(super) fn add(study: &mut Study) -> Result<(), CaseError> {
+pub(crate) fn add(study: &mut Study) -> Result<(), CaseError> {
     let done = PAIRS
         .par_iter()
         .map(Pair::run)

@@ -1,12 +1,12 @@
 //! Supports.
 
-use super::grid::Frame;
+use super::Frame;
 use igimp_model::{Boundaries, FixedBox, Side};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::tree::Node;
 
 /// The supports.
-pub(super) fn boundaries<const D: usize>(
+pub(crate) fn boundaries<const D: usize>(
     tree: &Node,
     frame: Option<&Frame<D>>,
     problems: &mut Problems,

@@ -1,0 +1,68 @@
+//! Rigid bodies at the beginning of a stage that moves them.
+
+use crate::CaseError;
+use crate::run::Model;
+use crate::run::State;
+use crate::run::rigid::cell_near;
+use crate::run::rigid::gap_below;
+use crate::run::rigid::made;
+use igimp_model::{RigidDrive, RigidMove};
+use igimp_text::short;
+
+/// Prepares a state for a stage that moves rigid bodies: those that are not there are placed, and what
+/// held a component hands over to the force that will drive it. Tells of bodies that were shifted.
+pub(crate) fn begin<const D: usize>(
+    model: &Model<'_, D>,
+    state: &mut State<D>,
+    moves: &[RigidMove],
+) -> Result<Vec<String>, CaseError> {
+    let mut told = Vec::new();
+    for own in moves {
+        if !state.controls.rigid[own.body].placed {
+            told.extend(place(model, state, own.body)?);
+        }
+        let body = &mut state.controls.rigid[own.body];
+        for (k, drive) in own.drives.iter().enumerate() {
+            match drive {
+                Some(RigidDrive::By(_)) => body.loaded[k] = None,
+                Some(RigidDrive::Force(_)) => {
+                    body.loaded[k] = body.loaded[k].or(Some(body.track.force[k]));
+                }
+                None => {}
+            }
+        }
+    }
+    Ok(told)
+}
+
+/// Puts a rigid body where it starts, or by as much lower as the soil beneath it settled.
+pub(crate) fn place<const D: usize>(
+    model: &Model<'_, D>,
+    state: &mut State<D>,
+    index: usize,
+) -> Result<Option<String>, CaseError> {
+    let case = model.case;
+    let part = &case.rigid[index];
+    let mut body = made(case, index, model.laws.len())?;
+    let settled = gap_below(part, &state.body.particles) - model.gaps[index];
+    let is_shifted = settled.is_finite() && settled.abs() > LEAST_SHIFT * cell_near(case, part);
+    if is_shifted {
+        body.pose.origin[D - 1] -= settled;
+        state.controls.rigid[index].track.lowered = settled;
+    }
+    let slot = state.controls.placed().take_while(|&k| k < index).count();
+    state.body.rigid.insert(slot, body);
+    state.controls.rigid[index].placed = true;
+    state.body.particles.clear_of(&state.body.rigid);
+    let way = if settled > 0.0 { "down" } else { "up" };
+    Ok(is_shifted.then(|| {
+        format!(
+            "the rigid body \"{}\" was set {way} by {} m, as far as the soil beneath it went",
+            part.name,
+            short(settled.abs())
+        )
+    }))
+}
+
+/// A body is not set down by less than this share of a cell \[-\].
+pub(crate) const LEAST_SHIFT: f64 = 1e-9;
