@@ -3,8 +3,7 @@
 
 use std::sync::Arc;
 
-use igimp_linear::{LinearSolver, LinearSolverError, MultifrontalLu};
-use igimp_linear::{NodeBlock, Pattern};
+use igimp_linear::{LinearSolver, LinearSolverError, MultifrontalLu, NodeBlock, Pattern};
 
 /// Distance along an axis up to which two nodes share a particle.
 const REACH: usize = 2;

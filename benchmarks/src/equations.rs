@@ -1,7 +1,6 @@
 //! Linear equations as assembly makes them: tangent and out-of-balance force of a block.
 
-use igimp_linear::TangentMatrix;
-use igimp_linear::{LinearSolver, LinearSolverError, MultifrontalLu, SolverKind};
+use igimp_linear::{LinearSolver, LinearSolverError, MultifrontalLu, SolverKind, TangentMatrix};
 
 use crate::BenchResult;
 use crate::block::{Block, Soil};

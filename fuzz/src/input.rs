@@ -1,9 +1,8 @@
 //! What a target is fed: the bytes of a text, or those of several files.
 
 use std::collections::BTreeMap;
-use std::fs;
-use std::io;
 use std::path::{Path, PathBuf};
+use std::{fs, io};
 
 /// The bytes of an input by the places of its files; a single text has the place `""`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

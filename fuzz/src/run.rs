@@ -1,18 +1,15 @@
 //! A run: many executions of a target on several threads.
 
 use std::fmt::Write as _;
-use std::fs;
-use std::io;
 use std::path::Path;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::thread;
 use std::time::{Duration, Instant};
+use std::{fs, io, thread};
 
 use crate::input::Input;
 use crate::minimise::minimise;
-use crate::targets::outcome::catch_words;
-use crate::targets::outcome::outcome;
+use crate::targets::outcome::{catch_words, outcome};
 use crate::targets::{Material, Target, Verdict};
 use crate::watch::{LONGEST, MOST_MEMORY, Worker, memory};
 

@@ -3,11 +3,11 @@
 use std::error::Error;
 
 use igimp_cases::{CaseError, chain, is_of_the_system};
-use igimp_schema::Diagnostic;
 use igimp_input::InputError;
 use igimp_results::ResultsError;
 use igimp_results::checkpoint::CheckpointError;
 use igimp_results::ending::Ending;
+use igimp_schema::Diagnostic;
 use pyo3::prelude::*;
 use serde_json::json;
 

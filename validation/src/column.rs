@@ -2,8 +2,7 @@
 
 use std::path::Path;
 
-use igimp_cases::CaseError;
-use igimp_cases::exact;
+use igimp_cases::{CaseError, exact};
 use igimp_figures::{Colour, CurvePlot, LineStyle, Scale, Series, SeriesStyle};
 use igimp_model::Case;
 use igimp_model::check::Band;

@@ -5,10 +5,9 @@ use std::fs;
 use std::path::Path;
 
 use crate::failure::Failure;
-use crate::mdbook;
 use crate::metadata::Metadata;
-use crate::pages;
 use crate::process::{cargo, program, root, status};
+use crate::{mdbook, pages};
 
 /// Where mdBook writes, from the root.
 const BOOK: &str = "docs/book";

@@ -9,9 +9,9 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use clap::Parser;
-use igimp_linear::TangentMatrix;
 use igimp_linear::{
     LinearSolver, LinearSolverError, MultifrontalCholesky, MultifrontalLu, SolveReport, SolverKind,
+    TangentMatrix,
 };
 use igimp_results::linear_system::LinearSystem;
 use serde_json::{Value, json};

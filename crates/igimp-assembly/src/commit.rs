@@ -5,8 +5,7 @@ use igimp_material::Tensor;
 use igimp_shape::Grid;
 use rayon::prelude::*;
 
-use crate::body::particles::CHUNK;
-use crate::body::particles::Particles;
+use crate::body::particles::{CHUNK, Particles};
 use crate::contributions::rigid::{RigidBody, seeded_too_close};
 use crate::equations::kinematics::ParticleTrial;
 use crate::equations::trial::Trial;

@@ -4,16 +4,15 @@ use std::error::Error;
 use std::fmt::Write as _;
 
 use igimp_assembly::{AssemblyError, SurfaceError};
-use igimp_linear::LinearSolverError;
-use igimp_material::MaterialError;
-use igimp_shape::ShapeError;
-
 use igimp_figures::FigureError;
 use igimp_geometry::SeedError;
 use igimp_input::InputError;
+use igimp_linear::LinearSolverError;
+use igimp_material::MaterialError;
 use igimp_report::ReportError;
 use igimp_results::ResultsError;
 use igimp_results::checkpoint::CheckpointError;
+use igimp_shape::ShapeError;
 
 /// Errors of stating or running a case.
 #[derive(Debug, thiserror::Error)]

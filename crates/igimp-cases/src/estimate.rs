@@ -15,14 +15,13 @@ mod systems;
 pub mod time;
 pub mod watch;
 
+use igimp_geometry::seed::fill;
+use igimp_model::{Case, LoadKind, ReductionPath, Side, StageKind, meshes};
+use igimp_results::summary::Expected;
 use igimp_shape::{Scratch, supports};
 
 use crate::error::CaseError;
 use couplings::Couplings;
-use igimp_geometry::seed::fill;
-use igimp_model::meshes;
-use igimp_model::{Case, LoadKind, ReductionPath, Side, StageKind};
-use igimp_results::summary::Expected;
 use speed::Speed;
 pub use systems::Systems;
 use time::Time;

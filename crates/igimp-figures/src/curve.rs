@@ -8,7 +8,6 @@ use std::path::Path;
 use super::FigureError;
 use super::axis::Scale;
 use super::colour::Colour;
-
 use super::drawing::Drawing;
 
 /// Pattern of a line.

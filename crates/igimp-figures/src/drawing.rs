@@ -10,7 +10,6 @@ use std::path::{Path, PathBuf};
 
 use super::FigureError;
 use super::colour::Colour;
-
 use super::geometry::{Point, Rect};
 
 /// Pixels per point in the PNG: 288 dots per inch at the nominal size.

@@ -8,12 +8,11 @@ pub(crate) mod view;
 
 use std::path::Path;
 
-use super::FigureError;
-use super::axis;
 use super::colour::{Colour, ColourMap};
 use super::drawing::{Anchor, Drawing, Stroke};
 use super::frame::{self, GAP, LABEL, MARGIN, TICK, TITLE};
 use super::geometry::Point;
+use super::{FigureError, axis};
 use crate::axis::ticks;
 use crate::drawing::font::{self, CAP_HEIGHT};
 use crate::field::colour_bar::{ColourBar, ColourScale};

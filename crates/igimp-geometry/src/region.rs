@@ -2,8 +2,9 @@
 
 use std::fmt::Debug;
 
-use crate::polygon::contains;
-use crate::polygon::{Polygon, area_and_centroid, bounding_box, clip_to_box, clip_to_strip};
+use crate::polygon::{
+    Polygon, area_and_centroid, bounding_box, clip_to_box, clip_to_strip, contains,
+};
 
 /// The part of a region within a box.
 #[derive(Clone, Copy, Debug, PartialEq)]

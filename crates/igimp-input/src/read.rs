@@ -3,13 +3,7 @@
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use thiserror::Error;
-
-use super::build::build;
-use super::bytes;
-use super::files;
-use igimp_model::meshes;
-use igimp_model::{AnyCase, Case};
+use igimp_model::{AnyCase, Case, meshes};
 use igimp_results::folder::provenance::Origin;
 use igimp_schema::complete::complete;
 use igimp_schema::diagnostic::{Diagnostic, Problems};
@@ -18,6 +12,10 @@ use igimp_schema::overrides::apply;
 use igimp_schema::source::{Place, Source};
 use igimp_schema::syntax::parse;
 use igimp_schema::tree::{Node, Value};
+use thiserror::Error;
+
+use super::build::build;
+use super::{bytes, files};
 
 /// Most bytes of a case file.
 const LARGEST: usize = 8 << 20;

@@ -7,14 +7,13 @@
 
 use std::sync::Arc;
 
-use crate::{Pattern, TangentMatrix};
-
 use super::check::Inspection;
 use super::multifrontal::Engine;
 use super::multigrid::{Demand, Iteration};
 use super::{
     Accuracy, Forecast, LinearEffort, LinearSolver, LinearSolverError, Reason, SolveReport,
 };
+use crate::{Pattern, TangentMatrix};
 
 /// Cost of one iteration for each stored entry, in operations of a factorisation.
 const ITERATION: f64 = 180.0;

@@ -1,9 +1,8 @@
 //! Systems with a border: the unknowns of rigid bodies and the load factor, eliminated last (theory, eq. 49).
 
-use crate::{Border, TangentMatrix};
-
 use super::refine::max_norm;
 use super::{Accuracy, LinearSolver, LinearSolverError};
+use crate::{Border, TangentMatrix};
 
 /// Relative residual of the systems of the grid by which a border is eliminated: its equations are made of their
 /// solutions \[-\].

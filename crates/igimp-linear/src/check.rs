@@ -2,9 +2,8 @@
 
 use std::sync::Arc;
 
-use crate::{Pattern, TangentMatrix};
-
 use super::LinearSolverError;
+use crate::{Pattern, TangentMatrix};
 
 /// A pivot below this part of the diagonal entry that it is left from has lost all its digits to
 /// cancellation: the matrix is then singular to working precision.

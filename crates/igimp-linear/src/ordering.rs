@@ -6,9 +6,8 @@
 //! them and are eliminated last, with the few nodes that are coupled further. Balancing by counted nodes and not by length keeps the fill low
 //! where half of the bounding box is empty, as in a slope.
 
-use crate::Pattern;
-
 use super::reach::Reach;
+use crate::Pattern;
 
 /// Nodes below which a part is not dissected further.
 const LEAF_NODES: usize = 8;

@@ -3,9 +3,8 @@
 use std::fmt;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use crate::{Pattern, TangentMatrix};
-
 use super::{LinearEffort, LinearSolver, LinearSolverError, SolveReport};
+use crate::{Pattern, TangentMatrix};
 
 /// A linear system K x = b with the solution that was found.
 #[derive(Clone, Debug)]

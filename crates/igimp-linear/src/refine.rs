@@ -4,9 +4,8 @@
 //! The residual is measured in the maximum norm, relative to the right-hand side: that is the part
 //! of the out-of-balance force which a Newton iteration would find again after the correction.
 
-use crate::TangentMatrix;
-
 use super::{LinearSolverError, SolveReport, check};
+use crate::TangentMatrix;
 
 /// How well the equations must hold.
 ///

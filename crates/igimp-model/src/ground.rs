@@ -2,8 +2,9 @@
 
 use std::sync::Arc;
 
-use super::{BodyPart, Case, Material, PoreSource, Profile, front};
 use igimp_geometry::region::{Crossing, Region};
+
+use super::{BodyPart, Case, Material, PoreSource, Profile, front};
 
 /// Unit weight of the water of a stated level \[N/m³\].
 const WATER: f64 = 9.81e3;

@@ -1,7 +1,8 @@
 //! The meshes of a study, and what keeps them meshes of one problem.
 
-use crate::{Case, LoadKind, RigidPart, RigidShape};
 use igimp_text::short;
+
+use crate::{Case, LoadKind, RigidPart, RigidShape};
 
 /// Into how many parts each mesh cuts the cells of the case, in each direction.
 const HALVES: [usize; 3] = [1, 2, 4];

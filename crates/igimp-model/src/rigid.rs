@@ -6,7 +6,6 @@ use std::fmt::Debug;
 use std::sync::Arc;
 
 use igimp_assembly::{Surface, SurfaceError, Tension};
-
 use igimp_text::short;
 
 /// A rigid body that soil touches, slides along and leaves.

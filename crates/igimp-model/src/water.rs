@@ -2,9 +2,10 @@
 
 use std::sync::Arc;
 
-use super::{Case, Raster, StageKind, in_space};
 use igimp_geometry::region::Region;
 use igimp_geometry::solid::Terrain;
+
+use super::{Case, Raster, StageKind, in_space};
 
 impl<const D: usize> Case<D> {
     /// By body: whether it is there at the end of a stage, by index.

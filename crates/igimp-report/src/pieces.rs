@@ -9,11 +9,11 @@ use std::collections::HashMap;
 use std::ops::Range;
 
 use igimp_assembly::Particles;
-
-use crate::error::ReportError;
 use igimp_geometry::polygon::Polygon;
 use igimp_geometry::seed::{Piece, fill_in_pieces};
 use igimp_model::Case;
+
+use crate::error::ReportError;
 
 /// Corners that a particle carries further from their middle than so many times its size have
 /// parted \[-\].

@@ -8,14 +8,14 @@ mod verdict;
 
 use std::path::{Path, PathBuf};
 
+use igimp_results::ResultsError;
+use igimp_results::summary::{SetupTable, Summary};
 use minijinja::value::Serde;
 use minijinja::{Environment, Value};
 use serde::Serialize;
 
 use super::viewer::{Held, held};
 use crate::error::ReportError;
-use igimp_results::ResultsError;
-use igimp_results::summary::{SetupTable, Summary};
 
 /// The page; values are escaped as they are filled in.
 const TEMPLATE: &str = include_str!("report.html");

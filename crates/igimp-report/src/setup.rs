@@ -5,8 +5,7 @@ mod stages;
 mod structures;
 mod water;
 
-use igimp_model::in_plane;
-use igimp_model::{AxisSpec, BodyPart, Boundaries, Case, LoadKind, Side, StageKind};
+use igimp_model::{AxisSpec, BodyPart, Boundaries, Case, LoadKind, Side, StageKind, in_plane};
 use igimp_results::summary::SetupTable;
 use igimp_text::short;
 

@@ -7,8 +7,9 @@
 
 mod bins;
 
-use bins::Bins;
 use rayon::prelude::*;
+
+use bins::Bins;
 
 /// How far outside a face it is looked for another box, as a share of the half-length across the face:
 /// gaps narrower than that are no surface.

@@ -10,11 +10,10 @@ use std::fs;
 use std::path::Path;
 
 use igimp_figures::ColourMap;
-use rayon::prelude::*;
-use serde::Serialize;
-
 use igimp_results::paraview::pvd;
 pub use packed::{Keep, packed};
+use rayon::prelude::*;
+use serde::Serialize;
 
 /// What stands in the section `soil` of a page: choices, canvas, slider.
 pub const SECTION: &str = include_str!("viewer/soil.html");

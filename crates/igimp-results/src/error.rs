@@ -3,6 +3,7 @@
 pub(crate) mod checkpoint;
 
 use std::path::PathBuf;
+
 use thiserror::Error;
 
 use checkpoint::CheckpointError;

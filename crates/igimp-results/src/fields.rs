@@ -7,7 +7,6 @@ pub mod regime;
 
 use igimp_assembly::{Particles, SharedLaw};
 use igimp_material::{ConstitutiveModel, ShearStrength, Tensor, principal_values};
-
 use igimp_model::Field;
 
 /// One value per particle, in SI units; stresses compression positive.

@@ -19,9 +19,8 @@ pub mod lock;
 pub mod overwrite_guard;
 pub mod provenance;
 
-use std::fs;
-use std::io;
 use std::path::{Path, PathBuf};
+use std::{fs, io};
 
 use super::checkpoint;
 use crate::atomic::{at, temporary_name};

@@ -15,8 +15,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use igimp_assembly::Constraints;
-use igimp_linear::SolvedSystem;
-use igimp_linear::{Border, NodeBlock, Pattern, TangentMatrix};
+use igimp_linear::{Border, NodeBlock, Pattern, SolvedSystem, TangentMatrix};
 use igimp_shape::Grid;
 use serde::{Deserialize, Serialize};
 

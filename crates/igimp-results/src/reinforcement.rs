@@ -2,11 +2,11 @@
 
 use igimp_assembly::Reinforcement;
 use igimp_figures::{Outline, OutlineStyle};
+use igimp_model::{ReinforcementPart, front};
+use igimp_text::short;
 
 use crate::tables::table::Table;
 use crate::vtu::{CellKind, DataArray, UnstructuredGrid, padded};
-use igimp_model::{ReinforcementPart, front};
-use igimp_text::short;
 
 /// A member that is there.
 #[derive(Clone, Copy, Debug)]

@@ -1,11 +1,10 @@
 //! Rigid bodies in the results: contact at the knots of their surfaces, as tables and for ParaView.
 
 use igimp_assembly::{ContactNode, RigidBody};
+use igimp_model::{RigidPart, RigidShape, in_plane};
 
 use crate::tables::table::Table;
 use crate::vtu::{CellKind, DataArray, UnstructuredGrid, padded};
-use igimp_model::in_plane;
-use igimp_model::{RigidPart, RigidShape};
 
 /// A rigid body that is there.
 #[derive(Clone, Copy, Debug)]

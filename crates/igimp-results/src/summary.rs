@@ -2,13 +2,13 @@
 
 use std::fmt::Write as _;
 
+use igimp_model::TitleBlock;
+use igimp_model::check::{Check, or_not_a_number};
 use serde::{Deserialize, Serialize};
 
 use crate::ending::Ending;
 use crate::mesh_study::StudySummary;
 use crate::model_size::ModelSize;
-use igimp_model::TitleBlock;
-use igimp_model::check::{Check, or_not_a_number};
 
 /// The outcome of a run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]

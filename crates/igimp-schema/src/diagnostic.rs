@@ -4,9 +4,10 @@ use std::borrow::Cow;
 use std::fmt::Write;
 use std::ops::Range;
 
+use igimp_text::on_a_line;
+
 use super::source::{Place, Source};
 use super::text::plural;
-use igimp_text::on_a_line;
 
 /// Whether the case can be run all the same.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

@@ -2,9 +2,10 @@
 
 use std::fmt::Write;
 
+use igimp_text::is_odd;
+
 use super::spec::{Field, Kind, Struct, Variants};
 use super::tree::{Node, Value};
-use igimp_text::is_odd;
 
 /// A key, quoted when it has to be.
 pub fn key(key: &str) -> String {

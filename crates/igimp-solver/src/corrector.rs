@@ -4,17 +4,15 @@
 use std::time::{Duration, Instant};
 
 use igimp_assembly::{AssemblyError, OutOfBalance, Stencils, System, Trial};
-use igimp_linear::TangentMatrix;
+use igimp_linear::{Bordered, LinearEffort, LinearSolver, LinearSolverError, TangentMatrix};
 use igimp_material::TangentKind;
 use igimp_shape::Grid;
 
 use crate::free_factor::FreeFactor;
 use crate::report::{Component, PhaseTimes, StepFailure, padded};
 use crate::residual_history::ResidualHistory;
-use crate::settings::NewtonSettings;
-use crate::settings::converged;
+use crate::settings::{NewtonSettings, converged};
 use crate::workspace::Workspace;
-use igimp_linear::{Bordered, LinearEffort, LinearSolver, LinearSolverError};
 
 /// How often a correction is halved.
 const MOST_HALVINGS: u32 = 4;

@@ -10,14 +10,13 @@ use igimp_assembly::{
 use igimp_material::{Regime, TangentKind};
 use igimp_shape::Grid;
 
-use crate::NewtonSettings;
-use crate::Workspace;
 use crate::body::Body;
 use crate::corrector::Corrector;
 use crate::free_factor::{FreeFactor, Guess};
 use crate::load_path::LoadPath;
 use crate::report::{NodalForces, StepError, StepFailure, StepReport, padded};
 use crate::residual_history::ResidualHistory;
+use crate::{NewtonSettings, Workspace};
 
 /// The ghost penalty of a step that is singular at a node which hardly touches soil \[-\].
 const GHOST_PENALTY: f64 = 1e-3;

@@ -3,9 +3,8 @@
 use std::time::Duration;
 
 use igimp_assembly::{AssemblyError, StepWork, Swallowed};
-use thiserror::Error;
-
 use igimp_linear::{LinearEffort, LinearSolverError};
+use thiserror::Error;
 
 /// A component of the motion of a rigid body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -6,14 +6,13 @@ use std::sync::Arc;
 use igimp_assembly::{
     AssemblyError, Method, OutOfBalance, Stencils, StepConditions, System, Trial,
 };
-use igimp_linear::{Pattern, TangentMatrix};
+use igimp_linear::{Bordered, LinearSolver, LinearSolverError, Pattern, TangentMatrix};
 use igimp_material::TangentKind;
 
 use crate::body::Body;
 use crate::free_factor::product;
 use crate::report::StepFailure;
 use crate::workspace::Workspace;
-use igimp_linear::{Bordered, LinearSolver, LinearSolverError};
 
 /// Shares of the elastic tangent at which a singular tangent is tried again \[-\].
 const REGULARISED: [f64; 5] = [1e-4, 1e-3, 1e-2, 0.1, 1.0];

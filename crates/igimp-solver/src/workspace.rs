@@ -1,10 +1,9 @@
 //! Memory that is kept from step to step.
 
-use igimp_assembly::Trial;
-use igimp_linear::LinearSolver;
-use igimp_linear::Pattern;
-use igimp_linear::TangentMatrix;
 use std::sync::Arc;
+
+use igimp_assembly::Trial;
+use igimp_linear::{LinearSolver, Pattern, TangentMatrix};
 
 /// What lasts from step to step besides the body: the solver with its symbolic work, and the memory
 /// of the matrix and of the trial. It holds nothing that a result depends on.

@@ -9,8 +9,7 @@ use igimp_study::sweep::{Demand, Sweep, Words, numbers};
 
 use crate::arguments::{Scheduler, SweepArguments};
 use crate::error::{Exit, ProgramError};
-use crate::output;
-use crate::output::quoted;
+use crate::output::{self, quoted};
 
 /// Writes what a scheduler needs for the tasks that are not done, and tells how it is submitted.
 pub(crate) fn to(

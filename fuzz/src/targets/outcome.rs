@@ -1,14 +1,11 @@
 //! What comes of an input.
 
-use crate::targets::Input;
-use crate::targets::Target;
-use crate::targets::Verdict;
 use std::any::Any;
 use std::cell::RefCell;
-use std::panic;
-use std::panic::AssertUnwindSafe;
-use std::panic::catch_unwind;
+use std::panic::{self, AssertUnwindSafe, catch_unwind};
 use std::sync::Once;
+
+use crate::targets::{Input, Target, Verdict};
 
 /// What a reader makes of an input; a panic is a failure.
 ///

@@ -13,7 +13,6 @@ use crate::comparisons::benchmarks::{
     Results, Variant, corrections, corrections_of_trials, cuts, drained_slope, factor_of_safety,
     largest_displacement, reached, soft_slope, written,
 };
-
 use crate::harness::oracle::{Oracle, OracleKind};
 use crate::harness::study::{Level, Study};
 use crate::runs::Computed;

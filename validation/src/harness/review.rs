@@ -1,9 +1,8 @@
 //! What changed since the snapshots were accepted: for every curve the largest change and where it is,
 //! a picture of old against new of every curve and residual history; and how what a run left is accepted.
 
-use std::fs;
-use std::io;
 use std::path::{Path, PathBuf};
+use std::{fs, io};
 
 use igimp_cases::CaseError;
 use igimp_figures::{CurvePlot, LineStyle, Scale, Series, SeriesStyle};

@@ -17,8 +17,7 @@ use rayon::prelude::*;
 
 use crate::harness::oracle::{Oracle, OracleKind};
 use crate::harness::reference::{slope_limit_load_bounds, slope_safety_bounds};
-use crate::harness::study::coverage::Extrapolated;
-use crate::harness::study::coverage::{Known, counted};
+use crate::harness::study::coverage::{Extrapolated, Known, counted};
 use crate::harness::study::{Level, RunRecord, Study};
 use crate::limit_equilibrium::section::{Path, Variant};
 use crate::runs::shipped_case;

@@ -2,10 +2,9 @@
 //! moves.
 
 use igimp_assembly::Stencils;
-use igimp_benchmarks::BenchResult;
 use igimp_benchmarks::block::{Block, Soil};
 use igimp_benchmarks::pass::Pass;
-use igimp_benchmarks::threads;
+use igimp_benchmarks::{BenchResult, threads};
 use rayon::ThreadPool;
 
 use super::rounds::{Rounds, timed};

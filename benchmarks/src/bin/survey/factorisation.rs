@@ -1,9 +1,8 @@
 //! Ordering, analysis, factorisation and solution by size, and the rate of the factorisation
 //! against that of a dense product.
 
-use igimp_benchmarks::BenchResult;
 use igimp_benchmarks::equations::{Direct, Equations};
-use igimp_benchmarks::threads;
+use igimp_benchmarks::{BenchResult, threads};
 use igimp_linear::NestedDissection;
 
 use super::plot::Curve;

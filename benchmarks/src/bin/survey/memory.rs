@@ -1,9 +1,8 @@
 //! Peak resident memory per particle and per unknown. A peak never falls, so every size is measured
 //! in a process of its own.
 
-use std::env;
-use std::fs;
 use std::process::Command;
+use std::{env, fs};
 
 use igimp_benchmarks::BenchResult;
 use igimp_benchmarks::block::Block;

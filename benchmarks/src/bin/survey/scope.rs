@@ -2,9 +2,8 @@
 
 use std::cell::OnceCell;
 
-use igimp_benchmarks::BenchResult;
 use igimp_benchmarks::steps::{PreparedStep, Setting};
-use igimp_benchmarks::threads;
+use igimp_benchmarks::{BenchResult, threads};
 use rayon::ThreadPool;
 
 use super::plot::Curve;

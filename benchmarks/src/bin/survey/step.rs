@@ -1,8 +1,7 @@
 //! Where the time of a whole load step goes.
 
-use igimp_benchmarks::BenchResult;
 use igimp_benchmarks::steps::{PHASES, PreparedStep, Setting, phases};
-use igimp_benchmarks::threads;
+use igimp_benchmarks::{BenchResult, threads};
 use rayon::ThreadPool;
 
 use super::rounds::{Rounds, timed};

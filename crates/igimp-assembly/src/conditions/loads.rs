@@ -3,8 +3,7 @@
 
 use igimp_shape::{Grid, Linear, Scratch, Support, supports};
 
-use crate::error::AssemblyError;
-use crate::error::padded;
+use crate::error::{AssemblyError, padded};
 
 /// A force on a point that moves with the soil. Its direction stays (dead load).
 #[derive(Clone, Copy, Debug, PartialEq)]

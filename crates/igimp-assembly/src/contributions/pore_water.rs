@@ -10,11 +10,9 @@
 
 use rayon::prelude::*;
 
-use crate::body::particles::CHUNK;
-use crate::body::particles::Particles;
+use crate::body::particles::{CHUNK, Particles};
 use crate::conditions::StepConditions;
-use crate::conditions::water::PoreState;
-use crate::conditions::water::Water;
+use crate::conditions::water::{PoreState, Water};
 use crate::error::AssemblyError;
 use crate::method::{Kinematics, Method};
 use crate::small::determinant;

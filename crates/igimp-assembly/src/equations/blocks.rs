@@ -3,13 +3,12 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use igimp_linear::{NodeBlock, Pattern};
 use igimp_shape::{Grid, Support};
 
-use crate::equations::reach::same_nodes;
-use crate::equations::reach::{SMALL_REACH, common_reach, furthest};
+use crate::equations::reach::{SMALL_REACH, common_reach, furthest, same_nodes};
 use crate::step::stencils::Stencils;
 use crate::step::unknowns::Unknowns;
-use igimp_linear::{NodeBlock, Pattern};
 
 /// Marks a pair of nodes without a block, or a node without unknowns.
 const NONE: u32 = u32::MAX;

@@ -2,10 +2,10 @@
 
 use std::ops::Range;
 
+use igimp_linear::Pattern;
 use rayon::prelude::*;
 
 use crate::step::strips::split;
-use igimp_linear::Pattern;
 
 /// Columns of at least so many blocks are handled together.
 const LEAST_BLOCKS: usize = 256;

@@ -4,6 +4,7 @@
 
 use std::ops::Range;
 
+use igimp_linear::Pattern;
 use igimp_material::{ConstitutiveModel, ReturnMap, TangentKind};
 use igimp_shape::Support;
 use pulp::{Arch, Simd, WithSimd};
@@ -21,7 +22,6 @@ use crate::equations::system::System;
 use crate::error::AssemblyError;
 use crate::method::Kinematics;
 use crate::step::strips::split;
-use igimp_linear::Pattern;
 
 /// Scratch of one task.
 #[derive(Debug, Default)]

@@ -14,12 +14,12 @@
 //! the next four are begun, so that factors and sums stay in the nearest cache. Of a symmetric tangent the rows
 //! from the node of the column on are summed; the others are [their mirror image](crate::equations::mirror).
 
+use igimp_linear::Pattern;
 use igimp_shape::{Grid, Support};
 
 use crate::equations::blocks::BlockTable;
 use crate::equations::linearised::{Linearised, Moduli};
 use crate::equations::scatter::{Piece, Rows, add as add_rows};
-use igimp_linear::Pattern;
 
 /// Nodes that are worked on together.
 const LANES: usize = 4;

@@ -3,8 +3,7 @@
 
 use rayon::prelude::*;
 
-use crate::body::particles::CHUNK;
-use crate::body::particles::Particles;
+use crate::body::particles::{CHUNK, Particles};
 use crate::conditions::StepConditions;
 use crate::error::AssemblyError;
 use crate::step::stencils::Stencils;

@@ -1,11 +1,11 @@
 //! From the tangent of one particle into the matrix: its unknown rows as runs that lie one after the
 //! other in every column, and its columns one by one.
 
+use igimp_linear::Pattern;
 use igimp_shape::Support;
 
 use crate::equations::blocks::BlockTable;
 use crate::equations::linearised::Linearised;
-use igimp_linear::Pattern;
 
 /// The unknown rows of one particle.
 #[derive(Debug, Default)]

@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
+use igimp_linear::{Border, Pattern, TangentMatrix};
 use igimp_material::{MaterialError, TangentKind};
 
 use crate::body::particles::Particles;
@@ -11,9 +12,8 @@ use crate::conditions::loads::{LoadPoint, finite_points};
 use crate::conditions::rigid_motion::{Drive, RigidMotion, rotations};
 use crate::contributions::couplings::Couplings;
 use crate::contributions::ghost::ghost_penalty;
-use crate::contributions::loads::add_held_forces;
 use crate::contributions::loads::{
-    add_force_of_points, add_variation_of_weight, nodal_drag, weight,
+    add_force_of_points, add_held_forces, add_variation_of_weight, nodal_drag, weight,
 };
 use crate::contributions::nodal_forces::NodalForces;
 use crate::contributions::pore_water::Pores;
@@ -28,8 +28,6 @@ use crate::error::AssemblyError;
 use crate::method::{Kinematics, Method};
 use crate::step::stencils::Stencils;
 use crate::step::unknowns::Unknowns;
-use igimp_linear::Border;
-use igimp_linear::{Pattern, TangentMatrix};
 
 /// One step's system of equations. Borrows the state at the step's start and never changes it.
 #[derive(Debug)]

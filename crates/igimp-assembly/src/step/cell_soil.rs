@@ -6,8 +6,7 @@ use igimp_material::ConstitutiveModel;
 use igimp_shape::{CellPart, Grid, Support, cell_parts};
 use rayon::prelude::*;
 
-use crate::body::particles::CHUNK;
-use crate::body::particles::Particles;
+use crate::body::particles::{CHUNK, Particles};
 use crate::error::AssemblyError;
 use crate::laws::SharedLaw;
 use crate::method::{Geometry, Locking, Method};

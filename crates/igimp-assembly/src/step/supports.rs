@@ -3,16 +3,12 @@
 use igimp_shape::{Grid, Scratch, Support, supports};
 use rayon::prelude::*;
 
-use crate::body::particles::CHUNK;
-use crate::body::particles::Particles;
+use crate::body::particles::{CHUNK, Particles};
 use crate::error::AssemblyError;
 use crate::laws::SharedLaw;
 use crate::method::{Geometry, Locking, Method};
 use crate::step::cell_soil::{CellSoil, Moments};
-use crate::step::domain::bounds;
-use crate::step::domain::capped_half_length;
-use crate::step::domain::merge_equal_nodes;
-use crate::step::domain::off_grid;
+use crate::step::domain::{bounds, capped_half_length, merge_equal_nodes, off_grid};
 
 /// The supports of each particle, nodes ascending.
 #[derive(Clone, Debug)]

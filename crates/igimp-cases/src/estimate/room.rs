@@ -1,9 +1,9 @@
 //! The memory that a run can have at all: beyond it the system ends a program without a word.
 
+use igimp_model::{Case, meshes};
+
 use super::readable;
 use crate::error::CaseError;
-use igimp_model::Case;
-use igimp_model::meshes;
 
 /// An estimate is trusted to this factor: a run that is thought to need more than so many times what
 /// can be had is not begun \[-\].

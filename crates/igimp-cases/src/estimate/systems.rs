@@ -6,9 +6,7 @@
 
 use std::sync::Arc;
 
-use igimp_linear::Pattern;
-use igimp_linear::{AutoSolver, Forecast, LinearSolverError, Reason, SolverKind};
-
+use igimp_linear::{AutoSolver, Forecast, LinearSolverError, Pattern, Reason, SolverKind};
 use igimp_model::Case;
 
 /// Factors in the plane, for each unknown and each doubling of the unknowns \[bytes\].

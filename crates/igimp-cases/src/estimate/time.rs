@@ -11,12 +11,12 @@
 //! closes in) may take fewer
 //! steps than it plans: the time is then an upper bound, and [`Time::open_ended`] says so.
 
+use igimp_model::{Case, Every, ReductionPath, SearchMethod, Stage, StageKind};
+use igimp_results::summary::StageSummary;
 use serde::{Deserialize, Serialize};
 
 use super::speed::Speed;
 use super::{Estimate, TRIALS};
-use igimp_model::{Case, Every, ReductionPath, SearchMethod, Stage, StageKind};
-use igimp_results::summary::StageSummary;
 
 /// Set-up and commit of a step \[s per particle\].
 const STEP: f64 = 6e-7;

@@ -1,7 +1,8 @@
 //! Whether a run kept to its estimate, and whether the computer has the memory for it.
 
-use super::{readable, time};
 use igimp_results::summary::Summary;
+
+use super::{readable, time};
 
 /// A run may cost this many times its estimate before anything is said \[-\].
 const FACTOR: f64 = 1.5;

@@ -1,11 +1,11 @@
 //! What the runs of a study found, side by side.
 
-use super::known::{of_check, of_stage};
-use igimp_model::meshes;
-use igimp_model::{Case, CheckValue, Quantity, StageKind};
+use igimp_model::{Case, CheckValue, Quantity, StageKind, meshes};
 use igimp_results::mesh_study::{Computed, Convergence, ResultKind, StudyResult, estimate};
 use igimp_results::summary::{CheckRow, StageOutcome, StageSummary, Summary};
 use igimp_text::short;
+
+use super::known::{of_check, of_stage};
 
 /// A value of a run.
 #[derive(Clone, Copy, Debug)]

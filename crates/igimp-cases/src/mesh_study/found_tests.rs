@@ -1,10 +1,11 @@
-use super::{remarks, study};
 use igimp_model::Case;
 use igimp_model::check::{Band, Check};
 use igimp_results::mesh_study::{Convergence, Order};
 use igimp_results::summary::{
     CheckRow, PathEnd, PathPoint, PathSummary, StageOutcome, StageSummary, Summary,
 };
+
+use super::{remarks, study};
 
 /// A shipped case on two meshes.
 fn case(name: &str, settings: &[&str]) -> Case {

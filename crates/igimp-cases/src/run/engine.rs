@@ -4,22 +4,6 @@ use std::collections::HashMap;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
-use super::model::Model;
-use super::output::Output;
-use super::output::export::Export;
-use super::output::records::{Moment, Records, largest_displacement};
-use super::output::{checks, sections};
-use super::resources::memory::{self, Before};
-use super::resources::processor;
-use super::resume::{Left, Resumption, Search};
-use super::session::{Ended, Session};
-use super::stages::{construction, initial, loading, run_out, safety};
-use super::state::State;
-use super::{Event, Failure, Listener, Run, Start, Target};
-use super::{failure, pores, reinforcement};
-use crate::error::CaseError;
-use crate::estimate::Expectation;
-use crate::estimate::time::time_of_steps_taken;
 use igimp_model::{COMPONENTS, Case, StageKind};
 use igimp_report::setup;
 use igimp_results::checkpoint::sha256;
@@ -27,6 +11,21 @@ use igimp_results::folder::{clear_meshes, refuse_foreign};
 use igimp_results::summary::{StageOutcome, StageSummary, Summary};
 use igimp_results::tables::table::Table;
 use igimp_solver::StepError;
+
+use super::model::Model;
+use super::output::export::Export;
+use super::output::records::{Moment, Records, largest_displacement};
+use super::output::{Output, checks, sections};
+use super::resources::memory::{self, Before};
+use super::resources::processor;
+use super::resume::{Left, Resumption, Search};
+use super::session::{Ended, Session};
+use super::stages::{construction, initial, loading, run_out, safety};
+use super::state::State;
+use super::{Event, Failure, Listener, Run, Start, Target, failure, pores, reinforcement};
+use crate::error::CaseError;
+use crate::estimate::Expectation;
+use crate::estimate::time::time_of_steps_taken;
 
 /// Runs a case on its own grid.
 pub(super) fn one_mesh<const D: usize>(

@@ -5,13 +5,13 @@ pub(crate) mod message;
 
 use igimp_assembly::Particles;
 use igimp_material::Regime;
+use igimp_model::{Case, RigidMove, StageKind};
+use igimp_results::summary::{PathEnd, StageSummary};
 use igimp_solver::{StepError, StepFailure};
 
 use super::Failure;
 use super::session::Session;
 use super::state::State;
-use igimp_model::{Case, RigidMove, StageKind};
-use igimp_results::summary::{PathEnd, StageSummary};
 
 /// Whether a stage that found no equilibrium ended in a way that tells no limit: its path was lost, its linear system
 /// could not be solved, or nothing but a motion was driven, which has an equilibrium at any load.

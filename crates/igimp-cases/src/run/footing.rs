@@ -5,10 +5,10 @@
 //! and the rows above are shifted by −w, so that the base is always a row of nodes.
 
 use igimp_assembly::{AssemblyError, Constraints};
+use igimp_model::{AxisSpec, Case, LoadKind};
 use igimp_shape::{Axis, Grid, ShapeError};
 
 use crate::error::CaseError;
-use igimp_model::{AxisSpec, Case, LoadKind};
 
 /// The footing of a case, as columns and rows of its grid.
 #[derive(Clone, Copy, Debug)]

@@ -2,10 +2,10 @@
 
 use igimp_assembly::{ParticleSeed, SharedLaw};
 use igimp_material::Ratios;
+use igimp_model::{Case, Material};
 use igimp_shape::Grid;
 
 use crate::error::CaseError;
-use igimp_model::{Case, Material};
 
 /// Volume and compliances of the soils in a cell.
 #[derive(Clone, Copy, Debug)]

@@ -21,18 +21,18 @@ mod water;
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 
-use igimp_linear::LinearSolverError;
-use igimp_solver::{Accepted, Body, StepError, StepFailure, StepReport};
-
-use crate::error::CaseError;
-use crate::estimate::Expectation;
 use igimp_input::CaseFile;
+use igimp_linear::LinearSolverError;
 use igimp_model::{AnyCase, Case};
 use igimp_results::folder::overwrite_guard::Replace;
 use igimp_results::folder::provenance::{Claim, Origin};
 use igimp_results::model_size::ModelSize;
 use igimp_results::summary::{PathPoint, StageSummary, Summary, TrialSummary};
 use igimp_results::tables::table::Table;
+use igimp_solver::{Accepted, Body, StepError, StepFailure, StepReport};
+
+use crate::error::CaseError;
+use crate::estimate::Expectation;
 
 pub(crate) use crate::run::start::run_entered;
 pub use crate::run::start::{in_memory, run};

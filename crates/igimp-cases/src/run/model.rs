@@ -6,8 +6,12 @@ use igimp_assembly::{
     AssemblyError, Constraints, Geometry, LoadPoint, Method, ParticleSeed, Particles, PoreWater,
     SharedLaw, StepConditions, StepLoads, Water,
 };
+use igimp_geometry::seed::fill;
 use igimp_linear::LinearSolver;
 use igimp_material::Ratios;
+use igimp_model::{Case, Drainage, LoadKind, Material, MixedCells, Side};
+use igimp_results::fields;
+use igimp_results::model_size::ModelSize;
 use igimp_shape::{Grid, ShapeError};
 use igimp_solver::{Body, MarchSettings, NewtonSettings};
 
@@ -16,10 +20,6 @@ use super::state::{Controls, State};
 use super::water::{GroundWater, Seeded};
 use crate::error::CaseError;
 use crate::run::state::gravity_of_weights;
-use igimp_geometry::seed::fill;
-use igimp_model::{Case, Drainage, LoadKind, Material, MixedCells, Side};
-use igimp_results::fields;
-use igimp_results::model_size::ModelSize;
 
 /// Load points per cell along a loaded segment.
 const POINTS_PER_CELL: f64 = 4.0;

@@ -4,18 +4,6 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
-use igimp_solver::Body;
-use rayon::prelude::*;
-
-use super::Target;
-use super::model::Model;
-use super::resume::{End, Notes, Resumption, Search};
-
-use records::{Records, Rows};
-
-use super::state::State;
-use crate::error::CaseError;
-use crate::run::output::records::Taken;
 use igimp_model::{Case, Every};
 use igimp_report::pictures::{self, Shown};
 use igimp_report::pieces::Pieces;
@@ -28,6 +16,16 @@ use igimp_results::paraview::frames::Frames;
 use igimp_results::summary::{FigureNote, StageSummary, Summary};
 use igimp_results::tables::rows::RowWriter;
 use igimp_results::tables::table::Table;
+use igimp_solver::Body;
+use rayon::prelude::*;
+
+use super::Target;
+use super::model::Model;
+use super::resume::{End, Notes, Resumption, Search};
+use super::state::State;
+use crate::error::CaseError;
+use crate::run::output::records::Taken;
+use records::{Records, Rows};
 
 pub(crate) mod checks;
 mod drawn;

@@ -1,7 +1,6 @@
 //! What a stage leaves in the pores, and what of it makes a number unsafe.
 
 use igimp_assembly::Particles;
-
 use igimp_model::{Case, Drainage, Strength};
 use igimp_results::summary::PoreSummary;
 use igimp_text::short;

@@ -1,11 +1,11 @@
 //! Reinforcement of a case as the solver has it: made, installed, what acts on it, and what it tells.
 
 use igimp_assembly::{Hold, Reinforcement, ReinforcementControl, Segment, SegmentState, Station};
-
-use super::state::{Controls, ReinforcementControls, State};
 use igimp_model::{Case, ReinforcementPart, ReinforcementQuantity, Stage, distance};
 use igimp_results::reinforcement::Installed;
 use igimp_results::summary::MemberSummary;
+
+use super::state::{Controls, ReinforcementControls, State};
 
 /// Stations per cell along a bonded length.
 const STATIONS_PER_CELL: f64 = 4.0;

@@ -8,12 +8,12 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
+use igimp_results::checkpoint::{CheckpointError, Meta};
+use igimp_results::summary::{CheckRow, FigureNote, StageSummary, TrialSummary};
 use igimp_solver::{Body, MarchState};
 use serde::{Deserialize, Serialize};
 
 use super::state::{Controls, State};
-use igimp_results::checkpoint::{CheckpointError, Meta};
-use igimp_results::summary::{CheckRow, FigureNote, StageSummary, TrialSummary};
 use reinforcement::SavedMember;
 use rigid::SavedBody;
 

@@ -1,15 +1,15 @@
 //! Rigid bodies of a case as the solver has them: made, placed, moved, and what they did.
 
 use igimp_assembly::{Drive, Interface, Particles, RigidBody, RigidMotion, Shear};
-use igimp_solver::{Accepted, StepFailure};
-
-use super::state::{Controls, RigidTrack, State};
-use crate::error::CaseError;
 use igimp_model::{
     Adhesion, COMPONENTS, Case, RigidInterface, RigidPart, RigidQuantity, RigidShear, components,
     in_space,
 };
 use igimp_results::tables::table::Table;
+use igimp_solver::{Accepted, StepFailure};
+
+use super::state::{Controls, RigidTrack, State};
+use crate::error::CaseError;
 
 /// The smallest cell that a rigid body starts in \[m\].
 pub(crate) fn cell_near<const D: usize>(case: &Case<D>, part: &RigidPart<D>) -> f64 {

@@ -7,24 +7,23 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use igimp_assembly::{Geometry, HeldForces, Method, Particles};
+use igimp_results::fields;
+use igimp_results::summary::{StageSummary, Summary};
 use igimp_solver::{
     Accepted, MarchSettings, MarchState, Observer, Outcome, StepError, StepReport, Workspace,
     march_from,
 };
+use igimp_text::short;
 
 use super::model::Model;
 use super::output::Output;
 use super::output::export::Export;
 use super::output::records::{Moment, Records, largest_displacement};
 use super::resume::Resumption;
-use super::rigid;
 use super::state::{Controls, RigidTrack, State};
-use super::{Event, Listener, REACHED_ITS_END};
+use super::{Event, Listener, REACHED_ITS_END, rigid};
 use crate::error::CaseError;
 use crate::run::output::records::Taken;
-use igimp_results::fields;
-use igimp_results::summary::{StageSummary, Summary};
-use igimp_text::short;
 
 /// Share of the load from which on a false support at dropped nodes is worth a warning \[-\].
 const FALSE_SUPPORT: f64 = 1e-3;

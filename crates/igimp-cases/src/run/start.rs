@@ -1,16 +1,10 @@
 //! The start of a run: on the grid of its case, or on all meshes of its study.
 
-use crate::CaseError;
-use crate::run::AtomicBool;
-use crate::run::Entered;
-use crate::run::Event;
-use crate::run::Listener;
-use crate::run::Run;
-use crate::run::Start;
-use crate::run::Target;
-use crate::run::engine::one_mesh;
-use crate::run::study;
 use igimp_model::Case;
+
+use crate::CaseError;
+use crate::run::engine::one_mesh;
+use crate::run::{AtomicBool, Entered, Event, Listener, Run, Start, Target, study};
 
 /// Runs a case. With a target everything is written as it is computed.
 ///

@@ -1,9 +1,8 @@
 //! The state of a run between two steps: the body, and the controls that acted on it last.
 
+use igimp_model::{COMPONENTS, Case};
 use igimp_solver::Body;
 use serde::{Deserialize, Serialize};
-
-use igimp_model::{COMPONENTS, Case};
 
 /// What acts on the body: everything that a stage can change.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

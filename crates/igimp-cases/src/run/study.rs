@@ -8,6 +8,14 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::Instant;
 
+use igimp_model::{Case, meshes};
+use igimp_report::{pictures, report};
+use igimp_results::checkpoint::sha256;
+use igimp_results::ending::Ending;
+use igimp_results::folder::{self, mesh_name, write_atomically, write_summary};
+use igimp_results::mesh_study::{MeshSummary, StudySummary};
+use igimp_results::summary::Summary;
+
 use super::engine::one_mesh;
 use super::resources::{memory, processor};
 use super::{Event, Listener, Run, Start, Target};
@@ -17,14 +25,6 @@ use crate::estimate::watch::side_by_side;
 use crate::estimate::{Estimate, estimate};
 use crate::mesh_study::{check_rows, remarks, study};
 use crate::on_one_line;
-use igimp_model::Case;
-use igimp_model::meshes;
-use igimp_report::{pictures, report};
-use igimp_results::checkpoint::sha256;
-use igimp_results::ending::Ending;
-use igimp_results::folder::{self, mesh_name, write_atomically, write_summary};
-use igimp_results::mesh_study::{MeshSummary, StudySummary};
-use igimp_results::summary::Summary;
 
 /// Runs a case on all meshes of its study.
 pub(super) fn run<const D: usize>(

@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use igimp_assembly::{PoreSite, PoreState, PoreWater};
+use igimp_model::{Case, Drainage, Ground, Material, PoreSource, Raster, WaterCondition};
 
 use crate::run::state::gravity_of_weights;
-use igimp_model::{Case, Drainage, Ground, Material, PoreSource, Raster, WaterCondition};
 
 /// Points and weights of Gauss, three on −1 to 1.
 const ALONG: [(f64, f64); 3] = [

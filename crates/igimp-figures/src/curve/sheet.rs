@@ -5,8 +5,7 @@ use super::frame::{
 };
 use super::{CurvePlot, LineStyle, ReferenceLine, ReferenceValue, Series};
 use crate::FigureError;
-use crate::axis::ticks;
-use crate::axis::{Axis, Scale};
+use crate::axis::{Axis, Scale, ticks};
 use crate::colour::Colour;
 use crate::drawing::font::{self, CAP_HEIGHT};
 use crate::drawing::{Anchor, Contour, Drawing, Item, Shape, Stroke, Text};

@@ -9,9 +9,7 @@ use std::fmt::Write as _;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 
-use super::font;
-use super::raster;
-use super::{Anchor, Contour, Drawing, Item, Shape, Stroke, Text};
+use super::{Anchor, Contour, Drawing, Item, Shape, Stroke, Text, font, raster};
 use crate::colour::Colour;
 use crate::drawing::Image;
 use crate::geometry::{Point, Rect};

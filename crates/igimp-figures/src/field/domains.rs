@@ -1,13 +1,11 @@
 //! The filled domains of a field and the lines over them.
 
 use super::colour_bar::{ColourScale, LEVELS};
-use super::outline;
-use super::{FieldPlot, OutlineStyle, Polygon};
+use super::{FieldPlot, OutlineStyle, Polygon, outline};
 use crate::axis;
 use crate::axis::ticks::grouped;
 use crate::colour::Colour;
-use crate::drawing::font;
-use crate::drawing::{Anchor, Contour, Drawing};
+use crate::drawing::{Anchor, Contour, Drawing, font};
 use crate::frame::{Frame, TICK};
 use crate::geometry::{Point, Rect};
 use crate::legend::Occupancy;

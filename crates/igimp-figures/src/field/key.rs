@@ -1,7 +1,6 @@
 //! The key below a field whose values stand for kinds of things: colours and symbols with names.
 
-use super::outline;
-use super::{KeyEntry, KeySample};
+use super::{KeyEntry, KeySample, outline};
 use crate::colour::Colour;
 use crate::drawing::font::{self, CAP_HEIGHT, LINE_HEIGHT};
 use crate::drawing::{Anchor, Drawing, Stroke};

@@ -4,8 +4,7 @@ use super::Face;
 use super::view::{Projection, dot};
 use crate::FigureError;
 use crate::colour::Colour;
-use crate::drawing::Image;
-use crate::drawing::PIXELS_PER_POINT;
+use crate::drawing::{Image, PIXELS_PER_POINT};
 use crate::field::colour_bar::ColourScale;
 
 /// Samples by pixel in each direction.

@@ -1,5 +1,6 @@
 //! The ground between two surfaces, within a polygon in plan.
 
+use igimp_text::short;
 use thiserror::Error;
 
 use super::facets::{Face, Facets, over};
@@ -8,7 +9,6 @@ use super::standing::Standing;
 use super::terrain::Height;
 use crate::polygon::{Polygon, area_and_centroid, bounding_box, clip_to_box};
 use crate::region::{Column, Cover, Crossing, Part, Region, is_off};
-use igimp_text::short;
 
 /// Surfaces that cross by less than this share of the size of the layer touch \[-\].
 const TOUCH: f64 = 1e-9;

@@ -15,8 +15,9 @@ mod terrain;
 
 use std::sync::Arc;
 
-use crate::region::{Column, Cover, Crossing, Part, Region};
 use igimp_text::short;
+
+use crate::region::{Column, Cover, Crossing, Part, Region};
 
 pub use difference::Difference;
 pub use layer::{Layer, LayerError};

@@ -1,8 +1,9 @@
 //! A polygon moved along an axis: slices of plane cases, and polygons in plan between two levels.
 
+use igimp_text::short;
+
 use crate::polygon::{area_and_centroid, bounding_box, clip_to_box, clip_to_strip};
 use crate::region::{Cover, Crossing, Part, Region};
-use igimp_text::short;
 
 /// A polygon in the plane of two axes, moved along the third.
 #[derive(Clone, Debug, PartialEq)]

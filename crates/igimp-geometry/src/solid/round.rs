@@ -2,9 +2,10 @@
 
 use std::f64::consts::PI;
 
+use igimp_text::short;
+
 use super::prism::{both, overlap, placed, seen};
 use crate::region::{Cover, Crossing, Part, Region};
-use igimp_text::short;
 
 /// Points that stand for a circle where straight edges are wanted.
 const POINTS_AROUND: u32 = 24;

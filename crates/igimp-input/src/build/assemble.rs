@@ -2,13 +2,6 @@
 
 use std::path::Path;
 
-use super::bodies::sequence::Sequence;
-use super::grid::{self, Frame};
-use super::outputs::{checks, curves, study};
-use super::stages;
-use super::stages::construction;
-use super::{AllNames, all, materials, outputs, title_block};
-use crate::build::context::Context;
 use igimp_assembly::Method;
 use igimp_model::{
     BodyPart, Boundaries, Case, GridSpec, Material, ReinforcementPart, RigidPart, Stage,
@@ -16,6 +9,13 @@ use igimp_model::{
 };
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::tree::Node;
+
+use super::bodies::sequence::Sequence;
+use super::grid::{self, Frame};
+use super::outputs::{self, checks, curves, study};
+use super::stages::{self, construction};
+use super::{AllNames, all, materials, title_block};
+use crate::build::context::Context;
 
 /// What everything else is held against.
 pub(super) struct Basics<const D: usize> {

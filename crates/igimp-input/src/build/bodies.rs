@@ -7,15 +7,15 @@ pub(crate) mod surfaces;
 
 use std::sync::Arc;
 
-use super::AllNames;
-use super::grid::MOST;
-use crate::geometry::{distinct, near_edge, overlap, self_crossing};
-use igimp_geometry::polygon::contains;
-use igimp_geometry::polygon::{area_and_centroid, bounding_box};
+use igimp_geometry::polygon::{area_and_centroid, bounding_box, contains};
 use igimp_model::{BodyPart, Boundaries, Side};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::text::{clip, count, number, point};
 use igimp_schema::tree::Node;
+
+use super::AllNames;
+use super::grid::MOST;
+use crate::geometry::{distinct, near_edge, overlap, self_crossing};
 use sequence::{Sequence, placed};
 use site::Site;
 

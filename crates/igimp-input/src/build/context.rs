@@ -1,15 +1,12 @@
 //! What a stage is built from: everything that is there before the stages.
 
-use crate::build::AllNames;
-use crate::build::Site;
+use igimp_model::{BodyPart, Load, Material};
+use igimp_schema::diagnostic::Problems;
+use igimp_schema::tree::{Node, Wrong};
+
 use crate::build::bodies::sequence::Sequence;
 use crate::build::bodies::site::Soil;
-use igimp_model::BodyPart;
-use igimp_model::Load;
-use igimp_model::Material;
-use igimp_schema::diagnostic::Problems;
-use igimp_schema::tree::Node;
-use igimp_schema::tree::Wrong;
+use crate::build::{AllNames, Site};
 
 /// What stages refer to.
 pub(crate) struct Context<'a, const D: usize = 2> {

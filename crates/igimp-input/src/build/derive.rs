@@ -3,9 +3,10 @@
 
 use std::path::Path;
 
-use super::outputs::quantities::unit_of;
 use igimp_schema::schema::SPACE;
 use igimp_schema::tree::{Node, Value};
+
+use super::outputs::quantities::unit_of;
 
 /// Puts them into the tree.
 pub(super) fn derive(tree: &mut Node, file: &Path) {

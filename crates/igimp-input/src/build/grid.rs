@@ -6,13 +6,13 @@ pub(crate) mod lines;
 use std::sync::Arc;
 
 use igimp_assembly::{DomainUpdate, Geometry, Kinematics, Locking, Method, Remedy, SmallCuts};
-use igimp_shape::{Basis, Gimp, Linear};
-
 use igimp_model::{AxisSpec, BodyPart, GridSpec, MixedCells};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::text::{count, number};
 use igimp_schema::tree::Node;
+use igimp_shape::{Basis, Gimp, Linear};
 use igimp_text::short;
+
 use lines::{Wish, Zone, largest_jump};
 
 /// Most cells, and most particles.

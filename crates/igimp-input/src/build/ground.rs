@@ -4,10 +4,11 @@ pub(crate) mod layers;
 pub(crate) mod level;
 pub(crate) mod space;
 
-use super::bodies::site::Site;
 use igimp_geometry::polygon::contains;
 use igimp_model::{BodyPart, PoreSource, Raster, table_level};
 use igimp_schema::text::number;
+
+use super::bodies::site::Site;
 
 /// What conditions of the water ask of the ground.
 pub(super) trait Earth<const D: usize> {

@@ -2,13 +2,14 @@
 
 pub(crate) mod space;
 
-use super::bodies::site::{Site, Soil};
-use super::grid::Frame;
-use crate::geometry::cover;
 use igimp_model::{AxisSpec, Load, LoadKind};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::text::{clip, number, point};
 use igimp_schema::tree::Node;
+
+use super::bodies::site::{Site, Soil};
+use super::grid::Frame;
+use crate::geometry::cover;
 
 /// The loads.
 pub(super) fn loads(tree: &Node, site: &Site, problems: &mut Problems) -> Vec<Option<Load>> {

@@ -2,13 +2,14 @@
 
 pub(crate) mod profiles;
 
-use profiles::{Extent, Property, TABLES, Terms, property};
 use std::sync::Arc;
 
 use igimp_model::{BodyPart, Drainage, Flow, Ground, Layer, Material, Profile, Profiles, Strength};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::text::{clip, number};
 use igimp_schema::tree::{Entry, Node, Wrong};
+
+use profiles::{Extent, Property, TABLES, Terms, property};
 
 /// What may be said of a strength, of Young's modulus, of a unit weight and of friction that vary.
 const STRENGTH: Terms = Terms {

@@ -8,9 +8,6 @@ pub(crate) mod study;
 use std::path::{Path, PathBuf};
 
 use igimp_linear::SolverKind;
-
-use super::AllNames;
-use super::bodies::site::Soil;
 use igimp_model::{
     Average, Cut, Every, Field, Flow, Material, Monitor, Output, Section, SectionReference,
     SolverSettings, Stage, StageKind, Strength,
@@ -19,6 +16,9 @@ use igimp_results::fields::length;
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::text::{clip, point};
 use igimp_schema::tree::Node;
+
+use super::AllNames;
+use super::bodies::site::Soil;
 use quantities::fields;
 
 /// Newton's method, step cutting, linear solver.

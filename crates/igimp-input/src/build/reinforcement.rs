@@ -2,13 +2,14 @@
 
 pub(crate) mod space;
 
-use super::AllNames;
-use super::bodies::site::{Site, Soil};
-use crate::build::context::Context;
 use igimp_model::{ReinforcementKind, ReinforcementPart, distance};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::text::{clip, number, point};
 use igimp_schema::tree::Node;
+
+use super::AllNames;
+use super::bodies::site::{Site, Soil};
+use crate::build::context::Context;
 
 /// Places along a member at which soil is looked for.
 const SAMPLES: u32 = 40;

@@ -7,12 +7,12 @@ pub(crate) mod stage;
 use std::sync::Arc;
 
 use igimp_assembly::{SurfaceError, Tension};
-
-use super::grid::Frame;
 use igimp_model::{Adhesion, Material, RigidForm, RigidInterface, RigidPart, RigidShear, Strength};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::text::{clip, number};
 use igimp_schema::tree::Node;
+
+use super::grid::Frame;
 
 /// A body is at least so many cells thick.
 const LEAST_CELLS: f64 = 2.0;

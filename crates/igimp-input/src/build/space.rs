@@ -3,20 +3,20 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use super::assemble::{self, Basics, Upon};
-use super::bodies::sequence::{Sequence, placed};
-use super::bodies::site::Soil;
-use super::bodies::solids;
-use super::grid::Frame;
-use super::grid::boundaries;
-use super::{AllNames, loads, reinforcement, rigid, water};
-use crate::build::bodies::site::Solids;
-use crate::build::context::Context;
 use igimp_geometry::region::Region;
 use igimp_model::{BodyPart, Case, Ground, LoadKind, Material};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::text::{clip, count, number, point};
 use igimp_schema::tree::Node;
+
+use super::assemble::{self, Basics, Upon};
+use super::bodies::sequence::{Sequence, placed};
+use super::bodies::site::Soil;
+use super::bodies::solids;
+use super::grid::{Frame, boundaries};
+use super::{AllNames, loads, reinforcement, rigid, water};
+use crate::build::bodies::site::Solids;
+use crate::build::context::Context;
 
 /// Most particles.
 const MOST: f64 = 5e7;

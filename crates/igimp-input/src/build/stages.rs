@@ -4,13 +4,13 @@ pub(crate) mod construction;
 pub(crate) mod safety;
 
 use igimp_assembly::Geometry;
-
-use super::ground::level::uneven;
-use crate::build::context::Context;
 use igimp_model::{LoadKind, Stage, StageKind, StopWhen, Strength};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::text::{clip, number, row};
 use igimp_schema::tree::{Node, Wrong};
+
+use super::ground::level::uneven;
+use crate::build::context::Context;
 use safety::{run_out, strength_reduction};
 
 /// The stages.

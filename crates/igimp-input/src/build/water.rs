@@ -2,14 +2,15 @@
 
 pub(crate) mod checks;
 
-use super::AllNames;
-use super::bodies::sequence::{Scene, Sequence};
-use super::bodies::surfaces::terrain;
-use super::ground::{Earth, Surface, UprightFace};
 use igimp_model::{BodyPart, Material, PoreSource, WaterCondition};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::text::{clip, number};
 use igimp_schema::tree::Node;
+
+use super::AllNames;
+use super::bodies::sequence::{Scene, Sequence};
+use super::bodies::surfaces::terrain;
+use super::ground::{Earth, Surface, UprightFace};
 
 /// What conditions of the water are held against.
 pub(super) struct Around<'a, const D: usize = 2> {

@@ -1,7 +1,8 @@
 //! Columns of numbers in CSV files: a header that may say units, `#` before comments.
 
-use super::Trouble;
 use igimp_schema::text::clip;
+
+use super::Trouble;
 
 /// What a file holds.
 #[derive(Debug)]

@@ -3,8 +3,9 @@
 //! DXF is pairs of lines, a group code and a value. Code 0 begins an entity, 8 is its layer, 10 and 20 (11 and 21) are
 //! coordinates, 42 is the bulge of a polyline, 70 its flags (AutoCAD DXF reference, "entities section").
 
-use super::Trouble;
 use igimp_schema::text::{clip, number, row};
+
+use super::Trouble;
 
 /// How a binary drawing begins.
 const BINARY: &str = "AutoCAD Binary DXF";

@@ -2,12 +2,13 @@
 
 use std::path::Path;
 
-use super::columns::columns;
-use super::{LARGEST, Named, Trouble, quantity, text_of, unit_beside, unit_of};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::quantity::Dimension;
 use igimp_schema::text::clip;
 use igimp_schema::tree::{Entry, Node, Value};
+
+use super::columns::columns;
+use super::{LARGEST, Named, Trouble, quantity, text_of, unit_beside, unit_of};
 
 /// Most points.
 const MOST: usize = 100_000;

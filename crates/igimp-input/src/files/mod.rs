@@ -14,11 +14,12 @@ mod stl;
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
-use super::bytes;
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::quantity::{Dimension, Quantity};
 use igimp_schema::text::clip;
 use igimp_schema::tree::{Node, Value};
+
+use super::bytes;
 
 /// Most bytes of a file.
 const LARGEST: u64 = 32 << 20;

@@ -2,12 +2,13 @@
 
 use std::path::Path;
 
-use super::columns::columns;
-use super::dxf::{self, Line};
-use super::{LARGEST, Named, Trouble, quantity, text_of, unit_of};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::quantity::Dimension;
 use igimp_schema::tree::{Node, Value, Wrong};
+
+use super::columns::columns;
+use super::dxf::{self, Line};
+use super::{LARGEST, Named, Trouble, quantity, text_of, unit_of};
 
 /// Ends of two lines closer than this share of their extent are one \[-\].
 const SAME: f64 = 1e-9;

@@ -2,12 +2,13 @@
 
 use std::path::Path;
 
-use super::columns::{Columns, columns};
-use super::{LARGEST, Named, Trouble, quantity, text_of, unit_of};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::quantity::Dimension;
 use igimp_schema::text::{clip, number};
 use igimp_schema::tree::{Entry, Node, Value};
+
+use super::columns::{Columns, columns};
+use super::{LARGEST, Named, Trouble, quantity, text_of, unit_of};
 
 /// What the file has.
 const COLUMNS: [&str; 3] = ["x", "y", "value"];

@@ -4,12 +4,13 @@ use std::collections::HashMap;
 use std::io::Cursor;
 use std::path::Path;
 
-use super::{LARGEST, Named, Trouble, quantity, unit_beside};
-use crate::bytes;
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::quantity::Dimension;
 use igimp_schema::text::clip;
 use igimp_schema::tree::{Entry, Node, Value};
+
+use super::{LARGEST, Named, Trouble, quantity, unit_beside};
+use crate::bytes;
 
 /// Most triangles.
 const MOST: usize = 100_000;

@@ -4,13 +4,11 @@
 //! (N. J. Higham & T. Mary, *Mixed precision algorithms in numerical linear algebra*, Acta Numerica 31 (2022), section 5). The residual
 //! that counts is computed from the matrix itself, in the end and after every restart.
 
-use crate::TangentMatrix;
-
 use super::iterations::{Operators, conjugate_gradients, minimal_residuals, norm};
 use super::product::Product;
 use crate::bordered::{Elimination, add_border};
 use crate::refine::max_norm;
-use crate::{LinearSolverError, SolveReport, check};
+use crate::{LinearSolverError, SolveReport, TangentMatrix, check};
 
 /// Vectors between restarts of generalised minimal residuals.
 const RESTART: usize = 300;

@@ -3,9 +3,10 @@
 
 use std::ops::Range;
 
-use crate::TangentMatrix;
 use faer::traits::pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
+
+use crate::TangentMatrix;
 
 /// Nodes that one task works on in a symmetric matrix.
 const CHUNK: usize = 256;

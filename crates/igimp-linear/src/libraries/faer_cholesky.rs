@@ -7,7 +7,6 @@
 
 use std::sync::Arc;
 
-use crate::{CompressedColumns, Pattern, TangentMatrix};
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::LltRegularization;
 use faer::perm::PermRef;
@@ -17,9 +16,12 @@ use faer::sparse::linalg::cholesky::{
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Par, Side, Spec};
 
-use crate::check::Inspection;
+use crate::check::{self, Inspection};
 use crate::refine::{Accuracy, Refinement};
-use crate::{LinearSolver, LinearSolverError, NestedDissection, SolveReport, check};
+use crate::{
+    CompressedColumns, LinearSolver, LinearSolverError, NestedDissection, Pattern, SolveReport,
+    TangentMatrix,
+};
 
 /// Supernodal Cholesky factorisation for symmetric positive definite matrices; reads the lower triangle only.
 #[derive(Default)]

@@ -6,7 +6,6 @@
 
 use std::sync::Arc;
 
-use crate::{CompressedColumns, Pattern, TangentMatrix};
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::SparseColMatRef;
 use faer::sparse::linalg::LuError;
@@ -14,9 +13,11 @@ use faer::sparse::linalg::lu::{self, LuRef, LuSymbolicParams, NumericLu, Symboli
 use faer::{Conj, MatMut, Par, Spec};
 
 use super::faer_cholesky::symbolic_view;
-use crate::check::Inspection;
+use crate::check::{self, Inspection};
 use crate::refine::{Accuracy, Refinement, probe};
-use crate::{LinearSolver, LinearSolverError, SolveReport, check};
+use crate::{
+    CompressedColumns, LinearSolver, LinearSolverError, Pattern, SolveReport, TangentMatrix,
+};
 
 /// LU with partial pivoting for any non-singular matrix.
 #[derive(Default)]

@@ -5,14 +5,16 @@
 
 use std::sync::Arc;
 
-use crate::{CompressedColumns, Pattern, TangentMatrix};
 use nalgebra::DMatrixViewMut;
 use nalgebra_sparse::factorization::{CscCholesky, CscSymbolicCholesky};
 use nalgebra_sparse::pattern::SparsityPattern;
 
-use crate::check::Inspection;
+use crate::check::{self, Inspection};
 use crate::refine::{Accuracy, Refinement};
-use crate::{LinearSolver, LinearSolverError, NestedDissection, SolveReport, check};
+use crate::{
+    CompressedColumns, LinearSolver, LinearSolverError, NestedDissection, Pattern, SolveReport,
+    TangentMatrix,
+};
 
 /// Column-by-column Cholesky factorisation for symmetric positive definite matrices.
 #[derive(Default)]

@@ -6,13 +6,15 @@
 
 use std::sync::Arc;
 
-use crate::{CompressedColumns, Pattern, TangentMatrix};
 use sprs::linalg::bicgstab::BiCGSTAB;
 use sprs::{CsMat, CsVec};
 
-use crate::check::Inspection;
+use crate::check::{self, Inspection};
 use crate::refine::{max_norm, relative_residual_of};
-use crate::{Accuracy, LinearSolver, LinearSolverError, SolveReport, check};
+use crate::{
+    Accuracy, CompressedColumns, LinearSolver, LinearSolverError, Pattern, SolveReport,
+    TangentMatrix,
+};
 
 /// Iterations without a smaller residual after which the method is stopped.
 const PATIENCE: usize = 500;

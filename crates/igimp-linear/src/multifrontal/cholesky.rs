@@ -14,7 +14,6 @@
 
 use std::ops::Range;
 
-use crate::TangentMatrix;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::{
     LltError, LltRegularization, cholesky_in_place, cholesky_in_place_scratch,
@@ -36,9 +35,9 @@ use super::extend_add::{Target, triangle_column};
 use super::kernel::{Contribution, Kernel, Room, Substitution};
 use super::scratch::make_room;
 use super::tree::plan::Plan;
+use crate::TangentMatrix;
 use crate::multifrontal::dense::layout::Shape;
-use crate::multifrontal::tree::front::Extent;
-use crate::multifrontal::tree::front::Front;
+use crate::multifrontal::tree::front::{Extent, Front};
 
 /// Elimination of K, with its diagonal by unknown.
 pub(super) struct Cholesky<'a> {

@@ -2,8 +2,6 @@
 
 use std::sync::Arc;
 
-use crate::{Pattern, TangentMatrix};
-
 use super::super::check::{self, Inspection};
 use super::super::refine::{Accuracy, Refinement, probe};
 use super::super::{GeneralLu, LinearSolver, LinearSolverError, SolveReport};
@@ -16,6 +14,7 @@ use super::scratch::Workshop;
 use super::single::Single;
 use super::substitution::Vectors;
 use super::tree::plan::Plan;
+use crate::{Pattern, TangentMatrix};
 
 /// Largest system that [`GeneralLu`] is tried on: it needs ten times the memory and the time.
 const FALLBACK_UNKNOWNS: usize = 50_000;

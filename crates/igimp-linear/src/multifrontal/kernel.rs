@@ -5,8 +5,7 @@ use super::dense::scalar::Scalar;
 use crate::LinearSolverError;
 use crate::multifrontal::dense::layout::Shape;
 use crate::multifrontal::extend_add::{BorderMap, Waiting};
-use crate::multifrontal::tree::front::Extent;
-use crate::multifrontal::tree::front::Front;
+use crate::multifrontal::tree::front::{Extent, Front};
 use crate::multifrontal::tree::plan::Plan;
 
 /// A kind of elimination, on given values.

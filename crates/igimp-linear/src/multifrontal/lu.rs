@@ -13,7 +13,6 @@
 
 use std::ops::Range;
 
-use crate::TangentMatrix;
 use faer::linalg::matmul::matmul;
 use faer::linalg::triangular_solve::{
     solve_lower_triangular_in_place, solve_unit_lower_triangular_in_place,
@@ -32,9 +31,9 @@ use super::extend_add::Target;
 use super::kernel::{Contribution, Kernel, Room, Substitution};
 use super::scratch::make_room;
 use super::tree::plan::Plan;
+use crate::TangentMatrix;
 use crate::multifrontal::dense::layout::Shape;
-use crate::multifrontal::tree::front::Extent;
-use crate::multifrontal::tree::front::Front;
+use crate::multifrontal::tree::front::{Extent, Front};
 
 /// Elimination of S K S, with the diagonal of S by unknown.
 pub(super) struct Lu<'a> {

@@ -1,7 +1,5 @@
 //! Factors in single precision: half of the memory, and a preconditioner instead of an inverse (theory, eq. 25c).
 
-use crate::TangentMatrix;
-
 use super::super::refine::max_norm;
 use super::super::{LinearSolverError, SolveReport};
 use super::cholesky::{Cholesky, CholeskyFactors};
@@ -10,6 +8,7 @@ use super::lu::{Lu, LuFactors};
 use super::scratch::Workshop;
 use super::substitution::Vectors;
 use super::tree::plan::Plan;
+use crate::TangentMatrix;
 use crate::krylov::preconditioned::{Demand, Method, Preconditioned};
 
 /// Largest number of iterations: more would say that the factors are of no use.

@@ -2,12 +2,12 @@
 
 use std::sync::Arc;
 
-use crate::{Pattern, TangentMatrix};
-
 use super::super::{Accuracy, LinearSolver, LinearSolverError, SolveReport};
+use super::cholesky::Cholesky;
 use super::engine::Engine;
+use super::lu::Lu;
 use super::tree::plan::Plan;
-use super::{cholesky::Cholesky, lu::Lu};
+use crate::{Pattern, TangentMatrix};
 
 /// Multifrontal LU for structurally symmetric patterns.
 #[derive(Default)]

@@ -11,8 +11,7 @@ use super::kernel::Substitution;
 use super::scratch::{Tools, Workshop, make_room};
 use super::tree::plan::Plan;
 use super::tree::tasks::Task;
-use crate::multifrontal::tree::front::Extent;
-use crate::multifrontal::tree::front::Front;
+use crate::multifrontal::tree::front::{Extent, Front};
 
 /// Vectors for solves, kept from solve to solve.
 #[derive(Default)]

@@ -2,8 +2,6 @@
 
 use std::sync::Arc;
 
-use crate::{Pattern, TangentMatrix};
-
 use super::super::{LinearSolverError, check};
 use super::dense::Dense;
 use super::galerkin;
@@ -11,6 +9,7 @@ use super::rows::{Couplings, convert, residual, slots};
 use super::slabs::Slabs;
 use super::smoother::{Kind, Smoother};
 use super::transfer::Transfer;
+use crate::{Pattern, TangentMatrix};
 
 /// Nodes at which a grid is coarse enough to be solved directly.
 const COARSEST: usize = 150;

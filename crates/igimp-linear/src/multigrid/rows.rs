@@ -6,9 +6,10 @@
 
 use std::ops::Range;
 
-use crate::{Pattern, TangentMatrix};
 use faer::traits::pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
+
+use crate::{Pattern, TangentMatrix};
 
 /// Nodes that one task works on.
 const CHUNK: usize = 256;

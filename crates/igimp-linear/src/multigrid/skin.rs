@@ -9,10 +9,9 @@
 
 use std::sync::Arc;
 
-use crate::{NodeBlock, Pattern, TangentMatrix};
-
 use super::super::multifrontal::Engine;
 use super::super::refine::Accuracy;
+use crate::{NodeBlock, Pattern, TangentMatrix};
 
 /// A node whose diagonal is less than this of the largest one that it is coupled to belongs to the skin \[-\].
 const WEAK: f64 = 0.3;

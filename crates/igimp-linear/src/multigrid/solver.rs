@@ -2,12 +2,11 @@
 
 use std::sync::Arc;
 
-use crate::{Pattern, TangentMatrix};
-
 use super::super::{LinearSolverError, SolveReport, check};
 use super::hierarchy::{self, Preconditioner};
 use super::skin::Skin;
 use crate::krylov::preconditioned::{Demand, Method, Preconditioned};
+use crate::{Pattern, TangentMatrix};
 
 /// Names of the methods.
 const NAMES: [&str; 2] = ["multigrid-cg", "multigrid-gmres"];

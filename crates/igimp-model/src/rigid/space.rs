@@ -3,11 +3,11 @@
 use std::sync::Arc;
 
 use igimp_assembly::{Surface, SurfaceError};
-
-use crate::RigidForm;
 use igimp_geometry::region::Region;
 use igimp_geometry::solid::ClosedSurface;
 use igimp_text::short;
+
+use crate::RigidForm;
 
 /// The shape of a rigid body in space, where it starts. Its reference point is its middle, of a cone its tip.
 #[derive(Clone, Debug, PartialEq)]

@@ -2,8 +2,6 @@
 
 use std::path::Path;
 
-use super::{file_name, titled, write};
-use crate::error::ReportError;
 use igimp_figures::{
     Colour, ColourMap, CurvePlot, LineStyle, ReferenceLine, ReferenceValue, Scale, Series,
     SeriesStyle,
@@ -11,6 +9,9 @@ use igimp_figures::{
 use igimp_results::ResultsError;
 use igimp_results::summary::FigureNote;
 use igimp_results::tables::cells::text_of;
+
+use super::{file_name, titled, write};
+use crate::error::ReportError;
 
 /// Most steps of a kind that are drawn; of more, as many are picked evenly.
 const MOST: usize = 40;

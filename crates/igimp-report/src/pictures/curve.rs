@@ -2,8 +2,6 @@
 
 use std::path::Path;
 
-use super::{file_name, points, style, write};
-use crate::error::ReportError;
 use igimp_figures::{
     Band, Colour, CurvePlot, LineStyle, ReferenceLine, ReferenceValue, Series, SeriesStyle,
 };
@@ -12,6 +10,9 @@ use igimp_results::fields::plain;
 use igimp_results::summary::FigureNote;
 use igimp_results::tables::table::Table;
 use igimp_text::short;
+
+use super::{file_name, points, style, write};
+use crate::error::ReportError;
 
 /// The picture of a curve: the first two columns of its table over each other, with the reference
 /// as a line or as points and its tolerance as a band.

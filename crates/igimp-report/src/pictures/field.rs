@@ -3,14 +3,14 @@
 use std::path::Path;
 
 use igimp_assembly::{Particles, SharedLaw};
-
-use super::{file_name, sentence, titled, water, write};
-use crate::error::ReportError;
-use crate::pieces::Pieces;
 use igimp_figures::{ColourMap, FieldPlot, Outline, OutlineStyle};
 use igimp_model::{Case, Field};
 use igimp_results::fields::{self, Scale};
 use igimp_results::summary::FigureNote;
+
+use super::{file_name, sentence, titled, water, write};
+use crate::error::ReportError;
+use crate::pieces::Pieces;
 
 /// A range this many times that of all but [`FEW`] of the values is cut to theirs.
 const OUTLYING: f64 = 1.2;

@@ -2,8 +2,6 @@
 
 use std::path::Path;
 
-use super::{file_name, points, style, titled, write};
-use crate::error::ReportError;
 use igimp_figures::{
     Band, Colour, CurvePlot, LineStyle, ReferenceLine, ReferenceValue, Series, SeriesStyle,
 };
@@ -12,6 +10,9 @@ use igimp_results::fields::{self, Dimension, Scale};
 use igimp_results::summary::FigureNote;
 use igimp_results::tables::table::Table;
 use igimp_text::short;
+
+use super::{file_name, points, style, titled, write};
+use crate::error::ReportError;
 
 /// Most changes of stage that are marked in a history.
 const MOST_MARKS: usize = 12;

@@ -2,17 +2,17 @@
 
 use igimp_assembly::Particles;
 use igimp_figures::{FieldPlot, Outline, OutlineStyle};
-
-use super::field::edges;
-use super::{Canvas, Over, file_name, titled, write};
-use crate::error::ReportError;
-use crate::slip::{Increment, SlipPoint};
 use igimp_geometry::polygon::bounding_box;
 use igimp_model::Case;
 use igimp_results::measure::Buckets;
 use igimp_results::summary::FigureNote;
 use igimp_results::tables::table::Table;
 use igimp_text::short;
+
+use super::field::edges;
+use super::{Canvas, Over, file_name, titled, write};
+use crate::error::ReportError;
+use crate::slip::{Increment, SlipPoint};
 
 /// Arrows stand so many to the longer side of the picture.
 const ARROWS: f64 = 34.0;

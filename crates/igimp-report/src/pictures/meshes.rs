@@ -2,14 +2,15 @@
 
 use std::path::Path;
 
-use super::{file_name, titled, write};
-use crate::error::ReportError;
 use igimp_figures::{
     Band, Colour, CurvePlot, LineStyle, ReferenceLine, ReferenceValue, Series, SeriesStyle,
 };
 use igimp_results::mesh_study::{ResultKind, StudyResult, StudySummary};
 use igimp_results::summary::{CheckRow, FigureNote, Summary};
 use igimp_text::short;
+
+use super::{file_name, titled, write};
+use crate::error::ReportError;
 
 /// Room to either side of the meshes, as a share of the largest cells \[-\].
 const ROOM: f64 = 0.06;

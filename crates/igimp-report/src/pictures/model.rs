@@ -2,14 +2,15 @@
 
 use std::path::Path;
 
-use super::rigid::{POINTS_OF_CIRCLE, block};
-use super::write;
-use crate::error::ReportError;
 use igimp_figures::{FieldPlot, KeyEntry, KeySample, Outline, OutlineStyle};
 use igimp_geometry::polygon::bounding_box;
 use igimp_model::{AxisSpec, Case, GridSpec, LoadKind, PoreSource, Side, table_level};
 use igimp_results::summary::FigureNote;
 use igimp_text::short;
+
+use super::rigid::{POINTS_OF_CIRCLE, block};
+use super::write;
+use crate::error::ReportError;
 
 /// More cells than this in a direction make grey of the grid lines.
 const MOST_LINES: usize = 160;

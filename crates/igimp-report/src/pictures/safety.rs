@@ -2,12 +2,13 @@
 
 use std::path::Path;
 
-use super::{file_name, titled, write};
-use crate::error::ReportError;
 use igimp_figures::{Band, Colour, CurvePlot, LineStyle, Scale, Series, SeriesStyle};
 use igimp_results::fields::{Dimension, Scale as Unit};
 use igimp_results::summary::{FigureNote, PathPoint, PathSummary, SafetySummary};
 use igimp_text::short;
+
+use super::{file_name, titled, write};
+use crate::error::ReportError;
 
 /// Displacements that differ by more than this factor are drawn over a logarithmic axis.
 const WIDE: f64 = 50.0;

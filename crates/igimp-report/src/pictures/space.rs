@@ -3,14 +3,14 @@
 use std::path::Path;
 
 use igimp_figures::{Face, FieldPlot, SpacePlot, View};
+use igimp_model::{Cut, Field, PoreSource};
+use igimp_results::fields::{self, Scale};
+use igimp_results::summary::FigureNote;
 
 use super::field::Colours;
 use super::{Seen, Shown, sentence, titled, water, write};
 use crate::error::ReportError;
 use crate::skin::{Boxes, Skin};
-use igimp_model::{Cut, Field, PoreSource};
-use igimp_results::fields::{self, Scale};
-use igimp_results::summary::FigureNote;
 
 /// How much the direction of a face itself counts beside that of the surface around it.
 const OWN: f64 = 0.3;

@@ -1,7 +1,6 @@
 //! Water tables, and the surface of free water above the ground.
 
 use igimp_figures::{Outline, OutlineStyle, Polygon};
-
 use igimp_geometry::polygon::bounding_box;
 use igimp_model::{Case, Cut, PoreSource, WaterCondition, table_level};
 

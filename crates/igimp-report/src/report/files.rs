@@ -4,12 +4,12 @@ use std::path::{Component, Path};
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
+use igimp_results::summary::{FigureNote, Summary};
+use igimp_results::tables::cells::text_of;
 use serde::Serialize;
 
 use super::rows::grouped;
 use crate::pictures::{convergence_caption, convergence_plot, histories, stages_of, titled};
-use igimp_results::summary::{FigureNote, Summary};
-use igimp_results::tables::cells::text_of;
 
 /// An SVG larger than this gives way to its PNG if that is smaller \[byte\].
 const MOST_SVG: usize = 150_000;

@@ -2,14 +2,14 @@
 
 use std::fmt::Write as _;
 
+use igimp_results::ending::Ending;
+use igimp_results::mesh_study::{MeshSummary, ResultKind, StudyResult, StudySummary};
+use igimp_text::short;
 use serde::Serialize;
 
 use super::rows::{Number, grouped, time};
 use super::verdict::Verdict;
 use crate::report::numbers::UNKNOWN;
-use igimp_results::ending::Ending;
-use igimp_results::mesh_study::{MeshSummary, ResultKind, StudyResult, StudySummary};
-use igimp_text::short;
 
 /// A study.
 #[derive(Serialize)]

@@ -1,10 +1,5 @@
 //! The rows of the tables of a report, as text.
 
-use serde::Serialize;
-
-use super::verdict::on_safety;
-use crate::report::numbers::UNKNOWN;
-use crate::report::numbers::percent;
 use igimp_model::check::Band;
 use igimp_results::fields::{Dimension, Scale};
 use igimp_results::mesh_study::MeshSummary;
@@ -12,6 +7,10 @@ use igimp_results::summary::{
     MaterialShare, MemberSummary, PoreSummary, StageOutcome, StageSummary, Summary,
 };
 use igimp_text::short;
+use serde::Serialize;
+
+use super::verdict::on_safety;
+use crate::report::numbers::{UNKNOWN, percent};
 
 /// The phases of a stage, in the order of [`StageSummary::phases`].
 pub(super) const PHASES: [&str; 5] = ["set-up", "assembly", "factorisation", "solution", "commit"];

@@ -2,15 +2,14 @@
 
 use std::fmt::Write as _;
 
-use serde::Serialize;
-
-use crate::report::numbers::interval;
-use crate::report::numbers::percent;
 use igimp_results::summary::{
     CheckRow, Kinematic, PathPoint, PathSummary, SafetySummary, StageOutcome, StageSummary,
     StrengthShares, Summary,
 };
 use igimp_text::short;
+use serde::Serialize;
+
+use crate::report::numbers::{interval, percent};
 
 /// A share of moving mass below this may be a failure of a small part only \[-\].
 const LOCAL: f64 = 0.05;

@@ -1,9 +1,10 @@
 //! Materials in words.
 
-use super::{NONE, kilo, table};
 use igimp_model::{Case, Flow, Material, Profile, Strength, StressShare, Variation};
 use igimp_results::summary::SetupTable;
 use igimp_text::short;
+
+use super::{NONE, kilo, table};
 
 pub(super) fn materials<const D: usize>(case: &Case<D>) -> SetupTable {
     let header = [

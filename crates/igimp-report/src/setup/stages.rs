@@ -3,14 +3,14 @@
 use std::fmt::Write as _;
 
 use igimp_assembly::Geometry;
-
-use super::{kilo, table};
 use igimp_model::{
     Case, Construction, Load, Reduction, ReductionPath, RigidDrive, RigidMove, SearchMethod, Stage,
     StageKind, StopWhen,
 };
 use igimp_results::summary::SetupTable;
 use igimp_text::short;
+
+use super::{kilo, table};
 
 pub(super) fn stages<const D: usize>(case: &Case<D>) -> SetupTable {
     let rows = case.stages.iter().enumerate().map(|(number, stage)| {

@@ -3,12 +3,12 @@
 use std::fmt::Write as _;
 
 use igimp_assembly::Tension;
-
-use super::stages::drives_in_words;
-use super::{corners, kilo, point, table};
 use igimp_model::{Adhesion, Case, ReinforcementPart, RigidPart, RigidShear, StageKind, distance};
 use igimp_results::summary::SetupTable;
 use igimp_text::short;
+
+use super::stages::drives_in_words;
+use super::{corners, kilo, point, table};
 
 pub(super) fn rigid_bodies<const D: usize>(case: &Case<D>) -> SetupTable {
     let header = [

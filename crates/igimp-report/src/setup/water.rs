@@ -1,9 +1,10 @@
 //! Conditions of the water, and what the soil does with it, as tables.
 
-use super::{NONE, kilo, point, table};
 use igimp_model::{Case, Drainage, Material, PoreSource, StageKind, WaterCondition};
 use igimp_results::summary::SetupTable;
 use igimp_text::short;
+
+use super::{NONE, kilo, point, table};
 
 /// Most points of a line that are listed one by one.
 const MOST_POINTS: usize = 12;

@@ -10,12 +10,12 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD as BASE64;
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
+use igimp_results::vtu::CellKind;
+use igimp_results::vtu::read::{Frame, Stored};
 use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::skin::{Boxes, Lie, Skin};
-use igimp_results::vtu::CellKind;
-use igimp_results::vtu::read::{Frame, Stored};
 
 /// Numbers of planes across each axis that are tried, most first.
 const PLANES: [usize; 4] = [9, 5, 3, 1];

@@ -12,9 +12,7 @@ use serde_json::Value;
 use sha2::{Digest as _, Sha256};
 
 use crate::atomic::create;
-use crate::error::checkpoint::FORMAT_VERSION;
-use crate::error::checkpoint::PROGRAM;
-use crate::error::checkpoint::{CheckpointError, at};
+use crate::error::checkpoint::{CheckpointError, FORMAT_VERSION, PROGRAM, at};
 
 const FORMAT: &str = "igimp checkpoint";
 pub(super) const FILE: &str = "meta.json";

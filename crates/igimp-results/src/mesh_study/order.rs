@@ -2,10 +2,10 @@
 //!
 //! Pure functions of numbers; theory, eqs. (40b) to (40d).
 
+use igimp_text::short;
 use serde::{Deserialize, Serialize};
 
 use super::Computed;
-use igimp_text::short;
 
 /// Order at which limit loads and factors of safety of perfect plasticity converge \[-\].
 pub(super) const USUAL: f64 = 1.0;

@@ -4,6 +4,7 @@ use std::fs::File;
 use std::path::{Path, PathBuf};
 
 use igimp_assembly::{Particles, SharedLaw};
+use igimp_model::{Case, Field};
 use igimp_shape::Grid;
 
 use super::particles::{Extras, of_grid, of_particles};
@@ -14,7 +15,6 @@ use crate::fields;
 use crate::reinforcement::{self, Installed};
 use crate::rigid::{self, Standing};
 use crate::vtu::UnstructuredGrid;
-use igimp_model::{Case, Field};
 
 /// Structures that are there in a frame.
 #[derive(Clone, Debug, Default)]

@@ -5,8 +5,7 @@ use igimp_assembly::Particles;
 use igimp_material::Tensor;
 use igimp_shape::Grid;
 
-use crate::fields::regime;
-use crate::fields::{deviatoric_stress, mean_pressure};
+use crate::fields::{deviatoric_stress, mean_pressure, regime};
 use crate::vtu::{CellKind, DataArray, UnstructuredGrid, padded};
 
 /// What is written beyond the state of the particles.

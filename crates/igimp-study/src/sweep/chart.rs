@@ -4,11 +4,11 @@
 use std::path::{Path, PathBuf};
 
 use igimp_figures::{CurvePlot, LineStyle, Series, SeriesStyle};
-
-use super::{Collected, SweepError};
 use igimp_report::ReportError;
 use igimp_report::pictures::file_name;
 use igimp_text::on_a_line;
+
+use super::{Collected, SweepError};
 
 /// Most charts, and most lines of one.
 const MOST: [usize; 2] = [12, 12];

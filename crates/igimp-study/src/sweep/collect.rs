@@ -3,13 +3,13 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-use super::columns::{Column, column};
-use super::{Record, Sweep, SweepError, Task};
 use igimp_results::atomic::write_whole;
 use igimp_results::summary::Summary;
 use igimp_results::tables::cells::cell;
-use igimp_text::on_a_line;
-use igimp_text::short;
+use igimp_text::{on_a_line, short};
+
+use super::columns::{Column, column};
+use super::{Record, Sweep, SweepError, Task};
 
 /// The table of a study.
 #[derive(Clone, Debug, PartialEq)]

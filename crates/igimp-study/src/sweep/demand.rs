@@ -1,13 +1,12 @@
 //! What a scheduler is asked for: memory and time of the largest tasks, with a margin.
 
-use rayon::prelude::*;
-
-use super::{Sweep, SweepError, Task};
 use igimp_cases::CaseError;
 use igimp_cases::estimate::speed::Speed;
 use igimp_cases::estimate::{self, time};
-use igimp_model::Case;
-use igimp_model::meshes;
+use igimp_model::{Case, meshes};
+use rayon::prelude::*;
+
+use super::{Sweep, SweepError, Task};
 
 /// Memory asked for over the estimate \[-\].
 const MEMORY: f64 = 1.5;

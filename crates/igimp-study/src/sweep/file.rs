@@ -3,12 +3,12 @@
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use igimp_input::shipped::closest;
+use igimp_schema::toml_text::{self, quoted};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::{Sweep, SweepError, Task};
-use igimp_input::shipped::closest;
-use igimp_schema::toml_text::{self, quoted};
 
 /// Most tasks of a study; more are a slip of the keyboard.
 const MOST_TASKS: usize = 100_000;

@@ -29,20 +29,18 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
-use thiserror::Error;
-
 use igimp_cases::estimate::room;
 use igimp_cases::run::{self, Account, AnyListener, Entered, Start, Target, run_any_entered};
 use igimp_cases::{CaseError, on_one_line};
 use igimp_input::{CaseFile, InputError, bytes};
 use igimp_model::AnyCase;
 use igimp_report::ReportError;
-use igimp_results::ResultsError;
 use igimp_results::ending::Ending;
-use igimp_results::folder;
 use igimp_results::folder::lock::Lock;
 use igimp_results::folder::overwrite_guard::{Replace, refuse_link};
 use igimp_results::folder::provenance::{Claim, Origin, Owner};
+use igimp_results::{ResultsError, folder};
+use thiserror::Error;
 
 pub use collect::{Collected, aligned, collect};
 pub use demand::{Demand, Largest};

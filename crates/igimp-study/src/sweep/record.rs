@@ -4,16 +4,16 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::Path;
 
-use serde::{Deserialize, Serialize};
-use sha2::{Digest, Sha256};
-
-use super::{Sweep, SweepError, Task};
 use igimp_cases::on_one_line;
 use igimp_cases::run::Account;
 use igimp_input::CaseFile;
 use igimp_results::atomic::write_whole;
 use igimp_results::ending::Ending;
 use igimp_text::short;
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+
+use super::{Sweep, SweepError, Task};
 
 /// The content of `task.json`.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]

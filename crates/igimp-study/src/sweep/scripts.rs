@@ -3,12 +3,13 @@
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-use super::{Demand, Sweep, SweepError, Task};
 use igimp_cases::estimate::{readable, time};
 use igimp_report::pictures::file_name;
 use igimp_results::atomic::write_whole;
 use igimp_schema::toml_text;
 use igimp_text::on_a_line;
+
+use super::{Demand, Sweep, SweepError, Task};
 
 /// Most tasks of an array of Slurm: its `MaxArraySize` is 1001 where nobody changed it, and numbers stay below that.
 const ARRAY: usize = 1000;

@@ -1,9 +1,10 @@
 //! GOAL: tasks are what the file says, problems are told with their place, and a table is made of
 //! what is there.
 
-use super::*;
 use igimp_model::check::{Band, Check};
 use igimp_results::summary::{CheckRow, SafetySummary, StageSummary, Summary};
+
+use super::*;
 
 const GRID: &str = "igimp_sweep = 1
 case = \"slope.toml\"

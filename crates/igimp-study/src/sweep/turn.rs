@@ -8,12 +8,13 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use super::{Sweep, SweepError, Task};
 use igimp_cases::CaseError;
 use igimp_cases::run::{Account, AnyListener};
 use igimp_results::ResultsError;
 use igimp_results::ending::Ending;
 use igimp_results::folder::overwrite_guard::Replace;
+
+use super::{Sweep, SweepError, Task};
 
 /// How long to wait before a folder is tried again.
 const PAUSE: Duration = Duration::from_millis(500);

@@ -2,15 +2,14 @@
 
 use std::path::Path;
 
-use super::table;
 use igimp_cases::CaseError;
 use igimp_cases::estimate::speed::Speed;
 use igimp_cases::estimate::watch::side_by_side;
 use igimp_cases::estimate::{Estimate, estimate, readable, time, together};
-use igimp_model::Case;
-use igimp_model::meshes;
-use igimp_text::count;
-use igimp_text::on_a_line;
+use igimp_model::{Case, meshes};
+use igimp_text::{count, on_a_line};
+
+use super::table;
 
 /// The size of a case and what it will cost.
 #[derive(Clone, Debug)]

@@ -5,8 +5,7 @@ use std::path::Path;
 
 use igimp_results::mesh_study::{MeshSummary, StudySummary};
 use igimp_results::summary::{CheckRow, PathPoint, SafetySummary, StrengthShares, Summary};
-use igimp_text::on_a_line;
-use igimp_text::{count, short};
+use igimp_text::{count, on_a_line, short};
 
 use super::{lines, table};
 

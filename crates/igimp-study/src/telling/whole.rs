@@ -2,9 +2,7 @@
 
 use igimp_cases::estimate::time::shares;
 use igimp_cases::run::Event;
-use igimp_model::AnyCase;
-use igimp_model::in_any_dimension;
-use igimp_model::meshes;
+use igimp_model::{AnyCase, in_any_dimension, meshes};
 
 /// Trials of a search that are shown as progress: how many it makes is not known before it ends, and each
 /// takes this share of what is left \[-\].

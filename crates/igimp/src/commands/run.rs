@@ -15,9 +15,9 @@ use igimp_study::telling::verdict;
 use crate::arguments::RunArguments;
 use crate::commands::cases;
 use crate::error::{Exit, ProgramError};
-use crate::output::quoted;
+use crate::output::{self, quoted};
 use crate::progress::Progress;
-use crate::{clock, interrupt, output};
+use crate::{clock, interrupt};
 
 pub(crate) fn run(arguments: &RunArguments) -> Result<Exit, ProgramError> {
     output::use_threads(arguments.threads);

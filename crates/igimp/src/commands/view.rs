@@ -14,7 +14,6 @@ use std::sync::mpsc;
 use crate::arguments::View;
 use crate::error::{Exit, ProgramError};
 use crate::output;
-
 use results::Results;
 use server::Server;
 

@@ -3,10 +3,9 @@
 
 use igimp_assembly::{AssemblyError, Locking, Swallowed};
 use igimp_linear::LinearSolverError;
-use igimp_solver::{Component, StepError, StepFailure};
-
 use igimp_model::{BodyPart, Case, Material, RigidMove, Side, Stage, StageKind, Strength};
 use igimp_results::fields::length;
+use igimp_solver::{Component, StepError, StepFailure};
 use igimp_text::short;
 
 /// Most suggestions that a reader will try.

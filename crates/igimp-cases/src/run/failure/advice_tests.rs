@@ -1,15 +1,14 @@
 //! GOAL: the first suggestion is the one a colleague would give who knows the case.
 
-use igimp_assembly::Method;
-use igimp_assembly::{Geometry, Locking};
-
 use std::sync::Arc;
 
-use super::*;
+use igimp_assembly::{Geometry, Locking, Method};
 use igimp_model::{
     BodyPart, Boundaries, Every, GridSpec, MeshStudy, Output, Profiles, Reduction, RunOut,
     SolverSettings, StopWhen, TitleBlock,
 };
+
+use super::*;
 
 /// A slope of Mohr–Coulomb soil on elastic rock.
 fn case(kind: StageKind) -> Case {

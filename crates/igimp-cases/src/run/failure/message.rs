@@ -4,10 +4,10 @@ use std::fmt::{self, Write as _};
 use std::path::Path;
 
 use igimp_solver::StepFailure;
+use igimp_text::{count, short};
 
 use crate::error::chain;
 use crate::run::Failure;
-use igimp_text::{count, short};
 
 /// Residuals shown before the gap; the last one follows it.
 const SHOWN: usize = 5;

@@ -1,12 +1,13 @@
 //! Holds what a run found against the references of its case.
 
-use super::records::{Moment, Records};
-use super::sections::before_fields;
 use igimp_model::check::{Band, Check};
 use igimp_model::{Case, CheckTime, Reference, ReferenceValues};
 use igimp_results::fields;
 use igimp_results::summary::CheckRow;
 use igimp_results::tables::table::Table;
+
+use super::records::{Moment, Records};
+use super::sections::before_fields;
 
 /// The checks that the case asks for at the end of a stage.
 pub(crate) fn at_end_of_stage<const D: usize>(

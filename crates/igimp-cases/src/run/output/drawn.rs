@@ -4,6 +4,11 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use igimp_assembly::SharedLaw;
+use igimp_model::{Case, Every, in_plane};
+use igimp_report::pictures::{self, Canvas, Failing, Seen, Shown, mechanism};
+use igimp_report::pieces::Pieces;
+use igimp_results::rigid;
+use igimp_results::summary::StageSummary;
 use rayon::prelude::*;
 
 use super::Output;
@@ -12,12 +17,6 @@ use crate::run::model::Model;
 use crate::run::output::outlines;
 use crate::run::resume::End;
 use crate::run::state::State;
-use igimp_model::in_plane;
-use igimp_model::{Case, Every};
-use igimp_report::pictures::{self, Canvas, Failing, Seen, Shown, mechanism};
-use igimp_report::pieces::Pieces;
-use igimp_results::rigid;
-use igimp_results::summary::StageSummary;
 
 impl<const D: usize> Output<D> {
     /// Frames and pictures of the states at the ends of a search, and of the way in which the body fails.

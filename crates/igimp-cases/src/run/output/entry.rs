@@ -3,15 +3,16 @@
 
 use std::path::Path;
 
-use crate::error::CaseError;
-use crate::run::resume::fingerprint;
-use crate::run::{Start, Target};
 use igimp_model::Case;
 use igimp_results::checkpoint::CheckpointError;
 use igimp_results::folder::lock::Lock;
 use igimp_results::folder::overwrite_guard::{admit, refuse_links};
 use igimp_results::folder::provenance::Owner;
 use igimp_results::folder::{self, holds_checkpoints, owner, refuse_foreign};
+
+use crate::error::CaseError;
+use crate::run::resume::fingerprint;
+use crate::run::{Start, Target};
 
 /// Whether a folder holds a run of this very input that was stopped and can go on.
 pub fn can_go_on<const D: usize>(case: &Case<D>, root: &Path) -> bool {

@@ -8,13 +8,13 @@ use std::path::{Path, PathBuf};
 
 use igimp_assembly::StepConditions;
 use igimp_linear::{LinearSolver, Record};
-
-use crate::error::CaseError;
 use igimp_results::atomic::at;
 use igimp_results::folder::claim;
 use igimp_results::folder::overwrite_guard::refuse_link;
 use igimp_results::linear_system::{About, LinearSystem, remove};
 use igimp_results::summary::{StageSummary, Summary};
+
+use crate::error::CaseError;
 
 /// The correction whose system is written.
 const CORRECTION: usize = 2;

@@ -4,17 +4,16 @@
 use std::collections::HashSet;
 
 use igimp_figures::{Outline, OutlineStyle};
+use igimp_model::{Case, LoadKind};
+use igimp_report::pictures::rigid::{POINTS_OF_CIRCLE, block};
+use igimp_report::pictures::{Over, water};
+use igimp_results::paraview::frames::Structures;
+use igimp_results::reinforcement;
+use igimp_results::rigid::Standing;
 use igimp_solver::Body;
 
 use crate::run::rigid;
 use crate::run::state::{Controls, State};
-use igimp_model::{Case, LoadKind};
-use igimp_report::pictures::Over;
-use igimp_report::pictures::rigid::{POINTS_OF_CIRCLE, block};
-use igimp_report::pictures::water;
-use igimp_results::paraview::frames::Structures;
-use igimp_results::reinforcement;
-use igimp_results::rigid::Standing;
 
 /// What is drawn over a state: everything rigid in it, as far as it lies within the grid, the water tables that act, and
 /// reinforcement. `body_of` has the body of each particle by its number.

@@ -2,7 +2,6 @@
 //! the particles around it best (theory, eq. 40h). Fields that are linear are exact.
 
 use igimp_assembly::Particles;
-
 use igimp_results::measure::nearest;
 
 /// Particles are around another one as far as their domains reach, and by this share further \[-\].

@@ -2,6 +2,9 @@
 
 use igimp_assembly::{Particles, Reinforcement, RigidBody, SharedLaw};
 use igimp_geometry::SeedError;
+use igimp_model::{Case, CheckTime, Field, Quantity};
+use igimp_results::fields;
+use igimp_results::tables::table::Table;
 use igimp_solver::Accepted;
 
 use super::place::Place;
@@ -9,9 +12,6 @@ use crate::error::CaseError;
 use crate::run::model::reduced;
 use crate::run::state::Controls;
 use crate::run::{reinforcement, rigid};
-use igimp_model::{Case, CheckTime, Field, Quantity};
-use igimp_results::fields;
-use igimp_results::tables::table::Table;
 
 /// A state that is recorded: the end of a step, or of a trial in a strength reduction.
 #[derive(Clone, Copy, Debug)]

@@ -2,20 +2,18 @@
 
 use std::collections::BTreeMap;
 
+use igimp_model::Case;
 use igimp_results::ResultsError;
+use igimp_results::checkpoint::{self, Meta};
+use igimp_results::summary::Summary;
+use igimp_results::tables::rows::RowWriter;
 use igimp_solver::Body;
 use rayon::prelude::*;
 
 use super::Output;
 use crate::error::CaseError;
-use crate::run::resume::fingerprint;
-use crate::run::resume::{Notes, end_of_stage};
-use crate::run::resume::{reinforcement, rigid};
+use crate::run::resume::{Notes, end_of_stage, fingerprint, reinforcement, rigid};
 use crate::run::state::Controls;
-use igimp_model::Case;
-use igimp_results::checkpoint::{self, Meta};
-use igimp_results::summary::Summary;
-use igimp_results::tables::rows::RowWriter;
 
 impl<const D: usize> Output<D> {
     pub(super) fn notes(

@@ -3,17 +3,16 @@
 use std::collections::HashMap;
 
 use igimp_assembly::{AssemblyError, Particles, SharedLaw};
+use igimp_model::{Average, Case, Cut, Section};
+use igimp_report::pictures::file_name;
+use igimp_results::fields;
+use igimp_results::measure::nearest;
+use igimp_results::tables::table::Table;
 use igimp_shape::Grid;
 
 use super::place::Place;
 use crate::run::model::Model;
 use crate::run::state::State;
-use igimp_model::{Average, Case, Cut, Section};
-use igimp_results::measure::nearest;
-
-use igimp_report::pictures::file_name;
-use igimp_results::fields;
-use igimp_results::tables::table::Table;
 
 /// Number and name of a stage as part of a file name.
 pub(crate) fn stage_name<const D: usize>(case: &Case<D>, stage: usize) -> String {

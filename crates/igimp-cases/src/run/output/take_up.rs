@@ -3,23 +3,23 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
+use igimp_model::Case;
 use igimp_results::ResultsError;
+use igimp_results::atomic::write_whole;
+use igimp_results::checkpoint::{self, CheckpointError};
+use igimp_results::folder::provenance::Claim;
+use igimp_results::folder::{self, Folder};
+use igimp_results::tables::rows;
 use igimp_solver::Body;
 
 use super::{BEFORE, Output, csv};
 use crate::error::CaseError;
 use crate::run::Target;
 use crate::run::output::records::Records;
-use crate::run::resume::fingerprint;
-use crate::run::resume::{End, Left, Notes, Resumption, Search, end_of_stage, notes_of};
-use crate::run::resume::{reinforcement, rigid};
+use crate::run::resume::{
+    End, Left, Notes, Resumption, Search, end_of_stage, fingerprint, notes_of, reinforcement, rigid,
+};
 use crate::run::state::{Controls, State};
-use igimp_model::Case;
-use igimp_results::atomic::write_whole;
-use igimp_results::checkpoint::{self, CheckpointError};
-use igimp_results::folder::provenance::Claim;
-use igimp_results::folder::{self, Folder};
-use igimp_results::tables::rows;
 
 impl<const D: usize> Output<D> {
     /// A results folder taken up at its newest checkpoint; without one the run begins afresh.

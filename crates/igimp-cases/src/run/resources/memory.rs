@@ -1,7 +1,8 @@
 //! Memory of a run, as the system counts it for the process; nothing where it does not tell.
 
-use crate::estimate::Estimate;
 use igimp_results::summary::MemoryShare;
+
+use crate::estimate::Estimate;
 
 /// Resident memory at the beginning of a run \[MiB\].
 #[derive(Clone, Copy, Debug)]

@@ -2,12 +2,12 @@
 //! the case.
 
 use igimp_assembly::{Reinforcement, SegmentState};
+use igimp_model::Case;
 use igimp_solver::Body;
 use serde::{Deserialize, Serialize};
 
 use crate::run::reinforcement;
 use crate::run::state::Controls;
-use igimp_model::Case;
 
 /// What steps change of a member.
 #[derive(Clone, Debug, Serialize, Deserialize)]

@@ -2,13 +2,13 @@
 //! are is in the case.
 
 use igimp_assembly::{ContactNode, RigidBody};
+use igimp_model::Case;
 use igimp_solver::Body;
 use serde::{Deserialize, Serialize};
 
 use crate::error::CaseError;
 use crate::run::rigid;
 use crate::run::state::Controls;
-use igimp_model::Case;
 
 /// What steps change of a rigid body.
 #[derive(Clone, Debug, Serialize, Deserialize)]

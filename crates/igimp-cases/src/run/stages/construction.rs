@@ -10,17 +10,16 @@ use igimp_assembly::{
     Kinematics, ParticleFields, Particles, PoreSite, PoreWater as _, Stencils, System,
 };
 use igimp_material::{ConstitutiveModel, ScaledLaw, TangentKind, elastic_left_cauchy_green_of};
+use igimp_model::{Construction, Drainage, Ground, StageKind};
+use igimp_results::summary::StageSummary;
+use igimp_text::short;
 
 use super::loading::let_go;
 use crate::error::CaseError;
 use crate::run::model::Model;
 use crate::run::resume::Resumption;
 use crate::run::session::{Ended, Session};
-use crate::run::state::State;
-use crate::run::state::gravity_of_weights;
-use igimp_model::{Construction, Drainage, Ground, StageKind};
-use igimp_results::summary::StageSummary;
-use igimp_text::short;
+use crate::run::state::{State, gravity_of_weights};
 
 /// Marches a state to the end of a construction stage; one that an earlier run left within it began with `start`.
 pub(crate) fn build<const D: usize>(

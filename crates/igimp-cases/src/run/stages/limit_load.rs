@@ -5,21 +5,20 @@ use std::cell::RefCell;
 use std::ops::ControlFlow;
 
 use igimp_assembly::Geometry;
+use igimp_model::{RigidMove, Stage, StageKind};
+use igimp_results::summary::{PathEnd, PathPoint, PathSummary, StageSummary};
 use igimp_solver::{
     Accepted, ContinuationSettings, ContinuationState, Observer, StepError, follow,
 };
+use igimp_text::short;
 
 use crate::error::CaseError;
 use crate::limit;
-use crate::run::Event;
 use crate::run::model::displacement_scale;
 use crate::run::output::records::Moment;
-use crate::run::rigid;
 use crate::run::session::{Ended, Session};
 use crate::run::state::{Controls, RigidTrack, State};
-use igimp_model::{RigidMove, Stage, StageKind};
-use igimp_results::summary::{PathEnd, PathPoint, PathSummary, StageSummary};
-use igimp_text::short;
+use crate::run::{Event, rigid};
 
 /// The first change of the load over the smallest one at which the march found no equilibrium \[-\].
 const FIRST_CHANGE: f64 = 0.5;

@@ -3,18 +3,17 @@
 
 use std::sync::Arc;
 
-use super::limit_load;
-use super::rigid_begin;
+use igimp_model::{Case, RigidDrive, Stage, StageKind};
+use igimp_results::summary::StageSummary;
+use igimp_text::short;
+
+use super::{limit_load, rigid_begin};
 use crate::error::CaseError;
-use crate::run::output::records::Moment;
-use crate::run::output::records::Taken;
+use crate::run::output::records::{Moment, Taken};
 use crate::run::reinforcement;
 use crate::run::resume::Resumption;
 use crate::run::session::{Ended, Path, Session, march_path};
 use crate::run::state::{Controls, State};
-use igimp_model::{Case, RigidDrive, Stage, StageKind};
-use igimp_results::summary::StageSummary;
-use igimp_text::short;
 
 /// The controls at the end of a stage that begins with `start`.
 pub(crate) fn target<const D: usize>(case: &Case<D>, stage: &Stage, start: &Controls) -> Controls {

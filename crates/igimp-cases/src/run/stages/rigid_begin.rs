@@ -1,13 +1,11 @@
 //! Rigid bodies at the beginning of a stage that moves them.
 
-use crate::CaseError;
-use crate::run::Model;
-use crate::run::State;
-use crate::run::rigid::cell_near;
-use crate::run::rigid::gap_below;
-use crate::run::rigid::made;
 use igimp_model::{RigidDrive, RigidMove};
 use igimp_text::short;
+
+use crate::CaseError;
+use crate::run::rigid::{cell_near, gap_below, made};
+use crate::run::{Model, State};
 
 /// Prepares a state for a stage that moves rigid bodies: those that are not there are placed, and what
 /// held a component hands over to the force that will drive it. Tells of bodies that were shifted.

@@ -8,8 +8,12 @@
 //! last step without any drag has to find equilibrium. This is a mode for run-out alone, never for a
 //! factor of safety.
 
-use igimp_assembly::{Geometry, Locking, Method};
 use std::cell::Cell;
+
+use igimp_assembly::{Geometry, Locking, Method};
+use igimp_model::{Reduction, RunOut};
+use igimp_results::summary::StageSummary;
+use igimp_text::short;
 
 use super::loading::begin;
 use crate::error::CaseError;
@@ -17,9 +21,6 @@ use crate::run::model::Model;
 use crate::run::resume::Resumption;
 use crate::run::session::{Ended, Path, Session, march_path};
 use crate::run::state::State;
-use igimp_model::{Reduction, RunOut};
-use igimp_results::summary::StageSummary;
-use igimp_text::short;
 
 /// Bounds of the change of drag from step to step \[-\].
 const CHANGE: [f64; 2] = [0.25, 4.0];

@@ -11,7 +11,10 @@ mod trial;
 use std::sync::Arc;
 
 use igimp_assembly::Geometry;
+use igimp_model::{Case, ReductionPath, SearchMethod, Stage, StrengthReduction};
+use igimp_results::summary::{SafetySummary, StageSummary, TrialSummary};
 use igimp_solver::Body;
+use igimp_text::short;
 
 use self::criterion::default_limit;
 use self::interval::next_factor;
@@ -19,14 +22,10 @@ use self::remarks::{few_cells, moving_mass, remarks};
 use super::loading::begin;
 use crate::error::CaseError;
 use crate::run::Event;
-use crate::run::model::Model;
-use crate::run::model::height;
+use crate::run::model::{Model, height};
 use crate::run::resume::{End, Search};
 use crate::run::session::{Ended, Path, Session, march_path};
 use crate::run::state::{Controls, State};
-use igimp_model::{Case, ReductionPath, SearchMethod, Stage, StrengthReduction};
-use igimp_results::summary::{SafetySummary, StageSummary, TrialSummary};
-use igimp_text::short;
 
 /// Most trials that a search makes before it reports the interval that it has.
 const MOST_TRIALS: usize = 40;

@@ -4,9 +4,10 @@
 
 use std::rc::Rc;
 
-use crate::build::AllNames;
 use igimp_model::BodyPart;
 use igimp_schema::tree::Node;
+
+use crate::build::AllNames;
 
 /// What is there at a time.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -1,13 +1,14 @@
 //! The bodies on the grid, for the checks that look at them.
 
+use std::sync::Arc;
+
+use igimp_geometry::polygon::{bounding_box, contains};
+use igimp_geometry::region::Region;
+use igimp_model::{BodyPart, LoadKind};
+
 use crate::build::bodies::sequence::Sequence;
 use crate::build::grid::Frame;
 use crate::geometry::{near_edge, top_edges};
-use igimp_geometry::polygon::bounding_box;
-use igimp_geometry::polygon::contains;
-use igimp_geometry::region::Region;
-use igimp_model::{BodyPart, LoadKind};
-use std::sync::Arc;
 
 /// Bodies and grid as far as they were found right.
 pub(crate) struct Site {

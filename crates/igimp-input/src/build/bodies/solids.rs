@@ -1,13 +1,13 @@
 //! Bodies in space: what their keys say, made into solids.
 
-use super::corners;
-use crate::build::bodies::surfaces::Who;
-use crate::build::bodies::surfaces::{closed_surface, ground};
 use igimp_geometry::region::{Cover, Part, Region};
 use igimp_geometry::solid::{Cylinder, Difference, Prism, Solid, Sphere};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::text::{clip, number};
 use igimp_schema::tree::Node;
+
+use super::corners;
+use crate::build::bodies::surfaces::{Who, closed_surface, ground};
 
 /// The keys that say a shape.
 const SHAPES: [&str; 6] = ["box", "polygon", "plan", "cylinder", "sphere", "surface"];

@@ -1,9 +1,8 @@
 //! Surfaces in space: closed ones of triangles, and those of the ground.
 
-use std::fmt::Display;
+use std::fmt::{self, Display, Formatter};
 use std::sync::Arc;
 
-use crate::build::bodies::corners;
 use igimp_geometry::solid::{
     ClosedSurface, ClosedSurfaceError, Height, Layer, LayerError, Prism, Solid, Terrain,
     TerrainError,
@@ -11,8 +10,8 @@ use igimp_geometry::solid::{
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::text::number;
 use igimp_schema::tree::Node;
-use std::fmt;
-use std::fmt::Formatter;
+
+use crate::build::bodies::corners;
 
 /// The closed surface of a table.
 pub(crate) fn closed_surface(

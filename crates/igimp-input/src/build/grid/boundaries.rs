@@ -1,9 +1,10 @@
 //! Supports.
 
-use super::Frame;
 use igimp_model::{Boundaries, FixedBox, Side};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::tree::Node;
+
+use super::Frame;
 
 /// The supports.
 pub(crate) fn boundaries<const D: usize>(

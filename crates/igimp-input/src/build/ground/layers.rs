@@ -1,18 +1,18 @@
 //! Warnings about how bodies sit on the grid and by each other: boundaries of layers within cells,
 //! gaps, bodies thinner than three cells, and stiffness out of proportion to the weight.
 
-use crate::build::bodies::sequence::Sequence;
-use crate::build::bodies::site::Site;
-use crate::build::grid::Frame;
-use crate::geometry::{facing, largest_run};
-use igimp_geometry::polygon::bounding_box;
-use igimp_geometry::polygon::contains;
+use igimp_geometry::polygon::{bounding_box, contains};
 use igimp_model::{BodyPart, Ground, Material, Stage, StageKind, Strength};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::source::Place;
 use igimp_schema::text::{clip, number, point};
 use igimp_schema::tree::Node;
 use igimp_text::short;
+
+use crate::build::bodies::sequence::Sequence;
+use crate::build::bodies::site::Site;
+use crate::build::grid::Frame;
+use crate::geometry::{facing, largest_run};
 
 /// Error of the stress beside a boundary that is worth a warning \[-\].
 const WORTH: f64 = 0.04;

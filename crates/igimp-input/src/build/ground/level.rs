@@ -1,7 +1,8 @@
 //! Level ground, which K₀ stresses need.
 
-use crate::build::bodies::site::Site;
 use igimp_schema::text::point;
+
+use crate::build::bodies::site::Site;
 
 /// Why the ground is not level; `None` when it is.
 pub(crate) fn uneven(site: &Site) -> Option<String> {

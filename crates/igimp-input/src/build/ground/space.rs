@@ -2,11 +2,12 @@
 
 use std::sync::Arc;
 
-use super::{Above, Earth, Surface, UprightFace};
-use crate::build::bodies::site::Solids;
 use igimp_geometry::region::Region;
 use igimp_model::{BodyPart, Drained, PoreSource, Raster};
 use igimp_schema::text::number;
+
+use super::{Above, Earth, Surface, UprightFace};
+use crate::build::bodies::site::Solids;
 
 /// Most places of the lattice along an axis.
 const MOST: usize = 80;

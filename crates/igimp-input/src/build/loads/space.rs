@@ -1,12 +1,13 @@
 //! Loads in space, and whether there is soil where they act.
 
-use super::at_point;
-use crate::build::bodies::site::Solids;
-use crate::geometry::{distinct, self_crossing};
 use igimp_model::{Load, LoadKind, Plan};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::text::{clip, point};
 use igimp_schema::tree::Node;
+
+use super::at_point;
+use crate::build::bodies::site::Solids;
+use crate::geometry::{distinct, self_crossing};
 
 /// Places along each side of a loaded rectangle at which soil is looked for.
 const SAMPLES: usize = 7;

@@ -1,8 +1,7 @@
 //! Properties of materials that vary with the level, with the depth, with the stress or in the plane.
 
 use igimp_geometry::polygon::Polygon;
-use igimp_model::in_plane;
-use igimp_model::{BodyPart, Ground, Profile, Raster, StressShare, Variation, front};
+use igimp_model::{BodyPart, Ground, Profile, Raster, StressShare, Variation, front, in_plane};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::text::{clip, number, point};
 use igimp_schema::tree::{Node, Wrong};

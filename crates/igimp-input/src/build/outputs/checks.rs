@@ -1,12 +1,13 @@
 //! Results that are held against outside values.
 
-use super::quantities::{divisor, quantity};
-use crate::build::AllNames;
 use igimp_model::check::Band;
 use igimp_model::{CaseCheck, CheckTime, CheckValue, Load, Quantity, Stage, StageKind};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::text::clip;
 use igimp_schema::tree::{Node, Wrong};
+
+use super::quantities::{divisor, quantity};
+use crate::build::AllNames;
 
 /// The checks.
 pub(crate) fn checks<const D: usize>(

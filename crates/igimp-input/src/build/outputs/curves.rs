@@ -2,13 +2,14 @@
 
 use std::path::Path;
 
-use super::quantities::{divisor, quantity};
-use crate::build::AllNames;
-use crate::files::text_of;
 use igimp_model::{Curve, CurveAxis, Load, Quantity, Reference, ReferenceValues};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::text::clip;
 use igimp_schema::tree::Node;
+
+use super::quantities::{divisor, quantity};
+use crate::build::AllNames;
+use crate::files::text_of;
 
 /// Most bytes of a reference file.
 const LARGEST: u64 = 1 << 20;

@@ -1,11 +1,12 @@
 //! The quantities that curves and checks name, such as `footing.reaction`.
 
-use crate::build::AllNames;
 use igimp_model::{Field, Load, LoadKind, Quantity, ReinforcementQuantity, RigidQuantity};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::suggest::nearest;
 use igimp_schema::text::{clip, row};
 use igimp_schema::tree::Node;
+
+use crate::build::AllNames;
 
 /// Fields by their names.
 const FIELDS: [(&str, Field, &str); 26] = [

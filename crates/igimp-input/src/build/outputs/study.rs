@@ -1,11 +1,11 @@
 //! The study of the mesh error.
 
-use crate::build::grid::MOST;
-use igimp_model::meshes;
-use igimp_model::{Case, CheckValue, MeshStudy, StageKind};
+use igimp_model::{Case, CheckValue, MeshStudy, StageKind, meshes};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::text::{clip, count};
 use igimp_schema::tree::Node;
+
+use crate::build::grid::MOST;
 
 /// The study that the file asks for.
 pub(crate) fn mesh_study(tree: &Node) -> Option<MeshStudy> {

@@ -1,11 +1,11 @@
 //! Reinforcement in space: lines, and square plates on the surface of the soil.
 
-use super::part;
-use crate::build::bodies::site::Soil as _;
-use crate::build::bodies::site::Solids;
 use igimp_model::ReinforcementPart;
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::tree::Node;
+
+use super::part;
+use crate::build::bodies::site::{Soil as _, Solids};
 
 /// How far beside a head the surface is looked for, as a share of the cell \[-\].
 const BESIDE: f64 = 0.02;

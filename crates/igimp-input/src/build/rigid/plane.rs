@@ -2,15 +2,16 @@
 
 use std::sync::Arc;
 
-use super::{Basis, Sides, follow_once, part_of};
-use crate::build::bodies::sequence::Sequence;
-use crate::build::bodies::site::Site;
-use crate::geometry::{distinct, overlap, self_crossing};
 use igimp_geometry::polygon::area_and_centroid;
 use igimp_model::{Load, LoadKind, Material, RigidPart, RigidShape};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::text::{clip, point};
 use igimp_schema::tree::Node;
+
+use super::{Basis, Sides, follow_once, part_of};
+use crate::build::bodies::sequence::Sequence;
+use crate::build::bodies::site::Site;
+use crate::geometry::{distinct, overlap, self_crossing};
 
 /// Corners of a circle where it is looked at as a polygon.
 const POINTS_OF_CIRCLE: usize = 90;

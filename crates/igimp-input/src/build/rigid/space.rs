@@ -2,13 +2,14 @@
 
 use std::sync::Arc;
 
-use super::{Basis, Sides, follow_once, part_of};
-use crate::build::bodies::surfaces::closed_surface;
-use crate::build::grid::Frame;
 use igimp_model::{Material, RigidForm as _, RigidPart, RigidSolid};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::text::clip;
 use igimp_schema::tree::Node;
+
+use super::{Basis, Sides, follow_once, part_of};
+use crate::build::bodies::surfaces::closed_surface;
+use crate::build::grid::Frame;
 
 /// The rigid bodies.
 pub(crate) fn rigid(

@@ -1,11 +1,12 @@
 //! Stages that move rigid bodies.
 
-use crate::build::AllNames;
-use crate::build::context::Context;
 use igimp_model::{COMPONENTS, RigidDrive, RigidMove, StageKind};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::text::clip;
 use igimp_schema::tree::{Node, Wrong};
+
+use crate::build::AllNames;
+use crate::build::context::Context;
 
 /// A stage that moves rigid bodies.
 pub(crate) fn stage<const D: usize>(

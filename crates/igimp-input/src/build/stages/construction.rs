@@ -1,10 +1,11 @@
 //! Construction stages: what they may do to what is there.
 
-use crate::build::context::Context;
 use igimp_model::{Construction, Drainage, LoadKind, StageKind};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::text::{clip, row};
 use igimp_schema::tree::Node;
+
+use crate::build::context::Context;
 
 /// A construction stage.
 pub(crate) fn stage<const D: usize>(

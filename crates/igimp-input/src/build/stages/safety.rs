@@ -1,10 +1,11 @@
 //! Stages that reduce strength: the search for the factor of safety, and the run-out.
 
-use crate::build::context::Context;
 use igimp_model::{Reduction, ReductionPath, RunOut, SearchMethod, Strength, StrengthReduction};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::text::clip;
 use igimp_schema::tree::Node;
+
+use crate::build::context::Context;
 
 /// Indices of the materials whose strength is reduced.
 fn materials<const D: usize>(

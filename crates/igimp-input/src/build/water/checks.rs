@@ -2,15 +2,16 @@
 
 use std::collections::HashMap;
 
-use super::Around;
-use crate::build::bodies::sequence::Scene;
-use crate::build::ground::{Above, Earth, Surface, UprightFace};
-use crate::build::materials::profiles::reach;
 use igimp_model::{BodyPart, Drainage, PoreSource, Raster, Strength, WaterCondition};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::source::Place;
 use igimp_schema::text::{clip, number};
 use igimp_schema::tree::Node;
+
+use super::Around;
+use crate::build::bodies::sequence::Scene;
+use crate::build::ground::{Above, Earth, Surface, UprightFace};
+use crate::build::materials::profiles::reach;
 
 /// Refuses tables that stand above the ground unmeant, and what water cannot do to materials; warns of conditions that
 /// do nothing.

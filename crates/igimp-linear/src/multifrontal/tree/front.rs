@@ -1,7 +1,8 @@
 //! Fronts: what is eliminated together, and sizes that add up over fronts.
 
-use crate::multifrontal::dense::layout::Layout;
 use std::ops::Range;
+
+use crate::multifrontal::dense::layout::Layout;
 
 /// One dense elimination: `pivots` unknowns, coupled to `border` later ones.
 pub(crate) struct Front {

@@ -6,7 +6,6 @@
 use std::ops::Range;
 
 use crate::Pattern;
-
 use crate::reach::Reach;
 
 /// Marks the absence of a node, such as the parent of a root.

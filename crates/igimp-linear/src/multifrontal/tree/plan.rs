@@ -8,15 +8,13 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use crate::Pattern;
-
 use super::neighbours::{NONE, Neighbours};
 use super::supernodes::Supernodes;
 use super::tasks::{Task, cut};
 use crate::multifrontal::dense::layout::Shape;
 use crate::multifrontal::tree::front::Front;
 use crate::reach::Reach;
-use crate::{LinearSolverError, NestedDissection, check};
+use crate::{LinearSolverError, NestedDissection, Pattern, check};
 
 /// Stands for the parent of a root.
 pub(crate) const NO_FRONT: usize = usize::MAX;

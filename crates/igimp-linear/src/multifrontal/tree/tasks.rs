@@ -7,8 +7,7 @@
 use std::ops::Range;
 
 use crate::multifrontal::dense::layout::Shape;
-use crate::multifrontal::tree::front::Extent;
-use crate::multifrontal::tree::front::Front;
+use crate::multifrontal::tree::front::{Extent, Front};
 
 /// Subtrees with less than this part of all operations are not cut further.
 const FINEST: f64 = 1.0 / 40.0;

@@ -1,5 +1,6 @@
-use super::*;
 use igimp_results::vtu::{DataArray, UnstructuredGrid, padded};
+
+use super::*;
 
 /// n³ boxes of width 1 with a scalar and a vector.
 fn cube(n: usize) -> UnstructuredGrid {

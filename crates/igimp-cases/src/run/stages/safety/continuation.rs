@@ -5,10 +5,15 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use igimp_assembly::StepWork;
+use igimp_model::{ReductionPath, Stage, StrengthReduction};
+use igimp_results::summary::{
+    PathEnd, PathPoint, PathSummary, SafetySummary, StageSummary, StrengthShares,
+};
 use igimp_solver::{
     Accepted, Body, ContinuationSettings, ContinuationState, Observer, StepError, StepFailure,
     follow,
 };
+use igimp_text::short;
 
 use super::shares::{LastStep, shares};
 use super::{names, undeformed_or_found};
@@ -20,11 +25,6 @@ use crate::run::resume::End;
 use crate::run::session::{Ended, Path, Session, march_path};
 use crate::run::stages::loading::begin;
 use crate::run::state::{Controls, State};
-use igimp_model::{ReductionPath, Stage, StrengthReduction};
-use igimp_results::summary::{
-    PathEnd, PathPoint, PathSummary, SafetySummary, StageSummary, StrengthShares,
-};
-use igimp_text::short;
 
 /// A path begins at no smaller factor than this \[-\]: with so many times its strength a body that falls is one that
 /// no strength holds.

@@ -1,11 +1,10 @@
 //! The displacement at which a body counts as failed when the case states none.
 
 use igimp_assembly::Geometry;
-
-use crate::run::model::Model;
-use crate::run::model::displacement_scale;
-use crate::run::state::State;
 use igimp_model::Stage;
+
+use crate::run::model::{Model, displacement_scale};
+use crate::run::state::State;
 
 /// The displacement γH²/E at which a body of moving geometry counts as failed when the case states none
 /// \[m\] (theory, eq. 32a), with means over the volume: the mean unit weight and the mean of 1/E. None on

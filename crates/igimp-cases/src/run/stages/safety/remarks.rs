@@ -3,14 +3,14 @@
 use std::collections::HashMap;
 
 use igimp_assembly::Particles;
-
-use super::{at_full_strength, stands_nowhere};
-use crate::run::output::records::largest_displacement;
-use crate::run::state::State;
 use igimp_model::{Case, StrengthReduction};
 use igimp_results::fields::length;
 use igimp_results::summary::SafetySummary;
 use igimp_text::short;
+
+use super::{at_full_strength, stands_nowhere};
+use crate::run::output::records::largest_displacement;
+use crate::run::state::State;
 
 /// A particle moves when its displacement exceeds this share of the largest \[-\].
 const MOVING: f64 = 0.1;

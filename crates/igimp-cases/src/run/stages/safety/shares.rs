@@ -3,10 +3,10 @@
 
 use igimp_assembly::{AssemblyError, Method, SharedLaw, StepConditions, StepWork};
 use igimp_material::{ConstitutiveModel, MaterialError};
+use igimp_results::summary::{Kinematic, MaterialShare, StrengthShares};
 use igimp_solver::{Body, Increment, StepFailure, Workspace};
 
 use crate::run::model::Model;
-use igimp_results::summary::{Kinematic, MaterialShare, StrengthShares};
 
 /// Relative change of a strength in a difference quotient \[-\].
 const DIFFERENCE: f64 = 1e-6;

@@ -1,6 +1,8 @@
 //! One trial of a search: what acts at its end, its steps, and what is said of it.
 
+use igimp_model::ReductionPath;
 use igimp_solver::{MarchSettings, StepError};
+use igimp_text::short;
 
 use super::Trials;
 use crate::error::CaseError;
@@ -8,8 +10,6 @@ use crate::run::model::Model;
 use crate::run::output::records::Moment;
 use crate::run::session::Session;
 use crate::run::state::{Controls, State};
-use igimp_model::ReductionPath;
-use igimp_text::short;
 
 impl<const D: usize> Trials<'_, D> {
     /// What acts at the end of a trial: what was found with strength reduced, and gravity in full
