@@ -120,7 +120,7 @@ mod tests {
 
     type Row<'a> = (&'a str, bool, Option<&'a str>, &'a [&'a str]);
 
-    const SOUND: [Row<'_>; 20] = [
+    const SOUND: [Row<'_>; 21] = [
         ("igimp-shape", true, None, &["thiserror"]),
         ("igimp-material", true, None, &[]),
         ("igimp-linear", true, None, &[]),
@@ -133,6 +133,7 @@ mod tests {
         ("igimp-solver", true, None, &["igimp-assembly"]),
         ("igimp-figures", true, None, &[]),
         ("igimp-text", true, None, &[]),
+        ("igimp-schema", true, None, &["igimp-text"]),
         ("igimp-geometry", true, None, &["igimp-text"]),
         ("igimp-model", true, None, &["igimp-geometry"]),
         ("igimp-results", true, None, &["igimp-model"]),

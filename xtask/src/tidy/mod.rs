@@ -2,10 +2,12 @@
 
 mod deny;
 mod equations;
+mod imports;
 mod layers;
 mod licences;
 mod links;
 mod sources;
+mod structure;
 
 use crate::failure::{FOUND, Failure};
 use crate::metadata::Metadata;
@@ -21,6 +23,7 @@ pub(crate) fn run() -> Result<u8, Failure> {
     let checks = [
         ("layers", layers::check(&metadata)),
         ("sources", sources::check(&metadata, &root)?),
+        ("structure", structure::check(&metadata, &root)?),
         ("licences", licences::check(&metadata, &allowed)),
         (
             "licences of the Python package",
