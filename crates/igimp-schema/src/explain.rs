@@ -4,8 +4,8 @@ use std::fmt::Write;
 
 use super::schema::{ROOT, SPACE};
 use super::spec::{Field, Kind, Presence, Struct, Variants};
-use super::toml_text::{inline, key};
 use super::tree::Node;
+use crate::syntax::toml_text::{inline, key};
 
 /// Column of comments.
 const COMMENT: usize = 44;

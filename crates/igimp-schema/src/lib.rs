@@ -11,7 +11,6 @@ mod json_schema;
 pub mod names;
 pub mod overrides;
 pub mod quantity;
-mod quantity_names;
 mod reference;
 pub mod schema;
 pub mod source;
@@ -19,9 +18,7 @@ mod spec;
 pub mod suggest;
 pub mod syntax;
 pub mod text;
-pub mod toml_text;
 pub mod tree;
-mod units;
 
 pub use diagnostic::{Diagnostic, DiagnosticPlace};
 pub use json_schema::json_schema;

@@ -1,12 +1,14 @@
 //! Quantities as text, such as `"25 kPa"`: a number or a fraction, and a unit.
 
+pub(crate) mod units;
+
 use std::fmt::{self, Display, Formatter};
 
 use thiserror::Error;
 
-use super::units::Unit;
+use units::Unit;
 
-pub use super::units::Dimension;
+pub use units::Dimension;
 
 /// A quantity in SI units.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,5 +1,7 @@
 //! The schema as tables, for the book.
 
+pub(crate) mod quantities;
+
 use std::fmt::Write;
 
 use super::quantity::Dimension;
@@ -90,7 +92,7 @@ fn quantities(out: &mut String) {
         "## Quantities\n\nWhat curves and checks name in `of`, in SI units.\n\n\
          | name | meaning |\n|---|---|\n",
     );
-    for (name, doc) in super::quantity_names::QUANTITY_DOCS {
+    for (name, doc) in crate::reference::quantities::QUANTITY_DOCS {
         let _ = writeln!(out, "| `{name}` | {} |", cell(doc));
     }
 }

@@ -1,5 +1,7 @@
 //! Parses TOML; says in our words what is wrong with it.
 
+pub mod toml_text;
+
 use toml::de::{DeTable, Error};
 
 use super::diagnostic::Problems;

@@ -6,7 +6,6 @@ pub(crate) mod footing;
 mod mixed_cells;
 mod model;
 mod output;
-mod pores;
 mod reinforcement;
 mod resources;
 mod resume;

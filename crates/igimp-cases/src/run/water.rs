@@ -1,5 +1,7 @@
 //! Water in the ground as particles find it: the conditions of a case, averaged over domains (theory, eqs. 51 and 52).
 
+pub(crate) mod pores;
+
 use std::sync::Arc;
 
 use igimp_assembly::{PoreSite, PoreState, PoreWater};

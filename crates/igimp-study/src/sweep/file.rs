@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use igimp_input::shipped::closest;
-use igimp_schema::toml_text::{self, quoted};
+use igimp_schema::syntax::toml_text::{self, quoted};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use igimp_cases::estimate::{readable, time};
 use igimp_report::pictures::file_name;
 use igimp_results::atomic::write_whole;
-use igimp_schema::toml_text;
+use igimp_schema::syntax::toml_text;
 use igimp_text::on_a_line;
 
 use super::{Demand, Sweep, SweepError, Task};

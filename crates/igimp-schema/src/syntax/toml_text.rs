@@ -4,8 +4,8 @@ use std::fmt::Write;
 
 use igimp_text::is_odd;
 
-use super::spec::{Field, Kind, Struct, Variants};
-use super::tree::{Node, Value};
+use crate::spec::{Field, Kind, Struct, Variants};
+use crate::tree::{Node, Value};
 
 /// A key, quoted when it has to be.
 pub fn key(key: &str) -> String {
