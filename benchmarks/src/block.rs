@@ -131,7 +131,7 @@ impl<const D: usize> Block<D> {
         }
         let mut gravity = [0.0; D];
         gravity[upright] = -9.81;
-        let strain_at_yield = STRENGTH / (2.0 * law.elasticity().shear());
+        let strain_at_yield = STRENGTH / (2.0 * law.stiffness_bound().shear());
         let u = (0..grid.node_count())
             .map(|node| flow(grid.node_position(node), FLOW * strain_at_yield))
             .collect();

@@ -91,7 +91,7 @@ pub fn trial_strains(law: &SharedLaw, side: Side) -> Vec<Principal> {
         let strain = random
             .values::<3>(size)
             .map(|component| component - yield_strain);
-        let tau = law.elasticity().stress(&strain);
+        let tau = law.stiffness_bound().stress(&strain);
         let beyond = law.yield_function(&tau, &History::default()) > 0.0;
         if beyond == (side == Side::Plastic) {
             strains.push(strain);

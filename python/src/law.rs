@@ -165,7 +165,7 @@ impl ConstitutiveModel for InPython {
         "law in Python"
     }
 
-    fn elasticity(&self) -> &Elasticity {
+    fn stiffness_bound(&self) -> &Elasticity {
         &self.elasticity
     }
 

@@ -38,7 +38,8 @@ impl<const D: usize> Particles<D> {
         let stressed = (
             &mut fields.b_e,
             &mut fields.sigma,
-            &mut fields.history,
+            &mut fields.eps_p_eq,
+            &mut fields.internal,
             &mut fields.regime,
             &mut fields.excess,
         );
@@ -49,7 +50,7 @@ impl<const D: usize> Particles<D> {
             .with_min_len(CHUNK)
             .for_each(|(particle, ((moving, stressed), slot))| {
                 let (x, displacement, half_length, half_length0, def_grad) = moving;
-                let (b_e, sigma, history, regime, excess) = stressed;
+                let (b_e, sigma, eps_p_eq, internal, regime, excess) = stressed;
                 let own = &trial.particles[slot as usize];
                 let step = interpolate(stencils, particle, u);
                 for axis in 0..D {
@@ -79,7 +80,7 @@ impl<const D: usize> Particles<D> {
                     Kinematics::FiniteStrain => own.excess / determinant(def_grad),
                     Kinematics::SmallStrain => own.excess,
                 };
-                *history = own.history;
+                (*eps_p_eq, *internal) = (own.history.eps_p_eq, own.history.internal);
                 *regime = own.regime;
             });
     }

@@ -155,7 +155,15 @@ pub enum AssemblyError {
 impl AssemblyError {
     /// Whether a trial displacement went further than any material follows: a shorter one may do.
     pub fn is_too_far(&self) -> bool {
-        matches!(self, Self::Inverted { .. } | Self::Overstrained { .. })
+        matches!(
+            self,
+            Self::Inverted { .. }
+                | Self::Overstrained { .. }
+                | Self::Material {
+                    source: MaterialError::NotConverged { .. },
+                    ..
+                }
+        )
     }
 }
 

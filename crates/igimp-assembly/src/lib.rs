@@ -19,6 +19,7 @@ mod small;
 mod step;
 pub(crate) mod work;
 
+pub use body::columns::{Column, ColumnKind, ColumnRequest, ColumnValues};
 pub use body::particles::{ParticleFields, ParticleSeed, Particles};
 pub use conditions::StepConditions;
 pub use conditions::constraints::Constraints;

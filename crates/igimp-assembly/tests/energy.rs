@@ -41,7 +41,7 @@ fn error_of_force<const D: usize>(method: &Method, cells: usize, count: usize) -
         let slots = std::iter::zip(stencils.order(), &trial.particles);
         slots
             .map(|(&particle, own)| {
-                body.volume0[particle as usize] * stored(law.elasticity(), &own.eps_e)
+                body.volume0[particle as usize] * stored(law.stiffness_bound(), &own.eps_e)
             })
             .sum()
     };

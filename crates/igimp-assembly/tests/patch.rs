@@ -60,7 +60,7 @@ fn uniform_gradient_is_exact<const D: usize>(cells: usize) {
                     }
                 }
             }
-            let history = body.history[0];
+            let history = body.history(0);
             let exact = match method.kinematics {
                 igimp_assembly::Kinematics::FiniteStrain => {
                     lift_finite::<D>(&*law, &b, &history, TangentKind::Consistent)
@@ -160,7 +160,7 @@ fn rotation_rotates_stress<const D: usize>(cells: usize) {
                 }
                 let volume = body.volume(particle) / before.volume(particle);
                 assert!((volume - 1.0).abs() < 1e-13, "{label}");
-                let plastic = body.history[particle].eps_p_eq - before.history[particle].eps_p_eq;
+                let plastic = body.eps_p_eq[particle] - before.eps_p_eq[particle];
                 assert!(plastic.abs() < 1e-12, "{label}: plastic strain {plastic:e}");
                 let (old, new) = (before.half_length[particle], body.half_length[particle]);
                 for axis in 0..D {

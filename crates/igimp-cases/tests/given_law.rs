@@ -7,11 +7,18 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use igimp_assembly::SharedLaw;
 use igimp_cases::run::in_memory;
+use igimp_input::CaseFile;
 use igimp_input::shipped::find;
 use igimp_material::{
     ConstitutiveModel, Elasticity, History, MaterialError, Principal, ReturnMap, ShearStrength,
 };
-use igimp_model::{Case, GivenLaw};
+use igimp_model::{Case, Field, GivenLaw};
+use igimp_results::fields::{internal_variables, value};
+
+#[path = "../../igimp-material/tests/support/hardening.rs"]
+mod hardening;
+
+use hardening::Hardening;
 
 /// Another law, asked in batches.
 #[derive(Debug)]
@@ -25,8 +32,8 @@ impl ConstitutiveModel for Batched {
         "batched"
     }
 
-    fn elasticity(&self) -> &Elasticity {
-        self.law.elasticity()
+    fn stiffness_bound(&self) -> &Elasticity {
+        self.law.stiffness_bound()
     }
 
     fn return_map(
@@ -105,5 +112,48 @@ fn a_law_in_batches_gives_the_same_bits() {
     assert!(
         passes > corrections && passes < 4 * corrections,
         "{passes} passes"
+    );
+}
+
+/// GOAL: a law with memory keeps it from step to step, particle by particle, and results print it.
+/// ORACLE: σ_y = σ_0 + H κ of every particle; κ is the plastic strain that every law keeps for the record; on the
+/// surface q = σ_y, which only holds where the memory of the step before was the one at its end.
+#[test]
+fn a_law_remembers_from_step_to_step() {
+    let text = include_str!("data/block.toml");
+    let file = CaseFile::parse("block.toml", text, &[]).unwrap();
+    let mut case = file.into_case();
+    let soil = &mut case.materials[0];
+    let law = Hardening {
+        elasticity: Elasticity::new(soil.young, soil.poisson).unwrap(),
+        yield_stress: 2e3,
+        modulus: 0.1 * soil.young,
+    };
+    soil.given = Some(GivenLaw(Arc::new(law.clone())));
+    let run = in_memory(&case).unwrap();
+    let particles = &run.body.particles;
+    let laws: [SharedLaw; 1] = [Arc::new(law.clone())];
+    let mut hardened = 0;
+    for particle in 0..particles.len() {
+        let [kappa, yield_stress, ..] = particles.internal[particle];
+        let expected = law.yield_stress + law.modulus * kappa;
+        assert!((yield_stress - expected).abs() < 1e-9 * expected);
+        assert!((kappa - particles.eps_p_eq[particle]).abs() < 1e-12);
+        let share = value(Field::Utilisation, particles, particle, &laws);
+        assert!(share < 1.0 + 1e-9, "{share}");
+        if particles.regime[particle].is_plastic() {
+            hardened += 1;
+            assert!((share - 1.0).abs() < 1e-9, "{share}");
+        }
+    }
+    assert!(hardened > 20, "{hardened}");
+    let printed = internal_variables(particles, &laws);
+    let names: Vec<&str> = printed.iter().map(|(name, _)| name.as_str()).collect();
+    assert_eq!(names, ["hardening strain [-]", "yield stress [Pa]"]);
+    assert!(
+        printed[1]
+            .1
+            .iter()
+            .all(|&stress| stress >= law.yield_stress)
     );
 }

@@ -8,7 +8,7 @@ use std::process::Command;
 use std::sync::Arc;
 
 use igimp_assembly::{Interface, ParticleFields, Particles, RigidBody, Surface};
-use igimp_material::{History, Ratios, Regime};
+use igimp_material::{Ratios, Regime};
 use igimp_model::{RigidInterface, RigidPart, RigidShape, RigidShear};
 use igimp_results::checkpoint::{self, Checkpoint, Meta};
 use igimp_results::npy::{Array, Values};
@@ -98,11 +98,8 @@ fn particles<const D: usize>(side: usize) -> Particles<D> {
         number: (0..n).map(|k| 3 * (n - k)).collect(),
         law: (0..n).map(|k| k % 4).collect(),
         ratios: vec![Ratios::ONE; n],
-        history: (0..n)
-            .map(|k| History {
-                eps_p_eq: number(k, 50).abs(),
-            })
-            .collect(),
+        eps_p_eq: (0..n).map(|k| number(k, 50).abs()).collect(),
+        internal: vec![[0.0; _]; n],
         regime: (0..n)
             .map(|k| [Regime::Elastic, Regime::Smooth, Regime::Apex][k % 3])
             .collect(),

@@ -65,7 +65,7 @@ fn slope(width: f64, share: f64) -> Particles<3> {
             0.5 * width * (1.0 - 0.03 * slides),
         ];
         fields.x[k] = std::array::from_fn(|axis| x[axis] + u[axis]);
-        fields.history[k].eps_p_eq = if inside > 0.0 {
+        fields.eps_p_eq[k] = if inside > 0.0 {
             0.5 * share * shear
         } else {
             0.0

@@ -27,6 +27,12 @@ pub enum MaterialError {
         /// Smallest eigenvalue found.
         eigenvalue: f64,
     },
+    /// A law that searches for its stress did not find it.
+    #[error("the return of {law} did not converge")]
+    NotConverged {
+        /// Name of the law.
+        law: &'static str,
+    },
 }
 
 /// The error that names `field`, unless its value is finite and the requirement `holds`.

@@ -24,7 +24,7 @@ impl ConstitutiveModel for HenckyElastic {
         "Hencky elastic"
     }
 
-    fn elasticity(&self) -> &Elasticity {
+    fn stiffness_bound(&self) -> &Elasticity {
         &self.elasticity
     }
 

@@ -10,26 +10,60 @@ use std::sync::Arc;
 use crate::spectral::principal::{Principal, deviator, dot};
 use crate::{Elasticity, MaterialError};
 
+/// Most internal variables of a law.
+pub const INTERNAL_VARIABLES: usize = 4;
+
 /// What a law remembers of the past.
-///
-/// The laws of this crate do not harden: the history is carried for the record and plays no part
-/// in the stress.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct History {
     /// Accumulated plastic strain invariant $`\sum\sqrt{\tfrac23\,\Delta e_p:\Delta e_p}`$,
-    /// with $`\Delta e_p`$ the deviatoric part of a step's plastic strain \[-\]. Never negative.
+    /// with $`\Delta e_p`$ the deviatoric part of a step's plastic strain \[-\]. Never negative. Every law keeps it, for
+    /// the record.
     pub eps_p_eq: f64,
+    /// Internal variables of the law, in the order of [`ConstitutiveModel::internal_variables`]; zero beyond.
+    pub internal: [f64; INTERNAL_VARIABLES],
 }
 
 impl History {
-    /// The history after a further plastic strain increment.
+    /// The history of soil with this plastic strain \[-\], and internal variables of zero.
+    pub const fn of_plastic_strain(eps_p_eq: f64) -> Self {
+        Self {
+            eps_p_eq,
+            internal: [0.0; INTERNAL_VARIABLES],
+        }
+    }
+
+    /// The history after a further plastic strain increment; internal variables stay.
     #[must_use]
     pub fn after(&self, delta_eps_p: &Principal) -> Self {
         let deviatoric = deviator(delta_eps_p);
         Self {
             eps_p_eq: self.eps_p_eq + (2.0 / 3.0 * dot(&deviatoric, &deviatoric)).sqrt(),
+            internal: self.internal,
         }
     }
+}
+
+/// An internal variable of a law.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct InternalVariable {
+    /// Name, as results print it.
+    pub name: &'static str,
+    /// Unit, as results print it.
+    pub unit: &'static str,
+    /// How it goes with the ratios of soil that varies in space.
+    pub scaling: Scaling,
+}
+
+/// How a number of a law goes with the ratios of strength s and of stiffness e of a piece of soil ([`Ratios`](crate::Ratios)).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scaling {
+    /// Not at all: an angle, a void ratio.
+    Constant,
+    /// With s: a stress, such as a preconsolidation pressure.
+    Stress,
+    /// With s/e: a strain.
+    Strain,
 }
 
 /// The part of the yield surface that a stress was returned to.
@@ -58,6 +92,31 @@ pub enum Regime {
 }
 
 impl Regime {
+    /// Every regime at the place of its code.
+    const BY_CODE: [Self; 10] = [
+        Self::Elastic,
+        Self::Smooth,
+        Self::RightEdge,
+        Self::LeftEdge,
+        Self::Apex,
+        Self::Tension,
+        Self::TensionShear,
+        Self::TensionEdge,
+        Self::TensionCorner,
+        Self::TensionApex,
+    ];
+
+    /// The number of the regime, the same in every file and every version: 0 elastic, 1 smooth part, 2 right edge,
+    /// 3 left edge, 4 apex, 5 tension plane, 6 tension–shear edge, 7 tension edge, 8 tension corner, 9 tension apex.
+    pub fn code(self) -> u8 {
+        self as u8
+    }
+
+    /// The regime of a number, if there is one.
+    pub fn from_code(code: u8) -> Option<Self> {
+        Self::BY_CODE.get(usize::from(code)).copied()
+    }
+
     /// Whether there was plastic flow.
     pub fn is_plastic(self) -> bool {
         self != Self::Elastic
@@ -81,6 +140,15 @@ pub struct Dissipation {
     /// Rate of volume that such flow has \[-\]: 0 without friction, else sin φ times the sum of the magnitudes of the
     /// principal rates.
     pub dilation: f64,
+}
+
+/// The elastic stiffness of a law in a state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ElasticStiffness {
+    /// $`\partial\tau_a/\partial\varepsilon_b`$ \[stress\].
+    pub tangent: [[f64; 3]; 3],
+    /// Shear modulus G \[stress\].
+    pub shear: f64,
 }
 
 /// The answer of a law to a trial strain, in the order of its principal values.
@@ -112,13 +180,49 @@ impl ReturnMap {
     }
 }
 
-/// A constitutive law in principal space: isotropic, with linear Hencky elasticity.
+/// A constitutive law in principal space: isotropic, elastic within a yield surface.
 pub trait ConstitutiveModel: Send + Sync + Debug {
     /// Name of the law, for messages and tables.
     fn name(&self) -> &'static str;
 
-    /// The elastic part.
-    fn elasticity(&self) -> &Elasticity;
+    /// A linear Hencky elasticity that is no softer than the law in any state: its elasticity itself where that is linear.
+    fn stiffness_bound(&self) -> &Elasticity;
+
+    /// Whether [`stiffness_bound`](Self::stiffness_bound) is the elasticity of the law. Another one states its
+    /// [`elastic_stress`](Self::elastic_stress), [`elastic_strain`](Self::elastic_strain) and
+    /// [`elastic_stiffness`](Self::elastic_stiffness).
+    fn has_linear_elasticity(&self) -> bool {
+        true
+    }
+
+    /// The stress τ \[stress\] of an elastic strain \[-\], principal values.
+    fn elastic_stress(&self, eps_e: &Principal, history: &History) -> Principal {
+        let _ = history;
+        self.stiffness_bound().stress(eps_e)
+    }
+
+    /// The elastic strain \[-\] of a stress τ \[stress\], principal values.
+    ///
+    /// # Errors
+    /// [`MaterialError::NotConverged`] of a law that has to search for it.
+    fn elastic_strain(
+        &self,
+        tau: &Principal,
+        history: &History,
+    ) -> Result<Principal, MaterialError> {
+        let _ = history;
+        Ok(self.stiffness_bound().strain(tau))
+    }
+
+    /// The elastic stiffness at an elastic strain \[-\].
+    fn elastic_stiffness(&self, eps_e: &Principal, history: &History) -> ElasticStiffness {
+        let _ = (eps_e, history);
+        let elasticity = self.stiffness_bound();
+        ElasticStiffness {
+            tangent: elasticity.tangent(),
+            shear: elasticity.shear(),
+        }
+    }
 
     /// Returns the trial state with principal elastic strain `eps_e_trial` to the yield surface,
     /// by one backward Euler step.
@@ -126,12 +230,24 @@ pub trait ConstitutiveModel: Send + Sync + Debug {
     /// Principal values come in any order and are answered in the same order.
     ///
     /// # Errors
-    /// [`MaterialError::NonFinite`] if the strain or its stress is not finite.
+    /// [`MaterialError::NonFinite`] if the strain or its stress is not finite, [`MaterialError::NotConverged`] of a law
+    /// whose return is found by iteration: the correction is then shortened.
     fn return_map(
         &self,
         eps_e_trial: &Principal,
         history: &History,
     ) -> Result<ReturnMap, MaterialError>;
+
+    /// Its internal variables, at most [`INTERNAL_VARIABLES`] of them; none for a law without hardening.
+    fn internal_variables(&self) -> &'static [InternalVariable] {
+        &[]
+    }
+
+    /// The history of soil that was never sheared and is under the principal stress `sigma` \[stress\], tension positive.
+    fn initial_history(&self, sigma: &Principal) -> History {
+        let _ = sigma;
+        History::default()
+    }
 
     /// Whether many trial states are better asked for at once, with [`return_maps`](Self::return_maps): of a
     /// law for which being asked costs more than the answer.

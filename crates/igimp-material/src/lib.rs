@@ -69,13 +69,16 @@ mod von_mises;
 pub use elasticity::Elasticity;
 pub use error::MaterialError;
 pub use hencky::HenckyElastic;
-pub use law::{ConstitutiveModel, Dissipation, History, Regime, ReturnMap, ShearStrength};
+pub use law::{
+    ConstitutiveModel, Dissipation, ElasticStiffness, History, INTERNAL_VARIABLES,
+    InternalVariable, Regime, ReturnMap, Scaling, ShearStrength,
+};
 pub use mohr_coulomb::MohrCoulomb;
 pub use scaled::{Ratios, ScaledLaw};
 pub use spectral::eigen::principal_values;
 pub use spectral::lift::{
-    Lifted, TangentKind, elastic_left_cauchy_green, elastic_left_cauchy_green_of, lift_finite,
-    lift_small, logarithmic_strain,
+    Lifted, TangentKind, TrialStrain, elastic_left_cauchy_green, elastic_left_cauchy_green_of,
+    lift_finite, lift_small, logarithmic_strain,
 };
 pub use spectral::principal::{Principal, Tensor};
 pub use spectral::spatial::SpatialTangent;

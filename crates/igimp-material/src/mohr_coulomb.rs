@@ -107,7 +107,7 @@ impl MohrCoulomb {
             is_davis: true,
             ..self.given
         };
-        Self::build(*self.elasticity(), given)
+        Self::build(*self.stiffness_bound(), given)
     }
 
     /// Cohesion c as given \[stress\].
@@ -231,7 +231,7 @@ impl MohrCoulomb {
             tension_cutoff,
             is_davis: self.given.is_davis,
         };
-        let law = Self::build(*self.elasticity(), given)?;
+        let law = Self::build(*self.stiffness_bound(), given)?;
         Ok(Self {
             dilatancy: self.dilatancy,
             ..law
@@ -252,8 +252,8 @@ impl ConstitutiveModel for MohrCoulomb {
         "Mohr-Coulomb"
     }
 
-    fn elasticity(&self) -> &Elasticity {
-        self.pyramid.elasticity()
+    fn stiffness_bound(&self) -> &Elasticity {
+        self.pyramid.stiffness_bound()
     }
 
     fn return_map(

@@ -74,7 +74,7 @@ impl Pyramid {
         }
     }
 
-    pub(crate) fn elasticity(&self) -> &Elasticity {
+    pub(crate) fn stiffness_bound(&self) -> &Elasticity {
         &self.elasticity
     }
 

@@ -6,7 +6,8 @@ use std::sync::Arc;
 
 use crate::spectral::principal::Principal;
 use crate::{
-    ConstitutiveModel, Dissipation, Elasticity, History, MaterialError, ReturnMap, ShearStrength,
+    ConstitutiveModel, Dissipation, ElasticStiffness, Elasticity, History, INTERNAL_VARIABLES,
+    InternalVariable, MaterialError, ReturnMap, Scaling, ShearStrength,
 };
 
 /// Strength, friction and stiffness of a piece of soil over those of its material.
@@ -80,7 +81,7 @@ impl<L: Deref<Target = dyn ConstitutiveModel>> ScaledLaw<L> {
     pub fn new(law: L, ratios: Ratios) -> Result<Self, MaterialError> {
         crate::error::positive("strength ratio", ratios.strength)?;
         Ok(Self {
-            elasticity: law.elasticity().scaled(ratios.stiffness)?,
+            elasticity: law.stiffness_bound().scaled(ratios.stiffness)?,
             law,
             ratios,
         })
@@ -100,7 +101,24 @@ impl<L: Deref<Target = dyn ConstitutiveModel>> ScaledLaw<L> {
     fn unscaled_history(&self, history: History) -> History {
         History {
             eps_p_eq: history.eps_p_eq * self.strain_ratio(),
+            internal: self.scaled_internal(history.internal, |value, scale| value / scale),
         }
+    }
+
+    /// Internal variables with each put to its own scale.
+    fn scaled_internal(
+        &self,
+        mut internal: [f64; INTERNAL_VARIABLES],
+        put: impl Fn(f64, f64) -> f64,
+    ) -> [f64; INTERNAL_VARIABLES] {
+        for (value, variable) in internal.iter_mut().zip(self.law.internal_variables()) {
+            match variable.scaling {
+                Scaling::Constant => {}
+                Scaling::Stress => *value = put(*value, self.ratios.strength),
+                Scaling::Strain => *value = put(*value, 1.0 / self.strain_ratio()),
+            }
+        }
+        internal
     }
 }
 
@@ -112,8 +130,52 @@ where
         self.law.name()
     }
 
-    fn elasticity(&self) -> &Elasticity {
+    fn stiffness_bound(&self) -> &Elasticity {
         &self.elasticity
+    }
+
+    fn has_linear_elasticity(&self) -> bool {
+        self.law.has_linear_elasticity()
+    }
+
+    fn elastic_stress(&self, eps_e: &Principal, history: &History) -> Principal {
+        if self.has_linear_elasticity() {
+            return self.elasticity.stress(eps_e);
+        }
+        let strain = eps_e.map(|strain| strain * self.strain_ratio());
+        let history = self.unscaled_history(*history);
+        let tau = self.law.elastic_stress(&strain, &history);
+        tau.map(|component| component * self.ratios.strength)
+    }
+
+    fn elastic_strain(
+        &self,
+        tau: &Principal,
+        history: &History,
+    ) -> Result<Principal, MaterialError> {
+        if self.has_linear_elasticity() {
+            return Ok(self.elasticity.strain(tau));
+        }
+        let history = self.unscaled_history(*history);
+        let strain = self.law.elastic_strain(&self.unscaled(tau), &history)?;
+        Ok(strain.map(|strain| strain / self.strain_ratio()))
+    }
+
+    fn elastic_stiffness(&self, eps_e: &Principal, history: &History) -> ElasticStiffness {
+        if self.has_linear_elasticity() {
+            return ElasticStiffness {
+                tangent: self.elasticity.tangent(),
+                shear: self.elasticity.shear(),
+            };
+        }
+        let strain = eps_e.map(|strain| strain * self.strain_ratio());
+        let history = self.unscaled_history(*history);
+        let of_law = self.law.elastic_stiffness(&strain, &history);
+        let scaled = |modulus| modulus * self.ratios.stiffness;
+        ElasticStiffness {
+            tangent: of_law.tangent.map(|row| row.map(scaled)),
+            shear: scaled(of_law.shear),
+        }
     }
 
     fn return_map(
@@ -138,9 +200,25 @@ where
                 .tangent
                 .map(|row| row.map(|modulus| modulus * stiffness)),
             delta_eps_p,
-            history: history.after(&delta_eps_p),
+            history: History {
+                internal: self
+                    .scaled_internal(answer.history.internal, |value, scale| value * scale),
+                ..history.after(&delta_eps_p)
+            },
             regime: answer.regime,
         })
+    }
+
+    fn internal_variables(&self) -> &'static [InternalVariable] {
+        self.law.internal_variables()
+    }
+
+    fn initial_history(&self, sigma: &Principal) -> History {
+        let history = self.law.initial_history(&self.unscaled(sigma));
+        History {
+            eps_p_eq: history.eps_p_eq / self.strain_ratio(),
+            internal: self.scaled_internal(history.internal, |value, scale| value * scale),
+        }
     }
 
     fn yield_function(&self, tau: &Principal, history: &History) -> f64 {

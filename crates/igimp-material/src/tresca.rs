@@ -50,8 +50,8 @@ impl ConstitutiveModel for Tresca {
         "Tresca"
     }
 
-    fn elasticity(&self) -> &Elasticity {
-        self.pyramid.elasticity()
+    fn stiffness_bound(&self) -> &Elasticity {
+        self.pyramid.stiffness_bound()
     }
 
     fn return_map(
@@ -91,6 +91,9 @@ impl ConstitutiveModel for Tresca {
     fn reduced(&self, srf: f64) -> Result<Arc<dyn ConstitutiveModel>, MaterialError> {
         positive("srf", srf)?;
         let undrained_strength = self.undrained_strength / srf;
-        Ok(Arc::new(Self::new(*self.elasticity(), undrained_strength)?))
+        Ok(Arc::new(Self::new(
+            *self.stiffness_bound(),
+            undrained_strength,
+        )?))
     }
 }

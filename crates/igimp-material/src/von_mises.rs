@@ -61,7 +61,7 @@ impl ConstitutiveModel for VonMises {
         "von Mises"
     }
 
-    fn elasticity(&self) -> &Elasticity {
+    fn stiffness_bound(&self) -> &Elasticity {
         &self.elasticity
     }
 

@@ -30,7 +30,8 @@ pub use ground::{Ground, Layer};
 pub use load::{Load, LoadKind, Plan};
 pub use material::profile::{LEAST_STRENGTH, Profile, Profiles, StressShare, Variation};
 pub use material::raster::Raster;
-pub use material::{Flow, GivenLaw, Material, Strength};
+pub use material::strength::{Flow, Parameter, ParameterValue, Strength};
+pub use material::{GivenLaw, Material};
 pub use plane::in_plane;
 pub use record::{
     Average, CaseCheck, CheckTime, CheckValue, Curve, CurveAxis, Field, Monitor, Quantity,

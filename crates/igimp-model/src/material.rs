@@ -2,13 +2,15 @@
 
 pub(crate) mod profile;
 pub(crate) mod raster;
+pub(crate) mod strength;
 
 use std::sync::Arc;
 
 use igimp_assembly::SharedLaw;
-use igimp_material::{Elasticity, HenckyElastic, MaterialError, MohrCoulomb, Tresca, VonMises};
+use igimp_material::{Elasticity, MaterialError};
 
 use super::{Drainage, Profiles};
+use strength::Strength;
 
 /// A material. Where a property varies, its constant is the greatest value in the soil.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,46 +51,6 @@ impl PartialEq for GivenLaw {
 /// Least cohesion of soil with friction, over γh \[-\].
 const LEAST_COHESION: f64 = 1.0 / 400.0;
 
-/// How plastic flow of frictional soil follows from its angle of dilation.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum Flow {
-    /// By a plastic potential with ψ in place of φ (theory, eq. 21).
-    #[default]
-    Dilation,
-    /// Associated, on the strengths that soil of this ψ mobilises along lines of no extension (theory, eq. 21a).
-    Davis,
-}
-
-/// The strength of a material.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Strength {
-    /// No limit.
-    Elastic,
-    /// von Mises with undrained strength c_u in plane strain \[Pa\].
-    VonMises {
-        /// c_u \[Pa\].
-        undrained_strength: f64,
-    },
-    /// Tresca.
-    Tresca {
-        /// c_u \[Pa\].
-        undrained_strength: f64,
-    },
-    /// Mohr–Coulomb.
-    MohrCoulomb {
-        /// c \[Pa\].
-        cohesion: f64,
-        /// φ \[rad\].
-        friction_angle: f64,
-        /// ψ \[rad\].
-        dilation_angle: f64,
-        /// How plastic flow follows from ψ.
-        flow: Flow,
-        /// Largest tensile stress \[Pa\]; none: the apex of the cone.
-        tension_cutoff: Option<f64>,
-    },
-}
-
 impl Material {
     /// The constitutive law; where strength, friction or stiffness vary, that of the greatest, of which particles have multiples.
     ///
@@ -102,10 +64,8 @@ impl Material {
     /// eq. 8g); none for other soil.
     pub fn least_cohesion(&self, cell: f64) -> Option<f64> {
         let least = LEAST_COHESION * self.unit_weight * cell;
-        match self.strength {
-            Strength::MohrCoulomb { cohesion, .. } if cohesion < least => Some(least),
-            _ => None,
-        }
+        self.strength.friction_angle()?;
+        (self.cohesive() < least).then_some(least)
     }
 
     /// The constitutive law on cells of a height \[m\], with the least cohesion that they need.
@@ -117,32 +77,7 @@ impl Material {
             return Ok(Arc::clone(law));
         }
         let elasticity = Elasticity::new(self.young, self.poisson)?;
-        Ok(match self.strength {
-            Strength::Elastic => Arc::new(HenckyElastic::new(elasticity)),
-            Strength::VonMises { undrained_strength } => Arc::new(
-                VonMises::from_undrained_strength(elasticity, undrained_strength)?,
-            ),
-            Strength::Tresca { undrained_strength } => {
-                Arc::new(Tresca::new(elasticity, undrained_strength)?)
-            }
-            Strength::MohrCoulomb {
-                cohesion,
-                friction_angle,
-                dilation_angle,
-                flow,
-                tension_cutoff,
-            } => {
-                let cohesion = self.least_cohesion(cell).unwrap_or(cohesion);
-                let mut law =
-                    MohrCoulomb::new(elasticity, cohesion, friction_angle, dilation_angle)?;
-                if flow == Flow::Davis {
-                    law = law.with_davis_flow()?;
-                }
-                if let Some(limit) = tension_cutoff {
-                    law = law.with_tension_cutoff(limit)?;
-                }
-                Arc::new(law)
-            }
-        })
+        let least = LEAST_COHESION * self.unit_weight * cell;
+        self.strength.law(elasticity, least)
     }
 }

@@ -3,10 +3,10 @@
 //! Where there is water, normal stresses are total (σ) or effective (σ′ = σ + u I, tension positive) by name; without it the
 //! two are the same numbers. Shear stress, deviatoric stress, plastic strain and mobilised strength are those of the law.
 
-pub mod regime;
-
 use igimp_assembly::{Particles, SharedLaw};
-use igimp_material::{ConstitutiveModel, ShearStrength, Tensor, principal_values};
+use igimp_material::{
+    ConstitutiveModel, InternalVariable, ShearStrength, Tensor, principal_values,
+};
 use igimp_model::Field;
 
 /// One value per particle, in SI units; stresses compression positive.
@@ -59,7 +59,7 @@ pub fn value<const D: usize>(
         Field::U => particles.pore_pressure[particle] + particles.excess[particle],
         Field::UExcess => particles.excess[particle],
         Field::Q => deviatoric_stress(effective),
-        Field::PlasticStrain => particles.history[particle].eps_p_eq,
+        Field::PlasticStrain => particles.eps_p_eq[particle],
         Field::Utilisation => utilisation(particles, particle, laws).unwrap_or(f64::NAN),
         Field::Strength => {
             shear_strength(particles, particle, laws).map_or(f64::NAN, |s| s.cohesive)
@@ -70,6 +70,33 @@ pub fn value<const D: usize>(
         Field::Young if particles.law[particle] < laws.len() => particles.young(particle, laws),
         Field::Young => f64::NAN,
     }
+}
+
+/// The internal variables of the laws by particle, each under its name with its unit; not a number for a particle whose
+/// law does not have it.
+pub fn internal_variables<const D: usize>(
+    particles: &Particles<D>,
+    laws: &[SharedLaw],
+) -> Vec<(String, Vec<f64>)> {
+    let mut found: Vec<(InternalVariable, Vec<f64>)> = Vec::new();
+    for (law, own) in laws.iter().enumerate() {
+        for (k, variable) in own.internal_variables().iter().enumerate() {
+            let place = found.iter().position(|(known, _)| known == variable);
+            let place = place.unwrap_or_else(|| {
+                found.push((*variable, vec![f64::NAN; particles.len()]));
+                found.len() - 1
+            });
+            let own = (0..particles.len()).filter(|&particle| particles.law[particle] == law);
+            for particle in own {
+                found[place].1[particle] = particles.internal[particle][k];
+            }
+        }
+    }
+    let named = |variable: InternalVariable| format!("{} [{}]", variable.name, variable.unit);
+    let columns = found.into_iter();
+    columns
+        .map(|(variable, values)| (named(variable), values))
+        .collect()
 }
 
 /// A component of a vector; not a number for one that it does not have.
@@ -122,8 +149,8 @@ fn utilisation<const D: usize>(
     laws.get(particles.law[particle])?;
     let eps_e = principal_values::<D>(&particles.b_e[particle]).map(|b| 0.5 * b.ln());
     let share = |law: &dyn ConstitutiveModel| {
-        let tau = law.elasticity().stress(&eps_e);
-        law.utilisation(&tau, &particles.history[particle])
+        let history = particles.history(particle);
+        law.utilisation(&law.elastic_stress(&eps_e, &history), &history)
     };
     particles.ask_law(particle, laws, share).ok()
 }
@@ -379,7 +406,7 @@ pub const ALL: [Field; 26] = [
 mod tests {
     use super::*;
     use igimp_assembly::{ParticleFields, ParticleSeed};
-    use igimp_material::{History, Ratios};
+    use igimp_material::Ratios;
     use igimp_model::{Material, Profiles, Strength};
 
     fn law(strength: Strength) -> SharedLaw {
@@ -416,7 +443,7 @@ mod tests {
         let start = Particles::new(&[seed, other]).unwrap();
         let mut fields: ParticleFields<2> = (*start).clone();
         let tau = [-60e3, -100e3, -40e3];
-        let eps_e = laws[0].elasticity().strain(&tau);
+        let eps_e = laws[0].stiffness_bound().strain(&tau);
         for a in 0..3 {
             fields.b_e[0][a][a] = (2.0 * eps_e[a]).exp();
             fields.sigma[0][a][a] = tau[a];
@@ -424,7 +451,7 @@ mod tests {
         fields.sigma[0][0][1] = 15e3;
         fields.sigma[0][1][0] = 15e3;
         fields.displacement[0] = [3.0, -4.0];
-        fields.history[0] = History { eps_p_eq: 0.2 };
+        fields.eps_p_eq[0] = 0.2;
         Particles::from_fields(fields).unwrap()
     }
 

@@ -179,11 +179,7 @@ pub fn sigma(particles: &Particles<2>, row: usize, column: usize) -> Vec<f64> {
 
 /// Accumulated plastic strain invariant by particle \[-\].
 pub fn eps_p_eq(particles: &Particles<2>) -> Vec<f64> {
-    particles
-        .history
-        .iter()
-        .map(|history| history.eps_p_eq)
-        .collect()
+    particles.eps_p_eq.clone()
 }
 
 /// The domains of the particles as rectangles, corners counter-clockwise \[length\].

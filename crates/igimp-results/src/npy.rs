@@ -92,6 +92,11 @@ impl Array {
         &self.shape
     }
 
+    /// The numbers, the last index fastest, handed over.
+    pub fn into_values(self) -> Values {
+        self.values
+    }
+
     /// The numbers, the last index fastest.
     pub fn values(&self) -> &Values {
         &self.values

@@ -47,8 +47,8 @@ impl ConstitutiveModel for Spoilt {
         "spoilt"
     }
 
-    fn elasticity(&self) -> &Elasticity {
-        self.sound.elasticity()
+    fn stiffness_bound(&self) -> &Elasticity {
+        self.sound.stiffness_bound()
     }
 
     fn return_map(
@@ -371,7 +371,7 @@ fn a_saved_state_that_is_not_finite_is_refused_by_field_and_particle() {
             fields.mass[PARTICLE] = value;
         }),
         ("eps_p_eq", |fields, value| {
-            fields.history[PARTICLE].eps_p_eq = value;
+            fields.eps_p_eq[PARTICLE] = value;
         }),
     ];
     for (field, spoil) in places {

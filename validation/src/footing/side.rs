@@ -149,7 +149,7 @@ pub(crate) fn push(
     let shaft = Shaft::of(case);
     let soil = case.bodies[0].material;
     let weak = pressure_only(
-        *model.laws[soil].elasticity(),
+        *model.laws[soil].stiffness_bound(),
         undrained_strength(case, soil),
     )?;
     let weak_law = model.laws.len();
@@ -208,11 +208,10 @@ pub(crate) fn push(
                 .filter(|(_, leaves)| **leaves)
                 .map(|(volume, _)| volume)
                 .sum::<f64>();
-            let left = match beside {
-                Beside::BearsNothing(_) => without(fields, &leaving),
-                _ => with_law(fields, &leaving, weak_law),
+            body.particles = match beside {
+                Beside::BearsNothing(_) => body.particles.keeping(|own| !leaving[own])?,
+                _ => Particles::from_fields(with_law(fields, &leaving, weak_law))?,
             };
-            body.particles = Particles::from_fields(left)?;
         }
     }
     Ok(Pushed {
@@ -236,34 +235,6 @@ fn with_law(fields: &ParticleFields<2>, marked: &[bool], law: usize) -> Particle
         }
     }
     fields
-}
-
-/// The particles but those marked.
-fn without(fields: &ParticleFields<2>, marked: &[bool]) -> ParticleFields<2> {
-    fn keep<T: Clone>(values: &[T], marked: &[bool]) -> Vec<T> {
-        let pairs = values.iter().zip(marked);
-        let kept = pairs.filter(|(_, marked)| !**marked);
-        kept.map(|(value, _)| value.clone()).collect()
-    }
-    ParticleFields {
-        x: keep(&fields.x, marked),
-        displacement: keep(&fields.displacement, marked),
-        def_grad: keep(&fields.def_grad, marked),
-        b_e: keep(&fields.b_e, marked),
-        sigma: keep(&fields.sigma, marked),
-        half_length: keep(&fields.half_length, marked),
-        half_length0: keep(&fields.half_length0, marked),
-        centroid: keep(&fields.centroid, marked),
-        volume0: keep(&fields.volume0, marked),
-        mass: keep(&fields.mass, marked),
-        pore_pressure: keep(&fields.pore_pressure, marked),
-        excess: keep(&fields.excess, marked),
-        number: keep(&fields.number, marked),
-        law: keep(&fields.law, marked),
-        ratios: keep(&fields.ratios, marked),
-        history: keep(&fields.history, marked),
-        regime: keep(&fields.regime, marked),
-    }
 }
 
 /// Undrained strength of a Tresca material \[Pa\].

@@ -7,6 +7,9 @@ use igimp_material::{
     ConstitutiveModel, History, MaterialError, Ratios, Regime, ScaledLaw, Tensor,
 };
 
+use crate::body::columns::{
+    Column, ColumnRequest, ColumnValues, Entry, Internal, Range, columns, is_idle, require,
+};
 use crate::error::AssemblyError;
 use crate::laws::SharedLaw;
 use crate::small::{determinant, identity};
@@ -32,44 +35,45 @@ pub struct ParticleSeed<const D: usize> {
     pub centroid: [f64; D],
 }
 
-/// The arrays, one entry per particle.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct ParticleFields<const D: usize> {
+columns! {
+    |seed, number|
     /// Centre x_p \[length\].
-    pub x: Vec<[f64; D]>,
+    x: [f64; D] = seed.x, Range::Finite;
     /// Displacement since seeding or the last reset \[length\].
-    pub displacement: Vec<[f64; D]>,
+    displacement: [f64; D] = [0.0; D], Range::Finite;
     /// Deformation gradient F; the out-of-plane stretch is 1 in plane strain \[-\].
-    pub def_grad: Vec<[[f64; D]; D]>,
+    def_grad: [[f64; D]; D] = identity(), Range::Invertible;
     /// Elastic left Cauchy–Green tensor b_e, 3 × 3 with zz in plane strain \[-\].
-    pub b_e: Vec<Tensor>,
+    b_e: Tensor = identity(), Range::Finite;
     /// Cauchy stress that the law answers, 3 × 3, tension positive: effective stress σ′ where there is water, else σ
     /// \[force/length²\].
-    pub sigma: Vec<Tensor>,
+    sigma: Tensor = [[0.0; 3]; 3], Range::Finite;
     /// Current half-lengths l_p \[length\].
-    pub half_length: Vec<[f64; D]>,
+    half_length: [f64; D] = seed.half_length, Range::Positive;
     /// Half-lengths as seeded \[length\].
-    pub half_length0: Vec<[f64; D]>,
+    half_length0: [f64; D] = seed.half_length, Range::Positive;
     /// Centroid of its soil within the domain as seeded, from the middle, over half-lengths \[-\].
-    pub centroid: Vec<[f64; D]>,
+    centroid: [f64; D] = seed.centroid, Range::WithinOne;
     /// Volume as seeded V_0 \[length^D\].
-    pub volume0: Vec<f64>,
+    volume0: f64 = seed.volume, Range::Positive;
     /// Mass \[mass\].
-    pub mass: Vec<f64>,
+    mass: f64 = seed.volume * seed.density, Range::NotNegative;
     /// Given pore pressure u in the last step, compression positive \[force/length²\].
-    pub pore_pressure: Vec<f64>,
+    pore_pressure: f64 = 0.0, Range::Finite;
     /// Excess pore pressure that the soil made itself, compression positive \[force/length²\].
-    pub excess: Vec<f64>,
+    excess: f64 = 0.0, Range::Finite;
     /// The number that a particle was seeded with and keeps, whatever others come and go.
-    pub number: Vec<usize>,
+    number: usize = number, Range::Any;
     /// Index of the constitutive law.
-    pub law: Vec<usize>,
+    law: usize = seed.law, Range::Any;
     /// Strength, friction and stiffness over those of the law \[-\].
-    pub ratios: Vec<Ratios>,
-    /// History of the law.
-    pub history: Vec<History>,
+    ratios: Ratios = Ratios::ONE, Range::Positive;
+    /// Accumulated plastic strain invariant \[-\].
+    eps_p_eq: f64 = 0.0, Range::Finite;
+    /// Internal variables of the law, in the order of [`ConstitutiveModel::internal_variables`].
+    internal: Internal = [0.0; _], Range::Finite, optional;
     /// Where the last return to the yield surface ended.
-    pub regime: Vec<Regime>,
+    regime: Regime = Regime::Elastic, Range::Any;
 }
 
 /// The particles of a body: [`ParticleFields`] that can be read but not written.
@@ -100,31 +104,8 @@ impl<const D: usize> Particles<D> {
         for (particle, seed) in seeds.iter().enumerate() {
             validate(particle, seed)?;
         }
-        let n = seeds.len();
-        let identity3 = identity::<3>();
         Ok(Self {
-            fields: ParticleFields {
-                x: seeds.iter().map(|seed| seed.x).collect(),
-                displacement: vec![[0.0; D]; n],
-                def_grad: vec![identity(); n],
-                b_e: vec![identity3; n],
-                sigma: vec![[[0.0; 3]; 3]; n],
-                half_length: seeds.iter().map(|seed| seed.half_length).collect(),
-                half_length0: seeds.iter().map(|seed| seed.half_length).collect(),
-                centroid: seeds.iter().map(|seed| seed.centroid).collect(),
-                volume0: seeds.iter().map(|seed| seed.volume).collect(),
-                mass: seeds
-                    .iter()
-                    .map(|seed| seed.volume * seed.density)
-                    .collect(),
-                pore_pressure: vec![0.0; n],
-                excess: vec![0.0; n],
-                number: (0..n).collect(),
-                law: seeds.iter().map(|seed| seed.law).collect(),
-                ratios: vec![Ratios::ONE; n],
-                history: vec![History::default(); n],
-                regime: vec![Regime::Elastic; n],
-            },
+            fields: ParticleFields::seeded(seeds),
         })
     }
 
@@ -142,29 +123,8 @@ impl<const D: usize> Particles<D> {
         if n == 0 {
             return Err(AssemblyError::EmptyBody);
         }
-        let lengths = [
-            fields.displacement.len(),
-            fields.def_grad.len(),
-            fields.b_e.len(),
-            fields.sigma.len(),
-            fields.half_length.len(),
-            fields.half_length0.len(),
-            fields.centroid.len(),
-            fields.volume0.len(),
-            fields.mass.len(),
-            fields.pore_pressure.len(),
-            fields.excess.len(),
-            fields.number.len(),
-            fields.law.len(),
-            fields.ratios.len(),
-            fields.history.len(),
-            fields.regime.len(),
-        ];
-        assert!(
-            lengths.iter().all(|&length| length == n),
-            "arrays of one body have one length"
-        );
-        (0..n).try_for_each(|particle| validate_state(particle, &fields))?;
+        assert!(fields.are_of(n), "arrays of one body have one length");
+        (0..n).try_for_each(|particle| fields.validate(particle))?;
         Ok(Self { fields })
     }
 
@@ -180,6 +140,27 @@ impl<const D: usize> Particles<D> {
     pub fn with_ratios(self, ratios: Vec<Ratios>) -> Result<Self, AssemblyError> {
         Self::from_fields(ParticleFields {
             ratios,
+            ..self.fields
+        })
+    }
+
+    /// The particles with the memory that their laws begin with where there is no stress yet ([`ConstitutiveModel::initial_history`]).
+    ///
+    /// # Errors
+    /// [`AssemblyError::Material`] of a law that cannot be made, as [`ask_law`](Self::ask_law) says.
+    pub fn with_initial_histories(self, laws: &[SharedLaw]) -> Result<Self, AssemblyError> {
+        let remembers = |law: &SharedLaw| !law.internal_variables().is_empty();
+        if !laws.iter().any(remembers) {
+            return Ok(self);
+        }
+        let history = |particle| {
+            let initial = |law: &dyn ConstitutiveModel| law.initial_history(&[0.0; 3]).internal;
+            let asked = self.ask_law(particle, laws, initial);
+            asked.map_err(|source| AssemblyError::Material { particle, source })
+        };
+        let internal = (0..self.len()).map(history).collect::<Result<_, _>>()?;
+        Self::from_fields(ParticleFields {
+            internal,
             ..self.fields
         })
     }
@@ -225,7 +206,7 @@ impl<const D: usize> Particles<D> {
     /// If there is no such particle, or not its law.
     #[inline]
     pub fn young(&self, particle: usize, laws: &[SharedLaw]) -> f64 {
-        let young = laws[self.fields.law[particle]].elasticity().young();
+        let young = laws[self.fields.law[particle]].stiffness_bound().young();
         young * self.fields.ratios[particle].stiffness
     }
 
@@ -235,52 +216,23 @@ impl<const D: usize> Particles<D> {
     /// [`AssemblyError::EmptyBody`] if it keeps none.
     pub fn keeping(&self, keep: impl Fn(usize) -> bool) -> Result<Self, AssemblyError> {
         let kept: Vec<usize> = (0..self.len()).filter(|&particle| keep(particle)).collect();
-        let from = &self.fields;
-        Self::from_fields(ParticleFields {
-            x: picked(&from.x, &kept),
-            displacement: picked(&from.displacement, &kept),
-            def_grad: picked(&from.def_grad, &kept),
-            b_e: picked(&from.b_e, &kept),
-            sigma: picked(&from.sigma, &kept),
-            half_length: picked(&from.half_length, &kept),
-            half_length0: picked(&from.half_length0, &kept),
-            centroid: picked(&from.centroid, &kept),
-            volume0: picked(&from.volume0, &kept),
-            mass: picked(&from.mass, &kept),
-            pore_pressure: picked(&from.pore_pressure, &kept),
-            excess: picked(&from.excess, &kept),
-            number: picked(&from.number, &kept),
-            law: picked(&from.law, &kept),
-            ratios: picked(&from.ratios, &kept),
-            history: picked(&from.history, &kept),
-            regime: picked(&from.regime, &kept),
-        })
+        Self::from_fields(self.fields.picked(&kept))
     }
 
     /// These particles with others behind them.
     #[must_use]
     pub fn joined_by(&self, others: &Self) -> Self {
-        let (a, b) = (&self.fields, &others.fields);
         Self {
-            fields: ParticleFields {
-                x: joined(&a.x, &b.x),
-                displacement: joined(&a.displacement, &b.displacement),
-                def_grad: joined(&a.def_grad, &b.def_grad),
-                b_e: joined(&a.b_e, &b.b_e),
-                sigma: joined(&a.sigma, &b.sigma),
-                half_length: joined(&a.half_length, &b.half_length),
-                half_length0: joined(&a.half_length0, &b.half_length0),
-                centroid: joined(&a.centroid, &b.centroid),
-                volume0: joined(&a.volume0, &b.volume0),
-                mass: joined(&a.mass, &b.mass),
-                pore_pressure: joined(&a.pore_pressure, &b.pore_pressure),
-                excess: joined(&a.excess, &b.excess),
-                number: joined(&a.number, &b.number),
-                law: joined(&a.law, &b.law),
-                ratios: joined(&a.ratios, &b.ratios),
-                history: joined(&a.history, &b.history),
-                regime: joined(&a.regime, &b.regime),
-            },
+            fields: self.fields.joined(&others.fields),
+        }
+    }
+
+    /// What the law of a particle remembers of the past.
+    #[inline]
+    pub fn history(&self, particle: usize) -> History {
+        History {
+            eps_p_eq: self.fields.eps_p_eq[particle],
+            internal: self.fields.internal[particle],
         }
     }
 
@@ -339,14 +291,6 @@ impl<const D: usize> Particles<D> {
     }
 }
 
-fn picked<T: Clone>(from: &[T], which: &[usize]) -> Vec<T> {
-    which.iter().map(|&k| from[k].clone()).collect()
-}
-
-fn joined<T: Clone>(a: &[T], b: &[T]) -> Vec<T> {
-    [a, b].concat()
-}
-
 fn validate<const D: usize>(particle: usize, seed: &ParticleSeed<D>) -> Result<(), AssemblyError> {
     let hold = |field, values: &[f64], range| require(particle, field, values, range);
     hold("x", &seed.x, Range::Finite)?;
@@ -354,98 +298,4 @@ fn validate<const D: usize>(particle: usize, seed: &ParticleSeed<D>) -> Result<(
     hold("centroid", &seed.centroid, Range::WithinOne)?;
     hold("volume", &[seed.volume], Range::Positive)?;
     hold("density", &[seed.density], Range::NotNegative)
-}
-
-fn validate_state<const D: usize>(
-    particle: usize,
-    fields: &ParticleFields<D>,
-) -> Result<(), AssemblyError> {
-    let hold = |field, values: &[f64], range| require(particle, field, values, range);
-    let def_grad = &fields.def_grad[particle];
-    hold("x", &fields.x[particle], Range::Finite)?;
-    hold(
-        "displacement",
-        &fields.displacement[particle],
-        Range::Finite,
-    )?;
-    hold("def_grad", def_grad.as_flattened(), Range::Finite)?;
-    hold("det def_grad", &[determinant(def_grad)], Range::Positive)?;
-    hold("b_e", fields.b_e[particle].as_flattened(), Range::Finite)?;
-    hold(
-        "sigma",
-        fields.sigma[particle].as_flattened(),
-        Range::Finite,
-    )?;
-    hold(
-        "half_length",
-        &fields.half_length[particle],
-        Range::Positive,
-    )?;
-    hold(
-        "half_length0",
-        &fields.half_length0[particle],
-        Range::Positive,
-    )?;
-    hold("centroid", &fields.centroid[particle], Range::WithinOne)?;
-    hold("volume0", &[fields.volume0[particle]], Range::Positive)?;
-    hold("mass", &[fields.mass[particle]], Range::NotNegative)?;
-    hold(
-        "pore_pressure",
-        &[fields.pore_pressure[particle]],
-        Range::Finite,
-    )?;
-    hold("excess", &[fields.excess[particle]], Range::Finite)?;
-    let Ratios {
-        strength,
-        friction,
-        stiffness,
-    } = fields.ratios[particle];
-    hold("ratios", &[strength, stiffness], Range::Positive)?;
-    hold("ratios", &[friction], Range::NotNegative)?;
-    hold(
-        "eps_p_eq",
-        &[fields.history[particle].eps_p_eq],
-        Range::Finite,
-    )
-}
-
-/// What is accepted of a number.
-#[derive(Clone, Copy)]
-enum Range {
-    Finite,
-    Positive,
-    NotNegative,
-    WithinOne,
-}
-
-/// The error that names the first value out of its range.
-fn require(
-    particle: usize,
-    field: &'static str,
-    values: &[f64],
-    range: Range,
-) -> Result<(), AssemblyError> {
-    let holds = |value: f64| {
-        value.is_finite()
-            && match range {
-                Range::Finite => true,
-                Range::Positive => value > 0.0,
-                Range::NotNegative => value >= 0.0,
-                Range::WithinOne => value.abs() < 1.0,
-            }
-    };
-    match values.iter().find(|&&value| !holds(value)) {
-        None => Ok(()),
-        Some(&value) => Err(AssemblyError::InvalidParticle {
-            particle,
-            field,
-            value,
-            requirement: match range {
-                Range::Finite => "finite",
-                Range::Positive => "positive and finite",
-                Range::NotNegative => "zero or positive, and finite",
-                Range::WithinOne => "between -1 and 1",
-            },
-        }),
-    }
 }

@@ -14,8 +14,8 @@
 //! the symmetric gradient plus a third of the difference of the two divergences on xx, yy and zz.
 
 use igimp_material::{
-    ConstitutiveModel, History, Lifted, MaterialError, Principal, Regime, TangentKind, Tensor,
-    elastic_left_cauchy_green, lift_finite, lift_small, logarithmic_strain,
+    ConstitutiveModel, History, Lifted, MaterialError, Principal, Regime, ReturnMap, TangentKind,
+    Tensor, TrialStrain, elastic_left_cauchy_green, logarithmic_strain,
 };
 use igimp_shape::Support;
 
@@ -77,26 +77,40 @@ pub(crate) struct Linearisation<const D: usize> {
     pub(crate) lifted: Lifted<D>,
 }
 
-/// The state of a particle at the start of a step, with its law.
+/// The state of a particle at the start of a step.
 #[derive(Clone, Copy)]
 pub(crate) struct ParticleState<'a> {
     pub(crate) particle: usize,
     pub(crate) b_e: &'a Tensor,
-    pub(crate) history: &'a History,
-    pub(crate) law: &'a dyn ConstitutiveModel,
     pub(crate) pores: PoreResponse,
 }
 
-/// Evaluates one particle at nodal step displacements `u`; writes its `trial`.
+/// How a particle is strained at nodal step displacements: what its law is asked at, and what its linearisation needs.
+pub(crate) struct Straining<const D: usize> {
+    delta_def_grad: [[f64; D]; D],
+    /// As [`Linearisation::push`] and [`Linearisation::push_bar`].
+    push: [[f64; D]; D],
+    push_bar: [[f64; D]; D],
+    /// Logarithm of the ratio of volumes, where pore water asks for it.
+    ln_volume: f64,
+    strain: TrialStrain,
+}
+
+impl<const D: usize> Straining<D> {
+    /// The principal trial strains \[-\].
+    pub(crate) fn principal(&self) -> &Principal {
+        self.strain.strain()
+    }
+}
+
+/// Strains one particle by nodal step displacements `u`.
 #[inline]
-pub(crate) fn evaluate<const D: usize>(
+pub(crate) fn strained<const D: usize>(
     state: ParticleState<'_>,
     supports: &[Support<D>],
     u: &[[f64; D]],
     method: &Method,
-    kind: TangentKind,
-    trial: &mut ParticleTrial<D>,
-) -> Result<Linearisation<D>, AssemblyError> {
+) -> Result<Straining<D>, AssemblyError> {
     let particle = state.particle;
     let (gradient, gradient_bar) = gradients(supports, u);
     let mut delta_def_grad = gradient;
@@ -110,7 +124,7 @@ pub(crate) fn evaluate<const D: usize>(
         positive(particle, determinant(&delta_def_grad))?;
     }
     let mut ln_volume = 0.0;
-    let mut linearisation = match method.kinematics_of_step() {
+    Ok(match method.kinematics_of_step() {
         Kinematics::FiniteStrain => {
             let det = determinant(&delta_def_grad);
             let det_bar = positive(particle, determinant(&delta_bar))?;
@@ -119,10 +133,12 @@ pub(crate) fn evaluate<const D: usize>(
                 ln_volume = det_bar.ln();
             }
             let b_trial = pushed_forward(state.b_e, &delta_def_grad, lambda * lambda);
-            Linearisation {
+            Straining {
+                delta_def_grad,
                 push: inverse(&delta_def_grad, det),
                 push_bar: inverse(&delta_bar, det_bar),
-                lifted: lift_finite(state.law, &b_trial, state.history, kind).map_err(material)?,
+                ln_volume,
+                strain: TrialStrain::finite::<D>(&b_trial).map_err(material)?,
             }
         }
         Kinematics::SmallStrain => {
@@ -131,26 +147,47 @@ pub(crate) fn evaluate<const D: usize>(
             for (a, row) in gradient_bar.iter().enumerate() {
                 ln_volume += row[a];
             }
-            Linearisation {
+            Straining {
+                delta_def_grad,
                 push: identity(),
                 push_bar: identity(),
-                lifted: lift_small(state.law, &strain, state.history, kind).map_err(material)?,
+                ln_volume,
+                strain: TrialStrain::small::<D>(&strain).map_err(material)?,
             }
         }
-    };
-    let lifted = &linearisation.lifted;
-    finite(lifted).map_err(material)?;
+    })
+}
+
+/// The answer of the law of a particle at its strain, with its linearisation; writes its `trial`.
+#[inline]
+pub(crate) fn answered<const D: usize>(
+    state: ParticleState<'_>,
+    straining: Straining<D>,
+    law: &dyn ConstitutiveModel,
+    answer: &ReturnMap,
+    kind: TangentKind,
+    trial: &mut ParticleTrial<D>,
+) -> Result<Linearisation<D>, AssemblyError> {
+    let particle = state.particle;
+    let material = |source| AssemblyError::Material { particle, source };
+    let lifted = straining.strain.lift(law, answer, kind).map_err(material)?;
+    finite(&lifted).map_err(material)?;
     if let Some(&strain) = lifted.eps_e.iter().find(|eps| eps.abs() >= LARGEST_STRAIN) {
         return Err(AssemblyError::Overstrained { particle, strain });
     }
     *trial = ParticleTrial {
-        delta_def_grad,
+        delta_def_grad: straining.delta_def_grad,
         tau: lifted.tau,
         eps_e: lifted.eps_e,
         frame: lifted.frame,
         history: lifted.history,
         regime: lifted.regime,
-        excess: state.pores.excess_after(ln_volume),
+        excess: state.pores.excess_after(straining.ln_volume),
+    };
+    let mut linearisation = Linearisation {
+        push: straining.push,
+        push_bar: straining.push_bar,
+        lifted,
     };
     if !state.pores.is_none() {
         let mean = state.pores.given - trial.excess;

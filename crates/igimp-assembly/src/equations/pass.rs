@@ -11,9 +11,10 @@ use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 use crate::Trial;
-use crate::equations::batches::Answered;
 use crate::equations::blocks::BlockTable;
-use crate::equations::kinematics::{Linearisation, ParticleState, ParticleTrial, evaluate};
+use crate::equations::kinematics::{
+    Linearisation, ParticleState, ParticleTrial, Straining, answered, strained,
+};
 use crate::equations::linearised::{Linearised, Moduli};
 use crate::equations::mirror::mirror;
 use crate::equations::patch::Patch;
@@ -118,7 +119,7 @@ impl<const D: usize> System<'_, D> {
             let supports = self.stencils.of(particle);
             let answer = answers.get(particle).and_then(Option::as_ref);
             let own = self
-                .evaluate_answered(particle, u, kind, answer, trial)
+                .evaluate_with(particle, u, kind, answer, trial)
                 .map_err(|error| (particle, error))?;
             let volume = self.reference_volume(particle);
             scratch.linearised.push(supports, &own);
@@ -162,45 +163,45 @@ impl<const D: usize> System<'_, D> {
         kind: TangentKind,
         trial: &mut ParticleTrial<D>,
     ) -> Result<Linearisation<D>, AssemblyError> {
-        let evaluated =
-            |law: &dyn ConstitutiveModel| self.evaluate_by(law, particle, u, kind, trial);
-        self.particles
-            .ask_law(particle, &self.conditions.laws, evaluated)
-            .map_err(|source| AssemblyError::Material { particle, source })?
+        self.evaluate_with(particle, u, kind, None, trial)
     }
 
     /// The same where the answer of its law may be known.
     #[inline]
-    fn evaluate_answered(
+    fn evaluate_with(
         &self,
         particle: usize,
         u: &[[f64; D]],
         kind: TangentKind,
-        answer: Option<&ReturnMap>,
+        known: Option<&ReturnMap>,
         trial: &mut ParticleTrial<D>,
     ) -> Result<Linearisation<D>, AssemblyError> {
-        let Some(answer) = answer else {
-            return self.evaluate_particle(particle, u, kind, trial);
+        let material = |source| AssemblyError::Material { particle, source };
+        let ask = |law: &dyn ConstitutiveModel| {
+            let (state, straining) = self.strain_particle(particle, u)?;
+            let answer = match known {
+                Some(answer) => *answer,
+                None => law
+                    .return_map(straining.principal(), &self.particles.history(particle))
+                    .map_err(material)?,
+            };
+            answered(state, straining, law, &answer, kind, trial)
         };
-        let law = &*self.conditions.laws[self.particles.law[particle]];
-        self.evaluate_by(&Answered { law, answer }, particle, u, kind, trial)
+        let laws = &self.conditions.laws;
+        let asked = self.particles.ask_law(particle, laws, ask);
+        asked.map_err(material)?
     }
 
-    /// One particle by a law.
+    /// One particle as nodal step displacements `u` strain it.
     #[inline]
-    pub(crate) fn evaluate_by(
+    pub(crate) fn strain_particle(
         &self,
-        law: &dyn ConstitutiveModel,
         particle: usize,
         u: &[[f64; D]],
-        kind: TangentKind,
-        trial: &mut ParticleTrial<D>,
-    ) -> Result<Linearisation<D>, AssemblyError> {
+    ) -> Result<(ParticleState<'_>, Straining<D>), AssemblyError> {
         let state = ParticleState {
             particle,
             b_e: &self.particles.b_e[particle],
-            history: &self.particles.history[particle],
-            law,
             pores: self.pores.response(
                 self.particles,
                 &self.conditions.water,
@@ -209,7 +210,7 @@ impl<const D: usize> System<'_, D> {
             ),
         };
         let supports = self.stencils.of(particle);
-        evaluate(state, supports, u, self.method, kind, trial)
+        Ok((state, strained(state, supports, u, self.method)?))
     }
 
     /// The stored values of the columns of some nodes.

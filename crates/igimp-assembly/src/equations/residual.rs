@@ -90,7 +90,7 @@ pub(crate) fn force_of_round_off<const D: usize>(
     let moduli: Vec<f64> = conditions
         .laws
         .iter()
-        .map(|law| law.elasticity().bulk() + 4.0 / 3.0 * law.elasticity().shear())
+        .map(|law| law.stiffness_bound().bulk() + 4.0 / 3.0 * law.stiffness_bound().shear())
         .collect();
     let n = particles.len();
     let parts: Vec<f64> = (0..n.div_ceil(CHUNK))

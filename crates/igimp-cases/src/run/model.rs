@@ -98,7 +98,9 @@ impl<'c, const D: usize> Model<'c, D> {
         let seeded = Arc::new(seeded);
         let water = |condition| Arc::new(GroundWater::of(case, condition, &seeded));
         model.water = case.water.iter().map(water).collect();
-        let mut particles = Particles::new(&seeds)?.with_ratios(ratios)?;
+        let mut particles = Particles::new(&seeds)?
+            .with_ratios(ratios)?
+            .with_initial_histories(&model.laws)?;
         if case.bodies.iter().any(|part| !part.from_start) {
             let is_first = |particle: usize| case.bodies[seeded.body[particle]].from_start;
             model.later = Some(particles.keeping(|particle| !is_first(particle))?);

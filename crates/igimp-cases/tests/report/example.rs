@@ -255,7 +255,7 @@ pub(crate) fn particles(case: &Case) -> (Particles<2>, Vec<SharedLaw>) {
         let radius = (x - 27.0).hypot(y - 24.0);
         let slide = 1.0 / (1.0 + ((radius - 14.0) / 0.4).exp());
         let sigma = [-9e3 * depth, -20e3 * depth, -8.7e3 * depth];
-        let eps_e = laws[fields.law[p]].elasticity().strain(&sigma);
+        let eps_e = laws[fields.law[p]].stiffness_bound().strain(&sigma);
         for a in 0..3 {
             fields.sigma[p][a][a] = sigma[a];
             fields.b_e[p][a][a] = (2.0 * eps_e[a]).exp();
@@ -267,7 +267,7 @@ pub(crate) fn particles(case: &Case) -> (Particles<2>, Vec<SharedLaw>) {
         for axis in 0..2 {
             fields.x[p][axis] += fields.displacement[p][axis];
         }
-        fields.history[p].eps_p_eq = 0.2 * (-((radius - 14.0) / 0.6).powi(2)).exp();
+        fields.eps_p_eq[p] = 0.2 * (-((radius - 14.0) / 0.6).powi(2)).exp();
     }
     (Particles::from_fields(fields).unwrap(), laws)
 }

@@ -101,6 +101,76 @@ impl<const D: usize> Lifted<D> {
     }
 }
 
+/// A trial elastic strain in its principal axes: what a law is asked at.
+#[derive(Clone, Debug)]
+pub struct TrialStrain {
+    strain: Principal,
+    frame: Tensor,
+    is_finite: bool,
+}
+
+impl TrialStrain {
+    /// $`\tfrac12\ln b`$ of a trial elastic left Cauchy–Green tensor, as [`lift_finite`] reads it.
+    ///
+    /// # Errors
+    /// [`MaterialError::NonFinite`] or [`MaterialError::NotPositiveDefinite`] for a tensor that is no stretch.
+    #[inline]
+    pub fn finite<const D: usize>(b_e_trial: &Tensor) -> Result<Self, MaterialError> {
+        let (strain, frame) = logarithmic::<D>(b_e_trial)?;
+        Ok(Self {
+            strain,
+            frame,
+            is_finite: true,
+        })
+    }
+
+    /// A small trial elastic strain tensor, as [`lift_small`] reads it.
+    ///
+    /// # Errors
+    /// [`MaterialError::NonFinite`] for a strain that is not finite.
+    #[inline]
+    pub fn small<const D: usize>(eps_e_trial: &Tensor) -> Result<Self, MaterialError> {
+        let (strain, frame) = principal_axes::<D>(eps_e_trial);
+        if !strain.iter().all(|value| value.is_finite()) {
+            return Err(MaterialError::NonFinite {
+                quantity: "trial elastic strain",
+            });
+        }
+        Ok(Self {
+            strain,
+            frame,
+            is_finite: false,
+        })
+    }
+
+    /// The principal strains \[-\].
+    #[inline]
+    pub fn strain(&self) -> &Principal {
+        &self.strain
+    }
+
+    /// The answer of a law at this strain, set into the axes.
+    ///
+    /// # Errors
+    /// As [`ConstitutiveModel::elastic_strain`].
+    #[inline]
+    pub fn lift<const D: usize>(
+        self,
+        law: &dyn ConstitutiveModel,
+        answer: &ReturnMap,
+        kind: TangentKind,
+    ) -> Result<Lifted<D>, MaterialError> {
+        if self.is_finite {
+            lift(law, answer, &self.strain, self.frame, kind, |x| {
+                let share = if x == 0.0 { 1.0 } else { x / x.exp_m1() };
+                [share, share + x]
+            })
+        } else {
+            lift(law, answer, &self.strain, self.frame, kind, |_| [1.0; 2])
+        }
+    }
+}
+
 /// Finite strain: the law at the trial elastic left Cauchy–Green tensor `b_e_trial`.
 ///
 /// `D = 1` is uniaxial strain and reads xx, yy and zz; `D = 2` is plane strain and reads xy too;
@@ -116,11 +186,9 @@ pub fn lift_finite<const D: usize>(
     history: &History,
     kind: TangentKind,
 ) -> Result<Lifted<D>, MaterialError> {
-    let (strain, frame) = logarithmic::<D>(b_e_trial)?;
-    lift(law, &strain, frame, *history, kind, |x| {
-        let share = if x == 0.0 { 1.0 } else { x / x.exp_m1() };
-        [share, share + x]
-    })
+    let trial = TrialStrain::finite::<D>(b_e_trial)?;
+    let answer = law.return_map(trial.strain(), history)?;
+    trial.lift(law, &answer, kind)
 }
 
 /// Small strain: the law at the trial elastic strain tensor `eps_e_trial`.
@@ -137,13 +205,9 @@ pub fn lift_small<const D: usize>(
     history: &History,
     kind: TangentKind,
 ) -> Result<Lifted<D>, MaterialError> {
-    let (strain, frame) = principal_axes::<D>(eps_e_trial);
-    if !strain.iter().all(|value| value.is_finite()) {
-        return Err(MaterialError::NonFinite {
-            quantity: "trial elastic strain",
-        });
-    }
-    lift(law, &strain, frame, *history, kind, |_| [1.0; 2])
+    let trial = TrialStrain::small::<D>(eps_e_trial)?;
+    let answer = law.return_map(trial.strain(), history)?;
+    trial.lift(law, &answer, kind)
 }
 
 /// The elastic left Cauchy–Green tensor $`b_e = \exp(2\varepsilon_e)`$ with principal elastic
@@ -152,13 +216,18 @@ pub fn elastic_left_cauchy_green<const D: usize>(eps_e: &Principal, frame: &Tens
     compose::<D>(&eps_e.map(|strain| (2.0 * strain).exp()), frame)
 }
 
-/// The elastic left Cauchy–Green tensor at which an elasticity answers a stress τ \[stress\].
+/// The elastic left Cauchy–Green tensor at which a law answers a stress τ \[stress\] without flow.
+///
+/// # Errors
+/// As [`ConstitutiveModel::elastic_strain`].
 pub fn elastic_left_cauchy_green_of<const D: usize>(
-    elasticity: &Elasticity,
+    law: &dyn ConstitutiveModel,
     tau: &Tensor,
-) -> Tensor {
+    history: &History,
+) -> Result<Tensor, MaterialError> {
     let (principal, frame) = principal_axes::<D>(tau);
-    elastic_left_cauchy_green::<D>(&elasticity.strain(&principal), &frame)
+    let strain = law.elastic_strain(&principal, history)?;
+    Ok(elastic_left_cauchy_green::<D>(&strain, &frame))
 }
 
 /// The Hencky strain $`\tfrac12\ln b`$ of a left Cauchy–Green tensor `b` (upper triangle).
@@ -207,23 +276,22 @@ fn logarithmic<const D: usize>(b: &Tensor) -> Result<(Principal, Tensor), Materi
 #[inline]
 fn lift<const D: usize>(
     law: &dyn ConstitutiveModel,
+    answer: &ReturnMap,
     strain: &Principal,
     frame: Tensor,
-    history: History,
     kind: TangentKind,
     shares: impl Fn(f64) -> [f64; 2],
 ) -> Result<Lifted<D>, MaterialError> {
-    let elasticity = law.elasticity();
-    let answer = law.return_map(strain, &history)?;
+    let elastic = || law.elastic_stiffness(strain, &answer.history);
     let share = if answer.regime.is_plastic() {
         kind.elastic_share()
     } else {
         0.0
     };
     let normal = match kind {
-        TangentKind::Elastic => elasticity.tangent(),
+        TangentKind::Elastic => elastic().tangent,
         TangentKind::Regularised { .. } if share > 0.0 => {
-            let elastic = elasticity.tangent();
+            let elastic = elastic().tangent;
             std::array::from_fn(|a| {
                 std::array::from_fn(|b| {
                     (1.0 - share) * answer.tangent[a][b] + share * elastic[a][b]
@@ -232,21 +300,21 @@ fn lift<const D: usize>(
         }
         TangentKind::Consistent | TangentKind::Regularised { .. } => answer.tangent,
     };
-    let noise = stress_noise(elasticity, strain);
+    let noise = stress_noise(law.stiffness_bound(), strain);
     let mut shear = [[0.0; 3]; 3];
     for a in 0..D {
         for b in 0..a {
             let x = 2.0 * (strain[a] - strain[b]);
             let [ab, ba] = shares(x);
-            let consistent = secant(&answer, [a, b], x, noise);
+            let consistent = secant(answer, [a, b], x, noise);
             (shear[a][b], shear[b][a]) = match kind {
                 TangentKind::Consistent => (consistent * ab, consistent * ba),
                 TangentKind::Regularised { .. } => {
-                    let between = (1.0 - share) * consistent + share * elasticity.shear();
+                    let between = (1.0 - share) * consistent + share * elastic().shear;
                     (between * ab, between * ba)
                 }
                 TangentKind::Elastic => {
-                    let elastic = elasticity.shear();
+                    let elastic = elastic().shear;
                     let excess = if answer.regime.is_plastic() {
                         0.5 * (elastic - consistent) * (ba - ab)
                     } else {
@@ -258,7 +326,7 @@ fn lift<const D: usize>(
         }
     }
     let eps_e = if answer.regime.is_plastic() {
-        elasticity.strain(&answer.tau)
+        law.elastic_strain(&answer.tau, &answer.history)?
     } else {
         *strain
     };

@@ -170,7 +170,8 @@ pub(crate) fn soft() -> Vec<Entry> {
 /// Those of [`soft`] whose stress keeps enough digits for differences of 1e-7: not with a bulk
 /// modulus thousands of times the shear modulus.
 pub(crate) fn differentiable() -> Vec<Entry> {
-    let ratio = |entry: &Entry| entry.law.elasticity().bulk() / entry.law.elasticity().shear();
+    let ratio =
+        |entry: &Entry| entry.law.stiffness_bound().bulk() / entry.law.stiffness_bound().shear();
     soft()
         .into_iter()
         .filter(|entry| ratio(entry) < 100.0)
@@ -180,7 +181,7 @@ pub(crate) fn differentiable() -> Vec<Entry> {
 impl Entry {
     /// A typical strain at yield.
     pub(crate) fn yield_strain(&self) -> f64 {
-        self.strength / self.law.elasticity().young()
+        self.strength / self.law.stiffness_bound().young()
     }
 
     /// Trial strains around and beyond the yield surface, of general position.
@@ -225,6 +226,6 @@ impl Entry {
     /// The elastic strain that the law returns a trial strain to.
     fn returned(&self, strain: &Principal) -> Principal {
         let answer = self.law.return_map(strain, &History::default()).unwrap();
-        self.law.elasticity().strain(&answer.tau)
+        self.law.stiffness_bound().strain(&answer.tau)
     }
 }

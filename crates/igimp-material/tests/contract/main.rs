@@ -11,6 +11,7 @@
 //! | `random_laws` | the same for laws with random parameters |
 //! | `reduction` | strength reduction and limits between laws |
 //! | `scaled` | laws at ratios of strength and stiffness |
+//! | `hardening` | laws with memory |
 //! | `utilisation` | the share of the strength that a stress mobilises |
 //! | `refusals` | what is not accepted, and the words for it |
 //!
@@ -20,6 +21,7 @@ mod active_sets;
 mod catalogue;
 mod close_eigenvalues;
 mod flow_rule;
+mod hardening;
 mod lifts;
 mod random;
 mod random_laws;

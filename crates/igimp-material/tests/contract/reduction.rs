@@ -127,7 +127,7 @@ fn reduction_divides_strength_and_keeps_elasticity() {
     for (law, expected) in cases {
         let found = law.reduced(srf).unwrap();
         assert_eq!(found.name(), law.name());
-        assert_eq!(found.elasticity(), law.elasticity());
+        assert_eq!(found.stiffness_bound(), law.stiffness_bound());
         assert_eq!(
             found.has_symmetric_tangent(),
             expected.has_symmetric_tangent()

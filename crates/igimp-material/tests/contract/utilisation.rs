@@ -5,7 +5,7 @@ use igimp_material::{ConstitutiveModel, History, Principal, Regime};
 use crate::catalogue::{Entry, all};
 use crate::random::Random;
 
-const HISTORY: History = History { eps_p_eq: 0.25 };
+const HISTORY: History = History::of_plastic_strain(0.25);
 
 /// A law of the catalogue, by the beginning of its label.
 fn named(label: &str) -> Entry {

@@ -3,7 +3,7 @@
 
 use igimp_material::Ratios;
 
-use crate::{Ground, Material, Raster, Strength, front};
+use crate::{Ground, Material, Raster, front};
 
 /// The least strength of a profile over its greatest \[-\]: soil without any would be no soil.
 pub const LEAST_STRENGTH: f64 = 1e-6;
@@ -171,13 +171,7 @@ pub struct Profiles {
 impl Material {
     /// Undrained strength or cohesion \[Pa\]; zero for a material that has neither. The greatest where it varies.
     pub fn cohesive(&self) -> f64 {
-        match self.strength {
-            Strength::VonMises { undrained_strength } | Strength::Tresca { undrained_strength } => {
-                undrained_strength
-            }
-            Strength::MohrCoulomb { cohesion, .. } => cohesion,
-            Strength::Elastic => 0.0,
-        }
+        self.strength.cohesive().unwrap_or(0.0)
     }
 
     /// Whether anything varies.
@@ -197,10 +191,7 @@ impl Material {
             let ratio = |own: &Profile| (own.at(place, ground) / greatest).max(least);
             profile.as_ref().map_or(1.0, ratio)
         };
-        let tan_friction = match self.strength {
-            Strength::MohrCoulomb { friction_angle, .. } => friction_angle.tan(),
-            _ => 1.0,
-        };
+        let tan_friction = self.strength.friction_angle().map_or(1.0, f64::tan);
         Ratios {
             strength: over(strength, self.cohesive(), LEAST_STRENGTH),
             friction: over(friction, tan_friction, 0.0),

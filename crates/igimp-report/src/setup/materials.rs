@@ -1,6 +1,6 @@
 //! Materials in words.
 
-use igimp_model::{Case, Flow, Material, Profile, Strength, StressShare, Variation};
+use igimp_model::{Case, Material, Parameter, ParameterValue, Profile, StressShare, Variation};
 use igimp_results::summary::SetupTable;
 use igimp_text::short;
 
@@ -25,49 +25,32 @@ pub(super) fn materials<const D: usize>(case: &Case<D>) -> SetupTable {
 
 fn material(material: &Material) -> Vec<String> {
     let own = &material.profiles;
-    let cohesive = || match &own.strength {
-        Some(profile) => in_words(profile, over(1e3), " kPa"),
-        None => kilo(material.cohesive(), "Pa"),
-    };
     let or_constant = |profile: &Option<Profile>, constant: f64, scale: f64| match profile {
         Some(profile) => in_words(profile, over(scale), ""),
         None => short(constant / scale),
     };
-    let (law, strength) = match material.strength {
-        Strength::Elastic => ("elastic", "no limit".to_owned()),
-        Strength::VonMises { .. } => ("von Mises", format!("c_u = {}", cohesive())),
-        Strength::Tresca { .. } => ("Tresca", format!("c_u = {}", cohesive())),
-        Strength::MohrCoulomb {
-            friction_angle,
-            dilation_angle,
-            flow,
-            tension_cutoff,
-            ..
-        } => {
-            let degrees = |angle: f64| short(angle.to_degrees());
-            let friction = own.friction.as_ref().map_or_else(
-                || format!("{}°", degrees(friction_angle)),
-                |profile| in_words(profile, |tangent| degrees(tangent.atan()), "°"),
-            );
-            let cutoff = tension_cutoff.map_or_else(String::new, |limit| {
-                format!(", tension up to {}", kilo(limit, "Pa"))
-            });
-            let strength = format!(
-                "c = {}, φ = {}, ψ = {}°{}{cutoff}",
-                cohesive(),
-                friction,
-                degrees(dilation_angle),
-                match flow {
-                    Flow::Dilation => "",
-                    Flow::Davis => ", flow by Davis",
-                }
-            );
-            ("Mohr–Coulomb", strength)
-        }
+    let degrees = |angle: f64| short(angle.to_degrees());
+    let printed = |parameter: Parameter| {
+        let value = match (parameter.value, &own.strength, &own.friction) {
+            (ParameterValue::Cohesive(_), Some(profile), _) => in_words(profile, over(1e3), " kPa"),
+            (ParameterValue::Friction(_), _, Some(profile)) => {
+                in_words(profile, |tangent| degrees(tangent.atan()), "°")
+            }
+            (ParameterValue::Cohesive(stress) | ParameterValue::Stress(stress), ..) => {
+                kilo(stress, "Pa")
+            }
+            (ParameterValue::Friction(angle) | ParameterValue::Angle(angle), ..) => {
+                format!("{}°", degrees(angle))
+            }
+            (ParameterValue::Note, ..) => String::new(),
+        };
+        format!("{}{value}", parameter.label)
     };
+    let parameters = material.strength.parameters().into_iter();
+    let strength = parameters.map(printed).collect::<Vec<_>>().join(", ");
     vec![
         material.name.clone(),
-        law.to_owned(),
+        material.strength.name().to_owned(),
         or_constant(&own.unit_weight, material.unit_weight, 1e3),
         or_constant(&own.young, material.young, 1e6),
         short(material.poisson),

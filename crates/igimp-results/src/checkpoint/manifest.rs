@@ -234,6 +234,11 @@ impl StateEntry {
         self.files.insert(array.into(), entry);
     }
 
+    /// Whether an array was written.
+    pub(super) fn has(&self, array: &str) -> bool {
+        self.files.contains_key(array)
+    }
+
     /// Says why bytes are not those that were written.
     pub(super) fn compare(&self, array: &str, bytes: &[u8]) -> Result<(), String> {
         let Some(entry) = self.files.get(array) else {

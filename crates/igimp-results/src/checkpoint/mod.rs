@@ -385,9 +385,12 @@ fn read_state<const D: usize>(
         return Err(damaged(("x", why)));
     }
     arrays::to_body([entry.particles, entry.load_points], |array| {
+        if !entry.has(array) {
+            return Ok(None);
+        }
         let bytes = bytes(&array_file(name, array))?;
         entry.compare(array, &bytes)?;
-        Ok(bytes)
+        Ok(Some(bytes))
     })
     .map_err(damaged)
 }

@@ -169,11 +169,13 @@ impl Frames {
         self.particles.frames().is_empty()
     }
 }
-/// Strength and stiffness of the particles, where they are not those of the materials everywhere.
+
+/// Strength and stiffness of the particles, where they are not those of the materials everywhere, and the internal
+/// variables of their laws.
 fn carried<const D: usize>(
     particles: &Particles<D>,
     laws: &[SharedLaw],
-) -> Vec<(&'static str, Vec<f64>)> {
+) -> Vec<(String, Vec<f64>)> {
     let varies = particles.ratios.iter().any(|ratios| !ratios.are_one());
     let arrays = [
         ("strength [Pa]", Field::Strength),
@@ -182,6 +184,7 @@ fn carried<const D: usize>(
     ];
     let arrays = arrays.into_iter().filter(|_| varies);
     arrays
-        .map(|(name, field)| (name, fields::values(field, particles, laws)))
+        .map(|(name, field)| (name.to_owned(), fields::values(field, particles, laws)))
+        .chain(fields::internal_variables(particles, laws))
         .collect()
 }

@@ -5,7 +5,7 @@ use igimp_assembly::Particles;
 use igimp_material::Tensor;
 use igimp_shape::Grid;
 
-use crate::fields::{deviatoric_stress, mean_pressure, regime};
+use crate::fields::{deviatoric_stress, mean_pressure};
 use crate::vtu::{CellKind, DataArray, UnstructuredGrid, padded};
 
 /// What is written beyond the state of the particles.
@@ -14,7 +14,7 @@ pub struct Extras<'a> {
     /// Utilisation of the strength by particle \[-\].
     pub utilisation: Option<&'a [f64]>,
     /// What particles carry of their material, by the names of the arrays.
-    pub carried: &'a [(&'static str, Vec<f64>)],
+    pub carried: &'a [(String, Vec<f64>)],
     /// Whether the deformation gradient is written.
     pub def_grad: bool,
     /// Whether effective stress and pore pressure are written beside total stress.
@@ -25,7 +25,7 @@ pub struct Extras<'a> {
 /// hexahedra in space.
 ///
 /// Cells carry displacement, Cauchy stress σ (total), p, q, plastic strain, number of the material (from 0,
-/// in the order of the case), code of the [`regime`], number that the particle keeps, volume
+/// in the order of the case), code of the regime ([`Regime::code`](igimp_material::Regime::code)), number that the particle keeps, volume
 /// and mass; with pore water effective stress σ′, p′, pore pressure u and its excess besides.
 ///
 /// # Panics
@@ -51,9 +51,9 @@ pub fn of_particles<const D: usize>(
     let n = particles.len();
     let by_particle = |of: &dyn Fn(usize) -> f64| (0..n).map(of).collect();
     let integers = |of: &dyn Fn(usize) -> usize| (0..n).map(|k| of(k) as i32).collect();
-    let (effective, history) = (&particles.sigma, &particles.history);
+    let effective = &particles.sigma;
     let sigma: Vec<Tensor> = (0..n).map(|k| particles.total_stress(k)).collect();
-    let regime = |k| usize::from(regime::code(particles.regime[k]));
+    let regime = |k: usize| usize::from(particles.regime[k].code());
     // A slice of one metre in plane strain.
     let per = if D == 2 { "/m" } else { "" };
     let mut cell_data = vec![
@@ -64,7 +64,7 @@ pub fn of_particles<const D: usize>(
             by_particle(&|k| mean_pressure(&sigma[k])),
         ),
         DataArray::scalars("q [Pa]", by_particle(&|k| deviatoric_stress(&effective[k]))),
-        DataArray::scalars("plastic strain [-]", by_particle(&|k| history[k].eps_p_eq)),
+        DataArray::scalars("plastic strain [-]", particles.eps_p_eq.clone()),
         DataArray::integers("material", integers(&|k| particles.law[k])),
         DataArray::integers("regime", integers(&regime)),
         DataArray::integers("particle", integers(&|k| particles.number[k])),
@@ -95,7 +95,7 @@ pub fn of_particles<const D: usize>(
     }
     for (name, values) in extras.carried {
         assert_eq!(values.len(), n, "every particle has `{name}`");
-        cell_data.push(DataArray::scalars(*name, values.clone()));
+        cell_data.push(DataArray::scalars(name.clone(), values.clone()));
     }
     if extras.def_grad {
         cell_data.push(DataArray::tensors(
@@ -191,7 +191,7 @@ mod tests {
     fn a_domain_is_a_hexahedron_in_space() {
         let extras = Extras {
             utilisation: Some(&[0.75]),
-            carried: &[("strength [Pa]", vec![5e3])],
+            carried: &[("strength [Pa]".to_owned(), vec![5e3])],
             def_grad: true,
             pore_water: false,
         };

@@ -256,7 +256,7 @@ impl ConstitutiveModel for Poisoned {
         "poisoned"
     }
 
-    fn elasticity(&self) -> &Elasticity {
+    fn stiffness_bound(&self) -> &Elasticity {
         &ELASTICITY
     }
 

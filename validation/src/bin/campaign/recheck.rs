@@ -56,7 +56,7 @@ pub(crate) fn equilibrium(
         let sigma = &after.sigma[particle];
         let mean = (sigma[0][0] + sigma[1][1] + sigma[2][2]) / 3.0;
         let law = &conditions.laws[before.law[particle]];
-        let modulus = law.elasticity().bulk() + 4.0 / 3.0 * law.elasticity().shear();
+        let modulus = law.stiffness_bound().bulk() + 4.0 / 3.0 * law.stiffness_bound().shear();
         let mut slopes = 0.0;
         for support in stencils.of(particle) {
             let g = solved(&delta, support.grad);

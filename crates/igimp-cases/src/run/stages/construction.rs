@@ -9,7 +9,9 @@ use std::sync::Arc;
 use igimp_assembly::{
     Kinematics, ParticleFields, Particles, PoreSite, PoreWater as _, Stencils, System,
 };
-use igimp_material::{ConstitutiveModel, ScaledLaw, TangentKind, elastic_left_cauchy_green_of};
+use igimp_material::{
+    ConstitutiveModel, ScaledLaw, TangentKind, elastic_left_cauchy_green_of, principal_values,
+};
 use igimp_model::{Construction, Drainage, Ground, StageKind};
 use igimp_results::summary::StageSummary;
 use igimp_text::short;
@@ -147,7 +149,7 @@ fn become_soil_of<const D: usize>(
     let gravity = gravity_of_weights(case.gravity);
     let place = fields.x[particle];
     let soil = &case.materials[material];
-    let before = model.laws[fields.law[particle]].elasticity().young();
+    let before = model.laws[fields.law[particle]].stiffness_bound().young();
     let shared = (before / soil.young - 1.0).abs() > 1e-12;
     let mut ratios = soil.ratios_at(&place, ground);
     if shared {
@@ -159,8 +161,9 @@ fn become_soil_of<const D: usize>(
         fields.volume0[particle] * soil.unit_weight_at(&place, ground) / gravity;
     let tau = fields.sigma[particle].map(|row| row.map(|stress| stress * stretch));
     let law = ScaledLaw::new(&*model.laws[fields.law[particle]], ratios)?;
-    let b_e = elastic_left_cauchy_green_of::<D>(law.elasticity(), &tau);
-    fields.b_e[particle] = b_e;
+    let history = law.initial_history(&principal_values::<D>(&tau));
+    fields.internal[particle] = history.internal;
+    fields.b_e[particle] = elastic_left_cauchy_green_of::<D>(&law, &tau, &history)?;
     Ok(())
 }
 

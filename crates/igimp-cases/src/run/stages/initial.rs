@@ -2,7 +2,7 @@
 //! and 37).
 
 use igimp_assembly::{Particles, PoreWater as _};
-use igimp_material::ConstitutiveModel;
+use igimp_material::{ConstitutiveModel, MaterialError};
 
 use crate::error::CaseError;
 use crate::run::model::Model;
@@ -35,14 +35,17 @@ pub(crate) fn level_ground<const D: usize>(
         let mut sigma = [k0 * vertical; 3];
         sigma[D - 1] = vertical;
         let answer = |law: &dyn ConstitutiveModel| {
-            let excess = law.yield_function(&sigma, &fields.history[particle]);
-            (excess <= 1e-9 * law.stress_scale(&sigma)).then(|| law.elasticity().strain(&sigma))
+            let history = law.initial_history(&sigma);
+            let excess = law.yield_function(&sigma, &history);
+            let is_admissible = excess <= 1e-9 * law.stress_scale(&sigma);
+            let strain = is_admissible.then(|| law.elastic_strain(&sigma, &history));
+            Ok::<_, MaterialError>(strain.transpose()?.map(|strain| (strain, history)))
         };
         let strain = state
             .body
             .particles
-            .ask_law(particle, &model.laws, answer)?;
-        let Some(strain) = strain else {
+            .ask_law(particle, &model.laws, answer)??;
+        let Some((strain, history)) = strain else {
             return Err(CaseError::InitialStress {
                 material: material.name.clone(),
                 position: x.to_vec(),
@@ -54,6 +57,7 @@ pub(crate) fn level_ground<const D: usize>(
             // At full gravity, as the stress.
             fields.pore_pressure[particle] = water.at(site).pressure;
         }
+        fields.internal[particle] = history.internal;
         for axis in 0..3 {
             fields.sigma[particle][axis][axis] = sigma[axis];
             fields.b_e[particle][axis][axis] = (2.0 * strain[axis]).exp();

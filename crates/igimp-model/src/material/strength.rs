@@ -1,0 +1,176 @@
+//! Strengths of materials: their parameters, their laws, and how they are printed.
+
+use std::sync::Arc;
+
+use igimp_assembly::SharedLaw;
+use igimp_material::{Elasticity, HenckyElastic, MaterialError, MohrCoulomb, Tresca, VonMises};
+
+/// How plastic flow of frictional soil follows from its angle of dilation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Flow {
+    /// By a plastic potential with ψ in place of φ (theory, eq. 21).
+    #[default]
+    Dilation,
+    /// Associated, on the strengths that soil of this ψ mobilises along lines of no extension (theory, eq. 21a).
+    Davis,
+}
+
+/// The strength of a material.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Strength {
+    /// No limit.
+    Elastic,
+    /// von Mises with undrained strength c_u in plane strain \[Pa\].
+    VonMises {
+        /// c_u \[Pa\].
+        undrained_strength: f64,
+    },
+    /// Tresca.
+    Tresca {
+        /// c_u \[Pa\].
+        undrained_strength: f64,
+    },
+    /// Mohr–Coulomb.
+    MohrCoulomb {
+        /// c \[Pa\].
+        cohesion: f64,
+        /// φ \[rad\].
+        friction_angle: f64,
+        /// ψ \[rad\].
+        dilation_angle: f64,
+        /// How plastic flow follows from ψ.
+        flow: Flow,
+        /// Largest tensile stress \[Pa\]; none: the apex of the cone.
+        tension_cutoff: Option<f64>,
+    },
+}
+
+/// A parameter of a strength as it is printed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Parameter {
+    /// What stands before the value, such as `c_u = `.
+    pub label: &'static str,
+    /// The value.
+    pub value: ParameterValue,
+}
+
+/// The value of a parameter, and what of a material may vary in its place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ParameterValue {
+    /// A strength that varies with the profile of strength \[Pa\].
+    Cohesive(f64),
+    /// An angle that varies with the profile of friction \[rad\].
+    Friction(f64),
+    /// A stress \[Pa\].
+    Stress(f64),
+    /// An angle \[rad\].
+    Angle(f64),
+    /// None: the label says it all.
+    Note,
+}
+
+impl Strength {
+    /// Name of the law, in print.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Elastic => "elastic",
+            Self::VonMises { .. } => "von Mises",
+            Self::Tresca { .. } => "Tresca",
+            Self::MohrCoulomb { .. } => "Mohr–Coulomb",
+        }
+    }
+
+    /// The parameters in the order in which they are printed.
+    pub fn parameters(&self) -> Vec<Parameter> {
+        let parameter = |label, value| Parameter { label, value };
+        match *self {
+            Self::Elastic => vec![parameter("no limit", ParameterValue::Note)],
+            Self::VonMises { undrained_strength } | Self::Tresca { undrained_strength } => {
+                vec![parameter(
+                    "c_u = ",
+                    ParameterValue::Cohesive(undrained_strength),
+                )]
+            }
+            Self::MohrCoulomb {
+                cohesion,
+                friction_angle,
+                dilation_angle,
+                flow,
+                tension_cutoff,
+            } => {
+                let mut parameters = vec![
+                    parameter("c = ", ParameterValue::Cohesive(cohesion)),
+                    parameter("φ = ", ParameterValue::Friction(friction_angle)),
+                    parameter("ψ = ", ParameterValue::Angle(dilation_angle)),
+                ];
+                if flow == Flow::Davis {
+                    parameters.push(parameter("flow by Davis", ParameterValue::Note));
+                }
+                let limit = |limit| parameter("tension up to ", ParameterValue::Stress(limit));
+                parameters.extend(tension_cutoff.map(limit));
+                parameters
+            }
+        }
+    }
+
+    /// Undrained strength or cohesion \[Pa\]; none of a strength that has neither.
+    pub fn cohesive(&self) -> Option<f64> {
+        let mut parameters = self.parameters().into_iter();
+        parameters.find_map(|parameter| match parameter.value {
+            ParameterValue::Cohesive(value) => Some(value),
+            _ => None,
+        })
+    }
+
+    /// Friction angle φ \[rad\]; none of a strength without friction.
+    pub fn friction_angle(&self) -> Option<f64> {
+        let mut parameters = self.parameters().into_iter();
+        parameters.find_map(|parameter| match parameter.value {
+            ParameterValue::Friction(value) => Some(value),
+            _ => None,
+        })
+    }
+
+    /// Its law with an elasticity; one with friction has at least this cohesion \[Pa\].
+    ///
+    /// # Errors
+    /// [`MaterialError::InvalidParameter`].
+    pub fn law(
+        &self,
+        elasticity: Elasticity,
+        least_cohesion: f64,
+    ) -> Result<SharedLaw, MaterialError> {
+        Ok(match *self {
+            Self::Elastic => Arc::new(HenckyElastic::new(elasticity)),
+            Self::VonMises { undrained_strength } => Arc::new(VonMises::from_undrained_strength(
+                elasticity,
+                undrained_strength,
+            )?),
+            Self::Tresca { undrained_strength } => {
+                Arc::new(Tresca::new(elasticity, undrained_strength)?)
+            }
+            Self::MohrCoulomb {
+                cohesion,
+                friction_angle,
+                dilation_angle,
+                flow,
+                tension_cutoff,
+            } => {
+                let cohesion = if cohesion < least_cohesion {
+                    least_cohesion
+                } else {
+                    cohesion
+                };
+                let mut law =
+                    MohrCoulomb::new(elasticity, cohesion, friction_angle, dilation_angle)?;
+                if flow == Flow::Davis {
+                    law = law.with_davis_flow()?;
+                }
+                if let Some(limit) = tension_cutoff {
+                    law = law.with_tension_cutoff(limit)?;
+                }
+                Arc::new(law)
+            }
+        })
+    }
+}
