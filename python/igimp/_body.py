@@ -43,6 +43,8 @@ class Body:
         Elastic left Cauchy-Green tensor [-].
     eps_p_eq : ndarray (n,)
         Accumulated plastic strain [-].
+    internal : ndarray (n, 4)
+        Internal variables of the law, zero beyond those that it has [by law].
     half_length, half_length0 : ndarray (n, d)
         Half-lengths of the domain, now and as seeded [m].
     centroid : ndarray (n, d)
@@ -69,6 +71,7 @@ class Body:
     def_grad: NDArray[np.float64]
     b_e: NDArray[np.float64]
     eps_p_eq: NDArray[np.float64]
+    internal: NDArray[np.float64]
     half_length: NDArray[np.float64]
     half_length0: NDArray[np.float64]
     centroid: NDArray[np.float64]
@@ -83,13 +86,17 @@ class Body:
 
     def __init__(self, arrays: Mapping[str, NDArray[Any]], materials: tuple[str, ...] = ()) -> None:
         self.__dict__.update(arrays)
+        if "internal" not in arrays:
+            self.internal = np.zeros((len(self.x), 4))
         self.materials = materials
 
     @classmethod
     def load(cls, folder: str | Path, materials: tuple[str, ...] = ()) -> Body:
         """Reads the arrays of a checkpoint, such as ``results/slope/checkpoint/stage-01-end/current``."""
-        names = (name for name in cls.__annotations__ if name != "materials")
-        return cls({name: np.load(Path(folder) / f"{name}.npy") for name in names}, materials)
+        files = {name: Path(folder) / f"{name}.npy" for name in cls.__annotations__ if name != "materials"}
+        if not files["internal"].exists():
+            del files["internal"]
+        return cls({name: np.load(file) for name, file in files.items()}, materials)
 
     def __len__(self) -> int:
         return len(self.x)

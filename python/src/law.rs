@@ -4,7 +4,9 @@ use std::fmt;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use igimp_material::{ConstitutiveModel, Elasticity, History, MaterialError, Principal, Regime, ReturnMap};
+use igimp_material::{
+    ConstitutiveModel, Elasticity, History, MaterialError, Principal, Regime, ReturnMap,
+};
 use igimp_model::{Case, GivenLaw};
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1};
 use pyo3::prelude::*;

@@ -11,7 +11,7 @@ mod march;
 mod raised;
 mod relay;
 
-use igimp_results::ending::Ending;
+use igimp_results::summary::Summary;
 use igimp_study::telling;
 use pyo3::prelude::*;
 
@@ -38,7 +38,7 @@ mod _igimp {
 /// how it ended, in a word; the exit code of the program.
 #[pyfunction]
 fn verdict(summary: &str) -> PyResult<(String, String, u8)> {
-    let summary = serde_json::from_str(summary)
+    let summary: Summary = serde_json::from_str(summary)
         .map_err(|error| pyo3::exceptions::PyValueError::new_err(error.to_string()))?;
     let ending = summary.ending();
     let text = telling::verdict::stages_and_checks(&summary);

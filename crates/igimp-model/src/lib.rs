@@ -27,6 +27,7 @@ use serde::{Deserialize, Serialize};
 pub use axes::{front, in_space};
 pub use grid::{AxisSpec, GridSpec, MixedCells};
 pub use ground::{Ground, Layer};
+pub use igimp_schema::field::Field;
 pub use load::{Load, LoadKind, Plan};
 pub use material::profile::{LEAST_STRENGTH, Profile, Profiles, StressShare, Variation};
 pub use material::raster::Raster;
@@ -34,8 +35,8 @@ pub use material::strength::{Flow, Parameter, ParameterValue, Strength};
 pub use material::{GivenLaw, Material};
 pub use plane::in_plane;
 pub use record::{
-    Average, CaseCheck, CheckTime, CheckValue, Curve, CurveAxis, Field, Monitor, Quantity,
-    Reference, ReferenceValues, Section, SectionReference,
+    Average, CaseCheck, CheckTime, CheckValue, Curve, CurveAxis, Monitor, Quantity, Reference,
+    ReferenceValues, Section, SectionReference,
 };
 pub use reinforcement::{ReinforcementKind, ReinforcementPart, ReinforcementQuantity, distance};
 pub use rigid::space::RigidSolid;

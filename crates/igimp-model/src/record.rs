@@ -2,6 +2,7 @@
 
 use super::{Case, ReinforcementQuantity, RigidQuantity, Stage, StageKind};
 use crate::check::Band;
+use igimp_schema::field::Field;
 
 /// A material point that is watched: a point in the undeformed bodies. Fields there are interpolated from the particles around
 /// it; the displacement that ends a stage or a search is that of the nearest particle.
@@ -63,74 +64,6 @@ pub struct SectionReference {
     pub stage: Option<usize>,
     /// Values over the distance along the section \[m\], in SI units.
     pub reference: Reference,
-}
-
-/// A field on particles, as it is printed: stress compression positive.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Field {
-    /// Length of the displacement \[m\].
-    Displacement,
-    /// Displacement in x \[m\].
-    DisplacementX,
-    /// Displacement in y \[m\].
-    DisplacementY,
-    /// Displacement in z \[m\]; in space.
-    DisplacementZ,
-    /// Position x \[m\].
-    X,
-    /// Position y \[m\].
-    Y,
-    /// Position z \[m\]; in space.
-    Z,
-    /// −σ_xx of total stress \[Pa\].
-    SigmaXx,
-    /// −σ_yy of total stress \[Pa\].
-    SigmaYy,
-    /// −σ_zz of total stress \[Pa\].
-    SigmaZz,
-    /// −τ_xy \[Pa\].
-    TauXy,
-    /// −τ_yz \[Pa\]; in space.
-    TauYz,
-    /// −τ_xz \[Pa\]; in space.
-    TauXz,
-    /// Mean pressure p = −tr σ/3 of total stress \[Pa\].
-    P,
-    /// −σ′_xx of effective stress: the stress that the law speaks of \[Pa\].
-    SigmaEffXx,
-    /// −σ′_yy of effective stress \[Pa\].
-    SigmaEffYy,
-    /// −σ′_zz of effective stress \[Pa\].
-    SigmaEffZz,
-    /// Mean effective pressure p′ = −tr σ′/3 \[Pa\].
-    PEff,
-    /// Pore pressure u, given and excess \[Pa\].
-    U,
-    /// Excess pore pressure that undrained soil made itself \[Pa\].
-    UExcess,
-    /// Deviatoric stress q = √(3/2)‖s‖ \[Pa\].
-    Q,
-    /// Accumulated plastic strain invariant \[-\].
-    PlasticStrain,
-    /// Share of the strength that is mobilised \[-\].
-    Utilisation,
-    /// Undrained strength or cohesion \[Pa\]; none of soil without a strength limit.
-    Strength,
-    /// Angle of friction \[rad\]; none of soil without a strength limit.
-    Friction,
-    /// Young's modulus \[Pa\].
-    Young,
-}
-
-impl Field {
-    /// Whether there is such a number in so many dimensions.
-    pub fn exists_in(self, dimensions: usize) -> bool {
-        let in_space = matches!(
-            self,
-            Self::DisplacementZ | Self::Z | Self::TauYz | Self::TauXz
-        );
-        dimensions == 3 || !in_space
-    }
 }
 
 /// A number that every step has.

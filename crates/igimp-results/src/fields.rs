@@ -8,6 +8,8 @@ use igimp_material::{
     ConstitutiveModel, InternalVariable, ShearStrength, Tensor, principal_values,
 };
 use igimp_model::Field;
+pub use igimp_schema::field::Dimension;
+use igimp_schema::field::Sign;
 
 /// One value per particle, in SI units; stresses compression positive.
 ///
@@ -155,107 +157,6 @@ fn utilisation<const D: usize>(
     particles.ask_law(particle, laws, share).ok()
 }
 
-/// What kind of number a field is: fields of a kind share an axis.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Dimension {
-    /// A displacement \[m\].
-    Displacement,
-    /// A position \[m\].
-    Position,
-    /// A stress \[Pa\].
-    Stress,
-    /// A strain \[-\].
-    Strain,
-    /// A share \[-\].
-    Share,
-    /// An angle \[rad\].
-    Angle,
-}
-
-/// The dimension of a field.
-pub fn dimension(field: Field) -> Dimension {
-    match field {
-        Field::Displacement
-        | Field::DisplacementX
-        | Field::DisplacementY
-        | Field::DisplacementZ => Dimension::Displacement,
-        Field::X | Field::Y | Field::Z => Dimension::Position,
-        Field::SigmaXx
-        | Field::SigmaYy
-        | Field::SigmaZz
-        | Field::TauXy
-        | Field::TauYz
-        | Field::TauXz
-        | Field::P
-        | Field::SigmaEffXx
-        | Field::SigmaEffYy
-        | Field::SigmaEffZz
-        | Field::PEff
-        | Field::U
-        | Field::UExcess
-        | Field::Q
-        | Field::Strength
-        | Field::Young => Dimension::Stress,
-        Field::PlasticStrain => Dimension::Strain,
-        Field::Utilisation => Dimension::Share,
-        Field::Friction => Dimension::Angle,
-    }
-}
-
-/// Whether a field is one of total stress that has a counterpart of effective stress.
-pub fn is_total(field: Field) -> bool {
-    matches!(
-        field,
-        Field::SigmaXx | Field::SigmaYy | Field::SigmaZz | Field::P
-    )
-}
-
-/// The name of a field in case files.
-pub fn name(field: Field) -> &'static str {
-    match field {
-        Field::Displacement => "displacement",
-        Field::DisplacementX => "displacement_x",
-        Field::DisplacementY => "displacement_y",
-        Field::DisplacementZ => "displacement_z",
-        Field::X => "x",
-        Field::Y => "y",
-        Field::Z => "z",
-        Field::SigmaXx => "sigma_xx",
-        Field::SigmaYy => "sigma_yy",
-        Field::SigmaZz => "sigma_zz",
-        Field::TauXy => "tau_xy",
-        Field::TauYz => "tau_yz",
-        Field::TauXz => "tau_xz",
-        Field::P => "p",
-        Field::SigmaEffXx => "sigma_eff_xx",
-        Field::SigmaEffYy => "sigma_eff_yy",
-        Field::SigmaEffZz => "sigma_eff_zz",
-        Field::PEff => "p_eff",
-        Field::U => "u",
-        Field::UExcess => "u_excess",
-        Field::Q => "q",
-        Field::PlasticStrain => "plastic_strain",
-        Field::Utilisation => "utilisation",
-        Field::Strength => "strength",
-        Field::Friction => "friction",
-        Field::Young => "young",
-    }
-}
-
-/// The header of a column of a table, such as `sigma_yy_[Pa]_compression_+`.
-pub fn header(field: Field) -> String {
-    let name = name(field);
-    match dimension(field) {
-        Dimension::Displacement | Dimension::Position => format!("{name}_[m]"),
-        Dimension::Stress if matches!(field, Field::Q | Field::Strength | Field::Young) => {
-            format!("{name}_[Pa]")
-        }
-        Dimension::Stress => format!("{name}_[Pa]_compression_+"),
-        Dimension::Angle => format!("{name}_[rad]"),
-        Dimension::Strain | Dimension::Share => format!("{name}_[-]"),
-    }
-}
-
 /// The unit of a figure: SI values are divided by `divide_by`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scale {
@@ -291,52 +192,6 @@ impl Scale {
     }
 }
 
-/// What a field is in so many dimensions: the third axis is upright in space, and out of the plane else.
-pub fn title_in(dimensions: usize, field: Field) -> &'static str {
-    match field {
-        _ if dimensions == 2 => title(field),
-        Field::DisplacementX => "displacement u_{x}",
-        Field::DisplacementY => "displacement u_{y}",
-        Field::SigmaYy => "horizontal stress −σ_{yy}",
-        Field::SigmaZz => "vertical stress −σ_{zz}",
-        Field::SigmaEffYy => "effective horizontal stress −σ′_{yy}",
-        Field::SigmaEffZz => "effective vertical stress −σ′_{zz}",
-        _ => title(field),
-    }
-}
-
-/// What a field is in plane strain, in words and signs, with the index marks of [`figures`](igimp_figures).
-pub fn title(field: Field) -> &'static str {
-    match field {
-        Field::Displacement => "displacement |u|",
-        Field::DisplacementX => "horizontal displacement u_{x}",
-        Field::DisplacementY => "vertical displacement u_{y}",
-        Field::DisplacementZ => "vertical displacement u_{z}",
-        Field::X => "position x",
-        Field::Y => "position y",
-        Field::Z => "position z",
-        Field::SigmaXx => "horizontal stress −σ_{xx}",
-        Field::SigmaYy => "vertical stress −σ_{yy}",
-        Field::SigmaZz => "out-of-plane stress −σ_{zz}",
-        Field::TauXy => "shear stress −τ_{xy}",
-        Field::TauYz => "shear stress −τ_{yz}",
-        Field::TauXz => "shear stress −τ_{xz}",
-        Field::P => "mean pressure p",
-        Field::SigmaEffXx => "effective horizontal stress −σ′_{xx}",
-        Field::SigmaEffYy => "effective vertical stress −σ′_{yy}",
-        Field::SigmaEffZz => "effective out-of-plane stress −σ′_{zz}",
-        Field::PEff => "mean effective pressure p′",
-        Field::U => "pore pressure u",
-        Field::UExcess => "excess pore pressure Δu",
-        Field::Q => "deviatoric stress q",
-        Field::PlasticStrain => "plastic strain ε_{p}",
-        Field::Utilisation => "share of the shear strength",
-        Field::Strength => "undrained strength or cohesion",
-        Field::Friction => "angle of friction φ",
-        Field::Young => "Young's modulus E",
-    }
-}
-
 /// The label of an axis or a colour bar, such as
 /// "vertical stress −σ_{yy} \[kPa\], compression positive".
 pub fn label(field: Field, scale: Scale) -> String {
@@ -345,12 +200,11 @@ pub fn label(field: Field, scale: Scale) -> String {
 
 /// The same in so many dimensions.
 pub fn label_in(dimensions: usize, field: Field, scale: Scale) -> String {
-    let sign = match field {
-        Field::TauXy | Field::TauYz | Field::TauXz | Field::Q => "",
-        _ if dimension(field) == Dimension::Stress => ", compression positive",
-        _ => "",
+    let sign = match field.sign() {
+        Sign::Compression => ", compression positive",
+        Sign::Own | Sign::Shear => "",
     };
-    format!("{} [{}]{sign}", title_in(dimensions, field), scale.unit)
+    format!("{} [{}]{sign}", field.title_in(dimensions), scale.unit)
 }
 
 /// A text of figures without its marks for indices and powers, for prose.
@@ -371,36 +225,6 @@ pub fn plain(text: &str) -> String {
     }
     plain + rest
 }
-
-/// Every field.
-pub const ALL: [Field; 26] = [
-    Field::Displacement,
-    Field::DisplacementX,
-    Field::DisplacementY,
-    Field::DisplacementZ,
-    Field::X,
-    Field::Y,
-    Field::Z,
-    Field::SigmaXx,
-    Field::SigmaYy,
-    Field::SigmaZz,
-    Field::TauXy,
-    Field::TauYz,
-    Field::TauXz,
-    Field::P,
-    Field::SigmaEffXx,
-    Field::SigmaEffYy,
-    Field::SigmaEffZz,
-    Field::PEff,
-    Field::U,
-    Field::UExcess,
-    Field::Q,
-    Field::PlasticStrain,
-    Field::Utilisation,
-    Field::Strength,
-    Field::Friction,
-    Field::Young,
-];
 
 #[cfg(test)]
 mod tests {
@@ -573,20 +397,6 @@ mod tests {
         assert!((first(Field::Strength, &reduced) - 1.25e3).abs() < 1e-9);
         assert!((first(Field::Friction, &reduced).tan() - 0.25 * 0.5_f64.tan()).abs() < 1e-12);
         assert!((first(Field::Young, &laws) - 2.5e6).abs() < 1e-6);
-    }
-
-    #[test]
-    fn every_field_has_its_own_name_and_header() {
-        for (k, &field) in ALL.iter().enumerate() {
-            let other = |other: &&Field| name(**other) == name(field);
-            assert_eq!(ALL.iter().position(|f| other(&f)), Some(k));
-            assert!(header(field).starts_with(name(field)));
-        }
-        assert_eq!(header(Field::SigmaYy), "sigma_yy_[Pa]_compression_+");
-        assert_eq!(header(Field::Displacement), "displacement_[m]");
-        assert_eq!(header(Field::Utilisation), "utilisation_[-]");
-        assert_eq!(header(Field::Strength), "strength_[Pa]");
-        assert_eq!(header(Field::Friction), "friction_[rad]");
     }
 
     #[test]

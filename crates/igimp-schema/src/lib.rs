@@ -7,6 +7,7 @@
 pub mod complete;
 pub mod diagnostic;
 pub mod explain;
+pub mod field;
 mod json_schema;
 pub mod names;
 pub mod overrides;

@@ -2,7 +2,6 @@
 
 use igimp_model::check::{Band, Check};
 use igimp_model::{Monitor, Section};
-use igimp_results::fields;
 use igimp_results::model_size::ModelSize;
 use igimp_results::summary::{CheckRow, SafetySummary, StageSummary, Summary, TrialSummary};
 use igimp_results::tables::table::Table;
@@ -19,7 +18,7 @@ pub(crate) fn curve_table() -> Table {
 }
 
 pub(crate) fn monitor_table(monitor: &Monitor) -> Table {
-    let headers: Vec<String> = monitor.record.iter().map(|&f| fields::header(f)).collect();
+    let headers: Vec<String> = monitor.record.iter().map(|&f| f.header()).collect();
     let mut names = vec!["stage", "step"];
     names.extend(headers.iter().map(String::as_str));
     let mut table = Table::new("crest", &names);
@@ -38,7 +37,7 @@ pub(crate) fn monitor_table(monitor: &Monitor) -> Table {
 }
 
 pub(crate) fn section_table(section: &Section) -> Table {
-    let headers: Vec<String> = section.record.iter().map(|&f| fields::header(f)).collect();
+    let headers: Vec<String> = section.record.iter().map(|&f| f.header()).collect();
     let mut names = vec!["distance_[m]"];
     names.extend(headers.iter().map(String::as_str));
     let mut table = Table::new(format!("{}__surcharge", section.name), &names);

@@ -393,7 +393,7 @@ fn every_field_has_a_picture() {
         pieces: &pieces,
     };
     let state = (&particles, laws.as_slice());
-    for field in igimp_results::fields::ALL {
+    for &field in igimp_model::Field::ALL {
         let shown = Shown::end_of_stage(&case, 0);
         let note = pictures::field_picture(
             &canvas,

@@ -84,10 +84,10 @@ pub fn field_picture(
     for (particles, laws) in compared {
         all.extend(fields::values(field, particles, laws));
     }
-    let scale = Scale::of(fields::dimension(field), all.iter().copied());
+    let scale = Scale::of(field.dimension(), all.iter().copied());
     let colours = Colours::of(field, &scale.apply(&all));
     let (domains, whose) = canvas.pieces.now(particles);
-    let total = if case.has_pore_water() && fields::is_total(field) {
+    let total = if case.has_pore_water() && field.is_total() {
         "total "
     } else {
         ""
@@ -118,11 +118,11 @@ pub fn field_picture(
     };
     let caption = format!(
         "{} {}. Lines: the edges of the bodies; dashed: before they moved{}.{members}{same}",
-        sentence(&format!("{total}{}", fields::plain(fields::title(field)))),
+        sentence(&format!("{total}{}", fields::plain(field.title()))),
         shown.when,
         water::told(&over.outlines),
     );
-    let name = format!("field-{}-{}", shown.name, fields::name(field));
+    let name = format!("field-{}-{}", shown.name, field.name());
     write(canvas.folder, &name, &plot.draw()?, caption)
 }
 
@@ -270,7 +270,7 @@ mod tests {
     #[test]
     fn a_few_wild_values_do_not_hide_the_others() {
         let mut values: Vec<f64> = (0..1000).map(f64::from).collect();
-        for field in fields::ALL {
+        for &field in Field::ALL {
             assert_eq!(Colours::of(field, &values).told(), "", "{field:?}");
         }
         values[500] = 1e6;

@@ -17,7 +17,7 @@ use crate::error::ReportError;
 /// Most changes of stage that are marked in a history.
 const MOST_MARKS: usize = 12;
 
-/// The pictures of a monitor: what its table holds under the [headers](fields::header) of the
+/// The pictures of a monitor: what its table holds under the [headers](igimp_model::Field::header) of the
 /// recorded fields, over the accepted steps. Where a column `stage` changes stands a line, and what does
 /// not go on there is not joined: displacements that count anew, a stage that starts from another one
 /// than that before it.
@@ -246,11 +246,11 @@ struct Group {
 fn groups(record: &[Field], table: &Table) -> Vec<Group> {
     let mut groups: Vec<Group> = Vec::new();
     for &field in record {
-        let wanted = fields::header(field);
+        let wanted = field.header();
         let Some(column) = table.header.iter().position(|header| *header == wanted) else {
             continue;
         };
-        let dimension = fields::dimension(field);
+        let dimension = field.dimension();
         match groups.iter_mut().find(|group| group.dimension == dimension) {
             Some(group) => group.columns.push((field, column)),
             None => groups.push(Group {
@@ -293,7 +293,7 @@ impl Group {
                 points.insert((row + 1).min(points.len()), [f64::NAN; 2]);
             }
             let style = style(points.len());
-            Series::new(fields::title(field), points, style)
+            Series::new(field.title(), points, style)
         };
         match self.columns.as_slice() {
             [only] => {
@@ -337,7 +337,7 @@ impl Group {
         let titles: Vec<String> = self
             .columns
             .iter()
-            .map(|&(field, _)| fields::plain(fields::title(field)))
+            .map(|&(field, _)| fields::plain(field.title()))
             .collect();
         super::sentence(&titles.join(", "))
     }

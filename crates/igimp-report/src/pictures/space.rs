@@ -130,7 +130,7 @@ impl<'a> InSpace<'a> {
         } else {
             " Grey: rigid bodies."
         };
-        let name = |what: &str| format!("{what}-{}-{}", shown.name, fields::name(field));
+        let name = |what: &str| format!("{what}-{}-{}", shown.name, field.name());
         let caption = format!(
             "{} {}: the surface of the particles' domains.{bodies}{same}",
             own.what, shown.when
@@ -163,11 +163,11 @@ impl<'a> InSpace<'a> {
         let values = of(self.state);
         let mut all = values.clone();
         all.extend(compared.iter().flat_map(|seen| of(*seen)));
-        let scale = Scale::of(fields::dimension(field), all.iter().copied());
+        let scale = Scale::of(field.dimension(), all.iter().copied());
         let colours = Colours::of(field, &scale.apply(&all));
-        let is_total = self.pore_water && fields::is_total(field);
+        let is_total = self.pore_water && field.is_total();
         let total = if is_total { "total " } else { "" };
-        let title = fields::plain(fields::title_in(3, field));
+        let title = fields::plain(field.title_in(3));
         Coloured {
             values: scale.apply(&values),
             label: format!(

@@ -98,9 +98,8 @@ fn load_points<const D: usize>(
     };
     let (x, force) = (finite("load_point_x")?, finite("load_point_force")?);
     let name = "load_point_load";
-    let loads = match array(name, &[m]).map_err(|why| (name, why))? {
-        Values::U64(loads) => loads,
-        _ => return Err((name, other_kind(ColumnKind::U64))),
+    let Values::U64(loads) = array(name, &[m]).map_err(|why| (name, why))? else {
+        return Err((name, other_kind(ColumnKind::U64)));
     };
     let points = std::iter::zip(x, force).zip(loads);
     Ok(points

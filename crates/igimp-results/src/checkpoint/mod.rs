@@ -16,9 +16,10 @@
 //! | `volume0`, `mass` | n | volume as seeded \[m³/m\], mass \[kg/m\] |
 //! | `pore_pressure`, `excess` | n | given and excess pore pressure, compression positive \[Pa\] |
 //! | `number` | n | number that the particle keeps |
-//! | `ratios` | n × 2 | strength and stiffness over those of the law |
-//! | `law`, `regime` | n | index of the law; code of the regime ([`regime`](crate::fields::regime)) |
+//! | `ratios` | n × 3 | strength, friction and stiffness over those of the law |
+//! | `law`, `regime` | n | index of the law; code of the regime ([`Regime::code`](igimp_material::Regime::code)) |
 //! | `eps_p_eq` | n | accumulated plastic strain \[-\] |
+//! | `internal` | n × 4 | internal variables of the law; only where a law has any |
 //! | `load_point_x`, `load_point_force` | m × 2 | loaded points \[m\], forces at factor 1 \[N/m\] |
 //! | `load_point_load` | m | index of the load |
 //!

@@ -1,6 +1,7 @@
 //! Solver, monitors, sections, curves, checks and output.
 
 use super::{A_LENGTH, MANY, POINT, stage};
+use crate::field::CHOICES;
 use crate::spec::{
     Choice, Kind, Range, Struct, choice, default, derived, in_space, optional, required,
 };
@@ -75,56 +76,7 @@ static LINEAR_SOLVERS: [Choice; 9] = [
 ];
 
 /// Fields on particles.
-static FIELDS: [Choice; 26] = [
-    choice("displacement", "length of the displacement [m]"),
-    choice("displacement_x", "displacement in x [m]"),
-    choice("displacement_y", "displacement in y [m]"),
-    choice("displacement_z", "displacement in z, in space [m]"),
-    choice("x", "position x [m]"),
-    choice("y", "position y [m]"),
-    choice("z", "position z, in space [m]"),
-    choice("sigma_xx", "total stress xx, compression positive [Pa]"),
-    choice("sigma_yy", "total stress yy, compression positive [Pa]"),
-    choice("sigma_zz", "total stress zz, compression positive [Pa]"),
-    choice(
-        "tau_xy",
-        "shear stress, with the sign of compression positive [Pa]",
-    ),
-    choice("tau_yz", "the same in y and z, in space [Pa]"),
-    choice("tau_xz", "the same in x and z, in space [Pa]"),
-    choice("p", "mean pressure of total stress [Pa]"),
-    choice(
-        "sigma_eff_xx",
-        "effective stress xx, compression positive [Pa]; without water the same as sigma_xx",
-    ),
-    choice(
-        "sigma_eff_yy",
-        "effective stress yy, compression positive [Pa]",
-    ),
-    choice(
-        "sigma_eff_zz",
-        "effective stress zz, compression positive [Pa]",
-    ),
-    choice("p_eff", "mean pressure of effective stress [Pa]"),
-    choice(
-        "u",
-        "pore pressure, given and excess, compression positive [Pa]",
-    ),
-    choice(
-        "u_excess",
-        "excess pore pressure of undrained soil, compression positive [Pa]",
-    ),
-    choice("q", "deviatoric stress [Pa]"),
-    choice("plastic_strain", "accumulated plastic strain invariant [-]"),
-    choice("utilisation", "share of the strength that is mobilised [-]"),
-    choice(
-        "strength",
-        "undrained strength or cohesion that soil carries [Pa]",
-    ),
-    choice("friction", "angle of friction that soil carries [rad]"),
-    choice("young", "Young's modulus that soil carries [Pa]"),
-];
-static FIELD: Kind = Kind::Choice(&FIELDS);
+static FIELD: Kind = Kind::Choice(&CHOICES);
 
 pub(super) static MONITOR: Kind = Kind::Table(&Struct {
     doc: "The material point at a place, watched as it moves.",
@@ -238,7 +190,7 @@ static SECTION_REFERENCE: Kind = Kind::Table(&Struct {
     ],
 });
 
-const FIELD_NAME: Kind = Kind::Choice(&FIELDS);
+const FIELD_NAME: Kind = Kind::Choice(&CHOICES);
 
 static NUMBER: Kind = Kind::Number(Range::Any);
 static PAIR: Kind = Kind::List(&NUMBER, 2, 2);

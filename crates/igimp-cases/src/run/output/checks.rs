@@ -2,7 +2,6 @@
 
 use igimp_model::check::{Band, Check};
 use igimp_model::{Case, CheckTime, Reference, ReferenceValues};
-use igimp_results::fields;
 use igimp_results::summary::CheckRow;
 use igimp_results::tables::table::Table;
 
@@ -61,7 +60,7 @@ pub(crate) fn of_sections<const D: usize>(
             let Some(recorded) = section.record.iter().position(|&field| field == held.of) else {
                 continue;
             };
-            let name = format!("{}, {}", section.name, fields::name(held.of));
+            let name = format!("{}, {}", section.name, held.of.name());
             let points = table.points(0, before_fields::<D>() + recorded);
             rows.extend(against(case, &name, &points, &held.reference));
         }

@@ -89,7 +89,7 @@ impl Records {
             .iter()
             .map(|monitor| {
                 let mut header = vec!["stage".into(), "step".into(), "progress_[-]".into()];
-                header.extend(monitor.record.iter().map(|&field| fields::header(field)));
+                header.extend(monitor.record.iter().map(|&field| field.header()));
                 Table {
                     name: monitor.name.clone(),
                     header,

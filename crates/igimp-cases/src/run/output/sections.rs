@@ -51,7 +51,7 @@ pub(crate) fn read<const D: usize>(
                 .chain(places)
                 .map(str::to_owned)
                 .collect();
-            header.extend(section.record.iter().map(|&field| fields::header(field)));
+            header.extend(section.record.iter().map(|&field| field.header()));
             let mut table = Table {
                 name: format!("{}__{}", section.name, stage_name(case, stage)),
                 header,
@@ -88,7 +88,7 @@ pub(crate) fn planes<const D: usize>(
     }
     let laws = model.laws_reduced_by(&state.controls.srf)?;
     let places = ["x_[m]", "y_[m]", "z_[m]"].into_iter().take(D);
-    let fields = wanted.iter().map(|&field| fields::header(field));
+    let fields = wanted.iter().map(|&field| field.header());
     let header: Vec<String> = places.map(str::to_owned).chain(fields).collect();
     let table = |cut: &Cut| {
         let crossed = (0..particles.len()).filter(|&k| {

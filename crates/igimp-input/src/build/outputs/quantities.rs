@@ -8,36 +8,6 @@ use igimp_schema::tree::Node;
 
 use crate::build::AllNames;
 
-/// Fields by their names.
-const FIELDS: [(&str, Field, &str); 26] = [
-    ("displacement", Field::Displacement, "m"),
-    ("displacement_x", Field::DisplacementX, "m"),
-    ("displacement_y", Field::DisplacementY, "m"),
-    ("displacement_z", Field::DisplacementZ, "m"),
-    ("x", Field::X, "m"),
-    ("y", Field::Y, "m"),
-    ("z", Field::Z, "m"),
-    ("sigma_xx", Field::SigmaXx, "Pa"),
-    ("sigma_yy", Field::SigmaYy, "Pa"),
-    ("sigma_zz", Field::SigmaZz, "Pa"),
-    ("tau_xy", Field::TauXy, "Pa"),
-    ("tau_yz", Field::TauYz, "Pa"),
-    ("tau_xz", Field::TauXz, "Pa"),
-    ("p", Field::P, "Pa"),
-    ("sigma_eff_xx", Field::SigmaEffXx, "Pa"),
-    ("sigma_eff_yy", Field::SigmaEffYy, "Pa"),
-    ("sigma_eff_zz", Field::SigmaEffZz, "Pa"),
-    ("p_eff", Field::PEff, "Pa"),
-    ("u", Field::U, "Pa"),
-    ("u_excess", Field::UExcess, "Pa"),
-    ("q", Field::Q, "Pa"),
-    ("plastic_strain", Field::PlasticStrain, "-"),
-    ("utilisation", Field::Utilisation, "-"),
-    ("strength", Field::Strength, "Pa"),
-    ("friction", Field::Friction, "rad"),
-    ("young", Field::Young, "Pa"),
-];
-
 /// What the names of quantities of rigid bodies begin with.
 const RIGID_PREFIX: &str = "rigid.";
 
@@ -96,12 +66,6 @@ const GLOBAL: [(&str, Quantity, &str); 8] = [
     ("factor_of_safety", Quantity::FactorOfSafety, "-"),
 ];
 
-/// The field of a name.
-pub(crate) fn field(name: &str) -> Option<Field> {
-    let found = FIELDS.iter().find(|(known, ..)| *known == name)?;
-    Some(found.1)
-}
-
 /// The fields of a list of names; reports those that there are in space only.
 pub(crate) fn fields<const D: usize>(
     names: &[Node],
@@ -109,7 +73,7 @@ pub(crate) fn fields<const D: usize>(
 ) -> Option<Vec<Field>> {
     let mut fields = Vec::with_capacity(names.len());
     for name in names {
-        let field = field(name.text()?)?;
+        let field = Field::of_name(name.text()?)?;
         if !field.exists_in(D) {
             let message = format!("there is no {} in plane strain", name.text()?);
             problems
@@ -147,10 +111,7 @@ fn unit_in_plane(dimensions: usize, name: &str) -> &'static str {
             .iter()
             .find(|(known, ..)| *known == last)
             .map_or("-", |(_, _, unit)| unit),
-        last => FIELDS
-            .iter()
-            .find(|(known, ..)| *known == last)
-            .map_or("-", |(_, _, unit)| unit),
+        last => Field::of_name(last).map_or("-", |field| field.dimension().unit()),
     }
 }
 
@@ -179,7 +140,7 @@ pub(crate) fn quantity<const D: usize>(
         }
         let monitor = names.monitors.position(owner);
         let there = |field: &Field| field.exists_in(D);
-        if let (Some(monitor), Some(field)) = (monitor, field(what).filter(there)) {
+        if let (Some(monitor), Some(field)) = (monitor, Field::of_name(what).filter(there)) {
             return Some(Quantity::Monitor(monitor, field));
         }
         if let Some(load) = names.loads.position(owner) {
@@ -239,10 +200,10 @@ fn known<const D: usize>(names: &AllNames, loads: &[Option<Load<D>>]) -> Vec<Str
     known.extend(GLOBAL.iter().map(|(name, ..)| (*name).to_owned()));
     for monitor in names.monitors.known() {
         known.extend(
-            FIELDS
+            Field::ALL
                 .iter()
-                .filter(|(_, field, _)| field.exists_in(D))
-                .map(|(field, ..)| format!("{monitor}.{field}")),
+                .filter(|field| field.exists_in(D))
+                .map(|field| format!("{monitor}.{}", field.name())),
         );
     }
     known

@@ -1,0 +1,265 @@
+//! Fields on particles, declared once: name in case files and tables, title and sign in print, unit.
+
+use crate::spec::{Choice, choice};
+
+/// What kind of number a field is: fields of a kind share an axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Dimension {
+    /// A displacement \[m\].
+    Displacement,
+    /// A position \[m\].
+    Position,
+    /// A stress \[Pa\].
+    Stress,
+    /// A strain \[-\].
+    Strain,
+    /// A share \[-\].
+    Share,
+    /// An angle \[rad\].
+    Angle,
+}
+
+impl Dimension {
+    /// The SI unit.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::Displacement | Self::Position => "m",
+            Self::Stress => "Pa",
+            Self::Strain | Self::Share => "-",
+            Self::Angle => "rad",
+        }
+    }
+}
+
+/// Which sign a field is printed with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sign {
+    /// Its own.
+    Own,
+    /// Compression positive.
+    Compression,
+    /// That which goes with compression positive, in shear.
+    Shear,
+}
+
+/// How a field is declared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Declaration {
+    name: &'static str,
+    dimension: Dimension,
+    sign: Sign,
+    /// In plane strain and in space; none: there is none in plane strain.
+    titles: (Option<&'static str>, &'static str),
+}
+
+/// Declares the fields: `Variant "name" dimension sign "title" "what the reference says";`, with `in_space "title"`
+/// for another title in space, and `only_in_space` before the title of one that plane strain does not have.
+macro_rules! fields {
+    ($(
+        $(#[$doc:meta])*
+        $variant:ident $name:literal $dimension:ident $sign:ident
+        $($title:literal)? $(in_space $space:literal)? $(only_in_space $only:literal)?
+        => $reference:literal;
+    )*) => {
+        /// A field on particles, as it is printed: stress compression positive.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        pub enum Field {
+            $($(#[$doc])* $variant,)*
+        }
+
+        const DECLARATIONS: &[Declaration] = &[$(Declaration {
+            name: $name,
+            dimension: Dimension::$dimension,
+            sign: Sign::$sign,
+            titles: fields!(@titles $($title)? $(in_space $space)? $(only_in_space $only)?),
+        },)*];
+
+        impl Field {
+            /// Every field.
+            pub const ALL: &[Self] = &[$(Self::$variant,)*];
+        }
+
+        /// The fields as a case file names them.
+        pub(crate) static CHOICES: [Choice; DECLARATIONS.len()] = [$(choice($name, $reference),)*];
+    };
+    (@titles $title:literal) => { (Some($title), $title) };
+    (@titles $title:literal in_space $space:literal) => { (Some($title), $space) };
+    (@titles only_in_space $only:literal) => { (None, $only) };
+}
+
+fields! {
+    /// Length of the displacement \[m\].
+    Displacement "displacement" Displacement Own "displacement |u|"
+        => "length of the displacement [m]";
+    /// Displacement in x \[m\].
+    DisplacementX "displacement_x" Displacement Own
+        "horizontal displacement u_{x}" in_space "displacement u_{x}" => "displacement in x [m]";
+    /// Displacement in y \[m\].
+    DisplacementY "displacement_y" Displacement Own
+        "vertical displacement u_{y}" in_space "displacement u_{y}" => "displacement in y [m]";
+    /// Displacement in z \[m\]; in space.
+    DisplacementZ "displacement_z" Displacement Own
+        only_in_space "vertical displacement u_{z}" => "displacement in z, in space [m]";
+    /// Position x \[m\].
+    X "x" Position Own "position x" => "position x [m]";
+    /// Position y \[m\].
+    Y "y" Position Own "position y" => "position y [m]";
+    /// Position z \[m\]; in space.
+    Z "z" Position Own only_in_space "position z" => "position z, in space [m]";
+    /// −σ_xx of total stress \[Pa\].
+    SigmaXx "sigma_xx" Stress Compression "horizontal stress −σ_{xx}"
+        => "total stress xx, compression positive [Pa]";
+    /// −σ_yy of total stress \[Pa\].
+    SigmaYy "sigma_yy" Stress Compression
+        "vertical stress −σ_{yy}" in_space "horizontal stress −σ_{yy}"
+        => "total stress yy, compression positive [Pa]";
+    /// −σ_zz of total stress \[Pa\].
+    SigmaZz "sigma_zz" Stress Compression
+        "out-of-plane stress −σ_{zz}" in_space "vertical stress −σ_{zz}"
+        => "total stress zz, compression positive [Pa]";
+    /// −τ_xy \[Pa\].
+    TauXy "tau_xy" Stress Shear "shear stress −τ_{xy}"
+        => "shear stress, with the sign of compression positive [Pa]";
+    /// −τ_yz \[Pa\]; in space.
+    TauYz "tau_yz" Stress Shear only_in_space "shear stress −τ_{yz}"
+        => "the same in y and z, in space [Pa]";
+    /// −τ_xz \[Pa\]; in space.
+    TauXz "tau_xz" Stress Shear only_in_space "shear stress −τ_{xz}"
+        => "the same in x and z, in space [Pa]";
+    /// Mean pressure p = −tr σ/3 of total stress \[Pa\].
+    P "p" Stress Compression "mean pressure p" => "mean pressure of total stress [Pa]";
+    /// −σ′_xx of effective stress: the stress that the law speaks of \[Pa\].
+    SigmaEffXx "sigma_eff_xx" Stress Compression "effective horizontal stress −σ′_{xx}"
+        => "effective stress xx, compression positive [Pa]; without water the same as sigma_xx";
+    /// −σ′_yy of effective stress \[Pa\].
+    SigmaEffYy "sigma_eff_yy" Stress Compression
+        "effective vertical stress −σ′_{yy}" in_space "effective horizontal stress −σ′_{yy}"
+        => "effective stress yy, compression positive [Pa]";
+    /// −σ′_zz of effective stress \[Pa\].
+    SigmaEffZz "sigma_eff_zz" Stress Compression
+        "effective out-of-plane stress −σ′_{zz}" in_space "effective vertical stress −σ′_{zz}"
+        => "effective stress zz, compression positive [Pa]";
+    /// Mean effective pressure p′ = −tr σ′/3 \[Pa\].
+    PEff "p_eff" Stress Compression "mean effective pressure p′"
+        => "mean pressure of effective stress [Pa]";
+    /// Pore pressure u, given and excess \[Pa\].
+    U "u" Stress Compression "pore pressure u"
+        => "pore pressure, given and excess, compression positive [Pa]";
+    /// Excess pore pressure that undrained soil made itself \[Pa\].
+    UExcess "u_excess" Stress Compression "excess pore pressure Δu"
+        => "excess pore pressure of undrained soil, compression positive [Pa]";
+    /// Deviatoric stress q = √(3/2)‖s‖ \[Pa\].
+    Q "q" Stress Own "deviatoric stress q" => "deviatoric stress [Pa]";
+    /// Accumulated plastic strain invariant \[-\].
+    PlasticStrain "plastic_strain" Strain Own "plastic strain ε_{p}"
+        => "accumulated plastic strain invariant [-]";
+    /// Share of the strength that is mobilised \[-\].
+    Utilisation "utilisation" Share Own "share of the shear strength"
+        => "share of the strength that is mobilised [-]";
+    /// Undrained strength or cohesion \[Pa\]; none of soil without a strength limit.
+    Strength "strength" Stress Own "undrained strength or cohesion"
+        => "undrained strength or cohesion that soil carries [Pa]";
+    /// Angle of friction \[rad\]; none of soil without a strength limit.
+    Friction "friction" Angle Own "angle of friction φ"
+        => "angle of friction that soil carries [rad]";
+    /// Young's modulus \[Pa\].
+    Young "young" Stress Own "Young's modulus E" => "Young's modulus that soil carries [Pa]";
+}
+
+impl Field {
+    fn declaration(self) -> &'static Declaration {
+        &DECLARATIONS[self as usize]
+    }
+
+    /// The field of a name in case files.
+    pub fn of_name(name: &str) -> Option<Self> {
+        let mut all = Self::ALL.iter();
+        all.find(|field| field.name() == name).copied()
+    }
+
+    /// Name in case files.
+    pub fn name(self) -> &'static str {
+        self.declaration().name
+    }
+
+    /// What kind of number it is.
+    pub fn dimension(self) -> Dimension {
+        self.declaration().dimension
+    }
+
+    /// The sign that it is printed with.
+    pub fn sign(self) -> Sign {
+        self.declaration().sign
+    }
+
+    /// Whether there is such a number in so many dimensions.
+    pub fn exists_in(self, dimensions: usize) -> bool {
+        dimensions == 3 || self.declaration().titles.0.is_some()
+    }
+
+    /// Whether it is one of total stress that has a counterpart of effective stress.
+    pub fn is_total(self) -> bool {
+        let prefix = if self == Self::P { "p" } else { "sigma" };
+        let rest = self.name().strip_prefix(prefix);
+        rest.is_some_and(|rest| Self::of_name(&format!("{prefix}_eff{rest}")).is_some())
+    }
+
+    /// The header of its column in a table, such as `sigma_yy_[Pa]_compression_+`.
+    pub fn header(self) -> String {
+        let sign = match self.sign() {
+            Sign::Own => "",
+            Sign::Compression | Sign::Shear => "_compression_+",
+        };
+        format!("{}_[{}]{sign}", self.name(), self.dimension().unit())
+    }
+
+    /// What it is in so many dimensions, in words and signs with the index marks of figures: the third axis is upright in
+    /// space, and out of the plane else.
+    pub fn title_in(self, dimensions: usize) -> &'static str {
+        let (plane, space) = self.declaration().titles;
+        plane.filter(|_| dimensions == 2).unwrap_or(space)
+    }
+
+    /// What it is in plane strain.
+    pub fn title(self) -> &'static str {
+        self.title_in(2)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_field_has_its_own_name_and_header() {
+        for &field in Field::ALL {
+            assert_eq!(Field::of_name(field.name()), Some(field));
+            assert!(field.header().starts_with(field.name()));
+        }
+        assert_eq!(Field::SigmaYy.header(), "sigma_yy_[Pa]_compression_+");
+        assert_eq!(Field::Displacement.header(), "displacement_[m]");
+        assert_eq!(Field::Utilisation.header(), "utilisation_[-]");
+        assert_eq!(Field::Strength.header(), "strength_[Pa]");
+        assert_eq!(Field::Friction.header(), "friction_[rad]");
+    }
+
+    #[test]
+    fn total_stresses_have_effective_counterparts() {
+        let total: Vec<Field> = Field::ALL
+            .iter()
+            .copied()
+            .filter(|f| f.is_total())
+            .collect();
+        let expected = [Field::SigmaXx, Field::SigmaYy, Field::SigmaZz, Field::P];
+        assert_eq!(total, expected);
+    }
+
+    #[test]
+    fn some_fields_are_of_space_alone() {
+        let only: Vec<&str> = (Field::ALL.iter())
+            .filter(|field| !field.exists_in(2))
+            .map(|field| field.name())
+            .collect();
+        assert_eq!(only, ["displacement_z", "z", "tau_yz", "tau_xz"]);
+    }
+}
