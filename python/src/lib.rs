@@ -12,7 +12,7 @@ mod raised;
 mod relay;
 
 use igimp_results::summary::Summary;
-use igimp_study::telling;
+use igimp_study::narration;
 use pyo3::prelude::*;
 
 /// The engine; use the package `igimp`.

@@ -16,8 +16,8 @@ use igimp_model::{AnyCase, Case, in_any_dimension};
 use igimp_results::ResultsError;
 use igimp_results::folder::overwrite_guard::Replace;
 use igimp_results::tables::table::Table;
-use igimp_study::telling::lines::Lines;
-use igimp_study::telling::whole::Whole;
+use igimp_study::narration::lines::Lines;
+use igimp_study::narration::progress::Whole;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 

@@ -3,8 +3,8 @@
 use std::sync::mpsc::{Receiver, Sender};
 
 use igimp_cases::run::{Event, Listener};
-use igimp_study::telling::lines::Lines;
-use igimp_study::telling::whole::Whole;
+use igimp_study::narration::lines::Lines;
+use igimp_study::narration::progress::Whole;
 use serde_json::{Value, json};
 
 use crate::arrays::Arrays;

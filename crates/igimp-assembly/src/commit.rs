@@ -90,9 +90,9 @@ impl<const D: usize> Particles<D> {
     /// Nothing but their place changes. How many were moved.
     ///
     /// [`System::bodies_at`]: crate::System::bodies_at
-    pub fn clear_of(&mut self, bodies: &[RigidBody<D>]) -> usize {
+    pub fn resolve_overlap(&mut self, bodies: &[RigidBody<D>]) -> usize {
         let ways = seeded_too_close(bodies, self);
-        self.put_back(&ways);
+        self.push_out(&ways);
         ways.len()
     }
 
@@ -108,7 +108,7 @@ impl<const D: usize> Particles<D> {
 
     /// Moves particles of an accepted step, such as those that stand too close to a rigid body; nothing
     /// but their place changes.
-    pub fn put_back(&mut self, by: &[(usize, [f64; D])]) {
+    pub fn push_out(&mut self, by: &[(usize, [f64; D])]) {
         let fields = self.fields_mut();
         for (particle, way) in by {
             for axis in 0..D {

@@ -1,16 +1,15 @@
 //! What holds during one step, besides the particles.
 
 pub(crate) mod constraints;
-pub(crate) mod held;
 pub(crate) mod loads;
 pub(crate) mod reinforcement;
 pub(crate) mod rigid_motion;
+pub(crate) mod unbalanced;
 pub(crate) mod water;
 
 use igimp_shape::Grid;
 
 use crate::body::particles::Particles;
-use crate::conditions::held::HeldForces;
 use crate::conditions::reinforcement::ReinforcementControl;
 use crate::conditions::rigid_motion::RigidMotion;
 use crate::conditions::water::Water;
@@ -18,6 +17,7 @@ use crate::error::AssemblyError;
 use crate::laws::SharedLaw;
 use constraints::Constraints;
 use loads::StepLoads;
+use unbalanced::UnbalancedForces;
 
 /// What holds during one step, besides the particles.
 #[derive(Clone, Debug)]
@@ -39,11 +39,11 @@ pub struct StepConditions<const D: usize> {
     /// Water in the pores at the end of the step.
     pub water: Water<D>,
     /// What still holds the body where a change has put it out of balance.
-    pub held: Option<HeldForces<D>>,
+    pub held: Option<UnbalancedForces<D>>,
 }
 
 impl<const D: usize> StepConditions<D> {
-    /// Conditions that agree with one another.
+    /// Conditions that validate_fields with one another.
     ///
     /// # Errors
     /// [`AssemblyError::OtherGrid`] for constraints that were made for another grid,
@@ -64,7 +64,7 @@ impl<const D: usize> StepConditions<D> {
             water: Water::default(),
             held: None,
         };
-        conditions.agree()?;
+        conditions.validate_fields()?;
         Ok(conditions)
     }
 
@@ -74,7 +74,7 @@ impl<const D: usize> StepConditions<D> {
     /// [`AssemblyError::NonFinite`] for a motion that is not finite.
     pub fn with_motions(mut self, motions: Vec<RigidMotion<D>>) -> Result<Self, AssemblyError> {
         self.motions = motions;
-        self.agree()?;
+        self.validate_fields()?;
         Ok(self)
     }
 
@@ -87,7 +87,7 @@ impl<const D: usize> StepConditions<D> {
         controls: Vec<ReinforcementControl>,
     ) -> Result<Self, AssemblyError> {
         self.reinforcement = controls;
-        self.agree()?;
+        self.validate_fields()?;
         Ok(self)
     }
 
@@ -97,7 +97,7 @@ impl<const D: usize> StepConditions<D> {
     /// [`AssemblyError::NonFinite`] for water that is not finite.
     pub fn with_water(mut self, water: Water<D>) -> Result<Self, AssemblyError> {
         self.water = water;
-        self.agree()?;
+        self.validate_fields()?;
         Ok(self)
     }
 
@@ -105,14 +105,17 @@ impl<const D: usize> StepConditions<D> {
     ///
     /// # Errors
     /// [`AssemblyError::NonFinite`] for a force that is not finite, or forces of another number of nodes.
-    pub fn held_by(mut self, held: Option<HeldForces<D>>) -> Result<Self, AssemblyError> {
+    pub fn with_unbalanced(
+        mut self,
+        held: Option<UnbalancedForces<D>>,
+    ) -> Result<Self, AssemblyError> {
         self.held = held;
-        self.agree()?;
+        self.validate_fields()?;
         Ok(self)
     }
 
-    /// Refuses conditions that do not agree.
-    fn agree(&self) -> Result<(), AssemblyError> {
+    /// Refuses conditions that do not validate_fields.
+    fn validate_fields(&self) -> Result<(), AssemblyError> {
         self.constraints.belong_to(&self.grid)?;
         if let Some(index) = self.motions.iter().position(|motion| !motion.is_finite()) {
             let what = "motion of a rigid body";
@@ -136,10 +139,10 @@ impl<const D: usize> StepConditions<D> {
         self.loads.are_finite()
     }
 
-    /// Refuses conditions that do not agree, for a field may have been changed since they were made,
+    /// Refuses conditions that do not validate_fields, for a field may have been changed since they were made,
     /// and particles whose law is not among them.
-    pub(crate) fn serve(&self, particles: &Particles<D>) -> Result<(), AssemblyError> {
-        self.agree()?;
+    pub(crate) fn validate(&self, particles: &Particles<D>) -> Result<(), AssemblyError> {
+        self.validate_fields()?;
         let laws = self.laws.len();
         match particles.law.iter().position(|&law| law >= laws) {
             Some(particle) => Err(AssemblyError::UnknownLaw {

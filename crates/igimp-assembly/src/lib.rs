@@ -23,15 +23,15 @@ pub use body::columns::{Column, ColumnKind, ColumnRequest, ColumnValues};
 pub use body::particles::{ParticleFields, ParticleSeed, Particles};
 pub use conditions::StepConditions;
 pub use conditions::constraints::Constraints;
-pub use conditions::held::HeldForces;
 pub use conditions::loads::{LoadPoint, StepLoads};
 pub use conditions::reinforcement::ReinforcementControl;
 pub use conditions::rigid_motion::{Drive, RigidMotion};
+pub use conditions::unbalanced::UnbalancedForces;
 pub use conditions::water::{PoreSite, PoreState, PoreWater, Water};
 pub use contributions::reinforcement::{Hold, Reinforcement, Segment, SegmentState, Station};
 pub use contributions::rigid::{
-    AcceptedContact, CarryingTriangle, ContactNode, ContactState, Interface, Penalty, Pose,
-    RigidBody, Shear, Surface, SurfaceError, SurfaceTriangle, Swallowed, Tension,
+    AcceptedContact, CarryingTriangle, ContactNode, ContactState, Interface, Penalty, Penetration,
+    Pose, RigidBody, Shear, Surface, SurfaceError, SurfaceTriangle, Tension,
 };
 pub use equations::kinematics::ParticleTrial;
 pub use equations::residual::OutOfBalance;

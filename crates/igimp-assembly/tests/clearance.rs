@@ -7,8 +7,8 @@ mod common;
 
 use common::laws;
 use igimp_assembly::{
-    AcceptedContact, Constraints, Geometry, Interface, Method, ParticleSeed, Particles, RigidBody,
-    RigidMotion, Stencils, StepConditions, StepLoads, Surface, Swallowed, System,
+    AcceptedContact, Constraints, Geometry, Interface, Method, ParticleSeed, Particles,
+    Penetration, RigidBody, RigidMotion, Stencils, StepConditions, StepLoads, Surface, System,
 };
 use igimp_shape::{Axis, Grid};
 
@@ -38,7 +38,7 @@ fn body(corners: &[[f64; 2]]) -> RigidBody<2> {
 }
 
 /// What a step leaves that lifts the soil by so much below a body from height 4 to 6.
-fn lifted(by: f64, geometry: Geometry) -> Result<AcceptedContact<2>, Swallowed> {
+fn lifted(by: f64, geometry: Geometry) -> Result<AcceptedContact<2>, Penetration> {
     let grid = Grid::new([12, 10].map(|cells| Axis::uniform(0.0, 1.0, cells).unwrap()));
     let places = (0..24 * 6).map(|k| [k % 24, k / 24].map(|k| HALF + 2.0 * HALF * f64::from(k)));
     let soil = particles(places);
@@ -65,11 +65,11 @@ fn lifted(by: f64, geometry: Geometry) -> Result<AcceptedContact<2>, Swallowed> 
 #[test]
 fn soil_that_jumps_into_a_body_is_caught() {
     // The upper row of particles begins at height 2.75, far from the body.
-    assert!(lifted(1.0, Geometry::Moving).unwrap().put_back.is_empty());
+    assert!(lifted(1.0, Geometry::Moving).unwrap().push_out.is_empty());
     for by in [1.2, 1.4] {
-        let put_back = lifted(by, Geometry::Moving).unwrap().put_back;
-        assert_eq!(put_back.len(), 4, "{put_back:?}");
-        for (_, way) in put_back {
+        let push_out = lifted(by, Geometry::Moving).unwrap().push_out;
+        assert_eq!(push_out.len(), 4, "{push_out:?}");
+        for (_, way) in push_out {
             let height = 2.75 + by + way[1];
             assert!((height - (4.0 - 0.5 * HALF)).abs() < 1e-12 && way[0].abs() < 1e-12);
         }
@@ -77,7 +77,7 @@ fn soil_that_jumps_into_a_body_is_caught() {
     // Into the body, and through it.
     for (by, least) in [(1.6, 1.4), (6.0, 2.8)] {
         match lifted(by, Geometry::Moving) {
-            Err(Swallowed {
+            Err(Penetration {
                 body,
                 depth,
                 position,
@@ -93,7 +93,7 @@ fn soil_that_jumps_into_a_body_is_caught() {
             other => panic!("{by}: {other:?}"),
         }
         // On a given geometry nothing goes anywhere.
-        assert!(lifted(by, Geometry::Given).unwrap().put_back.is_empty());
+        assert!(lifted(by, Geometry::Given).unwrap().push_out.is_empty());
     }
 }
 
@@ -110,12 +110,12 @@ fn soil_in_a_notch_is_moved_off_both_sides() {
     let acute = body(&[[0.0, 0.0], [6.0, 0.0], [6.0, 4.0], [3.0, 1.0], [0.0, 6.0]]);
     for (body, x) in [(&notched, [2.05, 1.9]), (&acute, [3.03, 1.12])] {
         let mut soil = particles([x, [9.0, 9.0]].into_iter());
-        assert_eq!(soil.clear_of(std::slice::from_ref(body)), 1);
+        assert_eq!(soil.resolve_overlap(std::slice::from_ref(body)), 1);
         let distance = body.distance(&soil.x[0]);
         assert!((distance - 0.5 * HALF).abs() < 1e-8, "{distance}");
-        assert_eq!(soil.clear_of(std::slice::from_ref(body)), 0);
+        assert_eq!(soil.resolve_overlap(std::slice::from_ref(body)), 0);
     }
     // Soil that stands deep in a body was not cut by its side when it was seeded.
     let mut deep = particles([[1.0, 1.0]].into_iter());
-    assert_eq!(deep.clear_of(&[notched]), 0);
+    assert_eq!(deep.resolve_overlap(&[notched]), 0);
 }

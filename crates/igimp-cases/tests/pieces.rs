@@ -9,7 +9,7 @@ use igimp_cases::run::Model;
 use igimp_geometry::polygon::{Polygon, area_and_centroid};
 use igimp_input::CaseFile;
 use igimp_model::Case;
-use igimp_report::pieces::Pieces;
+use igimp_report::patches::Pieces;
 
 fn case() -> Case {
     let text = include_str!("data/block.toml");

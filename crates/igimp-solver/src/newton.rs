@@ -251,7 +251,7 @@ fn equilibrium<const D: usize>(
     body.reinforcement = reinforcement;
     body.particles.commit(&stencils, method, trial, &u);
     body.particles.fill_pores(&pore_pressure);
-    body.particles.put_back(&contact.put_back);
+    body.particles.push_out(&contact.push_out);
     times.commit = clock.elapsed();
     let report = StepReport {
         from: attempt.from,

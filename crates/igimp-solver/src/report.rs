@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use igimp_assembly::{AssemblyError, StepWork, Swallowed};
+use igimp_assembly::{AssemblyError, Penetration, StepWork};
 use igimp_linear::{LinearEffort, LinearSolverError};
 use thiserror::Error;
 
@@ -68,7 +68,7 @@ pub enum StepFailure {
     },
     /// Converged, but a particle would be carried into a rigid body, or through it.
     #[error(transparent)]
-    Swallowed(#[from] Swallowed),
+    Penetration(#[from] Penetration),
     /// Converged, but soil has gone too far into a rigid body.
     #[error("soil has gone {share:.3} of a cell into the rigid body \"{body}\" at {position:?} m")]
     TooDeep {
@@ -124,7 +124,7 @@ impl StepFailure {
             Self::LeavesGrid { .. }
             | Self::LoadPointLeavesGrid { .. }
             | Self::ReinforcementLeavesGrid { .. }
-            | Self::Swallowed(_)
+            | Self::Penetration(_)
             | Self::TooDeep { .. }
             | Self::NotFinite { .. } => false,
             Self::Assembly(error) => error.is_too_far(),

@@ -5,8 +5,8 @@
 //! | [`sweep`] | many cases that differ in a few values |
 //! | [`telling`] | what is said of a case and of its run, as text |
 
+pub mod narration;
 pub mod sweep;
-pub mod telling;
 
 /// The examples of the book, run as tests.
 #[cfg(doctest)]

@@ -24,11 +24,11 @@ pub(crate) fn watch() -> Arc<AtomicBool> {
         None => {
             first = Some(Instant::now());
             raised.store(true, Ordering::SeqCst);
-            output::complain("\nfinishing the step; press again to stop at once");
+            output::print_message("\nfinishing the step; press again to stop at once");
         }
     };
     if let Err(error) = ctrlc::set_handler(handler) {
-        output::complain(&format!(
+        output::print_message(&format!(
             "warning: Ctrl-C will stop the run at once, without saving: {error}"
         ));
     }

@@ -29,21 +29,21 @@ fn main() -> ExitCode {
             if matches!(on_lines(&plain), Cow::Borrowed(_)) {
                 let _ = error.print();
             } else {
-                output::complain(&plain);
+                output::print_message(&plain);
             }
             return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(Exit::BadInput as u8));
         }
     };
-    let exit = obey(&program.command).unwrap_or_else(|error| {
+    let exit = dispatch(&program.command).unwrap_or_else(|error| {
         if !error.is_closed_pipe() {
-            output::complain(&error.render());
+            output::print_message(&error.render());
         }
         error.exit()
     });
     ExitCode::from(exit as u8)
 }
 
-fn obey(command: &Command) -> Result<Exit, ProgramError> {
+fn dispatch(command: &Command) -> Result<Exit, ProgramError> {
     match command {
         Command::New(arguments) => commands::template::new(arguments),
         Command::Check(arguments) => commands::cases::check(arguments),

@@ -32,7 +32,7 @@ pub(crate) fn say(text: &str) -> Result<(), ProgramError> {
 }
 
 /// Prints an error, a warning or a note.
-pub(crate) fn complain(text: &str) {
+pub(crate) fn print_message(text: &str) {
     // There is nowhere left to tell that standard error is closed.
     let _ = writeln!(std::io::stderr().lock(), "{}", on_lines(text.trim_end()));
 }
@@ -40,7 +40,7 @@ pub(crate) fn complain(text: &str) {
 /// Prints the warnings of a case file, if there are any.
 pub(crate) fn warn(warnings: &str) {
     if !warnings.trim().is_empty() {
-        complain(warnings);
+        print_message(warnings);
     }
 }
 

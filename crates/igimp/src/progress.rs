@@ -5,8 +5,8 @@ use std::time::Duration;
 
 use igimp_cases::run::{Event, Listener};
 use igimp_model::AnyCase;
-use igimp_study::telling::lines::{self, Lines};
-use igimp_study::telling::whole::Whole;
+use igimp_study::narration::lines::{self, Lines};
+use igimp_study::narration::progress::Whole;
 use igimp_text::{on_a_line, on_lines};
 use indicatif::{ProgressBar, ProgressStyle};
 

@@ -5,7 +5,7 @@ use std::path::Path;
 use igimp_cases::estimate::speed::Speed;
 use igimp_cases::estimate::{readable, time, watch};
 use igimp_results::folder::overwrite_guard::Replace;
-use igimp_study::sweep::{Demand, Sweep, Words, numbers};
+use igimp_study::sweep::{Resources, Sweep, Words, numbers};
 
 use crate::arguments::{Scheduler, SweepArguments};
 use crate::error::{Exit, ProgramError};
@@ -50,7 +50,7 @@ pub(crate) fn to(
         output::print(&format!("  {before} {}{behind}", quoted(&path)))?;
     }
     if !is_found(program) {
-        output::complain(&format!(
+        output::print_message(&format!(
             "note: {program} is not on this computer; submit where it is, in the same folder"
         ));
     }
@@ -58,7 +58,7 @@ pub(crate) fn to(
 }
 
 /// What a task is given, and why.
-fn given(demand: &Demand) -> String {
+fn given(demand: &Resources) -> String {
     let plural = if demand.threads == 1 { "" } else { "s" };
     format!(
         "{} thread{plural}, {} MiB and {} min (1.5 times the memory of task {}, about {}; 3 times the time of \
@@ -74,7 +74,11 @@ fn given(demand: &Demand) -> String {
 }
 
 /// On this computer nothing needs to be written: `--jobs` does it, with as many jobs as have room.
-fn local(demand: &Demand, left: usize, arguments: &SweepArguments) -> Result<Exit, ProgramError> {
+fn local(
+    demand: &Resources,
+    left: usize,
+    arguments: &SweepArguments,
+) -> Result<Exit, ProgramError> {
     let cores = rayon::current_num_threads();
     let by_memory = watch::available().map_or(left, |free| {
         (free / (1_048_576.0 * demand.mebibytes() as f64)) as usize

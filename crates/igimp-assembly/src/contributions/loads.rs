@@ -4,8 +4,8 @@ use igimp_material::ConstitutiveModel;
 use igimp_shape::Grid;
 
 use crate::conditions::StepConditions;
-use crate::conditions::held::HeldForces;
 use crate::conditions::loads::{LoadPoint, StepLoads};
+use crate::conditions::unbalanced::UnbalancedForces;
 use crate::contributions::couplings::{Coupling, Couplings};
 use crate::contributions::dropped::shares_of_carried;
 use crate::error::{AssemblyError, padded};
@@ -122,8 +122,8 @@ pub(crate) fn nodal_drag<const D: usize>(
 }
 
 /// Adds forces that hold the body to the nodal external force. What a node holds that touches no soil any more is let go.
-pub(crate) fn add_held_forces<const D: usize>(
-    held: &HeldForces<D>,
+pub(crate) fn add_unbalanced_forces<const D: usize>(
+    held: &UnbalancedForces<D>,
     stencils: &Stencils<D>,
     f_ext: &mut [[f64; D]],
 ) {

@@ -13,12 +13,14 @@ use crate::conditions::rigid_motion::{Drive, RigidMotion, rotations};
 use crate::contributions::couplings::Couplings;
 use crate::contributions::ghost::ghost_penalty;
 use crate::contributions::loads::{
-    add_force_of_points, add_held_forces, add_variation_of_weight, nodal_drag, weight,
+    add_force_of_points, add_unbalanced_forces, add_variation_of_weight, nodal_drag, weight,
 };
 use crate::contributions::nodal_forces::NodalForces;
 use crate::contributions::pore_water::Pores;
 use crate::contributions::reinforcement::{Members, Reinforcement};
-use crate::contributions::rigid::{AcceptedContact, Contact, NODES_PER_BODY, RigidBody, Swallowed};
+use crate::contributions::rigid::{
+    AcceptedContact, Contact, NODES_PER_BODY, Penetration, RigidBody,
+};
 use crate::equations::blocks::BlockTable;
 use crate::equations::kinematics::ParticleTrial;
 use crate::equations::linearised::{Linearised, Moduli};
@@ -96,7 +98,7 @@ impl<'a, const D: usize> System<'a, D> {
         conditions: &'a StepConditions<D>,
         method: &'a Method,
     ) -> Result<Self, AssemblyError> {
-        conditions.serve(particles)?;
+        conditions.validate(particles)?;
         let symmetric_particles = are_symmetric(particles, conditions);
         let grid = &conditions.grid;
         let cuts = method.small_cuts;
@@ -170,7 +172,7 @@ impl<'a, const D: usize> System<'a, D> {
         conditions: StepConditions<D>,
         points: &[LoadPoint<D>],
     ) -> Result<(), AssemblyError> {
-        conditions.serve(self.particles)?;
+        conditions.validate(self.particles)?;
         self.symmetric_particles = are_symmetric(self.particles, &conditions);
         let forces = beside_particles(&self.couplings, &self.contact, &self.reinforcement);
         self.symmetric =
@@ -572,13 +574,13 @@ impl<'a, const D: usize> System<'a, D> {
 
     /// What a step with nodal step displacements `u` \[length\] leaves of contact when it is accepted: the
     /// bodies at their new places, and the way back of particles whose centres came closer to one than half
-    /// of their seeded half-length, for [`Particles::put_back`]. All particles are looked at, with
+    /// of their seeded half-length, for [`Particles::push_out`]. All particles are looked at, with
     /// the way that they took. On a given geometry nothing moves, and none is put back.
     ///
     /// # Errors
-    /// [`Swallowed`] for a particle whose centre would be in a body deeper than its seeded
+    /// [`Penetration`] for a particle whose centre would be in a body deeper than its seeded
     /// half-length, or was so on its way.
-    pub fn bodies_at(&self, u: &[[f64; D]]) -> Result<AcceptedContact<D>, Swallowed> {
+    pub fn bodies_at(&self, u: &[[f64; D]]) -> Result<AcceptedContact<D>, Penetration> {
         let Self {
             particles,
             stencils,
@@ -675,7 +677,7 @@ fn external_force<const D: usize>(
     add_variation_of_weight(stencils, &conditions.laws, gravity, &mut f_ext);
     let pores = Pores::fill(particles, stencils, conditions, method, &mut f_ext)?;
     if let Some(held) = &conditions.held {
-        add_held_forces(held, stencils, &mut f_ext);
+        add_unbalanced_forces(held, stencils, &mut f_ext);
     }
     f_ext.extend(motions.iter().map(|motion| {
         motion.map(|drive| match drive {

@@ -50,7 +50,7 @@ impl<const D: usize> Stencils<D> {
             laws,
             ..
         } = conditions;
-        conditions.serve(particles)?;
+        conditions.validate(particles)?;
         let mut supports = Supports::build(grid, particles, method, laws)?;
         let mut strips = Strips::build(grid, &supports);
         let mut shares = node_shares(grid, particles, &supports, &strips);

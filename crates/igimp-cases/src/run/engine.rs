@@ -18,8 +18,8 @@ use super::output::records::{Moment, Records, largest_displacement};
 use super::output::{Output, checks, sections};
 use super::resources::memory::{self, Before};
 use super::resources::processor;
-use super::resume::{Left, Resumption, Search};
-use super::session::{Ended, Session};
+use super::resume::{ResumePoint, Resumption, Search};
+use super::session::{Session, StageEnd};
 use super::stages::{construction, initial, loading, run_out, safety};
 use super::state::State;
 use super::water::pores;
@@ -81,7 +81,7 @@ struct Stages<const D: usize = 2> {
     before: Before,
     expectation: Option<Expectation>,
     first: usize,
-    left: Option<Left<D>>,
+    left: Option<ResumePoint<D>>,
     state: Option<State<D>>,
     sections: Vec<Table>,
     failure: Option<Failure>,
@@ -195,7 +195,7 @@ impl<const D: usize> Stages<D> {
         session: &mut Session<'_, D>,
         number: usize,
         (start, state): (Option<&State<D>>, &mut State<D>),
-        left: Option<Left<D>>,
+        left: Option<ResumePoint<D>>,
     ) -> Result<bool, CaseError> {
         let clock = Instant::now();
         let stage = &session.model.case.stages[number];
@@ -229,20 +229,20 @@ impl<const D: usize> Stages<D> {
             summary.settlement = Some(state.controls.settlement);
         }
         let step_error = match ended {
-            Ended::Completed(reason) => {
+            StageEnd::Completed(reason) => {
                 (summary.outcome, summary.reason) = (StageOutcome::Completed, reason);
                 None
             }
-            Ended::Stopped(reason) => {
+            StageEnd::Stopped(reason) => {
                 (summary.outcome, summary.reason) = (StageOutcome::Stopped, reason);
                 None
             }
-            Ended::Interrupted => {
+            StageEnd::Interrupted => {
                 summary.outcome = StageOutcome::Interrupted;
                 "interrupted by the user".clone_into(&mut summary.reason);
                 None
             }
-            Ended::NotConverged(error)
+            StageEnd::NotConverged(error)
                 if stage.stop_when.no_equilibrium && error.failure.is_want_of_equilibrium() =>
             {
                 let failure = &error.failure;
@@ -254,7 +254,7 @@ impl<const D: usize> Stages<D> {
                 );
                 None
             }
-            Ended::NotConverged(error) => {
+            StageEnd::NotConverged(error) => {
                 let failure = &error.failure;
                 summary.outcome = StageOutcome::NotConverged;
                 summary.reason = if failure.is_want_of_equilibrium() {
@@ -408,7 +408,7 @@ fn dispatch<const D: usize>(
     summary: &mut StageSummary,
     resumption: Option<&Resumption>,
     search: Option<Search<D>>,
-) -> Result<Ended, CaseError> {
+) -> Result<StageEnd, CaseError> {
     let stage = &session.model.case.stages[number];
     match &stage.kind {
         StageKind::K0 if resumption.is_none() => {

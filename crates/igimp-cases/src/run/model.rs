@@ -125,7 +125,7 @@ impl<'c, const D: usize> Model<'c, D> {
                 controls.reinforcement[index].installed = true;
             }
         }
-        if body.particles.clear_of(&body.rigid) > 0 {
+        if body.particles.resolve_overlap(&body.rigid) > 0 {
             body.particles.reset_displacements();
         }
         let below = |part| super::rigid::gap_below(part, &body.particles);

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use igimp_model::{Case, Every};
+use igimp_report::patches::Pieces;
 use igimp_report::pictures::{self, Shown};
-use igimp_report::pieces::Pieces;
 use igimp_report::report;
 use igimp_results::atomic::write_whole;
 use igimp_results::checkpoint;
@@ -24,7 +24,7 @@ use super::model::Model;
 use super::resume::{End, Notes, Resumption, Search};
 use super::state::State;
 use crate::error::CaseError;
-use crate::run::output::records::Taken;
+use crate::run::output::records::AcceptedStep;
 use records::{Records, Rows};
 
 pub(crate) mod checks;
@@ -34,9 +34,9 @@ pub(crate) mod export;
 pub(crate) mod outlines;
 pub(crate) mod place;
 pub(crate) mod records;
+mod resume;
 mod saved;
 pub(crate) mod sections;
-mod take_up;
 
 /// The files of a run, open.
 #[derive(Debug)]
@@ -218,7 +218,7 @@ impl<const D: usize> Output<D> {
         stage: usize,
         model: &Model<'_, D>,
         summary: &StageSummary,
-        taken: &Taken<'_, D>,
+        taken: &AcceptedStep<'_, D>,
         resumption: &Resumption,
         run: &Summary,
     ) -> Result<(), CaseError> {

@@ -67,7 +67,7 @@ pub(crate) struct End<const D: usize = 2> {
 
 /// Where a run was left.
 #[derive(Clone, Debug)]
-pub(crate) struct Left<const D: usize = 2> {
+pub(crate) struct ResumePoint<const D: usize = 2> {
     /// Stages that are done.
     pub(crate) stages: Vec<StageSummary>,
     /// Checks made.

@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use igimp_assembly::{Geometry, HeldForces, Method, Particles};
+use igimp_assembly::{Geometry, Method, Particles, UnbalancedForces};
 use igimp_results::fields;
 use igimp_results::summary::{StageSummary, Summary};
 use igimp_solver::{
@@ -23,7 +23,7 @@ use super::resume::Resumption;
 use super::state::{Controls, RigidTrack, State};
 use super::{Event, Listener, REACHED_ITS_END, rigid};
 use crate::error::CaseError;
-use crate::run::output::records::Taken;
+use crate::run::output::records::AcceptedStep;
 
 /// Share of the load from which on a false support at dropped nodes is worth a warning \[-\].
 const FALSE_SUPPORT: f64 = 1e-3;
@@ -180,7 +180,7 @@ impl<const D: usize> Session<'_, D> {
 }
 
 /// A march of the body between two controls.
-pub(crate) struct Path<'a, const D: usize = 2> {
+pub(crate) struct StagePath<'a, const D: usize = 2> {
     /// Controls at load factor 0.
     pub(crate) from: &'a Controls,
     /// Controls at load factor 1.
@@ -199,7 +199,7 @@ pub(crate) struct Path<'a, const D: usize = 2> {
 
 /// How a march ended.
 #[derive(Debug)]
-pub(crate) enum Ended {
+pub(crate) enum StageEnd {
     /// At its end, in these words.
     Completed(String),
     /// By its stage, for this reason.
@@ -211,17 +211,17 @@ pub(crate) enum Ended {
 }
 
 /// What a stage says after a step: a reason to stop, if it has one.
-pub(crate) type Word = Result<Option<String>, CaseError>;
+pub(crate) type StopRequest = Result<Option<String>, CaseError>;
 
 /// Marches a state along a path. `each` is called after every accepted step. The state ends with
 /// the controls of its last equilibrium; the summary is kept up.
 pub(crate) fn march_path<const D: usize>(
     session: &mut Session<'_, D>,
     state: &mut State<D>,
-    path: &Path<'_, D>,
+    path: &StagePath<'_, D>,
     stage: &mut StageSummary,
-    each: &mut dyn FnMut(&mut Session<'_, D>, &StageSummary, &Taken<'_, D>) -> Word,
-) -> Result<Ended, CaseError> {
+    each: &mut dyn FnMut(&mut Session<'_, D>, &StageSummary, &AcceptedStep<'_, D>) -> StopRequest,
+) -> Result<StageEnd, CaseError> {
     let model = session.model;
     let tracks = RefCell::new(state.controls.tracks());
     let at = |reached: f64| {
@@ -235,7 +235,7 @@ pub(crate) fn march_path<const D: usize>(
             Geometry::Given => path.from,
         }));
         let conditions = model.conditions_on(grid, (&before, &after), (path.drag)(from, to))?;
-        conditions.held_by(path.held.as_ref().map(|forces| HeldForces {
+        conditions.with_unbalanced(path.held.as_ref().map(|forces| UnbalancedForces {
             forces: Arc::clone(forces),
             share: 1.0 - to,
         }))
@@ -248,7 +248,7 @@ pub(crate) fn march_path<const D: usize>(
     if let Some(end) = path.left.and_then(|left| left.end.clone()) {
         state.controls = at(march.at);
         stage.reached = march.at;
-        return Ok(Ended::Stopped(end));
+        return Ok(StageEnd::Stopped(end));
     }
     let mut workspace = session.workspace();
     let mut watch = Watch {
@@ -274,11 +274,11 @@ pub(crate) fn march_path<const D: usize>(
     stage.reached = reached;
     let reason = stopped?;
     Ok(match (report.outcome, reason) {
-        (Outcome::StepTooSmall { cause, .. }, _) => Ended::NotConverged(cause),
-        (_, Some(Stop::Failed(error))) => Ended::NotConverged(*error),
-        (_, Some(Stop::Stage(reason))) => Ended::Stopped(reason),
-        (Outcome::Stopped { .. }, Some(Stop::User) | None) => Ended::Interrupted,
-        (Outcome::Completed, _) => Ended::Completed(REACHED_ITS_END.to_owned()),
+        (Outcome::StepTooSmall { cause, .. }, _) => StageEnd::NotConverged(cause),
+        (_, Some(Stop::Failed(error))) => StageEnd::NotConverged(*error),
+        (_, Some(Stop::Stage(reason))) => StageEnd::Stopped(reason),
+        (Outcome::Stopped { .. }, Some(Stop::User) | None) => StageEnd::Interrupted,
+        (Outcome::Completed, _) => StageEnd::Completed(REACHED_ITS_END.to_owned()),
     })
 }
 
@@ -292,8 +292,9 @@ enum Stop {
 struct Watch<'w, 's, const D: usize = 2> {
     session: &'w mut Session<'s, D>,
     stage: &'w mut StageSummary,
-    path: &'w Path<'w, D>,
-    each: &'w mut dyn FnMut(&mut Session<'_, D>, &StageSummary, &Taken<'_, D>) -> Word,
+    path: &'w StagePath<'w, D>,
+    each:
+        &'w mut dyn FnMut(&mut Session<'_, D>, &StageSummary, &AcceptedStep<'_, D>) -> StopRequest,
     /// What the rigid bodies did so far.
     tracks: &'w RefCell<Vec<RigidTrack>>,
     reached: f64,
@@ -317,7 +318,7 @@ impl<const D: usize> Watch<'_, '_, D> {
         controls = controls.with_tracks(&tracks);
         self.tracks.replace(tracks);
         let grid = &accepted.conditions.grid;
-        let taken = Taken {
+        let taken = AcceptedStep {
             accepted,
             controls: &controls,
             resistance: model.footing_resistance(grid, &accepted.forces.reactions),

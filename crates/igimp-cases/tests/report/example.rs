@@ -12,8 +12,8 @@ use igimp_model::{
     ReferenceValues, Section, Side, SolverSettings, Stage, StageKind, StopWhen, Strength,
     TitleBlock,
 };
+use igimp_report::patches::Pieces;
 use igimp_report::pictures::{self, Canvas, Shown};
-use igimp_report::pieces::Pieces;
 use igimp_results::summary::{FigureNote, Summary};
 
 use crate::findings;

@@ -10,7 +10,7 @@ use super::factors::Factors;
 use super::kernel::Kernel;
 use super::lu::{Lu, LuFactors};
 use super::scaling::Scaling;
-use super::scratch::Workshop;
+use super::scratch::Scratch;
 use super::single::Single;
 use super::substitution::Vectors;
 use super::tree::plan::Plan;
@@ -38,7 +38,7 @@ pub(crate) struct Engine {
     factors: Factors<f64>,
     scaling: Scaling,
     inspection: Inspection,
-    workshop: Workshop<f64>,
+    scratch: Scratch<f64>,
     vectors: Vectors<f64>,
     refinement: Refinement,
     /// Takes the place of the factors in double precision while it is used.
@@ -137,7 +137,7 @@ impl Engine {
         matrix: &TangentMatrix,
     ) -> Result<(), LinearSolverError> {
         self.prepare(matrix)?;
-        (self.factors, self.workshop) = Default::default();
+        (self.factors, self.scratch) = Default::default();
         let plan = self.plan.as_ref().ok_or(LinearSolverError::NotFactored)?;
         let by_cholesky = matrix.symmetric;
         if by_cholesky {
@@ -187,7 +187,7 @@ impl Engine {
             matrix,
             diagonal: &self.inspection.diagonal,
         };
-        self.factors.compute(plan, &kernel, &self.workshop)?;
+        self.factors.compute(plan, &kernel, &self.scratch)?;
         self.factored = Some(Factorisation::Cholesky);
         Ok(())
     }
@@ -202,7 +202,7 @@ impl Engine {
             matrix,
             scale: &self.scaling.scale,
         };
-        self.factors.compute(plan, &kernel, &self.workshop)?;
+        self.factors.compute(plan, &kernel, &self.scratch)?;
         let suspect = self
             .factors
             .record
@@ -257,7 +257,7 @@ impl Engine {
     ) -> Result<SolveReport, LinearSolverError> {
         let accuracy = self.wanted();
         let plan = self.plan.as_ref().ok_or(LinearSolverError::NotFactored)?;
-        let (factors, workshop) = (&self.factors, &self.workshop);
+        let (factors, scratch) = (&self.factors, &self.scratch);
         let (vectors, scale) = (&mut self.vectors, &self.scaling.scale[..]);
         let by_cholesky = matches!(self.factored, Some(Factorisation::Cholesky));
         let mut failure = Ok(());
@@ -265,9 +265,9 @@ impl Engine {
             .refinement
             .solve(matrix, rhs, solution, &accuracy, |vector| {
                 let solved = if by_cholesky {
-                    vectors.solve::<CholeskyFactors>(plan, factors, None, workshop, vector)
+                    vectors.solve::<CholeskyFactors>(plan, factors, None, scratch, vector)
                 } else {
-                    vectors.solve::<LuFactors>(plan, factors, Some(scale), workshop, vector)
+                    vectors.solve::<LuFactors>(plan, factors, Some(scale), scratch, vector)
                 };
                 failure = std::mem::replace(&mut failure, Ok(())).and(solved);
             });

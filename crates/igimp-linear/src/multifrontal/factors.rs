@@ -9,7 +9,7 @@ use super::dense::dense_lu::PivotRecord;
 use super::dense::scalar::Scalar;
 use super::extend_add::{BorderMap, Waiting};
 use super::kernel::{Contribution, Kernel, Room};
-use super::scratch::{Tools, Workshop, make_room};
+use super::scratch::{Scratch, Tools, make_room};
 use super::tree::plan::Plan;
 use super::tree::tasks::Task;
 use crate::multifrontal::tree::front::Front;
@@ -43,7 +43,7 @@ impl<T: Scalar> Factors<T> {
         &mut self,
         plan: &Plan,
         kernel: &K,
-        workshop: &Workshop<T>,
+        scratch: &Scratch<T>,
     ) -> Result<(), LinearSolverError> {
         let entries: usize = plan.tasks.iter().map(|task| K::entries(&task.total)).sum();
         make_room(&mut self.values, entries, "factors")?;
@@ -51,7 +51,7 @@ impl<T: Scalar> Factors<T> {
         let job = Job {
             plan,
             kernel,
-            workshop,
+            scratch,
         };
         let roots = job.tasks(
             &plan.tasks,
@@ -70,7 +70,7 @@ impl<T: Scalar> Factors<T> {
 struct Job<'a, K, T> {
     plan: &'a Plan,
     kernel: &'a K,
-    workshop: &'a Workshop<T>,
+    scratch: &'a Scratch<T>,
 }
 
 impl<K: Kernel<T>, T: Scalar> Job<'_, K, T> {
@@ -150,7 +150,7 @@ impl<K: Kernel<T>, T: Scalar> Job<'_, K, T> {
             K::SHAPE.entries(front.passed_on),
             "contributions",
         )?;
-        let mut tools = self.workshop.tools(self.plan)?;
+        let mut tools = self.scratch.tools(self.plan)?;
         let children = self.plan.children[front.children.clone()].iter();
         let left = children.zip(&done.left).map(|(&child, left)| {
             let child = &self.plan.fronts[child as usize];
@@ -164,7 +164,7 @@ impl<K: Kernel<T>, T: Scalar> Job<'_, K, T> {
         let own = K::entries(&front.extent());
         let factors = &values[values.len() - own..];
         self.contribute(front, factors, left, room, &mut tools.rest(), true)?;
-        self.workshop.give_back(tools);
+        self.scratch.give_back(tools);
         above.waiting.push(waiting);
         Ok(done.record)
     }
@@ -217,10 +217,10 @@ impl<K: Kernel<T>, T: Scalar> Job<'_, K, T> {
             exchanges.split_at_mut(task.total.pivots - task.own.pivots);
         if task.is_large() {
             let front = &self.plan.fronts[task.fronts.start];
-            let mut tools = self.workshop.tools(self.plan)?;
+            let mut tools = self.scratch.tools(self.plan)?;
             self.plan.locate(front, &mut tools.local);
             self.kernel.load(self.plan, front, values, &tools.local);
-            self.workshop.give_back(tools);
+            self.scratch.give_back(tools);
             let mut left = Vec::new();
             let mut above = Above {
                 front,
@@ -235,13 +235,13 @@ impl<K: Kernel<T>, T: Scalar> Job<'_, K, T> {
             record.add(&found);
             return Ok(Done { left, record });
         }
-        let mut tools = self.workshop.tools(self.plan)?;
+        let mut tools = self.scratch.tools(self.plan)?;
         let shape = K::SHAPE as usize;
         for (stack, &len) in tools.stacks.iter_mut().zip(&task.stacks[shape]) {
             make_room(stack, len, "contributions")?;
         }
         let done = self.subtree(task, values, exchanges, &mut tools)?;
-        self.workshop.give_back(tools);
+        self.scratch.give_back(tools);
         Ok(done)
     }
 

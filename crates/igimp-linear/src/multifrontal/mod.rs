@@ -13,7 +13,7 @@
 //! |---|---|
 //! | [`neighbours`], [`supernodes`], [`plan`], [`tasks`] | analysis: fronts, their order, their memory, what threads share |
 //! | [`scaling`], [`kernel`], [`lu`], [`cholesky`], [`extend_add`], [`factors`] | factorisation |
-//! | [`dense_lu`], [`tiles`], [`panels`], [`layout`], [`scalar`], [`workshop`] | dense kernels, numbers, memory |
+//! | [`dense_lu`], [`tiles`], [`panels`], [`layout`], [`scalar`], [`scratch`] | dense kernels, numbers, memory |
 //! | [`substitution`] | solution |
 //! | [`single`] | factors in single precision as a preconditioner |
 //! | [`engine`], [`solvers`] | the whole, and the solvers to choose from |

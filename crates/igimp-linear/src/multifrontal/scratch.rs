@@ -29,11 +29,11 @@ pub(crate) struct Tools<T> {
 
 /// The shelf.
 #[derive(Default)]
-pub(crate) struct Workshop<T> {
+pub(crate) struct Scratch<T> {
     tools: Mutex<Vec<Tools<T>>>,
 }
 
-impl<T: Scalar> Workshop<T> {
+impl<T: Scalar> Scratch<T> {
     /// Tools for a task of a plan.
     pub(crate) fn tools(&self, plan: &Plan) -> Result<Tools<T>, LinearSolverError> {
         let mut tools = lock(&self.tools).pop().unwrap_or_default();

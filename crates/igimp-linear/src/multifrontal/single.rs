@@ -5,7 +5,7 @@ use super::super::{LinearSolverError, SolveReport};
 use super::cholesky::{Cholesky, CholeskyFactors};
 use super::factors::Factors;
 use super::lu::{Lu, LuFactors};
-use super::scratch::Workshop;
+use super::scratch::Scratch;
 use super::substitution::Vectors;
 use super::tree::plan::Plan;
 use crate::TangentMatrix;
@@ -21,7 +21,7 @@ const NAMES: [&str; 2] = ["single-cg", "single-gmres"];
 #[derive(Default)]
 pub(super) struct Single {
     factors: Factors<f32>,
-    workshop: Workshop<f32>,
+    scratch: Scratch<f32>,
     vectors: Vectors<f32>,
     preconditioned: Preconditioned,
 }
@@ -33,13 +33,13 @@ impl Single {
         plan: &Plan,
         kernel: &Cholesky,
     ) -> Result<(), LinearSolverError> {
-        self.factors.compute(plan, kernel, &self.workshop)
+        self.factors.compute(plan, kernel, &self.scratch)
     }
 
     /// Factorises by LU. A pivot that was lost and replaced spoils the preconditioner a little, which shows in the
     /// iterations.
     pub(super) fn factor_lu(&mut self, plan: &Plan, kernel: &Lu) -> Result<(), LinearSolverError> {
-        self.factors.compute(plan, kernel, &self.workshop)
+        self.factors.compute(plan, kernel, &self.scratch)
     }
 
     /// Solves K x = b by an iteration with the factors; `scale` is the diagonal of S where S K S was factorised by LU.
@@ -53,7 +53,7 @@ impl Single {
     ) -> Result<SolveReport, LinearSolverError> {
         let Self {
             factors,
-            workshop,
+            scratch,
             vectors,
             preconditioned,
         } = self;
@@ -66,9 +66,9 @@ impl Single {
                 *z = r / size;
             }
             let solved = if scale.is_some() {
-                vectors.solve::<LuFactors>(plan, factors, scale, workshop, z)
+                vectors.solve::<LuFactors>(plan, factors, scale, scratch, z)
             } else {
-                vectors.solve::<CholeskyFactors>(plan, factors, None, workshop, z)
+                vectors.solve::<CholeskyFactors>(plan, factors, None, scratch, z)
             };
             failure = std::mem::replace(&mut failure, Ok(())).and(solved);
             for z in z {

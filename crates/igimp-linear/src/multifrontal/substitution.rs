@@ -8,7 +8,7 @@ use super::super::LinearSolverError;
 use super::dense::scalar::Scalar;
 use super::factors::Factors;
 use super::kernel::Substitution;
-use super::scratch::{Tools, Workshop, make_room};
+use super::scratch::{Scratch, Tools, make_room};
 use super::tree::plan::Plan;
 use super::tree::tasks::Task;
 use crate::multifrontal::tree::front::{Extent, Front};
@@ -30,7 +30,7 @@ impl<T: Scalar> Vectors<T> {
         plan: &Plan,
         factors: &Factors<T>,
         scale: Option<&[f64]>,
-        workshop: &Workshop<T>,
+        scratch: &Scratch<T>,
         vector: &mut [f64],
     ) -> Result<(), LinearSolverError> {
         let outer = plan.tasks.iter().map(|task| task.total.outer).sum();
@@ -46,7 +46,7 @@ impl<T: Scalar> Vectors<T> {
         let job = Job::<S, T> {
             plan,
             factors,
-            workshop,
+            scratch,
             kind: std::marker::PhantomData,
         };
         let (y, outer) = (&mut self.vector[..], &mut self.outer[..outer]);
@@ -82,7 +82,7 @@ struct Place {
 struct Job<'a, S, T> {
     plan: &'a Plan,
     factors: &'a Factors<T>,
-    workshop: &'a Workshop<T>,
+    scratch: &'a Scratch<T>,
     kind: std::marker::PhantomData<S>,
 }
 
@@ -133,7 +133,7 @@ impl<S: Substitution<T>, T: Scalar> Job<'_, S, T> {
         let (outer_below, outer) = outer.split_at_mut(task.total.outer - task.own.outer);
         self.each(Direction::Forward, &task.below, place, y_below, outer_below)?;
 
-        let mut tools = self.workshop.tools(self.plan)?;
+        let mut tools = self.scratch.tools(self.plan)?;
         let Tools { local, border, .. } = &mut tools;
         let mut part = Part::new(self.plan, task, y, outer, local);
         part.outer.fill(T::default());
@@ -150,7 +150,7 @@ impl<S: Substitution<T>, T: Scalar> Job<'_, S, T> {
             S::forward(own, exchanges, part.pivots(front), product, task.is_large());
             part.add(self.plan, front, product);
         }
-        self.workshop.give_back(tools);
+        self.scratch.give_back(tools);
         Ok(())
     }
 
@@ -163,7 +163,7 @@ impl<S: Substitution<T>, T: Scalar> Job<'_, S, T> {
     ) -> Result<(), LinearSolverError> {
         let (y_below, y) = y.split_at_mut(task.total.pivots - task.own.pivots);
         let (outer_below, outer) = outer.split_at_mut(task.total.outer - task.own.outer);
-        let mut tools = self.workshop.tools(self.plan)?;
+        let mut tools = self.scratch.tools(self.plan)?;
         let Tools { local, border, .. } = &mut tools;
         let mut part = Part::new(self.plan, task, y, outer, local);
         let first = Self::own_entries(task, place);
@@ -179,7 +179,7 @@ impl<S: Substitution<T>, T: Scalar> Job<'_, S, T> {
             let child = &self.plan.fronts[child];
             part.gather(self.plan, child, &mut outer_below[known]);
         }
-        self.workshop.give_back(tools);
+        self.scratch.give_back(tools);
         self.each(
             Direction::Backward,
             &task.below,

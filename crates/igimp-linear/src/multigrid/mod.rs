@@ -8,11 +8,11 @@
 //! gradients, for symmetric matrices, or of generalised minimal residuals ([`krylov`]), which use the matrix itself
 //! ([`product`]). The solution is checked against it, from restart to restart ([`preconditioned`]).
 
+mod boundary_nodes;
 mod dense;
 mod galerkin;
 mod hierarchy;
 mod rows;
-mod skin;
 mod slabs;
 mod smoother;
 mod solver;

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use super::super::{LinearSolverError, SolveReport, check};
+use super::boundary_nodes::BoundaryNodes;
 use super::hierarchy::{self, Preconditioner};
-use super::skin::Skin;
 use crate::krylov::preconditioned::{Demand, Method, Preconditioned};
 use crate::{Pattern, TangentMatrix};
 
@@ -16,7 +16,7 @@ const NAMES: [&str; 2] = ["multigrid-cg", "multigrid-gmres"];
 pub(crate) struct Iteration {
     pattern: Option<Arc<Pattern>>,
     grids: Option<Box<dyn Preconditioner>>,
-    skin: Skin,
+    skin: BoundaryNodes,
     /// What the skin leaves of a residual.
     rest: Vec<f64>,
     preconditioned: Preconditioned,

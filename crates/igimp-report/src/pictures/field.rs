@@ -10,7 +10,7 @@ use igimp_results::summary::FigureNote;
 
 use super::{file_name, sentence, titled, water, write};
 use crate::error::ReportError;
-use crate::pieces::Pieces;
+use crate::patches::Pieces;
 
 /// A range this many times that of all but [`FEW`] of the values is cut to theirs.
 const OUTLYING: f64 = 1.2;

@@ -12,7 +12,7 @@ use igimp_text::short;
 use super::field::edges;
 use super::{Canvas, Over, file_name, titled, write};
 use crate::error::ReportError;
-use crate::slip::{Increment, SlipPoint};
+use crate::failure_mechanism::{Increment, SlipPoint};
 
 /// Arrows stand so many to the longer side of the picture.
 const ARROWS: f64 = 34.0;

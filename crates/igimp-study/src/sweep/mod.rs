@@ -19,11 +19,11 @@
 mod chart;
 mod collect;
 mod columns;
-mod demand;
 mod file;
 mod record;
+mod resources;
 mod scripts;
-mod turn;
+mod task_lock;
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
@@ -43,10 +43,10 @@ use igimp_results::{ResultsError, folder};
 use thiserror::Error;
 
 pub use collect::{Collected, aligned, collect};
-pub use demand::{Demand, Largest};
 pub use record::Record;
+pub use resources::{Largest, Resources};
 pub use scripts::{Script, Words, numbers};
-pub use turn::Turn;
+pub use task_lock::TaskLock;
 
 /// Most bytes of a sweep file.
 const LARGEST: u64 = 8 << 20;

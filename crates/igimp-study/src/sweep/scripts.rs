@@ -9,7 +9,7 @@ use igimp_results::atomic::write_whole;
 use igimp_schema::syntax::toml_text;
 use igimp_text::on_a_line;
 
-use super::{Demand, Sweep, SweepError, Task};
+use super::{Resources, Sweep, SweepError, Task};
 
 /// Most tasks of an array of Slurm: its `MaxArraySize` is 1001 where nobody changed it, and numbers stay below that.
 const ARRAY: usize = 1000;
@@ -44,7 +44,7 @@ impl Sweep {
     pub fn write_slurm(
         &self,
         tasks: &[&Task],
-        demand: &Demand,
+        demand: &Resources,
         words: &Words,
     ) -> Result<Script, SweepError> {
         let path = self.folder.join("slurm.sh");
@@ -104,7 +104,7 @@ impl Sweep {
     pub fn write_hyperqueue(
         &self,
         tasks: &[&Task],
-        demand: &Demand,
+        demand: &Resources,
         words: &Words,
     ) -> Result<Script, SweepError> {
         let path = self.folder.join("hyperqueue.toml");
@@ -140,7 +140,7 @@ impl Sweep {
     }
 
     /// Comments on where a file comes from, and on what it asks for.
-    fn head(&self, demand: &Demand) -> String {
+    fn head(&self, demand: &Resources) -> String {
         let file = self.file.display().to_string();
         format!(
             "# Tasks of {} that were not done when this was written. A task that is done by now is left\n\

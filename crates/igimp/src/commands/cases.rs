@@ -2,8 +2,8 @@
 
 use igimp_input::CaseFile;
 use igimp_model::in_any_dimension;
+use igimp_study::narration::size::size;
 use igimp_study::sweep::is_sweep;
-use igimp_study::telling::size::size;
 
 use crate::arguments::CaseArguments;
 use crate::error::{Exit, ProgramError};

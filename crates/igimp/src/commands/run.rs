@@ -9,8 +9,8 @@ use igimp_cases::run::{self as engine, Start, Target};
 use igimp_model::in_any_dimension;
 use igimp_results::ending::Ending;
 use igimp_results::folder::overwrite_guard::Replace;
-use igimp_study::sweep::{Sweep, Turn};
-use igimp_study::telling::verdict;
+use igimp_study::narration::verdict;
+use igimp_study::sweep::{Sweep, TaskLock};
 
 use crate::arguments::RunArguments;
 use crate::commands::cases;
@@ -45,7 +45,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<Exit, ProgramError> {
     };
     let told = expectation.as_ref();
     if let Some(lack) = told.and_then(|told| lacks_memory(told.bytes, told.most_bytes)) {
-        output::complain(&format!("warning: {lack}"));
+        output::print_message(&format!("warning: {lack}"));
     }
     let target = Target {
         systems: arguments.export_matrix.clone(),
@@ -65,12 +65,12 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<Exit, ProgramError> {
 
 /// Tells of a run that cannot go on, and how it can later if there is something to go on from.
 fn give_up(error: &ProgramError, folder: &Path, arguments: &RunArguments) -> Exit {
-    output::complain(&error.render());
+    output::print_message(&error.render());
     let kept =
         std::fs::read_dir(folder.join("checkpoint")).is_ok_and(|mut saved| saved.next().is_some());
     let entered = !matches!(error, ProgramError::Case(error) if error.is_in_use());
     if error.exit() == Exit::InputOutput && kept && entered {
-        output::complain(&format!(
+        output::print_message(&format!(
             "what was computed is kept; to go on later: {}",
             again(arguments)
         ));
@@ -99,20 +99,20 @@ fn task(arguments: &RunArguments, number: usize) -> Result<Exit, ProgramError> {
         return tell(&run, &task.folder, arguments);
     }
     let turn = sweep.take_up(task, &mut progress, &flag, |folder| {
-        output::complain(&format!(
+        output::print_message(&format!(
             "another igimp writes into {}; waiting until it has ended",
             folder.display()
         ));
     });
     progress.finish();
     match turn? {
-        Turn::Ran(run, _) => tell(&run, &task.folder, arguments),
-        Turn::Done(ending) => {
+        TaskLock::Ran(run, _) => tell(&run, &task.folder, arguments),
+        TaskLock::Done(ending) => {
             output::say(&format!("task {number} is done already: {ending}"))?;
             Ok(ending.into())
         }
-        Turn::Elsewhere => {
-            output::complain(&format!(
+        TaskLock::Elsewhere => {
+            output::print_message(&format!(
                 "interrupted while another igimp ran task {number}; to go on: {}",
                 again(arguments)
             ));
@@ -148,22 +148,22 @@ fn tell(
     let ending = summary.ending();
     if arguments.quiet {
         for warning in &summary.warnings {
-            output::complain(&format!("warning: {warning}"));
+            output::print_message(&format!("warning: {warning}"));
         }
     }
     output::say(&verdict::stages_and_checks(summary))?;
     if let Some(failure) = &run.failure {
-        output::complain(&failure.to_string());
+        output::print_message(&failure.to_string());
     }
     if ending == Ending::Interrupted {
-        output::complain(&format!("interrupted; to go on: {}", again(arguments)));
+        output::print_message(&format!("interrupted; to go on: {}", again(arguments)));
     }
     if let Some(systems) = &arguments.export_matrix {
         output::say(&format!("linear systems in {}", systems.display()))?;
     }
     output::say(&verdict::results(summary, folder))?;
     for more in exceeded(summary) {
-        output::complain(&format!("warning: {more}"));
+        output::print_message(&format!("warning: {more}"));
     }
     let mut exit = match &run.failure {
         Some(failure) if failure.is_want_of_memory() => Exit::InputOutput,
@@ -172,7 +172,7 @@ fn tell(
     };
     // Of what went wrong on several meshes the worst counts; what the system refused is told apart.
     for error in &run.lost {
-        output::complain(&igimp_cases::chain(error));
+        output::print_message(&igimp_cases::chain(error));
         exit = exit.max(crate::error::of_error(error));
     }
     Ok(exit)

@@ -6,8 +6,8 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use igimp_cases::run::{Nobody, Start};
 use igimp_results::ending::Ending;
 use igimp_results::folder::overwrite_guard::Replace;
+use igimp_study::narration::lines;
 use igimp_study::sweep::{self, Task};
-use igimp_study::telling::lines;
 
 use crate::arguments::{Collect, SweepArguments};
 use crate::commands::run::replace;
@@ -52,7 +52,7 @@ pub(crate) fn sweep(arguments: &SweepArguments) -> Result<Exit, ProgramError> {
     let ends = run_all(&sweep, &left, arguments, &flag, &label)?;
     let interrupted = flag.load(Ordering::SeqCst);
     if interrupted {
-        output::complain(&format!(
+        output::print_message(&format!(
             "interrupted after {} of {} tasks; the same command goes on",
             already + ends.len(),
             sweep.tasks.len()
@@ -140,7 +140,7 @@ fn run_one(
         }
         Err(error) => {
             let error = ProgramError::from(error);
-            output::complain(&format!("{}\n{}", label(task), error.render()));
+            output::print_message(&format!("{}\n{}", label(task), error.render()));
             (Ending::Failed.to_string(), error.exit())
         }
     };
@@ -157,7 +157,7 @@ pub(crate) fn collect(arguments: &Collect) -> Result<Exit, ProgramError> {
     table.draw(&sweep.folder)?;
     output::print(&format!("{}table in {}", table.to_text(), path.display()))?;
     for name in &table.unknown {
-        output::complain(&format!(
+        output::print_message(&format!(
             "warning: `{name}` is neither a factor of safety nor a check nor a curve of any task"
         ));
     }
@@ -165,7 +165,7 @@ pub(crate) fn collect(arguments: &Collect) -> Result<Exit, ProgramError> {
         return Ok(Exit::Done);
     }
     let numbers: Vec<String> = table.missing.iter().map(usize::to_string).collect();
-    output::complain(&format!(
+    output::print_message(&format!(
         "error: no results of {} of {} tasks: {}\n  help: igimp sweep {} runs them",
         table.missing.len(),
         sweep.tasks.len(),

@@ -1,7 +1,7 @@
 //! `igimp new`.
 
 use igimp_input::shipped::{SHIPPED, find, nearest};
-use igimp_study::telling::table;
+use igimp_study::narration::table;
 
 use crate::arguments::New;
 use crate::error::{Exit, ProgramError};

@@ -7,7 +7,7 @@ use igimp_input::shipped::{SHIPPED, Shipped, find, nearest};
 use igimp_model::{AnyCase, in_any_dimension};
 use igimp_results::ending::Ending;
 use igimp_results::folder::overwrite_guard::Replace;
-use igimp_study::telling::verdict;
+use igimp_study::narration::verdict;
 
 use crate::arguments::Validate;
 use crate::error::{Exit, ProgramError};
@@ -45,7 +45,7 @@ pub(crate) fn validate(arguments: &Validate) -> Result<Exit, ProgramError> {
         output::say(&format!("{}: {ending}", shipped.name))?;
         output::say(&verdict::checks(&run.summary.checks))?;
         if let Some(failure) = &run.failure {
-            output::complain(&failure.to_string());
+            output::print_message(&failure.to_string());
             worst = worst.max(Exit::NotConverged);
         }
         worst = worst.max(ending.into());

@@ -67,7 +67,7 @@ fn cause(failure: &StepFailure) -> &'static str {
         | StepFailure::LoadPointLeavesGrid { .. }
         | StepFailure::ReinforcementLeavesGrid { .. } => "leaves the grid",
         StepFailure::TooDeep { .. } => "penetrates too deep",
-        StepFailure::Swallowed(_) => "soil caught by a body",
+        StepFailure::Penetration(_) => "soil caught by a body",
         StepFailure::NotHeld { .. } => "nothing holds a body",
         StepFailure::NotFinite { .. } => "not finite",
         StepFailure::Assembly(AssemblyError::Inverted { .. }) => "particle inverted",

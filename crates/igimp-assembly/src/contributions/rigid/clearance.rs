@@ -26,7 +26,7 @@ const ROUND_OFF: f64 = 1e-9;
     "particle {particle} would be carried {depth:.2} of its half-length into the rigid body \
      \"{body}\" on its way to {position:?} m"
 )]
-pub struct Swallowed {
+pub struct Penetration {
     /// Number of the particle, from 0.
     pub particle: usize,
     /// Name of the body.
@@ -69,13 +69,13 @@ pub(crate) type WaysOff<const D: usize> = Vec<(usize, [f64; D])>;
 /// `place` and bodies from `before` to `after`.
 ///
 /// # Errors
-/// [`Swallowed`] for the first particle that it would carry into a body, or through it.
-pub(crate) fn put_back<const D: usize>(
+/// [`Penetration`] for the first particle that it would carry into a body, or through it.
+pub(crate) fn push_out<const D: usize>(
     before: &[RigidBody<D>],
     after: &[RigidBody<D>],
     particles: &Particles<D>,
     place: impl Fn(usize) -> [f64; D],
-) -> Result<WaysOff<D>, Swallowed> {
+) -> Result<WaysOff<D>, Penetration> {
     let mut out = Vec::new();
     if after.is_empty() {
         return Ok(out);
@@ -88,7 +88,7 @@ pub(crate) fn put_back<const D: usize>(
             let from = old.pose.into_body(&particles.x[particle]);
             let depth = deepest(extent, &from, &x, half);
             if depth > MOST_DEPTH * half {
-                return Err(Swallowed {
+                return Err(Penetration {
                     particle,
                     body: extent.body.name.clone(),
                     depth: depth / half,

@@ -3,10 +3,10 @@
 
 use std::collections::BTreeMap;
 
-use super::clearance::{Swallowed, put_back};
-use super::gathering::Gathering;
+use super::clearance::{Penetration, push_out};
+use super::face_clipping::tents_within;
 use super::interface::{Interface, Tension};
-use super::mosaic::tents_within;
+use super::mortar_integrals::Gathering;
 use super::row::{Functional, Row};
 use super::{ContactNode, ContactState, NODES_PER_BODY, RigidBody};
 use crate::body::particles::Particles;
@@ -37,7 +37,7 @@ pub struct AcceptedContact<const D: usize> {
     pub bodies: Vec<RigidBody<D>>,
     /// Particles that stand too close to a body, with the way back \[length\]: contact holds the mean around
     /// a knot, and lets single particles creep across the surface.
-    pub put_back: Vec<(usize, [f64; D])>,
+    pub push_out: Vec<(usize, [f64; D])>,
 }
 
 impl<'a, const D: usize> Contact<'a, D> {
@@ -145,7 +145,7 @@ impl<'a, const D: usize> Contact<'a, D> {
         particles: &Particles<D>,
         stencils: &Stencils<D>,
         geometry: Geometry,
-    ) -> Result<AcceptedContact<D>, Swallowed> {
+    ) -> Result<AcceptedContact<D>, Penetration> {
         let mut moved: Vec<RigidBody<D>> = self.bodies.to_vec();
         for (index, body) in moved.iter_mut().enumerate() {
             let node = self.first_node + NODES_PER_BODY * index;
@@ -191,10 +191,10 @@ impl<'a, const D: usize> Contact<'a, D> {
             }
             return Ok(AcceptedContact {
                 bodies: moved,
-                put_back: Vec::new(),
+                push_out: Vec::new(),
             });
         }
-        let put_back = put_back(self.bodies, &moved, particles, |particle| {
+        let push_out = push_out(self.bodies, &moved, particles, |particle| {
             let mut x = particles.x[particle];
             for support in stencils.of(particle) {
                 for axis in 0..D {
@@ -205,7 +205,7 @@ impl<'a, const D: usize> Contact<'a, D> {
         })?;
         Ok(AcceptedContact {
             bodies: moved,
-            put_back,
+            push_out,
         })
     }
 }

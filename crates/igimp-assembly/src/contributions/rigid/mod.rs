@@ -7,9 +7,9 @@
 mod clearance;
 mod contact;
 mod face;
-mod gathering;
+mod face_clipping;
 mod interface;
-mod mosaic;
+mod mortar_integrals;
 mod pose;
 mod row;
 mod state;
@@ -23,7 +23,7 @@ pub use surface::{CarryingTriangle, Surface, SurfaceError, SurfaceTriangle};
 
 pub use contact::AcceptedContact;
 
-pub use clearance::Swallowed;
+pub use clearance::Penetration;
 pub(crate) use clearance::seeded_too_close;
 pub(crate) use contact::Contact;
 

@@ -1,7 +1,7 @@
 //! What may help after a step without equilibrium, in the words of the case file, most promising
 //! first. Every rule looks at the failure and at the case, and says nothing when it is of no use.
 
-use igimp_assembly::{AssemblyError, Locking, Swallowed};
+use igimp_assembly::{AssemblyError, Locking, Penetration};
 use igimp_linear::LinearSolverError;
 use igimp_model::{BodyPart, Case, Material, RigidMove, Side, Stage, StageKind, Strength};
 use igimp_results::fields::length;
@@ -50,7 +50,7 @@ pub(crate) fn advice<const D: usize>(
         StepFailure::Assembly(assembly) => unformed(case, stage, assembly),
         StepFailure::Linear(linear) => unsolved(case, linear),
         StepFailure::TooDeep { body, .. } => too_deep(case, stage, body),
-        StepFailure::Swallowed(Swallowed { body, position, .. }) => {
+        StepFailure::Penetration(Penetration { body, position, .. }) => {
             swallowed(case, stage, body, *position)
         }
         StepFailure::NotHeld {

@@ -5,8 +5,8 @@ use std::time::Instant;
 
 use igimp_assembly::SharedLaw;
 use igimp_model::{Case, Every, in_plane};
+use igimp_report::patches::Pieces;
 use igimp_report::pictures::{self, Canvas, Failing, Seen, Shown, mechanism};
-use igimp_report::pieces::Pieces;
 use igimp_results::rigid;
 use igimp_results::summary::StageSummary;
 use rayon::prelude::*;

@@ -258,7 +258,7 @@ pub(crate) struct Rows {
 }
 
 /// An accepted step as a stage sees it.
-pub(crate) struct Taken<'a, const D: usize = 2> {
+pub(crate) struct AcceptedStep<'a, const D: usize = 2> {
     /// The step in the solver's terms.
     pub(crate) accepted: &'a Accepted<'a, D>,
     /// What acts on the body now.
@@ -269,7 +269,7 @@ pub(crate) struct Taken<'a, const D: usize = 2> {
     pub(crate) interrupted: bool,
 }
 
-impl<'a, const D: usize> Taken<'a, D> {
+impl<'a, const D: usize> AcceptedStep<'a, D> {
     /// The step as a moment to be recorded.
     pub(crate) fn moment(&self, stage: usize, number: usize) -> Moment<'a, D> {
         Moment {

@@ -16,11 +16,11 @@ use igimp_model::{Construction, Drainage, Ground, StageKind};
 use igimp_results::summary::StageSummary;
 use igimp_text::short;
 
-use super::loading::let_go;
+use super::loading::release;
 use crate::error::CaseError;
 use crate::run::model::Model;
 use crate::run::resume::Resumption;
-use crate::run::session::{Ended, Session};
+use crate::run::session::{Session, StageEnd};
 use crate::run::state::{State, gravity_of_weights};
 
 /// Marches a state to the end of a construction stage; one that an earlier run left within it began with `start`.
@@ -30,11 +30,11 @@ pub(crate) fn build<const D: usize>(
     number: usize,
     summary: &mut StageSummary,
     resumption: Option<&Resumption>,
-) -> Result<Ended, CaseError> {
+) -> Result<StageEnd, CaseError> {
     let model = session.model;
     let stage = &model.case.stages[number];
     let StageKind::Construction(own) = &stage.kind else {
-        return Ok(Ended::Completed(crate::run::REACHED_ITS_END.to_owned()));
+        return Ok(StageEnd::Completed(crate::run::REACHED_ITS_END.to_owned()));
     };
     let changed = changed(model, start.unwrap_or(state), own)?;
     let held = holding(model, &changed, number)?;
@@ -46,7 +46,7 @@ pub(crate) fn build<const D: usize>(
         }
         *state = changed;
     }
-    let_go(
+    release(
         session,
         state,
         (number, Some(Arc::new(held))),
@@ -70,7 +70,7 @@ fn changed<const D: usize>(
     {
         let placed = later.keeping(|particle| own.place.contains(&body_of(later, particle)))?;
         state.body.particles = state.body.particles.joined_by(&placed);
-        state.body.particles.clear_of(&state.body.rigid);
+        state.body.particles.resolve_overlap(&state.body.rigid);
     }
     if !own.remove.is_empty() {
         let particles = &state.body.particles;

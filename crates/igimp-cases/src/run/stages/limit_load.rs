@@ -16,7 +16,7 @@ use crate::error::CaseError;
 use crate::limit;
 use crate::run::model::displacement_scale;
 use crate::run::output::records::Moment;
-use crate::run::session::{Ended, Session};
+use crate::run::session::{Session, StageEnd};
 use crate::run::state::{Controls, RigidTrack, State};
 use crate::run::{Event, rigid};
 
@@ -56,7 +56,7 @@ pub(crate) fn follow_on<const D: usize>(
     state: &mut State<D>,
     (number, from, to): (usize, &Controls, &Controls),
     summary: &mut StageSummary,
-) -> Result<Ended, CaseError> {
+) -> Result<StageEnd, CaseError> {
     let model = session.model;
     let stage = &model.case.stages[number];
     let tracks = RefCell::new(state.controls.tracks());
@@ -111,8 +111,8 @@ pub(crate) fn follow_on<const D: usize>(
     summary.reached = continuation.factor;
     let ended = match (stopped?, failure) {
         (Some(ended), _) => ended,
-        (None, Some(error)) => Ended::NotConverged(error),
-        (None, None) => Ended::Stopped("the steps of the path ran out".to_owned()),
+        (None, Some(error)) => StageEnd::NotConverged(error),
+        (None, None) => StageEnd::Stopped("the steps of the path ran out".to_owned()),
     };
     let path = PathSummary {
         end,
@@ -158,11 +158,11 @@ struct Watch<'w, 's, const D: usize> {
     points: Vec<PathPoint>,
     end: PathEnd,
     limit: Option<PathPoint>,
-    stopped: Result<Option<Ended>, CaseError>,
+    stopped: Result<Option<StageEnd>, CaseError>,
 }
 
 impl<const D: usize> Watch<'_, '_, D> {
-    fn step(&mut self, accepted: &Accepted<'_, D>) -> Result<Option<Ended>, CaseError> {
+    fn step(&mut self, accepted: &Accepted<'_, D>) -> Result<Option<StageEnd>, CaseError> {
         let report = accepted.report;
         let number = self.summary.steps + 1;
         self.session.tell(&Event::Equilibrium { number, accepted });
@@ -193,17 +193,17 @@ impl<const D: usize> Watch<'_, '_, D> {
         let point = limit::point(report, factor, self.summary.work, displacement);
         self.points.push(point);
         if self.session.interrupted() {
-            return Ok(Some(Ended::Interrupted));
+            return Ok(Some(StageEnd::Interrupted));
         }
         if report.to >= 1.0 {
             let reason = "the limit lies beyond the load of the stage";
-            return Ok(Some(Ended::Stopped(reason.to_owned())));
+            return Ok(Some(StageEnd::Stopped(reason.to_owned())));
         }
         let end = limit::end(&self.points, stop.displacement);
         Ok(end.map(|(end, limit)| {
             (self.end, self.limit) = (end, Some(limit));
             let reached = short(report.to);
-            Ended::Stopped(format!("at {reached} of the stage {}", end.sentence()))
+            StageEnd::Stopped(format!("at {reached} of the stage {}", end.sentence()))
         }))
     }
 }

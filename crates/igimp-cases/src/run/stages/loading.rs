@@ -9,10 +9,10 @@ use igimp_text::short;
 
 use super::{limit_load, rigid_begin};
 use crate::error::CaseError;
-use crate::run::output::records::{Moment, Taken};
+use crate::run::output::records::{AcceptedStep, Moment};
 use crate::run::reinforcement;
 use crate::run::resume::Resumption;
-use crate::run::session::{Ended, Path, Session, march_path};
+use crate::run::session::{Session, StageEnd, StagePath, march_path};
 use crate::run::state::{Controls, State};
 
 /// The controls at the end of a stage that begins with `start`.
@@ -67,18 +67,18 @@ pub(crate) fn load<const D: usize>(
     number: usize,
     summary: &mut StageSummary,
     resumption: Option<&Resumption>,
-) -> Result<Ended, CaseError> {
-    let_go(session, state, (number, None), summary, resumption)
+) -> Result<StageEnd, CaseError> {
+    release(session, state, (number, None), summary, resumption)
 }
 
 /// The same with forces by node that hold the body at first and are let go on the way \[N/m\].
-pub(crate) fn let_go<const D: usize>(
+pub(crate) fn release<const D: usize>(
     session: &mut Session<'_, D>,
     state: &mut State<D>,
     (number, held): (usize, Option<Arc<Vec<[f64; D]>>>),
     summary: &mut StageSummary,
     resumption: Option<&Resumption>,
-) -> Result<Ended, CaseError> {
+) -> Result<StageEnd, CaseError> {
     let model = session.model;
     let stage = &model.case.stages[number];
     if let (StageKind::Rigid(moves), None) = (&stage.kind, resumption) {
@@ -95,7 +95,7 @@ pub(crate) fn let_go<const D: usize>(
     if resumption.is_none() {
         begin(session, state, number)?;
     }
-    let path = Path {
+    let path = StagePath {
         from: &from,
         to: &to,
         drag: &|_, _| 0.0,
@@ -128,7 +128,7 @@ pub(crate) fn let_go<const D: usize>(
         },
     )?;
     match &ended {
-        Ended::NotConverged(error) if limit_load::is_sought(stage, summary, error) => {
+        StageEnd::NotConverged(error) if limit_load::is_sought(stage, summary, error) => {
             limit_load::follow_on(session, state, (number, &from, &to), summary)
         }
         _ => Ok(ended),
@@ -159,7 +159,7 @@ fn reason_to_stop<const D: usize>(
     session: &Session<'_, D>,
     stage: &Stage,
     resistance_before: f64,
-    taken: &Taken<'_, D>,
+    taken: &AcceptedStep<'_, D>,
 ) -> Option<String> {
     let stop = &stage.stop_when;
     let particles = &taken.accepted.body.particles;

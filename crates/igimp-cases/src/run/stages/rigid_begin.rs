@@ -51,7 +51,7 @@ pub(crate) fn place<const D: usize>(
     let slot = state.controls.placed().take_while(|&k| k < index).count();
     state.body.rigid.insert(slot, body);
     state.controls.rigid[index].placed = true;
-    state.body.particles.clear_of(&state.body.rigid);
+    state.body.particles.resolve_overlap(&state.body.rigid);
     let way = if settled > 0.0 { "down" } else { "up" };
     Ok(is_shifted.then(|| {
         format!(

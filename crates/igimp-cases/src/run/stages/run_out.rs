@@ -19,7 +19,7 @@ use super::loading::begin;
 use crate::error::CaseError;
 use crate::run::model::Model;
 use crate::run::resume::Resumption;
-use crate::run::session::{Ended, Path, Session, march_path};
+use crate::run::session::{Session, StageEnd, StagePath, march_path};
 use crate::run::state::State;
 
 /// Bounds of the change of drag from step to step \[-\].
@@ -33,7 +33,7 @@ pub(crate) fn run_out<const D: usize>(
     run_out: &RunOut,
     summary: &mut StageSummary,
     resumption: Option<&Resumption>,
-) -> Result<Ended, CaseError> {
+) -> Result<StageEnd, CaseError> {
     let model = session.model;
     let case = model.case;
     let mut to = state.controls.clone();
@@ -43,7 +43,7 @@ pub(crate) fn run_out<const D: usize>(
         Reduction::TimesFos(times) => {
             let found = session.records.factor_of_safety;
             if !found.is_finite() {
-                return Ok(Ended::Stopped(
+                return Ok(StageEnd::Stopped(
                     "the factor of safety that the reduction refers to was not found".to_owned(),
                 ));
             }
@@ -62,7 +62,7 @@ pub(crate) fn run_out<const D: usize>(
     // The whole weight would move the body by the target.
     let largest = case.gravity / target;
     let drag = Cell::new(resumption.map_or(largest, |left| left.drag));
-    let path = Path {
+    let path = StagePath {
         from: &to,
         to: &to,
         drag: &|from, to| drag.get() / ((to - from) * steps as f64),
@@ -103,12 +103,14 @@ pub(crate) fn run_out<const D: usize>(
         },
     )?;
     match ended {
-        Ended::Stopped(rest) => stand(session, state, &path, summary, &rest),
-        Ended::Completed(_) => {
+        StageEnd::Stopped(rest) => stand(session, state, &path, summary, &rest),
+        StageEnd::Completed(_) => {
             session.warn(format!(
                 "the slope still moves after {steps} steps of run-out"
             ));
-            Ok(Ended::Stopped(format!("still moving after {steps} steps")))
+            Ok(StageEnd::Stopped(format!(
+                "still moving after {steps} steps"
+            )))
         }
         other => Ok(other),
     }
@@ -134,11 +136,11 @@ fn flowing<const D: usize>(model: &Model<'_, D>) -> Method {
 fn stand<const D: usize>(
     session: &mut Session<'_, D>,
     state: &mut State<D>,
-    path: &Path<'_, D>,
+    path: &StagePath<'_, D>,
     summary: &mut StageSummary,
     rest: &str,
-) -> Result<Ended, CaseError> {
-    let last = Path {
+) -> Result<StageEnd, CaseError> {
+    let last = StagePath {
         drag: &|_, _| 0.0,
         method: flowing(session.model),
         settings: session.model.march_settings(1),
@@ -148,14 +150,14 @@ fn stand<const D: usize>(
     };
     Ok(
         match march_path(session, state, &last, summary, &mut |_, _, _| Ok(None))? {
-            Ended::NotConverged(_) => {
+            StageEnd::NotConverged(_) => {
                 session.warn(
                     "the slope all but rests, but no equilibrium without drag was found".into(),
                 );
-                Ended::Stopped(format!("{rest}; not in equilibrium without drag"))
+                StageEnd::Stopped(format!("{rest}; not in equilibrium without drag"))
             }
-            Ended::Completed(_) => {
-                Ended::Completed(format!("{rest}; then in equilibrium without drag"))
+            StageEnd::Completed(_) => {
+                StageEnd::Completed(format!("{rest}; then in equilibrium without drag"))
             }
             other => other,
         },

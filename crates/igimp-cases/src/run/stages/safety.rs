@@ -24,7 +24,7 @@ use crate::error::CaseError;
 use crate::run::Event;
 use crate::run::model::{Model, height};
 use crate::run::resume::{End, Search};
-use crate::run::session::{Ended, Path, Session, march_path};
+use crate::run::session::{Session, StageEnd, StagePath, march_path};
 use crate::run::state::{Controls, State};
 
 /// Most trials that a search makes before it reports the interval that it has.
@@ -44,7 +44,7 @@ pub(crate) fn reduce_strength<const D: usize>(
     reduction: &StrengthReduction,
     summary: &mut StageSummary,
     left: Option<Search<D>>,
-) -> Result<Ended, CaseError> {
+) -> Result<StageEnd, CaseError> {
     let cell = session.model.cell_height()?;
     for &material in &reduction.materials {
         let material = &session.model.case.materials[material];
@@ -78,7 +78,7 @@ fn by_trials<const D: usize>(
     reduction: &StrengthReduction,
     summary: &mut StageSummary,
     left: Option<Search<D>>,
-) -> Result<Ended, CaseError> {
+) -> Result<StageEnd, CaseError> {
     let stage = &session.model.case.stages[number];
     let mut trials = Trials::new(session, state, number, stage, reduction, left)?;
     // Where gravity is raised anew the state found is none that a trial begins with.
@@ -140,10 +140,10 @@ impl<'a, const D: usize> Trials<'a, D> {
         &mut self,
         session: &mut Session<'_, D>,
         summary: &mut StageSummary,
-    ) -> Result<Ended, CaseError> {
+    ) -> Result<StageEnd, CaseError> {
         while let Some(srf) = self.next() {
             if session.interrupted() {
-                return Ok(Ended::Interrupted);
+                return Ok(StageEnd::Interrupted);
             }
             if let Some(ended) = self.trial(session, summary, srf)? {
                 return Ok(ended);
@@ -165,7 +165,9 @@ impl<'a, const D: usize> Trials<'a, D> {
             }
         }
         summary.reached = 1.0;
-        Ok(Ended::Completed("the interval is narrow enough".to_owned()))
+        Ok(StageEnd::Completed(
+            "the interval is narrow enough".to_owned(),
+        ))
     }
 
     /// The factor to try next: those that the case lists, then F = 1, then the search.
@@ -209,12 +211,12 @@ impl<'a, const D: usize> Trials<'a, D> {
         session: &mut Session<'_, D>,
         summary: &mut StageSummary,
         srf: f64,
-    ) -> Result<Option<Ended>, CaseError> {
+    ) -> Result<Option<StageEnd>, CaseError> {
         let listed = self.made.len() < self.reduction.factors.len();
         let (mut state, from, mut before) = self.start(srf);
         let to = self.end(srf);
         let settings = self.settings(session.model, &from, srf);
-        let path = Path {
+        let path = StagePath {
             from: &from,
             to: &to,
             drag: &|_, _| 0.0,
@@ -259,9 +261,9 @@ impl<'a, const D: usize> Trials<'a, D> {
             },
         )?;
         match &ended {
-            Ended::Interrupted => return Ok(Some(ended)),
+            StageEnd::Interrupted => return Ok(Some(ended)),
             // It tells nothing of the strength that the body needs.
-            Ended::NotConverged(cause) if !cause.failure.is_want_of_equilibrium() => {
+            StageEnd::NotConverged(cause) if !cause.failure.is_want_of_equilibrium() => {
                 return Ok(Some(ended));
             }
             _ => {}
@@ -270,16 +272,18 @@ impl<'a, const D: usize> Trials<'a, D> {
         // which it found no equilibrium.
         let begun = from.srf[reduction.materials[0]];
         let srf = match (&ended, reduction.path) {
-            (Ended::Stopped(_), ReductionPath::Reduce) => {
+            (StageEnd::Stopped(_), ReductionPath::Reduce) => {
                 state.controls.srf[reduction.materials[0]]
             }
-            (Ended::NotConverged(cause), ReductionPath::Reduce) => begun + cause.to * (srf - begun),
+            (StageEnd::NotConverged(cause), ReductionPath::Reduce) => {
+                begun + cause.to * (srf - begun)
+            }
             _ => srf,
         };
         let displacement = session.displacement(reduction.monitor, &state.body.particles);
         let exceeded = limit.is_some_and(|limit| displacement > limit);
         let (stable, reason) = match &ended {
-            Ended::NotConverged(cause) => (false, self.no_equilibrium(&state, cause)),
+            StageEnd::NotConverged(cause) => (false, self.no_equilibrium(&state, cause)),
             _ if exceeded => (false, self.exceeded(session)),
             _ => (true, "in equilibrium".to_owned()),
         };
@@ -298,7 +302,7 @@ impl<'a, const D: usize> Trials<'a, D> {
             state: &state,
         });
         self.made.push(trial);
-        if listed && !matches!(ended, Ended::NotConverged(_)) {
+        if listed && !matches!(ended, StageEnd::NotConverged(_)) {
             self.record(session, &state, summary.plastic_share)?;
         }
         let end = End { srf, state, before };

@@ -22,7 +22,7 @@ use crate::limit;
 use crate::run::Event;
 use crate::run::model::displacement_scale;
 use crate::run::resume::End;
-use crate::run::session::{Ended, Path, Session, march_path};
+use crate::run::session::{Session, StageEnd, StagePath, march_path};
 use crate::run::stages::loading::begin;
 use crate::run::state::{Controls, State};
 
@@ -44,7 +44,7 @@ pub(super) fn search<const D: usize>(
     number: usize,
     reduction: &StrengthReduction,
     summary: &mut StageSummary,
-) -> Result<Ended, CaseError> {
+) -> Result<StageEnd, CaseError> {
     let stage = &session.model.case.stages[number];
     if reduction.path == ReductionPath::Reduce {
         begin(session, state, number)?;
@@ -62,10 +62,10 @@ pub(super) fn search<const D: usize>(
             found: &state.controls,
         };
         let (start, ended) = search.loaded(session, &base, from, summary)?;
-        if let Some(Ended::Interrupted) = ended {
-            return Ok(Ended::Interrupted);
+        if let Some(StageEnd::Interrupted) = ended {
+            return Ok(StageEnd::Interrupted);
         }
-        let failed_to_load = matches!(ended, Some(Ended::NotConverged(_)));
+        let failed_to_load = matches!(ended, Some(StageEnd::NotConverged(_)));
         if !failed_to_load {
             let followed = search.follow_again(session, &start, from, summary)?;
             let is_lost = followed.is_lost();
@@ -74,7 +74,7 @@ pub(super) fn search<const D: usize>(
             }
         } else if from <= LEAST_FACTOR {
             break Followed {
-                ended: Ended::Completed("no strength holds the body".to_owned()),
+                ended: StageEnd::Completed("no strength holds the body".to_owned()),
                 points: Vec::new(),
                 end: PathEnd::Lost,
                 limit: None,
@@ -84,8 +84,8 @@ pub(super) fn search<const D: usize>(
         }
         from = (0.5 * from).max(LEAST_FACTOR);
     };
-    if matches!(followed.ended, Ended::Interrupted) {
-        return Ok(Ended::Interrupted);
+    if matches!(followed.ended, StageEnd::Interrupted) {
+        return Ok(StageEnd::Interrupted);
     }
     summary.reached = 1.0;
     Ok(finish(
@@ -107,7 +107,7 @@ struct Search<'a> {
 
 /// A path that was followed.
 struct Followed<const D: usize> {
-    ended: Ended,
+    ended: StageEnd,
     points: Vec<PathPoint>,
     end: PathEnd,
     /// The equilibrium that tells the factor.
@@ -121,7 +121,7 @@ struct Followed<const D: usize> {
 impl<const D: usize> Followed<D> {
     /// Whether the path was lost: no equilibrium was found beyond its last one.
     fn is_lost(&self) -> bool {
-        matches!(self.ended, Ended::NotConverged(_))
+        matches!(self.ended, StageEnd::NotConverged(_))
     }
 
     /// Factor of the last equilibrium \[-\].
@@ -152,7 +152,7 @@ impl Search<'_> {
         base: &State<D>,
         factor: f64,
         summary: &mut StageSummary,
-    ) -> Result<(State<D>, Option<Ended>), CaseError> {
+    ) -> Result<(State<D>, Option<StageEnd>), CaseError> {
         let mut state = base.clone();
         if self.reduction.path == ReductionPath::Reduce {
             return Ok((state, None));
@@ -161,7 +161,7 @@ impl Search<'_> {
         for &material in &self.reduction.materials {
             from.srf[material] = factor;
         }
-        let path = Path {
+        let path = StagePath {
             from: &from,
             to: &self.at(factor),
             drag: &|_, _| 0.0,
@@ -282,10 +282,10 @@ impl Search<'_> {
             (Some(ended), ..) => ended,
             (None, Some(_), Some(largest)) => {
                 (end, limit) = (PathEnd::Fallen, Some(largest));
-                Ended::Completed(end.sentence().to_owned())
+                StageEnd::Completed(end.sentence().to_owned())
             }
-            (None, Some(error), None) => Ended::NotConverged(error),
-            (None, None, _) => Ended::Completed("the steps of the path ran out".to_owned()),
+            (None, Some(error), None) => StageEnd::NotConverged(error),
+            (None, None, _) => StageEnd::Completed("the steps of the path ran out".to_owned()),
         };
         let srf = continuation.factor;
         let last = (!points.is_empty()).then_some(End { srf, state, before });
@@ -313,11 +313,11 @@ struct Watch<'w, 's, const D: usize> {
     limit: Option<PathPoint>,
     /// What the last step did, and the work of the external force on it \[force·length\].
     work: Option<(StepWork, f64, f64)>,
-    stopped: Result<Option<Ended>, CaseError>,
+    stopped: Result<Option<StageEnd>, CaseError>,
 }
 
 impl<const D: usize> Watch<'_, '_, D> {
-    fn step(&mut self, accepted: &Accepted<'_, D>) -> Result<Option<Ended>, CaseError> {
+    fn step(&mut self, accepted: &Accepted<'_, D>) -> Result<Option<StageEnd>, CaseError> {
         let report = accepted.report;
         let number = self.summary.steps + 1;
         self.session.tell(&Event::Equilibrium { number, accepted });
@@ -335,13 +335,13 @@ impl<const D: usize> Watch<'_, '_, D> {
         self.session.tell(&Event::Path { point: &point });
         self.points.push(point);
         if self.session.interrupted() {
-            return Ok(Some(Ended::Interrupted));
+            return Ok(Some(StageEnd::Interrupted));
         }
         let displacement = self.search.reduction.failure_displacement;
         let end = limit::end(&self.points, displacement);
         Ok(end.map(|(end, limit)| {
             (self.end, self.limit) = (end, Some(limit));
-            Ended::Completed(end.sentence().to_owned())
+            StageEnd::Completed(end.sentence().to_owned())
         }))
     }
 }
@@ -372,7 +372,7 @@ fn finish<const D: usize>(
     followed: Followed<D>,
     scale: Option<f64>,
     summary: &mut StageSummary,
-) -> Ended {
+) -> StageEnd {
     let Followed {
         ended,
         points,
@@ -406,7 +406,7 @@ fn finish<const D: usize>(
     for text in remarks(&path) {
         session.warn(text);
     }
-    if let Ended::NotConverged(cause) = &ended {
+    if let StageEnd::NotConverged(cause) = &ended {
         session.warn(format!(
             "the path of equilibria in stage \"{}\" was lost: {}; what it reached is no limit, and search = \"trials\" \
              asks another way",
@@ -435,8 +435,8 @@ fn finish<const D: usize>(
         path: Some(path),
     });
     match ended {
-        Ended::NotConverged(cause) => {
-            Ended::Completed(format!("the path was lost: {}", cause.failure))
+        StageEnd::NotConverged(cause) => {
+            StageEnd::Completed(format!("the path was lost: {}", cause.failure))
         }
         ended => ended,
     }

@@ -7,7 +7,7 @@ use igimp_shape::Grid;
 
 use super::RigidBody;
 use super::face::Face;
-use super::mosaic::{Piece, pieces};
+use super::face_clipping::{Piece, pieces};
 use super::surface::Space;
 use super::vectors::cross;
 use crate::body::particles::Particles;

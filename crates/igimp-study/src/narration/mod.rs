@@ -2,9 +2,9 @@
 //! the Python package say the same.
 
 pub mod lines;
+pub mod progress;
 pub mod size;
 pub mod verdict;
-pub mod whole;
 
 use std::fmt::Write as _;
 

@@ -9,8 +9,8 @@
 
 use std::sync::Arc;
 
-use super::super::multifrontal::Engine;
-use super::super::refine::Accuracy;
+use crate::multifrontal::Engine;
+use crate::refine::Accuracy;
 use crate::{NodeBlock, Pattern, TangentMatrix};
 
 /// A node whose diagonal is less than this of the largest one that it is coupled to belongs to the skin \[-\].
@@ -26,21 +26,21 @@ const ONCE: Accuracy = Accuracy {
 
 /// The nodes of the skin and the factors of their rows.
 #[derive(Default)]
-pub(super) struct Skin {
+pub(crate) struct BoundaryNodes {
     /// Blocks of the pattern, ascending.
     nodes: Vec<u32>,
     engine: Engine,
     /// Rows and columns of the skin, while they are factorised.
     matrix: Option<TangentMatrix>,
     /// Whether the rows of the skin of a symmetric matrix are not positive definite: then it is not, either.
-    pub(super) is_indefinite: bool,
+    pub(crate) is_indefinite: bool,
     rhs: Vec<f64>,
     change: Vec<f64>,
 }
 
-impl Skin {
+impl BoundaryNodes {
     /// Finds the skin of a matrix and factorises its rows; where that fails, there is none.
-    pub(super) fn set(&mut self, matrix: &TangentMatrix, diagonal: &[f64]) {
+    pub(crate) fn set(&mut self, matrix: &TangentMatrix, diagonal: &[f64]) {
         self.matrix = None;
         self.is_indefinite = false;
         self.find(&matrix.pattern, diagonal);
@@ -112,12 +112,12 @@ impl Skin {
     }
 
     /// Whether there is a skin.
-    pub(super) fn is_there(&self) -> bool {
+    pub(crate) fn is_there(&self) -> bool {
         self.matrix.is_some()
     }
 
     /// Solves for the skin alone: `z` gets the solution for the rows of the skin of `r`, and `r` becomes r − K z.
-    pub(super) fn before(&mut self, matrix: &TangentMatrix, r: &mut [f64]) {
+    pub(crate) fn before(&mut self, matrix: &TangentMatrix, r: &mut [f64]) {
         self.rhs.clear();
         let pattern = &*matrix.pattern;
         for &node in &self.nodes {
@@ -145,7 +145,7 @@ impl Skin {
     }
 
     /// z ← z + the change that was found.
-    pub(super) fn add(&self, matrix: &TangentMatrix, z: &mut [f64]) {
+    pub(crate) fn add(&self, matrix: &TangentMatrix, z: &mut [f64]) {
         let mut own = 0;
         for &node in &self.nodes {
             let block = matrix.pattern.blocks[node as usize];
@@ -157,7 +157,7 @@ impl Skin {
     }
 
     /// Solves for the skin with what is left of its rows; the matrix is symmetric.
-    pub(super) fn after(&mut self, matrix: &TangentMatrix, r: &[f64], z: &mut [f64]) {
+    pub(crate) fn after(&mut self, matrix: &TangentMatrix, r: &[f64], z: &mut [f64]) {
         self.rhs.clear();
         let pattern = &*matrix.pattern;
         for &node in &self.nodes {

@@ -19,7 +19,7 @@ const MORE_TIME: f64 = 300.0;
 
 /// What a task is given: enough for the largest.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Demand {
+pub struct Resources {
     /// Threads.
     pub threads: usize,
     /// The task that needs most memory \[bytes\].
@@ -37,7 +37,7 @@ pub struct Largest {
     pub estimate: f64,
 }
 
-impl Demand {
+impl Resources {
     /// Memory to ask for: 1.5 times the estimate, in pieces of 100 MiB \[MiB\].
     pub fn mebibytes(&self) -> u64 {
         (100.0 * (MEMORY * self.memory.estimate / PIECE).ceil()) as u64
@@ -59,7 +59,7 @@ impl Sweep {
         tasks: &[&Task],
         threads: usize,
         speed: Speed,
-    ) -> Result<Option<Demand>, SweepError> {
+    ) -> Result<Option<Resources>, SweepError> {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
         let needs = |task: &&Task| -> Result<(usize, [f64; 2]), SweepError> {
             let file = self.case_of(task)?;
@@ -78,7 +78,7 @@ impl Sweep {
             })
         };
         let both = largest(0).zip(largest(1));
-        Ok(both.map(|(memory, time)| Demand {
+        Ok(both.map(|(memory, time)| Resources {
             threads,
             memory,
             time,

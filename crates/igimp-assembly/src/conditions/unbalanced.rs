@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 /// Forces that hold a body where a change has put it out of balance, until they are let go.
 #[derive(Clone, Debug)]
-pub struct HeldForces<const D: usize> {
+pub struct UnbalancedForces<const D: usize> {
     /// By node of the grid \[force\].
     pub forces: Arc<Vec<[f64; D]>>,
     /// The share that still acts \[-\].

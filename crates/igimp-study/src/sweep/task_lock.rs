@@ -21,7 +21,7 @@ const PAUSE: Duration = Duration::from_millis(500);
 
 /// What became of a task that was taken up.
 #[derive(Debug)]
-pub enum Turn {
+pub enum TaskLock {
     /// It was done already, with the case and settings that it has now.
     Done(Ending),
     /// It was run, from its beginning or from where it was stopped.
@@ -42,7 +42,7 @@ impl Sweep {
         listener: &mut dyn AnyListener,
         interrupt: &AtomicBool,
         waits: impl FnOnce(&Path),
-    ) -> Result<Turn, SweepError> {
+    ) -> Result<TaskLock, SweepError> {
         let mut waits = Some(waits);
         loop {
             match self.take_up_once(task, listener, interrupt) {
@@ -50,7 +50,7 @@ impl Sweep {
                 Ok(None) => {}
                 Err(SweepError::Case(CaseError::Results(ResultsError::InUse { path }))) => {
                     if interrupt.load(Ordering::SeqCst) {
-                        return Ok(Turn::Elsewhere);
+                        return Ok(TaskLock::Elsewhere);
                     }
                     if let Some(waits) = waits.take() {
                         waits(&path);
@@ -68,9 +68,9 @@ impl Sweep {
         task: &Task,
         listener: &mut dyn AnyListener,
         interrupt: &AtomicBool,
-    ) -> Result<Option<Turn>, SweepError> {
+    ) -> Result<Option<TaskLock>, SweepError> {
         if let Some(ending) = self.done(task)? {
-            return Ok(Some(Turn::Done(ending)));
+            return Ok(Some(TaskLock::Done(ending)));
         }
         let _shared = self.enter(false, Replace::Finished)?;
         let start = self.start_of(task)?;
@@ -79,6 +79,6 @@ impl Sweep {
             return Ok(None);
         }
         let (run, ending) = self.run_ready(task, &ready, listener, interrupt)?;
-        Ok(Some(Turn::Ran(Box::new(run), ending)))
+        Ok(Some(TaskLock::Ran(Box::new(run), ending)))
     }
 }

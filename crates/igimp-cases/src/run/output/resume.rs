@@ -17,7 +17,8 @@ use crate::error::CaseError;
 use crate::run::Target;
 use crate::run::output::records::Records;
 use crate::run::resume::{
-    End, Left, Notes, Resumption, Search, end_of_stage, fingerprint, notes_of, reinforcement, rigid,
+    End, Notes, ResumePoint, Resumption, Search, end_of_stage, fingerprint, notes_of,
+    reinforcement, rigid,
 };
 use crate::run::state::{Controls, State};
 
@@ -27,7 +28,7 @@ impl<const D: usize> Output<D> {
         target: &Target,
         case: &Case<D>,
         records: &mut Records,
-    ) -> Result<(Self, Option<Left<D>>), CaseError> {
+    ) -> Result<(Self, Option<ResumePoint<D>>), CaseError> {
         let folder = match Folder::open(&target.folder) {
             Ok(folder) => folder,
             Err(ResultsError::NoResults { .. }) => {
@@ -43,7 +44,8 @@ impl<const D: usize> Output<D> {
         checkpoint::discard_after(&path)?;
         write_whole(&folder.case(), &target.source)?;
         write_whole(&folder.completed_case(), &target.completed)?;
-        let (mut output, left) = Self::take_up(folder, target.claim(case), case, records, &found)?;
+        let (mut output, left) =
+            Self::resume_from(folder, target.claim(case), case, records, &found)?;
         let taken = path.file_name().unwrap_or_default().to_string_lossy();
         let note = |error| format!("{error}; the run goes on from {taken}, the last whole one");
         output.notes_for_user = passed_over.into_iter().map(note).collect();
@@ -56,7 +58,7 @@ impl<const D: usize> Output<D> {
         case: &Case<D>,
         records: &mut Records,
         stage: usize,
-    ) -> Result<(Self, Option<Left<D>>), CaseError> {
+    ) -> Result<(Self, Option<ResumePoint<D>>), CaseError> {
         let Some(before) = stage.checked_sub(1) else {
             return Ok((Self::create(target, case, records)?, None));
         };
@@ -75,16 +77,16 @@ impl<const D: usize> Output<D> {
         checkpoint::discard_after(&path)?;
         write_whole(&folder.case(), &target.source)?;
         write_whole(&folder.completed_case(), &target.completed)?;
-        Self::take_up(folder, target.claim(case), case, records, &found)
+        Self::resume_from(folder, target.claim(case), case, records, &found)
     }
 
-    fn take_up(
+    fn resume_from(
         folder: Folder,
         claim: Claim,
         case: &Case<D>,
         records: &mut Records,
         found: &checkpoint::Checkpoint<D>,
-    ) -> Result<(Self, Option<Left<D>>), CaseError> {
+    ) -> Result<(Self, Option<ResumePoint<D>>), CaseError> {
         let path = folder.checkpoint();
         let notes: Notes = notes_of(&path, &found.meta)?;
         let damaged = |file: String, why: String| CheckpointError::Damaged {
@@ -142,7 +144,7 @@ impl<const D: usize> Output<D> {
             }),
             None => None,
         };
-        let left = Left {
+        let left = ResumePoint {
             stages: notes.stages.clone(),
             checks: notes.checks.clone(),
             warnings: notes.warnings.clone(),
