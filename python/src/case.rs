@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use igimp_input::shipped::{SHIPPED, find, nearest};
 use igimp_model::in_any_dimension;
-use igimp_study::sweep::is_sweep;
 use igimp_study::narration::{size, table};
+use igimp_study::sweep::is_sweep;
 use pyo3::prelude::*;
 use serde_json::json;
 

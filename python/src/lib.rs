@@ -41,6 +41,6 @@ fn verdict(summary: &str) -> PyResult<(String, String, u8)> {
     let summary: Summary = serde_json::from_str(summary)
         .map_err(|error| pyo3::exceptions::PyValueError::new_err(error.to_string()))?;
     let ending = summary.ending();
-    let text = telling::verdict::stages_and_checks(&summary);
+    let text = narration::verdict::stages_and_checks(&summary);
     Ok((text, ending.to_string(), raised::code(ending)))
 }

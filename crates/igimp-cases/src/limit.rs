@@ -1,6 +1,7 @@
 //! What a path of equilibria says of its limit: numbers only (theory, eqs. 33e and 33f).
 
-use igimp_results::summary::{PathEnd, PathPoint, PathSummary};
+use igimp_results::ending::PathEnd;
+use igimp_results::summary::{PathPoint, PathSummary};
 use igimp_solver::{MECHANISM, StepReport};
 
 /// The factor rises no longer where it changes by less than this share in a doubling of the work \[-\].

@@ -12,7 +12,8 @@ use std::sync::atomic::AtomicBool;
 use igimp_cases::run::{Event, Run, Start, in_memory, run};
 use igimp_input::CaseFile;
 use igimp_model::Case;
-use igimp_results::summary::{PathEnd, SafetySummary, StageOutcome};
+use igimp_results::ending::PathEnd;
+use igimp_results::summary::{SafetySummary, StageOutcome};
 use resuming::{assert_done, assert_equal, everything, run_into};
 
 /// Ground of 3 m by 1.5 m by 1.5 m, at rest with K0 = 0.5; a cube of fill comes, and a slice of the ground goes.

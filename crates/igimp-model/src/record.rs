@@ -1,8 +1,9 @@
 //! What is recorded, and what it is held against: monitors, sections, curves and checks.
 
+use igimp_schema::field::Field;
+
 use super::{Case, ReinforcementQuantity, RigidQuantity, Stage, StageKind};
 use crate::check::Band;
-use igimp_schema::field::Field;
 
 /// A material point that is watched: a point in the undeformed bodies. Fields there are interpolated from the particles around
 /// it; the displacement that ends a stage or a search is that of the nearest particle.

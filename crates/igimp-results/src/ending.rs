@@ -1,7 +1,8 @@
-//! How a run ended.
+//! How runs and stages end: data, and the one place that puts it into words.
 
 use std::fmt;
 
+use igimp_text::short;
 use serde::{Deserialize, Serialize};
 
 /// How a run ended.
@@ -40,5 +41,236 @@ impl fmt::Display for Ending {
             Self::Interrupted => "interrupted",
             Self::Failed => "failed",
         })
+    }
+}
+
+/// Why a path of equilibria ended.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum PathEnd {
+    /// The increment is a mechanism, and the factor rises no longer.
+    Limit,
+    /// The factor fell below an earlier one.
+    Fallen,
+    /// The increment is a mechanism, has been one for two doublings of the work, and the factor still rises.
+    StillRising,
+    /// The displacement that the case states was exceeded.
+    Displacement,
+    /// No further equilibrium was found.
+    #[default]
+    Lost,
+}
+
+impl PathEnd {
+    /// In words.
+    pub fn sentence(self) -> &'static str {
+        match self {
+            Self::Limit => "the body moves as a mechanism, and the factor rises no longer",
+            Self::Fallen => "the factor falls behind its largest value",
+            Self::StillRising => {
+                "the body has moved as a mechanism for long, and the factor still rises"
+            }
+            Self::Displacement => "the displacement of the case is exceeded",
+            Self::Lost => "no further equilibrium was found",
+        }
+    }
+}
+
+/// Why a stage ended.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "code", rename_all = "kebab-case")]
+pub enum EndReason {
+    /// Everything that the stage asks for was done.
+    ReachedItsEnd,
+    /// The interval of a search is as narrow as the case wants it.
+    IntervalIsNarrow,
+    /// The body stands at no strength that a search can give it.
+    NoStrengthHolds,
+    /// A path of equilibria came to an end.
+    PathEnded {
+        /// How.
+        end: PathEnd,
+        /// Share of the stage that was reached \[-\]; none for a search.
+        reached: Option<f64>,
+    },
+    /// A path of equilibria took all its steps.
+    StepsOfPathRanOut,
+    /// A path of equilibria was lost.
+    PathLost {
+        /// Why the last step failed.
+        cause: String,
+    },
+    /// A limit load lies beyond the load of the stage.
+    LimitBeyondLoad,
+    /// A displacement exceeds what the case states.
+    DisplacementExceeded {
+        /// Whose displacement.
+        whose: String,
+        /// What it may be \[m\].
+        limit: f64,
+    },
+    /// The resistance has all but stopped growing.
+    ResistanceLevelsOff {
+        /// The growth in a step below which it has \[-\].
+        growth: f64,
+    },
+    /// A run-out came to rest.
+    AtRest {
+        /// After so many steps.
+        steps: usize,
+        /// Share of the load that drag carried \[-\].
+        drag_share: f64,
+        /// Whether equilibrium without drag was found; none before it was looked for.
+        is_in_equilibrium: Option<bool>,
+    },
+    /// A run-out still moves.
+    StillMoving {
+        /// After so many steps.
+        steps: usize,
+    },
+    /// The factor of safety that a reduction refers to was not found.
+    NoFactorOfSafety,
+    /// The user interrupted it.
+    Interrupted,
+    /// A step found no equilibrium.
+    NoEquilibrium {
+        /// Share of the stage beyond which there is none, of a stage that expects it \[-\].
+        beyond: Option<f64>,
+        /// Why the step failed.
+        cause: String,
+    },
+    /// A step failed for another reason than want of equilibrium.
+    StepFailed {
+        /// The reason.
+        cause: String,
+    },
+}
+
+impl EndReason {
+    /// The code that stands for it in `summary.json`, such as `reached-its-end`.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::ReachedItsEnd => "reached-its-end",
+            Self::IntervalIsNarrow => "interval-is-narrow",
+            Self::NoStrengthHolds => "no-strength-holds",
+            Self::PathEnded { .. } => "path-ended",
+            Self::StepsOfPathRanOut => "steps-of-path-ran-out",
+            Self::PathLost { .. } => "path-lost",
+            Self::LimitBeyondLoad => "limit-beyond-load",
+            Self::DisplacementExceeded { .. } => "displacement-exceeded",
+            Self::ResistanceLevelsOff { .. } => "resistance-levels-off",
+            Self::AtRest { .. } => "at-rest",
+            Self::StillMoving { .. } => "still-moving",
+            Self::NoFactorOfSafety => "no-factor-of-safety",
+            Self::Interrupted => "interrupted",
+            Self::NoEquilibrium { .. } => "no-equilibrium",
+            Self::StepFailed { .. } => "step-failed",
+        }
+    }
+}
+
+impl fmt::Display for EndReason {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::ReachedItsEnd => f.write_str("reached its end"),
+            Self::IntervalIsNarrow => f.write_str("the interval is narrow enough"),
+            Self::NoStrengthHolds => f.write_str("no strength holds the body"),
+            Self::PathEnded { end, reached: None } => f.write_str(end.sentence()),
+            Self::PathEnded {
+                end,
+                reached: Some(reached),
+            } => write!(f, "at {} of the stage {}", short(*reached), end.sentence()),
+            Self::StepsOfPathRanOut => f.write_str("the steps of the path ran out"),
+            Self::PathLost { cause } => write!(f, "the path was lost: {cause}"),
+            Self::LimitBeyondLoad => f.write_str("the limit lies beyond the load of the stage"),
+            Self::DisplacementExceeded { whose, limit } => {
+                write!(f, "{whose} exceeds {} m", short(*limit))
+            }
+            Self::ResistanceLevelsOff { growth } => {
+                let percent = short(100.0 * growth);
+                write!(f, "the resistance grows by less than {percent} % in a step")
+            }
+            Self::AtRest {
+                steps,
+                drag_share,
+                is_in_equilibrium,
+            } => {
+                let share = short(100.0 * drag_share);
+                write!(
+                    f,
+                    "at rest after {steps} steps, when drag carried {share} % of the load"
+                )?;
+                f.write_str(match is_in_equilibrium {
+                    None => "",
+                    Some(true) => "; then in equilibrium without drag",
+                    Some(false) => "; not in equilibrium without drag",
+                })
+            }
+            Self::StillMoving { steps } => write!(f, "still moving after {steps} steps"),
+            Self::NoFactorOfSafety => {
+                f.write_str("the factor of safety that the reduction refers to was not found")
+            }
+            Self::Interrupted => f.write_str("interrupted by the user"),
+            Self::NoEquilibrium {
+                beyond: Some(reached),
+                cause,
+            } => write!(
+                f,
+                "no equilibrium beyond {} of the stage: {cause}",
+                short(*reached)
+            ),
+            Self::NoEquilibrium {
+                beyond: None,
+                cause,
+            } => write!(f, "no equilibrium: {cause}"),
+            Self::StepFailed { cause } => f.write_str(cause),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// GOAL: the code that is printed beside the words is the one that the data are stored under.
+    #[test]
+    fn codes_are_those_of_the_data() {
+        let cause = || "the residual stagnates".to_owned();
+        let reasons = [
+            EndReason::ReachedItsEnd,
+            EndReason::IntervalIsNarrow,
+            EndReason::NoStrengthHolds,
+            EndReason::PathEnded {
+                end: PathEnd::Limit,
+                reached: Some(0.5),
+            },
+            EndReason::StepsOfPathRanOut,
+            EndReason::PathLost { cause: cause() },
+            EndReason::LimitBeyondLoad,
+            EndReason::DisplacementExceeded {
+                whose: "the displacement".to_owned(),
+                limit: 0.1,
+            },
+            EndReason::ResistanceLevelsOff { growth: 0.01 },
+            EndReason::AtRest {
+                steps: 3,
+                drag_share: 0.01,
+                is_in_equilibrium: None,
+            },
+            EndReason::StillMoving { steps: 3 },
+            EndReason::NoFactorOfSafety,
+            EndReason::Interrupted,
+            EndReason::NoEquilibrium {
+                beyond: None,
+                cause: cause(),
+            },
+            EndReason::StepFailed { cause: cause() },
+        ];
+        for reason in reasons {
+            let stored = serde_json::to_value(&reason).unwrap();
+            assert_eq!(stored["code"], reason.code());
+            assert_eq!(serde_json::from_value::<EndReason>(stored).unwrap(), reason);
+            assert!(!reason.to_string().is_empty());
+        }
     }
 }

@@ -6,7 +6,7 @@ use igimp_model::TitleBlock;
 use igimp_model::check::{Check, or_not_a_number};
 use serde::{Deserialize, Serialize};
 
-use crate::ending::Ending;
+use crate::ending::{Ending, PathEnd};
 use crate::mesh_study::StudySummary;
 use crate::model_size::ModelSize;
 
@@ -143,6 +143,9 @@ pub struct StageSummary {
     pub outcome: StageOutcome,
     /// Why, in words.
     pub reason: String,
+    /// Why, as a code ([`EndReason::code`](crate::ending::EndReason::code)); empty before it ended.
+    #[serde(default)]
+    pub code: String,
     /// Share of the stage that was reached \[-\].
     pub reached: f64,
     /// Whether it ended in a way that tells no limit, though its case expects one: its path was lost, a linear system
@@ -377,38 +380,6 @@ pub struct Kinematic {
     /// Work of the mean stress on the volume by which the field misses that of plastic flow, over the work of the step
     /// \[-\].
     pub missed: f64,
-}
-
-/// Why a path of equilibria ended.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum PathEnd {
-    /// The increment is a mechanism, and the factor rises no longer.
-    Limit,
-    /// The factor fell below an earlier one.
-    Fallen,
-    /// The increment is a mechanism, has been one for two doublings of the work, and the factor still rises.
-    StillRising,
-    /// The displacement that the case states was exceeded.
-    Displacement,
-    /// No further equilibrium was found.
-    #[default]
-    Lost,
-}
-
-impl PathEnd {
-    /// In words.
-    pub fn sentence(self) -> &'static str {
-        match self {
-            Self::Limit => "the body moves as a mechanism, and the factor rises no longer",
-            Self::Fallen => "the factor falls behind its largest value",
-            Self::StillRising => {
-                "the body has moved as a mechanism for long, and the factor still rises"
-            }
-            Self::Displacement => "the displacement of the case is exceeded",
-            Self::Lost => "no further equilibrium was found",
-        }
-    }
 }
 
 /// An equilibrium of a path along which strength is reduced.

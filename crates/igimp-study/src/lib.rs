@@ -3,7 +3,7 @@
 //! | module | what to find |
 //! |---|---|
 //! | [`sweep`] | many cases that differ in a few values |
-//! | [`telling`] | what is said of a case and of its run, as text |
+//! | [`narration`] | what is said of a case and of its run, as text |
 
 pub mod narration;
 pub mod sweep;

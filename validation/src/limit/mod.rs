@@ -14,7 +14,8 @@ use std::path::Path as Folder;
 use igimp_assembly::Locking;
 use igimp_cases::CaseError;
 use igimp_model::check::Band;
-use igimp_results::summary::{PathEnd, PathPoint, PathSummary, StageSummary};
+use igimp_results::ending::PathEnd;
+use igimp_results::summary::{PathPoint, PathSummary, StageSummary};
 use igimp_text::short;
 use rayon::prelude::*;
 

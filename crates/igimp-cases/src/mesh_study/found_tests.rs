@@ -1,8 +1,9 @@
 use igimp_model::Case;
 use igimp_model::check::{Band, Check};
+use igimp_results::ending::PathEnd;
 use igimp_results::mesh_study::{Convergence, Order};
 use igimp_results::summary::{
-    CheckRow, PathEnd, PathPoint, PathSummary, StageOutcome, StageSummary, Summary,
+    CheckRow, PathPoint, PathSummary, StageOutcome, StageSummary, Summary,
 };
 
 use super::{remarks, study};

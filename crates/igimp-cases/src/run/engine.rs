@@ -7,6 +7,7 @@ use std::time::Instant;
 use igimp_model::{COMPONENTS, Case, StageKind};
 use igimp_report::setup;
 use igimp_results::checkpoint::sha256;
+use igimp_results::ending::EndReason;
 use igimp_results::folder::{clear_meshes, refuse_foreign};
 use igimp_results::summary::{StageOutcome, StageSummary, Summary};
 use igimp_results::tables::table::Table;
@@ -228,43 +229,37 @@ impl<const D: usize> Stages<D> {
         if let StageKind::Displacement { .. } = stage.kind {
             summary.settlement = Some(state.controls.settlement);
         }
-        let step_error = match ended {
-            StageEnd::Completed(reason) => {
-                (summary.outcome, summary.reason) = (StageOutcome::Completed, reason);
-                None
-            }
-            StageEnd::Stopped(reason) => {
-                (summary.outcome, summary.reason) = (StageOutcome::Stopped, reason);
-                None
-            }
-            StageEnd::Interrupted => {
-                summary.outcome = StageOutcome::Interrupted;
-                "interrupted by the user".clone_into(&mut summary.reason);
-                None
-            }
+        let (outcome, reason, step_error) = match ended {
+            StageEnd::Completed(reason) => (StageOutcome::Completed, reason, None),
+            StageEnd::Stopped(reason) => (StageOutcome::Stopped, reason, None),
+            StageEnd::Interrupted => (StageOutcome::Interrupted, EndReason::Interrupted, None),
             StageEnd::NotConverged(error)
                 if stage.stop_when.no_equilibrium && error.failure.is_want_of_equilibrium() =>
             {
                 let failure = &error.failure;
                 summary.lost = failure::tells_no_limit(&stage.kind, failure, &summary);
-                summary.outcome = StageOutcome::Stopped;
-                summary.reason = format!(
-                    "no equilibrium beyond {} of the stage: {failure}",
-                    igimp_text::short(summary.reached)
-                );
-                None
+                let reason = EndReason::NoEquilibrium {
+                    beyond: Some(summary.reached),
+                    cause: failure.to_string(),
+                };
+                (StageOutcome::Stopped, reason, None)
             }
             StageEnd::NotConverged(error) => {
-                let failure = &error.failure;
-                summary.outcome = StageOutcome::NotConverged;
-                summary.reason = if failure.is_want_of_equilibrium() {
-                    format!("no equilibrium: {failure}")
+                let cause = error.failure.to_string();
+                let reason = if error.failure.is_want_of_equilibrium() {
+                    EndReason::NoEquilibrium {
+                        beyond: None,
+                        cause,
+                    }
                 } else {
-                    failure.to_string()
+                    EndReason::StepFailed { cause }
                 };
-                Some(error)
+                (StageOutcome::NotConverged, reason, Some(error))
             }
         };
+        summary.outcome = outcome;
+        summary.reason = reason.to_string();
+        reason.code().clone_into(&mut summary.code);
         self.close(session, number, state, summary, step_error)
     }
 

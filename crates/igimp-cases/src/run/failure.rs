@@ -6,7 +6,8 @@ pub(crate) mod message;
 use igimp_assembly::Particles;
 use igimp_material::Regime;
 use igimp_model::{Case, RigidMove, StageKind};
-use igimp_results::summary::{PathEnd, StageSummary};
+use igimp_results::ending::PathEnd;
+use igimp_results::summary::StageSummary;
 use igimp_solver::{StepError, StepFailure};
 
 use super::Failure;

@@ -42,9 +42,6 @@ pub use output::entry::can_go_on;
 pub use rigid::outlines as rigid_outlines;
 pub use state::{Controls, ReinforcementControls, RigidControls, RigidTrack, State};
 
-/// Why a stage ended that reached its end.
-pub const REACHED_ITS_END: &str = "reached its end";
-
 /// What happens during a run, as it happens.
 #[derive(Clone, Copy, Debug)]
 pub enum Event<'a, const D: usize = 2> {

@@ -9,6 +9,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use igimp_results::checkpoint::{CheckpointError, Meta};
+use igimp_results::ending::EndReason;
 use igimp_results::summary::{CheckRow, FigureNote, StageSummary, TrialSummary};
 use igimp_solver::{Body, MarchState};
 use serde::{Deserialize, Serialize};
@@ -30,7 +31,7 @@ pub(crate) struct Resumption {
     /// Drag of the next step \[1/s²\].
     pub(crate) drag: f64,
     /// Why the march ended with its last step, if its stage said so.
-    pub(crate) end: Option<String>,
+    pub(crate) end: Option<EndReason>,
 }
 
 /// Where a search for the factor of safety was left.

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use igimp_assembly::{Geometry, Method, Particles, UnbalancedForces};
+use igimp_results::ending::EndReason;
 use igimp_results::fields;
 use igimp_results::summary::{StageSummary, Summary};
 use igimp_solver::{
@@ -21,7 +22,7 @@ use super::output::export::Export;
 use super::output::records::{Moment, Records, largest_displacement};
 use super::resume::Resumption;
 use super::state::{Controls, RigidTrack, State};
-use super::{Event, Listener, REACHED_ITS_END, rigid};
+use super::{Event, Listener, rigid};
 use crate::error::CaseError;
 use crate::run::output::records::AcceptedStep;
 
@@ -200,10 +201,10 @@ pub(crate) struct StagePath<'a, const D: usize = 2> {
 /// How a march ended.
 #[derive(Debug)]
 pub(crate) enum StageEnd {
-    /// At its end, in these words.
-    Completed(String),
-    /// By its stage, for this reason.
-    Stopped(String),
+    /// At its end.
+    Completed(EndReason),
+    /// By its stage.
+    Stopped(EndReason),
     /// By the user.
     Interrupted,
     /// For want of equilibrium.
@@ -211,7 +212,7 @@ pub(crate) enum StageEnd {
 }
 
 /// What a stage says after a step: a reason to stop, if it has one.
-pub(crate) type StopRequest = Result<Option<String>, CaseError>;
+pub(crate) type StopRequest = Result<Option<EndReason>, CaseError>;
 
 /// Marches a state along a path. `each` is called after every accepted step. The state ends with
 /// the controls of its last equilibrium; the summary is kept up.
@@ -278,12 +279,12 @@ pub(crate) fn march_path<const D: usize>(
         (_, Some(Stop::Failed(error))) => StageEnd::NotConverged(*error),
         (_, Some(Stop::Stage(reason))) => StageEnd::Stopped(reason),
         (Outcome::Stopped { .. }, Some(Stop::User) | None) => StageEnd::Interrupted,
-        (Outcome::Completed, _) => StageEnd::Completed(REACHED_ITS_END.to_owned()),
+        (Outcome::Completed, _) => StageEnd::Completed(EndReason::ReachedItsEnd),
     })
 }
 
 enum Stop {
-    Stage(String),
+    Stage(EndReason),
     Failed(Box<StepError>),
     User,
 }

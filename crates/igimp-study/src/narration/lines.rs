@@ -2,8 +2,9 @@
 
 use std::fmt::Write as _;
 
-use igimp_cases::run::{Event, REACHED_ITS_END, worst_node};
+use igimp_cases::run::{Event, worst_node};
 use igimp_model::meshes::label;
+use igimp_results::ending::EndReason;
 use igimp_results::summary::{
     Kinematic, PathPoint, SafetySummary, StageOutcome, StageSummary, StrengthShares, TrialSummary,
 };
@@ -217,7 +218,7 @@ pub fn outcome(summary: &StageSummary) -> String {
     if cut_short.contains(&summary.outcome) {
         let _ = write!(text, " at {} %", short(100.0 * summary.reached));
     }
-    if !summary.reason.is_empty() && summary.reason != REACHED_ITS_END {
+    if !summary.reason.is_empty() && summary.code != EndReason::ReachedItsEnd.code() {
         let _ = write!(text, ": {}", summary.reason);
     }
     text

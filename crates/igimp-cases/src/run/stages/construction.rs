@@ -13,6 +13,7 @@ use igimp_material::{
     ConstitutiveModel, ScaledLaw, TangentKind, elastic_left_cauchy_green_of, principal_values,
 };
 use igimp_model::{Construction, Drainage, Ground, StageKind};
+use igimp_results::ending::EndReason;
 use igimp_results::summary::StageSummary;
 use igimp_text::short;
 
@@ -34,7 +35,7 @@ pub(crate) fn build<const D: usize>(
     let model = session.model;
     let stage = &model.case.stages[number];
     let StageKind::Construction(own) = &stage.kind else {
-        return Ok(StageEnd::Completed(crate::run::REACHED_ITS_END.to_owned()));
+        return Ok(StageEnd::Completed(EndReason::ReachedItsEnd));
     };
     let changed = changed(model, start.unwrap_or(state), own)?;
     let held = holding(model, &changed, number)?;

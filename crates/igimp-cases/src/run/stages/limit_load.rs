@@ -6,7 +6,8 @@ use std::ops::ControlFlow;
 
 use igimp_assembly::Geometry;
 use igimp_model::{RigidMove, Stage, StageKind};
-use igimp_results::summary::{PathEnd, PathPoint, PathSummary, StageSummary};
+use igimp_results::ending::{EndReason, PathEnd};
+use igimp_results::summary::{PathPoint, PathSummary, StageSummary};
 use igimp_solver::{
     Accepted, ContinuationSettings, ContinuationState, Observer, StepError, follow,
 };
@@ -112,7 +113,7 @@ pub(crate) fn follow_on<const D: usize>(
     let ended = match (stopped?, failure) {
         (Some(ended), _) => ended,
         (None, Some(error)) => StageEnd::NotConverged(error),
-        (None, None) => StageEnd::Stopped("the steps of the path ran out".to_owned()),
+        (None, None) => StageEnd::Stopped(EndReason::StepsOfPathRanOut),
     };
     let path = PathSummary {
         end,
@@ -196,14 +197,15 @@ impl<const D: usize> Watch<'_, '_, D> {
             return Ok(Some(StageEnd::Interrupted));
         }
         if report.to >= 1.0 {
-            let reason = "the limit lies beyond the load of the stage";
-            return Ok(Some(StageEnd::Stopped(reason.to_owned())));
+            return Ok(Some(StageEnd::Stopped(EndReason::LimitBeyondLoad)));
         }
         let end = limit::end(&self.points, stop.displacement);
         Ok(end.map(|(end, limit)| {
             (self.end, self.limit) = (end, Some(limit));
-            let reached = short(report.to);
-            StageEnd::Stopped(format!("at {reached} of the stage {}", end.sentence()))
+            StageEnd::Stopped(EndReason::PathEnded {
+                end,
+                reached: Some(report.to),
+            })
         }))
     }
 }

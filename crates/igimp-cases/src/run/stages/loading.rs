@@ -4,8 +4,8 @@
 use std::sync::Arc;
 
 use igimp_model::{Case, RigidDrive, Stage, StageKind};
+use igimp_results::ending::EndReason;
 use igimp_results::summary::StageSummary;
-use igimp_text::short;
 
 use super::{limit_load, rigid_begin};
 use crate::error::CaseError;
@@ -160,14 +160,14 @@ fn reason_to_stop<const D: usize>(
     stage: &Stage,
     resistance_before: f64,
     taken: &AcceptedStep<'_, D>,
-) -> Option<String> {
+) -> Option<EndReason> {
     let stop = &stage.stop_when;
     let particles = &taken.accepted.body.particles;
     if let Some(limit) = stop.displacement
         && session.displacement(stop.monitor, particles) > limit
     {
         let whose = session.whose_displacement(stop.monitor);
-        return Some(format!("{whose} exceeds {} m", short(limit)));
+        return Some(EndReason::DisplacementExceeded { whose, limit });
     }
     if let Some(limit) = stop.load_grows_less_than {
         // A step that was cut may grow by its share of the limit.
@@ -175,10 +175,7 @@ fn reason_to_stop<const D: usize>(
         let share = (report.to - report.from) * stage.steps as f64;
         let growth = taken.resistance - resistance_before;
         if resistance_before > 0.0 && growth < limit * share * resistance_before {
-            return Some(format!(
-                "the resistance grows by less than {} % in a step",
-                short(100.0 * limit)
-            ));
+            return Some(EndReason::ResistanceLevelsOff { growth: limit });
         }
     }
     None

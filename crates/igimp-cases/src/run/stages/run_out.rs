@@ -12,8 +12,9 @@ use std::cell::Cell;
 
 use igimp_assembly::{Geometry, Locking, Method};
 use igimp_model::{Reduction, RunOut};
+use igimp_results::ending::EndReason;
+use igimp_results::fields::length;
 use igimp_results::summary::StageSummary;
-use igimp_text::short;
 
 use super::loading::begin;
 use crate::error::CaseError;
@@ -43,9 +44,7 @@ pub(crate) fn run_out<const D: usize>(
         Reduction::TimesFos(times) => {
             let found = session.records.factor_of_safety;
             if !found.is_finite() {
-                return Ok(StageEnd::Stopped(
-                    "the factor of safety that the reduction refers to was not found".to_owned(),
-                ));
+                return Ok(StageEnd::Stopped(EndReason::NoFactorOfSafety));
             }
             times * found
         }
@@ -61,6 +60,7 @@ pub(crate) fn run_out<const D: usize>(
     let target = run_out.move_per_step * cell.into_iter().fold(f64::INFINITY, f64::min);
     // The whole weight would move the body by the target.
     let largest = case.gravity / target;
+    let nodes = model.grid(model.lowered(&to))?.node_count();
     let drag = Cell::new(resumption.map_or(largest, |left| left.drag));
     let path = StagePath {
         from: &to,
@@ -78,13 +78,7 @@ pub(crate) fn run_out<const D: usize>(
         summary,
         &mut |session, summary, taken| {
             session.record(&taken.moment(number, summary.steps))?;
-            let moved = taken
-                .accepted
-                .forces
-                .u
-                .iter()
-                .map(|u| u.iter().fold(0.0_f64, |length, own| length.hypot(*own)))
-                .fold(0.0, f64::max);
+            let moved = largest_motion(&taken.accepted.forces.u, nodes);
             let change = (moved / target).clamp(CHANGE[0], CHANGE[1]);
             drag.set((drag.get() * change).clamp(1e-9 * largest, largest));
             let share = taken.accepted.report.drag_share;
@@ -93,7 +87,11 @@ pub(crate) fn run_out<const D: usize>(
                 march: *taken.accepted.state,
                 resistance: taken.resistance,
                 drag: drag.get(),
-                end: (share < run_out.at_rest).then(|| at_rest(summary.steps, share)),
+                end: (share < run_out.at_rest).then_some(EndReason::AtRest {
+                    steps: summary.steps,
+                    drag_share: share,
+                    is_in_equilibrium: None,
+                }),
             };
             if let Some(output) = &mut session.output {
                 let run = &session.summary;
@@ -103,23 +101,23 @@ pub(crate) fn run_out<const D: usize>(
         },
     )?;
     match ended {
-        StageEnd::Stopped(rest) => stand(session, state, &path, summary, &rest),
+        StageEnd::Stopped(EndReason::AtRest {
+            steps, drag_share, ..
+        }) => stand(session, state, &path, summary, (steps, drag_share)),
         StageEnd::Completed(_) => {
             session.warn(format!(
                 "the slope still moves after {steps} steps of run-out"
             ));
-            Ok(StageEnd::Stopped(format!(
-                "still moving after {steps} steps"
-            )))
+            Ok(StageEnd::Stopped(EndReason::StillMoving { steps }))
         }
         other => Ok(other),
     }
 }
 
-/// In words, when the slope came to rest.
-fn at_rest(steps: usize, share: f64) -> String {
-    let share = short(100.0 * share);
-    format!("at rest after {steps} steps, when drag carried {share} % of the load")
+/// The longest step displacement of the nodes of the grid \[m\]; what stands behind them for rigid bodies is none of it.
+fn largest_motion<const D: usize>(u: &[[f64; D]], nodes: usize) -> f64 {
+    let lengths = u.iter().take(nodes).map(length);
+    lengths.fold(0.0, f64::max)
 }
 
 /// The method of a body that flows: on its way cells are filled in part, and modes that a shared strain
@@ -138,8 +136,13 @@ fn stand<const D: usize>(
     state: &mut State<D>,
     path: &StagePath<'_, D>,
     summary: &mut StageSummary,
-    rest: &str,
+    (steps, drag_share): (usize, f64),
 ) -> Result<StageEnd, CaseError> {
+    let rest = |is_in_equilibrium| EndReason::AtRest {
+        steps,
+        drag_share,
+        is_in_equilibrium: Some(is_in_equilibrium),
+    };
     let last = StagePath {
         drag: &|_, _| 0.0,
         method: flowing(session.model),
@@ -154,12 +157,24 @@ fn stand<const D: usize>(
                 session.warn(
                     "the slope all but rests, but no equilibrium without drag was found".into(),
                 );
-                StageEnd::Stopped(format!("{rest}; not in equilibrium without drag"))
+                StageEnd::Stopped(rest(false))
             }
-            StageEnd::Completed(_) => {
-                StageEnd::Completed(format!("{rest}; then in equilibrium without drag"))
-            }
+            StageEnd::Completed(_) => StageEnd::Completed(rest(true)),
             other => other,
         },
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::largest_motion;
+
+    /// GOAL: in space the vertical component counts, and the rotation of a rigid body does not.
+    #[test]
+    fn motion_has_all_components_of_the_grid_alone() {
+        let u = [[0.0, 0.0, -3.0], [1.0, 2.0, 2.0], [0.0, 0.0, 50.0]];
+        assert!((largest_motion(&u, 2) - 3.0).abs() < 1e-12);
+        let plane = [[3.0, 4.0], [0.0, 6.0]];
+        assert!((largest_motion(&plane, 1) - 5.0).abs() < 1e-12);
+    }
 }

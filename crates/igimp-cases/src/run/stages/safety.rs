@@ -12,6 +12,7 @@ use std::sync::Arc;
 
 use igimp_assembly::Geometry;
 use igimp_model::{Case, ReductionPath, SearchMethod, Stage, StrengthReduction};
+use igimp_results::ending::EndReason;
 use igimp_results::summary::{SafetySummary, StageSummary, TrialSummary};
 use igimp_solver::Body;
 use igimp_text::short;
@@ -165,9 +166,7 @@ impl<'a, const D: usize> Trials<'a, D> {
             }
         }
         summary.reached = 1.0;
-        Ok(StageEnd::Completed(
-            "the interval is narrow enough".to_owned(),
-        ))
+        Ok(StageEnd::Completed(EndReason::IntervalIsNarrow))
     }
 
     /// The factor to try next: those that the case lists, then F = 1, then the search.
@@ -284,7 +283,7 @@ impl<'a, const D: usize> Trials<'a, D> {
         let exceeded = limit.is_some_and(|limit| displacement > limit);
         let (stable, reason) = match &ended {
             StageEnd::NotConverged(cause) => (false, self.no_equilibrium(&state, cause)),
-            _ if exceeded => (false, self.exceeded(session)),
+            _ if exceeded => (false, self.exceeded(session).to_string()),
             _ => (true, "in equilibrium".to_owned()),
         };
         let trial = TrialSummary {

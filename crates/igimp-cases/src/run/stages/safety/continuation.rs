@@ -6,9 +6,8 @@ use std::sync::Arc;
 
 use igimp_assembly::StepWork;
 use igimp_model::{ReductionPath, Stage, StrengthReduction};
-use igimp_results::summary::{
-    PathEnd, PathPoint, PathSummary, SafetySummary, StageSummary, StrengthShares,
-};
+use igimp_results::ending::{EndReason, PathEnd};
+use igimp_results::summary::{PathPoint, PathSummary, SafetySummary, StageSummary, StrengthShares};
 use igimp_solver::{
     Accepted, Body, ContinuationSettings, ContinuationState, Observer, StepError, StepFailure,
     follow,
@@ -74,7 +73,7 @@ pub(super) fn search<const D: usize>(
             }
         } else if from <= LEAST_FACTOR {
             break Followed {
-                ended: StageEnd::Completed("no strength holds the body".to_owned()),
+                ended: StageEnd::Completed(EndReason::NoStrengthHolds),
                 points: Vec::new(),
                 end: PathEnd::Lost,
                 limit: None,
@@ -282,10 +281,10 @@ impl Search<'_> {
             (Some(ended), ..) => ended,
             (None, Some(_), Some(largest)) => {
                 (end, limit) = (PathEnd::Fallen, Some(largest));
-                StageEnd::Completed(end.sentence().to_owned())
+                StageEnd::Completed(EndReason::PathEnded { end, reached: None })
             }
             (None, Some(error), None) => StageEnd::NotConverged(error),
-            (None, None, _) => StageEnd::Completed("the steps of the path ran out".to_owned()),
+            (None, None, _) => StageEnd::Completed(EndReason::StepsOfPathRanOut),
         };
         let srf = continuation.factor;
         let last = (!points.is_empty()).then_some(End { srf, state, before });
@@ -341,7 +340,7 @@ impl<const D: usize> Watch<'_, '_, D> {
         let end = limit::end(&self.points, displacement);
         Ok(end.map(|(end, limit)| {
             (self.end, self.limit) = (end, Some(limit));
-            StageEnd::Completed(end.sentence().to_owned())
+            StageEnd::Completed(EndReason::PathEnded { end, reached: None })
         }))
     }
 }
@@ -435,9 +434,9 @@ fn finish<const D: usize>(
         path: Some(path),
     });
     match ended {
-        StageEnd::NotConverged(cause) => {
-            StageEnd::Completed(format!("the path was lost: {}", cause.failure))
-        }
+        StageEnd::NotConverged(cause) => StageEnd::Completed(EndReason::PathLost {
+            cause: cause.failure.to_string(),
+        }),
         ended => ended,
     }
 }

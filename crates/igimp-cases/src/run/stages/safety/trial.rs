@@ -1,6 +1,7 @@
 //! One trial of a search: what acts at its end, its steps, and what is said of it.
 
 use igimp_model::ReductionPath;
+use igimp_results::ending::EndReason;
 use igimp_solver::{MarchSettings, StepError};
 use igimp_text::short;
 
@@ -53,10 +54,10 @@ impl<const D: usize> Trials<'_, D> {
         settings
     }
 
-    pub(super) fn exceeded(&self, session: &Session<'_, D>) -> String {
+    pub(super) fn exceeded(&self, session: &Session<'_, D>) -> EndReason {
         let limit = self.limit.unwrap_or(f64::INFINITY);
         let whose = session.whose_displacement(self.reduction.monitor);
-        format!("{whose} exceeds {} m", short(limit))
+        EndReason::DisplacementExceeded { whose, limit }
     }
 
     pub(super) fn no_equilibrium(&self, state: &State<D>, cause: &StepError) -> String {
