@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::Arc;
 
-use igimp_assembly::{Interface, ParticleFields, Particles, RigidBody, Surface};
-use igimp_material::{Ratios, Regime};
+use igimp_assembly::{Interface, ParticleFields, ParticleSeed, Particles, RigidBody, Surface};
+use igimp_material::Regime;
 use igimp_model::{RigidInterface, RigidPart, RigidShape, RigidShear};
 use igimp_results::checkpoint::{self, Checkpoint, Meta};
 use igimp_results::npy::{Array, Values};
@@ -71,6 +71,14 @@ fn particles<const D: usize>(side: usize) -> Particles<D> {
             (k / side.pow(axis as u32) % side) as f64 + 0.1 * number(k, axis)
         })
     };
+    let seed = ParticleSeed {
+        x: [0.0; D],
+        half_length: [0.5; D],
+        volume: 1.0,
+        density: 1.0,
+        law: 0,
+        centroid: [0.0; D],
+    };
     Particles::from_fields(ParticleFields {
         x: (0..n).map(position).collect(),
         displacement: (0..n)
@@ -97,12 +105,12 @@ fn particles<const D: usize>(side: usize) -> Particles<D> {
         // Bodies came and went: numbers have gaps, and do not rise.
         number: (0..n).map(|k| 3 * (n - k)).collect(),
         law: (0..n).map(|k| k % 4).collect(),
-        ratios: vec![Ratios::ONE; n],
         eps_p_eq: (0..n).map(|k| number(k, 50).abs()).collect(),
-        internal: vec![[0.0; _]; n],
         regime: (0..n)
             .map(|k| [Regime::Elastic, Regime::Smooth, Regime::Apex][k % 3])
             .collect(),
+        // Further columns are as they are seeded.
+        ..(*Particles::new(&vec![seed; n]).unwrap()).clone()
     })
     .unwrap()
 }

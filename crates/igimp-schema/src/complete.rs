@@ -11,9 +11,9 @@ use super::names::check_name;
 use super::schema::{MOST_THINGS, ROOT, SPACE, SYMBOLS};
 use super::source::{Place, Source};
 use super::spec::{Field, Kind, Presence, Struct, Variants};
-use super::suggest::nearest;
 use super::text::{clip, row};
 use super::tree::{Entry, Node, Value, from_value};
+use crate::names::suggest::nearest;
 use value::check_value;
 
 /// The completed tree of a case file.

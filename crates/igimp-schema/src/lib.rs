@@ -16,7 +16,6 @@ mod reference;
 pub mod schema;
 pub mod source;
 mod spec;
-pub mod suggest;
 pub mod syntax;
 pub mod text;
 pub mod tree;

@@ -1,12 +1,14 @@
 //! Names of things: what they may look like, and the search for one.
 
+pub mod suggest;
+
 use std::collections::HashMap;
 
 use super::diagnostic::Problems;
 use super::source::Place;
-use super::suggest::nearest;
 use super::text::{clip, row};
 use super::tree::{Node, Wrong};
+use suggest::nearest;
 
 /// Most characters of a name.
 pub const LONGEST: usize = 60;

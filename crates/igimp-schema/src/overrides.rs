@@ -8,9 +8,9 @@ use super::diagnostic::Problems;
 use super::schema::ROOT;
 use super::source::{Place, Source};
 use super::spec::Kind;
-use super::suggest::nearest;
 use super::text::{clip, row};
 use super::tree::{Entry, Node, Value, from_value, shift};
+use crate::names::suggest::nearest;
 
 /// Most parts of a key.
 const DEEPEST: usize = 16;

@@ -1,4 +1,4 @@
-use igimp_assembly::{LoadPoint, ParticleFields, Particles};
+use igimp_assembly::{LoadPoint, ParticleFields, ParticleSeed, Particles};
 use igimp_material::{Ratios, Regime};
 use serde_json::json;
 
@@ -16,6 +16,17 @@ pub(crate) fn body(n: usize) -> Body<2> {
         })
     };
     let by_particle = |of: &dyn Fn(usize) -> f64| (0..n).map(of).collect::<Vec<f64>>();
+    // Further columns are as they are seeded.
+    let seed = |k: usize| ParticleSeed {
+        x: [0.0; 2],
+        half_length: vector(k, 26).map(f64::abs),
+        volume: 1.0,
+        density: 1.0,
+        law: 0,
+        centroid: [0.0; 2],
+    };
+    let seeds: Vec<_> = (0..n).map(seed).collect();
+    let seeded = (*Particles::new(&seeds).unwrap()).clone();
     let fields = ParticleFields {
         x: (0..n).map(|k| vector(k, 0)).collect(),
         displacement: (0..n).map(|_| [-0.0, f64::MIN_POSITIVE / 8.0]).collect(),
@@ -28,7 +39,6 @@ pub(crate) fn body(n: usize) -> Body<2> {
         b_e: (0..n).map(|k| tensor(k, 6)).collect(),
         sigma: (0..n).map(|k| tensor(k, 15)).collect(),
         half_length: (0..n).map(|k| vector(k, 24).map(f64::abs)).collect(),
-        half_length0: (0..n).map(|k| vector(k, 26).map(f64::abs)).collect(),
         centroid: (0..n).map(|k| vector(k, 27).map(f64::sin)).collect(),
         volume0: by_particle(&|k| number(k, 28).abs()),
         mass: by_particle(&|k| number(k, 29).abs()),
@@ -50,6 +60,7 @@ pub(crate) fn body(n: usize) -> Body<2> {
         regime: (0..n)
             .map(|k| [Regime::Elastic, Regime::Apex, Regime::TensionApex][k % 3])
             .collect(),
+        ..seeded
     };
     let mut body = Body::new(Particles::from_fields(fields).unwrap());
     body.load_points = (1..n)

@@ -166,7 +166,7 @@ impl Unit {
             .next()
             .or_else(|| UNITS.iter().find(same))
             .map(|unit| unit.symbol)
-            .or_else(|| crate::suggest::nearest(&plain, dimension.units()))
+            .or_else(|| crate::names::suggest::nearest(&plain, dimension.units()))
     }
 }
 

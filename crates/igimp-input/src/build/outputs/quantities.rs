@@ -2,7 +2,7 @@
 
 use igimp_model::{Field, Load, LoadKind, Quantity, ReinforcementQuantity, RigidQuantity};
 use igimp_schema::diagnostic::Problems;
-use igimp_schema::suggest::nearest;
+use igimp_schema::names::suggest::nearest;
 use igimp_schema::text::{clip, row};
 use igimp_schema::tree::Node;
 
