@@ -108,6 +108,8 @@ pub(crate) trait Entry: Copy + PartialEq {
     const SHAPE: &'static [usize];
     /// Type of its numbers.
     const KIND: ColumnKind;
+    /// What a particle has in an optional column that is not stored.
+    const IDLE: Self;
 
     /// The numbers of all particles.
     fn to_values(entries: Vec<Self>) -> ColumnValues;
@@ -138,6 +140,7 @@ fn reals(values: ColumnValues) -> Result<Vec<f64>, String> {
 impl Entry for f64 {
     const SHAPE: &'static [usize] = &[];
     const KIND: ColumnKind = ColumnKind::F64;
+    const IDLE: Self = 0.0;
 
     fn to_values(entries: Vec<Self>) -> ColumnValues {
         ColumnValues::F64(entries)
@@ -160,6 +163,7 @@ impl Entry for f64 {
 impl<const N: usize> Entry for [f64; N] {
     const SHAPE: &'static [usize] = &[N];
     const KIND: ColumnKind = ColumnKind::F64;
+    const IDLE: Self = [0.0; N];
 
     fn to_values(entries: Vec<Self>) -> ColumnValues {
         ColumnValues::F64(entries.into_flattened())
@@ -182,6 +186,7 @@ impl<const N: usize> Entry for [f64; N] {
 impl<const N: usize> Entry for [[f64; N]; N] {
     const SHAPE: &'static [usize] = &[N, N];
     const KIND: ColumnKind = ColumnKind::F64;
+    const IDLE: Self = [[0.0; N]; N];
 
     fn to_values(entries: Vec<Self>) -> ColumnValues {
         ColumnValues::F64(entries.into_flattened().into_flattened())
@@ -214,6 +219,7 @@ impl<const N: usize> Entry for [[f64; N]; N] {
 impl Entry for usize {
     const SHAPE: &'static [usize] = &[];
     const KIND: ColumnKind = ColumnKind::U64;
+    const IDLE: Self = 0;
 
     fn to_values(entries: Vec<Self>) -> ColumnValues {
         ColumnValues::U64(entries.into_iter().map(|entry| entry as u64).collect())
@@ -234,6 +240,7 @@ impl Entry for usize {
 impl Entry for Regime {
     const SHAPE: &'static [usize] = &[];
     const KIND: ColumnKind = ColumnKind::U8;
+    const IDLE: Self = Self::Elastic;
 
     fn to_values(entries: Vec<Self>) -> ColumnValues {
         ColumnValues::U8(entries.into_iter().map(Regime::code).collect())
@@ -256,6 +263,7 @@ impl Entry for Regime {
 impl Entry for Ratios {
     const SHAPE: &'static [usize] = &[3];
     const KIND: ColumnKind = ColumnKind::F64;
+    const IDLE: Self = Self::ONE;
 
     fn to_values(entries: Vec<Self>) -> ColumnValues {
         let rows = (entries.into_iter()).map(|own| [own.strength, own.friction, own.stiffness]);
@@ -284,16 +292,16 @@ impl Entry for Ratios {
     }
 }
 
-/// Whether all entries are as they were seeded.
-pub(crate) fn is_idle<T: Default + PartialEq>(entries: &[T]) -> bool {
-    entries.iter().all(|entry| *entry == T::default())
+/// Whether no particle uses a column.
+pub(crate) fn is_idle<T: Entry>(entries: &[T]) -> bool {
+    entries.iter().all(|entry| *entry == T::IDLE)
 }
 
 /// Internal variables of a law by particle.
 pub(crate) type Internal = [f64; INTERNAL_VARIABLES];
 
 /// Declares the columns of particles: `name: type = value of a seed, range;`, with `optional` before the name of
-/// a column that is stored only where a particle is not as it was seeded.
+/// a column that is stored only where a particle has other numbers than [`Entry::IDLE`].
 macro_rules! columns {
     (
         |$seed:ident, $number:ident|
@@ -395,6 +403,6 @@ macro_rules! columns {
         is_idle(&$column)
     };
     (@missing $n:ident) => { Vec::new() };
-    (@missing $n:ident, optional) => { vec![Default::default(); $n] };
+    (@missing $n:ident, optional) => { vec![Entry::IDLE; $n] };
 }
 pub(crate) use columns;
