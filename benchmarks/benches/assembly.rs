@@ -43,7 +43,7 @@ fn main() -> BenchResult {
 }
 
 /// A block with its stencils.
-fn block(soil: Soil, cells: usize) -> (Block, Stencils<2>) {
+fn block(soil: Soil, cells: usize) -> (Block<2>, Stencils<2>) {
     let block = made(Block::new(soil, cells));
     let stencils = made(block.stencils());
     (block, stencils)

@@ -87,7 +87,7 @@ impl Soil {
 
 /// A block of soil and a trial displacement.
 #[derive(Debug)]
-pub struct Block<const D: usize = 2> {
+pub struct Block<const D: usize> {
     particles: Particles<D>,
     conditions: StepConditions<D>,
     method: Method,
@@ -95,7 +95,7 @@ pub struct Block<const D: usize = 2> {
     pub u: Vec<[f64; D]>,
 }
 
-impl Block {
+impl Block<2> {
     /// Number of unknowns of a square block with so many cells along a side.
     pub fn unknowns(cells: usize) -> usize {
         2 * cells * cells
@@ -276,7 +276,7 @@ mod tests {
 
     #[test]
     fn domains_touch_about_six_nodes() {
-        let block: Block = Block::new(Soil::VonMises, 20).unwrap();
+        let block: Block<2> = Block::new(Soil::VonMises, 20).unwrap();
         let stencils = block.stencils().unwrap();
         let touched: usize = (0..block.len()).map(|p| stencils.of(p).len()).sum();
         let mean = touched as f64 / block.len() as f64;
@@ -286,7 +286,7 @@ mod tests {
     #[test]
     fn the_size_is_known_beforehand() {
         for cells in [4, 15] {
-            let block: Block = Block::new(Soil::VonMises, cells).unwrap();
+            let block: Block<2> = Block::new(Soil::VonMises, cells).unwrap();
             assert_eq!(block.len(), Block::<2>::particles(cells));
             let stencils = block.stencils().unwrap();
             let system = block.system(&stencils).unwrap();

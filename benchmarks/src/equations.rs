@@ -58,7 +58,7 @@ impl Equations {
     /// # Errors
     /// Only for a block without cells.
     pub fn new(soil: Soil, cells: usize) -> BenchResult<Self> {
-        let block: Block = Block::new(soil, cells)?;
+        let block: Block<2> = Block::new(soil, cells)?;
         let stencils = block.stencils()?;
         let (matrix, force) = Pass::new(&block, &stencils)?.equations()?;
         Ok(Self { matrix, force })

@@ -12,7 +12,7 @@ use crate::block::Block;
 
 /// The system of a block at its trial displacement, with a matrix to write into.
 #[derive(Debug)]
-pub struct Pass<'a, const D: usize = 2> {
+pub struct Pass<'a, const D: usize> {
     block: &'a Block<D>,
     stencils: &'a Stencils<D>,
     system: System<'a, D>,
@@ -119,7 +119,7 @@ mod tests {
 
     #[test]
     fn an_iteration_repeats_itself() {
-        let block: Block = Block::new(Soil::MohrCoulomb, 8).unwrap();
+        let block: Block<2> = Block::new(Soil::MohrCoulomb, 8).unwrap();
         Pass::set_up(&block).unwrap();
         let stencils = block.stencils().unwrap();
         let mut pass = Pass::new(&block, &stencils).unwrap();
@@ -131,7 +131,7 @@ mod tests {
 
     #[test]
     fn an_iteration_moves_at_least_its_matrix_and_its_supports() {
-        let block: Block = Block::new(Soil::VonMises, 8).unwrap();
+        let block: Block<2> = Block::new(Soil::VonMises, 8).unwrap();
         let stencils = block.stencils().unwrap();
         let pass = Pass::new(&block, &stencils).unwrap();
         let least = 16 * pass.matrix.pattern.stored() + 4 * 48 * block.len();

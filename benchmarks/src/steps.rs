@@ -156,7 +156,7 @@ impl Setting {
     }
 
     /// The controls at the end of the first stage; a strength reduction raises gravity to 1.
-    fn end(&self, case: &Case, initial: &Controls) -> Controls {
+    fn end(&self, case: &Case<2>, initial: &Controls) -> Controls {
         let (gravity, settlement) = match case.stages[0].kind {
             StageKind::Displacement { settlement, .. } => (0.0, settlement),
             StageKind::Gravity { factor, .. } => (factor, 0.0),

@@ -117,7 +117,7 @@ pub(crate) struct ColumnResult {
 
 impl ColumnResult {
     /// Reads it off the end of a run.
-    pub(crate) fn new(computed: &Computed) -> Self {
+    pub(crate) fn new(computed: &Computed<2>) -> Self {
         let exact = exact_solution(&computed.case);
         let particles = computed.particles();
         let header = [
@@ -145,7 +145,7 @@ impl ColumnResult {
     }
 }
 
-fn exact_solution(case: &Case) -> exact::Column {
+fn exact_solution(case: &Case<2>) -> exact::Column {
     let material = &case.materials[0];
     exact::Column {
         height: HEIGHT,
@@ -160,7 +160,7 @@ pub(crate) fn case(
     cells: usize,
     young: &str,
     (basis, bbar): (&str, bool),
-) -> Result<Case, CaseError> {
+) -> Result<Case<2>, CaseError> {
     let h = HEIGHT / cells as f64;
     let mut overrides = mesh(h, [h, HEIGHT + h]);
     overrides.extend(method(basis, bbar));

@@ -74,7 +74,7 @@ impl Push {
         matches!(self.role, Role::SmallStrain | Role::Shared)
     }
 
-    fn case(&self) -> Result<Case, CaseError> {
+    fn case(&self) -> Result<Case<2>, CaseError> {
         let Some(cells) = self.cells_per_width else {
             return shipped_case("footing", self.overrides.clone());
         };
@@ -211,12 +211,12 @@ fn pushes(level: Level) -> Vec<Push> {
 }
 
 /// w/B against N = resistance / (B s_u), compression positive.
-pub(crate) fn resistance(result: &Computed) -> Vec<[f64; 2]> {
+pub(crate) fn resistance(result: &Computed<2>) -> Vec<[f64; 2]> {
     result.curve("resistance").points(0, 1)
 }
 
 /// Penetration reached over B \[-\].
-fn reached(result: &Computed) -> f64 {
+fn reached(result: &Computed<2>) -> f64 {
     resistance(result).last().map_or(0.0, |point| point[0])
 }
 
@@ -253,7 +253,13 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
     Ok(study)
 }
 
-fn check(study: &mut Study, push: &Push, run: usize, result: &Computed, sequential: &[[f64; 2]]) {
+fn check(
+    study: &mut Study,
+    push: &Push,
+    run: usize,
+    result: &Computed<2>,
+    sequential: &[[f64; 2]],
+) {
     let resistance_at = |penetration| interpolate(&resistance(result), penetration);
     if matches!(push.role, Role::Contact | Role::Deep) {
         study.check(
@@ -333,7 +339,7 @@ fn check(study: &mut Study, push: &Push, run: usize, result: &Computed, sequenti
 }
 
 /// The limit load with shared strain, extrapolated to no width of the cell.
-fn extrapolated(study: &mut Study, pushes: &[Push], results: &[Computed]) {
+fn extrapolated(study: &mut Study, pushes: &[Push], results: &[Computed<2>]) {
     let both = pushes.iter().zip(results).enumerate();
     let found: Vec<_> = both
         .filter(|(_, (push, _))| push.role == Role::Shared)
@@ -360,7 +366,7 @@ fn extrapolated(study: &mut Study, pushes: &[Push], results: &[Computed]) {
     }
 }
 
-fn figures(study: &Study, pushes: &[Push], results: &[Computed]) -> Result<(), CaseError> {
+fn figures(study: &Study, pushes: &[Push], results: &[Computed<2>]) -> Result<(), CaseError> {
     let sequential = footing_sequential_limit_analysis().points("w_over_B", "N");
     let mut series: Vec<Series> = pushes
         .iter()

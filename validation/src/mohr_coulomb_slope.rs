@@ -90,7 +90,7 @@ struct Found {
 
 /// The slope under full gravity at a reduced strength, or as far as it came.
 struct State {
-    trial: Trial,
+    trial: Trial<2>,
     /// E δ_max / (γ H²), δ_max over particles \[-\].
     displacement: f64,
     run: RunRecord,

@@ -69,7 +69,7 @@ impl Layer {
         (1.0 - vertical) * 30_f64.to_radians().tan() / horizontal
     }
 
-    fn case(&self) -> Result<Case, CaseError> {
+    fn case(&self) -> Result<Case<2>, CaseError> {
         let Layer {
             length,
             cells,
@@ -152,7 +152,7 @@ fn layers(study: &mut Study, level: Level) -> Result<(), CaseError> {
 }
 
 /// All trials of a search as one run.
-fn record(name: String, computed: &Computed) -> RunRecord {
+fn record(name: String, computed: &Computed<2>) -> RunRecord {
     let runs: Vec<RunRecord> = (computed.trials.iter())
         .map(|trial| RunRecord::new("", &trial.report, trial.elapsed))
         .collect();
@@ -160,7 +160,7 @@ fn record(name: String, computed: &Computed) -> RunRecord {
 }
 
 /// The middle of the interval that a search found \[-\].
-fn factor(computed: &Computed) -> f64 {
+fn factor(computed: &Computed<2>) -> f64 {
     let safety = computed.safety();
     let end = |which: fn(&_) -> Option<f64>| safety.and_then(which).unwrap_or(f64::NAN);
     0.5 * (end(|safety| safety.stable) + end(|safety| safety.failed))
@@ -270,7 +270,7 @@ fn critical(study: &mut Study, level: Level) -> Result<(), CaseError> {
     } else {
         &[10]
     };
-    let case = |cells: &u32| -> Result<Case, CaseError> {
+    let case = |cells: &u32| -> Result<Case<2>, CaseError> {
         let mut case = section.case(variant(*cells), SEARCH)?;
         let weight = case.stages[0].clone();
         let (horizontal, steps) = RAISED;

@@ -17,7 +17,7 @@ use igimp_solver::{MarchReport, Outcome};
 ///
 /// # Panics
 /// If there is no such case: the cases are part of the program.
-pub(crate) fn shipped_case(name: &str, overrides: Vec<String>) -> Result<Case, CaseError> {
+pub(crate) fn shipped_case(name: &str, overrides: Vec<String>) -> Result<Case<2>, CaseError> {
     let shipped = shipped::find(name).expect("the case is shipped");
     Ok(shipped.case_file(overrides)?.into_case())
 }
@@ -55,7 +55,7 @@ pub(crate) fn unwatched() -> [String; 3] {
 
 /// A case that was run.
 #[derive(Debug)]
-pub(crate) struct Computed<const D: usize = 2> {
+pub(crate) struct Computed<const D: usize> {
     /// The case.
     pub(crate) case: Case<D>,
     /// What the engine hands back.
@@ -70,7 +70,7 @@ pub(crate) struct Computed<const D: usize = 2> {
 
 /// A trial of a strength reduction.
 #[derive(Debug)]
-pub(crate) struct Trial<const D: usize = 2> {
+pub(crate) struct Trial<const D: usize> {
     /// Factor and verdict.
     pub(crate) summary: TrialSummary,
     /// The particles at its last equilibrium.

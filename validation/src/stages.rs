@@ -45,7 +45,7 @@ fn ground(
     upper: [f64; 2],
     young: f64,
     bodies: &[(&str, Vec<[f64; 2]>)],
-) -> Result<Case, CaseError> {
+) -> Result<Case<2>, CaseError> {
     let [width, height] = upper;
     let mut text = format!(
         "igimp = 1
@@ -92,7 +92,7 @@ fn ground(
 }
 
 /// A stage after the last one of a case.
-fn then(case: &mut Case, own: Construction) {
+fn then(case: &mut Case<2>, own: Construction) {
     let last = case.stages.len() - 1;
     for &body in &own.place {
         case.bodies[body].from_start = false;
@@ -121,7 +121,7 @@ pub(crate) fn study(out: &Path) -> Result<Study, CaseError> {
 
 /// Largest deviation of the vertical stress that laws speak of from an exact one by the level as seeded, over the
 /// greatest, both as means over half metres as seeded: particles of a cell share the dilation \[-\].
-fn deviation(run: &Run, exact: impl Fn(f64) -> f64) -> f64 {
+fn deviation(run: &Run<2>, exact: impl Fn(f64) -> f64) -> f64 {
     let particles = &run.body.particles;
     let mut cells: BTreeMap<i64, [f64; 3]> = BTreeMap::new();
     for particle in 0..particles.len() {
@@ -391,7 +391,7 @@ fn cuts(study: &mut Study) -> Result<(), CaseError> {
     ));
     let quantity =
         "largest difference of displacements over the largest, to the pit dug at once [-]";
-    let of = |computed: &Computed| -> Vec<f64> {
+    let of = |computed: &Computed<2>| -> Vec<f64> {
         computed
             .particles()
             .displacement
@@ -409,7 +409,7 @@ fn cuts(study: &mut Study) -> Result<(), CaseError> {
         apart,
     );
     let quantity = "largest difference of stresses over the largest, to ground that never was anything else [-]";
-    let of = |computed: &Computed| -> Vec<f64> {
+    let of = |computed: &Computed<2>| -> Vec<f64> {
         let sigma = computed.particles().sigma.iter();
         sigma
             .flat_map(|sigma| sigma.as_flattened().to_vec())

@@ -88,7 +88,7 @@ impl Push {
         format!("kB/c_0 = {growth}, {base}, B/h = {cells}")
     }
 
-    fn case(&self) -> Result<Case, CaseError> {
+    fn case(&self) -> Result<Case<2>, CaseError> {
         let n = f64::from(self.cells);
         let [width, depth] = self.ground.extent;
         let (width, depth) = ((width * n).ceil() / n, (depth * n).round() / n);

@@ -47,7 +47,7 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
 }
 
 /// γ and c_u of the soil.
-fn soil(case: &Case) -> (f64, f64) {
+fn soil(case: &Case<2>) -> (f64, f64) {
     let material = &case.materials[0];
     match material.strength {
         Strength::VonMises { undrained_strength } => (material.unit_weight, undrained_strength),
@@ -106,15 +106,15 @@ fn smoothness(study: &mut Study) -> Result<(), CaseError> {
 }
 
 /// Root mean square of the deviation of σ_yy from local planes of radius 1.3 h, over γH \[-\].
-fn roughness(result: &Computed) -> f64 {
+fn roughness(result: &Computed<2>) -> f64 {
     let particles = result.particles();
     let radius = 1.3 * result.case.grid.smallest_cell()[0];
     let scale = soil(&result.case).0 * HEIGHT;
     oscillation(&particles.x, &sigma(particles, 1, 1), radius) / scale
 }
 
-fn smoothness_figures(study: &mut Study, results: &[Computed]) -> Result<(), CaseError> {
-    let compression = |result: &Computed| scaled(&sigma(result.particles(), 1, 1), -1e-3);
+fn smoothness_figures(study: &mut Study, results: &[Computed<2>]) -> Result<(), CaseError> {
+    let compression = |result: &Computed<2>| scaled(&sigma(result.particles(), 1, 1), -1e-3);
     let sections = &results[0].case.sections;
     let outlines: Vec<Outline> = sections
         .iter()
@@ -123,8 +123,8 @@ fn smoothness_figures(study: &mut Study, results: &[Computed]) -> Result<(), Cas
             style: OutlineStyle::Section,
         })
         .collect();
-    let panel =
-        |label: &str, map: ColourMap, range, values: &dyn Fn(&Computed) -> Vec<f64>| FieldPanel {
+    let panel = |label: &str, map: ColourMap, range, values: &dyn Fn(&Computed<2>) -> Vec<f64>| {
+        FieldPanel {
             title: "Slope in von Mises soil, c_{u} = 45 kPa, E = 1 MPa".into(),
             columns: 2,
             plots: results
@@ -135,7 +135,8 @@ fn smoothness_figures(study: &mut Study, results: &[Computed]) -> Result<(), Cas
                     with_outlines(plot, outlines.clone())
                 })
                 .collect(),
-        };
+        }
+    };
     panel(
         "vertical stress −σ_{yy} [kPa], compression positive",
         ColourMap::Sequential,
@@ -278,7 +279,7 @@ pub(crate) fn bounds(depth_factor: f64) -> [f64; 2] {
 }
 
 /// The shipped slope of stiff soil on another foundation, with gravity raised until it flows.
-pub(crate) fn slope_to_collapse(collapse: &Collapse) -> Result<Case, CaseError> {
+pub(crate) fn slope_to_collapse(collapse: &Collapse) -> Result<Case<2>, CaseError> {
     let foundation = HEIGHT * (collapse.depth_factor - 1.0);
     let beyond = if foundation > 0.0 { 20.0 } else { 15.0 };
     let (crest, toe, width) = (beyond, beyond + HEIGHT, HEIGHT + 2.0 * beyond);
@@ -302,7 +303,7 @@ pub(crate) fn slope_to_collapse(collapse: &Collapse) -> Result<Case, CaseError> 
 }
 
 /// Largest displacement \[m\] and γH/c_u \[-\], step by step.
-fn stability_numbers(result: &Computed) -> Vec<[f64; 2]> {
+fn stability_numbers(result: &Computed<2>) -> Vec<[f64; 2]> {
     let (unit_weight, undrained_strength) = soil(&result.case);
     let curve = result.curve("load-displacement").points(0, 1);
     curve
@@ -319,7 +320,7 @@ fn stability_numbers(result: &Computed) -> Vec<[f64; 2]> {
 /// γH/c_u at which the largest displacement reaches [`LIMIT_DISPLACEMENT`], linear between steps
 /// \[-\]. Where the march ended before that for want of equilibrium it is the last one reached;
 /// `None` when the slope was still standing at the end of the march.
-pub(crate) fn limit(result: &Computed) -> Option<f64> {
+pub(crate) fn limit(result: &Computed<2>) -> Option<f64> {
     let points = stability_numbers(result);
     let mut pairs = points.windows(2);
     match (

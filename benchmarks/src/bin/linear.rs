@@ -279,7 +279,7 @@ mod tests {
             systems: Some(folder.join("systems")),
             ..Target::of(&file, folder.join("results"))
         };
-        let quiet = &mut |_: &Event<'_>| {};
+        let quiet = &mut |_: &Event<'_, 2>| {};
         let never = std::sync::atomic::AtomicBool::new(false);
         run(file.case(), Some(&target), Start::Afresh, quiet, &never).unwrap();
         let system = LinearSystem::read(&folder.join("systems/stage-01")).unwrap();

@@ -17,7 +17,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         replace: Replace::Everything,
         ..Target::of(&file, std::env::temp_dir().join("igimp-slope"))
     };
-    let mut listener = |event: &Event<'_>| {
+    let mut listener = |event: &Event<'_, 2>| {
         if let Event::Trial { trial, .. } = event {
             println!("SRF {:.4}: {}", trial.srf, trial.reason);
         }

@@ -307,7 +307,7 @@ pub(crate) mod tests {
     use igimp_input::CaseFile;
     use igimp_model::FixedBox;
 
-    pub(crate) fn case() -> Case {
+    pub(crate) fn case() -> Case<2> {
         let text = include_str!("../tests/data/block.toml");
         CaseFile::parse("block.toml", text, &[])
             .unwrap()

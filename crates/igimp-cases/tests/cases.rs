@@ -22,19 +22,19 @@ fn chain(error: &dyn Error) -> String {
 }
 
 /// A shipped case with overrides.
-fn shipped(name: &str, overrides: &[&str]) -> Case {
+fn shipped(name: &str, overrides: &[&str]) -> Case<2> {
     let file = find(name).unwrap().case_file(overrides.iter().copied());
     file.unwrap().into_case()
 }
 
 /// The shipped column with so many cells over its height.
-fn column(cells: u32, overrides: &[&str]) -> Case {
+fn column(cells: u32, overrides: &[&str]) -> Case<2> {
     let cell = format!("grid.cell={{ x = '50/64 m', y = '50/{cells} m' }}");
     let top = format!("grid.domain.y=['0 m', '{}/{cells} m']", 50 * (cells + 1));
     shipped("column", &[&[&*cell, &*top], overrides].concat())
 }
 
-fn exact_solution(case: &Case) -> exact::Column {
+fn exact_solution(case: &Case<2>) -> exact::Column {
     exact::Column {
         height: 50.0,
         density: 80.0,
@@ -46,7 +46,7 @@ fn exact_solution(case: &Case) -> exact::Column {
 /// A case may be made without a file, and then nothing has looked at it before.
 #[test]
 fn nonsense_is_refused_with_its_reason() {
-    let refused = |name: &str, change: &dyn Fn(&mut Case)| {
+    let refused = |name: &str, change: &dyn Fn(&mut Case<2>)| {
         let mut case = shipped(name, &[]);
         change(&mut case);
         chain(&in_memory(&case).unwrap_err())

@@ -119,7 +119,7 @@ fn stage(like: &Stage, name: &str, from: usize, construction: Construction) -> S
 }
 
 /// The case without water.
-fn dry() -> Case {
+fn dry() -> Case<2> {
     let mut case = file().case().clone();
     for body in [UPPER, LOWER] {
         case.bodies[body].from_start = false;
@@ -142,7 +142,7 @@ fn dry() -> Case {
     case
 }
 
-fn wet() -> Case {
+fn wet() -> Case<2> {
     let mut case = dry();
     case.water = [("high", 1.8), ("low", 0.9)]
         .map(|(name, level)| WaterCondition {
@@ -166,7 +166,7 @@ fn folder(name: &str) -> PathBuf {
 }
 
 /// Runs into a folder; with a number of steps until it is interrupted.
-fn written(case: &Case, folder: &Path, start: Start, steps: Option<usize>) -> Run {
+fn written(case: &Case<2>, folder: &Path, start: Start, steps: Option<usize>) -> Run<2> {
     run_into((&file(), case), folder, start, steps)
 }
 
@@ -438,13 +438,13 @@ fn a_nail_is_installed_in_the_stage_that_digs() {
     let whole = folder("nailed");
     let nailed = written(&case, &whole, Start::Afresh, None);
     assert_done(&nailed.summary);
-    let forces = |run: &Run| -> Vec<f64> {
+    let forces = |run: &Run<2>| -> Vec<f64> {
         let bars = run.body.reinforcement[0].segments.iter();
         bars.map(|bar| bar.state.force).collect()
     };
     assert!(forces(&nailed).iter().all(|force| *force >= 0.0));
     assert!(forces(&nailed).iter().any(|force| *force > 1e3));
-    let outwards = |run: &Run| {
+    let outwards = |run: &Run<2>| {
         let moved = run.body.particles.displacement.iter().map(|own| own[0]);
         moved.fold(0.0, f64::max)
     };
@@ -462,7 +462,7 @@ fn a_nail_is_installed_in_the_stage_that_digs() {
 }
 
 /// Particles at the end of one more stage that gives all of the ground another material, or changes nothing.
-fn after(case: &Case, material: Option<usize>) -> Particles<2> {
+fn after(case: &Case<2>, material: Option<usize>) -> Particles<2> {
     let mut case = case.clone();
     let last = case.stages.len() - 1;
     let change = Construction {
@@ -566,7 +566,7 @@ fn total_stress_stays_whatever_a_law_speaks_of() {
 /// ORACLE: the same search on a case that has them from the start.
 #[test]
 fn a_search_by_gravity_sees_what_was_built() {
-    let search = |case: &Case, from: usize| Stage {
+    let search = |case: &Case<2>, from: usize| Stage {
         name: "safety".to_owned(),
         kind: StageKind::StrengthReduction(StrengthReduction {
             materials: vec![0, 1],

@@ -180,7 +180,7 @@ fn the_completed_file_carries_the_points() {
     let explained = file.explain();
     assert!(explained.contains(r#"["0 m", "20.1 m"]"#) && !explained.contains("outline.csv"));
     let again = CaseFile::parse("elsewhere.toml", &explained, &[]).unwrap();
-    let text = |case: &Case| format!("{case:?}").replace("results/elsewhere", "results/case");
+    let text = |case: &Case<2>| format!("{case:?}").replace("results/elsewhere", "results/case");
     assert_eq!(text(again.case()), text(file.case()));
     fs::write(folder.0.join("outline.csv"), "0,0\n60,0\n60,10\n0,20.2\n").unwrap();
     let other = folder.read(polygon).unwrap();

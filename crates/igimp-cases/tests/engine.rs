@@ -51,9 +51,9 @@ point = ["2 m", "5 m"]
 record = ["displacement_y", "sigma_yy"]
 "#;
 
-fn ran(text: &str) -> Run {
+fn ran(text: &str) -> Run<2> {
     let file = CaseFile::parse("test.toml", text, &[]).unwrap_or_else(|error| panic!("{error}"));
-    let mut quiet = |_: &Event<'_>| {};
+    let mut quiet = |_: &Event<'_, 2>| {};
     let interrupt = AtomicBool::new(false);
     run(file.case(), None, Start::Afresh, &mut quiet, &interrupt).unwrap()
 }

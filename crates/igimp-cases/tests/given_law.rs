@@ -82,7 +82,7 @@ impl ConstitutiveModel for Batched {
     }
 }
 
-fn slope() -> Case {
+fn slope() -> Case<2> {
     let slope = find("von_mises_slope").unwrap();
     let settings = ["grid.cell={ x = '1 m', y = '0.5 m' }", "stages.0.steps=5"];
     slope.case_file(settings).unwrap().into_case()

@@ -52,7 +52,7 @@ fn write_many(folder: &Path) {
 /// Particles of the newest checkpoint, which must be whole and agree with itself.
 fn written(folder: &Path) -> Option<usize> {
     let path = checkpoint::newest(folder).unwrap()?;
-    let checkpoint: Checkpoint = checkpoint::read(&path, Some("case")).unwrap();
+    let checkpoint: Checkpoint<2> = checkpoint::read(&path, Some("case")).unwrap();
     let particles = checkpoint.states[0].1.particles.len();
     assert_eq!(checkpoint.meta.data, json!(particles));
     assert_eq!(checkpoint.states[1].1.particles.len(), particles);

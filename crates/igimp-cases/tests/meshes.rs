@@ -5,14 +5,14 @@ use igimp_input::CaseFile;
 use igimp_model::meshes::{differences, label, meshes, refinements};
 use igimp_model::{Case, FixedBox, Load, LoadKind};
 
-fn case() -> Case {
+fn case() -> Case<2> {
     let text = include_str!("data/block.toml");
     let file = CaseFile::parse("block.toml", text, &[]);
     file.unwrap().case().clone()
 }
 
 /// Cells of 0.5 m from 0 to 4 m.
-fn study(footing: Option<[f64; 2]>) -> Case {
+fn study(footing: Option<[f64; 2]>) -> Case<2> {
     let mut case = case();
     case.mesh_study.meshes = 3;
     case.loads.extend(footing.map(|[from, to]| Load {

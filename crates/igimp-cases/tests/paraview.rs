@@ -155,7 +155,7 @@ fn axis(cells: usize) -> Axis {
 }
 
 /// A rectangle of 2 m by 1 m whose corners are rounded, turned and pressed against something.
-fn rectangle() -> (RigidPart, RigidBody<2>) {
+fn rectangle() -> (RigidPart<2>, RigidBody<2>) {
     let corners = [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]];
     let interface = RigidInterface {
         shear: RigidShear::Rough,
@@ -371,7 +371,7 @@ fn numpy_reads_and_writes_checkpoints() {
     if !run_script("numpy_arrays.py", "numpy", &folder) {
         return;
     }
-    let changed: Checkpoint = checkpoint::read(&path, Some("case")).unwrap();
+    let changed: Checkpoint<2> = checkpoint::read(&path, Some("case")).unwrap();
     assert_eq!(changed.meta.data["factor"], json!(0.1 + 0.2));
     let particles = &changed.states[0].1.particles;
     assert_eq!(particles.x, body.particles.x);

@@ -11,13 +11,13 @@ use igimp_input::CaseFile;
 use igimp_model::Case;
 use igimp_report::patches::Pieces;
 
-fn case() -> Case {
+fn case() -> Case<2> {
     let text = include_str!("data/block.toml");
     let file = CaseFile::parse("block.toml", text, &[]);
     file.unwrap().case().clone()
 }
 
-fn slope() -> Case {
+fn slope() -> Case<2> {
     let mut case = case();
     case.bodies[0].region = Arc::new(vec![[0.0, 0.0], [3.0, 0.0], [1.3, 1.7], [0.0, 1.7]]);
     case

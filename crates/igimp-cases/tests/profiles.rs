@@ -65,7 +65,7 @@ fn undrained(cu: &str) -> String {
     ])
 }
 
-fn case(edits: &[(&str, &str)]) -> Case {
+fn case(edits: &[(&str, &str)]) -> Case<2> {
     CaseFile::parse("ground.toml", &edited(edits), &[])
         .unwrap_or_else(|error| panic!("{error}"))
         .case()
@@ -282,7 +282,7 @@ material = \"clay\"
 polygon = [[\"0 m\", \"0 m\"], [\"2 m\", \"0 m\"], [\"2 m\", \"1 m\"], [\"0 m\", \"1 m\"]]
 ";
 
-fn on_a_slope(text: &str) -> Case {
+fn on_a_slope(text: &str) -> Case<2> {
     let (head, tail) = text.split_once("[[bodies]]").unwrap();
     let (_, stages) = tail.split_once("[[stages]]").unwrap();
     let stages = stages.replace("k0", "gravity");
@@ -294,7 +294,7 @@ fn on_a_slope(text: &str) -> Case {
 }
 
 /// The strength that every particle carries, with its place.
-fn carried(case: &Case, field: Field) -> Vec<([f64; 2], f64)> {
+fn carried(case: &Case<2>, field: Field) -> Vec<([f64; 2], f64)> {
     let (model, state) = Model::new(case).unwrap();
     let particles = &state.body.particles;
     let values = fields::values(field, particles, &model.laws);

@@ -6,7 +6,7 @@ use igimp_input::CaseFile;
 use igimp_model::StageKind;
 
 /// A bar of 8 m by 1 m between `sides`, held at the left or at the bottom.
-fn bar(size: [f64; 2], boundaries: &str, stages: &str) -> Run {
+fn bar(size: [f64; 2], boundaries: &str, stages: &str) -> Run<2> {
     let [width, height] = size;
     let text = format!(
         r#"

@@ -93,7 +93,7 @@ fn raster(header: &str, xs: &[f64], ys: &[f64], [length, value]: [f64; 2]) -> St
     text
 }
 
-fn strengths(case: &Case) -> Vec<([f64; 2], f64)> {
+fn strengths(case: &Case<2>) -> Vec<([f64; 2], f64)> {
     let (model, state) = Model::new(case).unwrap();
     assert_eq!(model.laws.len(), 1);
     let particles = &state.body.particles;

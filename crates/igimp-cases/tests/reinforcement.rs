@@ -72,8 +72,8 @@ fn stages_that_cannot_install() {
 }
 
 /// The case, run into a folder of the build with pictures and a report.
-fn written() -> &'static (PathBuf, Run) {
-    static ONCE: OnceLock<(PathBuf, Run)> = OnceLock::new();
+fn written() -> &'static (PathBuf, Run<2>) {
+    static ONCE: OnceLock<(PathBuf, Run<2>)> = OnceLock::new();
     ONCE.get_or_init(|| {
         let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("reinforcement-results");
         let _ = fs::remove_dir_all(&folder);
@@ -86,7 +86,7 @@ fn written() -> &'static (PathBuf, Run) {
             file.case(),
             Some(&target),
             Start::Afresh,
-            &mut |_: &Event<'_>| {},
+            &mut |_: &Event<'_, 2>| {},
             &AtomicBool::new(false),
         )
         .unwrap();

@@ -155,7 +155,7 @@ fn a_file_states_its_bodies() {
 }
 
 /// A column of a curve at its end.
-fn ends(run: &Run, curve: &str) -> [f64; 2] {
+fn ends(run: &Run<2>, curve: &str) -> [f64; 2] {
     let table = run.curves.iter().find(|table| table.name == curve);
     *table.unwrap().points(0, 1).last().unwrap()
 }

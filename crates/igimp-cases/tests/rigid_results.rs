@@ -11,8 +11,8 @@ use igimp_input::CaseFile;
 const TEXT: &str = include_str!("data/two_bodies.toml");
 
 /// The case of two bodies, run into a folder of the build with pictures and a report.
-fn written() -> &'static (PathBuf, Run) {
-    static ONCE: OnceLock<(PathBuf, Run)> = OnceLock::new();
+fn written() -> &'static (PathBuf, Run<2>) {
+    static ONCE: OnceLock<(PathBuf, Run<2>)> = OnceLock::new();
     ONCE.get_or_init(|| {
         let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("rigid-results");
         let _ = fs::remove_dir_all(&folder);
@@ -25,7 +25,7 @@ fn written() -> &'static (PathBuf, Run) {
             file.case(),
             Some(&target),
             Start::Afresh,
-            &mut |_: &Event<'_>| {},
+            &mut |_: &Event<'_, 2>| {},
             &AtomicBool::new(false),
         )
         .unwrap();

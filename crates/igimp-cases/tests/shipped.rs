@@ -10,7 +10,7 @@ use igimp_model::Case;
 use igimp_results::summary::StageOutcome::{self, Completed, Stopped};
 
 /// A shipped case after a run in memory.
-struct Ran<const D: usize = 2> {
+struct Ran<const D: usize> {
     run: Run<D>,
     gravity: f64,
 }
@@ -32,7 +32,7 @@ fn ran_case<const D: usize>(case: &Case<D>) -> Ran<D> {
 }
 
 /// Runs a shipped case of plane strain with changed values.
-fn ran(name: &str, overrides: &[&str]) -> Ran {
+fn ran(name: &str, overrides: &[&str]) -> Ran<2> {
     ran_case(file(name, overrides).case())
 }
 

@@ -130,7 +130,7 @@ fn edited(edits: Edits<'_>) -> String {
     })
 }
 
-fn case(edits: Edits<'_>) -> Case {
+fn case(edits: Edits<'_>) -> Case<2> {
     CaseFile::parse("slope.toml", &edited(edits), &[])
         .unwrap_or_else(|error| panic!("{error}"))
         .case()

@@ -168,7 +168,7 @@ impl CaseFile {
     ///
     /// # Panics
     /// For a case in space; [`CaseFile::any_case`] tells.
-    pub fn case(&self) -> &Case {
+    pub fn case(&self) -> &Case<2> {
         match &self.case {
             AnyCase::Plane(case) => case,
             AnyCase::Space(_) => panic!("the case is one in space"),
@@ -190,7 +190,7 @@ impl CaseFile {
     ///
     /// # Panics
     /// For a case in space; [`CaseFile::any_case`] tells.
-    pub fn into_case(self) -> Case {
+    pub fn into_case(self) -> Case<2> {
         match self.case {
             AnyCase::Plane(case) => case,
             AnyCase::Space(_) => panic!("the case is one in space"),

@@ -5,7 +5,7 @@ use igimp_shape::{Axis, Grid, ShapeError};
 
 /// A fixed background grid.
 #[derive(Clone, Debug, PartialEq)]
-pub struct GridSpec<const D: usize = 2> {
+pub struct GridSpec<const D: usize> {
     /// One axis for each direction.
     pub axes: [AxisSpec; D],
     /// Stiffness of particles in cells that several soils share.

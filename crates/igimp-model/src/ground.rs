@@ -11,7 +11,7 @@ const WATER: f64 = 9.81e3;
 
 /// The bodies that are there at the start, as they are drawn, with the unit weights of their materials.
 #[derive(Clone, Debug, Default)]
-pub struct Ground<const D: usize = 2> {
+pub struct Ground<const D: usize> {
     layers: Vec<Layer<D>>,
     /// The water at the start, and its unit weight \[N/m³\].
     water: Option<(PoreSource, f64)>,
@@ -19,7 +19,7 @@ pub struct Ground<const D: usize = 2> {
 
 /// A region of soil with a unit weight.
 #[derive(Clone, Debug)]
-pub struct Layer<const D: usize = 2> {
+pub struct Layer<const D: usize> {
     /// The region.
     pub region: Arc<dyn Region<D>>,
     /// Unit weight \[N/m³\].
@@ -214,7 +214,7 @@ mod tests {
 
     const RING: [[f64; 2]; 4] = [[0.0, 0.0], [4.0, 0.0], [4.0, 5.0], [0.0, 5.0]];
 
-    fn layer(polygon: &[[f64; 2]], unit_weight: f64) -> Layer {
+    fn layer(polygon: &[[f64; 2]], unit_weight: f64) -> Layer<2> {
         Layer {
             region: Arc::new(polygon.to_vec()),
             unit_weight,

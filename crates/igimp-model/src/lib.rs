@@ -53,7 +53,7 @@ use igimp_geometry::region::Region;
 
 /// A problem in plane strain (D = 2) or in space (D = 3), and how it is solved.
 #[derive(Clone, Debug)]
-pub struct Case<const D: usize = 2> {
+pub struct Case<const D: usize> {
     /// Title for reports and figures.
     pub title: String,
     /// Whom and what it is for.
@@ -202,7 +202,7 @@ impl Default for MeshStudy {
 
 /// A region of one material, filled with particles.
 #[derive(Clone, Debug)]
-pub struct BodyPart<const D: usize = 2> {
+pub struct BodyPart<const D: usize> {
     /// Name.
     pub name: String,
     /// Index of the material.
@@ -215,7 +215,7 @@ pub struct BodyPart<const D: usize = 2> {
     pub from_start: bool,
 }
 
-impl BodyPart {
+impl BodyPart<2> {
     /// Corners of its polygon in order, either way round \[m\].
     pub fn polygon(&self) -> &[[f64; 2]] {
         self.region.polygon()
@@ -236,7 +236,7 @@ pub enum Side {
 
 /// Supports: the sides of the grid, and boxes of fixed nodes.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Boundaries<const D: usize = 2> {
+pub struct Boundaries<const D: usize> {
     /// By axis: the side of its lowest and of its highest coordinate.
     pub sides: [[Side; 2]; D],
     /// Boxes of nodes.
@@ -254,7 +254,7 @@ impl<const D: usize> Default for Boundaries<D> {
 
 /// Nodes in a box (edges included) that are held.
 #[derive(Clone, Debug, PartialEq)]
-pub struct FixedBox<const D: usize = 2> {
+pub struct FixedBox<const D: usize> {
     /// Name.
     pub name: String,
     /// Corner of the lowest coordinates \[m\].

@@ -7,7 +7,7 @@ use igimp_text::short;
 
 /// A load that stages apply.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Load<const D: usize = 2> {
+pub struct Load<const D: usize> {
     /// Name.
     pub name: String,
     /// Kind.
@@ -16,7 +16,7 @@ pub struct Load<const D: usize = 2> {
 
 /// Kinds of loads.
 #[derive(Clone, Debug, PartialEq)]
-pub enum LoadKind<const D: usize = 2> {
+pub enum LoadKind<const D: usize> {
     /// A level rigid footing on the surface, pushed down by displacement stages; in plane strain only. The grid
     /// follows.
     RigidFooting {

@@ -8,7 +8,7 @@ use crate::check::Band;
 /// A material point that is watched: a point in the undeformed bodies. Fields there are interpolated from the particles around
 /// it; the displacement that ends a stage or a search is that of the nearest particle.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Monitor<const D: usize = 2> {
+pub struct Monitor<const D: usize> {
     /// Name.
     pub name: String,
     /// Point \[m\].
@@ -19,7 +19,7 @@ pub struct Monitor<const D: usize = 2> {
 
 /// A line along which fields are read at the end of every stage.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Section<const D: usize = 2> {
+pub struct Section<const D: usize> {
     /// Name.
     pub name: String,
     /// One end \[m\].

@@ -2,7 +2,7 @@
 
 /// A member that pulls: it neither bends nor pushes. In the plane all forces are per metre run, in space they are its own.
 #[derive(Clone, Debug, PartialEq)]
-pub struct ReinforcementPart<const D: usize = 2> {
+pub struct ReinforcementPart<const D: usize> {
     /// Name.
     pub name: String,
     /// What it is.

@@ -10,7 +10,7 @@ use igimp_text::short;
 
 /// A rigid body that soil touches, slides along and leaves.
 #[derive(Clone, Debug)]
-pub struct RigidPart<const D: usize = 2> {
+pub struct RigidPart<const D: usize> {
     /// Name.
     pub name: String,
     /// Where it starts, and its shape.

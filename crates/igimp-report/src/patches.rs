@@ -90,7 +90,7 @@ impl Pieces {
     ///
     /// # Errors
     /// [`ReportError`] for bodies that cannot be seeded.
-    pub fn of(case: &Case) -> Result<Self, ReportError> {
+    pub fn of(case: &Case<2>) -> Result<Self, ReportError> {
         let grid = case.grid.grid()?;
         let [width, height] = case.grid.smallest_cell();
         let near = SAME * width.min(height);

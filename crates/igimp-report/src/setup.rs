@@ -47,7 +47,7 @@ fn bodies<const D: usize>(case: &Case<D>) -> SetupTable {
         _ => false,
     });
     let rows = case.bodies.iter().enumerate().map(|(index, body)| {
-        let corners = match in_plane::<_, BodyPart>(body) {
+        let corners = match in_plane::<_, BodyPart<2>>(body) {
             Some(body) => corners(body.polygon()),
             None => body.region.words(),
         };

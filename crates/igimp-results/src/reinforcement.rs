@@ -10,7 +10,7 @@ use crate::vtu::{CellKind, DataArray, UnstructuredGrid, padded};
 
 /// A member that is there.
 #[derive(Clone, Copy, Debug)]
-pub struct Installed<'a, const D: usize = 2> {
+pub struct Installed<'a, const D: usize> {
     /// Its number in the case, from 0.
     pub index: usize,
     /// What it is.

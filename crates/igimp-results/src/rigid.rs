@@ -8,7 +8,7 @@ use crate::vtu::{CellKind, DataArray, UnstructuredGrid, padded};
 
 /// A rigid body that is there.
 #[derive(Clone, Copy, Debug)]
-pub struct Standing<'a, const D: usize = 2> {
+pub struct Standing<'a, const D: usize> {
     /// Its number in the case, from 0.
     pub index: usize,
     /// What it is.
@@ -43,7 +43,7 @@ struct Place<'a> {
     contact: Option<&'a ContactNode>,
 }
 
-impl<'a> Standing<'a> {
+impl<'a> Standing<'a, 2> {
     /// Corner of a polygon at which a side begins, in the frame of the body.
     fn corner(&self, side: usize) -> Option<[f64; 2]> {
         let Some(RigidShape::Polygon(corners)) = self.part.shape.in_plane() else {
@@ -163,7 +163,7 @@ const HEADER_IN_SPACE: [&str; 10] = [
 
 impl<'a, const D: usize> Standing<'a, D> {
     /// Of a body in the plane.
-    fn in_plane(&self) -> Option<Standing<'a>> {
+    fn in_plane(&self) -> Option<Standing<'a, 2>> {
         Some(Standing {
             index: self.index,
             part: in_plane(self.part)?,
@@ -199,7 +199,8 @@ impl<'a, const D: usize> Standing<'a, D> {
 /// space the triangles between their knots.
 pub fn cells<const D: usize>(standing: &[Standing<'_, D>]) -> UnstructuredGrid {
     if D == 2 {
-        let in_plane: Vec<Standing<'_>> = standing.iter().filter_map(Standing::in_plane).collect();
+        let in_plane: Vec<Standing<'_, 2>> =
+            standing.iter().filter_map(Standing::in_plane).collect();
         return outlines(&in_plane);
     }
     let mut points = Vec::new();
@@ -267,7 +268,7 @@ fn gap(contact: &ContactNode) -> f64 {
 }
 
 /// The outlines of rigid bodies as lines between points: their knots with contact, and their corners.
-fn outlines(standing: &[Standing<'_>]) -> UnstructuredGrid {
+fn outlines(standing: &[Standing<'_, 2>]) -> UnstructuredGrid {
     let mut connectivity = Vec::new();
     let mut places: Vec<(usize, Place<'_>)> = Vec::new();
     for body in standing {

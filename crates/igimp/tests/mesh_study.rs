@@ -43,7 +43,7 @@ fn result(summary: &Summary, kind: ResultKind) -> &StudyResult {
         .unwrap()
 }
 
-fn reached(case: &Case) -> f64 {
+fn reached(case: &Case<2>) -> f64 {
     let run = in_memory(case).unwrap();
     let stage = &run.summary.stages[1];
     0.8 + stage.reached * (1.2 - 0.8)

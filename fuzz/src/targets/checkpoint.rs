@@ -202,7 +202,7 @@ pub fn check(files: &Files) -> Result<Verdict, String> {
 }
 
 /// The files of a checkpoint under the name and number of a manifest.
-fn write(checkpoint: &Checkpoint, manifest: &Value) -> Result<Files, String> {
+fn write(checkpoint: &Checkpoint<2>, manifest: &Value) -> Result<Files, String> {
     let name = manifest["name"].as_str().unwrap_or_default();
     let sequence = manifest["sequence"].as_u64().unwrap_or_default();
     let states: Vec<_> = checkpoint

@@ -18,7 +18,7 @@ pub(super) struct Variant {
     /// Its name in headers of tables and in names of runs.
     pub(super) slug: &'static str,
     /// The change.
-    pub(super) change: fn(&mut Case),
+    pub(super) change: fn(&mut Case<2>),
 }
 
 /// A benchmark in several variants, each at several values of a parameter.
@@ -30,11 +30,11 @@ pub(super) struct Results<'a> {
     /// Its values.
     pub(super) values: &'a [usize],
     /// Results by variant, then by value.
-    pub(super) computed: Vec<Vec<Computed>>,
+    pub(super) computed: Vec<Vec<Computed<2>>>,
 }
 
 /// A quantity of a run: its name with unit, as in the header of a table, and how it is read.
-pub(super) type Quantity<'a> = (&'a str, &'a dyn Fn(&Computed) -> f64);
+pub(super) type Quantity<'a> = (&'a str, &'a dyn Fn(&Computed<2>) -> f64);
 
 impl<'a> Results<'a> {
     /// Runs a benchmark in every variant at every value.
@@ -42,7 +42,7 @@ impl<'a> Results<'a> {
         variants: &'a [Variant],
         parameter: &'static str,
         values: &'a [usize],
-        case: impl Fn(usize) -> Result<Case, CaseError> + Sync,
+        case: impl Fn(usize) -> Result<Case<2>, CaseError> + Sync,
     ) -> Result<Self, CaseError> {
         let jobs: Vec<_> = variants
             .iter()
@@ -90,7 +90,7 @@ impl<'a> Results<'a> {
     }
 
     /// A quantity against the parameter, for a variant.
-    pub(super) fn curve(&self, variant: usize, of: impl Fn(&Computed) -> f64) -> Vec<[f64; 2]> {
+    pub(super) fn curve(&self, variant: usize, of: impl Fn(&Computed<2>) -> f64) -> Vec<[f64; 2]> {
         let pairs = self.values.iter().zip(&self.computed[variant]);
         pairs
             .map(|(&value, computed)| [value as f64, of(computed)])
@@ -113,7 +113,7 @@ impl<'a> Results<'a> {
     ///
     /// # Panics
     /// If it was not computed.
-    pub(super) fn at(&self, variant: usize, value: usize) -> &Computed {
+    pub(super) fn at(&self, variant: usize, value: usize) -> &Computed<2> {
         let place = self.values.iter().position(|&known| known == value);
         &self.computed[variant][place.expect("the value was computed")]
     }
@@ -126,27 +126,27 @@ pub(super) fn written(study: &Study, table: &Table) -> Result<(), CaseError> {
 }
 
 /// Newton corrections per accepted step \[-\].
-pub(super) fn corrections(computed: &Computed) -> f64 {
+pub(super) fn corrections(computed: &Computed<2>) -> f64 {
     computed.report.iterations() as f64 / computed.report.steps.len() as f64
 }
 
 /// Steps that were tried and cut \[-\].
-pub(super) fn cuts(computed: &Computed) -> f64 {
+pub(super) fn cuts(computed: &Computed<2>) -> f64 {
     computed.report.failures.len() as f64
 }
 
 /// Particles times corrections in accepted steps, in millions: the work, whatever the machine \[-\].
-pub(super) fn work(computed: &Computed) -> f64 {
+pub(super) fn work(computed: &Computed<2>) -> f64 {
     1e-6 * computed.particles().len() as f64 * computed.report.iterations() as f64
 }
 
 /// Load factor of the last stage that was reached \[-\].
-pub(super) fn reached(computed: &Computed) -> f64 {
+pub(super) fn reached(computed: &Computed<2>) -> f64 {
     computed.report.reached()
 }
 
 /// Largest displacement at the end \[m\].
-pub(super) fn largest_displacement(computed: &Computed) -> f64 {
+pub(super) fn largest_displacement(computed: &Computed<2>) -> f64 {
     let stages = &computed.run.summary.stages;
     stages
         .last()
@@ -154,7 +154,7 @@ pub(super) fn largest_displacement(computed: &Computed) -> f64 {
 }
 
 /// The soft slope of the benchmark, gravity raised to a multiple \[-\] in equal steps.
-pub(super) fn soft_slope(cell: f64, factor: f64, steps: usize) -> Result<Case, CaseError> {
+pub(super) fn soft_slope(cell: f64, factor: f64, steps: usize) -> Result<Case<2>, CaseError> {
     let mut overrides = mesh(cell, [40.0, 15.0 + cell]);
     overrides.extend(unwatched());
     overrides.push(format!("stages.own weight.factor={factor}"));
@@ -165,7 +165,7 @@ pub(super) fn soft_slope(cell: f64, factor: f64, steps: usize) -> Result<Case, C
 
 /// The shipped cantilever with so many cells over its depth of 1 m, under a multiple of its load \[-\]
 /// that is raised in equal steps.
-pub(super) fn cantilever(cells: usize, load: usize, steps: usize) -> Result<Case, CaseError> {
+pub(super) fn cantilever(cells: usize, load: usize, steps: usize) -> Result<Case<2>, CaseError> {
     let mut overrides = mesh(1.0 / cells as f64, [16.0, 11.0]);
     let corner = [[0.0, 9.0], [10.25, 9.0], [10.25, 10.0], [0.0, 10.0]];
     overrides.push(format!("bodies.beam.polygon={}", corners(&corner)));
@@ -186,7 +186,7 @@ const AS_FAR: f64 = 1e-6;
 
 /// Deflection of the cantilever's tip over its length, the mean of the particles that are next to it; not a number
 /// when it did not reach its load \[-\].
-pub(super) fn deflection(computed: &Computed) -> f64 {
+pub(super) fn deflection(computed: &Computed<2>) -> f64 {
     if reached(computed) < 1.0 {
         return f64::NAN;
     }
@@ -204,7 +204,7 @@ pub(super) fn deflection(computed: &Computed) -> f64 {
 }
 
 /// The drained slope of the benchmark, h = 1 m, with a search for its factor of safety alone.
-pub(super) fn drained_slope() -> Result<Case, CaseError> {
+pub(super) fn drained_slope() -> Result<Case<2>, CaseError> {
     let mut overrides = mesh(1.0, [36.0, 11.0]);
     overrides.push("stages.strength reduction.factors=[]".to_owned());
     overrides.push("stages.strength reduction.tolerance=0.002".to_owned());
@@ -213,7 +213,7 @@ pub(super) fn drained_slope() -> Result<Case, CaseError> {
 }
 
 /// Middle of the interval of the factor of safety \[-\].
-pub(super) fn factor_of_safety(computed: &Computed) -> f64 {
+pub(super) fn factor_of_safety(computed: &Computed<2>) -> f64 {
     let interval = computed
         .safety()
         .and_then(|safety| Some([safety.stable?, safety.failed?]));
@@ -221,13 +221,13 @@ pub(super) fn factor_of_safety(computed: &Computed) -> f64 {
 }
 
 /// Corrections of all trials of a search \[-\].
-pub(super) fn corrections_of_trials(computed: &Computed) -> f64 {
+pub(super) fn corrections_of_trials(computed: &Computed<2>) -> f64 {
     let trials = computed.trials.iter();
     trials.map(|trial| trial.summary.iterations).sum::<usize>() as f64
 }
 
 /// Oscillation of σ_yy over γH in the slope, H = 10 m: deviation from local planes of radius 1.3 h \[-\].
-pub(super) fn roughness(computed: &Computed) -> f64 {
+pub(super) fn roughness(computed: &Computed<2>) -> f64 {
     let particles = computed.particles();
     let radius = 1.3 * computed.case.grid.smallest_cell()[0];
     let scale = 10.0 * computed.case.materials[0].unit_weight;
@@ -237,13 +237,13 @@ pub(super) fn roughness(computed: &Computed) -> f64 {
 /// Pushes of the footing to one width with five cells per width, and two with nine, each different in
 /// one choice.
 pub(super) struct Footings {
-    pushed: Vec<(&'static str, Computed)>,
+    pushed: Vec<(&'static str, Computed<2>)>,
 }
 
 impl Footings {
     /// Runs them.
     pub(super) fn push() -> Result<Self, CaseError> {
-        type Change = fn(&mut Case);
+        type Change = fn(&mut Case<2>);
         let small: Change = |case| case.method.kinematics = Kinematics::SmallStrain;
         let fixed: Change = |case| case.method.domain_update = DomainUpdate::Fixed;
         let by_f: Change = |case| case.method.domain_update = DomainUpdate::DiagonalF;
@@ -280,7 +280,7 @@ impl Footings {
     ///
     /// # Panics
     /// If there is none.
-    pub(super) fn of(&self, name: &str) -> &Computed {
+    pub(super) fn of(&self, name: &str) -> &Computed<2> {
         let found = self.pushed.iter().find(|(known, _)| *known == name);
         &found.expect("the footing was pushed").1
     }

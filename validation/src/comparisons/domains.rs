@@ -87,7 +87,7 @@ pub(super) fn compare(
     Ok(())
 }
 
-fn error(computed: &Computed) -> f64 {
+fn error(computed: &Computed<2>) -> f64 {
     ColumnResult::new(computed).stress_error
 }
 
@@ -226,7 +226,7 @@ fn bent(study: &mut Study) -> Result<(), CaseError> {
 
 /// Oscillation of the mean stress over its root mean square: deviation from local planes of radius
 /// 1.3 h \[-\].
-fn pressure_oscillation(computed: &Computed) -> f64 {
+fn pressure_oscillation(computed: &Computed<2>) -> f64 {
     let particles = computed.particles();
     let mean: Vec<f64> = particles
         .sigma

@@ -71,8 +71,8 @@ pub(super) fn compare(study: &mut Study, footings: Option<&Footings>) -> Result<
 
 /// Columns of 32 cells against the number of steps: S = 0.4 and S = 4.
 fn column(study: &mut Study) -> Result<(), CaseError> {
-    let height = |computed: &Computed| ColumnResult::new(computed).top / column::HEIGHT;
-    let error = |computed: &Computed| ColumnResult::new(computed).stress_error;
+    let height = |computed: &Computed<2>| ColumnResult::new(computed).top / column::HEIGHT;
+    let error = |computed: &Computed<2>| ColumnResult::new(computed).stress_error;
     let steps = [5, 10, 20, 40, 80];
     let mut series = Vec::new();
     let mut lines = Vec::new();
@@ -213,7 +213,7 @@ fn soft(study: &mut Study) -> Result<(), CaseError> {
     let to_collapse = Results::compute(&VARIANTS, "steps", &[20, 40, 80], |steps| {
         soft_slope(1.0, 2.0, steps)
     })?;
-    let factor = |computed: &Computed| 2.0 * reached(computed);
+    let factor = |computed: &Computed<2>| 2.0 * reached(computed);
     written(
         study,
         &to_collapse.table(
@@ -274,7 +274,7 @@ fn stiff(study: &mut Study) -> Result<(), CaseError> {
         case.stages[0].steps = steps;
         Ok(case)
     })?;
-    let measured = |computed: &Computed| limit(computed).unwrap_or(f64::INFINITY);
+    let measured = |computed: &Computed<2>| limit(computed).unwrap_or(f64::INFINITY);
     let [lower, upper] = bounds(2.0);
     for k in 0..2 {
         let run = results.record(study, "stiff slope, D = 2, h = 1 m", (k, 64));

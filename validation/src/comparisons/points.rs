@@ -61,7 +61,7 @@ pub(super) fn compare(
 
 /// The columns of both stiffnesses under refinement.
 fn column(study: &mut Study) -> Result<(), CaseError> {
-    let error = |computed: &Computed| ColumnResult::new(computed).stress_error;
+    let error = |computed: &Computed<2>| ColumnResult::new(computed).stress_error;
     for young in ["1 MPa", "10 kPa"] {
         let results = Results::compute(&VARIANTS, "cells", &[16, 32, 64, 128], |cells| {
             column::case(cells, young, ("gimp", true))

@@ -69,7 +69,7 @@ pub(super) const TIED: usize = 0;
 pub(super) const DROPPED: usize = 3;
 const DROPPED_MOST: usize = 4;
 
-const fn variant(label: &'static str, change: fn(&mut Case)) -> Variant {
+const fn variant(label: &'static str, change: fn(&mut Case<2>)) -> Variant {
     Variant {
         label,
         slug: label,
@@ -95,7 +95,7 @@ fn column(study: &mut Study) -> Result<(), CaseError> {
     let results = Results::compute(&VARIANTS, "cells", &[64, 128], |cells| {
         column::case(cells, "1 MPa", ("gimp", true))
     })?;
-    let error = |computed: &Computed| ColumnResult::new(computed).stress_error;
+    let error = |computed: &Computed<2>| ColumnResult::new(computed).stress_error;
     let quantity = "stress error [-]";
     let (expected, bench) = (COLUMN.says(2.324e-4), "column, 128 cells, E = 1 MPa");
     let run = results.record(study, bench, (TIED, 128));
@@ -145,8 +145,8 @@ fn stiff(study: &mut Study) -> Result<(), CaseError> {
             cell: 1.0 / cells as f64,
         })
     };
-    let measured = |computed: &Computed| limit(computed).unwrap_or(f64::INFINITY);
-    let factor = |computed: &Computed| 1.6 * reached(computed);
+    let measured = |computed: &Computed<2>| limit(computed).unwrap_or(f64::INFINITY);
+    let factor = |computed: &Computed<2>| 1.6 * reached(computed);
     let [lower, upper] = bounds(2.0);
     let expected = BOUNDS.says(0.5 * (lower + upper));
     let quantity = "γH/c_u at collapse [-]";

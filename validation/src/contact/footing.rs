@@ -50,7 +50,7 @@ impl Push {
     }
 
     /// The benchmark's footing on at least five widths of stiffer soil.
-    fn run(&self) -> Result<Computed, CaseError> {
+    fn run(&self) -> Result<Computed<2>, CaseError> {
         let twice = self.cells_per_two_widths;
         let place = |cells: u32| format!("{} m", 2.0 * f64::from(cells) / f64::from(twice));
         let ground = (5 * twice).div_ceil(2);

@@ -61,7 +61,7 @@ impl Soil {
 }
 
 /// Runs the template with a soil and two motions \[m\]; its forces over γ H²/2, active and passive.
-fn push(cell: f64, soil: Soil) -> Result<(Computed, [f64; 2]), CaseError> {
+fn push(cell: f64, soil: Soil) -> Result<(Computed<2>, [f64; 2]), CaseError> {
     let mut overrides = vec![format!("grid.cell=\"{cell} m\""), "checks=[]".to_owned()];
     if matches!(soil, Soil::Clay | Soil::ClayWithAdhesion) {
         overrides.push("materials={ sand = { model = \"tresca\", unit_weight = \"20 kN/m3\", young = \"5 MPa\", poisson = 0.49, cu = \"5 kPa\" } }".to_owned());

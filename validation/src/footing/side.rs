@@ -92,7 +92,7 @@ struct Shaft {
 impl Shaft {
     /// # Panics
     /// If the case has no footing.
-    fn of(case: &Case) -> Self {
+    fn of(case: &Case<2>) -> Self {
         let found = case.loads.iter().find_map(|load| match load.kind {
             LoadKind::RigidFooting {
                 from,
@@ -139,7 +139,7 @@ impl Shaft {
 /// # Errors
 /// [`CaseError`] for what cannot be made. A step without equilibrium is part of the report.
 pub(crate) fn push(
-    case: &Case,
+    case: &Case<2>,
     settlement: f64,
     steps: usize,
     beside: Beside,
@@ -241,7 +241,7 @@ fn with_law(fields: &ParticleFields<2>, marked: &[bool], law: usize) -> Particle
 ///
 /// # Panics
 /// If the material is none: the cases are part of the program.
-fn undrained_strength(case: &Case, material: usize) -> f64 {
+fn undrained_strength(case: &Case<2>, material: usize) -> f64 {
     match case.materials[material].strength {
         Strength::Tresca { undrained_strength } => undrained_strength,
         _ => panic!("the footing stands on Tresca soil"),
@@ -254,7 +254,7 @@ mod tests {
     use crate::runs::{Computed, mesh, shipped_case};
 
     /// A push by 0.2 m in four steps on three cells per width.
-    fn coarse() -> Case {
+    fn coarse() -> Case<2> {
         let mut overrides = mesh(1.0 / 3.0, [5.0, 6.0]);
         let stage = "stages.push to one width";
         overrides.push(format!("{stage}.settlement=\"0.2 m\""));

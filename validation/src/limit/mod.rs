@@ -70,7 +70,7 @@ struct Found {
 }
 
 impl Found {
-    fn of(computed: &Computed) -> Self {
+    fn of(computed: &Computed<2>) -> Self {
         let stages = &computed.run.summary.stages;
         let nothing = StageSummary::default();
         Self::of_stage(computed, stages.last().unwrap_or(&nothing))

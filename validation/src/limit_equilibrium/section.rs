@@ -206,7 +206,7 @@ impl Section {
     ///
     /// # Errors
     /// If the section states no case.
-    pub(crate) fn case(&self, variant: Variant, search: Search) -> Result<Case, CaseError> {
+    pub(crate) fn case(&self, variant: Variant, search: Search) -> Result<Case<2>, CaseError> {
         self.case_with(variant, search, &[])
     }
 
@@ -219,7 +219,7 @@ impl Section {
         variant: Variant,
         search: Search,
         overrides: &[String],
-    ) -> Result<Case, CaseError> {
+    ) -> Result<Case<2>, CaseError> {
         let text = self.text(variant, search, None);
         Ok(CaseFile::parse(&self.name, &text, overrides)?.into_case())
     }

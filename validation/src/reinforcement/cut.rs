@@ -57,7 +57,7 @@ struct Search {
 }
 
 impl Search {
-    fn run(&self) -> Result<Computed, CaseError> {
+    fn run(&self) -> Result<Computed<2>, CaseError> {
         let cell = self.cell;
         let mut overrides = mesh(cell, [11.0, 5.0 + 2.0 * cell]);
         if !self.has_nails {

@@ -10,6 +10,6 @@ use igimp_input::CaseFile;
 use igimp_model::Case;
 
 /// A case file of these studies, changed by overrides.
-fn case(name: &str, text: &str, overrides: &[String]) -> Result<Case, CaseError> {
+fn case(name: &str, text: &str, overrides: &[String]) -> Result<Case<2>, CaseError> {
     Ok(CaseFile::parse(name, text, overrides)?.into_case())
 }

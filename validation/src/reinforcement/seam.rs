@@ -88,7 +88,7 @@ fn blocks() -> Vec<Block> {
 }
 
 impl Block {
-    fn run(&self) -> Result<Computed, CaseError> {
+    fn run(&self) -> Result<Computed<2>, CaseError> {
         let mut text = SEAM.to_owned();
         if let Tie::Anchor(_) = self.tie {
             text = text

@@ -45,7 +45,7 @@ struct Sought {
 pub(crate) struct Found {
     /// Largest factor found stable, smallest found failed \[-\].
     interval: [f64; 2],
-    computed: Computed,
+    computed: Computed<2>,
 }
 
 impl Found {
@@ -182,7 +182,7 @@ impl Problem {
 }
 
 impl Found {
-    pub(crate) fn of(computed: Computed) -> Self {
+    pub(crate) fn of(computed: Computed<2>) -> Self {
         let safety = computed.safety();
         let end = |which: fn(&_) -> Option<f64>| safety.and_then(which).unwrap_or(f64::NAN);
         Self {
@@ -310,7 +310,7 @@ fn summary(study: &mut Study, slopes: &Slopes) -> Result<(), CaseError> {
 }
 
 /// Slope, method, mesh and flow rule in words.
-fn label(problem: &Problem, variant: Variant, computed: &Computed) -> String {
+fn label(problem: &Problem, variant: Variant, computed: &Computed<2>) -> String {
     let drained = problem.section.layers.iter().any(|l| l.friction > 0.0);
     let flow = match (drained, variant.associated) {
         (false, _) => "",

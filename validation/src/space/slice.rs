@@ -182,7 +182,7 @@ tolerance = 1e-11
     }
 
     /// Both runs.
-    fn run(&self) -> Result<(Computed, Computed<3>), CaseError> {
+    fn run(&self) -> Result<(Computed<2>, Computed<3>), CaseError> {
         computed(self.name, [self.text(false), self.text(true)])
     }
 }
@@ -228,7 +228,7 @@ pub(super) fn differences(plane: &Particles<2>, space: &Particles<3>) -> [f64; 2
 pub(super) fn computed(
     name: &str,
     [plane, space]: [String; 2],
-) -> Result<(Computed, Computed<3>), CaseError> {
+) -> Result<(Computed<2>, Computed<3>), CaseError> {
     let plane = CaseFile::parse(name, &plane, &[])?;
     let space = CaseFile::parse(name, &space, &[])?;
     Ok((
@@ -241,7 +241,7 @@ pub(super) fn computed(
 pub(super) fn check_pair(
     study: &mut Study,
     name: &str,
-    (plane, space): (&Computed, &Computed<3>),
+    (plane, space): (&Computed<2>, &Computed<3>),
     found: &[(&str, f64)],
 ) {
     let record = RunRecord::new(format!("{name}, plane"), &plane.report, plane.elapsed);

@@ -32,7 +32,7 @@ const ARCHIMEDES: Oracle = Oracle {
 const QUANTITY: &str = "factor of safety, extrapolated from two meshes [-]";
 
 impl Problem {
-    fn case(&self, cells: u32) -> Result<Case, CaseError> {
+    fn case(&self, cells: u32) -> Result<Case<2>, CaseError> {
         let variant = Variant {
             cells,
             locking: Locking::SharedStrain,
@@ -60,12 +60,12 @@ fn given(source: PoreSource) -> WaterCondition {
 
 /// What a search on one mesh found.
 struct Found {
-    computed: Computed,
+    computed: Computed<2>,
     interval: [f64; 2],
 }
 
 impl Found {
-    fn of(case: Case) -> Result<Self, CaseError> {
+    fn of(case: Case<2>) -> Result<Self, CaseError> {
         let computed = Computed::new(case)?;
         let safety = computed.safety();
         let end = |which: fn(&_) -> Option<f64>| safety.and_then(which).unwrap_or(f64::NAN);

@@ -154,7 +154,7 @@ fn slope(study: &mut Study) -> Result<(), CaseError> {
     let pressure = 100.0;
     let (sin, cos) = FRICTION.to_radians().sin_cos();
     let strength = COHESION * cos + pressure * sin;
-    let case = |material: &str| -> Result<Case, CaseError> {
+    let case = |material: &str| -> Result<Case<2>, CaseError> {
         let text = format!(
             "igimp = 1
              [case]
@@ -207,7 +207,7 @@ fn slope(study: &mut Study) -> Result<(), CaseError> {
         );
         Ok(CaseFile::parse("undrained slope", &text, &[])?.into_case())
     };
-    let undrained = |dilation: f64| -> Result<Computed, CaseError> {
+    let undrained = |dilation: f64| -> Result<Computed<2>, CaseError> {
         let mut case = case(&soil(CONFINED, dilation))?;
         case.materials[0].drainage = Drainage::Undrained {
             stiffness: 1e3 * stiffness(CONFINED, 0.499_999),
@@ -222,7 +222,7 @@ fn slope(study: &mut Study) -> Result<(), CaseError> {
          poisson = 0.495
          cu = \"{strength} kPa\""
     ))?)?;
-    let limit = |computed: &Computed| {
+    let limit = |computed: &Computed<2>| {
         let stages = &computed.run.summary.stages;
         4.0 * stages.last().map_or(f64::NAN, |stage| stage.reached)
     };

@@ -24,7 +24,12 @@ struct Times {
 
 impl Times {
     /// One round.
-    fn measure(&mut self, block: &Block, pass: &mut Pass<'_>, pool: &ThreadPool) -> BenchResult {
+    fn measure(
+        &mut self,
+        block: &Block<2>,
+        pass: &mut Pass<'_, 2>,
+        pool: &ThreadPool,
+    ) -> BenchResult {
         let particles = block.len() as f64;
         let set_up = pool.install(|| timed(|| Pass::set_up(block)))?;
         let evaluate = pool.install(|| timed(|| pass.evaluate()))?;
@@ -48,7 +53,7 @@ impl Times {
 /// A law with its block; times by pool.
 struct Subject {
     soil: Soil,
-    block: Block,
+    block: Block<2>,
     stencils: Stencils<2>,
     times: Vec<Times>,
     bytes: f64,

@@ -71,7 +71,7 @@ fn measure(scope: &Scope, soil: Soil, sizes: &[usize]) -> BenchResult<Vec<Rounds
         let stencils = block.stencils()?;
         Ok((block, stencils))
     });
-    let blocks: Vec<(Block, Stencils<2>)> = blocks.collect::<BenchResult<_>>()?;
+    let blocks: Vec<(Block<2>, Stencils<2>)> = blocks.collect::<BenchResult<_>>()?;
     let mut passes = Vec::new();
     for (block, stencils) in &blocks {
         passes.push(Pass::new(block, stencils)?);

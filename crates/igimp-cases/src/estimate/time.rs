@@ -125,7 +125,7 @@ fn planned(stage: &Stage) -> Taken {
         StageKind::Gravity { .. } | StageKind::Load { .. } if to_collapse => 5.0,
         StageKind::Gravity { .. } | StageKind::Load { .. } => 3.7,
         StageKind::Displacement { .. } | StageKind::Rigid(_) => 6.5,
-        StageKind::Construction(_) | StageKind::StrengthReduction(_) | StageKind::RunOut(_) => 5.0,
+        _ => 5.0,
     };
     let failing = if trials > 0.0 || to_collapse {
         FAILING
@@ -257,7 +257,7 @@ mod tests {
     use super::super::tests::case;
     use super::*;
 
-    fn seconds(case: &Case) -> f64 {
+    fn seconds(case: &Case<2>) -> f64 {
         time(case, &estimate(case).unwrap(), Speed::REFERENCE).seconds
     }
 

@@ -183,9 +183,7 @@ fn at_stage<const D: usize>(case: &Case<D>, run: &Summary, number: usize) -> Opt
         StageKind::Load { loads, .. } => {
             limit(case, run, number, Quantity::LoadFactor(*loads.first()?))
         }
-        StageKind::K0 | StageKind::Rigid(_) | StageKind::Construction(_) | StageKind::RunOut(_) => {
-            None
-        }
+        _ => None,
     }
 }
 

@@ -9,7 +9,7 @@ use igimp_results::summary::{
 use super::{remarks, study};
 
 /// A shipped case on two meshes.
-fn case(name: &str, settings: &[&str]) -> Case {
+fn case(name: &str, settings: &[&str]) -> Case<2> {
     let settings = settings.iter().copied().chain(["mesh_study.meshes=2"]);
     let settings: Vec<String> = settings.map(str::to_owned).collect();
     let shipped = igimp_input::shipped::find(name).unwrap();

@@ -78,7 +78,7 @@ pub(super) fn one_mesh<const D: usize>(
 }
 
 /// The stages of a run, one after another.
-struct Stages<const D: usize = 2> {
+struct Stages<const D: usize> {
     before: Before,
     expectation: Option<Expectation>,
     first: usize,

@@ -44,7 +44,7 @@ pub use state::{Controls, ReinforcementControls, RigidControls, RigidTrack, Stat
 
 /// What happens during a run, as it happens.
 #[derive(Clone, Copy, Debug)]
-pub enum Event<'a, const D: usize = 2> {
+pub enum Event<'a, const D: usize> {
     /// The model is made; the first step follows.
     Prepared {
         /// Its size.
@@ -117,7 +117,7 @@ pub enum Event<'a, const D: usize = 2> {
 }
 
 /// Listens to a run: a progress bar, a log. Closures are listeners to runs of one dimension.
-pub trait Listener<const D: usize = 2>: Send {
+pub trait Listener<const D: usize>: Send {
     /// Called as it happens.
     fn on_event(&mut self, event: &Event<'_, D>);
 }
@@ -253,7 +253,7 @@ impl Target {
 
 /// What a run hands back.
 #[derive(Debug)]
-pub struct Run<const D: usize = 2> {
+pub struct Run<const D: usize> {
     /// What `summary.json` says.
     pub summary: Summary,
     /// Curves, named as in the case.

@@ -26,7 +26,7 @@ const POINTS_PER_CELL: f64 = 4.0;
 
 /// Everything about a case that stays during a run.
 #[derive(Debug)]
-pub struct Model<'c, const D: usize = 2> {
+pub struct Model<'c, const D: usize> {
     /// The case.
     pub case: &'c Case<D>,
     /// Laws of full strength: one for each material in their order, then again one for each material

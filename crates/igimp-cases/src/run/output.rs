@@ -40,7 +40,7 @@ pub(crate) mod sections;
 
 /// The files of a run, open.
 #[derive(Debug)]
-pub(crate) struct Output<const D: usize = 2> {
+pub(crate) struct Output<const D: usize> {
     folder: Folder,
     claim: Claim,
     /// Whether pictures are wanted.

@@ -36,7 +36,7 @@ pub(crate) struct Resumption {
 
 /// Where a search for the factor of safety was left.
 #[derive(Clone, Debug)]
-pub(crate) struct Search<const D: usize = 2> {
+pub(crate) struct Search<const D: usize> {
     /// Trials made.
     pub(crate) trials: Vec<TrialSummary>,
     /// Largest stable factor and its state.
@@ -57,7 +57,7 @@ impl<const D: usize> Default for Search<D> {
 
 /// An end of the interval of a search.
 #[derive(Clone, Debug)]
-pub(crate) struct End<const D: usize = 2> {
+pub(crate) struct End<const D: usize> {
     /// Strength reduction factor \[-\].
     pub(crate) srf: f64,
     /// Its last equilibrium.
@@ -68,7 +68,7 @@ pub(crate) struct End<const D: usize = 2> {
 
 /// Where a run was left.
 #[derive(Clone, Debug)]
-pub(crate) struct ResumePoint<const D: usize = 2> {
+pub(crate) struct ResumePoint<const D: usize> {
     /// Stages that are done.
     pub(crate) stages: Vec<StageSummary>,
     /// Checks made.

@@ -262,10 +262,10 @@ pub(crate) fn too_deep<const D: usize>(
 
 /// The outlines of the rigid bodies that are there, where they stand \[m\]; a circle as so many points.
 pub fn outlines<'a>(
-    case: &'a Case,
-    state: &'a State,
+    case: &'a Case<2>,
+    state: &'a State<2>,
     points_of_circle: usize,
-) -> impl Iterator<Item = (&'a RigidPart, Vec<[f64; 2]>)> {
+) -> impl Iterator<Item = (&'a RigidPart<2>, Vec<[f64; 2]>)> {
     let there = std::iter::zip(state.controls.placed(), &state.body.rigid);
     there.map(move |(index, body)| {
         let part = &case.rigid[index];

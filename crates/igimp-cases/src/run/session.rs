@@ -30,7 +30,7 @@ use crate::run::output::records::AcceptedStep;
 const FALSE_SUPPORT: f64 = 1e-3;
 
 /// A run between its stages.
-pub(crate) struct Session<'a, const D: usize = 2> {
+pub(crate) struct Session<'a, const D: usize> {
     pub(crate) model: &'a Model<'a, D>,
     pub(crate) listener: &'a mut dyn Listener<D>,
     pub(crate) interrupt: &'a AtomicBool,
@@ -181,7 +181,7 @@ impl<const D: usize> Session<'_, D> {
 }
 
 /// A march of the body between two controls.
-pub(crate) struct StagePath<'a, const D: usize = 2> {
+pub(crate) struct StagePath<'a, const D: usize> {
     /// Controls at load factor 0.
     pub(crate) from: &'a Controls,
     /// Controls at load factor 1.
@@ -290,7 +290,7 @@ enum Stop {
 }
 
 /// Follows a march for its stage.
-struct Watch<'w, 's, const D: usize = 2> {
+struct Watch<'w, 's, const D: usize> {
     session: &'w mut Session<'s, D>,
     stage: &'w mut StageSummary,
     path: &'w StagePath<'w, D>,

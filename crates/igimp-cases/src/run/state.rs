@@ -174,7 +174,7 @@ impl Controls {
 
 /// A body and what acted on it last.
 #[derive(Clone, Debug)]
-pub struct State<const D: usize = 2> {
+pub struct State<const D: usize> {
     /// The body. Of the rigid bodies of the case it and of its reinforcement it has what is there
     /// ([`Controls::placed`], [`Controls::installed`]).
     pub body: Body<D>,

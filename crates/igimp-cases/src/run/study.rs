@@ -177,7 +177,7 @@ fn all<const D: usize>(
 }
 
 /// Tells what happens on a mesh to the listener of the study.
-struct OfMesh<'a, 'l, const D: usize = 2> {
+struct OfMesh<'a, 'l, const D: usize> {
     parts: usize,
     listener: &'a Mutex<&'l mut dyn Listener<D>>,
 }

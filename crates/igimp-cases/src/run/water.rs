@@ -21,7 +21,7 @@ const HALVINGS: usize = 16;
 
 /// What pieces of ground the particles were seeded in.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Seeded<const D: usize = 2> {
+pub(crate) struct Seeded<const D: usize> {
     /// Body by number.
     pub(crate) body: Vec<usize>,
     /// Centre and half-lengths by number \[m\]; empty where no water is carried along.
@@ -62,7 +62,7 @@ fn columns<const D: usize>(
 
 /// A condition of the water in the ground.
 #[derive(Debug)]
-pub(crate) struct GroundWater<const D: usize = 2> {
+pub(crate) struct GroundWater<const D: usize> {
     reference: Source<D>,
     /// By body: a pressure of its own.
     own: Vec<Option<Source<D>>>,
@@ -78,7 +78,7 @@ pub(crate) struct GroundWater<const D: usize = 2> {
 
 /// Pressure below an upper end that varies along x; none above it.
 #[derive(Debug)]
-enum Source<const D: usize = 2> {
+enum Source<const D: usize> {
     Dry,
     Table { table: PoreSource, unit_weight: f64 },
     Points(Raster),

@@ -42,7 +42,7 @@ fn stage(name: &str, kind: StageKind) -> Stage {
     }
 }
 
-pub(crate) fn case() -> Case {
+pub(crate) fn case() -> Case<2> {
     let body = |name: &str, material, polygon: &[[f64; 2]]| BodyPart {
         name: name.into(),
         material,
@@ -161,7 +161,7 @@ fn materials() -> Vec<Material> {
     vec![clay, rock]
 }
 
-fn loads() -> Vec<Load> {
+fn loads() -> Vec<Load<2>> {
     let load = |name: &str, kind| Load {
         name: name.into(),
         kind,
@@ -194,7 +194,7 @@ fn loads() -> Vec<Load> {
     ]
 }
 
-fn section(name: &str, from: [f64; 2], to: [f64; 2]) -> Section {
+fn section(name: &str, from: [f64; 2], to: [f64; 2]) -> Section<2> {
     Section {
         name: name.into(),
         from,
@@ -229,7 +229,7 @@ pub(crate) fn curve() -> Curve {
 }
 
 /// The slope with stresses that grow with depth and a slide along a circle.
-pub(crate) fn particles(case: &Case) -> (Particles<2>, Vec<SharedLaw>) {
+pub(crate) fn particles(case: &Case<2>) -> (Particles<2>, Vec<SharedLaw>) {
     let laws: Vec<SharedLaw> = case.materials.iter().map(|m| m.law().unwrap()).collect();
     let grid = case.grid.grid().unwrap();
     let seeds: Vec<_> = case
@@ -273,7 +273,7 @@ pub(crate) fn particles(case: &Case) -> (Particles<2>, Vec<SharedLaw>) {
 }
 
 /// Every picture of the run, written into its folder.
-pub(crate) fn draw(folder: &Path, case: &Case) -> Vec<FigureNote> {
+pub(crate) fn draw(folder: &Path, case: &Case<2>) -> Vec<FigureNote> {
     let title = case.title.as_str();
     let mut notes = vec![pictures::model_picture(folder, case).unwrap()];
     notes.push(pictures::curve_picture(folder, title, &curve(), &findings::curve_table()).unwrap());

@@ -17,7 +17,7 @@ pub(crate) fn curve_table() -> Table {
     table
 }
 
-pub(crate) fn monitor_table(monitor: &Monitor) -> Table {
+pub(crate) fn monitor_table(monitor: &Monitor<2>) -> Table {
     let headers: Vec<String> = monitor.record.iter().map(|&f| f.header()).collect();
     let mut names = vec!["stage", "step"];
     names.extend(headers.iter().map(String::as_str));
@@ -36,7 +36,7 @@ pub(crate) fn monitor_table(monitor: &Monitor) -> Table {
     table
 }
 
-pub(crate) fn section_table(section: &Section) -> Table {
+pub(crate) fn section_table(section: &Section<2>) -> Table {
     let headers: Vec<String> = section.record.iter().map(|&f| f.header()).collect();
     let mut names = vec!["distance_[m]"];
     names.extend(headers.iter().map(String::as_str));

@@ -27,7 +27,7 @@ pub(super) fn bodies(
     tree: &Node,
     names: &AllNames,
     problems: &mut Problems,
-) -> Vec<Option<BodyPart>> {
+) -> Vec<Option<BodyPart<2>>> {
     let items = tree.items_at("bodies");
     let corners: usize = items
         .iter()
@@ -54,7 +54,7 @@ fn part(
     names: &AllNames,
     later: &[&str],
     problems: &mut Problems,
-) -> Option<BodyPart> {
+) -> Option<BodyPart<2>> {
     let name = node.text_at("name").unwrap_or("?");
     let material = node.get("material").and_then(|material| {
         let who = format!("body `{}` uses", clip(name, 40));
@@ -118,7 +118,7 @@ pub(super) fn corners(node: &Node, name: &str, problems: &mut Problems) -> Optio
 pub(super) fn check(
     tree: &Node,
     names: &AllNames,
-    (bodies, sequence): (&[Option<BodyPart>], &Sequence),
+    (bodies, sequence): (&[Option<BodyPart<2>>], &Sequence),
     site: &Site,
     problems: &mut Problems,
 ) {
@@ -199,8 +199,8 @@ pub(super) fn check(
 /// Warns of bodies that nothing holds from below.
 pub(super) fn check_support(
     tree: &Node,
-    bodies: &[Option<BodyPart>],
-    boundaries: Option<&Boundaries>,
+    bodies: &[Option<BodyPart<2>>],
+    boundaries: Option<&Boundaries<2>>,
     site: &Site,
     problems: &mut Problems,
 ) {

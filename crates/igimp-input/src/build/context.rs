@@ -9,7 +9,7 @@ use crate::build::bodies::site::Soil;
 use crate::build::{AllNames, Site};
 
 /// What stages refer to.
-pub(crate) struct Context<'a, const D: usize = 2> {
+pub(crate) struct Context<'a, const D: usize> {
     pub(crate) tree: &'a Node,
     pub(crate) names: &'a AllNames,
     pub(crate) materials: &'a [Option<Material>],

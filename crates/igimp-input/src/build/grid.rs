@@ -28,7 +28,7 @@ const DIRECTIONS: [&str; 3] = ["x", "y", "z"];
 
 /// Extent of the grid and its axes, for the checks of what lies on it \[m\].
 #[derive(Clone, Debug)]
-pub(super) struct Frame<const D: usize = 2> {
+pub(super) struct Frame<const D: usize> {
     /// Corner of the lowest coordinates.
     pub(super) lower: [f64; D],
     /// Corner of the highest coordinates.

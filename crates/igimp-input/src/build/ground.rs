@@ -86,7 +86,7 @@ impl Earth<2> for Site {
         Box::new(Line::of(self, present, fills_gaps))
     }
 
-    fn wets(&self, source: &PoreSource, part: &BodyPart) -> bool {
+    fn wets(&self, source: &PoreSource, part: &BodyPart<2>) -> bool {
         match source {
             PoreSource::Points(raster) => raster
                 .places_in(part.polygon())
@@ -101,7 +101,7 @@ impl Earth<2> for Site {
         }
     }
 
-    fn front_outline(&self, part: &BodyPart) -> Vec<[f64; 2]> {
+    fn front_outline(&self, part: &BodyPart<2>) -> Vec<[f64; 2]> {
         part.polygon().to_vec()
     }
 }

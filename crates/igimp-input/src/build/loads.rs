@@ -12,7 +12,7 @@ use super::grid::Frame;
 use crate::geometry::cover;
 
 /// The loads.
-pub(super) fn loads(tree: &Node, site: &Site, problems: &mut Problems) -> Vec<Option<Load>> {
+pub(super) fn loads(tree: &Node, site: &Site, problems: &mut Problems) -> Vec<Option<Load<2>>> {
     let mut has_footing = false;
     let items = tree.items_at("loads");
     items
@@ -45,7 +45,7 @@ pub(super) fn loads(tree: &Node, site: &Site, problems: &mut Problems) -> Vec<Op
         .collect()
 }
 
-fn footing(node: &Node, name: &str, site: &Site, problems: &mut Problems) -> Option<LoadKind> {
+fn footing(node: &Node, name: &str, site: &Site, problems: &mut Problems) -> Option<LoadKind<2>> {
     let (a, b) = (node.pair_at("from")?, node.pair_at("to")?);
     let (from, to) = if a[0] <= b[0] { (a, b) } else { (b, a) };
     let (rough, reaction_factor) = (
@@ -137,7 +137,7 @@ fn on_grid(
     name: &str,
     from: [f64; 2],
     to: [f64; 2],
-    frame: &Frame,
+    frame: &Frame<2>,
     site: &Site,
     problems: &mut Problems,
 ) {
@@ -190,7 +190,7 @@ fn on_grid(
 }
 
 /// A width of cells that has the edges of a footing mid-cell and fills the domain.
-fn better_cell(edge: f64, ends: [f64; 2], frame: &Frame) -> Option<String> {
+fn better_cell(edge: f64, ends: [f64; 2], frame: &Frame<2>) -> Option<String> {
     let Frame { lower, upper, axes } = frame;
     let AxisSpec::Equal { cell, .. } = axes[0] else {
         return None;
@@ -223,7 +223,7 @@ fn better_cell(edge: f64, ends: [f64; 2], frame: &Frame) -> Option<String> {
     ))
 }
 
-fn pressure(node: &Node, name: &str, site: &Site, problems: &mut Problems) -> Option<LoadKind> {
+fn pressure(node: &Node, name: &str, site: &Site, problems: &mut Problems) -> Option<LoadKind<2>> {
     let (from, to) = (node.pair_at("from")?, node.pair_at("to")?);
     let pressure = node.number_at("pressure")?;
     let is_down = node.text_at("direction")? == "down";

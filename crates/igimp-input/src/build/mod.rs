@@ -87,7 +87,12 @@ pub(super) fn build(tree: &mut Node, file: &Path, problems: &mut Problems) -> Op
 }
 
 /// The same for a case in plane strain.
-fn in_plane(tree: &Node, names: &AllNames, file: &Path, problems: &mut Problems) -> Option<Case> {
+fn in_plane(
+    tree: &Node,
+    names: &AllNames,
+    file: &Path,
+    problems: &mut Problems,
+) -> Option<Case<2>> {
     let basics = Basics::new(tree, names, bodies::bodies(tree, names, problems), problems);
     let Basics {
         bodies,

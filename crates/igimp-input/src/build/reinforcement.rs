@@ -21,7 +21,7 @@ pub(super) fn reinforcement(
     tree: &Node,
     site: &Site,
     problems: &mut Problems,
-) -> Vec<Option<ReinforcementPart>> {
+) -> Vec<Option<ReinforcementPart<2>>> {
     let nodes = tree.items_at("reinforcement").iter();
     let member = |node: &Node| {
         let mut own = part(tree, node, site, problems)?;
@@ -157,7 +157,7 @@ fn place<const D: usize>(line: &[[f64; D]], mut at: f64) -> [f64; D] {
 
 /// The ends of a plate: along the edge of the soil on which the head lies, no further than that edge goes
 /// to either side; else across the member.
-fn plate(part: &ReinforcementPart, width: f64, site: &Site) -> [[f64; 2]; 2] {
+fn plate(part: &ReinforcementPart<2>, width: f64, site: &Site) -> [[f64; 2]; 2] {
     let (head, next) = (part.line[0], part.line[1]);
     let apart = |a: [f64; 2], b: [f64; 2]| (b[0] - a[0]).hypot(b[1] - a[1]);
     let edges = site.polygons.iter().flat_map(|polygon| {

@@ -13,7 +13,7 @@ use super::bodies::surfaces::terrain;
 use super::ground::{Earth, Surface, UprightFace};
 
 /// What conditions of the water are held against.
-pub(super) struct Around<'a, const D: usize = 2> {
+pub(super) struct Around<'a, const D: usize> {
     pub(super) tree: &'a Node,
     pub(super) names: &'a AllNames,
     pub(super) earth: &'a dyn Earth<D>,

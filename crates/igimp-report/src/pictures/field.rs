@@ -46,7 +46,7 @@ pub struct Canvas<'a> {
     /// The results folder.
     pub folder: &'a Path,
     /// The case.
-    pub case: &'a Case,
+    pub case: &'a Case<2>,
     /// Its bodies in pieces.
     pub pieces: &'a Pieces,
 }
@@ -61,7 +61,7 @@ pub struct Over {
 }
 
 /// Particles, and the laws that they refer to.
-pub type Seen<'a, const D: usize = 2> = (&'a Particles<D>, &'a [SharedLaw]);
+pub type Seen<'a, const D: usize> = (&'a Particles<D>, &'a [SharedLaw]);
 
 /// The picture of a field in a state: the bodies in pieces, coloured by their particles, their edges as
 /// they moved and as they were, and structures `over` them where they stand.
@@ -74,8 +74,8 @@ pub fn field_picture(
     canvas: &Canvas<'_>,
     shown: &Shown,
     field: Field,
-    (particles, laws): Seen<'_>,
-    compared: &[Seen<'_>],
+    (particles, laws): Seen<'_, 2>,
+    compared: &[Seen<'_, 2>],
     over: &Over,
 ) -> Result<FigureNote, ReportError> {
     let case = canvas.case;
@@ -145,7 +145,7 @@ pub(super) fn edges(canvas: &Canvas<'_>, particles: &Particles<2>) -> Vec<Outlin
 }
 
 /// The edges of the undeformed bodies.
-pub(super) fn body_outlines(case: &Case) -> impl Iterator<Item = Outline> {
+pub(super) fn body_outlines(case: &Case<2>) -> impl Iterator<Item = Outline> {
     case.bodies.iter().map(|body| Outline {
         points: body
             .polygon()

@@ -73,7 +73,7 @@ pub fn mechanism(failing: &Failing<'_>) -> Option<Mechanism> {
 
 impl Mechanism {
     /// The slip line as a table, if one stands out.
-    pub fn table(&self, case: &Case, stage: usize) -> Option<Table> {
+    pub fn table(&self, case: &Case<2>, stage: usize) -> Option<Table> {
         let line = self.line.as_ref()?;
         let name = format!("{}-{}", stage + 1, file_name(&case.stages[stage].name));
         let mut table = Table::new(name, &["x_[m]", "y_[m]", "shear_strain_increment_[-]"]);

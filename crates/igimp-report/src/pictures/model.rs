@@ -23,7 +23,7 @@ const AIR: f64 = 0.035;
 ///
 /// # Errors
 /// [`ResultsError::File`](igimp_results::ResultsError::File) and [`ReportError::Figure`].
-pub fn model_picture(folder: &Path, case: &Case) -> Result<FigureNote, ReportError> {
+pub fn model_picture(folder: &Path, case: &Case<2>) -> Result<FigureNote, ReportError> {
     let plot = plot(case);
     let grid = &case.grid;
     let lines = if has_lines(grid) { "" } else { " (not drawn)" };
@@ -46,7 +46,7 @@ pub fn model_picture(folder: &Path, case: &Case) -> Result<FigureNote, ReportErr
     write(folder, "model", &plot.draw()?, caption)
 }
 
-fn plot(case: &Case) -> FieldPlot {
+fn plot(case: &Case<2>) -> FieldPlot {
     let mut plot = FieldPlot {
         title: case.title.clone(),
         domains: case
@@ -109,7 +109,7 @@ fn plot(case: &Case) -> FieldPlot {
 }
 
 /// The larger side of grid and bodies.
-fn model_size(case: &Case) -> f64 {
+fn model_size(case: &Case<2>) -> f64 {
     let corners: Vec<[f64; 2]> = case
         .bodies
         .iter()
@@ -130,11 +130,11 @@ fn sizes(axis: &AxisSpec) -> String {
     }
 }
 
-fn has_lines(grid: &GridSpec) -> bool {
+fn has_lines(grid: &GridSpec<2>) -> bool {
     grid.cells().iter().all(|&cells| cells <= MOST_LINES)
 }
 
-fn grid_lines(grid: &GridSpec) -> impl Iterator<Item = Outline> {
+fn grid_lines(grid: &GridSpec<2>) -> impl Iterator<Item = Outline> {
     let (lower, upper) = (grid.lower(), grid.upper());
     let line = move |axis: usize, at: f64| {
         let (mut from, mut to) = (lower, upper);
@@ -148,7 +148,7 @@ fn grid_lines(grid: &GridSpec) -> impl Iterator<Item = Outline> {
 }
 
 /// Bodies, those that stages place dashed.
-fn bodies(case: &Case) -> impl Iterator<Item = Outline> {
+fn bodies(case: &Case<2>) -> impl Iterator<Item = Outline> {
     let (first, later): (Vec<_>, Vec<_>) =
         std::iter::zip(super::field::body_outlines(case), &case.bodies)
             .partition(|(_, body)| body.from_start);
@@ -161,7 +161,7 @@ fn bodies(case: &Case) -> impl Iterator<Item = Outline> {
 }
 
 /// The tables of the conditions of the water, with their names.
-fn add_water(plot: &mut FieldPlot, case: &Case) {
+fn add_water(plot: &mut FieldPlot, case: &Case<2>) {
     let ([left, _], [right, _]) = (case.grid.lower(), case.grid.upper());
     for condition in &case.water {
         let PoreSource::Table(table) = &condition.source else {
@@ -181,7 +181,7 @@ fn add_water(plot: &mut FieldPlot, case: &Case) {
 }
 
 /// Rigid bodies where they start, with their names.
-fn add_rigid_bodies(plot: &mut FieldPlot, case: &Case) {
+fn add_rigid_bodies(plot: &mut FieldPlot, case: &Case<2>) {
     for part in &case.rigid {
         if let Some(outline) = block(case, &part.outline(POINTS_OF_CIRCLE)) {
             let (lower, upper) = bounding_box(&outline.points);
@@ -193,7 +193,7 @@ fn add_rigid_bodies(plot: &mut FieldPlot, case: &Case) {
 }
 
 /// Sides counter-clockwise, so that their symbols stand outside; boxes clockwise, symbols within.
-fn add_supports(plot: &mut FieldPlot, case: &Case) {
+fn add_supports(plot: &mut FieldPlot, case: &Case<2>) {
     let ([left, bottom], [right, top]) = (case.grid.lower(), case.grid.upper());
     let sides = &case.boundaries.sides;
     let lines = [
@@ -230,9 +230,9 @@ fn add_supports(plot: &mut FieldPlot, case: &Case) {
 
 /// Arrows and blocks of the loads; returns the points that they reach. Traction and forces are
 /// drawn to the scale of the largest of their kind.
-fn add_loads(plot: &mut FieldPlot, case: &Case, length: f64) -> Vec<[f64; 2]> {
+fn add_loads(plot: &mut FieldPlot, case: &Case<2>, length: f64) -> Vec<[f64; 2]> {
     let norm = |v: [f64; 2]| v[0].hypot(v[1]);
-    let largest = |size: &dyn Fn(&LoadKind) -> f64| {
+    let largest = |size: &dyn Fn(&LoadKind<2>) -> f64| {
         case.loads
             .iter()
             .map(|load| size(&load.kind))

@@ -7,7 +7,7 @@ use igimp_model::{Case, Cut, PoreSource, WaterCondition, table_level};
 /// The water tables of a condition between two places along x \[m\]; bodies that are there and have a table of their own show
 /// it over their width.
 pub fn tables(
-    case: &Case,
+    case: &Case<2>,
     condition: &WaterCondition,
     there: impl Fn(usize) -> bool,
     ends: [f64; 2],

@@ -55,7 +55,7 @@ const REPLACED: &str = ".previous";
 
 /// A state of a run, read from disk.
 #[derive(Clone, Debug)]
-pub struct Checkpoint<const D: usize = 2> {
+pub struct Checkpoint<const D: usize> {
     /// What is known about it.
     pub meta: Meta,
     /// Bodies by name, in the order in which they were written.

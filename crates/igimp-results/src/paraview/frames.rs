@@ -18,7 +18,7 @@ use crate::vtu::UnstructuredGrid;
 
 /// Structures that are there in a frame.
 #[derive(Clone, Debug, Default)]
-pub struct Structures<'a, const D: usize = 2> {
+pub struct Structures<'a, const D: usize> {
     /// Rigid bodies.
     pub rigid: Vec<Standing<'a, D>>,
     /// Reinforcement.

@@ -252,7 +252,7 @@ mod tests {
 
     use super::*;
 
-    fn start(kind: &'static str) -> Event<'static> {
+    fn start(kind: &'static str) -> Event<'static, 2> {
         Event::StageStarted {
             stage: 0,
             of: 3,

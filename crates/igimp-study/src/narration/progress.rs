@@ -116,11 +116,11 @@ mod tests {
         slope.case_file(set.to_vec()).unwrap().any_case().clone()
     }
 
-    fn end(summary: &StageSummary) -> Event<'_> {
+    fn end(summary: &StageSummary) -> Event<'_, 2> {
         Event::StageEnded { summary }
     }
 
-    fn start(stage: usize) -> Event<'static> {
+    fn start(stage: usize) -> Event<'static, 2> {
         Event::StageStarted {
             stage,
             of: 3,

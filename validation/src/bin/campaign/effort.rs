@@ -83,7 +83,7 @@ fn cause(failure: &StepFailure) -> &'static str {
 
 /// Follows a run.
 pub(crate) struct Follower<'c> {
-    case: &'c Case,
+    case: &'c Case<2>,
     /// The body before the next step, where it is known.
     before: Option<Body<2>>,
     /// Of the rigid bodies of the case.
@@ -94,7 +94,7 @@ pub(crate) struct Follower<'c> {
 
 impl<'c> Follower<'c> {
     /// Follows a run of a case from its beginning.
-    pub(crate) fn new(case: &'c Case) -> Self {
+    pub(crate) fn new(case: &'c Case<2>) -> Self {
         let initial = Model::new(case).ok();
         Self {
             case,
@@ -105,7 +105,7 @@ impl<'c> Follower<'c> {
     }
 
     /// Takes an event.
-    pub(crate) fn on_event(&mut self, event: &Event<'_>) {
+    pub(crate) fn on_event(&mut self, event: &Event<'_, 2>) {
         match event {
             Event::Equilibrium { accepted, .. } => self.accepted(accepted),
             Event::Cut { error } => {

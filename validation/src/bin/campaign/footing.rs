@@ -46,7 +46,7 @@ impl Footing {
     ///
     /// # Panics
     /// If the case is not shipped: it is part of the program.
-    pub(crate) fn case(&self) -> Result<Case, CaseError> {
+    pub(crate) fn case(&self) -> Result<Case<2>, CaseError> {
         let shipped = shipped::find("footing_bonded").expect("the footing is shipped");
         let overrides = [
             format!("grid.cell=\"1/{} m\"", self.cells_per_width),

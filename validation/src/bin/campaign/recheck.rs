@@ -26,7 +26,7 @@ pub(crate) struct Equilibrium {
 /// Computes the equilibrium of a step again, from the body before it and what it accepted.
 /// `None` if the particles have no place on the grid.
 pub(crate) fn equilibrium(
-    case: &Case,
+    case: &Case<2>,
     body: &Body<2>,
     accepted: &Accepted<'_, 2>,
 ) -> Option<Equilibrium> {

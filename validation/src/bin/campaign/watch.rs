@@ -130,7 +130,7 @@ impl Watched {
 }
 
 /// Runs a case under watch.
-pub(crate) fn watch(case: Case, budget: Budget) -> Watched {
+pub(crate) fn watch(case: Case<2>, budget: Budget) -> Watched {
     let clock = Instant::now();
     let interrupt = Arc::new(AtomicBool::new(false));
     let (sender, receiver) = channel();
@@ -173,8 +173,8 @@ struct Watch<'c> {
     ended_by_cut: bool,
 }
 
-impl Listener for Watch<'_> {
-    fn on_event(&mut self, event: &Event<'_>) {
+impl Listener<2> for Watch<'_> {
+    fn on_event(&mut self, event: &Event<'_, 2>) {
         self.follower.on_event(event);
         match event {
             Event::Equilibrium { accepted, .. } => {
@@ -196,7 +196,7 @@ impl Listener for Watch<'_> {
     }
 }
 
-fn follow(case: &Case, budget: Budget, interrupt: &AtomicBool) -> Watched {
+fn follow(case: &Case<2>, budget: Budget, interrupt: &AtomicBool) -> Watched {
     let clock = Instant::now();
     let mut watch = Watch {
         follower: Follower::new(case),
@@ -256,7 +256,7 @@ fn follow(case: &Case, budget: Budget, interrupt: &AtomicBool) -> Watched {
 }
 
 /// Whether the step that ended a run did so for want of equilibrium.
-fn is_want_of_equilibrium(run: &Run) -> bool {
+fn is_want_of_equilibrium(run: &Run<2>) -> bool {
     let failure = run.failure.as_ref();
     failure.is_some_and(|failure| failure.error.failure.is_want_of_equilibrium())
 }

@@ -269,7 +269,7 @@ impl Pair {
     }
 
     /// Both runs.
-    fn run(&self) -> Result<(Computed, Computed<3>), CaseError> {
+    fn run(&self) -> Result<(Computed<2>, Computed<3>), CaseError> {
         computed(self.name, [self.text(false), self.text(true)])
     }
 }

@@ -11,7 +11,7 @@ use igimp_model::{
 use super::*;
 
 /// A slope of Mohr–Coulomb soil on elastic rock.
-fn case(kind: StageKind) -> Case {
+fn case(kind: StageKind) -> Case<2> {
     let material = |name: &str, strength| Material {
         name: name.into(),
         unit_weight: 20e3,
@@ -94,7 +94,7 @@ fn case(kind: StageKind) -> Case {
     }
 }
 
-fn gravity() -> Case {
+fn gravity() -> Case<2> {
     case(StageKind::Gravity {
         factor: 1.0,
         horizontal: None,

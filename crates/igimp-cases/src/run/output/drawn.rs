@@ -49,7 +49,7 @@ impl<const D: usize> Output<D> {
             self.field_pictures(model, &shown, state, &others)?;
         }
         let kept_in_plane =
-            in_plane::<Vec<(&'static str, End<D>)>, Vec<(&'static str, End)>>(&kept);
+            in_plane::<Vec<(&'static str, End<D>)>, Vec<(&'static str, End<2>)>>(&kept);
         let (Some(case), Some(kept)) = (in_plane(model.case), kept_in_plane) else {
             return Ok(());
         };
@@ -59,9 +59,9 @@ impl<const D: usize> Output<D> {
     /// The way in which the body fails: the slip line as a table, and its picture.
     fn mechanism(
         &mut self,
-        (case, body_of): (&Case, &[usize]),
+        (case, body_of): (&Case<2>, &[usize]),
         number: usize,
-        kept: &[(&'static str, End)],
+        kept: &[(&'static str, End<2>)],
     ) -> Result<(), CaseError> {
         // The state that failed has moved most; where no step led to it, the stable one tells.
         for (what, end) in kept.iter().rev() {
@@ -96,7 +96,7 @@ impl<const D: usize> Output<D> {
     }
 
     /// The bodies in pieces, cut once.
-    fn pieces(&mut self, case: &Case) -> Result<Arc<Pieces>, CaseError> {
+    fn pieces(&mut self, case: &Case<2>) -> Result<Arc<Pieces>, CaseError> {
         let pieces = match &self.pieces {
             Some(pieces) => Arc::clone(pieces),
             None => Arc::new(Pieces::of(case)?),
@@ -133,7 +133,8 @@ impl<const D: usize> Output<D> {
                 .collect();
             return self.pictures_in_space((model, shown), (state, &laws), &compared);
         }
-        let (Some(case), Some(state)) = (in_plane(model.case), in_plane::<_, State>(state)) else {
+        let (Some(case), Some(state)) = (in_plane(model.case), in_plane::<_, State<2>>(state))
+        else {
             return Ok(());
         };
         let pieces = self.pieces(case)?;
@@ -143,9 +144,9 @@ impl<const D: usize> Output<D> {
             pieces: &pieces,
         };
         let own = (&state.body.particles, &laws[..]);
-        let compared: Vec<Seen<'_>> = std::iter::zip(compared, &reduced)
+        let compared: Vec<Seen<'_, 2>> = std::iter::zip(compared, &reduced)
             .filter_map(|(state, laws)| {
-                Some((&in_plane::<_, State>(*state)?.body.particles, *laws))
+                Some((&in_plane::<_, State<2>>(*state)?.body.particles, *laws))
             })
             .collect();
         let over = outlines::of_state((case, &model.seeded.body), state);

@@ -17,7 +17,7 @@ use crate::run::state::{Controls, State};
 
 /// What is drawn over a state: everything rigid in it, as far as it lies within the grid, the water tables that act, and
 /// reinforcement. `body_of` has the body of each particle by its number.
-pub(crate) fn of_state((case, body_of): (&Case, &[usize]), state: &State) -> Over {
+pub(crate) fn of_state((case, body_of): (&Case<2>, &[usize]), state: &State<2>) -> Over {
     let water = water_tables((case, body_of), state);
     let bodies = rigid::outlines(case, state, POINTS_OF_CIRCLE);
     let bodies = bodies.filter_map(|(_, outline)| block(case, &outline));
@@ -38,7 +38,7 @@ pub(crate) fn of_state((case, body_of): (&Case, &[usize]), state: &State) -> Ove
 }
 
 /// The water tables that act, as far as there is soil.
-fn water_tables((case, body_of): (&Case, &[usize]), state: &State) -> Vec<Outline> {
+fn water_tables((case, body_of): (&Case<2>, &[usize]), state: &State<2>) -> Vec<Outline> {
     let particles = &state.body.particles;
     let Some(condition) = state.controls.water.and_then(|k| case.water.get(k)) else {
         return Vec::new();
@@ -72,7 +72,7 @@ pub(crate) fn structures<'a, const D: usize>(
 }
 
 /// A rigid footing that was pushed, as a block two cells high.
-fn footing(case: &Case, settlement: f64) -> Option<Outline> {
+fn footing(case: &Case<2>, settlement: f64) -> Option<Outline> {
     case.loads.iter().find_map(|load| match load.kind {
         LoadKind::RigidFooting { from, to, .. } if settlement > 0.0 => {
             let base = from[1] - settlement;

@@ -15,7 +15,7 @@ use crate::run::{reinforcement, rigid};
 
 /// A state that is recorded: the end of a step, or of a trial in a strength reduction.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Moment<'a, const D: usize = 2> {
+pub(crate) struct Moment<'a, const D: usize> {
     /// Number of the stage, from 0.
     pub(crate) stage: usize,
     /// Number of the step (or trial) in its stage, from 1; 0 before the first.
@@ -258,7 +258,7 @@ pub(crate) struct Rows {
 }
 
 /// An accepted step as a stage sees it.
-pub(crate) struct AcceptedStep<'a, const D: usize = 2> {
+pub(crate) struct AcceptedStep<'a, const D: usize> {
     /// The step in the solver's terms.
     pub(crate) accepted: &'a Accepted<'a, D>,
     /// What acts on the body now.

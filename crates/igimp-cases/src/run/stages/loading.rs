@@ -53,7 +53,7 @@ pub(crate) fn target<const D: usize>(case: &Case<D>, stage: &Stage, start: &Cont
             }
         }
         StageKind::Construction(own) => end.water = own.water.or(end.water),
-        StageKind::K0 | StageKind::StrengthReduction(_) | StageKind::RunOut(_) => {}
+        _ => {}
     }
     end.drained =
         stage.drained || matches!(&stage.kind, StageKind::Construction(own) if own.dissipate);

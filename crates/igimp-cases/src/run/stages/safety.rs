@@ -92,7 +92,7 @@ fn by_trials<const D: usize>(
 }
 
 /// The trials of one search.
-struct Trials<'a, const D: usize = 2> {
+struct Trials<'a, const D: usize> {
     number: usize,
     stage: &'a Stage,
     reduction: &'a StrengthReduction,

@@ -13,7 +13,7 @@ use crate::geometry::{near_edge, top_edges};
 /// Bodies and grid as far as they were found right.
 pub(crate) struct Site {
     /// Extent and cells.
-    pub(crate) frame: Option<Frame>,
+    pub(crate) frame: Option<Frame<2>>,
     /// Polygons of the bodies.
     pub(crate) polygons: Vec<Vec<[f64; 2]>>,
     /// Whether all bodies are there.
@@ -54,7 +54,7 @@ impl Soil<2> for Site {
         self.holds(*point, margin)
     }
 
-    fn bears(&self, body: usize, load: &LoadKind) -> bool {
+    fn bears(&self, body: usize, load: &LoadKind<2>) -> bool {
         let [from, to] = match *load {
             LoadKind::RigidFooting { from, to, .. } | LoadKind::Pressure { from, to, .. } => {
                 [from, to]
@@ -84,8 +84,8 @@ impl Soil<2> for Site {
 
 impl Site {
     pub(crate) fn new(
-        frame: Option<Frame>,
-        bodies: &[Option<BodyPart>],
+        frame: Option<Frame<2>>,
+        bodies: &[Option<BodyPart<2>>],
         sequence: &Sequence,
     ) -> Self {
         let polygons: Vec<_> = bodies

@@ -30,7 +30,7 @@ pub(crate) struct Layers<'a> {
     /// The file.
     pub(crate) tree: &'a Node,
     /// Its bodies.
-    pub(crate) bodies: &'a [Option<BodyPart>],
+    pub(crate) bodies: &'a [Option<BodyPart<2>>],
     /// Its materials.
     pub(crate) materials: &'a [Option<Material>],
     /// Bodies on the grid.
@@ -58,12 +58,12 @@ fn complete<T>(parts: &[Option<T>]) -> Option<Vec<&T>> {
 }
 
 /// The ground of bodies and materials.
-fn ground_of<'a>(bodies: &[&'a BodyPart], materials: &[&'a Material]) -> Ground {
+fn ground_of<'a>(bodies: &[&'a BodyPart<2>], materials: &[&'a Material]) -> Ground<2> {
     Ground::new(bodies.iter().map(|body| (*body, materials[body.material])))
 }
 
 /// The modulus of compression without lateral strain at a place.
-fn constrained(material: &Material, place: [f64; 2], ground: &Ground) -> f64 {
+fn constrained(material: &Material, place: [f64; 2], ground: &Ground<2>) -> f64 {
     let nu = material.poisson;
     material.young_at(&place, ground) * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu))
 }
@@ -72,8 +72,8 @@ fn constrained(material: &Material, place: [f64; 2], ground: &Ground) -> f64 {
 /// material, or nothing.
 fn check_pairs(
     layers: &Layers<'_>,
-    frame: &Frame,
-    (bodies, materials, ground): (&[&BodyPart], &[&Material], &Ground),
+    frame: &Frame<2>,
+    (bodies, materials, ground): (&[&BodyPart<2>], &[&Material], &Ground<2>),
     problems: &mut Problems,
 ) -> Vec<Neighbours> {
     let [width, height] = frame.axes.each_ref().map(|axis| axis.extremes()[0]);
@@ -163,7 +163,7 @@ struct Within {
 }
 
 impl Within {
-    fn of(ends: [[f64; 2]; 2], frame: &Frame, round_off: f64) -> Option<Self> {
+    fn of(ends: [[f64; 2]; 2], frame: &Frame<2>, round_off: f64) -> Option<Self> {
         let across = [1, 0]
             .into_iter()
             .find(|&axis| (ends[0][axis] - ends[1][axis]).abs() <= round_off);
@@ -247,8 +247,8 @@ struct Report<'a> {
 /// Warns of bodies thinner than three cells that are alone or softer than what they touch.
 fn check_thickness(
     layers: &Layers<'_>,
-    frame: &Frame,
-    bodies: &[&BodyPart],
+    frame: &Frame<2>,
+    bodies: &[&BodyPart<2>],
     neighbours: &[Neighbours],
     problems: &mut Problems,
 ) {
@@ -316,7 +316,7 @@ pub(crate) fn check_stiffness(
         return;
     }
     let ground = ground_of(&bodies, &materials);
-    let levels = |body: &BodyPart| {
+    let levels = |body: &BodyPart<2>| {
         let (lower, upper) = bounding_box(body.polygon());
         [lower[1], upper[1]]
     };

@@ -16,7 +16,7 @@ pub(crate) struct Property {
 
 /// Where the soil of a material lies, and its name for messages.
 #[derive(Clone, Copy)]
-pub(crate) struct Extent<'a, const D: usize = 2> {
+pub(crate) struct Extent<'a, const D: usize> {
     pub name: &'a str,
     pub(crate) material: usize,
     pub(crate) bodies: &'a [Option<BodyPart<D>>],
@@ -34,7 +34,7 @@ impl<'a, const D: usize> Extent<'a, D> {
     /// Their outlines as seen from the front: polygons in the plane, else the boxes around them.
     fn outlines(&self) -> Vec<Polygon> {
         let outline = |body: &BodyPart<D>| {
-            if let Some(body) = in_plane::<_, BodyPart>(body) {
+            if let Some(body) = in_plane::<_, BodyPart<2>>(body) {
                 return body.polygon().to_vec();
             }
             let (lower, upper) = body.region.bounds();

@@ -20,7 +20,7 @@ const POINTS_OF_CIRCLE: usize = 90;
 pub(crate) struct Around<'a> {
     pub(crate) site: &'a Site,
     pub(crate) materials: &'a [Option<Material>],
-    pub(crate) loads: &'a [Option<Load>],
+    pub(crate) loads: &'a [Option<Load<2>>],
     pub(crate) tree: &'a Node,
     pub(crate) sequence: &'a Sequence,
 }
@@ -30,20 +30,20 @@ pub(crate) fn rigid(
     tree: &Node,
     around: &Around<'_>,
     problems: &mut Problems,
-) -> Vec<Option<RigidPart>> {
+) -> Vec<Option<RigidPart<2>>> {
     let nodes = tree.items_at("rigid");
     let parts: Vec<_> = nodes
         .iter()
         .map(|node| part(node, around, problems))
         .collect();
-    let is_footing = |load: &Load| matches!(load.kind, LoadKind::RigidFooting { .. });
+    let is_footing = |load: &Load<2>| matches!(load.kind, LoadKind::RigidFooting { .. });
     let is_taken = around.loads.iter().flatten().any(is_footing);
     let help = "it can follow one rigid body, or one rigid footing";
     follow_once(nodes, (is_taken, help), problems);
     parts
 }
 
-fn part(node: &Node, around: &Around<'_>, problems: &mut Problems) -> Option<RigidPart> {
+fn part(node: &Node, around: &Around<'_>, problems: &mut Problems) -> Option<RigidPart<2>> {
     let name = node.text_at("name")?;
     let shown = clip(name, 40);
     let shape = shape(node, &shown, around.site, problems);
@@ -191,7 +191,7 @@ fn thickness(shape: &RigidShape) -> f64 {
 const MOST_PAIRED: usize = 100;
 
 /// Refuses a body that overlaps soil as it starts, or that is placed while it is there.
-fn beside_soil(node: &Node, part: &RigidPart, around: &Around<'_>, problems: &mut Problems) {
+fn beside_soil(node: &Node, part: &RigidPart<2>, around: &Around<'_>, problems: &mut Problems) {
     let Around { site, sequence, .. } = around;
     let outline = part.outline(POINTS_OF_CIRCLE);
     let names = |stage: &Node| {

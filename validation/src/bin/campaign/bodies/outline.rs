@@ -15,7 +15,7 @@ pub(crate) struct Outline {
 
 impl Outline {
     /// The outline of a body of a case about its reference point, its corners rounded by cells of a size.
-    pub(crate) fn of(part: &RigidPart, cell: f64) -> Self {
+    pub(crate) fn of(part: &RigidPart<2>, cell: f64) -> Self {
         match part.shape.in_plane() {
             None => Self {
                 core: Vec::new(),

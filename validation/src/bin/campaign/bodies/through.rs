@@ -16,7 +16,7 @@ const NOISE: f64 = 1e-9;
 const PLACES: u32 = 16;
 
 /// The outline of each rigid body of a case, about its reference point.
-pub(crate) fn outlines(case: &Case) -> Vec<Outline> {
+pub(crate) fn outlines(case: &Case<2>) -> Vec<Outline> {
     let [x, y] = case.grid.smallest_cell();
     let parts = case.rigid.iter();
     parts.map(|part| Outline::of(part, x.min(y))).collect()
