@@ -12,7 +12,8 @@ use igimp_input::shipped::find;
 use igimp_material::{
     ConstitutiveModel, Elasticity, History, MaterialError, Principal, ReturnMap, ShearStrength,
 };
-use igimp_model::{Case, Field, GivenLaw};
+use igimp_linear::SolverKind;
+use igimp_model::{Case, Field, GivenLaw, GivenSolver};
 use igimp_results::fields::{internal_variables, value};
 
 #[path = "../../igimp-material/tests/support/hardening.rs"]
@@ -156,4 +157,25 @@ fn a_law_remembers_from_step_to_step() {
             .iter()
             .all(|&stress| stress >= law.yield_stress)
     );
+}
+
+/// GOAL: a run solves its systems with the solver that a program gives it.
+/// ORACLE: the same solver by its name in the case, to the bit.
+#[test]
+fn a_solver_may_be_given() {
+    let mut named = slope();
+    named.solver.linear = SolverKind::Multifrontal;
+    let mut given = slope();
+    let made = Arc::new(AtomicUsize::new(0));
+    let count = Arc::clone(&made);
+    given.given_solver = Some(GivenSolver {
+        name: "of the test",
+        make: Arc::new(move || {
+            count.fetch_add(1, Ordering::Relaxed);
+            SolverKind::Multifrontal.build()
+        }),
+    });
+    let [named, given] = [named, given].map(|case| in_memory(&case).unwrap());
+    assert_eq!(*given.body.particles, *named.body.particles);
+    assert!(made.load(Ordering::Relaxed) > 0);
 }

@@ -803,25 +803,23 @@ fn pointers(value: &serde_json::Value, at: &str) -> Vec<String> {
     std::iter::once(at.to_owned()).chain(deeper).collect()
 }
 
-/// How many properties a schema has; each says what it is.
+/// How many properties a schema has; each says what it is, in either analysis.
 fn described(schema: &serde_json::Value) -> usize {
+    let says = |property: &serde_json::Value| {
+        let text = property["description"].as_str();
+        property.get("const").is_some() || text.is_some_and(|text| text.len() > 3)
+    };
     match schema {
         serde_json::Value::Object(entries) => {
             let properties = entries.get("properties").and_then(|own| own.as_object());
-            let properties = properties.into_iter().flatten();
-            let own: usize = properties
-                .map(|(key, property)| {
-                    let says = property["description"].as_str();
-                    let is_reference = property.get("$ref").is_some();
-                    let is_tag = property.get("const").is_some();
-                    assert!(
-                        is_reference || is_tag || says.is_some_and(|text| text.len() > 3),
-                        "{key}"
-                    );
-                    1
-                })
-                .sum();
-            own + entries.values().map(described).sum::<usize>()
+            let mut count = 0;
+            for (key, property) in properties.into_iter().flatten() {
+                let forms = property["anyOf"].as_array();
+                let is_described = says(property) || forms.is_some_and(|all| all.iter().all(says));
+                assert!(is_described, "{key}: {property}");
+                count += 1;
+            }
+            count + entries.values().map(described).sum::<usize>()
         }
         serde_json::Value::Array(items) => items.iter().map(described).sum(),
         _ => 0,
@@ -881,6 +879,9 @@ fn matches(
         serde_json::Value::Array(names) => names.iter().any(|name| is_type(name.as_str().unwrap())),
         name => is_type(name.as_str().unwrap_or_else(|| panic!("no type: {schema}"))),
     };
+    if !right_type {
+        return false;
+    }
     let items = value.as_array().is_none_or(|items| {
         items
             .iter()
@@ -903,7 +904,7 @@ fn matches(
                     .all(|key| entries.contains_key(key.as_str().unwrap()))
             })
     });
-    right_type && items && entries
+    items && entries
 }
 
 #[test]

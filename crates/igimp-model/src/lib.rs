@@ -17,11 +17,12 @@ mod rigid;
 mod stage;
 mod water;
 
+use std::fmt;
 use std::path::PathBuf;
 use std::sync::Arc;
 
 use igimp_assembly::Method;
-use igimp_linear::SolverKind;
+use igimp_linear::{LinearSolver, SolverKind};
 use serde::{Deserialize, Serialize};
 
 pub use axes::{front, in_space};
@@ -84,6 +85,8 @@ pub struct Case<const D: usize> {
     pub stages: Vec<Stage>,
     /// Newton, step cutting, linear solver.
     pub solver: SolverSettings,
+    /// A linear solver that takes the place of the one that `solver` names; case files know none.
+    pub given_solver: Option<GivenSolver>,
     /// Points whose history is recorded in every step.
     pub monitors: Vec<Monitor<D>>,
     /// Lines along which results are written at the end of every stage.
@@ -263,6 +266,22 @@ pub struct FixedBox<const D: usize> {
     pub upper: [f64; D],
     /// Which components are held.
     pub fix: [bool; D],
+}
+
+/// A linear solver of a program's own: a run makes one wherever it needs one. It is known by its name: a run is
+/// taken up again only with a solver of that name.
+#[derive(Clone)]
+pub struct GivenSolver {
+    /// Name.
+    pub name: &'static str,
+    /// Makes one.
+    pub make: Arc<dyn Fn() -> Box<dyn LinearSolver> + Send + Sync>,
+}
+
+impl fmt::Debug for GivenSolver {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name)
+    }
 }
 
 /// Newton's method, step cutting and the linear solver.

@@ -340,9 +340,12 @@ impl<'c, const D: usize> Model<'c, D> {
         }
     }
 
-    /// The case's linear solver.
+    /// The case's linear solver, or the one that a program gave.
     pub fn solver(&self) -> Box<dyn LinearSolver> {
-        self.case.solver.linear.build()
+        match &self.case.given_solver {
+            Some(given) => (given.make)(),
+            None => self.case.solver.linear.build(),
+        }
     }
 }
 

@@ -106,6 +106,7 @@ pub(crate) fn case() -> Case<2> {
             ),
         ],
         solver: SolverSettings::default(),
+        given_solver: None,
         monitors: vec![Monitor {
             name: "crest".into(),
             point: [15.0, 20.0],

@@ -115,6 +115,7 @@ pub(super) fn assemble<const D: usize>(
         reinforcement: all(upon.reinforcement)?,
         stages: all(stages)?,
         solver: solver?,
+        given_solver: None,
         monitors: all(monitors)?,
         sections: all(sections)?,
         curves: all(curves)?,

@@ -77,6 +77,7 @@ fn case(kind: StageKind) -> Case<2> {
             drained: false,
         }],
         solver: SolverSettings::default(),
+        given_solver: None,
         monitors: Vec::new(),
         sections: Vec::new(),
         curves: Vec::new(),
