@@ -9,10 +9,10 @@ use igimp_assembly::SharedLaw;
 use igimp_cases::run::in_memory;
 use igimp_input::CaseFile;
 use igimp_input::shipped::find;
+use igimp_linear::SolverKind;
 use igimp_material::{
     ConstitutiveModel, Elasticity, History, MaterialError, Principal, ReturnMap, ShearStrength,
 };
-use igimp_linear::SolverKind;
 use igimp_model::{Case, Field, GivenLaw, GivenSolver};
 use igimp_results::fields::{internal_variables, value};
 

@@ -195,7 +195,7 @@ fn table(variant: &Variant, pushed: &Pushed) -> Table {
         let forces = [moment.resistance, moment.shaft, moment.pull].map(|force| force / STRENGTH);
         let mut row = vec![moment.settlement];
         row.extend(forces);
-        row.push(moment.let_go);
+        row.push(moment.released);
         table.push(row);
     }
     table

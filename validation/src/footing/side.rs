@@ -61,7 +61,7 @@ pub(crate) struct Moment {
     /// Pull of one side on the soil, across the shaft, tension positive \[N/m\].
     pub(crate) pull: f64,
     /// Volume as seeded of the soil that let go so far, on one side \[m³/m\].
-    pub(crate) let_go: f64,
+    pub(crate) released: f64,
 }
 
 /// A push to its end, or as far as it came.
@@ -158,7 +158,7 @@ pub(crate) fn push(
     let (mut steps_made, mut failures) = (Vec::new(), Vec::new());
     let mut outcome = Outcome::Completed;
     let mut moments = Vec::new();
-    let mut let_go = 0.0;
+    let mut released = 0.0;
     for number in 0..steps {
         let reached = |t: f64| settlement * (number as f64 + t) / steps as f64;
         let at = |t: f64| Controls {
@@ -178,7 +178,7 @@ pub(crate) fn push(
                 resistance: model.footing_resistance(grid, reactions),
                 shaft: upward,
                 pull,
-                let_go,
+                released,
             });
             ControlFlow::Continue(())
         };
@@ -204,7 +204,7 @@ pub(crate) fn push(
         let leaving: Vec<bool> = (0..body.particles.len()).map(leaves).collect();
         if beside != Beside::Sticks && leaving.contains(&true) {
             let volumes = fields.volume0.iter().zip(&leaving);
-            let_go += volumes
+            released += volumes
                 .filter(|(_, leaves)| **leaves)
                 .map(|(volume, _)| volume)
                 .sum::<f64>();
@@ -273,7 +273,7 @@ mod tests {
         let last = pushed.moments.last().unwrap();
         assert!((last.settlement - expected[0]).abs() < 1e-12);
         assert!((last.resistance - 1e3 * expected[1]).abs() < 1e-6 * last.resistance);
-        assert!(last.let_go.total_cmp(&0.0).is_eq());
+        assert!(last.released.total_cmp(&0.0).is_eq());
     }
 
     /// GOAL: soil is taken out beside the shaft and nowhere else, and counted. ORACLE: the volume that
@@ -285,7 +285,7 @@ mod tests {
         let left: f64 = pushed.particles.volume0.iter().sum();
         // What lets go after the last step is in no moment.
         let next = push(&case, 0.15, 3, Beside::BearsNothing(1.0)).unwrap();
-        let at_three = pushed.moments[3].let_go;
+        let at_three = pushed.moments[3].released;
         assert!((next.particles.volume0.iter().sum::<f64>() + at_three - 25.0).abs() < 1e-9);
         assert!(at_three > 0.0 && left < 25.0 - at_three + 1e-9);
         let shaft = Shaft::of(&case);

@@ -15,7 +15,7 @@ const SIZES: [usize; 4] = [50, 100, 200, 400];
 
 /// Times of one method at one size \[ns\].
 #[derive(Default)]
-struct Taken {
+struct Measured {
     order: Rounds,
     analyse: Rounds,
     /// By pool.
@@ -101,11 +101,11 @@ fn measure(
     method: Direct,
     equations: &Equations,
     rounds: usize,
-) -> BenchResult<Taken> {
+) -> BenchResult<Measured> {
     let pattern = &equations.matrix.pattern;
-    let mut taken = Taken {
+    let mut taken = Measured {
         factor: vec![Rounds::default(); scope.pools.len()],
-        ..Taken::default()
+        ..Measured::default()
     };
     let mut peak = DensePeak::new();
     peak.measure();
@@ -133,7 +133,7 @@ fn note(
     scope: &mut Scope,
     method: Direct,
     equations: &Equations,
-    taken: &Taken,
+    taken: &Measured,
     rows: &mut Vec<[String; 12]>,
 ) -> BenchResult {
     let pattern = &equations.matrix.pattern;

@@ -9,7 +9,7 @@ use super::scope::Scope;
 
 /// Time of a step, and the shares of its phases and of what they leave.
 #[derive(Clone, Default)]
-struct Taken {
+struct Measured {
     /// Wall-clock time \[ns\].
     time: Rounds,
     /// In percent.
@@ -18,7 +18,7 @@ struct Taken {
     unknowns: usize,
 }
 
-impl Taken {
+impl Measured {
     /// One round: the step with nothing known beforehand, so that the analysis of the pattern counts.
     fn measure(&mut self, step: &PreparedStep, pool: &ThreadPool) -> BenchResult {
         let mut body = step.body.clone();
@@ -61,7 +61,7 @@ pub(crate) fn run(scope: &mut Scope) -> BenchResult {
         } else {
             3
         };
-        let mut taken = vec![Taken::default(); scope.pools.len()];
+        let mut taken = vec![Measured::default(); scope.pools.len()];
         for _ in 0..rounds {
             for (pool, taken) in std::iter::zip(&scope.pools, &mut taken) {
                 taken.measure(&step, pool)?;
@@ -102,7 +102,7 @@ pub(crate) fn run(scope: &mut Scope) -> BenchResult {
     Ok(())
 }
 
-fn note(scope: &mut Scope, step: &PreparedStep, taken: &[Taken], rows: &mut Vec<[String; 13]>) {
+fn note(scope: &mut Scope, step: &PreparedStep, taken: &[Measured], rows: &mut Vec<[String; 13]>) {
     let particles = step.body.particles.len();
     let one = &taken[0].time;
     for (pool, taken) in std::iter::zip(&scope.pools, taken) {

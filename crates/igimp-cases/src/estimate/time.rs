@@ -55,7 +55,7 @@ pub struct Time {
 
 /// The time of a case of a size on a computer of a speed, with the threads of the current pool.
 pub fn time<const D: usize>(case: &Case<D>, size: &Estimate, speed: Speed) -> Time {
-    let stages: Vec<Taken> = case.stages.iter().map(planned).collect();
+    let stages: Vec<StepsTaken> = case.stages.iter().map(planned).collect();
     Time {
         seconds: of_stages(case, size, speed, &stages),
         open_ended: case.stages.iter().any(is_open_ended),
@@ -82,20 +82,20 @@ pub fn time_of_steps_taken<const D: usize>(
     speed: Speed,
     stages: &[StageSummary],
 ) -> f64 {
-    let taken: Vec<Taken> = stages.iter().map(taken).collect();
+    let taken: Vec<StepsTaken> = stages.iter().map(taken).collect();
     of_stages(case, size, speed, &taken)
 }
 
 /// What a stage takes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Taken {
+struct StepsTaken {
     steps: f64,
     corrections: f64,
     trials: f64,
 }
 
 /// What the case plans for a stage.
-fn planned(stage: &Stage) -> Taken {
+fn planned(stage: &Stage) -> StepsTaken {
     let steps = stage.steps as f64;
     let (steps, trials) = match &stage.kind {
         StageKind::StrengthReduction(search) => {
@@ -103,7 +103,7 @@ fn planned(stage: &Stage) -> Taken {
             let halvings = ((high - low) / search.tolerance).max(2.0).log2();
             let trials = search.factors.len() as f64 + halvings.min(TRIALS);
             if search.search == SearchMethod::Continuation {
-                return Taken {
+                return StepsTaken {
                     steps: PATH_STEPS,
                     corrections: PATH_CORRECTIONS,
                     trials: 0.0,
@@ -132,7 +132,7 @@ fn planned(stage: &Stage) -> Taken {
     } else {
         0.0
     };
-    Taken {
+    StepsTaken {
         steps,
         corrections: by_step * steps + failing * (1.0 + 0.25 * trials),
         trials,
@@ -140,13 +140,13 @@ fn planned(stage: &Stage) -> Taken {
 }
 
 /// What a stage took.
-fn taken(stage: &StageSummary) -> Taken {
+fn taken(stage: &StageSummary) -> StepsTaken {
     let trials = stage
         .safety
         .as_ref()
         .map_or(0, |safety| safety.trials.len());
     let failed = stage.cuts + usize::from(stage.cuts > 0);
-    Taken {
+    StepsTaken {
         steps: stage.steps as f64,
         corrections: stage.iterations as f64 + 0.5 * FAILING * failed as f64,
         trials: trials as f64,
@@ -168,7 +168,7 @@ fn of_stages<const D: usize>(
     case: &Case<D>,
     size: &Estimate,
     speed: Speed,
-    stages: &[Taken],
+    stages: &[StepsTaken],
 ) -> f64 {
     let particles = size.particles as f64;
     let [step, pass] = if D == 3 {

@@ -18,7 +18,7 @@ use super::{AllNames, all, materials, title_block};
 use crate::build::context::Context;
 
 /// What everything else is held against.
-pub(super) struct Basics<const D: usize> {
+pub(super) struct GridAndBodies<const D: usize> {
     pub(super) frame: Option<Frame<D>>,
     pub(super) bodies: Vec<Option<BodyPart<D>>>,
     pub(super) materials: Vec<Option<Material>>,
@@ -27,7 +27,7 @@ pub(super) struct Basics<const D: usize> {
     grid: Option<GridSpec<D>>,
 }
 
-impl<const D: usize> Basics<D> {
+impl<const D: usize> GridAndBodies<D> {
     pub(super) fn new(
         tree: &Node,
         names: &AllNames,
@@ -52,7 +52,7 @@ impl<const D: usize> Basics<D> {
 }
 
 /// What stands in the ground and on it.
-pub(super) struct Upon<const D: usize> {
+pub(super) struct Surroundings<const D: usize> {
     pub(super) boundaries: Option<Boundaries<D>>,
     pub(super) rigid: Vec<Option<RigidPart<D>>>,
     pub(super) water: Vec<Option<WaterCondition>>,
@@ -73,8 +73,8 @@ pub(super) fn stages_of<const D: usize>(
 /// The case; `None` only when a problem was reported, here or before.
 pub(super) fn assemble<const D: usize>(
     (context, file): (&Context<'_, D>, &Path),
-    basics: &Basics<D>,
-    upon: Upon<D>,
+    basics: &GridAndBodies<D>,
+    upon: Surroundings<D>,
     stages: Vec<Option<Stage>>,
     problems: &mut Problems,
 ) -> Option<Case<D>> {

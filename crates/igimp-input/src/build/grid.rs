@@ -13,7 +13,7 @@ use igimp_schema::tree::Node;
 use igimp_shape::{Basis, Gimp, Linear};
 use igimp_text::short;
 
-use lines::{Wish, Zone, largest_jump};
+use lines::{WantedLines, Zone, largest_jump};
 
 /// Most cells, and most particles.
 pub(super) const MOST: f64 = 5e7;
@@ -179,7 +179,12 @@ fn equal_cells(
 }
 
 /// An axis with lines where they are wanted; warns of neighbouring cells that differ too much.
-fn with_lines(node: &Node, key: &str, wish: &Wish, problems: &mut Problems) -> Option<AxisSpec> {
+fn with_lines(
+    node: &Node,
+    key: &str,
+    wish: &WantedLines,
+    problems: &mut Problems,
+) -> Option<AxisSpec> {
     let Some(axis) = wish.axis(MOST_LINES) else {
         problems
             .error(
@@ -223,7 +228,7 @@ fn wish(
     cell: f64,
     levels: &[f64],
     problems: &mut Problems,
-) -> Option<Option<Wish>> {
+) -> Option<Option<WantedLines>> {
     let key = DIRECTIONS[axis];
     let growth = node.number_at("growth")?;
     let mut is_right = true;
@@ -299,7 +304,7 @@ fn wish(
     let levels: Vec<f64> = levels.iter().copied().filter(|&y| is_inside(y)).collect();
     let is_equal = lines.is_empty() && zones.is_empty() && levels.is_empty();
     is_right.then(|| {
-        (!is_equal).then_some(Wish {
+        (!is_equal).then_some(WantedLines {
             ends,
             cell,
             lines,

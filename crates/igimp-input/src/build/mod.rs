@@ -26,7 +26,7 @@ use igimp_schema::schema::{FORMAT, SPACE};
 use igimp_schema::tree::Node;
 
 use crate::build::grid::boundaries;
-use assemble::{Basics, Upon};
+use assemble::{GridAndBodies, Surroundings};
 use bodies::site::Site;
 use context::Context;
 use ground::layers::Layers;
@@ -93,8 +93,8 @@ fn in_plane(
     file: &Path,
     problems: &mut Problems,
 ) -> Option<Case<2>> {
-    let basics = Basics::new(tree, names, bodies::bodies(tree, names, problems), problems);
-    let Basics {
+    let basics = GridAndBodies::new(tree, names, bodies::bodies(tree, names, problems), problems);
+    let GridAndBodies {
         bodies,
         materials,
         sequence,
@@ -147,7 +147,7 @@ fn in_plane(
     let stages = assemble::stages_of(&context, problems);
     let gravity = tree.get("case").and_then(|case| case.number_at("gravity"));
     ground::layers::check_stiffness(&layers, &stages, gravity, problems);
-    let upon = Upon {
+    let upon = Surroundings {
         boundaries,
         rigid,
         water,

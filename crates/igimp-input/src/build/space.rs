@@ -9,7 +9,7 @@ use igimp_schema::diagnostic::Problems;
 use igimp_schema::text::{clip, count, number, point};
 use igimp_schema::tree::Node;
 
-use super::assemble::{self, Basics, Upon};
+use super::assemble::{self, GridAndBodies, Surroundings};
 use super::bodies::sequence::{Sequence, placed};
 use super::bodies::site::Soil;
 use super::bodies::solids;
@@ -75,8 +75,8 @@ pub(super) fn build(
     problems: &mut Problems,
 ) -> Option<Case<3>> {
     refuse_what_is_of_the_plane(tree, problems);
-    let basics = Basics::new(tree, names, bodies(tree, names, problems), problems);
-    let Basics {
+    let basics = GridAndBodies::new(tree, names, bodies(tree, names, problems), problems);
+    let GridAndBodies {
         frame,
         bodies,
         materials,
@@ -114,7 +114,7 @@ pub(super) fn build(
     };
     let stages = assemble::stages_of(&context, problems);
     check_level(tree, (bodies, materials), &soil, problems);
-    let upon = Upon {
+    let upon = Surroundings {
         boundaries,
         rigid,
         water,

@@ -14,7 +14,7 @@ const TOO_CLOSE: f64 = 0.25;
 
 /// What is wanted of one direction of the grid.
 #[derive(Clone, Debug)]
-pub(crate) struct Wish {
+pub(crate) struct WantedLines {
     /// Where the axis begins and ends \[m\].
     pub(crate) ends: [f64; 2],
     /// Size of a cell where nothing finer is near \[m\].
@@ -38,7 +38,7 @@ pub(crate) struct Zone {
     pub cell: f64,
 }
 
-impl Wish {
+impl WantedLines {
     /// The axis, or nothing if it had more than `most` cells.
     pub(crate) fn axis(&self, most: f64) -> Option<AxisSpec> {
         let [lower, upper] = self.ends;
@@ -180,8 +180,8 @@ pub(crate) fn largest_jump(axis: &AxisSpec) -> (f64, f64) {
 mod tests {
     use super::*;
 
-    fn wish() -> Wish {
-        Wish {
+    fn wish() -> WantedLines {
+        WantedLines {
             ends: [0.0, 10.0],
             cell: 1.0,
             lines: Vec::new(),
@@ -191,13 +191,13 @@ mod tests {
         }
     }
 
-    fn lines(wish: &Wish) -> Vec<f64> {
+    fn lines(wish: &WantedLines) -> Vec<f64> {
         wish.axis(1e6).unwrap().lines().collect()
     }
 
     #[test]
     fn lines_on_the_grid_change_nothing() {
-        let on_grid = Wish {
+        let on_grid = WantedLines {
             lines: vec![3.0],
             levels: vec![7.0],
             ..wish()
@@ -212,7 +212,7 @@ mod tests {
 
     #[test]
     fn cells_between_lines_are_as_near_as_equal_division_allows() {
-        let found = lines(&Wish {
+        let found = lines(&WantedLines {
             lines: vec![4.5],
             ..wish()
         });
@@ -228,11 +228,11 @@ mod tests {
             ends: [4.0, 5.0],
             cell: 0.1,
         };
-        let graded = Wish {
+        let graded = WantedLines {
             zones: vec![zone],
             ..wish()
         };
-        let thin = Wish {
+        let thin = WantedLines {
             lines: vec![4.0, 4.2],
             ..wish()
         };
@@ -252,7 +252,7 @@ mod tests {
 
     #[test]
     fn boundaries_close_to_a_line_stay_in_the_cell() {
-        let found = Wish {
+        let found = WantedLines {
             lines: vec![3.0],
             levels: vec![3.2, 6.4, 6.5],
             ..wish()
@@ -267,7 +267,7 @@ mod tests {
             ends: [4.0, 5.0],
             cell: 1e-9,
         };
-        let many = Wish {
+        let many = WantedLines {
             zones: vec![zone],
             ..wish()
         };
