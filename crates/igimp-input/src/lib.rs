@@ -1,11 +1,8 @@
 //! Case files: from TOML to a [`Case`](igimp_model::Case), with messages that name place, text and remedy.
 //!
-//! A file is parsed into a tree whose values know their places (`tree`), changed by overrides,
-//! checked against the schema and completed with its defaults (`complete`), given what it takes from
-//! other files (`files`), and built into a [`Case`](igimp_model::Case) with the checks that need more than one value (`build`). The schema
-//! is declared once (`schema`) and also drives [`CaseFile::explain`], [`json_schema`] and
-//! [`reference_markdown`]. Every problem is collected on the way and shown in the order of the
-//! file.
+//! A file is parsed, checked against the schema and completed with its defaults in `igimp-schema`, given what it takes from
+//! other files (`files`), and built into a [`Case`](igimp_model::Case) with the checks that need more than one value
+//! (`build`). Every problem is collected on the way and shown in the order of the file.
 //!
 //! ```
 //! use igimp_input::CaseFile;

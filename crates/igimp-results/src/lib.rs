@@ -22,4 +22,4 @@ pub mod vtu;
 #[cfg(test)]
 mod scratch;
 
-pub use error::ResultsError;
+pub use error::{NpyError, ResultsError};

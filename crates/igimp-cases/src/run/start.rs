@@ -9,7 +9,7 @@ use crate::run::{AtomicBool, Entered, Event, Listener, Run, Start, Target, study
 /// Runs a case. With a target everything is written as it is computed.
 ///
 /// A case with a [`mesh_study`](Case::mesh_study) of several meshes is run on each of them, and what
-/// they say together is told in the [`Summary`]; the rest of the [`Run`] is that of the finest mesh that
+/// they say together is told in the [`Summary`](igimp_results::summary::Summary); the rest of the [`Run`] is that of the finest mesh that
 /// came to its end.
 ///
 /// Want of equilibrium is a result ([`Run::failure`]), and so is an interruption: when `interrupt`
