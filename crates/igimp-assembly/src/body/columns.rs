@@ -60,14 +60,13 @@ pub(crate) enum Range {
     WithinOne,
     /// Finite, and with a positive determinant.
     Invertible,
-    Any,
 }
 
 impl Range {
     fn holds(self, value: f64) -> bool {
         value.is_finite()
             && match self {
-                Self::Finite | Self::Invertible | Self::Any => true,
+                Self::Finite | Self::Invertible => true,
                 Self::Positive => value > 0.0,
                 Self::NotNegative => value >= 0.0,
                 Self::WithinOne => value.abs() < 1.0,
@@ -76,7 +75,7 @@ impl Range {
 
     fn requirement(self) -> &'static str {
         match self {
-            Self::Finite | Self::Invertible | Self::Any => "finite",
+            Self::Finite | Self::Invertible => "finite",
             Self::Positive => "positive and finite",
             Self::NotNegative => "zero or positive, and finite",
             Self::WithinOne => "between -1 and 1",
@@ -204,15 +203,11 @@ impl<const N: usize> Entry for [[f64; N]; N] {
         range: Range,
     ) -> Result<(), AssemblyError> {
         require(particle, name, self.as_flattened(), range)?;
-        match (range, name) {
-            (Range::Invertible, "def_grad") => require(
-                particle,
-                "det def_grad",
-                &[determinant(self)],
-                Range::Positive,
-            ),
-            _ => Ok(()),
+        if range == Range::Invertible {
+            let determinant = [determinant(self)];
+            return require(particle, "det def_grad", &determinant, Range::Positive);
         }
+        Ok(())
     }
 }
 

@@ -63,9 +63,9 @@ columns! {
     /// Excess pore pressure that the soil made itself, compression positive \[force/length²\].
     excess: f64 = 0.0, Range::Finite;
     /// The number that a particle was seeded with and keeps, whatever others come and go.
-    number: usize = number, Range::Any;
+    number: usize = number, Range::Finite;
     /// Index of the constitutive law.
-    law: usize = seed.law, Range::Any;
+    law: usize = seed.law, Range::Finite;
     /// Strength, friction and stiffness over those of the law \[-\].
     ratios: Ratios = Ratios::ONE, Range::Positive;
     /// Accumulated plastic strain invariant \[-\].
@@ -73,7 +73,7 @@ columns! {
     /// Internal variables of the law, in the order of [`ConstitutiveModel::internal_variables`].
     internal: Internal = [0.0; _], Range::Finite, optional;
     /// Where the last return to the yield surface ended.
-    regime: Regime = Regime::Elastic, Range::Any;
+    regime: Regime = Regime::Elastic, Range::Finite;
 }
 
 /// The particles of a body: [`ParticleFields`] that can be read but not written.
