@@ -930,6 +930,41 @@ fn a_title_block_is_read() {
     assert!(file.explain().contains("revision = \"B\""));
 }
 
+/// GOAL: a slip of the unit is told, with its place and what may be meant; a value that soil, rock or steel has is not.
+#[test]
+fn implausible_values_are_told() {
+    let told = [
+        (
+            "unit_weight",
+            "20 N/m3",
+            "`clay` has unit_weight = 0.02 kN/m3",
+        ),
+        ("cohesion", "20 MPa", "`clay` has cohesion = 20000 kPa"),
+        ("friction", "0.35 deg", "0.35 rad are 20 deg"),
+        ("friction", "80 deg", "`clay` has friction = 80 deg"),
+        ("young", "20000 GPa", "steel 210 GPa"),
+    ];
+    for (key, value, expected) in told {
+        let file = overridden(SLOPE, &[&format!("materials.clay.{key}={value}")]).unwrap();
+        let warnings = file.warnings();
+        assert!(warnings.contains(expected), "{warnings}");
+        assert!(warnings.contains(value), "{warnings}");
+    }
+    let quiet = [
+        ("unit_weight", "0 kN/m3"),
+        ("unit_weight", "0.8 kN/m3"),
+        ("cohesion", "4 MPa"),
+        ("friction", "1.1 deg"),
+        ("friction", "69 deg"),
+        ("young", "210 GPa"),
+    ];
+    for (key, value) in quiet {
+        let file = overridden(SLOPE, &[&format!("materials.clay.{key}={value}")]).unwrap();
+        let warnings = file.warnings();
+        assert!(!warnings.contains("no value of soil"), "{warnings}");
+    }
+}
+
 /// GOAL: what cannot be held against a reference is said with its place and a remedy.
 #[test]
 fn messages_of_references() {

@@ -1,5 +1,6 @@
 //! Materials and the limits of their parameters.
 
+mod plausible;
 pub(crate) mod profiles;
 
 use std::sync::Arc;
@@ -142,6 +143,9 @@ fn material<const D: usize>(
         profile(friction.as_ref()).is_some(),
         problems,
     );
+    if problems.errors() == before {
+        plausible::check(name, node, problems);
+    }
     let saturated = saturated(name, node, unit_weight, problems);
     let young_constant = young.as_ref().map(|own| own.constant);
     let drainage = drainage(node, young_constant, strength, problems);

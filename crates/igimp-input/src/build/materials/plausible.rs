@@ -1,0 +1,75 @@
+//! Warnings about values that no soil has: a slip of the unit, mostly of a thousand or of rad for deg.
+
+use igimp_schema::diagnostic::Problems;
+use igimp_schema::text::{clip, number};
+use igimp_schema::tree::Node;
+
+/// A key with the values that soil, rock and structures have.
+struct Plausible {
+    key: &'static str,
+    /// Smallest and largest, in SI units.
+    between: [f64; 2],
+    /// What SI values are divided by in print, and the unit after that.
+    unit: (f64, &'static str),
+    help: &'static str,
+}
+
+const PLAUSIBLE: [Plausible; 5] = [
+    Plausible {
+        key: "unit_weight",
+        between: [0.2e3, 200e3],
+        unit: (1e3, "kN/m3"),
+        help: "soil has 14 to 24 kN/m3; the unit may be meant to be kN/m3",
+    },
+    Plausible {
+        key: "young",
+        between: [1e3, 500e9],
+        unit: (1e6, "MPa"),
+        help: "soil has 1 to 500 MPa, rock up to 100 GPa, steel 210 GPa",
+    },
+    Plausible {
+        key: "cohesion",
+        between: [1.0, 5e6],
+        unit: (1e3, "kPa"),
+        help: "soil has 0 to 100 kPa; the unit may be meant to be kPa",
+    },
+    Plausible {
+        key: "cu",
+        between: [1.0, 5e6],
+        unit: (1e3, "kPa"),
+        help: "clay has 5 to 500 kPa; the unit may be meant to be kPa",
+    },
+    Plausible {
+        key: "friction",
+        between: [0.017_453, 1.221_731],
+        unit: (0.017_453_292_519_943_295, "deg"),
+        help: "soil has 15 to 45 deg; 0.35 rad are 20 deg",
+    },
+];
+
+/// Looks at the numbers of a material; zero is none of its concern.
+pub(super) fn check(name: &str, material: &Node, problems: &mut Problems) {
+    for plausible in &PLAUSIBLE {
+        let Some(node) = material.get(plausible.key) else {
+            continue;
+        };
+        let [least, most] = plausible.between;
+        let Some(value) = node.number().filter(|&value| value > 0.0) else {
+            continue;
+        };
+        if value < least || value > most {
+            let (scale, unit) = plausible.unit;
+            problems
+                .warning(
+                    node.place,
+                    format!(
+                        "`{}` has {} = {} {unit}, which is no value of soil, rock or a structure",
+                        clip(name, 40),
+                        plausible.key,
+                        number(value / scale)
+                    ),
+                )
+                .help(plausible.help);
+        }
+    }
+}
