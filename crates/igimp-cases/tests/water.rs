@@ -31,6 +31,7 @@ friction = "30 deg"
 [materials.clay]
 model = "mohr-coulomb"
 unit_weight = "17 kN/m3"
+saturated_unit_weight = "17 kN/m3"
 young = "20 MPa"
 poisson = 0.3
 cohesion = "5 kPa"
@@ -40,6 +41,7 @@ drainage = "undrained"
 [materials.soft]
 model = "tresca"
 unit_weight = "16 kN/m3"
+saturated_unit_weight = "16 kN/m3"
 young = "20 MPa"
 poisson = 0.3
 cu = "40 kPa"
@@ -151,6 +153,21 @@ fn messages(cases: &[Edits<'_>]) -> String {
         let _ = writeln!(out, "{said}");
     }
     out
+}
+
+/// GOAL: soil below the table without a weight of full pores is told, once a material; dry soil and soil that
+/// states it are not.
+#[test]
+fn soil_that_weighs_the_same_below_the_table_is_told() {
+    let told = |edits: Edits<'_>| {
+        let file = CaseFile::parse("slope.toml", &edited(edits), &[]).unwrap();
+        file.warnings().matches("weighs below the table").count()
+    };
+    let sand = ("saturated_unit_weight = \"20 kN/m3\"\n", "");
+    let clay = ("saturated_unit_weight = \"17 kN/m3\"\n", "");
+    assert_eq!(told(&[]), 0);
+    assert_eq!(told(&[clay]), 1);
+    assert_eq!(told(&[sand, clay]), 2);
 }
 
 #[test]

@@ -12,6 +12,7 @@ use super::Around;
 use crate::build::bodies::sequence::Scene;
 use crate::build::ground::{Above, Earth, Surface, UprightFace};
 use crate::build::materials::profiles::reach;
+use igimp_model::Material;
 
 /// Refuses tables that stand above the ground unmeant, and what water cannot do to materials; warns of conditions that
 /// do nothing.
@@ -32,6 +33,7 @@ pub(crate) fn check<const D: usize>(
         surfaces: HashMap::new(),
         seen: Vec::new(),
         told: Vec::new(),
+        unweighed: Vec::new(),
     };
     checker.scene(&sequence.start, None, problems);
     for (index, end) in sequence.ends.iter().enumerate() {
@@ -67,6 +69,8 @@ struct Checker<'a, const D: usize> {
     seen: Vec<usize>,
     /// Materials whose friction by total stress has been told.
     told: Vec<usize>,
+    /// Materials that are wet without a weight of full pores, as was told.
+    unweighed: Vec<usize>,
 }
 
 impl<const D: usize> Checker<'_, D> {
@@ -171,11 +175,25 @@ impl<const D: usize> Checker<'_, D> {
             };
             let material =
                 scene.material[body].and_then(|k| Some((k, around.materials[k].as_ref()?)));
-            let Some((number, material)) =
-                material.filter(|(_, material)| material.drainage == Drainage::Total)
-            else {
+            let Some((number, material)) = material else {
                 continue;
             };
+            let is_below_table = matches!(
+                condition.source,
+                PoreSource::Table(_) | PoreSource::Surface(_) | PoreSource::Drained(_)
+            ) && condition.bodies.iter().all(|(named, _)| *named != body);
+            if is_below_table
+                && material.saturated.is_none()
+                && material.unit_weight > 0.0
+                && !self.unweighed.contains(&number)
+                && is_wet(around.earth, &condition.source, part)
+            {
+                self.unweighed.push(number);
+                unweighed(around.tree, number, (who, material), problems);
+            }
+            if material.drainage != Drainage::Total {
+                continue;
+            }
             let own = condition
                 .bodies
                 .iter()
@@ -220,6 +238,29 @@ impl<const D: usize> Checker<'_, D> {
             }
         }
     }
+}
+
+/// Says that soil weighs the same above and below the water table.
+fn unweighed(
+    tree: &Node,
+    number: usize,
+    (who, material): (&str, &Material),
+    problems: &mut Problems,
+) {
+    let entries = tree.get("materials").map_or(&[][..], Node::entries);
+    let place = entries
+        .get(number)
+        .map(|entry| entry.node.place_at("unit_weight"));
+    problems
+        .warning(
+            place,
+            format!(
+                "{who} wets `{}`, which weighs below the table what it weighs above",
+                clip(&material.name, 40)
+            ),
+        )
+        .help("saturated_unit_weight is the weight of soil and water together: mostly 1 to 3 kN/m3 more")
+        .help("write it with the value of unit_weight if that is meant");
 }
 
 /// Share of the greatest pressure on the ground that is told \[-\].
