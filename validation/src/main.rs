@@ -56,7 +56,7 @@ const INPUT_OUTPUT: u8 = 4;
 #[derive(Debug, Parser)]
 #[command(name = "validate", version)]
 struct Arguments {
-    /// RunRecord only these cases (may be repeated).
+    /// Run only these cases (may be repeated).
     #[arg(long, value_enum, value_name = "CASE")]
     case: Vec<Case>,
     /// Coarse meshes and short runs: under a minute.

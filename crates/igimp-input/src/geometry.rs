@@ -21,17 +21,7 @@ pub(super) fn distinct(polygon: &[Point], round_off: f64) -> Vec<Point> {
 
 /// Whether a point lies within a distance of an edge.
 pub(super) fn near_edge(polygon: &[Point], point: Point, distance: f64) -> bool {
-    edges(polygon).any(|(p, q)| {
-        let along = [q[0] - p[0], q[1] - p[1]];
-        let to = [point[0] - p[0], point[1] - p[1]];
-        let length2 = along[0] * along[0] + along[1] * along[1];
-        let t = if length2 > 0.0 {
-            ((to[0] * along[0] + to[1] * along[1]) / length2).clamp(0.0, 1.0)
-        } else {
-            0.0
-        };
-        (to[0] - t * along[0]).hypot(to[1] - t * along[1]) <= distance
-    })
+    edge_distance(polygon, point) <= distance
 }
 
 /// Where two segments cross, each well inside the other.
@@ -72,6 +62,22 @@ pub(super) fn self_crossing(polygon: &[Point], round_off: f64) -> Option<Point> 
         }
     }
     None
+}
+
+/// How far a point lies from the nearest edge.
+pub(super) fn edge_distance(polygon: &[Point], point: Point) -> f64 {
+    let distances = edges(polygon).map(|(p, q)| {
+        let along = [q[0] - p[0], q[1] - p[1]];
+        let to = [point[0] - p[0], point[1] - p[1]];
+        let length2 = along[0] * along[0] + along[1] * along[1];
+        let t = if length2 > 0.0 {
+            ((to[0] * along[0] + to[1] * along[1]) / length2).clamp(0.0, 1.0)
+        } else {
+            0.0
+        };
+        (to[0] - t * along[0]).hypot(to[1] - t * along[1])
+    });
+    distances.fold(f64::INFINITY, f64::min)
 }
 
 /// A point in the overlap of two polygons, if they share more than an edge.
@@ -270,6 +276,13 @@ mod tests {
             .iter()
             .map(|p| [p[0] + by[0], p[1] + by[1]])
             .collect()
+    }
+
+    #[test]
+    fn the_nearest_edge_counts() {
+        assert!((edge_distance(&SQUARE, [0.5, 1.0]) - 0.5).abs() < 1e-12);
+        assert!((edge_distance(&SQUARE, [5.0, 6.0]) - 5.0).abs() < 1e-12);
+        assert!(near_edge(&SQUARE, [2.1, 1.0], 0.11) && !near_edge(&SQUARE, [2.1, 1.0], 0.09));
     }
 
     #[test]

@@ -15,7 +15,9 @@ use igimp_schema::tree::Node;
 
 use super::AllNames;
 use super::grid::MOST;
+use crate::geometry::edge_distance;
 use crate::geometry::{distinct, near_edge, overlap, self_crossing};
+use igimp_text::short;
 use sequence::{Sequence, placed};
 use site::Site;
 
@@ -180,11 +182,18 @@ pub(super) fn check(
                 continue;
             }
             if let Some(at) = overlap(a.polygon(), b.polygon(), site.round_off) {
+                let [by, too] = [a, b].map(|body| edge_distance(body.polygon(), at));
+                let by = by + too;
+                let size = if by > site.round_off {
+                    format!(", by some {} m", short(by))
+                } else {
+                    String::new()
+                };
                 problems
                     .error(
                         place(second),
                         format!(
-                            "body `{}` overlaps body `{}` near {}",
+                            "body `{}` overlaps body `{}` near {}{size}",
                             names.bodies.name(second),
                             names.bodies.name(first),
                             point(at)

@@ -16,8 +16,8 @@ use crate::geometry::{facing, largest_run};
 
 /// Error of the stress beside a boundary that is worth a warning \[-\].
 const WORTH: f64 = 0.04;
-/// Gaps narrower than this share of the smallest cell are warned of \[-\].
-const NARROW: f64 = 0.25;
+/// Gaps narrower than this share of the smallest cell are warned of: nodes see soil on both sides \[-\].
+const NARROW: f64 = 1.0;
 /// Cells across a layer that resolve its strength.
 const ENOUGH: f64 = 3.0;
 /// γH/E beyond which the ground has another shape when its weight acts \[-\].
@@ -105,7 +105,7 @@ fn check_pairs(
                             point(gap.middle)
                         ),
                     )
-                    .help("bodies closer than a cell stick all the same: let them share the edge");
+                    .help("bodies closer than a cell stick together: let them share the edge, or leave a cell between them");
             }
             let middle = pieces.first().map_or([0.0; 2], |piece| piece.middle);
             let moduli = [a, b].map(|body| constrained(materials[body.material], middle, ground));
