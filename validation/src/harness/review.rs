@@ -351,7 +351,7 @@ mod tests {
     fn what_was_left_is_accepted_once() {
         let folder = std::env::temp_dir().join(format!("igimp-left-{}", std::process::id()));
         fs::create_dir_all(&folder).unwrap();
-        let head = "---\nsource: validation/src/snapshot.rs\n";
+        let head = "---\nsource: validation/src/harness/snapshot.rs\n";
         fs::write(folder.join("curve.snap"), format!("{head}---\n{OLD}")).unwrap();
         let new = OLD.replace("4.0", "4.1");
         fs::write(
