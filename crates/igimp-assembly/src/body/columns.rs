@@ -295,8 +295,8 @@ pub(crate) fn is_idle<T: Entry>(entries: &[T]) -> bool {
 /// Internal variables of a law by particle.
 pub(crate) type Internal = [f64; INTERNAL_VARIABLES];
 
-/// Declares the columns of particles: `name: type = value of a seed, range;`, with `optional` before the name of
-/// a column that is stored only where a particle has other numbers than [`Entry::IDLE`].
+/// Declares the columns of particles: `name: type = value of a seed, range;`. A column with `optional` behind its
+/// range is stored only where a particle has other numbers than [`Entry::IDLE`].
 macro_rules! columns {
     (
         |$seed:ident, $number:ident|
