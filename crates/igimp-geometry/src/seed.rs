@@ -167,7 +167,7 @@ impl<const D: usize> Parts<D> {
         [from, from + size]
     }
 
-    /// By column of parts along the first axis, what is made of its ends.
+    /// Clipping result by column of parts along the first axis.
     fn columns<T>(&self, make: impl Fn([f64; 2]) -> T) -> Vec<T> {
         let count = self.cells[0].len() * self.per_direction;
         (0..count).map(|part| make(self.ends(0, part))).collect()

@@ -108,7 +108,7 @@ pub trait LinearSolver: Send {
     /// How many patterns were analysed since construction: shows that symbolic work is reused.
     fn analyses(&self) -> usize;
 
-    /// A step begins: what was learnt in the one before is forgotten, so that its solutions do not depend on it.
+    /// Resets adaptive state at the start of a load step, so that steps are independent.
     fn start_step(&mut self) {}
 
     /// How small ‖b − K x‖ / ‖b‖ has to become in the next solutions \[-\]. Multifrontal solvers

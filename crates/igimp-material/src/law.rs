@@ -249,8 +249,8 @@ pub trait ConstitutiveModel: Send + Sync + Debug {
         History::default()
     }
 
-    /// Whether many trial states are better asked for at once, with [`return_maps`](Self::return_maps): of a
-    /// law for which being asked costs more than the answer.
+    /// Whether [`return_maps`](Self::return_maps) serves better than many single calls: for laws with a high overhead
+    /// per call.
     fn prefers_batches(&self) -> bool {
         false
     }

@@ -57,7 +57,7 @@ use igimp_geometry::region::Region;
 pub struct Case<const D: usize> {
     /// Title for reports and figures.
     pub title: String,
-    /// Whom and what it is for.
+    /// Project, client, author and revision.
     pub title_block: TitleBlock,
     /// Acceleration of gravity \[m/s²\], positive; it acts downwards.
     pub gravity: f64,

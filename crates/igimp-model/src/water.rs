@@ -59,7 +59,7 @@ pub enum PoreSource {
     Surface(Arc<Terrain>),
     /// The water table of ground in space that was drained.
     Drained(Drained),
-    /// Pressures by points in the plane \[Pa\], as a seepage analysis gives them; less than none is none. On the ground it is that
+    /// Pressures by points in the plane \[Pa\], as a seepage analysis gives them; negative values count as zero. On the ground it is that
     /// of the free water there.
     Points(Raster),
     /// r_u: the pressure as a share of the weight of the ground above, as the bodies present from the start are
@@ -68,7 +68,7 @@ pub enum PoreSource {
 }
 
 impl PoreSource {
-    /// The level of its water table above or below a place \[m\]; none of what is no table.
+    /// Elevation of the water table at a place \[m\]; none of a condition that is not a table.
     pub fn table<const D: usize>(&self, place: &[f64; D]) -> Option<f64> {
         match self {
             Self::Table(points) => Some(table_level(points, place[0])),

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-/// Forces that hold a body where a change has put it out of balance, until they are let go.
+/// Unbalanced nodal forces after a change of construction, released linearly over the stage.
 #[derive(Clone, Debug)]
 pub struct UnbalancedForces<const D: usize> {
     /// By node of the grid \[force\].

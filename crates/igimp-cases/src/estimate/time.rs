@@ -289,7 +289,7 @@ mod tests {
         assert!(time(&case, &size, Speed::REFERENCE).open_ended);
     }
 
-    /// What was planned and taken to the letter costs what was estimated.
+    /// A run that takes exactly the planned steps costs the estimated time.
     #[test]
     fn steps_taken_as_planned_cost_what_was_estimated() {
         let case = case();

@@ -45,7 +45,7 @@ pub(super) fn overlap(a: [f64; 2], b: [f64; 2]) -> Option<[f64; 2]> {
     (own[0] < own[1]).then_some(own)
 }
 
-/// How much of a stretch of an axis and of what is seen along it belongs to a thing between two places.
+/// Overlap of an interval of an axis, and of the area seen along it, with a solid between two places.
 pub(super) fn both(
     along: Option<[f64; 2]>,
     stretch: [f64; 2],

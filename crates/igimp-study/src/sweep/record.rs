@@ -76,7 +76,7 @@ pub(super) fn fingerprint(file: &CaseFile) -> String {
     text
 }
 
-/// Why a run is not what was wanted, on one line; empty when it is.
+/// Reason for a failure on one line; empty on success.
 pub(super) fn message(run: &Account) -> String {
     let summary = &run.summary;
     if let Some(error) = run.lost.first() {

@@ -184,7 +184,7 @@ fn ranges(numbers: impl Iterator<Item = usize>) -> String {
     texts.collect::<Vec<_>>().join(",")
 }
 
-/// Arrays that Slurm takes: what is added to their numbers, and these.
+/// Chunks of a Slurm array: the index offset and the index list of each.
 fn arrays(tasks: &[&Task]) -> Vec<(usize, String)> {
     let offset = |task: &&Task| (task.number - 1) / ARRAY * ARRAY;
     let groups = tasks.chunk_by(|a, b| offset(a) == offset(b));
