@@ -129,6 +129,7 @@ fn a_law_remembers_from_step_to_step() {
         elasticity: Elasticity::new(soil.young, soil.poisson).unwrap(),
         yield_stress: 2e3,
         modulus: 0.1 * soil.young,
+        srf: 1.0,
     };
     soil.given = Some(GivenLaw(Arc::new(law.clone())));
     let run = in_memory(&case).unwrap();

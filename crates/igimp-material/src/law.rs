@@ -336,7 +336,8 @@ pub trait ConstitutiveModel: Send + Sync + Debug {
 
     /// The law with its strength divided by the reduction factor `srf`: cohesion, undrained
     /// strength, yield stress, tension cut-off and tan φ. Elasticity stays; the dilation angle
-    /// stays too but never exceeds the reduced friction angle.
+    /// stays too but never exceeds the reduced friction angle. The history of a particle is not changed by a reduction: a
+    /// law whose internal variables are stresses divides what it reads of them by `srf` itself.
     ///
     /// # Errors
     /// [`MaterialError::InvalidParameter`] unless `srf` is positive and finite.

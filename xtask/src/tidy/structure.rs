@@ -225,12 +225,12 @@ mod tests {
     #[test]
     fn full_folders_are_found() {
         let files: Vec<PathBuf> = (0..=FILES)
-            .map(|k| PathBuf::from(format!("/root/a/{k}.rs")))
+            .map(|k| PathBuf::from(format!("/house/a/{k}.rs")))
             .collect();
         assert_eq!(
-            crowded(&files, Path::new("/root")),
+            crowded(&files, Path::new("/house")),
             ["a has 16 files, more than 15"]
         );
-        assert!(crowded(&files[1..], Path::new("/root")).is_empty());
+        assert!(crowded(&files[1..], Path::new("/house")).is_empty());
     }
 }

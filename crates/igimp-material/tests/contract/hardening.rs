@@ -16,6 +16,7 @@ fn hardening(strength: f64, stiffness: f64) -> Hardening {
         elasticity: Elasticity::new(100.0 * stiffness, 0.3).unwrap(),
         yield_stress: 1.5 * strength,
         modulus: 20.0 * stiffness,
+        srf: 1.0,
     }
 }
 
@@ -60,6 +61,25 @@ fn a_scaled_law_remembers_what_the_law_with_scaled_parameters_does() {
         let grown = histories[1].internal[1] - 1.5 * strength;
         assert!((grown - 20.0 * stiffness * histories[1].internal[0]).abs() < 1e-12 * grown);
     }
+}
+
+/// GOAL: a reduction acts on what was remembered before it, and leaves the memory as it is.
+#[test]
+fn a_reduction_acts_on_what_is_remembered() {
+    let law = hardening(1.0, 1.0);
+    let mut history = law.initial_history(&[0.0; 3]);
+    history = law
+        .return_map(&[0.05, 0.0, -0.05], &history)
+        .unwrap()
+        .history;
+    let reduced = law.reduced(2.0).unwrap();
+    let tau = [1.0, 0.0, -1.0];
+    let share = law.utilisation(&tau, &history);
+    assert!((reduced.utilisation(&tau, &history) - 2.0 * share).abs() < 1e-12);
+    assert_eq!(
+        reduced.initial_history(&[0.0; 3]),
+        law.initial_history(&[0.0; 3])
+    );
 }
 
 /// GOAL: the consistent tangent of the law of these tests is the derivative of its stress.

@@ -17,6 +17,8 @@ pub(crate) struct Hardening {
     pub(crate) yield_stress: f64,
     /// H \[stress\].
     pub(crate) modulus: f64,
+    /// What both, and the yield stress that is remembered, are divided by \[-\].
+    pub(crate) srf: f64,
 }
 
 /// The variables: plastic strain κ, and the yield stress that it led to.
@@ -66,7 +68,7 @@ impl ConstitutiveModel for Hardening {
     ) -> Result<ReturnMap, MaterialError> {
         let tau = self.elasticity.stress(eps_e_trial);
         let (s, q) = deviator(&tau);
-        let over = q - history.internal[1];
+        let over = q - history.internal[1] / self.srf;
         let tangent = self.elasticity.tangent();
         if over <= 0.0 {
             return Ok(ReturnMap {
@@ -78,7 +80,7 @@ impl ConstitutiveModel for Hardening {
             });
         }
         let shear = self.elasticity.shear();
-        let hardened = 3.0 * shear + self.modulus;
+        let hardened = 3.0 * shear + self.modulus / self.srf;
         let kappa = over / hardened;
         let n = s.map(|s| s / q);
         let delta_eps_p = n.map(|n| 1.5 * kappa * n);
@@ -103,15 +105,15 @@ impl ConstitutiveModel for Hardening {
     }
 
     fn yield_function(&self, tau: &Principal, history: &History) -> f64 {
-        deviator(tau).1 - history.internal[1]
+        deviator(tau).1 - history.internal[1] / self.srf
     }
 
     fn stress_scale(&self, tau: &Principal) -> f64 {
-        deviator(tau).1.max(self.yield_stress)
+        deviator(tau).1.max(self.yield_stress / self.srf)
     }
 
     fn utilisation(&self, tau: &Principal, history: &History) -> f64 {
-        deviator(tau).1 / history.internal[1]
+        deviator(tau).1 * self.srf / history.internal[1]
     }
 
     fn has_symmetric_tangent(&self) -> bool {
@@ -120,8 +122,7 @@ impl ConstitutiveModel for Hardening {
 
     fn reduced(&self, srf: f64) -> Result<Arc<dyn ConstitutiveModel>, MaterialError> {
         Ok(Arc::new(Self {
-            yield_stress: self.yield_stress / srf,
-            modulus: self.modulus / srf,
+            srf: self.srf * srf,
             ..self.clone()
         }))
     }

@@ -1,4 +1,5 @@
-//! Warnings about values that no soil has: a slip of the unit, mostly of a thousand or of rad for deg.
+//! Warnings about constant values outside the range of soil, rock and structures: mostly a slip of the unit, of a thousand
+//! or of rad for deg. Values that vary in space are not looked at.
 
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::text::{clip, number};
@@ -41,13 +42,13 @@ const PLAUSIBLE: [Plausible; 5] = [
     },
     Plausible {
         key: "friction",
-        between: [0.017_453, 1.221_731],
-        unit: (0.017_453_292_519_943_295, "deg"),
+        between: [1.0_f64.to_radians(), 70.0_f64.to_radians()],
+        unit: (1.0_f64.to_radians(), "deg"),
         help: "soil has 15 to 45 deg; 0.35 rad are 20 deg",
     },
 ];
 
-/// Looks at the numbers of a material; zero is none of its concern.
+/// Checks the constants of a material; zero is plausible for all of them.
 pub(super) fn check(name: &str, material: &Node, problems: &mut Problems) {
     for plausible in &PLAUSIBLE {
         let Some(node) = material.get(plausible.key) else {
@@ -63,7 +64,7 @@ pub(super) fn check(name: &str, material: &Node, problems: &mut Problems) {
                 .warning(
                     node.place,
                     format!(
-                        "`{}` has {} = {} {unit}, which is no value of soil, rock or a structure",
+                        "`{}` has {} = {} {unit}, outside the range of soil, rock and structures",
                         clip(name, 40),
                         plausible.key,
                         number(value / scale)
