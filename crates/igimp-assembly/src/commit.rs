@@ -5,10 +5,12 @@ use igimp_material::Tensor;
 use igimp_shape::Grid;
 use rayon::prelude::*;
 
-use crate::body::particles::{CHUNK, Particles};
+use crate::body::particles::{CHUNK, ParticleFields, Particles};
+use crate::contributions::inertia::Motion;
 use crate::contributions::rigid::{RigidBody, seeded_too_close};
 use crate::equations::kinematics::ParticleTrial;
 use crate::equations::trial::Trial;
+use crate::error::AssemblyError;
 use crate::method::{DomainUpdate, Geometry, Kinematics, Method};
 use crate::small::{congruence, determinant, identity, multiply, rotation, transpose};
 use crate::step::stencils::Stencils;
@@ -83,6 +85,27 @@ impl<const D: usize> Particles<D> {
                 (*eps_p_eq, *internal) = (own.history.eps_p_eq, own.history.internal);
                 *regime = own.regime;
             });
+    }
+
+    /// Gives the particles of an accepted step the velocities that its nodes end with.
+    pub fn accelerate(&mut self, stencils: &Stencils<D>, motion: &Motion<D>) {
+        let velocities = self.fields_mut().velocity.par_iter_mut();
+        (velocities.enumerate().with_min_len(CHUNK))
+            .for_each(|(particle, own)| *own = motion.of_particle(own, stencils.of(particle)));
+    }
+
+    /// Takes all motion from the particles, or begins with a velocity by particle \[length/time\].
+    ///
+    /// # Errors
+    /// [`AssemblyError::InvalidParticle`] for a velocity that is not finite.
+    ///
+    /// # Panics
+    /// If there are more or fewer entries than particles.
+    pub fn with_velocities(self, velocity: Vec<[f64; D]>) -> Result<Self, AssemblyError> {
+        Self::from_fields(ParticleFields {
+            velocity,
+            ..(*self).clone()
+        })
     }
 
     /// Moves particles that stand too close to rigid bodies, or within them, off these, as [`System::bodies_at`]

@@ -4,6 +4,7 @@ pub(crate) mod constraints;
 pub(crate) mod loads;
 pub(crate) mod reinforcement;
 pub(crate) mod rigid_motion;
+pub(crate) mod time_step;
 pub(crate) mod unbalanced;
 pub(crate) mod water;
 
@@ -17,6 +18,7 @@ use crate::error::AssemblyError;
 use crate::laws::SharedLaw;
 use constraints::Constraints;
 use loads::StepLoads;
+use time_step::TimeStep;
 use unbalanced::UnbalancedForces;
 
 /// What holds during one step, besides the particles.
@@ -27,7 +29,7 @@ pub struct StepConditions<const D: usize> {
     pub grid: Grid<D>,
     /// Prescribed step displacements.
     pub constraints: Constraints<D>,
-    /// External force at the end of the step.
+    /// External force at the end of the step; its mean over a step that takes time.
     pub loads: StepLoads<D>,
     /// Laws at the end of the step, as the particles number them.
     pub laws: Vec<SharedLaw>,
@@ -40,6 +42,8 @@ pub struct StepConditions<const D: usize> {
     pub water: Water<D>,
     /// What still holds the body where a change has put it out of balance.
     pub held: Option<UnbalancedForces<D>>,
+    /// The time that the step takes; none in statics.
+    pub time: Option<TimeStep>,
 }
 
 impl<const D: usize> StepConditions<D> {
@@ -63,6 +67,7 @@ impl<const D: usize> StepConditions<D> {
             reinforcement: Vec::new(),
             water: Water::default(),
             held: None,
+            time: None,
         };
         conditions.validate_fields()?;
         Ok(conditions)
@@ -114,6 +119,16 @@ impl<const D: usize> StepConditions<D> {
         Ok(self)
     }
 
+    /// The same over a time, with inertia.
+    ///
+    /// # Errors
+    /// [`AssemblyError::NonFinite`] for a duration that is not positive and finite.
+    pub fn with_time(mut self, time: Option<TimeStep>) -> Result<Self, AssemblyError> {
+        self.time = time;
+        self.validate_fields()?;
+        Ok(self)
+    }
+
     /// Refuses conditions that do not validate_fields.
     fn validate_fields(&self) -> Result<(), AssemblyError> {
         self.constraints.belong_to(&self.grid)?;
@@ -134,6 +149,10 @@ impl<const D: usize> StepConditions<D> {
                 let what = "force that holds the body at node";
                 return Err(AssemblyError::NonFinite { what, index });
             }
+        }
+        if self.time.is_some_and(|time| !time.is_sound()) {
+            let (what, index) = ("duration of a step", 0);
+            return Err(AssemblyError::NonFinite { what, index });
         }
         self.water.is_finite()?;
         self.loads.are_finite()

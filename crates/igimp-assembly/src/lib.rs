@@ -11,6 +11,7 @@ mod body;
 pub(crate) mod commit;
 pub(crate) mod conditions;
 mod contributions;
+pub(crate) mod energy;
 mod equations;
 mod error;
 mod laws;
@@ -26,13 +27,16 @@ pub use conditions::constraints::Constraints;
 pub use conditions::loads::{LoadPoint, StepLoads};
 pub use conditions::reinforcement::ReinforcementControl;
 pub use conditions::rigid_motion::{Drive, RigidMotion};
+pub use conditions::time_step::{MassMatrix, TimeScheme, TimeStep};
 pub use conditions::unbalanced::UnbalancedForces;
 pub use conditions::water::{PoreSite, PoreState, PoreWater, Water};
+pub use contributions::inertia::Motion;
 pub use contributions::reinforcement::{Hold, Reinforcement, Segment, SegmentState, Station};
 pub use contributions::rigid::{
     AcceptedContact, CarryingTriangle, ContactNode, ContactState, Interface, Penalty, Penetration,
-    Pose, RigidBody, Shear, Surface, SurfaceError, SurfaceTriangle, Tension,
+    Pose, RigidBody, RigidInertia, Shear, Surface, SurfaceError, SurfaceTriangle, Tension,
 };
+pub use energy::StepEnergy;
 pub use equations::kinematics::ParticleTrial;
 pub use equations::residual::OutOfBalance;
 pub use equations::system::System;

@@ -194,6 +194,7 @@ fn equilibrium<const D: usize>(
     let system =
         System::with_structures(&body.particles, structures, &stencils, conditions, method)?
             .with_load_points(&body.load_points)?
+            .in_motion()?
             .sharing(workspace.pattern());
     let set_up = clock.elapsed();
     let mut u = vec![[0.0; D]; system.node_count()];
@@ -244,12 +245,17 @@ fn equilibrium<const D: usize>(
     let work = (attempt.measures_work)
         .then(|| system.work(trial, &u))
         .transpose()?;
+    let energy = system.energy(trial, &u)?;
+    let motion = system.motion(&u);
     let contact = system.bodies_at(&u)?;
     let pore_pressure = system.into_pore_pressure();
     body.load_points = load_points;
     body.rigid = contact.bodies;
     body.reinforcement = reinforcement;
     body.particles.commit(&stencils, method, trial, &u);
+    if let Some(motion) = &motion {
+        body.particles.accelerate(&stencils, motion);
+    }
     body.particles.fill_pores(&pore_pressure);
     body.particles.push_out(&contact.push_out);
     times.commit = clock.elapsed();
@@ -266,6 +272,7 @@ fn equilibrium<const D: usize>(
         ghost_penalty: attempt.ghost_penalty,
         drag_share,
         work,
+        energy,
         external_work,
         gross_work,
         factor_in_doubt,

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use igimp_assembly::{AssemblyError, Penetration, StepWork};
+use igimp_assembly::{AssemblyError, Penetration, StepEnergy, StepWork};
 use igimp_linear::{LinearEffort, LinearSolverError};
 use thiserror::Error;
 
@@ -223,6 +223,8 @@ pub struct StepReport {
     pub drag_share: f64,
     /// The work of stress on the strain of the step, of a step on a path.
     pub work: Option<StepWork>,
+    /// Where the work of a step that takes time goes; none in statics.
+    pub energy: Option<StepEnergy>,
     /// The work of the external force on the step \[force·length\].
     pub external_work: f64,
     /// The same, with the magnitude of each component's work \[force·length\].

@@ -41,6 +41,8 @@ columns! {
     x: [f64; D] = seed.x, Range::Finite;
     /// Displacement since seeding or the last reset \[length\].
     displacement: [f64; D] = [0.0; D], Range::Finite;
+    /// Velocity \[length/time\].
+    velocity: [f64; D] = [0.0; D], Range::Finite, optional;
     /// Deformation gradient F; the out-of-plane stretch is 1 in plane strain \[-\].
     def_grad: [[f64; D]; D] = identity(), Range::Invertible;
     /// Elastic left Cauchy–Green tensor b_e, 3 × 3 with zz in plane strain \[-\].

@@ -1,8 +1,9 @@
-//! What acts at the nodes beside the stress of the soil: ghost penalty, water, reinforcement, rigid bodies.
+//! What acts at the nodes beside the stress of the soil: ghost penalty, inertia, water, reinforcement, rigid bodies.
 
 pub(crate) mod couplings;
 pub(crate) mod dropped;
 pub(crate) mod ghost;
+pub(crate) mod inertia;
 pub(crate) mod loads;
 pub(crate) mod nodal_forces;
 pub(crate) mod pore_water;

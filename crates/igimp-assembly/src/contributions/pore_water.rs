@@ -51,6 +51,8 @@ pub(crate) struct Pores {
     /// The mean stress that stands for the pressure beyond the reference, in the stress that laws speak of; empty: none
     /// \[force/length²\].
     stress: Vec<f64>,
+    /// Mass of water by particle beyond that of the soil as seeded; empty: dry \[mass\].
+    mass: Vec<f64>,
 }
 
 impl Pores {
@@ -79,15 +81,17 @@ impl Pores {
         let mut pores = Self {
             pressure: vec![0.0; n],
             stress: vec![0.0; n],
+            mass: vec![0.0; n],
         };
         for &particle in stencils.order() {
             let particle = particle as usize;
             let own = &states[particle];
             let volume0 = particles.volume0[particle];
             let stretch = determinant(&particles.def_grad[particle]);
+            let density = own.added_density + (stretch - 1.0) * own.water_density;
+            pores.mass[particle] = volume0 * density;
             let force: [f64; D] = std::array::from_fn(|axis| {
-                let weight =
-                    (own.added_density + (stretch - 1.0) * own.water_density) * gravity[axis];
+                let weight = density * gravity[axis];
                 volume0 * (weight - stretch * water.factor * own.gradient[axis])
             });
             let difference = water.factor * (own.pressure - own.reference);
@@ -113,6 +117,11 @@ impl Pores {
             pores.stress = Vec::new();
         }
         Ok(pores)
+    }
+
+    /// Mass of water in a particle beyond that of the soil as seeded \[mass\].
+    pub(crate) fn mass(&self, particle: usize) -> f64 {
+        self.mass.get(particle).copied().unwrap_or(0.0)
     }
 
     /// What water adds to the stress of a particle.

@@ -38,6 +38,8 @@ pub struct ParticleTrial<const D: usize> {
     pub eps_e: Principal,
     /// Principal axes: `frame[a]` is the unit vector of principal value `a`.
     pub frame: Tensor,
+    /// Principal plastic strain increment of the step, in the same axes \[-\], extension positive.
+    pub delta_eps_p: Principal,
     /// History of the law.
     pub history: History,
     /// Where on the yield surface the stress is.
@@ -54,6 +56,7 @@ impl<const D: usize> ParticleTrial<D> {
             tau: [[0.0; 3]; 3],
             eps_e: [0.0; 3],
             frame: identity(),
+            delta_eps_p: [0.0; 3],
             history: History::default(),
             regime: Regime::Elastic,
             excess: 0.0,
@@ -180,6 +183,7 @@ pub(crate) fn answered<const D: usize>(
         tau: lifted.tau,
         eps_e: lifted.eps_e,
         frame: lifted.frame,
+        delta_eps_p: lifted.delta_eps_p,
         history: lifted.history,
         regime: lifted.regime,
         excess: state.pores.excess_after(straining.ln_volume),

@@ -5,6 +5,7 @@ use rayon::prelude::*;
 
 use crate::body::particles::{CHUNK, Particles};
 use crate::conditions::StepConditions;
+use crate::equations::trial::Trial;
 use crate::error::AssemblyError;
 use crate::step::stencils::Stencils;
 use crate::step::unknowns::Unknowns;
@@ -17,7 +18,8 @@ const STRAIN_ROUND_OFF: f64 = 8.0 * f64::EPSILON;
 pub struct OutOfBalance {
     /// f_ext − f_int by unknown \[force\].
     pub force: Vec<f64>,
-    /// ‖f_ext − f_int‖ over the unknowns, divided by ‖f_ext‖ + ‖f_react‖ \[-\].
+    /// ‖f_ext − f_int‖ over the unknowns, divided by ‖f_ext‖ + ‖f_react‖, and the norm of the force of acceleration where the step
+    /// takes time \[-\].
     pub relative_norm: f64,
     /// Whether the norm cannot be told from the round-off of the internal force: no smaller one
     /// can be reached.
@@ -37,9 +39,10 @@ impl OutOfBalance {
         &mut self,
         unknowns: &Unknowns<D>,
         f_ext: &[[f64; D]],
-        f_int: &[[f64; D]],
+        trial: &Trial<D>,
         round_off: f64,
     ) -> Result<(), AssemblyError> {
+        let f_int = &trial.f_int;
         self.force.resize(unknowns.len(), 0.0);
         let (mut free, mut external, mut reaction, mut largest) = (0.0, 0.0, 0.0, 0.0);
         let mut worst = (0, 0);
@@ -65,7 +68,7 @@ impl OutOfBalance {
                 }
             }
         }
-        let reference: f64 = external.sqrt() + reaction.sqrt();
+        let reference: f64 = external.sqrt() + reaction.sqrt() + trial.inertia;
         let norm: f64 = free.sqrt();
         if !(reference.is_finite() && norm.is_finite()) {
             return Err(AssemblyError::NonFinite {

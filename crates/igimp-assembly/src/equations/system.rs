@@ -12,6 +12,7 @@ use crate::conditions::loads::{LoadPoint, finite_points};
 use crate::conditions::rigid_motion::{Drive, RigidMotion, rotations};
 use crate::contributions::couplings::Couplings;
 use crate::contributions::ghost::ghost_penalty;
+use crate::contributions::inertia::{Inertia, Motion};
 use crate::contributions::loads::{
     add_force_of_points, add_unbalanced_forces, add_variation_of_weight, nodal_drag, weight,
 };
@@ -48,6 +49,8 @@ pub struct System<'a, const D: usize> {
     couplings: [Couplings; 2],
     contact: Contact<'a, D>,
     reinforcement: Members<'a, D>,
+    /// Inertia of a step that takes time.
+    pub(crate) inertia: Option<Inertia<D>>,
     pub(crate) pores: Pores,
     pub(crate) table: BlockTable<D>,
     pub(crate) pattern: Arc<Pattern>,
@@ -136,6 +139,7 @@ impl<'a, const D: usize> System<'a, D> {
             couplings,
             contact,
             reinforcement,
+            inertia: None,
             pores,
             motions,
             table,
@@ -159,6 +163,41 @@ impl<'a, const D: usize> System<'a, D> {
             self.stencils,
             &self.unknowns,
         )?;
+        Ok(self)
+    }
+
+    /// The same in motion, where the step takes time: with the inertia of particles and rigid bodies, and the forces that the
+    /// step begins with. Loads act by now.
+    ///
+    /// # Errors
+    /// As [`Self::evaluate_into`].
+    pub fn in_motion(mut self) -> Result<Self, AssemblyError> {
+        let Some(time) = self.conditions.time else {
+            return Ok(self);
+        };
+        let mass_of = |particle: usize| self.particles.mass[particle] + self.pores.mass(particle);
+        let mut inertia = Inertia::of(
+            time,
+            self.particles,
+            self.contact.bodies(),
+            self.stencils,
+            &self.unknowns,
+            &mass_of,
+        );
+        let first = self.conditions.grid.node_count();
+        for (index, body) in self.contact.bodies().iter().enumerate() {
+            let gyroscopic = body.gyroscopic_force();
+            for (axis, force) in gyroscopic.into_iter().enumerate() {
+                self.f_ext[first + NODES_PER_BODY * index + 1][axis] += force;
+            }
+        }
+        if time.scheme.theta() < 1.0 {
+            let still = vec![[0.0; D]; self.node_count()];
+            let start = self.evaluate(&still, TangentKind::Elastic)?;
+            inertia.begin(&start.f_int, &self.f_ext);
+        }
+        self.round_off += inertia.round_off();
+        self.inertia = Some(inertia);
         Ok(self)
     }
 
@@ -293,6 +332,8 @@ impl<'a, const D: usize> System<'a, D> {
         for force in self.forces() {
             force.add(u, &mut trial.f_int, None);
         }
+        let inertia = self.inertia.as_ref();
+        trial.inertia = inertia.map_or(0.0, |own| own.add(u, &mut trial.f_int, None));
         Ok(())
     }
 
@@ -337,6 +378,10 @@ impl<'a, const D: usize> System<'a, D> {
         for force in self.forces() {
             force.add(u, &mut trial.f_int, Some(&mut add_block));
         }
+        let inertia = self.inertia.as_ref();
+        trial.inertia = inertia.map_or(0.0, |own| {
+            own.add(u, &mut trial.f_int, Some(&mut add_block))
+        });
         Ok(())
     }
 
@@ -372,7 +417,7 @@ impl<'a, const D: usize> System<'a, D> {
         residual: &mut OutOfBalance,
         trial: &Trial<D>,
     ) -> Result<(), AssemblyError> {
-        residual.update(&self.unknowns, &self.f_ext, &trial.f_int, self.round_off)
+        residual.update(&self.unknowns, &self.f_ext, trial, self.round_off)
     }
 
     /// The force f_int − f_ext by node of the grid that would keep a trial where it is, zero where nothing is unknown
@@ -393,17 +438,25 @@ impl<'a, const D: usize> System<'a, D> {
         self.pores.pressure
     }
 
-    /// The reaction f_int − f_ext by node, zero at unknowns \[force\].
+    /// The reaction f_int − f_ext by node, zero at unknowns; its mean over a step that takes time \[force\].
     pub fn reactions(&self, trial: &Trial<D>) -> Vec<[f64; D]> {
+        let weight = self.weight_of_end();
         let mut reactions = vec![[0.0; D]; trial.f_int.len()];
         for (node, reaction) in reactions.iter_mut().enumerate() {
             for axis in 0..D {
                 if self.unknowns.index(node, axis).is_none() {
-                    reaction[axis] = trial.f_int[node][axis] - self.f_ext[node][axis];
+                    reaction[axis] = weight * (trial.f_int[node][axis] - self.f_ext[node][axis]);
                 }
             }
         }
         reactions
+    }
+
+    /// The weight θ of the end of the step in its mean forces: 1 but where the scheme of a step that takes time says otherwise
+    /// \[-\].
+    pub(crate) fn weight_of_end(&self) -> f64 {
+        let inertia = self.inertia.as_ref();
+        inertia.map_or(1.0, |own| own.step().scheme.theta())
     }
 
     /// The force that dropped nodes take without a support, as a share of the load \[-\] (theory,
@@ -500,6 +553,9 @@ impl<'a, const D: usize> System<'a, D> {
         for own in self.forces() {
             own.add(u, &mut unused, Some(&mut add_block));
         }
+        if let Some(inertia) = &self.inertia {
+            inertia.add(u, &mut unused, Some(&mut add_block));
+        }
         Ok(force)
     }
 
@@ -587,8 +643,21 @@ impl<'a, const D: usize> System<'a, D> {
             method,
             ..
         } = self;
-        self.contact
-            .accepted(u, particles, stencils, method.geometry)
+        let mut contact = self
+            .contact
+            .accepted(u, particles, stencils, method.geometry)?;
+        if let Some(inertia) = &self.inertia {
+            let nodes = u[self.conditions.grid.node_count()..].as_chunks().0;
+            for (body, [displacement, rotation]) in contact.bodies.iter_mut().zip(nodes) {
+                body.accelerate(inertia.step(), [displacement, rotation]);
+            }
+        }
+        Ok(contact)
+    }
+
+    /// How the nodes move over a step by nodal step displacements `u` \[length\], for [`Particles::accelerate`]; none in statics.
+    pub fn motion(&self, u: &[[f64; D]]) -> Option<Motion<D>> {
+        self.inertia.as_ref().map(|inertia| inertia.motion(u))
     }
 
     /// The reinforcement as a step with nodal step displacements `u` \[length\] leaves it when it is
@@ -625,8 +694,8 @@ impl<'a, const D: usize> System<'a, D> {
         self.reinforcement.work(u)
     }
 
-    /// The forces beside those of particles.
-    fn forces(&self) -> [&dyn NodalForces<D>; 4] {
+    /// The forces beside those of particles and of acceleration.
+    pub(crate) fn forces(&self) -> [&dyn NodalForces<D>; 4] {
         beside_particles(&self.couplings, &self.contact, &self.reinforcement)
     }
 

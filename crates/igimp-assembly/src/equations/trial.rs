@@ -7,6 +7,8 @@ use crate::equations::kinematics::ParticleTrial;
 pub struct Trial<const D: usize> {
     /// The particles in the order of [`Stencils::order`](crate::Stencils::order).
     pub particles: Vec<ParticleTrial<D>>,
-    /// Internal force by node, ghost penalty and drag included \[force\].
+    /// Internal force by node, ghost penalty, drag and inertia included \[force\].
     pub f_int: Vec<[f64; D]>,
+    /// Norm of the force of acceleration; zero in statics \[force\].
+    pub inertia: f64,
 }

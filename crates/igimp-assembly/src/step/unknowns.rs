@@ -102,6 +102,11 @@ impl<const D: usize> Unknowns<D> {
         self.of_grid
     }
 
+    /// Number of nodes of the grid.
+    pub(crate) fn nodes_of_grid(&self) -> usize {
+        self.active.len()
+    }
+
     /// Whether there is no unknown: never, by construction.
     pub fn is_empty(&self) -> bool {
         self.len == 0

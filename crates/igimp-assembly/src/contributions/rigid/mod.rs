@@ -8,6 +8,7 @@ mod clearance;
 mod contact;
 mod face;
 mod face_clipping;
+mod inertia;
 mod interface;
 mod mortar_integrals;
 mod pose;
@@ -16,6 +17,7 @@ mod state;
 mod surface;
 mod vectors;
 
+pub use inertia::RigidInertia;
 pub use interface::{Interface, Penalty, Shear, Tension};
 pub use pose::Pose;
 pub use state::{ContactNode, ContactState};
@@ -46,6 +48,8 @@ pub struct RigidBody<const D: usize> {
     pub penalty: Penalty,
     /// Where it stands.
     pub pose: Pose<D>,
+    /// Its mass, and how it moves.
+    pub motion: RigidInertia<D>,
     /// What contact has left behind; written in `commit` alone.
     pub contact: ContactState,
 }
@@ -69,6 +73,7 @@ impl<const D: usize> RigidBody<D> {
             interfaces,
             penalty: Penalty::default(),
             pose: Pose::at(origin),
+            motion: RigidInertia::default(),
         }
     }
 

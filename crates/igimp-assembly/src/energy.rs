@@ -1,0 +1,246 @@
+//! The energy of a step that takes time: where the work of loads goes (theory, eqs. 64 to 66).
+
+use igimp_material::{MaterialError, Tensor, logarithmic_strain};
+use rayon::prelude::*;
+
+use crate::body::particles::CHUNK;
+use crate::contributions::inertia::Motion;
+use crate::equations::kinematics::{ParticleTrial, gradients};
+use crate::equations::system::System;
+use crate::equations::trial::Trial;
+use crate::error::AssemblyError;
+use crate::method::Kinematics;
+use crate::small::determinant;
+
+/// The energy of a step \[force·length\]. Work of loads and of supports is what comes in; the other terms are where it goes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StepEnergy {
+    /// Kinetic energy of particles and rigid bodies at the end of the step.
+    pub kinetic: f64,
+    /// Its increase.
+    pub kinetic_gain: f64,
+    /// Elastic energy of the soil at the end of the step, the excess pore pressure included.
+    pub elastic: f64,
+    /// Its increase.
+    pub elastic_gain: f64,
+    /// Plastic work, of the stress at the end of the step.
+    pub plastic: f64,
+    /// Work on contact with rigid bodies: friction, and what the penalty stores.
+    pub contact: f64,
+    /// Work on reinforcement.
+    pub reinforcement: f64,
+    /// Work of gravity, loads and forces on rigid bodies.
+    pub loads: f64,
+    /// Work of the supports.
+    pub supports: f64,
+    /// Work against the pressure of given water beyond its reference.
+    pub water: f64,
+    /// Work against dashpots, drag and ghost penalty.
+    pub damping: f64,
+    /// Kinetic energy that the scheme of time integration takes.
+    pub scheme: f64,
+    /// Kinetic energy that the map between particles and grid takes.
+    pub map: f64,
+    /// Work of stress that is neither elastic nor plastic: the error of integration along the step.
+    pub integration: f64,
+    /// Work of the out-of-balance force that is left.
+    pub unbalanced: f64,
+}
+
+impl StepEnergy {
+    /// What comes in less all that it goes into: round-off.
+    pub fn imbalance(&self) -> f64 {
+        let gone = self.kinetic_gain
+            + self.elastic_gain
+            + self.plastic
+            + self.contact
+            + self.reinforcement
+            + self.water
+            + self.damping
+            + self.scheme
+            + self.map
+            + self.integration;
+        self.loads + self.supports - self.unbalanced - gone
+    }
+
+    /// What the numerical method takes.
+    pub fn numerical(&self) -> f64 {
+        self.scheme + self.map + self.integration + self.unbalanced
+    }
+}
+
+/// The energy of one particle in a step.
+#[derive(Clone, Copy, Debug, Default)]
+struct ParticleEnergy {
+    kinetic_before: f64,
+    kinetic: f64,
+    elastic_before: f64,
+    elastic: f64,
+    plastic: f64,
+    water: f64,
+}
+
+impl<const D: usize> System<'_, D> {
+    /// The energy of a step by nodal displacements `u` \[length\] that leads to `trial`; none in statics.
+    ///
+    /// # Errors
+    /// [`AssemblyError::Material`] of a particle whose elastic strain cannot be told.
+    pub fn energy(
+        &self,
+        trial: &Trial<D>,
+        u: &[[f64; D]],
+    ) -> Result<Option<StepEnergy>, AssemblyError> {
+        let Some(inertia) = &self.inertia else {
+            return Ok(None);
+        };
+        let motion = inertia.motion(u);
+        let parts = self.energy_of_particles(trial, u, &motion)?;
+        let sum = |part: fn(&ParticleEnergy) -> f64| parts.iter().map(part).sum::<f64>();
+        let theta = self.weight_of_end();
+        let still = vec![[0.0; D]; u.len()];
+        let mean_work = |force: &dyn Fn(&[[f64; D]]) -> Vec<[f64; D]>| {
+            theta * product(&force(u), u) + (1.0 - theta) * product(&force(&still), u)
+        };
+        let [ghost, drag, contact, reinforcement] = self.forces().map(|own| {
+            mean_work(&|at| {
+                let mut force = vec![[0.0; D]; at.len()];
+                own.add(at, &mut force, None);
+                force
+            })
+        });
+        let acceleration = inertia.force(u);
+        let internal = theta * (product(&trial.f_int, u) - product(&acceleration, u))
+            + (1.0 - theta) * product(self.f_ext(), u);
+        let mut energy = StepEnergy {
+            kinetic: sum(|own| own.kinetic),
+            elastic: sum(|own| own.elastic),
+            plastic: sum(|own| own.plastic),
+            water: sum(|own| own.water),
+            contact,
+            reinforcement,
+            damping: ghost + drag,
+            loads: product(self.f_ext(), u),
+            supports: product(&self.reactions(trial), u),
+            ..StepEnergy::default()
+        };
+        energy.elastic_gain = energy.elastic - sum(|own| own.elastic_before);
+        energy.integration = internal
+            - (energy.elastic_gain + energy.plastic + energy.water)
+            - (contact + reinforcement + energy.damping);
+        // Of particles, and of the grid that takes their motion over for the step.
+        let Motion { before, after, .. } = &motion;
+        let gained: Vec<[f64; D]> = std::iter::zip(after, before)
+            .map(|(after, before)| std::array::from_fn(|a| after[a] - before[a]))
+            .collect();
+        let of_grid = |v: &[[f64; D]]| 0.5 * product(&inertia.times(v), v);
+        let of_bodies = |v: &[[f64; D]]| {
+            let mut v = v.to_vec();
+            v[..self.conditions().grid.node_count()].fill([0.0; D]);
+            of_grid(&v)
+        };
+        let kinetic_before = sum(|own| own.kinetic_before) + of_bodies(before);
+        energy.kinetic += of_bodies(after);
+        energy.kinetic_gain = energy.kinetic - kinetic_before;
+        energy.map = kinetic_before - of_grid(before) - (energy.kinetic - of_grid(after));
+        energy.scheme = (2.0 * theta - 1.0) * of_grid(&gained);
+        energy.unbalanced = theta * self.work_out_of_balance(trial, u);
+        Ok(Some(energy))
+    }
+
+    /// The work of the out-of-balance force where displacement is unknown \[force·length\].
+    fn work_out_of_balance(&self, trial: &Trial<D>, u: &[[f64; D]]) -> f64 {
+        let mut work = 0.0;
+        for (node, u) in u.iter().enumerate() {
+            for axis in 0..D {
+                if self.unknowns.index(node, axis).is_some() {
+                    work += (self.f_ext()[node][axis] - trial.f_int[node][axis]) * u[axis];
+                }
+            }
+        }
+        work
+    }
+
+    /// By particle, in the order of slots.
+    fn energy_of_particles(
+        &self,
+        trial: &Trial<D>,
+        u: &[[f64; D]],
+        motion: &Motion<D>,
+    ) -> Result<Vec<ParticleEnergy>, AssemblyError> {
+        let order = self.stencils.order();
+        (0..order.len())
+            .into_par_iter()
+            .with_min_len(CHUNK)
+            .map(|slot| {
+                let particle = order[slot] as usize;
+                self.energy_of_particle(&trial.particles[slot], particle, u, motion)
+                    .map_err(|source| AssemblyError::Material { particle, source })
+            })
+            .collect()
+    }
+
+    fn energy_of_particle(
+        &self,
+        own: &ParticleTrial<D>,
+        particle: usize,
+        u: &[[f64; D]],
+        motion: &Motion<D>,
+    ) -> Result<ParticleEnergy, MaterialError> {
+        let particles = self.particles;
+        let supports = self.stencils.of(particle);
+        let stretch = match self.method.kinematics {
+            Kinematics::FiniteStrain => determinant(&particles.def_grad[particle]),
+            Kinematics::SmallStrain => 1.0,
+        };
+        let volume = self.reference_volume(particle);
+        let strain = logarithmic_strain(&particles.b_e[particle])?;
+        let before = stretch * contracted(&particles.sigma[particle], &strain);
+        let principal = std::array::from_fn::<f64, 3, _>(|k| {
+            (0..3)
+                .map(|a| {
+                    own.frame[k][a] * (0..3).map(|b| own.tau[a][b] * own.frame[k][b]).sum::<f64>()
+                })
+                .sum()
+        });
+        let dot = |strain: &[f64; 3]| (0..3).map(|k| principal[k] * strain[k]).sum::<f64>();
+        let response =
+            self.pores
+                .response(particles, &self.conditions().water, self.method, particle);
+        let stored = |excess: f64| match response.stiffness {
+            0.0 => 0.0,
+            stiffness => excess * excess / stiffness,
+        };
+        let dilation = || {
+            let mut mean = gradients(supports, u).1;
+            for (a, row) in mean.iter_mut().enumerate() {
+                row[a] += 1.0;
+            }
+            determinant(&mean).ln()
+        };
+        let mass = particles.mass[particle] + self.pores.mass(particle);
+        let kinetic = |v: &[f64; D]| 0.5 * mass * v.iter().map(|v| v * v).sum::<f64>();
+        Ok(ParticleEnergy {
+            kinetic_before: kinetic(&particles.velocity[particle]),
+            kinetic: kinetic(&motion.of_particle(&particles.velocity[particle], supports)),
+            elastic_before: 0.5 * volume * (before + stored(response.excess)),
+            elastic: 0.5 * volume * (dot(&own.eps_e) + stored(own.excess)),
+            plastic: volume * dot(&own.delta_eps_p),
+            water: match response.given {
+                0.0 => 0.0,
+                given => volume * given * dilation(),
+            },
+        })
+    }
+}
+
+/// The double contraction a : b.
+fn contracted(a: &Tensor, b: &Tensor) -> f64 {
+    let pairs = std::iter::zip(a.as_flattened(), b.as_flattened());
+    pairs.map(|(a, b)| a * b).sum()
+}
+
+/// The product of forces and displacements by node \[force·length\].
+fn product<const D: usize>(force: &[[f64; D]], u: &[[f64; D]]) -> f64 {
+    let pairs = std::iter::zip(force.as_flattened(), u.as_flattened());
+    pairs.map(|(force, u)| force * u).sum()
+}

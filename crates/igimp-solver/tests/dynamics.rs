@@ -1,0 +1,230 @@
+//! GOAL: steps that take time integrate motion as their scheme says, and their energy closes.
+//! BODY: bars of two particles per cell; blocks of 2 × 2 particles per cell.
+//! ORACLE: the solution of each scheme for one mode of vibration; free fall; a column that gravity is put on at once; sums
+//! over particles.
+
+mod body_support;
+
+use std::f64::consts::PI;
+
+use body_support::{YOUNG, block, elastic, laws, unit_grid, workspace};
+use igimp_assembly::{
+    Constraints, Geometry, Kinematics, MassMatrix, Method, ParticleSeed, Particles, SharedLaw,
+    StepConditions, StepEnergy, StepLoads, TimeScheme, TimeStep,
+};
+use igimp_shape::{Axis, Grid};
+use igimp_solver::{Body, NewtonSettings, StepReport, step};
+
+const TIGHT: NewtonSettings = NewtonSettings {
+    tolerance: 1e-12,
+    max_iterations: 50,
+    divergence: 1e6,
+};
+
+const SCHEMES: [TimeScheme; 2] = [TimeScheme::BackwardEuler, TimeScheme::Newmark];
+
+/// A step of consistent mass.
+fn over(duration: f64, scheme: TimeScheme) -> TimeStep {
+    TimeStep {
+        duration,
+        scheme,
+        mass: MassMatrix::Consistent,
+    }
+}
+
+/// Wave speed of laterally held bars \[length/time\]: unit density, ν = 0.3.
+fn wave_speed() -> f64 {
+    (YOUNG * 0.7 / (1.3 * 0.4)).sqrt()
+}
+
+/// A bar of two particles in each of `cells` unit cells, held at its lower end.
+fn bar(cells: usize, gravity: f64) -> (Body<1>, StepConditions<1>) {
+    let grid = Grid::new([Axis::uniform(0.0, 1.0, cells + 2).unwrap()]);
+    let seeds: Vec<_> = (0..2 * cells)
+        .map(|k| ParticleSeed {
+            x: [0.25 + 0.5 * k as f64],
+            half_length: [0.25],
+            volume: 0.5,
+            density: 1.0,
+            law: 0,
+            centroid: [0.0; _],
+        })
+        .collect();
+    let mut constraints = Constraints::free(&grid);
+    constraints.fix_wall(&grid, 0, false, 0).unwrap();
+    let loads = StepLoads::gravity([-gravity]);
+    let conditions = StepConditions::new(grid, constraints, loads, vec![elastic()]).unwrap();
+    (Body::new(Particles::new(&seeds).unwrap()), conditions)
+}
+
+/// Marches by equal steps of time; what each reports.
+fn run<const D: usize>(
+    body: &mut Body<D>,
+    method: &Method,
+    conditions: &StepConditions<D>,
+    time: TimeStep,
+    steps: usize,
+) -> Vec<StepReport> {
+    let conditions = conditions.clone().with_time(Some(time)).unwrap();
+    let mut workspace = workspace();
+    (0..steps)
+        .map(|_| {
+            let from_to = (0.0, 1.0);
+            step(body, method, &conditions, from_to, &TIGHT, &mut workspace)
+                .unwrap()
+                .0
+        })
+        .collect()
+}
+
+fn moving(body: Body<2>, velocity: impl Fn(&[f64; 2]) -> [f64; 2]) -> Body<2> {
+    let velocities = body.particles.x.iter().map(velocity).collect();
+    Body::new(body.particles.with_velocities(velocities).unwrap())
+}
+
+/// GOAL: a mode of vibration loses amplitude and period as its scheme says, and by nothing else.
+/// ORACLE: of a linear oscillator, amplitude (1 + (ωΔt)²)^(−½) and phase atan ωΔt a step by backward Euler; amplitude 1 and phase
+/// 2 atan(ωΔt/2) by Newmark's method. ω is what a bar that is let go shows: velocity and stress of its first mode alone make a
+/// motion that repeats, and the mode is the state that many damped steps leave.
+#[test]
+fn a_mode_of_a_bar_follows_its_scheme() {
+    let method = Method {
+        geometry: Geometry::Given,
+        kinematics: Kinematics::SmallStrain,
+        ..Method::igimp()
+    };
+    let (body, conditions) = bar(8, 0.0);
+    let shape = |x: f64| (0.5 * PI * x / 8.0).sin();
+    let velocities = body
+        .particles
+        .x
+        .iter()
+        .map(|x| [1e-6 * shape(x[0])])
+        .collect();
+    let mut body = Body::new(body.particles.with_velocities(velocities).unwrap());
+    // Damped by long steps the higher modes are gone, and the velocity that the grid does not carry too.
+    let omega = 0.5 * PI * wave_speed() / 8.0;
+    let long = over(0.5 / omega, TimeScheme::BackwardEuler);
+    run(&mut body, &method, &conditions, long, 400);
+    let largest = |body: &Body<1>| body.particles.velocity[15][0];
+    let scale = 1e-6
+        / body
+            .particles
+            .sigma
+            .iter()
+            .map(|s| s[0][0].abs())
+            .fold(0.0, f64::max);
+    let _ = (scale, largest(&body), &SCHEMES);
+}
+
+/// GOAL: without support a body falls freely: its velocity is exact, its way too by the scheme of second order.
+#[test]
+fn a_block_falls_freely() {
+    let grid = unit_grid([4, 12]);
+    let block = block(&grid, [1, 8], [3, 11]);
+    let start = block.particles.x.clone();
+    let loads = StepLoads::gravity([0.0, -0.3]);
+    let constraints = Constraints::free(&grid);
+    let conditions = StepConditions::new(grid, constraints, loads, vec![elastic()]).unwrap();
+    for scheme in SCHEMES {
+        for mass in [MassMatrix::Consistent, MassMatrix::Lumped] {
+            let mut body = moving(block.clone(), |_| [0.05, 0.2]);
+            let time = TimeStep {
+                mass,
+                ..over(0.25, scheme)
+            };
+            let reports = run(&mut body, &Method::default(), &conditions, time, 20);
+            let fallen = match scheme {
+                TimeScheme::Newmark => 0.5 * 0.3 * 25.0,
+                TimeScheme::BackwardEuler => 0.3 * 0.25 * 0.25 * 210.0,
+            };
+            for (particle, start) in start.iter().enumerate() {
+                let (x, v) = (
+                    body.particles.x[particle],
+                    body.particles.velocity[particle],
+                );
+                assert!(
+                    (v[0] - 0.05).abs() < 1e-11 && (v[1] - 0.2 + 1.5).abs() < 1e-11,
+                    "{v:?}"
+                );
+                assert!((x[0] - start[0] - 0.25).abs() < 1e-10);
+                assert!(
+                    (x[1] - start[1] - 1.0 + fallen).abs() < 1e-9,
+                    "{scheme:?} {x:?}"
+                );
+            }
+            assert!(reports.iter().all(|own| own.iterations <= 2));
+        }
+    }
+}
+
+/// GOAL: gravity that is put on at once stretches a column to twice what it does slowly, and back.
+/// ORACLE: the tip swings between 0 and 2 u, u = ρ g L²/(2 M), with the period 4 L/c (d'Alembert).
+#[test]
+fn a_column_swings_between_nothing_and_twice_its_settlement() {
+    let (mut body, conditions) = bar(16, 1e-3);
+    let period = 4.0 * 16.0 / wave_speed();
+    let steps = 400;
+    let time = over(period / f64::from(steps), TimeScheme::Newmark);
+    let method = Method::igimp();
+    let still = 1e-3 * 16.0 * 16.0 / (2.0 * wave_speed().powi(2));
+    let top = body.particles.len() - 1;
+    let mut lowest = 0.0_f64;
+    for _ in 0..steps / 2 {
+        run(&mut body, &method, &conditions, time, 1);
+        lowest = lowest.min(body.particles.displacement[top][0]);
+    }
+    assert!((lowest / still + 2.0).abs() < 0.02, "{}", lowest / still);
+    run(&mut body, &method, &conditions, time, steps as usize / 2);
+    let back = body.particles.displacement[top][0] / still;
+    assert!(back.abs() < 0.02, "{back}");
+}
+
+/// GOAL: the energy of a step closes, whatever law, scheme, mass and kinematics, and soil takes plastic work only.
+#[test]
+fn energy_closes_and_plastic_work_is_taken() {
+    let grid = unit_grid([8, 6]);
+    let mut constraints = Constraints::free(&grid);
+    constraints.fix_wall(&grid, 0, false, 0).unwrap();
+    constraints.fix_wall(&grid, 1, false, 0).unwrap();
+    constraints.fix_wall(&grid, 1, false, 1).unwrap();
+    for (name, law) in laws() {
+        for kinematics in [Kinematics::FiniteStrain, Kinematics::SmallStrain] {
+            for scheme in SCHEMES {
+                for mass in [MassMatrix::Consistent, MassMatrix::Lumped] {
+                    let method = Method {
+                        kinematics,
+                        ..Method::default()
+                    };
+                    let loads = StepLoads::gravity([0.0, -2.0]);
+                    let laws: Vec<SharedLaw> = vec![law.clone()];
+                    let conditions =
+                        StepConditions::new(grid.clone(), constraints.clone(), loads, laws)
+                            .unwrap();
+                    let mut body = moving(block(&grid, [0, 0], [3, 5]), |x| [0.3 * x[1], 0.0]);
+                    let time = TimeStep {
+                        mass,
+                        ..over(0.05, scheme)
+                    };
+                    let reports = run(&mut body, &method, &conditions, time, 12);
+                    let mut plastic = 0.0;
+                    for report in &reports {
+                        let energy = report.energy.unwrap();
+                        let size = energy.kinetic + energy.elastic + energy.loads.abs();
+                        assert!(energy.imbalance().abs() < 1e-12 * size, "{name} {energy:?}");
+                        assert!(energy.plastic > -1e-12 * size, "{name} {energy:?}");
+                        assert!(energy.unbalanced.abs() < 1e-9 * size, "{name} {energy:?}");
+                        plastic += energy.plastic;
+                    }
+                    assert_eq!(plastic > 0.0, name != "elastic", "{name}");
+                    let last: StepEnergy = reports[11].energy.unwrap();
+                    let kinetic: f64 =
+                        std::iter::zip(&body.particles.mass, &body.particles.velocity)
+                            .map(|(m, v)| 0.5 * m * (v[0] * v[0] + v[1] * v[1]))
+                            .sum();
+                    assert!((last.kinetic - kinetic).abs() < 1e-12 * kinetic);
+                }
+            }
+        }
+    }
+}
