@@ -87,11 +87,16 @@ impl<const D: usize> Particles<D> {
             });
     }
 
-    /// Gives the particles of an accepted step the velocities that its nodes end with.
+    /// Gives the particles of an accepted step the velocities and accelerations that its nodes end with.
     pub fn accelerate(&mut self, stencils: &Stencils<D>, motion: &Motion<D>) {
-        let velocities = self.fields_mut().velocity.par_iter_mut();
-        (velocities.enumerate().with_min_len(CHUNK))
-            .for_each(|(particle, own)| *own = motion.of_particle(own, stencils.of(particle)));
+        let fields = self.fields_mut();
+        let own = (&mut fields.velocity, &mut fields.acceleration).into_par_iter();
+        (own.enumerate().with_min_len(CHUNK)).for_each(|(particle, (velocity, acceleration))| {
+            *velocity = motion.of_particle(velocity, stencils.of(particle));
+            if motion.keeps_rest {
+                *acceleration = interpolate(stencils, particle, &motion.acceleration);
+            }
+        });
     }
 
     /// Takes all motion from the particles, or begins with a velocity by particle \[length/time\].

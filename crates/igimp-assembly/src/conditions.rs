@@ -29,7 +29,7 @@ pub struct StepConditions<const D: usize> {
     pub grid: Grid<D>,
     /// Prescribed step displacements.
     pub constraints: Constraints<D>,
-    /// External force at the end of the step; its mean over a step that takes time.
+    /// External force at the end of the step.
     pub loads: StepLoads<D>,
     /// Laws at the end of the step, as the particles number them.
     pub laws: Vec<SharedLaw>,

@@ -4,7 +4,7 @@ use igimp_material::{MaterialError, Tensor, logarithmic_strain};
 use rayon::prelude::*;
 
 use crate::body::particles::CHUNK;
-use crate::contributions::inertia::Motion;
+use crate::contributions::inertia::{Motion, product};
 use crate::equations::kinematics::{ParticleTrial, gradients};
 use crate::equations::system::System;
 use crate::equations::trial::Trial;
@@ -96,7 +96,7 @@ impl<const D: usize> System<'_, D> {
         let motion = inertia.motion(u);
         let parts = self.energy_of_particles(trial, u, &motion)?;
         let sum = |part: fn(&ParticleEnergy) -> f64| parts.iter().map(part).sum::<f64>();
-        let theta = self.weight_of_end();
+        let theta = inertia.step().scheme.theta();
         let still = vec![[0.0; D]; u.len()];
         let mean_work = |force: &dyn Fn(&[[f64; D]]) -> Vec<[f64; D]>| {
             theta * product(&force(u), u) + (1.0 - theta) * product(&force(&still), u)
@@ -108,9 +108,6 @@ impl<const D: usize> System<'_, D> {
                 force
             })
         });
-        let acceleration = inertia.force(u);
-        let internal = theta * (product(&trial.f_int, u) - product(&acceleration, u))
-            + (1.0 - theta) * product(self.f_ext(), u);
         let mut energy = StepEnergy {
             kinetic: sum(|own| own.kinetic),
             elastic: sum(|own| own.elastic),
@@ -121,10 +118,24 @@ impl<const D: usize> System<'_, D> {
             damping: ghost + drag,
             loads: product(self.f_ext(), u),
             supports: product(&self.reactions(trial), u),
+            unbalanced: theta * self.work_out_of_balance(trial, u),
             ..StepEnergy::default()
         };
         energy.elastic_gain = energy.elastic - sum(|own| own.elastic_before);
-        energy.integration = internal
+        // The work of stress and of all that acts with it: what is left of the work from outside when the mean force of acceleration
+        // has its part, that of forces at the end of the step and of accelerations at its start.
+        let mut f_end = inertia.times(&motion.acceleration);
+        for (end, (f_ext, f_int)) in
+            std::iter::zip(&mut f_end, std::iter::zip(self.f_ext(), &trial.f_int))
+        {
+            for a in 0..D {
+                end[a] += f_ext[a] - f_int[a];
+            }
+        }
+        let accelerating = theta * (product(&f_end, u) + energy.supports)
+            + (1.0 - theta) * product(&inertia.times(inertia.acceleration()), u);
+        energy.integration = energy.loads + energy.supports
+            - accelerating
             - (energy.elastic_gain + energy.plastic + energy.water)
             - (contact + reinforcement + energy.damping);
         // Of particles, and of the grid that takes their motion over for the step.
@@ -143,7 +154,6 @@ impl<const D: usize> System<'_, D> {
         energy.kinetic_gain = energy.kinetic - kinetic_before;
         energy.map = kinetic_before - of_grid(before) - (energy.kinetic - of_grid(after));
         energy.scheme = (2.0 * theta - 1.0) * of_grid(&gained);
-        energy.unbalanced = theta * self.work_out_of_balance(trial, u);
         Ok(Some(energy))
     }
 
@@ -237,10 +247,4 @@ impl<const D: usize> System<'_, D> {
 fn contracted(a: &Tensor, b: &Tensor) -> f64 {
     let pairs = std::iter::zip(a.as_flattened(), b.as_flattened());
     pairs.map(|(a, b)| a * b).sum()
-}
-
-/// The product of forces and displacements by node \[force·length\].
-fn product<const D: usize>(force: &[[f64; D]], u: &[[f64; D]]) -> f64 {
-    let pairs = std::iter::zip(force.as_flattened(), u.as_flattened());
-    pairs.map(|(force, u)| force * u).sum()
 }

@@ -46,7 +46,8 @@ pub use rigid::{
     RigidQuantity, RigidShape, RigidShear, components,
 };
 pub use stage::{
-    Reduction, ReductionPath, RunOut, SearchMethod, Stage, StageKind, StopWhen, StrengthReduction,
+    Dynamic, Reduction, ReductionPath, RunOut, SearchMethod, Stage, StageKind, StopWhen,
+    StrengthReduction,
 };
 pub use water::{Construction, Drainage, Drained, PoreSource, WaterCondition, table_level};
 

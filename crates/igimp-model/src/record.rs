@@ -98,6 +98,10 @@ pub enum Quantity {
     FactorOfSafety,
     /// Height of the highest particle's upper edge \[m\].
     Top,
+    /// Time since the first stage that takes some \[s\].
+    Time,
+    /// Kinetic energy, in stages that take time \[J/m; J in space\].
+    KineticEnergy,
 }
 
 /// One recorded quantity against another, one point per accepted step.

@@ -1,6 +1,6 @@
 //! Stages: what happens, in order.
 
-use igimp_assembly::Geometry;
+use igimp_assembly::{Geometry, MassMatrix, TimeScheme};
 
 use super::{Construction, RigidMove};
 
@@ -67,6 +67,8 @@ pub enum StageKind {
     StrengthReduction(StrengthReduction),
     /// Lets the slope of reduced strength move until it rests.
     RunOut(RunOut),
+    /// Motion in time, with inertia.
+    Dynamic(Dynamic),
 }
 
 /// How the factor of safety is searched for.
@@ -121,6 +123,26 @@ pub struct RunOut {
     pub at_rest: f64,
 }
 
+/// Motion in time, with inertia.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Dynamic {
+    /// How long it lasts \[s\].
+    pub duration: f64,
+    /// Time integration.
+    pub scheme: TimeScheme,
+    /// Mass matrix.
+    pub mass: MassMatrix,
+    /// Longest step \[s\]; none: error and way alone choose.
+    pub longest_step: Option<f64>,
+    /// Strength that is lost as it begins: materials by index, and by how much.
+    pub reduction: Option<(Vec<usize>, Reduction)>,
+    /// Rigid bodies that it moves, loads or lets free.
+    pub bodies: Vec<RigidMove>,
+    /// The share of its largest value to which kinetic energy has to fall for the stage to end \[-\]; none: it lasts its whole
+    /// duration.
+    pub at_rest: Option<f64>,
+}
+
 /// By how much strength is reduced.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Reduction {
@@ -142,6 +164,7 @@ impl StageKind {
             Self::Construction(_) => "construction",
             Self::StrengthReduction(_) => "strength-reduction",
             Self::RunOut(_) => "run-out",
+            Self::Dynamic(_) => "dynamic",
         }
     }
 }

@@ -123,6 +123,13 @@ pub enum EndReason {
         /// Whether equilibrium without drag was found; none before it was looked for.
         is_in_equilibrium: Option<bool>,
     },
+    /// Kinetic energy has fallen to a share of its largest value.
+    CameToRest {
+        /// After so much time \[s\].
+        time: f64,
+        /// The share \[-\].
+        share: f64,
+    },
     /// A run-out still moves.
     StillMoving {
         /// After so many steps.
@@ -160,6 +167,7 @@ impl EndReason {
             Self::DisplacementExceeded { .. } => "displacement-exceeded",
             Self::ResistanceLevelsOff { .. } => "resistance-levels-off",
             Self::AtRest { .. } => "at-rest",
+            Self::CameToRest { .. } => "came-to-rest",
             Self::StillMoving { .. } => "still-moving",
             Self::NoFactorOfSafety => "no-factor-of-safety",
             Self::Interrupted => "interrupted",
@@ -206,6 +214,12 @@ impl fmt::Display for EndReason {
                     Some(false) => "; not in equilibrium without drag",
                 })
             }
+            Self::CameToRest { time, share } => write!(
+                f,
+                "at rest after {} s: kinetic energy is {} % of its largest value",
+                short(*time),
+                short(100.0 * share)
+            ),
             Self::StillMoving { steps } => write!(f, "still moving after {steps} steps"),
             Self::NoFactorOfSafety => {
                 f.write_str("the factor of safety that the reduction refers to was not found")
@@ -256,6 +270,10 @@ mod tests {
                 steps: 3,
                 drag_share: 0.01,
                 is_in_equilibrium: None,
+            },
+            EndReason::CameToRest {
+                time: 2.0,
+                share: 0.001,
             },
             EndReason::StillMoving { steps: 3 },
             EndReason::NoFactorOfSafety,

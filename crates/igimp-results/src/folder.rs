@@ -5,6 +5,7 @@
 //! |---|---|
 //! | `summary.json`, `report.html` | outcome, for programs and for people |
 //! | `case.toml`, `case.completed.toml` | the case as given, and with every default |
+//! | `energy.csv` | where the work of stages that take time went |
 //! | `convergence.csv` | residuals of all steps, accepted or cut |
 //! | `curves/`, `monitors/`, `reinforcement/`, `rigid/`, `sections/`, `slip_lines/` | tables (`.csv`) |
 //! | `figures/` | pictures (`.svg`, `.png`) |
@@ -37,12 +38,13 @@ const MARKER_TEXT: &str = "igimp writes its results here.\n";
 
 const SUMMARY: &str = "summary.json";
 const MESH_STUDY: &str = "mesh_study.csv";
-const FILES: [&str; 5] = [
+const FILES: [&str; 6] = [
     SUMMARY,
     MESH_STUDY,
     "report.html",
     "case.completed.toml",
     "convergence.csv",
+    "energy.csv",
 ];
 /// Most meshes of a study of the mesh error.
 const MOST_MESHES: usize = 3;
@@ -135,6 +137,11 @@ impl Folder {
     /// `case.completed.toml`, the case with every default.
     pub fn completed_case(&self) -> PathBuf {
         self.root.join("case.completed.toml")
+    }
+
+    /// `energy.csv`.
+    pub fn energy(&self) -> PathBuf {
+        self.root.join("energy.csv")
     }
 
     /// `convergence.csv`.

@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use igimp_model::TitleBlock;
 use igimp_model::check::{Check, or_not_a_number};
+use igimp_text::short;
 use serde::{Deserialize, Serialize};
 
 use crate::ending::{Ending, PathEnd};
@@ -195,9 +196,93 @@ pub struct StageSummary {
     /// Water in the pores at the end, where there is some.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pore_water: Option<PoreSummary>,
+    /// Where the work of a stage that takes time went.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub energy: Option<EnergySummary>,
     /// How its linear systems were solved, in space.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub linear: Option<LinearSummary>,
+}
+
+/// Where the work of a stage that takes time went \[J/m; J in space\]. What is not a state adds up over the stage.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct EnergySummary {
+    /// Time that it took \[s\].
+    pub time: f64,
+    /// Kinetic energy at the end.
+    pub kinetic: f64,
+    /// The largest kinetic energy.
+    pub most_kinetic: f64,
+    /// Increase of kinetic energy.
+    pub kinetic_gain: f64,
+    /// Increase of elastic energy.
+    pub elastic: f64,
+    /// Plastic work.
+    pub plastic: f64,
+    /// Friction on rigid bodies, and what their contact stores.
+    pub contact: f64,
+    /// Work on reinforcement.
+    pub reinforcement: f64,
+    /// Work against given pore pressure.
+    pub water: f64,
+    /// Work against dashpots and ghost penalty.
+    pub damping: f64,
+    /// Work of gravity, loads and forces on rigid bodies.
+    pub loads: f64,
+    /// Work of the supports.
+    pub supports: f64,
+    /// What the time integration took.
+    pub scheme: f64,
+    /// What the map between particles and grid took.
+    pub map: f64,
+    /// What integration of stress along the steps took, and the out-of-balance force that was left.
+    pub integration: f64,
+}
+
+impl EnergySummary {
+    /// In a sentence.
+    pub fn sentence(&self) -> String {
+        let mut text = format!(
+            "energy over {} s: loads {}, kinetic {}, elastic {}, plastic work {}",
+            short(self.time),
+            short(self.loads),
+            short(self.kinetic_gain),
+            short(self.elastic),
+            short(self.plastic)
+        );
+        let others = [
+            (self.supports, "supports"),
+            (self.contact, "contact"),
+            (self.reinforcement, "reinforcement"),
+            (self.water, "pore water"),
+            (self.damping, "damping"),
+        ];
+        for (value, name) in others.into_iter().filter(|(value, _)| *value != 0.0) {
+            let _ = write!(text, ", {name} {}", short(value));
+        }
+        let _ = write!(
+            text,
+            " J; the method took {:.2} % (time integration {}, map {}, integration of stress {} J)",
+            100.0 * self.numerical_share(),
+            short(self.scheme),
+            short(self.map),
+            short(self.integration)
+        );
+        text
+    }
+
+    /// What the numerical method took, over the greatest of loads, supports and kinetic energy \[-\].
+    pub fn numerical_share(&self) -> f64 {
+        let scale = self
+            .most_kinetic
+            .max(self.loads.abs())
+            .max(self.supports.abs());
+        if scale > 0.0 {
+            (self.scheme + self.map + self.integration) / scale
+        } else {
+            0.0
+        }
+    }
 }
 
 /// How the linear systems of a stage were solved.

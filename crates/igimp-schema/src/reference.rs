@@ -80,6 +80,7 @@ fn units(out: &mut String) {
         Dimension::MomentPerLength,
         Dimension::Force,
         Dimension::Moment,
+        Dimension::Time,
     ] {
         let units: Vec<_> = dimension.units().map(|unit| format!("`{unit}`")).collect();
         let _ = writeln!(out, "| {} | {} |", bare(dimension), units.join(" "));

@@ -12,6 +12,7 @@ mod free_factor;
 mod load_path;
 mod march;
 mod newton;
+mod pace;
 mod report;
 mod residual_history;
 mod sensitivity;
@@ -24,7 +25,7 @@ pub use crate::workspace::Workspace;
 pub use body::Body;
 pub use continuation::{ContinuationSettings, ContinuationState, MECHANISM, follow};
 pub use march::{
-    Accepted, MarchReport, MarchSettings, MarchState, Observer, Outcome, march, march_from,
+    Accepted, MarchReport, MarchSettings, MarchState, Observer, Outcome, Pace, march, march_from,
 };
 pub use newton::step;
 pub use report::{Component, NodalForces, PhaseTimes, StepError, StepFailure, StepReport};

@@ -55,7 +55,7 @@ impl MarchState {
     pub fn start(settings: &MarchSettings) -> Self {
         Self {
             at: 0.0,
-            size: settings.nominal(),
+            size: settings.pace.map_or(settings.nominal(), |pace| pace.first),
             successes: 0,
         }
     }
@@ -90,8 +90,20 @@ pub struct MarchSettings {
     pub cut_factor: f64,
     /// Factor on the step size after two successes, up to the size first asked for \[-\].
     pub growth: f64,
+    /// How steps that take time are chosen; none where their size is that of [`Self::steps`].
+    pub pace: Option<Pace>,
     /// The iteration of each step.
     pub newton: NewtonSettings,
+}
+
+/// How the durations of steps are chosen: by the error of the scheme and by how far the body moves. Steps land on the
+/// multiples of 1 over [`MarchSettings::steps`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pace {
+    /// The first step, in load factor \[-\].
+    pub first: f64,
+    /// The longest step, in load factor \[-\].
+    pub longest: f64,
 }
 
 impl MarchSettings {
@@ -102,6 +114,7 @@ impl MarchSettings {
             cuts: 5,
             cut_factor: 0.5,
             growth: 1.5,
+            pace: None,
             newton: NewtonSettings::default(),
         }
     }
@@ -198,11 +211,15 @@ pub fn march_from<const D: usize>(
         failures: Vec::new(),
     };
     let nominal = settings.nominal();
-    let smallest = nominal * settings.cut_factor.powf(f64::from(settings.cuts) + 0.5);
+    let mut smallest = nominal * settings.cut_factor.powf(f64::from(settings.cuts) + 0.5);
     let mut cuts = 0;
+    let next = |at: f64, size: f64| match settings.pace {
+        None => next_factor(at, size, nominal),
+        Some(_) => next_landing(at, size, nominal),
+    };
     while state.at < 1.0 {
         let at = state.at;
-        let to = next_factor(at, state.size, nominal);
+        let to = next(at, state.size);
         let result = conditions_at(load_path, at, to).and_then(|conditions| {
             step(
                 body,
@@ -219,7 +236,11 @@ pub fn march_from<const D: usize>(
                 state.at = to;
                 state.successes += 1;
                 cuts = 0;
-                if state.successes >= SUCCESSES_TO_GROW && state.size < nominal {
+                if let Some(pace) = &settings.pace {
+                    state.size = pace.next(state.size, to - at, step.pace);
+                    smallest =
+                        state.size * settings.cut_factor.powf(f64::from(settings.cuts) + 0.5);
+                } else if state.successes >= SUCCESSES_TO_GROW && state.size < nominal {
                     state.size = (state.size * settings.growth).min(nominal);
                     state.successes = 0;
                 }
@@ -241,10 +262,15 @@ pub fn march_from<const D: usize>(
                 observer.on_cut(&error);
                 report.failures.push(error.clone());
                 // The last step may have been shorter than its size, so as to end on 1.
-                state.size = settings.cut_factor * state.size.min(1.0 - at);
+                let tried = if settings.pace.is_some() {
+                    to - at
+                } else {
+                    1.0 - at
+                };
+                state.size = settings.cut_factor * state.size.min(tried);
                 state.successes = 0;
                 cuts += 1;
-                let next = next_factor(at, state.size, nominal);
+                let next = next(at, state.size);
                 let is_a_cut = at < next && next < to;
                 if cuts > settings.cuts
                     || state.size < smallest
@@ -261,6 +287,33 @@ pub fn march_from<const D: usize>(
         }
     }
     report
+}
+
+impl Pace {
+    /// The size of the step after one of `size` that took `taken` of it and would have a `factor` times as long one follow: a
+    /// step that was shortened to land says little of a longer one.
+    fn next(&self, size: f64, taken: f64, factor: f64) -> f64 {
+        let from = if factor < 1.0 { taken } else { size };
+        (factor * from).min(self.longest)
+    }
+}
+
+/// The load factor after a step that lands on multiples of the nominal size: what is left before the next of them is divided
+/// into equal steps of at most this size.
+fn next_landing(at: f64, size: f64, nominal: f64) -> f64 {
+    let done = (at / nominal * (1.0 + 4.0 * f64::EPSILON)).floor();
+    let landing = (nominal * (done + 1.0)).min(1.0);
+    let landing = if 1.0 - landing < 1e-9 * nominal {
+        1.0
+    } else {
+        landing
+    };
+    let left = ((landing - at) / (size * (1.0 + 1e-9))).ceil().max(1.0);
+    if left < 2.0 {
+        landing
+    } else {
+        at + (landing - at) / left
+    }
 }
 
 /// The load factor after a step: uncut steps land on multiples of the nominal size, and no sliver

@@ -14,6 +14,7 @@ use crate::body::Body;
 use crate::corrector::Corrector;
 use crate::free_factor::{FreeFactor, Guess};
 use crate::load_path::LoadPath;
+use crate::pace;
 use crate::report::{NodalForces, StepError, StepFailure, StepReport, padded};
 use crate::residual_history::ResidualHistory;
 use crate::{NewtonSettings, Workspace};
@@ -200,7 +201,7 @@ fn equilibrium<const D: usize>(
     let mut u = vec![[0.0; D]; system.node_count()];
     let of_step = (system, &stencils);
     let mut corrector = Corrector::new(of_step, grid, settings, workspace, history, set_up);
-    if attempt.is_guarded {
+    if attempt.is_guarded || conditions.time.is_some() {
         corrector = corrector.guarded();
     }
     if let Some((load_path, work, guess)) = attempt.on_path {
@@ -210,7 +211,16 @@ fn equilibrium<const D: usize>(
         corrector = corrector.on_path(factor);
         u.clone_from(&guess.u);
     }
-    let mut residual = corrector.start(&u)?;
+    if let Some(predicted) = corrector.system.predicted_motion() {
+        u = predicted;
+    }
+    let mut residual = match corrector.start(&u) {
+        Err(failure) if conditions.time.is_some() && failure.is_want_of_equilibrium() => {
+            u.fill([0.0; D]);
+            corrector.start(&u)?
+        }
+        started => started?,
+    };
     if corrector.system.prescribes_motion() {
         carry_prescribed_motion(&corrector.system, &mut residual, &mut u)?;
     }
@@ -245,6 +255,14 @@ fn equilibrium<const D: usize>(
     let work = (attempt.measures_work)
         .then(|| system.work(trial, &u))
         .transpose()?;
+    let (pace, is_too_long) = pace::after(&system, &u, iterations);
+    if let Some(time) = conditions
+        .time
+        .filter(|time| time.must_resolve && is_too_long)
+    {
+        let duration = time.duration;
+        return Err(StepFailure::TooLong { duration });
+    }
     let energy = system.energy(trial, &u)?;
     let motion = system.motion(&u);
     let contact = system.bodies_at(&u)?;
@@ -272,7 +290,9 @@ fn equilibrium<const D: usize>(
         ghost_penalty: attempt.ghost_penalty,
         drag_share,
         work,
+        duration: conditions.time.map_or(0.0, |time| time.duration),
         energy,
+        pace,
         external_work,
         gross_work,
         factor_in_doubt,

@@ -79,6 +79,12 @@ pub enum StepFailure {
         /// Where it is deepest \[length\], axes beyond the dimension 0.
         position: [f64; 3],
     },
+    /// Converged, but motion changed by more than the step resolves.
+    #[error("the motion changes by more than a step of {duration:.3e} s resolves")]
+    TooLong {
+        /// Duration of the step \[time\].
+        duration: f64,
+    },
     /// A rigid body is free to move, and nothing holds it.
     #[error(
         "nothing holds the rigid body \"{body}\" in its {}: {}",
@@ -126,6 +132,7 @@ impl StepFailure {
             | Self::ReinforcementLeavesGrid { .. }
             | Self::Penetration(_)
             | Self::TooDeep { .. }
+            | Self::TooLong { .. }
             | Self::NotFinite { .. } => false,
             Self::Assembly(error) => error.is_too_far(),
             Self::Linear(error) => {
@@ -223,8 +230,12 @@ pub struct StepReport {
     pub drag_share: f64,
     /// The work of stress on the strain of the step, of a step on a path.
     pub work: Option<StepWork>,
+    /// Duration; zero in statics \[time\].
+    pub duration: f64,
     /// Where the work of a step that takes time goes; none in statics.
     pub energy: Option<StepEnergy>,
+    /// How many times as long the next step may be as this one, of a step that takes time \[-\].
+    pub pace: f64,
     /// The work of the external force on the step \[force·length\].
     pub external_work: f64,
     /// The same, with the magnitude of each component's work \[force·length\].

@@ -43,6 +43,8 @@ columns! {
     displacement: [f64; D] = [0.0; D], Range::Finite;
     /// Velocity \[length/time\].
     velocity: [f64; D] = [0.0; D], Range::Finite, optional;
+    /// Acceleration \[length/time²\].
+    acceleration: [f64; D] = [0.0; D], Range::Finite, optional;
     /// Deformation gradient F; the out-of-plane stretch is 1 in plane strain \[-\].
     def_grad: [[f64; D]; D] = identity(), Range::Invertible;
     /// Elastic left Cauchy–Green tensor b_e, 3 × 3 with zz in plane strain \[-\].

@@ -9,9 +9,14 @@ pub struct TimeStep {
     pub scheme: TimeScheme,
     /// Mass matrix.
     pub mass: MassMatrix,
+    /// Whether motion begins with this step: accelerations follow from the forces at its start, and are not those that particles
+    /// carry.
+    pub is_first: bool,
+    /// Whether the step is refused where motion changes by more than it resolves.
+    pub must_resolve: bool,
 }
 
-/// A scheme of time integration: u = Δt \[θ v₁ + (1 − θ) v₀\], and forces weighted alike.
+/// A scheme of time integration: u = Δt \[θ v₁ + (1 − θ) v₀\], and v₁ − v₀ = Δt \[θ a₁ + (1 − θ) a₀\].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TimeScheme {
     /// θ = 1: first order; motion that a step does not resolve is damped out.
@@ -45,14 +50,26 @@ impl TimeStep {
         (self.scheme.theta() * self.duration).powi(-2)
     }
 
-    /// The velocity at the end of a step that begins with `before` \[length/time\] and displaces by `u` \[length\].
-    pub(crate) fn velocity_after<const D: usize>(
+    /// Whether the scheme asks for the acceleration at the start.
+    pub(crate) fn asks_for_acceleration(&self) -> bool {
+        self.scheme.theta() < 1.0
+    }
+
+    /// Velocity \[length/time\] and acceleration \[length/time²\] at the end of a step that begins with these and displaces by `u`
+    /// \[length\].
+    pub(crate) fn after<const D: usize>(
         &self,
-        before: &[f64; D],
+        velocity: &[f64; D],
+        acceleration: &[f64; D],
         u: &[f64; D],
-    ) -> [f64; D] {
-        let theta = self.scheme.theta();
-        std::array::from_fn(|a| (u[a] / self.duration - (1.0 - theta) * before[a]) / theta)
+    ) -> ([f64; D], [f64; D]) {
+        let (theta, duration, rate) = (self.scheme.theta(), self.duration, self.rate());
+        (
+            std::array::from_fn(|a| (u[a] / duration - (1.0 - theta) * velocity[a]) / theta),
+            std::array::from_fn(|a| {
+                rate * (u[a] - duration * velocity[a]) - (1.0 - theta) / theta * acceleration[a]
+            }),
+        )
     }
 
     /// Whether the duration is a positive number.

@@ -3,7 +3,7 @@
 //!
 //! ```math
 //! M_{ij} = \sum_p m_p S_{ip} S_{jp},\qquad M\,v_0 = \sum_p m_p S_{ip} v_p,\qquad
-//! f^{a}(u) = \frac{M\,(u - \Delta t\,v_0)}{(\theta\,\Delta t)^2}
+//! f^{a}(u) = M a_1,\qquad a_1 = \frac{u - \Delta t\,v_0}{(\theta\,\Delta t)^2} - \frac{1 - \theta}{\theta}\,a_0
 //! ```
 //!
 //! The particles are the quadrature of the mass, as they are of stress: momentum and energy of the map are exact.
@@ -32,14 +32,14 @@ pub(crate) struct Inertia<const D: usize> {
     mass: NodalMass,
     /// By node that stands for the motion of a rigid body: its mass, or its moment of inertia over its squared size \[mass\].
     of_bodies: Vec<[[f64; D]; D]>,
-    /// Velocity at the start by node \[length/time\].
+    /// At the start, by node \[length/time\].
     velocity: Vec<[f64; D]>,
-    /// The part of the mean force of the step that its start determines, (1 − θ)/θ (f_int − f_ext), by node \[force\].
-    start: Vec<[f64; D]>,
+    /// At the start, by node; zero where the scheme does not ask for it \[length/time²\].
+    acceleration: Vec<[f64; D]>,
 }
 
 impl<const D: usize> Inertia<D> {
-    /// The mass of particles and rigid bodies on the nodes of a step, and their velocities.
+    /// The mass of particles and rigid bodies on the nodes of a step, and their motion.
     pub(crate) fn of(
         step: TimeStep,
         particles: &Particles<D>,
@@ -50,19 +50,29 @@ impl<const D: usize> Inertia<D> {
     ) -> Self {
         let nodes = unknowns.nodes_of_grid();
         let mass = NodalMass::of(step.mass, mass_of, stencils, nodes);
-        let momentum = momentum(particles, mass_of, stencils, nodes);
-        let mut velocity = grid_velocity(&mass, momentum, unknowns);
-        let mut of_bodies = Vec::with_capacity(NODES_PER_BODY * bodies.len());
+        let on_grid =
+            |values: &[[f64; D]]| mass.solve(weighted(values, mass_of, stencils, nodes), unknowns);
+        let mut velocity = on_grid(&particles.velocity);
+        let mut acceleration = if step.asks_for_acceleration() && !step.is_first {
+            on_grid(&particles.acceleration)
+        } else {
+            vec![[0.0; D]; nodes]
+        };
         for body in bodies {
-            of_bodies.extend(body.nodal_mass());
-            velocity.extend(body.nodal_velocity());
+            velocity.extend(body.nodal(&body.motion.velocity, &body.motion.spin));
+            let carried = body.nodal(&body.motion.acceleration, &body.motion.spin_rate);
+            acceleration.extend(if step.asks_for_acceleration() && !step.is_first {
+                carried
+            } else {
+                [[0.0; D]; NODES_PER_BODY]
+            });
         }
         Self {
-            start: vec![[0.0; D]; velocity.len()],
+            of_bodies: bodies.iter().flat_map(RigidBody::nodal_mass).collect(),
             step,
             mass,
-            of_bodies,
             velocity,
+            acceleration,
         }
     }
 
@@ -71,26 +81,53 @@ impl<const D: usize> Inertia<D> {
         &self.step
     }
 
+    /// Step displacements of nodes that go on as they move at the start \[length\].
+    pub(crate) fn predicted(&self) -> Vec<[f64; D]> {
+        let duration = self.step.duration;
+        std::iter::zip(&self.velocity, &self.acceleration)
+            .map(|(v, a)| std::array::from_fn(|k| duration * (v[k] + 0.5 * duration * a[k])))
+            .collect()
+    }
+
     /// The motion of the nodes over the step, by nodal step displacements `u` \[length\].
     pub(crate) fn motion(&self, u: &[[f64; D]]) -> Motion<D> {
-        let nodes = std::iter::zip(&self.velocity, u);
-        Motion {
-            after: nodes
-                .map(|(before, u)| self.step.velocity_after(before, u))
-                .collect(),
+        let mut motion = Motion {
+            after: Vec::with_capacity(u.len()),
+            acceleration: Vec::with_capacity(u.len()),
             before: self.velocity.clone(),
             keeps_rest: self.step.scheme == TimeScheme::Newmark,
+        };
+        for (u, (before, acceleration)) in
+            std::iter::zip(u, std::iter::zip(&self.velocity, &self.acceleration))
+        {
+            let (after, acceleration) = self.step.after(before, acceleration, u);
+            motion.after.push(after);
+            motion.acceleration.push(acceleration);
+        }
+        motion
+    }
+
+    /// Takes the accelerations at the start from the `force` there, by node \[force\].
+    pub(crate) fn begin(&mut self, force: &[[f64; D]], unknowns: &Unknowns<D>) {
+        let nodes = self.mass.diagonal.len();
+        self.acceleration = self.mass.solve(force[..nodes].to_vec(), unknowns);
+        for (index, mass) in self.of_bodies.iter().enumerate() {
+            let node = nodes + index;
+            // The mass is diagonal but for a turning body of three different moments, whose first step this is.
+            self.acceleration.push(std::array::from_fn(|a| {
+                let is_free = unknowns.index(node, a).is_some() && mass[a][a] > 0.0;
+                if is_free {
+                    force[node][a] / mass[a][a]
+                } else {
+                    0.0
+                }
+            }));
         }
     }
 
-    /// Keeps what the start of the step determines of its mean force: the internal force less the external one there, by node
-    /// \[force\].
-    pub(crate) fn begin(&mut self, f_int: &[[f64; D]], f_ext: &[[f64; D]]) {
-        let theta = self.step.scheme.theta();
-        let share = (1.0 - theta) / theta;
-        for (node, start) in self.start.iter_mut().enumerate() {
-            *start = std::array::from_fn(|a| share * (f_int[node][a] - f_ext[node][a]));
-        }
+    /// The accelerations at the start, by node \[length/time²\].
+    pub(crate) fn acceleration(&self) -> &[[f64; D]] {
+        &self.acceleration
     }
 
     /// Adds inertia at nodal step displacements `u` \[length\] to the internal force `f` \[force\], with its derivative; the norm
@@ -103,9 +140,9 @@ impl<const D: usize> Inertia<D> {
     ) -> f64 {
         let force = self.force(u);
         let mut squared = 0.0;
-        for ((f, force), start) in f.iter_mut().zip(&force).zip(&self.start) {
+        for (f, force) in f.iter_mut().zip(&force) {
             for a in 0..D {
-                f[a] += force[a] + start[a];
+                f[a] += force[a];
                 squared += force[a] * force[a];
             }
         }
@@ -115,13 +152,25 @@ impl<const D: usize> Inertia<D> {
         squared.sqrt()
     }
 
-    /// The force of acceleration M (u − Δt v₀)/(θ Δt)² by node \[force\].
+    /// The force of acceleration M a₁ by node \[force\].
     pub(crate) fn force(&self, u: &[[f64; D]]) -> Vec<[f64; D]> {
-        let (rate, duration) = (self.step.rate(), self.step.duration);
-        let ahead: Vec<[f64; D]> = std::iter::zip(u, &self.velocity)
-            .map(|(u, v)| std::array::from_fn(|a| rate * (u[a] - duration * v[a])))
+        self.times(&self.motion(u).acceleration)
+    }
+
+    /// The error of the time integration over a step by `u` \[length\], as a share of its motion (theory, eq. 68) \[-\].
+    pub(crate) fn error(&self, u: &[[f64; D]]) -> f64 {
+        let accelerated = self.motion(u).acceleration;
+        let change: Vec<[f64; D]> = std::iter::zip(&accelerated, &self.acceleration)
+            .map(|(after, before)| std::array::from_fn(|a| after[a] - before[a]))
             .collect();
-        self.times(&ahead)
+        let size = |values: &[[f64; D]]| product(&self.times(values), values).max(0.0).sqrt();
+        let squared = self.step.duration.powi(2);
+        let motion = size(u) + squared * size(&accelerated);
+        if motion > 0.0 {
+            squared / 12.0 * size(&change) / motion
+        } else {
+            0.0
+        }
     }
 
     /// The product of the mass matrix with values by node.
@@ -174,13 +223,15 @@ impl<const D: usize> Inertia<D> {
     }
 }
 
-/// Velocities of the nodes at the ends of a step, and how particles take them over.
+/// How the nodes move over a step, and how particles take that over.
 #[derive(Clone, Debug)]
 pub struct Motion<const D: usize> {
-    /// At the start, by node \[length/time\].
+    /// Velocities at the start, by node \[length/time\].
     pub before: Vec<[f64; D]>,
-    /// At the end, by node \[length/time\].
+    /// Velocities at the end, by node \[length/time\].
     pub after: Vec<[f64; D]>,
+    /// Accelerations at the end, by node \[length/time²\].
+    pub acceleration: Vec<[f64; D]>,
     /// Whether a particle keeps the part of its velocity that the grid does not carry.
     pub keeps_rest: bool,
 }
@@ -275,6 +326,70 @@ impl NodalMass {
     }
 }
 
+impl NodalMass {
+    /// Values by node whose product with the mass matrix is `sums` where a component is unknown, zero where it is not: of particle
+    /// velocities weighted by mass, those of the grid that come closest to them. Conjugate gradients, scaled by the diagonal.
+    fn solve<const D: usize>(
+        &self,
+        mut sums: Vec<[f64; D]>,
+        unknowns: &Unknowns<D>,
+    ) -> Vec<[f64; D]> {
+        let scaled = |values: &[[f64; D]]| -> Vec<[f64; D]> {
+            std::iter::zip(values, &self.diagonal)
+                .map(|(value, own)| value.map(|v| if *own > 0.0 { v / own } else { 0.0 }))
+                .collect()
+        };
+        mask(&mut sums, unknowns);
+        let mut found = scaled(&sums);
+        let mut left = sums;
+        let reference = product(&left, &found);
+        if reference == 0.0 {
+            return found;
+        }
+        let mut image = vec![[0.0; D]; found.len()];
+        self.multiply(&found, &mut image);
+        mask(&mut image, unknowns);
+        add_scaled(&mut left, -1.0, &image);
+        let mut way = scaled(&left);
+        let mut size = product(&left, &way);
+        for _ in 0..MOST_ITERATIONS {
+            if size <= FOUND * reference {
+                break;
+            }
+            self.multiply(&way, &mut image);
+            mask(&mut image, unknowns);
+            let length = size / product(&way, &image);
+            add_scaled(&mut found, length, &way);
+            add_scaled(&mut left, -length, &image);
+            let towards = scaled(&left);
+            let next = product(&left, &towards);
+            for own in way.as_flattened_mut() {
+                *own *= next / size;
+            }
+            add_scaled(&mut way, 1.0, &towards);
+            size = next;
+        }
+        found
+    }
+}
+
+/// Sets to zero what is not unknown.
+fn mask<const D: usize>(values: &mut [[f64; D]], unknowns: &Unknowns<D>) {
+    for (node, values) in values.iter_mut().enumerate() {
+        for (axis, value) in values.iter_mut().enumerate() {
+            if unknowns.index(node, axis).is_none() {
+                *value = 0.0;
+            }
+        }
+    }
+}
+
+/// The sum of products of values by node.
+pub(crate) fn product<const D: usize>(a: &[[f64; D]], b: &[[f64; D]]) -> f64 {
+    let pairs = std::iter::zip(a.as_flattened(), b.as_flattened());
+    pairs.map(|(a, b)| a * b).sum()
+}
+
 /// Adds to the entry of a node in a row.
 fn add_entry(row: &mut Vec<(u32, f64)>, node: u32, mass: f64) {
     match row.iter_mut().find(|(own, _)| *own == node) {
@@ -283,99 +398,29 @@ fn add_entry(row: &mut Vec<(u32, f64)>, node: u32, mass: f64) {
     }
 }
 
-/// The momentum of the particles by node, Σ_p m_p S_ip v_p \[mass·length/time\].
-fn momentum<const D: usize>(
-    particles: &Particles<D>,
+/// Values of particles weighted by mass, by node: Σ_p m_p S_ip a_p.
+fn weighted<const D: usize>(
+    values: &[[f64; D]],
     mass_of: &(dyn Fn(usize) -> f64 + Sync),
     stencils: &Stencils<D>,
     nodes: usize,
 ) -> Vec<[f64; D]> {
-    let mut momentum = vec![[0.0; D]; nodes];
+    let mut sums = vec![[0.0; D]; nodes];
     for &particle in stencils.order() {
         let particle = particle as usize;
-        let (m, v) = (mass_of(particle), particles.velocity[particle]);
+        let m = mass_of(particle);
         for support in stencils.of(particle) {
             for a in 0..D {
-                momentum[support.node][a] += m * support.value * v[a];
+                sums[support.node][a] += m * support.value * values[particle][a];
             }
         }
     }
-    momentum
+    sums
 }
 
-/// The velocities of the nodes of the grid that come closest to those of the particles, weighted by mass: M v₀ = Σ_p m_p S_ip v_p
-/// where a component is unknown, zero where it is not \[length/time\]. Conjugate gradients, scaled by the diagonal.
-fn grid_velocity<const D: usize>(
-    mass: &NodalMass,
-    mut momentum: Vec<[f64; D]>,
-    unknowns: &Unknowns<D>,
-) -> Vec<[f64; D]> {
-    let nodes = mass.diagonal.len();
-    let free = |node: usize, axis: usize| unknowns.index(node, axis).is_some();
-    let masked = |values: &mut [[f64; D]]| {
-        for (node, values) in values.iter_mut().enumerate() {
-            for (a, value) in values.iter_mut().enumerate() {
-                if !free(node, a) {
-                    *value = 0.0;
-                }
-            }
-        }
-    };
-    let scaled = |values: &[[f64; D]]| -> Vec<[f64; D]> {
-        std::iter::zip(values, &mass.diagonal)
-            .map(|(value, own)| value.map(|v| if *own > 0.0 { v / own } else { 0.0 }))
-            .collect()
-    };
-    let product = |a: &[[f64; D]], b: &[[f64; D]]| -> f64 {
-        std::iter::zip(a.as_flattened(), b.as_flattened())
-            .map(|(a, b)| a * b)
-            .sum()
-    };
-    masked(&mut momentum);
-    let mut velocity = scaled(&momentum);
-    let mut image = vec![[0.0; D]; nodes];
-    let mut left = momentum.clone();
-    let reference = product(&momentum, &velocity);
-    if reference == 0.0 {
-        return velocity;
-    }
-    mass.multiply(&velocity, &mut image);
-    masked(&mut image);
-    subtract(&mut left, 1.0, &image);
-    let mut towards = scaled(&left);
-    let mut way = towards.clone();
-    let mut size = product(&left, &towards);
-    for _ in 0..MOST_ITERATIONS {
-        if size <= FOUND * reference {
-            break;
-        }
-        mass.multiply(&way, &mut image);
-        masked(&mut image);
-        let curvature = product(&way, &image);
-        if curvature <= 0.0 {
-            break;
-        }
-        let length = size / curvature;
-        subtract(&mut velocity, -length, &way);
-        subtract(&mut left, length, &image);
-        towards = scaled(&left);
-        let next = product(&left, &towards);
-        let turn = next / size;
-        size = next;
-        for (way, towards) in way.iter_mut().zip(&towards) {
-            for a in 0..D {
-                way[a] = towards[a] + turn * way[a];
-            }
-        }
-    }
-    velocity
-}
-
-/// Takes `factor` times `other` from values.
-fn subtract<const D: usize>(values: &mut [[f64; D]], factor: f64, other: &[[f64; D]]) {
-    for (value, other) in values.iter_mut().zip(other) {
-        for a in 0..D {
-            value[a] -= factor * other[a];
-        }
+/// Adds `factor` times `other` to values.
+fn add_scaled<const D: usize>(values: &mut [[f64; D]], factor: f64, other: &[[f64; D]]) {
+    for (value, other) in std::iter::zip(values.as_flattened_mut(), other.as_flattened()) {
+        *value += factor * other;
     }
 }

@@ -191,10 +191,13 @@ impl<'a, const D: usize> System<'a, D> {
                 self.f_ext[first + NODES_PER_BODY * index + 1][axis] += force;
             }
         }
-        if time.scheme.theta() < 1.0 {
+        if time.asks_for_acceleration() && time.is_first {
             let still = vec![[0.0; D]; self.node_count()];
-            let start = self.evaluate(&still, TangentKind::Elastic)?;
-            inertia.begin(&start.f_int, &self.f_ext);
+            let mut force = self.evaluate(&still, TangentKind::Elastic)?.f_int;
+            for (force, f_ext) in force.iter_mut().zip(&self.f_ext) {
+                *force = std::array::from_fn(|axis| f_ext[axis] - force[axis]);
+            }
+            inertia.begin(&force, &self.unknowns);
         }
         self.round_off += inertia.round_off();
         self.inertia = Some(inertia);
@@ -438,25 +441,17 @@ impl<'a, const D: usize> System<'a, D> {
         self.pores.pressure
     }
 
-    /// The reaction f_int − f_ext by node, zero at unknowns; its mean over a step that takes time \[force\].
+    /// The reaction f_int − f_ext by node, zero at unknowns \[force\].
     pub fn reactions(&self, trial: &Trial<D>) -> Vec<[f64; D]> {
-        let weight = self.weight_of_end();
         let mut reactions = vec![[0.0; D]; trial.f_int.len()];
         for (node, reaction) in reactions.iter_mut().enumerate() {
             for axis in 0..D {
                 if self.unknowns.index(node, axis).is_none() {
-                    reaction[axis] = weight * (trial.f_int[node][axis] - self.f_ext[node][axis]);
+                    reaction[axis] = trial.f_int[node][axis] - self.f_ext[node][axis];
                 }
             }
         }
         reactions
-    }
-
-    /// The weight θ of the end of the step in its mean forces: 1 but where the scheme of a step that takes time says otherwise
-    /// \[-\].
-    pub(crate) fn weight_of_end(&self) -> f64 {
-        let inertia = self.inertia.as_ref();
-        inertia.map_or(1.0, |own| own.step().scheme.theta())
     }
 
     /// The force that dropped nodes take without a support, as a share of the load \[-\] (theory,
@@ -646,13 +641,30 @@ impl<'a, const D: usize> System<'a, D> {
         let mut contact = self
             .contact
             .accepted(u, particles, stencils, method.geometry)?;
-        if let Some(inertia) = &self.inertia {
-            let nodes = u[self.conditions.grid.node_count()..].as_chunks().0;
-            for (body, [displacement, rotation]) in contact.bodies.iter_mut().zip(nodes) {
-                body.accelerate(inertia.step(), [displacement, rotation]);
+        if let Some(motion) = self.motion(u) {
+            let of_grid = self.conditions.grid.node_count();
+            let velocities = motion.after[of_grid..].as_chunks().0;
+            let accelerations = motion.acceleration[of_grid..].as_chunks().0;
+            let nodes = std::iter::zip(velocities, accelerations);
+            for (body, (velocity, acceleration)) in contact.bodies.iter_mut().zip(nodes) {
+                body.accelerate(velocity, acceleration);
             }
         }
         Ok(contact)
+    }
+
+    /// Nodal step displacements of a motion that goes on as it is at the start, where they are unknown; none in statics \[length\].
+    pub fn predicted_motion(&self) -> Option<Vec<[f64; D]>> {
+        let predicted = self.inertia.as_ref()?.predicted();
+        let mut u = vec![[0.0; D]; self.node_count()];
+        self.add_correction(&mut u, &self.by_unknown(&predicted));
+        Some(u)
+    }
+
+    /// The error of the time integration over a step by nodal displacements `u` \[length\], as a share of its motion \[-\]; none in
+    /// statics.
+    pub fn time_error(&self, u: &[[f64; D]]) -> Option<f64> {
+        self.inertia.as_ref().map(|inertia| inertia.error(u))
     }
 
     /// How the nodes move over a step by nodal step displacements `u` \[length\], for [`Particles::accelerate`]; none in statics.

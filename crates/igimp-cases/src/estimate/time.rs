@@ -125,6 +125,7 @@ fn planned(stage: &Stage) -> StepsTaken {
         StageKind::Gravity { .. } | StageKind::Load { .. } if to_collapse => 5.0,
         StageKind::Gravity { .. } | StageKind::Load { .. } => 3.7,
         StageKind::Displacement { .. } | StageKind::Rigid(_) => 6.5,
+        StageKind::Dynamic(_) => 4.0,
         _ => 5.0,
     };
     let failing = if trials > 0.0 || to_collapse {

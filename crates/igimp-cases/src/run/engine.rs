@@ -21,7 +21,7 @@ use super::resources::memory::{self, Before};
 use super::resources::processor;
 use super::resume::{ResumePoint, Resumption, Search};
 use super::session::{Session, StageEnd};
-use super::stages::{construction, initial, loading, run_out, safety};
+use super::stages::{construction, dynamic, initial, loading, run_out, safety};
 use super::state::State;
 use super::water::pores;
 use super::{Event, Failure, Listener, Run, Start, Target, failure, reinforcement};
@@ -342,6 +342,7 @@ impl<const D: usize> Stages<D> {
             controls: &state.controls,
             resistance,
             plastic_share: summary.plastic_share,
+            energy: None,
         };
         let rows = checks::at_end_of_stage(case, &session.records, &moment);
         session.summary.checks.extend(rows);
@@ -423,6 +424,9 @@ fn dispatch<const D: usize>(
         }
         StageKind::RunOut(spec) => {
             run_out::run_out(session, state, number, spec, summary, resumption)
+        }
+        StageKind::Dynamic(spec) => {
+            dynamic::dynamic(session, state, number, spec, summary, resumption)
         }
     }
 }

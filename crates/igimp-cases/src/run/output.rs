@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
-use igimp_model::{Case, Every};
+use igimp_model::{Case, Every, Stage, StageKind};
 use igimp_report::patches::Pieces;
 use igimp_report::pictures::{self, Shown};
 use igimp_report::report;
@@ -52,6 +52,8 @@ pub(crate) struct Output<const D: usize> {
     curves: Vec<RowWriter>,
     monitors: Vec<RowWriter>,
     rigid: Vec<RowWriter>,
+    /// Of a case with stages that take time.
+    energy: Option<RowWriter>,
     convergence: RowWriter,
     frames: Frames,
     figures: Vec<FigureNote>,
@@ -133,6 +135,11 @@ impl<const D: usize> Output<D> {
                 open(path, &table.header, rows(|notes| &notes.rigid_rows, k))
             })
             .collect::<Result<_, _>>()?;
+        let takes_time = |stage: &Stage| matches!(stage.kind, StageKind::Dynamic(_));
+        let energy = case.stages.iter().any(takes_time).then(|| {
+            let rows = notes.map_or(0, |notes| notes.energy_rows);
+            open(folder.energy(), &records.energy.header, rows)
+        });
         let convergence = open(
             folder.convergence(),
             &CONVERGENCE.map(str::to_owned),
@@ -154,6 +161,7 @@ impl<const D: usize> Output<D> {
             curves,
             monitors,
             rigid,
+            energy: energy.transpose()?,
             convergence,
             frames,
             figures: notes.map_or_else(Vec::new, |notes| notes.figures.clone()),
@@ -183,6 +191,9 @@ impl<const D: usize> Output<D> {
             if let Some(row) = row {
                 writer.push(row)?;
             }
+        }
+        if let (Some(writer), Some(row)) = (&mut self.energy, &rows.energy) {
+            writer.push(row)?;
         }
         self.seconds += clock.elapsed().as_secs_f64();
         Ok(())

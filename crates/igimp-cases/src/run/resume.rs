@@ -104,6 +104,8 @@ pub(crate) struct Notes {
     pub(crate) curve_rows: Vec<usize>,
     pub(crate) monitor_rows: Vec<usize>,
     pub(crate) rigid_rows: Vec<usize>,
+    #[serde(default)]
+    pub(crate) energy_rows: usize,
     /// The rigid bodies of each state, by its name.
     pub(crate) rigid: BTreeMap<String, Vec<SavedBody>>,
     /// The reinforcement of each state, by its name.

@@ -6,7 +6,9 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use igimp_assembly::{Geometry, Method, Particles, UnbalancedForces};
+use igimp_assembly::{
+    Geometry, MassMatrix, Method, Particles, StepEnergy, TimeScheme, TimeStep, UnbalancedForces,
+};
 use igimp_results::ending::EndReason;
 use igimp_results::fields;
 use igimp_results::summary::{StageSummary, Summary};
@@ -113,6 +115,9 @@ impl<const D: usize> Session<'_, D> {
         stage.steps += 1;
         stage.iterations += report.iterations;
         stage.work += report.gross_work;
+        if let Some(energy) = &report.energy {
+            add_energy(stage, energy, report.duration);
+        }
         stage.at_round_off += usize::from(report.at_round_off);
         stage.ghost_steps += usize::from(report.ghost_penalty > 0.0);
         stage.plastic_share = report.plastic_share;
@@ -180,6 +185,26 @@ impl<const D: usize> Session<'_, D> {
     }
 }
 
+/// Adds the energy of an accepted step to that of its stage.
+fn add_energy(stage: &mut StageSummary, step: &StepEnergy, duration: f64) {
+    let own = stage.energy.get_or_insert_default();
+    own.time += duration;
+    own.kinetic = step.kinetic;
+    own.most_kinetic = own.most_kinetic.max(step.kinetic);
+    own.kinetic_gain += step.kinetic_gain;
+    own.elastic += step.elastic_gain;
+    own.plastic += step.plastic;
+    own.contact += step.contact;
+    own.reinforcement += step.reinforcement;
+    own.water += step.water;
+    own.damping += step.damping;
+    own.loads += step.loads;
+    own.supports += step.supports;
+    own.scheme += step.scheme;
+    own.map += step.map;
+    own.integration += step.integration + step.unbalanced;
+}
+
 /// A march of the body between two controls.
 pub(crate) struct StagePath<'a, const D: usize> {
     /// Controls at load factor 0.
@@ -188,6 +213,8 @@ pub(crate) struct StagePath<'a, const D: usize> {
     pub(crate) to: &'a Controls,
     /// Drag of a step between two load factors, for overdamped motion \[1/s²\].
     pub(crate) drag: &'a dyn Fn(f64, f64) -> f64,
+    /// The time integration, where the march takes time.
+    pub(crate) time: Option<TimeIntegration>,
     /// The method, with the geometry that its steps are computed on.
     pub(crate) method: Method,
     /// Sizes of steps.
@@ -196,6 +223,13 @@ pub(crate) struct StagePath<'a, const D: usize> {
     pub(crate) held: Option<Arc<Vec<[f64; D]>>>,
     /// Where an earlier run left the march.
     pub(crate) left: Option<&'a Resumption>,
+}
+
+/// How a march that takes time integrates motion.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct TimeIntegration {
+    pub(crate) scheme: TimeScheme,
+    pub(crate) mass: MassMatrix,
 }
 
 /// How a march ended.
@@ -236,10 +270,18 @@ pub(crate) fn march_path<const D: usize>(
             Geometry::Given => path.from,
         }));
         let conditions = model.conditions_on(grid, (&before, &after), (path.drag)(from, to))?;
-        conditions.with_unbalanced(path.held.as_ref().map(|forces| UnbalancedForces {
-            forces: Arc::clone(forces),
-            share: 1.0 - to,
-        }))
+        conditions
+            .with_unbalanced(path.held.as_ref().map(|forces| UnbalancedForces {
+                forces: Arc::clone(forces),
+                share: 1.0 - to,
+            }))?
+            .with_time(path.time.map(|integration| TimeStep {
+                duration: after.time - before.time,
+                scheme: integration.scheme,
+                mass: integration.mass,
+                is_first: from == 0.0,
+                must_resolve: true,
+            }))
     };
     let mut march = MarchState::start(&path.settings);
     if let Some(left) = path.left {

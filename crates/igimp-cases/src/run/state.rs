@@ -25,6 +25,9 @@ pub struct Controls {
     pub drained: bool,
     /// By member of reinforcement of the case.
     pub reinforcement: Vec<ReinforcementControls>,
+    /// Time since the first stage that takes some \[s\].
+    #[serde(default)]
+    pub time: f64,
 }
 
 /// What acts on a member of reinforcement.
@@ -99,6 +102,7 @@ impl Controls {
             reinforcement: vec![ReinforcementControls::default(); case.reinforcement.len()],
             water: None,
             drained: false,
+            time: 0.0,
         }
     }
 
@@ -121,6 +125,7 @@ impl Controls {
                 .collect(),
             water: end.water,
             drained: end.drained,
+            time: between(self.time, end.time, t),
         }
     }
 

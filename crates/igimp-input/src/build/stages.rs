@@ -1,6 +1,7 @@
 //! Stages: what each needs from loads, materials and the stages before it.
 
 pub(crate) mod construction;
+pub(crate) mod dynamic;
 pub(crate) mod safety;
 
 use igimp_assembly::Geometry;
@@ -42,6 +43,7 @@ fn stage<const D: usize>(
         "construction" => construction::stage(context, index, node, &name, problems),
         "strength-reduction" => strength_reduction(context, index, node, &name, problems)
             .map(StageKind::StrengthReduction),
+        "dynamic" => dynamic::stage(context, index, node, &name, problems),
         _ => run_out(context, index, node, &name, problems).map(StageKind::RunOut),
     };
     let start_from = start_from(context, index, node, &name, problems);

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use igimp_assembly::Geometry;
+use igimp_assembly::{Geometry, TimeScheme};
 use igimp_model::{
     Case, Construction, Load, Reduction, ReductionPath, RigidDrive, RigidMove, SearchMethod, Stage,
     StageKind, StopWhen,
@@ -107,18 +107,35 @@ fn happens<const D: usize>(case: &Case<D>, stage: &Stage) -> String {
                 ),
             }
         }
-        StageKind::RunOut(run_out) => {
-            let by = match run_out.reduction {
-                Reduction::TimesFos(times) => {
-                    format!("{} times the factor of safety", short(times))
+        StageKind::RunOut(run_out) => format!(
+            "motion until rest, strength of {} divided by {}",
+            materials(&run_out.materials),
+            reduction_in_words(&run_out.reduction)
+        ),
+        StageKind::Dynamic(dynamic) => {
+            let mut parts = vec![format!(
+                "motion over {} s, {}",
+                short(dynamic.duration),
+                match dynamic.scheme {
+                    TimeScheme::Newmark => "Newmark's method",
+                    TimeScheme::BackwardEuler => "backward Euler",
                 }
-                Reduction::Factor(factor) => short(factor),
-            };
-            format!(
-                "motion until rest, strength of {} divided by {by}",
-                materials(&run_out.materials)
-            )
+            )];
+            if let Some((which, reduction)) = &dynamic.reduction {
+                let by = reduction_in_words(reduction);
+                parts.push(format!("strength of {} divided by {by}", materials(which)));
+            }
+            parts.extend(dynamic.bodies.iter().map(|own| moves_in_words(case, own)));
+            parts.join("; ")
         }
+    }
+}
+
+/// The divisor of a reduction of strength, in words.
+fn reduction_in_words(reduction: &Reduction) -> String {
+    match reduction {
+        Reduction::TimesFos(times) => format!("{} times the factor of safety", short(*times)),
+        Reduction::Factor(factor) => short(*factor),
     }
 }
 

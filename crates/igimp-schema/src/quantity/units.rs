@@ -29,6 +29,8 @@ pub enum Dimension {
     Moment,
     /// Area \[m²\], a divisor only.
     Area,
+    /// Time \[s\].
+    Time,
 }
 
 impl Dimension {
@@ -48,6 +50,7 @@ impl Dimension {
             Self::Force => "a force",
             Self::Moment => "a moment",
             Self::Area => "an area",
+            Self::Time => "a time",
         }
     }
 
@@ -67,6 +70,7 @@ impl Dimension {
             Self::Force => "kN",
             Self::Moment => "kNm",
             Self::Area => "m2",
+            Self::Time => "s",
         }
     }
 
@@ -86,6 +90,7 @@ impl Dimension {
             Self::Force => "N",
             Self::Moment => "Nm",
             Self::Area => "m2",
+            Self::Time => "s",
         }
     }
 
@@ -105,6 +110,7 @@ impl Dimension {
             Self::Force => "100 kN",
             Self::Moment => "50 kNm",
             Self::Area => "2 m2",
+            Self::Time => "5 s",
         }
     }
 
@@ -191,6 +197,15 @@ const fn ten(symbol: &'static str, dimension: Dimension, power: i32) -> Unit {
     }
 }
 
+/// So many seconds.
+const fn seconds(symbol: &'static str, count: f64) -> Unit {
+    Unit {
+        symbol,
+        dimension: Dimension::Time,
+        scale: Scale::Fraction(count, 1.0),
+    }
+}
+
 const fn degrees(symbol: &'static str) -> Unit {
     Unit {
         symbol,
@@ -255,7 +270,7 @@ const fn pounds_inch(symbol: &'static str, dimension: Dimension, times: f64, pow
     customary(symbol, dimension, times, true, (INCH, power))
 }
 
-static UNITS: [Unit; 89] = [
+static UNITS: [Unit; 95] = [
     ten("m", Dimension::Length, 0),
     ten("mm", Dimension::Length, -3),
     ten("cm", Dimension::Length, -2),
@@ -345,4 +360,10 @@ static UNITS: [Unit; 89] = [
     ten("km2", Dimension::Area, 6),
     feet("ft2", Dimension::Area, 1.0, 2),
     inches("in2", Dimension::Area, 1.0, 2),
+    ten("s", Dimension::Time, 0),
+    ten("ms", Dimension::Time, -3),
+    seconds("min", 60.0),
+    seconds("h", 3600.0),
+    seconds("d", 86_400.0),
+    seconds("a", 31_557_600.0),
 ];

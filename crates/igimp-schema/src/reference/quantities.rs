@@ -1,7 +1,7 @@
 //! The quantities that curves and checks name, such as `footing.reaction`, as the reference lists them.
 
 /// Quantities and what they mean, for the reference.
-pub(crate) const QUANTITY_DOCS: [(&str, &str); 23] = [
+pub(crate) const QUANTITY_DOCS: [(&str, &str); 25] = [
     ("FOOTING.settlement", "settlement of a rigid footing [m]"),
     (
         "FOOTING.reaction",
@@ -63,6 +63,11 @@ pub(crate) const QUANTITY_DOCS: [(&str, &str); 23] = [
     ("step", "number of the step in its stage [-]"),
     ("plastic_share", "share of particles that yield [-]"),
     ("top", "height of the highest particle's upper edge [m]"),
+    ("time", "time since the first stage that takes some [s]"),
+    (
+        "kinetic_energy",
+        "kinetic energy of particles and rigid bodies, in stages that take time [J/m, J in space]",
+    ),
     (
         "factor_of_safety",
         "middle of the interval a strength reduction found, in checks only [-]",

@@ -1,7 +1,7 @@
 //! Stages.
 
 use super::{MOST_THINGS, reduced_materials, water};
-use crate::quantity::Dimension::Length;
+use crate::quantity::Dimension::{Length, Time};
 use crate::spec::{
     Choice, Field, Kind, Range, Struct, Variant, Variants, choice, default, derived, in_space,
     optional, required,
@@ -196,6 +196,56 @@ pub(super) static STAGE: Kind = Kind::Variants(&Variants {
                 ),
             ],
         },
+        Variant {
+            name: "dynamic",
+            doc: "Motion in time, with inertia.",
+            fields: &[
+                required(
+                    "duration",
+                    Kind::Quantity(Time, Range::Positive),
+                    "\"5 s\"",
+                    "how long it lasts",
+                ),
+                default(
+                    "scheme",
+                    Kind::Choice(&SCHEMES),
+                    "\"backward-euler\"",
+                    "how motion is integrated in time",
+                ),
+                default(
+                    "mass",
+                    Kind::Choice(&MASSES),
+                    "\"consistent\"",
+                    "how mass is given to the nodes",
+                ),
+                optional(
+                    "longest_step",
+                    Kind::Quantity(Time, Range::Positive),
+                    "the error of the scheme and the way of the soil alone choose",
+                    "longest step of time",
+                ),
+                optional(
+                    "reduction",
+                    Kind::Table(&REDUCTION),
+                    "strength stays",
+                    "by how much strength is reduced as it begins",
+                ),
+                reduced_materials(),
+                default(
+                    "bodies",
+                    Kind::List(&super::rigid::MOVE, 0, MOST_THINGS),
+                    "[]",
+                    "rigid bodies that it moves, loads or lets free",
+                ),
+                optional(
+                    "at_rest",
+                    Kind::Number(Range::Share),
+                    "it lasts its whole duration",
+                    "it ends when kinetic energy has fallen to this share of its largest value",
+                ),
+                geometry("\"moving\""),
+            ],
+        },
     ],
     after: &[
         default(
@@ -268,6 +318,22 @@ static GEOMETRIES: [Choice; 2] = [
         "moving",
         "every step begins where the last one carried the particles",
     ),
+];
+
+static SCHEMES: [Choice; 2] = [
+    choice(
+        "backward-euler",
+        "first order; what steps do not resolve is damped out",
+    ),
+    choice("newmark", "second order, without damping (β = ¼, γ = ½)"),
+];
+
+static MASSES: [Choice; 2] = [
+    choice(
+        "consistent",
+        "by products of the basis: exact in momentum and energy",
+    ),
+    choice("lumped", "to each node its share: smooths velocities"),
 ];
 
 /// Names of reinforcement.

@@ -171,6 +171,9 @@ fn end(summary: &StageSummary) -> String {
     if let Some(shares) = path.and_then(|path| path.shares.as_ref()) {
         let _ = write!(line, "\n  {}", self::shares(shares));
     }
+    if let Some(energy) = &summary.energy {
+        let _ = write!(line, "\n  {}", energy.sentence());
+    }
     if let Some(linear) = &summary.linear {
         let _ = write!(line, "\n  {}", linear.sentence());
     }
@@ -275,6 +278,9 @@ mod tests {
             ghost_penalty: 0.0,
             drag_share: 0.0,
             work: None,
+            duration: 0.0,
+            energy: None,
+            pace: 1.0,
             external_work: 0.0,
             gross_work: 0.0,
             factor_in_doubt: 0.0,

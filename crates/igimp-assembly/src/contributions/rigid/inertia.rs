@@ -2,7 +2,6 @@
 
 use super::{NODES_PER_BODY, RigidBody};
 use crate::conditions::rigid_motion::rotations;
-use crate::conditions::time_step::TimeStep;
 use crate::small::congruence;
 
 /// Mass of a rigid body, whose centre is its reference point, and its velocity.
@@ -16,6 +15,10 @@ pub struct RigidInertia<const D: usize> {
     pub velocity: [f64; D],
     /// Angular velocity: in the plane the first component, in space about the axes \[rad/time\].
     pub spin: [f64; 3],
+    /// Acceleration of the reference point \[length/time²\].
+    pub acceleration: [f64; D],
+    /// Angular acceleration \[rad/time²\].
+    pub spin_rate: [f64; 3],
 }
 
 impl<const D: usize> Default for RigidInertia<D> {
@@ -25,6 +28,8 @@ impl<const D: usize> Default for RigidInertia<D> {
             moments: [[0.0; 3]; 3],
             velocity: [0.0; D],
             spin: [0.0; 3],
+            acceleration: [0.0; D],
+            spin_rate: [0.0; 3],
         }
     }
 }
@@ -61,14 +66,31 @@ impl<const D: usize> RigidBody<D> {
         [displacement, rotation]
     }
 
-    /// The velocity of these nodes \[length/time\].
-    pub(crate) fn nodal_velocity(&self) -> [[f64; D]; NODES_PER_BODY] {
-        let size = self.surface.size();
-        let mut rotation = [0.0; D];
-        for (k, own) in rotation.iter_mut().enumerate().take(rotations(D)) {
-            *own = self.motion.spin[k] * size;
+    /// Kinetic energy of its motion \[mass·length²/time²\].
+    pub fn kinetic_energy(&self) -> f64 {
+        let velocities = self.nodal(&self.motion.velocity, &self.motion.spin);
+        let mut energy = 0.0;
+        for (mass, velocity) in self.nodal_mass().iter().zip(&velocities) {
+            for (row, own) in mass.iter().zip(velocity) {
+                for (mass, other) in row.iter().zip(velocity) {
+                    energy += 0.5 * own * mass * other;
+                }
+            }
         }
-        [self.motion.velocity, rotation]
+        energy
+    }
+
+    /// A vector and a rotation vector of the body on these nodes, the latter times its size.
+    pub(crate) fn nodal(
+        &self,
+        vector: &[f64; D],
+        rotation: &[f64; 3],
+    ) -> [[f64; D]; NODES_PER_BODY] {
+        let mut turned = [0.0; D];
+        for (k, own) in turned.iter_mut().enumerate().take(rotations(D)) {
+            *own = rotation[k] * self.surface.size();
+        }
+        [*vector, turned]
     }
 
     /// The moment −ω × I ω of a turning body at the start of a step, as a force at the distance of its size \[force\]; none in the
@@ -87,14 +109,18 @@ impl<const D: usize> RigidBody<D> {
         force
     }
 
-    /// Takes over the velocity that displacement and rotation of a step lead to: `u` are those of its nodes \[length\].
-    pub(crate) fn accelerate(&mut self, time: &TimeStep, u: [&[f64; D]; NODES_PER_BODY]) {
-        let [displaced, turned] = self.nodal_velocity();
+    /// Takes over how its nodes move at the end of a step: velocities \[length/time\] and accelerations \[length/time²\].
+    pub(crate) fn accelerate(
+        &mut self,
+        velocity: &[[f64; D]; NODES_PER_BODY],
+        acceleration: &[[f64; D]; NODES_PER_BODY],
+    ) {
         let size = self.surface.size();
-        self.motion.velocity = time.velocity_after(&displaced, u[0]);
-        let turned = time.velocity_after(&turned, u[1]);
+        self.motion.velocity = velocity[0];
+        self.motion.acceleration = acceleration[0];
         for k in 0..rotations(D) {
-            self.motion.spin[k] = turned[k] / size;
+            self.motion.spin[k] = velocity[1][k] / size;
+            self.motion.spin_rate[k] = acceleration[1][k] / size;
         }
     }
 }

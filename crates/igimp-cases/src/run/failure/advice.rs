@@ -58,6 +58,13 @@ pub(crate) fn advice<const D: usize>(
             component,
             touches,
         } => not_held(stage, body, *component, *touches),
+        StepFailure::TooLong { .. } => vec![
+            format!(
+                "scheme = \"backward-euler\" in stage \"{}\", which damps what steps do not resolve",
+                stage.name
+            ),
+            finer_cell(case),
+        ],
         StepFailure::NotFinite { .. } => vec![more_steps(stage), finer_cell(case)],
         StepFailure::MaxIterations { .. } | StepFailure::Diverged | StepFailure::Stagnated => {
             no_equilibrium(case, stage, error, near_worst)
@@ -313,7 +320,7 @@ fn collapse<const D: usize>(case: &Case<D>, stage: &Stage) -> Vec<String> {
             let is_loaded = moves.iter().any(RigidMove::is_loaded);
             is_loaded.then_some(instead).into_iter().collect()
         }
-        StageKind::RunOut(_) => Vec::new(),
+        StageKind::RunOut(_) | StageKind::Dynamic(_) => Vec::new(),
     }
 }
 
@@ -325,6 +332,7 @@ fn more_steps(stage: &Stage) -> String {
             stage.name,
             short(run_out.move_per_step)
         ),
+        StageKind::Dynamic(_) => format!("a shorter longest_step in stage \"{}\"", stage.name),
         _ => format!("steps = {} for this stage", 2 * stage.steps.max(1)),
     }
 }

@@ -4,6 +4,7 @@ use igimp_assembly::{Particles, Reinforcement, RigidBody, SharedLaw};
 use igimp_geometry::SeedError;
 use igimp_model::{Case, CheckTime, Field, Quantity};
 use igimp_results::fields;
+use igimp_results::summary::EnergySummary;
 use igimp_results::tables::table::Table;
 use igimp_solver::Accepted;
 
@@ -34,6 +35,8 @@ pub(crate) struct Moment<'a, const D: usize> {
     pub(crate) resistance: f64,
     /// Share of particles that yield \[-\].
     pub(crate) plastic_share: f64,
+    /// Where the work of its stage went so far, of a stage that takes time.
+    pub(crate) energy: Option<&'a EnergySummary>,
 }
 
 impl<const D: usize> Moment<'_, D> {
@@ -41,6 +44,13 @@ impl<const D: usize> Moment<'_, D> {
     pub(crate) fn largest_displacement(&self) -> f64 {
         largest_displacement(self.particles)
     }
+}
+
+/// Kinetic energy of soil and rigid bodies \[J/m; J in space\].
+fn kinetic_energy<const D: usize>(particles: &Particles<D>, rigid: &[RigidBody<D>]) -> f64 {
+    let soil = std::iter::zip(&particles.mass, &particles.velocity)
+        .map(|(mass, velocity)| 0.5 * mass * fields::length(velocity).powi(2));
+    soil.sum::<f64>() + rigid.iter().map(RigidBody::kinetic_energy).sum::<f64>()
 }
 
 /// Length of the largest particle displacement \[m\].
@@ -61,6 +71,8 @@ pub(crate) struct Records {
     pub(crate) monitors: Vec<Table>,
     /// By rigid body of the case.
     pub(crate) rigid: Vec<Table>,
+    /// Where the work of stages that take time went.
+    pub(crate) energy: Table,
     /// The material point that each monitor follows.
     pub(crate) watched: Vec<Place>,
     /// By check of the case: the largest value of its quantity in its stage so far; not a number before.
@@ -110,6 +122,7 @@ impl Records {
             curves,
             monitors,
             rigid: rigid.collect(),
+            energy: energy_table::<D>(),
             watched,
             peaks: vec![f64::NAN; case.checks.len()],
             factor_of_safety: f64::NAN,
@@ -177,6 +190,8 @@ impl Records {
             Quantity::Step => moment.number as f64,
             Quantity::PlasticShare => moment.plastic_share,
             Quantity::FactorOfSafety => self.factor_of_safety,
+            Quantity::Time => controls.time,
+            Quantity::KineticEnergy => kinetic_energy(moment.particles, moment.rigid),
             Quantity::Top => std::iter::zip(&moment.particles.x, &moment.particles.half_length)
                 .map(|(x, l)| x[D - 1] + l[D - 1])
                 .fold(f64::NEG_INFINITY, f64::max),
@@ -207,6 +222,7 @@ impl Records {
             curves: vec![None; case.curves.len()],
             monitors: Vec::new(),
             rigid: vec![None; case.rigid.len()],
+            energy: moment.energy.map(|own| energy_row(moment, own)),
             peaks: self.peaks.clone(),
         };
         for (k, curve) in case.curves.iter().enumerate() {
@@ -235,6 +251,7 @@ impl Records {
             self.monitors[k].push(row.clone());
             rows.monitors.push(row);
         }
+        self.energy.rows.extend(rows.energy.clone());
         for body in moment.controls.placed().filter(|_| !reopens) {
             let row = rigid_row(case, moment, body);
             self.rigid[body].push(row.clone());
@@ -253,6 +270,8 @@ pub(crate) struct Rows {
     pub(crate) monitors: Vec<Vec<f64>>,
     /// By rigid body; none where it is not there.
     pub(crate) rigid: Vec<Option<Vec<f64>>>,
+    /// Where the work of its stage went so far, of a stage that takes time.
+    pub(crate) energy: Option<Vec<f64>>,
     /// By check: the peak so far.
     pub(crate) peaks: Vec<f64>,
 }
@@ -282,8 +301,49 @@ impl<'a, const D: usize> AcceptedStep<'a, D> {
             controls: self.controls,
             resistance: self.resistance,
             plastic_share: self.accepted.report.plastic_share,
+            energy: None,
         }
     }
+}
+
+/// The parts of the energy of a stage, as its table has them.
+const ENERGY: [(&str, fn(&EnergySummary) -> f64); 13] = [
+    ("kinetic", |own| own.kinetic),
+    ("kinetic_gain", |own| own.kinetic_gain),
+    ("elastic_gain", |own| own.elastic),
+    ("plastic_work", |own| own.plastic),
+    ("contact", |own| own.contact),
+    ("reinforcement", |own| own.reinforcement),
+    ("pore_water", |own| own.water),
+    ("damping", |own| own.damping),
+    ("loads", |own| own.loads),
+    ("supports", |own| own.supports),
+    ("scheme", |own| own.scheme),
+    ("map", |own| own.map),
+    ("integration", |own| own.integration),
+];
+
+/// An empty table of energy.
+fn energy_table<const D: usize>() -> Table {
+    let unit = if D == 2 { "J/m" } else { "J" };
+    let moment = ["stage", "step", "time_[s]"].map(str::to_owned);
+    let parts = ENERGY.iter().map(|(name, _)| format!("{name}_[{unit}]"));
+    Table {
+        name: "energy".to_owned(),
+        header: moment.into_iter().chain(parts).collect(),
+        rows: Vec::new(),
+    }
+}
+
+/// The row of a moment in the table of energy.
+fn energy_row<const D: usize>(moment: &Moment<'_, D>, own: &EnergySummary) -> Vec<f64> {
+    let place = [
+        moment.stage as f64 + 1.0,
+        moment.number as f64,
+        moment.controls.time,
+    ];
+    let parts = ENERGY.iter().map(|(_, part)| part(own));
+    place.into_iter().chain(parts).collect()
 }
 
 /// The row of a rigid body that is there.

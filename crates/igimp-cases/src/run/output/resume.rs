@@ -174,6 +174,9 @@ impl<const D: usize> Output<D> {
         for table in &mut records.rigid {
             table.rows = rows::read(&output.folder.rigid().join(csv(&table.name)))?.rows;
         }
+        if output.energy.is_some() {
+            records.energy.rows = rows::read(&output.folder.energy())?.rows;
+        }
         Ok((output, Some(left)))
     }
 

@@ -39,6 +39,7 @@ impl<const D: usize> Output<D> {
             curve_rows: self.curves.iter().map(RowWriter::len).collect(),
             monitor_rows: self.monitors.iter().map(RowWriter::len).collect(),
             rigid_rows: self.rigid.iter().map(RowWriter::len).collect(),
+            energy_rows: self.energy.as_ref().map_or(0, RowWriter::len),
             rigid: BTreeMap::new(),
             reinforcement: BTreeMap::new(),
             convergence_rows: self.convergence.len(),

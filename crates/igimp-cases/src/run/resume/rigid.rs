@@ -2,7 +2,7 @@
 //! are is in the case.
 
 use igimp_assembly::{ContactNode, RigidBody};
-use igimp_model::Case;
+use igimp_model::{Case, in_space};
 use igimp_solver::Body;
 use serde::{Deserialize, Serialize};
 
@@ -16,6 +16,9 @@ pub(crate) struct SavedBody {
     origin: Vec<f64>,
     turn: Vec<Vec<f64>>,
     angle: [f64; 3],
+    /// Velocity, angular velocity, acceleration and angular acceleration.
+    #[serde(default)]
+    motion: [[f64; 3]; 4],
     knots: Vec<SavedKnot>,
 }
 
@@ -43,6 +46,12 @@ impl SavedBody {
             origin: body.pose.origin.to_vec(),
             turn: body.pose.turn.iter().map(|row| row.to_vec()).collect(),
             angle: body.pose.angle,
+            motion: [
+                in_space(&body.motion.velocity),
+                body.motion.spin,
+                in_space(&body.motion.acceleration),
+                body.motion.spin_rate,
+            ],
             knots: knots
                 .map(|knot| {
                     let &ContactNode {
@@ -102,6 +111,10 @@ pub(crate) fn taken_up<const D: usize>(
         };
         (body.pose.origin, body.pose.turn) = (origin, turn);
         body.pose.angle = own.angle;
+        let [velocity, spin, acceleration, spin_rate] = own.motion;
+        body.motion.velocity.copy_from_slice(&velocity[..D]);
+        body.motion.acceleration.copy_from_slice(&acceleration[..D]);
+        (body.motion.spin, body.motion.spin_rate) = (spin, spin_rate);
         for (knot, own) in body.contact.knots.iter_mut().zip(&own.knots) {
             *knot = ContactNode {
                 pressure: own.pressure,

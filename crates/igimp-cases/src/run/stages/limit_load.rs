@@ -182,6 +182,7 @@ impl<const D: usize> Watch<'_, '_, D> {
             controls: &controls,
             resistance: 0.0,
             plastic_share: report.plastic_share,
+            energy: None,
         })?;
         self.session.tell(&Event::Step {
             number,

@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use igimp_model::{Case, RigidDrive, Stage, StageKind};
+use igimp_model::{Case, Dynamic, RigidDrive, Stage, StageKind};
 use igimp_results::ending::EndReason;
 use igimp_results::summary::StageSummary;
 
@@ -40,7 +40,7 @@ pub(crate) fn target<const D: usize>(case: &Case<D>, stage: &Stage, start: &Cont
             }
         }
         StageKind::Displacement { settlement, .. } => end.settlement += settlement,
-        StageKind::Rigid(moves) => {
+        StageKind::Rigid(moves) | StageKind::Dynamic(Dynamic { bodies: moves, .. }) => {
             for own in moves {
                 let body = &mut end.rigid[own.body];
                 for (k, drive) in own.drives.iter().enumerate() {
@@ -99,6 +99,7 @@ pub(crate) fn release<const D: usize>(
         from: &from,
         to: &to,
         drag: &|_, _| 0.0,
+        time: None,
         method: model.method(stage.geometry),
         settings: model.march_settings(stage.steps),
         held,
@@ -151,6 +152,7 @@ pub(crate) fn begin<const D: usize>(
         controls: &state.controls,
         resistance: 0.0,
         plastic_share: 0.0,
+        energy: None,
     })
 }
 

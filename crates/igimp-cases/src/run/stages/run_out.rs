@@ -66,6 +66,7 @@ pub(crate) fn run_out<const D: usize>(
         from: &to,
         to: &to,
         drag: &|from, to| drag.get() / ((to - from) * steps as f64),
+        time: None,
         method: flowing(session.model),
         settings: session.model.march_settings(steps),
         held: None,
@@ -122,7 +123,7 @@ fn largest_motion<const D: usize>(u: &[[f64; D]], nodes: usize) -> f64 {
 
 /// The method of a body that flows: on its way cells are filled in part, and modes that a shared strain
 /// does not see add up from step to step. There B-bar serves better.
-fn flowing<const D: usize>(model: &Model<'_, D>) -> Method {
+pub(crate) fn flowing<const D: usize>(model: &Model<'_, D>) -> Method {
     let mut method = model.method(Geometry::Moving);
     if method.locking == Locking::SharedStrain {
         method.locking = Locking::BBar;
@@ -145,6 +146,7 @@ fn stand<const D: usize>(
     };
     let last = StagePath {
         drag: &|_, _| 0.0,
+        time: None,
         method: flowing(session.model),
         settings: session.model.march_settings(1),
         held: None,

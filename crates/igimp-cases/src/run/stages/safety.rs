@@ -219,6 +219,7 @@ impl<'a, const D: usize> Trials<'a, D> {
             from: &from,
             to: &to,
             drag: &|_, _| 0.0,
+            time: None,
             method: session.model.method(self.stage.geometry),
             settings,
             held: None,

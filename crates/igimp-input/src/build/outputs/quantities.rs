@@ -55,7 +55,7 @@ const REINFORCEMENT: [(&str, ReinforcementQuantity, &str); 3] = [
 ];
 
 /// Quantities of the whole model.
-const GLOBAL: [(&str, Quantity, &str); 8] = [
+const GLOBAL: [(&str, Quantity, &str); 10] = [
     ("largest_displacement", Quantity::LargestDisplacement, "m"),
     ("gravity_factor", Quantity::GravityFactor, "-"),
     ("horizontal_factor", Quantity::HorizontalFactor, "-"),
@@ -63,6 +63,8 @@ const GLOBAL: [(&str, Quantity, &str); 8] = [
     ("step", Quantity::Step, "-"),
     ("plastic_share", Quantity::PlasticShare, "-"),
     ("top", Quantity::Top, "m"),
+    ("time", Quantity::Time, "s"),
+    ("kinetic_energy", Quantity::KineticEnergy, "J/m"),
     ("factor_of_safety", Quantity::FactorOfSafety, "-"),
 ];
 
@@ -93,6 +95,7 @@ pub(crate) fn unit_of(dimensions: usize, name: &str) -> &'static str {
     match (dimensions, unit_in_plane(dimensions, name)) {
         (3, "N/m") => "N",
         (3, "N m/m") => "N m",
+        (3, "J/m") => "J",
         (_, unit) => unit,
     }
 }

@@ -15,6 +15,16 @@ pub(crate) fn stage<const D: usize>(
     name: &str,
     problems: &mut Problems,
 ) -> Option<StageKind> {
+    moves(context, node, name, problems).map(StageKind::Rigid)
+}
+
+/// The rigid bodies that a stage moves, loads or lets free.
+pub(crate) fn moves<const D: usize>(
+    context: &Context<'_, D>,
+    node: &Node,
+    name: &str,
+    problems: &mut Problems,
+) -> Option<Vec<RigidMove>> {
     let mut moves: Vec<RigidMove> = Vec::new();
     let mut is_right = true;
     for own in node.items_at("bodies") {
@@ -33,7 +43,7 @@ pub(crate) fn stage<const D: usize>(
             Err(Wrong) => is_right = false,
         }
     }
-    is_right.then_some(StageKind::Rigid(moves))
+    is_right.then_some(moves)
 }
 
 fn drives<const D: usize>(
@@ -82,7 +92,7 @@ fn drives<const D: usize>(
 /// Warns of rigid bodies that never come in.
 pub(crate) fn check_use(tree: &Node, names: &AllNames, problems: &mut Problems) {
     let moved: Vec<&str> = (tree.items_at("stages").iter())
-        .filter(|stage| stage.text_at("type") == Some("rigid"))
+        .filter(|stage| matches!(stage.text_at("type"), Some("rigid" | "dynamic")))
         .flat_map(|stage| stage.items_at("bodies"))
         .filter_map(|own| own.text_at("body"))
         .collect();

@@ -8,7 +8,7 @@ use igimp_schema::tree::Node;
 use crate::build::context::Context;
 
 /// Indices of the materials whose strength is reduced.
-fn materials<const D: usize>(
+pub(crate) fn materials<const D: usize>(
     context: &Context<'_, D>,
     node: &Node,
     name: &str,
@@ -161,8 +161,23 @@ pub(crate) fn run_out<const D: usize>(
             )
             .help("put a stage of type gravity before it");
     }
-    let table = node.get("reduction")?;
-    let reduction = match (table.get("times_fos"), table.get("factor")) {
+    let reduction = reduction(context, index, node.get("reduction")?, problems);
+    Some(RunOut {
+        materials: materials?,
+        reduction: reduction?,
+        move_per_step: node.number_at("move_per_step")?,
+        at_rest: node.number_at("at_rest")?,
+    })
+}
+
+/// By how much strength is reduced, from the table of that name.
+pub(crate) fn reduction<const D: usize>(
+    context: &Context<'_, D>,
+    index: usize,
+    table: &Node,
+    problems: &mut Problems,
+) -> Option<Reduction> {
+    match (table.get("times_fos"), table.get("factor")) {
         (Some(times), None) => {
             let has_search = (0..index).any(|k| context.type_of(k) == Some("strength-reduction"));
             if !has_search {
@@ -189,11 +204,5 @@ pub(crate) fn run_out<const D: usize>(
                 .help("write { times_fos = 1.05 } or { factor = 1.5 }");
             None
         }
-    };
-    Some(RunOut {
-        materials: materials?,
-        reduction: reduction?,
-        move_per_step: node.number_at("move_per_step")?,
-        at_rest: node.number_at("at_rest")?,
-    })
+    }
 }

@@ -164,6 +164,7 @@ impl Search<'_> {
             from: &from,
             to: &self.at(factor),
             drag: &|_, _| 0.0,
+            time: None,
             method: session.model.method(self.stage.geometry),
             settings: session.model.march_settings(self.stage.steps),
             held: None,

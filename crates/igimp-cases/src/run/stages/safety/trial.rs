@@ -91,6 +91,7 @@ impl<const D: usize> Trials<'_, D> {
             controls: &state.controls,
             resistance: 0.0,
             plastic_share,
+            energy: None,
         })
     }
 }

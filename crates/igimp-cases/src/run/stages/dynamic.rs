@@ -1,0 +1,173 @@
+//! Motion in time, with inertia: after failure, under impact, in an earthquake.
+//!
+//! Every step is the same search for equilibrium, with the force of acceleration among the forces (theory, eqs. 60 to 68). Steps
+//! are chosen by the error of the time integration and by the way of the soil, and land on equal parts of the duration, as
+//! many as the stage has steps. No factor of safety follows from motion.
+
+use igimp_assembly::{Geometry, Method, Remedy};
+use igimp_model::{Dynamic, Reduction};
+use igimp_results::ending::EndReason;
+use igimp_results::summary::StageSummary;
+use igimp_solver::{MarchSettings, Pace};
+
+use super::loading::{begin, target};
+use super::rigid_begin;
+use super::run_out::flowing;
+use crate::error::CaseError;
+use crate::run::model::Model;
+use crate::run::output::records::Moment;
+use crate::run::resume::Resumption;
+use crate::run::session::{Session, StageEnd, StagePath, TimeIntegration, march_path};
+use crate::run::state::State;
+
+/// The first step over the time in which a wave crosses a cell \[-\].
+const FIRST_STEP: f64 = 1.0;
+
+/// Nodes with less than this share of a cell of soil are tied \[-\]. They have too little mass to be held by inertia: a column of sand
+/// that collapses took three times the steps with a tenth, and with a thousandth none of its steps was found in the end.
+const TIED_BELOW: f64 = 0.2;
+
+/// How often a step may be cut in succession.
+const CUTS: u32 = 12;
+
+/// Moves a state through time.
+pub(crate) fn dynamic<const D: usize>(
+    session: &mut Session<'_, D>,
+    state: &mut State<D>,
+    number: usize,
+    dynamic: &Dynamic,
+    summary: &mut StageSummary,
+    resumption: Option<&Resumption>,
+) -> Result<StageEnd, CaseError> {
+    let model = session.model;
+    let stage = &model.case.stages[number];
+    if resumption.is_none() {
+        for text in rigid_begin::begin(model, state, &dynamic.bodies)? {
+            session.warn(text);
+        }
+    }
+    let mut from = resumption.map_or_else(|| state.controls.clone(), |left| left.from.clone());
+    if let Some((materials, reduction)) = &dynamic.reduction {
+        let factor = match reduction {
+            Reduction::Factor(factor) => *factor,
+            Reduction::TimesFos(times) => {
+                let found = session.records.factor_of_safety;
+                if !found.is_finite() {
+                    return Ok(StageEnd::Stopped(EndReason::NoFactorOfSafety));
+                }
+                times * found
+            }
+        };
+        for &material in materials {
+            from.srf[material] = factor;
+        }
+    }
+    if stage.start_from.is_none() {
+        // What begins with motion falls from the first moment on.
+        from.gravity = 1.0;
+    }
+    let mut to = target(model.case, stage, &from);
+    to.time += dynamic.duration;
+    if resumption.is_none() {
+        begin(session, state, number)?;
+    }
+    let path = StagePath {
+        from: &from,
+        to: &to,
+        drag: &|_, _| 0.0,
+        time: Some(TimeIntegration {
+            scheme: dynamic.scheme,
+            mass: dynamic.mass,
+        }),
+        method: in_motion(model, stage.geometry),
+        settings: pace(model, state, dynamic, stage.steps)?,
+        held: None,
+        left: resumption,
+    };
+    let ended = march_path(
+        session,
+        state,
+        &path,
+        summary,
+        &mut |session, summary, taken| {
+            let energy = summary.energy.as_ref();
+            session.record(&Moment {
+                energy,
+                ..taken.moment(number, summary.steps)
+            })?;
+            let share = energy.map_or(1.0, |own| own.kinetic / own.most_kinetic);
+            let is_at_rest = dynamic.at_rest.is_some_and(|at_rest| share < at_rest);
+            let resumption = Resumption {
+                from: from.clone(),
+                march: *taken.accepted.state,
+                resistance: taken.resistance,
+                drag: 0.0,
+                end: is_at_rest.then(|| EndReason::CameToRest {
+                    time: taken.controls.time - from.time,
+                    share,
+                }),
+            };
+            if let Some(output) = &mut session.output {
+                let run = &session.summary;
+                output.after_step(number, model, summary, taken, &resumption, run)?;
+            }
+            Ok(resumption.end)
+        },
+    )?;
+    Ok(match ended {
+        StageEnd::Stopped(reason @ EndReason::CameToRest { .. }) => StageEnd::Completed(reason),
+        other => other,
+    })
+}
+
+/// The method of a body in motion: that of one that flows, with more of its small cuts tied.
+fn in_motion<const D: usize>(model: &Model<'_, D>, geometry: Geometry) -> Method {
+    let mut method = flowing(model);
+    method.geometry = geometry;
+    let cuts = &mut method.small_cuts;
+    if cuts.remedy == Remedy::Tie && cuts.below > 0.0 {
+        cuts.below = cuts.below.max(TIED_BELOW);
+    }
+    method
+}
+
+/// How steps of time are chosen.
+fn pace<const D: usize>(
+    model: &Model<'_, D>,
+    state: &State<D>,
+    dynamic: &Dynamic,
+    parts: usize,
+) -> Result<MarchSettings, CaseError> {
+    let settings = model.march_settings(parts);
+    let cell = model
+        .cell_height()?
+        .min((model.case.grid.smallest_cell().into_iter()).fold(f64::INFINITY, f64::min));
+    let crossing = cell / fastest_wave(model, state);
+    let share = |time: f64| time / dynamic.duration;
+    let longest = dynamic
+        .longest_step
+        .map_or(1.0, share)
+        .min(1.0 / parts as f64);
+    Ok(MarchSettings {
+        cuts: CUTS,
+        pace: Some(Pace {
+            first: share(FIRST_STEP * crossing).min(longest),
+            longest,
+        }),
+        ..settings
+    })
+}
+
+/// The speed of the fastest compression wave in the bodies \[m/s\].
+fn fastest_wave<const D: usize>(model: &Model<'_, D>, state: &State<D>) -> f64 {
+    let particles = &state.body.particles;
+    let speeds = (0..particles.len()).map(|particle| {
+        let bound = model.laws[particles.law[particle]].stiffness_bound();
+        let modulus =
+            (bound.bulk() + 4.0 / 3.0 * bound.shear()) * particles.ratios[particle].stiffness;
+        (modulus * particles.volume0[particle] / particles.mass[particle]).sqrt()
+    });
+    speeds
+        .filter(|speed| speed.is_finite())
+        .fold(f64::MIN_POSITIVE, f64::max)
+}

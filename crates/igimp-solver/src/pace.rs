@@ -1,0 +1,50 @@
+//! How long the next step of a motion may be (theory, eq. 68): by the error of the time integration, by how far the body moves,
+//! and by how hard equilibrium was to find.
+
+use igimp_assembly::System;
+
+/// The error of a step that is aimed at, over its motion \[-\].
+const ERROR: f64 = 0.02;
+
+/// The longest way of a node in a step that is aimed at, in cells \[-\].
+const WAY: f64 = 0.2;
+
+/// How many times as large error or way may be before the step is made again, shorter \[-\].
+const REFUSED: f64 = 4.0;
+
+/// Corrections from which on the next step is shorter.
+const CORRECTIONS: usize = 10;
+
+/// Bounds of the change of duration from step to step \[-\].
+const CHANGE: [f64; 2] = [0.5, 1.5];
+
+/// How many times as long the next step may be as one by nodal displacements `u` \[length\], and whether this one was too long;
+/// 1 in statics.
+pub(crate) fn after<const D: usize>(
+    system: &System<'_, D>,
+    u: &[[f64; D]],
+    iterations: usize,
+) -> (f64, bool) {
+    let Some(error) = system.time_error(u) else {
+        return (1.0, false);
+    };
+    let grid = &system.conditions().grid;
+    let cell = (0..D)
+        .flat_map(|axis| (0..grid.axes[axis].cell_count()).map(move |k| grid.axes[axis].spacing(k)))
+        .fold(f64::INFINITY, f64::min);
+    let length = |u: &[f64; D]| u.iter().map(|u| u * u).sum::<f64>().sqrt();
+    let way = u
+        .iter()
+        .take(grid.node_count())
+        .map(length)
+        .fold(0.0, f64::max)
+        / cell;
+    let factor = (ERROR / error).sqrt().min(WAY / way);
+    let refused = error > REFUSED * ERROR || way > REFUSED * WAY;
+    let effort = if iterations > CORRECTIONS {
+        0.7
+    } else {
+        CHANGE[1]
+    };
+    (factor.min(effort).clamp(CHANGE[0], CHANGE[1]), refused)
+}
