@@ -132,6 +132,8 @@ pub struct Dynamic {
     pub scheme: TimeScheme,
     /// Mass matrix.
     pub mass: MassMatrix,
+    /// Share of a cell's volume below which a node is tied \[-\].
+    pub tied_below: f64,
     /// Longest step \[s\]; none: error and way alone choose.
     pub longest_step: Option<f64>,
     /// Strength that is lost as it begins: materials by index, and by how much.

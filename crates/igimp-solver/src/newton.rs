@@ -201,7 +201,7 @@ fn equilibrium<const D: usize>(
     let mut u = vec![[0.0; D]; system.node_count()];
     let of_step = (system, &stencils);
     let mut corrector = Corrector::new(of_step, grid, settings, workspace, history, set_up);
-    if attempt.is_guarded || conditions.time.is_some() {
+    if attempt.is_guarded || corrector.system.moves_without_potential() {
         corrector = corrector.guarded();
     }
     if let Some((load_path, work, guess)) = attempt.on_path {

@@ -34,6 +34,8 @@ pub(crate) struct Inertia<const D: usize> {
     of_bodies: Vec<[[f64; D]; D]>,
     /// At the start, by node \[length/time\].
     velocity: Vec<[f64; D]>,
+    /// The mean of that of the particles around each node, and that of rigid bodies \[length/time\].
+    mean_velocity: Vec<[f64; D]>,
     /// At the start, by node; zero where the scheme does not ask for it \[length/time²\].
     acceleration: Vec<[f64; D]>,
 }
@@ -53,13 +55,26 @@ impl<const D: usize> Inertia<D> {
         let on_grid =
             |values: &[[f64; D]]| mass.solve(weighted(values, mass_of, stencils, nodes), unknowns);
         let mut velocity = on_grid(&particles.velocity);
+        let share = weighted(&vec![[1.0; D]; particles.len()], mass_of, stencils, nodes);
+        let mut mean_velocity = weighted(&particles.velocity, mass_of, stencils, nodes);
+        for (sum, share) in mean_velocity.iter_mut().zip(&share) {
+            *sum = std::array::from_fn(|a| {
+                if share[a] > 0.0 {
+                    sum[a] / share[a]
+                } else {
+                    0.0
+                }
+            });
+        }
         let mut acceleration = if step.asks_for_acceleration() && !step.is_first {
             on_grid(&particles.acceleration)
         } else {
             vec![[0.0; D]; nodes]
         };
         for body in bodies {
-            velocity.extend(body.nodal(&body.motion.velocity, &body.motion.spin));
+            let own = body.nodal(&body.motion.velocity, &body.motion.spin);
+            velocity.extend(own);
+            mean_velocity.extend(own);
             let carried = body.nodal(&body.motion.acceleration, &body.motion.spin_rate);
             acceleration.extend(if step.asks_for_acceleration() && !step.is_first {
                 carried
@@ -72,6 +87,7 @@ impl<const D: usize> Inertia<D> {
             step,
             mass,
             velocity,
+            mean_velocity,
             acceleration,
         }
     }
@@ -81,11 +97,12 @@ impl<const D: usize> Inertia<D> {
         &self.step
     }
 
-    /// Step displacements of nodes that go on as they move at the start \[length\].
+    /// Step displacements of nodes that go on as the soil around them moves at the start \[length\]: by the mean of the velocities of
+    /// their particles, for those of nodes that few particles reach are in doubt.
     pub(crate) fn predicted(&self) -> Vec<[f64; D]> {
         let duration = self.step.duration;
-        std::iter::zip(&self.velocity, &self.acceleration)
-            .map(|(v, a)| std::array::from_fn(|k| duration * (v[k] + 0.5 * duration * a[k])))
+        (self.mean_velocity.iter())
+            .map(|v| v.map(|v| duration * v))
             .collect()
     }
 

@@ -289,6 +289,11 @@ impl<'a, const D: usize> System<'a, D> {
         !self.symmetric_particles && self.motions.is_empty()
     }
 
+    /// Whether soil moves whose flow is not associated.
+    pub fn moves_without_potential(&self) -> bool {
+        !self.symmetric_particles && self.inertia.is_some()
+    }
+
     /// External force by node \[force\].
     pub fn f_ext(&self) -> &[[f64; D]] {
         &self.f_ext

@@ -218,6 +218,12 @@ pub(super) static STAGE: Kind = Kind::Variants(&Variants {
                     "\"consistent\"",
                     "how mass is given to the nodes",
                 ),
+                default(
+                    "tied_below",
+                    Kind::Number(Range::NotNegative),
+                    "0.2",
+                    "share of a cell's volume below which a node is tied while the soil moves; less serves bodies that turn",
+                ),
                 optional(
                     "longest_step",
                     Kind::Quantity(Time, Range::Positive),

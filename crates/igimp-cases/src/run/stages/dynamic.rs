@@ -4,7 +4,6 @@
 //! are chosen by the error of the time integration and by the way of the soil, and land on equal parts of the duration, as
 //! many as the stage has steps. No factor of safety follows from motion.
 
-use igimp_assembly::{Geometry, Method, Remedy};
 use igimp_model::{Dynamic, Reduction};
 use igimp_results::ending::EndReason;
 use igimp_results::summary::StageSummary;
@@ -22,10 +21,6 @@ use crate::run::state::State;
 
 /// The first step over the time in which a wave crosses a cell \[-\].
 const FIRST_STEP: f64 = 1.0;
-
-/// Nodes with less than this share of a cell of soil are tied \[-\]. They have too little mass to be held by inertia: a column of sand
-/// that collapses took three times the steps with a tenth, and with a thousandth none of its steps was found in the end.
-const TIED_BELOW: f64 = 0.2;
 
 /// How often a step may be cut in succession.
 const CUTS: u32 = 12;
@@ -71,6 +66,9 @@ pub(crate) fn dynamic<const D: usize>(
     if resumption.is_none() {
         begin(session, state, number)?;
     }
+    let mut method = flowing(model);
+    method.geometry = stage.geometry;
+    method.small_cuts.below = dynamic.tied_below;
     let path = StagePath {
         from: &from,
         to: &to,
@@ -79,7 +77,7 @@ pub(crate) fn dynamic<const D: usize>(
             scheme: dynamic.scheme,
             mass: dynamic.mass,
         }),
-        method: in_motion(model, stage.geometry),
+        method,
         settings: pace(model, state, dynamic, stage.steps)?,
         held: None,
         left: resumption,
@@ -118,17 +116,6 @@ pub(crate) fn dynamic<const D: usize>(
         StageEnd::Stopped(reason @ EndReason::CameToRest { .. }) => StageEnd::Completed(reason),
         other => other,
     })
-}
-
-/// The method of a body in motion: that of one that flows, with more of its small cuts tied.
-fn in_motion<const D: usize>(model: &Model<'_, D>, geometry: Geometry) -> Method {
-    let mut method = flowing(model);
-    method.geometry = geometry;
-    let cuts = &mut method.small_cuts;
-    if cuts.remedy == Remedy::Tie && cuts.below > 0.0 {
-        cuts.below = cuts.below.max(TIED_BELOW);
-    }
-    method
 }
 
 /// How steps of time are chosen.

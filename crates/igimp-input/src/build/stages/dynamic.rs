@@ -35,6 +35,7 @@ pub(crate) fn stage<const D: usize>(
             "lumped" => MassMatrix::Lumped,
             _ => MassMatrix::Consistent,
         },
+        tied_below: node.number_at("tied_below")?,
         longest_step: node.optional_number("longest_step").ok()?,
         reduction: lost,
         bodies: bodies?,
