@@ -1,5 +1,7 @@
 //! A parsed case file as a tree whose every value knows its place.
 
+pub mod read;
+
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
