@@ -4,11 +4,13 @@ use std::path::Path;
 
 use igimp_assembly::Method;
 use igimp_model::{
-    BodyPart, Boundaries, Case, GridSpec, Material, ReinforcementPart, RigidPart, Stage,
+    BodyPart, Boundaries, Case, GridSpec, Material, MeshStudy, ReinforcementPart, RigidPart, Stage,
     WaterCondition,
 };
 use igimp_schema::diagnostic::Problems;
-use igimp_schema::tree::Node;
+use igimp_schema::schema::Root;
+use igimp_schema::tree::read::At;
+use igimp_schema::tree::{Node, Wrong};
 
 use super::bodies::sequence::Sequence;
 use super::grid::{self, Frame};
@@ -70,6 +72,18 @@ pub(super) fn stages_of<const D: usize>(
     stages
 }
 
+/// Every item of a list, as far as it was found right; nothing if one was not.
+fn each<T, U>(
+    list: Result<At<Vec<Result<At<T>, Wrong>>>, Wrong>,
+    mut build: impl FnMut(&At<T>) -> Option<U>,
+) -> Option<Vec<U>> {
+    let list = list.ok()?.value;
+    let built: Vec<Option<U>> = (list.iter())
+        .map(|own| own.as_ref().ok().and_then(&mut build))
+        .collect();
+    all(built)
+}
+
 /// The case; `None` only when a problem was reported, here or before.
 pub(super) fn assemble<const D: usize>(
     (context, file): (&Context<'_, D>, &Path),
@@ -85,20 +99,33 @@ pub(super) fn assemble<const D: usize>(
         soil,
         ..
     } = *context;
-    let solver = outputs::solver(tree, &basics.materials, problems);
-    let monitors = outputs::monitors(tree, soil, problems);
+    let solver =
+        Root::<D>::solver(tree).map(|own| outputs::solver(&own, &basics.materials, problems));
+    let output = Root::<D>::output(tree);
+    let monitors = each(Root::<D>::monitors(tree), |own| {
+        outputs::monitor(own, soil, problems)
+    });
     let about = outputs::About {
         names,
         stages: &stages,
         file,
+        has_cuts: (output.iter()).any(|own| own.cuts.as_ref().is_some_and(|cuts| !cuts.is_empty())),
     };
-    let sections = outputs::sections(tree, &about, soil, problems);
-    let curves = curves::curves(tree, names, loads, file, problems);
-    let checks = checks::checks(tree, names, loads, &stages, problems);
-    let output = outputs::output::<D>(tree, problems);
-    let mesh_study = study::mesh_study(tree);
+    let sections = each(Root::<D>::sections(tree), |own| {
+        outputs::section(own, &about, soil, problems)
+    });
+    let curves = each(Root::<D>::curves(tree), |own| {
+        curves::curve(own, names, loads, file, problems)
+    });
+    let checks = each(Root::<D>::checks(tree), |own| {
+        checks::check(own, names, loads, &stages, problems)
+    });
+    let output = output
+        .ok()
+        .and_then(|own| outputs::output::<D>(&own, problems));
+    let meshes = Root::<D>::mesh_study(tree).map(|own| own.value.meshes);
 
-    let case = tree.get("case")?;
+    let (case, meshes) = (tree.get("case")?, meshes.ok()?);
     let case = Case {
         water_unit_weight: case.number_at("water_unit_weight")?,
         water: all(upon.water)?,
@@ -114,16 +141,16 @@ pub(super) fn assemble<const D: usize>(
         rigid: all(upon.rigid)?,
         reinforcement: all(upon.reinforcement)?,
         stages: all(stages)?,
-        solver: solver?,
+        solver: solver.ok()?,
         given_solver: None,
-        monitors: all(monitors)?,
-        sections: all(sections)?,
-        curves: all(curves)?,
-        checks: all(checks)?,
-        mesh_study: mesh_study?,
+        monitors: monitors?,
+        sections: sections?,
+        curves: curves?,
+        checks: checks?,
+        mesh_study: MeshStudy { meshes: *meshes },
         output: output?,
     };
     let case = case.refined(tree.get("grid")?.count_at("refine")?);
-    study::check(tree, &case, problems);
+    study::check(tree, &meshes, &case, problems);
     Some(case)
 }

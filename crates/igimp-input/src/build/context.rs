@@ -2,6 +2,7 @@
 
 use igimp_model::{BodyPart, Load, Material};
 use igimp_schema::diagnostic::Problems;
+use igimp_schema::names::Mention;
 use igimp_schema::tree::{Node, Wrong};
 
 use crate::build::bodies::sequence::Sequence;
@@ -42,16 +43,15 @@ impl<const D: usize> Context<'_, D> {
         self.stage_nodes().get(index)?.text_at("type")
     }
 
-    /// Index of the monitor that a table names, if it names one.
+    /// Index of the monitor that a key names, if it names one.
     pub(crate) fn monitor(
         &self,
-        table: &Node,
+        monitor: Option<&impl Mention>,
         who: &str,
         problems: &mut Problems,
     ) -> Result<Option<usize>, Wrong> {
         let who = format!("stage `{who}` watches");
-        let monitors = &self.names.monitors;
-        monitors.find_optional(table, "monitor", &who, problems)
+        self.names.monitors.find_optional(monitor, &who, problems)
     }
 
     /// Whether a material is that of a body.

@@ -99,7 +99,7 @@ fn start_from<const D: usize>(
     }
     let who = format!("stage `{name}` starts from");
     let stages = &context.names.stages;
-    let from = stages.find_optional(node, "start_from", &who, problems)?;
+    let from = stages.find_optional(node.get("start_from"), &who, problems)?;
     if from.is_some_and(|from| from >= index) {
         problems
             .error(place, "start_from has to name an earlier stage")
@@ -120,7 +120,7 @@ fn stop_when<const D: usize>(
 ) -> Option<StopWhen> {
     let table = node.get("stop_when")?;
     let kind = node.text_at("type")?;
-    let monitor = context.monitor(table, name, problems).ok()?;
+    let monitor = context.monitor(table.get("monitor"), name, problems).ok()?;
     let displacement = table.optional_number("displacement").ok()?;
     let load_grows_less_than = table.optional_number("load_grows_less_than").ok()?;
     let ends = table.entries().iter();

@@ -4,7 +4,8 @@
 //! type the value has ([`rust_type`]); its presence is one of the functions of [`crate::spec`]. A key that one analysis
 //! knows has `, in_plane` or `, in_space` behind it, and one that both know differently has kind, presence, value and meaning
 //! of plane strain, `in_plane`, and those of space, `in_space`. `name as "key"` gives a field another name than its key;
-//! `name: part(TABLE: Type)` takes in the keys of another table; `part_in_space` makes them keys of space.
+//! A table is read as a whole, or not at all where a value was found wrong; `each` item of a list, and what stands `apart`, is
+//! read by itself. `name: part(TABLE: Type)` takes in the keys of another table; `part_in_space` makes them keys of space.
 
 use crate::spec::{Field, Kind, in_space, optional};
 
@@ -252,6 +253,7 @@ macro_rules! kind {
     (each [$kind:ident $(($($args:tt)*))?, $least:expr, $most:expr]) => {
         $crate::spec::Kind::List(const { &$crate::schema::declare::kind!($kind [$($($args)*)?]) }, $least, $most)
     };
+    (apart [$kind:ident $(($($args:tt)*))?]) => { $crate::schema::declare::kind!($kind [$($($args)*)?]) };
     (either [$a:ident $(($($a_args:tt)*))?, $b:ident $(($($b_args:tt)*))?]) => {
         $crate::spec::Kind::Either(const { &[
             $crate::schema::declare::kind!($a [$($($a_args)*)?]),
@@ -288,6 +290,9 @@ macro_rules! rust_type {
             $crate::tree::Wrong,
         >>
     };
+    (apart [$kind:ident $(($($args:tt)*))?]) => {
+        Result<$crate::schema::declare::rust_type!($kind [$($($args)*)?]), $crate::tree::Wrong>
+    };
     (either [$a:ident $(($($a_args:tt)*))?, $b:ident $(($($b_args:tt)*))?]) => {
         $crate::tree::read::Either<
             $crate::schema::declare::rust_type!($a [$($($a_args)*)?]),
@@ -296,7 +301,7 @@ macro_rules! rust_type {
     };
     (table [$table:ident: $of:ty]) => { $of };
     (variants [$variants:ident: $of:ty]) => { $of };
-    (map [$named:literal, $variants:ident: $of:ty]) => { Vec<$crate::tree::read::Named<$of>> };
+    (map [$named:literal, $variants:ident: $of:ty]) => { $crate::tree::read::NamedTables<$of> };
     ($text:ident [$($of:literal)?]) => { String };
 }
 

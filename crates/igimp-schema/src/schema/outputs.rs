@@ -47,7 +47,7 @@ table! {
     points: whole(2, 100_000), default "100", "number of equally spaced places";
     record: list(choice(Field), 1, 26), default "[\"sigma_xx\", \"sigma_yy\", \"tau_xy\"]", "what is written";
     average: choice(Average), default "\"none\"", "of which particles values are read";
-    references: list(table(SECTION_REFERENCE: SectionReference), 0, 100), default "[]", "what the values are held against";
+    references: each(table(SECTION_REFERENCE: SectionReference), 0, 100), default "[]", "what the values are held against";
 }
 
 choices! {
@@ -72,10 +72,10 @@ table! {
 table! {
     CURVE: Curve, "One recorded quantity against another, a point per step.";
     name: name, required "\"load-settlement\"", "name, also of its file";
-    x: table(AXIS: CurveAxis), required "{ of = \"footing.settlement\" }", "abscissa";
-    y: table(AXIS: CurveAxis), required "{ of = \"footing.reaction\" }", "ordinate";
+    x: apart(table(AXIS: CurveAxis)), required "{ of = \"footing.settlement\" }", "abscissa";
+    y: apart(table(AXIS: CurveAxis)), required "{ of = \"footing.reaction\" }", "ordinate";
     stage: reference("stage"), optional "all stages", "the stage that is recorded";
-    reference: table(REFERENCE: Reference), optional "no reference", "what the curve is held against";
+    reference: apart(table(REFERENCE: Reference)), optional "no reference", "what the curve is held against";
 }
 
 table! {

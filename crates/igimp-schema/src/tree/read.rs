@@ -46,6 +46,10 @@ pub struct Named<T> {
     pub value: Result<T, Wrong>,
 }
 
+/// Tables under names, in the order of the file.
+#[derive(Clone, Debug)]
+pub struct NamedTables<T>(pub Vec<Named<T>>);
+
 /// A type that values are read into.
 pub trait Read: Sized {
     /// The value of a node.
@@ -118,6 +122,13 @@ impl<A: Read, B: Read> Read for Either<A, B> {
     }
 }
 
+/// By itself: what was found wrong leaves what is beside it.
+impl<T: Read> Read for Result<T, Wrong> {
+    fn read(node: &Node) -> Result<Self, Wrong> {
+        Ok(T::read(node))
+    }
+}
+
 impl<T: Read, const N: usize> Read for [T; N] {
     fn read(node: &Node) -> Result<Self, Wrong> {
         let items: Result<Vec<T>, Wrong> = items(node)?.iter().map(T::read).collect();
@@ -125,31 +136,22 @@ impl<T: Read, const N: usize> Read for [T; N] {
     }
 }
 
-impl<T: Read> Read for Vec<At<T>> {
+impl<T: Read> Read for Vec<T> {
     fn read(node: &Node) -> Result<Self, Wrong> {
-        items(node)?.iter().map(At::read).collect()
+        items(node)?.iter().map(T::read).collect()
     }
 }
 
-/// Each by itself: one that was found wrong leaves the others.
-impl<T: Read> Read for Vec<Result<At<T>, Wrong>> {
+impl<T: Read> Read for NamedTables<T> {
     fn read(node: &Node) -> Result<Self, Wrong> {
-        Ok(items(node)?.iter().map(At::read).collect())
-    }
-}
-
-impl<T: Read> Read for Vec<Named<T>> {
-    fn read(node: &Node) -> Result<Self, Wrong> {
-        let Value::Table(entries) = &node.value else {
-            return Err(Wrong);
-        };
+        is_table(node)?;
         let named = |entry: &Entry| Named {
             name: entry.key.clone(),
             name_place: entry.key_place,
             place: entry.node.place,
             value: T::read(&entry.node),
         };
-        Ok(entries.iter().map(named).collect())
+        Ok(Self(node.entries().iter().map(named).collect()))
     }
 }
 

@@ -102,7 +102,7 @@ pub(crate) fn strength_reduction<const D: usize>(
         None => (None, None),
         Some(also) => (
             Some(also.number_at("displacement")?),
-            context.monitor(also, name, problems).ok()?,
+            context.monitor(also.get("monitor"), name, problems).ok()?,
         ),
     };
     let search = match node.text_at("search")? {
