@@ -203,7 +203,7 @@ pub fn shift(node: &mut Node, by: usize) {
 }
 
 /// Something that was found wrong, and reported.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Wrong;
 
 /// Values of keys, when the table has them and they were found right.

@@ -36,15 +36,18 @@ impl<const D: usize> GridAndBodies<D> {
         bodies: Vec<Option<BodyPart<D>>>,
         problems: &mut Problems,
     ) -> Self {
-        let mut frame = grid::frame(tree, problems);
+        let own = Root::<D>::grid(tree).ok();
+        let extent = own.as_ref().and_then(|own| own.extent.as_ref().ok());
+        let mut frame = extent.and_then(|extent| grid::frame(extent, problems));
         let materials = materials::materials(tree, &bodies, problems);
-        let grid = grid::grid(tree, frame.as_ref(), &bodies, problems);
+        let grid =
+            (own.as_ref()).and_then(|own| grid::grid(own, frame.as_ref(), &bodies, problems));
         if let (Some(frame), Some(grid)) = (&mut frame, &grid) {
             frame.axes.clone_from(&grid.axes);
         }
         Self {
             frame,
-            method: grid::method(tree),
+            method: own.and_then(|own| Some(grid::method(own.method.as_ref().ok()?))),
             grid,
             materials,
             sequence: Sequence::new(tree, names, &bodies),
@@ -125,13 +128,14 @@ pub(super) fn assemble<const D: usize>(
         .and_then(|own| outputs::output::<D>(&own, problems));
     let meshes = Root::<D>::mesh_study(tree).map(|own| own.value.meshes);
 
-    let (case, meshes) = (tree.get("case")?, meshes.ok()?);
+    let (case, meshes) = (Root::<D>::case(tree).ok()?, meshes.ok()?);
+    let grid = Root::<D>::grid(tree).ok()?;
     let case = Case {
-        water_unit_weight: case.number_at("water_unit_weight")?,
+        water_unit_weight: *case.water_unit_weight,
         water: all(upon.water)?,
-        title: case.text_at("title")?.to_owned(),
-        title_block: title_block(case),
-        gravity: case.number_at("gravity")?,
+        title: case.title.value.clone(),
+        title_block: title_block(&case),
+        gravity: *case.gravity,
         grid: basics.grid.clone()?,
         method: basics.method.clone()?,
         materials: all(basics.materials.clone())?,
@@ -150,7 +154,7 @@ pub(super) fn assemble<const D: usize>(
         mesh_study: MeshStudy { meshes: *meshes },
         output: output?,
     };
-    let case = case.refined(tree.get("grid")?.count_at("refine")?);
+    let case = case.refined((*grid.refine).ok()?);
     study::check(tree, &meshes, &case, problems);
     Some(case)
 }

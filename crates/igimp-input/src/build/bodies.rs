@@ -14,7 +14,7 @@ use igimp_schema::text::{clip, count, number, point};
 use igimp_schema::tree::Node;
 
 use super::AllNames;
-use super::grid::MOST;
+use super::grid::{MOST, cell_place};
 use crate::geometry::edge_distance;
 use crate::geometry::{distinct, near_edge, overlap, self_crossing};
 use igimp_text::short;
@@ -167,12 +167,10 @@ pub(super) fn check(
         // Too many cells are reported as such.
         if particles > MOST && cells <= MOST {
             let message = format!("the bodies would have {} particles", count(particles));
-            problems
-                .error(tree.get("grid").map(|grid| grid.place_at("cell")), message)
-                .help(format!(
-                    "at most {} are possible: use larger cells or fewer points_per_cell",
-                    count(MOST)
-                ));
+            problems.error(cell_place(tree), message).help(format!(
+                "at most {} are possible: use larger cells or fewer points_per_cell",
+                count(MOST)
+            ));
         }
     }
     for (second, b) in bodies.iter().enumerate() {

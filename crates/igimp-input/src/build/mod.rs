@@ -22,8 +22,9 @@ use std::path::Path;
 use igimp_model::{AnyCase, Case, TitleBlock};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::names::Names;
-use igimp_schema::schema::{FORMAT, SPACE};
+use igimp_schema::schema::{Analysis, CaseHead, FORMAT, Root};
 use igimp_schema::tree::Node;
+use igimp_schema::tree::read::At;
 
 use crate::build::grid::boundaries;
 use assemble::{GridAndBodies, Surroundings};
@@ -79,7 +80,8 @@ pub(super) fn build(tree: &mut Node, file: &Path, problems: &mut Problems) -> Op
     let tree = &*tree;
     let names = AllNames::new(tree, problems);
     header(tree, problems);
-    if tree.get("case")?.text_at("analysis") == Some(SPACE) {
+    let analysis = CaseHead::analysis(tree.get("case")?);
+    if analysis.is_ok_and(|own| *own == Analysis::Space) {
         space::build(tree, &names, file, problems).map(AnyCase::Space)
     } else {
         in_plane(tree, &names, file, problems).map(AnyCase::Plane)
@@ -102,7 +104,9 @@ fn in_plane(
     } = &basics;
     let site = Site::new(basics.frame.clone(), bodies, sequence);
     bodies::check(tree, names, (bodies, sequence), &site, problems);
-    let boundaries = boundaries::boundaries(tree, site.frame.as_ref(), problems);
+    let boundaries = Root::boundaries(tree).ok();
+    let boundaries =
+        boundaries.and_then(|own| boundaries::boundaries(&own, site.frame.as_ref(), problems));
     bodies::check_support(tree, bodies, boundaries.as_ref(), &site, problems);
     let layers = Layers {
         tree,
@@ -145,7 +149,7 @@ fn in_plane(
         sequence,
     };
     let stages = assemble::stages_of(&context, problems);
-    let gravity = tree.get("case").and_then(|case| case.number_at("gravity"));
+    let gravity = gravity(tree);
     ground::layers::check_stiffness(&layers, &stages, gravity, problems);
     let upon = Surroundings {
         boundaries,
@@ -157,13 +161,13 @@ fn in_plane(
 }
 
 /// The head of the report.
-fn title_block(case: &Node) -> TitleBlock {
-    let words = |key| case.text_at(key).map(str::to_owned);
+fn title_block(case: &CaseHead) -> TitleBlock {
+    let words = |own: &Option<At<String>>| own.as_ref().map(|own| own.value.clone());
     TitleBlock {
-        project: words("project"),
-        client: words("client"),
-        author: words("author"),
-        revision: words("revision"),
+        project: words(&case.project),
+        client: words(&case.client),
+        author: words(&case.author),
+        revision: words(&case.revision),
     }
 }
 
@@ -171,20 +175,28 @@ fn all<T>(parts: Vec<Option<T>>) -> Option<Vec<T>> {
     parts.into_iter().collect()
 }
 
+/// Acceleration of gravity \[m/s²\].
+fn gravity(tree: &Node) -> Option<f64> {
+    let gravity = tree.get("case").map(CaseHead::gravity)?.ok()?;
+    Some(*gravity)
+}
+
 /// Checks the version of the format, and that gravity is there where it is raised.
 fn header(tree: &Node, problems: &mut Problems) {
-    if let Some(version) = tree.number_at("igimp")
-        && version > FORMAT as f64
+    if let Ok(version) = Root::<2>::igimp(tree)
+        && *version > FORMAT as usize
     {
         problems
             .error(
-                tree.place_at("igimp"),
-                format!("this file has input format {version}, newer than this program's"),
+                version.place,
+                format!(
+                    "this file has input format {}, newer than this program's",
+                    *version
+                ),
             )
             .help(format!("this program reads igimp = {FORMAT}"));
     }
-    let Some(case) = tree.get("case") else { return };
-    if case.number_at("gravity") == Some(0.0) {
+    if gravity(tree) == Some(0.0) {
         let stages = tree.get("stages").map_or(&[][..], Node::items);
         for stage in stages {
             if let Some(kind @ ("gravity" | "k0")) = stage.text_at("type") {

@@ -6,6 +6,8 @@ use std::sync::Arc;
 use igimp_geometry::region::Region;
 use igimp_model::{BodyPart, Case, Ground, LoadKind, Material};
 use igimp_schema::diagnostic::Problems;
+use igimp_schema::schema::Root;
+use igimp_schema::schema::grid::Fit;
 use igimp_schema::text::{clip, count, number, point};
 use igimp_schema::tree::Node;
 
@@ -13,7 +15,7 @@ use super::assemble::{self, GridAndBodies, Surroundings};
 use super::bodies::sequence::{Sequence, placed};
 use super::bodies::site::Soil;
 use super::bodies::solids;
-use super::grid::{Frame, boundaries};
+use super::grid::{Frame, boundaries, cell_place};
 use super::{AllNames, loads, reinforcement, rigid, water};
 use crate::build::bodies::site::Solids;
 use crate::build::context::Context;
@@ -86,7 +88,8 @@ pub(super) fn build(
     let frame = frame.as_ref();
     let soil = Solids::new(bodies, frame);
     check_bodies(tree, frame, (bodies, sequence), &soil, problems);
-    let boundaries = boundaries::boundaries(tree, frame, problems);
+    let boundaries = Root::boundaries(tree).ok();
+    let boundaries = boundaries.and_then(|own| boundaries::boundaries(&own, frame, problems));
     let loads = loads::space::loads(tree, &soil, problems);
     let rigid = rigid::space::rigid(tree, frame, materials, problems);
     rigid::stage::check_use(tree, names, problems);
@@ -135,10 +138,15 @@ fn refuse_what_is_of_the_plane(tree: &Node, problems: &mut Problems) {
                 .help("in space footings are [[rigid]] bodies, or pressures");
         }
     }
-    let fit = tree.get("grid").and_then(|grid| grid.get("fit"));
-    if let Some(fit) = fit.filter(|fit| fit.text() == Some("layers")) {
+    if let Ok(grid) = Root::<3>::grid(tree)
+        && let Ok(wishes) = &grid.wishes
+        && *wishes.fit == Fit::Layers
+    {
         problems
-            .error(fit.place, "lines are fitted to layers in plane strain only")
+            .error(
+                wishes.fit.place,
+                "lines are fitted to layers in plane strain only",
+            )
             .help("write lines = { z = [...] }");
     }
 }
@@ -205,12 +213,10 @@ fn check_bodies(
     }
     if particles > MOST {
         let message = format!("the bodies would have {} particles", count(particles));
-        problems
-            .error(tree.get("grid").map(|grid| grid.place_at("cell")), message)
-            .help(format!(
-                "at most {} are possible: use larger cells or fewer points_per_cell",
-                count(MOST)
-            ));
+        problems.error(cell_place(tree), message).help(format!(
+            "at most {} are possible: use larger cells or fewer points_per_cell",
+            count(MOST)
+        ));
     }
     for (second, b) in bodies.iter().enumerate() {
         for (first, a) in bodies[..second].iter().enumerate() {

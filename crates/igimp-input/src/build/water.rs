@@ -7,10 +7,10 @@ use igimp_schema::diagnostic::Problems;
 use igimp_schema::text::{clip, number};
 use igimp_schema::tree::Node;
 
-use super::AllNames;
 use super::bodies::sequence::{Scene, Sequence};
 use super::bodies::surfaces::terrain;
 use super::ground::{Earth, Surface, UprightFace};
+use super::{AllNames, gravity};
 
 /// What conditions of the water are held against.
 pub(super) struct Around<'a, const D: usize> {
@@ -45,14 +45,13 @@ pub(super) fn conditions<const D: usize>(
         .enumerate()
         .map(|(index, node)| condition(around, index, node, problems))
         .collect();
-    let case = around.tree.get("case");
     let is_wet = |condition: &WaterCondition| {
         let own = condition.bodies.iter().map(|(_, own)| own);
         own.chain([&condition.source])
             .any(|own| *own != PoreSource::Dry)
     };
     if let (Some(0.0), Some(index)) = (
-        case.and_then(|case| case.number_at("gravity")),
+        gravity(around.tree),
         (conditions.iter()).position(|condition| condition.as_ref().is_some_and(is_wet)),
     ) {
         problems

@@ -5,7 +5,8 @@
 //! knows has `, in_plane` or `, in_space` behind it, and one that both know differently has kind, presence, value and meaning
 //! of plane strain, `in_plane`, and those of space, `in_space`. `name as "key"` gives a field another name than its key;
 //! A table is read as a whole, or not at all where a value was found wrong; `each` item of a list, and what stands `apart`, is
-//! read by itself. `name: part(TABLE: Type)` takes in the keys of another table; `part_in_space` makes them keys of space.
+//! read by itself. `name: part(TABLE: Type)` takes in the keys of another table; `part_in_space` makes them keys of
+//! space, and a `group` is read by itself.
 
 use crate::spec::{Field, Kind, in_space, optional};
 
@@ -195,6 +196,7 @@ macro_rules! key {
 /// The declarations of a field.
 macro_rules! pieces {
     ($key:expr, part [$table:ident: $($of:tt)*]) => { $table.fields };
+    ($key:expr, group [$table:ident: $($of:tt)*]) => { $table.fields };
     ($key:expr, part_in_space [$table:ident: $($of:tt)*]) => {
         &const { $crate::schema::declare::all_in_space::<{ $table.fields.len() }>($table.fields) }
     };
@@ -309,6 +311,7 @@ macro_rules! rust_type {
 macro_rules! field_type {
     (part [$table:ident: $of:ty]) => { $of };
     (part_in_space [$table:ident: $of:ty]) => { $of };
+    (group [$table:ident: $of:ty]) => { Result<$of, $crate::tree::Wrong> };
     ($kind:ident $args:tt required $($scope:ident $other:ident)?) => {
         $crate::tree::read::At<$crate::schema::declare::rust_type!($kind $args)>
     };
@@ -323,6 +326,9 @@ macro_rules! field_type {
 /// The value of a field in a table.
 macro_rules! read {
     ($node:ident, part, $key:expr) => {
+        $crate::tree::read::Read::read($node)
+    };
+    ($node:ident, group, $key:expr) => {
         $crate::tree::read::Read::read($node)
     };
     ($node:ident, part_in_space, $key:expr) => {

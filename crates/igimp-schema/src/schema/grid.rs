@@ -5,14 +5,29 @@ use super::declare::{choices, table};
 
 table! {
     GRID: Grid, "Fixed background grid, and the variant of the method.";
+    extent: group(EXTENT: Extent);
+    wishes: group(WISHES: Wishes);
+    mixed_cells: apart(choice(MixedCells)), default "\"own\"", "stiffness of particles in cells that several soils share";
+    refine: apart(whole(1, 64)), default "1", "every cell is cut into so many in each direction";
+    method: group(METHOD: Method);
+}
+
+table! {
+    EXTENT: Extent, "Extent of the grid and size of its cells.";
     cell: either(quantity(Length, Positive), table(CELL: Cell)), required "\"0.5 m\"", "size of a cell, one length or x and y";
     domain: table(DOMAIN: Domain), required "{ x = [\"0 m\", \"60 m\"], y = [\"0 m\", \"22 m\"] }", "extent of the grid; leave room for the motion";
+}
+
+table! {
+    WISHES: Wishes, "What is wanted of the lines of the grid.";
     lines: table(LINES: Lines), default "{}", "places that grid lines go through";
     fit: choice(Fit), default "\"none\"", "whether grid lines go through layer boundaries";
     zones: table(ZONES: Zones), default "{}", "stretches of finer cells";
     growth: number(Positive), default "1.3", "ratio of neighbouring cells beside zones and thin layers; from 1.05 to 2";
-    mixed_cells: choice(MixedCells), default "\"own\"", "stiffness of particles in cells that several soils share";
-    refine: whole(1, 64), default "1", "every cell is cut into so many in each direction";
+}
+
+table! {
+    METHOD: Method, "The variant of the method.";
     basis: choice(Basis), default "\"gimp\"", "how a particle sees the grid";
     locking: choice(Locking), default "\"shared-strain\"", "what is done against locking";
     kinematics: choice(Kinematics), default "\"finite\"", "measure of strain";
@@ -132,7 +147,7 @@ table! {
     back: choice(Side), default "\"roller\"", "side of the highest y", in_space;
     bottom: choice(Side), default "\"fixed\"", "side of the lowest y, in space of the lowest z";
     top: choice(Side), default "\"free\"", "side of the highest y, in space of the highest z";
-    boxes: list(table(BOX: FixedBox<D>), 0, MOST_THINGS), default "[]", "boxes in which nodes are held";
+    boxes: each(table(BOX: FixedBox<D>), 0, MOST_THINGS), default "[]", "boxes in which nodes are held";
 }
 
 choices! {

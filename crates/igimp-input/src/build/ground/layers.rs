@@ -4,6 +4,8 @@
 use igimp_geometry::polygon::{bounding_box, contains};
 use igimp_model::{BodyPart, Ground, Material, Stage, StageKind, Strength};
 use igimp_schema::diagnostic::Problems;
+use igimp_schema::schema::Root;
+use igimp_schema::schema::grid::{Fit, MixedCells};
 use igimp_schema::source::Place;
 use igimp_schema::text::{clip, number, point};
 use igimp_schema::tree::Node;
@@ -79,9 +81,10 @@ fn check_pairs(
     let [width, height] = frame.axes.each_ref().map(|axis| axis.extremes()[0]);
     let narrow = NARROW * width.min(height);
     let items = layers.tree.items_at("bodies");
-    let grid = layers.tree.get("grid");
-    let is_fitted = grid.and_then(|grid| grid.text_at("fit")) == Some("layers");
-    let is_shared = grid.and_then(|grid| grid.text_at("mixed_cells")) == Some("mean");
+    let grid = Root::<2>::grid(layers.tree).ok();
+    let is_fitted =
+        (grid.iter()).any(|own| own.wishes.as_ref().is_ok_and(|own| *own.fit == Fit::Layers));
+    let is_shared = (grid.iter()).any(|own| *own.mixed_cells == Ok(MixedCells::Mean));
     let mut neighbours = vec![Neighbours::default(); bodies.len()];
     for (second, b) in bodies.iter().enumerate() {
         for (first, a) in bodies[..second].iter().enumerate() {

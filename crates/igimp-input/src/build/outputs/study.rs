@@ -21,7 +21,7 @@ pub(crate) fn check<const D: usize>(
     if case.mesh_study.meshes < 2 {
         // A grid that is too large as it is was told of before.
         if let Ok(grid) = Root::<D>::grid(tree)
-            && *grid.refine > 1
+            && grid.refine.is_ok_and(|parts| parts > 1)
             && is_too_large(case, 1)
         {
             problems

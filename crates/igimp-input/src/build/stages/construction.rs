@@ -2,6 +2,8 @@
 
 use igimp_model::{Construction, Drainage, LoadKind, StageKind};
 use igimp_schema::diagnostic::Problems;
+use igimp_schema::schema::Root;
+use igimp_schema::schema::grid::MixedCells;
 use igimp_schema::text::{clip, row};
 use igimp_schema::tree::Node;
 
@@ -309,13 +311,13 @@ pub(crate) fn check<const D: usize>(context: &Context<'_, D>, problems: &mut Pro
         stage.text_at("type") == Some("construction")
             && keys.any(|key| !stage.items_at(key).is_empty())
     };
-    if let Some(grid) = context.tree.get("grid")
-        && grid.text_at("mixed_cells") == Some("mean")
+    if let Ok(grid) = Root::<D>::grid(context.tree)
+        && *grid.mixed_cells == Ok(MixedCells::Mean)
         && context.stage_nodes().iter().any(|stage| changes(&stage))
     {
         problems
             .warning(
-                grid.place_at("mixed_cells"),
+                grid.mixed_cells.place,
                 "cells that several soils share keep the mean stiffness of all of them, whichever are there",
             )
             .help("let grid lines follow the bodies that come and go, and write mixed_cells = \"own\"");
