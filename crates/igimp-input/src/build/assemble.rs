@@ -81,10 +81,8 @@ fn each<T, U>(
     mut build: impl FnMut(&At<T>) -> Option<U>,
 ) -> Option<Vec<U>> {
     let list = list.ok()?.value;
-    let built: Vec<Option<U>> = (list.iter())
-        .map(|own| own.as_ref().ok().and_then(&mut build))
-        .collect();
-    all(built)
+    let built = list.iter().map(|own| build(own.as_ref().ok()?));
+    all(built.collect())
 }
 
 /// The case; `None` only when a problem was reported, here or before.

@@ -23,8 +23,8 @@ use igimp_model::{AnyCase, Case, TitleBlock};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::names::Names;
 use igimp_schema::schema::{Analysis, CaseHead, FORMAT, Root};
-use igimp_schema::tree::Node;
 use igimp_schema::tree::read::At;
+use igimp_schema::tree::{Node, Wrong};
 
 use crate::build::grid::boundaries;
 use assemble::{GridAndBodies, Surroundings};
@@ -169,6 +169,12 @@ fn title_block(case: &CaseHead) -> TitleBlock {
         author: words(&case.author),
         revision: words(&case.revision),
     }
+}
+
+/// The items of a list, as far as each was found right.
+fn things<T>(list: Result<At<Vec<Result<At<T>, Wrong>>>, Wrong>) -> Vec<Option<At<T>>> {
+    let items = list.map_or_else(|Wrong| Vec::new(), |list| list.value);
+    items.into_iter().map(Result::ok).collect()
 }
 
 fn all<T>(parts: Vec<Option<T>>) -> Option<Vec<T>> {

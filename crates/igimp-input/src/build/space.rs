@@ -8,6 +8,7 @@ use igimp_model::{BodyPart, Case, Ground, LoadKind, Material};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::schema::Root;
 use igimp_schema::schema::grid::Fit;
+use igimp_schema::schema::loads::LoadForm;
 use igimp_schema::text::{clip, count, number, point};
 use igimp_schema::tree::Node;
 
@@ -16,7 +17,7 @@ use super::bodies::sequence::{Sequence, placed};
 use super::bodies::site::Soil;
 use super::bodies::solids;
 use super::grid::{Frame, boundaries, cell_place};
-use super::{AllNames, loads, reinforcement, rigid, water};
+use super::{AllNames, loads, reinforcement, rigid, things, water};
 use crate::build::bodies::site::Solids;
 use crate::build::context::Context;
 
@@ -90,7 +91,7 @@ pub(super) fn build(
     check_bodies(tree, frame, (bodies, sequence), &soil, problems);
     let boundaries = Root::boundaries(tree).ok();
     let boundaries = boundaries.and_then(|own| boundaries::boundaries(&own, frame, problems));
-    let loads = loads::space::loads(tree, &soil, problems);
+    let loads = loads::loads(tree, &soil, problems);
     let rigid = rigid::space::rigid(tree, frame, materials, problems);
     rigid::stage::check_use(tree, names, problems);
     let around = water::Around {
@@ -128,11 +129,11 @@ pub(super) fn build(
 
 /// Reports what case files can say of the plane only.
 fn refuse_what_is_of_the_plane(tree: &Node, problems: &mut Problems) {
-    for load in tree.items_at("loads") {
-        if load.text_at("type") == Some("rigid-footing") {
+    for load in things(Root::<3>::loads(tree)).into_iter().flatten() {
+        if let LoadForm::RigidFooting(_) = *load.form {
             problems
                 .error(
-                    load.place_at("type"),
+                    load.form.place,
                     "a rigid footing that the grid follows is one of plane strain",
                 )
                 .help("in space footings are [[rigid]] bodies, or pressures");

@@ -6,11 +6,13 @@ pub(crate) mod safety;
 use igimp_assembly::Geometry;
 use igimp_model::{LoadKind, Stage, StageKind, StopWhen, Strength};
 use igimp_schema::diagnostic::Problems;
+use igimp_schema::schema::Root;
 use igimp_schema::text::{clip, number, row};
 use igimp_schema::tree::{Node, Wrong};
 
 use super::ground::level::uneven;
 use crate::build::context::Context;
+use crate::build::things;
 use safety::{run_out, strength_reduction};
 
 /// The stages.
@@ -321,10 +323,10 @@ pub(super) fn check_use<const D: usize>(context: &Context<'_, D>, problems: &mut
     {
         return;
     }
-    for load in context.tree.items_at("loads") {
-        if let Some(name) = load.text_at("name").filter(|name| !used.contains(name)) {
-            let message = format!("no stage applies the load `{}`", clip(name, 40));
-            problems.warning(load.place_at("name"), message);
+    for load in things(Root::<D>::loads(context.tree)).into_iter().flatten() {
+        if !used.contains(&load.name.as_str()) {
+            let message = format!("no stage applies the load `{}`", clip(&load.name, 40));
+            problems.warning(load.name.place, message);
         }
     }
 }
