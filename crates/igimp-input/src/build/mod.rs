@@ -95,7 +95,9 @@ fn in_plane(
     file: &Path,
     problems: &mut Problems,
 ) -> Option<Case<2>> {
-    let basics = GridAndBodies::new(tree, names, bodies::bodies(tree, names, problems), problems);
+    let own = things(Root::<2>::bodies(tree));
+    let parts = bodies::bodies::<bodies::Plane, _>(tree, &own, names, problems);
+    let basics = GridAndBodies::new(tree, names, parts, problems);
     let GridAndBodies {
         bodies,
         materials,
@@ -103,13 +105,14 @@ fn in_plane(
         ..
     } = &basics;
     let site = Site::new(basics.frame.clone(), bodies, sequence);
-    bodies::check(tree, names, (bodies, sequence), &site, problems);
+    bodies::check((tree, &own), names, (bodies, sequence), &site, problems);
     let boundaries = Root::boundaries(tree).ok();
     let boundaries =
         boundaries.and_then(|own| boundaries::boundaries(&own, site.frame.as_ref(), problems));
-    bodies::check_support(tree, bodies, boundaries.as_ref(), &site, problems);
+    bodies::check_support(&own, bodies, boundaries.as_ref(), &site, problems);
     let layers = Layers {
         tree,
+        own: &own,
         bodies,
         materials,
         site: &site,
@@ -119,14 +122,15 @@ fn in_plane(
     let loads = loads::loads(tree, &site, problems);
     let around = rigid::plane::Around {
         site: &site,
-        materials,
         loads: &loads,
         tree,
         sequence,
     };
-    let rigid = rigid::plane::rigid(tree, &around, problems);
+    let rigid = rigid::rigid(tree, &around, materials, problems);
     rigid::stage::check_use(tree, names, problems);
     let around = water::Around {
+        own: &things(Root::<2>::water(tree)),
+        has_rigid: !rigid.is_empty(),
         tree,
         names,
         earth: &site,

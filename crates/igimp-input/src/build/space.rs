@@ -1,19 +1,21 @@
 //! A case in space from a completed tree: what plane strain has, without what is drawn in the plane.
 
 use std::path::Path;
-use std::sync::Arc;
 
 use igimp_geometry::region::Region;
 use igimp_model::{BodyPart, Case, Ground, LoadKind, Material};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::schema::Root;
+use igimp_schema::schema::bodies::Body;
 use igimp_schema::schema::grid::Fit;
 use igimp_schema::schema::loads::LoadForm;
 use igimp_schema::text::{clip, count, number, point};
 use igimp_schema::tree::Node;
+use igimp_schema::tree::read::At;
 
 use super::assemble::{self, GridAndBodies, Surroundings};
-use super::bodies::sequence::{Sequence, placed};
+use super::bodies;
+use super::bodies::sequence::Sequence;
 use super::bodies::site::Soil;
 use super::bodies::solids;
 use super::grid::{Frame, boundaries, cell_place};
@@ -78,7 +80,9 @@ pub(super) fn build(
     problems: &mut Problems,
 ) -> Option<Case<3>> {
     refuse_what_is_of_the_plane(tree, problems);
-    let basics = GridAndBodies::new(tree, names, bodies(tree, names, problems), problems);
+    let own = things(Root::<3>::bodies(tree));
+    let parts = bodies::bodies::<bodies::Space, _>(tree, &own, names, problems);
+    let basics = GridAndBodies::new(tree, names, parts, problems);
     let GridAndBodies {
         frame,
         bodies,
@@ -88,13 +92,15 @@ pub(super) fn build(
     } = &basics;
     let frame = frame.as_ref();
     let soil = Solids::new(bodies, frame);
-    check_bodies(tree, frame, (bodies, sequence), &soil, problems);
+    check_bodies((tree, &own), frame, (bodies, sequence), &soil, problems);
     let boundaries = Root::boundaries(tree).ok();
     let boundaries = boundaries.and_then(|own| boundaries::boundaries(&own, frame, problems));
     let loads = loads::loads(tree, &soil, problems);
-    let rigid = rigid::space::rigid(tree, frame, materials, problems);
+    let rigid = rigid::rigid(tree, &rigid::space::Around(frame), materials, problems);
     rigid::stage::check_use(tree, names, problems);
     let around = water::Around {
+        own: &things(Root::<3>::water(tree)),
+        has_rigid: !rigid.is_empty(),
         tree,
         names,
         earth: &soil,
@@ -152,38 +158,15 @@ fn refuse_what_is_of_the_plane(tree: &Node, problems: &mut Problems) {
     }
 }
 
-/// The bodies, as far as each is right by itself.
-fn bodies(tree: &Node, names: &AllNames, problems: &mut Problems) -> Vec<Option<BodyPart<3>>> {
-    let later = placed(tree);
-    let items = tree.items_at("bodies").iter();
-    let part = |node: &Node| {
-        let name = node.text_at("name").unwrap_or("?");
-        let material = node.get("material").and_then(|material| {
-            let who = format!("body `{}` uses", clip(name, 40));
-            names.materials.find(material, &who, problems)
-        });
-        let solid = solids::solid(node, name, problems);
-        let points = node.count_at("points_per_cell")?;
-        Some(BodyPart {
-            from_start: !later.contains(&name),
-            name: node.text_at("name")?.to_owned(),
-            material: material?,
-            per_direction: (1..=4).find(|count: &usize| count.pow(3) >= points)?,
-            region: Arc::new(solid?),
-        })
-    };
-    items.map(part).collect()
-}
-
 /// Checks the bodies against the domain and each other.
 fn check_bodies(
-    tree: &Node,
+    (tree, own): (&Node, &[Option<At<Body>>]),
     frame: Option<&Frame<3>>,
     (bodies, sequence): (&[Option<BodyPart<3>>], &Sequence),
     soil: &Solids,
     problems: &mut Problems,
 ) {
-    let items = tree.items_at("bodies");
+    let place = |index: usize| own[index].as_ref().map(|own| own.place);
     let Some(frame) = frame else { return };
     let slack = soil.round_off;
     let (lower, upper) = (
@@ -191,7 +174,7 @@ fn check_bodies(
         frame.upper.map(|x| x + slack),
     );
     let mut particles = 0.0;
-    for (body, node) in std::iter::zip(bodies, items) {
+    for (index, body) in bodies.iter().enumerate() {
         let Some(body) = body else { continue };
         if let Some(at) = body.region.beyond(lower, upper) {
             let name = clip(&body.name, 40);
@@ -200,7 +183,7 @@ fn check_bodies(
                 point(at)
             );
             problems
-                .error(node.place, message)
+                .error(place(index), message)
                 .help("extend [grid] domain");
             continue;
         }
@@ -228,7 +211,7 @@ fn check_bodies(
             if let Some(at) = solids::overlap(&*a.region, &*b.region) {
                 problems
                     .error(
-                        items[second].place,
+                        place(second),
                         format!(
                             "body `{}` overlaps body `{}` near {}",
                             clip(&b.name, 40),

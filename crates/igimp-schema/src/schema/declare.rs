@@ -5,8 +5,8 @@
 //! knows has `, in_plane` or `, in_space` behind it, and one that both know differently has kind, presence, value and meaning
 //! of plane strain, `in_plane`, and those of space, `in_space`. `name as "key"` gives a field another name than its key;
 //! A table is read as a whole, or not at all where a value was found wrong; `each` item of a list, and what stands `apart`, is
-//! read by itself. `name: part(TABLE: Type)` takes in the keys of another table; `part_in_space` makes them keys of
-//! space, and a `group` is read by itself.
+//! read by itself. `name: part(TABLE: Type)` takes in the keys of another table; a `group` of them is read by itself, and
+//! `group_in_space` makes them keys of space.
 
 use crate::spec::{Field, Kind, in_space, optional};
 
@@ -197,7 +197,7 @@ macro_rules! key {
 macro_rules! pieces {
     ($key:expr, part [$table:ident: $($of:tt)*]) => { $table.fields };
     ($key:expr, group [$table:ident: $($of:tt)*]) => { $table.fields };
-    ($key:expr, part_in_space [$table:ident: $($of:tt)*]) => {
+    ($key:expr, group_in_space [$table:ident: $($of:tt)*]) => {
         &const { $crate::schema::declare::all_in_space::<{ $table.fields.len() }>($table.fields) }
     };
     ($key:expr, $kind:ident [$($args:tt)*] $presence:ident $value:literal, $meaning:literal) => {
@@ -240,12 +240,14 @@ macro_rules! kind {
     (choice [$of:ident]) => { $crate::spec::Kind::Choice($of::CHOICES) };
     (length []) => { $crate::schema::declare::kind!(quantity [Length, Any]) };
     (point []) => { $crate::spec::Kind::Vector(const { &$crate::schema::declare::kind!(length []) }) };
+    (point_in_space []) => { $crate::schema::declare::kind!(point []) };
     (vector [$kind:ident $(($($args:tt)*))?]) => {
         $crate::spec::Kind::Vector(const { &$crate::schema::declare::kind!($kind [$($($args)*)?]) })
     };
     (pair [$kind:ident $(($($args:tt)*))?]) => {
         $crate::spec::Kind::List(const { &$crate::schema::declare::kind!($kind [$($($args)*)?]) }, 2, 2)
     };
+    (pair_each [$($kind:tt)*]) => { $crate::schema::declare::kind!(pair [$($kind)*]) };
     (triple [$kind:ident $(($($args:tt)*))?]) => {
         $crate::spec::Kind::List(const { &$crate::schema::declare::kind!($kind [$($($args)*)?]) }, 3, 3)
     };
@@ -278,10 +280,17 @@ macro_rules! rust_type {
     (length []) => { f64 };
     (choice [$of:ident]) => { $of };
     (point []) => { [f64; D] };
+    (point_in_space []) => { [f64; 3] };
     (vector [$kind:ident $(($($args:tt)*))?]) => {
         [$crate::schema::declare::rust_type!($kind [$($($args)*)?]); D]
     };
     (pair [$kind:ident $(($($args:tt)*))?]) => { [$crate::schema::declare::rust_type!($kind [$($($args)*)?]); 2] };
+    (pair_each [$kind:ident $(($($args:tt)*))?]) => {
+        [Result<
+            $crate::tree::read::At<$crate::schema::declare::rust_type!($kind [$($($args)*)?])>,
+            $crate::tree::Wrong,
+        >; 2]
+    };
     (triple [$kind:ident $(($($args:tt)*))?]) => { [$crate::schema::declare::rust_type!($kind [$($($args)*)?]); 3] };
     (list [$kind:ident $(($($args:tt)*))?, $least:expr, $most:expr]) => {
         Vec<$crate::tree::read::At<$crate::schema::declare::rust_type!($kind [$($($args)*)?])>>
@@ -310,7 +319,7 @@ macro_rules! rust_type {
 /// The type of a field: that of its kind and where it stands, and nothing of a key that may be missing.
 macro_rules! field_type {
     (part [$table:ident: $of:ty]) => { $of };
-    (part_in_space [$table:ident: $of:ty]) => { $of };
+    (group_in_space [$table:ident: $of:ty]) => { Result<$of, $crate::tree::Wrong> };
     (group [$table:ident: $of:ty]) => { Result<$of, $crate::tree::Wrong> };
     ($kind:ident $args:tt required $($scope:ident $other:ident)?) => {
         $crate::tree::read::At<$crate::schema::declare::rust_type!($kind $args)>
@@ -331,7 +340,7 @@ macro_rules! read {
     ($node:ident, group, $key:expr) => {
         $crate::tree::read::Read::read($node)
     };
-    ($node:ident, part_in_space, $key:expr) => {
+    ($node:ident, group_in_space, $key:expr) => {
         $crate::tree::read::Read::read($node)
     };
     ($node:ident, $kind:ident, $key:expr) => {

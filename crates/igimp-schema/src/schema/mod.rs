@@ -46,8 +46,8 @@ table! {
     case: table(CASE: CaseHead), required "{ title = \"My slope\" }", "what the case is";
     grid: table(GRID: Grid), required "{ cell = \"1 m\", domain = { x = [\"0 m\", \"60 m\"], y = [\"0 m\", \"22 m\"] } }", "background grid and variant of the method";
     materials: map("material", MATERIAL: Material), required "{ clay = { model = \"tresca\" } }", "materials by name";
-    bodies: each(table(BODY: Body<D>), 1, MOST_BODIES), required "[{ name = \"soil\" }]", "polygons of one material each";
-    water: each(table(WATER: Water<D>), 0, MOST_THINGS), default "[]", "conditions of the water; the first holds from the start";
+    bodies: each(table(BODY: Body), 1, MOST_BODIES), required "[{ name = \"soil\" }]", "polygons of one material each";
+    water: each(table(WATER: Water), 0, MOST_THINGS), default "[]", "conditions of the water; the first holds from the start";
     boundaries: table(BOUNDARIES: Boundaries<D>), default "{}", "supports at the sides of the grid, and in boxes";
     loads: each(variants(LOAD: Load<D>), 0, MOST_THINGS), default "[]", "loads that stages apply";
     rigid: each(variants(RIGID: RigidBody<D>), 0, MOST_THINGS), default "[]", "rigid bodies that soil touches";

@@ -61,7 +61,7 @@ variants! {
     "cylinder" => Cylinder(RIGID_CYLINDER: RigidCylinder<D>),
     "sphere" => Sphere(RIGID_SPHERE: RigidSphere<D>),
     "cone" => Cone(RIGID_CONE: RigidCone<D>),
-    "surface" => Surface(RIGID_SURFACE: RigidSurface<D>),
+    "surface" => Surface(RIGID_SURFACE: RigidSurface),
     after RIGID_COMMON: RigidCommon<D>;
 }
 
@@ -118,8 +118,8 @@ table! {
 }
 
 table! {
-    RIGID_SURFACE: RigidSurface<D>, "In space: a closed surface of triangles. It has one side.";
-    surface: table(SURFACE: Surface<D>), required "{ file = \"pile.stl\", unit = \"m\" }", "the surface";
+    RIGID_SURFACE: RigidSurface, "In space: a closed surface of triangles. It has one side.";
+    surface: table(SURFACE: Surface), required "{ file = \"pile.stl\", unit = \"m\" }", "the surface";
 }
 
 table! {
@@ -128,7 +128,7 @@ table! {
     interface: either(choice(Interface), table(LIMITED: Limited)), default "\"rough\"", "along all its sides";
     tension: choice(Tension), default "\"none\"", "when soil is pulled off";
     tension_limit: quantity(Stress, Positive), optional "as `tension` says", "tension at which a side lets go for good";
-    sides: list(table(SIDE: Side), 0, MOST_THINGS), default "[]", "sides that are unlike the others";
+    sides: each(table(SIDE: Side), 0, MOST_THINGS), default "[]", "sides that are unlike the others";
     weight: quantity(ForcePerLength, NotNegative), default "\"0 kN/m\"", "own weight of the whole body, at its reference point; acts with gravity", in_plane,
         quantity(Force, NotNegative), default "\"0 kN\"", "own weight of the whole body, at its middle; acts with gravity", in_space;
     force_factor: number(Positive), default "1", "whole body over the part that is modelled, 2 for half a body: forces are those of the whole";

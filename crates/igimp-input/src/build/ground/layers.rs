@@ -5,12 +5,15 @@ use igimp_geometry::polygon::{bounding_box, contains};
 use igimp_model::{BodyPart, Ground, Material, Stage, StageKind, Strength};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::schema::Root;
+use igimp_schema::schema::bodies::Body;
 use igimp_schema::schema::grid::{Fit, MixedCells};
 use igimp_schema::source::Place;
 use igimp_schema::text::{clip, number, point};
 use igimp_schema::tree::Node;
+use igimp_schema::tree::read::At;
 use igimp_text::short;
 
+use crate::build::bodies::polygon_place;
 use crate::build::bodies::sequence::Sequence;
 use crate::build::bodies::site::Site;
 use crate::build::grid::Frame;
@@ -31,6 +34,8 @@ const STIFF: f64 = 1e-6;
 pub(crate) struct Layers<'a> {
     /// The file.
     pub(crate) tree: &'a Node,
+    /// Its bodies as they are stated.
+    pub(crate) own: &'a [Option<At<Body>>],
     /// Its bodies.
     pub(crate) bodies: &'a [Option<BodyPart<2>>],
     /// Its materials.
@@ -80,7 +85,6 @@ fn check_pairs(
 ) -> Vec<Neighbours> {
     let [width, height] = frame.axes.each_ref().map(|axis| axis.extremes()[0]);
     let narrow = NARROW * width.min(height);
-    let items = layers.tree.items_at("bodies");
     let grid = Root::<2>::grid(layers.tree).ok();
     let is_fitted =
         (grid.iter()).any(|own| own.wishes.as_ref().is_ok_and(|own| *own.fit == Fit::Layers));
@@ -92,7 +96,7 @@ fn check_pairs(
                 continue;
             }
             let pieces = facing(a.polygon(), b.polygon(), narrow);
-            let place = items[second].place_at("polygon");
+            let place = layers.own[second].as_ref().map(polygon_place);
             let gap = pieces.iter().find(|piece| {
                 piece.distance > layers.site.round_off && !layers.site.is_inside(piece.middle)
             });
@@ -243,7 +247,7 @@ impl Within {
 
 /// Where a warning goes.
 struct Report<'a> {
-    place: Place,
+    place: Option<Place>,
     problems: &'a mut Problems,
 }
 
@@ -255,7 +259,6 @@ fn check_thickness(
     neighbours: &[Neighbours],
     problems: &mut Problems,
 ) {
-    let items = layers.tree.items_at("bodies");
     for (index, body) in bodies.iter().enumerate() {
         let Neighbours {
             has_any,
@@ -281,7 +284,7 @@ fn check_thickness(
         };
         problems
             .warning(
-                items[index].place_at("polygon"),
+                layers.own[index].as_ref().map(polygon_place),
                 format!(
                     "body `{}` is {} cells thick, where three are needed",
                     clip(&body.name, 40),

@@ -3,8 +3,13 @@
 use igimp_geometry::polygon::Polygon;
 use igimp_model::{BodyPart, Ground, Profile, Raster, StressShare, Variation, front, in_plane};
 use igimp_schema::diagnostic::Problems;
+use igimp_schema::schema::materials::StressPoints;
+use igimp_schema::source::Place;
 use igimp_schema::text::{clip, number, point};
+use igimp_schema::tree::read::At;
 use igimp_schema::tree::{Node, Wrong};
+
+use crate::build::bodies::surfaces::plain;
 
 /// A property of a material as a case file states it.
 pub(crate) struct Property {
@@ -357,11 +362,19 @@ fn stated<const D: usize>(
         "levels" => Ok(Profile::Level(table(value, key, form, terms, problems)?)),
         "depths" => Ok(Profile::Depth(table(value, key, form, terms, problems)?)),
         "rows" => {
-            let raster = points(value, key, problems)?;
+            let (x, y) = (StressPoints::x(value)?, StressPoints::y(value)?);
+            let rows = StressPoints::rows(value)?;
+            let stated = Points {
+                x: x.as_ref(),
+                y: y.as_ref(),
+                rows: rows.as_ref(),
+                place: value.place,
+            };
+            let raster = points(&stated, key, problems)?;
             let outlines = extent.outlines();
             let polygons: Vec<&[[f64; 2]]> = outlines.iter().map(Vec::as_slice).collect();
             let of = format!("the soil of `{}`", clip(extent.name, 40));
-            reach(&raster, (value, key), (&polygons, &of), problems)?;
+            reach(&raster, (value.place, key), (&polygons, &of), problems)?;
             Ok(Profile::Raster(raster))
         }
         top => {
@@ -426,33 +439,43 @@ fn numbers(list: Option<&Node>) -> Result<Vec<f64>, Wrong> {
 /// Soil this far beyond a raster has what its edge has, in spacings of its lines \[-\].
 const BEYOND: f64 = 0.5 + 1e-9;
 
+/// Values by points in the plane, as they are stated.
+pub(crate) struct Points<'a> {
+    pub(crate) x: Option<&'a At<Vec<At<f64>>>>,
+    pub(crate) y: Option<&'a At<Vec<At<f64>>>>,
+    pub(crate) rows: Option<&'a At<Vec<At<Vec<At<f64>>>>>>,
+    pub(crate) place: Place,
+}
+
 /// Points in the plane.
-pub(crate) fn points(value: &Node, key: &str, problems: &mut Problems) -> Result<Raster, Wrong> {
+pub(crate) fn points(
+    own: &Points<'_>,
+    key: &str,
+    problems: &mut Problems,
+) -> Result<Raster, Wrong> {
     let help = "write x = [...], y = [...] and rows = [[...], ...] with a list for every y, or raster = \"cu.csv\"";
-    if value.is_invalid() || value.get("rows").is_some_and(Node::is_invalid) {
-        return Err(Wrong);
-    }
-    if let Some(missing) = ["x", "y", "rows"]
-        .into_iter()
-        .find(|key| value.get(key).is_none())
-    {
+    let (Some(xs), Some(ys), Some(rows)) = (own.x, own.y, own.rows) else {
+        let missing = match (own.x, own.y) {
+            (None, _) => "x",
+            (_, None) => "y",
+            _ => "rows",
+        };
         let message = format!("`{key}` has no `{missing}`");
-        problems.error(value.place, message).help(help);
+        problems.error(own.place, message).help(help);
         return Err(Wrong);
-    }
-    let (x, y) = (numbers(value.get("x"))?, numbers(value.get("y"))?);
-    let rows = value.items_at("rows").iter().map(|row| numbers(Some(row)));
-    let values = rows.collect::<Result<Vec<_>, _>>()?;
+    };
+    let (x, y) = (plain(xs), plain(ys));
+    let values: Vec<Vec<f64>> = rows.iter().map(|row| plain(row)).collect();
     if values.len() != y.len() || values.iter().any(|row| row.len() != x.len()) {
         let message = format!(
             "the rows of `{key}` are not those of {} y and {} x",
             y.len(),
             x.len()
         );
-        problems.error(value.place_at("rows"), message).help(help);
+        problems.error(rows.place, message).help(help);
         return Err(Wrong);
     }
-    for (name, lines) in [("x", &x), ("y", &y)] {
+    for (name, lines, place) in [("x", &x, xs.place), ("y", &y, ys.place)] {
         if let Some(at) = lines.windows(2).position(|pair| pair[0] >= pair[1]) {
             let message = format!(
                 "the {name} of `{key}` do not go up: {} m after {} m",
@@ -460,7 +483,7 @@ pub(crate) fn points(value: &Node, key: &str, problems: &mut Problems) -> Result
                 number(lines[at])
             );
             problems
-                .error(value.place_at(name), message)
+                .error(place, message)
                 .help("write them upwards, each once");
             return Err(Wrong);
         }
@@ -471,7 +494,7 @@ pub(crate) fn points(value: &Node, key: &str, problems: &mut Problems) -> Result
 /// Refuses points that soil lies too far beyond; `of` are the words for the soil.
 pub(crate) fn reach(
     raster: &Raster,
-    (value, key): (&Node, &str),
+    (place, key): (Place, &str),
     (polygons, of): (&[&[[f64; 2]]], &str),
     problems: &mut Problems,
 ) -> Result<(), Wrong> {
@@ -487,7 +510,7 @@ pub(crate) fn reach(
         };
         problems
             .error(
-                value.place,
+                place,
                 format!("`{key}` has no value at {}, in {of}", point(at)),
             )
             .help(format!(
