@@ -8,7 +8,8 @@ use igimp_model::{
     WaterCondition,
 };
 use igimp_schema::diagnostic::Problems;
-use igimp_schema::schema::Root;
+use igimp_schema::schema::bodies::Body;
+use igimp_schema::schema::{Root, stages as keys};
 use igimp_schema::tree::read::At;
 use igimp_schema::tree::{Node, Wrong};
 
@@ -33,6 +34,7 @@ impl<const D: usize> GridAndBodies<D> {
     pub(super) fn new(
         tree: &Node,
         names: &AllNames,
+        (stated, stages): (&[Option<At<Body>>], &[Option<At<keys::Stage>>]),
         bodies: Vec<Option<BodyPart<D>>>,
         problems: &mut Problems,
     ) -> Self {
@@ -45,12 +47,13 @@ impl<const D: usize> GridAndBodies<D> {
         if let (Some(frame), Some(grid)) = (&mut frame, &grid) {
             frame.axes.clone_from(&grid.axes);
         }
+        let has_water = Root::<D>::water(tree).is_ok_and(|water| !water.is_empty());
         Self {
             frame,
             method: own.and_then(|own| Some(grid::method(own.method.as_ref().ok()?))),
             grid,
             materials,
-            sequence: Sequence::new(tree, names, &bodies),
+            sequence: Sequence::new((stated, stages), has_water, names, &bodies),
             bodies,
         }
     }
@@ -152,7 +155,7 @@ pub(super) fn assemble<const D: usize>(
         mesh_study: MeshStudy { meshes: *meshes },
         output: output?,
     };
-    let case = case.refined((*grid.refine).ok()?);
+    let case = case.refined(**grid.refine.as_ref().ok()?);
     study::check(tree, &meshes, &case, problems);
     Some(case)
 }

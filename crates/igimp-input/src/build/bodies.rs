@@ -14,6 +14,7 @@ use igimp_schema::diagnostic::Problems;
 use igimp_schema::schema::Root;
 use igimp_schema::schema::bodies::Body;
 use igimp_schema::schema::outline::Outline;
+use igimp_schema::schema::stages::Stage;
 use igimp_schema::source::Place;
 use igimp_schema::text::{clip, count, number, point};
 use igimp_schema::tree::read::{At, Either};
@@ -41,7 +42,7 @@ pub(super) struct Plane;
 
 impl Fill<2> for Plane {
     fn region(own: &At<Body>, problems: &mut Problems) -> Option<Arc<dyn Region<2>>> {
-        let corners = stated(own.polygon.as_ref()?)?;
+        let corners = stated(&own.polygon)?;
         let polygon = corners_at(corners, polygon_place(own), &own.name, problems)?;
         Some(Arc::new(polygon))
     }
@@ -60,12 +61,13 @@ impl Fill<3> for Space {
 /// The bodies, as far as each is right by itself.
 pub(super) fn bodies<A: Fill<D>, const D: usize>(
     tree: &Node,
-    own: &[Option<At<Body>>],
+    (own, stages): (&[Option<At<Body>>], &[Option<At<Stage>>]),
     names: &AllNames,
     problems: &mut Problems,
 ) -> Vec<Option<BodyPart<D>>> {
-    let polygons = own.iter().flatten().filter_map(|own| own.polygon.as_ref());
-    let corners: usize = polygons.filter_map(stated).map(<[_]>::len).sum();
+    let polygons = own.iter().flatten();
+    let polygons = polygons.filter_map(|own| stated(&own.polygon));
+    let corners: usize = polygons.map(<[_]>::len).sum();
     if D == 2 && corners > MOST_CORNERS {
         problems
             .error(
@@ -75,7 +77,7 @@ pub(super) fn bodies<A: Fill<D>, const D: usize>(
             .help(format!("at most {MOST_CORNERS} are possible"));
         return vec![None; own.len()];
     }
-    let later = placed(tree);
+    let later = placed(stages);
     let part = |own: &Option<At<Body>>| {
         let own = own.as_ref()?;
         let who = format!("body `{}` uses", clip(&own.name, 40));
@@ -94,8 +96,8 @@ pub(super) fn bodies<A: Fill<D>, const D: usize>(
 }
 
 /// The polygon of a case in plane strain, if it was found right.
-fn stated(polygon: &At<Result<Polygon, Wrong>>) -> Option<&[At<[f64; 2]>]> {
-    match polygon.value.as_ref().ok()? {
+fn stated(polygon: &Result<Option<At<Polygon>>, Wrong>) -> Option<&[At<[f64; 2]>]> {
+    match &**polygon.as_ref().ok()?.as_ref()? {
         Either::First(corners) => Some(corners),
         Either::Second(_) => None,
     }
@@ -103,7 +105,8 @@ fn stated(polygon: &At<Result<Polygon, Wrong>>) -> Option<&[At<[f64; 2]>]> {
 
 /// Where the polygon of a body stands.
 pub(super) fn polygon_place(own: &At<Body>) -> Place {
-    (own.polygon.as_ref()).map_or(own.place, |polygon| polygon.place)
+    let polygon = own.polygon.as_ref().ok().and_then(Option::as_ref);
+    polygon.map_or(own.place, |polygon| polygon.place)
 }
 
 /// Corners, or where they come from.

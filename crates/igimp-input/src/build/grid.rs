@@ -144,7 +144,7 @@ pub(super) fn grid<const D: usize>(
     let axes: Option<Vec<AxisSpec>> = found.into_iter().collect();
     let spec = GridSpec {
         axes: axes?.try_into().ok()?,
-        mixed_cells: match grid.mixed_cells.value.ok()? {
+        mixed_cells: match **grid.mixed_cells.as_ref().ok()? {
             keys::MixedCells::Mean => MixedCells::Mean,
             keys::MixedCells::Own => MixedCells::Own,
         },

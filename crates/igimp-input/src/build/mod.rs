@@ -22,6 +22,7 @@ use std::path::Path;
 use igimp_model::{AnyCase, Case, TitleBlock};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::names::Names;
+use igimp_schema::schema::stages::StageForm;
 use igimp_schema::schema::{Analysis, CaseHead, FORMAT, Root};
 use igimp_schema::tree::read::At;
 use igimp_schema::tree::{Node, Wrong};
@@ -96,8 +97,9 @@ fn in_plane(
     problems: &mut Problems,
 ) -> Option<Case<2>> {
     let own = things(Root::<2>::bodies(tree));
-    let parts = bodies::bodies::<bodies::Plane, _>(tree, &own, names, problems);
-    let basics = GridAndBodies::new(tree, names, parts, problems);
+    let stages = things(Root::<2>::stages(tree));
+    let parts = bodies::bodies::<bodies::Plane, _>(tree, (&own, &stages), names, problems);
+    let basics = GridAndBodies::new(tree, names, (&own, &stages), parts, problems);
     let GridAndBodies {
         bodies,
         materials,
@@ -123,14 +125,15 @@ fn in_plane(
     let around = rigid::plane::Around {
         site: &site,
         loads: &loads,
-        tree,
+        stages: &stages,
         sequence,
     };
     let rigid = rigid::rigid(tree, &around, materials, problems);
-    rigid::stage::check_use(tree, names, problems);
+    rigid::stage::check_use(&things(Root::<2>::rigid(tree)), &stages, names, problems);
     let around = water::Around {
         own: &things(Root::<2>::water(tree)),
         has_rigid: !rigid.is_empty(),
+        stages: &stages,
         tree,
         names,
         earth: &site,
@@ -140,10 +143,11 @@ fn in_plane(
     };
     let water = water::conditions(&around, problems);
     water::checks::check(&around, &water, problems);
-    let reinforcement = reinforcement::reinforcement(tree, &site, problems);
-    reinforcement::check_searches(tree, names, problems);
+    let reinforcement = reinforcement::members(tree, &site, &stages, problems);
+    reinforcement::check_searches(&stages, names, problems);
     let context = Context {
         tree,
+        stages: &stages,
         names,
         materials,
         bodies,
@@ -152,16 +156,16 @@ fn in_plane(
         site: Some(&site),
         sequence,
     };
-    let stages = assemble::stages_of(&context, problems);
+    let built = assemble::stages_of(&context, problems);
     let gravity = gravity(tree);
-    ground::layers::check_stiffness(&layers, &stages, gravity, problems);
+    ground::layers::check_stiffness(&layers, &built, gravity, problems);
     let upon = Surroundings {
         boundaries,
         rigid,
         water,
         reinforcement,
     };
-    assemble::assemble((&context, file), &basics, upon, stages, problems)
+    assemble::assemble((&context, file), &basics, upon, built, problems)
 }
 
 /// The head of the report.
@@ -207,12 +211,12 @@ fn header(tree: &Node, problems: &mut Problems) {
             .help(format!("this program reads igimp = {FORMAT}"));
     }
     if gravity(tree) == Some(0.0) {
-        let stages = tree.get("stages").map_or(&[][..], Node::items);
-        for stage in stages {
-            if let Some(kind @ ("gravity" | "k0")) = stage.text_at("type") {
+        for stage in things(Root::<2>::stages(tree)).into_iter().flatten() {
+            if let StageForm::Gravity(_) | StageForm::K0(_) = *stage.form {
+                let kind = stage.form.name();
                 problems
                     .warning(
-                        stage.place_at("type"),
+                        stage.form.place,
                         format!("this stage of type {kind} does nothing: gravity is 0"),
                     )
                     .help("set gravity in [case], or remove the stage");

@@ -9,6 +9,7 @@ use igimp_schema::schema::Root;
 use igimp_schema::schema::bodies::Body;
 use igimp_schema::schema::grid::Fit;
 use igimp_schema::schema::loads::LoadForm;
+use igimp_schema::schema::stages::{Stage, StageForm};
 use igimp_schema::text::{clip, count, number, point};
 use igimp_schema::tree::Node;
 use igimp_schema::tree::read::At;
@@ -81,8 +82,9 @@ pub(super) fn build(
 ) -> Option<Case<3>> {
     refuse_what_is_of_the_plane(tree, problems);
     let own = things(Root::<3>::bodies(tree));
-    let parts = bodies::bodies::<bodies::Space, _>(tree, &own, names, problems);
-    let basics = GridAndBodies::new(tree, names, parts, problems);
+    let stages = things(Root::<3>::stages(tree));
+    let parts = bodies::bodies::<bodies::Space, _>(tree, (&own, &stages), names, problems);
+    let basics = GridAndBodies::new(tree, names, (&own, &stages), parts, problems);
     let GridAndBodies {
         frame,
         bodies,
@@ -97,10 +99,11 @@ pub(super) fn build(
     let boundaries = boundaries.and_then(|own| boundaries::boundaries(&own, frame, problems));
     let loads = loads::loads(tree, &soil, problems);
     let rigid = rigid::rigid(tree, &rigid::space::Around(frame), materials, problems);
-    rigid::stage::check_use(tree, names, problems);
+    rigid::stage::check_use(&things(Root::<3>::rigid(tree)), &stages, names, problems);
     let around = water::Around {
         own: &things(Root::<3>::water(tree)),
         has_rigid: !rigid.is_empty(),
+        stages: &stages,
         tree,
         names,
         earth: &soil,
@@ -110,10 +113,11 @@ pub(super) fn build(
     };
     let water = water::conditions(&around, problems);
     water::checks::check(&around, &water, problems);
-    let reinforcement = reinforcement::space::reinforcement(tree, &soil, problems);
-    reinforcement::check_searches(tree, names, problems);
+    let reinforcement = reinforcement::members(tree, &soil, &stages, problems);
+    reinforcement::check_searches(&stages, names, problems);
     let context = Context {
         tree,
+        stages: &stages,
         names,
         materials,
         bodies,
@@ -122,15 +126,15 @@ pub(super) fn build(
         site: None,
         sequence,
     };
-    let stages = assemble::stages_of(&context, problems);
-    check_level(tree, (bodies, materials), &soil, problems);
+    let built = assemble::stages_of(&context, problems);
+    check_level(&stages, (bodies, materials), &soil, problems);
     let upon = Surroundings {
         boundaries,
         rigid,
         water,
         reinforcement,
     };
-    assemble::assemble((&context, file), &basics, upon, stages, problems)
+    assemble::assemble((&context, file), &basics, upon, built, problems)
 }
 
 /// Reports what case files can say of the plane only.
@@ -227,13 +231,15 @@ fn check_bodies(
 
 /// Refuses stresses of level ground in ground that is not level.
 fn check_level(
-    tree: &Node,
+    stages: &[Option<At<Stage>>],
     (bodies, materials): (&[Option<BodyPart<3>>], &[Option<Material>]),
     soil: &Solids,
     problems: &mut Problems,
 ) {
-    let first = tree.items_at("stages").first();
-    let Some(stage) = first.filter(|stage| stage.text_at("type") == Some("k0")) else {
+    let Some(Some(stage)) = stages.first() else {
+        return;
+    };
+    let StageForm::K0(_) = *stage.form else {
         return;
     };
     let parts: Option<Vec<_>> = (bodies.iter())
@@ -266,7 +272,7 @@ fn check_level(
         // Places are taken a little beside edges.
         let near = |x: f64| number((1e6 * x).round() / 1e6);
         problems
-            .error(stage.place_at("type"), "a k0 stage needs level ground")
+            .error(stage.form.place, "a k0 stage needs level ground")
             .help(format!(
                 "the surface is at z = {} m above ({} m, {} m) and at z = {} m above ({} m, {} m)",
                 number(low.0),

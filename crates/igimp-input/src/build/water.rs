@@ -5,6 +5,7 @@ pub(crate) mod checks;
 use igimp_model::{BodyPart, Material, PoreSource, WaterCondition};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::schema::solids::Terrain;
+use igimp_schema::schema::stages::Stage;
 use igimp_schema::schema::water::{PorePressures, Water, WaterPressures, WaterTables};
 use igimp_schema::source::Place;
 use igimp_schema::text::{clip, number};
@@ -27,6 +28,8 @@ pub(super) struct Around<'a, const D: usize> {
     pub(super) sequence: &'a Sequence,
     /// The conditions as they are stated.
     pub(super) own: &'a [Option<At<Water>>],
+    /// The stages as they are stated.
+    pub(super) stages: &'a [Option<At<Stage>>],
     /// Whether there are rigid bodies.
     pub(super) has_rigid: bool,
 }

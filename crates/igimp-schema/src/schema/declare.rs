@@ -118,6 +118,7 @@ macro_rules! variants {
         ///
         /// The keys of each, if they were found right.
         #[derive(Clone, Debug)]
+        #[allow(clippy::large_enum_variant, reason = "each is read once and kept by its owner")]
         pub enum $form $(<const $d: usize>)? {
             $(
                 #[doc = concat!("`", $case, "`.")]
@@ -141,8 +142,8 @@ macro_rules! variants {
                     _ => return Err($crate::tree::Wrong),
                 };
                 Ok(Self {
-                    $(name: { let _ = $example; At::read(node.get("name").ok_or($crate::tree::Wrong)?)? },)?
-                    form: At { value: form, place: tag.place, written: tag.written },
+                    $(name: { let _ = $example; $crate::tree::read::name_in(node, "name")? },)?
+                    form: At { value: form, place: tag.place, key_place: tag.place, written: tag.written },
                     $(common: <$common>::read(node),)?
                 })
             }
@@ -301,9 +302,6 @@ macro_rules! rust_type {
             $crate::tree::Wrong,
         >>
     };
-    (apart [$kind:ident $(($($args:tt)*))?]) => {
-        Result<$crate::schema::declare::rust_type!($kind [$($($args)*)?]), $crate::tree::Wrong>
-    };
     (either [$a:ident $(($($a_args:tt)*))?, $b:ident $(($($b_args:tt)*))?]) => {
         $crate::tree::read::Either<
             $crate::schema::declare::rust_type!($a [$($($a_args)*)?]),
@@ -320,6 +318,9 @@ macro_rules! rust_type {
 macro_rules! field_type {
     (part [$table:ident: $of:ty]) => { $of };
     (group_in_space [$table:ident: $of:ty]) => { Result<$of, $crate::tree::Wrong> };
+    (apart [$kind:ident $(($($args:tt)*))?] $($presence:tt)*) => {
+        Result<$crate::schema::declare::field_type!($kind [$($($args)*)?] $($presence)*), $crate::tree::Wrong>
+    };
     (group [$table:ident: $of:ty]) => { Result<$of, $crate::tree::Wrong> };
     ($kind:ident $args:tt required $($scope:ident $other:ident)?) => {
         $crate::tree::read::At<$crate::schema::declare::rust_type!($kind $args)>
@@ -344,7 +345,7 @@ macro_rules! read {
         $crate::tree::read::Read::read($node)
     };
     ($node:ident, $kind:ident, $key:expr) => {
-        $crate::tree::read::ReadKey::read_key($node.get($key))
+        $crate::tree::read::ReadKey::read_key($node.entry($key))
     };
 }
 

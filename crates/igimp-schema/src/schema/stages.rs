@@ -3,6 +3,8 @@
 use super::MOST_THINGS;
 use super::declare::{choices, table, variants};
 use super::rigid::{MOVE, Move};
+use crate::tree::Wrong;
+use crate::tree::read::At;
 
 /// Most load steps of a stage.
 const MOST_STEPS: i64 = 1_000_000;
@@ -37,38 +39,38 @@ table! {
 
 table! {
     LOADING: Loading, "Changes the factor of loads from where it is.";
-    load: reference("load"), optional "`loads` names them", "the load, if it is one";
-    loads: list(reference("load"), 1, MOST_THINGS), optional "`load` names it", "the loads, if they are several";
-    factor: number(Any), default "1", "their factor at the end of the stage";
-    geometry: choice(Geometry), default "\"moving\"", "the geometry that its steps are computed on";
+    load: apart(reference("load")), optional "`loads` names them", "the load, if it is one";
+    loads: apart(list(reference("load"), 1, MOST_THINGS)), optional "`load` names it", "the loads, if they are several";
+    factor: apart(number(Any)), default "1", "their factor at the end of the stage";
+    geometry: apart(choice(Geometry)), default "\"moving\"", "the geometry that its steps are computed on";
 }
 
 table! {
     DISPLACEMENT: Displacement, "Pushes a rigid footing down.";
-    load: reference("load"), required "\"footing\"", "the footing";
-    settlement: quantity(Length, Positive), required "\"0.2 m\"", "further settlement";
-    geometry: choice(Geometry), default "\"moving\"", "the geometry that its steps are computed on";
+    load: apart(reference("load")), required "\"footing\"", "the footing";
+    settlement: apart(quantity(Length, Positive)), required "\"0.2 m\"", "further settlement";
+    geometry: apart(choice(Geometry)), default "\"moving\"", "the geometry that its steps are computed on";
 }
 
 table! {
     RIGID_MOTION: RigidMotion, "Moves and loads rigid bodies; one that was not there yet is placed first.";
-    bodies: list(table(MOVE: Move), 1, MOST_THINGS), required "[{ body = \"footing\", y = \"-0.2 m\" }]", "the bodies, and how they move";
-    geometry: choice(Geometry), default "\"moving\"", "the geometry that its steps are computed on";
+    bodies: each(table(MOVE: Move), 1, MOST_THINGS), required "[{ body = \"footing\", y = \"-0.2 m\" }]", "the bodies, and how they move";
+    geometry: apart(choice(Geometry)), default "\"moving\"", "the geometry that its steps are computed on";
 }
 
 table! {
     CONSTRUCTION: Construction, "Places and removes bodies, changes materials and the water. What that leaves out of balance is let go over its steps.";
-    place: list(reference("body"), 0, MOST_THINGS), default "[]", "bodies that are placed, free of stress where they are drawn; they are not there before";
-    remove: list(reference("body"), 0, MOST_THINGS), default "[]", "bodies that are taken away";
-    materials: list(table(CHANGE: MaterialChange), 0, MOST_THINGS), default "[]", "bodies that consist of another material from now on";
-    water: reference("water condition"), optional "as before", "condition of the water from now on";
-    dissipate: flag, default "false", "whether excess pore pressure of undrained soil is gone at the end";
-    geometry: choice(Geometry), default "\"moving\"", "the geometry that its steps are computed on";
+    place: apart(list(reference("body"), 0, MOST_THINGS)), default "[]", "bodies that are placed, free of stress where they are drawn; they are not there before";
+    remove: apart(list(reference("body"), 0, MOST_THINGS)), default "[]", "bodies that are taken away";
+    materials: each(table(CHANGE: MaterialChange), 0, MOST_THINGS), default "[]", "bodies that consist of another material from now on";
+    water: apart(reference("water condition")), optional "as before", "condition of the water from now on";
+    dissipate: apart(flag), default "false", "whether excess pore pressure of undrained soil is gone at the end";
+    geometry: apart(choice(Geometry)), default "\"moving\"", "the geometry that its steps are computed on";
 }
 
 table! {
     STRENGTH_REDUCTION: StrengthReduction, "Searches for the factor of safety; the body is left as it was found.";
-    materials: list(reference("material"), 1, MOST_THINGS), derived "all materials of bodies that have a strength", "materials whose strength is reduced; the others keep theirs";
+    materials: apart(list(reference("material"), 1, MOST_THINGS)), derived "all materials of bodies that have a strength", "materials whose strength is reduced; the others keep theirs";
     factors: list(number(Positive), 0, 1000), default "[]", "factors tried first, for the curve of displacement against factor";
     bracket: pair(number(Positive)), default "[1.0, 2.0]", "where trials begin: a factor thought stable and one thought unstable";
     tolerance: number(Positive), default "0.01", "width of the interval at which trials end";
@@ -80,20 +82,20 @@ table! {
 
 table! {
     RUN_OUT: RunOut, "Lets the slope of reduced strength move until it rests.";
-    reduction: table(REDUCTION: Reduction), required "{ times_fos = 1.05 }", "by how much strength is reduced";
-    materials: list(reference("material"), 1, MOST_THINGS), derived "all materials of bodies that have a strength", "materials whose strength is reduced; the others keep theirs";
+    reduction: apart(table(REDUCTION: Reduction)), required "{ times_fos = 1.05 }", "by how much strength is reduced";
+    materials: apart(list(reference("material"), 1, MOST_THINGS)), derived "all materials of bodies that have a strength", "materials whose strength is reduced; the others keep theirs";
     move_per_step: number(Positive), default "0.1", "largest displacement aimed at in a step, as a share of the cell";
     at_rest: number(Share), default "1e-3", "the slope rests when drag carries less than this share of the external force";
 }
 
 table! {
     STAGE_COMMON: StageCommon, "Keys of every stage.";
-    steps: whole(1, MOST_STEPS), default "10", "load steps when none is cut; in a strength reduction those by which gravity is raised, or by which trials march from F = 1 to the upper end of the bracket";
-    start_from: reference("stage"), derived "the stage before", "stage whose end this one starts from";
-    install: list(reference("reinforcement"), 0, MOST_THINGS), default "[]", "reinforcement that comes in as the stage begins; what no stage installs is there from the start";
-    reset_displacements: flag, default "false", "whether displacements count from the end of this stage on";
-    drained: flag, default "false", "whether all soil drains while it lasts: no excess pore pressure comes or goes";
-    stop_when: table(STOP_WHEN: StopWhen), default "{}", "conditions that end the stage early";
+    steps: apart(whole(1, MOST_STEPS)), default "10", "load steps when none is cut; in a strength reduction those by which gravity is raised, or by which trials march from F = 1 to the upper end of the bracket";
+    start_from: apart(reference("stage")), derived "the stage before", "stage whose end this one starts from";
+    install: apart(list(reference("reinforcement"), 0, MOST_THINGS)), default "[]", "reinforcement that comes in as the stage begins; what no stage installs is there from the start";
+    reset_displacements: apart(flag), default "false", "whether displacements count from the end of this stage on";
+    drained: apart(flag), default "false", "whether all soil drains while it lasts: no excess pore pressure comes or goes";
+    stop_when: apart(table(STOP_WHEN: StopWhen)), default "{}", "conditions that end the stage early";
 }
 
 choices! {
@@ -153,4 +155,69 @@ table! {
     CHANGE: MaterialChange, "A body that consists of another material from now on.";
     body: reference("body"), required "\"clay\"", "the body";
     material: reference("material"), required "\"treated\"", "what it becomes";
+}
+
+impl Stage {
+    /// The stage that it says it starts from.
+    pub fn start_from(&self) -> Option<&At<String>> {
+        let common = self.common.as_ref().ok()?;
+        common.start_from.as_ref().ok()?.as_ref()
+    }
+
+    /// What it installs.
+    pub fn installs(&self) -> &[At<String>] {
+        let common = self.common.as_ref();
+        common.map_or(&[], |common| listed(&common.install))
+    }
+
+    /// The keys of a stage of construction, if it is one.
+    pub fn construction(&self) -> Option<&Construction> {
+        match &*self.form {
+            StageForm::Construction(own) => own.as_ref().ok(),
+            _ => None,
+        }
+    }
+
+    /// The loads that it applies or pushes.
+    pub fn loads(&self) -> Vec<&At<String>> {
+        match &*self.form {
+            StageForm::Load(Ok(own)) => {
+                let one = own.load.iter().flatten();
+                let several = own.loads.iter().flatten().flat_map(|loads| loads.iter());
+                one.chain(several).collect()
+            }
+            StageForm::Displacement(Ok(own)) => own.load.iter().collect(),
+            _ => Vec::new(),
+        }
+    }
+
+    /// How it moves rigid bodies.
+    pub fn moves(&self) -> &[Result<At<Move>, Wrong>] {
+        match &*self.form {
+            StageForm::Rigid(Ok(own)) => &own.bodies,
+            _ => &[],
+        }
+    }
+}
+
+impl Construction {
+    /// The bodies that it places.
+    pub fn placed(&self) -> &[At<String>] {
+        listed(&self.place)
+    }
+
+    /// The bodies that it takes away.
+    pub fn removed(&self) -> &[At<String>] {
+        listed(&self.remove)
+    }
+
+    /// The condition of the water that it calls for.
+    pub fn water_condition(&self) -> Option<&At<String>> {
+        self.water.as_ref().ok()?.as_ref()
+    }
+}
+
+/// The names in a list, if it was found right.
+fn listed(list: &Result<At<Vec<At<String>>>, Wrong>) -> &[At<String>] {
+    list.as_ref().map_or(&[], |list| list.as_slice())
 }

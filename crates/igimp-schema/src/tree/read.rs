@@ -12,6 +12,8 @@ pub struct At<T> {
     pub value: T,
     /// Where it stands; of a defaulted value, where its table stands.
     pub place: Place,
+    /// Where its key stands, if it has one.
+    pub key_place: Place,
     /// Whether it is written down, rather than a default.
     pub written: bool,
 }
@@ -65,18 +67,29 @@ pub trait ReadKey: Sized {
     ///
     /// # Errors
     /// [`Wrong`] when the value was found wrong, or is missing and has to be there; the problem is reported already.
-    fn read_key(node: Option<&Node>) -> Result<Self, Wrong>;
+    fn read_key(entry: Option<&Entry>) -> Result<Self, Wrong>;
 }
 
 impl<T: Read> ReadKey for At<T> {
-    fn read_key(node: Option<&Node>) -> Result<Self, Wrong> {
-        Self::read(node.ok_or(Wrong)?)
+    fn read_key(entry: Option<&Entry>) -> Result<Self, Wrong> {
+        let entry = entry.ok_or(Wrong)?;
+        Ok(Self {
+            key_place: entry.key_place,
+            ..Self::read(&entry.node)?
+        })
     }
 }
 
 impl<T: Read> ReadKey for Option<At<T>> {
-    fn read_key(node: Option<&Node>) -> Result<Self, Wrong> {
-        node.map(At::read).transpose()
+    fn read_key(entry: Option<&Entry>) -> Result<Self, Wrong> {
+        entry.map(|own| At::read_key(Some(own))).transpose()
+    }
+}
+
+/// By itself: what was found wrong leaves what is beside it.
+impl<T: ReadKey> ReadKey for Result<T, Wrong> {
+    fn read_key(entry: Option<&Entry>) -> Result<Self, Wrong> {
+        Ok(T::read_key(entry))
     }
 }
 
@@ -85,6 +98,7 @@ impl<T: Read> Read for At<T> {
         Ok(Self {
             value: T::read(node)?,
             place: node.place,
+            key_place: node.place,
             written: node.written,
         })
     }
@@ -153,6 +167,17 @@ impl<T: Read> Read for NamedTables<T> {
         };
         Ok(Self(node.entries().iter().map(named).collect()))
     }
+}
+
+/// A name in a table; a question mark where it was found wrong, so that what is beside it is looked at.
+pub(crate) fn name_in(table: &Node, key: &str) -> Result<At<String>, Wrong> {
+    let node = table.get(key).unwrap_or(table);
+    Ok(At {
+        value: node.text().unwrap_or("?").to_owned(),
+        place: node.place,
+        key_place: node.place,
+        written: node.written,
+    })
 }
 
 /// Whether a value is a table.

@@ -88,7 +88,11 @@ fn check_pairs(
     let grid = Root::<2>::grid(layers.tree).ok();
     let is_fitted =
         (grid.iter()).any(|own| own.wishes.as_ref().is_ok_and(|own| *own.fit == Fit::Layers));
-    let is_shared = (grid.iter()).any(|own| *own.mixed_cells == Ok(MixedCells::Mean));
+    let is_shared = (grid.iter()).any(|own| {
+        own.mixed_cells
+            .as_ref()
+            .is_ok_and(|own| **own == MixedCells::Mean)
+    });
     let mut neighbours = vec![Neighbours::default(); bodies.len()];
     for (second, b) in bodies.iter().enumerate() {
         for (first, a) in bodies[..second].iter().enumerate() {

@@ -26,14 +26,14 @@ pub(crate) fn curve<const D: usize>(
     problems: &mut Problems,
 ) -> Option<Curve> {
     let mut axis =
-        |own: &Result<keys::CurveAxis, Wrong>| axis(own.as_ref().ok()?, names, loads, problems);
+        |own: &Result<At<keys::CurveAxis>, Wrong>| axis(own.as_ref().ok()?, names, loads, problems);
     let (x, y) = (axis(&own.x), axis(&own.y));
     let who = format!("curve `{}` records", clip(&own.name, 40));
     let stage = names
         .stages
         .find_optional(own.stage.as_ref(), &who, problems);
-    let reference = (own.reference.as_ref()).map(|at| {
-        let own = at.as_ref().ok()?;
+    let reference = own.reference.as_ref().ok().map(|reference| {
+        let own = reference.as_ref()?;
         let stated = Stated {
             y: own.y.as_ref(),
             at: own.at.as_ref(),
@@ -41,16 +41,19 @@ pub(crate) fn curve<const D: usize>(
             file: own.file.as_ref(),
             label: &own.label,
             tolerance: own.tolerance.as_ref(),
-            place: at.place,
+            place: own.place,
         };
-        self::reference(stated, file, problems)
+        Some(self::reference(stated, file, problems))
     });
     Some(Curve {
         name: own.name.value.clone(),
         x: x?,
         y: y?,
         stage: stage.ok()?,
-        reference: reference.map_or(Some(None), |found| found.map(Some))?,
+        reference: match reference? {
+            None => None,
+            Some(found) => Some(found?),
+        },
     })
 }
 

@@ -20,13 +20,14 @@ pub(crate) fn check<const D: usize>(
     let place = meshes.place;
     if case.mesh_study.meshes < 2 {
         // A grid that is too large as it is was told of before.
-        if let Ok(grid) = Root::<D>::grid(tree)
-            && grid.refine.is_ok_and(|parts| parts > 1)
+        let grid = Root::<D>::grid(tree).ok();
+        if let Some(Ok(refine)) = grid.map(|grid| grid.value.refine)
+            && *refine > 1
             && is_too_large(case, 1)
         {
             problems
                 .error(
-                    grid.refine.place,
+                    refine.place,
                     "the refined grid would have too many cells or particles",
                 )
                 .help(format!("at most {} are possible", count(MOST)));

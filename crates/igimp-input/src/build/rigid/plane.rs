@@ -6,8 +6,8 @@ use igimp_geometry::polygon::area_and_centroid;
 use igimp_model::{Load, LoadKind, RigidPart, RigidShape};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::schema::rigid::{RigidBody, RigidShape as Form};
+use igimp_schema::schema::stages::Stage;
 use igimp_schema::text::{clip, point};
-use igimp_schema::tree::Node;
 use igimp_schema::tree::read::At;
 
 use super::{Basis, Room, Sides};
@@ -23,7 +23,7 @@ const POINTS_OF_CIRCLE: usize = 90;
 pub(crate) struct Around<'a> {
     pub(crate) site: &'a Site,
     pub(crate) loads: &'a [Option<Load<2>>],
-    pub(crate) tree: &'a Node,
+    pub(crate) stages: &'a [Option<At<Stage>>],
     pub(crate) sequence: &'a Sequence,
 }
 
@@ -208,11 +208,11 @@ fn beside_soil(
 ) {
     let Around { site, sequence, .. } = around;
     let outline = part.outline(POINTS_OF_CIRCLE);
-    let names = |stage: &Node| {
-        let mut moved = stage.items_at("bodies").iter();
-        moved.any(|own| own.text_at("body") == Some(&part.name))
+    let names = |stage: &Option<At<Stage>>| {
+        let mut moved = stage.iter().flat_map(|stage| stage.moves()).flatten();
+        moved.any(|own| own.body.value == part.name)
     };
-    let first = around.tree.items_at("stages").iter().position(names);
+    let first = around.stages.iter().position(names);
     let (before, after) = match first {
         Some(stage) if !part.from_start => (sequence.before(stage), &sequence.ends[stage..]),
         _ => (&sequence.start, &sequence.ends[..]),

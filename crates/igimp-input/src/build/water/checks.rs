@@ -4,6 +4,7 @@ use std::collections::HashMap;
 
 use igimp_model::{BodyPart, Drainage, PoreSource, Raster, Strength, WaterCondition};
 use igimp_schema::diagnostic::Problems;
+use igimp_schema::schema::stages::Stage;
 use igimp_schema::schema::water::Water;
 use igimp_schema::source::Place;
 use igimp_schema::text::{clip, number};
@@ -43,9 +44,8 @@ pub(crate) fn check<const D: usize>(
             checker.scene(end, Some(index), problems);
         }
     }
-    let mut called = around.tree.items_at("stages").iter();
-    let is_slip = |name: &str| around.names.water.position(name).is_none();
-    if called.any(|stage| stage.text_at("water").is_some_and(is_slip)) {
+    let mut called = around.stages.iter().flatten().filter_map(called_water);
+    if called.any(|name| around.names.water.position(name).is_none()) {
         // A name that is not defined may be a slip for one that is not used.
         return;
     }
@@ -96,7 +96,7 @@ impl<const D: usize> Checker<'_, D> {
             .or_insert_with(|| around.surface(scene));
         let before = problems.errors();
         let who = format!("the water `{}`", clip(&condition.name, 40));
-        let (place, when) = when(around.tree, own, stage);
+        let (place, when) = when(stage.map(|stage| &around.stages[stage]), own);
         match &condition.source {
             PoreSource::Dry => {}
             PoreSource::Points(raster) => points(
@@ -309,7 +309,7 @@ fn points<const D: usize>(
 }
 
 /// Where a condition is told wrong, and when.
-fn when(tree: &Node, own: &At<Water>, stage: Option<usize>) -> (Place, String) {
+fn when(stage: Option<&Option<At<Stage>>>, own: &At<Water>) -> (Place, String) {
     let stated = [
         own.tables.line.as_ref().map(|own| own.place),
         own.tables.level.as_ref().map(|own| own.place),
@@ -319,19 +319,27 @@ fn when(tree: &Node, own: &At<Water>, stage: Option<usize>) -> (Place, String) {
         own.pressures.u.as_ref().map(|own| own.place),
     ];
     let own = stated.into_iter().flatten().next().unwrap_or(own.place);
-    let Some(stage) = stage.map(|index| &tree.items_at("stages")[index]) else {
+    let Some(Some(stage)) = stage else {
         return (own, String::new());
     };
-    let name = clip(stage.text_at("name").unwrap_or("?"), 40);
-    if stage.get("water").is_some() {
+    let name = clip(&stage.name, 40);
+    if called_water(stage).is_some() {
         return (own, format!(" in stage `{name}`"));
     }
-    let changed = ["remove", "place"];
-    let changed = changed.iter().find(|key| !stage.items_at(key).is_empty());
+    let changed = stage.construction().into_iter();
+    let changed = changed.flat_map(|own| [&own.remove, &own.place]).flatten();
+    let mut changed = changed
+        .filter(|list| !list.is_empty())
+        .map(|list| list.place);
     (
-        stage.place_at(changed.unwrap_or(&"name")),
+        changed.next().unwrap_or(stage.name.place),
         format!(" after stage `{name}`"),
     )
+}
+
+/// The condition of the water that a stage calls for.
+fn called_water(stage: &At<Stage>) -> Option<&At<String>> {
+    stage.construction()?.water_condition()
 }
 
 fn above_ground(above: &Above, place: Place, (who, when): (&str, &str), problems: &mut Problems) {
