@@ -81,9 +81,10 @@ pub(super) fn bodies<A: Fill<D>, const D: usize>(
     let part = |own: &Option<At<Body>>| {
         let own = own.as_ref()?;
         let who = format!("body `{}` uses", clip(&own.name, 40));
-        let material = names.materials.find(&own.material, &who, problems);
+        let material = own.material.as_ref().ok();
+        let material = material.and_then(|own| names.materials.find(own, &who, problems));
         let region = A::region(own, problems);
-        let points = *own.points_per_cell;
+        let points = **own.points_per_cell.as_ref().ok()?;
         Some(BodyPart {
             from_start: !later.contains(&own.name.as_str()),
             name: own.name.value.clone(),

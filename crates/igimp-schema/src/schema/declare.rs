@@ -5,7 +5,7 @@
 //! knows has `, in_plane` or `, in_space` behind it, and one that both know differently has kind, presence, value and meaning
 //! of plane strain, `in_plane`, and those of space, `in_space`. `name as "key"` gives a field another name than its key;
 //! A table is read as a whole, or not at all where a value was found wrong; `each` item of a list, and what stands `apart`, is
-//! read by itself. `name: part(TABLE: Type)` takes in the keys of another table; a `group` of them is read by itself, and
+//! read by itself; a `name_apart` that was found wrong is read as a question mark. `name: part(TABLE: Type)` takes in the keys of another table; a `group` of them is read by itself, and
 //! `group_in_space` makes them keys of space.
 
 use crate::spec::{Field, Kind, in_space, optional};
@@ -83,6 +83,7 @@ macro_rules! variants {
     (
         $schema:ident: $name:ident $(<$d:ident>)? of $form:ident, $doc:literal, $tag:literal, $tag_doc:literal;
         $(named $example:literal;)?
+        $(named_apart $apart:literal;)?
         $($case:literal => $variant:ident($table:ident: $of:ty),)*
         $(after $after:ident: $common:ty;)?
     ) => {
@@ -90,7 +91,10 @@ macro_rules! variants {
             doc: $doc,
             tag: $tag,
             tag_doc: $tag_doc,
-            before: &[$($crate::spec::required("name", $crate::spec::Kind::Name, $example, "name"))?],
+            before: &[
+                $($crate::spec::required("name", $crate::spec::Kind::Name, $example, "name"))?
+                $($crate::spec::required("name", $crate::spec::Kind::Name, $apart, "name"))?
+            ],
             cases: &[$($crate::spec::Variant { name: $case, doc: $table.doc, fields: $table.fields },)*],
             after: const {
                 let after: &[$crate::spec::Field] = &[];
@@ -104,6 +108,10 @@ macro_rules! variants {
         pub struct $name $(<const $d: usize>)? {
             $(
                 #[doc = concat!("Its name, as `", $example, "`.")]
+                pub name: $crate::tree::read::At<String>,
+            )?
+            $(
+                #[doc = concat!("Its name, as `", $apart, "`; a question mark where it was found wrong.")]
                 pub name: $crate::tree::read::At<String>,
             )?
             #[doc = concat!("Key `", $tag, "`: ", $tag_doc, ".")]
@@ -142,7 +150,8 @@ macro_rules! variants {
                     _ => return Err($crate::tree::Wrong),
                 };
                 Ok(Self {
-                    $(name: { let _ = $example; $crate::tree::read::name_in(node, "name")? },)?
+                    $(name: { let _ = $example; At::read(node.get("name").ok_or($crate::tree::Wrong)?)? },)?
+                    $(name: { let _ = $apart; $crate::tree::read::name_in(node, "name")? },)?
                     form: At { value: form, place: tag.place, key_place: tag.place, written: tag.written },
                     $(common: <$common>::read(node),)?
                 })
@@ -229,6 +238,7 @@ macro_rules! pieces {
 macro_rules! kind {
     (text []) => { $crate::spec::Kind::Text };
     (name []) => { $crate::spec::Kind::Name };
+    (name_apart []) => { $crate::spec::Kind::Name };
     (reference [$of:literal]) => { $crate::spec::Kind::Reference($of) };
     (flag []) => { $crate::spec::Kind::Flag };
     (whole [$least:expr, $most:expr]) => { $crate::spec::Kind::Integer($least, $most) };

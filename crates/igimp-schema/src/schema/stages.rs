@@ -11,7 +11,7 @@ const MOST_STEPS: i64 = 1_000_000;
 
 variants! {
     STAGE: Stage of StageForm, "One thing that happens.", "type", "kind of stage";
-    named "\"weight\"";
+    named_apart "\"weight\"";
     "gravity" => Gravity(GRAVITY: Gravity),
     "k0" => K0(K0: LevelGround),
     "load" => Load(LOADING: Loading),

@@ -39,7 +39,7 @@ table! {
     WATER: Water,
     "A condition of the water: one of `level`, `line`, in space `surface`, `inside` with `outside`, `r_u`, `u` and `dry`. The first holds from the \
      start, the others from the stages that name them.";
-    name: name, required "\"full\"", "name";
+    name: name_apart, required "\"full\"", "name";
     tables: part(TABLES: WaterTables);
     inside: length, optional "another key says it",
         "level of the table within the ground, with `outside`: drawdown; where the ground lies lower, the table follows it";
