@@ -87,7 +87,7 @@ pub(super) fn bodies<A: Fill<D>, const D: usize>(
         let points = **own.points_per_cell.as_ref().ok()?;
         Some(BodyPart {
             from_start: !later.contains(&own.name.as_str()),
-            name: own.name.value.clone(),
+            name: own.name.known()?,
             material: material?,
             per_direction: (1..=5).find(|count: &usize| count.pow(D as u32) >= points)?,
             region: region?,

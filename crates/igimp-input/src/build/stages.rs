@@ -49,7 +49,7 @@ fn stage<const D: usize>(
     let install = super::reinforcement::installs(&about, problems);
     Some(Stage {
         drained: **common.drained.as_ref().ok()?,
-        name: own.name.value.clone(),
+        name: own.name.known()?,
         kind: kind?,
         steps: **common.steps.as_ref().ok()?,
         geometry: geometry(&own.form),

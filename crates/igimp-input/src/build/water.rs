@@ -119,7 +119,7 @@ fn condition<const D: usize>(
     }
     is_right.then_some(())?;
     Some(WaterCondition {
-        name: own.name.value.clone(),
+        name: own.name.known()?,
         source: source?,
         bodies,
         carried: *own.carried,

@@ -7,15 +7,18 @@ table! {
     GRID: Grid, "Fixed background grid, and the variant of the method.";
     extent: group(EXTENT: Extent);
     wishes: group(WISHES: Wishes);
-    mixed_cells: apart(choice(MixedCells)), default "\"own\"", "stiffness of particles in cells that several soils share";
+    mixed_cells: apart(choice(MixedCells)), default "\"own\"",
+        "stiffness of particles in cells that several soils share";
     refine: apart(whole(1, 64)), default "1", "every cell is cut into so many in each direction";
     method: group(METHOD: Method);
 }
 
 table! {
     EXTENT: Extent, "Extent of the grid and size of its cells.";
-    cell: either(quantity(Length, Positive), table(CELL: Cell)), required "\"0.5 m\"", "size of a cell, one length or x and y";
-    domain: table(DOMAIN: Domain), required "{ x = [\"0 m\", \"60 m\"], y = [\"0 m\", \"22 m\"] }", "extent of the grid; leave room for the motion";
+    cell: either(quantity(Length, Positive), table(CELL: Cell)), required "\"0.5 m\"",
+        "size of a cell, one length or x and y";
+    domain: table(DOMAIN: Domain), required "{ x = [\"0 m\", \"60 m\"], y = [\"0 m\", \"22 m\"] }",
+        "extent of the grid; leave room for the motion";
 }
 
 table! {
@@ -23,7 +26,8 @@ table! {
     lines: table(LINES: Lines), default "{}", "places that grid lines go through";
     fit: choice(Fit), default "\"none\"", "whether grid lines go through layer boundaries";
     zones: table(ZONES: Zones), default "{}", "stretches of finer cells";
-    growth: number(Positive), default "1.3", "ratio of neighbouring cells beside zones and thin layers; from 1.05 to 2";
+    growth: number(Positive), default "1.3",
+        "ratio of neighbouring cells beside zones and thin layers; from 1.05 to 2";
 }
 
 table! {
@@ -43,7 +47,8 @@ table! {
 }
 
 table! {
-    LINES: Lines, "Places that grid lines go through. Between them the cells are as near to `cell` as equal division allows.";
+    LINES: Lines,
+    "Places that grid lines go through. Between them the cells are as near to `cell` as equal division allows.";
     x: list(length, 0, MOST_THINGS), default "[]", "places of upright lines";
     y: list(length, 0, MOST_THINGS), default "[]", "places of level lines, in space of upright ones";
     z: list(length, 0, MOST_THINGS), default "[]", "places of level planes", in_space;
@@ -60,13 +65,15 @@ choices! {
     /// Stiffness of particles in cells that several soils share.
     MixedCells;
     Own "own", "that of the particle's own soil";
-    Mean "mean", "the inverse of the mean compliance of the cell, as it is filled; strength stays the particle's own";
+    Mean "mean",
+        "the inverse of the mean compliance of the cell, as it is filled; strength stays the particle's own";
 }
 
 table! {
     ZONES: Zones, "Stretches of finer cells; beside them cells grow by `growth` up to `cell`.";
     x: list(table(ZONE: Zone), 0, MOST_THINGS), default "[]", "stretches of narrower cells";
-    y: list(table(ZONE: Zone), 0, MOST_THINGS), default "[]", "stretches of lower cells, in space of cells that are less deep";
+    y: list(table(ZONE: Zone), 0, MOST_THINGS), default "[]",
+        "stretches of lower cells, in space of cells that are less deep";
     z: list(table(ZONE: Zone), 0, MOST_THINGS), default "[]", "stretches of lower cells", in_space;
 }
 
@@ -78,7 +85,8 @@ table! {
 }
 
 table! {
-    DOMAIN: Domain, "Extent of the grid. Without lines, zones and fit it is a whole number of cells in each direction.";
+    DOMAIN: Domain,
+    "Extent of the grid. Without lines, zones and fit it is a whole number of cells in each direction.";
     x: pair(length), required "[\"0 m\", \"60 m\"]", "from left to right";
     y: pair(length), required "[\"0 m\", \"22 m\"]", "from bottom to top", in_plane,
         pair(length), required "[\"0 m\", \"30 m\"]", "from front to back", in_space;
@@ -118,10 +126,13 @@ choices! {
 
 table! {
     SMALL_CUTS: SmallCuts, "Treatment of nodes that carry next to no soil.";
-    below: number(NotNegative), default "1e-4", "share of a cell's volume below which a node is a small cut; 0 switches off", in_plane,
-        number(NotNegative), default "1e-3", "share of a cell's volume below which a node is a small cut; 0 switches off", in_space;
+    below: number(NotNegative), default "1e-4",
+        "share of a cell's volume below which a node is a small cut; 0 switches off", in_plane,
+        number(NotNegative), default "1e-3",
+            "share of a cell's volume below which a node is a small cut; 0 switches off", in_space;
     remedy: choice(Remedy), default "\"tie\"", "what happens to such a node";
-    ghost_penalty: number(NotNegative), default "0", "penalty on jumps of the gradient across faces of boundary cells; 0 switches off";
+    ghost_penalty: number(NotNegative), default "0",
+        "penalty on jumps of the gradient across faces of boundary cells; 0 switches off";
 }
 
 choices! {

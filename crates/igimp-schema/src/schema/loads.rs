@@ -42,7 +42,8 @@ table! {
 }
 
 table! {
-    PRESSURE: Pressure<D>, "A dead pressure on a segment of the surface, in space on a level or upright rectangle, raised by load stages.";
+    PRESSURE: Pressure<D>,
+    "A dead pressure on a segment of the surface, in space on a level or upright rectangle, raised by load stages.";
     from: point, required "[\"0 m\", \"5 m\"]", "one end, in space one corner";
     to: point, required "[\"2 m\", \"5 m\"]", "the other end, in space the opposite corner";
     pressure: quantity(Stress, Any), required "\"100 kPa\"", "pressure at factor 1, positive into the soil";
@@ -50,9 +51,12 @@ table! {
 }
 
 table! {
-    PATCH: Patch, "In space: a dead pressure down on a level circle or polygon, raised by load stages. What of it lies beyond the grid is left out, as behind a plane of symmetry.";
+    PATCH: Patch,
+    "In space: a dead pressure down on a level circle or polygon, raised by load stages. What of it lies beyond \
+     the grid is left out, as behind a plane of symmetry.";
     circle: table(CIRCLE: Circle), optional "`plan` says it", "the circle that it covers";
-    plan: either(list(pair(length), 3, MANY), table(OUTLINE: Outline)), optional "`circle` says it", "corners of the polygon that it covers, x and y, either way round";
+    plan: either(list(pair(length), 3, MANY), table(OUTLINE: Outline)), optional "`circle` says it",
+        "corners of the polygon that it covers, x and y, either way round";
     level: length, required "\"5 m\"", "height z of the surface on which it lies";
     pressure: quantity(Stress, Any), required "\"100 kPa\"", "pressure at factor 1, positive downwards";
 }
@@ -60,6 +64,8 @@ table! {
 table! {
     POINT_LOAD: PointLoad<D>, "A dead force at a point, raised by load stages.";
     at: point, required "[\"2 m\", \"5 m\"]", "where";
-    force: vector(quantity(ForcePerLength, Any)), required "[\"0 kN/m\", \"-10 kN/m\"]", "force at factor 1, x and y, per metre run", in_plane,
-        vector(quantity(Force, Any)), required "[\"0 kN\", \"0 kN\", \"-10 kN\"]", "force at factor 1, x, y and z", in_space;
+    force: vector(quantity(ForcePerLength, Any)), required "[\"0 kN/m\", \"-10 kN/m\"]",
+        "force at factor 1, x and y, per metre run", in_plane,
+        vector(quantity(Force, Any)), required "[\"0 kN\", \"0 kN\", \"-10 kN\"]",
+            "force at factor 1, x, y and z", in_space;
 }

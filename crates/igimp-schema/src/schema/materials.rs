@@ -60,7 +60,8 @@ table! {
 
 table! {
     MOHR_COULOMB: MohrCoulomb, "Elastic and perfectly plastic, Mohr-Coulomb with non-associated flow.";
-    cohesion: either(quantity(Stress, NotNegative), table(STRESS_PROFILE: StressProfile)), required "\"10 kPa\"", "cohesion c";
+    cohesion: either(quantity(Stress, NotNegative), table(STRESS_PROFILE: StressProfile)), required "\"10 kPa\"",
+        "cohesion c";
     friction: either(quantity(Angle, NotNegative), table(FRICTION_PROFILE: FrictionProfile)), required "\"20 deg\"",
         "friction angle, below 90 deg";
     dilation: quantity(Angle, NotNegative), default "\"0 deg\"", "dilation angle, nowhere above the friction angle";
@@ -73,20 +74,23 @@ choices! {
     /// How plastic flow follows from the angle of dilation.
     Flow;
     Dilation "dilation", "by the angle of dilation: not associated below the friction angle";
-    Davis "davis", "associated, on the strengths of Davis (1968): a symmetric tangent, and a smaller factor of safety";
+    Davis "davis",
+        "associated, on the strengths of Davis (1968): a symmetric tangent, and a smaller factor of safety";
 }
 
 table! {
     MATERIAL_COMMON: MaterialCommon, "Keys of every material.";
     unit_weight: either(quantity(UnitWeight, NotNegative), table(UNIT_WEIGHT_PROFILE: UnitWeightProfile)),
         required "\"18 kN/m3\"", "unit weight";
-    young: either(quantity(Stress, Positive), table(STRESS_PROFILE: StressProfile)), required "\"20 MPa\"", "Young's modulus";
+    young: either(quantity(Stress, Positive), table(STRESS_PROFILE: StressProfile)), required "\"20 MPa\"",
+        "Young's modulus";
     poisson: number(NotNegative), required "0.3", "Poisson's ratio, below 0.5";
     k0: either(number(NotNegative), choice(Jaky)), optional "an elastic material takes poisson / (1 - poisson)",
         "coefficient of earth pressure at rest, for stages of type k0";
     saturated_unit_weight: quantity(UnitWeight, Positive), optional "as above the water table",
         "unit weight below a water table, water included";
-    drainage: choice(Drainage), derived "\"total\" with `cu`, \"drained\" otherwise", "what it does with the water in its pores";
+    drainage: choice(Drainage), derived "\"total\" with `cu`, \"drained\" otherwise",
+        "what it does with the water in its pores";
     undrained_poisson: number(Share), optional "0.495 where `drainage` is undrained and `pore_water` is not given",
         "Poisson's ratio of undrained soil with its water, above `poisson`";
     pore_water: quantity(Stress, Positive), optional "`undrained_poisson` says it",
@@ -114,8 +118,10 @@ macro_rules! points {
             $schema: $name, $doc;
             raster: text, optional "it does not come from a file",
                 "a CSV file with the columns x, y and value on a rectangular grid of points; its path from the case file";
-            unit: text, optional "the header of the file says it, as in `cu [kPa]`", "unit of the values of the file";
-            length_unit: text, optional "the header of the file says it, as in `x [m]`", "unit of x and y of the file";
+            unit: text, optional "the header of the file says it, as in `cu [kPa]`",
+                "unit of the values of the file";
+            length_unit: text, optional "the header of the file says it, as in `x [m]`",
+                "unit of x and y of the file";
             x: list(length, 1, MANY), optional "no points in the plane", "upright lines of points, ascending";
             y: list(length, 1, MANY), optional "no points in the plane", "level lines of points, ascending";
             rows: list(list($kind $args, 1, MANY), 1, MANY), optional "no points in the plane",
@@ -131,8 +137,10 @@ macro_rules! rows {
     ($schema:ident: $name:ident, $doc:literal, $kind:ident $args:tt) => {
         table! {
             $schema: $name, $doc;
-            levels: list(length, 2, MANY), optional "another form is given", "levels y, all upwards or all downwards";
-            depths: list(length, 2, MANY), optional "another form is given", "depths below the surface, straight down";
+            levels: list(length, 2, MANY), optional "another form is given",
+                "levels y, all upwards or all downwards";
+            depths: list(length, 2, MANY), optional "another form is given",
+                "depths below the surface, straight down";
             values: list($kind $args, 2, MANY), optional "another form is given",
                 "values at the levels or depths; linear between them, constant beyond";
         }
@@ -146,10 +154,12 @@ macro_rules! growth {
             $schema: $name, "Growth with depth.";
             at_surface: quantity($of, NotNegative), optional "another form is given",
                 "value at the surface, the highest soil of the case on the same vertical line";
-            at_top: quantity($of, NotNegative), optional "another form is given", "value at the level `from` and above";
+            at_top: quantity($of, NotNegative), optional "another form is given",
+                "value at the level `from` and above";
             gradient: quantity($gradient, Any), optional "another form is given",
                 "growth with depth below the surface, or below `from`";
-            from: length, optional "the highest soil of the material", "level y where the growth begins, with `at_top`";
+            from: length, optional "the highest soil of the material",
+                "level y where the growth begins, with `at_top`";
         }
     };
 }
@@ -178,7 +188,8 @@ table! {
     stress: part(STRESS_PROFILE: StressProfile);
     ratio: number(Positive), optional "another form is given",
         "strength of normally consolidated soil over the vertical effective stress";
-    ocr: either(number(Positive), table(OCR_PROFILE: OcrProfile)), optional "1", "ratio of overconsolidation, with `ratio`";
+    ocr: either(number(Positive), table(OCR_PROFILE: OcrProfile)), optional "1",
+        "ratio of overconsolidation, with `ratio`";
     exponent: number(NotNegative), optional "0.8", "exponent of `ocr`, with `ratio`";
     at_least: quantity(Stress, NotNegative), optional "\"0 kPa\"", "no less strength than this, with `ratio`";
     water_level: length, optional "the first condition of the water, or none",
@@ -186,7 +197,8 @@ table! {
 }
 
 rows! {
-    OCR_PROFILE: OcrProfile, "A ratio of overconsolidation that varies with the level or with the depth.", number(Positive)
+    OCR_PROFILE: OcrProfile,
+    "A ratio of overconsolidation that varies with the level or with the depth.", number(Positive)
 }
 
 rows! {
@@ -196,7 +208,8 @@ rows! {
 }
 
 table! {
-    UNIT_WEIGHT_PROFILE: UnitWeightProfile, "A unit weight that varies with the level or with the depth, stated alike.";
+    UNIT_WEIGHT_PROFILE: UnitWeightProfile,
+    "A unit weight that varies with the level or with the depth, stated alike.";
     growth: part(WEIGHT_GROWTH: WeightGrowth);
     table: part(WEIGHT_ROWS: WeightRows);
     points: part(WEIGHT_POINTS: WeightPoints);

@@ -44,21 +44,31 @@ table! {
     ROOT: Root<D>, "A case: a problem in plane strain and how it is solved.";
     igimp: whole(FORMAT, i64::MAX), required "1", "version of the input format";
     case: table(CASE: CaseHead), required "{ title = \"My slope\" }", "what the case is";
-    grid: table(GRID: Grid), required "{ cell = \"1 m\", domain = { x = [\"0 m\", \"60 m\"], y = [\"0 m\", \"22 m\"] } }", "background grid and variant of the method";
-    materials: map("material", MATERIAL: Material), required "{ clay = { model = \"tresca\" } }", "materials by name";
-    bodies: each(table(BODY: Body), 1, MOST_BODIES), required "[{ name = \"soil\" }]", "polygons of one material each";
-    water: each(table(WATER: Water), 0, MOST_THINGS), default "[]", "conditions of the water; the first holds from the start";
+    grid: table(GRID: Grid),
+        required "{ cell = \"1 m\", domain = { x = [\"0 m\", \"60 m\"], y = [\"0 m\", \"22 m\"] } }",
+        "background grid and variant of the method";
+    materials: map("material", MATERIAL: Material), required "{ clay = { model = \"tresca\" } }",
+        "materials by name";
+    bodies: each(table(BODY: Body), 1, MOST_BODIES), required "[{ name = \"soil\" }]",
+        "polygons of one material each";
+    water: each(table(WATER: Water), 0, MOST_THINGS), default "[]",
+        "conditions of the water; the first holds from the start";
     boundaries: table(BOUNDARIES: Boundaries<D>), default "{}", "supports at the sides of the grid, and in boxes";
     loads: each(variants(LOAD: Load<D>), 0, MOST_THINGS), default "[]", "loads that stages apply";
     rigid: each(variants(RIGID: RigidBody<D>), 0, MOST_THINGS), default "[]", "rigid bodies that soil touches";
-    reinforcement: each(variants(REINFORCEMENT: Member<D>), 0, MOST_THINGS), default "[]", "anchors, nails and geotextiles";
-    stages: each(variants(STAGE: Stage), 1, MOST_THINGS), required "[{ name = \"weight\", type = \"gravity\" }]", "what happens, in order";
+    reinforcement: each(variants(REINFORCEMENT: Member<D>), 0, MOST_THINGS), default "[]",
+        "anchors, nails and geotextiles";
+    stages: each(variants(STAGE: Stage), 1, MOST_THINGS), required "[{ name = \"weight\", type = \"gravity\" }]",
+        "what happens, in order";
     solver: table(SOLVER: Solver), default "{}", "Newton's method, step cutting, linear solver";
-    monitors: each(table(MONITOR: Monitor<D>), 0, MOST_THINGS), default "[]", "material points that are watched in every step";
-    sections: each(table(SECTION: Section<D>), 0, MOST_THINGS), default "[]", "lines along which results are written at the end of every stage";
+    monitors: each(table(MONITOR: Monitor<D>), 0, MOST_THINGS), default "[]",
+        "material points that are watched in every step";
+    sections: each(table(SECTION: Section<D>), 0, MOST_THINGS), default "[]",
+        "lines along which results are written at the end of every stage";
     curves: each(table(CURVE: Curve), 0, MOST_CURVES), default "[]", "one recorded quantity against another";
     checks: each(table(CHECK: Check), 0, MOST_THINGS), default "[]", "results that are held against outside values";
-    mesh_study: table(MESH_STUDY: MeshStudy), default "{}", "the case on finer meshes too, for the error of the mesh";
+    mesh_study: table(MESH_STUDY: MeshStudy), default "{}",
+        "the case on finer meshes too, for the error of the mesh";
     output: table(OUTPUT: Output), default "{}", "what is written, and where";
 }
 

@@ -24,7 +24,8 @@ choices! {
     Auto "auto", "Cholesky for symmetric matrices, LU for others; for large systems in space multigrid";
     Multigrid "multigrid", "conjugate gradients or GMRES with geometric multigrid on the grid";
     Direct "direct", "the same as auto";
-    Single "single", "factors in single precision, half the memory, and an iteration with them; in double where that does not converge";
+    Single "single",
+        "factors in single precision, half the memory, and an iteration with them; in double where that does not converge";
     Cholesky "cholesky", "multifrontal Cholesky";
     Lu "lu", "multifrontal LU";
     FaerCholesky "faer-cholesky", "an independent supernodal Cholesky";
@@ -47,23 +48,27 @@ table! {
     points: whole(2, 100_000), default "100", "number of equally spaced places";
     record: list(choice(Field), 1, 26), default "[\"sigma_xx\", \"sigma_yy\", \"tau_xy\"]", "what is written";
     average: choice(Average), default "\"none\"", "of which particles values are read";
-    references: each(table(SECTION_REFERENCE: SectionReference), 0, 100), default "[]", "what the values are held against";
+    references: each(table(SECTION_REFERENCE: SectionReference), 0, 100), default "[]",
+        "what the values are held against";
 }
 
 choices! {
     /// Of which particles values along a section are read.
     Average;
     None "none", "the particles around each place, interpolated";
-    Cell "cell", "all particles of each cell that the line goes through, by volume: smooths the sawtooth within cells";
+    Cell "cell",
+        "all particles of each cell that the line goes through, by volume: smooths the sawtooth within cells";
 }
 
 table! {
-    SECTION_REFERENCE: SectionReference, "A reference for a section: `y`, `points` or `file`, over the distance along the section in m, in SI units.";
+    SECTION_REFERENCE: SectionReference,
+    "A reference for a section: `y`, `points` or `file`, over the distance along the section in m, in SI units.";
     of: choice(Field), required "\"sigma_yy\"", "the field, one of `record`";
     stage: reference("stage"), optional "the last that is read along sections", "the stage at whose end it is read";
     y: number(Any), optional "another form is given", "a value of the field";
     at: number(Any), optional "the end of the section", "distance at which `y` is compared";
-    points: list(pair(number(Any)), 1, MANY), optional "another form is given", "points [distance, value]; the section is held against each that it spans";
+    points: list(pair(number(Any)), 1, MANY), optional "another form is given",
+        "points [distance, value]; the section is held against each that it spans";
     file: text, optional "another form is given", "CSV file with a header and two columns, beside the case file";
     label: text, required "\"weight of the soil above\"", "label with the source";
     tolerance: number(Positive), optional "drawn only, not checked", "accepted relative deviation";
@@ -89,7 +94,8 @@ table! {
     REFERENCE: Reference, "A reference for a curve: `y`, `points` or `file`, in the units of the plot.";
     y: number(Any), optional "another form is given", "a value of the ordinate";
     at: number(Any), optional "the end of the curve", "abscissa at which `y` is compared";
-    points: list(pair(number(Any)), 1, MANY), optional "another form is given", "points [x, y]; the curve is held against each that it spans";
+    points: list(pair(number(Any)), 1, MANY), optional "another form is given",
+        "points [x, y]; the curve is held against each that it spans";
     file: text, optional "another form is given", "CSV file with a header and two columns, beside the case file";
     label: text, required "\"Prandtl, 2 + pi\"", "label with the source";
     tolerance: number(Positive), optional "drawn only, not checked", "accepted relative deviation";
@@ -134,8 +140,10 @@ table! {
     OUTPUT: Output, "What is written, and where.";
     folder: text, derived "results/ and the name of the case file", "results folder";
     paraview: table(PARAVIEW: Paraview), default "{}", "particles and grid for ParaView";
-    figures: list(choice(Field), 0, 26), default "[\"displacement\", \"plastic_strain\", \"sigma_yy\"]", "fields drawn at the end of every stage; with none no picture is drawn at all";
-    cuts: list(table(CUT: Cut), 0, 20), default "[]", "planes in which the fields are drawn as well; without any, upright ones through the middle of the bodies", in_space;
+    figures: list(choice(Field), 0, 26), default "[\"displacement\", \"plastic_strain\", \"sigma_yy\"]",
+        "fields drawn at the end of every stage; with none no picture is drawn at all";
+    cuts: list(table(CUT: Cut), 0, 20), default "[]",
+        "planes in which the fields are drawn as well; without any, upright ones through the middle of the bodies", in_space;
     report: flag, default "true", "whether report.html is written";
     checkpoint: table(CHECKPOINT: Checkpoint), default "{}", "states from which a run can be resumed";
 }
@@ -156,7 +164,8 @@ choices! {
 
 table! {
     PARAVIEW: Paraview, "When particles are written for ParaView.";
-    every: either(choice(OutputTime), whole(1, 1_000_000)), default "\"stage\"", "\"stage\", \"never\" or a number of steps";
+    every: either(choice(OutputTime), whole(1, 1_000_000)), default "\"stage\"",
+        "\"stage\", \"never\" or a number of steps";
 }
 
 choices! {

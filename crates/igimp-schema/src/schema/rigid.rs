@@ -15,8 +15,10 @@ table! {
     LIMITED: Limited, "Shear along an interface up to adhesion and friction.";
     friction: number(NotNegative), optional "`angle` says it, or there is none", "coefficient of friction";
     angle: quantity(Angle, NotNegative), optional "`friction` says it, or there is none", "angle of friction";
-    adhesion: quantity(Stress, NotNegative), optional "`adhesion_share` says it, or there is none", "shear that is carried without pressure, while soil touches";
-    adhesion_share: number(NotNegative), optional "`adhesion` says it, or there is none", "the same as a share of the undrained strength, or the cohesion, of the soil that touches";
+    adhesion: quantity(Stress, NotNegative), optional "`adhesion_share` says it, or there is none",
+        "shear that is carried without pressure, while soil touches";
+    adhesion_share: number(NotNegative), optional "`adhesion` says it, or there is none",
+        "the same as a share of the undrained strength, or the cohesion, of the soil that touches";
 }
 
 choices! {
@@ -44,10 +46,12 @@ choices! {
 
 table! {
     SIDE: Side, "A side of a rigid body that is unlike the others.";
-    side: either(whole(1, MANY as i64), choice(SideName)), required "\"bottom\"", "which: by name, or by the number of the corner that it begins with, from 1";
+    side: either(whole(1, MANY as i64), choice(SideName)), required "\"bottom\"",
+        "which: by name, or by the number of the corner that it begins with, from 1";
     interface: either(choice(Interface), table(LIMITED: Limited)), optional "that of the body", "along the side";
     tension: choice(Tension), optional "that of the body", "when soil is pulled off";
-    tension_limit: quantity(Stress, Positive), optional "that of the body", "tension at which a side lets go for good";
+    tension_limit: quantity(Stress, Positive), optional "that of the body",
+        "tension at which a side lets go for good";
 }
 
 variants! {
@@ -73,7 +77,8 @@ table! {
 
 table! {
     RIGID_POLYGON: RigidPolygon, "A polygon. Its sides are numbered from 1 by the corners that they begin with.";
-    corners: list(pair(length), 3, MANY), required "[[\"0 m\", \"5 m\"], [\"1 m\", \"7 m\"], [\"-1 m\", \"7 m\"]]", "corners in order, either way round";
+    corners: list(pair(length), 3, MANY), required "[[\"0 m\", \"5 m\"], [\"1 m\", \"7 m\"], [\"-1 m\", \"7 m\"]]",
+        "corners in order, either way round";
 }
 
 table! {
@@ -90,13 +95,15 @@ table! {
 }
 
 table! {
-    RIGID_BOX: RigidBox<D>, "In space: a box with its sides along the axes. Its sides are left, right, front, back, bottom, top.";
+    RIGID_BOX: RigidBox<D>,
+    "In space: a box with its sides along the axes. Its sides are left, right, front, back, bottom, top.";
     from: point, required "[\"0 m\", \"0 m\", \"5 m\"]", "one corner";
     to: point, required "[\"1 m\", \"1 m\", \"6 m\"]", "the opposite corner";
 }
 
 table! {
-    RIGID_CYLINDER: RigidCylinder<D>, "In space: a cylinder along an axis. Its sides are bottom, shaft, top; of a level one start, shaft, end.";
+    RIGID_CYLINDER: RigidCylinder<D>,
+    "In space: a cylinder along an axis. Its sides are bottom, shaft, top; of a level one start, shaft, end.";
     axis: choice(Axis), default "\"z\"", "direction of its axis";
     middle: point, required "[\"0 m\", \"0 m\", \"5.5 m\"]", "its middle";
     radius: quantity(Length, Positive), required "\"0.5 m\"", "radius";
@@ -110,7 +117,8 @@ table! {
 }
 
 table! {
-    RIGID_CONE: RigidCone<D>, "In space: a cone with its tip down, and a shaft above it. Its sides are tip, shaft, top.";
+    RIGID_CONE: RigidCone<D>,
+    "In space: a cone with its tip down, and a shaft above it. Its sides are tip, shaft, top.";
     tip: point, required "[\"0 m\", \"0 m\", \"5 m\"]", "its tip";
     radius: quantity(Length, Positive), required "\"0.25 m\"", "radius of its upper end";
     height: quantity(Length, Positive), required "\"0.43 m\"", "height of the cone";
@@ -124,17 +132,26 @@ table! {
 
 table! {
     RIGID_COMMON: RigidCommon<D>, "Keys of every rigid body.";
-    reference: point, optional "the middle of the base of a rectangle, of the face of a wall, of the extent of others", "point that displacement and forces are told of; a circle has its centre", in_plane;
+    reference: point,
+        optional "the middle of the base of a rectangle, of the face of a wall, of the extent of others",
+        "point that displacement and forces are told of; a circle has its centre", in_plane;
     interface: either(choice(Interface), table(LIMITED: Limited)), default "\"rough\"", "along all its sides";
     tension: choice(Tension), default "\"none\"", "when soil is pulled off";
-    tension_limit: quantity(Stress, Positive), optional "as `tension` says", "tension at which a side lets go for good";
+    tension_limit: quantity(Stress, Positive), optional "as `tension` says",
+        "tension at which a side lets go for good";
     sides: each(table(SIDE: Side), 0, MOST_THINGS), default "[]", "sides that are unlike the others";
-    weight: quantity(ForcePerLength, NotNegative), default "\"0 kN/m\"", "own weight of the whole body, at its reference point; acts with gravity", in_plane,
-        quantity(Force, NotNegative), default "\"0 kN\"", "own weight of the whole body, at its middle; acts with gravity", in_space;
-    force_factor: number(Positive), default "1", "whole body over the part that is modelled, 2 for half a body: forces are those of the whole";
-    from_start: flag, default "false", "whether it is there from the start, held, rather than from the first stage that names it";
-    grid_follows: flag, default "false", "whether the rows of the grid go down with it; its lowest place lies on a row";
-    rounding: number(NotNegative), default "0.5", "radius of its corners in cells; soil slips off a rounding, which carries nothing";
+    weight: quantity(ForcePerLength, NotNegative), default "\"0 kN/m\"",
+        "own weight of the whole body, at its reference point; acts with gravity", in_plane,
+        quantity(Force, NotNegative), default "\"0 kN\"",
+            "own weight of the whole body, at its middle; acts with gravity", in_space;
+    force_factor: number(Positive), default "1",
+        "whole body over the part that is modelled, 2 for half a body: forces are those of the whole";
+    from_start: flag, default "false",
+        "whether it is there from the start, held, rather than from the first stage that names it";
+    grid_follows: flag, default "false",
+        "whether the rows of the grid go down with it; its lowest place lies on a row";
+    rounding: number(NotNegative), default "0.5",
+        "radius of its corners in cells; soil slips off a rounding, which carries nothing";
     stiffness: number(Positive), default "30", "stiffness of contact, in Young's moduli per cell";
     most_penetration: number(Positive), default "0.1", "penetration that ends the run, as a share of the cell";
 }
@@ -152,23 +169,33 @@ choices! {
 }
 
 table! {
-    MOVE: Move, "How a rigid body moves in a stage. What is not mentioned goes on as before: held, or under its force.";
+    MOVE: Move,
+    "How a rigid body moves in a stage. What is not mentioned goes on as before: held, or under its force.";
     body: reference("rigid body"), required "\"footing\"", "which";
     x: length, optional "as before; held at first", "further displacement in x";
     y: length, optional "as before; held at first", "further displacement in y, in plane strain negative downwards";
     z: length, optional "as before; held at first", "further displacement in z, negative downwards", in_space;
-    rotation: quantity(Angle, Any), optional "as before; held at first", "further rotation, anticlockwise", in_plane;
+    rotation: quantity(Angle, Any), optional "as before; held at first",
+        "further rotation, anticlockwise", in_plane;
     rotation_x: quantity(Angle, Any), optional "as before; held at first", "further rotation about x", in_space;
     rotation_y: quantity(Angle, Any), optional "as before; held at first", "further rotation about y", in_space;
     rotation_z: quantity(Angle, Any), optional "as before; held at first", "further rotation about z", in_space;
-    force_x: quantity(ForcePerLength, Any), optional "as before", "force on it in x at the end of the stage", in_plane;
-    force_y: quantity(ForcePerLength, Any), optional "as before", "force on it in y at the end of the stage, negative downwards, beside its weight", in_plane;
-    moment: quantity(MomentPerLength, Any), optional "as before", "moment on it about its reference point at the end of the stage, anticlockwise", in_plane;
-    whole_force_x as "force_x": quantity(Force, Any), optional "as before", "force on it in x at the end of the stage", in_space;
-    whole_force_y as "force_y": quantity(Force, Any), optional "as before", "force on it in y at the end of the stage", in_space;
-    force_z: quantity(Force, Any), optional "as before", "force on it in z at the end of the stage, negative downwards, beside its weight", in_space;
-    moment_x: quantity(Moment, Any), optional "as before", "moment on it about x through its reference point at the end of the stage", in_space;
+    force_x: quantity(ForcePerLength, Any), optional "as before",
+        "force on it in x at the end of the stage", in_plane;
+    force_y: quantity(ForcePerLength, Any), optional "as before",
+        "force on it in y at the end of the stage, negative downwards, beside its weight", in_plane;
+    moment: quantity(MomentPerLength, Any), optional "as before",
+        "moment on it about its reference point at the end of the stage, anticlockwise", in_plane;
+    whole_force_x as "force_x": quantity(Force, Any), optional "as before",
+        "force on it in x at the end of the stage", in_space;
+    whole_force_y as "force_y": quantity(Force, Any), optional "as before",
+        "force on it in y at the end of the stage", in_space;
+    force_z: quantity(Force, Any), optional "as before",
+        "force on it in z at the end of the stage, negative downwards, beside its weight", in_space;
+    moment_x: quantity(Moment, Any), optional "as before",
+        "moment on it about x through its reference point at the end of the stage", in_space;
     moment_y: quantity(Moment, Any), optional "as before", "moment on it about y", in_space;
     moment_z: quantity(Moment, Any), optional "as before", "moment on it about z", in_space;
-    free: list(choice(Component), 0, 6), default "[]", "components that no force and no moment holds by the end of the stage";
+    free: list(choice(Component), 0, 6), default "[]",
+        "components that no force and no moment holds by the end of the stage";
 }

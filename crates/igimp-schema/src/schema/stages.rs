@@ -24,12 +24,18 @@ variants! {
 }
 
 table! {
-    GRAVITY: Gravity, "Raises gravity from where it is to a multiple of its value; changes pseudo-static acceleration.";
+    GRAVITY: Gravity,
+    "Raises gravity from where it is to a multiple of its value; changes pseudo-static acceleration.";
     factor: number(NotNegative), default "1", "the multiple";
-    horizontal: number(Any), optional "it stays as it is, 0 at first", "pseudo-static force to the right, as a share of the weight";
-    across: number(Any), optional "it stays as it is, 0 at first", "pseudo-static force backwards, along y, as a share of the weight", in_space;
-    vertical: number(Any), optional "it stays as it is, 0 at first", "pseudo-static force upwards, as a share of the weight";
-    geometry: choice(Geometry), derived "\"given\" where a search on the given geometry goes back to this stage, else \"moving\"", "the geometry that its steps are computed on";
+    horizontal: number(Any), optional "it stays as it is, 0 at first",
+        "pseudo-static force to the right, as a share of the weight";
+    across: number(Any), optional "it stays as it is, 0 at first",
+        "pseudo-static force backwards, along y, as a share of the weight", in_space;
+    vertical: number(Any), optional "it stays as it is, 0 at first",
+        "pseudo-static force upwards, as a share of the weight";
+    geometry: choice(Geometry),
+        derived "\"given\" where a search on the given geometry goes back to this stage, else \"moving\"",
+        "the geometry that its steps are computed on";
 }
 
 table! {
@@ -40,7 +46,8 @@ table! {
 table! {
     LOADING: Loading, "Changes the factor of loads from where it is.";
     load: apart(reference("load")), optional "`loads` names them", "the load, if it is one";
-    loads: apart(list(reference("load"), 1, MOST_THINGS)), optional "`load` names it", "the loads, if they are several";
+    loads: apart(list(reference("load"), 1, MOST_THINGS)), optional "`load` names it",
+        "the loads, if they are several";
     factor: apart(number(Any)), default "1", "their factor at the end of the stage";
     geometry: apart(choice(Geometry)), default "\"moving\"", "the geometry that its steps are computed on";
 }
@@ -54,15 +61,19 @@ table! {
 
 table! {
     RIGID_MOTION: RigidMotion, "Moves and loads rigid bodies; one that was not there yet is placed first.";
-    bodies: each(table(MOVE: Move), 1, MOST_THINGS), required "[{ body = \"footing\", y = \"-0.2 m\" }]", "the bodies, and how they move";
+    bodies: apart(each(table(MOVE: Move), 1, MOST_THINGS)), required "[{ body = \"footing\", y = \"-0.2 m\" }]",
+        "the bodies, and how they move";
     geometry: apart(choice(Geometry)), default "\"moving\"", "the geometry that its steps are computed on";
 }
 
 table! {
-    CONSTRUCTION: Construction, "Places and removes bodies, changes materials and the water. What that leaves out of balance is let go over its steps.";
-    place: apart(list(reference("body"), 0, MOST_THINGS)), default "[]", "bodies that are placed, free of stress where they are drawn; they are not there before";
+    CONSTRUCTION: Construction,
+    "Places and removes bodies, changes materials and the water. What that leaves out of balance is let go over its steps.";
+    place: apart(list(reference("body"), 0, MOST_THINGS)), default "[]",
+        "bodies that are placed, free of stress where they are drawn; they are not there before";
     remove: apart(list(reference("body"), 0, MOST_THINGS)), default "[]", "bodies that are taken away";
-    materials: each(table(CHANGE: MaterialChange), 0, MOST_THINGS), default "[]", "bodies that consist of another material from now on";
+    materials: apart(each(table(CHANGE: MaterialChange), 0, MOST_THINGS)), default "[]",
+        "bodies that consist of another material from now on";
     water: apart(reference("water condition")), optional "as before", "condition of the water from now on";
     dissipate: apart(flag), default "false", "whether excess pore pressure of undrained soil is gone at the end";
     geometry: apart(choice(Geometry)), default "\"moving\"", "the geometry that its steps are computed on";
@@ -70,31 +81,45 @@ table! {
 
 table! {
     STRENGTH_REDUCTION: StrengthReduction, "Searches for the factor of safety; the body is left as it was found.";
-    materials: apart(list(reference("material"), 1, MOST_THINGS)), derived "all materials of bodies that have a strength", "materials whose strength is reduced; the others keep theirs";
-    factors: list(number(Positive), 0, 1000), default "[]", "factors tried first, for the curve of displacement against factor";
-    bracket: pair(number(Positive)), default "[1.0, 2.0]", "where trials begin: a factor thought stable and one thought unstable";
+    materials: apart(list(reference("material"), 1, MOST_THINGS)),
+        derived "all materials of bodies that have a strength",
+        "materials whose strength is reduced; the others keep theirs";
+    factors: list(number(Positive), 0, 1000), default "[]",
+        "factors tried first, for the curve of displacement against factor";
+    bracket: pair(number(Positive)), default "[1.0, 2.0]",
+        "where trials begin: a factor thought stable and one thought unstable";
     tolerance: number(Positive), default "0.01", "width of the interval at which trials end";
     path: choice(ReductionPath), default "\"reduce\"", "how the reduced strength is reached";
-    search: choice(Search), derived "\"continuation\" on the given geometry without `factors`, else \"trials\"", "how the factor is looked for";
+    search: choice(Search), derived "\"continuation\" on the given geometry without `factors`, else \"trials\"",
+        "how the factor is looked for";
     geometry: choice(Geometry), default "\"given\"", "the geometry that its steps are computed on";
     failure: table(FAILURE: Failure), default "{}", "what counts as failure";
 }
 
 table! {
     RUN_OUT: RunOut, "Lets the slope of reduced strength move until it rests.";
-    reduction: apart(table(REDUCTION: Reduction)), required "{ times_fos = 1.05 }", "by how much strength is reduced";
-    materials: apart(list(reference("material"), 1, MOST_THINGS)), derived "all materials of bodies that have a strength", "materials whose strength is reduced; the others keep theirs";
-    move_per_step: number(Positive), default "0.1", "largest displacement aimed at in a step, as a share of the cell";
-    at_rest: number(Share), default "1e-3", "the slope rests when drag carries less than this share of the external force";
+    reduction: apart(table(REDUCTION: Reduction)), required "{ times_fos = 1.05 }",
+        "by how much strength is reduced";
+    materials: apart(list(reference("material"), 1, MOST_THINGS)),
+        derived "all materials of bodies that have a strength",
+        "materials whose strength is reduced; the others keep theirs";
+    move_per_step: number(Positive), default "0.1",
+        "largest displacement aimed at in a step, as a share of the cell";
+    at_rest: number(Share), default "1e-3",
+        "the slope rests when drag carries less than this share of the external force";
 }
 
 table! {
     STAGE_COMMON: StageCommon, "Keys of every stage.";
-    steps: apart(whole(1, MOST_STEPS)), default "10", "load steps when none is cut; in a strength reduction those by which gravity is raised, or by which trials march from F = 1 to the upper end of the bracket";
+    steps: apart(whole(1, MOST_STEPS)), default "10",
+        "load steps when none is cut; in a strength reduction those by which gravity is raised, or by which trials \
+         march from F = 1 to the upper end of the bracket";
     start_from: apart(reference("stage")), derived "the stage before", "stage whose end this one starts from";
-    install: apart(list(reference("reinforcement"), 0, MOST_THINGS)), default "[]", "reinforcement that comes in as the stage begins; what no stage installs is there from the start";
+    install: apart(list(reference("reinforcement"), 0, MOST_THINGS)), default "[]",
+        "reinforcement that comes in as the stage begins; what no stage installs is there from the start";
     reset_displacements: apart(flag), default "false", "whether displacements count from the end of this stage on";
-    drained: apart(flag), default "false", "whether all soil drains while it lasts: no excess pore pressure comes or goes";
+    drained: apart(flag), default "false",
+        "whether all soil drains while it lasts: no excess pore pressure comes or goes";
     stop_when: apart(table(STOP_WHEN: StopWhen)), default "{}", "conditions that end the stage early";
 }
 
@@ -115,7 +140,8 @@ choices! {
 choices! {
     /// How a factor of safety is looked for.
     Search;
-    Continuation "continuation", "along the path of equilibria, the factor an unknown, until the body moves as a mechanism and the factor rises no longer";
+    Continuation "continuation",
+        "along the path of equilibria, the factor an unknown, until the body moves as a mechanism and the factor rises no longer";
     Trials "trials", "by trials at one factor after another, each of which finds equilibrium or not";
 }
 
@@ -133,7 +159,8 @@ table! {
 
 table! {
     ALSO: Also, "A displacement at which the slope counts as failed.";
-    monitor: reference("monitor"), optional "the largest displacement of all particles", "monitor whose displacement counts";
+    monitor: reference("monitor"), optional "the largest displacement of all particles",
+        "monitor whose displacement counts";
     displacement: quantity(Length, Positive), required "\"0.5 m\"", "the displacement";
 }
 
@@ -146,9 +173,12 @@ table! {
 table! {
     STOP_WHEN: StopWhen, "Conditions that end a stage early, and count as a planned end.";
     displacement: quantity(Length, Positive), optional "no limit", "a displacement is reached";
-    monitor: reference("monitor"), optional "the largest displacement of all particles", "monitor whose displacement counts";
-    load_grows_less_than: number(Positive), optional "no limit", "the footing's reaction grows by less than this share in a step";
-    no_equilibrium: flag, default "false", "want of equilibrium is the planned end: what was reached is the collapse load";
+    monitor: reference("monitor"), optional "the largest displacement of all particles",
+        "monitor whose displacement counts";
+    load_grows_less_than: number(Positive), optional "no limit",
+        "the footing's reaction grows by less than this share in a step";
+    no_equilibrium: flag, default "false",
+        "want of equilibrium is the planned end: what was reached is the collapse load";
 }
 
 table! {
@@ -194,7 +224,7 @@ impl Stage {
     /// How it moves rigid bodies.
     pub fn moves(&self) -> &[Result<At<Move>, Wrong>] {
         match &*self.form {
-            StageForm::Rigid(Ok(own)) => &own.bodies,
+            StageForm::Rigid(Ok(own)) => (own.bodies.as_ref()).map_or(&[], |list| list.as_slice()),
             _ => &[],
         }
     }
@@ -209,6 +239,11 @@ impl Construction {
     /// The bodies that it takes away.
     pub fn removed(&self) -> &[At<String>] {
         listed(&self.remove)
+    }
+
+    /// The bodies that consist of another material from now on.
+    pub fn changes(&self) -> &[Result<At<MaterialChange>, Wrong>] {
+        (self.materials.as_ref()).map_or(&[], |list| list.as_slice())
     }
 
     /// The condition of the water that it calls for.

@@ -9,7 +9,8 @@ table! {
     TABLES: WaterTables, "Where a water table is.";
     level: length, optional "another key says it", "level of a table that is level everywhere";
     line: list(pair(length), 2, MANY), optional "another key says it",
-        "points of the water table from left to right, x and height; it is level beyond its ends, and in space the same for every y";
+        "points of the water table from left to right, x and height; it is level beyond its ends, and in space the \
+         same for every y";
     surface: table(TERRAIN: Terrain), optional "another key says it", "surface that is the water table", in_space;
 }
 
@@ -24,7 +25,8 @@ table! {
 
 points! {
     PORE_PRESSURES: PorePressures,
-    "Pore pressures by points in the plane, in space by x and height for every y: `raster`, or `x`, `y` and `rows`. Less than none counts as none.",
+    "Pore pressures by points in the plane, in space by x and height for every y: `raster`, or `x`, `y` and \
+     `rows`. Less than none counts as none.",
     quantity(Stress, Any)
 }
 

@@ -169,11 +169,21 @@ impl<T: Read> Read for NamedTables<T> {
     }
 }
 
+/// A name that was found wrong: none that can be written.
+const UNKNOWN: &str = "?";
+
+impl At<String> {
+    /// The name, if it was found right.
+    pub fn known(&self) -> Option<String> {
+        (self.value != UNKNOWN).then(|| self.value.clone())
+    }
+}
+
 /// A name in a table; a question mark where it was found wrong, so that what is beside it is looked at.
 pub(crate) fn name_in(table: &Node, key: &str) -> Result<At<String>, Wrong> {
     let node = table.get(key).unwrap_or(table);
     Ok(At {
-        value: node.text().unwrap_or("?").to_owned(),
+        value: node.text().unwrap_or(UNKNOWN).to_owned(),
         place: node.place,
         key_place: node.place,
         written: node.written,

@@ -30,7 +30,7 @@ impl Scene {
                 self.present[body] = is_there;
             }
         }
-        for change in own.materials.iter().flatten() {
+        for change in own.changes().iter().flatten() {
             let body = names.bodies.position(&change.body);
             let material = names.materials.position(&change.material);
             if let (Some(body), Some(material)) = (body, material) {

@@ -23,7 +23,7 @@ pub(crate) fn solid(own: &At<Body>, problems: &mut Problems) -> Option<Solid> {
     let who = Who { name, taken: None };
     let whole = own.shape.as_ref().ok();
     let whole = whole.and_then(|shape| self::shape(shape, own.place, &who, problems));
-    let minus_keys = own.minus.iter().flat_map(|minus| minus.iter());
+    let minus_keys = own.minus.iter().flatten().flat_map(|minus| minus.iter());
     let mut taken = Vec::new();
     for (own, number) in std::iter::zip(minus_keys.clone(), 1..) {
         let who = Who {

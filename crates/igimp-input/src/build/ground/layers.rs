@@ -334,7 +334,7 @@ pub(crate) fn check_stiffness(
         .iter()
         .map(|body| levels(body)[1])
         .fold(f64::MIN, f64::max);
-    let file = layers.tree.get("materials");
+    let stated = Root::<2>::materials(layers.tree).map_or_else(|_| Vec::new(), |own| own.value.0);
     for (index, material) in materials.iter().enumerate() {
         let own = bodies.iter().filter(|body| body.material == index);
         let Some(body) = own.min_by(|a, b| levels(a)[0].total_cmp(&levels(b)[0])) else {
@@ -346,9 +346,9 @@ pub(crate) fn check_stiffness(
         let weight = material.unit_weight_at(&middle, &ground);
         let young = material.young_at(&middle, &ground);
         let ratio = weight * (top - lowest) / young;
-        let place = file
-            .and_then(|file| file.get(&material.name))
-            .map(|node| node.place_at("young"));
+        let common = stated.get(index).and_then(|own| own.value.as_ref().ok());
+        let common = common.and_then(|own| own.common.as_ref().ok());
+        let place = common.map(|own| own.young.place);
         let name = clip(&material.name, 40);
         if ratio > SOFT && searches && material.strength != Strength::Elastic {
             problems

@@ -23,7 +23,7 @@ pub(crate) fn stage<const D: usize>(
     let name = about.name;
     let place = bodies(about, stated.placed(), "places", problems);
     let remove = bodies(about, stated.removed(), "removes", problems);
-    let materials = materials(about, &stated.materials, problems);
+    let materials = materials(about, stated.changes(), problems);
     let who = format!("stage `{name}` calls for");
     let water = stated.water.as_ref().map_err(|_| Wrong);
     let waters = &about.context.names.water;
@@ -156,7 +156,7 @@ fn comes_and_goes<const D: usize>(
             missing(value, body, problems);
         }
     }
-    let changes = stated.materials.iter().flatten();
+    let changes = stated.changes().iter().flatten();
     for (change, &(body, material)) in std::iter::zip(changes, &own.materials) {
         let value = &change.body;
         if own.remove.contains(&body) {
@@ -306,7 +306,7 @@ pub(crate) fn check<const D: usize>(context: &Context<'_, D>, problems: &mut Pro
     }
     let changes = |own: &keys::Construction| {
         let lists = [own.placed(), own.removed()];
-        !own.materials.is_empty() || lists.iter().any(|list| !list.is_empty())
+        !own.changes().is_empty() || lists.iter().any(|list| !list.is_empty())
     };
     let mut built = context
         .stages

@@ -4,6 +4,8 @@ use std::collections::HashMap;
 
 use igimp_model::{BodyPart, Drainage, PoreSource, Raster, Strength, WaterCondition};
 use igimp_schema::diagnostic::Problems;
+use igimp_schema::schema::Root;
+use igimp_schema::schema::materials::MaterialCommon;
 use igimp_schema::schema::stages::Stage;
 use igimp_schema::schema::water::Water;
 use igimp_schema::source::Place;
@@ -195,7 +197,7 @@ impl<const D: usize> Checker<'_, D> {
                 && is_wet(around.earth, &condition.source, part)
             {
                 self.unweighed.push(number);
-                unweighed(around.tree, number, (who, material), problems);
+                unweighed::<D>(around.tree, number, (who, material), problems);
             }
             if material.drainage != Drainage::Total {
                 continue;
@@ -226,10 +228,9 @@ impl<const D: usize> Checker<'_, D> {
             let is_wet = || own.is_none() && is_wet(around.earth, &condition.source, part);
             if has_friction && !self.told.contains(&number) && is_wet() {
                 self.told.push(number);
-                let entries = around.tree.get("materials").map_or(&[][..], Node::entries);
-                let place = entries
-                    .get(number)
-                    .map(|entry| entry.node.place_at("drainage"));
+                let place = common::<D>(around.tree, number, |own| {
+                    own.drainage.as_ref().map(|own| own.place)
+                });
                 problems
                     .error(
                         place,
@@ -246,17 +247,25 @@ impl<const D: usize> Checker<'_, D> {
     }
 }
 
+/// Where something is said that every material has.
+fn common<const D: usize>(
+    tree: &Node,
+    number: usize,
+    place: impl Fn(&MaterialCommon) -> Option<Place>,
+) -> Option<Place> {
+    let materials = Root::<D>::materials(tree).ok()?;
+    let own = materials.0.get(number)?.value.as_ref().ok()?;
+    place(own.common.as_ref().ok()?)
+}
+
 /// Says that soil weighs the same above and below the water table.
-fn unweighed(
+fn unweighed<const D: usize>(
     tree: &Node,
     number: usize,
     (who, material): (&str, &Material),
     problems: &mut Problems,
 ) {
-    let entries = tree.get("materials").map_or(&[][..], Node::entries);
-    let place = entries
-        .get(number)
-        .map(|entry| entry.node.place_at("unit_weight"));
+    let place = common::<D>(tree, number, |own| Some(own.unit_weight.place));
     problems
         .warning(
             place,
