@@ -10,14 +10,15 @@ use igimp_model::{
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::schema::bodies::Body;
 use igimp_schema::schema::{Root, stages as keys};
-use igimp_schema::tree::read::At;
-use igimp_schema::tree::{Node, Wrong};
+use igimp_schema::tree::Node;
+use igimp_schema::tree::read::{At, Found};
 
 use super::bodies::sequence::Sequence;
 use super::grid::{self, Frame};
 use super::outputs::{self, checks, curves, study};
 use super::stages::{self, construction};
 use super::{AllNames, all, materials, title_block};
+use crate::build::Thing;
 use crate::build::context::Context;
 
 /// What everything else is held against.
@@ -34,7 +35,7 @@ impl<const D: usize> GridAndBodies<D> {
     pub(super) fn new(
         tree: &Node,
         names: &AllNames,
-        (stated, stages): (&[Option<At<Body>>], &[Option<At<keys::Stage>>]),
+        (stated, stages): (&[Thing<Body>], &[Thing<keys::Stage>]),
         bodies: Vec<Option<BodyPart<D>>>,
         problems: &mut Problems,
     ) -> Self {
@@ -80,7 +81,7 @@ pub(super) fn stages_of<const D: usize>(
 
 /// Every item of a list, as far as it was found right; nothing if one was not.
 fn each<T, U>(
-    list: Result<At<Vec<Result<At<T>, Wrong>>>, Wrong>,
+    list: Found<Vec<Found<T>>>,
     mut build: impl FnMut(&At<T>) -> Option<U>,
 ) -> Option<Vec<U>> {
     let list = list.ok()?.value;

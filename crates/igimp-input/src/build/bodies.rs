@@ -22,6 +22,7 @@ use igimp_schema::tree::{Node, Wrong};
 
 use super::AllNames;
 use super::grid::{MOST, cell_place};
+use crate::build::Thing;
 use crate::geometry::edge_distance;
 use crate::geometry::{distinct, near_edge, overlap, self_crossing};
 use igimp_text::short;
@@ -61,7 +62,7 @@ impl Fill<3> for Space {
 /// The bodies, as far as each is right by itself.
 pub(super) fn bodies<A: Fill<D>, const D: usize>(
     tree: &Node,
-    (own, stages): (&[Option<At<Body>>], &[Option<At<Stage>>]),
+    (own, stages): (&[Thing<Body>], &[Thing<Stage>]),
     names: &AllNames,
     problems: &mut Problems,
 ) -> Vec<Option<BodyPart<D>>> {
@@ -78,7 +79,7 @@ pub(super) fn bodies<A: Fill<D>, const D: usize>(
         return vec![None; own.len()];
     }
     let later = placed(stages);
-    let part = |own: &Option<At<Body>>| {
+    let part = |own: &Thing<Body>| {
         let own = own.as_ref()?;
         let who = format!("body `{}` uses", clip(&own.name, 40));
         let material = own.material.as_ref().ok();
@@ -171,7 +172,7 @@ fn corners_at(
 
 /// Checks the bodies against the domain and each other.
 pub(super) fn check(
-    (tree, own): (&Node, &[Option<At<Body>>]),
+    (tree, own): (&Node, &[Thing<Body>]),
     names: &AllNames,
     (bodies, sequence): (&[Option<BodyPart<2>>], &Sequence),
     site: &Site,
@@ -257,7 +258,7 @@ pub(super) fn check(
 
 /// Warns of bodies that nothing holds from below.
 pub(super) fn check_support(
-    own: &[Option<At<Body>>],
+    own: &[Thing<Body>],
     bodies: &[Option<BodyPart<2>>],
     boundaries: Option<&Boundaries<2>>,
     site: &Site,

@@ -6,6 +6,7 @@ use igimp_schema::schema::stages::Stage;
 use igimp_schema::tree::read::At;
 use igimp_schema::tree::{Node, Wrong};
 
+use crate::build::Thing;
 use crate::build::bodies::sequence::Sequence;
 use crate::build::bodies::site::Soil;
 use crate::build::{AllNames, Site};
@@ -14,7 +15,7 @@ use crate::build::{AllNames, Site};
 pub(crate) struct Context<'a, const D: usize> {
     pub(crate) tree: &'a Node,
     /// The stages as they are stated.
-    pub(crate) stages: &'a [Option<At<Stage>>],
+    pub(crate) stages: &'a [Thing<Stage>],
     pub(crate) names: &'a AllNames,
     pub(crate) materials: &'a [Option<Material>],
     pub(crate) bodies: &'a [Option<BodyPart<D>>],

@@ -44,7 +44,7 @@ pub(super) struct Frame<const D: usize> {
 /// What a table says of each axis.
 fn by_axis<'a, T, const D: usize>(
     [x, y]: [&'a At<T>; 2],
-    z: &'a Option<At<T>>,
+    z: Option<&'a At<T>>,
 ) -> Option<[&'a At<T>; D]> {
     let all: Vec<&At<T>> = [x, y].into_iter().chain(z).take(D).collect();
     all.try_into().ok()
@@ -63,9 +63,12 @@ pub(super) fn frame<const D: usize>(
 ) -> Option<Frame<D>> {
     let cell = match &*extent.cell {
         Either::First(one) => [*one; D],
-        Either::Second(own) => by_axis([&own.x, &own.y], &own.z)?.map(|own| **own),
+        Either::Second(own) => by_axis([&own.x, &own.y], own.z.as_ref())?.map(|own| **own),
     };
-    let domain: [_; D] = by_axis([&extent.domain.x, &extent.domain.y], &extent.domain.z)?;
+    let domain: [_; D] = by_axis(
+        [&extent.domain.x, &extent.domain.y],
+        extent.domain.z.as_ref(),
+    )?;
     let (mut lower, mut upper) = ([0.0; D], [0.0; D]);
     let mut is_right = true;
     for (axis, own) in domain.into_iter().enumerate() {
@@ -112,9 +115,9 @@ pub(super) fn grid<const D: usize>(
         Fit::None => Vec::new(),
     };
     let domain = &own.domain;
-    let domain: [_; D] = by_axis([&domain.x, &domain.y], &domain.z)?;
-    let lines: [_; D] = by_axis([&wishes.lines.x, &wishes.lines.y], &wishes.lines.z)?;
-    let zones: [_; D] = by_axis([&wishes.zones.x, &wishes.zones.y], &wishes.zones.z)?;
+    let domain: [_; D] = by_axis([&domain.x, &domain.y], domain.z.as_ref())?;
+    let lines: [_; D] = by_axis([&wishes.lines.x, &wishes.lines.y], wishes.lines.z.as_ref())?;
+    let zones: [_; D] = by_axis([&wishes.zones.x, &wishes.zones.y], wishes.zones.z.as_ref())?;
     let found: [Option<AxisSpec>; D] = std::array::from_fn(|axis| {
         let key = DIRECTIONS[axis];
         if cell[axis] < 1e-9 * lower[axis].abs().max(upper[axis].abs()) {

@@ -11,12 +11,12 @@ use igimp_schema::schema::loads::{
 };
 use igimp_schema::source::Place;
 use igimp_schema::text::{clip, number, point};
-use igimp_schema::tree::read::At;
 use igimp_schema::tree::{Node, Wrong};
 
 use super::bodies::site::{Site, Soil};
 use super::grid::Frame;
 use super::things;
+use crate::build::Thing;
 use crate::geometry::cover;
 
 /// What loads ask of the soil that bears them.
@@ -53,7 +53,7 @@ pub(super) fn loads<const D: usize>(
     problems: &mut Problems,
 ) -> Vec<Option<Load<D>>> {
     let mut has_footing = false;
-    let load = |own: Option<At<keys::Load<D>>>| {
+    let load = |own: Thing<keys::Load<D>>| {
         let own = own?;
         let name = own.name.as_str();
         let kind = match &*own.form {
@@ -62,7 +62,7 @@ pub(super) fn loads<const D: usize>(
             LoadForm::Patch(patch) => {
                 soil.patch(patch, (name, own.place, own.form.place), problems)
             }
-            LoadForm::Point(own) => at_point(own.as_ref().ok()?, name, soil, problems),
+            LoadForm::Point(own) => Some(at_point(own.as_ref().ok()?, name, soil, problems)),
         }?;
         if let LoadKind::RigidFooting { .. } = kind
             && std::mem::replace(&mut has_footing, true)
@@ -369,7 +369,7 @@ fn at_point<const D: usize>(
     name: &str,
     soil: &impl Soil<D>,
     problems: &mut Problems,
-) -> Option<LoadKind<D>> {
+) -> LoadKind<D> {
     let (at, force) = (*own.at, *own.force);
     if soil.is_known() && !soil.holds_point(&at, 1e-2 * soil.cell()) {
         problems
@@ -383,5 +383,5 @@ fn at_point<const D: usize>(
             )
             .help("move the load onto a body");
     }
-    Some(LoadKind::Point { at, force })
+    LoadKind::Point { at, force }
 }

@@ -24,7 +24,7 @@ use igimp_schema::diagnostic::Problems;
 use igimp_schema::names::Names;
 use igimp_schema::schema::stages::StageForm;
 use igimp_schema::schema::{Analysis, CaseHead, FORMAT, Root};
-use igimp_schema::tree::read::At;
+use igimp_schema::tree::read::{At, Found};
 use igimp_schema::tree::{Node, Wrong};
 
 use crate::build::grid::boundaries;
@@ -179,8 +179,11 @@ fn title_block(case: &CaseHead) -> TitleBlock {
     }
 }
 
+/// An item of a list, if it was found right.
+type Thing<T> = Option<At<T>>;
+
 /// The items of a list, as far as each was found right.
-fn things<T>(list: Result<At<Vec<Result<At<T>, Wrong>>>, Wrong>) -> Vec<Option<At<T>>> {
+fn things<T>(list: Found<Vec<Found<T>>>) -> Vec<Thing<T>> {
     let items = list.map_or_else(|Wrong| Vec::new(), |list| list.value);
     items.into_iter().map(Result::ok).collect()
 }

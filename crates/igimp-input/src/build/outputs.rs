@@ -189,7 +189,7 @@ fn section_reference<const D: usize>(
         tolerance: own.tolerance.as_ref(),
         place: own.place,
     };
-    let reference = curves::reference(stated, about.file, problems);
+    let reference = curves::reference(&stated, about.file, problems);
     Some(SectionReference {
         of,
         stage: stage.ok()?,

@@ -14,6 +14,7 @@ use igimp_schema::tree::read::At;
 
 use super::bodies::site::{Site, Soil};
 use super::{AllNames, things};
+use crate::build::Thing;
 use crate::build::context::About;
 
 /// Places along a member at which soil is looked for.
@@ -34,11 +35,11 @@ pub(super) trait Holding<const D: usize>: Soil<D> {
 pub(super) fn members<const D: usize>(
     tree: &Node,
     soil: &impl Holding<D>,
-    stages: &[Option<At<Stage>>],
+    stages: &[Thing<Stage>],
     problems: &mut Problems,
 ) -> Vec<Option<ReinforcementPart<D>>> {
     let all = things(Root::<D>::reinforcement(tree));
-    let member = |own: Option<At<Member<D>>>| {
+    let member = |own: Thing<Member<D>>| {
         let own = own?;
         if soil.refuses(&own, problems) {
             return None;
@@ -124,7 +125,7 @@ fn stated<const D: usize>(form: &MemberForm<D>) -> Option<Stated<'_, D>> {
 fn part<const D: usize>(
     own: &Member<D>,
     soil: &impl Soil<D>,
-    stages: &[Option<At<Stage>>],
+    stages: &[Thing<Stage>],
     problems: &mut Problems,
 ) -> Option<(ReinforcementPart<D>, f64)> {
     let name = own.name.as_str();
@@ -183,7 +184,7 @@ fn part<const D: usize>(
 }
 
 /// Everything that stages install.
-fn all_installed(stages: &[Option<At<Stage>>]) -> impl Iterator<Item = &At<String>> {
+fn all_installed(stages: &[Thing<Stage>]) -> impl Iterator<Item = &At<String>> {
     stages.iter().flatten().flat_map(|own| own.installs())
 }
 
@@ -347,11 +348,7 @@ pub(super) fn installs<const D: usize>(
 }
 
 /// Refuses a search that begins anew, with bodies in which a stage has installed nothing yet.
-pub(super) fn check_searches(
-    stages: &[Option<At<Stage>>],
-    names: &AllNames,
-    problems: &mut Problems,
-) {
+pub(super) fn check_searches(stages: &[Thing<Stage>], names: &AllNames, problems: &mut Problems) {
     let mut named = all_installed(stages);
     let Some(first) = named.find(|name| names.reinforcement.position(name).is_some()) else {
         return;

@@ -17,6 +17,7 @@ use igimp_schema::tree::read::{At, Either};
 
 use super::grid::Frame;
 use super::things;
+use crate::build::Thing;
 
 /// A body is at least so many cells thick.
 const LEAST_CELLS: f64 = 2.0;
@@ -61,7 +62,7 @@ pub(super) fn rigid<const D: usize>(
     problems: &mut Problems,
 ) -> Vec<Option<RigidPart<D>>> {
     let all = things(Root::<D>::rigid(tree));
-    let part = |own: &Option<At<RigidBody<D>>>| {
+    let part = |own: &Thing<RigidBody<D>>| {
         let own = own.as_ref()?;
         let basis = room.basis(own, problems);
         let part = part_of(own, basis, (room.frame(), materials), problems)?;
@@ -320,7 +321,7 @@ fn in_grid<const D: usize>(
 
 /// Refuses a second thing that the grid would follow.
 fn follow_once<const D: usize>(
-    bodies: &[Option<At<RigidBody<D>>>],
+    bodies: &[Thing<RigidBody<D>>],
     (mut is_taken, help): (bool, &str),
     problems: &mut Problems,
 ) {

@@ -12,7 +12,6 @@ use igimp_schema::schema::loads::LoadForm;
 use igimp_schema::schema::stages::{Stage, StageForm};
 use igimp_schema::text::{clip, count, number, point};
 use igimp_schema::tree::Node;
-use igimp_schema::tree::read::At;
 
 use super::assemble::{self, GridAndBodies, Surroundings};
 use super::bodies;
@@ -21,6 +20,7 @@ use super::bodies::site::Soil;
 use super::bodies::solids;
 use super::grid::{Frame, boundaries, cell_place};
 use super::{AllNames, loads, reinforcement, rigid, things, water};
+use crate::build::Thing;
 use crate::build::bodies::site::Solids;
 use crate::build::context::Context;
 
@@ -164,7 +164,7 @@ fn refuse_what_is_of_the_plane(tree: &Node, problems: &mut Problems) {
 
 /// Checks the bodies against the domain and each other.
 fn check_bodies(
-    (tree, own): (&Node, &[Option<At<Body>>]),
+    (tree, own): (&Node, &[Thing<Body>]),
     frame: Option<&Frame<3>>,
     (bodies, sequence): (&[Option<BodyPart<3>>], &Sequence),
     soil: &Solids,
@@ -231,7 +231,7 @@ fn check_bodies(
 
 /// Refuses stresses of level ground in ground that is not level.
 fn check_level(
-    stages: &[Option<At<Stage>>],
+    stages: &[Thing<Stage>],
     (bodies, materials): (&[Option<BodyPart<3>>], &[Option<Material>]),
     soil: &Solids,
     problems: &mut Problems,

@@ -17,6 +17,7 @@ use super::bodies::surfaces::terrain;
 use super::ground::{Earth, Surface, UprightFace};
 use super::materials::profiles::{Points, points};
 use super::{AllNames, gravity};
+use crate::build::Thing;
 
 /// What conditions of the water are held against.
 pub(super) struct Around<'a, const D: usize> {
@@ -27,9 +28,9 @@ pub(super) struct Around<'a, const D: usize> {
     pub(super) materials: &'a [Option<Material>],
     pub(super) sequence: &'a Sequence,
     /// The conditions as they are stated.
-    pub(super) own: &'a [Option<At<Water>>],
+    pub(super) own: &'a [Thing<Water>],
     /// The stages as they are stated.
-    pub(super) stages: &'a [Option<At<Stage>>],
+    pub(super) stages: &'a [Thing<Stage>],
     /// Whether there are rigid bodies.
     pub(super) has_rigid: bool,
 }
@@ -90,7 +91,7 @@ fn condition<const D: usize>(
     );
     let source = match form {
         Some(Form::Drawdown) => drawdown(around, index, own, &who, problems),
-        Some(form) => source_of(form, &who, problems),
+        Some(form) => source_of(&form, &who, problems),
         None => None,
     };
     let mut bodies: Vec<(usize, PoreSource)> = Vec::new();
@@ -107,7 +108,7 @@ fn condition<const D: usize>(
             (own.place, &who, OWN_FORMS),
             problems,
         );
-        let own_source = form.and_then(|form| source_of(form, &who, problems));
+        let own_source = form.and_then(|form| source_of(&form, &who, problems));
         let (Some(body), Some(own_source)) = (body, own_source) else {
             is_right = false;
             continue;
@@ -186,9 +187,9 @@ fn form<'a>(
 }
 
 /// The source that is stated.
-fn source_of(form: Form<'_>, who: &str, problems: &mut Problems) -> Option<PoreSource> {
+fn source_of(form: &Form<'_>, who: &str, problems: &mut Problems) -> Option<PoreSource> {
     Some(match form {
-        Form::Level(level) => PoreSource::Table(vec![[0.0, **level]]),
+        Form::Level(level) => PoreSource::Table(vec![[0.0, ***level]]),
         Form::Line(line) => {
             let points: Vec<_> = line.iter().map(|own| **own).collect();
             if let Some(k) = (1..points.len()).find(|&k| points[k][0] <= points[k - 1][0]) {
@@ -208,7 +209,7 @@ fn source_of(form: Form<'_>, who: &str, problems: &mut Problems) -> Option<PoreS
         }
         Form::Surface(own) => PoreSource::Surface(terrain(own, own.place, &who, problems)?),
         Form::Ratio(own) => {
-            let ratio = **own;
+            let ratio = ***own;
             if !(0.0..=1.0).contains(&ratio) {
                 problems
                     .error(

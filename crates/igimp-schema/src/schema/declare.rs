@@ -151,7 +151,7 @@ macro_rules! variants {
                 };
                 Ok(Self {
                     $(name: { let _ = $example; At::read(node.get("name").ok_or($crate::tree::Wrong)?)? },)?
-                    $(name: { let _ = $apart; $crate::tree::read::name_in(node, "name")? },)?
+                    $(name: { let _ = $apart; $crate::tree::read::name_in(node, "name") },)?
                     form: At { value: form, place: tag.place, key_place: tag.place, written: tag.written },
                     $(common: <$common>::read(node),)?
                 })

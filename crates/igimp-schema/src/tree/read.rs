@@ -18,6 +18,9 @@ pub struct At<T> {
     pub written: bool,
 }
 
+/// A value, if it was found right.
+pub type Found<T> = Result<At<T>, Wrong>;
+
 impl<T> Deref for At<T> {
     type Target = T;
 
@@ -180,14 +183,14 @@ impl At<String> {
 }
 
 /// A name in a table; a question mark where it was found wrong, so that what is beside it is looked at.
-pub(crate) fn name_in(table: &Node, key: &str) -> Result<At<String>, Wrong> {
+pub(crate) fn name_in(table: &Node, key: &str) -> At<String> {
     let node = table.get(key).unwrap_or(table);
-    Ok(At {
+    At {
         value: node.text().unwrap_or(UNKNOWN).to_owned(),
         place: node.place,
         key_place: node.place,
         written: node.written,
-    })
+    }
 }
 
 /// Whether a value is a table.

@@ -7,9 +7,9 @@ use std::rc::Rc;
 use igimp_model::BodyPart;
 use igimp_schema::schema::bodies::Body;
 use igimp_schema::schema::stages::{Construction, Stage};
-use igimp_schema::tree::read::At;
 
 use crate::build::AllNames;
+use crate::build::Thing;
 
 /// What is there at a time.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -56,13 +56,13 @@ pub(crate) struct Sequence {
 
 impl Sequence {
     pub(crate) fn new<const D: usize>(
-        (own, stages): (&[Option<At<Body>>], &[Option<At<Stage>>]),
+        (own, stages): (&[Thing<Body>], &[Thing<Stage>]),
         has_water: bool,
         names: &AllNames,
         bodies: &[Option<BodyPart<D>>],
     ) -> Self {
         let later = placed(stages);
-        let is_there = |own: &Option<At<Body>>| {
+        let is_there = |own: &Thing<Body>| {
             (own.as_ref()).is_none_or(|own| !later.contains(&own.name.as_str()))
         };
         let start = Scene {
@@ -125,7 +125,7 @@ impl Sequence {
 }
 
 /// Names of the bodies that construction stages place.
-pub(crate) fn placed(stages: &[Option<At<Stage>>]) -> Vec<&str> {
+pub(crate) fn placed(stages: &[Thing<Stage>]) -> Vec<&str> {
     let stages = stages.iter().flatten();
     stages
         .filter_map(|own| own.construction())

@@ -11,8 +11,7 @@ use igimp_schema::diagnostic::Problems;
 use igimp_schema::schema::solids::{Surface, Terrain};
 use igimp_schema::source::Place;
 use igimp_schema::text::number;
-use igimp_schema::tree::Wrong;
-use igimp_schema::tree::read::{At, Either};
+use igimp_schema::tree::read::{At, Either, Found};
 
 use crate::build::bodies::{Polygon, corners};
 
@@ -69,7 +68,7 @@ pub(crate) fn closed_surface(
 /// A polygon in plan between two heights.
 pub(crate) fn ground(
     plan: &At<Polygon>,
-    between: &At<[Result<At<Either<f64, Terrain>>, Wrong>; 2]>,
+    between: &At<[Found<Either<f64, Terrain>>; 2]>,
     who: &Who<'_>,
     problems: &mut Problems,
 ) -> Option<Solid> {

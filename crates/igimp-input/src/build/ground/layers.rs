@@ -10,9 +10,9 @@ use igimp_schema::schema::grid::{Fit, MixedCells};
 use igimp_schema::source::Place;
 use igimp_schema::text::{clip, number, point};
 use igimp_schema::tree::Node;
-use igimp_schema::tree::read::At;
 use igimp_text::short;
 
+use crate::build::Thing;
 use crate::build::bodies::polygon_place;
 use crate::build::bodies::sequence::Sequence;
 use crate::build::bodies::site::Site;
@@ -35,7 +35,7 @@ pub(crate) struct Layers<'a> {
     /// The file.
     pub(crate) tree: &'a Node,
     /// Its bodies as they are stated.
-    pub(crate) own: &'a [Option<At<Body>>],
+    pub(crate) own: &'a [Thing<Body>],
     /// Its bodies.
     pub(crate) bodies: &'a [Option<BodyPart<2>>],
     /// Its materials.

@@ -439,11 +439,14 @@ fn numbers(list: Option<&Node>) -> Result<Vec<f64>, Wrong> {
 /// Soil this far beyond a raster has what its edge has, in spacings of its lines \[-\].
 const BEYOND: f64 = 0.5 + 1e-9;
 
+/// A list of numbers.
+type Numbers = Vec<At<f64>>;
+
 /// Values by points in the plane, as they are stated.
 pub(crate) struct Points<'a> {
-    pub(crate) x: Option<&'a At<Vec<At<f64>>>>,
-    pub(crate) y: Option<&'a At<Vec<At<f64>>>>,
-    pub(crate) rows: Option<&'a At<Vec<At<Vec<At<f64>>>>>>,
+    pub(crate) x: Option<&'a At<Numbers>>,
+    pub(crate) y: Option<&'a At<Numbers>>,
+    pub(crate) rows: Option<&'a At<Vec<At<Numbers>>>>,
     pub(crate) place: Place,
 }
 

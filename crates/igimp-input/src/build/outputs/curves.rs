@@ -7,8 +7,7 @@ use igimp_schema::diagnostic::Problems;
 use igimp_schema::schema::outputs as keys;
 use igimp_schema::source::Place;
 use igimp_schema::text::clip;
-use igimp_schema::tree::Wrong;
-use igimp_schema::tree::read::At;
+use igimp_schema::tree::read::{At, Found};
 
 use super::quantities::{divisor, quantity};
 use crate::build::AllNames;
@@ -25,8 +24,7 @@ pub(crate) fn curve<const D: usize>(
     file: &Path,
     problems: &mut Problems,
 ) -> Option<Curve> {
-    let mut axis =
-        |own: &Result<At<keys::CurveAxis>, Wrong>| axis(own.as_ref().ok()?, names, loads, problems);
+    let mut axis = |own: &Found<keys::CurveAxis>| axis(own.as_ref().ok()?, names, loads, problems);
     let (x, y) = (axis(&own.x), axis(&own.y));
     let who = format!("curve `{}` records", clip(&own.name, 40));
     let stage = names
@@ -43,7 +41,7 @@ pub(crate) fn curve<const D: usize>(
             tolerance: own.tolerance.as_ref(),
             place: own.place,
         };
-        Some(self::reference(stated, file, problems))
+        Some(self::reference(&stated, file, problems))
     });
     Some(Curve {
         name: own.name.value.clone(),
@@ -93,7 +91,7 @@ pub(crate) struct Stated<'a> {
 
 /// A reference for a curve, or for a field along a section.
 pub(crate) fn reference(
-    own: Stated<'_>,
+    own: &Stated<'_>,
     file: &Path,
     problems: &mut Problems,
 ) -> Option<Reference> {

@@ -11,6 +11,7 @@ use igimp_schema::text::{clip, point};
 use igimp_schema::tree::read::At;
 
 use super::{Basis, Room, Sides};
+use crate::build::Thing;
 use crate::build::bodies::sequence::Sequence;
 use crate::build::bodies::site::Site;
 use crate::build::grid::Frame;
@@ -23,7 +24,7 @@ const POINTS_OF_CIRCLE: usize = 90;
 pub(crate) struct Around<'a> {
     pub(crate) site: &'a Site,
     pub(crate) loads: &'a [Option<Load<2>>],
-    pub(crate) stages: &'a [Option<At<Stage>>],
+    pub(crate) stages: &'a [Thing<Stage>],
     pub(crate) sequence: &'a Sequence,
 }
 
@@ -208,7 +209,7 @@ fn beside_soil(
 ) {
     let Around { site, sequence, .. } = around;
     let outline = part.outline(POINTS_OF_CIRCLE);
-    let names = |stage: &Option<At<Stage>>| {
+    let names = |stage: &Thing<Stage>| {
         let mut moved = stage.iter().flat_map(|stage| stage.moves()).flatten();
         moved.any(|own| own.body.value == part.name)
     };

@@ -9,6 +9,7 @@ use igimp_schema::tree::Wrong;
 use igimp_schema::tree::read::At;
 
 use crate::build::AllNames;
+use crate::build::Thing;
 use crate::build::context::About;
 
 /// A stage that moves rigid bodies.
@@ -116,8 +117,8 @@ fn drives<const D: usize>(
 
 /// Warns of rigid bodies that never come in.
 pub(crate) fn check_use<const D: usize>(
-    bodies: &[Option<At<RigidBody<D>>>],
-    stages: &[Option<At<Stage>>],
+    bodies: &[Thing<RigidBody<D>>],
+    stages: &[Thing<Stage>],
     names: &AllNames,
     problems: &mut Problems,
 ) {
@@ -131,7 +132,7 @@ pub(crate) fn check_use<const D: usize>(
         Ok(own) => names.rigid.position(&own.body).is_none(),
         Err(Wrong) => true,
     };
-    if moved.iter().any(|own| is_slip(own)) {
+    if moved.iter().any(is_slip) {
         return;
     }
     for own in bodies.iter().flatten() {

@@ -14,6 +14,7 @@ use igimp_schema::tree::Node;
 use igimp_schema::tree::read::At;
 
 use super::Around;
+use crate::build::Thing;
 use crate::build::bodies::sequence::Scene;
 use crate::build::ground::{Above, Earth, Surface, UprightFace};
 use crate::build::materials::profiles::reach;
@@ -318,7 +319,7 @@ fn points<const D: usize>(
 }
 
 /// Where a condition is told wrong, and when.
-fn when(stage: Option<&Option<At<Stage>>>, own: &At<Water>) -> (Place, String) {
+fn when(stage: Option<&Thing<Stage>>, own: &At<Water>) -> (Place, String) {
     let stated = [
         own.tables.line.as_ref().map(|own| own.place),
         own.tables.level.as_ref().map(|own| own.place),
