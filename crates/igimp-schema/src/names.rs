@@ -35,35 +35,6 @@ pub fn check_name(name: &str, place: Place, problems: &mut Problems) -> bool {
     false
 }
 
-/// A value that names something.
-pub trait Mention {
-    /// The name, if it is one.
-    fn name(&self) -> Option<&str>;
-
-    /// Where it stands.
-    fn place(&self) -> Place;
-}
-
-impl Mention for Node {
-    fn name(&self) -> Option<&str> {
-        self.text()
-    }
-
-    fn place(&self) -> Place {
-        self.place
-    }
-}
-
-impl Mention for At<String> {
-    fn name(&self) -> Option<&str> {
-        Some(self)
-    }
-
-    fn place(&self) -> Place {
-        self.place
-    }
-}
-
 /// The names of one kind of thing, by index.
 #[derive(Debug)]
 pub struct Names {
@@ -148,7 +119,7 @@ impl Names {
     /// [`Wrong`] when the table has the key and its value names nothing; the problem is reported.
     pub fn find_optional(
         &self,
-        value: Option<&impl Mention>,
+        value: Option<&At<String>>,
         who: &str,
         problems: &mut Problems,
     ) -> Result<Option<usize>, Wrong> {
@@ -159,8 +130,8 @@ impl Names {
     }
 
     /// The index that a value names; reports, in the name of `who`, when there is none.
-    pub fn find(&self, value: &impl Mention, who: &str, problems: &mut Problems) -> Option<usize> {
-        let (name, place) = (value.name()?, value.place());
+    pub fn find(&self, value: &At<String>, who: &str, problems: &mut Problems) -> Option<usize> {
+        let (name, place) = (value.as_str(), value.place);
         if let Some(index) = self.position(name) {
             return Some(index);
         }

@@ -4,9 +4,10 @@ pub(crate) mod checks;
 
 use igimp_model::{BodyPart, Material, PoreSource, WaterCondition};
 use igimp_schema::diagnostic::Problems;
+use igimp_schema::schema::materials::Points;
 use igimp_schema::schema::solids::Terrain;
 use igimp_schema::schema::stages::Stage;
-use igimp_schema::schema::water::{PorePressures, Water, WaterPressures, WaterTables};
+use igimp_schema::schema::water::{Water, WaterPressures, WaterTables};
 use igimp_schema::source::Place;
 use igimp_schema::text::{clip, number};
 use igimp_schema::tree::Node;
@@ -15,7 +16,7 @@ use igimp_schema::tree::read::At;
 use super::bodies::sequence::{Scene, Sequence};
 use super::bodies::surfaces::terrain;
 use super::ground::{Earth, Surface, UprightFace};
-use super::materials::profiles::{Points, points};
+use super::materials::profiles::points;
 use super::{AllNames, gravity};
 use crate::build::Thing;
 
@@ -133,7 +134,7 @@ enum Form<'a> {
     Line(&'a At<Vec<At<[f64; 2]>>>),
     Surface(&'a At<Terrain>),
     Ratio(&'a At<f64>),
-    Points(&'a At<PorePressures>),
+    Points(&'a At<Points>),
     Dry,
     Drawdown,
 }
@@ -226,15 +227,7 @@ fn source_of(form: &Form<'_>, who: &str, problems: &mut Problems) -> Option<Pore
             }
             PoreSource::Ratio(ratio)
         }
-        Form::Points(own) => {
-            let stated = Points {
-                x: own.x.as_ref(),
-                y: own.y.as_ref(),
-                rows: own.rows.as_ref(),
-                place: own.place,
-            };
-            PoreSource::Points(points(&stated, "u", problems).ok()?)
-        }
+        Form::Points(own) => PoreSource::Points(points(own, own.place, "u", problems).ok()?),
         Form::Dry | Form::Drawdown => PoreSource::Dry,
     })
 }

@@ -1,19 +1,21 @@
 //! The form in which tables are declared: once, and the schema, the type and its reading follow.
 //!
-//! A key is a line `key: kind, presence value, meaning;`. Its kind ([`kind`]) says at once what may be written and which
-//! type the value has ([`rust_type`]); its presence is one of the functions of [`crate::spec`]. A key that one analysis
-//! knows has `, in_plane` or `, in_space` behind it, and one that both know differently has kind, presence, value and meaning
-//! of plane strain, `in_plane`, and those of space, `in_space`. `name as "key"` gives a field another name than its key;
-//! A table is read as a whole, or not at all where a value was found wrong; `each` item of a list, and what stands `apart`, is
-//! read by itself; a `name_apart` that was found wrong is read as a question mark. `name: part(TABLE: Type)` takes in the keys of another table; a `group` of them is read by itself, and
-//! `group_in_space` makes them keys of space.
+//! A key is a line `key: kind, presence value, meaning;`. Its kind (`kind!`) says at once what may be written and which
+//! type the value has (`rust_type!`); its presence is one of the functions of [`crate::spec`]. A key that one analysis
+//! knows has `, in_plane` or `, in_space` behind it, and one that both know differently has kind, presence, value and
+//! meaning of plane strain, `in_plane`, and those of space, `in_space`. `name as "key"` gives a field another name than its
+//! key.
+//!
+//! A table is read as a whole, or not at all where a value was found wrong. `each` item of a list is read by itself, and so is
+//! what stands `apart`; a `name_apart` that was found wrong is read as a question mark. `name: part(TABLE: Type)` takes in the
+//! keys of another table; a `group` of them is read by itself, and `group_in_space` makes them keys of space.
 
 use crate::spec::{Field, Kind, in_space, optional};
 
-/// Declares a table: its schema, its type, a function for every key, and the reading of the whole.
-macro_rules! table {
+/// Declares the schema of a table whose type another table has.
+macro_rules! schema {
     (
-        $schema:ident: $name:ident $(<$d:ident>)?, $doc:literal;
+        $schema:ident, $doc:literal;
         $(
             $field:ident $(as $key:literal)?: $kind:ident $(($($args:tt)*))?
             $(, $presence:ident $value:literal, $meaning:literal $(, $scope:ident
@@ -35,6 +37,30 @@ macro_rules! table {
                 $crate::schema::declare::joined(PIECES);
             $crate::spec::Struct { doc: $doc, fields: &FIELDS }
         };
+    };
+}
+
+/// Declares a table: its schema, its type, a function for every key, and the reading of the whole.
+macro_rules! table {
+    (
+        $schema:ident: $name:ident $(<$d:ident>)?, $doc:literal;
+        $(
+            $field:ident $(as $key:literal)?: $kind:ident $(($($args:tt)*))?
+            $(, $presence:ident $value:literal, $meaning:literal $(, $scope:ident
+                $(, $other:ident $(($($other_args:tt)*))?,
+                    $other_presence:ident $other_value:literal, $other_meaning:literal, $other_scope:ident)?
+            )?)?;
+        )*
+    ) => {
+        $crate::schema::declare::schema! {
+            $schema, $doc;
+            $(
+                $field $(as $key)?: $kind $(($($args)*))?
+                $(, $presence $value, $meaning $(, $scope
+                    $(, $other $(($($other_args)*))?, $other_presence $other_value, $other_meaning, $other_scope)?
+                )?)?;
+            )*
+        }
 
         #[doc = $doc]
         #[derive(Clone, Debug)]
@@ -359,7 +385,7 @@ macro_rules! read {
     };
 }
 
-pub(crate) use {choices, field_type, key, kind, pieces, read, rust_type, table, variants};
+pub(crate) use {choices, field_type, key, kind, pieces, read, rust_type, schema, table, variants};
 
 /// What arrays of fields are filled from.
 const BLANK: Field = optional("", Kind::Flag, "", "");

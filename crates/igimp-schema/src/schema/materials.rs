@@ -1,7 +1,7 @@
 //! Materials.
 
 use super::MANY;
-use super::declare::{choices, table, variants};
+use super::declare::{choices, schema, table, variants};
 
 /// What books call a field, and its keys here: of these the one that the material has is meant.
 pub static SYMBOLS: [(&str, &[&str]); 22] = [
@@ -54,19 +54,19 @@ table! {
 
 table! {
     UNDRAINED: Undrained, "Strength by total stress.";
-    cu: either(quantity(Stress, Positive), table(STRENGTH_PROFILE: StrengthProfile)), required "\"50 kPa\"",
+    cu: apart(either(quantity(Stress, Positive), table(STRENGTH_PROFILE: StrengthProfile))), required "\"50 kPa\"",
         "undrained shear strength in plane strain";
 }
 
 table! {
     MOHR_COULOMB: MohrCoulomb, "Elastic and perfectly plastic, Mohr-Coulomb with non-associated flow.";
-    cohesion: either(quantity(Stress, NotNegative), table(STRESS_PROFILE: StressProfile)), required "\"10 kPa\"",
+    cohesion: apart(either(quantity(Stress, NotNegative), table(STRESS_PROFILE: Profile))), required "\"10 kPa\"",
         "cohesion c";
-    friction: either(quantity(Angle, NotNegative), table(FRICTION_PROFILE: FrictionProfile)), required "\"20 deg\"",
+    friction: apart(either(quantity(Angle, NotNegative), table(FRICTION_PROFILE: Rows))), required "\"20 deg\"",
         "friction angle, below 90 deg";
-    dilation: quantity(Angle, NotNegative), default "\"0 deg\"", "dilation angle, nowhere above the friction angle";
-    flow: choice(Flow), default "\"dilation\"", "how plastic flow follows from the angle of dilation";
-    tension_cutoff: quantity(Stress, NotNegative), optional "the apex of the cone limits tension",
+    dilation: apart(quantity(Angle, NotNegative)), default "\"0 deg\"", "dilation angle, nowhere above the friction angle";
+    flow: apart(choice(Flow)), default "\"dilation\"", "how plastic flow follows from the angle of dilation";
+    tension_cutoff: apart(quantity(Stress, NotNegative)), optional "the apex of the cone limits tension",
         "largest tensile stress; zero or missing where cohesion varies";
 }
 
@@ -80,20 +80,20 @@ choices! {
 
 table! {
     MATERIAL_COMMON: MaterialCommon, "Keys of every material.";
-    unit_weight: either(quantity(UnitWeight, NotNegative), table(UNIT_WEIGHT_PROFILE: UnitWeightProfile)),
+    unit_weight: apart(either(quantity(UnitWeight, NotNegative), table(UNIT_WEIGHT_PROFILE: Profile))),
         required "\"18 kN/m3\"", "unit weight";
-    young: either(quantity(Stress, Positive), table(STRESS_PROFILE: StressProfile)), required "\"20 MPa\"",
+    young: apart(either(quantity(Stress, Positive), table(STRESS_PROFILE: Profile))), required "\"20 MPa\"",
         "Young's modulus";
-    poisson: number(NotNegative), required "0.3", "Poisson's ratio, below 0.5";
-    k0: either(number(NotNegative), choice(Jaky)), optional "an elastic material takes poisson / (1 - poisson)",
+    poisson: apart(number(NotNegative)), required "0.3", "Poisson's ratio, below 0.5";
+    k0: apart(either(number(NotNegative), choice(Jaky))), optional "an elastic material takes poisson / (1 - poisson)",
         "coefficient of earth pressure at rest, for stages of type k0";
-    saturated_unit_weight: quantity(UnitWeight, Positive), optional "as above the water table",
+    saturated_unit_weight: apart(quantity(UnitWeight, Positive)), optional "as above the water table",
         "unit weight below a water table, water included";
-    drainage: choice(Drainage), derived "\"total\" with `cu`, \"drained\" otherwise",
+    drainage: apart(choice(Drainage)), derived "\"total\" with `cu`, \"drained\" otherwise",
         "what it does with the water in its pores";
-    undrained_poisson: number(Share), optional "0.495 where `drainage` is undrained and `pore_water` is not given",
+    undrained_poisson: apart(number(Share)), optional "0.495 where `drainage` is undrained and `pore_water` is not given",
         "Poisson's ratio of undrained soil with its water, above `poisson`";
-    pore_water: quantity(Stress, Positive), optional "`undrained_poisson` says it",
+    pore_water: apart(quantity(Stress, Positive)), optional "`undrained_poisson` says it",
         "bulk modulus of the water over the porosity, K_w/n, of undrained soil";
 }
 
@@ -113,9 +113,9 @@ choices! {
 
 /// Declares the keys of values by points in the plane.
 macro_rules! points {
-    ($schema:ident: $name:ident, $doc:literal, $kind:ident $args:tt) => {
-        table! {
-            $schema: $name, $doc;
+    ($declare:ident $schema:ident $(: $name:ident)?, $doc:literal, $kind:ident $args:tt) => {
+        $declare! {
+            $schema $(: $name)?, $doc;
             raster: text, optional "it does not come from a file",
                 "a CSV file with the columns x, y and value on a rectangular grid of points; its path from the case file";
             unit: text, optional "the header of the file says it, as in `cu [kPa]`",
@@ -134,9 +134,9 @@ pub(crate) use points;
 
 /// Declares the keys of values over levels or depths.
 macro_rules! rows {
-    ($schema:ident: $name:ident, $doc:literal, $kind:ident $args:tt) => {
-        table! {
-            $schema: $name, $doc;
+    ($declare:ident $schema:ident $(: $name:ident)?, $doc:literal, $kind:ident $args:tt) => {
+        $declare! {
+            $schema $(: $name)?, $doc;
             levels: list(length, 2, MANY), optional "another form is given",
                 "levels y, all upwards or all downwards";
             depths: list(length, 2, MANY), optional "another form is given",
@@ -149,9 +149,9 @@ macro_rules! rows {
 
 /// Declares the keys of values that grow with depth.
 macro_rules! growth {
-    ($schema:ident: $name:ident, $of:ident, $gradient:ident) => {
-        table! {
-            $schema: $name, "Growth with depth.";
+    ($declare:ident $schema:ident $(: $name:ident)?, $of:ident, $gradient:ident) => {
+        $declare! {
+            $schema $(: $name)?, "Growth with depth.";
             at_surface: quantity($of, NotNegative), optional "another form is given",
                 "value at the surface, the highest soil of the case on the same vertical line";
             at_top: quantity($of, NotNegative), optional "another form is given",
@@ -164,31 +164,31 @@ macro_rules! growth {
     };
 }
 
-growth! { STRESS_GROWTH: StressGrowth, Stress, StressGradient }
-rows! { STRESS_ROWS: StressRows, "Stresses over levels or depths.", quantity(Stress, NotNegative) }
-points! { STRESS_POINTS: StressPoints, "Stresses by points in the plane.", quantity(Stress, NotNegative) }
-growth! { WEIGHT_GROWTH: WeightGrowth, UnitWeight, UnitWeightGradient }
-rows! { WEIGHT_ROWS: WeightRows, "Unit weights over levels or depths.", quantity(UnitWeight, NotNegative) }
-points! { WEIGHT_POINTS: WeightPoints, "Unit weights by points in the plane.", quantity(UnitWeight, NotNegative) }
+growth! { table STRESS_GROWTH: Growth, Stress, StressGradient }
+rows! { table STRESS_ROWS: Rows, "Stresses over levels or depths.", quantity(Stress, NotNegative) }
+points! { table STRESS_POINTS: Points, "Stresses by points in the plane.", quantity(Stress, NotNegative) }
+growth! { schema WEIGHT_GROWTH, UnitWeight, UnitWeightGradient }
+rows! { schema WEIGHT_ROWS, "Unit weights over levels or depths.", quantity(UnitWeight, NotNegative) }
+points! { schema WEIGHT_POINTS, "Unit weights by points in the plane.", quantity(UnitWeight, NotNegative) }
 
 table! {
-    STRESS_PROFILE: StressProfile,
+    STRESS_PROFILE: Profile,
     "A stress that varies with the level y or with the depth below the surface: `at_top` and `gradient`, \
      `at_surface` and `gradient`, or `values` at `levels` or `depths`; or in the plane: `raster`, or `x`, `y` and `rows`. Soil carries what it has where it starts. A \
      strength may be zero somewhere, and counts as a millionth of the greatest there.";
-    growth: part(STRESS_GROWTH: StressGrowth);
-    table: part(STRESS_ROWS: StressRows);
-    points: part(STRESS_POINTS: StressPoints);
+    growth: part(STRESS_GROWTH: Growth);
+    table: part(STRESS_ROWS: Rows);
+    points: part(STRESS_POINTS: Points);
 }
 
 table! {
     STRENGTH_PROFILE: StrengthProfile,
     "An undrained strength that varies: stated like any stress that varies, or as a share of the vertical \
      effective stress of level ground, `ratio` * stress * `ocr`^`exponent`, from the weight of the soil straight above.";
-    stress: part(STRESS_PROFILE: StressProfile);
+    stress: part(STRESS_PROFILE: Profile);
     ratio: number(Positive), optional "another form is given",
         "strength of normally consolidated soil over the vertical effective stress";
-    ocr: either(number(Positive), table(OCR_PROFILE: OcrProfile)), optional "1",
+    ocr: either(number(Positive), table(OCR_PROFILE: Rows)), optional "1",
         "ratio of overconsolidation, with `ratio`";
     exponent: number(NotNegative), optional "0.8", "exponent of `ocr`, with `ratio`";
     at_least: quantity(Stress, NotNegative), optional "\"0 kPa\"", "no less strength than this, with `ratio`";
@@ -197,20 +197,20 @@ table! {
 }
 
 rows! {
-    OCR_PROFILE: OcrProfile,
+    schema OCR_PROFILE,
     "A ratio of overconsolidation that varies with the level or with the depth.", number(Positive)
 }
 
 rows! {
-    FRICTION_PROFILE: FrictionProfile,
+    schema FRICTION_PROFILE,
     "An angle of friction that varies with the level or with the depth; its tangent is linear in between.",
     quantity(Angle, NotNegative)
 }
 
-table! {
-    UNIT_WEIGHT_PROFILE: UnitWeightProfile,
+schema! {
+    UNIT_WEIGHT_PROFILE,
     "A unit weight that varies with the level or with the depth, stated alike.";
-    growth: part(WEIGHT_GROWTH: WeightGrowth);
-    table: part(WEIGHT_ROWS: WeightRows);
-    points: part(WEIGHT_POINTS: WeightPoints);
+    growth: part(WEIGHT_GROWTH: Growth);
+    table: part(WEIGHT_ROWS: Rows);
+    points: part(WEIGHT_POINTS: Points);
 }

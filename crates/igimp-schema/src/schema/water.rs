@@ -1,7 +1,7 @@
 //! Conditions of the water.
 
-use super::declare::table;
-use super::materials::points;
+use super::declare::{schema, table};
+use super::materials::{Points, points};
 use super::solids::{TERRAIN, Terrain};
 use super::{MANY, MOST_THINGS};
 
@@ -18,13 +18,13 @@ table! {
     PRESSURES: WaterPressures, "Where pore pressure comes from without a table.";
     r_u: number(Any), optional "another key says it",
         "pore pressure as a share of the weight of the ground above, from 0 to 1";
-    u: table(PORE_PRESSURES: PorePressures), optional "another key says it",
+    u: table(PORE_PRESSURES: Points), optional "another key says it",
         "pore pressure by points in the plane, as a seepage analysis gives it";
     dry: flag, optional "another key says it", "no pore pressure";
 }
 
 points! {
-    PORE_PRESSURES: PorePressures,
+    schema PORE_PRESSURES,
     "Pore pressures by points in the plane, in space by x and height for every y: `raster`, or `x`, `y` and \
      `rows`. Less than none counts as none.",
     quantity(Stress, Any)

@@ -348,7 +348,9 @@ pub(crate) fn check_stiffness(
         let ratio = weight * (top - lowest) / young;
         let common = stated.get(index).and_then(|own| own.value.as_ref().ok());
         let common = common.and_then(|own| own.common.as_ref().ok());
-        let place = common.map(|own| own.young.place);
+        let place = common
+            .and_then(|own| own.young.as_ref().ok())
+            .map(|own| own.place);
         let name = clip(&material.name, 40);
         if ratio > SOFT && searches && material.strength != Strength::Elastic {
             problems

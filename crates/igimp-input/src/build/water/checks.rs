@@ -230,7 +230,7 @@ impl<const D: usize> Checker<'_, D> {
             if has_friction && !self.told.contains(&number) && is_wet() {
                 self.told.push(number);
                 let place = common::<D>(around.tree, number, |own| {
-                    own.drainage.as_ref().map(|own| own.place)
+                    own.drainage.as_ref().ok()?.as_ref().map(|own| own.place)
                 });
                 problems
                     .error(
@@ -266,7 +266,9 @@ fn unweighed<const D: usize>(
     (who, material): (&str, &Material),
     problems: &mut Problems,
 ) {
-    let place = common::<D>(tree, number, |own| Some(own.unit_weight.place));
+    let place = common::<D>(tree, number, |own| {
+        own.unit_weight.as_ref().ok().map(|own| own.place)
+    });
     problems
         .warning(
             place,
