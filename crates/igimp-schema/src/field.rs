@@ -1,6 +1,8 @@
 //! Fields on particles, declared once: name in case files and tables, title and sign in print, unit.
 
 use crate::spec::{Choice, choice};
+use crate::tree::read::Read;
+use crate::tree::{Node, Wrong};
 
 /// What kind of number a field is: fields of a kind share an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -77,10 +79,11 @@ macro_rules! fields {
         impl Field {
             /// Every field.
             pub const ALL: &[Self] = &[$(Self::$variant,)*];
+
+            /// The fields as a case file names them.
+            pub(crate) const CHOICES: &[Choice] = &[$(choice($name, $reference),)*];
         }
 
-        /// The fields as a case file names them.
-        pub(crate) static CHOICES: [Choice; DECLARATIONS.len()] = [$(choice($name, $reference),)*];
     };
     (@titles $title:literal) => { (Some($title), $title) };
     (@titles $title:literal in_space $space:literal) => { (Some($title), $space) };
@@ -164,6 +167,12 @@ fields! {
         => "angle of friction that soil carries [rad]";
     /// Young's modulus \[Pa\].
     Young "young" Stress Own "Young's modulus E" => "Young's modulus that soil carries [Pa]";
+}
+
+impl Read for Field {
+    fn read(node: &Node) -> Result<Self, Wrong> {
+        node.text().and_then(Self::of_name).ok_or(Wrong)
+    }
 }
 
 impl Field {

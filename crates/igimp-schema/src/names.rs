@@ -7,6 +7,7 @@ use std::collections::HashMap;
 use super::diagnostic::Problems;
 use super::source::Place;
 use super::text::{clip, row};
+use super::tree::read::At;
 use super::tree::{Node, Wrong};
 use suggest::nearest;
 
@@ -118,20 +119,19 @@ impl Names {
     /// [`Wrong`] when the table has the key and its value names nothing; the problem is reported.
     pub fn find_optional(
         &self,
-        table: &Node,
-        key: &str,
+        value: Option<&At<String>>,
         who: &str,
         problems: &mut Problems,
     ) -> Result<Option<usize>, Wrong> {
-        match table.get(key) {
+        match value {
             None => Ok(None),
             Some(value) => self.find(value, who, problems).map(Some).ok_or(Wrong),
         }
     }
 
     /// The index that a value names; reports, in the name of `who`, when there is none.
-    pub fn find(&self, value: &Node, who: &str, problems: &mut Problems) -> Option<usize> {
-        let name = value.text()?;
+    pub fn find(&self, value: &At<String>, who: &str, problems: &mut Problems) -> Option<usize> {
+        let (name, place) = (value.as_str(), value.place);
         if let Some(index) = self.position(name) {
             return Some(index);
         }
@@ -141,10 +141,10 @@ impl Names {
         let (of, shown) = (self.of, clip(name, 40));
         let message = format!("{who} the {of} `{shown}`, which is not defined");
         if problems.are_many() {
-            problems.error(value.place, message);
+            problems.error(place, message);
             return None;
         }
-        let problem = problems.error(value.place, message);
+        let problem = problems.error(place, message);
         problem.help(format!("defined {}: {}", plural_of(of), row(self.known())));
         if let Some(near) = nearest(name, self.known()) {
             problem.help(format!("did you mean `{near}`?"));

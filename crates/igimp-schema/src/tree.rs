@@ -1,5 +1,7 @@
 //! A parsed case file as a tree whose every value knows its place.
 
+pub mod read;
+
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
@@ -201,7 +203,7 @@ pub fn shift(node: &mut Node, by: usize) {
 }
 
 /// Something that was found wrong, and reported.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Wrong;
 
 /// Values of keys, when the table has them and they were found right.
@@ -227,25 +229,9 @@ impl Node {
         self.get(key)?.count()
     }
 
-    /// The flag of a key.
-    pub fn flag_at(&self, key: &str) -> Option<bool> {
-        self.get(key)?.flag()
-    }
-
     /// The text of a key.
     pub fn text_at(&self, key: &str) -> Option<&str> {
         self.get(key)?.text()
-    }
-
-    /// The coordinates of a point.
-    pub fn point<const D: usize>(&self) -> Option<[f64; D]> {
-        let numbers: Option<Vec<f64>> = self.items().iter().map(Self::number).collect();
-        numbers?.try_into().ok()
-    }
-
-    /// The coordinates of the point of a key.
-    pub fn point_at<const D: usize>(&self, key: &str) -> Option<[f64; D]> {
-        self.get(key)?.point()
     }
 
     /// Two numbers.
@@ -254,11 +240,6 @@ impl Node {
             [x, y] => Some([x.number()?, y.number()?]),
             _ => None,
         }
-    }
-
-    /// The two numbers of a key.
-    pub fn pair_at(&self, key: &str) -> Option<[f64; 2]> {
-        self.get(key)?.pair()
     }
 
     /// Where the value of a key stands; the table itself when it is missing.

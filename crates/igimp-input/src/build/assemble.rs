@@ -4,17 +4,21 @@ use std::path::Path;
 
 use igimp_assembly::Method;
 use igimp_model::{
-    BodyPart, Boundaries, Case, GridSpec, Material, ReinforcementPart, RigidPart, Stage,
+    BodyPart, Boundaries, Case, GridSpec, Material, MeshStudy, ReinforcementPart, RigidPart, Stage,
     WaterCondition,
 };
 use igimp_schema::diagnostic::Problems;
+use igimp_schema::schema::bodies::Body;
+use igimp_schema::schema::{Root, stages as keys};
 use igimp_schema::tree::Node;
+use igimp_schema::tree::read::{At, Found};
 
 use super::bodies::sequence::Sequence;
 use super::grid::{self, Frame};
 use super::outputs::{self, checks, curves, study};
 use super::stages::{self, construction};
 use super::{AllNames, all, materials, title_block};
+use crate::build::Thing;
 use crate::build::context::Context;
 
 /// What everything else is held against.
@@ -31,21 +35,26 @@ impl<const D: usize> GridAndBodies<D> {
     pub(super) fn new(
         tree: &Node,
         names: &AllNames,
+        (stated, stages): (&[Thing<Body>], &[Thing<keys::Stage>]),
         bodies: Vec<Option<BodyPart<D>>>,
         problems: &mut Problems,
     ) -> Self {
-        let mut frame = grid::frame(tree, problems);
+        let own = Root::<D>::grid(tree).ok();
+        let extent = own.as_ref().and_then(|own| own.extent.as_ref().ok());
+        let mut frame = extent.and_then(|extent| grid::frame(extent, problems));
         let materials = materials::materials(tree, &bodies, problems);
-        let grid = grid::grid(tree, frame.as_ref(), &bodies, problems);
+        let grid =
+            (own.as_ref()).and_then(|own| grid::grid(own, frame.as_ref(), &bodies, problems));
         if let (Some(frame), Some(grid)) = (&mut frame, &grid) {
             frame.axes.clone_from(&grid.axes);
         }
+        let has_water = Root::<D>::water(tree).is_ok_and(|water| !water.is_empty());
         Self {
             frame,
-            method: grid::method(tree),
+            method: own.and_then(|own| Some(grid::method(own.method.as_ref().ok()?))),
             grid,
             materials,
-            sequence: Sequence::new(tree, names, &bodies),
+            sequence: Sequence::new((stated, stages), has_water, names, &bodies),
             bodies,
         }
     }
@@ -70,6 +79,16 @@ pub(super) fn stages_of<const D: usize>(
     stages
 }
 
+/// Every item of a list, as far as it was found right; nothing if one was not.
+fn each<T, U>(
+    list: Found<Vec<Found<T>>>,
+    mut build: impl FnMut(&At<T>) -> Option<U>,
+) -> Option<Vec<U>> {
+    let list = list.ok()?.value;
+    let built = list.iter().map(|own| build(own.as_ref().ok()?));
+    all(built.collect())
+}
+
 /// The case; `None` only when a problem was reported, here or before.
 pub(super) fn assemble<const D: usize>(
     (context, file): (&Context<'_, D>, &Path),
@@ -85,26 +104,40 @@ pub(super) fn assemble<const D: usize>(
         soil,
         ..
     } = *context;
-    let solver = outputs::solver(tree, &basics.materials, problems);
-    let monitors = outputs::monitors(tree, soil, problems);
+    let solver =
+        Root::<D>::solver(tree).map(|own| outputs::solver(&own, &basics.materials, problems));
+    let output = Root::<D>::output(tree);
+    let monitors = each(Root::<D>::monitors(tree), |own| {
+        outputs::monitor(own, soil, problems)
+    });
     let about = outputs::About {
         names,
         stages: &stages,
         file,
+        has_cuts: (output.iter()).any(|own| own.cuts.as_ref().is_some_and(|cuts| !cuts.is_empty())),
     };
-    let sections = outputs::sections(tree, &about, soil, problems);
-    let curves = curves::curves(tree, names, loads, file, problems);
-    let checks = checks::checks(tree, names, loads, &stages, problems);
-    let output = outputs::output::<D>(tree, problems);
-    let mesh_study = study::mesh_study(tree);
+    let sections = each(Root::<D>::sections(tree), |own| {
+        outputs::section(own, &about, soil, problems)
+    });
+    let curves = each(Root::<D>::curves(tree), |own| {
+        curves::curve(own, names, loads, file, problems)
+    });
+    let checks = each(Root::<D>::checks(tree), |own| {
+        checks::check(own, names, loads, &stages, problems)
+    });
+    let output = output
+        .ok()
+        .and_then(|own| outputs::output::<D>(&own, problems));
+    let meshes = Root::<D>::mesh_study(tree).map(|own| own.value.meshes);
 
-    let case = tree.get("case")?;
+    let (case, meshes) = (Root::<D>::case(tree).ok()?, meshes.ok()?);
+    let grid = Root::<D>::grid(tree).ok()?;
     let case = Case {
-        water_unit_weight: case.number_at("water_unit_weight")?,
+        water_unit_weight: *case.water_unit_weight,
         water: all(upon.water)?,
-        title: case.text_at("title")?.to_owned(),
-        title_block: title_block(case),
-        gravity: case.number_at("gravity")?,
+        title: case.title.value.clone(),
+        title_block: title_block(&case),
+        gravity: *case.gravity,
         grid: basics.grid.clone()?,
         method: basics.method.clone()?,
         materials: all(basics.materials.clone())?,
@@ -114,16 +147,16 @@ pub(super) fn assemble<const D: usize>(
         rigid: all(upon.rigid)?,
         reinforcement: all(upon.reinforcement)?,
         stages: all(stages)?,
-        solver: solver?,
+        solver: solver.ok()?,
         given_solver: None,
-        monitors: all(monitors)?,
-        sections: all(sections)?,
-        curves: all(curves)?,
-        checks: all(checks)?,
-        mesh_study: mesh_study?,
+        monitors: monitors?,
+        sections: sections?,
+        curves: curves?,
+        checks: checks?,
+        mesh_study: MeshStudy { meshes: *meshes },
         output: output?,
     };
-    let case = case.refined(tree.get("grid")?.count_at("refine")?);
-    study::check(tree, &case, problems);
+    let case = case.refined(**grid.refine.as_ref().ok()?);
+    study::check(tree, &meshes, &case, problems);
     Some(case)
 }

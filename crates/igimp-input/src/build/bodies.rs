@@ -8,13 +8,21 @@ pub(crate) mod surfaces;
 use std::sync::Arc;
 
 use igimp_geometry::polygon::{area_and_centroid, bounding_box, contains};
+use igimp_geometry::region::Region;
 use igimp_model::{BodyPart, Boundaries, Side};
 use igimp_schema::diagnostic::Problems;
+use igimp_schema::schema::Root;
+use igimp_schema::schema::bodies::Body;
+use igimp_schema::schema::outline::Outline;
+use igimp_schema::schema::stages::Stage;
+use igimp_schema::source::Place;
 use igimp_schema::text::{clip, count, number, point};
-use igimp_schema::tree::Node;
+use igimp_schema::tree::read::{At, Either};
+use igimp_schema::tree::{Node, Wrong};
 
 use super::AllNames;
-use super::grid::MOST;
+use super::grid::{MOST, cell_place};
+use crate::build::Thing;
 use crate::geometry::edge_distance;
 use crate::geometry::{distinct, near_edge, overlap, self_crossing};
 use igimp_text::short;
@@ -24,61 +32,107 @@ use site::Site;
 /// Most corners of all bodies together.
 const MOST_CORNERS: usize = 5000;
 
+/// Analyses, by what bodies are made of.
+pub(super) trait Fill<const D: usize> {
+    /// The region of a body.
+    fn region(own: &At<Body>, problems: &mut Problems) -> Option<Arc<dyn Region<D>>>;
+}
+
+/// Plane strain: bodies are polygons.
+pub(super) struct Plane;
+
+impl Fill<2> for Plane {
+    fn region(own: &At<Body>, problems: &mut Problems) -> Option<Arc<dyn Region<2>>> {
+        let corners = stated(&own.polygon)?;
+        let polygon = corners_at(corners, polygon_place(own), &own.name, problems)?;
+        Some(Arc::new(polygon))
+    }
+}
+
+/// Space: bodies are solids.
+pub(super) struct Space;
+
+impl Fill<3> for Space {
+    fn region(own: &At<Body>, problems: &mut Problems) -> Option<Arc<dyn Region<3>>> {
+        let solid = solids::solid(own, problems)?;
+        Some(Arc::new(solid))
+    }
+}
+
 /// The bodies, as far as each is right by itself.
-pub(super) fn bodies(
+pub(super) fn bodies<A: Fill<D>, const D: usize>(
     tree: &Node,
+    (own, stages): (&[Thing<Body>], &[Thing<Stage>]),
     names: &AllNames,
     problems: &mut Problems,
-) -> Vec<Option<BodyPart<2>>> {
-    let items = tree.items_at("bodies");
-    let corners: usize = items
-        .iter()
-        .map(|body| body.items_at("polygon").len())
-        .sum();
-    if corners > MOST_CORNERS {
+) -> Vec<Option<BodyPart<D>>> {
+    let polygons = own.iter().flatten();
+    let polygons = polygons.filter_map(|own| stated(&own.polygon));
+    let corners: usize = polygons.map(<[_]>::len).sum();
+    if D == 2 && corners > MOST_CORNERS {
         problems
             .error(
-                tree.place_at("bodies"),
+                Root::<D>::bodies(tree).ok().map(|bodies| bodies.place),
                 format!("the bodies have {corners} corners together"),
             )
             .help(format!("at most {MOST_CORNERS} are possible"));
-        return vec![None; items.len()];
+        return vec![None; own.len()];
     }
-    let later = placed(tree);
-    items
-        .iter()
-        .map(|body| part(body, names, &later, problems))
-        .collect()
+    let later = placed(stages);
+    let part = |own: &Thing<Body>| {
+        let own = own.as_ref()?;
+        let who = format!("body `{}` uses", clip(&own.name, 40));
+        let material = own.material.as_ref().ok();
+        let material = material.and_then(|own| names.materials.find(own, &who, problems));
+        let region = A::region(own, problems);
+        let points = **own.points_per_cell.as_ref().ok()?;
+        Some(BodyPart {
+            from_start: !later.contains(&own.name.as_str()),
+            name: own.name.known()?,
+            material: material?,
+            per_direction: (1..=5).find(|count: &usize| count.pow(D as u32) >= points)?,
+            region: region?,
+        })
+    };
+    own.iter().map(part).collect()
 }
 
-fn part(
-    node: &Node,
-    names: &AllNames,
-    later: &[&str],
+/// The polygon of a case in plane strain, if it was found right.
+fn stated(polygon: &Result<Option<At<Polygon>>, Wrong>) -> Option<&[At<[f64; 2]>]> {
+    match &**polygon.as_ref().ok()?.as_ref()? {
+        Either::First(corners) => Some(corners),
+        Either::Second(_) => None,
+    }
+}
+
+/// Where the polygon of a body stands.
+pub(super) fn polygon_place(own: &At<Body>) -> Place {
+    let polygon = own.polygon.as_ref().ok().and_then(Option::as_ref);
+    polygon.map_or(own.place, |polygon| polygon.place)
+}
+
+/// Corners, or where they come from.
+pub(super) type Polygon = Either<Vec<At<[f64; 2]>>, Outline>;
+
+/// The corners of a polygon that is one.
+pub(super) fn corners(
+    own: &At<Polygon>,
+    name: &str,
     problems: &mut Problems,
-) -> Option<BodyPart<2>> {
-    let name = node.text_at("name").unwrap_or("?");
-    let material = node.get("material").and_then(|material| {
-        let who = format!("body `{}` uses", clip(name, 40));
-        names.materials.find(material, &who, problems)
-    });
-    let polygon = node
-        .get("polygon")
-        .filter(|polygon| !polygon.is_invalid())
-        .and_then(|polygon| corners(polygon, name, problems));
-    let points = node.count_at("points_per_cell")?;
-    Some(BodyPart {
-        from_start: !later.contains(&name),
-        name: node.text_at("name")?.to_owned(),
-        material: material?,
-        per_direction: points.isqrt(),
-        region: Arc::new(polygon?),
-    })
+) -> Option<Vec<[f64; 2]>> {
+    let Either::First(corners) = &own.value else {
+        return None;
+    };
+    corners_at(corners, own.place, name, problems)
 }
 
-pub(super) fn corners(node: &Node, name: &str, problems: &mut Problems) -> Option<Vec<[f64; 2]>> {
-    let written: Option<Vec<_>> = node.items().iter().map(Node::pair).collect();
-    let written = written?;
+fn corners_at(
+    corners: &[At<[f64; 2]>],
+    place: Place,
+    name: &str,
+    problems: &mut Problems,
+) -> Option<Vec<[f64; 2]>> {
+    let written: Vec<[f64; 2]> = corners.iter().map(|own| **own).collect();
     let largest = written
         .iter()
         .flatten()
@@ -89,7 +143,7 @@ pub(super) fn corners(node: &Node, name: &str, problems: &mut Problems) -> Optio
     if corners.len() < 3 {
         problems
             .error(
-                node.place,
+                place,
                 format!("the polygon of `{name}` has fewer than 3 different corners"),
             )
             .help("name the corners in order");
@@ -98,7 +152,7 @@ pub(super) fn corners(node: &Node, name: &str, problems: &mut Problems) -> Optio
     if let Some(at) = self_crossing(&corners, round_off) {
         problems
             .error(
-                node.place,
+                place,
                 format!("the polygon of `{name}` crosses itself at {}", point(at)),
             )
             .help("name the corners in order, one way round");
@@ -109,7 +163,7 @@ pub(super) fn corners(node: &Node, name: &str, problems: &mut Problems) -> Optio
     let size = (upper[0] - lower[0]).max(upper[1] - lower[1]);
     if area.is_nan() || area <= 1e-9 * size * size {
         problems
-            .error(node.place, format!("the polygon of `{name}` has no area"))
+            .error(place, format!("the polygon of `{name}` has no area"))
             .help("its corners lie on one line");
         return None;
     }
@@ -118,14 +172,13 @@ pub(super) fn corners(node: &Node, name: &str, problems: &mut Problems) -> Optio
 
 /// Checks the bodies against the domain and each other.
 pub(super) fn check(
-    tree: &Node,
+    (tree, own): (&Node, &[Thing<Body>]),
     names: &AllNames,
     (bodies, sequence): (&[Option<BodyPart<2>>], &Sequence),
     site: &Site,
     problems: &mut Problems,
 ) {
-    let items = tree.items_at("bodies");
-    let place = |index: usize| items[index].place_at("polygon");
+    let place = |index: usize| own[index].as_ref().map(polygon_place);
     if let Some(frame) = &site.frame {
         let mut particles = 0.0;
         for (index, body) in bodies.iter().enumerate() {
@@ -167,12 +220,10 @@ pub(super) fn check(
         // Too many cells are reported as such.
         if particles > MOST && cells <= MOST {
             let message = format!("the bodies would have {} particles", count(particles));
-            problems
-                .error(tree.get("grid").map(|grid| grid.place_at("cell")), message)
-                .help(format!(
-                    "at most {} are possible: use larger cells or fewer points_per_cell",
-                    count(MOST)
-                ));
+            problems.error(cell_place(tree), message).help(format!(
+                "at most {} are possible: use larger cells or fewer points_per_cell",
+                count(MOST)
+            ));
         }
     }
     for (second, b) in bodies.iter().enumerate() {
@@ -207,7 +258,7 @@ pub(super) fn check(
 
 /// Warns of bodies that nothing holds from below.
 pub(super) fn check_support(
-    tree: &Node,
+    own: &[Thing<Body>],
     bodies: &[Option<BodyPart<2>>],
     boundaries: Option<&Boundaries<2>>,
     site: &Site,
@@ -244,13 +295,12 @@ pub(super) fn check_support(
             }
         }
     }
-    let items = tree.items_at("bodies");
     for (k, body) in bodies.iter().flatten().enumerate() {
         if !is_held[k] {
             let lowest = bounding_box(body.polygon()).0[1];
             problems
                 .warning(
-                    items[k].place_at("polygon"),
+                    own[k].as_ref().map(polygon_place),
                     format!("nothing holds body `{}` from below", body.name),
                 )
                 .help(format!(

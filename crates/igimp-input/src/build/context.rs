@@ -2,8 +2,11 @@
 
 use igimp_model::{BodyPart, Load, Material};
 use igimp_schema::diagnostic::Problems;
+use igimp_schema::schema::stages::Stage;
+use igimp_schema::tree::read::At;
 use igimp_schema::tree::{Node, Wrong};
 
+use crate::build::Thing;
 use crate::build::bodies::sequence::Sequence;
 use crate::build::bodies::site::Soil;
 use crate::build::{AllNames, Site};
@@ -11,6 +14,8 @@ use crate::build::{AllNames, Site};
 /// What stages refer to.
 pub(crate) struct Context<'a, const D: usize> {
     pub(crate) tree: &'a Node,
+    /// The stages as they are stated.
+    pub(crate) stages: &'a [Thing<Stage>],
     pub(crate) names: &'a AllNames,
     pub(crate) materials: &'a [Option<Material>],
     pub(crate) bodies: &'a [Option<BodyPart<D>>],
@@ -23,35 +28,29 @@ pub(crate) struct Context<'a, const D: usize> {
 
 impl<const D: usize> Context<'_, D> {
     /// The stages that a stage follows, from the one that it starts from.
-    pub(crate) fn before(&self, index: usize) -> impl Iterator<Item = &Node> {
+    pub(crate) fn before(&self, index: usize) -> impl Iterator<Item = &At<Stage>> {
         let before = move |index: usize| {
-            let named = self.stage_nodes().get(index)?.text_at("start_from");
+            let named = self
+                .stages
+                .get(index)?
+                .as_ref()
+                .and_then(|own| own.start_from());
             let named = named.and_then(|name| self.names.stages.position(name));
             named.filter(|&k| k < index).or(index.checked_sub(1))
         };
         let all = std::iter::successors(before(index), move |&index| before(index));
-        all.filter_map(|index| self.stage_nodes().get(index))
+        all.filter_map(|index| self.stages.get(index)?.as_ref())
     }
 
-    pub(crate) fn stage_nodes(&self) -> &[Node] {
-        self.tree.items_at("stages")
-    }
-
-    /// Type of a stage.
-    pub(crate) fn type_of(&self, index: usize) -> Option<&str> {
-        self.stage_nodes().get(index)?.text_at("type")
-    }
-
-    /// Index of the monitor that a table names, if it names one.
+    /// Index of the monitor that a key names, if it names one.
     pub(crate) fn monitor(
         &self,
-        table: &Node,
+        monitor: Option<&At<String>>,
         who: &str,
         problems: &mut Problems,
     ) -> Result<Option<usize>, Wrong> {
         let who = format!("stage `{who}` watches");
-        let monitors = &self.names.monitors;
-        monitors.find_optional(table, "monitor", &who, problems)
+        self.names.monitors.find_optional(monitor, &who, problems)
     }
 
     /// Whether a material is that of a body.
@@ -64,4 +63,13 @@ impl<const D: usize> Context<'_, D> {
                 .any(|own| own.is_none_or(|own| own == material))
         })
     }
+}
+
+/// A stage among the others.
+pub(crate) struct About<'a, const D: usize> {
+    pub(crate) context: &'a Context<'a, D>,
+    pub(crate) index: usize,
+    pub(crate) stage: &'a At<Stage>,
+    /// Its name, for messages.
+    pub(crate) name: &'a str,
 }

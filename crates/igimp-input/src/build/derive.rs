@@ -25,10 +25,11 @@ pub(super) fn derive(tree: &mut Node, file: &Path) {
             {
                 stage.add_derived("start_from", Value::Text(name.clone()));
             }
-            let reduces = matches!(
-                stage.text_at("type"),
-                Some("strength-reduction" | "run-out")
-            );
+            let reduces = match stage.text_at("type") {
+                Some("strength-reduction" | "run-out") => true,
+                Some("dynamic") => stage.get("reduction").is_some(),
+                _ => false,
+            };
             if reduces && stage.get("materials").is_none() && !strong.is_empty() {
                 let names = strong.iter().map(|name| {
                     let mut node = Node::written(Value::Text(name.clone()), place);

@@ -8,8 +8,12 @@ use std::sync::Arc;
 use igimp_assembly::{DomainUpdate, Geometry, Kinematics, Locking, Method, Remedy, SmallCuts};
 use igimp_model::{AxisSpec, BodyPart, GridSpec, MixedCells};
 use igimp_schema::diagnostic::Problems;
+use igimp_schema::schema::Root;
+use igimp_schema::schema::grid::{self as keys, Fit};
+use igimp_schema::source::Place;
 use igimp_schema::text::{count, number};
 use igimp_schema::tree::Node;
+use igimp_schema::tree::read::{At, Either};
 use igimp_shape::{Basis, Gimp, Linear};
 use igimp_text::short;
 
@@ -37,28 +41,43 @@ pub(super) struct Frame<const D: usize> {
     pub(super) axes: [AxisSpec; D],
 }
 
+/// What a table says of each axis.
+fn by_axis<'a, T, const D: usize>(
+    [x, y]: [&'a At<T>; 2],
+    z: Option<&'a At<T>>,
+) -> Option<[&'a At<T>; D]> {
+    let all: Vec<&At<T>> = [x, y].into_iter().chain(z).take(D).collect();
+    all.try_into().ok()
+}
+
+/// Where the size of a cell is said.
+pub(super) fn cell_place(tree: &Node) -> Option<Place> {
+    let grid = Root::<2>::grid(tree).ok()?;
+    Some(grid.extent.as_ref().ok()?.cell.place)
+}
+
 /// The frame, if its numbers make sense.
-pub(super) fn frame<const D: usize>(tree: &Node, problems: &mut Problems) -> Option<Frame<D>> {
-    let grid = tree.get("grid")?;
-    let mut cell = [0.0; D];
-    for (own, key) in std::iter::zip(&mut cell, DIRECTIONS) {
-        *own = match grid.get("cell")? {
-            table if table.get("x").is_some() => table.number_at(key)?,
-            one => one.number()?,
-        };
-    }
-    let domain = grid.get("domain")?;
+pub(super) fn frame<const D: usize>(
+    extent: &keys::Extent,
+    problems: &mut Problems,
+) -> Option<Frame<D>> {
+    let cell = match &*extent.cell {
+        Either::First(one) => [*one; D],
+        Either::Second(own) => by_axis([&own.x, &own.y], own.z.as_ref())?.map(|own| **own),
+    };
+    let domain: [_; D] = by_axis(
+        [&extent.domain.x, &extent.domain.y],
+        extent.domain.z.as_ref(),
+    )?;
     let (mut lower, mut upper) = ([0.0; D], [0.0; D]);
     let mut is_right = true;
-    for (axis, key) in DIRECTIONS.into_iter().take(D).enumerate() {
-        let [from, to] = domain.pair_at(key)?;
+    for (axis, own) in domain.into_iter().enumerate() {
+        let [from, to] = **own;
         (lower[axis], upper[axis]) = (from, to);
         if from >= to || !(to - from).is_finite() {
+            let key = DIRECTIONS[axis];
             problems
-                .error(
-                    domain.place_at(key),
-                    format!("the domain in {key} has no extent"),
-                )
+                .error(own.place, format!("the domain in {key} has no extent"))
                 .help("write the lower end first");
             is_right = false;
         }
@@ -74,12 +93,12 @@ pub(super) fn frame<const D: usize>(tree: &Node, problems: &mut Problems) -> Opt
 /// The grid; reports a domain that is not a whole number of cells, lines off the domain, and too
 /// many cells.
 pub(super) fn grid<const D: usize>(
-    tree: &Node,
+    grid: &keys::Grid,
     frame: Option<&Frame<D>>,
     bodies: &[Option<BodyPart<D>>],
     problems: &mut Problems,
 ) -> Option<GridSpec<D>> {
-    let node = tree.get("grid")?;
+    let own = grid.extent.as_ref().ok()?;
     let Frame { lower, upper, axes } = frame?;
     let cell: [f64; D] = std::array::from_fn(|axis| axes[axis].cell_at(lower[axis]));
     let extent: [f64; D] = std::array::from_fn(|axis| upper[axis] - lower[axis]);
@@ -87,19 +106,24 @@ pub(super) fn grid<const D: usize>(
         .map(|axis| (extent[axis] / cell[axis]).max(1.0))
         .product();
     if total.is_nan() || total > MOST {
-        too_many(node, &count(total), problems);
+        too_many(own, &count(total), problems);
         return None;
     }
-    let levels = match node.text_at("fit")? {
-        "layers" => levels(bodies, 1e-9 * extent[D - 1].max(upper[D - 1].abs())),
-        _ => Vec::new(),
+    let wishes = grid.wishes.as_ref().ok()?;
+    let levels = match *wishes.fit {
+        Fit::Layers => levels(bodies, 1e-9 * extent[D - 1].max(upper[D - 1].abs())),
+        Fit::None => Vec::new(),
     };
+    let domain = &own.domain;
+    let domain: [_; D] = by_axis([&domain.x, &domain.y], domain.z.as_ref())?;
+    let lines: [_; D] = by_axis([&wishes.lines.x, &wishes.lines.y], wishes.lines.z.as_ref())?;
+    let zones: [_; D] = by_axis([&wishes.zones.x, &wishes.zones.y], wishes.zones.z.as_ref())?;
     let found: [Option<AxisSpec>; D] = std::array::from_fn(|axis| {
         let key = DIRECTIONS[axis];
         if cell[axis] < 1e-9 * lower[axis].abs().max(upper[axis].abs()) {
             problems
                 .error(
-                    node.get("domain")?.place_at(key),
+                    domain[axis].place,
                     format!("the coordinates in {key} are too large for cells this small"),
                 )
                 .help("move the origin to the model");
@@ -107,33 +131,38 @@ pub(super) fn grid<const D: usize>(
         }
         let ends = [lower[axis], upper[axis]];
         let levels = if axis == D - 1 { &levels[..] } else { &[] };
-        match wish(node, axis, ends, cell[axis], levels, problems)? {
-            Some(wish) => with_lines(node, key, &wish, problems),
-            None => equal_cells(node, key, ends, cell[axis], problems),
+        let about = Direction {
+            key,
+            ends,
+            domain: domain[axis].place,
+            cell: cell[axis],
+            cell_place: own.cell.place,
+            growth: &wishes.growth,
+        };
+        match wish(&about, lines[axis], zones[axis], levels, problems)? {
+            Some(wish) => with_lines(&about, &wish, problems),
+            None => equal_cells(&about, problems),
         }
     });
     let axes: Option<Vec<AxisSpec>> = found.into_iter().collect();
-    let grid = GridSpec {
+    let spec = GridSpec {
         axes: axes?.try_into().ok()?,
-        mixed_cells: match node.text_at("mixed_cells")? {
-            "mean" => MixedCells::Mean,
-            _ => MixedCells::Own,
+        mixed_cells: match **grid.mixed_cells.as_ref().ok()? {
+            keys::MixedCells::Mean => MixedCells::Mean,
+            keys::MixedCells::Own => MixedCells::Own,
         },
     };
-    let total: f64 = grid.cells().iter().map(|&cells| cells as f64).product();
+    let total: f64 = spec.cells().iter().map(|&cells| cells as f64).product();
     if total > MOST {
-        too_many(node, &count(total), problems);
+        too_many(own, &count(total), problems);
         return None;
     }
-    Some(grid)
+    Some(spec)
 }
 
-fn too_many(node: &Node, cells: &str, problems: &mut Problems) {
+fn too_many(own: &keys::Extent, cells: &str, problems: &mut Problems) {
     problems
-        .error(
-            node.place_at("cell"),
-            format!("the grid would have {cells} cells"),
-        )
+        .error(own.cell.place, format!("the grid would have {cells} cells"))
         .help(format!(
             "at most {} are possible: use larger cells or a smaller domain",
             count(MOST)
@@ -141,13 +170,13 @@ fn too_many(node: &Node, cells: &str, problems: &mut Problems) {
 }
 
 /// An axis of equal cells that fill the domain.
-fn equal_cells(
-    node: &Node,
-    key: &str,
-    [lower, upper]: [f64; 2],
-    cell: f64,
-    problems: &mut Problems,
-) -> Option<AxisSpec> {
+fn equal_cells(about: &Direction<'_>, problems: &mut Problems) -> Option<AxisSpec> {
+    let Direction {
+        key,
+        ends: [lower, upper],
+        cell,
+        ..
+    } = *about;
     let extent = upper - lower;
     let cells = extent / cell;
     let whole = cells.round().max(1.0);
@@ -156,7 +185,7 @@ fn equal_cells(
         let size = number(extent / whole);
         problems
             .error(
-                node.get("domain")?.place_at(key),
+                about.domain,
                 format!(
                     "the domain in {key} is not a whole number of cells: {} m / {} m = {}",
                     number(extent),
@@ -180,15 +209,15 @@ fn equal_cells(
 
 /// An axis with lines where they are wanted; warns of neighbouring cells that differ too much.
 fn with_lines(
-    node: &Node,
-    key: &str,
+    about: &Direction<'_>,
     wish: &WantedLines,
     problems: &mut Problems,
 ) -> Option<AxisSpec> {
+    let key = about.key;
     let Some(axis) = wish.axis(MOST_LINES) else {
         problems
             .error(
-                node.place_at("cell"),
+                about.cell_place,
                 format!(
                     "the grid would have more than {} lines in {key}",
                     count(MOST_LINES)
@@ -201,7 +230,7 @@ fn with_lines(
     if jump > MOST_JUMP + 1e-9 {
         problems
             .warning(
-                node.place_at("growth"),
+                about.growth.place,
                 format!(
                     "neighbouring cells at {key} = {} m differ by a factor of {}",
                     number(at),
@@ -216,34 +245,49 @@ fn with_lines(
     Some(axis)
 }
 
+/// A direction of the grid.
+struct Direction<'a> {
+    key: &'static str,
+    /// Where it begins and ends \[m\].
+    ends: [f64; 2],
+    /// Where that is said.
+    domain: Place,
+    /// Size of a cell \[m\].
+    cell: f64,
+    /// Where that is said.
+    cell_place: Place,
+    growth: &'a At<f64>,
+}
+
 /// What is wanted of an axis beyond equal cells; none within: nothing. None: something is wrong.
 #[allow(
     clippy::option_option,
     reason = "wrong, nothing and something are three answers"
 )]
 fn wish(
-    node: &Node,
-    axis: usize,
-    ends: [f64; 2],
-    cell: f64,
+    about: &Direction<'_>,
+    wanted: &[At<f64>],
+    stretches: &[At<keys::Zone>],
     levels: &[f64],
     problems: &mut Problems,
 ) -> Option<Option<WantedLines>> {
-    let key = DIRECTIONS[axis];
-    let growth = node.number_at("growth")?;
+    let Direction {
+        key, ends, cell, ..
+    } = *about;
+    let growth = **about.growth;
     let mut is_right = true;
     if !(LEAST_GROWTH..=MOST_JUMP).contains(&growth) {
         let message = format!("`growth` must be from {LEAST_GROWTH} to {MOST_JUMP}");
         problems
-            .error(node.place_at("growth"), message)
+            .error(about.growth.place, message)
             .help("1.3 is usual");
         is_right = false;
     }
     let round_off = 1e-9 * ends[0].abs().max(ends[1].abs());
     let is_inside = |x: f64| ends[0] - round_off <= x && x <= ends[1] + round_off;
     let mut lines = Vec::new();
-    for line in node.get("lines")?.items_at(key) {
-        let x = line.number()?;
+    for line in wanted {
+        let x = **line;
         if is_inside(x) {
             lines.push(x);
         } else {
@@ -260,34 +304,34 @@ fn wish(
         }
     }
     let mut zones = Vec::new();
-    for zone in node.get("zones")?.items_at(key) {
+    for zone in stretches {
         let own = Zone {
-            ends: [zone.number_at("from")?, zone.number_at("to")?],
-            cell: zone.number_at("cell")?,
+            ends: [*zone.from, *zone.to],
+            cell: *zone.cell,
         };
         let wrong = if own.ends[0] >= own.ends[1] {
             Some((
-                "from",
+                zone.from.place,
                 "this zone has no extent",
                 "write the lower end first",
             ))
         } else if !own.ends.into_iter().all(is_inside) {
             Some((
-                "from",
+                zone.from.place,
                 "this zone reaches off the grid domain",
                 "extend [grid] domain",
             ))
         } else if own.cell >= cell {
             let help = "write the size of the coarse cells as `cell` of the grid";
             Some((
-                "cell",
+                zone.cell.place,
                 "the cells of this zone are no finer than those of the grid",
                 help,
             ))
         } else if own.cell < round_off {
             let help = "move the origin to the model";
             Some((
-                "cell",
+                zone.cell.place,
                 "the coordinates are too large for cells this small",
                 help,
             ))
@@ -295,7 +339,7 @@ fn wish(
             None
         };
         if let Some((at, message, help)) = wrong {
-            problems.error(zone.place_at(at), message).help(help);
+            problems.error(at, message).help(help);
             is_right = false;
         } else {
             zones.push(own);
@@ -340,38 +384,37 @@ fn levels<const D: usize>(bodies: &[Option<BodyPart<D>>], round_off: f64) -> Vec
 }
 
 /// The variant of the method.
-pub(super) fn method(tree: &Node) -> Option<Method> {
-    let grid = tree.get("grid")?;
-    let cuts = grid.get("small_cuts")?;
-    let basis: Arc<dyn Basis> = match grid.text_at("basis")? {
-        "linear" => Arc::new(Linear),
-        _ => Arc::new(Gimp),
+pub(super) fn method(own: &keys::Method) -> Method {
+    let cuts = &own.small_cuts;
+    let basis: Arc<dyn Basis> = match *own.basis {
+        keys::Basis::Linear => Arc::new(Linear),
+        keys::Basis::Gimp => Arc::new(Gimp),
     };
-    Some(Method {
+    Method {
         basis,
-        locking: match grid.text_at("locking")? {
-            "none" => Locking::None,
-            "shared-strain" => Locking::SharedStrain,
-            _ => Locking::BBar,
+        locking: match *own.locking {
+            keys::Locking::None => Locking::None,
+            keys::Locking::BBar => Locking::BBar,
+            keys::Locking::SharedStrain => Locking::SharedStrain,
         },
         geometry: Geometry::Moving,
-        kinematics: match grid.text_at("kinematics")? {
-            "small" => Kinematics::SmallStrain,
-            _ => Kinematics::FiniteStrain,
+        kinematics: match *own.kinematics {
+            keys::Kinematics::Small => Kinematics::SmallStrain,
+            keys::Kinematics::Finite => Kinematics::FiniteStrain,
         },
-        domain_update: match grid.text_at("domain_update")? {
-            "fixed" => DomainUpdate::Fixed,
-            "diagonal-f" => DomainUpdate::DiagonalF,
-            "root-j" => DomainUpdate::RootJ,
-            _ => DomainUpdate::DiagonalU,
+        domain_update: match *own.domain_update {
+            keys::DomainUpdate::Fixed => DomainUpdate::Fixed,
+            keys::DomainUpdate::DiagonalF => DomainUpdate::DiagonalF,
+            keys::DomainUpdate::Stretch => DomainUpdate::DiagonalU,
+            keys::DomainUpdate::RootJ => DomainUpdate::RootJ,
         },
         small_cuts: SmallCuts {
-            below: cuts.number_at("below")?,
-            remedy: match cuts.text_at("remedy")? {
-                "drop" => Remedy::Drop,
-                _ => Remedy::Tie,
+            below: *cuts.below,
+            remedy: match *cuts.remedy {
+                keys::Remedy::Drop => Remedy::Drop,
+                keys::Remedy::Tie => Remedy::Tie,
             },
-            ghost_penalty: cuts.number_at("ghost_penalty")?,
+            ghost_penalty: *cuts.ghost_penalty,
         },
-    })
+    }
 }

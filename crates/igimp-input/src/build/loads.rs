@@ -4,59 +4,127 @@ pub(crate) mod space;
 
 use igimp_model::{AxisSpec, Load, LoadKind};
 use igimp_schema::diagnostic::Problems;
+use igimp_schema::schema::Root;
+use igimp_schema::schema::loads::{
+    self as keys, Footing, FootingInterface, LoadForm, Patch, PointLoad, Pressure,
+    PressureDirection,
+};
+use igimp_schema::source::Place;
 use igimp_schema::text::{clip, number, point};
-use igimp_schema::tree::Node;
+use igimp_schema::tree::{Node, Wrong};
 
 use super::bodies::site::{Site, Soil};
 use super::grid::Frame;
+use super::things;
+use crate::build::Thing;
 use crate::geometry::cover;
 
-/// The loads.
-pub(super) fn loads(tree: &Node, site: &Site, problems: &mut Problems) -> Vec<Option<Load<2>>> {
-    let mut has_footing = false;
-    let items = tree.items_at("loads");
-    items
-        .iter()
-        .map(|node| {
-            let name = node.text_at("name")?;
-            let kind = match node.text_at("type")? {
-                "rigid-footing" => footing(node, name, site, problems),
-                "pressure" => pressure(node, name, site, problems),
-                "patch" => {
-                    problems
-                        .error(node.place_at("type"), "a patch is a load in space")
-                        .help("in plane strain use a load of type pressure");
-                    None
-                }
-                _ => at_point(node, name, site, problems),
-            }?;
-            if let LoadKind::RigidFooting { .. } = kind
-                && std::mem::replace(&mut has_footing, true)
-            {
-                problems
-                    .error(node.place_at("type"), "this is a second rigid footing")
-                    .help("the grid follows the footing, and it can follow only one");
-            }
-            Some(Load {
-                name: name.to_owned(),
-                kind,
-            })
-        })
-        .collect()
+/// What loads ask of the soil that bears them.
+pub(super) trait Bearing<const D: usize>: Soil<D> {
+    /// A rigid footing on it.
+    fn footing(
+        &self,
+        own: &Result<Footing<D>, Wrong>,
+        name: &str,
+        problems: &mut Problems,
+    ) -> Option<LoadKind<D>>;
+
+    /// A pressure on its surface.
+    fn pressure(
+        &self,
+        own: &Pressure<D>,
+        name: &str,
+        problems: &mut Problems,
+    ) -> Option<LoadKind<D>>;
+
+    /// A pressure on a part of its surface that is stated in plan; with the name of the load, its place, and that of its type.
+    fn patch(
+        &self,
+        own: &Result<Patch, Wrong>,
+        about: (&str, Place, Place),
+        problems: &mut Problems,
+    ) -> Option<LoadKind<D>>;
 }
 
-fn footing(node: &Node, name: &str, site: &Site, problems: &mut Problems) -> Option<LoadKind<2>> {
-    let (a, b) = (node.pair_at("from")?, node.pair_at("to")?);
+/// The loads.
+pub(super) fn loads<const D: usize>(
+    tree: &Node,
+    soil: &impl Bearing<D>,
+    problems: &mut Problems,
+) -> Vec<Option<Load<D>>> {
+    let mut has_footing = false;
+    let load = |own: Thing<keys::Load<D>>| {
+        let own = own?;
+        let name = own.name.as_str();
+        let kind = match &*own.form {
+            LoadForm::RigidFooting(own) => soil.footing(own, name, problems),
+            LoadForm::Pressure(own) => soil.pressure(own.as_ref().ok()?, name, problems),
+            LoadForm::Patch(patch) => {
+                soil.patch(patch, (name, own.place, own.form.place), problems)
+            }
+            LoadForm::Point(own) => Some(at_point(own.as_ref().ok()?, name, soil, problems)),
+        }?;
+        if let LoadKind::RigidFooting { .. } = kind
+            && std::mem::replace(&mut has_footing, true)
+        {
+            problems
+                .error(own.form.place, "this is a second rigid footing")
+                .help("the grid follows the footing, and it can follow only one");
+        }
+        Some(Load {
+            name: own.name.value.clone(),
+            kind,
+        })
+    };
+    let all = things(Root::<D>::loads(tree));
+    all.into_iter().map(load).collect()
+}
+
+impl Bearing<2> for Site {
+    fn footing(
+        &self,
+        own: &Result<Footing<2>, Wrong>,
+        name: &str,
+        problems: &mut Problems,
+    ) -> Option<LoadKind<2>> {
+        footing(own.as_ref().ok()?, name, self, problems)
+    }
+
+    fn pressure(
+        &self,
+        own: &Pressure<2>,
+        name: &str,
+        problems: &mut Problems,
+    ) -> Option<LoadKind<2>> {
+        pressure(own, name, self, problems)
+    }
+
+    fn patch(
+        &self,
+        _own: &Result<Patch, Wrong>,
+        (_, _, form): (&str, Place, Place),
+        problems: &mut Problems,
+    ) -> Option<LoadKind<2>> {
+        problems
+            .error(form, "a patch is a load in space")
+            .help("in plane strain use a load of type pressure");
+        None
+    }
+}
+
+fn footing(
+    own: &Footing<2>,
+    name: &str,
+    site: &Site,
+    problems: &mut Problems,
+) -> Option<LoadKind<2>> {
+    let (a, b) = (*own.from, *own.to);
     let (from, to) = if a[0] <= b[0] { (a, b) } else { (b, a) };
-    let (rough, reaction_factor) = (
-        node.text_at("interface")? == "rough",
-        node.number_at("reaction_factor")?,
-    );
     let shown = clip(name, 40);
     if (from[1] - to[1]).abs() > site.round_off {
         problems
             .error(
-                node.place_at("to"),
+                own.to.place,
                 format!("the base of the footing `{shown}` is not level"),
             )
             .help(format!(
@@ -66,10 +134,7 @@ fn footing(node: &Node, name: &str, site: &Site, problems: &mut Problems) -> Opt
         return None;
     }
     if to[0] - from[0] <= site.round_off {
-        problems.error(
-            node.place_at("to"),
-            format!("the footing `{shown}` has no width"),
-        );
+        problems.error(own.to.place, format!("the footing `{shown}` has no width"));
         return None;
     }
     if let Some(frame) = &site.frame {
@@ -81,13 +146,13 @@ fn footing(node: &Node, name: &str, site: &Site, problems: &mut Problems) -> Opt
         if is_outside {
             problems
                 .error(
-                    node.place_at("from"),
+                    own.from.place,
                     format!("the footing `{shown}` lies outside the grid domain"),
                 )
                 .help("extend [grid] domain");
             return None;
         }
-        on_grid(node, &shown, from, to, frame, site, problems);
+        on_grid(own, &shown, [from, to], site, problems);
     }
     if site.is_complete {
         let mut tops: Vec<_> = site
@@ -113,7 +178,7 @@ fn footing(node: &Node, name: &str, site: &Site, problems: &mut Problems) -> Opt
                 .collect();
             levels.truncate(4);
             let problem = problems.error(
-                node.place_at("from"),
+                own.from.place,
                 format!("the footing `{shown}` does not stand on top of a body all along"),
             );
             if levels.is_empty() {
@@ -126,23 +191,22 @@ fn footing(node: &Node, name: &str, site: &Site, problems: &mut Problems) -> Opt
     Some(LoadKind::RigidFooting {
         from,
         to,
-        rough,
-        reaction_factor,
+        rough: *own.interface == FootingInterface::Rough,
+        reaction_factor: *own.reaction_factor,
     })
 }
 
 /// Checks a footing against the lines of the grid.
 fn on_grid(
-    node: &Node,
+    own: &Footing<2>,
     name: &str,
-    from: [f64; 2],
-    to: [f64; 2],
-    frame: &Frame<2>,
+    [from, to]: [[f64; 2]; 2],
     site: &Site,
     problems: &mut Problems,
 ) {
+    let Some(frame) = &site.frame else { return };
     let Frame { lower, upper, axes } = frame;
-    let place = node.place_at("from");
+    let place = own.from.place;
     let row = axes[1].place(from[1]);
     if (row - row.round()).abs() > 1e-6 {
         let depth = from[1] - lower[1];
@@ -165,17 +229,15 @@ fn on_grid(
             number(from[1])
         ));
     }
-    for key in ["from", "to"] {
-        let Some([x, _]) = node.pair_at(key) else {
-            continue;
-        };
+    for end in [&own.from, &own.to] {
+        let [x, _] = **end;
         if x - lower[0] <= site.round_off || upper[0] - x <= site.round_off {
             continue;
         }
         let column = axes[0].place(x);
         if (column - column.floor() - 0.5).abs() > 1e-6 {
             let problem = problems.warning(
-                node.place_at(key),
+                end.place,
                 format!(
                     "the edge of the footing `{name}` at x = {} m is not in the middle of a cell",
                     number(x)
@@ -223,16 +285,20 @@ fn better_cell(edge: f64, ends: [f64; 2], frame: &Frame<2>) -> Option<String> {
     ))
 }
 
-fn pressure(node: &Node, name: &str, site: &Site, problems: &mut Problems) -> Option<LoadKind<2>> {
-    let (from, to) = (node.pair_at("from")?, node.pair_at("to")?);
-    let pressure = node.number_at("pressure")?;
-    let is_down = node.text_at("direction")? == "down";
+fn pressure(
+    own: &Pressure<2>,
+    name: &str,
+    site: &Site,
+    problems: &mut Problems,
+) -> Option<LoadKind<2>> {
+    let (from, to) = (*own.from, *own.to);
+    let is_down = *own.direction == PressureDirection::Down;
     let along = [to[0] - from[0], to[1] - from[1]];
     let length = along[0].hypot(along[1]);
     let shown = clip(name, 40);
     if length <= site.round_off {
         problems.error(
-            node.place_at("to"),
+            own.to.place,
             format!("the segment of the pressure `{shown}` has no length"),
         );
         return None;
@@ -240,27 +306,27 @@ fn pressure(node: &Node, name: &str, site: &Site, problems: &mut Problems) -> Op
     let left = [-along[1] / length, along[0] / length];
     let mut inward = is_down.then_some([0.0, -1.0]);
     if site.is_complete {
-        let normal = soil_side(node, &shown, [from, to], left, site, problems)?;
+        let normal = soil_side(own, &shown, left, site, problems)?;
         inward = inward.or(Some(normal));
     }
     let inward = inward?;
     Some(LoadKind::Pressure {
         from,
         to,
-        traction: inward.map(|component| component * pressure + 0.0),
+        traction: inward.map(|component| component * *own.pressure + 0.0),
     })
 }
 
 /// The normal of a segment that points into the soil; reports a segment that is not on a surface.
 fn soil_side(
-    node: &Node,
+    own: &Pressure<2>,
     name: &str,
-    [from, to]: [[f64; 2]; 2],
     left: [f64; 2],
     site: &Site,
     problems: &mut Problems,
 ) -> Option<[f64; 2]> {
     const SAMPLES: u32 = 21;
+    let (from, to) = (*own.from, *own.to);
     let length = (to[0] - from[0]).hypot(to[1] - from[1]);
     let step = 1e-2 * site.cell().min(length);
     let (mut on_left, mut on_right, mut buried) = (0, 0, 0);
@@ -292,23 +358,23 @@ fn soil_side(
         format!("only a part of the segment of the pressure `{name}` lies on the surface of a body")
     };
     problems
-        .error(node.place_at("from"), message)
+        .error(own.from.place, message)
         .help("the segment follows the edge of a body, from one point of it to another");
     None
 }
 
 /// A force at a point of a body.
-pub(super) fn at_point<const D: usize>(
-    node: &Node,
+fn at_point<const D: usize>(
+    own: &PointLoad<D>,
     name: &str,
     soil: &impl Soil<D>,
     problems: &mut Problems,
-) -> Option<LoadKind<D>> {
-    let (at, force) = (node.point_at("at")?, node.point_at("force")?);
+) -> LoadKind<D> {
+    let (at, force) = (*own.at, *own.force);
     if soil.is_known() && !soil.holds_point(&at, 1e-2 * soil.cell()) {
         problems
             .error(
-                node.place_at("at"),
+                own.at.place,
                 format!(
                     "there is no body at {}, where `{}` acts",
                     point(at),
@@ -317,5 +383,5 @@ pub(super) fn at_point<const D: usize>(
             )
             .help("move the load onto a body");
     }
-    Some(LoadKind::Point { at, force })
+    LoadKind::Point { at, force }
 }

@@ -7,8 +7,11 @@ use std::sync::Arc;
 
 use igimp_model::{BodyPart, Drainage, Flow, Ground, Layer, Material, Profile, Profiles, Strength};
 use igimp_schema::diagnostic::Problems;
+use igimp_schema::schema::Root;
+use igimp_schema::schema::materials::{self as keys, MaterialCommon, Model, MohrCoulomb};
 use igimp_schema::text::{clip, number};
-use igimp_schema::tree::{Entry, Node, Wrong};
+use igimp_schema::tree::read::{At, Either, Found, Named};
+use igimp_schema::tree::{Node, Wrong};
 
 use profiles::{Extent, Property, TABLES, Terms, property};
 
@@ -47,7 +50,7 @@ pub(super) fn materials<const D: usize>(
     bodies: &[Option<BodyPart<D>>],
     problems: &mut Problems,
 ) -> Vec<Option<Material>> {
-    let entries = tree.get("materials").map_or(&[][..], Node::entries);
+    let stated = Root::<D>::materials(tree).map_or_else(|Wrong| Vec::new(), |own| own.value.0);
     let outlines = bodies.iter().flatten();
     let layer = |body: &BodyPart<D>, unit_weight, profile| Layer {
         region: Arc::clone(&body.region),
@@ -56,17 +59,17 @@ pub(super) fn materials<const D: usize>(
         added: 0.0,
     };
     let surface = Ground::of_layers(outlines.map(|body| layer(body, 0.0, None)));
-    let weights: Vec<Option<Property>> = entries
-        .iter()
-        .enumerate()
-        .map(|(material, entry)| {
+    let weights: Vec<Option<Property>> = (stated.iter().enumerate())
+        .map(|(material, own)| {
             let extent = Extent {
-                name: &entry.key,
+                name: &own.name,
                 material,
                 bodies,
                 ground: &surface,
             };
-            property(&entry.node, "unit_weight", extent, UNIT_WEIGHT, problems)
+            let common = own.value.as_ref().ok()?.common.as_ref().ok()?;
+            let weight = common.unit_weight.as_ref().ok()?;
+            property(weight, "unit_weight", extent, UNIT_WEIGHT, problems)
         })
         .collect();
     let with_weights = bodies.iter().flatten().filter_map(|body| {
@@ -74,81 +77,60 @@ pub(super) fn materials<const D: usize>(
         Some(layer(body, weight.constant, weight.profile.clone()))
     });
     let ground = Ground::of_layers(with_weights);
-    std::iter::zip(entries, &weights)
+    std::iter::zip(&stated, &weights)
         .enumerate()
-        .map(|(index, (entry, weight))| {
+        .map(|(index, (own, weight))| {
             let extent = Extent {
-                name: &entry.key,
+                name: &own.name,
                 material: index,
                 bodies,
                 ground: &ground,
             };
-            material(entry, weight.as_ref(), extent, problems)
+            material(own, weight.as_ref(), extent, problems)
         })
         .collect()
 }
 
 fn material<const D: usize>(
-    entry: &Entry,
+    stated: &Named<keys::Material>,
     unit_weight: Option<&Property>,
     extent: Extent<'_, D>,
     problems: &mut Problems,
 ) -> Option<Material> {
-    let (name, node) = (&entry.key, &entry.node);
+    let (name, own) = (&stated.name, stated.value.as_ref().ok()?);
+    let common = own.common.as_ref().ok()?;
     let before = problems.errors();
-    let poisson = node.number_at("poisson");
-    if let Some(poisson) = poisson {
-        let place = node.place_at("poisson");
-        if poisson >= 0.5 {
+    if let Ok(poisson) = &common.poisson {
+        if **poisson >= 0.5 {
             problems
-                .error(place, "Poisson's ratio must be below 0.5")
+                .error(poisson.place, "Poisson's ratio must be below 0.5")
                 .help("nearly incompressible, as undrained soil is: poisson = 0.49");
-        } else if poisson > 0.499 {
+        } else if **poisson > 0.499 {
             problems
-                .warning(place, "Poisson's ratio is very close to 0.5")
+                .warning(poisson.place, "Poisson's ratio is very close to 0.5")
                 .help("the tangent is badly conditioned; 0.49 to 0.495 is close enough");
         }
     }
-    let mut given = |key, terms| property(node, key, extent, terms, problems);
-    let young = given("young", YOUNG);
-    let cohesive = match node.text_at("model") {
-        Some("von-mises" | "tresca") => given("cu", UNDRAINED),
-        Some("mohr-coulomb") => given("cohesion", STRENGTH),
-        _ => None,
-    };
-    let is_frictional = node.text_at("model") == Some("mohr-coulomb");
-    let friction = if is_frictional {
-        friction(node, extent, problems)
-    } else {
-        None
-    };
-    let undrained = cohesive.as_ref().map(|own| own.constant);
-    let strength = match node.text_at("model") {
-        Some("elastic") => Some(Strength::Elastic),
-        Some("von-mises") => {
-            undrained.map(|undrained_strength| Strength::VonMises { undrained_strength })
-        }
-        Some("tresca") => {
-            undrained.map(|undrained_strength| Strength::Tresca { undrained_strength })
-        }
-        Some("mohr-coulomb") => {
-            mohr_coulomb(name, node, [cohesive.as_ref(), friction.as_ref()], problems)
-        }
-        _ => None,
-    };
+    let young = common.young.as_ref().ok();
+    let young = young.and_then(|own| property(own, "young", extent, YOUNG, problems));
+    let Resistance {
+        strength,
+        cohesive,
+        friction,
+    } = resistance(name, &own.form, extent, problems);
     let profile = |own: Option<&Property>| -> Option<Profile> { own?.profile.clone() };
     let k0 = k0(
-        node,
+        common,
         strength,
         profile(friction.as_ref()).is_some(),
         problems,
     );
     if problems.errors() == before {
-        plausible::check(name, node, problems);
+        plausible::check(name, &constants(own, common), problems);
     }
-    let saturated = saturated(name, node, unit_weight, problems);
+    let saturated = saturated(name, common, unit_weight, problems);
     let young_constant = young.as_ref().map(|own| own.constant);
-    let drainage = drainage(node, young_constant, strength, problems);
+    let drainage = drainage((common, &own.form), young_constant, strength, problems);
     let material = Material {
         saturated: saturated.ok()?,
         drainage: drainage?,
@@ -156,7 +138,7 @@ fn material<const D: usize>(
         name: name.clone(),
         unit_weight: unit_weight?.constant,
         young: young.as_ref()?.constant,
-        poisson: poisson?,
+        poisson: **common.poisson.as_ref().ok()?,
         strength: strength?,
         k0: k0.ok()?,
         profiles: Profiles {
@@ -170,58 +152,141 @@ fn material<const D: usize>(
         && let Err(error) = material.law()
     {
         let message = format!("the material `{}` is not possible: {error}", clip(name, 40));
-        problems.error(node.place, message);
+        problems.error(stated.place, message);
     }
     Some(material)
 }
 
+/// The strength of a material, and the properties that it comes from.
+struct Resistance {
+    strength: Option<Strength>,
+    cohesive: Option<Property>,
+    friction: Option<Property>,
+}
+
+fn resistance<const D: usize>(
+    name: &str,
+    model: &Model,
+    extent: Extent<'_, D>,
+    problems: &mut Problems,
+) -> Resistance {
+    let mut undrained = |own: &keys::Undrained| {
+        let cu = own.cu.as_ref().ok()?;
+        property(cu, "cu", extent, UNDRAINED, problems)
+    };
+    let (strength, cohesive, friction) = match model {
+        Model::Elastic(_) => (Some(Strength::Elastic), None, None),
+        Model::VonMises(own) => {
+            let cohesive = own.as_ref().ok().and_then(|own| undrained(&own.strength));
+            let strength = cohesive.as_ref().map(|own| Strength::VonMises {
+                undrained_strength: own.constant,
+            });
+            (strength, cohesive, None)
+        }
+        Model::Tresca(own) => {
+            let cohesive = own.as_ref().ok().and_then(|own| undrained(&own.strength));
+            let strength = cohesive.as_ref().map(|own| Strength::Tresca {
+                undrained_strength: own.constant,
+            });
+            (strength, cohesive, None)
+        }
+        Model::MohrCoulomb(Err(_)) => (None, None, None),
+        Model::MohrCoulomb(Ok(own)) => {
+            let cohesive = own.cohesion.as_ref().ok();
+            let cohesive =
+                cohesive.and_then(|own| property(own, "cohesion", extent, STRENGTH, problems));
+            let friction = friction(own, extent, problems);
+            let both = [cohesive.as_ref(), friction.as_ref()];
+            let strength = mohr_coulomb(name, own, both, problems);
+            (strength, cohesive, friction)
+        }
+    };
+    Resistance {
+        strength,
+        cohesive,
+        friction,
+    }
+}
+
+/// The constants that a material states, with their keys.
+fn constants(own: &keys::Material, common: &MaterialCommon) -> Vec<(&'static str, At<f64>)> {
+    fn constant<T>(own: &Found<Either<f64, T>>) -> Option<At<f64>> {
+        let own = own.as_ref().ok()?;
+        let Either::First(value) = own.value else {
+            return None;
+        };
+        Some(At {
+            value,
+            place: own.place,
+            key_place: own.key_place,
+            written: own.written,
+        })
+    }
+    let mut all = vec![
+        ("unit_weight", constant(&common.unit_weight)),
+        ("young", constant(&common.young)),
+    ];
+    match &*own.form {
+        Model::VonMises(Ok(own)) => all.push(("cu", constant(&own.strength.cu))),
+        Model::Tresca(Ok(own)) => all.push(("cu", constant(&own.strength.cu))),
+        Model::MohrCoulomb(Ok(own)) => {
+            all.push(("cohesion", constant(&own.cohesion)));
+            all.push(("friction", constant(&own.friction)));
+        }
+        _ => {}
+    }
+    let stated = all.into_iter().filter_map(|(key, own)| Some((key, own?)));
+    stated.collect()
+}
+
 /// tan φ, where the angle is one.
 fn friction<const D: usize>(
-    node: &Node,
+    own: &MohrCoulomb,
     extent: Extent<'_, D>,
     problems: &mut Problems,
 ) -> Option<Property> {
-    let value = node.get("friction")?;
-    let angles = std::iter::once(value).chain(value.items_at("values"));
-    for angle in angles {
-        if angle
-            .number()
-            .is_some_and(|angle| angle.to_degrees() > 89.999_999)
-        {
-            problems
-                .error(angle.place, "the friction angle must be below 90 deg")
-                .help("soils have 15 deg to 45 deg");
-            return None;
-        }
+    let stated = own.friction.as_ref().ok()?;
+    let is_steep = |angle: f64| angle.to_degrees() > 89.999_999;
+    let steep = match &**stated {
+        Either::First(angle) => is_steep(*angle).then_some(stated.place),
+        Either::Second(table) => (table.values.iter().flat_map(|values| values.iter()))
+            .find(|angle| is_steep(***angle))
+            .map(|angle| angle.place),
+    };
+    if let Some(place) = steep {
+        problems
+            .error(place, "the friction angle must be below 90 deg")
+            .help("soils have 15 deg to 45 deg");
+        return None;
     }
-    property(node, "friction", extent, FRICTION, problems)
+    property(stated, "friction", extent, FRICTION, problems)
 }
 
 /// The unit weight below a water table, if the material states one.
 fn saturated(
     name: &str,
-    node: &Node,
+    common: &MaterialCommon,
     unit_weight: Option<&Property>,
     problems: &mut Problems,
 ) -> Result<Option<f64>, Wrong> {
-    let saturated = node.optional_number("saturated_unit_weight")?;
-    if let (Some(saturated), Some(above)) = (saturated, unit_weight)
-        && saturated < above.constant
+    let stated = common.saturated_unit_weight.as_ref().map_err(|_| Wrong)?;
+    if let (Some(saturated), Some(above)) = (stated, unit_weight)
+        && **saturated < above.constant
     {
         problems
             .error(
-                node.place_at("saturated_unit_weight"),
+                saturated.place,
                 format!(
                     "`{}` would be lighter with full pores, {} kN/m3, than above the water, {} kN/m3",
                     clip(name, 40),
-                    number(saturated / 1e3),
+                    number(**saturated / 1e3),
                     number(above.constant / 1e3)
                 ),
             )
             .help("it is the weight of soil and water together, not that under buoyancy");
         return Err(Wrong);
     }
-    Ok(saturated)
+    Ok(stated.as_ref().map(|own| **own))
 }
 
 /// Poisson's ratio of undrained soil where the file does not say.
@@ -229,77 +294,57 @@ const UNDRAINED_POISSON: f64 = 0.495;
 
 /// What a material does with water.
 fn drainage(
-    node: &Node,
+    (common, model): (&MaterialCommon, &Model),
     young: Option<f64>,
     strength: Option<Strength>,
     problems: &mut Problems,
 ) -> Option<Drainage> {
-    let kind = node.text_at("drainage")?;
-    let stated = ["undrained_poisson", "pore_water"];
-    let stated = stated.into_iter().filter(|key| node.get(key).is_some());
-    let stated: Vec<&str> = stated.collect();
-    if let (true, Some(first)) = (kind != "undrained", stated.first()) {
+    let kind = **common.drainage.as_ref().ok()?.as_ref()?;
+    let (undrained, pore_water) = (&common.undrained_poisson, &common.pore_water);
+    let (undrained, pore_water) = (undrained.as_ref().ok()?, pore_water.as_ref().ok()?);
+    let first = match (undrained, pore_water) {
+        (Some(own), _) => Some(("undrained_poisson", own.place)),
+        (None, own) => own.as_ref().map(|own| ("pore_water", own.place)),
+    };
+    let unlike = match kind {
+        keys::Drainage::Undrained => None,
+        keys::Drainage::Total => Some((Drainage::Total, "one of total stress")),
+        keys::Drainage::Drained => Some((Drainage::Drained, "drained")),
+    };
+    if let Some((drainage, words)) = unlike {
+        let Some((first, place)) = first else {
+            return Some(drainage);
+        };
         problems
             .error(
-                node.place_at(first),
-                format!(
-                    "`{first}` is for undrained soil, and this material is {}",
-                    match kind {
-                        "total" => "one of total stress",
-                        _ => "drained",
-                    }
-                ),
+                place,
+                format!("`{first}` is for undrained soil, and this material is {words}"),
             )
             .help("write drainage = \"undrained\", or remove it");
         return None;
     }
-    match kind {
-        "total" => return Some(Drainage::Total),
-        "undrained" => {}
-        _ => return Some(Drainage::Drained),
-    }
-    if let [_, second] = stated.as_slice() {
+    if let (Some(_), Some(second)) = (undrained, pore_water) {
         problems
             .error(
-                node.place_at(second),
+                second.place,
                 "both `undrained_poisson` and `pore_water` are given",
             )
             .help("keep one of them");
         return None;
     }
-    if let Some(Strength::MohrCoulomb {
-        flow: Flow::Davis, ..
-    }) = strength
-    {
-        problems
-            .error(
-                node.place_at("flow"),
-                "flow = \"davis\" dilates as associated flow does, and undrained soil that dilates never fails",
-            )
-            .help("leave `flow` out, or model = \"tresca\" with the undrained strength");
-        return None;
+    if let (Model::MohrCoulomb(Ok(own)), Some(Strength::MohrCoulomb { .. })) = (model, strength) {
+        never_fails(own, problems)?;
     }
-    if let Some(Strength::MohrCoulomb { dilation_angle, .. }) = strength
-        && dilation_angle > 0.0
-    {
-        problems
-            .warning(
-                node.place_at("dilation"),
-                "undrained soil that dilates never fails: suction grows without limit",
-            )
-            .help("dilation = \"0 deg\" for undrained soil");
+    if let Some(stiffness) = pore_water {
+        return Some(Drainage::Undrained {
+            stiffness: **stiffness,
+        });
     }
-    if let Some(stiffness) = node.optional_number("pore_water").ok()? {
-        return Some(Drainage::Undrained { stiffness });
-    }
-    let undrained = node.optional_number("undrained_poisson").ok()?;
-    let (young, poisson) = (young?, node.number_at("poisson")?);
-    let with_water = undrained.unwrap_or(UNDRAINED_POISSON);
+    let (young, stated) = (young?, common.poisson.as_ref().ok()?);
+    let poisson = **stated;
+    let with_water = undrained.as_ref().map_or(UNDRAINED_POISSON, |own| **own);
     if with_water >= 0.5 || with_water <= poisson {
-        let place = match undrained {
-            Some(_) => node.place_at("undrained_poisson"),
-            None => node.place_at("poisson"),
-        };
+        let place = undrained.as_ref().map_or(stated.place, |own| own.place);
         problems
             .error(
                 place,
@@ -319,26 +364,51 @@ fn drainage(
     })
 }
 
+/// Refuses undrained soil that dilates as associated flow does; warns of one that dilates.
+fn never_fails(own: &MohrCoulomb, problems: &mut Problems) -> Option<()> {
+    let (flow, dilation) = (own.flow.as_ref().ok()?, own.dilation.as_ref().ok()?);
+    if **flow == keys::Flow::Davis {
+        problems
+            .error(
+                flow.place,
+                "flow = \"davis\" dilates as associated flow does, and undrained soil that dilates never fails",
+            )
+            .help("leave `flow` out, or model = \"tresca\" with the undrained strength");
+        return None;
+    }
+    if **dilation > 0.0 {
+        problems
+            .warning(
+                dilation.place,
+                "undrained soil that dilates never fails: suction grows without limit",
+            )
+            .help("dilation = \"0 deg\" for undrained soil");
+    }
+    Some(())
+}
+
 fn mohr_coulomb(
     name: &str,
-    node: &Node,
+    own: &MohrCoulomb,
     [cohesive, friction]: [Option<&Property>; 2],
     problems: &mut Problems,
 ) -> Option<Strength> {
     let cohesion = cohesive.map(|own| own.constant);
     let friction_varies = friction.is_some_and(|own| own.profile.is_some());
     // An angle that is stated is kept to the last bit.
-    let friction = friction.and_then(|own| match own.profile {
-        None => node.number_at("friction"),
-        Some(_) => Some(own.constant.atan()),
+    let stated = own.friction.as_ref().ok().map(|own| &own.value);
+    let friction = friction.and_then(|own| match (&own.profile, stated) {
+        (None, Some(Either::First(angle))) => Some(*angle),
+        (None, _) => None,
+        (Some(_), _) => Some(own.constant.atan()),
     });
-    let dilation = node.number_at("dilation");
+    let dilation = own.dilation.as_ref().ok();
     if let (Some(friction), Some(dilation)) = (friction, dilation)
-        && dilation > friction * (1.0 + if friction_varies { 1e-12 } else { 0.0 })
+        && **dilation > friction * (1.0 + if friction_varies { 1e-12 } else { 0.0 })
     {
         problems
             .error(
-                node.place_at("dilation"),
+                dilation.place,
                 "dilation angle is larger than the friction angle",
             )
             .help("dilation <= friction");
@@ -346,49 +416,25 @@ fn mohr_coulomb(
     if let (Some(cohesion), Some(friction)) = (cohesion, friction)
         && cohesion == 0.0
     {
-        if vanishes(node) {
-            problems
-                .error(
-                    node.place_at("friction"),
-                    format!(
-                        "`{}` has no strength where friction is zero",
-                        clip(name, 40)
-                    ),
-                )
-                .help("a small cohesion, like cohesion = \"0.1 kPa\"");
-            return None;
-        }
-        let (place, name) = (node.place_at("cohesion"), clip(name, 40));
-        if friction == 0.0 {
-            problems
-                .error(place, format!("`{name}` has neither cohesion nor friction"))
-                .help("give it one of them, or model = \"elastic\"");
-        } else {
-            problems
-                .warning(
-                    place,
-                    format!("`{name}` has no cohesion: without confinement it has no strength"),
-                )
-                .help("it counts with a cohesion of unit_weight × cell / 400, which the cells at its face need");
-        }
+        no_cohesion(name, own, friction, problems)?;
     }
-    let tension_cutoff = node.optional_number("tension_cutoff").ok()?;
+    let cutoff = own.tension_cutoff.as_ref().ok()?.as_ref();
     let cohesion_varies = cohesive.is_some_and(|own| own.profile.is_some());
-    if cohesion_varies && tension_cutoff.is_some_and(|limit| limit > 0.0) {
+    if let Some(cutoff) = cutoff.filter(|cutoff| cohesion_varies && ***cutoff > 0.0) {
         problems
             .error(
-                node.place_at("tension_cutoff"),
+                cutoff.place,
                 "a constant tension cut-off does not go with a cohesion that varies",
             )
             .help("tension_cutoff = \"0 kPa\", or leave it out: cohesion / tan(friction) limits tension");
         return None;
     }
-    if let (Some(cohesion), Some(friction), Some(cutoff)) = (cohesion, friction, tension_cutoff) {
+    if let (Some(cohesion), Some(friction), Some(cutoff)) = (cohesion, friction, cutoff) {
         let apex = cohesion / friction.tan();
-        if friction > 0.0 && cutoff > apex * (1.0 + 1e-12) {
+        if friction > 0.0 && **cutoff > apex * (1.0 + 1e-12) {
             problems
                 .warning(
-                    node.place_at("tension_cutoff"),
+                    cutoff.place,
                     "this tension cut-off never acts: it lies above the apex of the cone",
                 )
                 .help(format!(
@@ -400,54 +446,74 @@ fn mohr_coulomb(
     Some(Strength::MohrCoulomb {
         cohesion: cohesion?,
         friction_angle: friction?,
-        dilation_angle: dilation?.min(friction?),
-        flow: flow(node)?,
-        tension_cutoff,
+        dilation_angle: (**dilation?).min(friction?),
+        flow: match **own.flow.as_ref().ok()? {
+            keys::Flow::Davis => Flow::Davis,
+            keys::Flow::Dilation => Flow::Dilation,
+        },
+        tension_cutoff: cutoff.map(|cutoff| **cutoff),
     })
 }
 
-/// How plastic flow follows from ψ.
-fn flow(node: &Node) -> Option<Flow> {
-    Some(match node.text_at("flow")? {
-        "davis" => Flow::Davis,
-        _ => Flow::Dilation,
-    })
-}
-
-/// Whether a table of friction has a zero.
-fn vanishes(node: &Node) -> bool {
-    let table = node
-        .get("friction")
-        .map_or(&[][..], |own| own.items_at("values"));
-    table.iter().any(|angle| angle.number() == Some(0.0))
+/// Refuses soil without cohesion and friction, somewhere or everywhere; warns of soil without cohesion.
+fn no_cohesion(
+    name: &str,
+    own: &MohrCoulomb,
+    friction: f64,
+    problems: &mut Problems,
+) -> Option<()> {
+    let name = clip(name, 40);
+    let stated = own.friction.as_ref().ok()?;
+    if let Either::Second(table) = &**stated
+        && (table.values.iter().flat_map(|values| values.iter())).any(|angle| **angle == 0.0)
+    {
+        problems
+            .error(
+                stated.place,
+                format!("`{name}` has no strength where friction is zero"),
+            )
+            .help("a small cohesion, like cohesion = \"0.1 kPa\"");
+        return None;
+    }
+    let place = own.cohesion.as_ref().ok()?.place;
+    if friction == 0.0 {
+        problems
+            .error(place, format!("`{name}` has neither cohesion nor friction"))
+            .help("give it one of them, or model = \"elastic\"");
+    } else {
+        problems
+            .warning(
+                place,
+                format!("`{name}` has no cohesion: without confinement it has no strength"),
+            )
+            .help("it counts with a cohesion of unit_weight × cell / 400, which the cells at its face need");
+    }
+    Some(())
 }
 
 /// K₀ of a material, if it states one.
 fn k0(
-    node: &Node,
+    common: &MaterialCommon,
     strength: Option<Strength>,
     friction_varies: bool,
     problems: &mut Problems,
 ) -> Result<Option<f64>, Wrong> {
-    let is_jaky = node.text_at("k0").is_some();
-    match strength {
-        _ if !is_jaky => node.optional_number("k0"),
-        Some(Strength::MohrCoulomb { .. }) if friction_varies => {
-            problems
-                .error(
-                    node.place_at("k0"),
-                    "k0 = \"jaky\" needs one friction angle, and friction varies here",
-                )
-                .help("write a number, like k0 = 0.5");
-            Err(Wrong)
+    let Some(stated) = common.k0.as_ref().map_err(|_| Wrong)? else {
+        return Ok(None);
+    };
+    let refused = match (&**stated, strength) {
+        (Either::First(value), _) => return Ok(Some(*value)),
+        (Either::Second(_), None) => return Err(Wrong),
+        (Either::Second(_), Some(Strength::MohrCoulomb { .. })) if friction_varies => {
+            "k0 = \"jaky\" needs one friction angle, and friction varies here"
         }
-        Some(Strength::MohrCoulomb { friction_angle, .. }) => Ok(Some(1.0 - friction_angle.sin())),
-        None => Err(Wrong),
-        Some(_) => {
-            problems
-                .error(node.place_at("k0"), "k0 = \"jaky\" needs a friction angle")
-                .help("write a number, like k0 = 0.5");
-            Err(Wrong)
+        (Either::Second(_), Some(Strength::MohrCoulomb { friction_angle, .. })) => {
+            return Ok(Some(1.0 - friction_angle.sin()));
         }
-    }
+        (Either::Second(_), Some(_)) => "k0 = \"jaky\" needs a friction angle",
+    };
+    problems
+        .error(stated.place, refused)
+        .help("write a number, like k0 = 0.5");
+    Err(Wrong)
 }

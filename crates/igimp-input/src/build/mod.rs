@@ -22,8 +22,10 @@ use std::path::Path;
 use igimp_model::{AnyCase, Case, TitleBlock};
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::names::Names;
-use igimp_schema::schema::{FORMAT, SPACE};
-use igimp_schema::tree::Node;
+use igimp_schema::schema::stages::StageForm;
+use igimp_schema::schema::{Analysis, CaseHead, FORMAT, Root};
+use igimp_schema::tree::read::{At, Found};
+use igimp_schema::tree::{Node, Wrong};
 
 use crate::build::grid::boundaries;
 use assemble::{GridAndBodies, Surroundings};
@@ -79,7 +81,8 @@ pub(super) fn build(tree: &mut Node, file: &Path, problems: &mut Problems) -> Op
     let tree = &*tree;
     let names = AllNames::new(tree, problems);
     header(tree, problems);
-    if tree.get("case")?.text_at("analysis") == Some(SPACE) {
+    let analysis = CaseHead::analysis(tree.get("case")?);
+    if analysis.is_ok_and(|own| *own == Analysis::Space) {
         space::build(tree, &names, file, problems).map(AnyCase::Space)
     } else {
         in_plane(tree, &names, file, problems).map(AnyCase::Plane)
@@ -93,7 +96,10 @@ fn in_plane(
     file: &Path,
     problems: &mut Problems,
 ) -> Option<Case<2>> {
-    let basics = GridAndBodies::new(tree, names, bodies::bodies(tree, names, problems), problems);
+    let own = things(Root::<2>::bodies(tree));
+    let stages = things(Root::<2>::stages(tree));
+    let parts = bodies::bodies::<bodies::Plane, _>(tree, (&own, &stages), names, problems);
+    let basics = GridAndBodies::new(tree, names, (&own, &stages), parts, problems);
     let GridAndBodies {
         bodies,
         materials,
@@ -101,11 +107,14 @@ fn in_plane(
         ..
     } = &basics;
     let site = Site::new(basics.frame.clone(), bodies, sequence);
-    bodies::check(tree, names, (bodies, sequence), &site, problems);
-    let boundaries = boundaries::boundaries(tree, site.frame.as_ref(), problems);
-    bodies::check_support(tree, bodies, boundaries.as_ref(), &site, problems);
+    bodies::check((tree, &own), names, (bodies, sequence), &site, problems);
+    let boundaries = Root::boundaries(tree).ok();
+    let boundaries =
+        boundaries.and_then(|own| boundaries::boundaries(&own, site.frame.as_ref(), problems));
+    bodies::check_support(&own, bodies, boundaries.as_ref(), &site, problems);
     let layers = Layers {
         tree,
+        own: &own,
         bodies,
         materials,
         site: &site,
@@ -115,14 +124,16 @@ fn in_plane(
     let loads = loads::loads(tree, &site, problems);
     let around = rigid::plane::Around {
         site: &site,
-        materials,
         loads: &loads,
-        tree,
+        stages: &stages,
         sequence,
     };
-    let rigid = rigid::plane::rigid(tree, &around, problems);
-    rigid::stage::check_use(tree, names, problems);
+    let rigid = rigid::rigid(tree, &around, materials, problems);
+    rigid::stage::check_use(&things(Root::<2>::rigid(tree)), &stages, names, problems);
     let around = water::Around {
+        own: &things(Root::<2>::water(tree)),
+        has_rigid: !rigid.is_empty(),
+        stages: &stages,
         tree,
         names,
         earth: &site,
@@ -132,10 +143,11 @@ fn in_plane(
     };
     let water = water::conditions(&around, problems);
     water::checks::check(&around, &water, problems);
-    let reinforcement = reinforcement::reinforcement(tree, &site, problems);
-    reinforcement::check_searches(tree, names, problems);
+    let reinforcement = reinforcement::members(tree, &site, &stages, problems);
+    reinforcement::check_searches(&stages, names, problems);
     let context = Context {
         tree,
+        stages: &stages,
         names,
         materials,
         bodies,
@@ -144,53 +156,70 @@ fn in_plane(
         site: Some(&site),
         sequence,
     };
-    let stages = assemble::stages_of(&context, problems);
-    let gravity = tree.get("case").and_then(|case| case.number_at("gravity"));
-    ground::layers::check_stiffness(&layers, &stages, gravity, problems);
+    let built = assemble::stages_of(&context, problems);
+    let gravity = gravity(tree);
+    ground::layers::check_stiffness(&layers, &built, gravity, problems);
     let upon = Surroundings {
         boundaries,
         rigid,
         water,
         reinforcement,
     };
-    assemble::assemble((&context, file), &basics, upon, stages, problems)
+    assemble::assemble((&context, file), &basics, upon, built, problems)
 }
 
 /// The head of the report.
-fn title_block(case: &Node) -> TitleBlock {
-    let words = |key| case.text_at(key).map(str::to_owned);
+fn title_block(case: &CaseHead) -> TitleBlock {
+    let words = |own: &Option<At<String>>| own.as_ref().map(|own| own.value.clone());
     TitleBlock {
-        project: words("project"),
-        client: words("client"),
-        author: words("author"),
-        revision: words("revision"),
+        project: words(&case.project),
+        client: words(&case.client),
+        author: words(&case.author),
+        revision: words(&case.revision),
     }
+}
+
+/// An item of a list, if it was found right.
+type Thing<T> = Option<At<T>>;
+
+/// The items of a list, as far as each was found right.
+fn things<T>(list: Found<Vec<Found<T>>>) -> Vec<Thing<T>> {
+    let items = list.map_or_else(|Wrong| Vec::new(), |list| list.value);
+    items.into_iter().map(Result::ok).collect()
 }
 
 fn all<T>(parts: Vec<Option<T>>) -> Option<Vec<T>> {
     parts.into_iter().collect()
 }
 
+/// Acceleration of gravity \[m/s²\].
+fn gravity(tree: &Node) -> Option<f64> {
+    let gravity = tree.get("case").map(CaseHead::gravity)?.ok()?;
+    Some(*gravity)
+}
+
 /// Checks the version of the format, and that gravity is there where it is raised.
 fn header(tree: &Node, problems: &mut Problems) {
-    if let Some(version) = tree.number_at("igimp")
-        && version > FORMAT as f64
+    if let Ok(version) = Root::<2>::igimp(tree)
+        && *version > FORMAT as usize
     {
         problems
             .error(
-                tree.place_at("igimp"),
-                format!("this file has input format {version}, newer than this program's"),
+                version.place,
+                format!(
+                    "this file has input format {}, newer than this program's",
+                    *version
+                ),
             )
             .help(format!("this program reads igimp = {FORMAT}"));
     }
-    let Some(case) = tree.get("case") else { return };
-    if case.number_at("gravity") == Some(0.0) {
-        let stages = tree.get("stages").map_or(&[][..], Node::items);
-        for stage in stages {
-            if let Some(kind @ ("gravity" | "k0")) = stage.text_at("type") {
+    if gravity(tree) == Some(0.0) {
+        for stage in things(Root::<2>::stages(tree)).into_iter().flatten() {
+            if let StageForm::Gravity(_) | StageForm::K0(_) = *stage.form {
+                let kind = stage.form.name();
                 problems
                     .warning(
-                        stage.place_at("type"),
+                        stage.form.place,
                         format!("this stage of type {kind} does nothing: gravity is 0"),
                     )
                     .help("set gravity in [case], or remove the stage");

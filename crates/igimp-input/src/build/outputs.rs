@@ -14,8 +14,9 @@ use igimp_model::{
 };
 use igimp_results::fields::length;
 use igimp_schema::diagnostic::Problems;
+use igimp_schema::schema::outputs::{self as keys, Across, LinearSolver, OutputTime};
 use igimp_schema::text::{clip, point};
-use igimp_schema::tree::Node;
+use igimp_schema::tree::read::{At, Either};
 
 use super::AllNames;
 use super::bodies::site::Soil;
@@ -23,21 +24,19 @@ use quantities::fields;
 
 /// Newton's method, step cutting, linear solver.
 pub(super) fn solver(
-    tree: &Node,
+    own: &keys::Solver,
     materials: &[Option<Material>],
     problems: &mut Problems,
-) -> Option<SolverSettings> {
-    let node = tree.get("solver")?;
-    let cutting = node.get("step_cutting")?;
-    let linear = match node.text_at("linear")? {
-        "cholesky" => SolverKind::MultifrontalCholesky,
-        "multigrid" => SolverKind::Multigrid,
-        "single" => SolverKind::Single,
-        "lu" => SolverKind::Multifrontal,
-        "faer-cholesky" => SolverKind::FaerCholesky,
-        "nalgebra-cholesky" => SolverKind::NalgebraCholesky,
-        "bicgstab" => SolverKind::SprsBiCgStab,
-        _ => SolverKind::Auto,
+) -> SolverSettings {
+    let linear = match *own.linear {
+        LinearSolver::Auto | LinearSolver::Direct => SolverKind::Auto,
+        LinearSolver::Multigrid => SolverKind::Multigrid,
+        LinearSolver::Single => SolverKind::Single,
+        LinearSolver::Cholesky => SolverKind::MultifrontalCholesky,
+        LinearSolver::Lu => SolverKind::Multifrontal,
+        LinearSolver::FaerCholesky => SolverKind::FaerCholesky,
+        LinearSolver::NalgebraCholesky => SolverKind::NalgebraCholesky,
+        LinearSolver::Bicgstab => SolverKind::SprsBiCgStab,
     };
     let needs_symmetry = matches!(
         linear,
@@ -53,7 +52,7 @@ pub(super) fn solver(
     if needs_symmetry && let Some(material) = unsymmetric {
         problems
             .warning(
-                node.place_at("linear"),
+                own.linear.place,
                 "Cholesky needs a symmetric matrix, but flow is not associated",
             )
             .help(format!(
@@ -61,96 +60,82 @@ pub(super) fn solver(
                 clip(&material.name, 40)
             ));
     }
-    Some(SolverSettings {
-        tolerance: node.number_at("tolerance")?,
-        max_iterations: node.count_at("max_iterations")?,
-        cuts: u32::try_from(cutting.count_at("times")?).ok()?,
-        cut_factor: cutting.number_at("factor")?,
+    SolverSettings {
+        tolerance: *own.tolerance,
+        max_iterations: *own.max_iterations,
+        cuts: *own.step_cutting.times as u32,
+        cut_factor: *own.step_cutting.factor,
         linear,
+    }
+}
+
+/// A monitor.
+pub(super) fn monitor<const D: usize>(
+    own: &keys::Monitor<D>,
+    soil: &dyn Soil<D>,
+    problems: &mut Problems,
+) -> Option<Monitor<D>> {
+    let place = *own.point;
+    if soil.is_known() && !soil.holds_point(&place, soil.round_off()) {
+        problems
+            .warning(
+                own.point.place,
+                format!("the monitor at {} lies outside every body", point(place)),
+            )
+            .help("the material point nearest to it is watched");
+    }
+    Some(Monitor {
+        name: own.name.value.clone(),
+        point: place,
+        record: fields::<D>(&own.record, problems)?,
     })
 }
 
-/// The monitors.
-pub(super) fn monitors<const D: usize>(
-    tree: &Node,
-    soil: &dyn Soil<D>,
-    problems: &mut Problems,
-) -> Vec<Option<Monitor<D>>> {
-    let items = tree.items_at("monitors").iter();
-    items
-        .map(|node| {
-            let place = node.point_at("point")?;
-            if soil.is_known() && !soil.holds_point(&place, soil.round_off()) {
-                problems
-                    .warning(
-                        node.place_at("point"),
-                        format!("the monitor at {} lies outside every body", point(place)),
-                    )
-                    .help("the material point nearest to it is watched");
-            }
-            Some(Monitor {
-                name: node.text_at("name")?.to_owned(),
-                point: place,
-                record: fields::<D>(node.items_at("record"), problems)?,
-            })
-        })
-        .collect()
-}
-
-/// The sections.
-pub(super) fn sections<const D: usize>(
-    tree: &Node,
+/// A section.
+pub(super) fn section<const D: usize>(
+    own: &keys::Section<D>,
     about: &About<'_>,
     soil: &dyn Soil<D>,
     problems: &mut Problems,
-) -> Vec<Option<Section<D>>> {
-    let items = tree.items_at("sections").iter();
-    items
-        .map(|node| {
-            let (from, to): ([f64; D], [f64; D]) = (node.point_at("from")?, node.point_at("to")?);
-            let way: [f64; D] = std::array::from_fn(|axis| to[axis] - from[axis]);
-            if length(&way) <= soil.round_off() {
-                problems.error(node.place_at("to"), "this section has no length");
-            }
-            let along = |t: f64| std::array::from_fn(|axis| from[axis] + t * way[axis]);
-            let meets =
-                (0..=50).any(|k| soil.holds_point(&along(f64::from(k) / 50.0), soil.round_off()));
-            if soil.is_known() && !meets {
-                problems
-                    .warning(node.place_at("from"), "this section meets no body")
-                    .help("it will hold no values");
-            }
-            let has_cuts = tree
-                .get("output")
-                .is_some_and(|own| !own.items_at("cuts").is_empty());
-            if has_cuts && node.text_at("name")?.starts_with("cut-") {
-                problems
-                    .error(
-                        node.place_at("name"),
-                        "tables of planes have names that begin with `cut-`",
-                    )
-                    .help("give the section another name");
-            }
-            let record = fields::<D>(node.items_at("record"), problems);
-            let references: Option<Vec<_>> = node
-                .items_at("references")
-                .iter()
-                .map(|node| section_reference::<D>(node, record.as_deref(), about, problems))
-                .collect();
-            Some(Section {
-                name: node.text_at("name")?.to_owned(),
-                from,
-                to,
-                points: node.count_at("points")?,
-                record: record?,
-                average: match node.text_at("average")? {
-                    "cell" => Average::Cell,
-                    _ => Average::None,
-                },
-                references: references?,
-            })
+) -> Option<Section<D>> {
+    let (from, to) = (*own.from, *own.to);
+    let way: [f64; D] = std::array::from_fn(|axis| to[axis] - from[axis]);
+    if length(&way) <= soil.round_off() {
+        problems.error(own.to.place, "this section has no length");
+    }
+    let along = |t: f64| std::array::from_fn(|axis| from[axis] + t * way[axis]);
+    let meets = (0..=50).any(|k| soil.holds_point(&along(f64::from(k) / 50.0), soil.round_off()));
+    if soil.is_known() && !meets {
+        problems
+            .warning(own.from.place, "this section meets no body")
+            .help("it will hold no values");
+    }
+    if about.has_cuts && own.name.starts_with("cut-") {
+        problems
+            .error(
+                own.name.place,
+                "tables of planes have names that begin with `cut-`",
+            )
+            .help("give the section another name");
+    }
+    let record = fields::<D>(&own.record, problems);
+    let references: Option<Vec<_>> = (own.references.iter())
+        .map(|reference| {
+            section_reference::<D>(reference.as_ref().ok()?, record.as_deref(), about, problems)
         })
-        .collect()
+        .collect();
+    Some(Section {
+        name: own.name.value.clone(),
+        from,
+        to,
+        points: *own.points,
+        record: record?,
+        average: match *own.average {
+            keys::Average::Cell => Average::Cell,
+            keys::Average::None => Average::None,
+        },
+        references: references?,
+    })
 }
 
 /// What references of sections are read with.
@@ -158,44 +143,53 @@ pub(super) struct About<'a> {
     pub(super) names: &'a AllNames,
     pub(super) stages: &'a [Option<Stage>],
     pub(super) file: &'a Path,
+    /// Whether planes are drawn.
+    pub(super) has_cuts: bool,
 }
 
 /// A reference of a section that records these fields.
 fn section_reference<const D: usize>(
-    node: &Node,
+    own: &At<keys::SectionReference>,
     record: Option<&[Field]>,
     about: &About<'_>,
     problems: &mut Problems,
 ) -> Option<SectionReference> {
-    let of = fields::<D>(std::slice::from_ref(node.get("of")?), problems)?.pop()?;
+    let of = fields::<D>(std::slice::from_ref(&own.of), problems)?.pop()?;
     if record.is_some_and(|record| !record.contains(&of)) {
-        let name = node.text_at("of")?;
+        let name = of.name();
         problems
             .error(
-                node.place_at("of"),
+                own.of.place,
                 format!("the section does not record `{name}`"),
             )
             .help(format!("add \"{name}\" to its `record`"));
         return None;
     }
     let who = "this reference looks at";
-    let stage = about
-        .names
-        .stages
-        .find_optional(node, "stage", who, problems);
+    let stages = &about.names.stages;
+    let stage = stages.find_optional(own.stage.as_ref(), who, problems);
     let searches = |stage: &Stage| matches!(stage.kind, StageKind::StrengthReduction(_));
-    if let Ok(Some(number)) = stage
+    if let (Ok(Some(number)), Some(named)) = (stage, &own.stage)
         && about.stages[number].as_ref().is_some_and(searches)
     {
         problems
             .error(
-                node.place_at("stage"),
+                named.place,
                 "a strength reduction leaves the body as it found it, and no sections",
             )
             .help("name the stage before it");
         return None;
     }
-    let reference = super::outputs::curves::reference(node, about.file, problems);
+    let stated = curves::Stated {
+        y: own.y.as_ref(),
+        at: own.at.as_ref(),
+        points: own.points.as_ref(),
+        file: own.file.as_ref(),
+        label: &own.label,
+        tolerance: own.tolerance.as_ref(),
+        place: own.place,
+    };
+    let reference = curves::reference(&stated, about.file, problems);
     Some(SectionReference {
         of,
         stage: stage.ok()?,
@@ -204,41 +198,41 @@ fn section_reference<const D: usize>(
 }
 
 /// A plane in which fields are drawn.
-fn cut(node: &Node) -> Option<Cut> {
-    let across = node.text_at("across")?;
-    let axis = ["x", "y", "z"].iter().position(|own| *own == across)?;
-    let at = node.number_at("at")?;
-    Some(Cut { axis, at })
+fn cut(own: &keys::Cut) -> Cut {
+    let axis = match *own.across {
+        Across::X => 0,
+        Across::Y => 1,
+        Across::Z => 2,
+    };
+    Cut { axis, at: *own.at }
 }
 
 /// What is written, and where.
-pub(super) fn output<const D: usize>(tree: &Node, problems: &mut Problems) -> Option<Output> {
-    let node = tree.get("output")?;
-    let checkpoint = node.get("checkpoint")?;
-    let every = node.get("paraview")?.get("every")?;
-    let folder = node.get("folder")?;
-    let path = folder.text()?;
-    if path.trim().is_empty() || path.chars().any(char::is_control) {
+pub(super) fn output<const D: usize>(
+    own: &keys::Output,
+    problems: &mut Problems,
+) -> Option<Output> {
+    let folder = own.folder.as_ref()?;
+    if folder.trim().is_empty() || folder.chars().any(char::is_control) {
         problems
             .error(folder.place, "this is not the name of a folder")
             .help("write folder = \"results/slope\", or leave it out");
         return None;
     }
     Some(Output {
-        folder: PathBuf::from(path),
-        paraview: match every.text() {
-            Some("never") => Every::Never,
-            Some(_) => Every::Stage,
-            None => Every::Steps(every.count()?),
+        folder: PathBuf::from(&folder.value),
+        paraview: match *own.paraview.every {
+            Either::First(OutputTime::Never) => Every::Never,
+            Either::First(OutputTime::Stage) => Every::Stage,
+            Either::Second(steps) => Every::Steps(steps),
         },
-        figures: fields::<D>(node.items_at("figures"), problems)?,
-        cuts: node
-            .items_at("cuts")
-            .iter()
-            .map(cut)
-            .collect::<Option<_>>()?,
-        report: node.flag_at("report")?,
-        checkpoint_every: checkpoint.count_at("every")?,
-        checkpoint_keep: checkpoint.count_at("keep")?,
+        figures: fields::<D>(&own.figures, problems)?,
+        cuts: (own.cuts.iter())
+            .flat_map(|cuts| cuts.iter())
+            .map(|own| cut(own))
+            .collect(),
+        report: *own.report,
+        checkpoint_every: *own.checkpoint.every,
+        checkpoint_keep: *own.checkpoint.keep,
     })
 }

@@ -4,72 +4,151 @@ pub(crate) mod space;
 
 use igimp_model::{ReinforcementKind, ReinforcementPart, distance};
 use igimp_schema::diagnostic::Problems;
+use igimp_schema::schema::Root;
+use igimp_schema::schema::reinforcement::{Member, MemberForm};
+use igimp_schema::schema::stages::{ReductionPath, Stage, StageForm};
+use igimp_schema::source::Place;
 use igimp_schema::text::{clip, number, point};
 use igimp_schema::tree::Node;
+use igimp_schema::tree::read::At;
 
-use super::AllNames;
 use super::bodies::site::{Site, Soil};
-use crate::build::context::Context;
+use super::{AllNames, things};
+use crate::build::Thing;
+use crate::build::context::About;
 
 /// Places along a member at which soil is looked for.
 const SAMPLES: u32 = 40;
 /// A head this near to an edge of the soil lies on it, as a share of the cell \[-\].
 const NEAR: f64 = 0.05;
 
-/// The members in the plane.
-pub(super) fn reinforcement(
-    tree: &Node,
-    site: &Site,
-    problems: &mut Problems,
-) -> Vec<Option<ReinforcementPart<2>>> {
-    let nodes = tree.items_at("reinforcement").iter();
-    let member = |node: &Node| {
-        let mut own = part(tree, node, site, problems)?;
-        let width = node.optional_number("plate").ok()?;
-        if let Some(width) = width.filter(|&width| width > 0.0) {
-            own.plate = Some(plate(&own, width, site).to_vec());
-        }
-        Some(own)
-    };
-    nodes.map(member).collect()
+/// What members ask of the soil that holds them.
+pub(super) trait Holding<const D: usize>: Soil<D> {
+    /// Refuses a member that there is none of in this analysis.
+    fn refuses(&self, own: &Member<D>, problems: &mut Problems) -> bool;
+
+    /// Corners of the plate at the head of a member.
+    fn plate(&self, part: &ReinforcementPart<D>, width: f64) -> Vec<[f64; D]>;
 }
 
-/// A member without its plate.
-pub(super) fn part<const D: usize>(
+/// The members.
+pub(super) fn members<const D: usize>(
     tree: &Node,
-    node: &Node,
-    soil: &dyn Soil<D>,
+    soil: &impl Holding<D>,
+    stages: &[Thing<Stage>],
     problems: &mut Problems,
-) -> Option<ReinforcementPart<D>> {
-    let name = node.text_at("name")?;
+) -> Vec<Option<ReinforcementPart<D>>> {
+    let all = things(Root::<D>::reinforcement(tree));
+    let member = |own: Thing<Member<D>>| {
+        let own = own?;
+        if soil.refuses(&own, problems) {
+            return None;
+        }
+        let (mut part, width) = part(&own, soil, stages, problems)?;
+        if width > 0.0 {
+            part.plate = Some(soil.plate(&part, width));
+        }
+        Some(part)
+    };
+    all.into_iter().map(member).collect()
+}
+
+impl Holding<2> for Site {
+    fn refuses(&self, _own: &Member<2>, _problems: &mut Problems) -> bool {
+        false
+    }
+
+    fn plate(&self, part: &ReinforcementPart<2>, width: f64) -> Vec<[f64; 2]> {
+        plate(part, width, self).to_vec()
+    }
+}
+
+/// A member as it is stated by its type.
+struct Stated<'a, const D: usize> {
+    kind: ReinforcementKind,
+    line: Vec<[f64; D]>,
+    /// Where the end of its line is said.
+    last: Place,
+    head_capacity: Option<&'a At<f64>>,
+    end_capacity: Option<&'a At<f64>>,
+    bonded_length: Option<&'a At<f64>>,
+    prestress: Option<&'a At<f64>>,
+    /// Width of its plate \[m\].
+    plate: f64,
+}
+
+fn stated<const D: usize>(form: &MemberForm<D>) -> Option<Stated<'_, D>> {
+    Some(match form {
+        MemberForm::Anchor(own) => {
+            let own = own.as_ref().ok()?;
+            Stated {
+                kind: ReinforcementKind::Anchor,
+                line: vec![*own.ends.head, *own.ends.end],
+                last: own.ends.end.place,
+                head_capacity: own.head_capacity.as_ref(),
+                end_capacity: None,
+                bonded_length: Some(&own.bonded_length),
+                prestress: own.prestress.as_ref(),
+                plate: *own.plate.width,
+            }
+        }
+        MemberForm::Nail(own) => {
+            let own = own.as_ref().ok()?;
+            Stated {
+                kind: ReinforcementKind::Nail,
+                line: vec![*own.ends.head, *own.ends.end],
+                last: own.ends.end.place,
+                head_capacity: Some(&own.head_capacity),
+                end_capacity: None,
+                bonded_length: None,
+                prestress: None,
+                plate: *own.plate.width,
+            }
+        }
+        MemberForm::Geotextile(own) => {
+            let own = own.as_ref().ok()?;
+            Stated {
+                kind: ReinforcementKind::Geotextile,
+                line: own.points.iter().map(|own| **own).collect(),
+                last: own.points.place,
+                head_capacity: own.head_capacity.as_ref(),
+                end_capacity: own.end_capacity.as_ref(),
+                bonded_length: None,
+                prestress: None,
+                plate: 0.0,
+            }
+        }
+    })
+}
+
+/// A member without its plate, and the width of that.
+fn part<const D: usize>(
+    own: &Member<D>,
+    soil: &impl Soil<D>,
+    stages: &[Thing<Stage>],
+    problems: &mut Problems,
+) -> Option<(ReinforcementPart<D>, f64)> {
+    let name = own.name.as_str();
     let shown = clip(name, 40);
-    let kind = match node.text_at("type")? {
-        "anchor" => ReinforcementKind::Anchor,
-        "nail" => ReinforcementKind::Nail,
-        _ => ReinforcementKind::Geotextile,
-    };
-    let (line, last) = if kind == ReinforcementKind::Geotextile {
-        let points: Option<Vec<_>> = node.items_at("points").iter().map(Node::point).collect();
-        (points?, "points")
-    } else {
-        (vec![node.point_at("head")?, node.point_at("end")?], "end")
-    };
-    let capacity = node.number_at("capacity")?;
-    let at_head = node.optional_number("head_capacity").ok()?;
-    let at_end = node.optional_number("end_capacity").ok()?;
+    let (stated, common) = (stated(&own.form)?, own.common.as_ref().ok()?);
+    let kind = stated.kind;
+    let value = |own: Option<&At<f64>>| own.map(|own| **own);
     let mut part = ReinforcementPart {
         name: name.to_owned(),
         kind,
-        line,
-        stiffness: node.number_at("stiffness")?,
-        capacity,
-        bond: node.number_at("bond")?,
-        fastened: [at_head.unwrap_or(capacity), at_end.unwrap_or(0.0)],
+        line: stated.line,
+        stiffness: *common.stiffness,
+        capacity: *common.capacity,
+        bond: *common.bond,
+        fastened: [
+            value(stated.head_capacity).unwrap_or(*common.capacity),
+            value(stated.end_capacity).unwrap_or(0.0),
+        ],
         free_length: 0.0,
         plate: None,
-        prestress: node.optional_number("prestress").ok()?,
-        reduces_bond: node.flag_at("reduce_bond")?,
-        from_start: !installed(tree).any(|value| value.text() == Some(name)),
+        prestress: value(stated.prestress),
+        reduces_bond: *common.reduce_bond,
+        from_start: !all_installed(stages).any(|own| own.value == name),
     };
     let short = part
         .line
@@ -77,17 +156,17 @@ pub(super) fn part<const D: usize>(
         .any(|leg| distance(&leg[0], &leg[1]) <= soil.round_off());
     if short {
         problems.error(
-            node.place_at(last),
+            stated.last,
             format!("a part of the {} `{shown}` has no length", kind.name()),
         );
         return None;
     }
-    if let Some(bonded) = node.optional_number("bonded_length").ok()? {
-        let length = part.length();
+    if let Some(stated) = stated.bonded_length {
+        let (bonded, length) = (**stated, part.length());
         if bonded > length {
             problems
                 .error(
-                    node.place_at("bonded_length"),
+                    stated.place,
                     format!("the anchor `{shown}` is bonded over more than its length"),
                 )
                 .help(format!("from head to end it is {} m long", number(length)));
@@ -99,22 +178,21 @@ pub(super) fn part<const D: usize>(
             length - bonded
         };
     }
-    let within = in_soil(node, &part, soil, problems);
-    holds(node, &part, problems);
-    within.then_some(part)
+    let within = in_soil(own.name.place, &part, soil, problems);
+    holds(&part, common.bond.place, stated.prestress, problems);
+    within.then_some((part, stated.plate))
 }
 
 /// Everything that stages install.
-fn installed(tree: &Node) -> impl Iterator<Item = &Node> {
-    let stages = tree.items_at("stages").iter();
-    stages.flat_map(|stage| stage.items_at("install"))
+fn all_installed(stages: &[Thing<Stage>]) -> impl Iterator<Item = &At<String>> {
+    stages.iter().flatten().flat_map(|own| own.installs())
 }
 
 /// Refuses a member with a head, or a bonded part, where no soil is.
 fn in_soil<const D: usize>(
-    node: &Node,
+    name: Place,
     part: &ReinforcementPart<D>,
-    soil: &dyn Soil<D>,
+    soil: &impl Soil<D>,
     problems: &mut Problems,
 ) -> bool {
     if !soil.is_known() {
@@ -129,7 +207,7 @@ fn in_soil<const D: usize>(
     let Some(at) = free else { return true };
     problems
         .error(
-            node.place_at("name"),
+            name,
             format!(
                 "there is no body at {}, where the {} `{}` is held",
                 point(at),
@@ -179,7 +257,12 @@ fn plate(part: &ReinforcementPart<2>, width: f64, site: &Site) -> [[f64; 2]; 2] 
 }
 
 /// Refuses what carries nothing, and a prestress that the member does not carry.
-fn holds<const D: usize>(node: &Node, part: &ReinforcementPart<D>, problems: &mut Problems) {
+fn holds<const D: usize>(
+    part: &ReinforcementPart<D>,
+    bond: Place,
+    prestress: Option<&At<f64>>,
+    problems: &mut Problems,
+) {
     let (name, kind) = (clip(&part.name, 40), part.kind.name());
     let length = part.length();
     let most = (0..=SAMPLES)
@@ -188,20 +271,20 @@ fn holds<const D: usize>(node: &Node, part: &ReinforcementPart<D>, problems: &mu
     if most <= 0.0 {
         problems
             .error(
-                node.place_at("bond"),
+                bond,
                 format!("nothing holds the {kind} `{name}`: it has no bond"),
             )
             .help("give it a bond, as bond = \"30 kPa\"");
         return;
     }
-    let Some(prestress) = part.prestress else {
+    let Some(prestress) = prestress else {
         return;
     };
     let limit = part.limit(0.0);
-    if prestress > limit {
+    if **prestress > limit {
         problems
             .error(
-                node.place_at("prestress"),
+                prestress.place,
                 format!("the anchor `{name}` does not carry its prestress"),
             )
             .help(format!(
@@ -213,7 +296,7 @@ fn holds<const D: usize>(node: &Node, part: &ReinforcementPart<D>, problems: &mu
     if part.from_start {
         problems
             .error(
-                node.place_at("prestress"),
+                prestress.place,
                 format!("no stage installs the anchor `{name}`, so nothing stresses it"),
             )
             .help(format!(
@@ -224,17 +307,16 @@ fn holds<const D: usize>(node: &Node, part: &ReinforcementPart<D>, problems: &mu
 
 /// The members that a stage installs.
 pub(super) fn installs<const D: usize>(
-    context: &Context<'_, D>,
-    index: usize,
-    node: &Node,
-    name: &str,
+    about: &About<'_, D>,
     problems: &mut Problems,
 ) -> Option<Vec<usize>> {
-    let who = format!("stage `{name}` installs");
-    let values = node.items_at("install");
-    if let (Some(value), Some(kind @ ("strength-reduction" | "run-out"))) =
-        (values.first(), node.text_at("type"))
+    let context = about.context;
+    let who = format!("stage `{}` installs", about.name);
+    let values = about.stage.installs();
+    if let Some(value) = values.first()
+        && let StageForm::StrengthReduction(_) | StageForm::RunOut(_) = *about.stage.form
     {
+        let kind = about.stage.form.name();
         problems
             .error(
                 value.place,
@@ -246,12 +328,8 @@ pub(super) fn installs<const D: usize>(
     let mut members = Vec::new();
     for value in values {
         let member = context.names.reinforcement.find(value, &who, problems)?;
-        let earlier = context.before(index).any(|stage| {
-            let named = stage.items_at("install").iter();
-            named
-                .filter_map(Node::text)
-                .any(|own| Some(own) == value.text())
-        });
+        let mut before = context.before(about.index).flat_map(|own| own.installs());
+        let earlier = before.any(|own| own.value == value.value);
         if earlier || members.contains(&member) {
             problems
                 .error(
@@ -270,16 +348,18 @@ pub(super) fn installs<const D: usize>(
 }
 
 /// Refuses a search that begins anew, with bodies in which a stage has installed nothing yet.
-pub(super) fn check_searches(tree: &Node, names: &AllNames, problems: &mut Problems) {
-    let mut named = installed(tree).filter_map(Node::text);
+pub(super) fn check_searches(stages: &[Thing<Stage>], names: &AllNames, problems: &mut Problems) {
+    let mut named = all_installed(stages);
     let Some(first) = named.find(|name| names.reinforcement.position(name).is_some()) else {
         return;
     };
-    for stage in tree.items_at("stages") {
-        if stage.text_at("path") == Some("gravity") {
+    for stage in stages.iter().flatten() {
+        if let StageForm::StrengthReduction(Ok(own)) = &*stage.form
+            && *own.path == ReductionPath::Gravity
+        {
             problems
                 .error(
-                    stage.place_at("path"),
+                    own.path.place,
                     format!(
                         "this search raises gravity on undeformed bodies, in which nothing is installed, as \
                          `{}`",

@@ -9,10 +9,15 @@ use std::sync::Arc;
 use igimp_assembly::{SurfaceError, Tension};
 use igimp_model::{Adhesion, Material, RigidForm, RigidInterface, RigidPart, RigidShear, Strength};
 use igimp_schema::diagnostic::Problems;
+use igimp_schema::schema::Root;
+use igimp_schema::schema::rigid::{self as keys, Interface, Limited, RigidBody, RigidCommon};
 use igimp_schema::text::{clip, number};
 use igimp_schema::tree::Node;
+use igimp_schema::tree::read::{At, Either};
 
 use super::grid::Frame;
+use super::things;
+use crate::build::Thing;
 
 /// A body is at least so many cells thick.
 const LEAST_CELLS: f64 = 2.0;
@@ -34,100 +39,131 @@ pub(super) struct Sides {
     pub(super) names: &'static [&'static str],
 }
 
+/// What rigid bodies ask of what is around them.
+pub(super) trait Room<const D: usize> {
+    /// The grid.
+    fn frame(&self) -> Option<&Frame<D>>;
+
+    /// The shape of a body.
+    fn basis(&self, own: &At<RigidBody<D>>, problems: &mut Problems) -> Option<Basis<D>>;
+
+    /// Refuses a body that has no place beside the soil.
+    fn check(&self, own: &RigidBody<D>, part: &RigidPart<D>, problems: &mut Problems);
+
+    /// Whether the grid follows something else, and the help where it cannot follow two.
+    fn followed(&self) -> (bool, &'static str);
+}
+
+/// The rigid bodies.
+pub(super) fn rigid<const D: usize>(
+    tree: &Node,
+    room: &impl Room<D>,
+    materials: &[Option<Material>],
+    problems: &mut Problems,
+) -> Vec<Option<RigidPart<D>>> {
+    let all = things(Root::<D>::rigid(tree));
+    let part = |own: &Thing<RigidBody<D>>| {
+        let own = own.as_ref()?;
+        let basis = room.basis(own, problems);
+        let part = part_of(own, basis, (room.frame(), materials), problems)?;
+        room.check(own, &part, problems);
+        Some(part)
+    };
+    let parts = all.iter().map(part).collect();
+    follow_once(&all, room.followed(), problems);
+    parts
+}
+
 /// The rigid body that a shape becomes.
-pub(super) fn part_of<const D: usize>(
-    node: &Node,
+fn part_of<const D: usize>(
+    own: &RigidBody<D>,
     basis: Option<Basis<D>>,
     (frame, materials): (Option<&Frame<D>>, &[Option<Material>]),
     problems: &mut Problems,
 ) -> Option<RigidPart<D>> {
-    let whole = interface(node, None, materials, problems);
+    let common = own.common.as_ref().ok()?;
+    let whole = RigidInterface {
+        shear: shear(&common.interface, materials, problems)?,
+        tension: tension(
+            Some(&common.tension),
+            common.tension_limit.as_ref(),
+            problems,
+        )?,
+    };
     let basis = basis?;
-    let interfaces = all_sides(node, whole?, &basis.sides, materials, problems);
+    let interfaces = all_sides(own, whole, &basis.sides, materials, problems);
     let part = RigidPart {
-        name: node.text_at("name")?.to_owned(),
+        name: own.name.value.clone(),
         reference: basis.reference,
         shape: basis.shape,
         interfaces: interfaces?,
-        stiffness: node.number_at("stiffness")?,
-        rounding: node.number_at("rounding")?,
-        weight: node.number_at("weight")?,
-        force_factor: node.number_at("force_factor")?,
-        grid_follows: node.flag_at("grid_follows")?,
-        from_start: node.flag_at("from_start")?,
-        most_penetration: node.number_at("most_penetration")?,
+        stiffness: *common.stiffness,
+        rounding: *common.rounding,
+        weight: *common.weight,
+        force_factor: *common.force_factor,
+        grid_follows: *common.grid_follows,
+        from_start: *common.from_start,
+        most_penetration: *common.most_penetration,
     };
     if let Some(frame) = frame {
-        in_grid(node, (&part, basis.thickness), frame, problems);
+        in_grid(own, common, (&part, basis.thickness), frame, problems);
     }
     Some(part)
 }
 
-/// What a table says of its interface; what it does not say is that of the whole body.
-fn interface(
-    node: &Node,
-    whole: Option<RigidInterface>,
-    materials: &[Option<Material>],
+/// When soil is pulled off, if that is said.
+fn tension(
+    stated: Option<&At<keys::Tension>>,
+    limit: Option<&At<f64>>,
     problems: &mut Problems,
-) -> Option<RigidInterface> {
-    let shear = match node.get("interface") {
-        Some(value) => shear(value, materials, problems)?,
-        None => whole?.shear,
-    };
-    let limit = node.optional_number("tension_limit").ok()?;
-    if let (Some(_), Some("bonded")) = (limit, node.text_at("tension")) {
+) -> Option<Tension> {
+    let stated = stated.map(|own| **own);
+    if let (Some(limit), Some(keys::Tension::Bonded)) = (limit, stated) {
         problems
             .error(
-                node.place_at("tension_limit"),
+                limit.place,
                 "soil that is bonded never lets go: there is no limit",
             )
             .help("keep one of tension and tension_limit");
     }
-    let tension = match (limit, node.text_at("tension")) {
-        (Some(limit), _) => Tension::Limit(limit),
-        (None, Some("bonded")) => Tension::Bonded,
-        (None, Some(_)) => Tension::None,
-        (None, None) => whole?.tension,
-    };
-    Some(RigidInterface { shear, tension })
+    match (limit, stated) {
+        (Some(limit), _) => Some(Tension::Limit(**limit)),
+        (None, Some(keys::Tension::Bonded)) => Some(Tension::Bonded),
+        (None, Some(keys::Tension::None)) => Some(Tension::None),
+        (None, None) => None,
+    }
 }
 
 fn shear(
-    value: &Node,
+    stated: &At<Either<Interface, Limited>>,
     materials: &[Option<Material>],
     problems: &mut Problems,
 ) -> Option<RigidShear> {
-    match value.text() {
-        Some("smooth") => return Some(RigidShear::Smooth),
-        Some(_) => return Some(RigidShear::Rough),
-        None if value.is_invalid() => return None,
-        None => {}
-    }
-    let number = |key| value.optional_number(key).ok();
-    let friction = match (number("friction")?, number("angle")?) {
-        (Some(_), Some(_)) => {
+    let own = match &**stated {
+        Either::First(Interface::Smooth) => return Some(RigidShear::Smooth),
+        Either::First(Interface::Rough) => return Some(RigidShear::Rough),
+        Either::Second(own) => own,
+    };
+    let friction = match (&own.friction, &own.angle) {
+        (Some(_), Some(angle)) => {
             problems
-                .error(
-                    value.place_at("angle"),
-                    "both `friction` and `angle` are given",
-                )
+                .error(angle.place, "both `friction` and `angle` are given")
                 .help("keep one of them");
             return None;
         }
-        (friction, angle) => friction.or(angle.map(f64::tan)).unwrap_or(0.0),
+        (Some(friction), None) => **friction,
+        (None, angle) => angle.as_ref().map_or(0.0, |angle| angle.tan()),
     };
     if !(0.0..=1e3).contains(&friction) {
-        problems.error(
-            value.place_at("angle"),
-            "an angle of friction is less than 90 deg",
-        );
+        let place = own.angle.as_ref().map_or(stated.place, |angle| angle.place);
+        problems.error(place, "an angle of friction is less than 90 deg");
         return None;
     }
-    let adhesion = match (number("adhesion")?, number("adhesion_share")?) {
-        (Some(_), Some(_)) => {
+    let adhesion = match (&own.adhesion, &own.adhesion_share) {
+        (Some(_), Some(share)) => {
             problems
                 .error(
-                    value.place_at("adhesion_share"),
+                    share.place,
                     "both `adhesion` and `adhesion_share` are given",
                 )
                 .help("keep one of them");
@@ -137,7 +173,7 @@ fn shear(
             for material in materials.iter().flatten() {
                 if material.strength == Strength::Elastic {
                     problems.warning(
-                        value.place_at("adhesion_share"),
+                        share.place,
                         format!(
                             "the material `{}` is elastic and has no strength to take a share of: no \
                              adhesion where it touches",
@@ -146,16 +182,16 @@ fn shear(
                     );
                 }
             }
-            Adhesion::Share(share)
+            Adhesion::Share(**share)
         }
-        (stress, None) => Adhesion::Stress(stress.unwrap_or(0.0)),
+        (stress, None) => Adhesion::Stress(stress.as_ref().map_or(0.0, |own| **own)),
     };
     Some(RigidShear::Limited { friction, adhesion })
 }
 
 /// The interface of each side.
-fn all_sides(
-    node: &Node,
+fn all_sides<const D: usize>(
+    body: &RigidBody<D>,
     whole: RigidInterface,
     sides: &Sides,
     materials: &[Option<Material>],
@@ -163,11 +199,11 @@ fn all_sides(
 ) -> Option<Vec<RigidInterface>> {
     let Sides { count, names } = sides;
     let mut interfaces = vec![whole; *count];
-    for own in node.items_at("sides") {
-        let value = own.get("side")?;
-        let side = match value.text() {
-            Some(name) => names.iter().position(|known| *known == name),
-            None => value.count()?.checked_sub(1),
+    for own in body.common.as_ref().ok()?.sides.iter() {
+        let own = own.as_ref().ok()?;
+        let side = match *own.side {
+            Either::First(number) => number.checked_sub(1),
+            Either::Second(name) => names.iter().position(|known| *known == name.name()),
         };
         let Some(side) = side.filter(|side| side < count) else {
             let numbers = match count {
@@ -178,20 +214,28 @@ fn all_sides(
                 [] => numbers,
                 _ => format!("{}, or {numbers}", names.join(", ")),
             };
-            let kind = node.text_at("type")?;
+            let kind = body.form.name();
             problems
-                .error(value.place, format!("a {kind} has no such side"))
+                .error(own.side.place, format!("a {kind} has no such side"))
                 .help(format!("sides here: {known}"));
             return None;
         };
-        interfaces[side] = interface(own, Some(whole), materials, problems)?;
+        let limit = own.tension_limit.as_ref();
+        interfaces[side] = RigidInterface {
+            shear: match &own.interface {
+                Some(stated) => shear(stated, materials, problems)?,
+                None => whole.shear,
+            },
+            tension: tension(own.tension.as_ref(), limit, problems).unwrap_or(whole.tension),
+        };
     }
     Some(interfaces)
 }
 
 /// Refuses a body that lies outside the grid, or is too thin for it.
 fn in_grid<const D: usize>(
-    node: &Node,
+    own: &RigidBody<D>,
+    common: &RigidCommon<D>,
     (part, thickness): (&RigidPart<D>, f64),
     frame: &Frame<D>,
     problems: &mut Problems,
@@ -201,7 +245,7 @@ fn in_grid<const D: usize>(
     if (0..D).any(|k| upper[k] <= frame.lower[k] || lower[k] >= frame.upper[k]) {
         problems
             .error(
-                node.place_at("name"),
+                own.name.place,
                 format!("the rigid body `{name}` lies outside the grid domain"),
             )
             .help("soil is only within the domain: move the body, or extend [grid] domain");
@@ -214,7 +258,7 @@ fn in_grid<const D: usize>(
     if thickness < LEAST_CELLS * cell * (1.0 - 1e-9) {
         problems
             .error(
-                node.place_at("name"),
+                own.name.place,
                 format!(
                     "the rigid body `{name}` is {} m thick, thinner than two cells of {} m",
                     number(thickness),
@@ -232,7 +276,7 @@ fn in_grid<const D: usize>(
         Err(SurfaceError::RoundedAway { side, rounding }) => {
             problems
                 .error(
-                    node.place_at("rounding"),
+                    common.rounding.place,
                     format!(
                         "with corners rounded by {} m nothing is left of side {} of the rigid body `{name}`",
                         number(rounding),
@@ -244,7 +288,7 @@ fn in_grid<const D: usize>(
         Err(error) => {
             problems
                 .error(
-                    node.place_at("name"),
+                    own.name.place,
                     format!("the rigid body `{name}` cannot be made: {error}"),
                 )
                 .help(if D == 2 {
@@ -261,7 +305,7 @@ fn in_grid<const D: usize>(
             let up = if D == 2 { "y" } else { "z" };
             problems
                 .error(
-                    node.place_at("grid_follows"),
+                    common.grid_follows.place,
                     format!(
                         "no row of the grid lies at {up} = {} m, its lowest place",
                         number(level)
@@ -276,16 +320,17 @@ fn in_grid<const D: usize>(
 }
 
 /// Refuses a second thing that the grid would follow.
-pub(super) fn follow_once(
-    nodes: &[Node],
+fn follow_once<const D: usize>(
+    bodies: &[Thing<RigidBody<D>>],
     (mut is_taken, help): (bool, &str),
     problems: &mut Problems,
 ) {
-    for node in nodes {
-        if node.flag_at("grid_follows") == Some(true) && std::mem::replace(&mut is_taken, true) {
+    let common = bodies.iter().flatten().flat_map(|own| &own.common);
+    for own in common {
+        if *own.grid_follows && std::mem::replace(&mut is_taken, true) {
             problems
                 .error(
-                    node.place_at("grid_follows"),
+                    own.grid_follows.place,
                     "the grid follows something else already",
                 )
                 .help(help);

@@ -1,20 +1,26 @@
 //! A case in space from a completed tree: what plane strain has, without what is drawn in the plane.
 
 use std::path::Path;
-use std::sync::Arc;
 
 use igimp_geometry::region::Region;
 use igimp_model::{BodyPart, Case, Ground, LoadKind, Material};
 use igimp_schema::diagnostic::Problems;
+use igimp_schema::schema::Root;
+use igimp_schema::schema::bodies::Body;
+use igimp_schema::schema::grid::Fit;
+use igimp_schema::schema::loads::LoadForm;
+use igimp_schema::schema::stages::{Stage, StageForm};
 use igimp_schema::text::{clip, count, number, point};
 use igimp_schema::tree::Node;
 
 use super::assemble::{self, GridAndBodies, Surroundings};
-use super::bodies::sequence::{Sequence, placed};
+use super::bodies;
+use super::bodies::sequence::Sequence;
 use super::bodies::site::Soil;
 use super::bodies::solids;
-use super::grid::{Frame, boundaries};
-use super::{AllNames, loads, reinforcement, rigid, water};
+use super::grid::{Frame, boundaries, cell_place};
+use super::{AllNames, loads, reinforcement, rigid, things, water};
+use crate::build::Thing;
 use crate::build::bodies::site::Solids;
 use crate::build::context::Context;
 
@@ -75,7 +81,10 @@ pub(super) fn build(
     problems: &mut Problems,
 ) -> Option<Case<3>> {
     refuse_what_is_of_the_plane(tree, problems);
-    let basics = GridAndBodies::new(tree, names, bodies(tree, names, problems), problems);
+    let own = things(Root::<3>::bodies(tree));
+    let stages = things(Root::<3>::stages(tree));
+    let parts = bodies::bodies::<bodies::Space, _>(tree, (&own, &stages), names, problems);
+    let basics = GridAndBodies::new(tree, names, (&own, &stages), parts, problems);
     let GridAndBodies {
         frame,
         bodies,
@@ -85,12 +94,16 @@ pub(super) fn build(
     } = &basics;
     let frame = frame.as_ref();
     let soil = Solids::new(bodies, frame);
-    check_bodies(tree, frame, (bodies, sequence), &soil, problems);
-    let boundaries = boundaries::boundaries(tree, frame, problems);
-    let loads = loads::space::loads(tree, &soil, problems);
-    let rigid = rigid::space::rigid(tree, frame, materials, problems);
-    rigid::stage::check_use(tree, names, problems);
+    check_bodies((tree, &own), frame, (bodies, sequence), &soil, problems);
+    let boundaries = Root::boundaries(tree).ok();
+    let boundaries = boundaries.and_then(|own| boundaries::boundaries(&own, frame, problems));
+    let loads = loads::loads(tree, &soil, problems);
+    let rigid = rigid::rigid(tree, &rigid::space::Around(frame), materials, problems);
+    rigid::stage::check_use(&things(Root::<3>::rigid(tree)), &stages, names, problems);
     let around = water::Around {
+        own: &things(Root::<3>::water(tree)),
+        has_rigid: !rigid.is_empty(),
+        stages: &stages,
         tree,
         names,
         earth: &soil,
@@ -100,10 +113,11 @@ pub(super) fn build(
     };
     let water = water::conditions(&around, problems);
     water::checks::check(&around, &water, problems);
-    let reinforcement = reinforcement::space::reinforcement(tree, &soil, problems);
-    reinforcement::check_searches(tree, names, problems);
+    let reinforcement = reinforcement::members(tree, &soil, &stages, problems);
+    reinforcement::check_searches(&stages, names, problems);
     let context = Context {
         tree,
+        stages: &stages,
         names,
         materials,
         bodies,
@@ -112,69 +126,51 @@ pub(super) fn build(
         site: None,
         sequence,
     };
-    let stages = assemble::stages_of(&context, problems);
-    check_level(tree, (bodies, materials), &soil, problems);
+    let built = assemble::stages_of(&context, problems);
+    check_level(&stages, (bodies, materials), &soil, problems);
     let upon = Surroundings {
         boundaries,
         rigid,
         water,
         reinforcement,
     };
-    assemble::assemble((&context, file), &basics, upon, stages, problems)
+    assemble::assemble((&context, file), &basics, upon, built, problems)
 }
 
 /// Reports what case files can say of the plane only.
 fn refuse_what_is_of_the_plane(tree: &Node, problems: &mut Problems) {
-    for load in tree.items_at("loads") {
-        if load.text_at("type") == Some("rigid-footing") {
+    for load in things(Root::<3>::loads(tree)).into_iter().flatten() {
+        if let LoadForm::RigidFooting(_) = *load.form {
             problems
                 .error(
-                    load.place_at("type"),
+                    load.form.place,
                     "a rigid footing that the grid follows is one of plane strain",
                 )
                 .help("in space footings are [[rigid]] bodies, or pressures");
         }
     }
-    let fit = tree.get("grid").and_then(|grid| grid.get("fit"));
-    if let Some(fit) = fit.filter(|fit| fit.text() == Some("layers")) {
+    if let Ok(grid) = Root::<3>::grid(tree)
+        && let Ok(wishes) = &grid.wishes
+        && *wishes.fit == Fit::Layers
+    {
         problems
-            .error(fit.place, "lines are fitted to layers in plane strain only")
+            .error(
+                wishes.fit.place,
+                "lines are fitted to layers in plane strain only",
+            )
             .help("write lines = { z = [...] }");
     }
 }
 
-/// The bodies, as far as each is right by itself.
-fn bodies(tree: &Node, names: &AllNames, problems: &mut Problems) -> Vec<Option<BodyPart<3>>> {
-    let later = placed(tree);
-    let items = tree.items_at("bodies").iter();
-    let part = |node: &Node| {
-        let name = node.text_at("name").unwrap_or("?");
-        let material = node.get("material").and_then(|material| {
-            let who = format!("body `{}` uses", clip(name, 40));
-            names.materials.find(material, &who, problems)
-        });
-        let solid = solids::solid(node, name, problems);
-        let points = node.count_at("points_per_cell")?;
-        Some(BodyPart {
-            from_start: !later.contains(&name),
-            name: node.text_at("name")?.to_owned(),
-            material: material?,
-            per_direction: (1..=4).find(|count: &usize| count.pow(3) >= points)?,
-            region: Arc::new(solid?),
-        })
-    };
-    items.map(part).collect()
-}
-
 /// Checks the bodies against the domain and each other.
 fn check_bodies(
-    tree: &Node,
+    (tree, own): (&Node, &[Thing<Body>]),
     frame: Option<&Frame<3>>,
     (bodies, sequence): (&[Option<BodyPart<3>>], &Sequence),
     soil: &Solids,
     problems: &mut Problems,
 ) {
-    let items = tree.items_at("bodies");
+    let place = |index: usize| own[index].as_ref().map(|own| own.place);
     let Some(frame) = frame else { return };
     let slack = soil.round_off;
     let (lower, upper) = (
@@ -182,7 +178,7 @@ fn check_bodies(
         frame.upper.map(|x| x + slack),
     );
     let mut particles = 0.0;
-    for (body, node) in std::iter::zip(bodies, items) {
+    for (index, body) in bodies.iter().enumerate() {
         let Some(body) = body else { continue };
         if let Some(at) = body.region.beyond(lower, upper) {
             let name = clip(&body.name, 40);
@@ -191,7 +187,7 @@ fn check_bodies(
                 point(at)
             );
             problems
-                .error(node.place, message)
+                .error(place(index), message)
                 .help("extend [grid] domain");
             continue;
         }
@@ -205,12 +201,10 @@ fn check_bodies(
     }
     if particles > MOST {
         let message = format!("the bodies would have {} particles", count(particles));
-        problems
-            .error(tree.get("grid").map(|grid| grid.place_at("cell")), message)
-            .help(format!(
-                "at most {} are possible: use larger cells or fewer points_per_cell",
-                count(MOST)
-            ));
+        problems.error(cell_place(tree), message).help(format!(
+            "at most {} are possible: use larger cells or fewer points_per_cell",
+            count(MOST)
+        ));
     }
     for (second, b) in bodies.iter().enumerate() {
         for (first, a) in bodies[..second].iter().enumerate() {
@@ -221,7 +215,7 @@ fn check_bodies(
             if let Some(at) = solids::overlap(&*a.region, &*b.region) {
                 problems
                     .error(
-                        items[second].place,
+                        place(second),
                         format!(
                             "body `{}` overlaps body `{}` near {}",
                             clip(&b.name, 40),
@@ -237,13 +231,15 @@ fn check_bodies(
 
 /// Refuses stresses of level ground in ground that is not level.
 fn check_level(
-    tree: &Node,
+    stages: &[Thing<Stage>],
     (bodies, materials): (&[Option<BodyPart<3>>], &[Option<Material>]),
     soil: &Solids,
     problems: &mut Problems,
 ) {
-    let first = tree.items_at("stages").first();
-    let Some(stage) = first.filter(|stage| stage.text_at("type") == Some("k0")) else {
+    let Some(Some(stage)) = stages.first() else {
+        return;
+    };
+    let StageForm::K0(_) = *stage.form else {
         return;
     };
     let parts: Option<Vec<_>> = (bodies.iter())
@@ -276,7 +272,7 @@ fn check_level(
         // Places are taken a little beside edges.
         let near = |x: f64| number((1e6 * x).round() / 1e6);
         problems
-            .error(stage.place_at("type"), "a k0 stage needs level ground")
+            .error(stage.form.place, "a k0 stage needs level ground")
             .help(format!(
                 "the surface is at z = {} m above ({} m, {} m) and at z = {} m above ({} m, {} m)",
                 number(low.0),

@@ -7,11 +7,16 @@ pub(crate) mod safety;
 use igimp_assembly::Geometry;
 use igimp_model::{LoadKind, Stage, StageKind, StopWhen, Strength};
 use igimp_schema::diagnostic::Problems;
+use igimp_schema::schema::Root;
+use igimp_schema::schema::stages::{self as keys, StageForm};
+use igimp_schema::source::Place;
 use igimp_schema::text::{clip, number, row};
-use igimp_schema::tree::{Node, Wrong};
+use igimp_schema::tree::Wrong;
+use igimp_schema::tree::read::At;
 
 use super::ground::level::uneven;
-use crate::build::context::Context;
+use crate::build::context::{About, Context};
+use crate::build::things;
 use safety::{run_out, strength_reduction};
 
 /// The stages.
@@ -19,166 +24,193 @@ pub(super) fn stages<const D: usize>(
     context: &Context<'_, D>,
     problems: &mut Problems,
 ) -> Vec<Option<Stage>> {
-    (context.stage_nodes().iter().enumerate())
-        .map(|(index, node)| stage(context, index, node, problems))
+    (context.stages.iter().enumerate())
+        .map(|(index, own)| stage(context, index, own.as_ref()?, problems))
         .collect()
 }
 
 fn stage<const D: usize>(
     context: &Context<'_, D>,
     index: usize,
-    node: &Node,
+    own: &At<keys::Stage>,
     problems: &mut Problems,
 ) -> Option<Stage> {
-    let name = clip(node.text_at("name").unwrap_or("?"), 40);
-    let kind = match node.text_at("type")? {
-        "gravity" => gravity(node),
-        "k0" => {
-            k0(context, index, node, problems);
-            Some(StageKind::K0)
-        }
-        "load" => load(context, index, node, &name, problems),
-        "displacement" => displacement(context, index, node, &name, problems),
-        "rigid" => super::rigid::stage::stage(context, node, &name, problems),
-        "construction" => construction::stage(context, index, node, &name, problems),
-        "strength-reduction" => strength_reduction(context, index, node, &name, problems)
-            .map(StageKind::StrengthReduction),
-        "dynamic" => dynamic::stage(context, index, node, &name, problems),
-        _ => run_out(context, index, node, &name, problems).map(StageKind::RunOut),
+    let name = clip(&own.name, 40);
+    let about = About {
+        context,
+        index,
+        stage: own,
+        name: &name,
     };
-    let start_from = start_from(context, index, node, &name, problems);
-    let stop_when = stop_when(context, node, &name, problems);
-    let install = super::reinforcement::installs(context, index, node, &name, problems);
+    let kind = kind(&about, problems);
+    let common = own.common.as_ref().ok()?;
+    let start_from = start_from(&about, common, problems);
+    let stop_when = common.stop_when.as_ref().ok();
+    let stop_when = stop_when.and_then(|own| stop_when_of(&about, own, problems));
+    let install = super::reinforcement::installs(&about, problems);
     Some(Stage {
-        drained: node.flag_at("drained")?,
-        name: node.text_at("name")?.to_owned(),
+        drained: **common.drained.as_ref().ok()?,
+        name: own.name.known()?,
         kind: kind?,
-        steps: node.count_at("steps")?,
-        geometry: geometry(node),
+        steps: **common.steps.as_ref().ok()?,
+        geometry: geometry(&own.form),
         start_from: start_from.ok()?,
-        reset_displacements: node.flag_at("reset_displacements")?,
+        reset_displacements: **common.reset_displacements.as_ref().ok()?,
         install: install?,
         stop_when: stop_when?,
     })
 }
 
-fn gravity(node: &Node) -> Option<StageKind> {
-    let horizontal = node.optional_number("horizontal");
-    let across = node.optional_number("across");
-    let vertical = node.optional_number("vertical");
-    Some(StageKind::Gravity {
-        factor: node.number_at("factor")?,
-        horizontal: horizontal.ok()?,
-        across: across.ok()?,
-        vertical: vertical.ok()?,
-    })
+fn kind<const D: usize>(about: &About<'_, D>, problems: &mut Problems) -> Option<StageKind> {
+    match &*about.stage.form {
+        StageForm::Gravity(own) => Some(gravity(own.as_ref().ok()?)),
+        StageForm::K0(_) => {
+            k0(about, problems);
+            Some(StageKind::K0)
+        }
+        StageForm::Load(own) => load(about, own.as_ref().ok()?, problems),
+        StageForm::Displacement(own) => displacement(about, own.as_ref().ok()?, problems),
+        StageForm::Rigid(_) => super::rigid::stage::stage(about, problems),
+        StageForm::Construction(own) => construction::stage(about, own.as_ref().ok()?, problems),
+        StageForm::StrengthReduction(own) => {
+            strength_reduction(about, own.as_ref().ok()?, problems)
+                .map(StageKind::StrengthReduction)
+        }
+        StageForm::RunOut(own) => {
+            run_out(about, own.as_ref().ok()?, problems).map(StageKind::RunOut)
+        }
+        StageForm::Dynamic(own) => dynamic::stage(about, own.as_ref().ok()?, problems),
+    }
+}
+
+fn gravity(own: &keys::Gravity) -> StageKind {
+    let share = |own: &Option<At<f64>>| own.as_ref().map(|own| **own);
+    StageKind::Gravity {
+        factor: *own.factor,
+        horizontal: share(&own.horizontal),
+        across: share(&own.across),
+        vertical: share(&own.vertical),
+    }
 }
 
 /// The geometry that the steps of a stage are computed on; types without the key move the particles.
-fn geometry(node: &Node) -> Geometry {
-    match node.text_at("geometry") {
-        Some("given") => Geometry::Given,
-        _ => Geometry::Moving,
+fn geometry(form: &StageForm) -> Geometry {
+    let stated = match form {
+        StageForm::Gravity(Ok(own)) => own.geometry.as_ref(),
+        StageForm::Load(Ok(own)) => own.geometry.as_ref().ok(),
+        StageForm::Displacement(Ok(own)) => own.geometry.as_ref().ok(),
+        StageForm::Rigid(Ok(own)) => own.geometry.as_ref().ok(),
+        StageForm::Construction(Ok(own)) => own.geometry.as_ref().ok(),
+        StageForm::StrengthReduction(Ok(own)) => Some(&own.geometry),
+        StageForm::Dynamic(Ok(own)) => own.geometry.as_ref().ok(),
+        _ => None,
+    };
+    match stated.map(|own| **own) {
+        Some(keys::Geometry::Given) => Geometry::Given,
+        Some(keys::Geometry::Moving) | None => Geometry::Moving,
     }
 }
 
 fn start_from<const D: usize>(
-    context: &Context<'_, D>,
-    index: usize,
-    node: &Node,
-    name: &str,
+    about: &About<'_, D>,
+    common: &keys::StageCommon,
     problems: &mut Problems,
 ) -> Result<Option<usize>, Wrong> {
-    let place = node.place_at("start_from");
-    if index == 0 && node.get("start_from").is_some() {
+    let index = about.index;
+    let Some(stated) = common.start_from.as_ref().map_err(|_| Wrong)? else {
+        return Ok(None);
+    };
+    if index == 0 {
         problems
             .error(
-                place,
+                stated.place,
                 "the first stage starts from undeformed bodies, not from a stage",
             )
             .help("remove start_from");
         return Err(Wrong);
     }
-    let who = format!("stage `{name}` starts from");
-    let stages = &context.names.stages;
-    let from = stages.find_optional(node, "start_from", &who, problems)?;
-    if from.is_some_and(|from| from >= index) {
+    let who = format!("stage `{}` starts from", about.name);
+    let stages = &about.context.names.stages;
+    let from = stages.find(stated, &who, problems).ok_or(Wrong)?;
+    if from >= index {
         problems
-            .error(place, "start_from has to name an earlier stage")
+            .error(stated.place, "start_from has to name an earlier stage")
             .help(format!(
                 "earlier stages: {}",
                 row(stages.known().take(index))
             ));
         return Err(Wrong);
     }
-    Ok(from)
+    Ok(Some(from))
 }
 
-fn stop_when<const D: usize>(
-    context: &Context<'_, D>,
-    node: &Node,
-    name: &str,
+fn stop_when_of<const D: usize>(
+    about: &About<'_, D>,
+    own: &keys::StopWhen,
     problems: &mut Problems,
 ) -> Option<StopWhen> {
-    let table = node.get("stop_when")?;
-    let kind = node.text_at("type")?;
-    let monitor = context.monitor(table, name, problems).ok()?;
-    let displacement = table.optional_number("displacement").ok()?;
-    let load_grows_less_than = table.optional_number("load_grows_less_than").ok()?;
-    let ends = table.entries().iter();
-    let mut ends = ends.filter(|end| end.node.written && end.node.flag() != Some(false));
-    if kind == "construction"
-        && let Some(end) = ends.next()
+    let form = &about.stage.form;
+    let monitor = about
+        .context
+        .monitor(own.monitor.as_ref(), about.name, problems);
+    let monitor = monitor.ok()?;
+    if let StageForm::Construction(_) = **form
+        && let Some(end) = first_end(own)
     {
         problems
-            .error(end.key_place, "a construction stage has no early end")
+            .error(end, "a construction stage has no early end")
             .help("what holds the ground as the stage begins must all be let go: remove stop_when")
             .help("a stage that finds no equilibrium says how far it came");
     }
-    if monitor.is_some() && displacement.is_none() {
+    if let (Some(monitor), None) = (&own.monitor, &own.displacement) {
         problems
-            .error(
-                table.place_at("monitor"),
-                "there is no displacement for this monitor",
-            )
+            .error(monitor.place, "there is no displacement for this monitor")
             .help("add displacement = \"0.5 m\"");
     }
-    if load_grows_less_than.is_some() && kind != "displacement" {
+    if let Some(growth) = &own.load_grows_less_than
+        && !matches!(**form, StageForm::Displacement(_))
+    {
+        let kind = form.name();
         problems
             .error(
-                table.place_at("load_grows_less_than"),
+                growth.place,
                 format!("a stage of type {kind} has no footing whose load grows"),
             )
-            .help(if kind == "rigid" {
+            .help(if let StageForm::Rigid(_) = **form {
                 "end the stage by displacement = \"0.1 m\", and read the resistance from a curve of `rigid.NAME.resistance`"
             } else {
                 "it is for stages of type displacement"
             });
     }
-    if kind == "strength-reduction" && displacement.is_some() {
+    if let (StageForm::StrengthReduction(_), Some(displacement)) = (&**form, &own.displacement) {
         problems
             .error(
-                table.place_at("displacement"),
+                displacement.place,
                 "a strength reduction ends by its failure criterion",
             )
             .help("write failure = { also = { displacement = \"0.5 m\" } }");
     }
     Some(StopWhen {
-        displacement,
+        displacement: own.displacement.as_ref().map(|own| **own),
         monitor,
-        no_equilibrium: table.flag_at("no_equilibrium")?,
-        load_grows_less_than,
+        no_equilibrium: *own.no_equilibrium,
+        load_grows_less_than: own.load_grows_less_than.as_ref().map(|own| **own),
     })
 }
 
-fn k0<const D: usize>(
-    context: &Context<'_, D>,
-    index: usize,
-    node: &Node,
-    problems: &mut Problems,
-) {
-    let place = node.place_at("type");
-    if index > 0 {
+/// Where the first condition that ends a stage is written.
+fn first_end(own: &keys::StopWhen) -> Option<Place> {
+    let displacement = own.displacement.as_ref().map(|own| own.key_place);
+    let monitor = own.monitor.as_ref().map(|own| own.key_place);
+    let growth = own.load_grows_less_than.as_ref().map(|own| own.key_place);
+    let equilibrium = &own.no_equilibrium;
+    let equilibrium = (equilibrium.written && **equilibrium).then_some(equilibrium.key_place);
+    displacement.or(monitor).or(growth).or(equilibrium)
+}
+
+fn k0<const D: usize>(about: &About<'_, D>, problems: &mut Problems) {
+    let (context, place) = (about.context, about.stage.form.place);
+    if about.index > 0 {
         problems
             .error(place, "a k0 stage sets the stresses of undeformed ground")
             .help("make it the first stage");
@@ -192,6 +224,7 @@ fn k0<const D: usize>(
             .help(reason)
             .help("for a slope use a stage of type gravity");
     }
+    let stated = Root::<D>::materials(context.tree);
     for (index, material) in context.materials.iter().enumerate() {
         let Some(material) = material else { continue };
         let needs = material.strength != Strength::Elastic && material.k0.is_none();
@@ -199,11 +232,10 @@ fn k0<const D: usize>(
         let bodies = std::iter::zip(&start.present, &start.material);
         let is_there = |(present, own): (&bool, &Option<usize>)| *present && *own == Some(index);
         if needs && bodies.clone().any(is_there) {
-            let entries = context.tree.get("materials").map_or(&[][..], Node::entries);
-            let at = entries.get(index).map_or(place, |entry| entry.node.place);
+            let at = stated.as_ref().ok().and_then(|stated| stated.0.get(index));
             problems
                 .error(
-                    at,
+                    at.map_or(place, |own| own.place),
                     format!(
                         "the k0 stage needs k0 of the material `{}`",
                         clip(&material.name, 40)
@@ -218,18 +250,18 @@ fn k0<const D: usize>(
 }
 
 fn load<const D: usize>(
-    context: &Context<'_, D>,
-    index: usize,
-    node: &Node,
-    name: &str,
+    about: &About<'_, D>,
+    own: &keys::Loading,
     problems: &mut Problems,
 ) -> Option<StageKind> {
-    let names: Vec<&Node> = match (node.get("load"), node.get("loads")) {
+    let (context, name) = (about.context, about.name);
+    let (one, several) = (own.load.as_ref().ok()?, own.loads.as_ref().ok()?);
+    let named: Vec<&At<String>> = match (one, several) {
         (Some(one), None) => vec![one],
-        (None, Some(several)) => several.items().iter().collect(),
+        (None, Some(several)) => several.iter().collect(),
         (None, None) => {
             problems
-                .error(node.place, format!("stage `{name}` names no load"))
+                .error(about.stage.place, format!("stage `{name}` names no load"))
                 .help("add load = \"NAME\", or loads = [\"NAME\", \"NAME\"]");
             return None;
         }
@@ -240,9 +272,10 @@ fn load<const D: usize>(
             return None;
         }
     };
+    let factor = own.factor.as_ref().map(|factor| **factor);
     let mut loads = Vec::new();
     let mut is_right = true;
-    for value in names {
+    for value in named {
         let who = format!("stage `{name}` applies");
         let Some(load) = context.names.loads.find(value, &who, problems) else {
             is_right = false;
@@ -252,8 +285,8 @@ fn load<const D: usize>(
             problems.error(value.place, "this load is named twice");
         }
         loads.push(load);
-        if node.number_at("factor") != Some(0.0) {
-            construction::load_is_held(context, index, load, value, problems);
+        if factor != Ok(0.0) {
+            construction::load_is_held(about, load, value.place, problems);
         }
         let kind = context.loads.get(load).and_then(Option::as_ref);
         if let Some(LoadKind::RigidFooting { .. }) = kind.map(|load| &load.kind) {
@@ -262,22 +295,21 @@ fn load<const D: usize>(
                 .help("use a stage of type displacement");
         }
     }
-    let factor = node.number_at("factor")?;
+    let factor = factor.ok()?;
     is_right.then_some(StageKind::Load { loads, factor })
 }
 
 fn displacement<const D: usize>(
-    context: &Context<'_, D>,
-    index: usize,
-    node: &Node,
-    name: &str,
+    about: &About<'_, D>,
+    own: &keys::Displacement,
     problems: &mut Problems,
 ) -> Option<StageKind> {
-    let who = format!("stage `{name}` pushes");
-    let value = node.get("load")?;
+    let context = about.context;
+    let who = format!("stage `{}` pushes", about.name);
+    let value = own.load.as_ref().ok()?;
     let load = context.names.loads.find(value, &who, problems)?;
-    let settlement = node.number_at("settlement")?;
-    construction::load_is_held(context, index, load, value, problems);
+    let settlement = own.settlement.as_ref().ok()?;
+    construction::load_is_held(about, load, value.place, problems);
     let LoadKind::RigidFooting { from, .. } = context.loads.get(load)?.as_ref()?.kind else {
         let footings = context.loads.iter().flatten();
         let footings = footings
@@ -290,31 +322,36 @@ fn displacement<const D: usize>(
         return None;
     };
     if let Some(frame) = context.site.and_then(|site| site.frame.as_ref())
-        && settlement >= from[1] - frame.lower[1]
+        && **settlement >= from[1] - frame.lower[1]
     {
         let depth = number(from[1] - frame.lower[1]);
         problems
             .error(
-                node.place_at("settlement"),
+                settlement.place,
                 "the footing would reach the bottom of the grid",
             )
             .help(format!("its base is {depth} m above it"));
     }
-    Some(StageKind::Displacement { load, settlement })
+    Some(StageKind::Displacement {
+        load,
+        settlement: **settlement,
+    })
 }
 
 /// Warns of materials and loads that nothing uses.
 pub(super) fn check_use<const D: usize>(context: &Context<'_, D>, problems: &mut Problems) {
-    let materials = context.tree.get("materials").map_or(&[][..], Node::entries);
-    for (index, entry) in materials.iter().enumerate() {
+    let materials =
+        Root::<D>::materials(context.tree).map_or_else(|_| Vec::new(), |own| own.value.0);
+    for (index, own) in materials.iter().enumerate() {
         if !context.is_used(index) && !context.bodies.is_empty() {
-            let message = format!("no body uses the material `{}`", clip(&entry.key, 40));
-            problems.warning(entry.key_place, message);
+            let message = format!("no body uses the material `{}`", clip(&own.name, 40));
+            problems.warning(own.name_place, message);
         }
     }
-    let used: Vec<&str> = (context.stage_nodes().iter())
-        .flat_map(|stage| stage.get("load").into_iter().chain(stage.items_at("loads")))
-        .filter_map(Node::text)
+    let stages = context.stages.iter().flatten();
+    let used: Vec<&str> = stages
+        .flat_map(|own| own.loads())
+        .map(|name| name.as_str())
         .collect();
     // A name that is not defined may be a slip for one that is not used.
     if used
@@ -323,10 +360,10 @@ pub(super) fn check_use<const D: usize>(context: &Context<'_, D>, problems: &mut
     {
         return;
     }
-    for load in context.tree.items_at("loads") {
-        if let Some(name) = load.text_at("name").filter(|name| !used.contains(name)) {
-            let message = format!("no stage applies the load `{}`", clip(name, 40));
-            problems.warning(load.place_at("name"), message);
+    for load in things(Root::<D>::loads(context.tree)).into_iter().flatten() {
+        if !used.contains(&load.name.as_str()) {
+            let message = format!("no stage applies the load `{}`", clip(&load.name, 40));
+            problems.warning(load.name.place, message);
         }
     }
 }

@@ -4,13 +4,21 @@ pub(crate) mod checks;
 
 use igimp_model::{BodyPart, Material, PoreSource, WaterCondition};
 use igimp_schema::diagnostic::Problems;
+use igimp_schema::schema::materials::Points;
+use igimp_schema::schema::solids::Terrain;
+use igimp_schema::schema::stages::Stage;
+use igimp_schema::schema::water::{Water, WaterPressures, WaterTables};
+use igimp_schema::source::Place;
 use igimp_schema::text::{clip, number};
 use igimp_schema::tree::Node;
+use igimp_schema::tree::read::At;
 
-use super::AllNames;
 use super::bodies::sequence::{Scene, Sequence};
 use super::bodies::surfaces::terrain;
 use super::ground::{Earth, Surface, UprightFace};
+use super::materials::profiles::points;
+use super::{AllNames, gravity};
+use crate::build::Thing;
 
 /// What conditions of the water are held against.
 pub(super) struct Around<'a, const D: usize> {
@@ -20,11 +28,17 @@ pub(super) struct Around<'a, const D: usize> {
     pub(super) bodies: &'a [Option<BodyPart<D>>],
     pub(super) materials: &'a [Option<Material>],
     pub(super) sequence: &'a Sequence,
+    /// The conditions as they are stated.
+    pub(super) own: &'a [Thing<Water>],
+    /// The stages as they are stated.
+    pub(super) stages: &'a [Thing<Stage>],
+    /// Whether there are rigid bodies.
+    pub(super) has_rigid: bool,
 }
 
 impl<const D: usize> Around<'_, D> {
     pub(super) fn surface(&self, scene: &Scene) -> Box<dyn Surface> {
-        let fills_gaps = self.tree.items_at("rigid").is_empty();
+        let fills_gaps = !self.has_rigid;
         self.earth.surface(&scene.present, fills_gaps)
     }
 }
@@ -39,25 +53,22 @@ pub(super) fn conditions<const D: usize>(
     around: &Around<'_, D>,
     problems: &mut Problems,
 ) -> Vec<Option<WaterCondition>> {
-    let items = around.tree.items_at("water");
+    let items = around.own.iter().enumerate();
     let conditions: Vec<_> = items
-        .iter()
-        .enumerate()
-        .map(|(index, node)| condition(around, index, node, problems))
+        .map(|(index, own)| condition(around, index, own.as_ref()?, problems))
         .collect();
-    let case = around.tree.get("case");
     let is_wet = |condition: &WaterCondition| {
         let own = condition.bodies.iter().map(|(_, own)| own);
         own.chain([&condition.source])
             .any(|own| *own != PoreSource::Dry)
     };
     if let (Some(0.0), Some(index)) = (
-        case.and_then(|case| case.number_at("gravity")),
+        gravity(around.tree),
         (conditions.iter()).position(|condition| condition.as_ref().is_some_and(is_wet)),
     ) {
         problems
             .error(
-                items[index].place,
+                around.own[index].as_ref().map(|own| own.place),
                 "there is water, but gravity is 0: water presses by its weight",
             )
             .help("set gravity in [case], or write dry = true");
@@ -68,93 +79,124 @@ pub(super) fn conditions<const D: usize>(
 fn condition<const D: usize>(
     around: &Around<'_, D>,
     index: usize,
-    node: &Node,
+    own: &At<Water>,
     problems: &mut Problems,
 ) -> Option<WaterCondition> {
-    let name = clip(node.text_at("name").unwrap_or("?"), 40);
+    let name = clip(&own.name, 40);
     let who = format!("the water `{name}`");
-    let source = match form(node, &who, &["inside", "outside"], FORMS, problems) {
-        Some("inside" | "outside") => drawdown(around, index, node, &who, problems),
-        Some(form) => source_of(node, form, &who, problems),
+    let levels = [own.inside.as_ref(), own.outside.as_ref()];
+    let form = form(
+        (&own.tables, &own.pressures, levels),
+        (own.place, &who, FORMS),
+        problems,
+    );
+    let source = match form {
+        Some(Form::Drawdown) => drawdown(around, index, own, &who, problems),
+        Some(form) => source_of(&form, &who, problems),
         None => None,
     };
     let mut bodies: Vec<(usize, PoreSource)> = Vec::new();
     let mut is_right = true;
-    for own in node.items_at("bodies") {
+    for own in own.bodies.iter() {
+        let Ok(own) = own else {
+            is_right = false;
+            continue;
+        };
         let asks = format!("{who} names");
-        let body = own.get("body");
-        let body = body.and_then(|body| around.names.bodies.find(body, &asks, problems));
-        let form = form(own, &who, &[], OWN_FORMS, problems);
-        let own_source = form.and_then(|form| source_of(own, form, &who, problems));
+        let body = around.names.bodies.find(&own.body, &asks, problems);
+        let form = self::form(
+            (&own.tables, &own.pressures, [None; 2]),
+            (own.place, &who, OWN_FORMS),
+            problems,
+        );
+        let own_source = form.and_then(|form| source_of(&form, &who, problems));
         let (Some(body), Some(own_source)) = (body, own_source) else {
             is_right = false;
             continue;
         };
         if bodies.iter().any(|(other, _)| *other == body) {
-            problems.error(own.place_at("body"), "this body is named twice");
+            problems.error(own.body.place, "this body is named twice");
         }
         bodies.push((body, own_source));
     }
     is_right.then_some(())?;
     Some(WaterCondition {
-        name: node.text_at("name")?.to_owned(),
+        name: own.name.known()?,
         source: source?,
         bodies,
-        carried: node.flag_at("carried")?,
+        carried: *own.carried,
     })
 }
 
-/// The key that says where the pressure comes from; reports none and several.
-fn form(
-    node: &Node,
-    who: &str,
-    more: &[&'static str],
-    forms: &str,
-    problems: &mut Problems,
-) -> Option<&'static str> {
-    let keys = ["level", "line", "surface", "r_u", "u", "dry"]
-        .iter()
-        .chain(more);
-    let is_said = |key: &str| {
-        node.get(key)
-            .is_some_and(|value| value.flag() != Some(false))
-    };
-    let mut given: Vec<&'static str> = keys.copied().filter(|key| is_said(key)).collect();
-    if given.ends_with(&["inside", "outside"]) {
-        given.pop();
-    }
-    match given.as_slice() {
-        [] => {
-            let message = format!("{who} does not say where its pressure comes from");
-            problems.error(node.place, message).help(forms);
-            None
-        }
-        [one] => Some(one),
-        [.., last] => {
-            let message = format!(
-                "{who} has several sources of pressure: {}",
-                given.join(", ")
-            );
-            problems
-                .error(node.place_at(last), message)
-                .help("keep one of them; bodies = [{ body = \"clay\", level = \"20 m\" }] gives a body its own");
-            None
-        }
-    }
+/// Where pressure comes from, as it is stated.
+enum Form<'a> {
+    Level(&'a At<f64>),
+    Line(&'a At<Vec<At<[f64; 2]>>>),
+    Surface(&'a At<Terrain>),
+    Ratio(&'a At<f64>),
+    Points(&'a At<Points>),
+    Dry,
+    Drawdown,
 }
 
-/// The source that a key states.
-fn source_of(node: &Node, form: &str, who: &str, problems: &mut Problems) -> Option<PoreSource> {
-    let value = node.get(form)?;
+/// The key that says where the pressure comes from, with the levels `inside` and `outside`; reports none and several.
+fn form<'a>(
+    (tables, pressures, [inside, outside]): (
+        &'a WaterTables,
+        &'a WaterPressures,
+        [Option<&At<f64>>; 2],
+    ),
+    (place, who, forms): (Place, &str, &str),
+    problems: &mut Problems,
+) -> Option<Form<'a>> {
+    let WaterTables {
+        level,
+        line,
+        surface,
+    } = tables;
+    let WaterPressures { r_u, u, dry } = pressures;
+    let dry = dry.as_ref().filter(|dry| dry.value);
+    let drawn_down = match (inside, outside) {
+        (Some(inside), _) => Some(("inside", inside.place)),
+        (None, outside) => outside.map(|own| ("outside", own.place)),
+    };
+    let stated = [
+        (level.as_ref()).map(|own| ("level", own.place, Form::Level(own))),
+        (line.as_ref()).map(|own| ("line", own.place, Form::Line(own))),
+        (surface.as_ref()).map(|own| ("surface", own.place, Form::Surface(own))),
+        (r_u.as_ref()).map(|own| ("r_u", own.place, Form::Ratio(own))),
+        (u.as_ref()).map(|own| ("u", own.place, Form::Points(own))),
+        dry.map(|own| ("dry", own.place, Form::Dry)),
+        drawn_down.map(|(key, place)| (key, place, Form::Drawdown)),
+    ];
+    let mut stated: Vec<_> = stated.into_iter().flatten().collect();
+    if let [.., (_, last, _)] = stated[..]
+        && stated.len() > 1
+    {
+        let keys: Vec<&str> = stated.iter().map(|(key, ..)| *key).collect();
+        let message = format!("{who} has several sources of pressure: {}", keys.join(", "));
+        problems
+            .error(last, message)
+            .help("keep one of them; bodies = [{ body = \"clay\", level = \"20 m\" }] gives a body its own");
+        return None;
+    }
+    if stated.is_empty() {
+        let message = format!("{who} does not say where its pressure comes from");
+        problems.error(place, message).help(forms);
+    }
+    stated.pop().map(|(.., form)| form)
+}
+
+/// The source that is stated.
+fn source_of(form: &Form<'_>, who: &str, problems: &mut Problems) -> Option<PoreSource> {
     Some(match form {
-        "level" => PoreSource::Table(vec![[0.0, value.number()?]]),
-        "line" => {
-            let points: Option<Vec<_>> = value.items().iter().map(Node::pair).collect();
-            let points = points?;
+        Form::Level(level) => PoreSource::Table(vec![[0.0, ***level]]),
+        Form::Line(line) => {
+            let points: Vec<_> = line.iter().map(|own| **own).collect();
             if let Some(k) = (1..points.len()).find(|&k| points[k][0] <= points[k - 1][0]) {
                 problems
                     .error(
-                        value.items()[k].place,
+                        line[k].place,
                         format!(
                             "the line of {who} does not go on to the right: x = {} m after {} m",
                             number(points[k][0]),
@@ -166,13 +208,13 @@ fn source_of(node: &Node, form: &str, who: &str, problems: &mut Problems) -> Opt
             }
             PoreSource::Table(points)
         }
-        "surface" => PoreSource::Surface(terrain(value, &who, problems)?),
-        "r_u" => {
-            let ratio = value.number()?;
+        Form::Surface(own) => PoreSource::Surface(terrain(own, own.place, &who, problems)?),
+        Form::Ratio(own) => {
+            let ratio = ***own;
             if !(0.0..=1.0).contains(&ratio) {
                 problems
                     .error(
-                        value.place,
+                        own.place,
                         format!(
                             "r_u is {}, but the pressure is a share of the weight above",
                             number(ratio)
@@ -185,8 +227,8 @@ fn source_of(node: &Node, form: &str, who: &str, problems: &mut Problems) -> Opt
             }
             PoreSource::Ratio(ratio)
         }
-        "u" => PoreSource::Points(super::materials::profiles::points(value, "u", problems).ok()?),
-        _ => PoreSource::Dry,
+        Form::Points(own) => PoreSource::Points(points(own, own.place, "u", problems).ok()?),
+        Form::Dry | Form::Drawdown => PoreSource::Dry,
     })
 }
 
@@ -194,34 +236,25 @@ fn source_of(node: &Node, form: &str, who: &str, problems: &mut Problems) -> Opt
 fn drawdown<const D: usize>(
     around: &Around<'_, D>,
     index: usize,
-    node: &Node,
+    own: &At<Water>,
     who: &str,
     problems: &mut Problems,
 ) -> Option<PoreSource> {
-    let (inside, outside) = (
-        node.optional_number("inside"),
-        node.optional_number("outside"),
-    );
-    let (inside, outside) = (inside.ok()?, outside.ok()?);
-    let (Some(inside), Some(outside)) = (inside, outside) else {
-        let (has, lacks) = if inside.is_some() {
-            ("inside", "outside")
-        } else {
-            ("outside", "inside")
+    let (Some(inside), Some(outside)) = (&own.inside, &own.outside) else {
+        let (has, lacks, stated) = match &own.inside {
+            Some(inside) => ("inside", "outside", inside),
+            None => ("outside", "inside", own.outside.as_ref()?),
         };
         problems
-            .error(
-                node.place_at(has),
-                format!("{who} has `{has}` without `{lacks}`"),
-            )
+            .error(stated.place, format!("{who} has `{has}` without `{lacks}`"))
             .help("inside is the level within the ground, outside that of the free water beside it")
             .help("for one level everywhere write level = \"24 m\"");
         return None;
     };
-    if inside < outside {
+    if **inside < **outside {
         problems
             .error(
-                node.place_at("outside"),
+                outside.place,
                 format!("in {who} the water stands higher outside than inside"),
             )
             .help("inside and outside are for water that was drawn down; draw what flows in as line = [...]");
@@ -231,13 +264,13 @@ fn drawdown<const D: usize>(
         return None;
     }
     let surface = around.surface(around.sequence.first_with(index));
-    match surface.drained(inside, outside) {
+    match surface.drained(**inside, **outside) {
         Ok(source) => Some(source),
         Err(UprightFace { at, levels }) => {
             let [low, high] = levels;
             problems
                 .error(
-                    node.place_at("inside"),
+                    inside.place,
                     format!(
                         "at {at} the ground drops upright, and the table of {who} with it from {} m to {} m",
                         number(high),

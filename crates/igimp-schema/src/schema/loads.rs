@@ -1,150 +1,71 @@
 //! Loads.
 
-use super::solids::POLYGON;
-use super::{PAIR, POINT};
-use crate::quantity::Dimension::{Force, ForcePerLength, Length, Stress};
-use crate::spec::{
-    Choice, Kind, Range, Struct, Variant, Variants, choice, default, in_plane, in_space, optional,
-    required,
-};
+use super::MANY;
+use super::declare::{choices, table, variants};
+use super::outline::{OUTLINE, Outline};
 
-static FORCE: Kind = Kind::Quantity(ForcePerLength, Range::Any);
-static WHOLE_FORCE: Kind = Kind::Quantity(Force, Range::Any);
+table! {
+    CIRCLE: Circle, "A circle in plan.";
+    centre: pair(length), required "[\"2 m\", \"2 m\"]", "centre, x and y";
+    radius: quantity(Length, Positive), required "\"1 m\"", "radius";
+}
 
-static CIRCLE: Struct = Struct {
-    doc: "A circle in plan.",
-    fields: &[
-        required("centre", PAIR, "[\"2 m\", \"2 m\"]", "centre, x and y"),
-        required(
-            "radius",
-            Kind::Quantity(Length, Range::Positive),
-            "\"1 m\"",
-            "radius",
-        ),
-    ],
-};
+choices! {
+    /// Contact of soil and a rigid footing.
+    FootingInterface;
+    Rough "rough", "soil sticks to base and shaft";
+    Smooth "smooth", "soil slides along base and shaft";
+}
 
-static INTERFACES: [Choice; 2] = [
-    choice("rough", "soil sticks to base and shaft"),
-    choice("smooth", "soil slides along base and shaft"),
-];
+choices! {
+    /// Which way a pressure acts.
+    PressureDirection;
+    Normal "normal", "across the segment, into the soil";
+    Down "down", "along gravity";
+}
 
-static DIRECTIONS: [Choice; 2] = [
-    choice("normal", "across the segment, into the soil"),
-    choice("down", "along gravity"),
-];
+variants! {
+    LOAD: Load<D> of LoadForm, "A load that stages apply.", "type", "kind of load";
+    named "\"footing\"";
+    "rigid-footing" => RigidFooting(FOOTING: Footing<D>),
+    "pressure" => Pressure(PRESSURE: Pressure<D>),
+    "patch" => Patch(PATCH: Patch),
+    "point" => Point(POINT_LOAD: PointLoad<D>),
+}
 
-/// A load, by type.
-pub(super) static LOAD: Kind = Kind::Variants(&Variants {
-    doc: "A load that stages apply.",
-    tag: "type",
-    tag_doc: "kind of load",
-    before: &[required("name", Kind::Name, "\"footing\"", "name")],
-    cases: &[
-        Variant {
-            name: "rigid-footing",
-            doc: "A level rigid footing, pushed down by displacement stages. The grid follows.",
-            fields: &[
-                required("from", POINT, "[\"0 m\", \"5 m\"]", "one end of the base"),
-                required(
-                    "to",
-                    POINT,
-                    "[\"1 m\", \"5 m\"]",
-                    "the other end, at the same level",
-                ),
-                default(
-                    "interface",
-                    Kind::Choice(&INTERFACES),
-                    "\"rough\"",
-                    "between soil and footing",
-                ),
-                default(
-                    "reaction_factor",
-                    Kind::Number(Range::Positive),
-                    "1",
-                    "factor on the reported reaction, 2 for half a footing",
-                ),
-            ],
-        },
-        Variant {
-            name: "pressure",
-            doc: "A dead pressure on a segment of the surface, in space on a level or upright rectangle, raised by load stages.",
-            fields: &[
-                required(
-                    "from",
-                    POINT,
-                    "[\"0 m\", \"5 m\"]",
-                    "one end, in space one corner",
-                ),
-                required(
-                    "to",
-                    POINT,
-                    "[\"2 m\", \"5 m\"]",
-                    "the other end, in space the opposite corner",
-                ),
-                required(
-                    "pressure",
-                    Kind::Quantity(Stress, Range::Any),
-                    "\"100 kPa\"",
-                    "pressure at factor 1, positive into the soil",
-                ),
-                default(
-                    "direction",
-                    Kind::Choice(&DIRECTIONS),
-                    "\"normal\"",
-                    "which way it acts",
-                ),
-            ],
-        },
-        Variant {
-            name: "patch",
-            doc: "In space: a dead pressure down on a level circle or polygon, raised by load stages. What of it lies beyond the grid is left out, as behind a plane of symmetry.",
-            fields: &[
-                optional(
-                    "circle",
-                    Kind::Table(&CIRCLE),
-                    "`plan` says it",
-                    "the circle that it covers",
-                ),
-                optional(
-                    "plan",
-                    POLYGON,
-                    "`circle` says it",
-                    "corners of the polygon that it covers, x and y, either way round",
-                ),
-                required(
-                    "level",
-                    Kind::Quantity(Length, Range::Any),
-                    "\"5 m\"",
-                    "height z of the surface on which it lies",
-                ),
-                required(
-                    "pressure",
-                    Kind::Quantity(Stress, Range::Any),
-                    "\"100 kPa\"",
-                    "pressure at factor 1, positive downwards",
-                ),
-            ],
-        },
-        Variant {
-            name: "point",
-            doc: "A dead force at a point, raised by load stages.",
-            fields: &[
-                required("at", POINT, "[\"2 m\", \"5 m\"]", "where"),
-                in_plane(required(
-                    "force",
-                    Kind::Vector(&FORCE),
-                    "[\"0 kN/m\", \"-10 kN/m\"]",
-                    "force at factor 1, x and y, per metre run",
-                )),
-                in_space(required(
-                    "force",
-                    Kind::Vector(&WHOLE_FORCE),
-                    "[\"0 kN\", \"0 kN\", \"-10 kN\"]",
-                    "force at factor 1, x, y and z",
-                )),
-            ],
-        },
-    ],
-    after: &[],
-});
+table! {
+    FOOTING: Footing<D>, "A level rigid footing, pushed down by displacement stages. The grid follows.";
+    from: point, required "[\"0 m\", \"5 m\"]", "one end of the base";
+    to: point, required "[\"1 m\", \"5 m\"]", "the other end, at the same level";
+    interface: choice(FootingInterface), default "\"rough\"", "between soil and footing";
+    reaction_factor: number(Positive), default "1", "factor on the reported reaction, 2 for half a footing";
+}
+
+table! {
+    PRESSURE: Pressure<D>,
+    "A dead pressure on a segment of the surface, in space on a level or upright rectangle, raised by load stages.";
+    from: point, required "[\"0 m\", \"5 m\"]", "one end, in space one corner";
+    to: point, required "[\"2 m\", \"5 m\"]", "the other end, in space the opposite corner";
+    pressure: quantity(Stress, Any), required "\"100 kPa\"", "pressure at factor 1, positive into the soil";
+    direction: choice(PressureDirection), default "\"normal\"", "which way it acts";
+}
+
+table! {
+    PATCH: Patch,
+    "In space: a dead pressure down on a level circle or polygon, raised by load stages. What of it lies beyond \
+     the grid is left out, as behind a plane of symmetry.";
+    circle: table(CIRCLE: Circle), optional "`plan` says it", "the circle that it covers";
+    plan: either(list(pair(length), 3, MANY), table(OUTLINE: Outline)), optional "`circle` says it",
+        "corners of the polygon that it covers, x and y, either way round";
+    level: length, required "\"5 m\"", "height z of the surface on which it lies";
+    pressure: quantity(Stress, Any), required "\"100 kPa\"", "pressure at factor 1, positive downwards";
+}
+
+table! {
+    POINT_LOAD: PointLoad<D>, "A dead force at a point, raised by load stages.";
+    at: point, required "[\"2 m\", \"5 m\"]", "where";
+    force: vector(quantity(ForcePerLength, Any)), required "[\"0 kN/m\", \"-10 kN/m\"]",
+        "force at factor 1, x and y, per metre run", in_plane,
+        vector(quantity(Force, Any)), required "[\"0 kN\", \"0 kN\", \"-10 kN\"]",
+            "force at factor 1, x, y and z", in_space;
+}

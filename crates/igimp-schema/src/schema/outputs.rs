@@ -1,479 +1,182 @@
 //! Solver, monitors, sections, curves, checks and output.
 
-use super::{A_LENGTH, MANY, POINT, stage};
-use crate::field::CHOICES;
-use crate::spec::{
-    Choice, Kind, Range, Struct, choice, default, derived, in_space, optional, required,
-};
+use super::MANY;
+use super::declare::{choices, table};
+use crate::field::Field;
 
-pub(super) static SOLVER: Struct = Struct {
-    doc: "Newton's method, step cutting, linear solver.",
-    fields: &[
-        default(
-            "tolerance",
-            Kind::Number(Range::Share),
-            "1e-9",
-            "out-of-balance force over external force and reactions",
-        ),
-        default(
-            "max_iterations",
-            Kind::Integer(1, 1000),
-            "25",
-            "most corrections per step",
-        ),
-        default(
-            "step_cutting",
-            Kind::Table(&STEP_CUTTING),
-            "{}",
-            "what happens to a step that does not converge",
-        ),
-        default(
-            "linear",
-            Kind::Choice(&LINEAR_SOLVERS),
-            "\"auto\"",
-            "linear solver",
-        ),
-    ],
-};
+table! {
+    SOLVER: Solver, "Newton's method, step cutting, linear solver.";
+    tolerance: number(Share), default "1e-9", "out-of-balance force over external force and reactions";
+    max_iterations: whole(1, 1000), default "25", "most corrections per step";
+    step_cutting: table(STEP_CUTTING: StepCutting), default "{}", "what happens to a step that does not converge";
+    linear: choice(LinearSolver), default "\"auto\"", "linear solver";
+}
 
-static STEP_CUTTING: Struct = Struct {
-    doc: "A step that does not converge is cut.",
-    fields: &[
-        default(
-            "times",
-            Kind::Integer(0, 30),
-            "5",
-            "how often in succession",
-        ),
-        default(
-            "factor",
-            Kind::Number(Range::Share),
-            "0.5",
-            "factor on its size",
-        ),
-    ],
-};
+table! {
+    STEP_CUTTING: StepCutting, "A step that does not converge is cut.";
+    times: whole(0, 30), default "5", "how often in succession";
+    factor: number(Share), default "0.5", "factor on its size";
+}
 
-static LINEAR_SOLVERS: [Choice; 9] = [
-    choice(
-        "auto",
-        "Cholesky for symmetric matrices, LU for others; for large systems in space multigrid",
-    ),
-    choice(
-        "multigrid",
-        "conjugate gradients or GMRES with geometric multigrid on the grid",
-    ),
-    choice("direct", "the same as auto"),
-    choice(
-        "single",
-        "factors in single precision, half the memory, and an iteration with them; in double where that does not converge",
-    ),
-    choice("cholesky", "multifrontal Cholesky"),
-    choice("lu", "multifrontal LU"),
-    choice("faer-cholesky", "an independent supernodal Cholesky"),
-    choice("nalgebra-cholesky", "an independent Cholesky, slow"),
-    choice("bicgstab", "stabilised bi-conjugate gradients, slow"),
-];
+choices! {
+    /// Linear solvers.
+    LinearSolver;
+    Auto "auto", "Cholesky for symmetric matrices, LU for others; for large systems in space multigrid";
+    Multigrid "multigrid", "conjugate gradients or GMRES with geometric multigrid on the grid";
+    Direct "direct", "the same as auto";
+    Single "single",
+        "factors in single precision, half the memory, and an iteration with them; in double where that does not converge";
+    Cholesky "cholesky", "multifrontal Cholesky";
+    Lu "lu", "multifrontal LU";
+    FaerCholesky "faer-cholesky", "an independent supernodal Cholesky";
+    NalgebraCholesky "nalgebra-cholesky", "an independent Cholesky, slow";
+    Bicgstab "bicgstab", "stabilised bi-conjugate gradients, slow";
+}
 
-/// Fields on particles.
-static FIELD: Kind = Kind::Choice(&CHOICES);
+table! {
+    MONITOR: Monitor<D>, "The material point at a place, watched as it moves.";
+    name: name, required "\"crest\"", "name";
+    point: point, required "[\"15 m\", \"20 m\"]", "place in the undeformed bodies";
+    record: list(choice(Field), 1, 26), default "[\"displacement\"]", "what is recorded";
+}
 
-pub(super) static MONITOR: Kind = Kind::Table(&Struct {
-    doc: "The material point at a place, watched as it moves.",
-    fields: &[
-        required("name", Kind::Name, "\"crest\"", "name"),
-        required(
-            "point",
-            POINT,
-            "[\"15 m\", \"20 m\"]",
-            "place in the undeformed bodies",
-        ),
-        default(
-            "record",
-            Kind::List(&FIELD, 1, 26),
-            "[\"displacement\"]",
-            "what is recorded",
-        ),
-    ],
-});
+table! {
+    SECTION: Section<D>, "A line along which results are written at the end of every stage.";
+    name: name, required "\"A-A\"", "name";
+    from: point, required "[\"20 m\", \"2 m\"]", "one end";
+    to: point, required "[\"20 m\", \"15 m\"]", "the other end";
+    points: whole(2, 100_000), default "100", "number of equally spaced places";
+    record: list(choice(Field), 1, 26), default "[\"sigma_xx\", \"sigma_yy\", \"tau_xy\"]", "what is written";
+    average: choice(Average), default "\"none\"", "of which particles values are read";
+    references: each(table(SECTION_REFERENCE: SectionReference), 0, 100), default "[]",
+        "what the values are held against";
+}
 
-pub(super) static SECTION: Kind = Kind::Table(&Struct {
-    doc: "A line along which results are written at the end of every stage.",
-    fields: &[
-        required("name", Kind::Name, "\"A-A\"", "name"),
-        required("from", POINT, "[\"20 m\", \"2 m\"]", "one end"),
-        required("to", POINT, "[\"20 m\", \"15 m\"]", "the other end"),
-        default(
-            "points",
-            Kind::Integer(2, 100_000),
-            "100",
-            "number of equally spaced places",
-        ),
-        default(
-            "record",
-            Kind::List(&FIELD, 1, 26),
-            "[\"sigma_xx\", \"sigma_yy\", \"tau_xy\"]",
-            "what is written",
-        ),
-        default(
-            "average",
-            Kind::Choice(&AVERAGES),
-            "\"none\"",
-            "of which particles values are read",
-        ),
-        default(
-            "references",
-            Kind::List(&SECTION_REFERENCE, 0, 100),
-            "[]",
-            "what the values are held against",
-        ),
-    ],
-});
+choices! {
+    /// Of which particles values along a section are read.
+    Average;
+    None "none", "the particles around each place, interpolated";
+    Cell "cell",
+        "all particles of each cell that the line goes through, by volume: smooths the sawtooth within cells";
+}
 
-static AVERAGES: [Choice; 2] = [
-    choice("none", "the particles around each place, interpolated"),
-    choice(
-        "cell",
-        "all particles of each cell that the line goes through, by volume: smooths the sawtooth within cells",
-    ),
-];
+table! {
+    SECTION_REFERENCE: SectionReference,
+    "A reference for a section: `y`, `points` or `file`, over the distance along the section in m, in SI units.";
+    of: choice(Field), required "\"sigma_yy\"", "the field, one of `record`";
+    stage: reference("stage"), optional "the last that is read along sections", "the stage at whose end it is read";
+    y: number(Any), optional "another form is given", "a value of the field";
+    at: number(Any), optional "the end of the section", "distance at which `y` is compared";
+    points: list(pair(number(Any)), 1, MANY), optional "another form is given",
+        "points [distance, value]; the section is held against each that it spans";
+    file: text, optional "another form is given", "CSV file with a header and two columns, beside the case file";
+    label: text, required "\"weight of the soil above\"", "label with the source";
+    tolerance: number(Positive), optional "drawn only, not checked", "accepted relative deviation";
+}
 
-static SECTION_REFERENCE: Kind = Kind::Table(&Struct {
-    doc: "A reference for a section: `y`, `points` or `file`, over the distance along the section in m, in SI units.",
-    fields: &[
-        required(
-            "of",
-            FIELD_NAME,
-            "\"sigma_yy\"",
-            "the field, one of `record`",
-        ),
-        stage(
-            "the last that is read along sections",
-            "the stage at whose end it is read",
-        ),
-        optional(
-            "y",
-            NUMBER_OF_PLOT,
-            "another form is given",
-            "a value of the field",
-        ),
-        optional(
-            "at",
-            NUMBER_OF_PLOT,
-            "the end of the section",
-            "distance at which `y` is compared",
-        ),
-        optional(
-            "points",
-            Kind::List(&PAIR, 1, MANY),
-            "another form is given",
-            "points [distance, value]; the section is held against each that it spans",
-        ),
-        optional(
-            "file",
-            Kind::Text,
-            "another form is given",
-            "CSV file with a header and two columns, beside the case file",
-        ),
-        required(
-            "label",
-            Kind::Text,
-            "\"weight of the soil above\"",
-            "label with the source",
-        ),
-        optional(
-            "tolerance",
-            Kind::Number(Range::Positive),
-            "drawn only, not checked",
-            "accepted relative deviation",
-        ),
-    ],
-});
+table! {
+    CURVE: Curve, "One recorded quantity against another, a point per step.";
+    name: name, required "\"load-settlement\"", "name, also of its file";
+    x: apart(table(AXIS: CurveAxis)), required "{ of = \"footing.settlement\" }", "abscissa";
+    y: apart(table(AXIS: CurveAxis)), required "{ of = \"footing.reaction\" }", "ordinate";
+    stage: reference("stage"), optional "all stages", "the stage that is recorded";
+    reference: apart(table(REFERENCE: Reference)), optional "no reference", "what the curve is held against";
+}
 
-const FIELD_NAME: Kind = Kind::Choice(&CHOICES);
+table! {
+    AXIS: CurveAxis, "A quantity as plotted.";
+    of: reference("quantity"), required "\"footing.reaction\"", "the quantity";
+    divide_by: list(any_quantity, 0, 16), default "[]", "it is divided by each of these, in SI units";
+    label: text, derived "the quantity and its SI unit", "label with unit";
+}
 
-static NUMBER: Kind = Kind::Number(Range::Any);
-static PAIR: Kind = Kind::List(&NUMBER, 2, 2);
-static DIVISOR: Kind = Kind::AnyQuantity;
-static ANY_QUANTITY: Kind = Kind::AnyQuantity;
-const DIVISORS: Kind = Kind::List(&DIVISOR, 0, 16);
+table! {
+    REFERENCE: Reference, "A reference for a curve: `y`, `points` or `file`, in the units of the plot.";
+    y: number(Any), optional "another form is given", "a value of the ordinate";
+    at: number(Any), optional "the end of the curve", "abscissa at which `y` is compared";
+    points: list(pair(number(Any)), 1, MANY), optional "another form is given",
+        "points [x, y]; the curve is held against each that it spans";
+    file: text, optional "another form is given", "CSV file with a header and two columns, beside the case file";
+    label: text, required "\"Prandtl, 2 + pi\"", "label with the source";
+    tolerance: number(Positive), optional "drawn only, not checked", "accepted relative deviation";
+}
 
-pub(super) static CURVE: Kind = Kind::Table(&Struct {
-    doc: "One recorded quantity against another, a point per step.",
-    fields: &[
-        required(
-            "name",
-            Kind::Name,
-            "\"load-settlement\"",
-            "name, also of its file",
-        ),
-        required(
-            "x",
-            Kind::Table(&AXIS),
-            "{ of = \"footing.settlement\" }",
-            "abscissa",
-        ),
-        required(
-            "y",
-            Kind::Table(&AXIS),
-            "{ of = \"footing.reaction\" }",
-            "ordinate",
-        ),
-        stage("all stages", "the stage that is recorded"),
-        optional(
-            "reference",
-            Kind::Table(&REFERENCE),
-            "no reference",
-            "what the curve is held against",
-        ),
-    ],
-});
+table! {
+    CHECK: Check, "A result held against an outside value.";
+    name: name, required "\"factor of safety\"", "name";
+    of: reference("quantity"), required "\"factor_of_safety\"", "the quantity, of a stage";
+    divide_by: list(any_quantity, 0, 16), default "[]", "it is divided by each of these, in SI units";
+    stage: reference("stage"), optional "the last; for a factor of safety the last strength reduction", "the stage";
+    at: choice(Moment), default "\"end\"", "when in the stage";
+    expected: any_quantity, optional "the middle of `between`, or the limit", "the outside value, after division";
+    value: choice(CheckedValue), default "\"computed\"", "which value is held against it";
+    tolerance: number(Positive), optional "another band is given", "accepted relative deviation from `expected`";
+    between: pair(any_quantity), optional "another band is given", "accepted values, from and to";
+    at_most: any_quantity, optional "another band is given", "largest accepted value";
+    at_least: any_quantity, optional "another band is given", "smallest accepted value";
+    source: text, required "\"Griffiths and Lane (1999)\"", "where it comes from";
+}
 
-static AXIS: Struct = Struct {
-    doc: "A quantity as plotted.",
-    fields: &[
-        required(
-            "of",
-            Kind::Reference("quantity"),
-            "\"footing.reaction\"",
-            "the quantity",
-        ),
-        default(
-            "divide_by",
-            DIVISORS,
-            "[]",
-            "it is divided by each of these, in SI units",
-        ),
-        derived(
-            "label",
-            Kind::Text,
-            "the quantity and its SI unit",
-            "label with unit",
-        ),
-    ],
-};
+choices! {
+    /// When in a stage a quantity is checked.
+    Moment;
+    End "end", "at its end";
+    Peak "peak", "when the quantity was largest";
+}
 
-static REFERENCE: Struct = Struct {
-    doc: "A reference for a curve: `y`, `points` or `file`, in the units of the plot.",
-    fields: &[
-        optional(
-            "y",
-            NUMBER_OF_PLOT,
-            "another form is given",
-            "a value of the ordinate",
-        ),
-        optional(
-            "at",
-            NUMBER_OF_PLOT,
-            "the end of the curve",
-            "abscissa at which `y` is compared",
-        ),
-        optional(
-            "points",
-            Kind::List(&PAIR, 1, MANY),
-            "another form is given",
-            "points [x, y]; the curve is held against each that it spans",
-        ),
-        optional(
-            "file",
-            Kind::Text,
-            "another form is given",
-            "CSV file with a header and two columns, beside the case file",
-        ),
-        required(
-            "label",
-            Kind::Text,
-            "\"Prandtl, 2 + pi\"",
-            "label with the source",
-        ),
-        optional(
-            "tolerance",
-            Kind::Number(Range::Positive),
-            "drawn only, not checked",
-            "accepted relative deviation",
-        ),
-    ],
-};
+choices! {
+    /// Which value a check looks at.
+    CheckedValue;
+    Computed "computed", "that of the mesh, of the finest in a mesh study";
+    Extrapolated "extrapolated", "the one that a mesh study extrapolates to cells of no size";
+}
 
-const NUMBER_OF_PLOT: Kind = Kind::Number(Range::Any);
+table! {
+    MESH_STUDY: MeshStudy, "The case on its grid and on finer ones: the error of the mesh.";
+    meshes: whole(1, 3), default "1", "number of meshes; 1: no study, 2: cells of h and h/2, 3: h/4 too";
+}
 
-pub(super) static CHECK: Kind = Kind::Table(&Struct {
-    doc: "A result held against an outside value.",
-    fields: &[
-        required("name", Kind::Name, "\"factor of safety\"", "name"),
-        required(
-            "of",
-            Kind::Reference("quantity"),
-            "\"factor_of_safety\"",
-            "the quantity, of a stage",
-        ),
-        default(
-            "divide_by",
-            DIVISORS,
-            "[]",
-            "it is divided by each of these, in SI units",
-        ),
-        stage(
-            "the last; for a factor of safety the last strength reduction",
-            "the stage",
-        ),
-        default("at", Kind::Choice(&MOMENTS), "\"end\"", "when in the stage"),
-        optional(
-            "expected",
-            Kind::AnyQuantity,
-            "the middle of `between`, or the limit",
-            "the outside value, after division",
-        ),
-        default(
-            "value",
-            Kind::Choice(&VALUES),
-            "\"computed\"",
-            "which value is held against it",
-        ),
-        optional(
-            "tolerance",
-            Kind::Number(Range::Positive),
-            "another band is given",
-            "accepted relative deviation from `expected`",
-        ),
-        optional(
-            "between",
-            Kind::List(&ANY_QUANTITY, 2, 2),
-            "another band is given",
-            "accepted values, from and to",
-        ),
-        optional(
-            "at_most",
-            Kind::AnyQuantity,
-            "another band is given",
-            "largest accepted value",
-        ),
-        optional(
-            "at_least",
-            Kind::AnyQuantity,
-            "another band is given",
-            "smallest accepted value",
-        ),
-        required(
-            "source",
-            Kind::Text,
-            "\"Griffiths and Lane (1999)\"",
-            "where it comes from",
-        ),
-    ],
-});
+table! {
+    OUTPUT: Output, "What is written, and where.";
+    folder: text, derived "results/ and the name of the case file", "results folder";
+    paraview: table(PARAVIEW: Paraview), default "{}", "particles and grid for ParaView";
+    figures: list(choice(Field), 0, 26), default "[\"displacement\", \"plastic_strain\", \"sigma_yy\"]",
+        "fields drawn at the end of every stage; with none no picture is drawn at all";
+    cuts: list(table(CUT: Cut), 0, 20), default "[]",
+        "planes in which the fields are drawn as well; without any, upright ones through the middle of the bodies", in_space;
+    report: flag, default "true", "whether report.html is written";
+    checkpoint: table(CHECKPOINT: Checkpoint), default "{}", "states from which a run can be resumed";
+}
 
-static MOMENTS: [Choice; 2] = [
-    choice("end", "at its end"),
-    choice("peak", "when the quantity was largest"),
-];
+table! {
+    CUT: Cut, "A plane across an axis.";
+    across: choice(Across), required "\"y\"", "the axis";
+    at: length, required "\"5 m\"", "where it stands on the axis";
+}
 
-static VALUES: [Choice; 2] = [
-    choice(
-        "computed",
-        "that of the mesh, of the finest in a mesh study",
-    ),
-    choice(
-        "extrapolated",
-        "the one that a mesh study extrapolates to cells of no size",
-    ),
-];
+choices! {
+    /// Axes across which planes are drawn.
+    Across;
+    X "x", "upright, along y";
+    Y "y", "upright, along x";
+    Z "z", "level";
+}
 
-pub(super) static MESH_STUDY: Struct = Struct {
-    doc: "The case on its grid and on finer ones: the error of the mesh.",
-    fields: &[default(
-        "meshes",
-        Kind::Integer(1, 3),
-        "1",
-        "number of meshes; 1: no study, 2: cells of h and h/2, 3: h/4 too",
-    )],
-};
+table! {
+    PARAVIEW: Paraview, "When particles are written for ParaView.";
+    every: either(choice(OutputTime), whole(1, 1_000_000)), default "\"stage\"",
+        "\"stage\", \"never\" or a number of steps";
+}
 
-pub(super) static OUTPUT: Struct = Struct {
-    doc: "What is written, and where.",
-    fields: &[
-        derived(
-            "folder",
-            Kind::Text,
-            "results/ and the name of the case file",
-            "results folder",
-        ),
-        default(
-            "paraview",
-            Kind::Table(&PARAVIEW),
-            "{}",
-            "particles and grid for ParaView",
-        ),
-        default(
-            "figures",
-            Kind::List(&FIELD, 0, 26),
-            "[\"displacement\", \"plastic_strain\", \"sigma_yy\"]",
-            "fields drawn at the end of every stage; with none no picture is drawn at all",
-        ),
-        in_space(default(
-            "cuts",
-            Kind::List(&CUT, 0, 20),
-            "[]",
-            "planes in which the fields are drawn as well; without any, upright ones through the middle of the bodies",
-        )),
-        default(
-            "report",
-            Kind::Flag,
-            "true",
-            "whether report.html is written",
-        ),
-        default(
-            "checkpoint",
-            Kind::Table(&CHECKPOINT),
-            "{}",
-            "states from which a run can be resumed",
-        ),
-    ],
-};
+choices! {
+    /// When particles are written for ParaView.
+    OutputTime;
+    Stage "stage", "at the end of every stage";
+    Never "never", "not at all";
+}
 
-static CUT: Kind = Kind::Table(&Struct {
-    doc: "A plane across an axis.",
-    fields: &[
-        required("across", Kind::Choice(&ACROSS), "\"y\"", "the axis"),
-        required("at", A_LENGTH, "\"5 m\"", "where it stands on the axis"),
-    ],
-});
-
-static ACROSS: [Choice; 3] = [
-    choice("x", "upright, along y"),
-    choice("y", "upright, along x"),
-    choice("z", "level"),
-];
-
-static PARAVIEW: Struct = Struct {
-    doc: "When particles are written for ParaView.",
-    fields: &[default(
-        "every",
-        Kind::Either(&[Kind::Choice(&TIMES), Kind::Integer(1, 1_000_000)]),
-        "\"stage\"",
-        "\"stage\", \"never\" or a number of steps",
-    )],
-};
-
-static TIMES: [Choice; 2] = [
-    choice("stage", "at the end of every stage"),
-    choice("never", "not at all"),
-];
-
-static CHECKPOINT: Struct = Struct {
-    doc: "States from which a run can be resumed.",
-    fields: &[
-        default(
-            "every",
-            Kind::Integer(0, 1_000_000),
-            "10",
-            "steps between checkpoints; 0: at the end of stages only",
-        ),
-        default(
-            "keep",
-            Kind::Integer(1, 1000),
-            "2",
-            "checkpoints kept within a stage",
-        ),
-    ],
-};
+table! {
+    CHECKPOINT: Checkpoint, "States from which a run can be resumed.";
+    every: whole(0, 1_000_000), default "10", "steps between checkpoints; 0: at the end of stages only";
+    keep: whole(1, 1000), default "2", "checkpoints kept within a stage";
+}

@@ -1,216 +1,79 @@
 //! Bodies in space: boxes, prisms, cylinders, spheres, closed surfaces, layers of ground.
 
-use super::{LENGTH, MANY, MOST_THINGS, OUTLINE, PAIR, POINT};
-use crate::quantity::Dimension::Length;
-use crate::spec::{Choice, Field, Kind, Range, Struct, choice, default, optional, required};
+use super::MANY;
+use super::declare::{choices, table};
+use super::outline::{OUTLINE, Outline};
 
-static CORNER: Kind = PAIR;
-static VERTEX: Kind = POINT;
-static INDEX: Kind = Kind::Integer(0, MANY as i64);
-static TRIANGLE: Kind = Kind::List(&INDEX, 3, 3);
-static HOLE: Kind = Kind::List(&INDEX, 2, 2);
-static ROW: Kind = Kind::List(&LENGTH, 2, MANY);
+table! {
+    SHAPE: Shape, "A shape in space.";
+    cuboid as "box": table(CUBOID: Cuboid), optional "another shape is stated", "box with its sides along the axes";
+    polygon: either(list(pair(length), 3, MANY), table(OUTLINE: Outline)), optional "another shape is stated",
+        "corners of a polygon in x and z, either way round, or where they come from; `across` makes it a slice";
+    across: pair(length), optional "`polygon` is not stated", "from where to where on y the polygon reaches";
+    plan: either(list(pair(length), 3, MANY), table(OUTLINE: Outline)), optional "another shape is stated",
+        "corners of a polygon in plan, x and y, either way round, or where they come from; `between` says how high";
+    between: pair_each(either(length, table(TERRAIN: Terrain))), optional "`plan` is not stated",
+        "bottom and top over the plan: levels z, or surfaces of the ground";
+    cylinder: table(CYLINDER: Cylinder), optional "another shape is stated", "circular cylinder along an axis";
+    sphere: table(SPHERE: Sphere), optional "another shape is stated", "sphere";
+    surface: table(SURFACE: Surface), optional "another shape is stated", "closed surface of triangles";
+}
 
-const OTHER: &str = "another shape is stated";
-pub(super) const POLYGON: Kind =
-    Kind::Either(&[Kind::List(&CORNER, 3, MANY), Kind::Table(&OUTLINE)]);
+table! {
+    TAKEN: Taken, "A solid that is taken out of a body.";
+    shape: part(SHAPE: Shape);
+}
 
-pub(super) const BOX: Field = optional(
-    "box",
-    Kind::Table(&BOX_TABLE),
-    OTHER,
-    "box with its sides along the axes",
-);
-pub(super) const SECTION: Field = optional(
-    "polygon",
-    POLYGON,
-    OTHER,
-    "corners of a polygon in x and z, either way round, or where they come from; `across` makes it a slice",
-);
-pub(super) const ACROSS: Field = optional(
-    "across",
-    PAIR,
-    "`polygon` is not stated",
-    "from where to where on y the polygon reaches",
-);
-pub(super) const PLAN: Field = optional(
-    "plan",
-    POLYGON,
-    OTHER,
-    "corners of a polygon in plan, x and y, either way round, or where they come from; `between` says how high",
-);
-pub(super) const BETWEEN: Field = optional(
-    "between",
-    Kind::List(&HEIGHT, 2, 2),
-    "`plan` is not stated",
-    "bottom and top over the plan: levels z, or surfaces of the ground",
-);
-pub(super) const CYLINDER: Field = optional(
-    "cylinder",
-    Kind::Table(&CYLINDER_TABLE),
-    OTHER,
-    "circular cylinder along an axis",
-);
-pub(super) const SPHERE: Field = optional("sphere", Kind::Table(&SPHERE_TABLE), OTHER, "sphere");
-pub(super) const SURFACE: Field = optional(
-    "surface",
-    Kind::Table(&SURFACE_TABLE),
-    OTHER,
-    "closed surface of triangles",
-);
+table! {
+    CUBOID: Cuboid, "A box with its sides along the axes.";
+    from: point_in_space, required "[\"0 m\", \"0 m\", \"0 m\"]", "one corner";
+    to: point_in_space, required "[\"4 m\", \"2 m\", \"1 m\"]", "the opposite corner";
+}
 
-pub(super) const MINUS: Field = default(
-    "minus",
-    Kind::List(&TAKEN, 0, MOST_THINGS),
-    "[]",
-    "solids that are taken out of it, each with the keys of a shape",
-);
+choices! {
+    /// Directions of axes.
+    Axis;
+    X "x", "to the right";
+    Y "y", "to the back";
+    Z "z", "up";
+}
 
-static TAKEN: Kind = Kind::Table(&Struct {
-    doc: "A solid that is taken out of a body.",
-    fields: &[
-        BOX, SECTION, ACROSS, PLAN, BETWEEN, CYLINDER, SPHERE, SURFACE,
-    ],
-});
+table! {
+    CYLINDER: Cylinder, "A circular cylinder along an axis.";
+    axis: choice(Axis), default "\"z\"", "direction of its axis";
+    centre: pair(length), required "[\"2 m\", \"1 m\"]",
+        "centre of its circle by the two other axes, in their order";
+    radius: quantity(Length, Positive), required "\"0.5 m\"", "radius";
+    between: pair(length), required "[\"0 m\", \"1 m\"]", "from where to where on its axis";
+}
 
-static BOX_TABLE: Struct = Struct {
-    doc: "A box with its sides along the axes.",
-    fields: &[
-        required("from", POINT, "[\"0 m\", \"0 m\", \"0 m\"]", "one corner"),
-        required(
-            "to",
-            POINT,
-            "[\"4 m\", \"2 m\", \"1 m\"]",
-            "the opposite corner",
-        ),
-    ],
-};
+table! {
+    SPHERE: Sphere, "A sphere.";
+    centre: point_in_space, required "[\"2 m\", \"1 m\", \"0.5 m\"]", "centre";
+    radius: quantity(Length, Positive), required "\"0.5 m\"", "radius";
+}
 
-static AXES: [Choice; 3] = [
-    choice("x", "to the right"),
-    choice("y", "to the back"),
-    choice("z", "up"),
-];
+table! {
+    SURFACE: Surface, "A closed surface: an STL file, or corners and the triangles between them.";
+    file: text, optional "`vertices` and `triangles` say it",
+        "an STL file, ASCII or binary; its path from the case file";
+    unit: text, optional "`vertices` have units of their own", "unit of length of the file";
+    vertices: list(point_in_space, 4, MANY), optional "`file` says it", "corners";
+    triangles: list(triple(whole(0, MANY as i64)), 4, MANY), optional "`file` says it",
+        "three numbers of vertices each, from 0, counter-clockwise as seen from outside";
+}
 
-static CYLINDER_TABLE: Struct = Struct {
-    doc: "A circular cylinder along an axis.",
-    fields: &[
-        default(
-            "axis",
-            Kind::Choice(&AXES),
-            "\"z\"",
-            "direction of its axis",
-        ),
-        required(
-            "centre",
-            PAIR,
-            "[\"2 m\", \"1 m\"]",
-            "centre of its circle by the two other axes, in their order",
-        ),
-        required(
-            "radius",
-            Kind::Quantity(Length, Range::Positive),
-            "\"0.5 m\"",
-            "radius",
-        ),
-        required(
-            "between",
-            PAIR,
-            "[\"0 m\", \"1 m\"]",
-            "from where to where on its axis",
-        ),
-    ],
-};
-
-static SPHERE_TABLE: Struct = Struct {
-    doc: "A sphere.",
-    fields: &[
-        required("centre", POINT, "[\"2 m\", \"1 m\", \"0.5 m\"]", "centre"),
-        required(
-            "radius",
-            Kind::Quantity(Length, Range::Positive),
-            "\"0.5 m\"",
-            "radius",
-        ),
-    ],
-};
-
-pub(super) static SURFACE_TABLE: Struct = Struct {
-    doc: "A closed surface: an STL file, or corners and the triangles between them.",
-    fields: &[
-        optional(
-            "file",
-            Kind::Text,
-            "`vertices` and `triangles` say it",
-            "an STL file, ASCII or binary; its path from the case file",
-        ),
-        optional(
-            "unit",
-            Kind::Text,
-            "`vertices` have units of their own",
-            "unit of length of the file",
-        ),
-        optional(
-            "vertices",
-            Kind::List(&VERTEX, 4, MANY),
-            "`file` says it",
-            "corners",
-        ),
-        optional(
-            "triangles",
-            Kind::List(&TRIANGLE, 4, MANY),
-            "`file` says it",
-            "three numbers of vertices each, from 0, counter-clockwise as seen from outside",
-        ),
-    ],
-};
-
-static HEIGHT: Kind = Kind::Either(&[Kind::Quantity(Length, Range::Any), Kind::Table(&TERRAIN)]);
-
-pub(super) static TERRAIN: Struct = Struct {
-    doc: "A surface of the ground: an ESRI ASCII grid, points from a CSV file, points, or heights on lines.",
-    fields: &[
-        optional(
-            "raster",
-            Kind::Text,
-            "another key says it",
-            "an ESRI ASCII grid; its path from the case file",
-        ),
-        optional(
-            "points",
-            Kind::Either(&[Kind::Text, Kind::List(&VERTEX, 3, MANY)]),
-            "another key says it",
-            "a CSV file with the columns x, y and z, or points; those that fill no rectangle are joined by Delaunay's triangles in plan",
-        ),
-        optional(
-            "unit",
-            Kind::Text,
-            "the header says it, as in `x [ft]`",
-            "unit of length of the file",
-        ),
-        optional(
-            "x",
-            Kind::List(&LENGTH, 2, MANY),
-            "another key says it",
-            "lines of heights, ascending",
-        ),
-        optional(
-            "y",
-            Kind::List(&LENGTH, 2, MANY),
-            "another key says it",
-            "lines of heights, ascending",
-        ),
-        optional(
-            "rows",
-            Kind::List(&ROW, 2, MANY),
-            "another key says it",
-            "heights by y, then by x",
-        ),
-        default(
-            "holes",
-            Kind::List(&HOLE, 0, MANY),
-            "[]",
-            "columns and rows, from 0, where no height is known",
-        ),
-    ],
-};
+table! {
+    TERRAIN: Terrain,
+    "A surface of the ground: an ESRI ASCII grid, points from a CSV file, points, or heights on lines.";
+    raster: text, optional "another key says it", "an ESRI ASCII grid; its path from the case file";
+    points: either(text, list(point_in_space, 3, MANY)), optional "another key says it",
+        "a CSV file with the columns x, y and z, or points; those that fill no rectangle are joined by Delaunay's \
+         triangles in plan";
+    unit: text, optional "the header says it, as in `x [ft]`", "unit of length of the file";
+    x: list(length, 2, MANY), optional "another key says it", "lines of heights, ascending";
+    y: list(length, 2, MANY), optional "another key says it", "lines of heights, ascending";
+    rows: list(list(length, 2, MANY), 2, MANY), optional "another key says it", "heights by y, then by x";
+    holes: list(pair(whole(0, MANY as i64)), 0, MANY), default "[]",
+        "columns and rows, from 0, where no height is known";
+}

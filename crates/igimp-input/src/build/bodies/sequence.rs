@@ -5,9 +5,11 @@
 use std::rc::Rc;
 
 use igimp_model::BodyPart;
-use igimp_schema::tree::Node;
+use igimp_schema::schema::bodies::Body;
+use igimp_schema::schema::stages::{Construction, Stage};
 
 use crate::build::AllNames;
+use crate::build::Thing;
 
 /// What is there at a time.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -18,6 +20,27 @@ pub(crate) struct Scene {
     pub(crate) material: Vec<Option<usize>>,
     /// Condition of the water; none: there is no water.
     pub(crate) water: Option<usize>,
+}
+
+impl Scene {
+    /// What a stage of construction makes of it.
+    fn build(&mut self, own: &Construction, names: &AllNames) {
+        for (list, is_there) in [(own.placed(), true), (own.removed(), false)] {
+            for body in list.iter().filter_map(|name| names.bodies.position(name)) {
+                self.present[body] = is_there;
+            }
+        }
+        for change in own.changes().iter().flatten() {
+            let body = names.bodies.position(&change.body);
+            let material = names.materials.position(&change.material);
+            if let (Some(body), Some(material)) = (body, material) {
+                self.material[body] = Some(material);
+            }
+        }
+        let water = own.water_condition();
+        let water = water.and_then(|name| names.water.position(name));
+        self.water = water.or(self.water);
+    }
 }
 
 /// The scenes of a case.
@@ -33,55 +56,36 @@ pub(crate) struct Sequence {
 
 impl Sequence {
     pub(crate) fn new<const D: usize>(
-        tree: &Node,
+        (own, stages): (&[Thing<Body>], &[Thing<Stage>]),
+        has_water: bool,
         names: &AllNames,
         bodies: &[Option<BodyPart<D>>],
     ) -> Self {
-        let later = placed(tree);
-        let items = tree.items_at("bodies").iter();
-        let is_there = |node: &Node| {
-            node.text_at("name")
-                .is_none_or(|name| !later.contains(&name))
+        let later = placed(stages);
+        let is_there = |own: &Thing<Body>| {
+            (own.as_ref()).is_none_or(|own| !later.contains(&own.name.as_str()))
         };
         let start = Scene {
-            present: items.map(is_there).collect(),
+            present: own.iter().map(is_there).collect(),
             material: bodies
                 .iter()
                 .map(|body| body.as_ref().map(|body| body.material))
                 .collect(),
-            water: (!tree.items_at("water").is_empty()).then_some(0),
+            water: has_water.then_some(0),
         };
         let mut sequence = Self {
             start: Rc::new(start),
             ends: Vec::new(),
             from: Vec::new(),
         };
-        for (index, node) in tree.items_at("stages").iter().enumerate() {
-            let stated = node.text_at("start_from");
+        for (index, stage) in stages.iter().enumerate() {
+            let stated = stage.as_ref().and_then(|own| own.start_from());
             let from = stated.and_then(|name| names.stages.position(name));
             let from = from.filter(|from| *from < index);
             let before = from.map_or(&sequence.start, |from| &sequence.ends[from]);
             let mut shared = Rc::clone(before);
-            if node.text_at("type") == Some("construction") {
-                let scene = Rc::make_mut(&mut shared);
-                for (key, is_there) in [("place", true), ("remove", false)] {
-                    let named = node.items_at(key).iter().filter_map(Node::text);
-                    for body in named.filter_map(|name| names.bodies.position(name)) {
-                        scene.present[body] = is_there;
-                    }
-                }
-                for change in node.items_at("materials") {
-                    let body = change.text_at("body");
-                    let body = body.and_then(|name| names.bodies.position(name));
-                    let material = change.text_at("material");
-                    let material = material.and_then(|name| names.materials.position(name));
-                    if let (Some(body), Some(material)) = (body, material) {
-                        scene.material[body] = Some(material);
-                    }
-                }
-                let water = node.text_at("water");
-                let water = water.and_then(|name| names.water.position(name));
-                scene.water = water.or(scene.water);
+            if let Some(own) = stage.as_ref().and_then(|own| own.construction()) {
+                Rc::make_mut(&mut shared).build(own, names);
             }
             sequence.ends.push(shared);
             sequence.from.push(from);
@@ -121,11 +125,11 @@ impl Sequence {
 }
 
 /// Names of the bodies that construction stages place.
-pub(crate) fn placed(tree: &Node) -> Vec<&str> {
-    let stages = tree.items_at("stages").iter();
+pub(crate) fn placed(stages: &[Thing<Stage>]) -> Vec<&str> {
+    let stages = stages.iter().flatten();
     stages
-        .filter(|stage| stage.text_at("type") == Some("construction"))
-        .flat_map(|stage| stage.items_at("place"))
-        .filter_map(Node::text)
+        .filter_map(|own| own.construction())
+        .flat_map(Construction::placed)
+        .map(|name| name.as_str())
         .collect()
 }

@@ -3,42 +3,46 @@
 use igimp_geometry::region::{Cover, Part, Region};
 use igimp_geometry::solid::{Cylinder, Difference, Prism, Solid, Sphere};
 use igimp_schema::diagnostic::Problems;
+use igimp_schema::schema::bodies::Body;
+use igimp_schema::schema::solids::{Axis, Cuboid, Shape};
+use igimp_schema::source::Place;
 use igimp_schema::text::{clip, number};
-use igimp_schema::tree::Node;
+use igimp_schema::tree::read::At;
 
 use super::corners;
 use crate::build::bodies::surfaces::{Who, closed_surface, ground};
 
-/// The keys that say a shape.
-const SHAPES: [&str; 6] = ["box", "polygon", "plan", "cylinder", "sphere", "surface"];
 /// Where two solids are sought to overlap, the box around what they may share is cut so many times into eight.
 const DEPTH: u32 = 5;
 /// Solids overlap in a box if they have more than this share of it together \[-\].
 const SHARED: f64 = 1.01;
 
 /// The solid of a body, less what is taken out of it.
-pub(crate) fn solid(node: &Node, name: &str, problems: &mut Problems) -> Option<Solid> {
-    let name = &clip(name, 40);
+pub(crate) fn solid(own: &At<Body>, problems: &mut Problems) -> Option<Solid> {
+    let name = &clip(&own.name, 40);
     let who = Who { name, taken: None };
-    let own = shape(node, &who, problems);
+    let whole = own.shape.as_ref().ok();
+    let whole = whole.and_then(|shape| self::shape(shape, own.place, &who, problems));
+    let minus_keys = own.minus.iter().flatten().flat_map(|minus| minus.iter());
     let mut taken = Vec::new();
-    for (node, number) in std::iter::zip(node.items_at("minus"), 1..) {
-        let taken_out = Who {
+    for (own, number) in std::iter::zip(minus_keys.clone(), 1..) {
+        let who = Who {
             name,
             taken: Some(number),
         };
-        taken.push(shape(node, &taken_out, problems));
+        let own = own.as_ref().ok();
+        taken.push(own.and_then(|own| shape(&own.shape, own.place, &who, problems)));
     }
-    let (of, minus) = (own?, taken.into_iter().collect::<Option<Vec<_>>>()?);
+    let (of, minus) = (whole?, taken.into_iter().collect::<Option<Vec<_>>>()?);
     if minus.is_empty() {
         return Some(of);
     }
     let of = Box::new(of);
-    for (taken, node) in std::iter::zip(&minus, node.items_at("minus")) {
+    for (taken, own) in std::iter::zip(&minus, minus_keys.flatten()) {
         let (a, b) = (of.bounds(), taken.bounds());
         if (0..3).any(|axis| a.1[axis] <= b.0[axis] || b.1[axis] <= a.0[axis]) {
             problems
-                .warning(node.place, format!("nothing of this lies in {who}"))
+                .warning(own.place, format!("nothing of this lies in {who}"))
                 .help("it takes nothing out");
         }
     }
@@ -46,87 +50,109 @@ pub(crate) fn solid(node: &Node, name: &str, problems: &mut Problems) -> Option<
 }
 
 /// The solid of the one key that says a shape.
-fn shape(node: &Node, who: &Who<'_>, problems: &mut Problems) -> Option<Solid> {
-    let stated: Vec<&str> = (SHAPES.into_iter())
-        .filter(|key| node.get(key).is_some())
-        .collect();
-    let [key] = stated[..] else {
-        let (message, help) = match stated[..] {
-            [] => (
+fn shape(own: &Shape, place: Place, who: &Who<'_>, problems: &mut Problems) -> Option<Solid> {
+    let stated = [
+        own.cuboid.as_ref().map(|own| ("box", own.place)),
+        own.polygon.as_ref().map(|own| ("polygon", own.place)),
+        own.plan.as_ref().map(|own| ("plan", own.place)),
+        own.cylinder.as_ref().map(|own| ("cylinder", own.place)),
+        own.sphere.as_ref().map(|own| ("sphere", own.place)),
+        own.surface.as_ref().map(|own| ("surface", own.place)),
+    ];
+    let stated: Vec<(&str, Place)> = stated.into_iter().flatten().collect();
+    let [(key, key_place)] = stated[..] else {
+        let (message, help) = if stated.is_empty() {
+            (
                 format!("{who} has no shape"),
                 "write one of box, polygon (with across), plan (with between), cylinder, sphere and surface",
-            ),
-            _ => (
-                format!("{who} has several shapes: {}", stated.join(", ")),
+            )
+        } else {
+            let keys: Vec<&str> = stated.iter().map(|(key, _)| *key).collect();
+            (
+                format!("{who} has several shapes: {}", keys.join(", ")),
                 "keep one of them; what is taken out of a body stands in `minus`",
-            ),
+            )
         };
-        problems.error(node.place, message).help(help);
+        problems.error(place, message).help(help);
         return None;
     };
-    for (needed, by) in [("across", "polygon"), ("between", "plan")] {
-        match (node.get(needed), key == by) {
+    let beside = [
+        (
+            "across",
+            "polygon",
+            own.across.as_ref().map(|own| own.place),
+            "say from where to where on y it reaches, as in across = [\"0 m\", \"1 m\"]",
+        ),
+        (
+            "between",
+            "plan",
+            own.between.as_ref().map(|own| own.place),
+            "say its bottom and top, as in between = [\"0 m\", { raster = \"ground.asc\", unit = \"m\" }]",
+        ),
+    ];
+    for (needed, by, stated, help) in beside {
+        match (stated, key == by) {
             (None, true) => {
                 let message = format!("the {by} of {who} needs `{needed}`");
-                let help = match needed {
-                    "across" => {
-                        "say from where to where on y it reaches, as in across = [\"0 m\", \"1 m\"]"
-                    }
-                    _ => {
-                        "say its bottom and top, as in between = [\"0 m\", { raster = \"ground.asc\", unit = \"m\" }]"
-                    }
-                };
-                problems.error(node.place_at(by), message).help(help);
+                problems.error(key_place, message).help(help);
                 return None;
             }
             (Some(extra), false) => {
                 problems
-                    .error(extra.place, format!("`{needed}` goes with `{by}`"))
+                    .error(extra, format!("`{needed}` goes with `{by}`"))
                     .help(format!("{who} is a {key}"));
                 return None;
             }
             _ => {}
         }
     }
-    let value = node.get(key).filter(|value| !value.is_invalid())?;
-    match key {
-        "box" => cuboid(value, who, problems),
-        "polygon" => {
-            let polygon = corners(value, who.name, problems);
-            let between = ascending(node.get("across")?, who, problems);
-            Some(Solid::Prism(Prism::new(polygon?, 1, between?)))
-        }
-        "plan" => ground(value, node.get("between")?, who, problems),
-        "cylinder" => {
-            let between = ascending(value.get("between")?, who, problems);
-            let axis = ["x", "y", "z"];
-            let axis = axis
-                .iter()
-                .position(|name| value.text_at("axis") == Some(name))?;
-            Some(Solid::Cylinder(Cylinder {
-                axis,
-                centre: value.pair_at("centre")?,
-                radius: value.number_at("radius")?,
-                between: between?,
-            }))
-        }
-        "sphere" => Some(Solid::Sphere(Sphere {
-            centre: value.point_at("centre")?,
-            radius: value.number_at("radius")?,
-        })),
-        _ => closed_surface(value, who, problems).map(Solid::Surface),
-    }
+    solid_of(own, who, problems)
 }
 
-fn cuboid(node: &Node, who: &Who<'_>, problems: &mut Problems) -> Option<Solid> {
-    let (a, b) = (node.point_at::<3>("from")?, node.point_at::<3>("to")?);
+/// The solid of a shape of which one key is stated.
+fn solid_of(own: &Shape, who: &Who<'_>, problems: &mut Problems) -> Option<Solid> {
+    if let Some(own) = &own.cuboid {
+        return cuboid(own, who, problems);
+    }
+    if let (Some(polygon), Some(across)) = (&own.polygon, &own.across) {
+        let polygon = corners(polygon, who.name, problems);
+        let between = ascending(across, who, problems);
+        return Some(Solid::Prism(Prism::new(polygon?, 1, between?)));
+    }
+    if let (Some(plan), Some(between)) = (&own.plan, &own.between) {
+        return ground(plan, between, who, problems);
+    }
+    if let Some(own) = &own.cylinder {
+        return Some(Solid::Cylinder(Cylinder {
+            between: ascending(&own.between, who, problems)?,
+            axis: match *own.axis {
+                Axis::X => 0,
+                Axis::Y => 1,
+                Axis::Z => 2,
+            },
+            centre: *own.centre,
+            radius: *own.radius,
+        }));
+    }
+    if let Some(own) = &own.sphere {
+        return Some(Solid::Sphere(Sphere {
+            centre: *own.centre,
+            radius: *own.radius,
+        }));
+    }
+    let surface = own.surface.as_ref()?;
+    closed_surface(surface, who, problems).map(Solid::Surface)
+}
+
+fn cuboid(own: &At<Cuboid>, who: &Who<'_>, problems: &mut Problems) -> Option<Solid> {
+    let (a, b) = (*own.from, *own.to);
     let lower: [f64; 3] = std::array::from_fn(|axis| a[axis].min(b[axis]));
     let upper: [f64; 3] = std::array::from_fn(|axis| a[axis].max(b[axis]));
     if let Some(axis) = (0..3).find(|&axis| lower[axis] >= upper[axis]) {
         let axis = ["x", "y", "z"][axis];
         problems
             .error(
-                node.place,
+                own.place,
                 format!("the box of {who} has no extent along {axis}"),
             )
             .help("its two corners are opposite ones");
@@ -136,14 +162,14 @@ fn cuboid(node: &Node, who: &Who<'_>, problems: &mut Problems) -> Option<Solid> 
 }
 
 /// Two places in their order.
-fn ascending(node: &Node, who: &Who<'_>, problems: &mut Problems) -> Option<[f64; 2]> {
-    let [from, to] = node.pair()?;
+fn ascending(own: &At<[f64; 2]>, who: &Who<'_>, problems: &mut Problems) -> Option<[f64; 2]> {
+    let [from, to] = **own;
     if from < to {
         return Some([from, to]);
     }
     problems
         .error(
-            node.place,
+            own.place,
             format!("{who} reaches from {} m to {} m", number(from), number(to)),
         )
         .help("the first place is the lower one");

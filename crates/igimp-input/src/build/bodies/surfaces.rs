@@ -4,43 +4,41 @@ use std::fmt::{self, Display, Formatter};
 use std::sync::Arc;
 
 use igimp_geometry::solid::{
-    ClosedSurface, ClosedSurfaceError, Height, Layer, LayerError, Prism, Solid, Terrain,
+    ClosedSurface, ClosedSurfaceError, Height, Layer, LayerError, Prism, Solid, Terrain as Ground,
     TerrainError,
 };
 use igimp_schema::diagnostic::Problems;
+use igimp_schema::schema::solids::{Surface, Terrain};
+use igimp_schema::source::Place;
 use igimp_schema::text::number;
-use igimp_schema::tree::Node;
+use igimp_schema::tree::read::{At, Either, Found};
 
-use crate::build::bodies::corners;
+use crate::build::bodies::{Polygon, corners};
 
 /// The closed surface of a table.
 pub(crate) fn closed_surface(
-    node: &Node,
+    own: &At<Surface>,
     who: &dyn Display,
     problems: &mut Problems,
 ) -> Option<Arc<ClosedSurface>> {
-    let (Some(vertices), Some(triangles)) = (node.get("vertices"), node.get("triangles")) else {
+    let (Some(vertices), Some(triangles)) = (&own.vertices, &own.triangles) else {
         problems
-            .error(node.place, format!("the surface of {who} is not stated"))
+            .error(own.place, format!("the surface of {who} is not stated"))
             .help("write surface = { file = \"block.stl\", unit = \"m\" }, or its vertices and triangles");
         return None;
     };
-    let points: Option<Vec<[f64; 3]>> = vertices.items().iter().map(Node::point).collect();
-    let points = points?;
-    let mut faces = Vec::with_capacity(triangles.items().len());
-    for triangle in triangles.items() {
-        let numbers: Option<Vec<usize>> = triangle.items().iter().map(Node::count).collect();
-        let numbers: [usize; 3] = numbers?.try_into().ok()?;
-        if let Some(wrong) = numbers.iter().find(|number| **number >= points.len()) {
+    let mut faces = Vec::with_capacity(triangles.len());
+    for triangle in triangles.iter() {
+        if let Some(wrong) = triangle.iter().find(|number| **number >= vertices.len()) {
             problems
                 .error(triangle.place, format!("there is no vertex {wrong}"))
                 .help(format!(
                     "vertices are numbered from 0 to {}",
-                    points.len() - 1
+                    vertices.len() - 1
                 ));
             return None;
         }
-        faces.push(numbers.map(|number| points[number]));
+        faces.push(triangle.map(|number| *vertices[number]));
     }
     match ClosedSurface::new(&faces) {
         Ok(surface) => Some(Arc::new(surface)),
@@ -61,7 +59,7 @@ pub(crate) fn closed_surface(
                 }
             };
             let message = format!("the surface of {who} encloses no body: {error}");
-            problems.error(node.place, message).help(help);
+            problems.error(own.place, message).help(help);
             None
         }
     }
@@ -69,20 +67,14 @@ pub(crate) fn closed_surface(
 
 /// A polygon in plan between two heights.
 pub(crate) fn ground(
-    plan: &Node,
-    between: &Node,
+    plan: &At<Polygon>,
+    between: &At<[Found<Either<f64, Terrain>>; 2]>,
     who: &Who<'_>,
     problems: &mut Problems,
 ) -> Option<Solid> {
     let polygon = corners(plan, who.name, problems);
-    let heights: Vec<Option<Height>> = (between.items().iter())
-        .map(|own| height(own, who, problems))
-        .collect();
-    let [bottom, top]: [Height; 2] = heights
-        .into_iter()
-        .collect::<Option<Vec<_>>>()?
-        .try_into()
-        .ok()?;
+    let [bottom, top] = (between.each_ref()).map(|own| height(own.as_ref().ok()?, who, problems));
+    let (bottom, top) = (bottom?, top?);
     let polygon = polygon?;
     if let (Height::Level(from), Height::Level(to)) = (&bottom, &top) {
         let (from, to) = (*from, *to);
@@ -122,46 +114,41 @@ pub(crate) fn ground(
     }
 }
 
-fn height(node: &Node, who: &dyn Display, problems: &mut Problems) -> Option<Height> {
-    if node.is_invalid() {
-        return None;
-    }
-    if let Some(level) = node.number() {
-        return Some(Height::Level(level));
-    }
-    terrain(node, who, problems).map(Height::Terrain)
-}
-
-/// A surface of the ground, or of water in it.
-pub(crate) fn terrain(
-    node: &Node,
+fn height(
+    own: &At<Either<f64, Terrain>>,
     who: &dyn Display,
     problems: &mut Problems,
-) -> Option<Arc<Terrain>> {
-    if node.is_invalid() {
-        return None;
+) -> Option<Height> {
+    match &**own {
+        Either::First(level) => Some(Height::Level(*level)),
+        Either::Second(own_terrain) => {
+            terrain(own_terrain, own.place, who, problems).map(Height::Terrain)
+        }
     }
+}
+
+/// A surface of the ground, or of water in it, that is stated at a place.
+pub(crate) fn terrain(
+    own: &Terrain,
+    place: Place,
+    who: &dyn Display,
+    problems: &mut Problems,
+) -> Option<Arc<Ground>> {
     let mut refuse = |error: &dyn Display, help: &str| {
         let message = format!("a surface of {who} cannot be used: {error}");
-        problems.error(node.place, message).help(help);
+        problems.error(place, message).help(help);
     };
-    let lengths = |key: &str| -> Option<Vec<f64>> {
-        node.get(key)?.items().iter().map(Node::number).collect()
-    };
-    let stated = ["points", "x", "y", "rows"].map(|key| node.get(key).is_some());
-    let terrain = match stated {
-        [true, false, false, false] => {
-            let points = node.items_at("points").iter().map(Node::point);
-            let points: Option<Vec<[f64; 3]>> = points.collect();
-            Terrain::through(&points?)
+    let terrain = match (&own.points, &own.x, &own.y, &own.rows) {
+        (Some(points), None, None, None) => {
+            let Either::Second(points) = &**points else {
+                return None;
+            };
+            let points: Vec<[f64; 3]> = points.iter().map(|own| **own).collect();
+            Ground::through(&points)
         }
-        [false, true, true, true] => {
-            let (x, y) = (lengths("x")?, lengths("y")?);
-            let rows = node.items_at("rows").iter();
-            let rows: Option<Vec<Vec<f64>>> = rows
-                .map(|row| row.items().iter().map(Node::number).collect())
-                .collect();
-            let rows = rows?;
+        (None, Some(x), Some(y), Some(rows)) => {
+            let (x, y) = (plain(x), plain(y));
+            let rows: Vec<Vec<f64>> = rows.iter().map(|row| plain(row)).collect();
             let rises = |lines: &[f64]| lines.windows(2).all(|pair| pair[0] < pair[1]);
             if rows.len() != y.len()
                 || rows.iter().any(|row| row.len() != x.len())
@@ -178,9 +165,8 @@ pub(crate) fn terrain(
                 .into_iter()
                 .map(|row| row.into_iter().map(Some).collect())
                 .collect();
-            for hole in node.items_at("holes") {
-                let place: Option<Vec<usize>> = hole.items().iter().map(Node::count).collect();
-                let [i, j]: [usize; 2] = place?.try_into().ok()?;
+            for hole in own.holes.iter() {
+                let [i, j] = **hole;
                 let Some(height) = rows.get_mut(j).and_then(|row| row.get_mut(i)) else {
                     let wrong = format!("it has no column {i} and row {j}");
                     refuse(&wrong, "they are counted from 0");
@@ -188,7 +174,7 @@ pub(crate) fn terrain(
                 };
                 *height = None;
             }
-            Terrain::on_lines(&x, &y, &rows)
+            Ground::on_lines(&x, &y, &rows)
         }
         _ => {
             refuse(
@@ -210,6 +196,11 @@ pub(crate) fn terrain(
             None
         }
     }
+}
+
+/// The numbers of a list.
+pub(crate) fn plain(list: &[At<f64>]) -> Vec<f64> {
+    list.iter().map(|own| **own).collect()
 }
 
 /// Whose shape it is.

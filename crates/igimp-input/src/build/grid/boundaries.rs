@@ -2,31 +2,29 @@
 
 use igimp_model::{Boundaries, FixedBox, Side};
 use igimp_schema::diagnostic::Problems;
-use igimp_schema::tree::Node;
+use igimp_schema::schema::grid::{self as keys, FixedAxis};
+use igimp_schema::tree::read::At;
 
 use super::Frame;
 
 /// The supports.
 pub(crate) fn boundaries<const D: usize>(
-    tree: &Node,
+    own: &keys::Boundaries<D>,
     frame: Option<&Frame<D>>,
     problems: &mut Problems,
 ) -> Option<Boundaries<D>> {
-    let node = tree.get("boundaries")?;
-    let boxes: Vec<_> = node
-        .items_at("boxes")
-        .iter()
-        .map(|part| fixed_box(part, frame, problems))
+    let boxes: Vec<_> = (own.boxes.iter())
+        .map(|part| fixed_box(part.as_ref().ok()?, frame, problems))
         .collect();
+    let across = own.front.as_ref().zip(own.back.as_ref());
     let mut sides = [[Side::Free; 2]; D];
-    let [across, up] = [["front", "back"], ["bottom", "top"]];
-    for (axis, own) in sides.iter_mut().enumerate() {
-        let keys = match axis {
-            0 => ["left", "right"],
-            _ if axis == D - 1 => up,
-            _ => across,
+    for (axis, both) in sides.iter_mut().enumerate() {
+        let (lower, upper) = match axis {
+            0 => (&own.left, &own.right),
+            _ if axis == D - 1 => (&own.bottom, &own.top),
+            _ => across?,
         };
-        *own = [side(node, keys[0])?, side(node, keys[1])?];
+        *both = [side(**lower), side(**upper)];
     }
     Some(Boundaries {
         sides,
@@ -34,20 +32,20 @@ pub(crate) fn boundaries<const D: usize>(
     })
 }
 
-fn side(node: &Node, key: &str) -> Option<Side> {
-    Some(match node.text_at(key)? {
-        "roller" => Side::Roller,
-        "fixed" => Side::Fixed,
-        _ => Side::Free,
-    })
+fn side(own: keys::Side) -> Side {
+    match own {
+        keys::Side::Roller => Side::Roller,
+        keys::Side::Fixed => Side::Fixed,
+        keys::Side::Free => Side::Free,
+    }
 }
 
 fn fixed_box<const D: usize>(
-    node: &Node,
+    own: &At<keys::FixedBox<D>>,
     frame: Option<&Frame<D>>,
     problems: &mut Problems,
 ) -> Option<FixedBox<D>> {
-    let (from, to): ([f64; D], [f64; D]) = (node.point_at("from")?, node.point_at("to")?);
+    let (from, to) = (*own.from, *own.to);
     let lower: [f64; D] = std::array::from_fn(|axis| from[axis].min(to[axis]));
     let upper: [f64; D] = std::array::from_fn(|axis| from[axis].max(to[axis]));
     if let Some(frame) = frame {
@@ -59,14 +57,19 @@ fn fixed_box<const D: usize>(
         });
         if !has_nodes {
             problems
-                .warning(node.place, "there is no node in this box: it holds nothing")
+                .warning(own.place, "there is no node in this box: it holds nothing")
                 .help("let it reach over a line of the grid");
         }
     }
     let mut fix = [false; D];
-    for axis in node.items_at("fix") {
-        let name = axis.text()?;
-        let Some(own) = ["x", "y", "z"].iter().take(D).position(|key| *key == name) else {
+    for axis in own.fix.iter() {
+        let held = match **axis {
+            FixedAxis::X => 0,
+            FixedAxis::Y => 1,
+            FixedAxis::Z => 2,
+        };
+        if held >= D {
+            let name = axis.name();
             problems
                 .error(
                     axis.place,
@@ -74,11 +77,11 @@ fn fixed_box<const D: usize>(
                 )
                 .help("write x or y");
             return None;
-        };
-        fix[own] = true;
+        }
+        fix[held] = true;
     }
     Some(FixedBox {
-        name: node.text_at("name")?.to_owned(),
+        name: own.name.value.clone(),
         lower,
         upper,
         fix,

@@ -4,11 +4,16 @@
 use igimp_geometry::polygon::{bounding_box, contains};
 use igimp_model::{BodyPart, Ground, Material, Stage, StageKind, Strength};
 use igimp_schema::diagnostic::Problems;
+use igimp_schema::schema::Root;
+use igimp_schema::schema::bodies::Body;
+use igimp_schema::schema::grid::{Fit, MixedCells};
 use igimp_schema::source::Place;
 use igimp_schema::text::{clip, number, point};
 use igimp_schema::tree::Node;
 use igimp_text::short;
 
+use crate::build::Thing;
+use crate::build::bodies::polygon_place;
 use crate::build::bodies::sequence::Sequence;
 use crate::build::bodies::site::Site;
 use crate::build::grid::Frame;
@@ -29,6 +34,8 @@ const STIFF: f64 = 1e-6;
 pub(crate) struct Layers<'a> {
     /// The file.
     pub(crate) tree: &'a Node,
+    /// Its bodies as they are stated.
+    pub(crate) own: &'a [Thing<Body>],
     /// Its bodies.
     pub(crate) bodies: &'a [Option<BodyPart<2>>],
     /// Its materials.
@@ -78,10 +85,14 @@ fn check_pairs(
 ) -> Vec<Neighbours> {
     let [width, height] = frame.axes.each_ref().map(|axis| axis.extremes()[0]);
     let narrow = NARROW * width.min(height);
-    let items = layers.tree.items_at("bodies");
-    let grid = layers.tree.get("grid");
-    let is_fitted = grid.and_then(|grid| grid.text_at("fit")) == Some("layers");
-    let is_shared = grid.and_then(|grid| grid.text_at("mixed_cells")) == Some("mean");
+    let grid = Root::<2>::grid(layers.tree).ok();
+    let is_fitted =
+        (grid.iter()).any(|own| own.wishes.as_ref().is_ok_and(|own| *own.fit == Fit::Layers));
+    let is_shared = (grid.iter()).any(|own| {
+        own.mixed_cells
+            .as_ref()
+            .is_ok_and(|own| **own == MixedCells::Mean)
+    });
     let mut neighbours = vec![Neighbours::default(); bodies.len()];
     for (second, b) in bodies.iter().enumerate() {
         for (first, a) in bodies[..second].iter().enumerate() {
@@ -89,7 +100,7 @@ fn check_pairs(
                 continue;
             }
             let pieces = facing(a.polygon(), b.polygon(), narrow);
-            let place = items[second].place_at("polygon");
+            let place = layers.own[second].as_ref().map(polygon_place);
             let gap = pieces.iter().find(|piece| {
                 piece.distance > layers.site.round_off && !layers.site.is_inside(piece.middle)
             });
@@ -240,7 +251,7 @@ impl Within {
 
 /// Where a warning goes.
 struct Report<'a> {
-    place: Place,
+    place: Option<Place>,
     problems: &'a mut Problems,
 }
 
@@ -252,7 +263,6 @@ fn check_thickness(
     neighbours: &[Neighbours],
     problems: &mut Problems,
 ) {
-    let items = layers.tree.items_at("bodies");
     for (index, body) in bodies.iter().enumerate() {
         let Neighbours {
             has_any,
@@ -278,7 +288,7 @@ fn check_thickness(
         };
         problems
             .warning(
-                items[index].place_at("polygon"),
+                layers.own[index].as_ref().map(polygon_place),
                 format!(
                     "body `{}` is {} cells thick, where three are needed",
                     clip(&body.name, 40),
@@ -324,7 +334,7 @@ pub(crate) fn check_stiffness(
         .iter()
         .map(|body| levels(body)[1])
         .fold(f64::MIN, f64::max);
-    let file = layers.tree.get("materials");
+    let stated = Root::<2>::materials(layers.tree).map_or_else(|_| Vec::new(), |own| own.value.0);
     for (index, material) in materials.iter().enumerate() {
         let own = bodies.iter().filter(|body| body.material == index);
         let Some(body) = own.min_by(|a, b| levels(a)[0].total_cmp(&levels(b)[0])) else {
@@ -336,9 +346,11 @@ pub(crate) fn check_stiffness(
         let weight = material.unit_weight_at(&middle, &ground);
         let young = material.young_at(&middle, &ground);
         let ratio = weight * (top - lowest) / young;
-        let place = file
-            .and_then(|file| file.get(&material.name))
-            .map(|node| node.place_at("young"));
+        let common = stated.get(index).and_then(|own| own.value.as_ref().ok());
+        let common = common.and_then(|own| own.common.as_ref().ok());
+        let place = common
+            .and_then(|own| own.young.as_ref().ok())
+            .map(|own| own.place);
         let name = clip(&material.name, 40);
         if ratio > SOFT && searches && material.strength != Strength::Elastic {
             problems

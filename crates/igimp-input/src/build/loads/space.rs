@@ -1,45 +1,57 @@
 //! Loads in space, and whether there is soil where they act.
 
-use igimp_model::{Load, LoadKind, Plan};
+use igimp_model::{LoadKind, Plan};
 use igimp_schema::diagnostic::Problems;
+use igimp_schema::schema::loads::{Footing, Patch, Pressure, PressureDirection};
+use igimp_schema::source::Place;
 use igimp_schema::text::{clip, point};
-use igimp_schema::tree::Node;
+use igimp_schema::tree::Wrong;
+use igimp_schema::tree::read::Either;
 
-use super::at_point;
+use super::Bearing;
 use crate::build::bodies::site::Solids;
 use crate::geometry::{distinct, self_crossing};
 
 /// Places along each side of a loaded rectangle at which soil is looked for.
 const SAMPLES: usize = 7;
 
-/// The loads.
-pub(crate) fn loads(tree: &Node, soil: &Solids, problems: &mut Problems) -> Vec<Option<Load<3>>> {
-    let items = tree.items_at("loads").iter();
-    items
-        .map(|node| {
-            let name = node.text_at("name")?;
-            let kind = match node.text_at("type")? {
-                "pressure" => pressure(node, name, soil, problems),
-                "patch" => patch(node, name, soil, problems),
-                "point" => at_point(node, name, soil, problems),
-                _ => None,
-            }?;
-            Some(Load {
-                name: name.to_owned(),
-                kind,
-            })
-        })
-        .collect()
+impl Bearing<3> for Solids {
+    /// It was refused before.
+    fn footing(
+        &self,
+        _own: &Result<Footing<3>, Wrong>,
+        _name: &str,
+        _problems: &mut Problems,
+    ) -> Option<LoadKind<3>> {
+        None
+    }
+
+    fn pressure(
+        &self,
+        own: &Pressure<3>,
+        name: &str,
+        problems: &mut Problems,
+    ) -> Option<LoadKind<3>> {
+        pressure(own, name, self, problems)
+    }
+
+    fn patch(
+        &self,
+        own: &Result<Patch, Wrong>,
+        (name, place, _): (&str, Place, Place),
+        problems: &mut Problems,
+    ) -> Option<LoadKind<3>> {
+        patch(own.as_ref().ok()?, (name, place), self, problems)
+    }
 }
 
 fn pressure(
-    node: &Node,
+    own: &Pressure<3>,
     name: &str,
     soil: &Solids,
     problems: &mut Problems,
 ) -> Option<LoadKind<3>> {
-    let (from, to) = (node.point_at::<3>("from")?, node.point_at::<3>("to")?);
-    let pressure = node.number_at("pressure")?;
+    let (from, to) = (*own.from, *own.to);
     let shown = clip(name, 40);
     let flat: Vec<usize> = (0..3)
         .filter(|&axis| (to[axis] - from[axis]).abs() <= soil.round_off)
@@ -47,7 +59,7 @@ fn pressure(
     let &[normal] = &flat[..] else {
         problems
             .error(
-                node.place_at("to"),
+                own.to.place,
                 format!("the corners of the pressure `{shown}` span no rectangle across an axis"),
             )
             .help("two corners that lie across from each other have one coordinate in common");
@@ -90,55 +102,63 @@ fn pressure(
             )
         };
         problems
-            .error(node.place_at("from"), message)
+            .error(own.from.place, message)
             .help("the rectangle lies on a level or upright face of a body");
         return None;
     }
     inward[normal] = if sides[0] > 0 { 1.0 } else { -1.0 };
-    if node.text_at("direction")? == "down" {
+    if *own.direction == PressureDirection::Down {
         inward = [0.0, 0.0, -1.0];
     }
     Some(LoadKind::Pressure {
         from,
         to,
-        traction: inward.map(|component| component * pressure + 0.0),
+        traction: inward.map(|component| component * *own.pressure + 0.0),
     })
 }
 
 /// A pressure on a circle or polygon in plan.
-fn patch(node: &Node, name: &str, soil: &Solids, problems: &mut Problems) -> Option<LoadKind<3>> {
+fn patch(
+    own: &Patch,
+    (name, place): (&str, Place),
+    soil: &Solids,
+    problems: &mut Problems,
+) -> Option<LoadKind<3>> {
     let shown = clip(name, 40);
-    let plan = match (node.get("circle"), node.get("plan")) {
+    let plan = match (&own.circle, &own.plan) {
         (Some(circle), None) => Plan::Circle {
-            centre: circle.pair_at("centre")?,
-            radius: circle.number_at("radius")?,
+            centre: *circle.centre,
+            radius: *circle.radius,
         },
         (None, Some(plan)) => {
-            let corners: Option<Vec<_>> = plan.items().iter().map(Node::pair).collect();
-            let corners = distinct(&corners?, soil.round_off);
+            let Either::First(corners) = &plan.value else {
+                return None;
+            };
+            let corners: Vec<_> = corners.iter().map(|own| **own).collect();
+            let corners = distinct(&corners, soil.round_off);
             let crossing = self_crossing(&corners, soil.round_off);
-            let plan = Plan::Polygon(corners);
-            if crossing.is_some() || plan.area() <= soil.round_off * soil.cell {
+            let polygon = Plan::Polygon(corners);
+            if crossing.is_some() || polygon.area() <= soil.round_off * soil.cell {
                 let message = format!("the corners of the patch `{shown}` enclose no area");
                 problems
-                    .error(node.place_at("plan"), message)
+                    .error(plan.place, message)
                     .help("name them in order along the boundary, each once");
                 return None;
             }
-            plan
+            polygon
         }
         (both, _) => {
             let message = match both {
                 None => format!("the patch `{shown}` covers nothing"),
                 Some(_) => format!("the patch `{shown}` has both `circle` and `plan`"),
             };
-            problems.error(node.place, message).help(
+            problems.error(place, message).help(
                 "write one of circle = { centre = [\"2 m\", \"2 m\"], radius = \"1 m\" } and plan = [[...], ...]",
             );
             return None;
         }
     };
-    let (level, pressure) = (node.number_at("level")?, node.number_at("pressure")?);
+    let (level, pressure) = (*own.level, *own.pressure);
     let step = 1e-2 * soil.cell;
     let is_soil = |at: &[f64; 3], by: f64| {
         let at = [at[0], at[1], at[2] + by];
@@ -155,7 +175,7 @@ fn patch(node: &Node, name: &str, soil: &Solids, problems: &mut Problems) -> Opt
         let near = at.map(|x| (1e4 * x).round() / 1e4);
         problems
             .error(
-                node.place_at("level"),
+                own.level.place,
                 format!("the patch `{shown}` {what} at {}", point(near)),
             )
             .help("all of it lies on level surfaces of bodies at its level");

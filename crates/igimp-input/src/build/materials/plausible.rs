@@ -3,7 +3,7 @@
 
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::text::{clip, number};
-use igimp_schema::tree::Node;
+use igimp_schema::tree::read::At;
 
 /// A key with the values that soil, rock and structures have.
 struct Plausible {
@@ -48,21 +48,19 @@ const PLAUSIBLE: [Plausible; 5] = [
     },
 ];
 
-/// Checks the constants of a material; zero is plausible for all of them.
-pub(super) fn check(name: &str, material: &Node, problems: &mut Problems) {
+/// Checks the constants of a material, with their keys; zero is plausible for all of them.
+pub(super) fn check(name: &str, constants: &[(&str, At<f64>)], problems: &mut Problems) {
     for plausible in &PLAUSIBLE {
-        let Some(node) = material.get(plausible.key) else {
+        let stated = constants.iter().find(|(key, _)| *key == plausible.key);
+        let Some((_, own)) = stated.filter(|(_, own)| **own > 0.0) else {
             continue;
         };
-        let [least, most] = plausible.between;
-        let Some(value) = node.number().filter(|&value| value > 0.0) else {
-            continue;
-        };
+        let ([least, most], value) = (plausible.between, **own);
         if value < least || value > most {
             let (scale, unit) = plausible.unit;
             problems
                 .warning(
-                    node.place,
+                    own.place,
                     format!(
                         "`{}` has {} = {} {unit}, outside the range of soil, rock and structures",
                         clip(name, 40),

@@ -3,8 +3,13 @@
 use igimp_geometry::polygon::Polygon;
 use igimp_model::{BodyPart, Ground, Profile, Raster, StressShare, Variation, front, in_plane};
 use igimp_schema::diagnostic::Problems;
+use igimp_schema::schema::materials::{self as keys, Growth, Rows, StrengthProfile};
+use igimp_schema::source::Place;
 use igimp_schema::text::{clip, number, point};
-use igimp_schema::tree::{Node, Wrong};
+use igimp_schema::tree::Wrong;
+use igimp_schema::tree::read::{At, Either};
+
+use crate::build::bodies::surfaces::plain;
 
 /// A property of a material as a case file states it.
 pub(crate) struct Property {
@@ -112,25 +117,115 @@ struct Extreme {
     place: String,
 }
 
+/// A table that says how a property varies, as it is stated.
+pub(crate) struct Stated<'a> {
+    growth: Option<&'a Growth>,
+    rows: &'a Rows,
+    points: Option<&'a keys::Points>,
+    share: Option<&'a StrengthProfile>,
+    place: Place,
+}
+
+/// A table that says how a property varies.
+pub(crate) trait Varies {
+    /// What it states.
+    fn stated(&self, place: Place) -> Stated<'_>;
+}
+
+impl Varies for keys::Profile {
+    fn stated(&self, place: Place) -> Stated<'_> {
+        Stated {
+            growth: Some(&self.growth),
+            rows: &self.table,
+            points: Some(&self.points),
+            share: None,
+            place,
+        }
+    }
+}
+
+impl Varies for StrengthProfile {
+    fn stated(&self, place: Place) -> Stated<'_> {
+        Stated {
+            share: Some(self),
+            ..self.stress.stated(place)
+        }
+    }
+}
+
+impl Varies for Rows {
+    fn stated(&self, place: Place) -> Stated<'_> {
+        Stated {
+            growth: None,
+            rows: self,
+            points: None,
+            share: None,
+            place,
+        }
+    }
+}
+
+impl Stated<'_> {
+    /// Where a key of a form is stated, if it is.
+    fn place_of(&self, key: &str) -> Option<Place> {
+        fn of<T>(own: Option<&At<T>>) -> Option<Place> {
+            own.map(|own| own.place)
+        }
+        let (growth, points, share) = (self.growth, self.points, self.share);
+        match key {
+            "at_surface" => of(growth?.at_surface.as_ref()),
+            "at_top" => of(growth?.at_top.as_ref()),
+            "gradient" => of(growth?.gradient.as_ref()),
+            "from" => of(growth?.from.as_ref()),
+            "levels" => of(self.rows.levels.as_ref()),
+            "depths" => of(self.rows.depths.as_ref()),
+            "values" => of(self.rows.values.as_ref()),
+            "x" => of(points?.x.as_ref()),
+            "y" => of(points?.y.as_ref()),
+            "rows" => of(points?.rows.as_ref()),
+            "ratio" => of(share?.ratio.as_ref()),
+            "ocr" => of(share?.ocr.as_ref()),
+            "exponent" => of(share?.exponent.as_ref()),
+            "at_least" => of(share?.at_least.as_ref()),
+            "water_level" => of(share?.water_level.as_ref()),
+            _ => None,
+        }
+    }
+
+    /// Whether no key is stated.
+    fn is_empty(&self) -> bool {
+        let of_files = |own: &keys::Points| {
+            let keys = [&own.raster, &own.unit, &own.length_unit];
+            keys.into_iter().any(Option::is_some)
+        };
+        let mut keys = FORMS.iter().flat_map(Form::keys);
+        !self.points.is_some_and(of_files) && keys.all(|key| self.place_of(key).is_none())
+    }
+
+    /// Where a key is stated; the table where it is not.
+    fn place_at(&self, key: &str) -> Place {
+        self.place_of(key).unwrap_or(self.place)
+    }
+}
+
 /// The property of a key: a quantity, or a table that says how it varies.
-pub(crate) fn property<const D: usize>(
-    node: &Node,
+pub(crate) fn property<T: Varies, const D: usize>(
+    own: &At<Either<f64, T>>,
     key: &str,
     extent: Extent<'_, D>,
     terms: Terms,
     problems: &mut Problems,
 ) -> Option<Property> {
-    let value = node.get(key)?;
-    if let Some(constant) = value.number() {
-        return Some(Property {
-            constant: (terms.kept)(constant),
-            profile: None,
-        });
-    }
-    if value.is_invalid() {
-        return None;
-    }
-    let profile = stated(value, key, extent, terms, problems).ok()?;
+    let value = match &**own {
+        Either::First(constant) => {
+            return Some(Property {
+                constant: (terms.kept)(*constant),
+                profile: None,
+            });
+        }
+        Either::Second(table) => table.stated(own.place),
+    };
+    let profile = stated(&value, key, extent, terms, problems).ok()?;
     let [least, greatest] = extremes(&profile, extent);
     let name = clip(extent.name, 40);
     let place = match &profile {
@@ -255,6 +350,14 @@ struct Form {
     may_have: &'static [&'static str],
 }
 
+impl Form {
+    /// All of them.
+    fn keys(&self) -> impl Iterator<Item = &&'static str> {
+        let own = std::iter::once(&self.key);
+        own.chain(self.needs).chain(self.may_have)
+    }
+}
+
 const FORMS: [Form; 6] = [
     Form {
         key: "at_top",
@@ -290,12 +393,12 @@ const FORMS: [Form; 6] = [
 
 /// The form of a table; reports a table of several or of none.
 fn form(
-    value: &Node,
+    value: &Stated<'_>,
     key: &str,
     terms: Terms,
     problems: &mut Problems,
 ) -> Result<&'static Form, Wrong> {
-    let has = |key: &&'static str| value.get(key).is_some();
+    let has = |key: &&'static str| value.place_of(key).is_some();
     let lacks = |missing: &str, problems: &mut Problems| {
         problems
             .error(value.place, format!("`{key}` has no `{missing}`"))
@@ -309,7 +412,7 @@ fn form(
             .find(of_others)
             .map_or("levels", |form| form.key);
         let has_gradients = terms.forms.contains("at_top");
-        let is_empty = value.entries().is_empty();
+        let is_empty = value.is_empty();
         return Err(lacks(
             if is_empty && has_gradients {
                 "at_top"
@@ -321,12 +424,8 @@ fn form(
     };
     let own =
         |key: &str| form.key == key || form.needs.contains(&key) || form.may_have.contains(&key);
-    let keys = FORMS.iter().flat_map(|form| {
-        std::iter::once(&form.key)
-            .chain(form.needs)
-            .chain(form.may_have)
-    });
-    if let Some(other) = keys.into_iter().find(|key| !own(key) && has(key)) {
+    let mut keys = FORMS.iter().flat_map(Form::keys);
+    if let Some(other) = keys.find(|key| !own(key) && has(key)) {
         problems
             .error(
                 value.place_at(other),
@@ -343,7 +442,7 @@ fn form(
 
 /// The profile that a table states.
 fn stated<const D: usize>(
-    value: &Node,
+    value: &Stated<'_>,
     key: &str,
     extent: Extent<'_, D>,
     terms: Terms,
@@ -352,33 +451,45 @@ fn stated<const D: usize>(
     let form = form(value, key, terms, problems)?;
     match form.key {
         "ratio" => Ok(Profile::StressShare(Box::new(share(
-            value, extent, problems,
+            value.share.ok_or(Wrong)?,
+            extent,
+            problems,
         )?))),
-        "levels" => Ok(Profile::Level(table(value, key, form, terms, problems)?)),
-        "depths" => Ok(Profile::Depth(table(value, key, form, terms, problems)?)),
+        "levels" => {
+            let levels = value.rows.levels.as_ref();
+            let table = table(value.rows, levels, key, form, terms, problems)?;
+            Ok(Profile::Level(table))
+        }
+        "depths" => {
+            let depths = value.rows.depths.as_ref();
+            let table = table(value.rows, depths, key, form, terms, problems)?;
+            Ok(Profile::Depth(table))
+        }
         "rows" => {
-            let raster = points(value, key, problems)?;
+            let own = value.points.ok_or(Wrong)?;
+            let raster = points(own, value.place, key, problems)?;
             let outlines = extent.outlines();
             let polygons: Vec<&[[f64; 2]]> = outlines.iter().map(Vec::as_slice).collect();
             let of = format!("the soil of `{}`", clip(extent.name, 40));
-            reach(&raster, (value, key), (&polygons, &of), problems)?;
+            reach(&raster, (value.place, key), (&polygons, &of), problems)?;
             Ok(Profile::Raster(raster))
         }
-        top => {
-            let from = match (top, value.optional_number("from")?, extent.levels()) {
-                ("at_surface", ..) => 0.0,
-                (_, Some(from), _) => from,
-                (_, None, levels) => levels.map_or(0.0, |[_, upper]| upper),
-            };
-            let variation = Variation::Gradient {
-                from,
-                at_top: value.number_at(top).ok_or(Wrong)?,
-                gradient: value.number_at("gradient").ok_or(Wrong)?,
-            };
-            Ok(match top {
-                "at_surface" => Profile::Depth(variation),
-                _ => Profile::Level(variation),
-            })
+        _ => {
+            let growth = value.growth.ok_or(Wrong)?;
+            let gradient = **growth.gradient.as_ref().ok_or(Wrong)?;
+            if let Some(at_top) = &growth.at_top {
+                let highest = || extent.levels().map_or(0.0, |[_, upper]| upper);
+                return Ok(Profile::Level(Variation::Gradient {
+                    from: growth.from.as_ref().map_or_else(highest, |from| **from),
+                    at_top: **at_top,
+                    gradient,
+                }));
+            }
+            Ok(Profile::Depth(Variation::Gradient {
+                from: 0.0,
+                at_top: **growth.at_surface.as_ref().ok_or(Wrong)?,
+                gradient,
+            }))
         }
     }
 }
@@ -396,63 +507,61 @@ pub(crate) const TABLES: &str =
     "{ levels = [...], values = [...] }, or { depths = [...], values = [...] }";
 
 fn share<const D: usize>(
-    value: &Node,
+    own: &StrengthProfile,
     extent: Extent<'_, D>,
     problems: &mut Problems,
 ) -> Result<StressShare, Wrong> {
-    let (ocr, ocr_profile) = if value.get("ocr").is_some() {
-        let own = property(value, "ocr", extent, OCR, problems).ok_or(Wrong)?;
-        (own.constant, own.profile)
-    } else {
-        (1.0, None)
+    let (ocr, ocr_profile) = match &own.ocr {
+        Some(ocr) => {
+            let own = property(ocr, "ocr", extent, OCR, problems).ok_or(Wrong)?;
+            (own.constant, own.profile)
+        }
+        None => (1.0, None),
     };
+    let value = |own: &Option<At<f64>>| own.as_ref().map(|own| **own);
     Ok(StressShare {
-        ratio: value.number_at("ratio").ok_or(Wrong)?,
+        ratio: value(&own.ratio).ok_or(Wrong)?,
         ocr,
         ocr_profile,
-        exponent: value.optional_number("exponent")?.unwrap_or(0.8),
-        at_least: value.optional_number("at_least")?.unwrap_or(0.0),
-        water_level: value.optional_number("water_level")?,
+        exponent: value(&own.exponent).unwrap_or(0.8),
+        at_least: value(&own.at_least).unwrap_or(0.0),
+        water_level: value(&own.water_level),
     })
-}
-
-/// The numbers of a list.
-fn numbers(list: Option<&Node>) -> Result<Vec<f64>, Wrong> {
-    let list = list.filter(|list| !list.is_invalid()).ok_or(Wrong)?;
-    let items = list.items().iter();
-    items.map(|item| item.number().ok_or(Wrong)).collect()
 }
 
 /// Soil this far beyond a raster has what its edge has, in spacings of its lines \[-\].
 const BEYOND: f64 = 0.5 + 1e-9;
 
-/// Points in the plane.
-pub(crate) fn points(value: &Node, key: &str, problems: &mut Problems) -> Result<Raster, Wrong> {
+/// Points in the plane, stated at a place.
+pub(crate) fn points(
+    own: &keys::Points,
+    place: Place,
+    key: &str,
+    problems: &mut Problems,
+) -> Result<Raster, Wrong> {
     let help = "write x = [...], y = [...] and rows = [[...], ...] with a list for every y, or raster = \"cu.csv\"";
-    if value.is_invalid() || value.get("rows").is_some_and(Node::is_invalid) {
-        return Err(Wrong);
-    }
-    if let Some(missing) = ["x", "y", "rows"]
-        .into_iter()
-        .find(|key| value.get(key).is_none())
-    {
+    let (Some(xs), Some(ys), Some(rows)) = (&own.x, &own.y, &own.rows) else {
+        let missing = match (&own.x, &own.y) {
+            (None, _) => "x",
+            (_, None) => "y",
+            _ => "rows",
+        };
         let message = format!("`{key}` has no `{missing}`");
-        problems.error(value.place, message).help(help);
+        problems.error(place, message).help(help);
         return Err(Wrong);
-    }
-    let (x, y) = (numbers(value.get("x"))?, numbers(value.get("y"))?);
-    let rows = value.items_at("rows").iter().map(|row| numbers(Some(row)));
-    let values = rows.collect::<Result<Vec<_>, _>>()?;
+    };
+    let (x, y) = (plain(xs), plain(ys));
+    let values: Vec<Vec<f64>> = rows.iter().map(|row| plain(row)).collect();
     if values.len() != y.len() || values.iter().any(|row| row.len() != x.len()) {
         let message = format!(
             "the rows of `{key}` are not those of {} y and {} x",
             y.len(),
             x.len()
         );
-        problems.error(value.place_at("rows"), message).help(help);
+        problems.error(rows.place, message).help(help);
         return Err(Wrong);
     }
-    for (name, lines) in [("x", &x), ("y", &y)] {
+    for (name, lines, place) in [("x", &x, xs.place), ("y", &y, ys.place)] {
         if let Some(at) = lines.windows(2).position(|pair| pair[0] >= pair[1]) {
             let message = format!(
                 "the {name} of `{key}` do not go up: {} m after {} m",
@@ -460,7 +569,7 @@ pub(crate) fn points(value: &Node, key: &str, problems: &mut Problems) -> Result
                 number(lines[at])
             );
             problems
-                .error(value.place_at(name), message)
+                .error(place, message)
                 .help("write them upwards, each once");
             return Err(Wrong);
         }
@@ -471,7 +580,7 @@ pub(crate) fn points(value: &Node, key: &str, problems: &mut Problems) -> Result
 /// Refuses points that soil lies too far beyond; `of` are the words for the soil.
 pub(crate) fn reach(
     raster: &Raster,
-    (value, key): (&Node, &str),
+    (place, key): (Place, &str),
     (polygons, of): (&[&[[f64; 2]]], &str),
     problems: &mut Problems,
 ) -> Result<(), Wrong> {
@@ -487,7 +596,7 @@ pub(crate) fn reach(
         };
         problems
             .error(
-                value.place,
+                place,
                 format!("`{key}` has no value at {}, in {of}", point(at)),
             )
             .help(format!(
@@ -502,18 +611,20 @@ pub(crate) fn reach(
 }
 
 fn table(
-    value: &Node,
+    own: &Rows,
+    levels: Option<&At<Vec<At<f64>>>>,
     key: &str,
     form: &Form,
     terms: Terms,
     problems: &mut Problems,
 ) -> Result<Variation, Wrong> {
     let places = form.key;
-    let (levels, values) = (numbers(value.get(places))?, numbers(value.get("values"))?);
+    let (stated, of_them) = (levels.ok_or(Wrong)?, own.values.as_ref().ok_or(Wrong)?);
+    let (levels, values) = (plain(stated), plain(of_them));
     if levels.len() != values.len() {
         problems
             .error(
-                value.place_at("values"),
+                of_them.place,
                 format!(
                     "`{key}` has {} {places} and {} values",
                     levels.len(),
@@ -528,7 +639,7 @@ fn table(
     {
         problems
             .error(
-                value.items_at(places)[at].place,
+                stated[at].place,
                 format!("a depth of `{key}` is {} m", number(levels[at])),
             )
             .help("depths are positive downwards from the surface");
@@ -541,7 +652,7 @@ fn table(
             .is_none_or(|order| order.is_lt() != goes_up || order.is_eq())
     });
     if let Some(at) = wrong {
-        let place = value.items_at(places)[at + 1].place;
+        let place = stated[at + 1].place;
         problems
             .error(
                 place,

@@ -3,67 +3,63 @@
 use igimp_model::check::Band;
 use igimp_model::{CaseCheck, CheckTime, CheckValue, Load, Quantity, Stage, StageKind};
 use igimp_schema::diagnostic::Problems;
+use igimp_schema::schema::outputs::{self as keys, CheckedValue, Moment};
 use igimp_schema::text::clip;
-use igimp_schema::tree::{Node, Wrong};
+use igimp_schema::tree::Wrong;
+use igimp_schema::tree::read::At;
 
 use super::quantities::{divisor, quantity};
 use crate::build::AllNames;
 
-/// The checks.
-pub(crate) fn checks<const D: usize>(
-    tree: &Node,
+/// A check.
+pub(crate) fn check<const D: usize>(
+    own: &At<keys::Check>,
     names: &AllNames,
     loads: &[Option<Load<D>>],
     stages: &[Option<Stage>],
     problems: &mut Problems,
-) -> Vec<Option<CaseCheck>> {
-    let items = tree.items_at("checks").iter();
-    items
-        .map(|node| {
-            let name = clip(node.text_at("name").unwrap_or("?"), 40);
-            let of = node
-                .get("of")
-                .and_then(|of| quantity(of, names, loads, problems));
-            let divide_by = divisor(node, problems);
-            let who = format!("check `{name}` looks at");
-            let stage = names.stages.find_optional(node, "stage", &who, problems);
-            let stage = match (stage, of) {
-                (Ok(stage), Some(Quantity::FactorOfSafety)) => {
-                    if node.text_at("at") == Some("peak") {
-                        problems
-                            .error(node.place_at("at"), "a factor of safety has no peak")
-                            .help("leave `at` out: it is known at the end of its stage");
-                    }
-                    search(node, stage, stages, problems).map(Some)
-                }
-                (stage, _) => stage,
-            };
-            let band = band(node, problems);
-            let (expected, band) = band?;
-            Some(CaseCheck {
-                name: node.text_at("name")?.to_owned(),
-                of: of?,
-                divide_by: divide_by?,
-                stage: stage.ok()?,
-                at: match node.text_at("at")? {
-                    "peak" => CheckTime::Peak,
-                    _ => CheckTime::End,
-                },
-                value: match node.text_at("value")? {
-                    "extrapolated" => CheckValue::Extrapolated,
-                    _ => CheckValue::Computed,
-                },
-                expected,
-                band,
-                source: node.text_at("source")?.to_owned(),
-            })
-        })
-        .collect()
+) -> Option<CaseCheck> {
+    let name = clip(&own.name, 40);
+    let of = quantity(&own.of, names, loads, problems);
+    let divide_by = divisor(&own.divide_by, problems);
+    let who = format!("check `{name}` looks at");
+    let stage = names
+        .stages
+        .find_optional(own.stage.as_ref(), &who, problems);
+    let stage = match (stage, of) {
+        (Ok(stage), Some(Quantity::FactorOfSafety)) => {
+            if *own.at == Moment::Peak {
+                problems
+                    .error(own.at.place, "a factor of safety has no peak")
+                    .help("leave `at` out: it is known at the end of its stage");
+            }
+            search(own, stage, stages, problems).map(Some)
+        }
+        (stage, _) => stage,
+    };
+    let (expected, band) = band(own, problems)?;
+    Some(CaseCheck {
+        name: own.name.value.clone(),
+        of: of?,
+        divide_by: divide_by?,
+        stage: stage.ok()?,
+        at: match *own.at {
+            Moment::Peak => CheckTime::Peak,
+            Moment::End => CheckTime::End,
+        },
+        value: match *own.value.value {
+            CheckedValue::Extrapolated => CheckValue::Extrapolated,
+            CheckedValue::Computed => CheckValue::Computed,
+        },
+        expected,
+        band,
+        source: own.source.value.clone(),
+    })
 }
 
 /// The strength reduction whose factor of safety is meant.
 fn search(
-    node: &Node,
+    own: &keys::Check,
     stage: Option<usize>,
     stages: &[Option<Stage>],
     problems: &mut Problems,
@@ -81,7 +77,7 @@ fn search(
         }
         problems
             .error(
-                node.place_at("stage"),
+                own.stage.as_ref().map(|stage| stage.place),
                 "this stage does not search for a factor of safety",
             )
             .help("name a stage of type strength-reduction");
@@ -90,77 +86,75 @@ fn search(
     let last = (0..stages.len()).rev().find(searches);
     if last.is_none() {
         problems
-            .error(node.place_at("of"), "no stage finds a factor of safety")
+            .error(own.of.place, "no stage finds a factor of safety")
             .help("add a stage of type strength-reduction");
     }
     last.ok_or(Wrong)
 }
 
 /// What is expected, and the band around it.
-fn band(node: &Node, problems: &mut Problems) -> Option<(f64, Band)> {
-    const BANDS: [&str; 4] = ["tolerance", "between", "at_most", "at_least"];
-    let given: Vec<&str> = BANDS
-        .into_iter()
-        .filter(|band| node.get(band).is_some())
-        .collect();
-    let expected = node.optional_number("expected").ok()?;
-    let &[form] = given.as_slice() else {
-        let message = if given.is_empty() {
-            "the check does not say what is accepted".to_owned()
-        } else {
-            format!("the check has several bands: {}", given.join(", "))
-        };
-        problems
-            .error(node.place, message)
-            .help("write one of tolerance = 0.05, between = [1.3, 1.4], at_most and at_least");
-        return None;
-    };
-    let value = node.get(form)?;
-    match form {
-        "tolerance" => {
-            let tolerance = value.number()?;
-            match expected {
-                Some(expected) if expected != 0.0 => Some((expected, Band::Relative(tolerance))),
-                Some(_) => {
-                    problems
-                        .error(
-                            value.place,
-                            "a relative tolerance around 0 accepts nothing else",
-                        )
-                        .help("write between = [-1e-3, 1e-3]");
-                    None
-                }
-                None => {
-                    problems
-                        .error(
-                            value.place,
-                            "the tolerance is relative to `expected`, which is missing",
-                        )
-                        .help("add expected = 1.35");
-                    None
-                }
+fn band(own: &At<keys::Check>, problems: &mut Problems) -> Option<(f64, Band)> {
+    let expected = own.expected.as_ref().map(|own| **own);
+    let bands = (
+        own.tolerance.as_ref(),
+        own.between.as_ref(),
+        own.at_most.as_ref(),
+        own.at_least.as_ref(),
+    );
+    match bands {
+        (Some(tolerance), None, None, None) => match expected {
+            Some(expected) if expected != 0.0 => Some((expected, Band::Relative(**tolerance))),
+            Some(_) => {
+                problems
+                    .error(
+                        tolerance.place,
+                        "a relative tolerance around 0 accepts nothing else",
+                    )
+                    .help("write between = [-1e-3, 1e-3]");
+                None
             }
-        }
-        "between" => {
-            let [low, high] = value.pair()?;
+            None => {
+                problems
+                    .error(
+                        tolerance.place,
+                        "the tolerance is relative to `expected`, which is missing",
+                    )
+                    .help("add expected = 1.35");
+                None
+            }
+        },
+        (None, Some(between), None, None) => {
+            let [low, high] = **between;
             if low > high {
                 problems
-                    .error(value.place, "`between` is not in ascending order")
+                    .error(between.place, "`between` is not in ascending order")
                     .help("write the smaller value first");
                 return None;
             }
-            Some((
-                expected.unwrap_or(0.5 * (low + high)),
-                Band::Between(low, high),
-            ))
+            let middle = 0.5 * (low + high);
+            Some((expected.unwrap_or(middle), Band::Between(low, high)))
         }
-        "at_most" => {
-            let limit = value.number()?;
-            Some((expected.unwrap_or(limit), Band::AtMost(limit)))
+        (None, None, Some(most), None) => Some((expected.unwrap_or(**most), Band::AtMost(**most))),
+        (None, None, None, Some(least)) => {
+            Some((expected.unwrap_or(**least), Band::AtLeast(**least)))
         }
-        _ => {
-            let limit = value.number()?;
-            Some((expected.unwrap_or(limit), Band::AtLeast(limit)))
+        (tolerance, between, most, least) => {
+            let given = [
+                tolerance.map(|_| "tolerance"),
+                between.map(|_| "between"),
+                most.map(|_| "at_most"),
+                least.map(|_| "at_least"),
+            ];
+            let given: Vec<&str> = given.into_iter().flatten().collect();
+            let message = if given.is_empty() {
+                "the check does not say what is accepted".to_owned()
+            } else {
+                format!("the check has several bands: {}", given.join(", "))
+            };
+            problems
+                .error(own.place, message)
+                .help("write one of tolerance = 0.05, between = [1.3, 1.4], at_most and at_least");
+            None
         }
     }
 }

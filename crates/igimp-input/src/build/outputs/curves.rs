@@ -4,8 +4,10 @@ use std::path::Path;
 
 use igimp_model::{Curve, CurveAxis, Load, Quantity, Reference, ReferenceValues};
 use igimp_schema::diagnostic::Problems;
+use igimp_schema::schema::outputs as keys;
+use igimp_schema::source::Place;
 use igimp_schema::text::clip;
-use igimp_schema::tree::Node;
+use igimp_schema::tree::read::{At, Found};
 
 use super::quantities::{divisor, quantity};
 use crate::build::AllNames;
@@ -14,116 +16,150 @@ use crate::files::text_of;
 /// Most bytes of a reference file.
 const LARGEST: u64 = 1 << 20;
 
-/// The curves; files of references are beside the case file.
-pub(crate) fn curves<const D: usize>(
-    tree: &Node,
+/// A curve; files of references are beside the case file.
+pub(crate) fn curve<const D: usize>(
+    own: &keys::Curve,
     names: &AllNames,
     loads: &[Option<Load<D>>],
     file: &Path,
     problems: &mut Problems,
-) -> Vec<Option<Curve>> {
-    let items = tree.items_at("curves").iter();
-    items
-        .map(|node| {
-            let name = node.text_at("name");
-            let x = axis(node.get("x")?, names, loads, problems);
-            let y = axis(node.get("y")?, names, loads, problems);
-            let who = format!("curve `{}` records", clip(name.unwrap_or("?"), 40));
-            let stage = names.stages.find_optional(node, "stage", &who, problems);
-            let reference = node
-                .get("reference")
-                .map(|reference| self::reference(reference, file, problems));
-            Some(Curve {
-                name: name?.to_owned(),
-                x: x?,
-                y: y?,
-                stage: stage.ok()?,
-                reference: reference.map_or(Some(None), |found| found.map(Some))?,
-            })
-        })
-        .collect()
+) -> Option<Curve> {
+    let mut axis = |own: &Found<keys::CurveAxis>| axis(own.as_ref().ok()?, names, loads, problems);
+    let (x, y) = (axis(&own.x), axis(&own.y));
+    let who = format!("curve `{}` records", clip(&own.name, 40));
+    let stage = names
+        .stages
+        .find_optional(own.stage.as_ref(), &who, problems);
+    let reference = own.reference.as_ref().ok().map(|reference| {
+        let own = reference.as_ref()?;
+        let stated = Stated {
+            y: own.y.as_ref(),
+            at: own.at.as_ref(),
+            points: own.points.as_ref(),
+            file: own.file.as_ref(),
+            label: &own.label,
+            tolerance: own.tolerance.as_ref(),
+            place: own.place,
+        };
+        Some(self::reference(&stated, file, problems))
+    });
+    Some(Curve {
+        name: own.name.value.clone(),
+        x: x?,
+        y: y?,
+        stage: stage.ok()?,
+        reference: match reference? {
+            None => None,
+            Some(found) => Some(found?),
+        },
+    })
 }
 
 fn axis<const D: usize>(
-    node: &Node,
+    own: &keys::CurveAxis,
     names: &AllNames,
     loads: &[Option<Load<D>>],
     problems: &mut Problems,
 ) -> Option<CurveAxis> {
-    let of = node.get("of")?;
-    let found = quantity(of, names, loads, problems);
+    let found = quantity(&own.of, names, loads, problems);
     if found == Some(Quantity::FactorOfSafety) {
         problems
-            .error(of.place, "a factor of safety is one number, not a curve")
+            .error(
+                own.of.place,
+                "a factor of safety is one number, not a curve",
+            )
             .help("hold it against a value in [[checks]]");
     }
-    let divide_by = divisor(node, problems);
+    let divide_by = divisor(&own.divide_by, problems);
     Some(CurveAxis {
         of: found?,
         divide_by: divide_by?,
-        label: node.text_at("label")?.to_owned(),
+        label: own.label.as_ref()?.value.clone(),
     })
 }
 
+/// A reference for a curve, or for a field along a section, as it is stated.
+pub(crate) struct Stated<'a> {
+    pub(crate) y: Option<&'a At<f64>>,
+    pub(crate) at: Option<&'a At<f64>>,
+    pub(crate) points: Option<&'a At<Vec<At<[f64; 2]>>>>,
+    pub(crate) file: Option<&'a At<String>>,
+    pub(crate) label: &'a At<String>,
+    pub(crate) tolerance: Option<&'a At<f64>>,
+    pub(crate) place: Place,
+}
+
 /// A reference for a curve, or for a field along a section.
-pub(crate) fn reference(node: &Node, file: &Path, problems: &mut Problems) -> Option<Reference> {
-    let forms: Vec<&str> = ["y", "points", "file"]
-        .into_iter()
-        .filter(|form| node.get(form).is_some())
-        .collect();
-    let &[form] = forms.as_slice() else {
-        let message = if forms.is_empty() {
-            "the reference has no values".to_owned()
-        } else {
-            format!("the reference has several forms: {}", forms.join(", "))
-        };
-        problems
-            .error(node.place, message)
-            .help("write one of y = 5.14, points = [[0, 0], [1, 2]] and file = \"measured.csv\"");
-        return None;
-    };
-    if form != "y" && node.get("at").is_some() {
-        problems
-            .error(node.place_at("at"), "`at` goes with `y` only")
-            .help("points and files have abscissae of their own");
-        return None;
-    }
-    let value = node.get(form)?;
-    let values = match form {
-        "y" => ReferenceValues::Level {
-            y: value.number()?,
-            at: node.optional_number("at").ok()?,
+pub(crate) fn reference(
+    own: &Stated<'_>,
+    file: &Path,
+    problems: &mut Problems,
+) -> Option<Reference> {
+    let values = match (own.y, own.points, own.file) {
+        (Some(y), None, None) => ReferenceValues::Level {
+            y: **y,
+            at: own.at.map(|at| **at),
         },
-        "points" => {
-            let points: Option<Vec<_>> = value.items().iter().map(Node::pair).collect();
-            ReferenceValues::Points(points?)
+        (None, Some(points), None) => {
+            only_of_y(own.at, problems)?;
+            ReferenceValues::Points(points.iter().map(|own| **own).collect())
+        }
+        (None, None, Some(name)) => {
+            only_of_y(own.at, problems)?;
+            ReferenceValues::Points(points_of(name, file, problems)?)
         }
         _ => {
-            let path = file.parent().unwrap_or(Path::new("")).join(value.text()?);
-            match read_points(&path) {
-                Ok(points) => ReferenceValues::Points(points),
-                Err(reason) => {
-                    problems
-                        .error(
-                            value.place,
-                            format!(
-                                "cannot use {}: {reason}",
-                                clip(&path.display().to_string(), 80)
-                            ),
-                        )
-                        .help(
-                            "a CSV file with a header and two columns, its path from the case file",
-                        );
-                    return None;
-                }
-            }
+            let forms = [
+                own.y.map(|_| "y"),
+                own.points.map(|_| "points"),
+                own.file.map(|_| "file"),
+            ];
+            let forms: Vec<&str> = forms.into_iter().flatten().collect();
+            let message = if forms.is_empty() {
+                "the reference has no values".to_owned()
+            } else {
+                format!("the reference has several forms: {}", forms.join(", "))
+            };
+            problems.error(own.place, message).help(
+                "write one of y = 5.14, points = [[0, 0], [1, 2]] and file = \"measured.csv\"",
+            );
+            return None;
         }
     };
     Some(Reference {
-        label: node.text_at("label")?.to_owned(),
+        label: own.label.value.clone(),
         values,
-        tolerance: node.optional_number("tolerance").ok()?,
+        tolerance: own.tolerance.map(|own| **own),
     })
+}
+
+/// Refuses the abscissa of a value where points have their own.
+fn only_of_y(at: Option<&At<f64>>, problems: &mut Problems) -> Option<()> {
+    let Some(at) = at else { return Some(()) };
+    problems
+        .error(at.place, "`at` goes with `y` only")
+        .help("points and files have abscissae of their own");
+    None
+}
+
+/// The points of a file beside the case file.
+fn points_of(name: &At<String>, file: &Path, problems: &mut Problems) -> Option<Vec<[f64; 2]>> {
+    let path = file.parent().unwrap_or(Path::new("")).join(&name.value);
+    match read_points(&path) {
+        Ok(points) => Some(points),
+        Err(reason) => {
+            problems
+                .error(
+                    name.place,
+                    format!(
+                        "cannot use {}: {reason}",
+                        clip(&path.display().to_string(), 80)
+                    ),
+                )
+                .help("a CSV file with a header and two columns, its path from the case file");
+            None
+        }
+    }
 }
 
 /// The points of a CSV file: a header and two columns.

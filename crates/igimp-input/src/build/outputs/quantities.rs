@@ -4,7 +4,7 @@ use igimp_model::{Field, Load, LoadKind, Quantity, ReinforcementQuantity, RigidQ
 use igimp_schema::diagnostic::Problems;
 use igimp_schema::names::suggest::nearest;
 use igimp_schema::text::{clip, row};
-use igimp_schema::tree::Node;
+use igimp_schema::tree::read::At;
 
 use crate::build::AllNames;
 
@@ -68,18 +68,18 @@ const GLOBAL: [(&str, Quantity, &str); 10] = [
     ("factor_of_safety", Quantity::FactorOfSafety, "-"),
 ];
 
-/// The fields of a list of names; reports those that there are in space only.
+/// The fields of a list, each once; reports those that there are in space only.
 pub(crate) fn fields<const D: usize>(
-    names: &[Node],
+    named: &[At<Field>],
     problems: &mut Problems,
 ) -> Option<Vec<Field>> {
-    let mut fields = Vec::with_capacity(names.len());
-    for name in names {
-        let field = Field::of_name(name.text()?)?;
+    let mut fields = Vec::with_capacity(named.len());
+    for own in named {
+        let field = **own;
         if !field.exists_in(D) {
-            let message = format!("there is no {} in plane strain", name.text()?);
+            let message = format!("there is no {} in plane strain", field.name());
             problems
-                .error(name.place, message)
+                .error(own.place, message)
                 .help("it is a field of cases with analysis = \"3d\"");
             return None;
         }
@@ -120,12 +120,12 @@ fn unit_in_plane(dimensions: usize, name: &str) -> &'static str {
 
 /// The quantity that a value names; reports when there is none.
 pub(crate) fn quantity<const D: usize>(
-    value: &Node,
+    value: &At<String>,
     names: &AllNames,
     loads: &[Option<Load<D>>],
     problems: &mut Problems,
 ) -> Option<Quantity> {
-    let name = value.text()?;
+    let name = value.as_str();
     if let Some((_, quantity, _)) = GLOBAL.iter().find(|(known, ..)| *known == name) {
         return Some(*quantity);
     }
@@ -213,10 +213,10 @@ fn known<const D: usize>(names: &AllNames, loads: &[Option<Load<D>>]) -> Vec<Str
 }
 
 /// The product of the divisors; reports one that is zero.
-pub(crate) fn divisor(table: &Node, problems: &mut Problems) -> Option<f64> {
+pub(crate) fn divisor(divisors: &At<Vec<At<f64>>>, problems: &mut Problems) -> Option<f64> {
     let mut product = 1.0;
-    for divisor in table.items_at("divide_by") {
-        let value = divisor.number()?;
+    for divisor in divisors.iter() {
+        let value = **divisor;
         if value == 0.0 {
             problems.error(divisor.place, "a divisor is zero");
             return None;
@@ -227,7 +227,7 @@ pub(crate) fn divisor(table: &Node, problems: &mut Problems) -> Option<f64> {
         Some(product)
     } else {
         problems.error(
-            table.place_at("divide_by"),
+            divisors.place,
             "the product of the divisors is not a finite number",
         );
         None

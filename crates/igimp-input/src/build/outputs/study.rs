@@ -1,34 +1,38 @@
 //! The study of the mesh error.
 
-use igimp_model::{Case, CheckValue, MeshStudy, StageKind, meshes};
+use igimp_model::{Case, StageKind, meshes};
 use igimp_schema::diagnostic::Problems;
+use igimp_schema::schema::Root;
+use igimp_schema::schema::outputs::CheckedValue;
 use igimp_schema::text::{clip, count};
 use igimp_schema::tree::Node;
+use igimp_schema::tree::read::At;
 
 use crate::build::grid::MOST;
 
-/// The study that the file asks for.
-pub(crate) fn mesh_study(tree: &Node) -> Option<MeshStudy> {
-    let meshes = tree.get("mesh_study")?.count_at("meshes")?;
-    Some(MeshStudy { meshes })
-}
-
 /// Checks the refined grid, and whether a study can be made and has something to study.
-pub(crate) fn check<const D: usize>(tree: &Node, case: &Case<D>, problems: &mut Problems) {
-    let place = tree.get("mesh_study").map(|study| study.place_at("meshes"));
+pub(crate) fn check<const D: usize>(
+    tree: &Node,
+    meshes: &At<usize>,
+    case: &Case<D>,
+    problems: &mut Problems,
+) {
+    let place = meshes.place;
     if case.mesh_study.meshes < 2 {
         // A grid that is too large as it is was told of before.
-        let grid = tree.get("grid");
-        let refine = grid.and_then(|grid| grid.count_at("refine"));
-        if refine.is_some_and(|parts| parts > 1) && is_too_large(case, 1) {
+        let grid = Root::<D>::grid(tree).ok();
+        if let Some(Ok(refine)) = grid.map(|grid| grid.value.refine)
+            && *refine > 1
+            && is_too_large(case, 1)
+        {
             problems
                 .error(
-                    grid.map(|grid| grid.place_at("refine")),
+                    refine.place,
                     "the refined grid would have too many cells or particles",
                 )
                 .help(format!("at most {} are possible", count(MOST)));
         }
-        one_mesh_only(tree, case, problems);
+        one_mesh_only::<D>(tree, problems);
         return;
     }
     let finest = meshes::refinements(case).pop().unwrap_or(1);
@@ -67,16 +71,17 @@ pub(crate) fn check<const D: usize>(tree: &Node, case: &Case<D>, problems: &mut 
 }
 
 /// Warns of checks that want what one mesh does not give.
-fn one_mesh_only<const D: usize>(tree: &Node, case: &Case<D>, problems: &mut Problems) {
-    for (node, check) in tree.items_at("checks").iter().zip(&case.checks) {
-        if check.value == CheckValue::Extrapolated {
+fn one_mesh_only<const D: usize>(tree: &Node, problems: &mut Problems) {
+    let checks = Root::<D>::checks(tree).map_or_else(|_| Vec::new(), |checks| checks.value);
+    for own in checks.into_iter().flatten() {
+        if *own.value.value == CheckedValue::Extrapolated {
             problems
                 .warning(
-                    node.place_at("value"),
+                    own.value.value.place,
                     format!(
                         "check `{}` asks for an extrapolated value, and there is one mesh: the value \
                          of this mesh is held against it",
-                        clip(&check.name, 40)
+                        clip(&own.name, 40)
                     ),
                 )
                 .help("write mesh_study = { meshes = 2 }, or run with --meshes 2");

@@ -2,9 +2,9 @@
 
 use igimp_model::ReinforcementPart;
 use igimp_schema::diagnostic::Problems;
-use igimp_schema::tree::Node;
+use igimp_schema::schema::reinforcement::{Member, MemberForm};
 
-use super::part;
+use super::Holding;
 use crate::build::bodies::site::{Soil as _, Solids};
 
 /// How far beside a head the surface is looked for, as a share of the cell \[-\].
@@ -12,31 +12,23 @@ const BESIDE: f64 = 0.02;
 /// Halvings until the surface is found.
 const HALVINGS: usize = 60;
 
-/// The members.
-pub(crate) fn reinforcement(
-    tree: &Node,
-    soil: &Solids,
-    problems: &mut Problems,
-) -> Vec<Option<ReinforcementPart<3>>> {
-    let nodes = tree.items_at("reinforcement").iter();
-    let member = |node: &Node| {
-        if node.text_at("type") == Some("geotextile") {
-            problems
-                .error(
-                    node.place_at("type"),
-                    "a geotextile is a sheet, and in space reinforcement is a line",
-                )
-                .help("compute a slice with analysis = \"plane-strain\", or state strips as nails");
-            return None;
-        }
-        let mut own = part(tree, node, soil, problems)?;
-        let width = node.optional_number("plate").ok()?;
-        if let Some(width) = width.filter(|&width| width > 0.0) {
-            own.plate = Some(plate(&own, width, soil));
-        }
-        Some(own)
-    };
-    nodes.map(member).collect()
+impl Holding<3> for Solids {
+    fn refuses(&self, own: &Member<3>, problems: &mut Problems) -> bool {
+        let MemberForm::Geotextile(_) = *own.form else {
+            return false;
+        };
+        problems
+            .error(
+                own.form.place,
+                "a geotextile is a sheet, and in space reinforcement is a line",
+            )
+            .help("compute a slice with analysis = \"plane-strain\", or state strips as nails");
+        true
+    }
+
+    fn plate(&self, part: &ReinforcementPart<3>, width: f64) -> Vec<[f64; 3]> {
+        plate(part, width, self)
+    }
 }
 
 /// Three corners of a square about the head: on the surface of the soil, else across the member. One of its sides is level.

@@ -3,14 +3,18 @@
 use std::sync::Arc;
 
 use igimp_geometry::polygon::area_and_centroid;
-use igimp_model::{Load, LoadKind, Material, RigidPart, RigidShape};
+use igimp_model::{Load, LoadKind, RigidPart, RigidShape};
 use igimp_schema::diagnostic::Problems;
+use igimp_schema::schema::rigid::{RigidBody, RigidShape as Form};
+use igimp_schema::schema::stages::Stage;
 use igimp_schema::text::{clip, point};
-use igimp_schema::tree::Node;
+use igimp_schema::tree::read::At;
 
-use super::{Basis, Sides, follow_once, part_of};
+use super::{Basis, Room, Sides};
+use crate::build::Thing;
 use crate::build::bodies::sequence::Sequence;
 use crate::build::bodies::site::Site;
+use crate::build::grid::Frame;
 use crate::geometry::{distinct, overlap, self_crossing};
 
 /// Corners of a circle where it is looked at as a polygon.
@@ -19,84 +23,85 @@ const POINTS_OF_CIRCLE: usize = 90;
 /// What rigid bodies are held against.
 pub(crate) struct Around<'a> {
     pub(crate) site: &'a Site,
-    pub(crate) materials: &'a [Option<Material>],
     pub(crate) loads: &'a [Option<Load<2>>],
-    pub(crate) tree: &'a Node,
+    pub(crate) stages: &'a [Thing<Stage>],
     pub(crate) sequence: &'a Sequence,
 }
 
-/// The rigid bodies.
-pub(crate) fn rigid(
-    tree: &Node,
-    around: &Around<'_>,
-    problems: &mut Problems,
-) -> Vec<Option<RigidPart<2>>> {
-    let nodes = tree.items_at("rigid");
-    let parts: Vec<_> = nodes
-        .iter()
-        .map(|node| part(node, around, problems))
-        .collect();
-    let is_footing = |load: &Load<2>| matches!(load.kind, LoadKind::RigidFooting { .. });
-    let is_taken = around.loads.iter().flatten().any(is_footing);
-    let help = "it can follow one rigid body, or one rigid footing";
-    follow_once(nodes, (is_taken, help), problems);
-    parts
-}
-
-fn part(node: &Node, around: &Around<'_>, problems: &mut Problems) -> Option<RigidPart<2>> {
-    let name = node.text_at("name")?;
-    let shown = clip(name, 40);
-    let shape = shape(node, &shown, around.site, problems);
-    let stated = match node.get("reference") {
-        None => None,
-        Some(value) => Some(value.pair()?),
-    };
-    if let (Some(RigidShape::Circle { .. }), Some(_)) = (&shape, stated) {
-        problems
-            .error(
-                node.place_at("reference"),
-                "the reference point of a circle is its centre",
-            )
-            .help("remove reference, or use a polygon");
+impl Room<2> for Around<'_> {
+    fn frame(&self) -> Option<&Frame<2>> {
+        self.site.frame.as_ref()
     }
-    let basis = shape.map(|shape| Basis {
-        reference: stated.unwrap_or_else(|| reference(node, &shape)),
-        sides: sides(node, &shape),
-        thickness: thickness(&shape),
-        shape: Arc::new(shape),
-    });
-    let around_it = (around.site.frame.as_ref(), around.materials);
-    let part = part_of(node, basis, around_it, problems)?;
-    beside_soil(node, &part, around, problems);
-    Some(part)
+
+    fn basis(&self, own: &At<RigidBody<2>>, problems: &mut Problems) -> Option<Basis<2>> {
+        let shape = shape(own, &clip(&own.name, 40), self.site, problems);
+        let stated = own
+            .common
+            .as_ref()
+            .ok()
+            .and_then(|own| own.reference.as_ref());
+        if let (Some(RigidShape::Circle { .. }), Some(stated)) = (&shape, stated) {
+            problems
+                .error(
+                    stated.place,
+                    "the reference point of a circle is its centre",
+                )
+                .help("remove reference, or use a polygon");
+        }
+        shape.map(|shape| Basis {
+            reference: stated.map_or_else(|| reference(&own.form, &shape), |own| **own),
+            sides: sides(&own.form, &shape),
+            thickness: thickness(&shape),
+            shape: Arc::new(shape),
+        })
+    }
+
+    fn check(&self, own: &RigidBody<2>, part: &RigidPart<2>, problems: &mut Problems) {
+        beside_soil(own, part, self, problems);
+    }
+
+    fn followed(&self) -> (bool, &'static str) {
+        let is_footing = |load: &Load<2>| matches!(load.kind, LoadKind::RigidFooting { .. });
+        let is_taken = self.loads.iter().flatten().any(is_footing);
+        (
+            is_taken,
+            "it can follow one rigid body, or one rigid footing",
+        )
+    }
 }
 
 /// The sides, and the names that they have.
-fn sides(node: &Node, shape: &RigidShape) -> Sides {
+fn sides(form: &Form<2>, shape: &RigidShape) -> Sides {
     let count = match shape {
         RigidShape::Polygon(corners) => corners.len(),
         RigidShape::Circle { .. } => 1,
     };
-    let names: &[&str] = match node.text_at("type") {
-        Some("rectangle") => &["bottom", "right", "top", "left"],
-        Some("wall") => &["face"],
+    let names: &[&str] = match form {
+        Form::Rectangle(_) => &["bottom", "right", "top", "left"],
+        Form::Wall(_) => &["face"],
         _ => &[],
     };
     Sides { count, names }
 }
 
-fn shape(node: &Node, name: &str, site: &Site, problems: &mut Problems) -> Option<RigidShape> {
+fn shape(
+    own: &At<RigidBody<2>>,
+    name: &str,
+    site: &Site,
+    problems: &mut Problems,
+) -> Option<RigidShape> {
     let mut flat = |place| {
         problems.error(place, format!("the rigid body `{name}` has no area"));
         None
     };
-    Some(match node.text_at("type")? {
-        "rectangle" => {
-            let (a, b) = (node.pair_at("from")?, node.pair_at("to")?);
+    Some(match &*own.form {
+        Form::Rectangle(own) => {
+            let own = own.as_ref().ok()?;
+            let (a, b) = (*own.from, *own.to);
             let [left, bottom] = [a[0].min(b[0]), a[1].min(b[1])];
             let [right, top] = [a[0].max(b[0]), a[1].max(b[1])];
             if right - left <= site.round_off || top - bottom <= site.round_off {
-                return flat(node.place_at("to"));
+                return flat(own.to.place);
             }
             RigidShape::Polygon(vec![
                 [left, bottom],
@@ -105,55 +110,60 @@ fn shape(node: &Node, name: &str, site: &Site, problems: &mut Problems) -> Optio
                 [left, top],
             ])
         }
-        "circle" => RigidShape::Circle {
-            centre: node.pair_at("centre")?,
-            radius: node.number_at("radius")?,
-        },
-        "wall" => {
-            let (from, to) = (node.pair_at("from")?, node.pair_at("to")?);
-            let thickness = node.number_at("thickness")?;
+        Form::Circle(own) => {
+            let own = own.as_ref().ok()?;
+            RigidShape::Circle {
+                centre: *own.centre,
+                radius: *own.radius,
+            }
+        }
+        Form::Wall(own) => {
+            let own = own.as_ref().ok()?;
+            let (from, to) = (*own.from, *own.to);
             let along = [to[0] - from[0], to[1] - from[1]];
             let length = along[0].hypot(along[1]);
             if length <= site.round_off {
-                return flat(node.place_at("to"));
+                return flat(own.to.place);
             }
-            let back = [-along[1], along[0]].map(|x| x / length * thickness);
+            let back = [-along[1], along[0]].map(|x| x / length * *own.thickness);
             let behind = |at: [f64; 2]| [at[0] + back[0], at[1] + back[1]];
             RigidShape::Polygon(vec![from, to, behind(to), behind(from)])
         }
-        _ => {
-            let corners: Option<Vec<_>> = node.items_at("corners").iter().map(Node::pair).collect();
-            let corners = distinct(&corners?, site.round_off);
+        Form::Polygon(own) => {
+            let own = &own.as_ref().ok()?.corners;
+            let corners: Vec<_> = own.iter().map(|own| **own).collect();
+            let corners = distinct(&corners, site.round_off);
             if corners.len() < 3 {
-                return flat(node.place_at("corners"));
+                return flat(own.place);
             }
             if let Some(at) = self_crossing(&corners, site.round_off) {
                 problems.error(
-                    node.place_at("corners"),
+                    own.place,
                     format!("the rigid body `{name}` crosses itself at {}", point(at)),
                 );
                 return None;
             }
             if area_and_centroid(&corners).0 == 0.0 {
-                return flat(node.place_at("corners"));
+                return flat(own.place);
             }
             RigidShape::Polygon(corners)
         }
+        // A shape in space has none here.
+        _ => return flat(own.place),
     })
 }
 
 /// The point that displacement and forces are told of where the file does not say.
-fn reference(node: &Node, shape: &RigidShape) -> [f64; 2] {
+fn reference(form: &Form<2>, shape: &RigidShape) -> [f64; 2] {
     let middle = |a: [f64; 2], b: [f64; 2]| [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
-    match shape {
-        RigidShape::Circle { centre, .. } => *centre,
-        RigidShape::Polygon(corners) => {
-            if let Some("rectangle" | "wall") = node.text_at("type") {
-                middle(corners[0], corners[1])
-            } else {
-                let (lower, upper) = igimp_geometry::polygon::bounding_box(corners);
-                middle(lower, upper)
-            }
+    match (shape, form) {
+        (RigidShape::Circle { centre, .. }, _) => *centre,
+        (RigidShape::Polygon(corners), Form::Rectangle(_) | Form::Wall(_)) => {
+            middle(corners[0], corners[1])
+        }
+        (RigidShape::Polygon(corners), _) => {
+            let (lower, upper) = igimp_geometry::polygon::bounding_box(corners);
+            middle(lower, upper)
         }
     }
 }
@@ -191,14 +201,19 @@ fn thickness(shape: &RigidShape) -> f64 {
 const MOST_PAIRED: usize = 100;
 
 /// Refuses a body that overlaps soil as it starts, or that is placed while it is there.
-fn beside_soil(node: &Node, part: &RigidPart<2>, around: &Around<'_>, problems: &mut Problems) {
+fn beside_soil(
+    own: &RigidBody<2>,
+    part: &RigidPart<2>,
+    around: &Around<'_>,
+    problems: &mut Problems,
+) {
     let Around { site, sequence, .. } = around;
     let outline = part.outline(POINTS_OF_CIRCLE);
-    let names = |stage: &Node| {
-        let mut moved = stage.items_at("bodies").iter();
-        moved.any(|own| own.text_at("body") == Some(&part.name))
+    let names = |stage: &Thing<Stage>| {
+        let mut moved = stage.iter().flat_map(|stage| stage.moves()).flatten();
+        moved.any(|own| own.body.value == part.name)
     };
-    let first = around.tree.items_at("stages").iter().position(names);
+    let first = around.stages.iter().position(names);
     let (before, after) = match first {
         Some(stage) if !part.from_start => (sequence.before(stage), &sequence.ends[stage..]),
         _ => (&sequence.start, &sequence.ends[..]),
@@ -213,7 +228,7 @@ fn beside_soil(node: &Node, part: &RigidPart<2>, around: &Around<'_>, problems: 
     if let Some(at) = found {
         problems
             .error(
-                node.place_at("name"),
+                own.name.place,
                 format!(
                     "the rigid body `{}` overlaps soil at {}",
                     clip(&part.name, 40),

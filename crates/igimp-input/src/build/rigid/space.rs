@@ -2,30 +2,34 @@
 
 use std::sync::Arc;
 
-use igimp_model::{Material, RigidForm as _, RigidPart, RigidSolid};
+use igimp_model::{RigidForm as _, RigidPart, RigidSolid};
 use igimp_schema::diagnostic::Problems;
+use igimp_schema::schema::rigid::{RigidBody, RigidShape as Form};
+use igimp_schema::schema::solids::Axis;
 use igimp_schema::text::clip;
-use igimp_schema::tree::Node;
+use igimp_schema::tree::read::At;
 
-use super::{Basis, Sides, follow_once, part_of};
+use super::{Basis, Room, Sides};
 use crate::build::bodies::surfaces::closed_surface;
 use crate::build::grid::Frame;
 
-/// The rigid bodies.
-pub(crate) fn rigid(
-    tree: &Node,
-    frame: Option<&Frame<3>>,
-    materials: &[Option<Material>],
-    problems: &mut Problems,
-) -> Vec<Option<RigidPart<3>>> {
-    let nodes = tree.items_at("rigid");
-    let part = |node: &Node| {
-        let shape = shape(node, &clip(node.text_at("name")?, 40), problems);
-        part_of(node, shape.map(basis), (frame, materials), problems)
-    };
-    let parts = nodes.iter().map(part).collect();
-    follow_once(nodes, (false, "it can follow one rigid body"), problems);
-    parts
+/// What rigid bodies are held against.
+pub(crate) struct Around<'a>(pub(crate) Option<&'a Frame<3>>);
+
+impl Room<3> for Around<'_> {
+    fn frame(&self) -> Option<&Frame<3>> {
+        self.0
+    }
+
+    fn basis(&self, own: &At<RigidBody<3>>, problems: &mut Problems) -> Option<Basis<3>> {
+        shape(own, &clip(&own.name, 40), problems).map(basis)
+    }
+
+    fn check(&self, _own: &RigidBody<3>, _part: &RigidPart<3>, _problems: &mut Problems) {}
+
+    fn followed(&self) -> (bool, &'static str) {
+        (false, "it can follow one rigid body")
+    }
 }
 
 fn basis(shape: RigidSolid) -> Basis<3> {
@@ -44,11 +48,11 @@ fn basis(shape: RigidSolid) -> Basis<3> {
     }
 }
 
-fn shape(node: &Node, name: &str, problems: &mut Problems) -> Option<RigidSolid> {
-    let kind = node.text_at("type")?;
-    Some(match kind {
-        "box" => {
-            let (a, b) = (node.point_at::<3>("from")?, node.point_at::<3>("to")?);
+fn shape(own: &RigidBody<3>, name: &str, problems: &mut Problems) -> Option<RigidSolid> {
+    Some(match &*own.form {
+        Form::Box(own) => {
+            let own = own.as_ref().ok()?;
+            let (a, b) = (*own.from, *own.to);
             let lower: [f64; 3] = std::array::from_fn(|axis| a[axis].min(b[axis]));
             let upper: [f64; 3] = std::array::from_fn(|axis| a[axis].max(b[axis]));
             let largest = a
@@ -57,43 +61,51 @@ fn shape(node: &Node, name: &str, problems: &mut Problems) -> Option<RigidSolid>
                 .fold(0.0, |most: f64, x| most.max(x.abs()));
             if (0..3).any(|axis| upper[axis] - lower[axis] <= 1e-9 * largest) {
                 problems.error(
-                    node.place_at("to"),
+                    own.to.place,
                     format!("the rigid body `{name}` has no volume"),
                 );
                 return None;
             }
             RigidSolid::Cuboid(lower, upper)
         }
-        "cylinder" => RigidSolid::Cylinder {
-            axis: match node.text_at("axis")? {
-                "x" => 0,
-                "y" => 1,
-                _ => 2,
-            },
-            middle: node.point_at("middle")?,
-            radius: node.number_at("radius")?,
-            half_length: 0.5 * node.number_at("length")?,
-        },
-        "sphere" => RigidSolid::Sphere {
-            centre: node.point_at("centre")?,
-            radius: node.number_at("radius")?,
-        },
-        "cone" => RigidSolid::Cone {
-            tip: node.point_at("tip")?,
-            radius: node.number_at("radius")?,
-            height: node.number_at("height")?,
-            shaft: node.number_at("shaft")?,
-        },
-        "surface" => {
-            let who = format!("rigid body `{name}`");
-            RigidSolid::Surface(closed_surface(node.get("surface")?, &who, problems)?)
+        Form::Cylinder(own) => {
+            let own = own.as_ref().ok()?;
+            RigidSolid::Cylinder {
+                axis: match *own.axis {
+                    Axis::X => 0,
+                    Axis::Y => 1,
+                    Axis::Z => 2,
+                },
+                middle: *own.middle,
+                radius: *own.radius,
+                half_length: 0.5 * *own.length,
+            }
         }
-        _ => {
+        Form::Sphere(own) => {
+            let own = own.as_ref().ok()?;
+            RigidSolid::Sphere {
+                centre: *own.centre,
+                radius: *own.radius,
+            }
+        }
+        Form::Cone(own) => {
+            let own = own.as_ref().ok()?;
+            RigidSolid::Cone {
+                tip: *own.tip,
+                radius: *own.radius,
+                height: *own.height,
+                shaft: *own.shaft,
+            }
+        }
+        Form::Surface(own) => {
+            let who = format!("rigid body `{name}`");
+            let own = &own.as_ref().ok()?.surface;
+            RigidSolid::Surface(closed_surface(own, &who, problems)?)
+        }
+        Form::Rectangle(_) | Form::Polygon(_) | Form::Circle(_) | Form::Wall(_) => {
+            let kind = own.form.name();
             problems
-                .error(
-                    node.place_at("type"),
-                    format!("a {kind} is a shape of the plane"),
-                )
+                .error(own.form.place, format!("a {kind} is a shape of the plane"))
                 .help("shapes in space: box, cylinder, sphere, cone, surface");
             return None;
         }

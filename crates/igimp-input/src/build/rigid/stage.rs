@@ -2,86 +2,120 @@
 
 use igimp_model::{COMPONENTS, RigidDrive, RigidMove, StageKind};
 use igimp_schema::diagnostic::Problems;
+use igimp_schema::schema::rigid::{Component, Move, RigidBody};
+use igimp_schema::schema::stages::Stage;
 use igimp_schema::text::clip;
-use igimp_schema::tree::{Node, Wrong};
+use igimp_schema::tree::Wrong;
+use igimp_schema::tree::read::At;
 
 use crate::build::AllNames;
-use crate::build::context::Context;
+use crate::build::Thing;
+use crate::build::context::About;
 
 /// A stage that moves rigid bodies.
 pub(crate) fn stage<const D: usize>(
-    context: &Context<'_, D>,
-    node: &Node,
-    name: &str,
+    about: &About<'_, D>,
     problems: &mut Problems,
 ) -> Option<StageKind> {
-    moves(context, node, name, problems).map(StageKind::Rigid)
+    moves(about, problems).map(StageKind::Rigid)
 }
 
 /// The rigid bodies that a stage moves, loads or lets free.
 pub(crate) fn moves<const D: usize>(
-    context: &Context<'_, D>,
-    node: &Node,
-    name: &str,
+    about: &About<'_, D>,
     problems: &mut Problems,
 ) -> Option<Vec<RigidMove>> {
-    let mut moves: Vec<RigidMove> = Vec::new();
+    let mut found: Vec<RigidMove> = Vec::new();
     let mut is_right = true;
-    for own in node.items_at("bodies") {
-        let who = format!("stage `{name}` moves");
-        let Some(body) =
-            (own.get("body")).and_then(|value| context.names.rigid.find(value, &who, problems))
-        else {
+    for own in about.stage.moves() {
+        let who = format!("stage `{}` moves", about.name);
+        let Ok(own) = own else {
             is_right = false;
             continue;
         };
-        if moves.iter().any(|other| other.body == body) {
-            problems.error(own.place_at("body"), "this rigid body is named twice");
+        let Some(body) = about.context.names.rigid.find(&own.body, &who, problems) else {
+            is_right = false;
+            continue;
+        };
+        if found.iter().any(|other| other.body == body) {
+            problems.error(own.body.place, "this rigid body is named twice");
         }
         match drives::<D>(own, problems) {
-            Ok(drives) => moves.push(RigidMove { body, drives }),
+            Ok(drives) => found.push(RigidMove { body, drives }),
             Err(Wrong) => is_right = false,
         }
     }
-    is_right.then_some(moves)
+    is_right.then_some(found)
 }
 
+/// A component of the motion as it is stated: its name, by how much it goes on, the key of its load, and that.
+type Stated<'a> = (
+    Component,
+    &'a Option<At<f64>>,
+    &'static str,
+    &'a Option<At<f64>>,
+);
+
 fn drives<const D: usize>(
-    own: &Node,
+    own: &Move,
     problems: &mut Problems,
 ) -> Result<[Option<RigidDrive>; COMPONENTS], Wrong> {
-    let free: Vec<&str> = own.items_at("free").iter().filter_map(Node::text).collect();
     let mut drives = [None; COMPONENTS];
-    let components: &[(&str, &str)] = if D == 2 {
-        &[("x", "force_x"), ("y", "force_y"), ("rotation", "moment")]
+    let components: &[Stated<'_>] = if D == 2 {
+        &[
+            (Component::X, &own.x, "force_x", &own.force_x),
+            (Component::Y, &own.y, "force_y", &own.force_y),
+            (Component::Rotation, &own.rotation, "moment", &own.moment),
+        ]
     } else {
         &[
-            ("x", "force_x"),
-            ("y", "force_y"),
-            ("z", "force_z"),
-            ("rotation_x", "moment_x"),
-            ("rotation_y", "moment_y"),
-            ("rotation_z", "moment_z"),
+            (Component::X, &own.x, "force_x", &own.whole_force_x),
+            (Component::Y, &own.y, "force_y", &own.whole_force_y),
+            (Component::Z, &own.z, "force_z", &own.force_z),
+            (
+                Component::RotationX,
+                &own.rotation_x,
+                "moment_x",
+                &own.moment_x,
+            ),
+            (
+                Component::RotationY,
+                &own.rotation_y,
+                "moment_y",
+                &own.moment_y,
+            ),
+            (
+                Component::RotationZ,
+                &own.rotation_z,
+                "moment_z",
+                &own.moment_z,
+            ),
         ]
     };
-    for (drive, &(by, force)) in drives.iter_mut().zip(components) {
-        let (moved, loaded) = (own.optional_number(by)?, own.optional_number(force)?);
-        let is_free = free.contains(&by);
+    for (drive, &(component, moved, force, loaded)) in drives.iter_mut().zip(components) {
+        let is_free = own.free.iter().any(|free| **free == component);
         let told = usize::from(moved.is_some()) + usize::from(loaded.is_some());
         if told + usize::from(is_free) > 1 {
-            let second = if loaded.is_some() { force } else { "free" };
-            let first = if moved.is_some() { by } else { "free" };
+            let (second, place) = match loaded {
+                Some(loaded) => (force, loaded.place),
+                None => ("free", own.free.place),
+            };
+            let first = if moved.is_some() {
+                component.name()
+            } else {
+                "free"
+            };
             problems
                 .error(
-                    own.place_at(second),
+                    place,
                     format!("both `{first}` and `{second}` are said of one component"),
                 )
                 .help("a component is moved, or loaded, or free: keep one of them");
             return Err(Wrong);
         }
         *drive = match (moved, loaded) {
-            (Some(by), _) => Some(RigidDrive::By(by)),
-            (_, Some(force)) => Some(RigidDrive::Force(force)),
+            (Some(by), _) => Some(RigidDrive::By(**by)),
+            (_, Some(force)) => Some(RigidDrive::Force(**force)),
             _ if is_free => Some(RigidDrive::Force(0.0)),
             _ => None,
         };
@@ -90,29 +124,34 @@ fn drives<const D: usize>(
 }
 
 /// Warns of rigid bodies that never come in.
-pub(crate) fn check_use(tree: &Node, names: &AllNames, problems: &mut Problems) {
-    let moved: Vec<&str> = (tree.items_at("stages").iter())
-        .filter(|stage| matches!(stage.text_at("type"), Some("rigid" | "dynamic")))
-        .flat_map(|stage| stage.items_at("bodies"))
-        .filter_map(|own| own.text_at("body"))
-        .collect();
-    if moved
+pub(crate) fn check_use<const D: usize>(
+    bodies: &[Thing<RigidBody<D>>],
+    stages: &[Thing<Stage>],
+    names: &AllNames,
+    problems: &mut Problems,
+) {
+    let moved: Vec<_> = stages
         .iter()
-        .any(|name| names.rigid.position(name).is_none())
-    {
+        .flatten()
+        .flat_map(|own| own.moves())
+        .collect();
+    // A name that was found wrong, or is not defined, may be a slip for one that is not used.
+    let is_slip = |own: &&Result<At<Move>, Wrong>| match own {
+        Ok(own) => names.rigid.position(&own.body).is_none(),
+        Err(Wrong) => true,
+    };
+    if moved.iter().any(is_slip) {
         return;
     }
-    for node in tree.items_at("rigid") {
-        let is_there = node.flag_at("from_start") != Some(false);
-        if let Some(name) = node.text_at("name")
-            && !is_there
-            && !moved.contains(&name)
-        {
+    for own in bodies.iter().flatten() {
+        let is_there = (own.common.as_ref()).map_or(true, |common| *common.from_start);
+        let mut named = moved.iter().filter_map(|moved| moved.as_ref().ok());
+        if !is_there && !named.any(|moved| moved.body.value == own.name.value) {
             problems.warning(
-                node.place_at("name"),
+                own.name.place,
                 format!(
                     "no stage names the rigid body `{}`, which is never there",
-                    clip(name, 40)
+                    clip(&own.name, 40)
                 ),
             );
         }

@@ -2,66 +2,66 @@
 
 use igimp_model::{Construction, Drainage, LoadKind, StageKind};
 use igimp_schema::diagnostic::Problems;
+use igimp_schema::schema::Root;
+use igimp_schema::schema::grid::MixedCells;
+use igimp_schema::schema::stages::{self as keys, StageForm};
+use igimp_schema::source::Place;
 use igimp_schema::text::{clip, row};
-use igimp_schema::tree::Node;
+use igimp_schema::tree::Wrong;
+use igimp_schema::tree::read::At;
 
-use crate::build::context::Context;
+use crate::build::bodies::sequence::placed;
+use crate::build::context::{About, Context};
 
 /// A construction stage.
 pub(crate) fn stage<const D: usize>(
-    context: &Context<'_, D>,
-    index: usize,
-    node: &Node,
-    name: &str,
+    about: &About<'_, D>,
+    stated: &keys::Construction,
     problems: &mut Problems,
 ) -> Option<StageKind> {
     let errors = problems.errors();
-    let place = bodies(context, node, "place", name, problems);
-    let remove = bodies(context, node, "remove", name, problems);
-    let materials = materials(context, node, name, problems);
-    let water = node.get("water").map(|value| {
-        let who = format!("stage `{name}` calls for");
-        context.names.water.find(value, &who, problems)
-    });
+    let name = about.name;
+    let place = bodies(about, stated.placed(), "places", problems);
+    let remove = bodies(about, stated.removed(), "removes", problems);
+    let materials = materials(about, stated.changes(), problems);
+    let who = format!("stage `{name}` calls for");
+    let water = stated.water.as_ref().map_err(|_| Wrong);
+    let waters = &about.context.names.water;
+    let water = water.and_then(|own| waters.find_optional(own.as_ref(), &who, problems));
     let own = Construction {
         place: place?,
         remove: remove?,
         materials: materials?,
-        water: match water {
-            None => None,
-            Some(found) => Some(found?),
-        },
-        dissipate: node.flag_at("dissipate")?,
+        water: water.ok()?,
+        dissipate: **stated.dissipate.as_ref().ok()?,
     };
-    if own == Construction::default() && node.get("place").is_some_and(|place| !place.is_invalid())
-    {
+    if own == Construction::default() && stated.place.is_ok() {
         problems
             .error(
-                node.place_at("type"),
+                about.stage.form.place,
                 format!("stage `{name}` changes nothing"),
             )
             .help("write place, remove, materials, water or dissipate");
     }
     if problems.errors() == errors {
-        comes_and_goes(context, index, node, &own, problems);
-        loads_stay_held(context, index, node, &own, problems);
+        comes_and_goes(about, stated, &own, problems);
+        loads_stay_held(about, stated, &own, problems);
     }
     Some(StageKind::Construction(own))
 }
 
 /// The bodies that a list names.
 fn bodies<const D: usize>(
-    context: &Context<'_, D>,
-    node: &Node,
-    key: &str,
-    name: &str,
+    about: &About<'_, D>,
+    list: &[At<String>],
+    does: &str,
     problems: &mut Problems,
 ) -> Option<Vec<usize>> {
-    let who = format!("stage `{name}` {key}s");
+    let who = format!("stage `{}` {does}", about.name);
     let mut found = Vec::new();
     let mut is_right = true;
-    for value in node.items_at(key) {
-        let Some(body) = context.names.bodies.find(value, &who, problems) else {
+    for value in list {
+        let Some(body) = about.context.names.bodies.find(value, &who, problems) else {
             is_right = false;
             continue;
         };
@@ -75,27 +75,28 @@ fn bodies<const D: usize>(
 
 /// Bodies and what they become.
 fn materials<const D: usize>(
-    context: &Context<'_, D>,
-    node: &Node,
-    name: &str,
+    about: &About<'_, D>,
+    changes: &[Result<At<keys::MaterialChange>, Wrong>],
     problems: &mut Problems,
 ) -> Option<Vec<(usize, usize)>> {
+    let (names, name) = (about.context.names, about.name);
     let mut found: Vec<(usize, usize)> = Vec::new();
     let mut is_right = true;
-    for change in node.items_at("materials") {
+    for change in changes {
+        let Ok(change) = change else {
+            is_right = false;
+            continue;
+        };
         let who = format!("stage `{name}` changes");
-        let body = change.get("body");
-        let body = body.and_then(|value| context.names.bodies.find(value, &who, problems));
+        let body = names.bodies.find(&change.body, &who, problems);
         let who = format!("stage `{name}` uses");
-        let material = change.get("material");
-        let material =
-            material.and_then(|value| context.names.materials.find(value, &who, problems));
+        let material = names.materials.find(&change.material, &who, problems);
         let (Some(body), Some(material)) = (body, material) else {
             is_right = false;
             continue;
         };
         if found.iter().any(|(other, _)| *other == body) {
-            problems.error(change.place_at("body"), "this body is named twice");
+            problems.error(change.body.place, "this body is named twice");
         }
         found.push((body, material));
     }
@@ -104,12 +105,12 @@ fn materials<const D: usize>(
 
 /// Refuses to place what is there, and to take away or change what is not.
 fn comes_and_goes<const D: usize>(
-    context: &Context<'_, D>,
-    index: usize,
-    node: &Node,
+    about: &About<'_, D>,
+    stated: &keys::Construction,
     own: &Construction,
     problems: &mut Problems,
 ) {
+    let (context, index) = (about.context, about.index);
     let before = context.sequence.before(index);
     let shown = |body: usize| clip(context.names.bodies.name(body), 40);
     let there = || {
@@ -117,14 +118,10 @@ fn comes_and_goes<const D: usize>(
         row(names.map(|body| context.names.bodies.name(body)))
     };
     let is_placed = |body: usize| {
-        let mut stages = context.stage_nodes().iter();
-        let name = context.names.bodies.name(body);
-        stages.any(|stage| {
-            let named = stage.items_at("place").iter();
-            named.filter_map(Node::text).any(|other| other == name)
-        })
+        let mut placed = placed(context.stages).into_iter();
+        placed.any(|name| name == context.names.bodies.name(body))
     };
-    for (value, &body) in std::iter::zip(node.items_at("place"), &own.place) {
+    for (value, &body) in std::iter::zip(stated.placed(), &own.place) {
         if own.remove.contains(&body) {
             problems
                 .error(
@@ -144,7 +141,7 @@ fn comes_and_goes<const D: usize>(
                 .help("a body is placed once; for another layer in its place draw another body");
         }
     }
-    let missing = |value: &Node, body: usize, problems: &mut Problems| {
+    let missing = |value: &At<String>, body: usize, problems: &mut Problems| {
         let problem = problems.error(
             value.place,
             format!("the body `{}` is not there in this stage", shown(body)),
@@ -154,15 +151,14 @@ fn comes_and_goes<const D: usize>(
             problem.help("a body that some stage places is not there before that stage");
         }
     };
-    for (value, &body) in std::iter::zip(node.items_at("remove"), &own.remove) {
+    for (value, &body) in std::iter::zip(stated.removed(), &own.remove) {
         if !before.present[body] && !own.place.contains(&body) {
             missing(value, body, problems);
         }
     }
-    for (change, &(body, material)) in std::iter::zip(node.items_at("materials"), &own.materials) {
-        let Some(value) = change.get("body") else {
-            continue;
-        };
+    let changes = stated.changes().iter().flatten();
+    for (change, &(body, material)) in std::iter::zip(changes, &own.materials) {
+        let value = &change.body;
         if own.remove.contains(&body) {
             problems.error(
                 value.place,
@@ -175,7 +171,7 @@ fn comes_and_goes<const D: usize>(
             missing(value, body, problems);
         } else if before.material[body] == Some(material) {
             problems.warning(
-                change.place_at("material"),
+                change.material.place,
                 format!("the body `{}` consists of that already", shown(body)),
             );
         }
@@ -183,7 +179,7 @@ fn comes_and_goes<const D: usize>(
     if !own.remove.is_empty() && !context.sequence.ends[index].present.contains(&true) {
         problems
             .error(
-                node.place_at("remove"),
+                stated.remove.as_ref().ok().map(|list| list.place),
                 "no body is left: there is nothing to compute",
             )
             .help("leave one body");
@@ -192,12 +188,12 @@ fn comes_and_goes<const D: usize>(
 
 /// Refuses to take away soil under a load that acts, or a footing that was pushed.
 fn loads_stay_held<const D: usize>(
-    context: &Context<'_, D>,
-    index: usize,
-    node: &Node,
+    about: &About<'_, D>,
+    stated: &keys::Construction,
     own: &Construction,
     problems: &mut Problems,
 ) {
+    let (context, index) = (about.context, about.index);
     for (load, kind) in context.loads.iter().enumerate() {
         let Some(kind) = kind.as_ref().filter(|_| acts(context, index, load)) else {
             continue;
@@ -210,7 +206,7 @@ fn loads_stay_held<const D: usize>(
             let is_footing = matches!(kind.kind, LoadKind::RigidFooting { .. });
             problems
                 .error(
-                    node.items_at("remove")[lost].place,
+                    stated.removed()[lost].place,
                     format!(
                         "the body `{body}` is taken away while `{}` acts on it",
                         clip(&kind.name, 40)
@@ -233,15 +229,16 @@ fn stays_held<const D: usize>(context: &Context<'_, D>, index: usize, load: &Loa
 
 /// Whether a load acts as a stage begins.
 fn acts<const D: usize>(context: &Context<'_, D>, index: usize, load: usize) -> bool {
-    let nodes = context.stage_nodes();
     let mut at = context.sequence.from(index);
     while let Some(stage) = at {
-        let node = &nodes[stage];
-        let named = node.get("load").into_iter().chain(node.items_at("loads"));
-        let mut named = named.filter_map(Node::text);
-        if named.any(|name| context.names.loads.position(name) == Some(load)) {
-            return node.text_at("type") == Some("displacement")
-                || node.number_at("factor") != Some(0.0);
+        if let Some(own) = &context.stages[stage] {
+            let mut named = own.loads().into_iter();
+            if named.any(|name| context.names.loads.position(name) == Some(load)) {
+                let StageForm::Load(Ok(own)) = &*own.form else {
+                    return true;
+                };
+                return own.factor.as_ref().map(|factor| **factor) != Ok(0.0);
+            }
         }
         at = context.sequence.from(stage);
     }
@@ -250,12 +247,12 @@ fn acts<const D: usize>(context: &Context<'_, D>, index: usize, load: usize) -> 
 
 /// Refuses a load on soil that is not there yet, or not any more.
 pub(crate) fn load_is_held<const D: usize>(
-    context: &Context<'_, D>,
-    index: usize,
+    about: &About<'_, D>,
     load: usize,
-    value: &Node,
+    place: Place,
     problems: &mut Problems,
 ) {
+    let (context, index) = (about.context, about.index);
     let Some(own) = context.loads.get(load).and_then(Option::as_ref) else {
         return;
     };
@@ -264,7 +261,7 @@ pub(crate) fn load_is_held<const D: usize>(
     if context.soil.is_known() && is_somewhere && !stays_held(context, index, &own.kind) {
         problems
             .error(
-                value.place,
+                place,
                 format!(
                     "`{}` acts on soil that is not there in this stage",
                     clip(&own.name, 40)
@@ -281,7 +278,9 @@ pub(crate) fn check<const D: usize>(context: &Context<'_, D>, problems: &mut Pro
     if !start.present.is_empty() && !start.present.contains(&true) {
         problems
             .error(
-                context.tree.place_at("bodies"),
+                Root::<D>::bodies(context.tree)
+                    .ok()
+                    .map(|bodies| bodies.place),
                 "no body is there from the start: stages place them all",
             )
             .help("leave one body, the ground, out of `place`");
@@ -292,30 +291,36 @@ pub(crate) fn check<const D: usize>(context: &Context<'_, D>, problems: &mut Pro
         let own = context.materials.get(material).and_then(Option::as_ref);
         own.is_some_and(|own| matches!(own.drainage, Drainage::Undrained { .. }))
     };
-    if let Some(first) = context.stage_nodes().first()
-        && first.text_at("type") == Some("gravity")
-        && first.flag_at("drained") == Some(false)
+    if let Some(Some(first)) = context.stages.first()
+        && let StageForm::Gravity(_) = *first.form
+        && let Ok(common) = &first.common
+        && common.drained.as_ref().is_ok_and(|drained| !drained.value)
         && there.any(is_undrained)
     {
         problems
             .warning(
-                first.place_at("type"),
+                first.form.place,
                 "the weight of undrained soil comes on while no water leaves: its water carries most of it",
             )
             .help("for ground that has stood for long write drained = true in this stage");
     }
-    let changes = |stage: &&Node| {
-        let mut keys = ["place", "remove", "materials"].into_iter();
-        stage.text_at("type") == Some("construction")
-            && keys.any(|key| !stage.items_at(key).is_empty())
+    let changes = |own: &keys::Construction| {
+        let lists = [own.placed(), own.removed()];
+        !own.changes().is_empty() || lists.iter().any(|list| !list.is_empty())
     };
-    if let Some(grid) = context.tree.get("grid")
-        && grid.text_at("mixed_cells") == Some("mean")
-        && context.stage_nodes().iter().any(|stage| changes(&stage))
+    let mut built = context
+        .stages
+        .iter()
+        .flatten()
+        .filter_map(|own| own.construction());
+    if let Ok(grid) = Root::<D>::grid(context.tree)
+        && let Ok(mixed) = &grid.mixed_cells
+        && **mixed == MixedCells::Mean
+        && built.any(changes)
     {
         problems
             .warning(
-                grid.place_at("mixed_cells"),
+                mixed.place,
                 "cells that several soils share keep the mean stiffness of all of them, whichever are there",
             )
             .help("let grid lines follow the bodies that come and go, and write mixed_cells = \"own\"");

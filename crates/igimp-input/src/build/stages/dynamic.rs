@@ -3,42 +3,40 @@
 use igimp_assembly::{MassMatrix, TimeScheme};
 use igimp_model::{Dynamic, StageKind};
 use igimp_schema::diagnostic::Problems;
-use igimp_schema::tree::Node;
+use igimp_schema::schema::stages as keys;
 
-use super::safety::{materials, reduction};
-use crate::build::context::Context;
+use super::safety::{materials, reduction_of};
+use crate::build::context::About;
 use crate::build::rigid::stage::moves;
 
 /// Motion in time.
 pub(crate) fn stage<const D: usize>(
-    context: &Context<'_, D>,
-    index: usize,
-    node: &Node,
-    name: &str,
+    about: &About<'_, D>,
+    own: &keys::Dynamic,
     problems: &mut Problems,
 ) -> Option<StageKind> {
-    let bodies = moves(context, node, name, problems);
-    let lost = match node.get("reduction") {
+    let bodies = moves(about, problems);
+    let reduction = match own.reduction.as_ref().ok()? {
         None => None,
-        Some(table) => Some((
-            materials(context, node, name, problems)?,
-            reduction(context, index, table, problems)?,
+        Some(stated) => Some((
+            materials(about, &own.materials, problems)?,
+            reduction_of(about, stated, problems)?,
         )),
     };
     Some(StageKind::Dynamic(Dynamic {
-        duration: node.number_at("duration")?,
-        scheme: match node.text_at("scheme")? {
-            "backward-euler" => TimeScheme::BackwardEuler,
-            _ => TimeScheme::Newmark,
+        duration: *own.duration,
+        scheme: match *own.scheme {
+            keys::Scheme::BackwardEuler => TimeScheme::BackwardEuler,
+            keys::Scheme::Newmark => TimeScheme::Newmark,
         },
-        mass: match node.text_at("mass")? {
-            "lumped" => MassMatrix::Lumped,
-            _ => MassMatrix::Consistent,
+        mass: match *own.mass {
+            keys::Mass::Consistent => MassMatrix::Consistent,
+            keys::Mass::Lumped => MassMatrix::Lumped,
         },
-        tied_below: node.number_at("tied_below")?,
-        longest_step: node.optional_number("longest_step").ok()?,
-        reduction: lost,
+        tied_below: *own.tied_below,
+        longest_step: own.longest_step.as_ref().map(|own| **own),
+        reduction,
         bodies: bodies?,
-        at_rest: node.optional_number("at_rest").ok()?,
+        at_rest: own.at_rest.as_ref().map(|own| **own),
     }))
 }

@@ -2,19 +2,23 @@
 
 use igimp_model::{Reduction, ReductionPath, RunOut, SearchMethod, Strength, StrengthReduction};
 use igimp_schema::diagnostic::Problems;
+use igimp_schema::schema::Root;
+use igimp_schema::schema::stages::{self as keys, StageForm};
 use igimp_schema::text::clip;
-use igimp_schema::tree::Node;
+use igimp_schema::tree::Wrong;
+use igimp_schema::tree::read::At;
 
-use crate::build::context::Context;
+use crate::build::bodies::surfaces::plain;
+use crate::build::context::About;
 
 /// Indices of the materials whose strength is reduced.
-pub(crate) fn materials<const D: usize>(
-    context: &Context<'_, D>,
-    node: &Node,
-    name: &str,
+pub(super) fn materials<const D: usize>(
+    about: &About<'_, D>,
+    stated: &Result<Option<At<Vec<At<String>>>>, Wrong>,
     problems: &mut Problems,
 ) -> Option<Vec<usize>> {
-    let Some(list) = node.get("materials") else {
+    let (context, name) = (about.context, about.name);
+    let Some(list) = stated.as_ref().ok()? else {
         if context.materials.iter().any(Option::is_none)
             || context.bodies.iter().any(Option::is_none)
         {
@@ -22,7 +26,7 @@ pub(crate) fn materials<const D: usize>(
         }
         problems
             .error(
-                node.place_at("type"),
+                about.stage.form.place,
                 format!("stage `{name}` has no strength to reduce: all materials are elastic"),
             )
             .help("give a material a strength, like model = \"mohr-coulomb\"");
@@ -30,7 +34,7 @@ pub(crate) fn materials<const D: usize>(
     };
     let mut indices = Vec::new();
     let mut is_right = true;
-    for value in list.items() {
+    for value in list.iter() {
         let who = format!("stage `{name}` reduces");
         let Some(index) = context.names.materials.find(value, &who, problems) else {
             is_right = false;
@@ -60,64 +64,59 @@ pub(crate) fn materials<const D: usize>(
 
 /// A search for the factor of safety.
 pub(crate) fn strength_reduction<const D: usize>(
-    context: &Context<'_, D>,
-    index: usize,
-    node: &Node,
-    name: &str,
+    about: &About<'_, D>,
+    own: &keys::StrengthReduction,
     problems: &mut Problems,
 ) -> Option<StrengthReduction> {
-    let materials = materials(context, node, name, problems);
-    let path = match node.text_at("path")? {
-        "gravity" => ReductionPath::Gravity,
-        _ => ReductionPath::Reduce,
+    let context = about.context;
+    let materials = materials(about, &own.materials, problems);
+    let path = match *own.path {
+        keys::ReductionPath::Gravity => ReductionPath::Gravity,
+        keys::ReductionPath::Reduce => ReductionPath::Reduce,
     };
-    if index == 0 && path == ReductionPath::Reduce {
+    if about.index == 0 && path == ReductionPath::Reduce {
         problems
             .error(
-                node.place_at("type"),
+                about.stage.form.place,
                 "a strength reduction needs a loaded body to start from",
             )
             .help("put a stage of type gravity before it, or write path = \"gravity\"");
     }
-    if path == ReductionPath::Gravity && !context.tree.items_at("rigid").is_empty() {
+    let has_rigid = Root::<D>::rigid(context.tree).is_ok_and(|rigid| !rigid.is_empty());
+    if path == ReductionPath::Gravity && has_rigid {
         problems
             .error(
-                node.place_at("path"),
+                own.path.place,
                 "gravity is raised on undeformed bodies, where rigid bodies stand elsewhere",
             )
             .help("write path = \"reduce\"");
     }
-    let bracket = node.pair_at("bracket")?;
+    let bracket = *own.bracket;
     if bracket[0] >= bracket[1] {
         problems
-            .error(
-                node.place_at("bracket"),
-                "the bracket is not in ascending order",
-            )
+            .error(own.bracket.place, "the bracket is not in ascending order")
             .help("a factor thought stable first, like [1.0, 2.0]");
     }
-    let factors: Option<Vec<_>> = node.items_at("factors").iter().map(Node::number).collect();
-    let failure = node.get("failure")?;
-    let (failure_displacement, monitor) = match failure.get("also") {
+    let (failure_displacement, monitor) = match &own.failure.also {
         None => (None, None),
-        Some(also) => (
-            Some(also.number_at("displacement")?),
-            context.monitor(also, name, problems).ok()?,
-        ),
+        Some(also) => {
+            let monitor = context.monitor(also.monitor.as_ref(), about.name, problems);
+            (Some(*also.displacement), monitor.ok()?)
+        }
     };
-    let search = match node.text_at("search")? {
-        "continuation" => SearchMethod::Continuation,
-        _ => SearchMethod::Trials,
+    let search = match **own.search.as_ref()? {
+        keys::Search::Continuation => SearchMethod::Continuation,
+        keys::Search::Trials => SearchMethod::Trials,
     };
     if search == SearchMethod::Continuation {
-        on_given_geometry(node, problems);
+        on_given_geometry(own, problems);
     }
     Some(StrengthReduction {
         search,
         materials: materials?,
-        factors: factors?,
+        factors: plain(&own.factors),
         bracket,
-        tolerance: node.number_at("tolerance")?,
+        tolerance: *own.tolerance,
         path,
         failure_displacement,
         monitor,
@@ -125,19 +124,19 @@ pub(crate) fn strength_reduction<const D: usize>(
 }
 
 /// Refuses what a path of equilibria has no place for.
-fn on_given_geometry(node: &Node, problems: &mut Problems) {
-    if node.text_at("geometry") == Some("moving") {
+fn on_given_geometry(own: &keys::StrengthReduction, problems: &mut Problems) {
+    if *own.geometry == keys::Geometry::Moving {
         problems
             .error(
-                node.place_at("geometry"),
+                own.geometry.place,
                 "a path of equilibria is followed on the given geometry",
             )
             .help("write geometry = \"given\", or search = \"trials\"");
     }
-    if !node.items_at("factors").is_empty() {
+    if !own.factors.is_empty() {
         problems
             .error(
-                node.place_at("factors"),
+                own.factors.place,
                 "a path of equilibria has factors of its own",
             )
             .help("leave `factors` out, or write search = \"trials\"");
@@ -146,41 +145,39 @@ fn on_given_geometry(node: &Node, problems: &mut Problems) {
 
 /// A run-out.
 pub(crate) fn run_out<const D: usize>(
-    context: &Context<'_, D>,
-    index: usize,
-    node: &Node,
-    name: &str,
+    about: &About<'_, D>,
+    own: &keys::RunOut,
     problems: &mut Problems,
 ) -> Option<RunOut> {
-    let materials = materials(context, node, name, problems);
-    if index == 0 {
+    let materials = materials(about, &own.materials, problems);
+    if about.index == 0 {
         problems
             .error(
-                node.place_at("type"),
+                about.stage.form.place,
                 "a run-out needs a loaded body to start from",
             )
             .help("put a stage of type gravity before it");
     }
-    let reduction = reduction(context, index, node.get("reduction")?, problems);
+    let reduction = own.reduction.as_ref().ok();
+    let reduction = reduction.and_then(|own| reduction_of(about, own, problems));
     Some(RunOut {
         materials: materials?,
         reduction: reduction?,
-        move_per_step: node.number_at("move_per_step")?,
-        at_rest: node.number_at("at_rest")?,
+        move_per_step: *own.move_per_step,
+        at_rest: *own.at_rest,
     })
 }
 
-/// By how much strength is reduced, from the table of that name.
-pub(crate) fn reduction<const D: usize>(
-    context: &Context<'_, D>,
-    index: usize,
-    table: &Node,
+/// By how much strength is reduced.
+pub(super) fn reduction_of<const D: usize>(
+    about: &About<'_, D>,
+    own: &At<keys::Reduction>,
     problems: &mut Problems,
 ) -> Option<Reduction> {
-    match (table.get("times_fos"), table.get("factor")) {
+    match (&own.times_fos, &own.factor) {
         (Some(times), None) => {
-            let has_search = (0..index).any(|k| context.type_of(k) == Some("strength-reduction"));
-            if !has_search {
+            let mut before = about.context.stages[..about.index].iter().flatten();
+            if !before.any(|stage| matches!(*stage.form, StageForm::StrengthReduction(_))) {
                 problems
                     .error(
                         times.place,
@@ -190,9 +187,9 @@ pub(crate) fn reduction<const D: usize>(
                         "put a stage of type strength-reduction before it, or write factor = 1.5",
                     );
             }
-            times.number().map(Reduction::TimesFos)
+            Some(Reduction::TimesFos(**times))
         }
-        (None, Some(factor)) => factor.number().map(Reduction::Factor),
+        (None, Some(factor)) => Some(Reduction::Factor(**factor)),
         (both, _) => {
             let message = if both.is_some() {
                 "both `times_fos` and `factor` are given"
@@ -200,7 +197,7 @@ pub(crate) fn reduction<const D: usize>(
                 "the reduction has no value"
             };
             problems
-                .error(table.place, message)
+                .error(own.place, message)
                 .help("write { times_fos = 1.05 } or { factor = 1.5 }");
             None
         }

@@ -4,11 +4,17 @@ use std::collections::HashMap;
 
 use igimp_model::{BodyPart, Drainage, PoreSource, Raster, Strength, WaterCondition};
 use igimp_schema::diagnostic::Problems;
+use igimp_schema::schema::Root;
+use igimp_schema::schema::materials::MaterialCommon;
+use igimp_schema::schema::stages::Stage;
+use igimp_schema::schema::water::Water;
 use igimp_schema::source::Place;
 use igimp_schema::text::{clip, number};
 use igimp_schema::tree::Node;
+use igimp_schema::tree::read::At;
 
 use super::Around;
+use crate::build::Thing;
 use crate::build::bodies::sequence::Scene;
 use crate::build::ground::{Above, Earth, Surface, UprightFace};
 use crate::build::materials::profiles::reach;
@@ -41,19 +47,20 @@ pub(crate) fn check<const D: usize>(
             checker.scene(end, Some(index), problems);
         }
     }
-    let mut called = around.tree.items_at("stages").iter();
-    let is_slip = |name: &str| around.names.water.position(name).is_none();
-    if called.any(|stage| stage.text_at("water").is_some_and(is_slip)) {
+    let mut called = around.stages.iter().flatten().filter_map(called_water);
+    if called.any(|name| around.names.water.position(name).is_none()) {
         // A name that is not defined may be a slip for one that is not used.
         return;
     }
-    for (index, node) in around.tree.items_at("water").iter().enumerate() {
+    for (index, own) in around.own.iter().enumerate() {
         let is_used = sequence.scenes().any(|scene| scene.water == Some(index));
-        let name = clip(node.text_at("name").unwrap_or("?"), 40);
-        if !is_used {
+        if let Some(own) = own
+            && !is_used
+        {
+            let name = clip(&own.name, 40);
             problems
                 .warning(
-                    node.place_at("name"),
+                    own.name.place,
                     format!("no stage calls for the water `{name}`"),
                 )
                 .help("write water = \"NAME\" in a stage of type construction; the first condition holds from the start");
@@ -84,23 +91,25 @@ impl<const D: usize> Checker<'_, D> {
         if self.seen.contains(&index) || !scene.present.contains(&true) {
             return;
         }
-        let node = &around.tree.items_at("water")[index];
+        let Some(own) = &around.own[index] else {
+            return;
+        };
         let surface = (self.surfaces)
             .entry(scene.present.clone())
             .or_insert_with(|| around.surface(scene));
         let before = problems.errors();
         let who = format!("the water `{}`", clip(&condition.name, 40));
-        let (place, when) = when(around.tree, node, stage);
+        let (place, when) = when(stage.map(|stage| &around.stages[stage]), own);
         match &condition.source {
             PoreSource::Dry => {}
             PoreSource::Points(raster) => points(
                 raster,
                 (around, scene, &**surface),
-                (node, &who, &when),
+                (own, &who, &when),
                 problems,
             ),
             PoreSource::Table(_) | PoreSource::Surface(_) | PoreSource::Drained(_) => {
-                let is_meant = node.flag_at("pond") != Some(false);
+                let is_meant = own.pond.as_ref().is_none_or(|pond| **pond);
                 let [highest, sloping] = surface.above(&condition.source);
                 if let Some(at) = surface.uncovered(&condition.source) {
                     problems
@@ -154,7 +163,7 @@ impl<const D: usize> Checker<'_, D> {
                 )
                 .help("write dry = true if that is meant");
         }
-        self.materials(scene, condition, (node, &who), problems);
+        self.materials(scene, condition, (own, &who), problems);
         if problems.errors() > before {
             self.seen.push(index);
         }
@@ -165,7 +174,7 @@ impl<const D: usize> Checker<'_, D> {
         &mut self,
         scene: &Scene,
         condition: &WaterCondition,
-        (node, who): (&Node, &str),
+        (stated, who): (&Water, &str),
         problems: &mut Problems,
     ) {
         let around = self.around;
@@ -189,7 +198,7 @@ impl<const D: usize> Checker<'_, D> {
                 && is_wet(around.earth, &condition.source, part)
             {
                 self.unweighed.push(number);
-                unweighed(around.tree, number, (who, material), problems);
+                unweighed::<D>(around.tree, number, (who, material), problems);
             }
             if material.drainage != Drainage::Total {
                 continue;
@@ -203,7 +212,7 @@ impl<const D: usize> Checker<'_, D> {
             {
                 problems
                     .error(
-                        node.items_at("bodies")[own].place,
+                        (stated.bodies[own].as_ref().ok()).map(|own| own.place),
                         format!(
                             "{who} gives `{}` a pore pressure of its own, but `{}` has strength by total stress, where there is none",
                             clip(&part.name, 40),
@@ -220,10 +229,9 @@ impl<const D: usize> Checker<'_, D> {
             let is_wet = || own.is_none() && is_wet(around.earth, &condition.source, part);
             if has_friction && !self.told.contains(&number) && is_wet() {
                 self.told.push(number);
-                let entries = around.tree.get("materials").map_or(&[][..], Node::entries);
-                let place = entries
-                    .get(number)
-                    .map(|entry| entry.node.place_at("drainage"));
+                let place = common::<D>(around.tree, number, |own| {
+                    own.drainage.as_ref().ok()?.as_ref().map(|own| own.place)
+                });
                 problems
                     .error(
                         place,
@@ -240,17 +248,27 @@ impl<const D: usize> Checker<'_, D> {
     }
 }
 
+/// Where something is said that every material has.
+fn common<const D: usize>(
+    tree: &Node,
+    number: usize,
+    place: impl Fn(&MaterialCommon) -> Option<Place>,
+) -> Option<Place> {
+    let materials = Root::<D>::materials(tree).ok()?;
+    let own = materials.0.get(number)?.value.as_ref().ok()?;
+    place(own.common.as_ref().ok()?)
+}
+
 /// Says that soil weighs the same above and below the water table.
-fn unweighed(
+fn unweighed<const D: usize>(
     tree: &Node,
     number: usize,
     (who, material): (&str, &Material),
     problems: &mut Problems,
 ) {
-    let entries = tree.get("materials").map_or(&[][..], Node::entries);
-    let place = entries
-        .get(number)
-        .map(|entry| entry.node.place_at("unit_weight"));
+    let place = common::<D>(tree, number, |own| {
+        own.unit_weight.as_ref().ok().map(|own| own.place)
+    });
     problems
         .warning(
             place,
@@ -270,27 +288,29 @@ const ON_GROUND: f64 = 0.02;
 fn points<const D: usize>(
     raster: &Raster,
     (around, scene, surface): (&Around<'_, D>, &Scene, &dyn Surface),
-    (node, who, when): (&Node, &str, &str),
+    (own, who, when): (&Water, &str, &str),
     problems: &mut Problems,
 ) {
-    let Some(value) = node.get("u") else { return };
+    let Some(points) = &own.pressures.u else {
+        return;
+    };
     let parts = std::iter::zip(around.bodies, &scene.present);
     let there = parts.filter_map(|(part, present)| part.as_ref().filter(|_| *present));
     let outlines: Vec<_> = there.map(|part| around.earth.front_outline(part)).collect();
     let polygons: Vec<&[[f64; 2]]> = outlines.iter().map(|own| &own[..]).collect();
     let of = format!("the soil that {who} is for{when}");
-    if reach(raster, (value, "u"), (&polygons, &of), problems).is_err() {
+    if reach(raster, (points.place, "u"), (&polygons, &of), problems).is_err() {
         return;
     }
     let greatest = raster.values.iter().flatten().copied().fold(0.0, f64::max);
     let most = surface.most_on_ground(raster);
-    let is_meant = node.flag_at("pond") == Some(true);
+    let is_meant = own.pond.as_ref().is_some_and(|pond| **pond);
     if let Some((at, pressure)) =
         most.filter(|(_, pressure)| !is_meant && *pressure > ON_GROUND * greatest)
     {
         problems
             .warning(
-                value.place,
+                points.place,
                 format!(
                     "{who} presses on the ground with {} kPa at {at}{when}, as free water would",
                     number((pressure / 1e2).round() / 1e1)
@@ -301,23 +321,37 @@ fn points<const D: usize>(
 }
 
 /// Where a condition is told wrong, and when.
-fn when(tree: &Node, node: &Node, stage: Option<usize>) -> (Place, String) {
-    let own = ["line", "level", "surface", "inside", "r_u", "u"];
-    let own = own.iter().find(|key| node.get(key).is_some());
-    let own = own.map_or(node.place, |key| node.place_at(key));
-    let Some(stage) = stage.map(|index| &tree.items_at("stages")[index]) else {
+fn when(stage: Option<&Thing<Stage>>, own: &At<Water>) -> (Place, String) {
+    let stated = [
+        own.tables.line.as_ref().map(|own| own.place),
+        own.tables.level.as_ref().map(|own| own.place),
+        own.tables.surface.as_ref().map(|own| own.place),
+        own.inside.as_ref().map(|own| own.place),
+        own.pressures.r_u.as_ref().map(|own| own.place),
+        own.pressures.u.as_ref().map(|own| own.place),
+    ];
+    let own = stated.into_iter().flatten().next().unwrap_or(own.place);
+    let Some(Some(stage)) = stage else {
         return (own, String::new());
     };
-    let name = clip(stage.text_at("name").unwrap_or("?"), 40);
-    if stage.get("water").is_some() {
+    let name = clip(&stage.name, 40);
+    if called_water(stage).is_some() {
         return (own, format!(" in stage `{name}`"));
     }
-    let changed = ["remove", "place"];
-    let changed = changed.iter().find(|key| !stage.items_at(key).is_empty());
+    let changed = stage.construction().into_iter();
+    let changed = changed.flat_map(|own| [&own.remove, &own.place]).flatten();
+    let mut changed = changed
+        .filter(|list| !list.is_empty())
+        .map(|list| list.place);
     (
-        stage.place_at(changed.unwrap_or(&"name")),
+        changed.next().unwrap_or(stage.name.place),
         format!(" after stage `{name}`"),
     )
+}
+
+/// The condition of the water that a stage calls for.
+fn called_water(stage: &At<Stage>) -> Option<&At<String>> {
+    stage.construction()?.water_condition()
 }
 
 fn above_ground(above: &Above, place: Place, (who, when): (&str, &str), problems: &mut Problems) {
