@@ -1,7 +1,7 @@
 //! Parts of pages that show frames in a browser: `igimp view`, and the frames of a report.
 //!
 //! The script draws plane and space alike, and needs no other script and no network. It takes frames as
-//! [`packed`] makes them of those in `paraview/`.
+//! [`packed`] makes them of those in `paraview/`, the only states along a run that a results folder keeps.
 
 mod packed;
 

@@ -249,7 +249,7 @@ fn position(
 
 fn of_field(field: &Stored<'_>, cells: usize, kept: &[u32], keep: Keep) -> Option<Array> {
     let components = field.components;
-    let numbers = field.numbers(components * cells)?;
+    let numbers = field.numbers(cells)?;
     let mut range: Vec<[f64; 4]> = (0..components)
         .map(|k| {
             range_of(

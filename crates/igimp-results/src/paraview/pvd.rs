@@ -10,6 +10,7 @@ use std::path::{Path, PathBuf};
 
 use crate::atomic::{at, write_whole};
 use crate::error::ResultsError;
+use crate::vtu::read::attribute;
 use crate::vtu::{UnstructuredGrid, escaped};
 
 /// Name of the frames of particles.
@@ -176,11 +177,6 @@ fn parse(text: &str) -> Option<Vec<Frame>> {
             })
         })
         .collect()
-}
-
-fn attribute<'a>(tag: &'a str, name: &str) -> Option<&'a str> {
-    let (_, rest) = tag.split_once(&format!(" {name}=\""))?;
-    Some(rest.split_once('"')?.0)
 }
 
 /// Whether a file of `paraview/` has a name that a run gives: `STEM.pvd`, `STEM_0001.vtu`, and the states
