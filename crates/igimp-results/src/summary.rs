@@ -6,7 +6,7 @@ use igimp_model::TitleBlock;
 use igimp_model::check::{Check, or_not_a_number};
 use serde::{Deserialize, Serialize};
 
-use crate::ending::{Ending, PathEnd};
+use crate::ending::{EndReason, Ending, PathEnd};
 use crate::mesh_study::StudySummary;
 use crate::model_size::ModelSize;
 
@@ -198,6 +198,23 @@ pub struct StageSummary {
     /// How its linear systems were solved, in space.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub linear: Option<LinearSummary>,
+}
+
+impl StageSummary {
+    /// Whether the stage came to what its case asks of it: its end, or a condition that ends it there. One that found no
+    /// equilibrium on its way, that ran out of steps, or that tells no limit where one is sought, did not.
+    pub fn came_to_its_end(&self) -> bool {
+        let ran_short = [
+            EndReason::StepsOfPathRanOut,
+            EndReason::StillMoving { steps: self.steps },
+            EndReason::NoFactorOfSafety,
+        ];
+        matches!(
+            self.outcome,
+            StageOutcome::Completed | StageOutcome::Stopped
+        ) && !self.lost
+            && !ran_short.iter().any(|reason| reason.code() == self.code)
+    }
 }
 
 /// How the linear systems of a stage were solved.

@@ -139,13 +139,30 @@ impl StudyResult {
         self.early.get(mesh).copied().unwrap_or_default()
     }
 
-    /// The value on the finest mesh whose run came to it, or on the finest that has one.
-    pub fn finest(&self) -> Option<f64> {
-        let finest = |early: bool| {
-            let mut meshes = (0..self.values.len()).rev();
-            meshes.find_map(|mesh| self.values[mesh].filter(|_| self.ended_early(mesh) == early))
-        };
-        finest(false).or_else(|| finest(true))
+    /// The finest mesh whose run came to the value, and the value; `None` where no run came to it.
+    pub fn finest(&self) -> Option<(usize, f64)> {
+        let mut meshes = (0..self.values.len()).rev();
+        meshes.find_map(|mesh| Some((mesh, self.values[mesh].filter(|_| !self.ended_early(mesh))?)))
+    }
+
+    /// Why nothing is extrapolated; `None` where something is.
+    pub fn refusal(&self, meshes: &[MeshSummary]) -> Option<String> {
+        if self.estimate.is_some() {
+            return None;
+        }
+        let numbered = meshes.iter().enumerate();
+        let early: Vec<String> = numbered
+            .filter(|(mesh, _)| self.ended_early(*mesh))
+            .map(|(_, mesh)| mesh.label())
+            .collect();
+        Some(match &early[..] {
+            [] => "nothing is extrapolated of fewer than two values".to_owned(),
+            [mesh] => format!("nothing is extrapolated: the run on the mesh {mesh} ended early"),
+            [before @ .., last] => format!(
+                "nothing is extrapolated: the runs on the meshes {} and {last} ended early",
+                before.join(", ")
+            ),
+        })
     }
 }
 

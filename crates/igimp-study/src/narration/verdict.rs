@@ -76,13 +76,13 @@ fn mesh_error(study: &StudySummary) -> String {
                 };
                 format!("{} {value}{early}", mesh.label())
             }));
-            row.extend(match result.estimate {
-                Some(found) => vec![
+            row.extend(result.refusal(&study.meshes));
+            row.extend(result.estimate.iter().flat_map(|found| {
+                [
                     format!("{} {}", found.lead(), found.sentence()),
                     format!("(order {})", found.order.sentence()),
-                ],
-                None => vec!["nothing is extrapolated of fewer than two values".to_owned()],
-            });
+                ]
+            }));
             row
         })
         .collect();
