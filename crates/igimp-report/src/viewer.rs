@@ -15,7 +15,7 @@ pub use packed::{Keep, packed};
 use rayon::prelude::*;
 use serde::Serialize;
 
-/// What stands in the section `soil` of a page: choices, canvas, slider.
+/// The section `soil` of a page: choices, canvas, slider.
 pub const SECTION: &str = include_str!("viewer/soil.html");
 
 /// The style of that section; the page gives the colours `--card`, `--line` and `--soft`.
@@ -89,7 +89,7 @@ pub(super) struct Held {
 /// A frame within a page.
 #[derive(Debug, Serialize)]
 struct HeldFrame {
-    /// What it is called.
+    /// Its name on the page.
     label: String,
     data: String,
     /// The rigid bodies of that frame, where the case has some.

@@ -1,4 +1,4 @@
-//! What a run found, as written to `summary.json`.
+//! The results of a run, as written to `summary.json`.
 
 use std::fmt::Write as _;
 
@@ -20,7 +20,7 @@ pub struct Summary {
     /// Project, client, author and revision.
     #[serde(default)]
     pub title_block: TitleBlock,
-    /// Day and time of the run, as whoever started it said.
+    /// Date and time of the run, as given by the caller.
     #[serde(default)]
     pub date: Option<String>,
     /// SHA-256 of `case.completed.toml`, the case with every default.
@@ -53,12 +53,12 @@ pub struct Summary {
     pub peak_memory_mib: Option<f64>,
     /// Memory by particle and by unknown, where the system tells.
     pub memory: Option<MemoryShare>,
-    /// What the run was thought to cost before it began, to be held against `seconds` and
+    /// The cost that was estimated before the run, to be compared with `seconds` and
     /// `peak_memory_mib`.
     pub estimate: Option<Expected>,
     /// Whether the run was interrupted and can be resumed.
     pub interrupted: bool,
-    /// What a study of the mesh error found on all its meshes; stages and pictures are then those of
+    /// The results of a study of the mesh error on all its meshes; stages and pictures are then those of
     /// the finest mesh that came to its end.
     pub mesh_study: Option<StudySummary>,
 }
@@ -83,10 +83,10 @@ impl Summary {
     }
 }
 
-/// A table that tells a part of the case.
+/// A table that describes a part of the case.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SetupTable {
-    /// What it tells.
+    /// Its title.
     pub title: String,
     /// Names of its columns, with units.
     pub header: Vec<String>,
@@ -122,7 +122,7 @@ pub struct FigureNote {
     pub caption: String,
 }
 
-/// What the largest resident memory leaves when that at the beginning of the run is taken away, split
+/// Largest resident memory less that at the beginning of the run, split
 /// in the proportions of the estimate.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MemoryShare {
@@ -181,7 +181,7 @@ pub struct StageSummary {
     /// Settlement of that footing at the end \[m\].
     #[serde(default)]
     pub settlement: Option<f64>,
-    /// What a strength reduction found.
+    /// Result of a strength reduction.
     pub safety: Option<SafetySummary>,
     /// Gross work of the external force in the accepted steps: of its components, by magnitude \[J/m; J in space\].
     #[serde(default)]
@@ -311,7 +311,7 @@ pub struct SafetySummary {
     pub stable: Option<f64>,
     /// Smallest factor found failed \[-\].
     pub failed: Option<f64>,
-    /// What counts as failure.
+    /// The failure criterion, in words.
     pub criterion: String,
     /// Materials that were reduced.
     pub materials: Vec<String>,
@@ -343,14 +343,14 @@ pub struct PathSummary {
     pub rise: Option<f64>,
     /// The displacement γH²/E that soil of this weight, height and stiffness is moved by before it fails \[m\].
     pub displacement_scale: Option<f64>,
-    /// What decides the factor, where the path came to a mechanism.
+    /// The shares that decide the factor, if the path reached a mechanism.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shares: Option<StrengthShares>,
     /// Its equilibria in order.
     pub points: Vec<PathPoint>,
 }
 
-/// What decides a factor of safety, at the last equilibrium of its path.
+/// The shares that decide a factor of safety, at the last equilibrium of its path.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct StrengthShares {
     /// The shares of the materials that have a strength.
