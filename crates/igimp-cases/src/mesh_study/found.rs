@@ -1,4 +1,4 @@
-//! What the runs of a study found, side by side.
+//! The results of the runs of a study, side by side.
 
 use igimp_model::{Case, CheckValue, Curve, Quantity, StageKind, meshes};
 use igimp_results::mesh_study::{Computed, Convergence, ResultKind, StudyResult, estimate};
@@ -32,7 +32,7 @@ impl Found {
         }
     }
 
-    /// What a run had come to when it ended.
+    /// The value that a run had reached when it ended early.
     fn on_the_way(value: f64) -> Self {
         Self {
             ended_early: true,
@@ -46,17 +46,17 @@ impl Found {
 pub fn study<const D: usize>(case: &Case<D>, runs: &[Option<&Summary>]) -> Vec<StudyResult> {
     let parts = meshes::refinements(case);
     let mut results = Vec::new();
-    let mut add = |name: String, (kind, known), found: Vec<Option<Found>>| {
+    let mut add = |name: String, kind, known, found: Vec<Option<Found>>| {
         let finite = |found: Option<Found>| found.filter(|found| found.value.is_finite());
         let found: Vec<Option<Found>> = found.into_iter().map(finite).collect();
         if found.iter().any(Option::is_some) {
-            results.push(result(name, (kind, known), &found, &parts));
+            results.push(result(name, kind, known, &found, &parts));
         }
     };
     for number in 0..case.stages.len() {
         if let Some((name, kind, known)) = of_stage(case, number) {
             let found = runs.iter().map(|run| at_stage(case, (*run)?, number));
-            add(name, (kind, known), found.collect());
+            add(name, kind, known, found.collect());
         }
     }
     let longest = runs.iter().flatten().max_by_key(|run| run.checks.len());
@@ -72,7 +72,7 @@ pub fn study<const D: usize>(case: &Case<D>, runs: &[Option<&Summary>]) -> Vec<S
             Some(at_check(case, run, row))
         });
         let known = of_check(case, name);
-        add(name.clone(), (ResultKind::Check, known), found.collect());
+        add(name.clone(), ResultKind::Check, known, found.collect());
     }
     results
 }
@@ -120,7 +120,7 @@ pub(crate) fn check_rows<const D: usize>(
     of.checks.iter().enumerate().map(row).collect()
 }
 
-/// What a reader has to know of the results: values that do not converge as they should, and runs that ended early.
+/// Warnings about the results: values that do not converge as expected, and runs that ended early.
 pub(crate) fn remarks<const D: usize>(case: &Case<D>, results: &[StudyResult]) -> Vec<String> {
     let labels: Vec<String> = (meshes::refinements(case).into_iter())
         .map(meshes::label)
@@ -145,7 +145,8 @@ pub(crate) fn remarks<const D: usize>(case: &Case<D>, results: &[StudyResult]) -
 
 fn result(
     name: String,
-    (kind, known): (ResultKind, Convergence),
+    kind: ResultKind,
+    known: Convergence,
     found: &[Option<Found>],
     parts: &[usize],
 ) -> StudyResult {
@@ -174,7 +175,7 @@ fn result(
     }
 }
 
-/// What a run found at a stage of that kind.
+/// The result of a run at a stage, by the kind of the stage.
 fn at_stage<const D: usize>(case: &Case<D>, run: &Summary, number: usize) -> Option<Found> {
     let (stage, summary) = (&case.stages[number], run.stages.get(number)?);
     let found = match &stage.kind {
