@@ -180,7 +180,7 @@ fn stored(text: &str) -> Option<Stored<'_>> {
 }
 
 /// The value of an attribute.
-pub(crate) fn attribute<'a>(head: &'a str, name: &str) -> Option<&'a str> {
+fn attribute<'a>(head: &'a str, name: &str) -> Option<&'a str> {
     let start = format!("{name}=\"");
     let places = head.match_indices(&start);
     let whole = |place: usize| place == 0 || head.as_bytes()[place - 1].is_ascii_whitespace();
@@ -195,7 +195,8 @@ fn between<'a>(text: &'a str, from: &str, to: &str) -> Option<&'a str> {
     Some(&text[start..start + length])
 }
 
-fn unescaped(text: &str) -> String {
+/// The text whose [`escaped`](super::escaped) form is an attribute's value.
+pub(crate) fn unescaped(text: &str) -> String {
     text.replace("&quot;", "\"")
         .replace("&gt;", ">")
         .replace("&lt;", "<")
