@@ -414,7 +414,11 @@ fn figures(study: &Study, pushes: &[Push], results: &[Computed<2>]) -> Result<()
         ..CurvePlot::default()
     }
     .write(&study.folder.join("resistance_small_strain"))?;
+    fields(study, pushes, results)
+}
 
+/// The fields at the end of the pushes.
+fn fields(study: &Study, pushes: &[Push], results: &[Computed<2>]) -> Result<(), CaseError> {
     for (push, result) in pushes.iter().zip(results) {
         if !matches!(push.role, Role::Contact | Role::Deep) {
             continue;

@@ -113,7 +113,8 @@ fn box_of(from: [f64; 2], to: [f64; 2]) -> Vec<[f64; 2]> {
 /// Runs the study.
 pub(crate) fn study(out: &Path) -> Result<Study, CaseError> {
     let mut study = Study::new("stages", ABOUT, out)?;
-    columns(&mut study)?;
+    lifts(&mut study)?;
+    drawdown(&mut study)?;
     oedometer(&mut study)?;
     cuts(&mut study)?;
     Ok(study)
@@ -143,9 +144,9 @@ fn deviation(run: &Run<2>, exact: impl Fn(f64) -> f64) -> f64 {
     means.fold(0.0, |a: f64, (own, exact)| a.max((own - exact).abs())) / greatest
 }
 
-/// A column of soil that is filled up, with water that falls.
-fn columns(study: &mut Study) -> Result<(), CaseError> {
-    let [dry, wet, water] = WEIGHTS;
+/// A column of soil that is filled up in lifts, and dug off again.
+fn lifts(study: &mut Study) -> Result<(), CaseError> {
+    let [dry, ..] = WEIGHTS;
     let layers = [
         ("ground", 0.0, 6.0),
         ("lift 1", 6.0, 8.0),
@@ -192,7 +193,12 @@ fn columns(study: &mut Study) -> Result<(), CaseError> {
     ));
     let left = deviation(&dug.run, |y| -dry * (8.0 - y));
     study.check(run, quantity, COLUMN.says(0.0), Band::AtMost(2e-3), left);
+    Ok(())
+}
 
+/// A column of soil under water that falls.
+fn drawdown(study: &mut Study) -> Result<(), CaseError> {
+    let [dry, wet, water] = WEIGHTS;
     let mut case = ground(
         "drawdown",
         0.5,
@@ -250,8 +256,15 @@ fn columns(study: &mut Study) -> Result<(), CaseError> {
     Ok(())
 }
 
-/// A column that is loaded undrained by a lift, and drains.
-fn oedometer(study: &mut Study) -> Result<(), CaseError> {
+/// A column of clay with one-dimensional stiffness `modulus` \[Pa\] that is loaded by a lift, undrained, with water of a
+/// `stiffness` \[Pa\] in its pores.
+struct Oedometer {
+    case: Case<2>,
+    modulus: f64,
+    stiffness: f64,
+}
+
+fn loaded_clay() -> Result<Oedometer, CaseError> {
     let bodies = [
         ("clay", box_of([0.0, 0.0], [2.0, 8.0])),
         ("lift", box_of([0.0, 8.0], [2.0, 10.0])),
@@ -277,6 +290,20 @@ fn oedometer(study: &mut Study) -> Result<(), CaseError> {
     );
     case.stages[1].drained = false;
     case.stages[1].reset_displacements = false;
+    Ok(Oedometer {
+        case,
+        modulus,
+        stiffness,
+    })
+}
+
+/// A column that is loaded undrained by a lift, and drains.
+fn oedometer(study: &mut Study) -> Result<(), CaseError> {
+    let Oedometer {
+        mut case,
+        modulus,
+        stiffness,
+    } = loaded_clay()?;
     let load = 2.0 * WEIGHTS[0];
     let filled = Computed::new(case.clone())?;
     let run = study.run_to_end(RunRecord::new(
@@ -337,8 +364,8 @@ fn oedometer(study: &mut Study) -> Result<(), CaseError> {
     Ok(())
 }
 
-/// A pit in three slices, at once, and in ground that never was anything else.
-fn cuts(study: &mut Study) -> Result<(), CaseError> {
+/// A pit that is dug at once, in three slices, and ground that never was anything else.
+fn pits() -> Result<[Computed<2>; 3], CaseError> {
     let cell = 0.5;
     let rest = vec![
         [0.0, 0.0],
@@ -379,11 +406,16 @@ fn cuts(study: &mut Study) -> Result<(), CaseError> {
         );
     }
     let never = ground("pit", cell, [24.0, 11.0], 1e10, &bodies[..1])?;
-    let [at_once, in_slices, never] = [
+    Ok([
         Computed::new(at_once)?,
         Computed::new(in_slices)?,
         Computed::new(never)?,
-    ];
+    ])
+}
+
+/// Displacements and stresses of a pit do not depend on the way in which it is dug.
+fn cuts(study: &mut Study) -> Result<(), CaseError> {
+    let [at_once, in_slices, never] = pits()?;
     let run = study.run_to_end(RunRecord::new(
         "pit in three slices",
         &in_slices.report,

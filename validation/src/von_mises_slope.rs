@@ -160,7 +160,8 @@ fn smoothness_figures(study: &mut Study, results: &[Computed<2>]) -> Result<(), 
             let points = along_line(
                 result.particles(),
                 &compression(result),
-                (section.from, section.to),
+                section.from,
+                section.to,
                 section.points,
                 result.case.grid.smallest_cell()[0],
             );

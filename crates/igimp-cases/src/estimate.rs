@@ -1,4 +1,4 @@
-//! What a case will cost before it runs: particles, cells, unknowns, memory ([`estimate`]) and time
+//! The expected cost of a case before it runs: particles, cells, unknowns, memory ([`estimate`]) and time
 //! ([`time`]).
 //!
 //! The memory model counts particles (state, trial and supports), stored entries of the tangent
@@ -155,7 +155,7 @@ pub fn together(bytes: &[f64]) -> f64 {
     }
 }
 
-/// What a run is thought to cost on this computer; of a study of the mesh error, all its meshes.
+/// The expected cost of a run on this computer; for a study of the mesh error, of all its meshes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Expectation {
     /// Time of the planned steps.
@@ -197,7 +197,7 @@ impl Expectation {
         })
     }
 
-    /// As it is told after a run, with the time of the steps that it took if that is known.
+    /// As reported after a run, with the time of the steps that it took if that is known.
     pub(crate) fn told(&self, seconds_of_steps_taken: Option<f64>) -> Expected {
         Expected {
             seconds: self.time.seconds,

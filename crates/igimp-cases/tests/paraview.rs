@@ -211,7 +211,7 @@ fn vtk_pyvista_and_meshio_read_what_is_written() {
     let mut of_background = Collection::create(&folder, GRID).unwrap();
     let mut grids = serde_json::Map::new();
     let mut add = |collection: &mut Collection, time: f64, grid: &UnstructuredGrid, size: f64| {
-        let path = collection.add(time, grid).unwrap();
+        let path = collection.add(time, "stage", grid).unwrap();
         let name = path.file_name().unwrap().to_str().unwrap().to_owned();
         grids.insert(name, expected(grid, time, size));
     };

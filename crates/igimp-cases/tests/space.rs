@@ -7,7 +7,7 @@ use std::process::Command;
 
 use igimp_assembly::{ParticleFields, ParticleSeed, Particles};
 use igimp_model::Field;
-use igimp_report::pictures::{InSpace, Shown};
+use igimp_report::pictures::{InSpace, Seen, Shown};
 use igimp_report::report::write_report;
 use igimp_report::skin::{Boxes, Skin};
 use igimp_results::paraview::particles::{Extras, of_particles};
@@ -91,10 +91,14 @@ fn results(name: &str, width: f64, frames: usize) -> (PathBuf, Particles<3>) {
     for k in 1..=frames {
         last = slope(width, k as f64 / frames as f64);
         let cells = of_particles(&last, &Extras::default());
-        collection.add(k as f64, &cells).unwrap();
+        collection.add(k as f64, "stage", &cells).unwrap();
     }
     let title = "A slope in space";
-    let drawn = InSpace::new((&folder, title, false), (&last, &[]), vec![ROOF; 1]);
+    let state = Seen {
+        particles: &last,
+        laws: &[],
+    };
+    let drawn = InSpace::new(&folder, title, false, state, vec![ROOF; 1]);
     let shown = Shown {
         name: "1-slide".into(),
         title: "slide".into(),

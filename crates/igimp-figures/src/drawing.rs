@@ -65,6 +65,14 @@ impl Stroke {
             dash: &[],
         }
     }
+
+    pub(super) fn dashed(colour: Colour, width: f64, dash: &'static [f64]) -> Self {
+        Self {
+            colour,
+            width,
+            dash,
+        }
+    }
 }
 
 /// Which point of a text its place means.

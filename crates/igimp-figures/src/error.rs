@@ -1,4 +1,4 @@
-//! What can go wrong while a figure is laid out or written.
+//! Errors while a figure is laid out or written.
 
 use std::path::PathBuf;
 

@@ -56,11 +56,11 @@ pub enum OutlineStyle {
 pub struct Outline {
     /// Points (x, y).
     pub points: Vec<[f64; 2]>,
-    /// What the line stands for.
+    /// The meaning of the line.
     pub style: OutlineStyle,
 }
 
-/// What an entry of a key shows before its name.
+/// The symbol before a name in a key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum KeySample {
     /// The colour of a value.

@@ -12,7 +12,7 @@ const INSET: f64 = 8.0;
 const PADDING: f64 = 7.0;
 const WIDEST_LABEL: f64 = 230.0;
 
-/// What a legend shows before a label.
+/// The symbol before a label in a legend.
 pub(super) struct Sample {
     pub(super) band: Option<(Colour, f64)>,
     pub(super) line: Option<Stroke>,
@@ -143,7 +143,7 @@ impl Occupancy {
 
     /// Upper left corner for a box of the given size inside `area`, or `None` if it would cover a
     /// curve wherever it stood.
-    pub(super) fn place_inside(&self, area: Rect, (width, height): (f64, f64)) -> Option<Point> {
+    pub(super) fn place_inside(&self, area: Rect, width: f64, height: f64) -> Option<Point> {
         let room = area.grown(-INSET);
         let (right, bottom) = (room.right - width, room.bottom - height);
         if right < room.left || bottom < room.top {
@@ -198,7 +198,7 @@ mod tests {
     fn the_legend_avoids_the_curve() {
         let mut occupancy = Occupancy::default();
         occupancy.take_line(&[[0.0, 300.0], [400.0, 0.0]]);
-        let corner = occupancy.place_inside(AREA, (100.0, 60.0));
+        let corner = occupancy.place_inside(AREA, 100.0, 60.0);
         assert_eq!(corner, Some([INSET, INSET]));
     }
 
@@ -206,7 +206,7 @@ mod tests {
     fn a_full_plot_has_no_place_inside() {
         let mut occupancy = Occupancy::default();
         occupancy.take_rect(AREA);
-        assert_eq!(occupancy.place_inside(AREA, (100.0, 60.0)), None);
-        assert_eq!(Occupancy::default().place_inside(AREA, (500.0, 60.0)), None);
+        assert_eq!(occupancy.place_inside(AREA, 100.0, 60.0), None);
+        assert_eq!(Occupancy::default().place_inside(AREA, 500.0, 60.0), None);
     }
 }

@@ -46,7 +46,7 @@ pub struct Face {
     pub normal: [f64; 3],
     /// Share of the surroundings that is free, which hollows have little of: from 0 to 1.
     pub open: f64,
-    /// What it is coloured by.
+    /// The value that colours it.
     pub value: f64,
 }
 
@@ -165,10 +165,22 @@ impl SpacePlot {
     }
 }
 
-/// An axis along the edge of the surrounding box that lies outermost: level ones below the body, the upright
-/// one to its left.
-fn draw_axes(drawing: &mut Drawing, projection: &Projection) {
-    for axis in 0..3 {
+/// An edge of the box around a body, as it is seen.
+struct Edge {
+    /// Its lower end \[pt\].
+    start: Point,
+    /// From there to its upper end \[pt\].
+    along: Point,
+    length: f64,
+    /// Direction away from the body, of length 1.
+    out: Point,
+    is_upright: bool,
+}
+
+impl Edge {
+    /// The edge along an axis that lies outermost: of level axes below the body, of the upright one to its left. `None` for an
+    /// axis that is seen from its end.
+    fn outermost(projection: &Projection, axis: usize) -> Option<Self> {
         let [low, high] = projection.extent;
         let edge = |k: usize| {
             let mut ends = [low; 2];
@@ -183,7 +195,7 @@ fn draw_axes(drawing: &mut Drawing, projection: &Projection) {
         let along = [end[0] - start[0], end[1] - start[1]];
         let length = along[0].hypot(along[1]);
         if length < LEAST_AXIS {
-            continue;
+            return None;
         }
         let across = [along[1] / length, -along[0] / length];
         let is_upright = along[1].abs() > 2.0 * along[0].abs();
@@ -196,14 +208,37 @@ fn draw_axes(drawing: &mut Drawing, projection: &Projection) {
         let far =
             |[start, end]: &[Point; 2]| (0..2).map(|k| out[k] * (start[k] + end[k])).sum::<f64>();
         let edges = [edge(0), edge(1), edge(2), edge(3)];
-        let nearest = edges.into_iter().reduce(|best, own| {
+        let [start, _] = edges.into_iter().reduce(|best, own| {
             if far(&own) > far(&best) + 1e-6 {
                 own
             } else {
                 best
             }
-        });
-        let Some([start, _]) = nearest else { continue };
+        })?;
+        Some(Self {
+            start,
+            along,
+            length,
+            out,
+            is_upright,
+        })
+    }
+}
+
+/// An axis along each edge of the surrounding box that lies outermost, with ticks, numbers and its name.
+fn draw_axes(drawing: &mut Drawing, projection: &Projection) {
+    let [low, high] = projection.extent;
+    for axis in 0..3 {
+        let Some(edge) = Edge::outermost(projection, axis) else {
+            continue;
+        };
+        let Edge {
+            start,
+            along,
+            length,
+            out,
+            is_upright,
+        } = edge;
         let place = |value: f64| -> Point {
             let share = (value - low[axis]) / (high[axis] - low[axis]);
             [0, 1].map(|k| start[k] + share * along[k] + APART * out[k])

@@ -1,4 +1,4 @@
-//! What bodies fill: polygons in the plane, solids in space, and the particles that are seeded in them.
+//! Regions that bodies fill: polygons in the plane and solids in space, and the particles seeded in them.
 //!
 //! | module | what to find |
 //! |---|---|

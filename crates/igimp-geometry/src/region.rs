@@ -1,4 +1,4 @@
-//! What is filled with particles: a region of the plane or of space, and what filling and the ground ask of it.
+//! Regions of the plane or of space that are filled with particles.
 
 use std::fmt::Debug;
 
@@ -59,7 +59,7 @@ impl Crossing {
     }
 }
 
-/// What of a region stands over one box in plan, without end along the last axis.
+/// The part of a region above one box in plan, without end along the last axis.
 pub trait Column<const D: usize> {
     /// The part between two levels.
     fn within(&self, ends: [f64; 2]) -> Part<D>;

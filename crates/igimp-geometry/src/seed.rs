@@ -48,7 +48,7 @@ pub fn fill<const D: usize>(
     if let Some(found) = parts.by_columns(region) {
         let cover = |cell: usize, _, _| found[cell].0;
         let within = |cell: usize, part: usize, _, _| (found[cell].1[part], ());
-        let (seeds, _) = parts.filled((density, law), cover, within)?;
+        let (seeds, _) = parts.filled(density, law, cover, within)?;
         return Ok(seeds);
     }
     // Most of the work of cutting a polygon is done once for every column of parts.
@@ -63,7 +63,7 @@ pub fn fill<const D: usize>(
         (part, ())
     };
     let cover = |_, from, to| region.cover(from, to);
-    let (seeds, _) = parts.filled((density, law), cover, within)?;
+    let (seeds, _) = parts.filled(density, law, cover, within)?;
     Ok(seeds)
 }
 
@@ -102,7 +102,7 @@ pub fn fill_in_pieces(
         let clipped = clip_to_strip(&columns[column], 1, from[1], to[1]);
         (part(&clipped), clipped)
     };
-    let (seeds, pieces) = parts.filled((density, law), |_, _, _| Cover::Cut, within)?;
+    let (seeds, pieces) = parts.filled(density, law, |_, _, _| Cover::Cut, within)?;
     let piece = |(particle, polygon)| Piece { particle, polygon };
     Ok((seeds, pieces.into_iter().map(piece).collect()))
 }
@@ -227,7 +227,8 @@ impl<const D: usize> Parts<D> {
     /// parts are numbered, the first direction fastest.
     fn filled<K: Default>(
         &self,
-        (density, law): (f64, usize),
+        density: f64,
+        law: usize,
         cover: impl Fn(usize, [f64; D], [f64; D]) -> Cover,
         within: impl Fn(usize, usize, [f64; D], [f64; D]) -> (Part<D>, K),
     ) -> Result<Filled<D, K>, SeedError> {

@@ -30,7 +30,7 @@ const INEXACT: f64 = 0.1;
 const PATIENCE: usize = 300;
 /// Iterations that are tried at least where one was asked for.
 const TRIED: usize = 300;
-/// Memory allowed for factors \[bytes\], unless told otherwise.
+/// Default limit of the memory for factors \[bytes\].
 const FACTOR_BYTES: usize = 8 << 30;
 
 /// Chooses between a multifrontal factorisation and an iteration with multigrid.
@@ -54,7 +54,7 @@ pub struct AutoSolver {
     effort: LinearEffort,
 }
 
-/// What solves for the matrix at hand.
+/// The method for the matrix at hand.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum State {
     Nothing,
@@ -114,7 +114,7 @@ impl AutoSolver {
         }
     }
 
-    /// What it would do with the matrices of a pattern, before there is one: the same choice, and what factors take.
+    /// The choice for the matrices of a pattern, before there is one, and the memory of their factors.
     ///
     /// # Errors
     /// As [`LinearSolver::analyse`].
@@ -140,7 +140,7 @@ impl AutoSolver {
         })
     }
 
-    /// What to do with a matrix of a pattern that was analysed, and why.
+    /// The choice for a matrix of a pattern that was analysed, and the reason.
     fn choose(
         &mut self,
         pattern: &Arc<Pattern>,

@@ -8,7 +8,7 @@ use crate::{Border, TangentMatrix};
 /// solutions \[-\].
 const OF_ELIMINATION: f64 = 1e-10;
 
-/// What solves for the unknowns of the grid, or nearly so: the second vector from the first.
+/// An exact or approximate solver for the unknowns of the grid: the second vector from the first.
 pub(super) type Inverse<'a> = dyn FnMut(&[f64], &mut [f64]) -> Result<(), LinearSolverError> + 'a;
 
 /// The Schur complement of the unknowns of a border, S = K_bb − K_bg K_gg⁻¹ K_gb, with what it is made of. With a

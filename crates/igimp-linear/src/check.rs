@@ -93,7 +93,7 @@ pub(super) fn mirrored(pattern: &Pattern) -> Result<Vec<u32>, LinearSolverError>
     Ok(mirrored)
 }
 
-/// What one look at the values of a matrix tells, in memory that is used again.
+/// Statistics of the values of a matrix, in memory that is used again.
 #[derive(Default)]
 pub(super) struct Inspection {
     /// Diagonal entries, by unknown.

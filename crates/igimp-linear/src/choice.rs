@@ -26,9 +26,9 @@ pub struct Forecast {
     pub iterates: bool,
     /// Why.
     pub reason: Reason,
-    /// What factors in double precision and the contributions to them take \[bytes\].
+    /// Memory of factors in double precision and of the contributions to them \[bytes\].
     pub factor_bytes: usize,
-    /// What factors take that an iteration may be given up for \[bytes\]; zero where there is no room for any.
+    /// Memory of the factors that may replace an iteration \[bytes\]; zero where there is no room for any.
     pub fallback_bytes: usize,
     /// Operations of a factorisation in double precision.
     pub operations: f64,
@@ -63,9 +63,9 @@ pub enum Reason {
     },
     /// The factors would not fit into the memory allowed for them.
     Memory {
-        /// What they would take \[bytes\].
+        /// The memory that they would take \[bytes\].
         factors: usize,
-        /// What is allowed \[bytes\].
+        /// The limit \[bytes\].
         allowed: usize,
     },
     /// Factors in single precision did not serve.
@@ -78,9 +78,9 @@ pub enum Reason {
     OnlySingle {
         /// Iterations that were made.
         iterations: usize,
-        /// What factors in double precision would take \[bytes\].
+        /// The memory that factors in double precision would take \[bytes\].
         factors: usize,
-        /// What is allowed \[bytes\].
+        /// The limit \[bytes\].
         allowed: usize,
     },
     /// An iteration did not converge within as many steps as a factorisation costs.

@@ -1,4 +1,4 @@
-//! What can go wrong in a linear solve, as data.
+//! Errors of a linear solve, as data.
 
 /// Why a linear system could not be analysed, factorised or solved.
 #[derive(thiserror::Error, Clone, Debug, PartialEq)]
@@ -21,7 +21,7 @@ pub enum LinearSolverError {
     /// The pattern is not a valid, structurally symmetric pattern of coupled blocks.
     #[error("invalid sparsity pattern at block {block}: {reason}")]
     InvalidPattern {
-        /// What is wrong.
+        /// The reason.
         reason: &'static str,
         /// First block where it is wrong.
         block: usize,
@@ -80,14 +80,14 @@ pub enum LinearSolverError {
         relative_residual: f64,
         /// Largest acceptable one.
         tolerance: f64,
-        /// What factors in double precision would take, if there was no room for them.
+        /// Memory that factors in double precision would take, if it was not available.
         factor_bytes: Option<usize>,
     },
 
     /// The factors do not fit into memory or into the index type.
     #[error("out of memory: {what}")]
     OutOfMemory {
-        /// What could not be allocated.
+        /// The part that could not be allocated.
         what: &'static str,
     },
 }

@@ -24,6 +24,7 @@ mod border;
 mod bordered;
 mod check;
 mod choice;
+mod coupling_reach;
 mod error;
 mod krylov;
 mod libraries;
@@ -31,7 +32,6 @@ mod matrix;
 mod multifrontal;
 mod multigrid;
 mod ordering;
-mod reach;
 mod record;
 mod refine;
 
@@ -124,7 +124,7 @@ pub trait LinearSolver: Send {
     }
 }
 
-/// What one solve achieved.
+/// The report of one solve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SolveReport {
     /// The method that produced the solution, after any fallback.

@@ -160,7 +160,7 @@ pub struct TangentMatrix {
     pub values: Vec<f64>,
     /// Whether K is symmetric: associated flow everywhere, no interface that slips by friction.
     pub symmetric: bool,
-    /// What belongs to rigid bodies.
+    /// The border: unknowns of rigid bodies.
     pub border: Border,
 }
 

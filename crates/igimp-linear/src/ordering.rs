@@ -6,7 +6,7 @@
 //! them and are eliminated last, with the few nodes that are coupled further. Balancing by counted nodes and not by length keeps the fill low
 //! where half of the bounding box is empty, as in a slope.
 
-use super::reach::Reach;
+use super::coupling_reach::Reach;
 use crate::Pattern;
 
 /// Nodes below which a part is not dissected further.

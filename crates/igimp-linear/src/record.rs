@@ -44,7 +44,7 @@ impl Record {
         })
     }
 
-    /// What was kept, if any system was solved; the record begins anew.
+    /// The recorded system, if one was solved; the record begins anew.
     pub fn take(&self) -> Option<SolvedSystem> {
         self.kept().take()
     }
@@ -63,7 +63,7 @@ impl Record {
         }
     }
 
-    /// What is kept is whole at any moment, also after a panic elsewhere.
+    /// The record is complete at any moment, also after a panic elsewhere.
     fn kept(&self) -> MutexGuard<'_, Option<SolvedSystem>> {
         self.kept.lock().unwrap_or_else(PoisonError::into_inner)
     }

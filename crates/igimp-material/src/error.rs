@@ -1,4 +1,4 @@
-//! What can go wrong in a constitutive law, as data.
+//! Errors of a constitutive law, as data.
 
 /// Why a law could not be made or evaluated.
 #[derive(thiserror::Error, Debug, Clone, PartialEq)]
@@ -10,7 +10,7 @@ pub enum MaterialError {
         field: &'static str,
         /// Value given, in the caller's units (angles in radians).
         value: f64,
-        /// What the value has to be; reads on from "must be".
+        /// The requirement on the value; reads on from "must be".
         requirement: &'static str,
     },
     /// A strain or stretch is infinite or not a number, or so large that the stress is.

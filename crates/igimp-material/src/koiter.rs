@@ -122,7 +122,7 @@ impl Edge {
     }
 }
 
-/// What a region is returned to.
+/// The target of a return from a region.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Target {
     Face(Face),

@@ -13,7 +13,7 @@ use crate::{Elasticity, MaterialError};
 /// Most internal variables of a law.
 pub const INTERNAL_VARIABLES: usize = 4;
 
-/// What a law remembers of the past.
+/// The internal variables of a law.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct History {
     /// Accumulated plastic strain invariant $`\sum\sqrt{\tfrac23\,\Delta e_p:\Delta e_p}`$,
@@ -123,7 +123,7 @@ impl Regime {
     }
 }
 
-/// What soil carries in shear under no pressure, and how it grows with pressure.
+/// Shear strength at zero pressure, and its growth with pressure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShearStrength {
     /// Undrained strength c_u in plane strain, or cohesion c \[stress\].
@@ -132,7 +132,7 @@ pub struct ShearStrength {
     pub friction_angle: f64,
 }
 
-/// What plastic flow by the normality rule dissipates at a rate of strain, per volume.
+/// Dissipation of plastic flow by the normality rule at a rate of strain, per volume.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dissipation {
     /// Power of the cohesive strength \[stress\].
@@ -287,7 +287,7 @@ pub trait ConstitutiveModel: Send + Sync + Debug {
         None
     }
 
-    /// What plastic flow by the normality rule dissipates at the principal strain `rate` \[-\], whose own volume does
+    /// Dissipation of plastic flow by the normality rule at the principal strain `rate` \[-\], whose own volume does
     /// not matter; none for a law without a limit. With a limit on tension it is no less than what the law
     /// dissipates.
     ///

@@ -45,7 +45,7 @@ pub struct MohrCoulomb {
     given: Parameters,
     /// ψ/φ as given, before any change of strength \[-\].
     dilatancy: f64,
-    /// What yields: the strength as given, or Davis's.
+    /// The strength at yield: as given, or Davis's.
     strength: ShearStrength,
     pyramid: Pyramid,
 }
@@ -58,6 +58,55 @@ struct Parameters {
     dilation_angle: f64,
     tension_cutoff: Option<f64>,
     is_davis: bool,
+}
+
+impl Parameters {
+    /// Refuses angles and strengths that no soil has.
+    fn check(&self) -> Result<(), MaterialError> {
+        let Self {
+            cohesion,
+            friction_angle,
+            dilation_angle,
+            tension_cutoff,
+            ..
+        } = *self;
+        let in_range = (0.0..FRAC_PI_2).contains(&friction_angle) && friction_angle.sin() < 1.0;
+        required(
+            "friction_angle",
+            friction_angle,
+            in_range,
+            "at least 0 and less than pi/2",
+        )?;
+        let in_range = (0.0..=friction_angle).contains(&dilation_angle);
+        required(
+            "dilation_angle",
+            dilation_angle,
+            in_range,
+            "at least 0 and at most `friction_angle`",
+        )?;
+        required(
+            "cohesion",
+            cohesion,
+            cohesion >= 0.0,
+            "finite and not negative",
+        )?;
+        let some = cohesion > 0.0 || friction_angle > 0.0;
+        required(
+            "cohesion",
+            cohesion,
+            some,
+            "positive when `friction_angle` is 0",
+        )?;
+        if let Some(cutoff) = tension_cutoff {
+            required(
+                "tension_cutoff",
+                cutoff,
+                cutoff >= 0.0,
+                "finite and not negative",
+            )?;
+        }
+        Ok(())
+    }
 }
 
 impl MohrCoulomb {
@@ -138,41 +187,7 @@ impl MohrCoulomb {
             tension_cutoff,
             is_davis,
         } = given;
-        let in_range = (0.0..FRAC_PI_2).contains(&friction_angle) && friction_angle.sin() < 1.0;
-        required(
-            "friction_angle",
-            friction_angle,
-            in_range,
-            "at least 0 and less than pi/2",
-        )?;
-        let in_range = (0.0..=friction_angle).contains(&dilation_angle);
-        required(
-            "dilation_angle",
-            dilation_angle,
-            in_range,
-            "at least 0 and at most `friction_angle`",
-        )?;
-        required(
-            "cohesion",
-            cohesion,
-            cohesion >= 0.0,
-            "finite and not negative",
-        )?;
-        let some = cohesion > 0.0 || friction_angle > 0.0;
-        required(
-            "cohesion",
-            cohesion,
-            some,
-            "positive when `friction_angle` is 0",
-        )?;
-        if let Some(cutoff) = tension_cutoff {
-            required(
-                "tension_cutoff",
-                cutoff,
-                cutoff >= 0.0,
-                "finite and not negative",
-            )?;
-        }
+        given.check()?;
         let apex = if friction_angle > 0.0 {
             cohesion / friction_angle.tan()
         } else {

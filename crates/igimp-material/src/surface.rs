@@ -82,7 +82,7 @@ impl PlanarSurface {
             .fold(f64::NEG_INFINITY, |most, plane| most.max(plane.excess(tau)))
     }
 
-    /// What round-off in [`Self::yield_function`] is relative to \[stress\]: the strength of the
+    /// The scale of round-off in [`Self::yield_function`] \[stress\]: the strength of the
     /// first plane plus twice the largest stress, as no plane weighs its stresses by more than two
     /// in all. The strength of another plane plays no part: close to that plane it is no more than
     /// twice the largest stress, and far from it, however strong, it must not blunt the others.

@@ -5,7 +5,7 @@ use std::fmt;
 use igimp_text::short;
 use serde::{Deserialize, Deserializer, Serialize};
 
-/// What a computed value must satisfy.
+/// The band that a computed value must satisfy.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Band {
@@ -49,15 +49,15 @@ pub struct Check {
     pub case: String,
     /// Variant of method, mesh and parameters.
     pub variant: String,
-    /// What is measured, with unit.
+    /// The measured quantity, with unit.
     pub quantity: String,
     /// The outside value, in the unit that `quantity` names.
     pub expected: f64,
     /// Where it comes from.
     pub source: String,
-    /// What is accepted.
+    /// The accepted band.
     pub band: Band,
-    /// What was computed, in the same unit; JSON has `null` for what is not a number.
+    /// The computed value, in the same unit; NaN is `null` in JSON.
     #[serde(deserialize_with = "or_not_a_number")]
     pub measured: f64,
 }
@@ -69,10 +69,10 @@ impl Check {
     }
 }
 
-/// A number, or NaN where JSON has `null` for want of a better word.
+/// A number; NaN for `null` in JSON.
 ///
 /// # Errors
-/// What is neither a number nor `null`.
+/// For anything but a number or `null`.
 pub fn or_not_a_number<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
     Ok(Option::deserialize(deserializer)?.unwrap_or(f64::NAN))
 }

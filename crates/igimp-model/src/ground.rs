@@ -89,7 +89,7 @@ impl<const D: usize> Ground<D> {
             .sum()
     }
 
-    /// What a water table at a level adds to the weight above a place \[Pa\].
+    /// The weight above a place that a water table at a level adds \[Pa\].
     pub fn added_above(&self, place: &[f64; D], table: f64) -> f64 {
         let wet = |layer: &Layer<D>| sum_above(&*layer.region, place, |level| level.min(table));
         self.layers

@@ -82,7 +82,7 @@ pub struct Case<const D: usize> {
     pub rigid: Vec<RigidPart<D>>,
     /// Reinforcement; stages name it by index.
     pub reinforcement: Vec<ReinforcementPart<D>>,
-    /// What happens, in order.
+    /// The stages, in order.
     pub stages: Vec<Stage>,
     /// Newton, step cutting, linear solver.
     pub solver: SolverSettings,
@@ -98,7 +98,7 @@ pub struct Case<const D: usize> {
     pub checks: Vec<CaseCheck>,
     /// On how many meshes the case is computed, for the error of the mesh.
     pub mesh_study: MeshStudy,
-    /// What is written, and where.
+    /// The output settings.
     pub output: Output,
 }
 
@@ -142,7 +142,7 @@ impl AnyCase {
         in_any_dimension!(self, case => &case.title)
     }
 
-    /// What happens, in order.
+    /// The stages, in order.
     pub fn stages(&self) -> &[Stage] {
         in_any_dimension!(self, case => &case.stages)
     }
@@ -167,18 +167,18 @@ impl AnyCase {
         in_any_dimension!(self, case => case.mesh_study)
     }
 
-    /// What is written, and where.
+    /// The output settings.
     pub fn output(&self) -> &Output {
         in_any_dimension!(self, case => &case.output)
     }
 
-    /// What is written, and where, to be changed.
+    /// The output settings, to be changed.
     pub fn output_mut(&mut self) -> &mut Output {
         in_any_dimension!(self, case => &mut case.output)
     }
 }
 
-/// What stands in the head of a report beside its title. Nothing that is computed depends on it.
+/// The head of a report beside its title. Nothing that is computed depends on it.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct TitleBlock {
     /// Project.
@@ -213,7 +213,7 @@ pub struct BodyPart<const D: usize> {
     pub material: usize,
     /// Particles per cell in each direction.
     pub per_direction: usize,
-    /// What it fills.
+    /// The region that it fills.
     pub region: Arc<dyn Region<D>>,
     /// Whether it is there from the start, rather than from the stage that places it.
     pub from_start: bool,
@@ -226,7 +226,7 @@ impl BodyPart<2> {
     }
 }
 
-/// What a side of the grid does to the soil that reaches it.
+/// The support of a side of the grid.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Side {
     /// Nothing.
@@ -312,7 +312,7 @@ impl Default for SolverSettings {
     }
 }
 
-/// What is written, and where.
+/// The output settings.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Output {
     /// Results folder.
@@ -341,7 +341,7 @@ pub struct Cut {
 }
 
 impl Cut {
-    /// What the names of its pictures and tables begin with: `cut-y-3`.
+    /// The prefix of the names of its pictures and tables: `cut-y-3`.
     pub fn name(&self) -> String {
         let place = format!("{:.3}", self.at);
         let place = place.trim_end_matches('0').trim_end_matches('.');

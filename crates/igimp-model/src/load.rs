@@ -41,7 +41,7 @@ pub enum LoadKind<const D: usize> {
     /// A dead pressure on a level circle or polygon in space, raised by load stages. What of it lies beyond the grid, as
     /// behind a plane of symmetry, is left out.
     Patch {
-        /// What it covers in plan.
+        /// Its area in plan.
         plan: Plan,
         /// Its level \[m\].
         level: f64,
@@ -57,7 +57,7 @@ pub enum LoadKind<const D: usize> {
     },
 }
 
-/// What a load covers in plan.
+/// The area of a load in plan.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Plan {
     /// A circle.
@@ -98,7 +98,7 @@ impl Plan {
         }
     }
 
-    /// What of it lies in rectangles, so many along either side of a rectangle: area \[m²\] and centroid \[m\] of each
+    /// Its parts in a grid of rectangles, so many along either side of a rectangle: area \[m²\] and centroid \[m\] of each
     /// that has any.
     pub fn parts(
         &self,
@@ -133,7 +133,7 @@ impl Plan {
         }
     }
 
-    /// What it is and where, in words.
+    /// Its kind and place, in words.
     pub fn words(&self) -> String {
         let point = |[x, y]: &[f64; 2]| format!("({}, {})", short(*x), short(*y));
         match self {

@@ -27,11 +27,11 @@ pub struct Material {
     pub strength: Strength,
     /// Coefficient of earth pressure at rest K₀ \[-\], if the material states one.
     pub k0: Option<f64>,
-    /// What varies from place to place.
+    /// The parameters that vary from place to place.
     pub profiles: Profiles,
     /// Unit weight below the water table \[N/m³\]; none: that above.
     pub saturated: Option<f64>,
-    /// What it does with water.
+    /// Its drainage.
     pub drainage: Drainage,
     /// A law that takes the place of the one that `strength` names; case files know none.
     pub given: Option<GivenLaw>,

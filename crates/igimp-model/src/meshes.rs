@@ -45,7 +45,7 @@ pub fn label(parts: usize) -> String {
     }
 }
 
-/// What makes the meshes of a study meshes of different problems, in sentences.
+/// Reasons why the meshes of a study are not meshes of one problem, in sentences.
 pub fn differences<const D: usize>(case: &Case<D>) -> Vec<String> {
     let parts = refinements(case);
     let (Some(&first), Some(&last)) = (parts.first(), parts.last()) else {

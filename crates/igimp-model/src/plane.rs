@@ -1,4 +1,4 @@
-//! What is of the plane in code that knows no dimension: drawings of the plane are made of it.
+//! Access to the plane's types from code for any dimension, for drawings of the plane.
 
 use std::any::Any;
 

@@ -1,4 +1,4 @@
-//! What is recorded, and what it is held against: monitors, sections, curves and checks.
+//! Records and their references: monitors, sections, curves and checks.
 
 use igimp_schema::field::Field;
 
@@ -13,7 +13,7 @@ pub struct Monitor<const D: usize> {
     pub name: String,
     /// Point \[m\].
     pub point: [f64; D],
-    /// What is recorded.
+    /// The recorded fields.
     pub record: Vec<Field>,
 }
 
@@ -28,16 +28,16 @@ pub struct Section<const D: usize> {
     pub to: [f64; D],
     /// Number of equally spaced places.
     pub points: usize,
-    /// What is read.
+    /// The recorded fields.
     pub record: Vec<Field>,
     /// Of which particles.
     pub average: Average,
-    /// What the values are held against.
+    /// The references of the values.
     pub references: Vec<SectionReference>,
 }
 
 impl<const D: usize> Section<D> {
-    /// What the values at the end of a stage are held against.
+    /// The references of the values at the end of a stage.
     pub fn references_at(&self, case: &Case<D>, stage: usize) -> Vec<&SectionReference> {
         let read = |stage: &Stage| !matches!(stage.kind, StageKind::StrengthReduction(_));
         let last = case.stages.iter().rposition(read);
@@ -115,7 +115,7 @@ pub struct Curve {
     pub y: CurveAxis,
     /// The stage that is recorded; none: all.
     pub stage: Option<usize>,
-    /// What it is held against.
+    /// Its reference.
     pub reference: Option<Reference>,
 }
 
@@ -160,7 +160,7 @@ pub enum ReferenceValues {
 pub struct CaseCheck {
     /// Name.
     pub name: String,
-    /// What is measured.
+    /// The measured quantity.
     pub of: Quantity,
     /// It is divided by this \[SI units\].
     pub divide_by: f64,
@@ -172,7 +172,7 @@ pub struct CaseCheck {
     pub value: CheckValue,
     /// Outside value \[SI units after division\].
     pub expected: f64,
-    /// What is accepted.
+    /// The accepted band.
     pub band: Band,
     /// Where the value comes from.
     pub source: String,

@@ -5,7 +5,7 @@
 pub struct ReinforcementPart<const D: usize> {
     /// Name.
     pub name: String,
-    /// What it is.
+    /// Its kind.
     pub kind: ReinforcementKind,
     /// Its line from the head to the end, in the ground as it stands when it is placed \[m\].
     pub line: Vec<[f64; D]>,

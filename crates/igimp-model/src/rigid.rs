@@ -15,9 +15,9 @@ pub struct RigidPart<const D: usize> {
     pub name: String,
     /// Where it starts, and its shape.
     pub shape: Arc<dyn RigidForm<D>>,
-    /// The point that its displacement, its forces and its moment are told of, as the body starts \[m\].
+    /// The reference point of its displacement, forces and moment, as the body starts \[m\].
     pub reference: [f64; D],
-    /// What its sides are like; one for each side of the shape.
+    /// The interfaces of its sides; one for each side of the shape.
     pub interfaces: Vec<RigidInterface>,
     /// Normal stiffness of contact in units of E/h \[-\].
     pub stiffness: f64,
@@ -70,7 +70,7 @@ pub trait RigidForm<const D: usize>: Debug + Send + Sync {
     /// coordinates \[m\]; infinite beside the body.
     fn underside(&self, lower: &[f64; D], upper: &[f64; D]) -> f64;
 
-    /// What it is and where, and how large it is, in words.
+    /// Its shape, place and size, in words.
     fn words(&self) -> [String; 2];
 
     /// Names of its sides, in their order; none where they are numbered.
@@ -215,16 +215,16 @@ impl RigidShape {
     }
 }
 
-/// What a side of a rigid body is like.
+/// The interface of a side of a rigid body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RigidInterface {
-    /// What it carries along the side.
+    /// Its resistance along the side.
     pub shear: RigidShear,
-    /// What it carries when soil is pulled off.
+    /// Its resistance when soil is pulled off.
     pub tension: Tension,
 }
 
-/// What a side of a rigid body carries along itself.
+/// The shear resistance of a side of a rigid body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum RigidShear {
     /// Nothing.
@@ -272,7 +272,7 @@ impl RigidMove {
     }
 }
 
-/// What drives a component of the motion of a rigid body in a stage.
+/// The drive of a component of a rigid body's motion in a stage.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum RigidDrive {
     /// A further displacement \[m\] or rotation \[rad\] by the end of the stage.

@@ -164,7 +164,7 @@ pub fn table_level(points: &[[f64; 2]], x: f64) -> f64 {
     }
 }
 
-/// What a material does with the water in its pores.
+/// Drainage of a material.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Drainage {
     /// Water comes and goes as it likes: pressure is given, and the law speaks of effective stress.
@@ -180,7 +180,7 @@ pub enum Drainage {
     Total,
 }
 
-/// What a construction stage changes. Where it leaves the ground out of balance, that is let go over its steps.
+/// The changes of a construction stage. Unbalanced forces that they leave are released over its steps.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Construction {
     /// Bodies that are placed, by index, undeformed and free of stress where the case draws them.

@@ -24,7 +24,7 @@ const STRIDE: usize = 2;
 /// Price of a place up or down, in parts of the most shear.
 const PRICE: f64 = 0.05;
 
-/// Two equilibria, told apart by what the particles moved.
+/// Two equilibria and the displacements of the particles between them.
 #[derive(Clone, Copy, Debug)]
 pub struct Increment<'a> {
     /// Centres of the particles \[length\].
@@ -33,7 +33,7 @@ pub struct Increment<'a> {
     pub half_length: &'a [[f64; 2]],
     /// Their volumes.
     pub volume: &'a [f64],
-    /// What they moved from the one to the other \[length\].
+    /// Displacements from the first to the second \[length\].
     pub moved: &'a [[f64; 2]],
 }
 

@@ -1,4 +1,4 @@
-//! What a run looks like: pictures, the report, and the viewer, drawn from a case and its results.
+//! Pictures, the report and the viewer of a run, made from a case and its results.
 
 mod error;
 pub mod failure_mechanism;

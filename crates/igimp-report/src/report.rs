@@ -117,7 +117,7 @@ fn render(folder: &Path, summary: &Summary) -> Result<String, minijinja::Error> 
         .render(Value::from(Serde(page)))
 }
 
-/// What the template fills in.
+/// The values that the template fills in.
 #[derive(Serialize)]
 struct Page<'a> {
     title: &'a str,

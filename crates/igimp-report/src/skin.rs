@@ -56,7 +56,7 @@ pub struct Lie {
     pub open: f64,
 }
 
-/// What is seen of every box from outside.
+/// The faces of every box that are visible from outside.
 #[derive(Clone, Debug, Default)]
 pub struct Skin {
     /// By box the faces that are seen: bit 2 k + s for the lower (s = 0) or upper (s = 1) face across axis k.

@@ -1,7 +1,7 @@
 //! Parts of pages that show frames in a browser: `igimp view`, and the frames of a report.
 //!
 //! The script draws plane and space alike, and needs no other script and no network. It takes frames as
-//! [`packed`] makes them of those in `paraview/`.
+//! [`packed`] makes them of those in `paraview/`, the only states along a run that a results folder keeps.
 
 mod packed;
 
@@ -15,7 +15,7 @@ pub use packed::{Keep, packed};
 use rayon::prelude::*;
 use serde::Serialize;
 
-/// What stands in the section `soil` of a page: choices, canvas, slider.
+/// The section `soil` of a page: choices, canvas, slider.
 pub const SECTION: &str = include_str!("viewer/soil.html");
 
 /// The style of that section; the page gives the colours `--card`, `--line` and `--soft`.
@@ -89,7 +89,7 @@ pub(super) struct Held {
 /// A frame within a page.
 #[derive(Debug, Serialize)]
 struct HeldFrame {
-    /// What it is called.
+    /// Its name on the page.
     label: String,
     data: String,
     /// The rigid bodies of that frame, where the case has some.

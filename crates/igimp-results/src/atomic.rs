@@ -69,7 +69,7 @@ pub(crate) fn create(path: &Path) -> io::Result<File> {
 /// Writes a new file, as `create` makes it, and leaves it to the system when the disk has it.
 ///
 /// # Errors
-/// What the system says.
+/// The error of the system.
 pub fn write_new(path: &Path, bytes: impl AsRef<[u8]>) -> io::Result<()> {
     create(path)?.write_all(bytes.as_ref())
 }

@@ -1,4 +1,4 @@
-//! How runs and stages end: data, and the one place that puts it into words.
+//! How runs and stages end, as data, and the only place that puts it into words.
 
 use std::fmt;
 
@@ -104,9 +104,9 @@ pub enum EndReason {
     LimitBeyondLoad,
     /// A displacement exceeds what the case states.
     DisplacementExceeded {
-        /// Whose displacement.
+        /// The displacement that was exceeded, in words.
         whose: String,
-        /// What it may be \[m\].
+        /// Its limit \[m\].
         limit: f64,
     },
     /// The resistance has all but stopped growing.

@@ -1,4 +1,4 @@
-//! What can stand in the way of results: of their folder, and of the files in it.
+//! Errors of the results folder and of the files in it.
 
 pub(crate) mod checkpoint;
 
@@ -16,7 +16,7 @@ pub enum ResultsError {
     File {
         /// The file or folder.
         path: PathBuf,
-        /// What the system said.
+        /// The error of the system.
         #[source]
         source: std::io::Error,
     },
@@ -25,7 +25,7 @@ pub enum ResultsError {
     Table {
         /// The file.
         path: PathBuf,
-        /// What the writer said.
+        /// The error of the writer.
         #[source]
         source: csv::Error,
     },
@@ -94,7 +94,7 @@ pub enum ResultsError {
     Unusable {
         /// The file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// The reason.
         why: String,
     },
     /// An array file cannot be read.
@@ -102,7 +102,7 @@ pub enum ResultsError {
     Npy {
         /// The file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// The reason.
         #[source]
         source: NpyError,
     },
@@ -140,7 +140,7 @@ pub enum NpyError {
     /// The header is not the literal it should be.
     #[error("the header is not understood: {why}")]
     Header {
-        /// What is wrong.
+        /// The reason.
         why: &'static str,
     },
     /// Numbers of a kind that is not read.

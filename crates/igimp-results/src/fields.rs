@@ -160,7 +160,7 @@ fn utilisation<const D: usize>(
 /// The unit of a figure: SI values are divided by `divide_by`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scale {
-    /// What SI values are divided by.
+    /// The divisor of values in SI units.
     pub divide_by: f64,
     /// The unit after division.
     pub unit: &'static str,

@@ -219,7 +219,7 @@ pub fn mark(root: &Path, claim: &Claim, finished: bool) -> Result<(), ResultsErr
     Owner::of(claim, root, finished).write(&root.join(MARKER))
 }
 
-/// Who owns a folder of results, if it is known.
+/// The owner of a results folder, if known.
 pub fn owner(root: &Path) -> Option<Owner> {
     Owner::read(&root.join(MARKER))
 }
@@ -335,7 +335,7 @@ fn is_empty(folder: &Path) -> Result<bool, ResultsError> {
 /// Whether igimp wrote here: by the marker, or its temporary where a run was killed just then; by a
 /// summary that names igimp, by a checkpoint.
 ///
-/// A `case.toml` alone is no proof: it may be the input of a run that was told to write here.
+/// A `case.toml` alone is no proof: it may be the input of a run whose output folder this is.
 fn is_ours(root: &Path) -> bool {
     let names_igimp = |summary: serde_json::Value| {
         let program = summary["program"].as_str();

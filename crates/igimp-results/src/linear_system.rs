@@ -34,7 +34,7 @@ const ARRAYS: [&str; 6] = [
     "places.npy",
 ];
 
-/// What a system is, as `matrix.json` says it.
+/// The description of a system, as written to `matrix.json`.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct About {
     /// `igimp` and its version.
@@ -63,7 +63,7 @@ pub struct About {
 /// A linear system K x = b with the solution of the run, in compressed sparse columns.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LinearSystem {
-    /// What it is.
+    /// Its description.
     pub about: About,
     /// Start of each column, length unknowns + 1.
     pub col_ptr: Vec<u64>,

@@ -1,4 +1,4 @@
-//! What is read off a body of particles: oscillation of a field, values along a line, averages.
+//! Measurements on a body of particles: oscillation of a field, values along a line, averages.
 
 use igimp_assembly::Particles;
 
@@ -145,7 +145,8 @@ pub fn nearest<const D: usize>(
 pub fn along_line(
     particles: &Particles<2>,
     field: &[f64],
-    (from, to): ([f64; 2], [f64; 2]),
+    from: [f64; 2],
+    to: [f64; 2],
     points: usize,
     reach: f64,
 ) -> Vec<[f64; 2]> {

@@ -13,11 +13,11 @@ use crate::vtu::{CellKind, DataArray, UnstructuredGrid, padded};
 pub struct Installed<'a, const D: usize> {
     /// Its number in the case, from 0.
     pub index: usize,
-    /// What it is.
+    /// The member as the case describes it.
     pub part: &'a ReinforcementPart<D>,
     /// Where it is, and its tension.
     pub member: &'a Reinforcement<D>,
-    /// What its bond is divided by \[-\].
+    /// The factor by which its bond is divided \[-\].
     pub reduction: f64,
 }
 

@@ -1,4 +1,4 @@
-//! Rigid bodies in the results: contact at the knots of their surfaces, as tables and for ParaView.
+//! Rigid bodies in the results: contact at the nodes of their surfaces, as tables and for ParaView.
 
 use igimp_assembly::{ContactNode, RigidBody};
 use igimp_model::{RigidPart, RigidShape, in_plane};
@@ -11,7 +11,7 @@ use crate::vtu::{CellKind, DataArray, UnstructuredGrid, padded};
 pub struct Standing<'a, const D: usize> {
     /// Its number in the case, from 0.
     pub index: usize,
-    /// What it is.
+    /// The body as the case describes it.
     pub part: &'a RigidPart<D>,
     /// Where it stands, and what contact has left behind.
     pub body: &'a RigidBody<D>,
@@ -31,7 +31,7 @@ const HEADER: [&str; 10] = [
     "slips_[-]",
 ];
 
-/// A point of the outline of a body in space, with contact if it is a knot.
+/// A point of the outline of a body in space, with contact if it is a contact node.
 struct Place<'a> {
     /// Side, from 0.
     side: usize,
@@ -90,11 +90,11 @@ impl<'a> Standing<'a, 2> {
         }
     }
 
-    /// The knots side by side, in the order of the outline.
-    fn knots(&self) -> Vec<Place<'a>> {
+    /// The contact nodes side by side, in the order of the outline.
+    fn contact_nodes(&self) -> Vec<Place<'a>> {
         let body = self.body;
-        let knots = body.surface.knots();
-        std::iter::zip(knots, &body.contact.knots)
+        let nodes = body.surface.knots();
+        std::iter::zip(nodes, &body.contact.knots)
             .map(|((own, side), contact)| Place {
                 side,
                 own,
@@ -105,28 +105,28 @@ impl<'a> Standing<'a, 2> {
             .collect()
     }
 
-    /// The whole outline: knots, and the corners between the sides.
+    /// The whole outline: contact nodes, and the corners between the sides.
     fn outline(&self) -> Vec<Place<'a>> {
         let mut outline: Vec<Place<'a>> = Vec::new();
-        for knot in self.knots() {
-            if outline.last().is_none_or(|last| last.side != knot.side) {
-                outline.extend(self.corner(knot.side).map(|own| Place {
-                    side: knot.side,
+        for node in self.contact_nodes() {
+            if outline.last().is_none_or(|last| last.side != node.side) {
+                outline.extend(self.corner(node.side).map(|own| Place {
+                    side: node.side,
                     own,
                     x: self.body.pose.into_space(&own),
-                    normal: knot.normal,
+                    normal: node.normal,
                     contact: None,
                 }));
             }
-            outline.push(knot);
+            outline.push(node);
         }
         outline
     }
 
-    /// Contact at the knots of its surface, side by side, as a table.
+    /// Contact at the nodes of its surface, side by side, as a table.
     fn table_of_sides(&self, name: String) -> Table {
         let mut table = Table::new(name, &HEADER);
-        for place in self.knots() {
+        for place in self.contact_nodes() {
             let Some(contact) = place.contact else {
                 continue;
             };
@@ -171,14 +171,14 @@ impl<'a, const D: usize> Standing<'a, D> {
         })
     }
 
-    /// Contact at the knots of its surface, side by side, as a table.
+    /// Contact at the nodes of its surface, side by side, as a table.
     pub fn table(&self, name: String) -> Table {
         if let Some(own) = self.in_plane() {
             return own.table_of_sides(name);
         }
         let mut table = Table::new(name, &HEADER_IN_SPACE);
-        let knots = self.body.surface.knots();
-        for ((own, side), contact) in std::iter::zip(knots, &self.body.contact.knots) {
+        let nodes = self.body.surface.knots();
+        for ((own, side), contact) in std::iter::zip(nodes, &self.body.contact.knots) {
             let mut row = vec![side as f64 + 1.0];
             row.extend(self.body.pose.into_space(&own));
             row.extend([
@@ -195,8 +195,8 @@ impl<'a, const D: usize> Standing<'a, D> {
     }
 }
 
-/// Rigid bodies for ParaView: in the plane their outlines as lines between knots, with contact, and their corners; in
-/// space the triangles between their knots.
+/// Rigid bodies for ParaView: in the plane their outlines as lines between contact nodes, and their corners; in
+/// space the triangles between their contact nodes.
 pub fn cells<const D: usize>(standing: &[Standing<'_, D>]) -> UnstructuredGrid {
     if D == 2 {
         let in_plane: Vec<Standing<'_, 2>> =
@@ -243,11 +243,11 @@ pub fn cells<const D: usize>(standing: &[Standing<'_, D>]) -> UnstructuredGrid {
     }
 }
 
-/// Contact at a corner of a triangle, of the knots that share it.
-fn at_corner(shares: &[(usize, f64)], knots: &[ContactNode]) -> ContactNode {
+/// Contact at a corner of a triangle, of the contact nodes that share it.
+fn at_corner(shares: &[(usize, f64)], nodes: &[ContactNode]) -> ContactNode {
     let mut at = ContactNode::default();
-    for &(knot, share) in shares {
-        let own = &knots[knot];
+    for &(node, share) in shares {
+        let own = &nodes[node];
         at.pressure += share * own.pressure;
         at.shear[0] += share * own.shear[0].hypot(own.shear[1]);
         at.gap += share * own.gap;
@@ -267,7 +267,7 @@ fn gap(contact: &ContactNode) -> f64 {
     }
 }
 
-/// The outlines of rigid bodies as lines between points: their knots with contact, and their corners.
+/// The outlines of rigid bodies as lines between points: their contact nodes, and their corners.
 fn outlines(standing: &[Standing<'_, 2>]) -> UnstructuredGrid {
     let mut connectivity = Vec::new();
     let mut places: Vec<(usize, Place<'_>)> = Vec::new();

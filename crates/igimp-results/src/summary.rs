@@ -1,4 +1,4 @@
-//! What a run found, as written to `summary.json`.
+//! The results of a run, as written to `summary.json`.
 
 use std::fmt::Write as _;
 
@@ -7,7 +7,7 @@ use igimp_model::check::{Check, or_not_a_number};
 use igimp_text::short;
 use serde::{Deserialize, Serialize};
 
-use crate::ending::{Ending, PathEnd};
+use crate::ending::{EndReason, Ending, PathEnd};
 use crate::mesh_study::StudySummary;
 use crate::model_size::ModelSize;
 
@@ -21,7 +21,7 @@ pub struct Summary {
     /// Project, client, author and revision.
     #[serde(default)]
     pub title_block: TitleBlock,
-    /// Day and time of the run, as whoever started it said.
+    /// Date and time of the run, as given by the caller.
     #[serde(default)]
     pub date: Option<String>,
     /// SHA-256 of `case.completed.toml`, the case with every default.
@@ -54,12 +54,12 @@ pub struct Summary {
     pub peak_memory_mib: Option<f64>,
     /// Memory by particle and by unknown, where the system tells.
     pub memory: Option<MemoryShare>,
-    /// What the run was thought to cost before it began, to be held against `seconds` and
+    /// The cost that was estimated before the run, to be compared with `seconds` and
     /// `peak_memory_mib`.
     pub estimate: Option<Expected>,
     /// Whether the run was interrupted and can be resumed.
     pub interrupted: bool,
-    /// What a study of the mesh error found on all its meshes; stages and pictures are then those of
+    /// The results of a study of the mesh error on all its meshes; stages and pictures are then those of
     /// the finest mesh that came to its end.
     pub mesh_study: Option<StudySummary>,
 }
@@ -84,10 +84,10 @@ impl Summary {
     }
 }
 
-/// A table that tells a part of the case.
+/// A table that describes a part of the case.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SetupTable {
-    /// What it tells.
+    /// Its title.
     pub title: String,
     /// Names of its columns, with units.
     pub header: Vec<String>,
@@ -123,7 +123,7 @@ pub struct FigureNote {
     pub caption: String,
 }
 
-/// What the largest resident memory leaves when that at the beginning of the run is taken away, split
+/// Largest resident memory less that at the beginning of the run, split
 /// in the proportions of the estimate.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MemoryShare {
@@ -182,7 +182,7 @@ pub struct StageSummary {
     /// Settlement of that footing at the end \[m\].
     #[serde(default)]
     pub settlement: Option<f64>,
-    /// What a strength reduction found.
+    /// Result of a strength reduction.
     pub safety: Option<SafetySummary>,
     /// Gross work of the external force in the accepted steps: of its components, by magnitude \[J/m; J in space\].
     #[serde(default)]
@@ -202,6 +202,23 @@ pub struct StageSummary {
     /// How its linear systems were solved, in space.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub linear: Option<LinearSummary>,
+}
+
+impl StageSummary {
+    /// Whether the stage came to what its case asks of it: its end, or a condition that ends it there. One that found no
+    /// equilibrium on its way, that ran out of steps, or that tells no limit where one is sought, did not.
+    pub fn came_to_its_end(&self) -> bool {
+        let ran_short = [
+            EndReason::StepsOfPathRanOut,
+            EndReason::StillMoving { steps: self.steps },
+            EndReason::NoFactorOfSafety,
+        ];
+        matches!(
+            self.outcome,
+            StageOutcome::Completed | StageOutcome::Stopped
+        ) && !self.lost
+            && !ran_short.iter().any(|reason| reason.code() == self.code)
+    }
 }
 
 /// Where the work of a stage that takes time went \[J/m; J in space\]. What is not a state adds up over the stage.
@@ -379,7 +396,7 @@ pub struct SafetySummary {
     pub stable: Option<f64>,
     /// Smallest factor found failed \[-\].
     pub failed: Option<f64>,
-    /// What counts as failure.
+    /// The failure criterion, in words.
     pub criterion: String,
     /// Materials that were reduced.
     pub materials: Vec<String>,
@@ -411,14 +428,14 @@ pub struct PathSummary {
     pub rise: Option<f64>,
     /// The displacement γH²/E that soil of this weight, height and stiffness is moved by before it fails \[m\].
     pub displacement_scale: Option<f64>,
-    /// What decides the factor, where the path came to a mechanism.
+    /// The shares that decide the factor, if the path reached a mechanism.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shares: Option<StrengthShares>,
     /// Its equilibria in order.
     pub points: Vec<PathPoint>,
 }
 
-/// What decides a factor of safety, at the last equilibrium of its path.
+/// The shares that decide a factor of safety, at the last equilibrium of its path.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct StrengthShares {
     /// The shares of the materials that have a strength.

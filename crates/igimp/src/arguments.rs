@@ -164,7 +164,7 @@ pub(crate) struct SweepArguments {
     pub(crate) to: Option<Scheduler>,
 }
 
-/// What starts the tasks of a sweep.
+/// The scheduler that starts the tasks of a sweep.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Scheduler {
     /// A batch script with an array job.

@@ -1,4 +1,4 @@
-//! What ends the program early, and its exit codes.
+//! Errors that end the program early, and its exit codes.
 
 use std::error::Error;
 use std::io::ErrorKind;

@@ -57,7 +57,7 @@ pub(crate) fn to(
     Ok(Exit::Done)
 }
 
-/// What a task is given, and why.
+/// The resources of a task, and the reason.
 fn given(demand: &Resources) -> String {
     let plural = if demand.threads == 1 { "" } else { "s" };
     format!(

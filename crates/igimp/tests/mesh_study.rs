@@ -226,6 +226,42 @@ fn a_mesh_that_fails_takes_nothing_from_the_others() {
     assert!(text.contains("on the mesh h: "), "{text}");
 }
 
+/// GOAL: a march that ended on its way is named in verdict and report, extrapolates to nothing and meets no check.
+/// CASE: a footing that is to be pushed by its width, with a solver that may correct three times only: some 2 % of the way.
+#[test]
+fn a_march_that_ended_early_is_refused() {
+    let folder = Folder::new("meshes-early");
+    let text = find("footing_bonded").unwrap().text;
+    std::fs::write(folder.0.join("footing.toml"), text).unwrap();
+    let check = "checks=[{ name = \"N\", of = \"footing.reaction\", divide_by = [\"1 m\", \"1 kPa\"], between = [0, 1e3], \
+                 source = \"every value meets it\" }]";
+    let mut command = Command::new(env!("CARGO_BIN_EXE_igimp"));
+    command.args(["run", "footing.toml", "--out", "out", "--meshes", "2"]);
+    for setting in [
+        "grid.cell=1/3 m",
+        "solver.max_iterations=3",
+        "curves=[]",
+        check,
+    ] {
+        command.args(["--set", setting]);
+    }
+    let output = command.current_dir(&folder.0).output().unwrap();
+    let said = String::from_utf8_lossy(&output.stdout);
+    assert_eq!(output.status.code(), Some(3), "{output:?}");
+    let refusal = "nothing is extrapolated: the runs on the meshes h and h/3 ended early";
+    assert!(said.contains(refusal), "{said}");
+    let text = std::fs::read_to_string(folder.0.join("out/summary.json")).unwrap();
+    let summary: Summary = serde_json::from_str(&text).unwrap();
+    let load = result(&summary, ResultKind::LimitLoad);
+    assert!(load.ended_early(0) && load.ended_early(1), "{load:?}");
+    assert_eq!(load.estimate, None);
+    assert!(!summary.checks[0].pass && summary.checks[0].check.measured.is_nan());
+    let page = std::fs::read_to_string(folder.0.join("out/report.html")).unwrap();
+    // The template escapes slashes.
+    assert!(page.contains(&refusal.replace('/', "&#x2f;")), "{refusal}");
+    assert!(page.contains("is not held: no mesh came to its value"));
+}
+
 #[test]
 fn a_study_that_makes_no_sense_is_told() {
     let folder = Folder::new("meshes-told");

@@ -102,7 +102,8 @@ impl<'a> Results<'a> {
         &self,
         study: &mut Study,
         benchmark: &str,
-        (variant, value): (usize, usize),
+        variant: usize,
+        value: usize,
     ) -> usize {
         let computed = self.at(variant, value);
         let name = format!("{}: {benchmark}", self.variants[variant].label);

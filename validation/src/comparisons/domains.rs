@@ -100,7 +100,7 @@ fn stiff_column(study: &mut Study) -> Result<(), CaseError> {
     let quantity = "stress error [-]";
     let best = error(results.at(0, 256));
     for (k, expected) in [(0, 6.351e-5), (2, 3.5e-4), (3, 6.7e-4)] {
-        let run = results.record(study, "column, 256 cells, E = 1 MPa", (k, 256));
+        let run = results.record(study, "column, 256 cells, E = 1 MPa", k, 256);
         let measured = error(results.at(k, 256));
         if k == 0 {
             let expected = COLUMN.says(expected);
@@ -200,7 +200,7 @@ fn bent(study: &mut Study) -> Result<(), CaseError> {
     let results = Results::compute(&VARIANTS, "cells_over_depth", &[4, 8], |cells| {
         cantilever(cells, 10, 30)
     })?;
-    let run = results.record(study, "cantilever, P L²/(E I) = 10", (0, 8));
+    let run = results.record(study, "cantilever, P L²/(E I) = 10", 0, 8);
     let measured = deflection(results.at(0, 8));
     let quantity = "deflection / L [-]";
     study.check(

@@ -88,7 +88,7 @@ fn column(study: &mut Study) -> Result<(), CaseError> {
         let quantity = "height over initial height [-]";
         for steps in [10, 80] {
             let name = format!("column, S = {load}, {steps} steps");
-            let run = results.record(study, &name, (0, steps));
+            let run = results.record(study, &name, 0, steps);
             let measured = height(results.at(0, steps));
             study.check(
                 run,
@@ -97,7 +97,7 @@ fn column(study: &mut Study) -> Result<(), CaseError> {
                 Band::Relative(2e-3),
                 measured,
             );
-            let run = results.record(study, &name, (1, steps));
+            let run = results.record(study, &name, 1, steps);
             let measured = height(results.at(1, steps));
             // At least ten times as far from the exact height as finite strain may be.
             let band = Band::AtMost(0.98 * exact);
@@ -277,7 +277,7 @@ fn stiff(study: &mut Study) -> Result<(), CaseError> {
     let measured = |computed: &Computed<2>| limit(computed).unwrap_or(f64::INFINITY);
     let [lower, upper] = bounds(2.0);
     for k in 0..2 {
-        let run = results.record(study, "stiff slope, D = 2, h = 1 m", (k, 64));
+        let run = results.record(study, "stiff slope, D = 2, h = 1 m", k, 64);
         study.check(
             run,
             "γH/c_u at collapse [-]",

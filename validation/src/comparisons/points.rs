@@ -68,7 +68,7 @@ fn column(study: &mut Study) -> Result<(), CaseError> {
         })?;
         if young == "1 MPa" {
             for k in 0..3 {
-                let run = results.record(study, "column, 128 cells, E = 1 MPa", (k, 128));
+                let run = results.record(study, "column, 128 cells, E = 1 MPa", k, 128);
                 let [coarse, fine] = [32, 128].map(|cells| error(results.at(k, cells)));
                 study.check(
                     run,

@@ -98,10 +98,10 @@ fn column(study: &mut Study) -> Result<(), CaseError> {
     let error = |computed: &Computed<2>| ColumnResult::new(computed).stress_error;
     let quantity = "stress error [-]";
     let (expected, bench) = (COLUMN.says(2.324e-4), "column, 128 cells, E = 1 MPa");
-    let run = results.record(study, bench, (TIED, 128));
+    let run = results.record(study, bench, TIED, 128);
     let measured = error(results.at(TIED, 128));
     study.check(run, quantity, expected, Band::Relative(0.03), measured);
-    let run = results.record(study, bench, (DROPPED, 128));
+    let run = results.record(study, bench, DROPPED, 128);
     let band = Band::AtLeast(1.5 * 2.324e-4);
     study.control(
         run,
@@ -158,7 +158,7 @@ fn stiff(study: &mut Study) -> Result<(), CaseError> {
     let fine = Results::compute(&pair, "cells_per_m", &[2], collapse)?;
     for (results, cells) in [(&coarse, 1), (&fine, 2)] {
         let name = format!("stiff slope, D = 2, h = {} m", 1.0 / cells as f64);
-        let run = results.record(study, &name, (TIED, cells));
+        let run = results.record(study, &name, TIED, cells);
         let band = Band::Between(0.98 * lower, 1.02 * upper);
         study.check(
             run,
@@ -168,7 +168,7 @@ fn stiff(study: &mut Study) -> Result<(), CaseError> {
             measured(results.at(TIED, cells)),
         );
         if cells == 1 {
-            let run = results.record(study, &name, (DROPPED_MOST, cells));
+            let run = results.record(study, &name, DROPPED_MOST, cells);
             let band = Band::AtLeast(1.02 * upper);
             study.control(
                 run,
@@ -205,7 +205,7 @@ fn soft(study: &mut Study) -> Result<(), CaseError> {
         (TIED, "soft slope, h = 1 m"),
         (DROPPED_MOST, "soft slope, h = 1 m"),
     ] {
-        let run = results.record(study, name, (k, 10));
+        let run = results.record(study, name, k, 10);
         let measured = largest_displacement(results.at(k, 10));
         if k == TIED {
             study.check(

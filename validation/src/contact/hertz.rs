@@ -118,11 +118,11 @@ impl Cylinder {
         );
         let mut profile: Vec<[f64; 3]> = closed(&body.rigid)
             .iter()
-            .map(|(x, knot)| {
+            .map(|(x, node)| {
                 [
                     x[0] - body.rigid[0].pose.origin[0],
-                    knot.pressure,
-                    knot.shear[0],
+                    node.pressure,
+                    node.shear[0],
                 ]
             })
             .collect();

@@ -85,7 +85,7 @@ pub(crate) fn graded(h: f64, fine: [f64; 2], ends: [f64; 2], growth: f64) -> Vec
     nodes
 }
 
-/// A body of this outline with the same interface on all sides, its knots about `spacing` apart, with its
+/// A body of this outline with the same interface on all sides, its contact nodes about `spacing` apart, with its
 /// reference point at `origin`.
 pub(crate) fn polygon(
     corners: &[[f64; 2]],
@@ -115,19 +115,19 @@ pub(crate) fn force<const D: usize>(accepted: &Accepted<'_, D>) -> [f64; D] {
     accepted.forces.reactions[accepted.conditions.grid.node_count()]
 }
 
-/// The knots of the first body that soil touches: place in space and what contact left there.
+/// The contact nodes of the first body that soil touches: place in space and what contact left there.
 pub(crate) fn closed<const D: usize>(bodies: &[RigidBody<D>]) -> Vec<([f64; D], ContactNode)> {
     let body = &bodies[0];
-    let knots = body.surface.knots();
-    let knots = knots.iter().zip(&body.contact.knots);
-    knots
-        .filter(|(_, knot)| knot.is_closed)
-        .map(|((place, _), knot)| (body.pose.into_space(place), *knot))
+    let nodes = body.surface.knots();
+    let nodes = nodes.iter().zip(&body.contact.knots);
+    nodes
+        .filter(|(_, node)| node.is_closed)
+        .map(|((place, _), node)| (body.pose.into_space(place), *node))
         .collect()
 }
 
 /// The largest penetration of the first body \[length\].
 pub(crate) fn penetration(bodies: &[RigidBody<2>]) -> f64 {
-    let knots = closed(bodies).into_iter();
-    knots.map(|(_, knot)| -knot.gap).fold(0.0, f64::max)
+    let nodes = closed(bodies).into_iter();
+    nodes.map(|(_, node)| -node.gap).fold(0.0, f64::max)
 }

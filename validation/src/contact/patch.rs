@@ -81,10 +81,10 @@ fn square(offset: f64) -> Result<(RunRecord, [f64; 2]), CaseError> {
         .flat_map(|sigma| [sigma[1][1] - mean, sigma[0][0], sigma[0][1]])
         .map(|off| (off / mean).abs())
         .fold(0.0, f64::max);
-    let knots = body.rigid[0].contact.knots.iter();
-    let pressure = knots
-        .filter(|knot| knot.is_closed)
-        .map(|knot| (knot.pressure / -mean - 1.0).abs())
+    let nodes = body.rigid[0].contact.knots.iter();
+    let pressure = nodes
+        .filter(|node| node.is_closed)
+        .map(|node| (node.pressure / -mean - 1.0).abs())
         .fold(0.0, f64::max);
     Ok((run, [stress, pressure]))
 }

@@ -34,7 +34,7 @@ const YOUNG: f64 = 300.0;
 const DEPTH: f64 = 1.0;
 /// How far it is pushed; in full also further.
 const PUSH: f64 = 0.2;
-/// Distance of the knots of contact in cells: closer ones take turns in carrying on an inclined face.
+/// Distance of the contact nodes in cells: closer ones take turns in carrying on an inclined face.
 const KNOTS: f64 = 2.0;
 /// Nodes of the lip and of the axis in the wedge carry next to no soil.
 const GHOST_PENALTY: f64 = 1e-3;
@@ -154,9 +154,9 @@ impl Wedge {
         let origin = [0.0, -DEPTH];
         let mut wedge = polygon(&corners, KNOTS * self.h(), &Interface::smooth(), origin);
         let places = wedge.surface.knots();
-        for ((place, side), knot) in places.into_iter().zip(&mut wedge.contact.knots) {
+        for ((place, side), node) in places.into_iter().zip(&mut wedge.contact.knots) {
             if side == 0 && place[0].hypot(place[1]) < field.contact {
-                (knot.area, knot.is_closed) = (self.h(), true);
+                (node.area, node.is_closed) = (self.h(), true);
             }
         }
         wedge
@@ -195,7 +195,7 @@ fn lip(particles: &Particles<2>, reach: f64) -> f64 {
 }
 
 /// Pushes a wedge from unit depth on, with the lip that it has thrown up by then; by step: depth, P/(s_u c),
-/// P over the face up to the lip, height of the lip over depth, length and pressure of the knots that touch, the highest soil.
+/// P over the face up to the lip, height of the lip over depth, length and pressure of the contact nodes that touch, the highest soil.
 fn push(wedge: Wedge) -> Result<(RunRecord, Table), CaseError> {
     let (grid, field) = (wedge.grid()?, wedge.field());
     let wide = grid.axes[0].end();
@@ -236,11 +236,11 @@ fn push(wedge: Wedge) -> Result<(RunRecord, Table), CaseError> {
         let lip = lip(particles, field.foot() * depth);
         let tops = (0..particles.len()).map(|p| particles.x[p][1] + particles.half_length[p][1]);
         let highest = tops.fold(0.0, f64::max);
-        let knots = closed(&accepted.body.rigid);
-        let length: f64 = knots.iter().map(|(_, knot)| knot.area).sum();
-        let pressed: f64 = knots
+        let nodes = closed(&accepted.body.rigid);
+        let length: f64 = nodes.iter().map(|(_, node)| node.area).sum();
+        let pressed: f64 = nodes
             .iter()
-            .map(|(_, knot)| knot.area * knot.pressure)
+            .map(|(_, node)| node.area * node.pressure)
             .sum();
         let load = -2.0 * force(accepted)[1];
         let face = (depth + lip) / field.beta.cos();

@@ -238,7 +238,7 @@ impl Study {
         band: Band,
         measured: f64,
     ) {
-        self.record(run, quantity.into(), expected, (band, measured), false);
+        self.record(run, quantity.into(), expected, band, measured, false);
     }
 
     /// Records a negative control on a run: a variant without a part of the method, which must miss
@@ -251,7 +251,7 @@ impl Study {
         band: Band,
         measured: f64,
     ) {
-        self.record(run, quantity.into(), expected, (band, measured), true);
+        self.record(run, quantity.into(), expected, band, measured, true);
     }
 
     fn record(
@@ -259,7 +259,8 @@ impl Study {
         run: usize,
         quantity: String,
         expected: Expected,
-        (band, measured): (Band, f64),
+        band: Band,
+        measured: f64,
         control: bool,
     ) {
         let check = Check {

@@ -186,7 +186,7 @@ pub(crate) fn study(level: Level, out: &Folder) -> Result<Study, CaseError> {
         against_bounds(&mut study, own, path);
         // Gravity raised anew at every factor is another load path.
         if own.problem.search.path == Path::Reduce {
-            against_trials(&mut study, own, (path, trials));
+            against_trials(&mut study, own, path, trials);
         }
         let mechanism = path.path().and_then(|path| path.mechanism);
         let at = |point: PathPoint| format!("{:.4} at {}", point.factor, short(point.displacement));
@@ -285,7 +285,7 @@ fn against_bounds(study: &mut Study, own: &Sought<'_>, found: &Found) {
 }
 
 /// A factor against the largest one at which a search by trials found equilibrium.
-fn against_trials(study: &mut Study, own: &Sought<'_>, (path, trials): (&Found, &Found)) {
+fn against_trials(study: &mut Study, own: &Sought<'_>, path: &Found, trials: &Found) {
     let stable = trials.stage.safety.as_ref().and_then(|found| found.stable);
     let failed = path.stage.safety.as_ref().and_then(|found| found.failed);
     let run = study.run(trials.record(format!("{}, by trials", own.name())));

@@ -232,7 +232,7 @@ fn convergence<const D: usize>(
         );
         let run = study.run(sum);
         for pair in curves[index].windows(2) {
-            rates::<D>(study, run, (index, field.rollers, steps), pair);
+            rates::<D>(study, run, index, field.rollers, steps, pair);
         }
     }
     write(study, field, steps, &curves)
@@ -242,7 +242,9 @@ fn convergence<const D: usize>(
 fn rates<const D: usize>(
     study: &mut Study,
     run: usize,
-    (index, rollers, steps): (usize, bool, usize),
+    index: usize,
+    rollers: bool,
+    steps: usize,
     pair: &[(usize, Errors)],
 ) {
     let [(from, coarse), (cells, fine)] = *pair else {

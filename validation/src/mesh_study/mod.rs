@@ -100,7 +100,7 @@ fn slopes(study: &mut Study, level: Level) -> Result<(), CaseError> {
             (result(summary, ResultKind::FactorOfSafety), problem.known)
         {
             let record = record(format!("{}, along the path", problem.section.name), summary);
-            note += &of_slope(study, problem, (found, truth), record.clone());
+            note += &of_slope(study, problem, found, truth, record.clone());
             records.push(record);
         }
     }
@@ -141,7 +141,8 @@ fn slopes(study: &mut Study, level: Level) -> Result<(), CaseError> {
 fn of_slope(
     study: &mut Study,
     problem: &Problem,
-    (found, truth): (&StudyResult, [f64; 2]),
+    found: &StudyResult,
+    truth: [f64; 2],
     record: RunRecord,
 ) -> String {
     let name = record.variant.clone();

@@ -241,7 +241,8 @@ pub(super) fn computed(
 pub(super) fn check_pair(
     study: &mut Study,
     name: &str,
-    (plane, space): (&Computed<2>, &Computed<3>),
+    plane: &Computed<2>,
+    space: &Computed<3>,
     found: &[(&str, f64)],
 ) {
     let record = RunRecord::new(format!("{name}, plane"), &plane.report, plane.elapsed);
@@ -268,7 +269,7 @@ pub(crate) fn study(out: &Path) -> Result<Study, CaseError> {
     for (sheet, (plane, space)) in SHEETS.iter().zip(done) {
         let [displacement, stress] = differences(plane.particles(), space.particles());
         let found = [("displacement", displacement), ("stress", stress)];
-        check_pair(&mut study, sheet.name, (&plane, &space), &found);
+        check_pair(&mut study, sheet.name, &plane, &space, &found);
     }
     super::slice::ground::add(&mut study)?;
     Ok(study)

@@ -63,7 +63,8 @@ struct Expansion {
 const fn thick(
     name: &'static str,
     shear: f64,
-    (cells, points): (usize, usize),
+    cells: usize,
+    points: usize,
     least: Level,
 ) -> Expansion {
     Expansion {
@@ -86,7 +87,7 @@ const fn thick(
 
 /// A cavity in ground that reaches eight of its radii far: more than yields until it is half as wide again.
 const fn cavity(name: &'static str, shear: f64, cells: usize) -> Expansion {
-    let mut expansion = thick(name, shear, (cells, 3), Level::Full);
+    let mut expansion = thick(name, shear, cells, 3, Level::Full);
     expansion.exact.outer = 8.0;
     expansion.to = 1.5;
     expansion.fine = 2.0;
@@ -95,10 +96,10 @@ const fn cavity(name: &'static str, shear: f64, cells: usize) -> Expansion {
 }
 
 static EXPANSIONS: [Expansion; 8] = [
-    thick("thick, I_r = 100", 100.0, (3, 3), Level::Quick),
-    thick("thick, I_r = 100", 100.0, (5, 3), Level::Full),
-    thick("thick, I_r = 33", 100.0 / 3.0, (3, 3), Level::Default),
-    thick("thick, I_r = 33", 100.0 / 3.0, (5, 3), Level::Full),
+    thick("thick, I_r = 100", 100.0, 3, 3, Level::Quick),
+    thick("thick, I_r = 100", 100.0, 5, 3, Level::Full),
+    thick("thick, I_r = 33", 100.0 / 3.0, 3, 3, Level::Default),
+    thick("thick, I_r = 33", 100.0 / 3.0, 5, 3, Level::Full),
     cavity("cavity, I_r = 100", 100.0, 4),
     cavity("cavity, I_r = 100", 100.0, 5),
     cavity("cavity, I_r = 33", 100.0 / 3.0, 4),

@@ -150,7 +150,7 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
         );
     }
     if level == Level::Full {
-        minimum_lies_inside(&mut study, &problems, (&factors, &sums));
+        minimum_lies_inside(&mut study, &problems, &factors, &sums);
     }
     study.notes.push(note);
     table.write_csv(&study.folder)?;
@@ -161,7 +161,8 @@ pub(crate) fn study(level: Level, out: &Path) -> Result<Study, CaseError> {
 fn minimum_lies_inside(
     study: &mut Study,
     problems: &[Problem],
-    (factors, sums): (&[f64], &[RunRecord]),
+    factors: &[f64],
+    sums: &[RunRecord],
 ) {
     for depth in ["D = 1", "D = 1.5"] {
         let own: Vec<usize> = (0..problems.len())

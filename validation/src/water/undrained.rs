@@ -63,11 +63,9 @@ fn soil(poisson: f64, dilation: f64) -> String {
     )
 }
 
-/// A specimen under two drained pressures that is pressed together undrained.
-fn specimen(study: &mut Study) -> Result<(), CaseError> {
-    let [vertical, horizontal] = [100.0, 60.0];
-    for undrained in [0.49, 0.495, 0.4999] {
-        let text = format!(
+/// The case of a specimen between two plates, by the drained pressures on it \[kPa\].
+fn specimen_file(vertical: f64, horizontal: f64) -> String {
+    format!(
             "igimp = 1
              [case]
              title = \"specimen\"
@@ -121,7 +119,14 @@ fn specimen(study: &mut Study) -> Result<(), CaseError> {
              geometry = \"given\"
             ",
             soil(POISSON, 0.0)
-        );
+        )
+}
+
+/// A specimen under two drained pressures that is pressed together undrained.
+fn specimen(study: &mut Study) -> Result<(), CaseError> {
+    let [vertical, horizontal] = [100.0, 60.0];
+    for undrained in [0.49, 0.495, 0.4999] {
+        let text = specimen_file(vertical, horizontal);
         let mut case = CaseFile::parse("specimen", &text, &[])?.into_case();
         let stiff = stiffness(POISSON, undrained);
         case.materials[0].drainage = Drainage::Undrained {
@@ -148,14 +153,9 @@ fn specimen(study: &mut Study) -> Result<(), CaseError> {
     Ok(())
 }
 
-/// A weightless slope under one pressure on its surface, drained, in which gravity is raised undrained until the slope
-/// flows: half a metre, which elastic soil does not come near.
-fn slope(study: &mut Study) -> Result<(), CaseError> {
-    let pressure = 100.0;
-    let (sin, cos) = FRICTION.to_radians().sin_cos();
-    let strength = COHESION * cos + pressure * sin;
-    let case = |material: &str| -> Result<Case<2>, CaseError> {
-        let text = format!(
+/// The case of a slope of a material, under a pressure on its surface \[kPa\].
+fn slope_file(material: &str, pressure: f64) -> String {
+    format!(
             "igimp = 1
              [case]
              title = \"undrained slope\"
@@ -204,7 +204,17 @@ fn slope(study: &mut Study) -> Result<(), CaseError> {
              geometry = \"given\"
              stop_when = {{ displacement = \"0.5 m\", no_equilibrium = true }}
             "
-        );
+        )
+}
+
+/// A weightless slope under one pressure on its surface, drained, in which gravity is raised undrained until the slope
+/// flows: half a metre, which elastic soil does not come near.
+fn slope(study: &mut Study) -> Result<(), CaseError> {
+    let pressure = 100.0;
+    let (sin, cos) = FRICTION.to_radians().sin_cos();
+    let strength = COHESION * cos + pressure * sin;
+    let case = |material: &str| -> Result<Case<2>, CaseError> {
+        let text = slope_file(material, pressure);
         Ok(CaseFile::parse("undrained slope", &text, &[])?.into_case())
     };
     let undrained = |dilation: f64| -> Result<Computed<2>, CaseError> {

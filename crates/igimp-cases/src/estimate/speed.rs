@@ -21,7 +21,7 @@ use crate::error::CaseError;
 const CELLS: usize = 24;
 /// Times that each kernel runs.
 const REPEATS: usize = 12;
-/// What the kernels take on the reference computer, an AMD EPYC of 2026: a pass over the particles,
+/// Times of the kernels on the reference computer, an AMD EPYC of 2026: a pass over the particles,
 /// a factorisation \[s\].
 const REFERENCE: [f64; 2] = [1.1e-3, 3.5e-4];
 

@@ -13,11 +13,11 @@ use igimp_model::Case;
 const PER_FILL: f64 = 1.5e2;
 /// Factors in single precision with the vectors of the iteration, over those in double \[-\].
 const IN_SINGLE: f64 = 0.55;
-/// What an iteration with multigrid holds instead of factors \[bytes per unknown\].
+/// Memory of an iteration with multigrid in place of factors \[bytes per unknown\].
 const PER_ITERATED: f64 = 4e3;
 /// Factorisation of a symmetric matrix in the plane \[s\], times $`n^{3/2}`$.
 const FACTOR: f64 = 1.8e-8;
-/// What an unsymmetric one costs of that, and an iteration \[-\].
+/// Factor on that of an unsymmetric system, and on the cost of an iteration \[-\].
 const UNSYMMETRIC: f64 = 1.5;
 /// Solution in the plane \[s per unknown\].
 const SOLVE: f64 = 3e-7;
@@ -33,9 +33,9 @@ const ITERATED: f64 = 6e-5;
 pub struct Systems {
     /// The method, and why it will be taken.
     pub method: String,
-    /// What the solver keeps \[bytes\].
+    /// Memory of the solver \[bytes\].
     pub bytes: f64,
-    /// What it keeps beside that where an iteration is given up for factors \[bytes\]; zero where none is, or could be.
+    /// Additional memory where an iteration is abandoned for a factorisation \[bytes\]; zero where none is, or could be.
     pub fallback_bytes: f64,
     /// A factorisation and a solution on one thread of the reference computer \[s\].
     pub seconds: f64,

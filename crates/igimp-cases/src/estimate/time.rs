@@ -86,7 +86,7 @@ pub fn time_of_steps_taken<const D: usize>(
     of_stages(case, size, speed, &taken)
 }
 
-/// What a stage takes.
+/// The effort of a stage.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct StepsTaken {
     steps: f64,
@@ -94,7 +94,7 @@ struct StepsTaken {
     trials: f64,
 }
 
-/// What the case plans for a stage.
+/// The effort that the case plans for a stage.
 fn planned(stage: &Stage) -> StepsTaken {
     let steps = stage.steps as f64;
     let (steps, trials) = match &stage.kind {
@@ -140,7 +140,7 @@ fn planned(stage: &Stage) -> StepsTaken {
     }
 }
 
-/// What a stage took.
+/// The effort that a stage took.
 fn taken(stage: &StageSummary) -> StepsTaken {
     let trials = stage
         .safety

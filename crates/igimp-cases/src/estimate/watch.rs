@@ -11,7 +11,7 @@ const LEAST_SECONDS: f64 = 10.0;
 /// Nobody runs short of less \[MiB\].
 const LEAST_MEMORY: f64 = 100.0;
 
-/// What a run cost beyond its estimate, in sentences. A run that took its time because the computer
+/// The cost of a run beyond its estimate, in sentences. A run that took its time because the computer
 /// was busy with other work is judged by the time of the processors.
 pub fn exceeded(summary: &Summary) -> Vec<String> {
     let Some(expected) = &summary.estimate else {

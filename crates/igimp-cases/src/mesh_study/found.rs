@@ -1,6 +1,6 @@
-//! What the runs of a study found, side by side.
+//! The results of the runs of a study, side by side.
 
-use igimp_model::{Case, CheckValue, Quantity, StageKind, meshes};
+use igimp_model::{Case, CheckValue, Curve, Quantity, StageKind, meshes};
 use igimp_results::mesh_study::{Computed, Convergence, ResultKind, StudyResult, estimate};
 use igimp_results::summary::{CheckRow, StageOutcome, StageSummary, Summary};
 use igimp_text::short;
@@ -32,7 +32,7 @@ impl Found {
         }
     }
 
-    /// What a run had come to when it ended.
+    /// The value that a run had reached when it ended early.
     fn on_the_way(value: f64) -> Self {
         Self {
             ended_early: true,
@@ -46,17 +46,17 @@ impl Found {
 pub fn study<const D: usize>(case: &Case<D>, runs: &[Option<&Summary>]) -> Vec<StudyResult> {
     let parts = meshes::refinements(case);
     let mut results = Vec::new();
-    let mut add = |name: String, (kind, known), found: Vec<Option<Found>>| {
+    let mut add = |name: String, kind, known, found: Vec<Option<Found>>| {
         let finite = |found: Option<Found>| found.filter(|found| found.value.is_finite());
         let found: Vec<Option<Found>> = found.into_iter().map(finite).collect();
         if found.iter().any(Option::is_some) {
-            results.push(result(name, (kind, known), &found, &parts));
+            results.push(result(name, kind, known, &found, &parts));
         }
     };
     for number in 0..case.stages.len() {
         if let Some((name, kind, known)) = of_stage(case, number) {
             let found = runs.iter().map(|run| at_stage(case, (*run)?, number));
-            add(name, (kind, known), found.collect());
+            add(name, kind, known, found.collect());
         }
     }
     let longest = runs.iter().flatten().max_by_key(|run| run.checks.len());
@@ -72,17 +72,19 @@ pub fn study<const D: usize>(case: &Case<D>, runs: &[Option<&Summary>]) -> Vec<S
             Some(at_check(case, run, row))
         });
         let known = of_check(case, name);
-        add(name.clone(), (ResultKind::Check, known), found.collect());
+        add(name.clone(), ResultKind::Check, known, found.collect());
     }
     results
 }
 
-/// The checks of a study: each row of the run `of` with the value that the case asks for.
+/// The checks of a study: each row of the run `of` with the value that the case asks for, and not a number where no run
+/// came to it.
 pub(crate) fn check_rows<const D: usize>(
     case: &Case<D>,
     of: &Summary,
     results: &[StudyResult],
 ) -> Vec<CheckRow> {
+    let parts = meshes::refinements(case);
     let checks: Vec<&StudyResult> = results
         .iter()
         .filter(|result| result.kind == ResultKind::Check)
@@ -93,8 +95,17 @@ pub(crate) fn check_rows<const D: usize>(
         let result = own.nth(occurrence(of, number));
         let asked = case.checks.iter().find(|check| check.name == *name);
         let mut check = row.check.clone();
+        // Values of runs that ended early are held against nothing.
         check.measured = match asked.map_or(CheckValue::Computed, |check| check.value) {
-            CheckValue::Computed => result.and_then(|result| result.finest()),
+            CheckValue::Computed => {
+                let finest = result.and_then(|result| result.finest());
+                if let (Some(result), Some((mesh, _))) = (result, finest)
+                    && (mesh + 1..parts.len()).any(|finer| result.ended_early(finer))
+                {
+                    check.variant = format!("on the mesh {}", meshes::label(parts[mesh]));
+                }
+                finest.map(|(_, value)| value)
+            }
             CheckValue::Extrapolated => {
                 "extrapolated from the meshes".clone_into(&mut check.variant);
                 result.and_then(|result| Some(result.estimate?.value))
@@ -109,7 +120,7 @@ pub(crate) fn check_rows<const D: usize>(
     of.checks.iter().enumerate().map(row).collect()
 }
 
-/// What a reader has to know of the results: values that do not converge as they should, and runs that ended early.
+/// Warnings about the results: values that do not converge as expected, and runs that ended early.
 pub(crate) fn remarks<const D: usize>(case: &Case<D>, results: &[StudyResult]) -> Vec<String> {
     let labels: Vec<String> = (meshes::refinements(case).into_iter())
         .map(meshes::label)
@@ -119,7 +130,8 @@ pub(crate) fn remarks<const D: usize>(case: &Case<D>, results: &[StudyResult]) -
         for (mesh, label) in labels.iter().enumerate() {
             if let (Some(value), true) = (result.values[mesh], result.ended_early(mesh)) {
                 remarks.push(format!(
-                    "{}: on the mesh {label} the run ended early, at {}: that is no result, and it is not extrapolated",
+                    "{}: on the mesh {label} the run ended early, at {}: that is no result, and it is neither \
+                     extrapolated nor held in a check",
                     result.name,
                     short(value)
                 ));
@@ -133,7 +145,8 @@ pub(crate) fn remarks<const D: usize>(case: &Case<D>, results: &[StudyResult]) -
 
 fn result(
     name: String,
-    (kind, known): (ResultKind, Convergence),
+    kind: ResultKind,
+    known: Convergence,
     found: &[Option<Found>],
     parts: &[usize],
 ) -> StudyResult {
@@ -162,19 +175,12 @@ fn result(
     }
 }
 
-/// What a run found at a stage of that kind.
+/// The result of a run at a stage, by the kind of the stage.
 fn at_stage<const D: usize>(case: &Case<D>, run: &Summary, number: usize) -> Option<Found> {
     let (stage, summary) = (&case.stages[number], run.stages.get(number)?);
-    match &stage.kind {
+    let found = match &stage.kind {
         StageKind::StrengthReduction(_) => interval(summary),
-        StageKind::Displacement { .. } => {
-            let resistance = summary.peak_resistance?;
-            Some(if is_through(summary) {
-                Found::computed(resistance)
-            } else {
-                Found::on_the_way(resistance)
-            })
-        }
+        StageKind::Displacement { .. } => summary.peak_resistance.map(Found::computed),
         StageKind::Gravity {
             horizontal: Some(_),
             ..
@@ -184,26 +190,41 @@ fn at_stage<const D: usize>(case: &Case<D>, run: &Summary, number: usize) -> Opt
             limit(case, run, number, Quantity::LoadFactor(*loads.first()?))
         }
         _ => None,
-    }
+    }?;
+    Some(Found {
+        ended_early: found.ended_early || has_ended_early(case, run, number),
+        ..found
+    })
 }
 
-/// Whether a stage came to what it was to come to.
-fn is_through(stage: &StageSummary) -> bool {
-    let ended = matches!(
-        stage.outcome,
-        StageOutcome::Completed | StageOutcome::Stopped
-    );
-    ended && !stage.lost
+/// Whether a stage ended before what its case asks of it, or stands on one that did.
+fn has_ended_early<const D: usize>(case: &Case<D>, run: &Summary, number: usize) -> bool {
+    let own = run.stages.get(number);
+    own.is_none_or(|stage| !stage.came_to_its_end()) || stands_on_less(case, run, number)
+}
+
+/// Whether a stage began with a body that an earlier one did not bring to its end. A search of a factor of safety leaves
+/// the body as it found it.
+fn stands_on_less<const D: usize>(case: &Case<D>, run: &Summary, number: usize) -> bool {
+    case.stages[number].start_from.is_some_and(|before| {
+        if let StageKind::StrengthReduction(_) = case.stages[before].kind {
+            stands_on_less(case, run, before)
+        } else {
+            has_ended_early(case, run, before)
+        }
+    })
 }
 
 /// Middle of the interval of a factor of safety, and half its width (theory, eq. 40g); the largest factor that stands
-/// where none failed.
+/// where none failed, or where the search was given up.
 fn interval(stage: &StageSummary) -> Option<Found> {
     let safety = stage.safety.as_ref()?;
     let stable = safety.stable?;
     Some(match safety.failed {
-        Some(failed) => Found::within(0.5 * (stable + failed), 0.5 * (failed - stable).abs()),
-        None => Found::on_the_way(stable),
+        Some(failed) if stage.came_to_its_end() => {
+            Found::within(0.5 * (stable + failed), 0.5 * (failed - stable).abs())
+        }
+        _ => Found::on_the_way(stable),
     })
 }
 
@@ -269,13 +290,17 @@ fn aim(kind: &StageKind, of: Quantity) -> Option<f64> {
 /// A check of a run: with the interval of the search that it looks at, and whether the run came to it.
 fn at_check<const D: usize>(case: &Case<D>, run: &Summary, row: &CheckRow) -> Found {
     let (name, measured) = (&row.check.quantity, row.check.measured);
-    let gave_up = |stage: &StageSummary| !is_through(stage);
     let Some(check) = case.checks.iter().find(|check| check.name == *name) else {
-        // A curve that came to the place is right there, whatever came after.
-        let at_place = |curve: &str| name.starts_with(&format!("{curve} at "));
-        let is_read_off = case.curves.iter().any(|curve| at_place(&curve.name));
+        let at_place = |curve: &&Curve| name.starts_with(&format!("{} at ", curve.name));
+        let ended_early = match case.curves.iter().find(at_place) {
+            // A curve that came to the place is right there, whatever came after.
+            Some(curve) => curve
+                .stage
+                .is_some_and(|stage| stands_on_less(case, run, stage)),
+            None => run.stages.iter().any(|stage| !stage.came_to_its_end()),
+        };
         return Found {
-            ended_early: !is_read_off && run.stages.iter().any(gave_up),
+            ended_early,
             ..Found::computed(measured)
         };
     };
@@ -291,7 +316,8 @@ fn at_check<const D: usize>(case: &Case<D>, run: &Summary, row: &CheckRow) -> Fo
     Found {
         value: measured,
         half_width: found.map_or(0.0, |found| found.half_width) / check.divide_by.abs(),
-        ended_early: stage.is_some_and(gave_up) || found.is_some_and(|found| found.ended_early),
+        ended_early: has_ended_early(case, run, number)
+            || found.is_some_and(|found| found.ended_early),
     }
 }
 

@@ -1,4 +1,4 @@
-//! What is known beforehand of how the results of a case converge: by what they are, and by what is in the case.
+//! Prior knowledge of how the results of a case converge: by their kind, and by the structures in the case.
 
 use igimp_model::{Case, LoadKind, Material, Quantity, Stage, StageKind};
 use igimp_results::mesh_study::{Convergence, ResultKind};

@@ -1,4 +1,4 @@
-//! What the runs of a case on several meshes say together: factors of safety, limit loads and checks, each with the orders
+//! Results of the runs of a case on several meshes: factors of safety, limit loads and checks, each with the orders
 //! that it may have.
 //!
 //! [`run`](crate::run::run) computes a case whose [`mesh_study`](igimp_model::Case::mesh_study) asks for more than one mesh on all

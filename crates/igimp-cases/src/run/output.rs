@@ -12,7 +12,7 @@ use igimp_results::atomic::write_whole;
 use igimp_results::checkpoint;
 use igimp_results::folder::provenance::Claim;
 use igimp_results::folder::{self, Folder, write_summary};
-use igimp_results::paraview::frames::Frames;
+use igimp_results::paraview::frames::{Frames, Scene};
 use igimp_results::summary::{FigureNote, StageSummary, Summary};
 use igimp_results::tables::rows::RowWriter;
 use igimp_results::tables::table::Table;
@@ -240,10 +240,14 @@ impl<const D: usize> Output<D> {
             && summary.steps.is_multiple_of(every.max(1))
         {
             let conditions = &taken.accepted.conditions;
-            let own = (&body.particles, &conditions.laws[..]);
-            let structures = outlines::structures(model.case, taken.controls, body);
+            let scene = Scene {
+                particles: &body.particles,
+                laws: &conditions.laws,
+                structures: &outlines::structures(model.case, taken.controls, body),
+            };
+            let name = &model.case.stages[stage].name;
             self.frames
-                .add(self.steps as f64, own, &conditions.grid, &structures)?;
+                .add(self.steps as f64, name, &scene, &conditions.grid)?;
         }
         let due = self.checkpoint_every > 0 && summary.steps.is_multiple_of(self.checkpoint_every);
         if due || taken.interrupted {
@@ -336,11 +340,14 @@ impl<const D: usize> Output<D> {
         }
         if self.every != Every::Never {
             let grid = model.grid(model.lowered(&state.controls))?;
-            let laws = model.laws_reduced_by(&state.controls.srf)?;
+            let scene = Scene {
+                particles: &state.body.particles,
+                laws: &model.laws_reduced_by(&state.controls.srf)?,
+                structures: &structures,
+            };
             // The time of a frame is the number of steps and trials so far.
-            let own = (&state.body.particles, &laws[..]);
             self.frames
-                .add(self.steps as f64, own, &grid, &structures)?;
+                .add(self.steps as f64, &summary.name, &scene, &grid)?;
         }
         if let Some(safety) = &summary.safety {
             self.factor_of_safety = match (safety.stable, safety.failed) {
@@ -365,8 +372,8 @@ impl<const D: usize> Output<D> {
                 .zip(sections)
                 .map(|(section, table)| {
                     let references = section.references_at(case, number);
-                    let stage = (summary.name.as_str(), &references[..]);
-                    pictures::section_pictures(root, title, section, stage, table)
+                    let stage = &summary.name;
+                    pictures::section_pictures(root, title, section, stage, &references, table)
                 })
                 .collect::<Result<Vec<_>, _>>()?;
             self.figures.extend(drawn.concat());

@@ -287,8 +287,8 @@ pub(crate) fn draw(folder: &Path, case: &Case<2>) -> Vec<FigureNote> {
     }
     for section in &case.sections {
         let table = findings::section_table(section);
-        let stage = ("surcharge", &[][..]);
-        notes.extend(pictures::section_pictures(folder, title, section, stage, &table).unwrap());
+        let drawn = pictures::section_pictures(folder, title, section, "surcharge", &[], &table);
+        notes.extend(drawn.unwrap());
     }
     let (particles, laws) = particles(case);
     let pieces = Pieces::of(case).unwrap();
@@ -304,7 +304,10 @@ pub(crate) fn draw(folder: &Path, case: &Case<2>) -> Vec<FigureNote> {
         Field::PlasticStrain,
         Field::Utilisation,
     ] {
-        let state = (&particles, laws.as_slice());
+        let state = pictures::Seen {
+            particles: &particles,
+            laws: &laws,
+        };
         let shown = Shown::end_of_stage(case, 1);
         notes.push(
             pictures::field_picture(

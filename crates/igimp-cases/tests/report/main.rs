@@ -10,7 +10,7 @@ use igimp_assembly::Particles;
 use igimp_model::{Field, ReferenceValues, TitleBlock};
 use igimp_report::ReportError;
 use igimp_report::patches::Pieces;
-use igimp_report::pictures::{self, Canvas, Shown};
+use igimp_report::pictures::{self, Canvas, Seen, Shown};
 use igimp_report::report::write_report;
 use igimp_report::setup;
 use igimp_results::ResultsError;
@@ -325,7 +325,7 @@ fn empty_tables_make_empty_pictures() {
     let mut table = findings::section_table(section);
     table.rows.clear();
     assert_eq!(
-        pictures::section_pictures(&folder, "", section, ("s", &[]), &table)
+        pictures::section_pictures(&folder, "", section, "s", &[], &table)
             .unwrap()
             .len(),
         2
@@ -392,7 +392,10 @@ fn every_field_has_a_picture() {
         case: &case,
         pieces: &pieces,
     };
-    let state = (&particles, laws.as_slice());
+    let state = Seen {
+        particles: &particles,
+        laws: &laws,
+    };
     for &field in igimp_model::Field::ALL {
         let shown = Shown::end_of_stage(&case, 0);
         let note = pictures::field_picture(
@@ -447,8 +450,12 @@ fn compared_states_share_unit_and_colours() {
             title: String::new(),
             when: String::new(),
         };
-        let compared: Vec<_> = compared.iter().map(|&other| (other, &laws[..])).collect();
-        let own = (own, &laws[..]);
+        let seen = |particles| Seen {
+            particles,
+            laws: &laws,
+        };
+        let compared: Vec<_> = compared.iter().map(|&other| seen(other)).collect();
+        let own = seen(own);
         let note = pictures::field_picture(
             &canvas,
             &shown,

@@ -332,7 +332,7 @@ impl<'a> Sheet<'a> {
         let (width, height) = legend.size();
         let corner = self
             .occupancy
-            .place_inside(area, (width, height))
+            .place_inside(area, width, height)
             .unwrap_or_else(|| {
                 self.drawing.width += width;
                 self.drawing.height = self.drawing.height.max(area.top + height + MARGIN);

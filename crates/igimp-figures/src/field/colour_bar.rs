@@ -8,7 +8,7 @@ use crate::drawing::{Anchor, Contour, Drawing, Item, Shape, Stroke};
 use crate::frame::{GAP, LABEL, TICK};
 use crate::geometry::Rect;
 
-/// Number of colours in a field: more cannot be told apart, fewer make smaller files.
+/// Number of colours in a field: more are not distinguishable, and fewer make smaller files.
 pub(crate) const LEVELS: usize = 128;
 /// Width \[pt\] of the bar.
 pub(crate) const THICKNESS: f64 = 15.0;

@@ -43,7 +43,7 @@ impl Tally {
         }
     }
 
-    /// What the reader should know about missing domains.
+    /// A note about missing domains.
     pub(crate) fn note(&self) -> Option<String> {
         let part = |count: usize, what: &str| {
             let (count, all) = (grouped(count), grouped(self.domains));

@@ -25,7 +25,7 @@ pub(crate) type Window = [(f64, f64); 2];
 /// The places of everything in the picture.
 pub(crate) struct Layout<'a> {
     sheet: &'a Sheet<'a>,
-    /// What the axes show.
+    /// The ranges of the axes.
     pub(crate) window: Window,
     /// Width and height \[pt\] of one plot area.
     area: [f64; 2],
@@ -239,7 +239,7 @@ impl<'a> Layout<'a> {
     }
 }
 
-/// What is to be laid out.
+/// The contents to lay out.
 pub(crate) struct Sheet<'a> {
     pub(crate) title: &'a str,
     /// At least one plot.

@@ -28,16 +28,8 @@ pub(crate) fn draw(drawing: &mut Drawing, area: &Rect, style: OutlineStyle, poin
         OutlineStyle::Section => {
             // White below black stays visible on every colour.
             drawing.stroke(lines(), Stroke::solid(Colour::WHITE, 2.4));
-            let dash: &[f64] = &[6.0, 3.5];
-            let (colour, width) = (Colour::INK, 1.3);
-            drawing.stroke(
-                lines(),
-                Stroke {
-                    colour,
-                    width,
-                    dash,
-                },
-            );
+            let dashed = Stroke::dashed(Colour::INK, 1.3, &[6.0, 3.5]);
+            drawing.stroke(lines(), dashed);
         }
         OutlineStyle::Block => drawing.items.push(Item::Shape(Shape {
             contours: vec![Contour::Closed(area.clip_polygon(points))],
@@ -45,31 +37,11 @@ pub(crate) fn draw(drawing: &mut Drawing, area: &Rect, style: OutlineStyle, poin
             stroke: Some(Stroke::solid(Colour::INK, 1.0)),
         })),
         OutlineStyle::Fixed => {
-            let strokes = along(points, HATCH.0, |[x, y], [dx, dy]| {
-                let across = [-dy, dx];
-                let reach = |k: usize| HATCH.1 * (across[k] - [dx, dy][k]) * 0.75;
-                vec![[x, y], [x + reach(0), y + reach(1)]]
-            });
-            let strokes = strokes.iter().flat_map(|line| area.clip_polyline(line));
-            drawing.stroke(strokes.collect(), Stroke::solid(Colour::INK, 0.8));
+            hatch(drawing, area, points);
             drawing.stroke(lines(), Stroke::solid(Colour::INK, 1.8));
         }
         OutlineStyle::Roller => {
-            let (apart, radius) = ROLLER;
-            let away = radius + 0.9;
-            let centres = along(points, apart, |[x, y], [dx, dy]| {
-                [x - away * dy, y + away * dx]
-            });
-            let contours = centres
-                .into_iter()
-                .filter(|&centre| area.contains(centre))
-                .map(|centre| Contour::Circle { centre, radius })
-                .collect();
-            drawing.items.push(Item::Shape(Shape {
-                contours,
-                fill: Some((Colour::WHITE, 1.0)),
-                stroke: Some(Stroke::solid(Colour::INK, 0.8)),
-            }));
+            rollers(drawing, area, points);
             drawing.stroke(lines(), Stroke::solid(Colour::INK, 1.2));
         }
         OutlineStyle::Arrow => {
@@ -78,16 +50,8 @@ pub(crate) fn draw(drawing: &mut Drawing, area: &Rect, style: OutlineStyle, poin
             }
         }
         OutlineStyle::Former => {
-            let (colour, width) = (Colour::FAINT_INK, 0.8);
-            let dash: &[f64] = &[3.0, 2.5];
-            drawing.stroke(
-                lines(),
-                Stroke {
-                    colour,
-                    width,
-                    dash,
-                },
-            );
+            let dashed = Stroke::dashed(Colour::FAINT_INK, 0.8, &[3.0, 2.5]);
+            drawing.stroke(lines(), dashed);
         }
         OutlineStyle::Trace => {
             drawing.stroke(lines(), Stroke::solid(Colour::WHITE, 4.2));
@@ -120,6 +84,36 @@ pub(crate) fn draw(drawing: &mut Drawing, area: &Rect, style: OutlineStyle, poin
             }));
         }
     }
+}
+
+/// Strokes on the far side of a line that is held.
+fn hatch(drawing: &mut Drawing, area: &Rect, points: &[Point]) {
+    let strokes = along(points, HATCH.0, |[x, y], [dx, dy]| {
+        let across = [-dy, dx];
+        let reach = |k: usize| HATCH.1 * (across[k] - [dx, dy][k]) * 0.75;
+        vec![[x, y], [x + reach(0), y + reach(1)]]
+    });
+    let strokes = strokes.iter().flat_map(|line| area.clip_polyline(line));
+    drawing.stroke(strokes.collect(), Stroke::solid(Colour::INK, 0.8));
+}
+
+/// Rollers along a line that may slide.
+fn rollers(drawing: &mut Drawing, area: &Rect, points: &[Point]) {
+    let (apart, radius) = ROLLER;
+    let away = radius + 0.9;
+    let centres = along(points, apart, |[x, y], [dx, dy]| {
+        [x - away * dy, y + away * dx]
+    });
+    let contours = centres
+        .into_iter()
+        .filter(|&centre| area.contains(centre))
+        .map(|centre| Contour::Circle { centre, radius })
+        .collect();
+    drawing.items.push(Item::Shape(Shape {
+        contours,
+        fill: Some((Colour::WHITE, 1.0)),
+        stroke: Some(Stroke::solid(Colour::INK, 0.8)),
+    }));
 }
 
 /// The mark of a water table: a triangle with its tip on the longest of the lines.
@@ -157,7 +151,7 @@ fn water_mark(drawing: &mut Drawing, lines: &[Vec<Point>]) {
     }
 }
 
-/// What `make` makes at equal distances along a line, of the place and the unit direction there.
+/// The results of `make` at equal distances along a line, given the place and the unit direction there.
 fn along<T>(points: &[Point], apart: f64, make: impl Fn(Point, Point) -> T) -> Vec<T> {
     let mut made = Vec::new();
     for pair in points.windows(2) {

@@ -85,7 +85,7 @@ fn union(ranges: impl Iterator<Item = Option<(f64, f64)>>) -> Option<(f64, f64)>
     axis::extent(ranges.flatten().flat_map(|(low, high)| [low, high]))
 }
 
-/// What the plots show along an axis: the given range, or everything with some air.
+/// The range of the plots along an axis: the given one, or that of all data with a margin.
 fn window(plots: &[FieldPlot], axis: usize) -> (f64, f64) {
     let shown = plots.iter().map(|plot| {
         let given = if axis == 0 {

@@ -55,7 +55,7 @@ pub(crate) struct Projection {
     centre: [f64; 3],
     /// Points by metre.
     pub(crate) scale: f64,
-    /// What the body takes up; whole points.
+    /// The area that the body occupies; whole points.
     pub(crate) area: Rect,
 }
 

@@ -8,7 +8,7 @@ use super::{Parts, place_of};
 /// Blocks further than this much beyond the best are left out: round-off of their distance \[-\].
 const ROUND_OFF: f64 = 1e-9;
 
-/// What is searched.
+/// The points that are searched.
 #[derive(Debug)]
 pub(super) struct Nearest<'a, const D: usize> {
     x: &'a [[f64; D]],

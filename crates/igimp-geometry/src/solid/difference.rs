@@ -1,4 +1,4 @@
-//! What is left of a solid when others are taken out.
+//! A solid from which others are cut out.
 
 use super::{Solid, common};
 use crate::region::{Cover, Crossing, Part, Region};
@@ -12,14 +12,14 @@ const ROUND_OFF: f64 = 1e-14;
 
 /// A solid without others.
 ///
-/// What is left within a box is exact where one boundary runs through the box, and where all but one are those of
+/// The remainder within a box is exact where one boundary runs through the box, and where all but one are those of
 /// boxes. Elsewhere the box is cut into 16³, and the solids are taken to be spread evenly in those of
 /// them that several boundaries still cross: the error is below a thousandth of the box.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Difference {
-    /// What is cut.
+    /// The solid that is cut.
     pub of: Box<Solid>,
-    /// What is taken out of it.
+    /// The solids that are cut out of it.
     pub minus: Vec<Solid>,
 }
 

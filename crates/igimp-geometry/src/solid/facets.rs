@@ -48,7 +48,7 @@ impl Face {
         &self.corners[..self.count]
     }
 
-    /// What is left where a linear function is not negative. A crossing is seen from the corner that stays, so that
+    /// The part where a linear function is not negative. A crossing is computed from the corner that stays, so that
     /// both faces at an edge find the same.
     fn clipped(&self, function: impl Fn(&Point) -> f64) -> Self {
         let mut left = Self::new(&[]);
@@ -88,7 +88,7 @@ impl Face {
         left
     }
 
-    /// What of it is seen within a rectangle in plan.
+    /// Its part within a rectangle in plan.
     pub(super) fn in_plan(&self, lower: [f64; 2], upper: [f64; 2]) -> Self {
         let mut left = *self;
         for axis in 0..2 {
@@ -107,7 +107,7 @@ impl Face {
         left
     }
 
-    /// What of it is seen on the left of a line in plan, from p to q.
+    /// Its part to the left of a line in plan, from p to q.
     fn left_of(&self, p: [f64; 2], q: [f64; 2]) -> Self {
         let along = [q[0] - p[0], q[1] - p[1]];
         self.clipped(|x| along[0] * (x[1] - p[1]) - along[1] * (x[0] - p[0]))
@@ -158,7 +158,7 @@ impl Moments {
         }
     }
 
-    /// What lies under a face, from the level 0 up, no higher than this.
+    /// The prism under a face, from level 0 up to at most this height.
     pub(super) fn add_under(&mut self, face: &Face, height: f64, sign: f64) {
         let [least, most] = face.extent(2);
         if face.count < 3 || most <= 0.0 {

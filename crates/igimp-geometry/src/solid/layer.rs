@@ -120,14 +120,14 @@ impl Layer {
         self.within(self.lower, self.upper).volume
     }
 
-    /// What of it stands over a rectangle in plan.
+    /// Its part above a rectangle in plan.
     fn standing(&self, lower: [f64; 3], upper: [f64; 3]) -> Standing {
         let [from, to] = [lower, upper].map(|[x, y, _]| [x, y]);
         let plan = plan_within(&self.plan, from, to);
-        let seen = (lower, [to[0] - from[0], to[1] - from[1]]);
-        Standing::new(seen.0, seen.1, |call| {
+        let size = [to[0] - from[0], to[1] - from[1]];
+        Standing::new(lower, size, |call| {
             for (height, sense) in [(&self.top, 1.0), (&self.bottom, -1.0)] {
-                each_over(height, seen, plan.as_ref(), |face, sign| {
+                each_over(height, lower, size, plan.as_ref(), |face, sign| {
                     call(face, sense * sign);
                 });
             }
@@ -140,7 +140,7 @@ impl Layer {
     }
 }
 
-/// What a polygon has in a rectangle, seen from the lower corner of it; nothing if it has all of it.
+/// The part of a polygon in a rectangle, relative to its lower corner; `None` if it covers all of it.
 fn plan_within(plan: &[[f64; 2]], lower: [f64; 2], upper: [f64; 2]) -> Option<Polygon> {
     let is_cut = cover(plan, lower, upper) != Cover::Whole;
     is_cut.then(|| {
@@ -153,7 +153,8 @@ fn plan_within(plan: &[[f64; 2]], lower: [f64; 2], upper: [f64; 2]) -> Option<Po
 /// corner, and with their sense.
 fn each_over(
     height: &Height,
-    (origin, size): ([f64; 3], [f64; 2]),
+    origin: [f64; 3],
+    size: [f64; 2],
     plan: Option<&Polygon>,
     mut call: impl FnMut(&Face, f64),
 ) {

@@ -41,7 +41,7 @@ pub enum Solid {
     Surface(Arc<ClosedSurface>),
     /// The ground between two surfaces.
     Layer(Arc<Layer>),
-    /// What is left of a solid.
+    /// A solid with others cut out.
     Difference(Difference),
 }
 
@@ -171,7 +171,7 @@ fn place<const D: usize>(point: &[f64; D]) -> String {
 
 type Corners = ([f64; 3], [f64; 3]);
 
-/// What two boxes have in common, if that has volume.
+/// The intersection of two boxes, if it has volume.
 fn common(a: Corners, b: Corners) -> Option<Corners> {
     let lower: [f64; 3] = std::array::from_fn(|axis| a.0[axis].max(b.0[axis]));
     let upper: [f64; 3] = std::array::from_fn(|axis| a.1[axis].min(b.1[axis]));

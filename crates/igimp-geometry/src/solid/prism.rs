@@ -39,7 +39,7 @@ pub(super) fn placed(at: [f64; 2], axis: usize, along: f64) -> [f64; 3] {
     point
 }
 
-/// What an interval has in common with another, if it has length.
+/// The overlap of two intervals, if it has length.
 pub(super) fn overlap(a: [f64; 2], b: [f64; 2]) -> Option<[f64; 2]> {
     let own = [a[0].max(b[0]), a[1].min(b[1])];
     (own[0] < own[1]).then_some(own)

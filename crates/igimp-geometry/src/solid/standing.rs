@@ -1,4 +1,4 @@
-//! What stands over a rectangle in plan, cut once for all boxes that lie one above the other.
+//! The part of a solid above a rectangle in plan, cut once for all boxes that lie one above the other.
 //!
 //! Every face is clipped to the rectangle. A box asks the faces that pass its levels one by one; those above it fill
 //! the height of the box with what they cover in plan (theory, eq. 44a), which is summed beforehand.
@@ -17,7 +17,7 @@ pub(super) struct Standing {
     size: [f64; 2],
     /// By ascending lowest corner.
     faces: Vec<Seen>,
-    /// What the faces from each one on cover in plan, as a prism of height 1; nothing at the end.
+    /// The area in plan that the faces from each one on cover, as a prism of height 1; empty at the end.
     above: Vec<Moments>,
 }
 

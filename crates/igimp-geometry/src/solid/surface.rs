@@ -173,7 +173,7 @@ impl ClosedSurface {
         passed
     }
 
-    /// What of it stands over a rectangle in plan.
+    /// Its part above a rectangle in plan.
     fn standing(&self, lower: [f64; 3], upper: [f64; 3]) -> Standing {
         let size = [upper[0] - lower[0], upper[1] - lower[1]];
         Standing::new(lower, size, |call| {

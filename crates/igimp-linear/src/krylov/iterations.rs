@@ -12,7 +12,7 @@ use super::product::dot;
 /// Conjugate gradients look after so many iterations whether they will come to their end.
 const LOOK: usize = 100;
 
-/// What an iteration came to.
+/// The outcome of an iteration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Iterated {
     pub(crate) iterations: usize,
@@ -121,13 +121,27 @@ impl Direction {
     }
 }
 
+/// When generalised minimal residuals end.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Limits {
+    /// The residual that is wanted, over that at x = 0 \[-\].
+    pub(crate) goal: f64,
+    /// Most iterations.
+    pub(crate) most: usize,
+    /// Iterations after which the search directions are forgotten.
+    pub(crate) restart: usize,
+}
+
 /// Flexible generalised minimal residuals, restarted, from x = 0.
 pub(crate) fn minimal_residuals(
     operators: &mut dyn Operators,
     rhs: &[f64],
     x: &mut [f64],
-    (goal, most): (f64, usize),
-    restart: usize,
+    Limits {
+        goal,
+        most,
+        restart,
+    }: Limits,
 ) -> Iterated {
     let n = rhs.len();
     x.fill(0.0);
@@ -151,17 +165,7 @@ pub(crate) fn minimal_residuals(
             directions.push(Direction::rounded(&mut z));
             let mut w = vec![0.0; n];
             operators.multiply(&z, &mut w);
-            let mut column = vec![0.0; k + 1];
-            // Twice is enough.
-            for _ in 0..2 {
-                for (own, entry) in basis.iter().zip(&mut column) {
-                    let share = dot(own, &w);
-                    *entry += share;
-                    for (w, own) in w.iter_mut().zip(own) {
-                        *w -= share * own;
-                    }
-                }
-            }
+            let mut column = orthogonalise(&mut w, &basis);
             let left = norm(&w);
             for (i, &(c, s)) in rotations.iter().enumerate() {
                 let (a, b) = (column[i], column[i + 1]);
@@ -189,13 +193,8 @@ pub(crate) fn minimal_residuals(
             }
             basis.push(w.iter().map(|w| w / left).collect());
         }
-        let mut y = vec![0.0; directions.len()];
-        for k in (0..y.len()).rev() {
-            let known: f64 = (k + 1..y.len()).map(|j| hessenberg[j][k] * y[j]).sum();
-            y[k] = (g[k] - known) / hessenberg[k][k];
-        }
-        for (y, direction) in y.iter().zip(&directions) {
-            direction.add_to(x, *y);
+        for (direction, y) in directions.iter().zip(solved(&hessenberg, &g)) {
+            direction.add_to(x, y);
         }
         operators.multiply(x, &mut r);
         for (r, b) in r.iter_mut().zip(rhs) {
@@ -209,6 +208,32 @@ pub(crate) fn minimal_residuals(
         }
     }
     done
+}
+
+/// Takes from w its parts along an orthonormal basis, and returns these.
+fn orthogonalise(w: &mut [f64], basis: &[Vec<f64>]) -> Vec<f64> {
+    let mut parts = vec![0.0; basis.len()];
+    // Twice is enough.
+    for _ in 0..2 {
+        for (own, part) in basis.iter().zip(&mut parts) {
+            let share = dot(own, w);
+            *part += share;
+            for (w, own) in w.iter_mut().zip(own) {
+                *w -= share * own;
+            }
+        }
+    }
+    parts
+}
+
+/// The solution y of R y = g, of an upper triangle by its columns.
+fn solved(columns: &[Vec<f64>], g: &[f64]) -> Vec<f64> {
+    let mut y = vec![0.0; columns.len()];
+    for k in (0..y.len()).rev() {
+        let known: f64 = (k + 1..y.len()).map(|j| columns[j][k] * y[j]).sum();
+        y[k] = (g[k] - known) / columns[k][k];
+    }
+    y
 }
 
 /// Whether an iteration that went from the first residual to the second in so many iterations will not come to the third in those

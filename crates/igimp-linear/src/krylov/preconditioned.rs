@@ -4,7 +4,7 @@
 //! (N. J. Higham & T. Mary, *Mixed precision algorithms in numerical linear algebra*, Acta Numerica 31 (2022), section 5). The residual
 //! that counts is computed from the matrix itself, in the end and after every restart.
 
-use super::iterations::{Operators, conjugate_gradients, minimal_residuals, norm};
+use super::iterations::{Limits, Operators, conjugate_gradients, minimal_residuals, norm};
 use super::product::Product;
 use crate::bordered::{Elimination, add_border};
 use crate::refine::max_norm;
@@ -16,7 +16,37 @@ const RESTART: usize = 300;
 /// A new start from the true residual must leave less than this of it.
 const PROGRESS: f64 = 0.5;
 
-/// What an iterative solution must come to.
+/// K x = b.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LinearSystem<'a> {
+    /// K.
+    pub(crate) matrix: &'a TangentMatrix,
+    /// b.
+    pub(crate) rhs: &'a [f64],
+}
+
+impl LinearSystem<'_> {
+    /// Whether the border is solved for too.
+    fn with_border(&self) -> bool {
+        self.rhs.len() > self.matrix.pattern.unknowns()
+    }
+
+    /// Refuses vectors of a wrong length, and what is not finite; the number of unknowns.
+    fn check(&self, solution: &[f64]) -> Result<usize, LinearSolverError> {
+        let of_border = if self.with_border() {
+            self.matrix.border.len()
+        } else {
+            0
+        };
+        let unknowns = self.matrix.pattern.unknowns() + of_border;
+        check::length("the right-hand side", self.rhs.len(), unknowns)?;
+        check::length("the solution", solution.len(), unknowns)?;
+        check::finite("right-hand side", self.rhs)?;
+        Ok(unknowns)
+    }
+}
+
+/// The accuracy that an iterative solution must reach.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Demand {
     /// ‖b − K x‖ / ‖b‖ at which the iteration stops \[-\].
@@ -29,12 +59,19 @@ pub(crate) struct Demand {
     pub(crate) most: usize,
 }
 
+impl Demand {
+    /// The largest residual of a solution that is handed out.
+    fn accepted(&self) -> f64 {
+        self.target.max(self.tolerance)
+    }
+}
+
 /// Which iteration it is.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Method {
     /// Conjugate gradients, as long as matrix and preconditioner turn out positive definite; else generalised minimal residuals.
     pub(crate) by_gradients: bool,
-    /// What the two are called.
+    /// The names of the two.
     pub(crate) names: [&'static str; 2],
 }
 
@@ -51,18 +88,15 @@ impl Preconditioned {
     /// border too. The error of one that did not converge leaves open what factors would take.
     pub(crate) fn solve(
         &mut self,
-        (matrix, rhs): (&TangentMatrix, &[f64]),
+        system: LinearSystem<'_>,
         solution: &mut [f64],
         demand: &Demand,
         method: Method,
         precondition: &mut dyn FnMut(&[f64], &mut [f64]),
     ) -> Result<SolveReport, LinearSolverError> {
-        let of_grid = matrix.pattern.unknowns();
-        let with_border = rhs.len() > of_grid;
-        let unknowns = of_grid + if with_border { matrix.border.len() } else { 0 };
-        check::length("the right-hand side", rhs.len(), unknowns)?;
-        check::length("the solution", solution.len(), unknowns)?;
-        check::finite("right-hand side", rhs)?;
+        let with_border = system.with_border();
+        let unknowns = system.check(solution)?;
+        let LinearSystem { matrix, rhs } = system;
         solution.fill(0.0);
         let (scale, largest) = (norm(rhs), max_norm(rhs));
         let Method {
@@ -83,23 +117,14 @@ impl Preconditioned {
         residual.clear();
         residual.extend_from_slice(rhs);
         change.resize(unknowns, 0.0);
-        let mut both = Both {
-            matrix,
-            product,
-            precondition,
-            elimination: None,
-            failure: Ok(()),
-        };
-        if with_border {
-            both.eliminate()?;
-        }
+        let mut both = Both::new(matrix, product, precondition, with_border)?;
         let (mut reached, mut patience) = (1.0, demand.patience);
         loop {
             let is_patient = report.refinements < patience;
             let (wanted, most) = if is_patient {
                 (demand.target, patience.min(demand.most))
             } else {
-                (demand.target.max(demand.tolerance), demand.most)
+                (demand.accepted(), demand.most)
             };
             // Written so that what is not a number goes no further.
             if !(reached > wanted && report.refinements < most) {
@@ -110,23 +135,22 @@ impl Preconditioned {
             let done = if by_gradients {
                 conjugate_gradients(&mut both, residual, change, goal, left)
             } else {
-                minimal_residuals(&mut both, residual, change, (goal, left), RESTART)
+                let limits = Limits {
+                    goal,
+                    most: left,
+                    restart: RESTART,
+                };
+                minimal_residuals(&mut both, residual, change, limits)
             };
             std::mem::replace(&mut both.failure, Ok(()))?;
             report.refinements += done.iterations;
-            for (x, change) in solution.iter_mut().zip(&*change) {
-                *x += change;
-            }
-            both.residual(rhs, solution, residual);
+            both.step(1.0, change, rhs, solution, residual);
             let before = std::mem::replace(&mut reached, norm(residual) / scale);
             // Written so that what is not a number is no progress.
             let progress = reached <= PROGRESS * before;
             if !progress && reached >= before {
                 // What made it worse is taken back.
-                for (x, change) in solution.iter_mut().zip(&*change) {
-                    *x -= change;
-                }
-                both.residual(rhs, solution, residual);
+                both.step(-1.0, change, rhs, solution, residual);
                 reached = norm(residual) / scale;
             }
             if done.broken && by_gradients {
@@ -140,14 +164,14 @@ impl Preconditioned {
         }
         report.relative_residual = max_norm(residual) / largest;
         // Written so that what is not a number does not pass.
-        if reached <= demand.target.max(demand.tolerance) {
+        if reached <= demand.accepted() {
             check::finite("solution", solution)?;
             return Ok(report);
         }
         Err(LinearSolverError::NotConverged {
             iterations: report.refinements,
             relative_residual: reached,
-            tolerance: demand.target.max(demand.tolerance),
+            tolerance: demand.accepted(),
             factor_bytes: None,
         })
     }
@@ -160,11 +184,31 @@ struct Both<'a> {
     precondition: &'a mut dyn FnMut(&[f64], &mut [f64]),
     /// The border of the matrix, eliminated by the preconditioner, where it is solved for.
     elimination: Option<Elimination>,
-    /// What went wrong with it.
+    /// Its failure, if it failed.
     failure: Result<(), LinearSolverError>,
 }
 
-impl Both<'_> {
+impl<'a> Both<'a> {
+    /// The operators of a matrix, with its border eliminated where that is solved for.
+    fn new(
+        matrix: &'a TangentMatrix,
+        product: &'a mut Product,
+        precondition: &'a mut dyn FnMut(&[f64], &mut [f64]),
+        with_border: bool,
+    ) -> Result<Self, LinearSolverError> {
+        let mut both = Self {
+            matrix,
+            product,
+            precondition,
+            elimination: None,
+            failure: Ok(()),
+        };
+        if with_border {
+            both.eliminate()?;
+        }
+        Ok(both)
+    }
+
     /// Eliminates the border by the preconditioner.
     fn eliminate(&mut self) -> Result<(), LinearSolverError> {
         let mut inverse = |r: &[f64], z: &mut [f64]| {
@@ -173,6 +217,21 @@ impl Both<'_> {
         };
         self.elimination = Some(Elimination::new(&self.matrix.border, &mut inverse)?);
         Ok(())
+    }
+
+    /// x ← x + sign · change, and the residual b − K x there.
+    fn step(
+        &mut self,
+        sign: f64,
+        change: &[f64],
+        rhs: &[f64],
+        x: &mut [f64],
+        residual: &mut [f64],
+    ) {
+        for (x, change) in x.iter_mut().zip(change) {
+            *x += sign * change;
+        }
+        self.residual(rhs, x, residual);
     }
 
     /// b − K x.

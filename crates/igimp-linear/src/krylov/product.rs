@@ -18,7 +18,7 @@ const LANES: usize = 8;
 /// Memory for products.
 #[derive(Default)]
 pub(crate) struct Product {
-    /// What each part of the columns adds to its rows, and the first of them.
+    /// The contribution of each part of the columns to its rows, and the first of these.
     parts: Vec<(usize, Vec<f64>)>,
 }
 
@@ -72,7 +72,7 @@ impl Product {
     }
 }
 
-/// What some columns add to the rows from `first` on.
+/// The contribution of some columns to the rows from `first` on.
 struct Columns<'a> {
     matrix: &'a TangentMatrix,
     own: Range<usize>,

@@ -14,6 +14,7 @@ use super::scratch::Scratch;
 use super::single::Single;
 use super::substitution::Vectors;
 use super::tree::plan::Plan;
+use crate::krylov::preconditioned::LinearSystem;
 use crate::{Pattern, TangentMatrix};
 
 /// Largest system that [`GeneralLu`] is tried on: it needs ten times the memory and the time.
@@ -46,7 +47,7 @@ pub(crate) struct Engine {
     factored: Option<Factorisation>,
 }
 
-/// What there are factors of.
+/// The factorisation that is stored.
 enum Factorisation {
     Cholesky,
     Lu,
@@ -172,8 +173,9 @@ impl Engine {
         };
         check::length("the matrix", matrix.pattern.unknowns(), plan.unknowns())?;
         let scale = (!by_cholesky).then_some(&self.scaling.scale[..]);
-        let accuracy = (target, self.accuracy.tolerance);
-        (self.single).solve(plan, scale, (matrix, rhs), solution, accuracy)
+        let demand = Single::demand(target, self.accuracy.tolerance);
+        let system = LinearSystem { matrix, rhs };
+        (self.single).solve(plan, scale, system, solution, &demand)
     }
 
     /// Factorises a symmetric positive definite matrix.

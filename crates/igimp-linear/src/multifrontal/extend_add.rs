@@ -89,7 +89,7 @@ impl BorderMap {
     }
 }
 
-/// What a child has left for its parent to pass on: the entries of its border without the pivots of the parent.
+/// The contribution of a child that its parent passes on: the entries of its border without the pivots of the parent.
 pub(super) struct Waiting<'a, T> {
     pub(super) map: BorderMap,
     pub(super) entries: &'a [T],
@@ -300,7 +300,7 @@ pub(super) fn triangle_column(rows: usize, column: usize) -> Range<usize> {
 }
 
 impl Stretch {
-    /// What is left of a stretch without its first `k` unknowns.
+    /// The rest of a stretch after its first `k` unknowns.
     fn from(&self, k: usize) -> Self {
         let k = k.min(self.len);
         Self {

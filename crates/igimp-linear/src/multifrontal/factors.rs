@@ -24,7 +24,7 @@ pub(super) struct Factors<T> {
     pub(super) record: PivotRecord,
 }
 
-/// What a task leaves for the one above: what waits for its last front, by child.
+/// The contributions that a task leaves for the one above, by child of its last front.
 struct Done<T> {
     left: Vec<Vec<T>>,
     record: PivotRecord,

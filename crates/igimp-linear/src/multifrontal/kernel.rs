@@ -1,4 +1,4 @@
-//! What the two kinds of elimination, LU and Cholesky, have in common.
+//! The common interface of the two kinds of elimination, LU and Cholesky.
 
 use super::dense::dense_lu::PivotRecord;
 use super::dense::scalar::Scalar;
@@ -47,7 +47,7 @@ pub(super) trait Kernel<T: Scalar>: Sync {
     ) -> Result<(), LinearSolverError>;
 }
 
-/// What a front contributes to its parent: the product of its factors, and what its own children left.
+/// The contribution of a front to its parent: the product of its factors, and the contributions of its children.
 pub(super) struct Contribution<'a, T> {
     pub(super) front: &'a Front,
     pub(super) factors: &'a [T],
@@ -61,11 +61,11 @@ pub(super) struct Room<'a, T> {
     pub(super) parent: &'a Front,
     /// Factors of the parent, loaded.
     pub(super) factors: &'a mut [T],
-    /// What the parent will pass on, see [`Shape`].
+    /// The part that the parent passes on, see [`Shape`].
     pub(super) waiting: &'a mut [T],
 }
 
-/// What the factors of a front are used for in a solve.
+/// Forward and backward substitution with the factors of a front.
 pub(super) trait Substitution<T: Scalar>: Sync {
     /// As [`Kernel::entries`].
     fn entries(extent: &Extent) -> usize;

@@ -10,10 +10,10 @@ use super::extend_add::BorderMap;
 use super::tree::plan::Plan;
 use crate::LinearSolverError;
 
-/// What one task needs while it is worked on.
+/// Scratch memory of one task.
 #[derive(Default)]
 pub(crate) struct Tools<T> {
-    /// What waits for parents.
+    /// Contributions that wait for parents.
     pub(crate) stacks: [Vec<T>; 2],
     /// First row in the border of the current front, by rank.
     pub(crate) local: Vec<u32>,
@@ -23,7 +23,7 @@ pub(crate) struct Tools<T> {
     pub(crate) offsets: Vec<usize>,
     /// Part of a vector on the border of a front.
     pub(crate) border: Vec<T>,
-    /// What a kernel works in.
+    /// Scratch memory of the kernel.
     pub(crate) scratch: Vec<T>,
 }
 

@@ -8,8 +8,7 @@ use super::lu::{Lu, LuFactors};
 use super::scratch::Scratch;
 use super::substitution::Vectors;
 use super::tree::plan::Plan;
-use crate::TangentMatrix;
-use crate::krylov::preconditioned::{Demand, Method, Preconditioned};
+use crate::krylov::preconditioned::{Demand, LinearSystem, Method, Preconditioned};
 
 /// Largest number of iterations: more would say that the factors are of no use.
 const MOST: usize = 60;
@@ -27,6 +26,16 @@ pub(super) struct Single {
 }
 
 impl Single {
+    /// The relative residual that is aimed at, and the one that a solution may have that is handed out \[-\].
+    pub(super) fn demand(target: f64, tolerance: f64) -> Demand {
+        Demand {
+            target,
+            tolerance,
+            patience: MOST,
+            most: MOST,
+        }
+    }
+
     /// Factorises by Cholesky.
     pub(super) fn factor_cholesky(
         &mut self,
@@ -47,9 +56,9 @@ impl Single {
         &mut self,
         plan: &Plan,
         scale: Option<&[f64]>,
-        system: (&TangentMatrix, &[f64]),
+        system: LinearSystem<'_>,
         solution: &mut [f64],
-        (target, tolerance): (f64, f64),
+        demand: &Demand,
     ) -> Result<SolveReport, LinearSolverError> {
         let Self {
             factors,
@@ -75,17 +84,11 @@ impl Single {
                 *z *= size;
             }
         };
-        let demand = Demand {
-            target,
-            tolerance,
-            patience: MOST,
-            most: MOST,
-        };
         let method = Method {
-            by_gradients: system.0.symmetric,
+            by_gradients: system.matrix.symmetric,
             names: NAMES,
         };
-        let report = preconditioned.solve(system, solution, &demand, method, &mut apply);
+        let report = preconditioned.solve(system, solution, demand, method, &mut apply);
         failure?;
         let report = report?;
         Ok(SolveReport {

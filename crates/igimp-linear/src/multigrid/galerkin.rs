@@ -10,7 +10,7 @@ const NONE: u32 = u32::MAX;
 /// Coarse nodes that one task works on.
 const CHUNK: usize = 16;
 
-/// What a task needs to find places in lists.
+/// Scratch memory of a task to find places in lists.
 struct Scratch {
     /// Where a fine node stands in `columns`.
     fine: Vec<u32>,
@@ -25,7 +25,8 @@ struct Scratch {
 /// Sets `target` to the entries of Pᵀ A P.
 pub(super) fn product<const B: usize>(
     transfer: &Transfer,
-    (fine, values): (&Couplings, &[f32]),
+    fine: &Couplings,
+    values: &[f32],
     coarse: &Couplings,
     target: &mut Vec<f32>,
 ) {
@@ -51,14 +52,7 @@ pub(super) fn product<const B: usize>(
             for node in nodes {
                 let (own, later) = part.split_at_mut(B * B * coarse.of(node).len());
                 part = later;
-                row::<B>(
-                    transfer,
-                    (fine, values),
-                    coarse.of(node),
-                    node,
-                    scratch,
-                    own,
-                );
+                row::<B>(transfer, fine, values, coarse.of(node), node, scratch, own);
             }
         });
 }
@@ -66,7 +60,8 @@ pub(super) fn product<const B: usize>(
 /// The entries of one coarse node.
 fn row<const B: usize>(
     transfer: &Transfer,
-    (fine, values): (&Couplings, &[f32]),
+    fine: &Couplings,
+    values: &[f32],
     list: &[u32],
     node: usize,
     scratch: &mut Scratch,

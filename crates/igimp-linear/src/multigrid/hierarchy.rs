@@ -24,7 +24,7 @@ const DAMPED: f32 = 1.7;
 /// Steps of the power method.
 const POWERS: usize = 10;
 
-/// What approximates K⁻¹.
+/// An approximation of K⁻¹.
 pub(super) trait Preconditioner: Send {
     /// Takes over the values of a matrix with the pattern that it was made for.
     fn set(&mut self, matrix: &TangentMatrix, diagonal: &[f64]);
@@ -78,7 +78,7 @@ struct Hierarchy<const B: usize> {
     mirrored: Vec<u32>,
     levels: Vec<Level>,
     dense: Dense,
-    /// What the values are multiplied with.
+    /// The factor of the values.
     scale: f64,
 }
 
@@ -165,7 +165,9 @@ impl<const B: usize> Hierarchy<B> {
 
 /// The largest eigenvalue of M⁻¹ A for a smoother M, from a few steps of the power method \[-\].
 fn growth<const B: usize>(
-    (couplings, slabs, values): (&Couplings, &Slabs, &[f32]),
+    couplings: &Couplings,
+    slabs: &Slabs,
+    values: &[f32],
     smoother: &Smoother,
     x: &mut [f32],
     work: &mut [f32],
@@ -230,7 +232,7 @@ impl<const B: usize> Preconditioner for Hierarchy<B> {
                     smoother.set::<B>(Kind::Incomplete, shift, couplings, slabs, values);
                     smoother.replaced == 0 && {
                         let growth =
-                            growth::<B>((couplings, slabs, values), smoother, x, work, change);
+                            growth::<B>(couplings, slabs, values, smoother, x, work, change);
                         smoother.omega = (DAMPED / growth).min(1.0);
                         growth <= MOST_GROWTH
                     }
@@ -240,7 +242,8 @@ impl<const B: usize> Preconditioner for Hierarchy<B> {
                 }
                 galerkin::product::<B>(
                     transfer,
-                    (couplings, values),
+                    couplings,
+                    values,
                     &coarse.couplings,
                     &mut coarse.values,
                 );

@@ -57,7 +57,7 @@ impl Slabs {
         self.bounds[slab]..self.bounds[slab + 1]
     }
 
-    /// What comes before and after a node of a slab.
+    /// The couplings before and after a node of a slab.
     #[inline]
     pub(super) fn split(&self, slab: usize, node: usize, couplings: &Couplings) -> Split {
         let (begin, end) = self.spans[node];
@@ -124,7 +124,7 @@ impl Slabs {
     }
 }
 
-/// What is stored for a slab, and for its neighbours.
+/// The storage of a slab, and of its neighbours.
 pub(super) struct Parts<'a, T> {
     /// How much is stored for the nodes before the slab.
     pub(super) before: usize,

@@ -34,7 +34,7 @@ pub(super) struct Smoother {
     inverse: Vec<f32>,
     /// Pivots that had to be replaced.
     pub(super) replaced: usize,
-    /// What its changes are multiplied with \[-\].
+    /// The factor of its corrections \[-\].
     pub(super) omega: f32,
 }
 

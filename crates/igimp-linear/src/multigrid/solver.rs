@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::super::{LinearSolverError, SolveReport, check};
 use super::boundary_nodes::BoundaryNodes;
 use super::hierarchy::{self, Preconditioner};
-use crate::krylov::preconditioned::{Demand, Method, Preconditioned};
+use crate::krylov::preconditioned::{Demand, LinearSystem, Method, Preconditioned};
 use crate::{Pattern, TangentMatrix};
 
 /// Names of the methods.
@@ -17,7 +17,7 @@ pub(crate) struct Iteration {
     pattern: Option<Arc<Pattern>>,
     grids: Option<Box<dyn Preconditioner>>,
     skin: BoundaryNodes,
-    /// What the skin leaves of a residual.
+    /// The residual after the skin was solved for.
     rest: Vec<f64>,
     preconditioned: Preconditioned,
 }
@@ -78,6 +78,7 @@ impl Iteration {
                 skin.after(matrix, r, z);
             }
         };
-        preconditioned.solve((matrix, rhs), solution, demand, method, &mut apply)
+        let system = LinearSystem { matrix, rhs };
+        preconditioned.solve(system, solution, demand, method, &mut apply)
     }
 }

@@ -153,7 +153,7 @@ impl Variation {
     }
 }
 
-/// What of a material varies; what does not is the constant of the material.
+/// The parameters of a material that vary; all others are its constants.
 ///
 /// Where something varies, the constant of the material is the greatest value in its soil.
 #[derive(Clone, Debug, Default, PartialEq)]

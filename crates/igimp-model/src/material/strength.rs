@@ -48,7 +48,7 @@ pub enum Strength {
 /// A parameter of a strength as it is printed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Parameter {
-    /// What stands before the value, such as `c_u = `.
+    /// The text before the value, such as `c_u = `.
     pub label: &'static str,
     /// The value.
     pub value: ParameterValue,

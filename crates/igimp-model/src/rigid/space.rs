@@ -50,7 +50,7 @@ pub enum RigidSolid {
 }
 
 impl RigidSolid {
-    /// The point that its displacement, its forces and its moment are told of \[m\].
+    /// The reference point of its displacement, forces and moment \[m\].
     pub fn reference(&self) -> [f64; 3] {
         match self {
             Self::Cuboid(..) | Self::Surface(_) => {

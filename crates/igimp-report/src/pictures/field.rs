@@ -40,7 +40,7 @@ impl Shown {
     }
 }
 
-/// What the pictures of a run have in common.
+/// The context that the pictures of a run share.
 #[derive(Clone, Copy, Debug)]
 pub struct Canvas<'a> {
     /// The results folder.
@@ -51,7 +51,7 @@ pub struct Canvas<'a> {
     pub pieces: &'a Pieces,
 }
 
-/// What is drawn over a field: structures where they stand.
+/// Lines and labels over a field: structures where they stand.
 #[derive(Clone, Debug, Default)]
 pub struct Over {
     /// Lines.
@@ -60,8 +60,21 @@ pub struct Over {
     pub labels: Vec<([f64; 2], String)>,
 }
 
-/// Particles, and the laws that they refer to.
-pub type Seen<'a, const D: usize> = (&'a Particles<D>, &'a [SharedLaw]);
+/// A state as its fields are computed.
+#[derive(Clone, Copy, Debug)]
+pub struct Seen<'a, const D: usize> {
+    /// The particles.
+    pub particles: &'a Particles<D>,
+    /// The laws that they refer to.
+    pub laws: &'a [SharedLaw],
+}
+
+impl<const D: usize> Seen<'_, D> {
+    /// The values of a field by particle.
+    pub(super) fn values(&self, field: Field) -> Vec<f64> {
+        fields::values(field, self.particles, self.laws)
+    }
+}
 
 /// The picture of a field in a state: the bodies in pieces, coloured by their particles, their edges as
 /// they moved and as they were, and structures `over` them where they stand.
@@ -74,16 +87,15 @@ pub fn field_picture(
     canvas: &Canvas<'_>,
     shown: &Shown,
     field: Field,
-    (particles, laws): Seen<'_, 2>,
+    state: Seen<'_, 2>,
     compared: &[Seen<'_, 2>],
     over: &Over,
 ) -> Result<FigureNote, ReportError> {
     let case = canvas.case;
-    let values = fields::values(field, particles, laws);
+    let particles = state.particles;
+    let values = state.values(field);
     let mut all = values.clone();
-    for (particles, laws) in compared {
-        all.extend(fields::values(field, particles, laws));
-    }
+    all.extend(compared.iter().flat_map(|other| other.values(field)));
     let scale = Scale::of(field.dimension(), all.iter().copied());
     let colours = Colours::of(field, &scale.apply(&all));
     let (domains, whose) = canvas.pieces.now(particles);
@@ -238,7 +250,7 @@ impl Colours {
         }
     }
 
-    /// What the colour bar says of values beyond it.
+    /// A note on the colour bar for values beyond its range.
     pub(super) fn told(&self) -> &'static str {
         match self.cut {
             (false, false) => "",

@@ -125,58 +125,26 @@ pub fn section_pictures<const D: usize>(
     folder: &Path,
     case_title: &str,
     section: &Section<D>,
-    (stage, references): (&str, &[&SectionReference]),
+    stage: &str,
+    references: &[&SectionReference],
     table: &Table,
 ) -> Result<Vec<FigureNote>, ReportError> {
-    let mut headers = table.header.iter();
-    let column = headers
-        .position(|header| header.starts_with("distance"))
-        .unwrap_or(0);
-    let distance = points(table, column, column)
-        .into_iter()
-        .map(|point| point[0]);
-    let [dx, dy] = [0, 1].map(|axis| section.to[axis] - section.from[axis]);
-    let upright = dx.abs() <= 1e-6 * dy.abs() && dy != 0.0;
-    let along: Vec<f64> = if upright {
-        distance
-            .map(|s| section.from[1] + dy.signum() * s)
-            .collect()
-    } else {
-        distance.collect()
-    };
+    let course = Course::of(section, table);
     let mut notes = Vec::new();
     for group in groups(&section.record, table) {
-        let (label, mut series) = group.series(table, &along, &[], upright);
-        let held = references.iter().filter(|held| group.has(held.of));
+        let (label, mut series) = group.series(table, &course.along, &[], course.is_upright);
         let scale = group.scale(table);
         let mut bands = Vec::new();
         let mut sources = String::new();
-        for held in held {
-            let height = |s: f64| {
-                if upright {
-                    section.from[1] + dy.signum() * s
-                } else {
-                    s
-                }
-            };
-            let (points, band) = reference(held, &along, scale, &height);
-            let turned = |points: &[[f64; 2]]| -> Vec<[f64; 2]> {
-                let turn = |&[a, b]: &[f64; 2]| if upright { [b, a] } else { [a, b] };
-                points.iter().map(turn).collect()
-            };
-            if let Some(band) = band {
-                bands.push(Band {
-                    lower: turned(&band.lower),
-                    upper: turned(&band.upper),
-                    ..band
-                });
-            }
+        for held in references.iter().filter(|held| group.has(held.of)) {
+            let (points, band) = course.reference(held, scale);
+            bands.extend(band);
             let style = SeriesStyle::LineAndMarkers(LineStyle::Dashed);
             let name = held.reference.label.clone();
             sources = format!("{sources} Reference: {}.", fields::plain(&name));
-            series.push(Series::new(name, turned(&points), style).in_colour(Colour::BLACK));
+            series.push(Series::new(name, points, style).in_colour(Colour::BLACK));
         }
-        let (x_label, y_label) = if upright {
+        let (x_label, y_label) = if course.is_upright {
             (label, "height y [m]".to_owned())
         } else {
             (format!("distance along {} [m]", section.name), label)
@@ -207,6 +175,64 @@ pub fn section_pictures<const D: usize>(
         notes.push(write(folder, &name, &plot.draw()?, caption)?);
     }
     Ok(notes)
+}
+
+/// Where the rows of a section stand.
+struct Course {
+    /// The distance along the section, or the height where it is upright \[m\].
+    along: Vec<f64>,
+    is_upright: bool,
+    /// Height at which it begins \[m\], and whether it goes up (1) or down (−1).
+    foot: f64,
+    sense: f64,
+}
+
+impl Course {
+    fn of<const D: usize>(section: &Section<D>, table: &Table) -> Self {
+        let mut headers = table.header.iter();
+        let column = headers
+            .position(|header| header.starts_with("distance"))
+            .unwrap_or(0);
+        let [dx, dy] = [0, 1].map(|axis| section.to[axis] - section.from[axis]);
+        let mut course = Self {
+            along: Vec::new(),
+            is_upright: dx.abs() <= 1e-6 * dy.abs() && dy != 0.0,
+            foot: section.from[1],
+            sense: dy.signum(),
+        };
+        let distance = points(table, column, column);
+        course.along = distance
+            .iter()
+            .map(|point| course.place(point[0]))
+            .collect();
+        course
+    }
+
+    /// A distance along the section as it is drawn.
+    fn place(&self, distance: f64) -> f64 {
+        if self.is_upright {
+            self.foot + self.sense * distance
+        } else {
+            distance
+        }
+    }
+
+    /// A reference as it is drawn, in the unit of the plot, and the band of its tolerance.
+    fn reference(&self, held: &SectionReference, scale: Scale) -> (Vec<[f64; 2]>, Option<Band>) {
+        let (points, band) = reference(held, &self.along, scale, &|distance| self.place(distance));
+        let band = band.map(|band| Band {
+            lower: self.turned(&band.lower),
+            upper: self.turned(&band.upper),
+            ..band
+        });
+        (self.turned(&points), band)
+    }
+
+    /// Points with the height upright.
+    fn turned(&self, points: &[[f64; 2]]) -> Vec<[f64; 2]> {
+        let turn = |&[a, b]: &[f64; 2]| if self.is_upright { [b, a] } else { [a, b] };
+        points.iter().map(turn).collect()
+    }
 }
 
 /// The points of a reference over the distance, or the height, along a section, in the unit of the plot,

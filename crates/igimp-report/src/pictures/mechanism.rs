@@ -42,7 +42,7 @@ pub struct Failing<'a> {
     pub last: &'a Particles<2>,
 }
 
-/// What moved between them.
+/// The displacements between two equilibria of a failing body.
 #[derive(Clone, Debug)]
 pub struct Mechanism {
     moved: Vec<[f64; 2]>,

@@ -110,17 +110,23 @@ fn caption(study: &StudySummary, result: &StudyResult) -> String {
         .filter(|(number, _)| arrived(*number))
         .map(|(_, mesh)| mesh.label())
         .collect();
-    let found = result.estimate.map_or_else(
-        || "Of fewer than two values nothing is extrapolated.".to_owned(),
-        |found| {
-            format!(
-                "By all meshes, {}: {} (order {}).",
-                found.lead(),
-                found.sentence(),
-                found.order.sentence()
-            )
-        },
-    );
+    let early: Vec<String> = (study.meshes.iter().enumerate())
+        .filter(|(number, _)| result.ended_early(*number))
+        .map(|(_, mesh)| mesh.label())
+        .collect();
+    let found = match result.estimate {
+        Some(found) => format!(
+            "By all meshes, {}: {} (order {}).",
+            found.lead(),
+            found.sentence(),
+            found.order.sentence()
+        ),
+        None if early.is_empty() => "Of fewer than two values nothing is extrapolated.".to_owned(),
+        None => format!(
+            "Nothing is extrapolated: on {} the run ended early.",
+            early.join(", ")
+        ),
+    };
     format!(
         "{} on the meshes {}. {found}",
         result.name,

@@ -93,7 +93,7 @@ fn points(table: &Table, x: usize, y: usize) -> Vec<[f64; 2]> {
         .collect()
 }
 
-/// A line, with markers while they can be told apart.
+/// A line, with markers as long as they do not overlap.
 fn style(points: usize) -> SeriesStyle {
     if points > 25 {
         SeriesStyle::Line(LineStyle::Solid)

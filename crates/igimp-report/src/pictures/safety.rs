@@ -42,35 +42,14 @@ pub fn safety_picture(
         points
     };
     let (stable, failed) = (of(true), of(false));
-    // Every equilibrium of every march, so that the knee is seen.
-    let mut course: Vec<[f64; 2]> = safety
-        .trials
-        .iter()
-        .flat_map(|trial| &trial.course)
-        .map(|[srf, displacement]| [*srf, displacement / unit.divide_by])
-        .filter(|[srf, _]| safety.stable.is_some_and(|stable| *srf <= stable))
-        .collect();
-    course.sort_by(|a, b| a[0].total_cmp(&b[0]));
-    let points = safety.path.iter().flat_map(|path| &path.points);
-    course.extend(points.map(|point| [point.factor, point.displacement / unit.divide_by]));
-    let knots = |of: fn(&PathSummary) -> Option<PathPoint>| -> Vec<[f64; 2]> {
+    let course = course(safety, unit.divide_by);
+    let mark = |of: fn(&PathSummary) -> Option<PathPoint>| -> Vec<[f64; 2]> {
         let found = safety.path.as_ref().and_then(of);
         let place = |point: PathPoint| [point.factor, point.displacement / unit.divide_by];
         found.map(place).into_iter().collect()
     };
-    let heights = || {
-        let all = stable.iter().chain(&failed).chain(&course);
-        all.map(|point| point[1])
-    };
-    let highest = heights().fold(0.0, f64::max);
-    let lowest = heights().filter(|&d| d > 0.0).fold(f64::INFINITY, f64::min);
-    let (y_scale, y_range) = if highest > WIDE * lowest {
-        (Scale::Log, Some((0.6 * lowest, 1.8 * highest)))
-    } else if highest > 0.0 {
-        (Scale::Linear, Some((0.0, 1.08 * highest)))
-    } else {
-        (Scale::Linear, None)
-    };
+    let all = stable.iter().chain(&failed).chain(&course);
+    let (y_scale, y_range) = ordinate(all.map(|point| point[1]));
     let interval = safety.stable.zip(safety.failed).zip(y_range);
     let bands = interval.map(|((from, to), (bottom, top))| Band {
         label: format!("{} ≤ FoS < {}", short(from), short(to)),
@@ -82,9 +61,9 @@ pub fn safety_picture(
     let mut series = vec![Series::new("stands", stands, style).in_colour(Colour::CURVE)];
     series.extend(if safety.path.is_some() {
         vec![
-            Series::markers("moves as a mechanism", knots(|path| path.mechanism))
+            Series::markers("moves as a mechanism", mark(|path| path.mechanism))
                 .in_colour(Colour::FAILURE),
-            Series::markers("knee", knots(|path| path.knee)).in_colour(Colour::NO_VALUE),
+            Series::markers("knee", mark(|path| path.knee)).in_colour(Colour::NO_VALUE),
         ]
     } else {
         vec![Series::markers("fails, last equilibrium", failed).in_colour(Colour::FAILURE)]
@@ -111,4 +90,34 @@ pub fn safety_picture(
     );
     let name = format!("safety-{}", file_name(stage));
     write(folder, &name, &plot.draw()?, caption)
+}
+
+/// Every equilibrium of every march, so that the knee is seen: strength reduction factor and displacement in a unit.
+fn course(safety: &SafetySummary, unit: f64) -> Vec<[f64; 2]> {
+    let mut course: Vec<[f64; 2]> = safety
+        .trials
+        .iter()
+        .flat_map(|trial| &trial.course)
+        .map(|[srf, displacement]| [*srf, displacement / unit])
+        .filter(|[srf, _]| safety.stable.is_some_and(|stable| *srf <= stable))
+        .collect();
+    course.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let points = safety.path.iter().flat_map(|path| &path.points);
+    course.extend(points.map(|point| [point.factor, point.displacement / unit]));
+    course
+}
+
+/// Scale and range of the axis of displacements.
+fn ordinate(displacements: impl Iterator<Item = f64> + Clone) -> (Scale, Option<(f64, f64)>) {
+    let highest = displacements.clone().fold(0.0, f64::max);
+    let lowest = displacements
+        .filter(|&d| d > 0.0)
+        .fold(f64::INFINITY, f64::min);
+    if highest > WIDE * lowest {
+        (Scale::Log, Some((0.6 * lowest, 1.8 * highest)))
+    } else if highest > 0.0 {
+        (Scale::Linear, Some((0.0, 1.08 * highest)))
+    } else {
+        (Scale::Linear, None)
+    }
 }

@@ -21,12 +21,12 @@ pub struct InSpace<'a> {
     folder: &'a Path,
     /// Title of the case.
     title: &'a str,
-    /// Whether total and effective stress are told apart.
+    /// Whether titles distinguish total from effective stress.
     pore_water: bool,
     state: Seen<'a, 3>,
     /// Triangles of rigid bodies.
     bodies: Vec<[[f64; 3]; 3]>,
-    /// What water tables are drawn.
+    /// The water tables to draw.
     water: Vec<PoreSource>,
     low: Vec<[f64; 3]>,
     high: Vec<[f64; 3]>,
@@ -38,19 +38,22 @@ struct Coloured {
     values: Vec<f64>,
     colours: Colours,
     label: String,
-    /// What it is, for captions.
+    /// The quantity in words, for captions.
     what: String,
 }
 
 impl<'a> InSpace<'a> {
-    /// The state of a case of that title, for its results folder, with the triangles of rigid bodies.
+    /// The state of a case of that title, for its results folder, with the triangles of rigid bodies. With `pore_water`
+    /// titles distinguish total from effective stress.
     pub fn new(
-        (folder, title, pore_water): (&'a Path, &'a str, bool),
+        folder: &'a Path,
+        title: &'a str,
+        pore_water: bool,
         state: Seen<'a, 3>,
         bodies: Vec<[[f64; 3]; 3]>,
     ) -> Self {
         let corner = |sign: f64| {
-            let domains = std::iter::zip(&state.0.x, &state.0.half_length);
+            let domains = std::iter::zip(&state.particles.x, &state.particles.half_length);
             domains
                 .map(|(x, half)| [0, 1, 2].map(|axis| x[axis] + sign * half[axis]))
                 .collect::<Vec<_>>()
@@ -82,7 +85,7 @@ impl<'a> InSpace<'a> {
     /// Upright planes across either level axis, through that particle which was nearest to the middle of the
     /// body before it moved: so they run through domains and not between them.
     pub fn middle(&self) -> Vec<Cut> {
-        let particles = self.state.0;
+        let particles = self.state.particles;
         let plane = |axis: usize| {
             let moved = std::iter::zip(&particles.x, &particles.displacement);
             let places: Vec<f64> = moved.map(|(x, u)| x[axis] - u[axis]).collect();
@@ -159,10 +162,9 @@ impl<'a> InSpace<'a> {
     }
 
     fn coloured(&self, field: Field, compared: &[Seen<'_, 3>]) -> Coloured {
-        let of = |(particles, laws): Seen<'_, 3>| fields::values(field, particles, laws);
-        let values = of(self.state);
+        let values = self.state.values(field);
         let mut all = values.clone();
-        all.extend(compared.iter().flat_map(|seen| of(*seen)));
+        all.extend(compared.iter().flat_map(|seen| seen.values(field)));
         let scale = Scale::of(field.dimension(), all.iter().copied());
         let colours = Colours::of(field, &scale.apply(&all));
         let is_total = self.pore_water && field.is_total();

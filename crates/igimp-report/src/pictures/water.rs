@@ -75,7 +75,7 @@ pub(super) fn over_cut(tables: &[PoreSource], plane: Cut, domains: &[Polygon]) -
     tables.iter().filter_map(line).collect()
 }
 
-/// What a caption says of the water tables that are in a picture.
+/// The words of a caption for the water tables in its picture.
 pub(super) fn told(outlines: &[Outline]) -> &'static str {
     let is_water = |outline: &Outline| outline.style == OutlineStyle::Water;
     if outlines.iter().any(is_water) {

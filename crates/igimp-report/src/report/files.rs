@@ -1,4 +1,4 @@
-//! What of a results folder goes into its report: pictures, tables, and the texts of the case.
+//! The parts of a results folder that a report includes: pictures, tables, and the texts of the case.
 
 use std::path::{Component, Path};
 
@@ -257,7 +257,7 @@ pub(super) fn inputs(folder: &Path) -> Vec<InputView> {
         .collect()
 }
 
-/// A relative path as a link: what is no letter, digit or plain sign is written in percent.
+/// A relative path as a link; all but letters, digits and plain signs is percent-encoded.
 fn href(path: &str) -> String {
     let mut text = String::with_capacity(path.len());
     for byte in path.bytes() {

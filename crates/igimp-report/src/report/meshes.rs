@@ -78,17 +78,28 @@ pub(super) fn add_to(verdict: &mut Verdict, study: &StudySummary) {
         Ending::Failed => (verdict.class, verdict.word) = ("bad", "A mesh failed"),
         _ => {}
     }
-    for result in &study.results {
-        if let (Some(found), true) = (result.estimate, result.kind != ResultKind::Check) {
+    let no_check = |result: &&StudyResult| result.kind != ResultKind::Check;
+    for result in study.results.iter().filter(no_check) {
+        let name = &result.name;
+        if let Some(found) = result.estimate {
             let _ = write!(
                 verdict.text,
-                " By all meshes, {}: {}, {} (order {}).",
+                " By all meshes, {}: {name}, {} (order {}).",
                 found.lead(),
-                result.name,
                 found.sentence(),
                 found.order.sentence()
             );
+        } else if let Some(refusal) = result.refusal(&study.meshes) {
+            let _ = write!(verdict.text, " {name}: {refusal}.");
         }
+    }
+    let checks = study.results.iter().filter(|result| !no_check(result));
+    for result in checks.filter(|result| result.finest().is_none()) {
+        let name = &result.name;
+        let _ = write!(
+            verdict.text,
+            " Check “{name}” is not held: no mesh came to its value."
+        );
     }
     for mesh in &study.meshes {
         if let Some(message) = mesh.message.as_ref().and_then(|text| text.lines().next()) {

@@ -15,7 +15,7 @@ use crate::report::numbers::{UNKNOWN, percent};
 /// The phases of a stage, in the order of [`StageSummary::phases`].
 pub(super) const PHASES: [&str; 5] = ["set-up", "assembly", "factorisation", "solution", "commit"];
 
-/// What is said of a result whose mesh error nobody asked for.
+/// The note on a result whose mesh error was not studied.
 const MESH_ERROR_UNKNOWN: &str = "mesh error not known: igimp run --meshes 2 finds it";
 
 /// A number with its name, and what a reader has to know of it.
@@ -26,7 +26,7 @@ pub(super) struct Number {
     pub(super) note: String,
 }
 
-/// What an engineer looks for first: factors of safety, resistances, displacements, checks.
+/// The headline numbers: factors of safety, resistances, displacements, checks.
 pub(super) fn headline(summary: &Summary) -> Vec<Number> {
     let mut numbers = Vec::new();
     let mut add = |name: String, value: String, note: String| {
@@ -147,7 +147,7 @@ fn last_pores(summary: &Summary) -> Option<(&StageSummary, &PoreSummary)> {
     Some((stage, stage.pore_water.as_ref()?))
 }
 
-/// What the answer cost.
+/// The computing effort.
 pub(super) fn effort(summary: &Summary) -> Vec<Number> {
     let mut numbers = Vec::new();
     let mut add = |name: &str, value: String| {

@@ -179,7 +179,7 @@ fn on_path(path: &PathSummary) -> Option<String> {
     ))
 }
 
-/// What decides the factor: reinforcement, and the kinematic theorem.
+/// The shares that decide the factor: reinforcement, and the kinematic theorem.
 fn on_shares(shares: &StrengthShares) -> String {
     let mut text = String::new();
     if shares.reinforcement > 0.0 {

@@ -59,7 +59,7 @@ fn material(material: &Material) -> Vec<String> {
     ]
 }
 
-/// Most rows of a profile that are told one by one.
+/// Most rows of a profile that are listed one by one.
 const MOST_ROWS: usize = 6;
 
 /// Prints a value divided by a scale.

@@ -139,7 +139,7 @@ fn reduction_in_words(reduction: &Reduction) -> String {
     }
 }
 
-/// What a construction stage changes, in words.
+/// The changes of a construction stage, in words.
 fn construction_in_words<const D: usize>(case: &Case<D>, own: &Construction) -> String {
     let names = |which: &[usize]| {
         let names: Vec<&str> = which.iter().map(|&k| &*case.bodies[k].name).collect();
@@ -165,13 +165,13 @@ fn construction_in_words<const D: usize>(case: &Case<D>, own: &Construction) -> 
     parts.join("; ")
 }
 
-/// What a stage does to a rigid body, in words.
+/// The action of a stage on a rigid body, in words.
 fn moves_in_words<const D: usize>(case: &Case<D>, own: &RigidMove) -> String {
     let name = &case.rigid[own.body].name;
     format!("{name}: {}", drives_in_words::<D>(own))
 }
 
-/// What drives the components of the motion of a rigid body in a stage, in words.
+/// The drives of the components of a rigid body's motion in a stage, in words.
 pub(super) fn drives_in_words<const D: usize>(own: &RigidMove) -> String {
     let (names, force, moment): (&[&str], _, _) = if D == 2 {
         (&["x", "y", "rotation"], "N/m", "N m/m")

@@ -73,7 +73,7 @@ fn rigid_body<const D: usize>(case: &Case<D>, index: usize, part: &RigidPart<D>)
     ]
 }
 
-/// What all sides have in common, or what each has; what most of them have is said once, last.
+/// The interface of all sides, or of each side; the most common one is stated once, last.
 fn by_side(names: &[String], of: impl Fn(usize) -> String) -> String {
     let each: Vec<String> = (0..names.len()).map(of).collect();
     let count = |own: &String| each.iter().filter(|other| *other == own).count();

@@ -91,7 +91,7 @@ fn source<const D: usize>(own: &PoreSource) -> String {
     }
 }
 
-/// What materials do with water; nothing where there is none, and no soil that makes pore pressure.
+/// The drainage of the materials; empty without water and without soil that generates pore pressure.
 pub(super) fn soils<const D: usize>(case: &Case<D>) -> SetupTable {
     let is_undrained = |own: &Material| matches!(own.drainage, Drainage::Undrained { .. });
     let is_told = !case.water.is_empty() || case.materials.iter().any(is_undrained);

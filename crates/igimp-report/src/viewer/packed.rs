@@ -21,9 +21,9 @@ use crate::skin::{Boxes, Lie, Skin};
 const PLANES: [usize; 4] = [9, 5, 3, 1];
 /// Boxes so close to a plane, in their widths, are taken for crossed: it may run along a crack.
 const CRACK: f64 = 0.1;
-/// What rounded numbers have no room for.
+/// Arrays that are left out when numbers are rounded.
 const LEFT_OUT: [&str; 4] = ["deformation gradient", "mass", "volume", "regime"];
-/// Steps of a rounded number; one more stands for what is no number.
+/// Steps of a rounded number; one step more encodes NaN.
 const STEPS: f64 = 65_534.0;
 
 /// How much of a frame is kept.
@@ -53,7 +53,7 @@ impl Keep {
 struct Packed {
     /// 2 or 3.
     dimension: usize,
-    /// What is shown: `boxes`, `lines` or `triangles`.
+    /// Shape of the cells: `boxes`, `lines` or `triangles`.
     kind: &'static str,
     /// Number of particles, and of those that are kept.
     particles: usize,
@@ -150,8 +150,8 @@ fn of_boxes(frame: &Frame<'_>, keep: Keep) -> Option<Packed> {
         (Some(skin), kept, planes)
     };
     let mut places = vec![
-        position("low", &low, &kept, (&low, &high), keep),
-        position("high", &high, &kept, (&low, &high), keep),
+        position("low", &low, &kept, boxes, keep),
+        position("high", &high, &kept, boxes, keep),
     ];
     if let Some(skin) = &skin {
         let faces: Vec<u8> = kept.iter().map(|&k| skin.faces[k as usize]).collect();
@@ -226,13 +226,7 @@ fn bytes_of(lie: Lie) -> [u8; 4] {
     [x, y, z, (255.0 * lie.open).round()].map(|x| x as u8)
 }
 
-fn position(
-    name: &str,
-    corners: &[[f64; 3]],
-    kept: &[u32],
-    (low, high): (&[[f64; 3]], &[[f64; 3]]),
-    keep: Keep,
-) -> Array {
+fn position(name: &str, corners: &[[f64; 3]], kept: &[u32], all: Boxes<'_>, keep: Keep) -> Array {
     let own = kept.iter().flat_map(|&k| corners[k as usize]);
     let numbers: Vec<f64> = own.collect();
     if !keep.rounded {
@@ -240,8 +234,8 @@ fn position(
     }
     // Neighbours that touch are rounded to the same place.
     let ends = [0, 1, 2].map(|axis| {
-        let all = low.iter().chain(high).map(|x| x[axis]);
-        let finite = all.filter(|x| x.is_finite());
+        let ends = all.low.iter().chain(all.high).map(|x| x[axis]);
+        let finite = ends.filter(|x| x.is_finite());
         finite.fold([f64::MAX, f64::MIN], |[a, b], x| [a.min(x), b.max(x)])
     });
     rounded(name, &numbers, &ends)
@@ -249,7 +243,7 @@ fn position(
 
 fn of_field(field: &Stored<'_>, cells: usize, kept: &[u32], keep: Keep) -> Option<Array> {
     let components = field.components;
-    let numbers = field.numbers(components * cells)?;
+    let numbers = field.numbers(cells)?;
     let mut range: Vec<[f64; 4]> = (0..components)
         .map(|k| {
             range_of(

@@ -111,10 +111,10 @@ fn load_points<const D: usize>(
         .collect())
 }
 
-/// What is said of an array that a checkpoint does not have.
+/// The message for an array that a checkpoint lacks.
 const MISSING: &str = "meta.json does not list it";
 
-/// What is said of numbers of another type.
+/// The message for numbers of another type.
 fn other_kind(kind: ColumnKind) -> String {
     let kind = match kind {
         ColumnKind::F64 => "<f8",

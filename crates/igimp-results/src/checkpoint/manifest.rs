@@ -17,7 +17,7 @@ use crate::error::checkpoint::{CheckpointError, FORMAT_VERSION, PROGRAM, at};
 const FORMAT: &str = "igimp checkpoint";
 pub(super) const FILE: &str = "meta.json";
 
-/// What the program says about a checkpoint.
+/// The program's metadata of a checkpoint.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Meta {
     /// The program that writes it.
@@ -180,7 +180,7 @@ impl Manifest {
         }
     }
 
-    /// What the bytes of the file say; messages name the folder.
+    /// The content of the file's bytes; messages name the folder.
     pub(super) fn from_bytes(checkpoint: &Path, bytes: &[u8]) -> Result<Self, CheckpointError> {
         let damaged = |error: serde_json::Error| CheckpointError::Damaged {
             path: checkpoint.into(),

@@ -56,7 +56,7 @@ const REPLACED: &str = ".previous";
 /// A state of a run, read from disk.
 #[derive(Clone, Debug)]
 pub struct Checkpoint<const D: usize> {
-    /// What is known about it.
+    /// The metadata.
     pub meta: Meta,
     /// Bodies by name, in the order in which they were written.
     pub states: Vec<(String, Body<D>)>,
@@ -97,7 +97,7 @@ pub fn write_quickly<const D: usize>(
     write_to_last(folder, name, states, meta, keep, Lasts::Kill)
 }
 
-/// What a checkpoint outlasts as soon as it is written.
+/// The failures that a checkpoint survives as soon as it is written.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Lasts {
     Kill,
@@ -433,7 +433,7 @@ fn prune(folder: &Path, name: &str, keep: usize) -> Result<(), CheckpointError> 
     Ok(())
 }
 
-/// What names before the number at their end; a name without a number is alone.
+/// The part of a name before its final number; a name without a number stands alone.
 fn family(name: &str) -> (&str, bool) {
     let stem = name.trim_end_matches(|symbol: char| symbol.is_ascii_digit());
     (stem, stem.len() < name.len())

@@ -13,7 +13,7 @@ pub enum CheckpointError {
     NotACheckpoint {
         /// The folder.
         path: PathBuf,
-        /// What is missing.
+        /// The missing part.
         why: &'static str,
     },
     /// The checkpoint is laid out in another way.
@@ -56,7 +56,7 @@ pub enum CheckpointError {
         path: PathBuf,
         /// The file within it.
         file: String,
-        /// What is wrong.
+        /// The reason.
         why: String,
     },
     /// A name that cannot be a folder everywhere.
@@ -72,7 +72,7 @@ pub enum CheckpointError {
     File {
         /// The file or folder.
         path: PathBuf,
-        /// What the system said.
+        /// The error of the system.
         #[source]
         source: io::Error,
     },

@@ -23,7 +23,7 @@ impl Lock {
     /// Keeps everybody else out of a folder, which is made.
     ///
     /// # Errors
-    /// [`ResultsError::InUse`] when somebody is there; [`ResultsError::Link`], [`ResultsError::File`].
+    /// [`ResultsError::InUse`] when another run holds it; [`ResultsError::Link`], [`ResultsError::File`].
     pub fn alone(folder: &Path) -> Result<Self, ResultsError> {
         Self::take(folder, File::try_lock)
     }

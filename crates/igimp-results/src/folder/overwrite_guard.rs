@@ -1,4 +1,4 @@
-//! Who may write into a results folder: nothing that somebody else left, and nothing that a stopped run
+//! Permission to write into a results folder: nothing that another program left, and nothing that a stopped run
 //! could go on from, is cleared unasked.
 
 use std::fs;
@@ -11,7 +11,7 @@ use super::{
 };
 use crate::error::ResultsError;
 
-/// What a run may replace in its results folder.
+/// The results that a run may replace in its folder.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Replace {
     /// Results of the same case whose run came to its end, or left nothing to go on from.

@@ -1,4 +1,4 @@
-//! Whose results a folder holds, and whether their run came to its end: what `.igimp` says.
+//! The case whose results a folder holds, and whether its run finished, as stored in `.igimp`.
 
 use std::path::{Component, Path, PathBuf};
 
@@ -46,7 +46,7 @@ fn relative(path: &Path, folder: &Path) -> String {
     way.display().to_string()
 }
 
-/// What is known of a run that writes into a folder.
+/// Identity of a run that writes into a folder.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Claim {
     /// Where its case comes from.
@@ -72,7 +72,7 @@ pub struct Owner {
 }
 
 impl Owner {
-    /// Who owns a folder that a run writes into, or wrote into to its end.
+    /// The owner of a folder that a run writes into, or has finished writing.
     pub fn of(claim: &Claim, folder: &Path, finished: bool) -> Self {
         Self {
             note: "igimp writes its results here".to_owned(),
@@ -83,7 +83,7 @@ impl Owner {
         }
     }
 
-    /// What a file says, if it is there and can be read.
+    /// The content of a file, if it exists and is readable.
     pub fn read(file: &Path) -> Option<Self> {
         serde_json::from_slice(&std::fs::read(file).ok()?).ok()
     }

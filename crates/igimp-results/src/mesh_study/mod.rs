@@ -1,13 +1,13 @@
-//! The mesh error of an answer: a case on several meshes, and what their values say together.
+//! The mesh error of an answer: a case on several meshes, and the extrapolation of their values.
 //!
 //! | | |
 //! |---|---|
-//! | [`mod@estimate`] | from values on two or three meshes to an extrapolated value and its uncertainty; numbers only |
+//! | [`extrapolation`] | from values on two or three meshes to an extrapolated value and its uncertainty; numbers only |
 //! | [`order`] | which orders of convergence are possible, and which the values on three meshes leave; numbers only |
 
-pub mod estimate;
+pub mod extrapolation;
 #[cfg(test)]
-mod estimate_tests;
+mod extrapolation_tests;
 pub mod order;
 
 use std::path::Path;
@@ -19,14 +19,14 @@ use crate::ending::Ending;
 use crate::error::ResultsError;
 use crate::model_size::ModelSize;
 use crate::tables::cells::cell;
-pub use estimate::{Computed, Estimate, estimate};
+pub use extrapolation::{Computed, Estimate, estimate};
 use igimp_text::short;
 pub use order::{Convergence, Order};
 
 /// An uncertainty below this share of its value is round-off \[-\].
 const ROUND_OFF: f64 = 1e-12;
 
-/// What a case gave on all its meshes, as written to `summary.json`.
+/// The results of a case on all its meshes, as written to `summary.json`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct StudySummary {
     /// The meshes from coarse to fine.
@@ -119,9 +119,9 @@ impl MeshSummary {
 pub struct StudyResult {
     /// Name with unit.
     pub name: String,
-    /// What it is.
+    /// Its kind.
     pub kind: ResultKind,
-    /// By mesh; none where the run did not come to it.
+    /// By mesh; `None` where the run did not reach it.
     pub values: Vec<Option<f64>>,
     /// By mesh: half the width of the interval in which a search left the value; 0 where nothing was
     /// searched for.
@@ -129,7 +129,7 @@ pub struct StudyResult {
     /// By mesh: whether the run ended before it came to what the value stands for; such values are not extrapolated.
     #[serde(default)]
     pub early: Vec<bool>,
-    /// What they say together; none for less than two values.
+    /// The extrapolation; `None` for fewer than two values.
     pub estimate: Option<Estimate>,
 }
 
@@ -139,17 +139,34 @@ impl StudyResult {
         self.early.get(mesh).copied().unwrap_or_default()
     }
 
-    /// The value on the finest mesh whose run came to it, or on the finest that has one.
-    pub fn finest(&self) -> Option<f64> {
-        let finest = |early: bool| {
-            let mut meshes = (0..self.values.len()).rev();
-            meshes.find_map(|mesh| self.values[mesh].filter(|_| self.ended_early(mesh) == early))
-        };
-        finest(false).or_else(|| finest(true))
+    /// The finest mesh whose run came to the value, and the value; `None` where no run came to it.
+    pub fn finest(&self) -> Option<(usize, f64)> {
+        let mut meshes = (0..self.values.len()).rev();
+        meshes.find_map(|mesh| Some((mesh, self.values[mesh].filter(|_| !self.ended_early(mesh))?)))
+    }
+
+    /// Why nothing is extrapolated; `None` where something is.
+    pub fn refusal(&self, meshes: &[MeshSummary]) -> Option<String> {
+        if self.estimate.is_some() {
+            return None;
+        }
+        let numbered = meshes.iter().enumerate();
+        let early: Vec<String> = numbered
+            .filter(|(mesh, _)| self.ended_early(*mesh))
+            .map(|(_, mesh)| mesh.label())
+            .collect();
+        Some(match &early[..] {
+            [] => "nothing is extrapolated of fewer than two values".to_owned(),
+            [mesh] => format!("nothing is extrapolated: the run on the mesh {mesh} ended early"),
+            [before @ .., last] => format!(
+                "nothing is extrapolated: the runs on the meshes {} and {last} ended early",
+                before.join(", ")
+            ),
+        })
     }
 }
 
-/// What a result of a study is.
+/// The kind of a result of a study.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ResultKind {

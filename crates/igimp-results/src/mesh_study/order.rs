@@ -14,7 +14,7 @@ pub(super) const FASTEST: f64 = 2.0;
 /// Orders among which an observed one is looked for \[-\].
 const SOUGHT: [f64; 2] = [1e-3, 16.0];
 
-/// What is known beforehand of how a result converges (theory, eq. 40c).
+/// Prior knowledge of how a result converges (theory, eq. 40c).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Convergence {
     /// The least order that is thought possible \[-\].
@@ -63,7 +63,7 @@ impl Convergence {
     }
 }
 
-/// What is known of the order of convergence.
+/// The order of convergence, as far as it is known.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Order {
@@ -136,7 +136,7 @@ impl Order {
         }
     }
 
-    /// What a reader has to know of values that do not converge as such values do.
+    /// A warning for values that do not converge as expected.
     pub fn remark(self) -> Option<&'static str> {
         match self {
             Self::Rising => Some(
@@ -164,7 +164,7 @@ fn rounded(p: f64) -> f64 {
     (100.0 * p).round() / 100.0
 }
 
-/// What is left of a value's change from a coarse mesh to a fine one, as a share of that change (theory,
+/// The remaining change of a value beyond the fine mesh, as a share of its change from the coarse one (theory,
 /// eq. 40a).
 pub(super) fn share(coarse: f64, fine: f64, p: f64) -> f64 {
     1.0 / ((coarse / fine).powf(p) - 1.0)

@@ -90,7 +90,7 @@ fn not_understood(why: &'static str) -> NpyError {
     NpyError::Header { why }
 }
 
-/// What is left to read.
+/// The rest of the header.
 struct Reader<'a>(&'a str);
 
 impl<'a> Reader<'a> {

@@ -1,4 +1,4 @@
-//! What a run writes for ParaView: the particles, the grid, rigid bodies and reinforcement, frame by frame.
+//! The frames of a run for ParaView: particles, grid, rigid bodies and reinforcement.
 
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -6,9 +6,10 @@ use std::path::{Path, PathBuf};
 use igimp_assembly::{Particles, SharedLaw};
 use igimp_model::{Case, Field};
 use igimp_shape::Grid;
+use igimp_text::on_a_line;
 
 use super::particles::{Extras, of_grid, of_particles};
-use super::pvd::{self, Collection};
+use super::pvd::{self, Collection, Frame};
 use crate::atomic::{at, sync_folder, sync_together};
 use crate::error::ResultsError;
 use crate::fields;
@@ -23,6 +24,26 @@ pub struct Structures<'a, const D: usize> {
     pub rigid: Vec<Standing<'a, D>>,
     /// Reinforcement.
     pub reinforcement: Vec<Installed<'a, D>>,
+}
+
+/// A state as a frame shows it.
+#[derive(Clone, Copy, Debug)]
+pub struct Scene<'a, const D: usize> {
+    /// The particles.
+    pub particles: &'a Particles<D>,
+    /// Their laws, at the strength of the state.
+    pub laws: &'a [SharedLaw],
+    /// The structures among them.
+    pub structures: &'a Structures<'a, D>,
+}
+
+/// A state at an end of a search that was written beside the frames.
+#[derive(Clone, Copy, Debug)]
+pub struct StateOfSearch {
+    /// Which, such as `last-stable`.
+    pub name: &'static str,
+    /// Its strength reduction factor \[-\].
+    pub srf: f64,
 }
 
 /// The frames of a run.
@@ -68,25 +89,27 @@ impl Frames {
         })
     }
 
-    /// Adds a frame at a pseudo-time.
+    /// Adds a frame of a stage at a pseudo-time.
     ///
     /// # Errors
     /// [`ResultsError::File`].
     pub fn add<const D: usize>(
         &mut self,
         time: f64,
-        (particles, laws): (&Particles<D>, &[SharedLaw]),
+        stage: &str,
+        scene: &Scene<'_, D>,
         grid: &Grid<D>,
-        structures: &Structures<'_, D>,
     ) -> Result<(), ResultsError> {
-        let cells = self.cells(particles, laws);
-        self.particles.add(time, &cells)?;
-        self.grid.add(time, &of_grid(grid, None))?;
+        let cells = self.cells(scene.particles, scene.laws);
+        self.particles.add(time, stage, &cells)?;
+        self.grid.add(time, stage, &of_grid(grid, None))?;
+        let structures = scene.structures;
         if let Some(collection) = &mut self.rigid {
-            collection.add(time, &rigid::cells(&structures.rigid))?;
+            collection.add(time, stage, &rigid::cells(&structures.rigid))?;
         }
         if let Some(collection) = &mut self.reinforcement {
-            collection.add(time, &reinforcement::lines(&structures.reinforcement))?;
+            let lines = reinforcement::lines(&structures.reinforcement);
+            collection.add(time, stage, &lines)?;
         }
         Ok(())
     }
@@ -99,9 +122,9 @@ impl Frames {
     pub fn beside<const D: usize>(
         &self,
         name: &str,
-        (particles, laws): (&Particles<D>, &[SharedLaw]),
-        structures: &Structures<'_, D>,
+        scene: &Scene<'_, D>,
     ) -> Result<(), ResultsError> {
+        let structures = scene.structures;
         let file = |of| self.folder.join(format!("{name}{of}.vtu"));
         if self.rigid.is_some() {
             rigid::cells(&structures.rigid).write(&file(pvd::OF_BODIES))?;
@@ -111,7 +134,35 @@ impl Frames {
             lines.write(&file(pvd::OF_REINFORCEMENT))?;
         }
         let path = self.folder.join(name).with_extension("vtu");
-        self.cells(particles, laws).write(&path)
+        self.cells(scene.particles, scene.laws).write(&path)
+    }
+
+    /// Collects states that were written beside the frames, as `NAME-STATE.vtu`: `NAME.pvd`, with strength reduction factors
+    /// for times, and the same for rigid bodies and reinforcement.
+    ///
+    /// # Errors
+    /// [`ResultsError::File`].
+    pub fn collect(
+        &self,
+        name: &str,
+        stage: &str,
+        states: &[StateOfSearch],
+    ) -> Result<(), ResultsError> {
+        let parts = [
+            (true, ""),
+            (self.rigid.is_some(), pvd::OF_BODIES),
+            (self.reinforcement.is_some(), pvd::OF_REINFORCEMENT),
+        ];
+        for (_, of) in parts.into_iter().filter(|(is_there, _)| *is_there) {
+            let frame = |state: &StateOfSearch| Frame {
+                time: state.srf,
+                stage: on_a_line(stage).into_owned(),
+                file: format!("{name}-{}{of}.vtu", state.name),
+            };
+            let frames = states.iter().map(frame).collect();
+            pvd::write_states(&self.folder, &format!("{name}{of}"), frames)?;
+        }
+        Ok(())
     }
 
     fn cells<const D: usize>(

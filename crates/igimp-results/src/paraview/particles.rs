@@ -8,12 +8,12 @@ use igimp_shape::Grid;
 use crate::fields::{deviatoric_stress, mean_pressure};
 use crate::vtu::{CellKind, DataArray, UnstructuredGrid, padded};
 
-/// What is written beyond the state of the particles.
+/// Optional arrays beside the state of the particles.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Extras<'a> {
     /// Utilisation of the strength by particle \[-\].
     pub utilisation: Option<&'a [f64]>,
-    /// What particles carry of their material, by the names of the arrays.
+    /// Material parameters that vary by particle, by the names of their arrays.
     pub carried: &'a [(String, Vec<f64>)],
     /// Whether the deformation gradient is written.
     pub def_grad: bool,
@@ -35,19 +35,7 @@ pub fn of_particles<const D: usize>(
     extras: &Extras<'_>,
 ) -> UnstructuredGrid {
     let kind = CellKind::of_dimension(D);
-    let points = particles
-        .x
-        .iter()
-        .zip(&particles.half_length)
-        .flat_map(|(x, half_length)| {
-            kind.corners().iter().map(move |is_upper| {
-                padded(&std::array::from_fn::<_, D, _>(|axis| {
-                    let l = half_length[axis];
-                    x[axis] + if is_upper[axis] { l } else { -l }
-                }))
-            })
-        })
-        .collect::<Vec<_>>();
+    let points = corners(particles, kind);
     let n = particles.len();
     let by_particle = |of: &dyn Fn(usize) -> f64| (0..n).map(of).collect();
     let integers = |of: &dyn Fn(usize) -> usize| (0..n).map(|k| of(k) as i32).collect();
@@ -111,6 +99,21 @@ pub fn of_particles<const D: usize>(
         cell_data,
         field_data: Vec::new(),
     }
+}
+
+/// The corners of the domains, particle after particle.
+fn corners<const D: usize>(particles: &Particles<D>, kind: CellKind) -> Vec<[f64; 3]> {
+    let domains = std::iter::zip(&particles.x, &particles.half_length);
+    domains
+        .flat_map(|(x, half_length)| {
+            kind.corners().iter().map(move |is_upper| {
+                padded(&std::array::from_fn::<_, D, _>(|axis| {
+                    let l = half_length[axis];
+                    x[axis] + if is_upper[axis] { l } else { -l }
+                }))
+            })
+        })
+        .collect()
 }
 
 /// The cells of the background grid, with the displacement of its nodes in the last step if given.

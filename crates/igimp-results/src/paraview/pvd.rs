@@ -1,5 +1,5 @@
 //! Frames of a run for ParaView: numbered `.vtu` files and the `.pvd` collection that gives each
-//! its time.
+//! its time, and the stage that it belongs to as its group.
 //!
 //! The collection is written anew after each frame, whole or not at all, so it can be opened while
 //! the run goes on and names no frame that is not there.
@@ -8,8 +8,11 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use igimp_text::on_a_line;
+
 use crate::atomic::{at, write_whole};
 use crate::error::ResultsError;
+use crate::vtu::read::unescaped;
 use crate::vtu::{UnstructuredGrid, escaped};
 
 /// Name of the frames of particles.
@@ -43,6 +46,8 @@ pub struct Collection {
 pub struct Frame {
     /// Pseudo-time that ParaView shows \[-\]; frames come in the order of their times.
     pub time: f64,
+    /// Name of the stage, on a line.
+    pub stage: String,
     /// File, relative to the collection.
     pub file: String,
 }
@@ -99,15 +104,21 @@ impl Collection {
         Ok(collection)
     }
 
-    /// Writes a frame and adds it.
+    /// Writes a frame of a stage and adds it.
     ///
     /// # Errors
     /// [`ResultsError::File`].
-    pub fn add(&mut self, time: f64, grid: &UnstructuredGrid) -> Result<PathBuf, ResultsError> {
+    pub fn add(
+        &mut self,
+        time: f64,
+        stage: &str,
+        grid: &UnstructuredGrid,
+    ) -> Result<PathBuf, ResultsError> {
         let file = format!("{}_{:04}.vtu", self.stem, self.frames.len() + 1);
         let path = self.folder.join(&file);
         grid.clone().at_time(time).write(&path)?;
-        self.frames.push(Frame { time, file });
+        let stage = on_a_line(stage).into_owned();
+        self.frames.push(Frame { time, stage, file });
         self.write()?;
         Ok(path)
     }
@@ -123,20 +134,7 @@ impl Collection {
     }
 
     fn write(&self) -> Result<(), ResultsError> {
-        let mut text = String::from(
-            "<?xml version=\"1.0\"?>\n\
-             <VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n\
-             <Collection>\n",
-        );
-        for Frame { time, file } in &self.frames {
-            let file = escaped(file);
-            let _ = writeln!(
-                text,
-                "<DataSet timestep=\"{time}\" group=\"\" part=\"0\" file=\"{file}\"/>"
-            );
-        }
-        text.push_str("</Collection>\n</VTKFile>\n");
-        write_whole(&self.path(), text)
+        write_whole(&self.path(), text_of(&self.frames))
     }
 
     fn remove_later_frames(&self) -> Result<(), ResultsError> {
@@ -153,12 +151,44 @@ impl Collection {
     }
 }
 
+/// Writes the collection of the states at the ends of a search, `NAME.pvd`, in the order of their times: the strength
+/// reduction factors.
+///
+/// # Errors
+/// [`ResultsError::File`].
+pub(crate) fn write_states(
+    folder: &Path,
+    name: &str,
+    mut states: Vec<Frame>,
+) -> Result<(), ResultsError> {
+    states.sort_by(|a, b| a.time.total_cmp(&b.time));
+    write_whole(&folder.join(format!("{name}.pvd")), text_of(&states))
+}
+
+/// A collection as a file, a line for each frame.
+fn text_of(frames: &[Frame]) -> String {
+    let mut text = String::from(
+        "<?xml version=\"1.0\"?>\n\
+         <VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n\
+         <Collection>\n",
+    );
+    for Frame { time, stage, file } in frames {
+        let [stage, file] = [stage, file].map(|text| escaped(text));
+        let _ = writeln!(
+            text,
+            "<DataSet timestep=\"{time}\" group=\"{stage}\" part=\"0\" file=\"{file}\"/>"
+        );
+    }
+    text.push_str("</Collection>\n</VTKFile>\n");
+    text
+}
+
 /// The frames of a collection, if it can be read.
 pub fn frames(folder: &Path, stem: &str) -> Option<Vec<Frame>> {
     parse(&fs::read_to_string(folder.join(format!("{stem}.pvd"))).ok()?)
 }
 
-/// The frames of a collection as [`Collection::write`] writes it, a line each.
+/// The frames of a collection as [`text_of`] writes it.
 fn parse(text: &str) -> Option<Vec<Frame>> {
     if !text.contains("type=\"Collection\"") || !text.trim_end().ends_with("</VTKFile>") {
         return None;
@@ -166,48 +196,52 @@ fn parse(text: &str) -> Option<Vec<Frame>> {
     text.lines()
         .filter(|line| line.starts_with("<DataSet "))
         .map(|line| {
-            let file = attribute(line, "file")?;
+            // Quotes within a name are escaped.
+            let rest = line.strip_prefix("<DataSet timestep=\"")?;
+            let (time, rest) = rest.split_once("\" group=\"")?;
+            let (stage, rest) = rest.split_once("\" part=\"0\" file=\"")?;
+            let file = rest.strip_suffix("\"/>")?;
             // Names that we give need no escapes, and lead nowhere else.
             let is_plain = |c: char| c.is_ascii_alphanumeric() || "_-.".contains(c);
-            let time = attribute(line, "timestep")?.parse().ok()?;
+            let time = time.parse().ok()?;
             file.chars().all(is_plain).then(|| Frame {
                 time,
+                stage: unescaped(stage),
                 file: file.to_owned(),
             })
         })
         .collect()
 }
 
-fn attribute<'a>(tag: &'a str, name: &str) -> Option<&'a str> {
-    let (_, rest) = tag.split_once(&format!(" {name}=\""))?;
-    Some(rest.split_once('"')?.0)
-}
-
 /// Whether a file of `paraview/` has a name that a run gives: `STEM.pvd`, `STEM_0001.vtu`, and the states
-/// of a search, such as `stage-02-last-stable.vtu` and `stage-02-last-stable-rigid.vtu`.
+/// of a search, such as `stage-02-last-stable.vtu` and `stage-02-last-stable-rigid.vtu`, with their collections, such as
+/// `stage-02.pvd` and `stage-02-rigid.pvd`.
 pub(crate) fn is_our_name(name: &str) -> bool {
     let is_frame = [PARTICLES, GRID, RIGID, REINFORCEMENT]
         .iter()
         .any(|stem| name.strip_prefix(stem) == Some(".pvd") || frame_number(name, stem).is_some());
-    is_frame || is_state_of_a_search(name)
+    is_frame || is_of_a_search(name)
 }
 
-fn is_state_of_a_search(name: &str) -> bool {
-    let inner = name
+fn is_of_a_search(name: &str) -> bool {
+    let Some((inner, ending)) = name
         .strip_prefix("stage-")
-        .and_then(|rest| rest.strip_suffix(".vtu"));
-    inner
-        .and_then(|inner| inner.split_once('-'))
-        .is_some_and(|(digits, what)| {
-            digits.len() >= 2
-                && digits.bytes().all(|byte| byte.is_ascii_digit())
-                && [OF_BODIES, OF_REINFORCEMENT, ""].iter().any(|of| {
-                    matches!(
-                        what.strip_suffix(of),
-                        Some("last-stable" | "first-unstable")
-                    )
-                })
-        })
+        .and_then(|rest| rest.rsplit_once('.'))
+    else {
+        return false;
+    };
+    let (digits, state) = match inner.split_once('-') {
+        Some((digits, _)) => (digits, &inner[digits.len()..]),
+        None => (inner, ""),
+    };
+    let is_number = digits.len() >= 2 && digits.bytes().all(|byte| byte.is_ascii_digit());
+    let is_state = |state: &str| match ending {
+        "vtu" => matches!(state, "-last-stable" | "-first-unstable"),
+        "pvd" => state.is_empty(),
+        _ => false,
+    };
+    let mut parts = [OF_BODIES, OF_REINFORCEMENT, ""].iter();
+    is_number && parts.any(|of| state.strip_suffix(of).is_some_and(is_state))
 }
 
 /// Number of a frame from its name, such as `particles_0001.vtu`.
@@ -228,6 +262,9 @@ mod tests {
     use crate::paraview::particles::of_grid;
     use crate::scratch::Scratch;
 
+    /// Its quotes and its end of a line have to be kept out of the markup.
+    const STAGE: &str = "weight \"of\n<soil> & file=";
+
     fn frame() -> UnstructuredGrid {
         let axis = || Axis::uniform(0.0, 1.0, 2).unwrap();
         of_grid(&Grid::new([axis(), axis()]), None)
@@ -236,7 +273,7 @@ mod tests {
     fn collection(scratch: &Scratch, frames: usize) -> Collection {
         let mut collection = Collection::create(scratch.path(), PARTICLES).unwrap();
         for k in 0..frames {
-            collection.add(k as f64 / 3.0, &frame()).unwrap();
+            collection.add(k as f64 / 3.0, STAGE, &frame()).unwrap();
         }
         collection
     }
@@ -250,8 +287,8 @@ mod tests {
         <?xml version="1.0"?>
         <VTKFile type="Collection" version="1.0" byte_order="LittleEndian">
         <Collection>
-        <DataSet timestep="0" group="" part="0" file="particles_0001.vtu"/>
-        <DataSet timestep="0.3333333333333333" group="" part="0" file="particles_0002.vtu"/>
+        <DataSet timestep="0" group="weight &quot;of�&lt;soil&gt; &amp; file=" part="0" file="particles_0001.vtu"/>
+        <DataSet timestep="0.3333333333333333" group="weight &quot;of�&lt;soil&gt; &amp; file=" part="0" file="particles_0002.vtu"/>
         </Collection>
         </VTKFile>
         "#);
@@ -261,6 +298,41 @@ mod tests {
         );
         let frame = fs::read_to_string(scratch.path().join("particles_0001.vtu")).unwrap();
         assert!(frame.contains("Name=\"TimeValue\" NumberOfTuples=\"1\""));
+    }
+
+    /// GOAL: the states of a search come in the order of their factors, and are cleared with what a run wrote.
+    #[test]
+    fn states_of_a_search_have_a_collection() {
+        let scratch = Scratch::new();
+        let states = [(1.25, "first-unstable"), (1.2, "last-stable")];
+        let states = states.map(|(time, state)| Frame {
+            time,
+            stage: "safety".to_owned(),
+            file: format!("stage-02-{state}.vtu"),
+        });
+        write_states(scratch.path(), "stage-02", states.to_vec()).unwrap();
+        let read = frames(scratch.path(), "stage-02").unwrap();
+        assert_eq!(read, [states[1].clone(), states[0].clone()]);
+        for name in [
+            "stage-02.pvd",
+            "stage-102-rigid.pvd",
+            "stage-02-reinforcement.pvd",
+            "stage-02-last-stable.vtu",
+            "stage-02-first-unstable-rigid.vtu",
+        ] {
+            assert!(is_our_name(name), "{name}");
+        }
+        for name in [
+            "stage-2.pvd",
+            "stage-02.vtu",
+            "stage-02-last-stable.pvd",
+            "stage-02-mine.pvd",
+            "stage-02-rigid.vtu",
+            "stage-.pvd",
+            "stage-02",
+        ] {
+            assert!(!is_our_name(name), "{name}");
+        }
     }
 
     /// GOAL: a resumed run leaves the files of one that was not interrupted.
@@ -275,7 +347,7 @@ mod tests {
             assert_eq!(resumed.frames(), &whole.frames()[..kept]);
             assert_eq!(scratch.names("").len(), 2 + kept);
             for k in kept..4 {
-                resumed.add(k as f64 / 3.0, &frame()).unwrap();
+                resumed.add(k as f64 / 3.0, STAGE, &frame()).unwrap();
             }
             assert_eq!(resumed, whole);
             assert_eq!(fs::read(whole.path()).unwrap(), bytes);

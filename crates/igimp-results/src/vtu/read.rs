@@ -1,5 +1,7 @@
-//! Reads frames back as igimp wrote them, for pages that show them. What somebody else wrote or changed is
-//! refused, and harms nothing.
+//! Reads frames back as igimp wrote them, for pages that show them: the frames in `paraview/` are the only states along
+//! a run that its folder keeps, for checkpoints hold the last ones alone.
+//!
+//! A file that was damaged, or that another program wrote, is refused and harms nothing.
 
 use std::io::Read as _;
 
@@ -73,12 +75,16 @@ impl<'a> Frame<'a> {
 
     /// The corners of every cell, in VTK's order.
     pub fn corners(&self, corners: usize) -> Option<Vec<[f64; 3]>> {
-        let points = self.part("Points", "Points")?.numbers(3 * self.points)?;
-        let count = corners.checked_mul(self.cells)?;
-        let connectivity = self.part("Cells", "connectivity")?.numbers(count)?;
+        let points = self.part("Points", "Points")?;
+        let connectivity = self.part("Cells", "connectivity")?;
+        if (points.components, connectivity.components) != (3, 1) {
+            return None;
+        }
+        let points = points.numbers(self.points)?;
         let (points, _) = points.as_chunks::<3>();
-        let corner = |&place: &f64| points.get(place as usize).copied();
-        connectivity.iter().map(corner).collect()
+        let corner = |&place: &f64| (place >= 0.0).then(|| points.get(place as usize).copied())?;
+        let places = connectivity.numbers(corners.checked_mul(self.cells)?)?;
+        places.iter().map(corner).collect()
     }
 
     fn part(&self, part: &str, name: &str) -> Option<Stored<'a>> {
@@ -93,8 +99,9 @@ impl Stored<'_> {
         self.kind != "Float64"
     }
 
-    /// The numbers, if there are `count` of them.
-    pub fn numbers(&self, count: usize) -> Option<Vec<f64>> {
+    /// The numbers of all tuples, one tuple after another; `None` unless there are `tuples` of them.
+    pub fn numbers(&self, tuples: usize) -> Option<Vec<f64>> {
+        let count = tuples.checked_mul(self.components)?;
         let bytes = self.bytes(count.checked_mul(self.size()?)?)?;
         let numbers: Vec<f64> = match self.kind {
             "Float64" => each(&bytes, f64::from_le_bytes),
@@ -126,7 +133,8 @@ impl Stored<'_> {
         if blocks != count.div_ceil(BLOCK) {
             return None;
         }
-        let length = (8 * (3 + blocks)).div_ceil(3) * 4;
+        let header = blocks.checked_add(3)?.checked_mul(8)?;
+        let length = header.div_ceil(3).checked_mul(4)?;
         let header = BASE64.decode(text.get(..length)?).ok()?;
         let data = BASE64.decode(text.get(length..)?).ok()?;
         let mut start = 0_usize;
@@ -180,14 +188,15 @@ fn attribute<'a>(head: &'a str, name: &str) -> Option<&'a str> {
     head[place + start.len()..].split('"').next()
 }
 
-/// What stands between two marks.
+/// The text between two marks.
 fn between<'a>(text: &'a str, from: &str, to: &str) -> Option<&'a str> {
     let start = text.find(from)? + from.len();
     let length = text[start..].find(to)?;
     Some(&text[start..start + length])
 }
 
-fn unescaped(text: &str) -> String {
+/// The text whose [`escaped`](super::escaped) form is an attribute's value.
+pub(crate) fn unescaped(text: &str) -> String {
     text.replace("&quot;", "\"")
         .replace("&gt;", ">")
         .replace("&lt;", "<")
@@ -255,5 +264,28 @@ mod tests {
         )));
         assert!(!frame(&text.replace("AQAAAAAAAAA", "/////////38")));
         assert!(!frame(""));
+    }
+
+    /// GOAL: sizes whose product does not fit a number are refused, also where the product wraps to the right one.
+    #[test]
+    fn sizes_that_overflow_are_refused() {
+        let text = grid(8).to_xml();
+        let frame = |text: &str| Frame::of(text).and_then(|frame| frame.corners(4)).is_some();
+        let with = |name: &str, count: usize, to: usize| {
+            let [from, to] = [count, to].map(|count| format!("{name}=\"{count}\""));
+            assert!(text.contains(&from));
+            text.replace(&from, &to)
+        };
+        // In 64 bits 4 (2⁶² + 8) wraps to 32, and 3 · 8 (2⁶¹ + 32) to 3 · 8 · 32.
+        for cells in [(1 << 62) + 8, usize::MAX, usize::MAX / 4] {
+            assert!(!frame(&with("NumberOfCells", 8, cells)));
+        }
+        for points in [(1 << 61) + 32, (1 << 63) + 32, usize::MAX, usize::MAX / 3] {
+            assert!(!frame(&with("NumberOfPoints", 32, points)));
+        }
+        let arrays = Frame::of(&text).unwrap().arrays("CellData");
+        for tuples in [(1 << 61) + 8, usize::MAX, usize::MAX / 8] {
+            assert!(arrays[0].numbers(tuples).is_none());
+        }
     }
 }

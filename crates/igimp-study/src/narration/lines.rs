@@ -180,7 +180,7 @@ fn end(summary: &StageSummary) -> String {
     line
 }
 
-/// What decides a factor of safety.
+/// The shares that decide a factor of safety.
 fn shares(shares: &StrengthShares) -> String {
     let strengths: Vec<String> = (shares.strengths())
         .map(|(name, what, share)| format!("{what} of {name} {share:.3}"))

@@ -1,4 +1,4 @@
-//! What is told of a case and of its run, as text: before it, as it goes, and at its end. The program and
+//! Texts about a case and its run: before it, while it goes on, and at its end. The program and
 //! the Python package say the same.
 
 pub mod lines;

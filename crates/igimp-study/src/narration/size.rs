@@ -1,4 +1,4 @@
-//! What a case will cost, as it is told before it runs.
+//! The expected cost of a case in words, printed before it runs.
 
 use std::path::Path;
 
@@ -111,7 +111,7 @@ fn study<const D: usize>(case: &Case<D>, speed: Speed) -> Result<String, CaseErr
     ))
 }
 
-/// What a run is expected to need \[bytes\], and what it needs where an iteration is given up for factors.
+/// Expected memory of a run \[bytes\], and that of a run whose iteration is abandoned for a factorisation.
 fn memory(bytes: f64, most_bytes: f64) -> String {
     let about = format!("about {}", readable(bytes));
     if most_bytes > 1.1 * bytes {

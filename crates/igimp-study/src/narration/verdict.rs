@@ -1,4 +1,4 @@
-//! What is said at the end of a run.
+//! The text at the end of a run.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -76,13 +76,13 @@ fn mesh_error(study: &StudySummary) -> String {
                 };
                 format!("{} {value}{early}", mesh.label())
             }));
-            row.extend(match result.estimate {
-                Some(found) => vec![
+            row.extend(result.refusal(&study.meshes));
+            row.extend(result.estimate.iter().flat_map(|found| {
+                [
                     format!("{} {}", found.lead(), found.sentence()),
                     format!("(order {})", found.order.sentence()),
-                ],
-                None => vec!["nothing is extrapolated of fewer than two values".to_owned()],
-            });
+                ]
+            }));
             row
         })
         .collect();
@@ -113,7 +113,7 @@ pub fn checks(rows: &[CheckRow]) -> String {
     table(&rows)
 }
 
-/// What stands behind a factor of safety: the criterion, the materials, how much moves.
+/// The basis of a factor of safety: criterion, materials, share of the mass that moves.
 fn explain(safety: &SafetySummary) -> String {
     let mut parts = Vec::new();
     if !safety.criterion.is_empty() {

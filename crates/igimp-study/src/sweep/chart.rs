@@ -1,6 +1,7 @@
 //! Charts of a study: each result over the first parameter that varies, a line for every setting of the
 //! others.
 
+use std::cmp::Ordering;
 use std::path::{Path, PathBuf};
 
 use igimp_figures::{CurvePlot, LineStyle, Series, SeriesStyle};
@@ -12,6 +13,14 @@ use super::{Collected, SweepError};
 
 /// Most charts, and most lines of one.
 const MOST: [usize; 2] = [12, 12];
+
+/// A line of a chart.
+struct Line {
+    label: String,
+    /// Where it stands in the legend, by each of the other parameters.
+    place: Vec<f64>,
+    points: Vec<[f64; 2]>,
+}
 
 impl Collected {
     /// Draws `results-NAME.svg` and `.png` into a folder, for each result that two tasks or more have;
@@ -52,7 +61,8 @@ impl Collected {
         Ok(drawn)
     }
 
-    /// The points of a result, by the settings of the other parameters.
+    /// The points of a result, by the settings of the other parameters; in the order of their numbers, and of the tasks
+    /// where a setting is none.
     fn series(&self, axis: usize, x: &[f64], column: usize) -> Vec<Series> {
         let others: Vec<usize> = (0..self.numbers.len())
             .filter(|&k| {
@@ -63,8 +73,14 @@ impl Collected {
                         .any(|row| row[1 + k] != self.rows[0][1 + k])
             })
             .collect();
-        let mut lines: Vec<(String, Vec<[f64; 2]>)> = Vec::new();
-        for (row, &x) in std::iter::zip(&self.rows, x) {
+        let place = |task: usize, k: usize| {
+            let first = |row: &Vec<String>| row[1 + k] == self.rows[task][1 + k];
+            let by_task = || self.rows.iter().position(first).map(|task| task as f64);
+            let numbers = self.numbers[k].as_ref();
+            numbers.map_or_else(|| by_task().unwrap_or_default(), |numbers| numbers[task])
+        };
+        let mut lines: Vec<Line> = Vec::new();
+        for (task, (row, &x)) in std::iter::zip(&self.rows, x).enumerate() {
             let Ok(y) = row[column].parse::<f64>() else {
                 continue;
             };
@@ -72,19 +88,77 @@ impl Collected {
                 .iter()
                 .map(|&k| format!("{} = {}", on_a_line(&self.header[1 + k]), row[1 + k]));
             let label = settings.collect::<Vec<_>>().join(", ");
-            match lines.iter_mut().find(|(own, _)| *own == label) {
-                Some((_, points)) => points.push([x, y]),
-                None => lines.push((label, vec![[x, y]])),
+            match lines.iter_mut().find(|line| line.label == label) {
+                Some(line) => line.points.push([x, y]),
+                None => lines.push(Line {
+                    place: others.iter().map(|&k| place(task, k)).collect(),
+                    label,
+                    points: vec![[x, y]],
+                }),
             }
         }
         lines.truncate(MOST[1]);
+        lines.sort_by(|a, b| {
+            let orders = std::iter::zip(&a.place, &b.place).map(|(a, b)| a.total_cmp(b));
+            orders.fold(Ordering::Equal, Ordering::then)
+        });
         let style = SeriesStyle::LineAndMarkers(LineStyle::Solid);
         lines
             .into_iter()
-            .map(|(label, mut points)| {
-                points.sort_by(|a, b| a[0].total_cmp(&b[0]));
-                Series::new(label, points, style)
+            .map(|mut line| {
+                line.points.sort_by(|a, b| a[0].total_cmp(&b[0]));
+                Series::new(line.label, line.points, style)
             })
             .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// GOAL: a legend counts up, however the tasks of a study are listed; settings that are no numbers stay as listed.
+    #[test]
+    fn legends_are_in_order() {
+        let settings = [
+            ("10 m", "rough"),
+            ("2 m", "smooth"),
+            ("10 m", "smooth"),
+            ("2 m", "rough"),
+        ];
+        let rows = settings.iter().flat_map(|&(height, base)| {
+            ["2", "1"].map(|x| {
+                ["1", x, height, base, "done", "7", ""]
+                    .map(str::to_owned)
+                    .to_vec()
+            })
+        });
+        let heights = settings
+            .iter()
+            .flat_map(|own| [f64::from(u8::from(own.0 == "10 m")); 2]);
+        let collected = Collected {
+            header: ["task", "x", "H", "base", "end", "q", "message"]
+                .map(str::to_owned)
+                .to_vec(),
+            rows: rows.collect(),
+            numbers: vec![Some([2.0, 1.0].repeat(4)), Some(heights.collect()), None],
+            missing: Vec::new(),
+            unknown: Vec::new(),
+        };
+        let x = collected.numbers[0].as_ref().unwrap();
+        let series = collected.series(0, x, 5);
+        let labels: Vec<&str> = series.iter().map(|line| line.label.as_str()).collect();
+        let expected = [
+            "H = 2 m, base = rough",
+            "H = 2 m, base = smooth",
+            "H = 10 m, base = rough",
+            "H = 10 m, base = smooth",
+        ];
+        assert_eq!(labels, expected);
+        assert!(
+            series
+                .iter()
+                .all(|line| line.points == [[1.0, 7.0], [2.0, 7.0]])
+        );
     }
 }

@@ -1,4 +1,4 @@
-//! Reads a sweep file; every problem is told with its place.
+//! Reads a sweep file; every problem is reported with its place.
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};

@@ -62,13 +62,13 @@ pub struct Sweep {
     pub case: PathBuf,
     /// Folder of all tasks.
     pub folder: PathBuf,
-    /// What is collected; empty: everything.
+    /// Names of the results to collect; empty: all.
     pub collect: Vec<String>,
     /// Keys of the parameters, in the order of the file.
     pub keys: Vec<String>,
     /// Tasks in order; the first parameter changes slowest.
     pub tasks: Vec<Task>,
-    /// Day and time for the reports of its tasks; whoever runs them says it.
+    /// Date and time for the reports of its tasks, as given by the caller.
     pub date: Option<String>,
 }
 
@@ -100,7 +100,7 @@ pub enum SweepError {
     File {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// The error of the system.
         #[source]
         source: std::io::Error,
     },
@@ -117,7 +117,7 @@ pub enum SweepError {
         task: usize,
         /// Its settings.
         settings: String,
-        /// What is wrong; its message is part of this one.
+        /// The cause; its message is part of this one.
         source: InputError,
     },
     /// There is no such task.
@@ -136,7 +136,7 @@ pub enum SweepError {
     Table {
         /// The file.
         path: PathBuf,
-        /// What the writer said.
+        /// The error of the writer.
         #[source]
         source: csv::Error,
     },
@@ -296,20 +296,17 @@ impl Sweep {
     pub fn run_task(
         &self,
         task: &Task,
-        (start, replace): (Start, Replace),
+        start: Start,
+        replace: Replace,
         listener: &mut dyn AnyListener,
         interrupt: &AtomicBool,
     ) -> Result<(Account, Ending), SweepError> {
-        let ready = self.make_ready(task, (start, replace))?;
+        let ready = self.make_ready(task, start, replace)?;
         self.run_ready(task, &ready, listener, interrupt)
     }
 
     /// Enters the folder of a task.
-    fn make_ready(
-        &self,
-        task: &Task,
-        (start, replace): (Start, Replace),
-    ) -> Result<Ready, SweepError> {
+    fn make_ready(&self, task: &Task, start: Start, replace: Replace) -> Result<Ready, SweepError> {
         let file = self.case_of(task)?;
         let mut case = file.any_case().clone();
         case.output_mut().folder.clone_from(&task.folder);

@@ -1,4 +1,4 @@
-//! What is kept of a task beside its results: `task.json`.
+//! The record of a task beside its results: `task.json`.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;

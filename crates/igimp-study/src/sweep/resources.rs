@@ -1,4 +1,4 @@
-//! What a scheduler is asked for: memory and time of the largest tasks, with a margin.
+//! Resources requested from a scheduler: memory and time of the largest tasks, with a margin.
 
 use igimp_cases::CaseError;
 use igimp_cases::estimate::speed::Speed;
@@ -17,7 +17,7 @@ const TIME: f64 = 3.0;
 /// And on top of it, for the start and for what is saved at the end \[s\].
 const MORE_TIME: f64 = 300.0;
 
-/// What a task is given: enough for the largest.
+/// Resources of a task: enough for the largest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Resources {
     /// Threads.
@@ -33,7 +33,7 @@ pub struct Resources {
 pub struct Largest {
     /// Its number.
     pub task: usize,
-    /// What it is thought to need.
+    /// Its estimate.
     pub estimate: f64,
 }
 
@@ -50,7 +50,7 @@ impl Resources {
 }
 
 impl Sweep {
-    /// What each of these tasks is to be given on so many threads, on a computer of a speed; nothing for none.
+    /// Resources for each of these tasks with that number of threads, on a computer of that speed; `None` without tasks.
     ///
     /// # Errors
     /// [`SweepError`] for a task that makes no case, or cannot be set up.

@@ -1,4 +1,4 @@
-//! What schedulers are given: a batch script of Slurm, a job file of HyperQueue.
+//! Job files of schedulers: a batch script for Slurm, a job file for HyperQueue.
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -16,7 +16,7 @@ const ARRAY: usize = 1000;
 /// A task is asked to end so long before its time is up, and saves what it has \[s\].
 const NOTICE: u32 = 120;
 
-/// What a scheduler starts, in words that a shell reads back.
+/// The command that a scheduler starts, quoted for a shell.
 #[derive(Clone, Debug)]
 pub struct Words {
     /// The program.
@@ -32,7 +32,7 @@ pub struct Words {
 pub struct Script {
     /// Where it was written.
     pub path: PathBuf,
-    /// What submits it, without the path: words before, words behind. Several where one array does not hold all tasks.
+    /// The commands that submit it, as the words before and after the path; several if one array cannot hold all tasks.
     pub submit: Vec<[String; 2]>,
 }
 

@@ -19,7 +19,7 @@ use super::{Sweep, SweepError, Task};
 /// How long to wait before a folder is tried again.
 const PAUSE: Duration = Duration::from_millis(500);
 
-/// What became of a task that was taken up.
+/// The outcome of a task that was claimed.
 #[derive(Debug)]
 pub enum TaskLock {
     /// It was done already, with the case and settings that it has now.
@@ -74,7 +74,7 @@ impl Sweep {
         }
         let _shared = self.enter(false, Replace::Finished)?;
         let start = self.start_of(task)?;
-        let ready = self.make_ready(task, (start, Replace::Finished))?;
+        let ready = self.make_ready(task, start, Replace::Finished)?;
         if self.done(task)?.is_some() || self.start_of(task)? != start {
             return Ok(None);
         }

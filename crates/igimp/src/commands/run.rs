@@ -93,7 +93,7 @@ fn task(arguments: &RunArguments, number: usize) -> Result<Exit, ProgramError> {
     if !arguments.resume {
         let replace = replace(arguments.overwrite);
         let _shared = sweep.enter(false, replace)?;
-        let run = sweep.run_task(task, (Start::Afresh, replace), &mut progress, &flag);
+        let run = sweep.run_task(task, Start::Afresh, replace, &mut progress, &flag);
         progress.finish();
         let (run, _) = run?;
         return tell(&run, &task.folder, arguments);
@@ -121,7 +121,7 @@ fn task(arguments: &RunArguments, number: usize) -> Result<Exit, ProgramError> {
     }
 }
 
-/// What may be replaced.
+/// The results that may be replaced.
 pub(crate) fn replace(overwrite: bool) -> Replace {
     if overwrite {
         Replace::Everything

@@ -114,7 +114,7 @@ fn run_all(
     Ok(ends.into_inner().unwrap_or_default())
 }
 
-/// Runs one task; a failure is told and recorded, and takes nothing from the others.
+/// Runs one task; a failure is reported and recorded, and does not affect the others.
 fn run_one(
     sweep: &sweep::Sweep,
     task: &Task,
@@ -126,7 +126,7 @@ fn run_one(
         Replace::Everything => Ok(Start::Afresh),
         _ => sweep.start_of(task),
     };
-    let run = start.and_then(|start| sweep.run_task(task, (start, replace), &mut Nobody, flag));
+    let run = start.and_then(|start| sweep.run_task(task, start, replace, &mut Nobody, flag));
     let (end, exit) = match run {
         Ok((run, ending)) => {
             let found: Vec<String> = run

@@ -98,7 +98,7 @@ fn level(offset: f64, angle: f64) -> Result<(RunRecord, [f64; 2]), CaseError> {
         .fold(0.0, f64::max);
     let pressure = closed(&body.rigid)
         .iter()
-        .map(|(_, knot)| (knot.pressure / -mean - 1.0).abs())
+        .map(|(_, node)| (node.pressure / -mean - 1.0).abs())
         .fold(0.0, f64::max);
     Ok((run, [stress, pressure]))
 }

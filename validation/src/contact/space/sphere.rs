@@ -35,7 +35,7 @@ const FAR: f64 = 30.0 * CONTACT;
 const MODULUS: f64 = 1.0;
 const POISSON: f64 = 0.3;
 
-/// What was found: force, radius of contact and largest pressure, and r, p by knot.
+/// What was found: force, radius of contact and largest pressure, and r, p by contact node.
 struct Found {
     run: RunRecord,
     load: f64,
@@ -84,11 +84,11 @@ fn press(cells: usize) -> Result<Found, CaseError> {
     );
     let (mut sum, mut moment) = (0.0, 0.0);
     let mut profile = Vec::new();
-    for (x, knot) in closed(&body.rigid) {
+    for (x, node) in closed(&body.rigid) {
         let own = x[0].hypot(x[1]);
-        sum += knot.pressure * knot.area;
-        moment += knot.pressure * knot.area * own * own;
-        profile.push([own, knot.pressure]);
+        sum += node.pressure * node.area;
+        moment += node.pressure * node.area * own * own;
+        profile.push([own, node.pressure]);
     }
     profile.sort_by(|a, b| a[0].total_cmp(&b[0]));
     Ok(Found {

@@ -328,7 +328,7 @@ pub(crate) fn add(study: &mut Study) -> Result<(), CaseError> {
                 },
             ));
         }
-        check_pair(study, pair.name, (&plane, &space), &found);
+        check_pair(study, pair.name, &plane, &space, &found);
     }
     Ok(())
 }

@@ -1,4 +1,4 @@
-//! What may help after a step without equilibrium, in the words of the case file, most promising
+//! Remedies for a step without equilibrium, in the words of the case file, most promising
 //! first. Every rule looks at the failure and at the case, and says nothing when it is of no use.
 
 use igimp_assembly::{AssemblyError, Locking, Penetration};
@@ -20,7 +20,7 @@ const HARDLY_COVERED: usize = 4;
 /// Poisson's ratio from which on the bulk modulus dwarfs the shear modulus \[-\].
 const NEARLY_INCOMPRESSIBLE: f64 = 0.49;
 
-/// What may help, most promising first. `near_worst` counts the particles within a cell of the
+/// Remedies, most promising first. `near_worst` counts the particles within a cell of the
 /// worst node, those that yield, and those that returned to an apex or a corner in tension.
 pub(crate) fn advice<const D: usize>(
     case: &Case<D>,

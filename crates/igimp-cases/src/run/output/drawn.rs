@@ -7,6 +7,7 @@ use igimp_assembly::SharedLaw;
 use igimp_model::{Case, Every, in_plane};
 use igimp_report::patches::Pieces;
 use igimp_report::pictures::{self, Canvas, Failing, Seen, Shown, mechanism};
+use igimp_results::paraview::frames::{Scene, StateOfSearch};
 use igimp_results::rigid;
 use igimp_results::summary::StageSummary;
 use rayon::prelude::*;
@@ -27,8 +28,9 @@ impl<const D: usize> Output<D> {
         summary: &StageSummary,
     ) -> Result<(), CaseError> {
         let kept = std::mem::take(&mut self.kept);
+        let stage = format!("stage-{:02}", number + 1);
         for (what, End { srf, state, .. }) in &kept {
-            let name = format!("stage-{:02}-{what}", number + 1);
+            let name = format!("{stage}-{what}");
             if self.every != Every::Never {
                 let laws = model.laws_reduced_by(&state.controls.srf)?;
                 let structures = outlines::structures(model.case, &state.controls, &state.body);
@@ -36,8 +38,12 @@ impl<const D: usize> Output<D> {
                     let table = own.table(format!("{}__{name}", own.part.name));
                     table.write_csv(&self.folder.reinforcement())?;
                 }
-                self.frames
-                    .beside(&name, (&state.body.particles, &laws), &structures)?;
+                let scene = Scene {
+                    particles: &state.body.particles,
+                    laws: &laws,
+                    structures: &structures,
+                };
+                self.frames.beside(&name, &scene)?;
             }
             let shown = Shown {
                 title: format!("{}, SRF {srf:.4}", summary.name),
@@ -48,18 +54,24 @@ impl<const D: usize> Output<D> {
             let others: Vec<&State<D>> = others.map(|(_, end)| &end.state).collect();
             self.field_pictures(model, &shown, state, &others)?;
         }
+        if self.every != Every::Never && !kept.is_empty() {
+            let state = |(name, end): &(&'static str, End<D>)| StateOfSearch { name, srf: end.srf };
+            let states: Vec<StateOfSearch> = kept.iter().map(state).collect();
+            self.frames.collect(&stage, &summary.name, &states)?;
+        }
         let kept_in_plane =
             in_plane::<Vec<(&'static str, End<D>)>, Vec<(&'static str, End<2>)>>(&kept);
         let (Some(case), Some(kept)) = (in_plane(model.case), kept_in_plane) else {
             return Ok(());
         };
-        self.mechanism((case, &model.seeded.body), number, kept)
+        self.mechanism(case, &model.seeded.body, number, kept)
     }
 
     /// The way in which the body fails: the slip line as a table, and its picture.
     fn mechanism(
         &mut self,
-        (case, body_of): (&Case<2>, &[usize]),
+        case: &Case<2>,
+        body_of: &[usize],
         number: usize,
         kept: &[(&'static str, End<2>)],
     ) -> Result<(), CaseError> {
@@ -86,7 +98,7 @@ impl<const D: usize> Output<D> {
                     case,
                     pieces: &pieces,
                 };
-                let over = outlines::of_state((case, body_of), &end.state);
+                let over = outlines::of_state(case, body_of, &end.state);
                 let picture = pictures::mechanism_picture(&canvas, &failing, &found, &over)?;
                 self.figures.push(picture);
             }
@@ -129,9 +141,12 @@ impl<const D: usize> Output<D> {
                 .iter()
                 .filter_map(|own| in_plane::<_, State<3>>(*own));
             let compared: Vec<Seen<'_, 3>> = std::iter::zip(compared, &reduced)
-                .map(|(state, laws)| (&state.body.particles, *laws))
+                .map(|(state, laws)| Seen {
+                    particles: &state.body.particles,
+                    laws,
+                })
                 .collect();
-            return self.pictures_in_space((model, shown), (state, &laws), &compared);
+            return self.pictures_in_space(model, shown, state, &laws, &compared);
         }
         let (Some(case), Some(state)) = (in_plane(model.case), in_plane::<_, State<2>>(state))
         else {
@@ -143,13 +158,17 @@ impl<const D: usize> Output<D> {
             case,
             pieces: &pieces,
         };
-        let own = (&state.body.particles, &laws[..]);
+        let own = Seen {
+            particles: &state.body.particles,
+            laws: &laws,
+        };
         let compared: Vec<Seen<'_, 2>> = std::iter::zip(compared, &reduced)
             .filter_map(|(state, laws)| {
-                Some((&in_plane::<_, State<2>>(*state)?.body.particles, *laws))
+                let particles = &in_plane::<_, State<2>>(*state)?.body.particles;
+                Some(Seen { particles, laws })
             })
             .collect();
-        let over = outlines::of_state((case, &model.seeded.body), state);
+        let over = outlines::of_state(case, &model.seeded.body, state);
         let drawn = wanted
             .par_iter()
             .map(|&field| pictures::field_picture(&canvas, shown, field, own, &compared, &over))
@@ -161,8 +180,10 @@ impl<const D: usize> Output<D> {
     /// The same in space: the surface, and cuts through the middle.
     fn pictures_in_space(
         &mut self,
-        (model, shown): (&Model<'_, D>, &Shown),
-        (state, laws): (&State<3>, &[SharedLaw]),
+        model: &Model<'_, D>,
+        shown: &Shown,
+        state: &State<3>,
+        laws: &[SharedLaw],
         compared: &[Seen<'_, 3>],
     ) -> Result<(), CaseError> {
         let case = model.case;
@@ -176,8 +197,12 @@ impl<const D: usize> Output<D> {
                 .map(|corners| corners.map(|point| cells.points[point]))
                 .collect()
         });
-        let of_case = (self.folder.root(), &*case.title, case.has_pore_water());
-        let drawn = pictures::InSpace::new(of_case, (&state.body.particles, laws), bodies);
+        let seen = Seen {
+            particles: &state.body.particles,
+            laws,
+        };
+        let (root, pore_water) = (self.folder.root(), case.has_pore_water());
+        let drawn = pictures::InSpace::new(root, &case.title, pore_water, seen, bodies);
         let condition = state.controls.water.and_then(|k| case.water.get(k));
         let drawn = drawn.with_water(
             condition

@@ -1,4 +1,4 @@
-//! What pictures show beside the soil: rigid bodies, a rigid footing and reinforcement where they stand, and water
+//! Structures that pictures show beside the soil: rigid bodies, a rigid footing and reinforcement where they stand, and water
 //! tables. For tables and frames the structures that are there.
 
 use std::collections::HashSet;
@@ -15,10 +15,10 @@ use igimp_solver::Body;
 use crate::run::rigid;
 use crate::run::state::{Controls, State};
 
-/// What is drawn over a state: everything rigid in it, as far as it lies within the grid, the water tables that act, and
+/// The lines over a state: everything rigid in it, as far as it lies within the grid, the water tables that act, and
 /// reinforcement. `body_of` has the body of each particle by its number.
-pub(crate) fn of_state((case, body_of): (&Case<2>, &[usize]), state: &State<2>) -> Over {
-    let water = water_tables((case, body_of), state);
+pub(crate) fn of_state(case: &Case<2>, body_of: &[usize], state: &State<2>) -> Over {
+    let water = water_tables(case, body_of, state);
     let bodies = rigid::outlines(case, state, POINTS_OF_CIRCLE);
     let bodies = bodies.filter_map(|(_, outline)| block(case, &outline));
     let footing = footing(case, state.controls.settlement);
@@ -38,7 +38,7 @@ pub(crate) fn of_state((case, body_of): (&Case<2>, &[usize]), state: &State<2>) 
 }
 
 /// The water tables that act, as far as there is soil.
-fn water_tables((case, body_of): (&Case<2>, &[usize]), state: &State<2>) -> Vec<Outline> {
+fn water_tables(case: &Case<2>, body_of: &[usize], state: &State<2>) -> Vec<Outline> {
     let particles = &state.body.particles;
     let Some(condition) = state.controls.water.and_then(|k| case.water.get(k)) else {
         return Vec::new();

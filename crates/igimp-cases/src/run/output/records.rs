@@ -1,4 +1,4 @@
-//! What a run records: curves and the histories at monitors, one row per recorded moment.
+//! The records of a run: curves and the histories at monitors, one row per recorded moment.
 
 use igimp_assembly::{Particles, Reinforcement, RigidBody, SharedLaw};
 use igimp_geometry::SeedError;
@@ -29,7 +29,7 @@ pub(crate) struct Moment<'a, const D: usize> {
     pub(crate) rigid: &'a [RigidBody<D>],
     /// The reinforcement that is there.
     pub(crate) reinforcement: &'a [Reinforcement<D>],
-    /// What acts on them.
+    /// The controls that act on them.
     pub(crate) controls: &'a Controls,
     /// Resistance of the footing \[N/m\].
     pub(crate) resistance: f64,
@@ -280,7 +280,7 @@ pub(crate) struct Rows {
 pub(crate) struct AcceptedStep<'a, const D: usize> {
     /// The step in the solver's terms.
     pub(crate) accepted: &'a Accepted<'a, D>,
-    /// What acts on the body now.
+    /// The controls that act on the body now.
     pub(crate) controls: &'a Controls,
     /// Resistance of the footing \[N/m\].
     pub(crate) resistance: f64,

@@ -113,13 +113,7 @@ impl<const D: usize> Output<D> {
                 Err(damaged(format!("{name}/{array}.npy"), why))
             })?;
         }
-        if let Some(Resumption { march, .. }) = &notes.resumption
-            && !(march.size > 0.0 && march.size.is_finite() && (0.0..=1.0).contains(&march.at))
-        {
-            let why = format!(
-                "no march stands at {} with steps of {}",
-                march.at, march.size
-            );
+        if let Some(why) = notes.resumption.as_ref().and_then(impossible_march) {
             return Err(damaged("meta.json".to_owned(), why).into());
         }
         let with_body = |name: &str, before: &str, of: &Option<(f64, Controls)>| match of {
@@ -165,19 +159,25 @@ impl<const D: usize> Output<D> {
         folder::mark(folder.root(), &claim, false)?;
         let output = Self::open(folder, claim, case, records, Some(&notes))?;
         records.factor_of_safety = notes.factor_of_safety.unwrap_or(f64::NAN);
-        for table in &mut records.curves {
-            table.rows = rows::read(&output.folder.curves().join(csv(&table.name)))?.rows;
-        }
-        for table in &mut records.monitors {
-            table.rows = rows::read(&output.folder.monitors().join(csv(&table.name)))?.rows;
-        }
-        for table in &mut records.rigid {
-            table.rows = rows::read(&output.folder.rigid().join(csv(&table.name)))?.rows;
-        }
-        if output.energy.is_some() {
-            records.energy.rows = rows::read(&output.folder.energy())?.rows;
-        }
+        output.read_tables(records)?;
         Ok((output, Some(left)))
+    }
+
+    /// Reads the rows of the tables so far.
+    fn read_tables(&self, records: &mut Records) -> Result<(), CaseError> {
+        for (tables, folder) in [
+            (&mut records.curves, self.folder.curves()),
+            (&mut records.monitors, self.folder.monitors()),
+            (&mut records.rigid, self.folder.rigid()),
+        ] {
+            for table in tables {
+                table.rows = rows::read(&folder.join(csv(&table.name)))?.rows;
+            }
+        }
+        if self.energy.is_some() {
+            records.energy.rows = rows::read(&self.folder.energy())?.rows;
+        }
+        Ok(())
     }
 
     /// The saved ends of the first `stages` stages.
@@ -224,6 +224,18 @@ impl<const D: usize> Output<D> {
         }
         Ok(ends)
     }
+}
+
+/// Why a march cannot stand where a checkpoint says, if it cannot.
+fn impossible_march(resumption: &Resumption) -> Option<String> {
+    let march = &resumption.march;
+    let is_possible = march.size > 0.0 && march.size.is_finite() && (0.0..=1.0).contains(&march.at);
+    (!is_possible).then(|| {
+        format!(
+            "no march stands at {} with steps of {}",
+            march.at, march.size
+        )
+    })
 }
 
 /// The array of a body that names a law, a particle or a load that the case does not have, and what it

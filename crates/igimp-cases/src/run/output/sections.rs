@@ -65,7 +65,7 @@ pub(crate) fn read<const D: usize>(
                 }
             };
             for group in groups {
-                table.push(row(section, &group, (particles, &laws)));
+                table.push(row(section, &group, particles, &laws));
             }
             table
         })
@@ -159,7 +159,8 @@ impl<const D: usize> Cells<D> {
 fn row<const D: usize>(
     section: &Section<D>,
     group: &[usize],
-    (particles, laws): (&Particles<D>, &[SharedLaw]),
+    particles: &Particles<D>,
+    laws: &[SharedLaw],
 ) -> Vec<f64> {
     let way: [f64; D] = std::array::from_fn(|axis| section.to[axis] - section.from[axis]);
     let length = fields::length(&way);

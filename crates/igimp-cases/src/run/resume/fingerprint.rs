@@ -3,7 +3,7 @@
 use igimp_model::{Case, Every, Output, TitleBlock};
 use igimp_results::checkpoint::sha256;
 
-/// Of everything but where and how often results are written, and for whom.
+/// Of everything but the place and frequency of output, and the title block.
 pub(crate) fn of_case<const D: usize>(case: &Case<D>) -> String {
     sha256(format!("{:?}", whole(case)).as_bytes())
 }

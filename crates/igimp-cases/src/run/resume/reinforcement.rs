@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use crate::run::reinforcement;
 use crate::run::state::Controls;
 
-/// What steps change of a member.
+/// The state of a member that steps change.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct SavedMember {
     /// By station, by point \[m\].

@@ -10,7 +10,7 @@ use crate::error::CaseError;
 use crate::run::rigid;
 use crate::run::state::Controls;
 
-/// What steps change of a rigid body.
+/// The state of a rigid body that steps change.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct SavedBody {
     origin: Vec<f64>,
@@ -22,7 +22,7 @@ pub(crate) struct SavedBody {
     knots: Vec<SavedKnot>,
 }
 
-/// What steps change of a knot of its surface.
+/// The state of a contact node of its surface that steps change.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct SavedKnot {
     pressure: f64,

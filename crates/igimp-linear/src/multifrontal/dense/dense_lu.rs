@@ -57,7 +57,7 @@ pub(crate) fn factor_block<T: Scalar>(
     record.largest = sizes.fold(record.largest, f64::max);
 }
 
-/// What the columns of a block have in common.
+/// Data that the columns of a block share.
 struct Panel<'a> {
     rows: usize,
     /// Position of the first pivot of the block.

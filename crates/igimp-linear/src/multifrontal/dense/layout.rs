@@ -23,7 +23,7 @@ impl Layout {
         Self { rows, stride }
     }
 
-    /// What the lower half of a symmetric block takes.
+    /// The layout of the lower half of a symmetric block.
     pub(crate) fn lower(rows: usize) -> Self {
         if rows < WIDE {
             Self::square(rows)

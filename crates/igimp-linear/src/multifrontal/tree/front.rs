@@ -37,7 +37,7 @@ impl Front {
         self.first + self.pivots
     }
 
-    /// What the front takes of the shared arrays.
+    /// The share of the front in the common arrays.
     pub(crate) fn extent(&self) -> Extent {
         Extent {
             pivots: self.pivots,

@@ -6,7 +6,7 @@
 use std::ops::Range;
 
 use crate::Pattern;
-use crate::reach::Reach;
+use crate::coupling_reach::Reach;
 
 /// Marks the absence of a node, such as the parent of a root.
 pub(crate) const NONE: u32 = u32::MAX;

@@ -11,9 +11,9 @@ use std::sync::Arc;
 use super::neighbours::{NONE, Neighbours};
 use super::supernodes::Supernodes;
 use super::tasks::{Task, cut};
+use crate::coupling_reach::Reach;
 use crate::multifrontal::dense::layout::Shape;
 use crate::multifrontal::tree::front::Front;
-use crate::reach::Reach;
 use crate::{LinearSolverError, NestedDissection, Pattern, check};
 
 /// Stands for the parent of a root.

@@ -31,7 +31,7 @@ pub(crate) struct Supernodes<'a> {
 struct Supernode {
     /// The supernode of the first row, or [`NONE`].
     parent: u32,
-    /// What it was merged into, or itself.
+    /// The supernode that it was merged into, or itself.
     into: u32,
     /// The part that is eliminated first.
     first_part: u32,

@@ -20,9 +20,9 @@ pub(crate) struct Task {
     pub(crate) fronts: Range<usize>,
     /// Tasks whose last fronts are the children of the first front here, in their order.
     pub(crate) below: Vec<Task>,
-    /// What this task and all tasks below it take of the shared arrays.
+    /// The share of the common arrays of this task and all tasks below it.
     pub(crate) total: Extent,
-    /// What this task takes.
+    /// The share of this task.
     pub(crate) own: Extent,
     /// Room for what waits within the task, by shape and stack.
     pub(crate) stacks: [[usize; 2]; 2],

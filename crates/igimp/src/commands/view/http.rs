@@ -39,7 +39,7 @@ impl Status {
     }
 }
 
-/// What is asked for.
+/// A request.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Request {
     pub(super) method: String,
@@ -48,7 +48,7 @@ pub(super) struct Request {
     pub(super) host: String,
 }
 
-/// What a response carries.
+/// The body of a response.
 #[derive(Debug)]
 pub(super) enum Body {
     Text(String),

@@ -1,4 +1,4 @@
-//! What a results folder has to show, and nothing else of it.
+//! The files of a results folder that the page shows, and no others.
 
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
@@ -73,7 +73,7 @@ impl Results {
         ))
     }
 
-    /// What the page needs to know before it asks for files, as JSON: the case, its stages so far, and
+    /// The index that the page reads before it asks for files, as JSON: the case, its stages so far, and
     /// every file with a text that changes when the file does.
     pub(super) fn index(&self) -> String {
         let summary = self.summary();

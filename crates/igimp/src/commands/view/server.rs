@@ -1,4 +1,4 @@
-//! Who is answered, and with what.
+//! The server of `igimp view`: which requests are answered, and how.
 
 use std::fmt::Write as _;
 use std::io;
@@ -27,7 +27,7 @@ const PARTS: [(&str, &str); 5] = [
 /// Before the name of a frame that is asked for as the page takes it.
 const PACKED: &str = "packed/";
 
-/// Sent with every response. Nothing is kept, guessed, framed or told to others.
+/// Sent with every response: nothing is cached, guessed, or handed to other sites.
 const HEADERS: [(&str, &str); 5] = [
     ("Cache-Control", "no-store"),
     ("X-Content-Type-Options", "nosniff"),
@@ -43,7 +43,7 @@ pub(super) struct Server {
     site: Site,
 }
 
-/// What every thread of the server knows.
+/// State shared by the threads of the server.
 #[derive(Debug)]
 struct Site {
     port: u16,
@@ -108,7 +108,7 @@ impl Site {
         http::respond(stream, status, &headers, body, head_only)
     }
 
-    /// What a request gets, or how it is refused.
+    /// The response to a request, or its refusal.
     fn answer(&self, request: &Request) -> Result<Answer, Status> {
         if !["GET", "HEAD"].contains(&&*request.method) {
             return Err(Status::MethodNotAllowed);
@@ -153,7 +153,7 @@ impl Site {
 /// A response that is no refusal.
 struct Answer {
     kind: &'static str,
-    /// What the page may load, where it is a page.
+    /// The sources that a page may load from, for a page.
     policy: Option<String>,
     body: Body,
 }

@@ -60,7 +60,7 @@ pub(crate) fn forces(begun: &Begun<'_>, after: &[RigidBody<2>], u: &[[f64; 2]]) 
             let shear = if own.is_closed {
                 own.shear[0]
             } else {
-                shear_by_law(body, (knot, side), &sums, area, u)
+                shear_by_law(body, knot, side, &sums, area, u)
             };
             for (factor, by_node) in [(own.pressure, &sums.opening), (shear, &sums.slip)] {
                 for (&node, share) in by_node {
@@ -77,7 +77,8 @@ pub(crate) fn forces(begun: &Begun<'_>, after: &[RigidBody<2>], u: &[[f64; 2]]) 
 /// Shear at a knot that soil touched when the step began and has left at its end (theory, eqs. 47, 50).
 fn shear_by_law(
     body: &RigidBody<2>,
-    (knot, side): (usize, usize),
+    knot: usize,
+    side: usize,
     sums: &Around,
     area: f64,
     u: &[[f64; 2]],
@@ -223,7 +224,7 @@ fn around_knots(begun: &Begun<'_>, slot: usize, body: &RigidBody<2>) -> BTreeMap
             let tangent = [-normal[1], normal[0]];
             let reach = half[0] * tangent[0].abs() + half[1] * tangent[1].abs();
             let middle = [0, 1].map(|a| x[a] - thickness * normal[a]);
-            for (at, length) in points(begun, body, middle, (tangent, reach)) {
+            for (at, length) in points(begun, body, middle, tangent, reach) {
                 let Some(knots) = shares(&sides, number, in_frame(&body.pose, at)) else {
                     continue;
                 };
@@ -271,7 +272,8 @@ fn points(
     begun: &Begun<'_>,
     body: &RigidBody<2>,
     middle: [f64; 2],
-    (tangent, reach): ([f64; 2], f64),
+    tangent: [f64; 2],
+    reach: f64,
 ) -> Vec<([f64; 2], f64)> {
     let mut cuts = vec![-reach, reach];
     for axis in (0..2).filter(|&axis| tangent[axis].abs() > 1e-6) {

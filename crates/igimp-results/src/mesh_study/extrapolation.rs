@@ -10,7 +10,7 @@ use super::order::{Convergence, FASTEST, Order, USUAL, of_three, of_two, share};
 const IN_DOUBT: f64 = 0.25;
 /// Factor on the range of values that follow no order \[-\].
 const WITHOUT_ORDER: f64 = 3.0;
-/// What a limit load or factor of safety on a single mesh may be off where meshes tell nothing of their error, as a share
+/// Uncertainty of a limit load or factor of safety on a single mesh where several meshes do not reveal it, as a share
 /// of it \[-\].
 const SINGLE_MESH: f64 = 0.03;
 
@@ -26,14 +26,14 @@ pub struct Computed {
     pub half_width: f64,
 }
 
-/// What the values on several meshes say of the value on cells of no size.
+/// The value on cells of no size, estimated from values on several meshes.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Estimate {
     /// The extrapolated value; that of the finest mesh where nothing is extrapolated.
     pub value: f64,
     /// How far it may be off, to either side.
     pub uncertainty: f64,
-    /// What is known of the order of convergence.
+    /// The order of convergence, as far as it is known.
     pub order: Order,
 }
 
@@ -69,7 +69,7 @@ pub fn estimate(values: &[Computed], known: Convergence) -> Option<Estimate> {
         Some(p) => {
             let left = share(p);
             let value = fine.value + left * (fine.value - coarse.value);
-            (value, around(values, (order, p), known, &share))
+            (value, around(values, order, p, known, &share))
         }
     };
     Some(Estimate {
@@ -82,7 +82,8 @@ pub fn estimate(values: &[Computed], known: Convergence) -> Option<Estimate> {
 /// How far the value extrapolated with order p may be off, by the mesh and by the search (theory, eqs. 40e, 40f).
 fn around(
     values: &[Computed],
-    (order, p): (Order, f64),
+    order: Order,
+    p: f64,
     known: Convergence,
     share: &dyn Fn(f64) -> f64,
 ) -> f64 {

@@ -1,6 +1,6 @@
 use proptest::prelude::*;
 
-use super::estimate::{Computed, Estimate, estimate};
+use super::extrapolation::{Computed, Estimate, estimate};
 use super::order::{Convergence, Order};
 
 const HALVED: [f64; 3] = [1.0, 0.5, 0.25];
