@@ -20,7 +20,7 @@ table! {
 }
 
 table! {
-    TAKEN: Taken, "A solid that is taken out of a body.";
+    HOLLOW: Hollow, "A solid that is taken out of a body.";
     shape: part(SHAPE: Shape);
 }
 
