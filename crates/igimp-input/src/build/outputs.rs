@@ -180,7 +180,7 @@ fn section_reference<const D: usize>(
             .help("name the stage before it");
         return None;
     }
-    let stated = curves::Stated {
+    let stated = curves::ReferenceKeys {
         y: own.y.as_ref(),
         at: own.at.as_ref(),
         points: own.points.as_ref(),

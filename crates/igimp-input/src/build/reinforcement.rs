@@ -64,7 +64,7 @@ impl Holding<2> for Site {
 }
 
 /// A member as it is stated by its type.
-struct Stated<'a, const D: usize> {
+struct MemberKeys<'a, const D: usize> {
     kind: ReinforcementKind,
     line: Vec<[f64; D]>,
     /// Where the end of its line is said.
@@ -77,11 +77,11 @@ struct Stated<'a, const D: usize> {
     plate: f64,
 }
 
-fn stated<const D: usize>(form: &MemberForm<D>) -> Option<Stated<'_, D>> {
+fn stated<const D: usize>(form: &MemberForm<D>) -> Option<MemberKeys<'_, D>> {
     Some(match form {
         MemberForm::Anchor(own) => {
             let own = own.as_ref().ok()?;
-            Stated {
+            MemberKeys {
                 kind: ReinforcementKind::Anchor,
                 line: vec![*own.ends.head, *own.ends.end],
                 last: own.ends.end.place,
@@ -94,7 +94,7 @@ fn stated<const D: usize>(form: &MemberForm<D>) -> Option<Stated<'_, D>> {
         }
         MemberForm::Nail(own) => {
             let own = own.as_ref().ok()?;
-            Stated {
+            MemberKeys {
                 kind: ReinforcementKind::Nail,
                 line: vec![*own.ends.head, *own.ends.end],
                 last: own.ends.end.place,
@@ -107,7 +107,7 @@ fn stated<const D: usize>(form: &MemberForm<D>) -> Option<Stated<'_, D>> {
         }
         MemberForm::Geotextile(own) => {
             let own = own.as_ref().ok()?;
-            Stated {
+            MemberKeys {
                 kind: ReinforcementKind::Geotextile,
                 line: own.points.iter().map(|own| **own).collect(),
                 last: own.points.place,

@@ -20,7 +20,7 @@ table! {
 }
 
 table! {
-    TAKEN: Taken, "A solid that is taken out of a body.";
+    HOLLOW: Hollow, "A solid that is taken out of a body.";
     shape: part(SHAPE: Shape);
 }
 
@@ -74,6 +74,6 @@ table! {
     x: list(length, 2, MANY), optional "another key says it", "lines of heights, ascending";
     y: list(length, 2, MANY), optional "another key says it", "lines of heights, ascending";
     rows: list(list(length, 2, MANY), 2, MANY), optional "another key says it", "heights by y, then by x";
-    holes: list(pair(whole(0, MANY as i64)), 0, MANY), default "[]",
+    holes: apart(list(pair(whole(0, MANY as i64)), 0, MANY)), default "[]",
         "columns and rows, from 0, where no height is known";
 }

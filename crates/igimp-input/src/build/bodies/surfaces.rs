@@ -165,7 +165,9 @@ pub(crate) fn terrain(
                 .into_iter()
                 .map(|row| row.into_iter().map(Some).collect())
                 .collect();
-            for hole in own.holes.iter() {
+            // A table from a file of points has no such key.
+            let holes = own.holes.iter().flat_map(|holes| holes.iter());
+            for hole in holes {
                 let [i, j] = **hole;
                 let Some(height) = rows.get_mut(j).and_then(|row| row.get_mut(i)) else {
                     let wrong = format!("it has no column {i} and row {j}");

@@ -118,7 +118,7 @@ struct Extreme {
 }
 
 /// A table that says how a property varies, as it is stated.
-pub(crate) struct Stated<'a> {
+pub(crate) struct ProfileKeys<'a> {
     growth: Option<&'a Growth>,
     rows: &'a Rows,
     points: Option<&'a keys::Points>,
@@ -129,12 +129,12 @@ pub(crate) struct Stated<'a> {
 /// A table that says how a property varies.
 pub(crate) trait Varies {
     /// What it states.
-    fn stated(&self, place: Place) -> Stated<'_>;
+    fn stated(&self, place: Place) -> ProfileKeys<'_>;
 }
 
 impl Varies for keys::Profile {
-    fn stated(&self, place: Place) -> Stated<'_> {
-        Stated {
+    fn stated(&self, place: Place) -> ProfileKeys<'_> {
+        ProfileKeys {
             growth: Some(&self.growth),
             rows: &self.table,
             points: Some(&self.points),
@@ -145,8 +145,8 @@ impl Varies for keys::Profile {
 }
 
 impl Varies for StrengthProfile {
-    fn stated(&self, place: Place) -> Stated<'_> {
-        Stated {
+    fn stated(&self, place: Place) -> ProfileKeys<'_> {
+        ProfileKeys {
             share: Some(self),
             ..self.stress.stated(place)
         }
@@ -154,8 +154,8 @@ impl Varies for StrengthProfile {
 }
 
 impl Varies for Rows {
-    fn stated(&self, place: Place) -> Stated<'_> {
-        Stated {
+    fn stated(&self, place: Place) -> ProfileKeys<'_> {
+        ProfileKeys {
             growth: None,
             rows: self,
             points: None,
@@ -165,7 +165,7 @@ impl Varies for Rows {
     }
 }
 
-impl Stated<'_> {
+impl ProfileKeys<'_> {
     /// Where a key of a form is stated, if it is.
     fn place_of(&self, key: &str) -> Option<Place> {
         fn of<T>(own: Option<&At<T>>) -> Option<Place> {
@@ -393,7 +393,7 @@ const FORMS: [Form; 6] = [
 
 /// The form of a table; reports a table of several or of none.
 fn form(
-    value: &Stated<'_>,
+    value: &ProfileKeys<'_>,
     key: &str,
     terms: Terms,
     problems: &mut Problems,
@@ -442,7 +442,7 @@ fn form(
 
 /// The profile that a table states.
 fn stated<const D: usize>(
-    value: &Stated<'_>,
+    value: &ProfileKeys<'_>,
     key: &str,
     extent: Extent<'_, D>,
     terms: Terms,

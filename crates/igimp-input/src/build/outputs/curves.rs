@@ -32,7 +32,7 @@ pub(crate) fn curve<const D: usize>(
         .find_optional(own.stage.as_ref(), &who, problems);
     let reference = own.reference.as_ref().ok().map(|reference| {
         let own = reference.as_ref()?;
-        let stated = Stated {
+        let stated = ReferenceKeys {
             y: own.y.as_ref(),
             at: own.at.as_ref(),
             points: own.points.as_ref(),
@@ -79,7 +79,7 @@ fn axis<const D: usize>(
 }
 
 /// A reference for a curve, or for a field along a section, as it is stated.
-pub(crate) struct Stated<'a> {
+pub(crate) struct ReferenceKeys<'a> {
     pub(crate) y: Option<&'a At<f64>>,
     pub(crate) at: Option<&'a At<f64>>,
     pub(crate) points: Option<&'a At<Vec<At<[f64; 2]>>>>,
@@ -91,7 +91,7 @@ pub(crate) struct Stated<'a> {
 
 /// A reference for a curve, or for a field along a section.
 pub(crate) fn reference(
-    own: &Stated<'_>,
+    own: &ReferenceKeys<'_>,
     file: &Path,
     problems: &mut Problems,
 ) -> Option<Reference> {

@@ -49,7 +49,7 @@ pub(crate) fn moves<const D: usize>(
 }
 
 /// A component of the motion as it is stated: its name, by how much it goes on, the key of its load, and that.
-type Stated<'a> = (
+type ComponentKeys<'a> = (
     Component,
     &'a Option<At<f64>>,
     &'static str,
@@ -61,7 +61,7 @@ fn drives<const D: usize>(
     problems: &mut Problems,
 ) -> Result<[Option<RigidDrive>; COMPONENTS], Wrong> {
     let mut drives = [None; COMPONENTS];
-    let components: &[Stated<'_>] = if D == 2 {
+    let components: &[ComponentKeys<'_>] = if D == 2 {
         &[
             (Component::X, &own.x, "force_x", &own.force_x),
             (Component::Y, &own.y, "force_y", &own.force_y),
