@@ -5,6 +5,7 @@ use rayon::prelude::*;
 
 use crate::body::particles::CHUNK;
 use crate::contributions::inertia::{Motion, product};
+use crate::contributions::nodal_forces::NodalForces;
 use crate::equations::kinematics::{ParticleTrial, gradients};
 use crate::equations::system::System;
 use crate::equations::trial::Trial;
@@ -98,16 +99,13 @@ impl<const D: usize> System<'_, D> {
         let sum = |part: fn(&ParticleEnergy) -> f64| parts.iter().map(part).sum::<f64>();
         let theta = inertia.step().scheme.theta();
         let still = vec![[0.0; D]; u.len()];
-        let mean_work = |force: &dyn Fn(&[[f64; D]]) -> Vec<[f64; D]>| {
-            theta * product(&force(u), u) + (1.0 - theta) * product(&force(&still), u)
+        let work_of = |own: &dyn NodalForces<D>, at: &[[f64; D]]| {
+            let mut force = vec![[0.0; D]; at.len()];
+            own.add(at, &mut force, None);
+            product(&force, u)
         };
-        let [ghost, drag, contact, reinforcement] = self.forces().map(|own| {
-            mean_work(&|at| {
-                let mut force = vec![[0.0; D]; at.len()];
-                own.add(at, &mut force, None);
-                force
-            })
-        });
+        let [ghost, drag, contact, reinforcement] = (self.forces())
+            .map(|own| theta * work_of(own, u) + (1.0 - theta) * work_of(own, &still));
         let mut energy = StepEnergy {
             kinetic: sum(|own| own.kinetic),
             elastic: sum(|own| own.elastic),

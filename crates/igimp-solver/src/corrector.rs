@@ -164,9 +164,12 @@ impl<'s, 'w, const D: usize> Corrector<'s, 'w, D> {
         }
     }
 
-    /// The same with guarded corrections and regularised tangents, where a system was singular.
-    pub(crate) fn guarded(mut self) -> Self {
-        self.guard = self.guard.or(Some(Guard::FADING));
+    /// The same with guarded corrections and regularised tangents, where a system was singular, and where soil moves whose flow is
+    /// not associated.
+    pub(crate) fn guarded_if(mut self, was_singular: bool) -> Self {
+        if was_singular || self.system.moves_without_potential() {
+            self.guard = self.guard.or(Some(Guard::FADING));
+        }
         self
     }
 

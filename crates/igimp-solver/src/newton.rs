@@ -201,9 +201,7 @@ fn equilibrium<const D: usize>(
     let mut u = vec![[0.0; D]; system.node_count()];
     let of_step = (system, &stencils);
     let mut corrector = Corrector::new(of_step, grid, settings, workspace, history, set_up);
-    if attempt.is_guarded || corrector.system.moves_without_potential() {
-        corrector = corrector.guarded();
-    }
+    corrector = corrector.guarded_if(attempt.is_guarded);
     if let Some((load_path, work, guess)) = attempt.on_path {
         let points = &body.load_points;
         let asked = (attempt.from, work);
@@ -211,16 +209,7 @@ fn equilibrium<const D: usize>(
         corrector = corrector.on_path(factor);
         u.clone_from(&guess.u);
     }
-    if let Some(predicted) = corrector.system.predicted_motion() {
-        u = predicted;
-    }
-    let mut residual = match corrector.start(&u) {
-        Err(failure) if conditions.time.is_some() && failure.is_want_of_equilibrium() => {
-            u.fill([0.0; D]);
-            corrector.start(&u)?
-        }
-        started => started?,
-    };
+    let mut residual = start(&mut corrector, &mut u)?;
     if corrector.system.prescribes_motion() {
         carry_prescribed_motion(&corrector.system, &mut residual, &mut u)?;
     }
@@ -255,14 +244,7 @@ fn equilibrium<const D: usize>(
     let work = (attempt.measures_work)
         .then(|| system.work(trial, &u))
         .transpose()?;
-    let (pace, is_too_long) = pace::after(&system, &u, iterations);
-    if let Some(time) = conditions
-        .time
-        .filter(|time| time.must_resolve && is_too_long)
-    {
-        let duration = time.duration;
-        return Err(StepFailure::TooLong { duration });
-    }
+    let pace = pace_after(&system, &u, iterations)?;
     let energy = system.energy(trial, &u)?;
     let motion = system.motion(&u);
     let contact = system.bodies_at(&u)?;
@@ -300,6 +282,42 @@ fn equilibrium<const D: usize>(
         times,
     };
     Ok((report, NodalForces { reactions, u }))
+}
+
+/// The start of a step: nodal displacements `u` of motion that goes on as it is, or none, and the residual there.
+fn start<const D: usize>(
+    corrector: &mut Corrector<'_, '_, D>,
+    u: &mut Vec<[f64; D]>,
+) -> Result<OutOfBalance, StepFailure> {
+    let Some(predicted) = corrector.system.predicted_motion() else {
+        return corrector.start(u);
+    };
+    *u = predicted;
+    match corrector.start(u) {
+        Err(failure) if failure.is_want_of_equilibrium() => {
+            u.fill([0.0; D]);
+            corrector.start(u)
+        }
+        started => started,
+    }
+}
+
+/// How many times as long the next step may be as one by nodal displacements `u` \[-\].
+///
+/// # Errors
+/// [`StepFailure::TooLong`] for a step that has to resolve the change of motion and does not.
+fn pace_after<const D: usize>(
+    system: &System<'_, D>,
+    u: &[[f64; D]],
+    iterations: usize,
+) -> Result<f64, StepFailure> {
+    let (pace, is_too_long) = pace::after(system, u, iterations);
+    match system.conditions().time {
+        Some(time) if time.must_resolve && is_too_long => Err(StepFailure::TooLong {
+            duration: time.duration,
+        }),
+        _ => Ok(pace),
+    }
 }
 
 /// Share of particles that returned to the yield surface \[-\].

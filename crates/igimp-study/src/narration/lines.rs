@@ -384,6 +384,7 @@ mod tests {
                 reinforcement: Vec::new(),
                 water: None,
                 drained: false,
+                time: 0.0,
             },
         };
         let events = [
