@@ -13,7 +13,8 @@ use crate::{LinearSolverError, SolveReport, TangentMatrix, check};
 /// Vectors between restarts of generalised minimal residuals.
 const RESTART: usize = 300;
 
-/// A new start from the true residual must leave less than this of it.
+/// A new start from the true residual must leave less than this of it. A choice: what has met round-off leaves nearly all of it, and
+/// another start costs a set of directions.
 const PROGRESS: f64 = 0.5;
 
 /// What an iterative solution must come to.

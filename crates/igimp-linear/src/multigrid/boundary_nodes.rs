@@ -13,9 +13,11 @@ use crate::multifrontal::Engine;
 use crate::refine::Accuracy;
 use crate::{NodeBlock, Pattern, TangentMatrix};
 
-/// A node whose diagonal is less than this of the largest one that it is coupled to belongs to the skin \[-\].
+/// A node whose diagonal is less than this of the largest one that it is coupled to belongs to the skin \[-\]. A choice: a node of a
+/// level surface has a half and stays outside, one of an edge a quarter and less.
 const WEAK: f64 = 0.3;
-/// Factors of a skin that are larger than this are not made \[bytes\].
+/// Factors of a skin that are larger than this are not made \[bytes\]. A choice: a quarter of what factors of the whole are
+/// allowed by default where nobody knows the machine, and the same on every machine, so that iterations are too.
 const MOST_BYTES: usize = 2 << 30;
 /// A solution is taken as the factors give it.
 const ONCE: Accuracy = Accuracy {

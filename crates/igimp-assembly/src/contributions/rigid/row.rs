@@ -5,7 +5,8 @@ use super::interface::{Shear, Tension};
 use super::{ContactNode, Interface, Penalty};
 use crate::contributions::nodal_forces::AddBlock;
 
-/// Traction grows at most so much from step to step where soil covers less and less of a knot \[-\].
+/// Traction grows at most so much from step to step where soil covers less and less of a knot \[-\]. A choice: without a bound
+/// the last bit of soil at a knot would carry all of its force; what is cut off is out of balance in one step, and found by it.
 const MOST_GROWTH: f64 = 2.0;
 
 /// Shear this near to its limit still sticks: what slipped in the last step begins the next one with the
