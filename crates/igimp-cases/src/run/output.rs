@@ -28,6 +28,7 @@ use crate::run::output::records::AcceptedStep;
 use records::{Records, Rows};
 
 pub(crate) mod checks;
+mod difference;
 mod drawn;
 pub(crate) mod entry;
 pub(crate) mod export;
@@ -223,17 +224,8 @@ impl<const D: usize> Output<D> {
         run: &Summary,
     ) -> Result<(), CaseError> {
         let clock = Instant::now();
-        self.steps += 1;
+        self.frame_of_step(model, summary, taken)?;
         let body = taken.accepted.body;
-        if let Every::Steps(every) = self.every
-            && summary.steps.is_multiple_of(every.max(1))
-        {
-            let conditions = &taken.accepted.conditions;
-            let own = (&body.particles, &conditions.laws[..]);
-            let structures = outlines::structures(model.case, taken.controls, body);
-            self.frames
-                .add(self.steps as f64, own, &conditions.grid, &structures)?;
-        }
         let due = self.checkpoint_every > 0 && summary.steps.is_multiple_of(self.checkpoint_every);
         if due || taken.interrupted {
             let notes = Notes {
@@ -244,6 +236,26 @@ impl<const D: usize> Output<D> {
             self.save(&[("current", body)], &notes)?;
         }
         self.seconds += clock.elapsed().as_secs_f64();
+        Ok(())
+    }
+
+    /// Counts a step, and writes a frame when one is due: all that there is to write after a step that no march goes on from.
+    pub(crate) fn frame_of_step(
+        &mut self,
+        model: &Model<'_, D>,
+        summary: &StageSummary,
+        taken: &AcceptedStep<'_, D>,
+    ) -> Result<(), CaseError> {
+        self.steps += 1;
+        if let Every::Steps(every) = self.every
+            && summary.steps.is_multiple_of(every.max(1))
+        {
+            let (body, conditions) = (taken.accepted.body, &taken.accepted.conditions);
+            let own = (&body.particles, &conditions.laws[..]);
+            let structures = outlines::structures(model.case, taken.controls, body);
+            self.frames
+                .add(self.steps as f64, own, &conditions.grid, &structures)?;
+        }
         Ok(())
     }
 

@@ -19,7 +19,21 @@ use igimp_schema::tree::Node;
 
 use super::AllNames;
 use super::bodies::site::Soil;
+use igimp_text::{MemoryLimit, NoAmount};
 use quantities::fields;
+
+/// Most memory for factors, if the case states it.
+fn memory(solver: &Node, problems: &mut Problems) -> Option<MemoryLimit> {
+    let text = solver.text_at("memory")?;
+    match text.parse() {
+        Ok(limit) => Some(limit),
+        Err(wrong) => {
+            let wrong: NoAmount = wrong;
+            problems.error(solver.place_at("memory"), wrong.to_string());
+            None
+        }
+    }
+}
 
 /// Newton's method, step cutting, linear solver.
 pub(super) fn solver(
@@ -67,6 +81,7 @@ pub(super) fn solver(
         cuts: u32::try_from(cutting.count_at("times")?).ok()?,
         cut_factor: cutting.number_at("factor")?,
         linear,
+        memory: memory(node, problems),
     })
 }
 

@@ -33,6 +33,12 @@ pub(super) static SOLVER: Struct = Struct {
             "\"auto\"",
             "linear solver",
         ),
+        optional(
+            "memory",
+            Kind::Text,
+            "that of --memory or IGIMP_MEMORY, or half of what the computer has",
+            "most memory for its factors in space, as \"12 GiB\", or \"25 %\" of what the computer has",
+        ),
     ],
 };
 

@@ -1,6 +1,7 @@
 //! What the stages of a case do.
 
 pub(crate) mod construction;
+pub(crate) mod fallen;
 pub(crate) mod initial;
 pub(crate) mod limit_load;
 pub(crate) mod loading;
