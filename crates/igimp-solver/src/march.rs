@@ -304,7 +304,7 @@ mod tests {
     #[test]
     fn a_step_that_was_cut_often_ends_beyond_its_start() {
         let nominal = 0.1;
-        for at in [0.0, 0.1, 0.30000000000000004, 0.35] {
+        for at in [0.0, 0.1, 0.300_000_000_000_000_04, 0.35] {
             for size in [1e-7, 1e-8, 1e-10] {
                 let to = next_factor(at, size, nominal);
                 assert!(((to - at) / size - 1.0).abs() < 1e-4, "{at} {size:e}: {to}");
@@ -312,7 +312,7 @@ mod tests {
         }
         assert_eq!(
             next_factor(0.2, nominal, nominal).to_bits(),
-            0.30000000000000004_f64.to_bits()
+            0.300_000_000_000_000_04_f64.to_bits()
         );
         assert_eq!(
             next_factor(1.0 - 1e-9, 1e-9, nominal).to_bits(),
