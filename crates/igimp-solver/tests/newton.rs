@@ -594,7 +594,9 @@ impl LinearSolver for Fourfold {
         solution: &mut [f64],
     ) -> Result<SolveReport, LinearSolverError> {
         let report = self.0.solve(matrix, rhs, solution)?;
-        solution.iter_mut().for_each(|x| *x *= 4.0);
+        for x in solution.iter_mut() {
+            *x *= 4.0;
+        }
         Ok(report)
     }
 

@@ -222,7 +222,9 @@ mod tests {
         let n = 9;
         let mut v: Vec<f64> = (0..n).map(|k| f64::from(k as u8 * 5 % 7) + 1.0).collect();
         let size = norm(&v);
-        v.iter_mut().for_each(|v| *v /= size);
+        for v in &mut v {
+            *v /= size;
+        }
         let q = |i: usize, j: usize| f64::from(u8::from(i == j)) - 2.0 * v[i] * v[j];
         let rows: Vec<Vec<f64>> = (0..n)
             .map(|i| {
